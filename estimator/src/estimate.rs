@@ -1,0 +1,204 @@
+//! What a fit answers: numbers with errors, constraints, warnings. These types *are* the JSON of `touchstone fit --json`.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// One estimated parameter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Parameter {
+    /// `block-1`, `crank`, `mechanism`, `needle`, …
+    pub object: String,
+    /// Name with its unit, e.g. `weight_N`.
+    pub name: String,
+    /// Best value; absent when the recording cannot show it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
+    /// One standard error, in the unit of the value, systematic parts included.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub std_error: Option<f64>,
+    /// False when the recording cannot show it.
+    pub identified: bool,
+    /// Samples that took part.
+    pub samples: usize,
+    /// How it was found, or why it could not be: one sentence.
+    pub how: String,
+}
+
+impl Parameter {
+    /// An estimate that stands.
+    pub fn identified(object: &str, name: &str, value: f64, std_error: f64, samples: usize, how: &str) -> Self {
+        Self {
+            object: object.to_owned(),
+            name: name.to_owned(),
+            value: Some(value),
+            std_error: Some(std_error),
+            identified: true,
+            samples,
+            how: how.to_owned(),
+        }
+    }
+
+    /// A parameter that this recording cannot show.
+    pub fn unidentified(object: &str, name: &str, samples: usize, why: &str) -> Self {
+        Self {
+            object: object.to_owned(),
+            name: name.to_owned(),
+            value: None,
+            std_error: None,
+            identified: false,
+            samples,
+            how: why.to_owned(),
+        }
+    }
+}
+
+/// The kind of a geometric constraint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ConstraintKind {
+    /// Turning about a fixed axis.
+    Revolute,
+    /// Sliding along a fixed line.
+    Prismatic,
+    /// No constraint.
+    Free,
+    /// A membrane: stiffness depends on the deepest insertion.
+    Membrane,
+    /// Pushes one way only.
+    Unilateral,
+    /// A path that is neither a line nor a circle.
+    Spline,
+    /// The recording cannot tell.
+    Undecided,
+}
+
+/// A constraint found in a recording.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Constraint {
+    /// What it is.
+    pub kind: ConstraintKind,
+    /// Trial or recording it was found in, when there are several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recording: Option<String>,
+    /// Centre of rotation, m; two numbers for a planar recording, three otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub center_m: Option<Vec<f64>>,
+    /// Radius, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radius_m: Option<f64>,
+    /// 95 % interval of the radius, m; the upper end is absent when the path could as well be straight.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radius_interval_m: Option<(f64, Option<f64>)>,
+    /// Unit vector: of the axis (revolute), of the motion (prismatic).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub direction: Option<Vec<f64>>,
+    /// Stiffer than the manipulator and its sensors can tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rigid: Option<bool>,
+    /// Standard errors by name: `center_m` (one number, the larger axis), `radius_m`, `direction_rad`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub std_error: BTreeMap<String, f64>,
+    /// Angle turned (revolute), rad.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coverage_rad: Option<f64>,
+    /// Path length covered, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coverage_m: Option<f64>,
+    /// Root mean square distance of the path from the constraint, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub residual_m: Option<f64>,
+    /// Mean constraint force along the outward normal, N, where forces were recorded (thesis, eq. 5.1).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub constraint_force_n: Option<f64>,
+    /// One sentence: what shows it, or what is missing.
+    pub evidence: String,
+}
+
+/// Everything that a fit found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Fit {
+    /// Task name.
+    pub task: String,
+    /// Parameters.
+    pub parameters: Vec<Parameter>,
+    /// Constraints.
+    pub constraints: Vec<Constraint>,
+    /// How well the model reproduces the force, where it predicts one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub quality: Option<Quality>,
+    /// Sentences, most important first.
+    pub warnings: Vec<String>,
+}
+
+/// Agreement between the measured force and the fitted model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Quality {
+    /// RMS force residual on the samples that were fitted, in `unit`.
+    pub rms: f64,
+    /// RMS force residual on the held-out end of the recording by a fit that did not see it, in `unit`.
+    pub heldout_rms: f64,
+    /// `heldout_rms` divided by the RMS of the measured force there.
+    pub heldout_relative: f64,
+    /// Share of the recording held out.
+    pub heldout_share: f64,
+    /// `N` or `Nm`.
+    pub unit: String,
+}
+
+impl Fit {
+    /// The parameter `name` of `object`.
+    pub fn parameter(&self, object: &str, name: &str) -> Option<&Parameter> {
+        self.parameters.iter().find(|p| p.object == object && p.name == name)
+    }
+
+    /// Its value, when identified.
+    pub fn value(&self, object: &str, name: &str) -> Option<f64> {
+        self.parameter(object, name)?.value
+    }
+}
+
+/// Why an estimate could not be made, in one sentence.
+#[derive(Debug, thiserror::Error)]
+pub enum EstimateError {
+    /// A channel is missing.
+    #[error("{task} needs the column {column}, which {recording} does not have; add it, or map it in the sidecar")]
+    MissingColumn {
+        /// What was asked for.
+        task: String,
+        /// The column's name.
+        column: String,
+        /// Which recording.
+        recording: String,
+    },
+    /// There is not enough to work with.
+    #[error("{recording} has only {samples} usable samples{what}; at least {needed} are needed")]
+    TooFewSamples {
+        /// Which recording.
+        recording: String,
+        /// How many.
+        samples: usize,
+        /// For what (with a leading space), or empty.
+        what: String,
+        /// How many it takes.
+        needed: usize,
+    },
+    /// The recording's clock is needed.
+    #[error("{what} needs times, and {recording} has no clock; give a t_s column or rate_hz in the sidecar")]
+    Clockless {
+        /// What was asked for.
+        what: String,
+        /// Which recording.
+        recording: String,
+    },
+    /// The task could not be told.
+    #[error(
+        "the task of {recording} is not stated and its columns do not tell it; give --task, or \"task\" in the sidecar"
+    )]
+    UnknownTask {
+        /// Which recording.
+        recording: String,
+    },
+    /// Something else, already a sentence.
+    #[error("{0}")]
+    Other(String),
+}

@@ -1,0 +1,374 @@
+//! The immutable description of a virtual world: what stands in a world file.
+
+use crate::Vec2;
+use crate::hand::Hand;
+use crate::law::{Coordinate, Effect};
+use serde::{Deserialize, Serialize};
+
+/// Version of the file format.
+pub const SCHEMA: u32 = 1;
+
+/// Most blocks that a world may hold: the state's buffers are sized once, the servo never allocates.
+pub const MAX_BLOCKS: usize = 64;
+
+/// A virtual world. Build or load it, then [`World::check`] it; `step` never changes it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct World {
+    /// File format version, [`SCHEMA`].
+    #[serde(default = "schema")]
+    pub schema: u32,
+    /// What it is, for people.
+    pub name: String,
+    /// Downward acceleration, m/s².
+    #[serde(default = "gravity")]
+    pub gravity_m_s2: f64,
+    /// The hand that touches it.
+    #[serde(default)]
+    pub hand: Hand,
+    /// The fingertips.
+    #[serde(default)]
+    pub pad: Pad,
+    /// A table under everything, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub floor: Option<Floor>,
+    /// Movable rectangular blocks.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub blocks: Vec<Block>,
+    /// A crank, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crank: Option<Crank>,
+    /// A mechanism with one degree of freedom that is driven directly, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mechanism: Option<Mechanism>,
+    /// Where the numbers come from: nothing here is guessed without saying so.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub provenance: Vec<Provenance>,
+}
+
+/// Compliant fingertip pad: a spring and damper with friction (closed-cell foam in the thesis).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pad {
+    /// Normal stiffness, N/m, positive.
+    pub stiffness_n_m: f64,
+    /// Normal damping, N s/m, ≥ 0.
+    pub damping_n_s_m: f64,
+    /// Tangential stiffness of the sticking pad, N/m, positive.
+    pub shear_stiffness_n_m: f64,
+    /// Tangential damping of the sticking pad, N s/m, ≥ 0.
+    pub shear_damping_n_s_m: f64,
+}
+
+impl Default for Pad {
+    fn default() -> Self {
+        Self { stiffness_n_m: 2500.0, damping_n_s_m: 1.5, shear_stiffness_n_m: 1500.0, shear_damping_n_s_m: 1.5 }
+    }
+}
+
+/// A horizontal table.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Floor {
+    /// Height of its surface, m.
+    pub height_m: f64,
+    /// Friction coefficient against blocks and fingers.
+    pub friction: f64,
+    /// Contact stiffness per contact point, N/m.
+    pub stiffness_n_m: f64,
+    /// Contact damping per contact point, N s/m.
+    pub damping_n_s_m: f64,
+}
+
+/// A rectangular block that may rotate.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Block {
+    /// `block-1`, `block-2`, …: the name in fits and reports.
+    pub name: String,
+    /// Mass, kg, positive.
+    pub mass_kg: f64,
+    /// Horizontal size when upright, m.
+    pub width_m: f64,
+    /// Vertical size when upright, m.
+    pub height_m: f64,
+    /// Friction coefficient against the finger pads.
+    pub finger_friction: f64,
+    /// Friction coefficient against other blocks.
+    pub block_friction: f64,
+    /// Contact stiffness against blocks per contact point, N/m.
+    pub stiffness_n_m: f64,
+    /// Contact damping against blocks per contact point, N s/m.
+    pub damping_n_s_m: f64,
+    /// Where it starts: centre, m, and angle, rad counter-clockwise.
+    pub start: Pose,
+}
+
+/// Position and orientation in the plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pose {
+    /// Centre in the world, m.
+    pub center_m: Vec2,
+    /// Rotation, rad, counter-clockwise.
+    #[serde(default)]
+    pub angle_rad: f64,
+}
+
+/// A handle on an arm about a fixed axis. The handle keeps upright on its own bearing, as a block held by the pads does.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Crank {
+    /// Axis in the world, m.
+    pub center_m: Vec2,
+    /// Arm length, m, positive.
+    pub radius_m: f64,
+    /// Width of the handle between the pads, m.
+    pub handle_width_m: f64,
+    /// Friction coefficient of the handle against the pads.
+    pub finger_friction: f64,
+    /// Radial stiffness of arm and bearing, N/m; absent: rigid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub constraint_stiffness_n_m: Option<f64>,
+    /// Laws along the circle: path length s = R θ, forces in N at the handle (thesis, eq. 5.2). Inertia in kg at the handle.
+    pub effects: Vec<Effect>,
+    /// Handle angle at the start, rad from the horizontal, counter-clockwise.
+    pub start_rad: f64,
+}
+
+/// A one-degree-of-freedom mechanism: a coordinate and the laws along it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mechanism {
+    /// Length or angle.
+    pub coordinate: Coordinate,
+    /// How the coordinate lies in space, when a tool path was recorded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path: Option<MechanismPath>,
+    /// Laws along the coordinate.
+    pub effects: Vec<Effect>,
+    /// Speed within which the direction of motion is blurred, m/s or rad/s: the noise of the velocity it was fitted with.
+    #[serde(default)]
+    pub direction_blur: f64,
+}
+
+/// Where a mechanism's tool point can go, in the frame of its recording (3-D; z = 0 for planar recordings).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum MechanismPath {
+    /// Along a line.
+    Prismatic {
+        /// A point of the line, m.
+        origin_m: [f64; 3],
+        /// Unit vector of +s.
+        direction: [f64; 3],
+    },
+    /// About an axis.
+    Revolute {
+        /// Centre of the circle, m.
+        center_m: [f64; 3],
+        /// Unit vector of the axis; +θ is right-handed about it.
+        axis: [f64; 3],
+        /// Radius, m.
+        radius_m: f64,
+        /// Unit vector from the centre towards θ = 0.
+        zero: [f64; 3],
+    },
+}
+
+/// Where one number of the world comes from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// `block-1`, `crank`, `mechanism`, `pad`, …
+    pub object: String,
+    /// Parameter name with its unit.
+    pub name: String,
+    /// The value.
+    pub value: f64,
+    /// Standard error; absent when the number was assumed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub std_error: Option<f64>,
+    /// `measured`, `known` (stated in the sidecar) or `assumed`.
+    pub source: Source,
+    /// The recording, or the reason for the assumption.
+    pub from: String,
+}
+
+/// How a number came to be known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Source {
+    /// Estimated from a recording.
+    Measured,
+    /// Stated by the user.
+    Known,
+    /// Neither: a default, because the recording could not show it.
+    Assumed,
+}
+
+fn schema() -> u32 {
+    SCHEMA
+}
+
+fn gravity() -> f64 {
+    9.81
+}
+
+/// A world that cannot be run, in one sentence.
+#[derive(Debug, thiserror::Error)]
+pub enum WorldError {
+    /// A number out of its physical range.
+    #[error("{object} has {name} = {value}, which must be {must}; correct it in the world file")]
+    OutOfRange {
+        /// Which object.
+        object: String,
+        /// Which number.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// The condition.
+        must: &'static str,
+    },
+    /// More blocks than the state can hold.
+    #[error("the world has {0} blocks; at most {MAX_BLOCKS} can be simulated")]
+    TooManyBlocks(usize),
+    /// A newer file.
+    #[error("the world file has format {0}, this program reads up to {SCHEMA}; update the program")]
+    NewerSchema(u32),
+    /// Not a world at all.
+    #[error("the file is not a world: {0}")]
+    Parse(#[from] serde_json::Error),
+    /// The file could not be read.
+    #[error("the world file could not be read ({0})")]
+    Io(#[from] std::io::Error),
+}
+
+impl World {
+    /// An empty world with the default hand and a table.
+    pub fn empty(name: &str) -> Self {
+        Self {
+            schema: SCHEMA,
+            name: name.to_owned(),
+            gravity_m_s2: gravity(),
+            hand: Hand::default(),
+            pad: Pad::default(),
+            floor: Some(Floor::default()),
+            blocks: Vec::new(),
+            crank: None,
+            mechanism: None,
+            provenance: Vec::new(),
+        }
+    }
+
+    /// Reads and checks a world from JSON.
+    pub fn from_json(text: &str) -> Result<Self, WorldError> {
+        let world: Self = serde_json::from_str(text)?;
+        world.check()?;
+        Ok(world)
+    }
+
+    /// Reads and checks a world file.
+    pub fn load(path: &std::path::Path) -> Result<Self, WorldError> {
+        Self::from_json(&std::fs::read_to_string(path)?)
+    }
+
+    /// The world as pretty JSON.
+    pub fn to_json(&self) -> String {
+        // Serialising plain numbers and strings into memory cannot fail.
+        serde_json::to_string_pretty(self).unwrap_or_default()
+    }
+
+    /// Says what makes the world impossible to run, if anything does.
+    pub fn check(&self) -> Result<(), WorldError> {
+        if self.schema > SCHEMA {
+            return Err(WorldError::NewerSchema(self.schema));
+        }
+        if self.blocks.len() > MAX_BLOCKS {
+            return Err(WorldError::TooManyBlocks(self.blocks.len()));
+        }
+        positive("pad", "stiffness_n_m", self.pad.stiffness_n_m)?;
+        positive("pad", "shear_stiffness_n_m", self.pad.shear_stiffness_n_m)?;
+        not_negative("pad", "damping_n_s_m", self.pad.damping_n_s_m)?;
+        not_negative("pad", "shear_damping_n_s_m", self.pad.shear_damping_n_s_m)?;
+        finite("the world", "gravity_m_s2", self.gravity_m_s2)?;
+        for finger in &self.hand.fingers {
+            positive("the hand", "link_m", finger.link_m)?;
+        }
+        if let Some(floor) = &self.floor {
+            finite("the floor", "height_m", floor.height_m)?;
+            positive("the floor", "stiffness_n_m", floor.stiffness_n_m)?;
+            not_negative("the floor", "friction", floor.friction)?;
+            not_negative("the floor", "damping_n_s_m", floor.damping_n_s_m)?;
+        }
+        for block in &self.blocks {
+            block.check()?;
+        }
+        if let Some(crank) = &self.crank {
+            positive("the crank", "radius_m", crank.radius_m)?;
+            positive("the crank", "handle_width_m", crank.handle_width_m)?;
+            not_negative("the crank", "finger_friction", crank.finger_friction)?;
+            positive("the crank", "inertia (effect `inertia`, m)", crank.mass_at_handle_kg())?;
+            if let Some(stiffness) = crank.constraint_stiffness_n_m {
+                positive("the crank", "constraint_stiffness_n_m", stiffness)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Default for Floor {
+    fn default() -> Self {
+        Self { height_m: -0.13, friction: 0.5, stiffness_n_m: 8000.0, damping_n_s_m: 6.0 }
+    }
+}
+
+impl Block {
+    /// A block with usual contact values, standing upright with its base at (`x_m`, `base_y_m`).
+    pub fn upright(name: &str, mass_kg: f64, width_m: f64, height_m: f64, x_m: f64, base_y_m: f64) -> Self {
+        Self {
+            name: name.to_owned(),
+            mass_kg,
+            width_m,
+            height_m,
+            finger_friction: 0.9,
+            block_friction: 0.5,
+            stiffness_n_m: 8000.0,
+            damping_n_s_m: 6.0,
+            start: Pose { center_m: Vec2::new(x_m, base_y_m + 0.5 * height_m), angle_rad: 0.0 },
+        }
+    }
+
+    /// Moment of inertia about the centre, kg m² (a homogeneous rectangle).
+    pub fn inertia_kg_m2(&self) -> f64 {
+        self.mass_kg * (self.width_m.powi(2) + self.height_m.powi(2)) / 12.0
+    }
+
+    fn check(&self) -> Result<(), WorldError> {
+        positive(&self.name, "mass_kg", self.mass_kg)?;
+        positive(&self.name, "width_m", self.width_m)?;
+        positive(&self.name, "height_m", self.height_m)?;
+        positive(&self.name, "stiffness_n_m", self.stiffness_n_m)?;
+        not_negative(&self.name, "damping_n_s_m", self.damping_n_s_m)?;
+        not_negative(&self.name, "finger_friction", self.finger_friction)?;
+        not_negative(&self.name, "block_friction", self.block_friction)?;
+        finite(&self.name, "start.center_m[0]", self.start.center_m.x)?;
+        finite(&self.name, "start.center_m[1]", self.start.center_m.y)?;
+        finite(&self.name, "start.angle_rad", self.start.angle_rad)
+    }
+}
+
+impl Crank {
+    /// Sum of the inertia effects, kg at the handle.
+    pub fn mass_at_handle_kg(&self) -> f64 {
+        crate::law::resistance(&self.effects, &crate::law::Motion::default()).inertia
+    }
+}
+
+fn range_error(object: &str, name: &'static str, value: f64, must: &'static str) -> WorldError {
+    WorldError::OutOfRange { object: object.to_owned(), name, value, must }
+}
+
+fn positive(object: &str, name: &'static str, value: f64) -> Result<(), WorldError> {
+    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(range_error(object, name, value, "positive and finite")) }
+}
+
+fn not_negative(object: &str, name: &'static str, value: f64) -> Result<(), WorldError> {
+    if value >= 0.0 && value.is_finite() { Ok(()) } else { Err(range_error(object, name, value, "zero or positive")) }
+}
+
+fn finite(object: &str, name: &'static str, value: f64) -> Result<(), WorldError> {
+    if value.is_finite() { Ok(()) } else { Err(range_error(object, name, value, "a finite number")) }
+}

@@ -1,0 +1,192 @@
+//! The mutable part of a world: where everything is now. Copied to the pictures without allocation.
+
+use super::model::World;
+use crate::Vec2;
+
+/// What the fingers do during one tick, from the device.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Input {
+    /// Tip position in the world of finger 1 (left) and 2 (right), m.
+    pub tip_in_world: [Vec2; 2],
+    /// Tip velocity, m/s.
+    pub tip_velocity: [Vec2; 2],
+}
+
+/// A moving block.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BodyState {
+    /// Centre in the world, m.
+    pub center_m: Vec2,
+    /// Angle, rad, counter-clockwise.
+    pub angle_rad: f64,
+    /// Velocity of the centre, m/s.
+    pub velocity_m_s: Vec2,
+    /// Angular velocity, rad/s.
+    pub rate_rad_s: f64,
+}
+
+/// The crank's handle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CrankState {
+    /// Angle of the arm from the horizontal, rad, counter-clockwise, unwrapped.
+    pub angle_rad: f64,
+    /// Its rate, rad/s.
+    pub rate_rad_s: f64,
+    /// Radial give of arm and bearing, m, outwards.
+    pub radial_m: f64,
+    /// Its rate, m/s.
+    pub radial_rate_m_s: f64,
+    /// Force that arm and bearing put on the handle along the outward normal, N.
+    pub constraint_force_n: f64,
+}
+
+/// What a contact is between.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surface {
+    /// Finger 0 (left) or 1 (right).
+    Finger(u8),
+    /// A block, by index.
+    Block(u16),
+    /// The table.
+    Floor,
+    /// The crank's handle.
+    Handle,
+}
+
+/// One active contact point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// The body that is pushed along `normal`.
+    pub on: Surface,
+    /// The body that pushes.
+    pub by: Surface,
+    /// Which corner, edge or face: tells points of one pair apart from tick to tick.
+    pub feature: u8,
+    /// Where, in the world, m.
+    pub point_m: Vec2,
+    /// Unit vector from `by` into `on`.
+    pub normal: Vec2,
+    /// Compression, m, positive.
+    pub depth_m: f64,
+    /// Elastic tangential displacement of the sticking contact, m, along the normal turned by −90° (clockwise).
+    pub shear_m: f64,
+    /// Normal force on `on`, N, ≥ 0.
+    pub normal_force_n: f64,
+    /// Tangential force on `on`, N, along the normal turned by −90°.
+    pub tangent_force_n: f64,
+    /// True while the contact slides.
+    pub sliding: bool,
+}
+
+impl Contact {
+    /// Unit tangent: the normal turned by −90°.
+    pub fn tangent(&self) -> Vec2 {
+        Vec2::new(self.normal.y, -self.normal.x)
+    }
+
+    /// Force on `on` in the world, N.
+    pub fn force_n(&self) -> Vec2 {
+        self.normal * self.normal_force_n + self.tangent() * self.tangent_force_n
+    }
+}
+
+/// Everything that changes. All buffers are sized when it is made; `copy_from` never allocates.
+#[derive(Debug, PartialEq)]
+pub struct State {
+    /// Simulated time, s.
+    pub time_s: f64,
+    /// Tick counter.
+    pub tick: u64,
+    /// The input that led here.
+    pub input: Input,
+    /// Force each tip exerts on the environment, N (what a force sensor in the tip reads).
+    pub tip_force_n: [Vec2; 2],
+    /// Blocks, in the order of the world's.
+    pub bodies: Vec<BodyState>,
+    /// Crank, zero when there is none.
+    pub crank: CrankState,
+    /// Active contacts of the last tick.
+    pub contacts: Vec<Contact>,
+    /// Contacts of the tick before: scratch space.
+    pub(super) previous: Vec<Contact>,
+    /// Sum of forces and moment on each block: scratch space.
+    pub(super) load: Vec<(Vec2, f64)>,
+    /// Largest impact speed since it was last cleared, m/s: drives sound and flash.
+    pub impact_m_s: f64,
+}
+
+impl State {
+    /// The state a world starts in. `tips` are where the fingers are, m.
+    pub fn new(world: &World, tips: [Vec2; 2]) -> Self {
+        // Four corner contacts for every block against the table, two for each touching pair (a planar packing has at
+        // most 3 n pairs), two per finger and block, two on the handle.
+        let n = world.blocks.len();
+        let capacity = 4 * n + 6 * n + 4 * n + 16;
+        Self {
+            time_s: 0.0,
+            tick: 0,
+            input: Input { tip_in_world: tips, tip_velocity: [Vec2::zeros(); 2] },
+            tip_force_n: [Vec2::zeros(); 2],
+            bodies: world
+                .blocks
+                .iter()
+                .map(|block| BodyState {
+                    center_m: block.start.center_m,
+                    angle_rad: block.start.angle_rad,
+                    ..BodyState::default()
+                })
+                .collect(),
+            crank: CrankState { angle_rad: world.crank.as_ref().map_or(0.0, |c| c.start_rad), ..CrankState::default() },
+            contacts: Vec::with_capacity(capacity),
+            previous: Vec::with_capacity(capacity),
+            load: vec![(Vec2::zeros(), 0.0); n],
+            impact_m_s: 0.0,
+        }
+    }
+
+    /// The usual start: fingers apart, in the middle of the workspace.
+    pub fn resting(world: &World) -> Self {
+        let center = world.hand.workspace.center_m;
+        let half = Vec2::new(0.3 * world.hand.workspace.radius_m, 0.0);
+        Self::new(world, [center - half, center + half])
+    }
+
+    /// Overwrites this state; allocates nothing when both were made for the same world.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.time_s = other.time_s;
+        self.tick = other.tick;
+        self.input = other.input;
+        self.tip_force_n = other.tip_force_n;
+        self.bodies.clone_from(&other.bodies);
+        self.crank = other.crank;
+        self.contacts.clone_from(&other.contacts);
+        self.impact_m_s = other.impact_m_s;
+    }
+
+    /// Position of the crank's handle in the world, m.
+    pub fn handle_in_world(&self, world: &World) -> Option<Vec2> {
+        let crank = world.crank.as_ref()?;
+        let (sin, cos) = self.crank.angle_rad.sin_cos();
+        Some(crank.center_m + Vec2::new(cos, sin) * (crank.radius_m + self.crank.radial_m))
+    }
+}
+
+impl Clone for State {
+    /// A copy with the same buffer capacities, so that later `copy_from` calls need not allocate.
+    fn clone(&self) -> Self {
+        let mut contacts = Vec::with_capacity(self.contacts.capacity());
+        contacts.extend_from_slice(&self.contacts);
+        Self {
+            time_s: self.time_s,
+            tick: self.tick,
+            input: self.input,
+            tip_force_n: self.tip_force_n,
+            bodies: self.bodies.clone(),
+            crank: self.crank,
+            contacts,
+            previous: Vec::with_capacity(self.previous.capacity()),
+            load: self.load.clone(),
+            impact_m_s: self.impact_m_s,
+        }
+    }
+}
