@@ -1,1 +1,3 @@
 //! Identification.
+
+pub mod linear;
