@@ -22,6 +22,9 @@ pub struct World {
     /// Downward acceleration, m/s².
     #[serde(default = "gravity")]
     pub gravity_m_s2: f64,
+    /// Tilt of the whole set-up, rad: gravity points along (sin, −cos) of it.
+    #[serde(default)]
+    pub tilt_rad: f64,
     /// The hand that touches it.
     #[serde(default)]
     pub hand: Hand,
@@ -243,6 +246,7 @@ impl World {
             schema: SCHEMA,
             name: name.to_owned(),
             gravity_m_s2: gravity(),
+            tilt_rad: 0.0,
             hand: Hand::default(),
             pad: Pad::default(),
             floor: Some(Floor::default()),
@@ -271,6 +275,12 @@ impl World {
         serde_json::to_string_pretty(self).unwrap_or_default()
     }
 
+    /// Gravitational acceleration as a vector in the world, m/s².
+    pub fn gravity_vector(&self) -> Vec2 {
+        let (sin, cos) = self.tilt_rad.sin_cos();
+        Vec2::new(sin, -cos) * self.gravity_m_s2
+    }
+
     /// Says what makes the world impossible to run, if anything does.
     pub fn check(&self) -> Result<(), WorldError> {
         if self.schema > SCHEMA {
@@ -284,6 +294,7 @@ impl World {
         not_negative("pad", "damping_n_s_m", self.pad.damping_n_s_m)?;
         not_negative("pad", "shear_damping_n_s_m", self.pad.shear_damping_n_s_m)?;
         finite("the world", "gravity_m_s2", self.gravity_m_s2)?;
+        finite("the world", "tilt_rad", self.tilt_rad)?;
         for finger in &self.hand.fingers {
             positive("the hand", "link_m", finger.link_m)?;
         }
