@@ -1,1 +1,80 @@
-//! Devices.
+//! Where finger positions come from and forces go to: one trait, one backend a file.
+
+mod impedance;
+mod mouse;
+mod replay;
+mod scripted;
+
+pub use impedance::HandImpedance;
+pub use mouse::{MouseDevice, MouseHandle, MouseTarget, mouse};
+pub use replay::ReplayDevice;
+pub use scripted::{ScriptedOperator, Skill};
+
+use crate::Vec2;
+use crate::world::{State, World};
+
+/// What a device can do: everything that limits are computed from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeviceSpec {
+    /// For people.
+    pub name: String,
+    /// Whether the operator feels a force (false: it is only shown).
+    pub force_feedback: bool,
+    /// Largest force per finger, N.
+    pub max_force_n: f64,
+    /// Physical damping per finger, N s/m.
+    pub damping_n_s_m: f64,
+    /// Coulomb friction per finger, N.
+    pub coulomb_n: f64,
+    /// Position resolution, m.
+    pub resolution_m: f64,
+}
+
+impl DeviceSpec {
+    /// Largest wall stiffness that keeps a sampled wall passive, N/m: the smaller of 2 b/T (Colgate & Schenkel 1997, B = 0)
+    /// and the encoder limit 2 fc/Δ (Abbott & Okamura 2005), for a servo period `period_s`.
+    pub fn max_stiffness_n_m(&self, period_s: f64) -> f64 {
+        let sampled = 2.0 * self.damping_n_s_m / period_s;
+        if self.resolution_m > 0.0 { sampled.min(2.0 * self.coulomb_n / self.resolution_m) } else { sampled }
+    }
+}
+
+/// What the servo sends to the device at every tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Command {
+    /// Force on the operator's fingers, N, after ramp, clamp and slew limit.
+    pub force_n: [Vec2; 2],
+}
+
+/// What the device answers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Tip positions in the world, m.
+    pub tip_in_world: [Vec2; 2],
+    /// Tip velocities, m/s.
+    pub tip_velocity: [Vec2; 2],
+    /// False when the device had nothing new: the watchdog counts these.
+    pub fresh: bool,
+}
+
+/// A two-fingered input device. Everything but construction is called on the servo thread and must neither allocate, lock,
+/// print, wait nor panic.
+pub trait Device: Send {
+    /// What it can do.
+    fn spec(&self) -> &DeviceSpec;
+
+    /// Sends a force and takes the newest positions; `dt_s` is the time since the call before.
+    fn exchange(&mut self, command: &Command, dt_s: f64) -> Sample;
+
+    /// Brings the device to zero force. Called when the servo stops, also after a fault; called again on drop by devices that
+    /// hold their last force.
+    fn make_safe(&mut self);
+
+    /// What the operator sees. Only simulated operators look.
+    fn see(&mut self, _world: &World, _state: &State) {}
+
+    /// True once a device that performs something (a script, a replay) is done.
+    fn finished(&self) -> bool {
+        false
+    }
+}

@@ -264,7 +264,7 @@ fn the_same_inputs_give_the_same_bits_on_any_thread() {
             let mut input = state.input;
             for (finger, tip) in input.tip_in_world.iter_mut().enumerate() {
                 let side = if finger == 0 { -1.0 } else { 1.0 };
-                *tip = Vec2::new(-0.018 + side * (0.012 - 0.006 * (t - 0.5).clamp(0.0, 1.0)), -0.11 + 0.01 * t.sin());
+                *tip = Vec2::new(-0.014 + side * (0.012 - 0.006 * (t - 0.5).clamp(0.0, 1.0)), -0.11 + 0.01 * t.sin());
             }
             step(&world, &mut state, &input, DT);
         }

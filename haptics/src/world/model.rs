@@ -322,7 +322,7 @@ impl World {
 
 impl Default for Floor {
     fn default() -> Self {
-        Self { height_m: -0.13, friction: 0.5, stiffness_n_m: 8000.0, damping_n_s_m: 6.0 }
+        Self { height_m: -0.125, friction: 0.5, stiffness_n_m: 8000.0, damping_n_s_m: 6.0 }
     }
 }
 

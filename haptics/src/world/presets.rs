@@ -7,7 +7,7 @@ use crate::law::{CoulombFriction, Effect, Inertia, LoadFriction, ViscousFriction
 pub fn stacking() -> World {
     let mut world = World::empty("Two blocks of the thesis");
     let floor_m = world.floor.as_ref().map_or(0.0, |f: &Floor| f.height_m);
-    let left_m = -0.018;
+    let left_m = -0.014;
     let (height_2, width_2) = (0.0127, 0.0254);
     world.blocks = vec![
         Block::upright("block-1", 0.343 / 9.81, 0.0159, 0.0160, left_m, floor_m + height_2),

@@ -144,9 +144,10 @@ impl State {
         }
     }
 
-    /// The usual start: fingers apart, in the middle of the workspace.
+    /// The usual start: fingers apart, above the middle of the workspace.
     pub fn resting(world: &World) -> Self {
-        let center = world.hand.workspace.center_m;
+        let workspace = world.hand.workspace;
+        let center = workspace.center_m + Vec2::new(0.0, 0.5 * workspace.radius_m);
         let half = Vec2::new(0.3 * world.hand.workspace.radius_m, 0.0);
         Self::new(world, [center - half, center + half])
     }
