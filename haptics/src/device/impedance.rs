@@ -24,14 +24,7 @@ impl Default for HandImpedance {
 
 impl HandImpedance {
     /// Moves one finger by `dt_s` towards `wanted` (position m, velocity m/s) under `force_n` on the finger, N.
-    pub fn advance(
-        &self,
-        position: &mut Vec2,
-        velocity: &mut Vec2,
-        wanted: (Vec2, Vec2),
-        force_n: Vec2,
-        dt_s: f64,
-    ) {
+    pub fn advance(&self, position: &mut Vec2, velocity: &mut Vec2, wanted: (Vec2, Vec2), force_n: Vec2, dt_s: f64) {
         let pull = (wanted.0 - *position) * self.stiffness_n_m + (wanted.1 - *velocity) * self.damping_n_s_m;
         *velocity += (pull + force_n) / self.mass_kg * dt_s;
         *position += *velocity * dt_s;

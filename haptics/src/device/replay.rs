@@ -15,12 +15,7 @@ pub struct ReplayDevice {
 
 impl ReplayDevice {
     /// `time_s` strictly increasing, tips and velocities one a sample; at least two samples.
-    pub fn new(
-        name: &str,
-        time_s: Vec<f64>,
-        tips: [Vec<Vec2>; 2],
-        velocities: [Vec<Vec2>; 2],
-    ) -> Result<Self, String> {
+    pub fn new(name: &str, time_s: Vec<f64>, tips: [Vec<Vec2>; 2], velocities: [Vec<Vec2>; 2]) -> Result<Self, String> {
         let n = time_s.len();
         if n < 2 || tips.iter().chain(&velocities).any(|c| c.len() != n) {
             return Err(format!("{name} cannot be replayed: it needs at least two samples of both fingers' positions"));
@@ -79,8 +74,7 @@ mod tests {
         let still = || vec![Vec2::zeros(); 3];
         let mut device = ReplayDevice::new("test", vec![0.0, 1.0, 2.0], [path(0.0), path(10.0)], [still(), still()])
             .expect("two fingers, three samples");
-        let xs: Vec<f64> =
-            (0..5).map(|_| device.exchange(&Command::default(), 0.5).tip_in_world[0].x).collect();
+        let xs: Vec<f64> = (0..5).map(|_| device.exchange(&Command::default(), 0.5).tip_in_world[0].x).collect();
         assert_eq!(xs, vec![0.0, 0.5, 1.0, 2.0, 3.0]);
         assert!(device.finished());
         assert!(ReplayDevice::new("x", vec![0.0], [still(), still()], [still(), still()]).is_err());

@@ -156,8 +156,7 @@ mod tests {
         while !operator.finished() {
             let force = state.tip_force_n.map(|f| -f);
             let sample = operator.exchange(&Command { force_n: force }, 1e-3);
-            let input =
-                crate::world::Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity };
+            let input = crate::world::Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity };
             step(world, &mut state, &input, 1e-3);
             let label = true_label(world, &state);
             if label == current {

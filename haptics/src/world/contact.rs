@@ -133,8 +133,7 @@ impl Rect {
 /// contact: it stays, so that a pad that sinks in does not jump to another side. `None` outside.
 pub fn point_in_rect(rect: &Rect, point_in_world: Vec2, kept: Option<u8>) -> Option<(u8, f64)> {
     let local = rect.to_local(point_in_world);
-    let depths =
-        [rect.half_m.x - local.x, rect.half_m.y - local.y, rect.half_m.x + local.x, rect.half_m.y + local.y];
+    let depths = [rect.half_m.x - local.x, rect.half_m.y - local.y, rect.half_m.x + local.x, rect.half_m.y + local.y];
     if depths.iter().any(|d| *d <= 0.0) {
         return None;
     }

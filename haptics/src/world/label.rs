@@ -16,9 +16,7 @@ pub fn true_label(world: &World, state: &State) -> &'static str {
         let block = Surface::Block(index as u16);
         if [0, 1].iter().all(|f| touches(state, Surface::Finger(*f), block)) {
             let supported = state.contacts.iter().any(|c| {
-                (c.on == block || c.by == block)
-                    && c.normal_force_n > 0.0
-                    && !matches!(c.on, Surface::Finger(_))
+                (c.on == block || c.by == block) && c.normal_force_n > 0.0 && !matches!(c.on, Surface::Finger(_))
             });
             let moving = state.bodies[index].velocity_m_s.x.abs() > SLIDING_M_S;
             return match (supported, moving) {

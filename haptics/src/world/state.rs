@@ -1,7 +1,12 @@
 //! The mutable part of a world: where everything is now. Copied to the pictures without allocation.
 
-use super::model::World;
+use super::model::{MAX_BLOCKS, World};
 use crate::Vec2;
+
+/// Contacts that a state has room for: four corners of every block against the table, two points for each touching pair (a
+/// planar packing has at most 3 n pairs), two fingers on every block, and some on table and handle. Every state has this
+/// room, whatever its world, so that worlds can be swapped without allocation.
+const MAX_CONTACTS: usize = (4 + 6 + 2) * MAX_BLOCKS + 16;
 
 /// What the fingers do during one tick, from the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -90,7 +95,7 @@ impl Contact {
     }
 }
 
-/// Everything that changes. All buffers are sized when it is made; `copy_from` never allocates.
+/// Everything that changes. All buffers are sized for the largest world when it is made; `copy_from` never allocates.
 #[derive(Debug, PartialEq)]
 pub struct State {
     /// Simulated time, s.
@@ -118,28 +123,22 @@ pub struct State {
 impl State {
     /// The state a world starts in. `tips` are where the fingers are, m.
     pub fn new(world: &World, tips: [Vec2; 2]) -> Self {
-        // Four corner contacts for every block against the table, two for each touching pair (a planar packing has at
-        // most 3 n pairs), two per finger and block, two on the handle.
-        let n = world.blocks.len();
-        let capacity = 4 * n + 6 * n + 4 * n + 16;
+        let mut bodies = Vec::with_capacity(MAX_BLOCKS);
+        bodies.extend(world.blocks.iter().map(|block| BodyState {
+            center_m: block.start.center_m,
+            angle_rad: block.start.angle_rad,
+            ..BodyState::default()
+        }));
         Self {
             time_s: 0.0,
             tick: 0,
             input: Input { tip_in_world: tips, tip_velocity: [Vec2::zeros(); 2] },
             tip_force_n: [Vec2::zeros(); 2],
-            bodies: world
-                .blocks
-                .iter()
-                .map(|block| BodyState {
-                    center_m: block.start.center_m,
-                    angle_rad: block.start.angle_rad,
-                    ..BodyState::default()
-                })
-                .collect(),
+            bodies,
             crank: CrankState { angle_rad: world.crank.as_ref().map_or(0.0, |c| c.start_rad), ..CrankState::default() },
-            contacts: Vec::with_capacity(capacity),
-            previous: Vec::with_capacity(capacity),
-            load: vec![(Vec2::zeros(), 0.0); n],
+            contacts: Vec::with_capacity(MAX_CONTACTS),
+            previous: Vec::with_capacity(MAX_CONTACTS),
+            load: vec![(Vec2::zeros(), 0.0); world.blocks.len()],
             impact_m_s: 0.0,
         }
     }
@@ -152,7 +151,7 @@ impl State {
         Self::new(world, [center - half, center + half])
     }
 
-    /// Overwrites this state; allocates nothing when both were made for the same world.
+    /// Overwrites this state; allocates nothing.
     pub fn copy_from(&mut self, other: &Self) {
         self.time_s = other.time_s;
         self.tick = other.tick;
@@ -175,17 +174,19 @@ impl State {
 impl Clone for State {
     /// A copy with the same buffer capacities, so that later `copy_from` calls need not allocate.
     fn clone(&self) -> Self {
-        let mut contacts = Vec::with_capacity(self.contacts.capacity());
+        let mut contacts = Vec::with_capacity(MAX_CONTACTS);
         contacts.extend_from_slice(&self.contacts);
+        let mut bodies = Vec::with_capacity(MAX_BLOCKS);
+        bodies.extend_from_slice(&self.bodies);
         Self {
             time_s: self.time_s,
             tick: self.tick,
             input: self.input,
             tip_force_n: self.tip_force_n,
-            bodies: self.bodies.clone(),
+            bodies,
             crank: self.crank,
             contacts,
-            previous: Vec::with_capacity(self.previous.capacity()),
+            previous: Vec::with_capacity(MAX_CONTACTS),
             load: self.load.clone(),
             impact_m_s: self.impact_m_s,
         }

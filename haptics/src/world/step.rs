@@ -277,8 +277,7 @@ fn move_radially(crank: &Crank, state: &mut State, pull: f64, motion: &Motion, d
     let mass = resistance(&crank.effects, motion).inertia;
     // The weight law gives mg (up · t); the same mg acts along the outward normal as mg sin θ.
     let upright = Motion { up_along: state.crank.angle_rad.sin(), ..Motion::default() };
-    let weight: f64 =
-        crank.effects.iter().filter(|e| e.law().id() == "weight").map(|e| e.force(&upright)).sum();
+    let weight: f64 = crank.effects.iter().filter(|e| e.law().id() == "weight").map(|e| e.force(&upright)).sum();
     let centrifugal = mass * crank.radius_m * state.crank.rate_rad_s.powi(2);
     let outward = pull - weight + centrifugal;
     match crank.constraint_stiffness_n_m {

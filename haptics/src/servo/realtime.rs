@@ -1,0 +1,54 @@
+//! Asking the system for real time: FIFO scheduling, locked memory, fine timers. A refusal is reported, never fatal.
+
+use thread_priority::{
+    RealtimeThreadSchedulePolicy, ThreadPriority, ThreadPriorityValue, ThreadSchedulePolicy,
+    set_thread_priority_and_policy, thread_native_id,
+};
+
+/// What the system granted to the servo thread.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Privileges {
+    /// SCHED_FIFO.
+    pub fifo: bool,
+    /// All memory locked.
+    pub memory_locked: bool,
+}
+
+impl Privileges {
+    /// One sentence for the timing panel.
+    pub fn sentence(self) -> &'static str {
+        match (self.fifo, self.memory_locked) {
+            (true, true) => "Real-time scheduling and locked memory.",
+            (true, false) => "Real-time scheduling; memory could not be locked.",
+            (false, _) => {
+                "Normal scheduling: the system refused real time (allow it with an rtprio limit for your user). \
+                 Single ticks may come late."
+            }
+        }
+    }
+}
+
+/// Asks for everything, for the calling thread.
+pub fn acquire() -> Privileges {
+    // Half of the range: above everything ordinary, below the kernel's own threads.
+    let priority = ThreadPriorityValue::try_from(50_u8).map_or(ThreadPriority::Max, ThreadPriority::Crossplatform);
+    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
+    let fifo = set_thread_priority_and_policy(thread_native_id(), priority, policy).is_ok();
+    Privileges { fifo, memory_locked: lock_memory_and_sharpen_timers() }
+}
+
+#[cfg(target_os = "linux")]
+#[allow(unsafe_code)] // two system calls without memory arguments; there is no safe wrapper among the dependencies
+fn lock_memory_and_sharpen_timers() -> bool {
+    // SAFETY: prctl(PR_SET_TIMERSLACK) takes plain integers and affects the calling thread only. A normal thread's default
+    // slack of 50 µs would be half of the spin time.
+    unsafe { libc::prctl(libc::PR_SET_TIMERSLACK, 1_u64) };
+    // SAFETY: mlockall takes plain flags; it fails harmlessly without the privilege. Only what is mapped now is locked:
+    // locking the future would make every later allocation of the window count against the limit.
+    unsafe { libc::mlockall(libc::MCL_CURRENT) == 0 }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn lock_memory_and_sharpen_timers() -> bool {
+    false
+}

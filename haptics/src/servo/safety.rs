@@ -1,0 +1,170 @@
+//! What stands between the world and the operator's fingers: start ramp, clamp, slew limit, watchdog.
+
+use crate::Vec2;
+use crate::device::Sample;
+
+/// Limits, from the device's spec and the servo's configuration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Largest force per finger, N.
+    pub max_force_n: f64,
+    /// Largest change of force, N/s.
+    pub max_slew_n_s: f64,
+    /// Time over which the force comes up after a start or a fault, s.
+    pub ramp_s: f64,
+    /// Without a fresh sample for this long the force goes to zero, s.
+    pub watchdog_s: f64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { max_force_n: 4.0, max_slew_n_s: 2_000.0, ramp_s: 0.5, watchdog_s: 0.02 }
+    }
+}
+
+/// Why the force is not what the world says.
+#[allow(clippy::struct_excessive_bools)] // four independent lights, shown as such
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SafetyFlags {
+    /// A force was clamped to the maximum.
+    pub saturated: bool,
+    /// A force was slowed by the slew limit.
+    pub slewing: bool,
+    /// No fresh sample for longer than the watchdog allows: force is zero.
+    pub stale: bool,
+    /// A sample or force was not a finite number and was refused.
+    pub not_finite: bool,
+}
+
+/// The state of the safety stage.
+#[derive(Clone, Debug)]
+pub struct Safety {
+    limits: Limits,
+    ramp: f64,
+    last_force_n: [Vec2; 2],
+    last_good: Sample,
+    sample_age_s: f64,
+}
+
+impl Safety {
+    /// Starts at zero force with the fingers at `start`.
+    pub fn new(limits: Limits, start: [Vec2; 2]) -> Self {
+        let last_good = Sample { tip_in_world: start, tip_velocity: [Vec2::zeros(); 2], fresh: true };
+        Self { limits, ramp: 0.0, last_force_n: [Vec2::zeros(); 2], last_good, sample_age_s: 0.0 }
+    }
+
+    /// The sample to simulate with: the given one when it is fresh and finite, else the last good one at rest.
+    pub fn admit(&mut self, sample: &Sample, dt_s: f64, flags: &mut SafetyFlags) -> Sample {
+        let finite = sample.tip_in_world.iter().chain(&sample.tip_velocity).all(|v| v.x.is_finite() && v.y.is_finite());
+        flags.not_finite |= !finite;
+        if finite && sample.fresh {
+            self.last_good = *sample;
+            self.sample_age_s = 0.0;
+        } else {
+            self.sample_age_s += dt_s;
+            self.last_good.tip_velocity = [Vec2::zeros(); 2];
+        }
+        self.last_good
+    }
+
+    /// The force to send: ramped, clamped, slew-limited; zero at once when the samples are stale.
+    pub fn limit(&mut self, wanted_n: [Vec2; 2], dt_s: f64, flags: &mut SafetyFlags) -> [Vec2; 2] {
+        if self.sample_age_s > self.limits.watchdog_s {
+            flags.stale = true;
+            self.ramp = 0.0;
+            self.last_force_n = [Vec2::zeros(); 2];
+            return self.last_force_n;
+        }
+        self.ramp = (self.ramp + dt_s / self.limits.ramp_s.max(dt_s)).min(1.0);
+        for (last, wanted) in self.last_force_n.iter_mut().zip(wanted_n) {
+            let finite = wanted.x.is_finite() && wanted.y.is_finite();
+            flags.not_finite |= !finite;
+            let mut force = if finite { wanted * self.ramp } else { Vec2::zeros() };
+            let size = force.norm();
+            if size > self.limits.max_force_n {
+                flags.saturated = true;
+                force *= self.limits.max_force_n / size;
+            }
+            let change = force - *last;
+            let most = self.limits.max_slew_n_s * dt_s;
+            if change.norm() > most {
+                flags.slewing = true;
+                force = *last + change * (most / change.norm());
+            }
+            *last = force;
+        }
+        self.last_force_n
+    }
+
+    /// Age of the newest good sample, s.
+    pub fn sample_age_s(&self) -> f64 {
+        self.sample_age_s
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DT: f64 = 1e-3;
+
+    fn safety() -> Safety {
+        Safety::new(Limits { max_slew_n_s: 100.0, ..Limits::default() }, [Vec2::zeros(); 2])
+    }
+
+    fn fresh() -> Sample {
+        Sample { fresh: true, ..Sample::default() }
+    }
+
+    #[test]
+    fn ramps_clamps_and_limits_the_slew() {
+        let mut safety = safety();
+        let wanted = [Vec2::new(10.0, 0.0), Vec2::new(0.5, 0.0)];
+        let mut last = [Vec2::zeros(); 2];
+        let mut flags = SafetyFlags::default();
+        for tick in 0..2_000 {
+            flags = SafetyFlags::default();
+            safety.admit(&fresh(), DT, &mut flags);
+            let force = safety.limit(wanted, DT, &mut flags);
+            assert!((force[0] - last[0]).norm() <= 0.1 + 1e-12, "slew at tick {tick}");
+            assert!(force[0].norm() <= 4.0 + 1e-12);
+            last = force;
+        }
+        assert!(flags.saturated && (last[0].x - 4.0).abs() < 1e-9 && (last[1].x - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn stale_samples_end_in_zero_force_within_the_watchdog_time() {
+        let mut safety = safety();
+        let wanted = [Vec2::new(1.0, 0.0); 2];
+        let mut flags = SafetyFlags::default();
+        for _ in 0..1_000 {
+            safety.admit(&fresh(), DT, &mut flags);
+            safety.limit(wanted, DT, &mut flags);
+        }
+        assert!(!flags.stale);
+        let lost = Sample::default();
+        let mut force = wanted;
+        for _ in 0..22 {
+            safety.admit(&lost, DT, &mut flags);
+            force = safety.limit(wanted, DT, &mut flags);
+        }
+        assert!(flags.stale);
+        assert_eq!(force, [Vec2::zeros(); 2]);
+        // And it comes back softly.
+        safety.admit(&fresh(), DT, &mut flags);
+        assert!(safety.limit(wanted, DT, &mut flags)[0].x < 0.01);
+    }
+
+    #[test]
+    fn not_a_number_is_refused() {
+        let mut safety = safety();
+        let mut flags = SafetyFlags::default();
+        let mut broken = fresh();
+        broken.tip_in_world[1].y = f64::NAN;
+        assert!(safety.admit(&broken, DT, &mut flags).tip_in_world[1].y.is_finite());
+        assert!(flags.not_finite);
+        let force = safety.limit([Vec2::new(f64::INFINITY, 0.0), Vec2::zeros()], DT, &mut flags);
+        assert!(force[0].x.is_finite());
+    }
+}
