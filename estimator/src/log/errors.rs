@@ -1,0 +1,205 @@
+//! Why a log could not be read: one sentence each, the problem first and the path last.
+
+use std::path::PathBuf;
+
+/// What kept a log from being loaded. Nothing is half-loaded: there is a recording or there is one of these.
+#[derive(Debug, thiserror::Error)]
+pub enum LogError {
+    /// The operating system refused.
+    #[error("the file cannot be read ({reason}); check the path and its permissions: {path}", path = path.display())]
+    Io {
+        /// What the system said.
+        reason: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// A folder was given.
+    #[error("this is a folder, not a log; name a file in it: {path}", path = path.display())]
+    Directory {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A pipe, a device, …
+    #[error("this is not a regular file; save the log to a file first: {path}", path = path.display())]
+    NotAFile {
+        /// What was given.
+        path: PathBuf,
+    },
+    /// Too large to hold.
+    #[error(
+        "the file has {size_gib:.1} GiB and at most {limit_gib:.1} GiB can be read; cut it into shorter recordings: {path}",
+        path = path.display()
+    )]
+    TooLarge {
+        /// Its size, GiB.
+        size_gib: f64,
+        /// The limit, GiB.
+        limit_gib: f64,
+        /// The file.
+        path: PathBuf,
+    },
+    /// Somebody is still writing it.
+    #[error(
+        "the file changed from {before} to {after} bytes while it was read; wait until the recording has ended and read it again: {path}",
+        path = path.display()
+    )]
+    Grew {
+        /// Size before, bytes.
+        before: u64,
+        /// Size after, bytes.
+        after: u64,
+        /// The file.
+        path: PathBuf,
+    },
+    /// No content.
+    #[error("the file is empty; record again or choose another file: {path}", path = path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A header without samples.
+    #[error("the file has a header but no samples; record again or choose another file: {path}", path = path.display())]
+    HeaderOnly {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Not a table at all.
+    #[error("this is not a table of numbers ({why}); give a CSV file with a header line: {path}", path = path.display())]
+    NotATable {
+        /// What it looks like.
+        why: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The first line holds numbers.
+    #[error(
+        "the first line holds numbers instead of column names; put a header line such as `t_s,x_m,y_m` above it: {path}",
+        path = path.display()
+    )]
+    NoHeader {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The same name twice.
+    #[error("two columns give `{column}` ({first} and {second}); rename one, or choose with \"columns\" in the sidecar: {path}", path = path.display())]
+    DuplicateColumn {
+        /// The name.
+        column: String,
+        /// The first column's name in the file.
+        first: String,
+        /// The second's.
+        second: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// A column that the sidecar or the quantity needs is not there.
+    #[error("the column `{column}` is missing: {why}; the file has {present}: {path}", path = path.display())]
+    MissingColumn {
+        /// The program's or file's name of it.
+        column: String,
+        /// Who needs it.
+        why: String,
+        /// What there is.
+        present: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// A unit the program cannot convert.
+    #[error("the column `{column}` has the unknown unit `{unit}`; use one of {accepted}, or map it and give its factor with \"scale\" in the sidecar: {path}", path = path.display())]
+    UnknownUnit {
+        /// The column.
+        column: String,
+        /// The unit found.
+        unit: String,
+        /// What can be used.
+        accepted: &'static str,
+        /// The file.
+        path: PathBuf,
+    },
+    /// A length mapped to a force, or the like.
+    #[error("`{target}` is mapped to `{column}`, whose unit `{unit}` measures something else; map another column, or give its factor with \"scale\" in the sidecar: {path}", path = path.display())]
+    WrongDimension {
+        /// The program's name.
+        target: String,
+        /// The file's name.
+        column: String,
+        /// Its unit.
+        unit: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// Text where a number belongs.
+    #[error("row {row} (line {line}), column `{column}`: {what}; correct that cell or remove the row: {path}", path = path.display())]
+    BadCell {
+        /// Row of data, from 1.
+        row: usize,
+        /// Line in the file, from 1.
+        line: u64,
+        /// Column.
+        column: String,
+        /// What stands there.
+        what: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// A row of another length.
+    #[error("row {row} (line {line}) has {found} cells and the header has {expected}; the line may be cut off: complete or remove it: {path}", path = path.display())]
+    UnequalRow {
+        /// Row of data, from 1.
+        row: usize,
+        /// Line in the file, from 1.
+        line: u64,
+        /// Cells there.
+        found: usize,
+        /// Cells in the header.
+        expected: usize,
+        /// The file.
+        path: PathBuf,
+    },
+    /// Time does not increase.
+    #[error("row {row} (line {line}), column `{column}`: time {how} ({previous} s, then {time} s); sort the rows, or split the recordings with a `trial` column: {path}", path = path.display())]
+    Time {
+        /// Row of data, from 1.
+        row: usize,
+        /// Line in the file, from 1.
+        line: u64,
+        /// The time column.
+        column: String,
+        /// `goes backwards` or `stands still`.
+        how: &'static str,
+        /// Before, s.
+        previous: f64,
+        /// There, s.
+        time: f64,
+        /// The file.
+        path: PathBuf,
+    },
+    /// `select` leaves nothing.
+    #[error("no row has {column} = {wanted}; the file has {present}: {path}", path = path.display())]
+    NothingSelected {
+        /// The column.
+        column: String,
+        /// The value asked for.
+        wanted: String,
+        /// Values seen there.
+        present: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The sidecar is not what it should be.
+    #[error("the sidecar is malformed ({why}); correct it or remove it: {path}", path = path.display())]
+    Sidecar {
+        /// What and where.
+        why: String,
+        /// The sidecar.
+        path: PathBuf,
+    },
+    /// A file could not be written.
+    #[error("the file cannot be written ({reason}); check the folder and its permissions: {path}", path = path.display())]
+    Write {
+        /// What the system said.
+        reason: String,
+        /// The file.
+        path: PathBuf,
+    },
+}

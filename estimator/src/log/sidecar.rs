@@ -1,0 +1,102 @@
+//! The sidecar `<stem>.meta.json`: reading, checking, writing.
+
+use super::errors::LogError;
+use haptics::recording::{Meta, Recording};
+use std::path::{Path, PathBuf};
+
+/// Where the sidecar of a log is looked for.
+pub fn path_for(log: &Path) -> PathBuf {
+    log.with_extension("meta.json")
+}
+
+/// Reads the sidecar `given`, else the one beside `log`, else an empty one.
+pub fn load(log: &Path, given: Option<&Path>) -> Result<Meta, LogError> {
+    let path = given.map_or_else(|| path_for(log), Path::to_path_buf);
+    let text = match std::fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if given.is_none() && error.kind() == std::io::ErrorKind::NotFound => return Ok(Meta::default()),
+        Err(error) if error.kind() == std::io::ErrorKind::InvalidData => {
+            return Err(LogError::Sidecar { why: "it is not text".to_owned(), path });
+        }
+        Err(error) => return Err(LogError::Io { reason: error.to_string(), path }),
+    };
+    let meta: Meta = serde_json::from_str(text.trim_start_matches('\u{feff}'))
+        .map_err(|error| LogError::Sidecar { why: error.to_string(), path: path.clone() })?;
+    match complaint(&meta) {
+        Some(why) => Err(LogError::Sidecar { why, path }),
+        None => Ok(meta),
+    }
+}
+
+/// The first number in the sidecar that cannot be meant.
+fn complaint(meta: &Meta) -> Option<String> {
+    if let Some(rate) = meta.rate_hz.filter(|r| !(r.is_finite() && *r > 0.0)) {
+        return Some(format!("rate_hz is {rate} and must be positive"));
+    }
+    if let Some((name, value)) = meta.sign.iter().find(|(_, v)| v.abs() != 1.0) {
+        return Some(format!("sign of {name} is {value} and must be 1 or -1"));
+    }
+    if let Some((name, value)) = meta.scale.iter().find(|(_, v)| !v.is_finite() || **v == 0.0) {
+        return Some(format!("scale of {name} is {value} and must be a number other than 0"));
+    }
+    None
+}
+
+/// Writes the sidecar of `recording` beside `log` and returns its path.
+///
+/// A written table is in the program's names and SI units already: what the sidecar said about the old file's columns is
+/// left out, everything else is kept.
+pub fn write(recording: &Recording, log: &Path) -> Result<PathBuf, LogError> {
+    let mut meta = recording.meta.clone();
+    meta.columns.clear();
+    meta.scale.clear();
+    meta.sign.clear();
+    meta.select.clear();
+    let path = path_for(log);
+    write_as_is(&meta, &path)?;
+    Ok(path)
+}
+
+/// Writes a sidecar exactly as it is (the app's mapping dialog).
+pub fn write_as_is(meta: &Meta, path: &Path) -> Result<(), LogError> {
+    let failed = |reason: String| LogError::Write { reason, path: path.to_path_buf() };
+    let text = serde_json::to_string_pretty(meta).map_err(|e| failed(e.to_string()))?;
+    std::fs::write(path, text + "\n").map_err(|e| failed(e.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Meta, LogError> {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("a.meta.json");
+        std::fs::write(&path, text).expect("writable");
+        load(&folder.path().join("a.csv"), None)
+    }
+
+    #[test]
+    fn a_malformed_sidecar_is_one_sentence_with_its_place() {
+        let error = read("{\n  \"rate_hz\": 10,,\n}").expect_err("not JSON").to_string();
+        assert!(error.contains("line 2 column") && error.ends_with("a.meta.json"), "{error}");
+        assert!(read(r#"{"rate_hz": "fast"}"#).is_err());
+        assert!(read(r#"{"rate_hz": -1}"#).expect_err("negative").to_string().contains("must be positive"));
+        assert!(read(r#"{"sign": {"f_N": 2}}"#).is_err() && read(r#"{"scale": {"f_N": 0}}"#).is_err());
+    }
+
+    #[test]
+    fn a_missing_sidecar_is_fine_unless_it_was_named() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let log = folder.path().join("a.csv");
+        assert_eq!(load(&log, None).expect("optional"), Meta::default());
+        assert!(load(&log, Some(&folder.path().join("b.json"))).is_err());
+        assert!(load(&log, Some(folder.path())).is_err());
+    }
+
+    #[test]
+    fn unknown_keys_and_a_byte_order_mark_survive() {
+        let meta = read("\u{feff}{\"operator\": \"K\", \"known\": {\"mass_kg\": 0.1}}").expect("reads");
+        assert_eq!(meta.other["operator"], "K");
+        assert_eq!(meta.known["mass_kg"], 0.1);
+    }
+}
