@@ -1,1 +1,51 @@
-//! render
+//! The virtual two-fingered hand and its objects, drawn with wgpu: the same code in a window, in tests and without a screen.
+//!
+//! Lengths are metres in the world's vertical plane, x to the right, **y up**; z points towards the viewer and only gives the
+//! planar objects a thickness. Everything inside is `f32`; [`camera::Camera`] is the seam to pixels.
+//!
+//! * [`SceneView`] borrows what is to be drawn: world, state, [`ViewOptions`].
+//! * [`DrawData`] is the plain list of shapes made from it, one file per thing under [`drawable`].
+//! * [`Renderer`] lives as long as the device: pipelines and meshes. A [`Frame`] holds one view's buffers.
+//! * [`TextureTarget`] is the multisampled texture drawn into; [`Blit`] copies it into another pass (egui's).
+//! * [`headless::Headless`] does all of it without a window.
+#![forbid(unsafe_code)]
+
+pub mod blit;
+pub mod camera;
+pub mod draw_data;
+pub mod drawable;
+pub mod error;
+pub mod frame;
+pub mod headless;
+pub mod mesh;
+mod pipeline;
+pub mod renderer;
+pub mod scene;
+pub mod shape;
+pub mod target;
+pub mod theme;
+
+pub use blit::Blit;
+pub use camera::{Camera, Projection};
+pub use draw_data::DrawData;
+pub use error::RenderError;
+pub use frame::Frame;
+pub use headless::Headless;
+pub use renderer::{DEPTH_FORMAT, Renderer, SAMPLES};
+pub use scene::{
+    ArrowAnchor, ConstraintMarker, FingerStyle, ForceVector, SceneView, SolidRef, Trajectory, ViewOptions,
+};
+pub use target::TextureTarget;
+pub use theme::{Color, ColorRole, Theme};
+
+use glam::{Vec2, Vec3};
+
+/// The seam from the simulation's `f64` to the pictures' `f32`.
+pub(crate) fn vec2(point: haptics::Vec2) -> Vec2 {
+    Vec2::new(point.x as f32, point.y as f32)
+}
+
+/// A point of the world's plane, lifted to depth `z` (m, towards the viewer).
+pub(crate) fn lift(point: Vec2, z: f32) -> Vec3 {
+    point.extend(z)
+}

@@ -1,0 +1,118 @@
+//! The plain list of shapes that makes one picture: built without a graphics device, so it can be made on any thread.
+
+use crate::drawable;
+use crate::mesh::MeshKind;
+use crate::scene::SceneView;
+use crate::shape::{Shadow, Solid, Stroke};
+use crate::theme::Theme;
+use crate::{Camera, vec2};
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec2, Vec4};
+
+/// What is drawn over what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Layer {
+    /// Solids of the world.
+    World,
+    /// The table, with its grid.
+    Table,
+    /// Translucent solids among the others: the ghost.
+    Ghost,
+    /// Translucent solids in front of everything: the uncertainty of a centre.
+    Glass,
+    /// Solids in front of everything: force arrows.
+    Overlay,
+}
+
+/// Everything that one picture needs.
+#[derive(Clone, Debug)]
+pub struct DrawData {
+    pub(crate) globals: Globals,
+    /// Size of the picture, pixels.
+    pub(crate) size: [u32; 2],
+    /// Solids with their layer and mesh; sorted so that equal ones are drawn together.
+    pub(crate) solids: Vec<(Layer, MeshKind, Solid)>,
+    /// Lines that solids can hide.
+    pub(crate) strokes: Vec<Stroke>,
+    /// Lines in front of everything.
+    pub(crate) overlay_strokes: Vec<Stroke>,
+    /// Shadows on the table.
+    pub(crate) shadows: Vec<Shadow>,
+}
+
+/// The uniform buffer; see `common.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct Globals {
+    clip_from_world: Mat4,
+    eye: Vec4,
+    viewport: Vec4,
+    background_top: Vec4,
+    background_bottom: Vec4,
+    glow: Vec4,
+    grid: Vec4,
+    shadow: Vec4,
+    table: Vec4,
+}
+
+impl DrawData {
+    /// Lists what `view` shows in a picture of `size` pixels.
+    pub fn new(view: &SceneView<'_>, size: [u32; 2]) -> Self {
+        let mut data = Self {
+            globals: globals(view, size),
+            size,
+            solids: Vec::with_capacity(128),
+            strokes: Vec::with_capacity(256),
+            overlay_strokes: Vec::with_capacity(1024),
+            shadows: Vec::with_capacity(32),
+        };
+        drawable::draw_scene(&mut data, view);
+        data.solids.retain(|(_, _, solid)| solid.is_finite());
+        data.strokes.retain(Stroke::is_finite);
+        data.overlay_strokes.retain(Stroke::is_finite);
+        data.solids.sort_by_key(|(layer, mesh, _)| (*layer, *mesh));
+        data
+    }
+
+    /// How many shapes there are: solids, strokes, shadows.
+    pub fn counts(&self) -> [usize; 3] {
+        [self.solids.len(), self.strokes.len() + self.overlay_strokes.len(), self.shadows.len()]
+    }
+}
+
+fn globals(view: &SceneView<'_>, size: [u32; 2]) -> Globals {
+    let camera = &view.options.camera;
+    let palette = view.options.theme.palette();
+    let [width, height] = size.map(|n| n.max(1) as f32);
+    let hand = vec2(view.world.hand.workspace.center_m).extend(0.0);
+    let glow_height = 1.0 - 2.0 * camera.pixel(hand, size).y / height;
+    let table = drawable::table::extent(view.world);
+    Globals {
+        clip_from_world: camera.clip_from_world(size),
+        eye: eye(camera, size),
+        viewport: Vec4::new(width, height, 1.0 / width, 1.0 / height),
+        background_top: palette.background_top.display(),
+        background_bottom: palette.background_bottom.display(),
+        glow: palette.glow.rgb.extend(glow_height.clamp(-1.0, 1.0)),
+        grid: palette.grid.rgb.extend(grid_strength(view.options.theme)),
+        shadow: palette.shadow.rgb.extend(table.center_z_m),
+        table: table.top_m.map_or(Vec4::new(-1e3, 0.0, 1.0, 1.0), |top| {
+            let Vec2 { x, y } = table.half_m;
+            Vec4::new(top, 0.45, x, y)
+        }),
+    }
+}
+
+fn eye(camera: &Camera, size: [u32; 2]) -> Vec4 {
+    match camera.projection {
+        crate::Projection::Perspective => camera.eye_m(size).extend(1.0),
+        crate::Projection::Orthographic => camera.backwards().extend(0.0),
+    }
+}
+
+fn grid_strength(theme: Theme) -> f32 {
+    match theme {
+        Theme::Light => 0.55,
+        Theme::Dark => 0.45,
+    }
+}

@@ -1,0 +1,149 @@
+//! What lives as long as the device: pipelines and unit meshes. One renderer draws any number of [`Frame`]s.
+
+use crate::draw_data::{DrawData, Layer};
+use crate::frame::Frame;
+use crate::mesh::MeshKind;
+use crate::pipeline::Pipelines;
+use crate::scene::SceneView;
+use crate::target::TextureTarget;
+use wgpu::util::DeviceExt;
+
+/// Format of the depth buffer.
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Samples a pixel: every driver can do four.
+pub const SAMPLES: u32 = 4;
+
+/// What lies in front of everything has the nearest part of the depth range to itself.
+const OVERLAY_DEPTH: f32 = 0.05;
+
+/// Pipelines and meshes for one target format. Made once for a device.
+#[derive(Debug)]
+pub struct Renderer {
+    pipelines: Pipelines,
+    meshes: Vec<GpuMesh>,
+    pub(crate) globals_layout: wgpu::BindGroupLayout,
+    format: wgpu::TextureFormat,
+    samples: u32,
+}
+
+#[derive(Debug)]
+struct GpuMesh {
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    count: u32,
+}
+
+impl Renderer {
+    /// For a target of the given colour format and samples a pixel; its depth buffer must be [`DEPTH_FORMAT`].
+    ///
+    /// Colours are written for direct display (gamma-encoded), as egui does: prefer `Rgba8Unorm`. sRGB formats work too.
+    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, samples: u32) -> Self {
+        let globals_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("globals"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            }],
+        });
+        Self {
+            pipelines: Pipelines::new(device, &globals_layout, format, samples),
+            meshes: MeshKind::ALL.iter().map(|kind| GpuMesh::new(device, *kind)).collect(),
+            globals_layout,
+            format,
+            samples,
+        }
+    }
+
+    /// Colour format that it draws to.
+    pub fn format(&self) -> wgpu::TextureFormat {
+        self.format
+    }
+
+    /// Samples a pixel.
+    pub fn samples(&self) -> u32 {
+        self.samples
+    }
+
+    /// The buffers of one view. Two views on the screen at once need a frame each.
+    pub fn frame(&self, device: &wgpu::Device) -> Frame {
+        Frame::new(device, &self.globals_layout)
+    }
+
+    /// Fills `frame` with what `view` shows in a picture of `size` pixels.
+    pub fn prepare(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        frame: &mut Frame,
+        view: &SceneView<'_>,
+        size: [u32; 2],
+    ) {
+        frame.upload(device, queue, &DrawData::new(view, size));
+    }
+
+    /// Draws a prepared frame into `target`, in a pass of its own.
+    pub fn render(&self, encoder: &mut wgpu::CommandEncoder, target: &TextureTarget, frame: &Frame) {
+        let mut pass = target.begin_pass(encoder);
+        self.draw(&mut pass, frame);
+    }
+
+    /// Draws a prepared frame into a pass that has this renderer's formats, a cleared depth buffer and the frame's size.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, frame: &Frame) {
+        let [width, height] = frame.size.map(|n| n as f32);
+        pass.set_bind_group(0, &frame.bind_group, &[]);
+        pass.set_viewport(0.0, 0.0, width, height, OVERLAY_DEPTH, 1.0);
+        self.draw_solids(pass, frame, Layer::World, &self.pipelines.solid);
+        self.draw_solids(pass, frame, Layer::Table, &self.pipelines.table);
+        pass.set_pipeline(&self.pipelines.background);
+        pass.draw(0..3, 0..1);
+        frame.shadows.draw_quads(pass, &self.pipelines.shadow);
+        frame.strokes.draw_quads(pass, &self.pipelines.stroke);
+        self.draw_solids(pass, frame, Layer::Ghost, &self.pipelines.ghost_depth);
+        self.draw_solids(pass, frame, Layer::Ghost, &self.pipelines.ghost);
+        pass.set_viewport(0.0, 0.0, width, height, 0.0, OVERLAY_DEPTH);
+        self.draw_solids(pass, frame, Layer::Glass, &self.pipelines.ghost);
+        frame.overlay_strokes.draw_quads(pass, &self.pipelines.overlay_stroke);
+        self.draw_solids(pass, frame, Layer::Overlay, &self.pipelines.solid);
+    }
+
+    fn draw_solids(&self, pass: &mut wgpu::RenderPass<'_>, frame: &Frame, layer: Layer, with: &wgpu::RenderPipeline) {
+        for (_, kind, range) in frame.batches.iter().filter(|(of, _, _)| *of == layer) {
+            let mesh = &self.meshes[*kind as usize];
+            pass.set_pipeline(with);
+            pass.set_vertex_buffer(0, mesh.vertices.slice(..));
+            pass.set_vertex_buffer(1, frame.solids.slice());
+            pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint16);
+            pass.draw_indexed(0..mesh.count, 0, range.clone());
+        }
+    }
+}
+
+impl GpuMesh {
+    fn new(device: &wgpu::Device, kind: MeshKind) -> Self {
+        let mesh = kind.build();
+        let buffer = |contents: &[u8], usage| {
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("unit mesh"), contents, usage })
+        };
+        Self {
+            vertices: buffer(bytemuck::cast_slice(&mesh.vertices), wgpu::BufferUsages::VERTEX),
+            // Padded to whole words as the copy demands.
+            indices: buffer(bytemuck::cast_slice(&padded(&mesh.indices)), wgpu::BufferUsages::INDEX),
+            count: mesh.indices.len() as u32,
+        }
+    }
+}
+
+fn padded(indices: &[u16]) -> Vec<u16> {
+    let mut indices = indices.to_vec();
+    if indices.len() % 2 == 1 {
+        indices.push(0);
+    }
+    indices
+}

@@ -1,0 +1,140 @@
+//! The three kinds of things a picture is made of, as the graphics driver takes them: solids, strokes and shadows.
+
+use crate::theme::Color;
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec2, Vec3};
+
+/// One stretched mesh. Built by the constructors below; lengths in m.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Solid {
+    /// Rows of the rotation and translation, world from solid.
+    pub rows: [[f32; 4]; 3],
+    /// Half extents between the roundings, and gloss (0 matt, 1 polished).
+    pub half_and_gloss: [f32; 4],
+    /// Radii of the rounding, and how much of the colour shines by itself (0 lit, 1 flat).
+    pub radius_and_unlit: [f32; 4],
+    /// Colour (gamma 2 undone) and opacity.
+    pub color: [f32; 4],
+}
+
+impl Solid {
+    /// A box with rounded edges about `center`, turned by `angle_rad` in the plane. `half` includes the rounding.
+    pub fn rounded_box(center: Vec3, half: Vec3, angle_rad: f32, edge: f32, color: Color) -> Self {
+        let edge = edge.min(half.min_element());
+        Self::new(center, Vec2::from_angle(angle_rad), half - Vec3::splat(edge), Vec3::splat(edge), color)
+    }
+
+    /// A bar with round ends from `a` to `b`, `z` from back to front.
+    pub fn bar(a: Vec2, b: Vec2, radius: f32, z: [f32; 2], color: Color) -> Self {
+        let along = b - a;
+        let half = Vec3::new(0.5 * along.length(), 0.0, 0.5 * (z[1] - z[0]));
+        Self::plate_with(0.5 * (a + b), along.normalize_or(Vec2::X), half, radius, z, color)
+    }
+
+    /// A disc, `z` from back to front.
+    pub fn disc(center: Vec2, radius: f32, z: [f32; 2], color: Color) -> Self {
+        Self::bar(center, center, radius, z, color)
+    }
+
+    /// A plate with round corners; `half` includes them.
+    pub fn plate(center: Vec2, half: Vec2, corner: f32, z: [f32; 2], color: Color) -> Self {
+        let corner = corner.min(half.min_element());
+        let inner = half - Vec2::splat(corner);
+        Self::plate_with(center, Vec2::X, inner.extend(0.5 * (z[1] - z[0])), corner, z, color)
+    }
+
+    /// A ball.
+    pub fn ball(center: Vec3, radius: f32, color: Color) -> Self {
+        Self::new(center, Vec2::X, Vec3::ZERO, Vec3::splat(radius), color)
+    }
+
+    /// An arrow from `tail` to `tip` in the plane `z`; the head shrinks with short arrows.
+    pub fn arrow(tail: Vec2, tip: Vec2, z: f32, shaft_radius: f32, color: Color) -> Self {
+        let along = tip - tail;
+        let length = along.length();
+        let radius = shaft_radius.min(0.8 * length / crate::mesh::ARROW_HEAD[0]);
+        let axis = along.normalize_or(Vec2::X);
+        Self::new(tail.extend(z), axis, Vec3::X * length, Vec3::splat(radius), color)
+    }
+
+    /// The same with a shine: 0 matt, 1 polished.
+    pub fn gloss(mut self, gloss: f32) -> Self {
+        self.half_and_gloss[3] = gloss;
+        self
+    }
+
+    /// The same, partly independent of the light: 0 lit, 1 flat.
+    pub fn unlit(mut self, unlit: f32) -> Self {
+        self.radius_and_unlit[3] = unlit;
+        self
+    }
+
+    /// True when every number can be drawn.
+    pub fn is_finite(&self) -> bool {
+        bytemuck::cast_ref::<Self, [f32; 24]>(self).iter().all(|x| x.is_finite())
+    }
+
+    fn plate_with(center: Vec2, axis: Vec2, mut half: Vec3, radius: f32, z: [f32; 2], color: Color) -> Self {
+        let bevel = (0.12 * radius).min(half.z);
+        half.z -= bevel;
+        Self::new(center.extend(0.5 * (z[0] + z[1])), axis, half, Vec3::new(radius, radius, bevel), color)
+    }
+
+    fn new(origin: Vec3, axis: Vec2, half: Vec3, radius: Vec3, color: Color) -> Self {
+        Self {
+            rows: [[axis.x, -axis.y, 0.0, origin.x], [axis.y, axis.x, 0.0, origin.y], [0.0, 0.0, 1.0, origin.z]],
+            half_and_gloss: half.extend(0.25).into(),
+            radius_and_unlit: radius.extend(0.0).into(),
+            color: color.linear().into(),
+        }
+    }
+}
+
+/// A straight line of constant width in pixels.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Stroke {
+    /// Start, world, m, and half the width, pixels.
+    pub start_and_half_width: [f32; 4],
+    /// End, world, m, and the length of dash and gap together, m; 0: no dashes.
+    pub end_and_dash: [f32; 4],
+    /// Display colour and opacity.
+    pub color: [f32; 4],
+    /// Path length at start and end, m: keeps dashes in step along a polyline.
+    pub path_m: [f32; 2],
+}
+
+impl Stroke {
+    /// A plain line.
+    pub fn line(start: Vec3, end: Vec3, width_px: f32, color: Color) -> Self {
+        Self {
+            start_and_half_width: start.extend(0.5 * width_px).into(),
+            end_and_dash: end.extend(0.0).into(),
+            color: color.display().into(),
+            path_m: [0.0, (end - start).length()],
+        }
+    }
+
+    /// The same, dashed with the given period (m), as the part of a path that starts at `path_m`.
+    pub fn dashed(mut self, period_m: f32, path_m: f32) -> Self {
+        self.end_and_dash[3] = period_m;
+        self.path_m = [path_m, path_m + self.path_m[1]];
+        self
+    }
+
+    /// True when every number can be drawn.
+    pub fn is_finite(&self) -> bool {
+        bytemuck::cast_ref::<Self, [f32; 14]>(self).iter().all(|x| x.is_finite())
+    }
+}
+
+/// A soft rectangular shadow on the table.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Shadow {
+    /// Centre x, z and half extents x, z on the table, m.
+    pub center_and_half: [f32; 4],
+    /// Width of the soft edge, m, and opacity.
+    pub blur_and_alpha: [f32; 2],
+}
