@@ -1,1 +1,6 @@
-//! Signals.
+//! Signals derived from recordings.
+
+pub mod derive;
+pub mod filter;
+pub mod noise;
+pub mod task;

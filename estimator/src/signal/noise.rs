@@ -1,0 +1,70 @@
+//! How noisy a channel is, from its own high-frequency part.
+
+/// Coefficients of the fourth difference; their squares sum to 70.
+const FOURTH: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
+const FOURTH_POWER: f64 = 70.0;
+/// Median absolute deviation of a normal variable with unit variance.
+const NORMAL_MAD: f64 = 0.674_489_750_196_081_7;
+
+/// Standard deviation of the white part of the noise: median size of the fourth differences, robust against motion,
+/// impacts and outliers. Never below what the channel's quantum implies (q/√12).
+///
+/// `values`: n samples, evenly spaced. Fewer than 8 samples give 0.
+pub fn white_noise(values: &[f64]) -> f64 {
+    if values.len() < 8 {
+        return 0.0;
+    }
+    let mut sizes: Vec<f64> =
+        values.windows(5).map(|w| w.iter().zip(FOURTH).map(|(v, c)| v * c).sum::<f64>().abs()).collect();
+    let middle = sizes.len() / 2;
+    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
+    let spread = *median / (NORMAL_MAD * FOURTH_POWER.sqrt());
+    spread.max(quantum(values) / 12.0_f64.sqrt())
+}
+
+/// Smallest step between different neighbouring samples when the channel is quantised, else 0.
+///
+/// A channel counts as quantised when a tenth of its steps or more are multiples of the smallest one up to five times, zero
+/// included.
+pub fn quantum(values: &[f64]) -> f64 {
+    let steps = || values.windows(2).map(|w| (w[1] - w[0]).abs());
+    let scale = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let floor = 1e-12 * scale;
+    let smallest = steps().filter(|&s| s > floor).fold(f64::INFINITY, f64::min);
+    if !smallest.is_finite() {
+        return 0.0;
+    }
+    let on_grid = steps()
+        .filter(|&s| {
+            let multiple = (s / smallest).round();
+            multiple <= 5.0 && (s - multiple * smallest).abs() <= 1e-3 * smallest + floor
+        })
+        .count();
+    if 10 * on_grid >= values.len() { smallest } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt as _, SeedableRng as _, rngs::StdRng};
+    use rand_distr::StandardNormal;
+
+    #[test]
+    fn finds_the_noise_under_a_motion_with_outliers() {
+        let mut rng = StdRng::seed_from_u64(1);
+        let mut values: Vec<f64> =
+            (0..5000).map(|i| (f64::from(i) * 0.01).sin() + 0.002 * rng.sample::<f64, _>(StandardNormal)).collect();
+        values[100] += 1.0;
+        let sigma = white_noise(&values);
+        assert!((sigma / 0.002 - 1.0).abs() < 0.08, "{sigma}");
+    }
+
+    #[test]
+    fn a_quantised_ramp_has_the_noise_of_its_quantum() {
+        let values: Vec<f64> = (0..2000).map(|i| (f64::from(i) * 0.0137).round() * 0.05).collect();
+        assert!((quantum(&values) - 0.05).abs() < 1e-12);
+        assert!(white_noise(&values) >= 0.0499 / 12.0_f64.sqrt());
+        assert_eq!(white_noise(&[0.0; 3]), 0.0);
+        assert_eq!(quantum(&[1.0; 9]), 0.0);
+    }
+}
