@@ -1,3 +1,4 @@
 //! Identification.
 
+pub mod block;
 pub mod linear;

@@ -1,0 +1,310 @@
+//! Weight, width, height and friction of stacked blocks (thesis, tables 5.2 to 5.4), with standard errors.
+//!
+//! The thesis's formulas are means over a segment. Here each is the intercept of a small regression, so that what disturbed the
+//! thesis's numbers is taken out where the recording shows it: accelerations from the weight, the give of the pads from the
+//! width (it grew 7 % too narrow there) and from the height. Where the recording does not show it, the standard error says so.
+
+use super::linear::{LinearFit, least_squares};
+use crate::estimate::{EstimateError, Fit, Parameter};
+use crate::segment::{Segmentation, segment_signals, threshold::Levels};
+use crate::signal::noise::quantum;
+use crate::signal::task::{TaskSignals, TipSeries, smooth, task_signals};
+use haptics::Vec2;
+use haptics::recording::{Recording, Task};
+
+/// Relative error of a width whose pad compression could not be measured: the thesis's blocks came out 7 % too narrow.
+const UNKNOWN_COMPRESSION: f64 = 0.07;
+/// The grip must vary by this share of its mean for the pads' give to be told from the width.
+const LEAST_GRIP_VARIATION: f64 = 0.05;
+
+/// Standard deviation of an error that is even over one step: 1/√12 (GUM, 4.3.7).
+const RESOLUTION_SHARE: f64 = 0.288_675;
+
+/// Everything that the block fit works on.
+struct Blocks<'a> {
+    signals: TaskSignals,
+    levels: Levels,
+    segmentation: Segmentation,
+    recording: &'a Recording,
+    /// Error of a single position and of a single force by the resolution of the log, m and N: what no averaging removes.
+    resolution_m: f64,
+    resolution_n: f64,
+    /// Vertical acceleration of the grip, m/s².
+    acceleration_y: Vec<f64>,
+    /// Grip width and height, mean normal and summed vertical force, all through one and the same smoothing filter, and
+    /// the rate of the width: m, N, m/s. Noise in a force would otherwise flatten the slope of a position against it.
+    width: Vec<f64>,
+    height: Vec<f64>,
+    grip: Vec<f64>,
+    lift: Vec<f64>,
+    width_rate: Vec<f64>,
+}
+
+/// Fits the blocks of one recording. The segmentation that was used comes with the fit.
+pub fn fit(recording: &Recording) -> Result<(Fit, Segmentation), EstimateError> {
+    let signals = task_signals(recording)?;
+    let segmentation = segment_signals(&signals, Task::BlockStack, None)?;
+    let levels = Levels::of(&signals);
+    let vertical: Vec<f64> = signals.velocity.iter().map(|v| v.y).collect();
+    let acceleration_y = smooth(&signals.time_s, &vertical).first;
+    let width = smooth(&signals.time_s, &signals.grip_width_m);
+    let normal =
+        |finger: usize, i: usize| signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x) - levels.bias_n[finger].x;
+    let grip: Vec<f64> = (0..signals.len()).map(|i| 0.5 * (normal(0, i) - normal(1, i))).collect();
+    let grip = smooth(&signals.time_s, &grip).value;
+    let bias_y = levels.bias_n[0].y + levels.bias_n[1].y;
+    let lift: Vec<f64> = signals.net_force_n.iter().map(|f| f.y - bias_y).collect();
+    let lift = smooth(&signals.time_s, &lift).value;
+    let height: Vec<f64> = signals.position.iter().map(|p| p.y).collect();
+    let height = smooth(&signals.time_s, &height).value;
+    let blocks = Blocks {
+        resolution_m: RESOLUTION_SHARE * coarsest(&signals, |tip| Some(&tip.position)),
+        resolution_n: RESOLUTION_SHARE * coarsest(&signals, |tip| tip.force.as_ref()),
+        levels,
+        segmentation,
+        recording,
+        acceleration_y,
+        width: width.value,
+        height,
+        grip,
+        lift,
+        width_rate: width.first,
+        signals,
+    };
+
+    let count = blocks.count();
+    if count == 0 {
+        return Err(EstimateError::Other(format!(
+            "no block was carried in {}: there is nothing to fit; check the task and the signs of the forces",
+            recording.name
+        )));
+    }
+    let mut parameters = Vec::new();
+    for number in 1..=count {
+        parameters.extend(blocks.weight(number)?);
+        parameters.push(blocks.width(number)?);
+    }
+    parameters.extend(blocks.heights(count)?);
+    for number in 1..=count {
+        parameters.extend(blocks.friction(number));
+    }
+    let fit = Fit {
+        task: Task::BlockStack.name().to_owned(),
+        parameters,
+        constraints: Vec::new(),
+        quality: None,
+        warnings: blocks.segmentation.warnings.clone(),
+    };
+    Ok((fit, blocks.segmentation))
+}
+
+/// Largest quantisation step among the components of a series of both fingers; 0 when none is quantised.
+fn coarsest(signals: &TaskSignals, series: impl Fn(&TipSeries) -> Option<&Vec<Vec2>>) -> f64 {
+    let step = |pick: fn(&Vec2) -> f64| {
+        let of = |tip| series(tip).map_or(0.0, |s: &Vec<Vec2>| quantum(&s.iter().map(pick).collect::<Vec<_>>()));
+        of(&signals.tips[0]).max(of(&signals.tips[1]))
+    };
+    step(|v| v.x).max(step(|v| v.y))
+}
+
+fn object(number: usize) -> String {
+    format!("block-{number}")
+}
+
+impl Blocks<'_> {
+    /// Blocks that were seen carried.
+    fn count(&self) -> usize {
+        (1..).take_while(|n| !self.samples(&[&format!("carry-block-{n}")]).is_empty()).count()
+    }
+
+    fn samples(&self, subtasks: &[&str]) -> Vec<usize> {
+        subtasks.iter().flat_map(|s| self.segmentation.samples_of(s)).collect()
+    }
+
+    /// Force of a finger without its bias, N.
+    fn force(&self, finger: usize, i: usize) -> Vec2 {
+        let raw = self.signals.tips[finger].force.as_ref().map_or_else(Vec2::zeros, |f| f[i]);
+        raw - self.levels.bias_n[finger]
+    }
+
+    fn lift(&self, i: usize) -> f64 {
+        self.force(0, i).y + self.force(1, i).y
+    }
+
+    /// Standard error of the sum of the vertical force biases, N, from the free phases.
+    fn bias_error(&self) -> f64 {
+        let sums: Vec<f64> = self.levels.free.iter().map(|i| self.lift(*i)).collect();
+        let constant = vec![vec![1.0; sums.len()]];
+        least_squares(&constant, &sums, None).map_or(self.levels.force_noise_n, |fit| fit.std_errors[0])
+    }
+
+    /// Weight: mean of the summed vertical forces over the carry, accelerations taken out.
+    fn weight(&self, number: usize) -> Result<[Parameter; 2], EstimateError> {
+        let samples = self.samples(&[&format!("carry-block-{number}")]);
+        let lift: Vec<f64> = samples.iter().map(|i| self.lift(*i)).collect();
+        let acceleration: Vec<f64> = samples.iter().map(|i| self.acceleration_y[*i]).collect();
+        let fit = intercept(&lift, &[acceleration])?;
+        let resolution = std::f64::consts::SQRT_2 * self.resolution_n;
+        let error = fit.std_errors[0].hypot(self.bias_error()).hypot(resolution);
+        let gravity = self.recording.meta.gravity();
+        let (name, n) = (object(number), samples.len());
+        let how = "mean of the summed vertical tip forces while carried, 5 % at each end left out, accelerations \
+                   and the free-motion bias taken out";
+        let mass = "weight divided by gravity";
+        Ok([
+            Parameter::identified(&name, "weight_N", fit.values[0], error, n, how),
+            Parameter::identified(&name, "mass_kg", fit.values[0] / gravity, error / gravity, n, mass),
+        ])
+    }
+
+    /// Width: distance of the tips while held, extrapolated to no grip force.
+    fn width(&self, number: usize) -> Result<Parameter, EstimateError> {
+        let [pick, carry, place] = ["pick-up", "carry", "place"].map(|verb| format!("{verb}-block-{number}"));
+        let samples = self.samples(&[&pick, &carry, &place]);
+        let width: Vec<f64> = samples.iter().map(|i| self.width[*i]).collect();
+        let grip: Vec<f64> = samples.iter().map(|i| self.grip[*i]).collect();
+        let rate: Vec<f64> = samples.iter().map(|i| self.width_rate[*i]).collect();
+        let (mean_grip, spread_grip) = mean_and_spread(&grip);
+        let name = object(number);
+        let resolution = std::f64::consts::SQRT_2 * self.resolution_m;
+        if spread_grip > LEAST_GRIP_VARIATION * mean_grip {
+            let fit = intercept(&width, &[grip, rate])?;
+            let stiffness = -2.0 / fit.values[1];
+            let how = format!(
+                "distance of the tips while held, extrapolated to zero grip force (pads give: {stiffness:.0} N/m each)"
+            );
+            let error = fit.std_errors[0].hypot(resolution);
+            return Ok(Parameter::identified(&name, "width_m", fit.values[0], error, samples.len(), &how));
+        }
+        let fit = intercept(&width, &[])?;
+        let error = fit.std_errors[0].hypot(UNKNOWN_COMPRESSION * fit.values[0]);
+        let how = "mean distance of the tips while held; the grip was too even to tell the pads' give, so 7 % is added \
+                   to the error";
+        Ok(Parameter::identified(&name, "width_m", fit.values[0], error, samples.len(), how))
+    }
+
+    /// Heights from where the blocks were picked up and put down.
+    ///
+    /// Two blocks, unstacked and restacked: the first carry spans the height of block 2, the second that of block 1.
+    fn heights(&self, count: usize) -> Result<Vec<Parameter>, EstimateError> {
+        if count != 2 {
+            let why = "only an unstack-and-restack of two blocks shows heights";
+            return Ok((1..=count).map(|n| Parameter::unidentified(&object(n), "height_m", 0, why)).collect());
+        }
+        [(2, 1), (1, 2)].into_iter().map(|(carried, other)| self.height_spanned(carried, &object(other))).collect()
+    }
+
+    /// Difference of the grip height between picking up and placing block `carried`, each extrapolated to where the fingers
+    /// just carry its weight: there the contact below is unloaded, and pads and contact have no give left to be mistaken for
+    /// height.
+    fn height_spanned(&self, carried: usize, name: &str) -> Result<Parameter, EstimateError> {
+        let pick = self.samples(&[&format!("pick-up-block-{carried}")]);
+        let place = self.samples(&[&format!("place-block-{carried}")]);
+        if pick.len() < 5 || place.len() < 5 {
+            let why = format!("block {carried} was not held still on the ground both before and after it was carried");
+            return Ok(Parameter::unidentified(name, "height_m", pick.len() + place.len(), &why));
+        }
+        let [weight, _] = self.weight(carried)?;
+        let weight_n = weight.value.unwrap_or(0.0);
+        let (up, down) = (self.unloaded_height(&pick, weight_n)?, self.unloaded_height(&place, weight_n)?);
+        // What lies under the other block gives way too, unseen: as much as the two contacts differ, under one weight.
+        let give = (up.values[1] - down.values[1]).abs() * weight_n;
+        // A block that turned between the pads moved the two fingers differently: that much is unknown about its height.
+        let tilt = self.finger_disagreement(&pick, &place);
+        let fitted = up.std_errors[0].hypot(down.std_errors[0]);
+        let error = fitted.hypot(give).hypot(tilt).hypot(self.resolution_m);
+        let how = format!(
+            "grip height between picking block {carried} up and putting it down, extrapolated to an unloaded contact \
+             ({:.3} mm from turning in the grip and {:.3} mm from contact give in the error)",
+            tilt * 1e3,
+            give * 1e3
+        );
+        let height = (up.values[0] - down.values[0]).abs();
+        Ok(Parameter::identified(name, "height_m", height, error, pick.len() + place.len(), &how))
+    }
+
+    /// Grip height where the lift equals the weight: intercept and slope over (lift − weight).
+    fn unloaded_height(&self, samples: &[usize], weight_n: f64) -> Result<LinearFit, EstimateError> {
+        let height: Vec<f64> = samples.iter().map(|i| self.height[*i]).collect();
+        let load: Vec<f64> = samples.iter().map(|i| self.lift[*i] - weight_n).collect();
+        intercept(&height, &[load])
+    }
+
+    /// Half the difference of the two fingers' height change between two sets of samples, m.
+    fn finger_disagreement(&self, before: &[usize], after: &[usize]) -> f64 {
+        let mean = |finger: usize, set: &[usize]| {
+            set.iter().map(|i| self.signals.tips[finger].position[*i].y).sum::<f64>() / set.len() as f64
+        };
+        let change = |finger: usize| mean(finger, after) - mean(finger, before);
+        0.5 * (change(0) - change(1)).abs()
+    }
+
+    /// Largest ratio of tangential to normal tip force while grasped: a lower bound of the friction coefficient.
+    fn friction(&self, number: usize) -> [Parameter; 2] {
+        let name = object(number);
+        let [pick, carry, place] = ["pick-up", "carry", "place"].map(|verb| format!("{verb}-block-{number}"));
+        let samples = self.samples(&[&pick, &carry, &place]);
+        let (mean_grip, _) = mean_and_spread(&samples.iter().map(|i| self.grip[*i]).collect::<Vec<_>>());
+        let noise = self.levels.force_noise_n;
+        // Below this grip the ratio is noise.
+        let least = (10.0 * noise).max(0.25 * mean_grip);
+        let mut best: Option<(f64, f64)> = None;
+        for finger in 0..2 {
+            for i in &samples {
+                let force = self.mean_force(finger, *i);
+                let normal = if finger == 0 { force.x } else { -force.x };
+                if normal > least {
+                    let ratio = force.y.abs() / normal;
+                    let error = noise * ratio.hypot(1.0) / normal;
+                    // What is certainly reached counts: the largest of many noisy ratios would overshoot.
+                    if best.is_none_or(|(r, e)| ratio - 2.0 * error > r - 2.0 * e) {
+                        best = Some((ratio, error));
+                    }
+                }
+            }
+        }
+        let slip = Parameter::unidentified(
+            &name,
+            "friction",
+            samples.len(),
+            "no slip was looked for: only a lower bound is given",
+        );
+        let bound = match best {
+            Some((ratio, error)) => Parameter::identified(
+                &name,
+                "friction_lower_bound",
+                ratio,
+                error,
+                samples.len(),
+                "largest ratio of vertical to horizontal tip force while grasped; true friction is at least this",
+            ),
+            None => Parameter::unidentified(&name, "friction_lower_bound", 0, "the grip was never firm enough to tell"),
+        };
+        [bound, slip]
+    }
+
+    /// Tip force averaged over 20 ms about a sample, N: sensor noise falls, friction does not change that fast.
+    fn mean_force(&self, finger: usize, i: usize) -> Vec2 {
+        const HALF_S: f64 = 0.01;
+        let time = &self.signals.time_s;
+        let first = time[..i].partition_point(|t| *t < time[i] - HALF_S);
+        let mut end = i + 1;
+        while end < time.len() && time[end] <= time[i] + HALF_S {
+            end += 1;
+        }
+        (first..end).map(|j| self.force(finger, j)).sum::<Vec2>() / (end - first) as f64
+    }
+}
+
+/// Least squares of `rhs` on a constant and `columns` (each centred on nothing: the constant is the value where all are zero).
+fn intercept(rhs: &[f64], columns: &[Vec<f64>]) -> Result<LinearFit, EstimateError> {
+    let mut all = vec![vec![1.0; rhs.len()]];
+    all.extend_from_slice(columns);
+    least_squares(&all, rhs, None)
+}
+
+fn mean_and_spread(values: &[f64]) -> (f64, f64) {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt())
+}

@@ -1,0 +1,130 @@
+//! Stage 2: qualitative values and the rules that name the state (thesis, tables 3.1 and 5.2).
+
+use super::SystemState;
+use super::threshold::{Levels, Thresholds};
+use crate::signal::task::TaskSignals;
+
+/// A signal against its threshold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// Above.
+    Plus,
+    /// Within.
+    Zero,
+    /// Below the negative threshold.
+    Minus,
+}
+
+/// The qualitative values of one sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quality {
+    /// Horizontal velocity.
+    pub velocity_x: Sign,
+    /// Vertical velocity.
+    pub velocity_y: Sign,
+    /// Net vertical force on the object.
+    pub net_y: Sign,
+    /// Grip normal force.
+    pub grip: Sign,
+    /// All four force components are zero.
+    pub no_contact: bool,
+}
+
+/// Share of the threshold that a signal must fall below to count as zero again: a value at the threshold does not chatter.
+const HYSTERESIS: f64 = 0.7;
+
+/// Thresholds every sample, with hysteresis, after removing the forces' bias.
+pub fn qualify(signals: &TaskSignals, levels: &Levels, thresholds: &Thresholds) -> Vec<Quality> {
+    let force = |finger: usize, i: usize| {
+        signals.tips[finger].force.as_ref().map_or_else(haptics::Vec2::zeros, |f| f[i]) - levels.bias_n[finger]
+    };
+    let (limit_f, limit_v) = (thresholds.force_n, thresholds.velocity_m_s);
+    let mut filters = [Sign::Zero; 4];
+    let mut touching = [false; 4];
+    (0..signals.len())
+        .map(|i| {
+            let (f1, f2) = (force(0, i), force(1, i));
+            let velocity = signals.velocity[i];
+            let values = [velocity.x / limit_v, velocity.y / limit_v, (f1 + f2).y / limit_f, f1.x.min(-f2.x) / limit_f];
+            for (filter, value) in filters.iter_mut().zip(values) {
+                *filter = schmitt(*filter, value);
+            }
+            for (touch, value) in touching.iter_mut().zip([f1.x, f1.y, f2.x, f2.y]) {
+                let level = value.abs() / limit_f;
+                *touch = level > if *touch { HYSTERESIS } else { 1.0 };
+            }
+            Quality {
+                velocity_x: filters[0],
+                velocity_y: filters[1],
+                net_y: filters[2],
+                grip: filters[3],
+                no_contact: touching.iter().all(|t| !t),
+            }
+        })
+        .collect()
+}
+
+fn schmitt(before: Sign, value: f64) -> Sign {
+    match before {
+        Sign::Plus if value > HYSTERESIS => Sign::Plus,
+        Sign::Minus if value < -HYSTERESIS => Sign::Minus,
+        _ if value > 1.0 => Sign::Plus,
+        _ if value < -1.0 => Sign::Minus,
+        _ => Sign::Zero,
+    }
+}
+
+/// The state of every sample by the rules alone.
+pub fn states(quality: &[Quality]) -> Vec<SystemState> {
+    quality.iter().map(|q| state(*q)).collect()
+}
+
+/// One sample: table 5.2.
+pub fn state(q: Quality) -> SystemState {
+    match q {
+        Quality { no_contact: true, .. } => SystemState::FreeMotion,
+        Quality { grip: Sign::Plus, net_y: Sign::Plus, .. } => SystemState::HoldAboveGround,
+        Quality { grip: Sign::Plus, velocity_y: Sign::Zero, velocity_x: Sign::Zero, .. } => SystemState::HoldOnGround,
+        Quality { grip: Sign::Plus, velocity_y: Sign::Zero, .. } => SystemState::SlidingOnGround,
+        _ => SystemState::NoState,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const REST: Quality = Quality {
+        velocity_x: Sign::Zero,
+        velocity_y: Sign::Zero,
+        net_y: Sign::Zero,
+        grip: Sign::Zero,
+        no_contact: true,
+    };
+
+    #[test]
+    fn the_rules_of_table_5_2() {
+        let held = Quality { grip: Sign::Plus, no_contact: false, ..REST };
+        assert_eq!(state(REST), SystemState::FreeMotion);
+        assert_eq!(state(held), SystemState::HoldOnGround);
+        assert_eq!(state(Quality { net_y: Sign::Minus, ..held }), SystemState::HoldOnGround);
+        assert_eq!(state(Quality { velocity_x: Sign::Minus, ..held }), SystemState::SlidingOnGround);
+        assert_eq!(state(Quality { net_y: Sign::Plus, velocity_y: Sign::Plus, ..held }), SystemState::HoldAboveGround);
+        assert_eq!(state(Quality { velocity_y: Sign::Minus, ..held }), SystemState::NoState);
+        assert_eq!(state(Quality { no_contact: false, ..REST }), SystemState::NoState);
+    }
+
+    #[test]
+    fn hysteresis_keeps_a_value_near_the_threshold() {
+        use Sign::{Minus, Plus, Zero};
+        let mut sign = Sign::Zero;
+        let seen: Vec<Sign> = [0.9, 1.1, 0.8, 0.75, 0.6, 0.9, -1.2]
+            .into_iter()
+            .map(|v| {
+                sign = schmitt(sign, v);
+                sign
+            })
+            .collect();
+        assert_eq!(seen, [Zero, Plus, Plus, Plus, Zero, Zero, Minus]);
+    }
+}

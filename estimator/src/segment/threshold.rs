@@ -1,0 +1,133 @@
+//! Thresholds above the noise, chosen from the recording itself.
+
+use crate::signal::task::TaskSignals;
+use haptics::Vec2;
+use serde::{Deserialize, Serialize};
+
+/// Symmetric thresholds of the qualitative values +, 0, −.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Thresholds {
+    /// Velocity, m/s (thesis: 0.05).
+    pub velocity_m_s: f64,
+    /// Force, N (thesis: 0.05).
+    pub force_n: f64,
+}
+
+/// Multiple of the noise that a threshold keeps off it: one false crossing in 1.7 million white samples.
+const NOISE_MULTIPLE: f64 = 5.0;
+/// No threshold below this share of what the signal reaches while something happens: friction, tremor and leaning are not
+/// noise, and not the event either.
+const SIGNAL_SHARE: f64 = 0.06;
+
+/// Resting values and noise of the forces in free motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Levels {
+    /// Median force of each finger while nothing is touched, N: the sensors' bias.
+    pub bias_n: [Vec2; 2],
+    /// Standard deviation of the force channels in free motion, N.
+    pub force_noise_n: f64,
+    /// Samples that were taken as free motion.
+    pub free: Vec<usize>,
+    /// 95th percentile of the grip force, N.
+    pub usual_grip_n: f64,
+}
+
+impl Levels {
+    /// Finds the samples without contact (where the total force magnitude is lowest) and measures bias and noise there.
+    ///
+    /// The bias is found in two passes: the least loaded tenth of the samples gives a first centre, everything within four
+    /// robust deviations of it the final one.
+    pub fn of(signals: &TaskSignals) -> Self {
+        let forces: [&[Vec2]; 2] = [0, 1].map(|f| signals.tips[f].force.as_deref().unwrap_or(&[]));
+        let n = signals.len();
+        let mut bias = [Vec2::zeros(); 2];
+        let mut free: Vec<usize> = (0..n).collect();
+        for pass in 0..3 {
+            let load = |i: usize| (forces[0][i] - bias[0]).norm() + (forces[1][i] - bias[1]).norm();
+            let mut loads: Vec<f64> = (0..n).map(load).collect();
+            let limit = if pass == 0 {
+                percentile(&mut loads, 0.10)
+            } else {
+                // The load of pure noise is a sum of two Rayleigh variables: three times its median is seven deviations. The
+                // first pass only saw the least loaded tenth, whose median is about half of that.
+                (if pass == 1 { 5.0 } else { 3.0 })
+                    * percentile(&mut free.iter().map(|i| load(*i)).collect::<Vec<_>>(), 0.5).max(1e-12)
+            };
+            free = (0..n).filter(|i| load(*i) <= limit).collect();
+            for finger in 0..2 {
+                let median = |pick: fn(&Vec2) -> f64| {
+                    percentile(&mut free.iter().map(|i| pick(&forces[finger][*i])).collect::<Vec<_>>(), 0.5)
+                };
+                bias[finger] = Vec2::new(median(|f| f.x), median(|f| f.y));
+            }
+        }
+        let spread = |finger: usize, pick: fn(&Vec2) -> f64| {
+            let center = pick(&bias[finger]);
+            let sum: f64 = free.iter().map(|i| (pick(&forces[finger][*i]) - center).powi(2)).sum();
+            (sum / free.len().max(1) as f64).sqrt()
+        };
+        let noise = [spread(0, |f| f.x), spread(0, |f| f.y), spread(1, |f| f.x), spread(1, |f| f.y)];
+        Self {
+            bias_n: bias,
+            force_noise_n: noise.into_iter().fold(0.0, f64::max),
+            free,
+            usual_grip_n: percentile(&mut signals.grip_force_n.clone(), 0.95),
+        }
+    }
+
+    /// What the reader should know about the forces at rest.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        for (finger, bias) in self.bias_n.iter().enumerate() {
+            if bias.norm() > (2.0 * self.force_noise_n).max(0.005) {
+                warnings.push(format!(
+                    "the force of finger {} rests at ({:.3}, {:.3}) N in free motion; this bias is subtracted",
+                    finger + 1,
+                    bias.x,
+                    bias.y
+                ));
+            }
+        }
+        warnings
+    }
+}
+
+/// Thresholds above the noise and above what is not the event.
+pub fn choose(signals: &TaskSignals, levels: &Levels) -> Thresholds {
+    let usual_net = percentile(
+        &mut (0..signals.len())
+            .map(|i| (signals.net_force_n[i] - levels.bias_n[0] - levels.bias_n[1]).y.abs())
+            .collect::<Vec<_>>(),
+        0.9,
+    );
+    // Net force is the sum of two channels: its noise is √2 higher.
+    let by_noise = NOISE_MULTIPLE * std::f64::consts::SQRT_2 * levels.force_noise_n;
+    let force_n = by_noise
+        .max(SIGNAL_SHARE * usual_net)
+        .max(SIGNAL_SHARE * 0.5 * levels.usual_grip_n)
+        .min(0.45 * usual_net.max(by_noise));
+    let mut speeds: Vec<f64> = signals.velocity.iter().map(Vec2::norm).collect();
+    let usual_speed = percentile(&mut speeds, 0.95);
+    let velocity_noise = velocity_noise(signals);
+    let velocity_m_s = (NOISE_MULTIPLE * velocity_noise).max(0.15 * usual_speed);
+    Thresholds { velocity_m_s, force_n }
+}
+
+/// White part of the velocity noise, from second differences (they remove any smooth motion), m/s.
+fn velocity_noise(signals: &TaskSignals) -> f64 {
+    let mut bends: Vec<f64> = signals.velocity.windows(3).map(|w| (w[0].y - 2.0 * w[1].y + w[2].y).abs()).collect();
+    if bends.is_empty() {
+        return 0.0;
+    }
+    // |N(0, 6σ²)| has its median at 0.6745 √6 σ.
+    percentile(&mut bends, 0.5) / (0.6745 * 6.0_f64.sqrt())
+}
+
+/// The value below which a share of the numbers lies; 0 for none. Reorders its argument.
+pub fn percentile(values: &mut [f64], share: f64) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let index = ((values.len() - 1) as f64 * share).round() as usize;
+    *values.select_nth_unstable_by(index, f64::total_cmp).1
+}

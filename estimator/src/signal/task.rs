@@ -1,0 +1,222 @@
+//! Stage 1 of the segmentation: from finger samples to the signals of the task (thesis, chapter 5.2.2).
+
+use super::derive::{Derivatives, savitzky_golay};
+use crate::estimate::EstimateError;
+use haptics::Vec2;
+use haptics::hand::{Finger, JointAngles};
+use haptics::recording::Recording;
+
+/// Tip motion and force of one finger, or of a single tool. One entry a sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TipSeries {
+    /// Position in the world, m.
+    pub position: Vec<Vec2>,
+    /// Velocity, m/s; `None` when the log has neither velocities nor a clock.
+    pub velocity: Option<Vec<Vec2>>,
+    /// Force on the environment, N; `None` when no force was recorded.
+    pub force: Option<Vec<Vec2>>,
+}
+
+/// The signals that states are told from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TaskSignals {
+    /// Sample times, s (sample numbers when the log is clockless).
+    pub time_s: Vec<f64>,
+    /// Rigid-body position: mean of the tip positions, m.
+    pub position: Vec<Vec2>,
+    /// Distance of the tips along x, m (finger 2 minus finger 1).
+    pub grip_width_m: Vec<f64>,
+    /// Rigid-body velocity: mean of the tip velocities, m/s.
+    pub velocity: Vec<Vec2>,
+    /// Net force on what is held: sum of the tip forces, N.
+    pub net_force_n: Vec<Vec2>,
+    /// Grip normal force: min(Fx1, −Fx2), N.
+    pub grip_force_n: Vec<f64>,
+    /// Grip shear: half the difference of the vertical tip forces, N.
+    pub shear_n: Vec<f64>,
+    /// The fingers themselves (left, right).
+    pub tips: [TipSeries; 2],
+    /// How velocities were obtained: `measured` or the derivation in words.
+    pub velocity_from: String,
+}
+
+impl TaskSignals {
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.time_s.len()
+    }
+
+    /// True when there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.time_s.is_empty()
+    }
+}
+
+/// Window of the derivation of velocities from positions, s.
+pub const DERIVATIVE_WINDOW_S: f64 = 0.03;
+
+/// True when the recording has both fingers (as tips or joints).
+pub fn is_two_fingered(recording: &Recording) -> bool {
+    recording.channel("x1_m").is_some() || recording.channel("qb1_rad").is_some()
+}
+
+/// The task signals of a two-fingered recording with forces.
+pub fn task_signals(recording: &Recording) -> Result<TaskSignals, EstimateError> {
+    let tips = [tip_series(recording, "1")?, tip_series(recording, "2")?];
+    let need = |series: &TipSeries, finger: &str| {
+        series.force.clone().ok_or_else(|| missing(recording, &format!("fx{finger}_N")))
+    };
+    let forces = [need(&tips[0], "1")?, need(&tips[1], "2")?];
+    let (Some(v1), Some(v2)) = (&tips[0].velocity, &tips[1].velocity) else {
+        return Err(EstimateError::Clockless {
+            what: "telling rest from motion".to_owned(),
+            recording: recording.name.clone(),
+        });
+    };
+    let n = recording.len();
+    let pick = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();
+    Ok(TaskSignals {
+        time_s: times(recording),
+        position: (0..n).map(|i| 0.5 * (tips[0].position[i] + tips[1].position[i])).collect(),
+        grip_width_m: pick(&|i| tips[1].position[i].x - tips[0].position[i].x),
+        velocity: (0..n).map(|i| 0.5 * (v1[i] + v2[i])).collect(),
+        net_force_n: (0..n).map(|i| forces[0][i] + forces[1][i]).collect(),
+        grip_force_n: pick(&|i| forces[0][i].x.min(-forces[1][i].x)),
+        shear_n: pick(&|i| 0.5 * (forces[0][i].y - forces[1][i].y)),
+        velocity_from: velocity_origin(recording, "1"),
+        tips,
+    })
+}
+
+/// Sample times, s, or sample numbers when the log is clockless.
+pub fn times(recording: &Recording) -> Vec<f64> {
+    recording.time_s.clone().unwrap_or_else(|| (0..recording.len()).map(|i| i as f64).collect())
+}
+
+/// Tip series of finger `"1"`, `"2"`, or of the single tool `""`, from tip columns or joint angles.
+pub fn tip_series(recording: &Recording, finger: &str) -> Result<TipSeries, EstimateError> {
+    let column = |name: String| recording.channel(&name);
+    let pair = |a: String, b: String| Some((column(a)?, column(b)?));
+    let zip = |(x, y): (&[f64], &[f64])| x.iter().zip(y).map(|(x, y)| Vec2::new(*x, *y)).collect::<Vec<_>>();
+
+    let force = pair(format!("fx{finger}_N"), format!("fy{finger}_N")).map(zip);
+    if let Some(position) = pair(format!("x{finger}_m"), format!("y{finger}_m")).map(zip) {
+        let measured = pair(format!("vx{finger}_m_s"), format!("vy{finger}_m_s")).map(zip);
+        let velocity = measured.or_else(|| derived(recording, &position));
+        return Ok(TipSeries { position, velocity, force });
+    }
+    let angles = pair(format!("qb{finger}_rad"), format!("qt{finger}_rad"))
+        .ok_or_else(|| missing(recording, &format!("x{finger}_m")))?;
+    let hand = recording.meta.hand();
+    let geometry = hand.fingers[usize::from(finger == "2")];
+    let joints: Vec<JointAngles> =
+        angles.0.iter().zip(angles.1).map(|(b, t)| JointAngles { bottom_rad: *b, top_rad: *t }).collect();
+    let position: Vec<Vec2> = joints.iter().map(|q| geometry.tip_in_world(*q)).collect();
+    let rates = pair(format!("dqb{finger}_rad_s"), format!("dqt{finger}_rad_s")).map(zip);
+    let velocity = rates.map(|r| tip_velocities(&geometry, &joints, &r)).or_else(|| derived(recording, &position));
+    Ok(TipSeries { position, velocity, force })
+}
+
+fn tip_velocities(finger: &Finger, joints: &[JointAngles], rates: &[Vec2]) -> Vec<Vec2> {
+    joints.iter().zip(rates).map(|(q, rate)| finger.tip_velocity(*q, *rate)).collect()
+}
+
+fn derived(recording: &Recording, position: &[Vec2]) -> Option<Vec<Vec2>> {
+    let time = recording.time_s.as_ref()?;
+    let axis = |pick: fn(&Vec2) -> f64| {
+        let values: Vec<f64> = position.iter().map(pick).collect();
+        smooth(time, &values).first
+    };
+    let (vx, vy) = (axis(|p| p.x), axis(|p| p.y));
+    Some(vx.iter().zip(&vy).map(|(x, y)| Vec2::new(*x, *y)).collect())
+}
+
+/// Quadratic fits over [`DERIVATIVE_WINDOW_S`] (at least three samples): value and derivatives of a channel.
+pub fn smooth(time_s: &[f64], values: &[f64]) -> Derivatives {
+    let n = time_s.len();
+    let period_s = if n > 1 { (time_s[n - 1] - time_s[0]) / (n - 1) as f64 } else { 1.0 };
+    let half_width = ((0.5 * DERIVATIVE_WINDOW_S / period_s).round() as usize).max(1);
+    savitzky_golay(time_s, values, half_width, 2)
+}
+
+fn velocity_origin(recording: &Recording, finger: &str) -> String {
+    let has = |name: String| recording.channel(&name).is_some();
+    if has(format!("vx{finger}_m_s")) {
+        "measured".to_owned()
+    } else if has(format!("dqb{finger}_rad_s")) {
+        "measured joint rates".to_owned()
+    } else {
+        format!("derived from positions (quadratic fits over {:.0} ms)", DERIVATIVE_WINDOW_S * 1e3)
+    }
+}
+
+fn missing(recording: &Recording, column: &str) -> EstimateError {
+    EstimateError::MissingColumn {
+        task: recording.meta.task.map_or("this task".to_owned(), |t| t.name().to_owned()),
+        column: column.to_owned(),
+        recording: recording.name.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::recording::Channel;
+
+    fn recording(columns: &[(&str, f64)]) -> Recording {
+        Recording {
+            time_s: Some(vec![0.0, 0.001]),
+            channels: columns
+                .iter()
+                .map(|(name, value)| Channel { name: (*name).to_owned(), unit: String::new(), values: vec![*value; 2] })
+                .collect(),
+            ..Recording::default()
+        }
+    }
+
+    #[test]
+    fn signals_of_the_thesis() {
+        let log = recording(&[
+            ("x1_m", -0.01),
+            ("y1_m", 0.02),
+            ("x2_m", 0.03),
+            ("y2_m", 0.04),
+            ("vx1_m_s", 0.1),
+            ("vy1_m_s", 0.0),
+            ("vx2_m_s", 0.3),
+            ("vy2_m_s", 0.0),
+            ("fx1_N", 2.0),
+            ("fy1_N", 0.3),
+            ("fx2_N", -1.5),
+            ("fy2_N", 0.1),
+        ]);
+        let s = task_signals(&log).expect("all columns are there");
+        assert!((s.position[0] - Vec2::new(0.01, 0.03)).norm() < 1e-15);
+        assert!((s.grip_width_m[0] - 0.04).abs() < 1e-15);
+        assert!((s.velocity[0] - Vec2::new(0.2, 0.0)).norm() < 1e-15);
+        assert!((s.net_force_n[0] - Vec2::new(0.5, 0.4)).norm() < 1e-15);
+        assert_eq!(s.grip_force_n[0], 1.5);
+        assert!((s.shear_n[0] - 0.1).abs() < 1e-15);
+    }
+
+    #[test]
+    fn joints_give_tips_and_their_velocities() {
+        let log = recording(&[
+            ("qb1_rad", 0.0),
+            ("qt1_rad", std::f64::consts::FRAC_PI_2),
+            ("dqb1_rad_s", 2.0),
+            ("dqt1_rad_s", 0.0),
+        ]);
+        let tip = tip_series(&log, "1").expect("joint form");
+        assert!((tip.position[0] - Vec2::new(-0.04 + 0.08, 0.08)).norm() < 1e-12);
+        assert!((tip.velocity.expect("from rates")[0] - Vec2::new(0.0, 0.16)).norm() < 1e-12);
+        assert!(tip.force.is_none());
+    }
+
+    #[test]
+    fn a_missing_force_is_named() {
+        let log = recording(&[("x1_m", 0.0), ("y1_m", 0.0), ("x2_m", 0.0), ("y2_m", 0.0)]);
+        let error = task_signals(&log).expect_err("no forces").to_string();
+        assert!(error.contains("fx1_N"), "{error}");
+    }
+}

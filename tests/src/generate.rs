@@ -1,0 +1,116 @@
+//! Recordings of the scripted operator in worlds drawn at random.
+
+use haptics::device::{Command, Device, ScriptedOperator, Skill};
+use haptics::law::{CoulombFriction, Effect, Inertia, LoadFriction, ViscousFriction, Weight};
+use haptics::recording::Recording;
+use haptics::servo::TickRecord;
+use haptics::servo::recorder::{SensorModel, to_recording};
+use haptics::world::{Block, Input, State, World, presets, step, true_label};
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+use std::collections::BTreeMap;
+
+/// True values by (object, parameter name).
+pub type Truth = BTreeMap<(String, String), f64>;
+
+/// Step of the generator, s: a fifth of the usual servo's.
+pub const STEP_S: f64 = 0.2e-3;
+
+/// Performs the task of `world` and records every `every`-th fine step.
+pub fn perform(world: &World, seed: u64, skill: Skill, every: usize, sensor: &SensorModel) -> Recording {
+    let mut state = State::resting(world);
+    let mut operator = ScriptedOperator::new(world, &state, skill, seed);
+    let mut ticks = Vec::new();
+    let mut count = 0_usize;
+    while !operator.finished() {
+        let sample = operator.exchange(&Command { force_n: state.tip_force_n.map(|f| -f) }, STEP_S);
+        let input = Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity };
+        step(world, &mut state, &input, STEP_S);
+        if count.is_multiple_of(every) {
+            ticks.push(TickRecord {
+                time_s: state.time_s,
+                input,
+                tip_force_n: state.tip_force_n,
+                label: true_label(world, &state),
+                ..TickRecord::default()
+            });
+        }
+        count += 1;
+    }
+    to_recording(&format!("seed {seed}"), world, &ticks, 1, sensor, seed ^ 0x5eed)
+}
+
+/// Two blocks of random weight, size and friction, block 1 on block 2, with their truth.
+pub fn stacking_world(seed: u64) -> (World, Truth) {
+    let mut rng = StdRng::seed_from_u64(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    let mut world = presets::stacking();
+    let floor_m = world.floor.as_ref().map_or(0.0, |f| f.height_m);
+    let left_m = -0.014;
+    let mut draw = |low: f64, high: f64| rng.random_range(low..high);
+    let (height_1, height_2) = (draw(0.011, 0.018), draw(0.010, 0.016));
+    let mut lower = Block::upright("block-2", draw(0.03, 0.06), draw(0.020, 0.027), height_2, left_m, floor_m);
+    let mut upper =
+        Block::upright("block-1", draw(0.025, 0.05), draw(0.013, 0.019), height_1, left_m, floor_m + height_2);
+    world.pad.stiffness_n_m = draw(1800.0, 4000.0);
+    world.pad.shear_stiffness_n_m = draw(1000.0, 2500.0);
+    let mut truth = Truth::new();
+    for block in [&mut upper, &mut lower] {
+        block.finger_friction = draw(0.7, 1.2);
+        // Wood on wood, hard against the pads: their own give must not be mistaken for height.
+        block.stiffness_n_m = 40_000.0;
+        block.damping_n_s_m = 12.0;
+        for (name, value) in [
+            ("weight_N", block.mass_kg * world.gravity_m_s2),
+            ("mass_kg", block.mass_kg),
+            ("width_m", block.width_m),
+            ("height_m", block.height_m),
+            ("friction", block.finger_friction),
+        ] {
+            truth.insert((block.name.clone(), name.to_owned()), value);
+        }
+    }
+    if let Some(floor) = &mut world.floor {
+        floor.stiffness_n_m = 40_000.0;
+        floor.damping_n_s_m = 12.0;
+    }
+    world.blocks = vec![upper, lower];
+    (world, truth)
+}
+
+/// A crank of random size, weight and friction, with its truth.
+pub fn crank_world(seed: u64) -> (World, Truth) {
+    let mut rng = StdRng::seed_from_u64(seed.wrapping_mul(0xd134_2543_de82_ef95) ^ 0xc7a);
+    let mut world = presets::crank();
+    let mut draw = |low: f64, high: f64| rng.random_range(low..high);
+    world.pad.stiffness_n_m = draw(1800.0, 4000.0);
+    world.pad.shear_stiffness_n_m = draw(1500.0, 3000.0);
+    let (weight, mu, viscous, coulomb, inertia) =
+        (draw(0.1, 0.4), draw(0.03, 0.15), draw(0.4, 2.5), draw(0.02, 0.12), draw(0.03, 0.08));
+    let mut truth = Truth::new();
+    if let Some(crank) = &mut world.crank {
+        crank.radius_m = draw(0.016, 0.025);
+        crank.center_m.x += draw(-0.004, 0.004);
+        crank.center_m.y += draw(-0.004, 0.004);
+        crank.start_rad = draw(-2.0, -1.0);
+        crank.effects = vec![
+            Effect::new(&Weight, &[weight]),
+            Effect::new(&Inertia, &[inertia]),
+            Effect::new(&LoadFriction, &[mu]),
+            Effect::new(&ViscousFriction, &[viscous]),
+            Effect::new(&CoulombFriction, &[coulomb]),
+        ];
+        for (name, value) in [
+            ("weight_N", weight),
+            ("friction_mu", mu),
+            ("viscous_N_s_m", viscous),
+            ("coulomb_N", coulomb),
+            ("radius_m", crank.radius_m),
+            ("center_x_m", crank.center_m.x),
+            ("center_y_m", crank.center_m.y),
+            ("inertia_kg_m2", inertia * crank.radius_m.powi(2)),
+        ] {
+            truth.insert(("crank".to_owned(), name.to_owned()), value);
+        }
+    }
+    (world, truth)
+}

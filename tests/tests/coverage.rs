@@ -1,0 +1,73 @@
+//! Standard errors that are true: over a hundred drawn worlds, every property lies within two of its own standard errors of the
+//! truth at least ninety times.
+
+use haptics::device::Skill;
+use haptics::servo::recorder::SensorModel;
+use rayon::prelude::*;
+use tests::generate::{Truth, perform, stacking_world};
+
+const SEEDS: u64 = 100;
+
+/// z-values by parameter: (value − truth) / standard error.
+type Scores = Vec<((String, String), f64, f64)>;
+
+fn score(fit: &estimator::estimate::Fit, truth: &Truth) -> Scores {
+    truth
+        .iter()
+        .filter_map(|((object, name), true_value)| {
+            let found = fit.parameter(object, name)?;
+            let (value, error) = (found.value?, found.std_error?);
+            Some(((object.clone(), name.clone()), (value - true_value) / error, error / true_value.abs()))
+        })
+        .collect()
+}
+
+fn report(all: &[Scores]) -> Vec<(String, usize, usize)> {
+    let mut names: Vec<(String, String)> = all.iter().flatten().map(|s| s.0.clone()).collect();
+    names.sort();
+    names.dedup();
+    names
+        .into_iter()
+        .map(|name| {
+            let z: Vec<f64> = all.iter().flatten().filter(|s| s.0 == name).map(|s| s.1).collect();
+            let relative = all.iter().flatten().filter(|s| s.0 == name).map(|s| s.2).sum::<f64>() / z.len() as f64;
+            let covered = z.iter().filter(|z| z.abs() <= 2.0).count();
+            let rms = (z.iter().map(|z| z * z).sum::<f64>() / z.len() as f64).sqrt();
+            let mean = z.iter().sum::<f64>() / z.len() as f64;
+            println!(
+                "{:>8} {:<14} covered {covered:>3} of {:>3}, z mean {mean:+.2} rms {rms:.2}, mean relative error {relative:.5}",
+                name.0,
+                name.1,
+                z.len()
+            );
+            (format!("{} {}", name.0, name.1), covered, z.len())
+        })
+        .collect()
+}
+
+#[test]
+fn stacked_blocks_are_covered() {
+    let all: Vec<(String, Scores)> = (0..SEEDS)
+        .into_par_iter()
+        .map(|seed| {
+            let (world, truth) = stacking_world(seed);
+            let recording = perform(&world, seed, Skill::default(), 5, &SensorModel::TYPICAL);
+            let (fit, segmentation) = estimator::identify::block::fit(&recording).expect("blocks were carried");
+            for block in ["block-1", "block-2"] {
+                let bound = fit.parameter(block, "friction_lower_bound").expect("always reported");
+                let (value, error) = (bound.value.expect("a firm grip"), bound.std_error.expect("with its error"));
+                let friction = truth[&(block.to_owned(), "friction".to_owned())];
+                assert!(value - 2.0 * error <= friction, "seed {seed}: bound {value} ± {error} above {friction}");
+            }
+            (segmentation.sequence(), score(&fit, &truth))
+        })
+        .collect();
+    let wrong = all.iter().filter(|(sequence, _)| sequence != "132313231").count();
+    println!("states 1 3 2 3 1 3 2 3 1 found in {} of {SEEDS}", SEEDS as usize - wrong);
+    let scores: Vec<Scores> = all.into_iter().map(|a| a.1).collect();
+    let rows = report(&scores);
+    let joint = scores.iter().filter(|s| s.iter().all(|(_, z, _)| z.abs() <= 2.0)).count();
+    println!("all properties at once: {joint} of {SEEDS}");
+    assert_eq!(wrong, 0);
+    assert!(rows.iter().all(|(_, covered, n)| *covered >= 90 && *n == 100), "{rows:?}");
+}
