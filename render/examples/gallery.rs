@@ -1,4 +1,5 @@
-//! Draws one picture of everything that the renderer can show: `cargo run -p render --example gallery -- FOLDER`.
+//! Draws one picture of everything that the renderer can show:
+//! `cargo run -p render --example gallery -- FOLDER [NAME]`.
 
 use haptics::Vec2;
 use haptics::world::{Block, Contact, Crank, Floor, State, Surface, World};
@@ -10,6 +11,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+/// Frames that are timed.
+const FRAMES: u16 = 20;
 
 /// One picture.
 struct Plate {
@@ -24,7 +28,8 @@ fn main() -> Outcome {
     std::fs::create_dir_all(&folder)?;
     let mut headless = Headless::new()?;
     println!("drawn by {}", headless.adapter());
-    for plate in plates() {
+    let only = std::env::args().nth(2);
+    for plate in plates().into_iter().filter(|plate| only.as_ref().is_none_or(|name| name == plate.name)) {
         for (theme, theme_name) in [(Theme::Light, "light"), (Theme::Dark, "dark")] {
             let options = ViewOptions { theme, ..plate.options.clone() };
             let view = SceneView { world: &plate.world, state: &plate.state, options: &options };
@@ -32,10 +37,10 @@ fn main() -> Outcome {
                 let picture = headless.render(&view, width, height)?;
                 picture.save(folder.join(format!("{}-{theme_name}-{width}.png", plate.name)))?;
                 let start = Instant::now();
-                for _ in 0..10 {
+                for _ in 0..FRAMES {
                     headless.draw(&view, width, height)?;
                 }
-                let milliseconds = start.elapsed().as_secs_f64() * 100.0;
+                let milliseconds = start.elapsed().as_secs_f64() * 1e3 / f64::from(FRAMES);
                 println!("{:>12} {theme_name:>5} {width:>4} x {height}: {milliseconds:.1} ms a frame", plate.name);
             }
         }
@@ -117,7 +122,7 @@ fn saturated() -> Plate {
 
 fn crank() -> Plate {
     let mut world = World::empty("Crank");
-    let center = Vec2::new(0.0, -0.095);
+    let center = Vec2::new(0.0, -0.090);
     let radius = 0.024;
     world.crank = Some(Crank {
         center_m: center,

@@ -8,7 +8,7 @@ use glam::camera::rh::{
 use glam::{Mat4, Vec2, Vec3};
 
 /// Field of view of the perspective camera, rad: a long lens, so that lengths in the plane stay comparable.
-const FOV_Y_RAD: f32 = 0.42;
+const FOV_Y_RAD: f32 = 0.34;
 
 /// How depth shortens things.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,10 +45,10 @@ impl Camera {
     pub fn hand() -> Self {
         Self {
             projection: Projection::Perspective,
-            target_m: Vec3::new(0.0, -0.062, 0.0),
+            target_m: Vec3::new(0.0, -0.057, 0.0),
             yaw_rad: 0.0,
             pitch_rad: 0.2,
-            extent_m: Vec2::new(0.23, 0.178),
+            extent_m: Vec2::new(0.235, 0.188),
         }
     }
 

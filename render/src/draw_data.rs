@@ -95,9 +95,9 @@ fn globals(view: &SceneView<'_>, size: [u32; 2]) -> Globals {
         background_bottom: palette.background_bottom.display(),
         glow: palette.glow.rgb.extend(glow_height.clamp(-1.0, 1.0)),
         grid: palette.grid.rgb.extend(grid_strength(view.options.theme)),
-        shadow: palette.shadow.rgb.extend(table.center_z_m),
-        table: table.top_m.map_or(Vec4::new(-1e3, 0.0, 1.0, 1.0), |top| {
-            let Vec2 { x, y } = table.half_m;
+        shadow: palette.shadow.rgb.extend(table.center_z),
+        table: table.top.map_or(Vec4::new(-1e3, 0.0, 1.0, 1.0), |top| {
+            let Vec2 { x, y } = table.half;
             Vec4::new(top, 0.45, x, y)
         }),
     }

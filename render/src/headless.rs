@@ -24,15 +24,15 @@ pub struct Headless {
 impl Headless {
     /// On the fastest driver there is; the software driver if there is no other.
     pub fn new() -> Result<Self, RenderError> {
-        Self::on(best_adapter(rank)?)
+        Self::on(&best_adapter(rank)?)
     }
 
     /// On the software driver if there is one: the same pixels on every machine with the same driver version.
     pub fn software() -> Result<Self, RenderError> {
-        Self::on(best_adapter(|kind| u8::from(kind != wgpu::DeviceType::Cpu))?)
+        Self::on(&best_adapter(|kind| u8::from(kind != wgpu::DeviceType::Cpu))?)
     }
 
-    fn on(adapter: wgpu::Adapter) -> Result<Self, RenderError> {
+    fn on(adapter: &wgpu::Adapter) -> Result<Self, RenderError> {
         let name = adapter.get_info().name;
         let request = adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("headless"),

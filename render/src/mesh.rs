@@ -1,8 +1,9 @@
-//! Stretchable unit meshes: every solid of the scene is one of three, drawn many times.
+//! Stretchable unit meshes: every solid of the scene is one of four, drawn many times.
 //!
 //! A vertex has a `corner` (which end or corner of the solid it belongs to, components −1, 0 or 1) and an `offset` (its place on
-//! the rounding around that corner). An instance stretches both apart: `position = corner · half + offset · radius`. So a bevel
-//! keeps its radius whatever the size, and a bar keeps round ends whatever its length.
+//! the rounding around that corner). An instance stretches both apart: `position = corner · half + offset · radius`, with the
+//! rims of plates drawn in by `inset · radius.z`. So a bevel keeps its radius whatever the size, and a bar keeps round ends
+//! whatever its length.
 
 use bytemuck::{Pod, Zeroable};
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
@@ -17,6 +18,8 @@ pub struct Vertex {
     pub offset: [f32; 3],
     /// Unit normal.
     pub normal: [f32; 3],
+    /// Direction in x–y in which a bevelled rim is drawn in, times the instance's `radius.z`.
+    pub inset: [f32; 2],
 }
 
 /// Triangles, counter-clockwise seen from outside.
@@ -28,26 +31,29 @@ pub struct Mesh {
     pub indices: Vec<u16>,
 }
 
-/// The three unit meshes.
+/// The unit meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MeshKind {
     /// Box with rounded edges; a sphere when its `half` is zero.
     Box,
     /// Plate in x–y with round corners and bevelled rims; a bar, a disc, a cylinder along z.
     Plate,
+    /// The same with a finer outline, for large discs.
+    Disc,
     /// Arrow along +x, its tip at `half.x`.
     Arrow,
 }
 
 impl MeshKind {
     /// All of them, in the order of their buffers.
-    pub const ALL: [Self; 3] = [Self::Box, Self::Plate, Self::Arrow];
+    pub const ALL: [Self; 4] = [Self::Box, Self::Plate, Self::Disc, Self::Arrow];
 
     /// Makes the mesh.
     pub fn build(self) -> Mesh {
         match self {
             Self::Box => rounded_box(3),
-            Self::Plate => plate(7),
+            Self::Plate => plate(6),
+            Self::Disc => plate(15),
             Self::Arrow => arrow(20),
         }
     }
@@ -58,8 +64,8 @@ pub const ARROW_HEAD: [f32; 2] = [6.5, 2.6];
 
 impl Mesh {
     fn push(&mut self, corner: [f32; 3], offset: [f32; 3], normal: [f32; 3]) -> u16 {
-        self.vertices.push(Vertex { corner, offset, normal });
-        // The three meshes have some hundred vertices each.
+        self.vertices.push(Vertex { corner, offset, normal, inset: [0.0; 2] });
+        // The meshes have some hundred vertices each.
         (self.vertices.len() - 1) as u16
     }
 
@@ -91,8 +97,9 @@ fn rounded_box(steps: u16) -> Mesh {
     // Each half of a grid line belongs to one corner; between them lies the flat part.
     let stations: Vec<(f32, f32)> = (0..side)
         .map(|i| {
-            let (sign, step) = if i <= steps { (-1.0, i as f32 - steps as f32) } else { (1.0, (i - steps - 1) as f32) };
-            (sign, (step / steps as f32 * FRAC_PI_4).tan())
+            let (sign, step) =
+                if i <= steps { (-1.0, f32::from(i) - f32::from(steps)) } else { (1.0, f32::from(i - steps - 1)) };
+            (sign, (step / f32::from(steps) * FRAC_PI_4).tan())
         })
         .collect();
     for axis in 0..3 {
@@ -127,39 +134,38 @@ fn rounded_box(steps: u16) -> Mesh {
 
 /// A stadium-like plate: `steps` segments for each quarter turn, walls along z, one bevel ring at each rim.
 fn plate(steps: u16) -> Mesh {
-    /// Radius of the flat faces relative to the wall's.
-    const INNER: f32 = 0.88;
     let mut mesh = Mesh::default();
     let outline: Vec<([f32; 2], [f32; 2])> = (0..4_u16)
         .flat_map(|quarter| {
             let corner = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]][quarter as usize];
             (0..=steps).map(move |i| {
-                let angle = FRAC_PI_2 * (quarter as f32 + i as f32 / steps as f32);
+                let angle = FRAC_PI_2 * (f32::from(quarter) + f32::from(i) / f32::from(steps));
                 (corner, [angle.cos(), angle.sin()])
             })
         })
         .collect();
     let n = outline.len() as u16;
-    // (z corner, radius, z offset, normal z) from the back face to the front face.
+    // (z corner, bevelled, z offset, normal z) from the back face to the front face.
     let slope = std::f32::consts::FRAC_1_SQRT_2;
     let rings = [
-        (-1.0, INNER, -1.0, -1.0),
-        (-1.0, INNER, -1.0, -slope),
-        (-1.0, 1.0, 0.0, -slope),
-        (-1.0, 1.0, 0.0, 0.0),
-        (1.0, 1.0, 0.0, 0.0),
-        (1.0, 1.0, 0.0, slope),
-        (1.0, INNER, 1.0, slope),
-        (1.0, INNER, 1.0, 1.0),
+        (-1.0, 1.0, -1.0, -1.0),
+        (-1.0, 1.0, -1.0, -slope),
+        (-1.0, 0.0, 0.0, -slope),
+        (-1.0, 0.0, 0.0, 0.0),
+        (1.0, 0.0, 0.0, 0.0),
+        (1.0, 0.0, 0.0, slope),
+        (1.0, 1.0, 1.0, slope),
+        (1.0, 1.0, 1.0, 1.0),
     ];
-    for (z_corner, radius, z_offset, normal_z) in rings {
+    for (z_corner, bevelled, z_offset, normal_z) in rings {
         let flat = f32::sqrt(1.0 - normal_z * normal_z);
         for (corner, [cos, sin]) in &outline {
-            mesh.push(
-                [corner[0], corner[1], z_corner],
-                [cos * radius, sin * radius, z_offset],
-                [cos * flat, sin * flat, normal_z],
-            );
+            mesh.vertices.push(Vertex {
+                corner: [corner[0], corner[1], z_corner],
+                offset: [*cos, *sin, z_offset],
+                normal: [cos * flat, sin * flat, normal_z],
+                inset: [-cos * bevelled, -sin * bevelled],
+            });
         }
     }
     mesh.cap(0, n, true);
@@ -208,7 +214,9 @@ mod tests {
     fn volume(mesh: &Mesh, half: Vec3, radius: Vec3) -> f32 {
         let at = |index: u16| {
             let v = &mesh.vertices[usize::from(index)];
-            Vec3::from(v.corner) * half + Vec3::from(v.offset) * radius
+            Vec3::from(v.corner) * half
+                + Vec3::from(v.offset) * radius
+                + glam::Vec2::from(v.inset).extend(0.0) * radius.z
         };
         mesh.indices.chunks_exact(3).map(|t| at(t[0]).dot(at(t[1]).cross(at(t[2]))) / 6.0).sum()
     }
@@ -227,7 +235,7 @@ mod tests {
 
     #[test]
     fn disc_has_the_volume_of_a_cylinder() {
-        let v = volume(&plate(7), Vec3::new(0.0, 0.0, 0.5), Vec3::new(1.0, 1.0, 0.0));
+        let v = volume(&plate(15), Vec3::new(0.0, 0.0, 0.49), Vec3::new(1.0, 1.0, 0.01));
         assert!((v - std::f32::consts::PI).abs() < 0.05, "{v}");
     }
 

@@ -76,7 +76,7 @@ impl Solid {
     }
 
     fn plate_with(center: Vec2, axis: Vec2, mut half: Vec3, radius: f32, z: [f32; 2], color: Color) -> Self {
-        let bevel = (0.12 * radius).min(half.z);
+        let bevel = (0.12 * radius).min(0.0006).min(half.z);
         half.z -= bevel;
         Self::new(center.extend(0.5 * (z[0] + z[1])), axis, half, Vec3::new(radius, radius, bevel), color)
     }

@@ -14,9 +14,8 @@ pub struct Color {
 }
 
 impl Color {
-    /// From `0xRRGGBB`, opaque.
-    pub const fn hex(rgb: u32) -> Self {
-        let [_, r, g, b] = rgb.to_be_bytes();
+    /// From bytes, opaque.
+    pub const fn rgb8(r: u8, g: u8, b: u8) -> Self {
         Self { rgb: Vec3::new(r as f32 / 255.0, g as f32 / 255.0, b as f32 / 255.0), alpha: 1.0 }
     }
 
@@ -101,61 +100,64 @@ impl Theme {
     /// The colour of a role.
     pub fn color(self, role: ColorRole) -> Color {
         let dark = self == Self::Dark;
-        let pick = |light: u32, on_dark: u32| Color::hex(if dark { on_dark } else { light });
+        let pick = |light: [u8; 3], on_dark: [u8; 3]| {
+            let [r, g, b] = if dark { on_dark } else { light };
+            Color::rgb8(r, g, b)
+        };
         match role {
-            ColorRole::Finger(0) => pick(0x00_72_B2, 0x4A_B0_F0),
-            ColorRole::Finger(_) => pick(0xE6_8A_00, 0xF5_A8_2A),
+            ColorRole::Finger(0) => pick([0x00, 0x72, 0xB2], [0x4A, 0xB0, 0xF0]),
+            ColorRole::Finger(_) => pick([0xE6, 0x8A, 0x00], [0xF5, 0xA8, 0x2A]),
             ColorRole::Block(index) => match index % 6 {
-                0 => pick(0x1F_A5_83, 0x1F_A8_85),
-                1 => pick(0xC8_74_A6, 0xC9_78_A9),
-                2 => pick(0xE8_CF_3F, 0xDD_C5_40),
-                3 => pick(0x63_B4_E4, 0x5F_AF_DE),
-                4 => pick(0x9A_8A_78, 0xA0_92_82),
-                _ => pick(0x6B_6F_C9, 0x7C_80_D8),
+                0 => pick([0x1F, 0xA5, 0x83], [0x1F, 0xA8, 0x85]),
+                1 => pick([0xC8, 0x74, 0xA6], [0xC9, 0x78, 0xA9]),
+                2 => pick([0xE8, 0xCF, 0x3F], [0xDD, 0xC5, 0x40]),
+                3 => pick([0x63, 0xB4, 0xE4], [0x5F, 0xAF, 0xDE]),
+                4 => pick([0x9A, 0x8A, 0x78], [0xA0, 0x92, 0x82]),
+                _ => pick([0x6B, 0x6F, 0xC9], [0x7C, 0x80, 0xD8]),
             },
-            ColorRole::Measured => pick(0x33_3A_44, 0xE6_EA_F0),
-            ColorRole::Simulated => pick(0xB5_4A_8A, 0xE0_8C_BE),
-            ColorRole::Constraint => pick(0x00_7A_5C, 0x3C_D6_AC),
-            ColorRole::Saturated => pick(0xD5_2E_00, 0xFF_5A_2B),
-            ColorRole::Neutral => pick(0x7A_84_92, 0x8A_95_A5),
+            ColorRole::Measured => pick([0x33, 0x3A, 0x44], [0xE6, 0xEA, 0xF0]),
+            ColorRole::Simulated => pick([0xB5, 0x4A, 0x8A], [0xE0, 0x8C, 0xBE]),
+            ColorRole::Constraint => pick([0x00, 0x7A, 0x5C], [0x3C, 0xD6, 0xAC]),
+            ColorRole::Saturated => pick([0xD5, 0x2E, 0x00], [0xFF, 0x5A, 0x2B]),
+            ColorRole::Neutral => pick([0x7A, 0x84, 0x92], [0x8A, 0x95, 0xA5]),
         }
     }
 
     pub(crate) fn palette(self) -> Palette {
         match self {
             Self::Light => Palette {
-                background_top: Color::hex(0xDD_E4_EC),
-                background_bottom: Color::hex(0xF3_F5_F8),
-                glow: Color::hex(0x16_14_10),
-                table: Color::hex(0xE4_E8_ED),
-                grid: Color::hex(0x8E_A0_B6),
-                shadow: Color::hex(0x1E_2A_3C).with_alpha(0.42),
-                link: Color::hex(0xAE_B8_C4),
-                link_secondary: Color::hex(0x94_A0_AE),
-                coupler: Color::hex(0x5C_68_78),
-                frame: Color::hex(0x4A_55_64),
-                pin: Color::hex(0xE8_EC_F0),
-                steel: Color::hex(0xC4_CC_D6),
-                brass: Color::hex(0xD8_B4_5E),
-                workspace: Color::hex(0x8A_9A_AE),
-                ghost: Color::hex(0x5A_6A_80),
+                background_top: Color::rgb8(0xD6, 0xDE, 0xE8),
+                background_bottom: Color::rgb8(0xEC, 0xF0, 0xF4),
+                glow: Color::rgb8(0x10, 0x0E, 0x0B),
+                table: Color::rgb8(0xD3, 0xDA, 0xE3),
+                grid: Color::rgb8(0x84, 0x96, 0xAE),
+                shadow: Color::rgb8(0x1E, 0x2A, 0x3C).with_alpha(0.42),
+                link: Color::rgb8(0xAE, 0xB8, 0xC4),
+                link_secondary: Color::rgb8(0x94, 0xA0, 0xAE),
+                coupler: Color::rgb8(0x5C, 0x68, 0x78),
+                frame: Color::rgb8(0x4A, 0x55, 0x64),
+                pin: Color::rgb8(0xE8, 0xEC, 0xF0),
+                steel: Color::rgb8(0xC4, 0xCC, 0xD6),
+                brass: Color::rgb8(0xD8, 0xB4, 0x5E),
+                workspace: Color::rgb8(0x8A, 0x9A, 0xAE),
+                ghost: Color::rgb8(0x5A, 0x6A, 0x80),
             },
             Self::Dark => Palette {
-                background_top: Color::hex(0x12_16_1C),
-                background_bottom: Color::hex(0x1F_26_30),
-                glow: Color::hex(0x14_18_1E),
-                table: Color::hex(0x36_40_4C),
-                grid: Color::hex(0x7C_90_A8),
-                shadow: Color::hex(0x03_05_08).with_alpha(0.60),
-                link: Color::hex(0x96_A2_B0),
-                link_secondary: Color::hex(0x76_83_92),
-                coupler: Color::hex(0x46_52_60),
-                frame: Color::hex(0x38_43_50),
-                pin: Color::hex(0xD2_DA_E2),
-                steel: Color::hex(0x9A_A6_B4),
-                brass: Color::hex(0xC8_A4_50),
-                workspace: Color::hex(0x5E_70_86),
-                ghost: Color::hex(0xB8_C8_DC),
+                background_top: Color::rgb8(0x12, 0x16, 0x1C),
+                background_bottom: Color::rgb8(0x1F, 0x26, 0x30),
+                glow: Color::rgb8(0x14, 0x18, 0x1E),
+                table: Color::rgb8(0x36, 0x40, 0x4C),
+                grid: Color::rgb8(0x7C, 0x90, 0xA8),
+                shadow: Color::rgb8(0x03, 0x05, 0x08).with_alpha(0.60),
+                link: Color::rgb8(0x96, 0xA2, 0xB0),
+                link_secondary: Color::rgb8(0x76, 0x83, 0x92),
+                coupler: Color::rgb8(0x46, 0x52, 0x60),
+                frame: Color::rgb8(0x38, 0x43, 0x50),
+                pin: Color::rgb8(0xD2, 0xDA, 0xE2),
+                steel: Color::rgb8(0x9A, 0xA6, 0xB4),
+                brass: Color::rgb8(0xC8, 0xA4, 0x50),
+                workspace: Color::rgb8(0x5E, 0x70, 0x86),
+                ghost: Color::rgb8(0xB8, 0xC8, 0xDC),
             },
         }
     }
@@ -166,8 +168,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hex_becomes_bytes_again() {
-        assert_eq!(Color::hex(0x12_80_FF).bytes(), [0x12, 0x80, 0xFF]);
+    fn bytes_become_bytes_again() {
+        assert_eq!(Color::rgb8(0x12, 0x80, 0xFF).bytes(), [0x12, 0x80, 0xFF]);
     }
 
     #[test]

@@ -12,8 +12,6 @@ use glam::Vec2;
 /// Forces below this have no direction worth showing, N.
 const SMALLEST_N: f32 = 0.02;
 const SHAFT_RADIUS_M: f32 = 0.00115;
-/// Depth of the arrows, m.
-const Z_M: f32 = 0.010;
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
     let fingers = if view.options.fingers == FingerStyle::Tool { 1 } else { 2 };
@@ -32,7 +30,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
             ArrowAnchor::TailAtTip => (tip, tip + arrow),
         };
         let shift = Vec2::new(outwards(finger) * 0.0002, 0.0);
-        let solid = Solid::arrow(tail + shift, head + shift, Z_M, SHAFT_RADIUS_M, color).gloss(0.15).unlit(0.35);
+        let solid = Solid::arrow(tail + shift, head + shift, 0.0, SHAFT_RADIUS_M, color).gloss(0.15).unlit(0.35);
         canvas.solid_in(Layer::Overlay, MeshKind::Arrow, solid);
     }
 }

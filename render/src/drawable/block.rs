@@ -19,7 +19,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
         let highlighted = view.options.highlight == Some(SolidRef::Block(index));
         let mut color = canvas.color(ColorRole::Block(index));
         if highlighted {
-            color = color.mix(Color::hex(0xFF_FF_FF), 0.35);
+            color = color.mix(Color::rgb8(0xFF, 0xFF, 0xFF), 0.35);
         }
         let solid = Solid::rounded_box(lift(center, 0.0), half.extend(HALF_DEPTH_M), turn, EDGE_M, color)
             .gloss(0.3)

@@ -9,8 +9,8 @@ use crate::vec2;
 use glam::{Vec2, Vec3};
 
 /// Depths, back to front, m.
-const DIAL_Z: [f32; 2] = [-0.026, -0.023];
-const ARM_Z: [f32; 2] = [-0.019, -0.0135];
+const DIAL_Z: [f32; 2] = [-0.0165, -0.0145];
+const ARM_Z: [f32; 2] = [-0.0125, -0.0085];
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
     let (Some(crank), Some(handle)) = (&view.world.crank, view.state.handle_in_world(view.world)) else { return };
@@ -29,18 +29,19 @@ fn stand(canvas: &mut Canvas<'_>, center: Vec2, radius: f32) {
     let Some(top) = canvas.table_top_m.filter(|top| *top < center.y) else { return };
     let frame = canvas.palette.frame;
     let foot = Vec2::new(center.x, top);
-    canvas.solid(MeshKind::Plate, Solid::bar(foot, center, 0.3 * radius, [-0.033, DIAL_Z[0]], frame));
-    canvas.cast_shadow(Vec2::new(center.x, -0.028), Vec2::new(0.6 * radius, 0.005), top, 0.8);
+    canvas.solid(MeshKind::Plate, Solid::bar(foot, center, 0.3 * radius, [-0.024, DIAL_Z[0]], frame));
+    canvas.cast_shadow(Vec2::new(center.x, -0.020), Vec2::new(0.6 * radius, 0.005), top, 0.8);
 }
 
 /// A disc with ticks every 15°, longer every 45°.
 fn dial(canvas: &mut Canvas<'_>, center: Vec2, radius: f32) {
     let face = canvas.palette.table;
-    let rim = radius + 0.0085;
-    canvas.solid(MeshKind::Plate, Solid::disc(center, rim, DIAL_Z, face).gloss(0.15));
+    let rim = radius + 0.0070;
+    canvas.solid(MeshKind::Disc, Solid::disc(center, rim, DIAL_Z, face).gloss(0.15));
     let color = canvas.palette.grid;
     let z = DIAL_Z[1] + 0.0002;
-    canvas.circle(center, radius, z, Line::solid(1.2, color), false);
+    // The handle's path, in its own plane.
+    canvas.circle(center, radius, 0.0, Line::solid(1.2, color), false);
     for tick in 0..24_u8 {
         let direction = angle(f32::from(tick) / 24.0);
         let inner = if tick % 3 == 0 { 0.0040 } else { 0.0022 };
@@ -55,14 +56,14 @@ fn arm(canvas: &mut Canvas<'_>, center: Vec2, handle: Vec2) {
     canvas.solid(MeshKind::Plate, Solid::bar(tail, handle, 0.0042, ARM_Z, link).gloss(0.5));
     canvas.solid(MeshKind::Plate, Solid::disc(tail, 0.0062, [ARM_Z[0] - 0.001, ARM_Z[1] + 0.001], frame).gloss(0.3));
     canvas.solid(MeshKind::Plate, Solid::disc(center, 0.0058, [DIAL_Z[1], ARM_Z[1] + 0.0016], frame).gloss(0.4));
-    canvas.solid(MeshKind::Plate, Solid::disc(center, 0.0030, [DIAL_Z[1], ARM_Z[1] + 0.0030], brass).gloss(0.8));
+    canvas.solid(MeshKind::Plate, Solid::disc(center, 0.0028, [DIAL_Z[1], 0.0], brass).gloss(0.8));
 }
 
 /// The handle keeps upright on its bearing; its sides are flat for the pads.
 fn draw_handle(canvas: &mut Canvas<'_>, handle: Vec2, width: f32, highlighted: bool) {
     let mut color = canvas.color(ColorRole::Block(0));
     if highlighted {
-        color = color.mix(Color::hex(0xFF_FF_FF), 0.35);
+        color = color.mix(Color::rgb8(0xFF, 0xFF, 0xFF), 0.35);
     }
     let brass = canvas.palette.brass;
     let half = Vec3::new(0.5 * width, 0.5 * width + 0.001, 0.5 * (HALF_DEPTH_M - ARM_Z[1]) - 0.0004);

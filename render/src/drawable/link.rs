@@ -83,8 +83,11 @@ fn links(canvas: &mut Canvas<'_>, j: &Joints) {
 
 fn couplers(canvas: &mut Canvas<'_>, j: &Joints, out: f32) {
     let color = canvas.palette.coupler;
+    let mut z = COUPLER_Z;
     let mut bar = |a: Vec2, b: Vec2, radius| {
-        canvas.solid(MeshKind::Plate, Solid::bar(a, b, radius, COUPLER_Z, color).gloss(0.3));
+        canvas.solid(MeshKind::Plate, Solid::bar(a, b, radius, z, color).gloss(0.3));
+        // Faces in the very same plane would flicker where bars overlap.
+        z[1] -= 0.00005;
     };
     bar(j.base, j.base + j.upper, COUPLER_RADIUS_M);
     bar(j.elbow, j.elbow + j.upper, COUPLER_RADIUS_M);
@@ -92,14 +95,14 @@ fn couplers(canvas: &mut Canvas<'_>, j: &Joints, out: f32) {
     bar(j.elbow + j.upper, j.elbow + j.lower, COUPLER_RADIUS_M - 0.001);
     // The wrist carries the blade of the fingertip.
     bar(j.wrist, j.wrist + j.lower, COUPLER_RADIUS_M);
-    bar(j.wrist, j.wrist - Vec2::new(out * 0.0048, 0.0), COUPLER_RADIUS_M);
+    bar(j.wrist, j.wrist - Vec2::new(out * 0.0030, 0.0), 0.0032);
 }
 
 /// A motor behind the base joint, and its face in the finger's colour.
 fn motor(canvas: &mut Canvas<'_>, j: &Joints, accent: Color) {
     let body = canvas.palette.frame;
-    canvas.solid(MeshKind::Plate, Solid::disc(j.base, 0.0115, [-0.034, -0.0055], body).gloss(0.35));
-    canvas.solid(MeshKind::Plate, Solid::disc(j.base, 0.0088, [-0.0056, -0.0046], accent).gloss(0.2));
+    canvas.solid(MeshKind::Disc, Solid::disc(j.base, 0.0115, [-0.034, -0.0055], body).gloss(0.35));
+    canvas.solid(MeshKind::Disc, Solid::disc(j.base, 0.0088, [-0.0056, -0.0046], accent).gloss(0.2));
 }
 
 fn pins(canvas: &mut Canvas<'_>, j: &Joints, accent: Color) {

@@ -96,7 +96,7 @@ impl<'a> Canvas<'a> {
             Mode::Ghost => {
                 let ghost = self.palette.ghost.linear();
                 let color = glam::Vec4::from(solid.color).lerp(ghost, 0.35);
-                let solid = Solid { color: color.truncate().extend(0.34).into(), ..solid };
+                let solid = Solid { color: color.truncate().extend(0.45).into(), ..solid };
                 self.data.solids.push((Layer::Ghost, mesh, solid.unlit(0.25)));
             }
         }
@@ -138,12 +138,12 @@ impl<'a> Canvas<'a> {
         let alpha = self.palette.shadow.alpha * strength;
         let contact = Shadow {
             center_and_half: [center.x, center.y, half.x, half.y],
-            blur_and_alpha: [0.0022 + 0.35 * height, alpha / (1.0 + 60.0 * height)],
+            blur_and_alpha: [0.0022 + 0.22 * height, alpha / (1.0 + 40.0 * height)],
         };
         let away = center + (0.004 + height) * Vec2::new(0.5, -0.5);
         let key = Shadow {
             center_and_half: [away.x, away.y, half.x, half.y],
-            blur_and_alpha: [0.006 + 0.4 * height, 0.55 * alpha / (1.0 + 40.0 * height)],
+            blur_and_alpha: [0.005 + 0.2 * height, 0.6 * alpha / (1.0 + 20.0 * height)],
         };
         self.data.shadows.extend([contact, key].iter().filter(|s| s.center_and_half.iter().all(|x| x.is_finite())));
     }

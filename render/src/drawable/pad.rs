@@ -17,7 +17,7 @@ const BLADE_M: f32 = 0.0022;
 /// The foam below and above the tip position, m.
 const FOAM_DOWN_UP_M: [f32; 2] = [0.005, 0.006];
 /// Top of the blade above the tip position, m; below the wrist of `link.rs`.
-const BLADE_TOP_M: f32 = 0.021;
+const BLADE_TOP_M: f32 = 0.0192;
 /// Half depth of the blade along z, m.
 const HALF_DEPTH_M: f32 = 0.0065;
 

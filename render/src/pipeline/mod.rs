@@ -40,13 +40,21 @@ struct Spec<'a> {
     vertex: &'a str,
     fragment: &'a str,
     buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    strip: bool,
-    blend: bool,
-    color: bool,
+    topology: wgpu::PrimitiveTopology,
+    ink: Ink,
     depth_write: bool,
     depth_compare: wgpu::CompareFunction,
     /// Positive: farther.
     depth_bias: i32,
+}
+
+/// What a pipeline does with the colour it computes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Ink {
+    Opaque,
+    Translucent,
+    /// Only depth is written.
+    None,
 }
 
 impl Pipelines {
@@ -74,9 +82,8 @@ impl Pipelines {
             vertex: "vs_solid",
             fragment: "fs_solid",
             buffers: &solid_buffers,
-            strip: false,
-            blend: false,
-            color: true,
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            ink: Ink::Opaque,
             depth_write: true,
             depth_compare: wgpu::CompareFunction::Less,
             depth_bias: 0,
@@ -89,18 +96,18 @@ impl Pipelines {
             vertex: "vs_stroke",
             fragment: "fs_stroke",
             buffers: &stroke_buffers,
-            strip: true,
-            blend: true,
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            ink: Ink::Translucent,
             depth_write: false,
             depth_compare: see_through,
             ..opaque
         };
         Self {
             table: make.pipeline(&Spec { label: "table", fragment: "fs_table", ..opaque }),
-            ghost_depth: make.pipeline(&Spec { label: "ghost depth", color: false, depth_bias: 24, ..opaque }),
+            ghost_depth: make.pipeline(&Spec { label: "ghost depth", ink: Ink::None, depth_bias: 24, ..opaque }),
             ghost: make.pipeline(&Spec {
                 label: "ghost",
-                blend: true,
+                ink: Ink::Translucent,
                 depth_write: false,
                 depth_compare: see_through,
                 depth_bias: 24,
@@ -145,8 +152,10 @@ impl Maker<'_> {
 
     fn pipeline(&self, spec: &Spec<'_>) -> wgpu::RenderPipeline {
         let constants = [("TARGET_IS_SRGB", f64::from(u8::from(self.format.is_srgb())))];
-        let topology =
-            if spec.strip { wgpu::PrimitiveTopology::TriangleStrip } else { wgpu::PrimitiveTopology::TriangleList };
+        // Strips are flat things that face the viewer by construction.
+        let closed = spec.topology == wgpu::PrimitiveTopology::TriangleList;
+        let blend = (spec.ink == Ink::Translucent).then_some(wgpu::BlendState::ALPHA_BLENDING);
+        let write_mask = if spec.ink == Ink::None { wgpu::ColorWrites::empty() } else { wgpu::ColorWrites::ALL };
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(spec.label),
             layout: Some(&self.layout),
@@ -157,8 +166,8 @@ impl Maker<'_> {
                 buffers: spec.buffers,
             },
             primitive: wgpu::PrimitiveState {
-                topology,
-                cull_mode: (!spec.strip).then_some(wgpu::Face::Back),
+                topology: spec.topology,
+                cull_mode: closed.then_some(wgpu::Face::Back),
                 ..wgpu::PrimitiveState::default()
             },
             depth_stencil: Some(wgpu::DepthStencilState {
@@ -176,11 +185,7 @@ impl Maker<'_> {
                     constants: &constants,
                     ..wgpu::PipelineCompilationOptions::default()
                 },
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: self.format,
-                    blend: spec.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),
-                    write_mask: if spec.color { wgpu::ColorWrites::ALL } else { wgpu::ColorWrites::empty() },
-                })],
+                targets: &[Some(wgpu::ColorTargetState { format: self.format, blend, write_mask })],
             }),
             multiview_mask: None,
             cache: None,
@@ -189,7 +194,8 @@ impl Maker<'_> {
 }
 
 fn vertex_layout() -> wgpu::VertexBufferLayout<'static> {
-    const ATTRIBUTES: [wgpu::VertexAttribute; 3] = attributes![0 => Float32x3, 1 => Float32x3, 2 => Float32x3];
+    const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
+        attributes![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 9 => Float32x2];
     layout::<Vertex>(wgpu::VertexStepMode::Vertex, &ATTRIBUTES)
 }
 

@@ -10,6 +10,7 @@ struct SolidIn {
     @location(6) half_and_gloss: vec4<f32>,
     @location(7) radius_and_unlit: vec4<f32>,
     @location(8) color: vec4<f32>,
+    @location(9) inset: vec2<f32>,
 };
 
 struct SolidOut {
@@ -23,7 +24,9 @@ struct SolidOut {
 
 @vertex
 fn vs_solid(in: SolidIn) -> SolidOut {
-    let local = vec4(in.corner * in.half_and_gloss.xyz + in.offset * in.radius_and_unlit.xyz, 1.0);
+    let radius = in.radius_and_unlit.xyz;
+    let rim = vec3(in.inset * radius.z, 0.0);
+    let local = vec4(in.corner * in.half_and_gloss.xyz + in.offset * radius + rim, 1.0);
     let world = vec3(dot(in.row_x, local), dot(in.row_y, local), dot(in.row_z, local));
     var out: SolidOut;
     out.clip = globals.clip_from_world * vec4(world, 1.0);
@@ -38,7 +41,7 @@ fn vs_solid(in: SolidIn) -> SolidOut {
 const KEY: vec3<f32> = vec3(-0.4240, 0.7067, 0.5664);
 const FILL: vec3<f32> = vec3(0.8082, 0.1155, 0.5774);
 
-fn shade(in: SolidOut) -> vec3<f32> {
+fn shade(in: SolidOut, occlusion: f32) -> vec3<f32> {
     let n = normalize(in.normal);
     let to_eye = normalize(globals.eye.xyz - in.world * globals.eye.w);
     let key = max(dot(n, KEY), 0.0);
@@ -50,9 +53,6 @@ fn shade(in: SolidOut) -> vec3<f32> {
     let shine = in.material.x * (0.9 * h8 * h8 * h8 * h8 + 0.12 * h8);
     let edge = 1.0 - max(dot(n, to_eye), 0.0);
     let rim = in.material.x * 0.10 * edge * edge * edge;
-    // The table keeps light away from what is close to it.
-    let open = clamp((in.world.y - globals.table.x) * 70.0 + 0.15, 0.0, 1.0);
-    let occlusion = 1.0 - globals.table.y * (1.0 - open) * (1.0 - open);
     let light = (sky + 0.72 * key + 0.20 * fill) * occlusion;
     let lit = in.color.rgb * light + vec3(shine + rim) * occlusion;
     return mix(lit, in.color.rgb, in.material.y);
@@ -60,7 +60,10 @@ fn shade(in: SolidOut) -> vec3<f32> {
 
 @fragment
 fn fs_solid(in: SolidOut) -> @location(0) vec4<f32> {
-    return vec4(to_target(sqrt(shade(in))), in.color.a);
+    // The table keeps light away from what is close to it.
+    let open = clamp((in.world.y - globals.table.x) * 70.0 + 0.15, 0.0, 1.0);
+    let occlusion = 1.0 - globals.table.y * (1.0 - open) * (1.0 - open);
+    return vec4(to_target(sqrt(shade(in, occlusion))), in.color.a);
 }
 
 // One line of the table's grid, 0 to 1, about one pixel wide whatever the distance.
@@ -76,7 +79,7 @@ fn grid_lines(position: vec2<f32>, pitch: f32) -> f32 {
 
 @fragment
 fn fs_table(in: SolidOut) -> @location(0) vec4<f32> {
-    let lit = sqrt(shade(in));
+    let lit = sqrt(shade(in, 1.0));
     let lines = max(0.55 * grid_lines(in.world.xz, 0.01), grid_lines(in.world.xz, 0.05));
     let margin = min(globals.table.z - abs(in.world.x), globals.table.w - abs(in.world.z - globals.shadow.w));
     let inside = clamp(margin * 250.0, 0.0, 1.0);
