@@ -196,17 +196,18 @@ fn stuck(channel: &Channel) -> Option<Warning> {
     warning(holds, text)
 }
 
-/// True when a position is moving at the edges of a hold: a thing that came to rest has not got stuck.
+/// True when a position was on its way at the edges of a hold: a thing that came to rest has not got stuck.
 fn moves_around(values: &[f64], holds: &[Span]) -> bool {
-    holds.iter().any(|hold| {
-        let Span { first, end } = *hold;
-        if first < 8 || end + 8 > values.len() {
-            return false;
+    let mut steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+    let place = steps.len() * 95 / 100;
+    let (_, typical, _) = steps.select_nth_unstable_by(place, f64::total_cmp);
+    holds.iter().any(|&Span { first, end }| {
+        if end < values.len() {
+            // It comes back elsewhere, in one leap.
+            return (values[end] - values[first]).abs() > 4.0 * *typical;
         }
-        let before = (values[first] - values[first - 8]).abs() / 8.0;
-        let jump = (values[end] - values[first]).abs();
-        // It comes back elsewhere: further than half of what it would have travelled.
-        jump > 0.5 * before * (end - first) as f64 && before > 0.0 && jump > 8.0 * before
+        // It never comes back, and stopped at full speed.
+        first >= 3 && (values[first] - values[first - 3]).abs() > 3.0 * 0.5 * *typical
     })
 }
 

@@ -1,0 +1,220 @@
+//! Mechanisms with one degree of freedom: a slide, a door, a motor axis, a pendulum.
+//!
+//! The regressors are the laws of `haptics::law`; this module only chooses them, stacks them and says what the recording
+//! cannot show. Four forms of recording are understood: a coordinate with its force; a tool path with forces, whose
+//! constraint is found first; a coordinate without a force, which moves freely; and a path without a clock, which shows its
+//! constraint only.
+
+mod free;
+mod gravity;
+pub mod path;
+mod regress;
+mod report;
+mod signals;
+mod terms;
+mod world;
+
+pub use report::{OBJECT, PHASE};
+pub use world::{measured, path_of, predict, world};
+
+use crate::constraint;
+use crate::estimate::{Constraint, EstimateError, Fit, Parameter, Quality};
+use gravity::Gravity;
+use haptics::law::Coordinate;
+use haptics::recording::Recording;
+use haptics::world::MechanismPath;
+use regress::{Shown, System, shown};
+use report::Material;
+use signals::{Piece, Raw};
+use terms::{Known, Term};
+
+/// Share of each recording's end that the quality figures hold out.
+const HELD_OUT: f64 = 0.3;
+
+/// Fits one mechanism to all `recordings` of it together.
+pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
+    let first = recordings
+        .first()
+        .ok_or_else(|| EstimateError::Other("no recording was given; name at least one log".to_owned()))?;
+    let (constraints, paths) = constraints(recordings);
+    if recordings.iter().any(|r| r.time_s.is_none()) {
+        return Ok(clockless(recordings, constraints, &paths));
+    }
+    if paths.iter().all(Option::is_none) && !has_coordinate(first) {
+        return without_coordinate(first, constraints);
+    }
+    let usable: Vec<(&Recording, Option<&MechanismPath>)> = recordings
+        .iter()
+        .zip(&paths)
+        .map(|(r, p)| (r, p.as_ref()))
+        .filter(|(r, p)| has_coordinate(r) || p.is_some())
+        .collect();
+    let raws = usable.iter().map(|(r, p)| signals::raw(r, *p)).collect::<Result<Vec<Raw>, _>>()?;
+    if raws.iter().any(|r| r.coordinate != raws[0].coordinate) {
+        let text = "some recordings move along a line and others about an axis; fit each mechanism by itself";
+        return Err(EstimateError::Other(text.to_owned()));
+    }
+    let mut pieces = Vec::new();
+    for (raw, (recording, _)) in raws.iter().zip(&usable) {
+        pieces.extend(signals::pieces(raw, &recording.name)?);
+    }
+    let known = Known::from_meta(&first.meta, raws[0].coordinate);
+    let mut result = if raws.iter().all(|r| r.force.is_some()) {
+        driven(&raws, &pieces, &known, first)?
+    } else if raws.iter().all(|r| r.force.is_none()) {
+        free::fit(&raws, &pieces, &known)?
+    } else {
+        let text = "some recordings have a force column and others do not; fit the driven and the free ones apart";
+        return Err(EstimateError::Other(text.to_owned()));
+    };
+    result.constraints = constraints;
+    Ok(result)
+}
+
+fn has_coordinate(recording: &Recording) -> bool {
+    recording.channel("q_m").is_some() || recording.channel("q_rad").is_some()
+}
+
+/// The constraint of every tool path, and the path it gives.
+fn constraints(recordings: &[Recording]) -> (Vec<Constraint>, Vec<Option<MechanismPath>>) {
+    let mut found = Vec::new();
+    let mut paths = Vec::new();
+    for recording in recordings {
+        let constraint = constraint::detect_in(recording);
+        paths.push(constraint.as_ref().and_then(|c| path::from_constraint(c, recording)));
+        found.extend(constraint);
+    }
+    (found, paths)
+}
+
+/// A path that is neither line nor circle has no coordinate: the constraint's own answer is the result.
+fn without_coordinate(recording: &Recording, constraints: Vec<Constraint>) -> Result<Fit, EstimateError> {
+    if constraints.is_empty() {
+        return Err(EstimateError::MissingColumn {
+            task: "a mechanism".to_owned(),
+            column: "q_m, q_rad, or x_m and y_m".to_owned(),
+            recording: recording.name.clone(),
+        });
+    }
+    let why = "the path is not decided to be a line or a circle, so there is no coordinate to fit along";
+    Ok(Fit {
+        task: "mechanism".to_owned(),
+        parameters: ["mass_kg", "coulomb_N", "viscous_N_s_m", "offset_N"]
+            .map(|name| Parameter::unidentified(OBJECT, name, recording.len(), why))
+            .to_vec(),
+        constraints,
+        quality: None,
+        warnings: vec![why.to_owned()],
+    })
+}
+
+/// Without a clock there are no rates: constraints, and the mean force along them.
+fn clockless(recordings: &[Recording], constraints: Vec<Constraint>, paths: &[Option<MechanismPath>]) -> Fit {
+    let angular = paths.iter().any(|p| matches!(p, Some(MechanismPath::Revolute { .. })))
+        || recordings.iter().any(|r| r.channel("q_rad").is_some());
+    let coordinate = if angular { Coordinate::Angular } else { Coordinate::Linear };
+    let samples = recordings.iter().map(Recording::len).sum();
+    let why = "the log has no clock, so there are no rates; give a t_s column or rate_hz in the sidecar";
+    let names = [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset].map(|t| t.name(coordinate));
+    let mut result = Fit {
+        task: "mechanism".to_owned(),
+        parameters: names.map(|name| Parameter::unidentified(OBJECT, name, samples, why)).to_vec(),
+        constraints,
+        quality: None,
+        warnings: vec![format!("{why}; only constraints and the force along them can be shown")],
+    };
+    for (recording, path) in recordings.iter().zip(paths) {
+        let force = path.as_ref().and_then(|p| path::project(recording, p).ok()).and_then(|p| p.force);
+        if let Some(force) = force.filter(|f| !f.is_empty()) {
+            let mean = force.iter().sum::<f64>() / force.len() as f64;
+            let unit = if coordinate == Coordinate::Linear { "N" } else { "N m" };
+            result.warnings.push(format!("mean force along the motion of {}: {mean:.3} {unit}", recording.name));
+        }
+    }
+    result
+}
+
+/// Motion under a measured force.
+fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> Result<Fit, EstimateError> {
+    let coordinate = raws[0].coordinate;
+    let base = [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset];
+    let mut seen = shown(pieces, known, &base);
+    let can_hang =
+        coordinate == Coordinate::Angular && known.value(Term::GravitySine).is_none() && path::up(first).is_some();
+    let gravity = if can_hang { Some(gravity::decide(pieces, &seen.fitted, known)?) } else { None };
+    if let Some(Gravity::Present(terms)) = &gravity {
+        seen.fitted.extend(terms);
+    }
+    let system = System::stack(pieces, &seen.fitted, known, force_of);
+    let solution = system.solve()?;
+    let rms = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt();
+    let effect: Vec<f64> = system.columns.iter().map(|c| rms(c)).collect();
+    let mut result = Fit { task: "mechanism".to_owned(), ..Fit::default() };
+    let material = Material {
+        coordinate,
+        shown: &seen,
+        terms: &system.terms,
+        fit: &solution,
+        effect: &effect,
+        force_rms: rms(&system.target),
+        known,
+        gravity: gravity.as_ref(),
+    };
+    material.push(&mut result);
+    result.quality = quality(pieces, &system, solution.rms, coordinate, known);
+    result.warnings = warnings(pieces, &seen, &solution);
+    Ok(result)
+}
+
+fn force_of(piece: &Piece) -> Vec<f64> {
+    piece.force.clone().unwrap_or_else(|| vec![0.0; piece.motion.len()])
+}
+
+/// Refit on the first 70 % of every piece, error on the last 30 %.
+fn quality(pieces: &[Piece], system: &System, rms: f64, coordinate: Coordinate, known: &Known) -> Option<Quality> {
+    let early = system.part(|place| place < 1.0 - HELD_OUT).solve().ok()?;
+    let late = system.part(|place| place >= 1.0 - HELD_OUT);
+    let n = late.target.len();
+    if n == 0 {
+        return None;
+    }
+    let residual =
+        |i: usize| late.target[i] - late.columns.iter().zip(&early.values).map(|(c, v)| c[i] * v).sum::<f64>();
+    let root = |sum: f64| (sum / n as f64).sqrt();
+    let heldout_rms = root((0..n).map(|i| residual(i).powi(2)).sum());
+    // Relative to the force as measured, what is known included.
+    let nothing_known = System::stack(pieces, &[], &Known::default(), force_of).part(|place| place >= 1.0 - HELD_OUT);
+    debug_assert!(known.values.is_empty() || nothing_known.target.len() == n, "the same samples either way");
+    let force = root(nothing_known.target.iter().map(|f| f * f).sum());
+    Some(Quality {
+        rms,
+        heldout_rms,
+        heldout_relative: if force > 0.0 { heldout_rms / force } else { f64::NAN },
+        heldout_share: HELD_OUT,
+        unit: if coordinate == Coordinate::Linear { "N" } else { "Nm" }.to_owned(),
+    })
+}
+
+fn warnings(pieces: &[Piece], seen: &Shown, solution: &crate::identify::linear::LinearFit) -> Vec<String> {
+    let mut found = Vec::new();
+    for (i, term) in seen.fitted.iter().enumerate() {
+        let negative = solution.values.get(i).is_some_and(|v| *v < -2.0 * solution.std_errors[i]);
+        if negative && matches!(term, Term::Inertia | Term::Viscous | Term::Coulomb) {
+            found.push(
+                "inertia or friction comes out negative: check the sign of the force column (\"sign\" in the sidecar)"
+                    .to_owned(),
+            );
+            break;
+        }
+    }
+    if let Some(piece) = pieces.first() {
+        found.push(format!(
+            "velocity and acceleration are derived from the recording with a zero-phase filter at {:.1} Hz, which the force also goes through",
+            piece.cutoff_hz
+        ));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,213 @@
+//! The fit itself: stacked pieces, effective-variance weights, which terms the motion can show.
+
+use super::signals::Piece;
+use super::terms::{Known, Term};
+use crate::estimate::EstimateError;
+use crate::identify::linear::{LinearFit, least_squares};
+use nalgebra::DMatrix;
+
+/// Part of a column that no other column explains, below which two terms merge.
+const DISTINCT: f64 = 0.05;
+/// Filtered direction of motion from which on a sample counts as away from a reversal.
+const STEADY_DIRECTION: f64 = 0.98;
+/// Smaller share of the moving time that must lie in each direction for a reversal to count.
+const REVERSAL_SHARE: f64 = 0.02;
+/// The velocity must exceed its noise by this much to be a motion.
+const MOTION_RATIO: f64 = 2.0;
+
+/// Columns, target and weights of a fit, over the usable samples of all pieces.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// The terms that are estimated, in the order of the columns.
+    pub terms: Vec<Term>,
+    /// One column a term.
+    pub columns: Vec<Vec<f64>>,
+    /// Force less what is known, N or N m.
+    pub target: Vec<f64>,
+    /// Share of 1 by which the direction of motion is uncertain, 0 … 1.
+    pub uncertainty: Vec<f64>,
+    /// Place of each sample in its recording, 0 … 1: for holding out the end.
+    pub place: Vec<f64>,
+}
+
+impl System {
+    /// Stacks the pieces for `terms`; `target_of` gives the left-hand side of a piece.
+    pub fn stack(pieces: &[Piece], terms: &[Term], known: &Known, target_of: impl Fn(&Piece) -> Vec<f64>) -> Self {
+        let mut system = Self {
+            terms: terms.to_vec(),
+            columns: vec![Vec::new(); terms.len()],
+            target: Vec::new(),
+            uncertainty: Vec::new(),
+            place: Vec::new(),
+        };
+        for piece in pieces {
+            let keep = |values: Vec<f64>| values.into_iter().zip(&piece.usable).filter(|(_, u)| **u).map(|(v, _)| v);
+            let mut target = target_of(piece);
+            for &(term, value) in &known.values {
+                for (t, c) in target.iter_mut().zip(term.column(piece)) {
+                    *t -= value * c;
+                }
+            }
+            system.target.extend(keep(target));
+            for (column, term) in system.columns.iter_mut().zip(terms) {
+                column.extend(keep(term.column(piece)));
+            }
+            system.uncertainty.extend(keep(direction_uncertainty(piece)));
+            let n = piece.motion.len() as f64;
+            system.place.extend(keep((0..piece.motion.len()).map(|i| i as f64 / n).collect()));
+        }
+        system
+    }
+
+    /// Solves with weights that silence the samples whose direction is uncertain (`facts/diagnosis.md`, step 3).
+    pub fn solve(&self) -> Result<LinearFit, EstimateError> {
+        let mut fit = least_squares(&self.columns, &self.target, None)?;
+        let Some(dry) = self.terms.iter().position(|t| *t == Term::Coulomb) else { return Ok(fit) };
+        for _ in 0..2 {
+            let level = fit.values[dry].powi(2);
+            let floor = fit.rms.powi(2).max(1e-12 * level).max(f64::MIN_POSITIVE);
+            let weights: Vec<f64> = self.uncertainty.iter().map(|u| 1.0 / (1.0 + level * u / floor)).collect();
+            fit = least_squares(&self.columns, &self.target, Some(&weights))?;
+        }
+        Ok(fit)
+    }
+
+    /// The samples for which `keep(place)` holds.
+    pub fn part(&self, keep: impl Fn(f64) -> bool) -> Self {
+        let kept: Vec<bool> = self.place.iter().map(|p| keep(*p)).collect();
+        self.filtered(&kept)
+    }
+
+    /// Away from reversals, where the filter has not mixed the two directions; everything, when little is left.
+    fn steady(&self) -> Self {
+        let Some(dry) = self.terms.iter().position(|t| *t == Term::Coulomb) else { return self.clone() };
+        let kept: Vec<bool> = self.columns[dry].iter().map(|c| c.abs() > STEADY_DIRECTION).collect();
+        if 10 * kept.iter().filter(|k| **k).count() < kept.len() { self.clone() } else { self.filtered(&kept) }
+    }
+
+    fn filtered(&self, kept: &[bool]) -> Self {
+        let pick =
+            |values: &Vec<f64>| -> Vec<f64> { values.iter().zip(kept).filter(|(_, k)| **k).map(|(v, _)| *v).collect() };
+        Self {
+            terms: self.terms.clone(),
+            columns: self.columns.iter().map(pick).collect(),
+            target: pick(&self.target),
+            uncertainty: pick(&self.uncertainty),
+            place: pick(&self.place),
+        }
+    }
+
+    /// For each column: the share of it (root of 1 − R²) that the others do not explain; 0 for an empty column.
+    pub fn distinctness(&self) -> Vec<f64> {
+        let p = self.terms.len();
+        let norm: Vec<f64> = self.columns.iter().map(|c| c.iter().map(|v| v * v).sum::<f64>().sqrt()).collect();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        let gram = DMatrix::from_fn(p, p, |i, j| {
+            let size = norm[i] * norm[j];
+            if size > 0.0 { dot(&self.columns[i], &self.columns[j]) / size } else { f64::from(u8::from(i == j)) }
+        });
+        // A ridge far below what counts keeps the inverse finite.
+        let inverse = (gram + DMatrix::identity(p, p) * 1e-12).try_inverse();
+        (0..p)
+            .map(|j| match &inverse {
+                Some(inverse) if norm[j] > 0.0 => (1.0 / inverse[(j, j)]).max(0.0).sqrt(),
+                _ => 0.0,
+            })
+            .collect()
+    }
+}
+
+/// 1 where the sign of the motion is anybody's guess, 0 where it is certain: velocity noise and half a sample of skew.
+fn direction_uncertainty(piece: &Piece) -> Vec<f64> {
+    let blur = |m: &haptics::law::Motion| {
+        1.2 * piece.velocity_noise.hypot(m.acceleration * piece.period_s).max(f64::MIN_POSITIVE)
+    };
+    piece.motion.iter().map(|m| 1.0 - (m.velocity / blur(m)).tanh().powi(2)).collect()
+}
+
+/// Which terms this motion can show, and why not the others.
+#[derive(Clone, Debug)]
+pub struct Shown {
+    /// Terms to fit. [`Term::Offset`] is always among them.
+    pub fitted: Vec<Term>,
+    /// Terms that have no value of their own, with the reason.
+    pub hidden: Vec<(Term, String)>,
+}
+
+impl Shown {
+    fn hide(&mut self, term: Term, why: &str) {
+        if !self.hidden.iter().any(|(t, _)| *t == term) {
+            self.hidden.push((term, why.to_owned()));
+        }
+    }
+
+    fn drop(&mut self, term: Term) {
+        self.fitted.retain(|t| *t != term);
+    }
+}
+
+/// Looks at the motion: reversals, speed range, acceleration above its noise.
+pub fn shown(pieces: &[Piece], known: &Known, candidates: &[Term]) -> Shown {
+    let free = |t: &Term| known.value(*t).is_none();
+    let mut shown = Shown { fitted: candidates.iter().copied().filter(free).collect(), hidden: Vec::new() };
+    let has = |s: &Shown, t: Term| s.fitted.contains(&t);
+    if !moves(pieces) {
+        for term in shown.fitted.clone() {
+            shown.hide(term, "the mechanism does not move in this recording");
+        }
+        shown.fitted.retain(|t| *t == Term::Offset);
+        return shown;
+    }
+    if has(&shown, Term::Inertia) && !pieces.iter().any(|p| p.accelerates) {
+        shown.hide(
+            Term::Inertia,
+            "the acceleration does not stand out of the noise of the positions; accelerate harder",
+        );
+        shown.drop(Term::Inertia);
+    }
+    if has(&shown, Term::Coulomb) && has(&shown, Term::Offset) && !reverses(pieces) {
+        let why = "the motion never reverses, so Coulomb friction and a constant offset are one; move both ways";
+        shown.hide(Term::Coulomb, why);
+        shown.hide(Term::Offset, why);
+        shown.drop(Term::Coulomb);
+    }
+    let system = System::stack(pieces, &shown.fitted, &Known::default(), |p| vec![0.0; p.motion.len()]);
+    let distinct = system.steady().distinctness();
+    let weak = |t: Term| system.terms.iter().position(|x| *x == t).is_some_and(|i| distinct[i] < DISTINCT);
+    if weak(Term::Viscous) {
+        let why = "the speed hardly varies, so viscous and Coulomb friction are one; vary the speed";
+        shown.hide(Term::Viscous, why);
+        if has(&shown, Term::Coulomb) {
+            shown.hide(Term::Coulomb, why);
+        } else {
+            shown.hide(Term::Offset, why);
+        }
+        shown.drop(Term::Viscous);
+    }
+    let system = System::stack(pieces, &shown.fitted, &Known::default(), |p| vec![0.0; p.motion.len()]);
+    let distinct = system.distinctness();
+    for (term, share) in system.terms.iter().zip(distinct) {
+        if share < 0.4 * DISTINCT {
+            shown.hide(*term, "its effect cannot be told from that of the other parameters in this motion; vary it");
+        }
+    }
+    shown
+}
+
+/// True when there is motion beyond the noise of the velocity.
+fn moves(pieces: &[Piece]) -> bool {
+    pieces.iter().any(|p| p.rms(|m| m.velocity) > MOTION_RATIO * p.velocity_noise.max(f64::MIN_POSITIVE))
+}
+
+/// True when both directions are there.
+fn reverses(pieces: &[Piece]) -> bool {
+    let mut time = [0.0, 0.0];
+    for piece in pieces {
+        for ((direction, motion), usable) in piece.direction.iter().zip(&piece.motion).zip(&piece.usable) {
+            if *usable && direction.abs() > 0.9 && motion.velocity.abs() > 3.0 * piece.velocity_noise {
+                time[usize::from(*direction > 0.0)] += piece.period_s;
+            }
+        }
+    }
+    time[0].min(time[1]) > REVERSAL_SHARE * (time[0] + time[1])
+}

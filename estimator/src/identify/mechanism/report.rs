@@ -1,0 +1,138 @@
+//! From a solved system to the named parameters of the result.
+
+use super::gravity::Gravity;
+use super::regress::Shown;
+use super::terms::{Known, Term};
+use crate::estimate::{Fit, Parameter};
+use crate::identify::linear::LinearFit;
+use haptics::law::Coordinate;
+
+/// The object's name in the results.
+pub const OBJECT: &str = "mechanism";
+/// Angle at which a mechanism with a gravity moment hangs, rad.
+pub const PHASE: &str = "gravity_phase_rad";
+/// A value counts when its effect is known to better than this share of the force, or when it is this many errors from zero.
+const EFFECT_SHARE: f64 = 0.2;
+const CLEAR_T: f64 = 3.0;
+
+/// What the report is made of.
+pub struct Material<'a> {
+    /// Length or angle.
+    pub coordinate: Coordinate,
+    /// What the motion can show.
+    pub shown: &'a Shown,
+    /// The terms in the order of the columns.
+    pub terms: &'a [Term],
+    /// The solution.
+    pub fit: &'a LinearFit,
+    /// Root mean square of each column, of the target.
+    pub effect: &'a [f64],
+    /// … and of the force.
+    pub force_rms: f64,
+    /// What the sidecar states.
+    pub known: &'a Known,
+    /// What was decided about gravity; `None` where it cannot act.
+    pub gravity: Option<&'a Gravity>,
+}
+
+impl Material<'_> {
+    fn index(&self, term: Term) -> Option<usize> {
+        self.terms.iter().position(|t| *t == term)
+    }
+
+    fn samples(&self) -> usize {
+        self.fit.residuals.len()
+    }
+
+    /// All parameters of the mechanism.
+    pub fn push(&self, result: &mut Fit) {
+        for term in [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset] {
+            if self.known.value(term).is_none() {
+                result.parameters.push(self.parameter(term));
+            }
+        }
+        self.push_resistance(result);
+        self.push_gravity(result);
+        push_known(result, self.known, self.coordinate);
+    }
+
+    fn parameter(&self, term: Term) -> Parameter {
+        let name = term.name(self.coordinate);
+        if let Some((_, why)) = self.shown.hidden.iter().find(|(t, _)| *t == term) {
+            return Parameter::unidentified(OBJECT, name, self.samples(), why);
+        }
+        let Some(i) = self.index(term).filter(|&i| self.fit.identified[i]) else {
+            return Parameter::unidentified(OBJECT, name, self.samples(), "the motion does not excite it; vary it");
+        };
+        let (value, error) = (self.fit.values[i], self.fit.std_errors[i]);
+        let vague = error * self.effect[i] > EFFECT_SHARE * self.force_rms && value.abs() < CLEAR_T * error;
+        if vague || !error.is_finite() {
+            let why =
+                format!("its value is uncertain by {error:.3}, too much against the noise; excite it harder or longer");
+            return Parameter::unidentified(OBJECT, name, self.samples(), &why);
+        }
+        let how = format!(
+            "least squares over the whole motion, zero-phase filtered signals, {:.0} independent samples",
+            self.fit.effective_samples
+        );
+        Parameter::identified(OBJECT, name, value, error, self.samples(), &how)
+    }
+
+    /// When offset and friction are one, their sum is still worth knowing.
+    fn push_resistance(&self, result: &mut Fit) {
+        let hidden = |t: Term| self.shown.hidden.iter().any(|(h, _)| *h == t);
+        let (term, what) = match (hidden(Term::Offset), hidden(Term::Coulomb)) {
+            (true, _) if !self.terms.contains(&Term::Coulomb) => (Term::Offset, "along +coordinate"),
+            (_, true) => (Term::Coulomb, "against the motion"),
+            _ => return,
+        };
+        let Some(i) = self.index(term).filter(|&i| self.fit.identified[i]) else { return };
+        let name = if self.coordinate == Coordinate::Linear { "resistance_N" } else { "resistance_Nm" };
+        let how = format!("all constant resistance {what} together: this motion cannot split it");
+        let parameter =
+            Parameter::identified(OBJECT, name, self.fit.values[i], self.fit.std_errors[i], self.samples(), &how);
+        result.parameters.push(parameter);
+    }
+
+    fn push_gravity(&self, result: &mut Fit) {
+        let Some(gravity) = self.gravity else { return };
+        let name = Term::GravitySine.name(self.coordinate);
+        let terms = match gravity {
+            Gravity::Present(terms) => terms,
+            Gravity::Absent(why) => {
+                result.parameters.push(Parameter::unidentified(OBJECT, name, self.samples(), why));
+                return;
+            }
+        };
+        let Some(i) = self.index(Term::GravitySine) else { return };
+        let (a, a_error) = (self.fit.values[i], self.fit.std_errors[i]);
+        let cosine = self.index(Term::GravityCosine).filter(|_| terms.contains(&Term::GravityCosine));
+        let (b, b_error) = cosine.map_or((0.0, 0.0), |j| (self.fit.values[j], self.fit.std_errors[j]));
+        let moment = a.hypot(b).max(f64::MIN_POSITIVE);
+        // First-order propagation through √(a² + b²) and atan2, the correlation of the two included.
+        let covariance = cosine.map_or(0.0, |j| self.fit.covariance[(i, j)]);
+        let along = (a * a_error).powi(2) + (b * b_error).powi(2) + 2.0 * a * b * covariance;
+        let across = (b * a_error).powi(2) + (a * b_error).powi(2) - 2.0 * a * b * covariance;
+        let how = "least squares: the part of the force that follows the sine of the angle";
+        let error = along.max(0.0).sqrt() / moment;
+        result.parameters.push(Parameter::identified(OBJECT, name, moment, error, self.samples(), how));
+        let (phase, error) = ((-b).atan2(a), across.max(0.0).sqrt() / (moment * moment));
+        let how = "angle at which the mechanism hangs at rest, in the recording's coordinate";
+        result.parameters.push(Parameter::identified(OBJECT, PHASE, phase, error, self.samples(), how));
+    }
+}
+
+/// What the sidecar states stands in the result as it was given.
+pub fn push_known(result: &mut Fit, known: &Known, coordinate: Coordinate) {
+    let how = "given in the sidecar, not estimated";
+    for &(term, value) in &known.values {
+        match term {
+            Term::GravityCosine => {}
+            Term::GravitySine => {
+                let moment = value.hypot(known.value(Term::GravityCosine).unwrap_or(0.0));
+                result.parameters.push(Parameter::identified(OBJECT, "gravity_moment_Nm", moment, 0.0, 0, how));
+            }
+            _ => result.parameters.push(Parameter::identified(OBJECT, term.name(coordinate), value, 0.0, 0, how)),
+        }
+    }
+}

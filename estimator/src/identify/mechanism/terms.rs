@@ -1,0 +1,132 @@
+//! The terms of the base model: which law each one is, what its parameter is called, and its regressor column.
+
+use super::signals::Piece;
+use haptics::law::{
+    Coordinate, CoulombFriction, EccentricMass, ForceBias, Inertia, Law, MAX_PARAMETERS, Motion, ReturnSpring,
+    ViscousFriction,
+};
+use haptics::recording::Meta;
+
+/// One column of the fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Term {
+    /// Mass or moment of inertia.
+    Inertia,
+    /// Viscous friction.
+    Viscous,
+    /// Coulomb friction.
+    Coulomb,
+    /// Constant force; stands for all of the resistance when the motion never reverses.
+    Offset,
+    /// Gravity moment, part that vanishes at hanging.
+    GravitySine,
+    /// Gravity moment, part that is largest there.
+    GravityCosine,
+    /// A spring: only ever a rival of the gravity moment.
+    Spring,
+}
+
+impl Term {
+    /// The law behind the column and the index of its parameter.
+    pub fn law(self) -> (&'static dyn Law, usize) {
+        match self {
+            Self::Inertia => (&Inertia, 0),
+            Self::Viscous => (&ViscousFriction, 0),
+            Self::Coulomb => (&CoulombFriction, 0),
+            Self::Offset => (&ForceBias, 0),
+            Self::GravitySine => (&EccentricMass, 0),
+            Self::GravityCosine => (&EccentricMass, 1),
+            Self::Spring => (&ReturnSpring, 0),
+        }
+    }
+
+    /// Name in the results; the two gravity parts are reported as moment and phase.
+    pub fn name(self, coordinate: Coordinate) -> &'static str {
+        let linear = coordinate == Coordinate::Linear;
+        match self {
+            Self::Inertia if linear => "mass_kg",
+            Self::Inertia => "inertia_kg_m2",
+            Self::Viscous if linear => "viscous_N_s_m",
+            Self::Viscous => "viscous_Nm_s",
+            Self::Coulomb if linear => "coulomb_N",
+            Self::Coulomb => "coulomb_Nm",
+            Self::Offset if linear => "offset_N",
+            Self::Offset => "offset_Nm",
+            Self::GravitySine | Self::GravityCosine => "gravity_moment_Nm",
+            Self::Spring => "stiffness",
+        }
+    }
+
+    /// The law's regressor at one instant.
+    pub fn regressor(self, motion: &Motion) -> f64 {
+        let (law, index) = self.law();
+        let mut columns = [0.0; MAX_PARAMETERS];
+        law.regressor(motion, &mut columns);
+        columns[index]
+    }
+
+    /// The regressor along a piece, filtered like the force: what is a function of filtered motion is filtered already,
+    /// the sign of the motion is not.
+    pub fn column(self, piece: &Piece) -> Vec<f64> {
+        let at = |(motion, &direction): (&Motion, &f64)| self.regressor(&Motion { direction, ..*motion });
+        let column: Vec<f64> = piece.motion.iter().zip(&piece.direction).map(at).collect();
+        if self == Self::Coulomb { piece.filter(&column) } else { column }
+    }
+}
+
+/// What the sidecar states about the mechanism: not to be estimated.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Known {
+    /// Terms with their values.
+    pub values: Vec<(Term, f64)>,
+}
+
+impl Known {
+    /// Reads `known`: the names of the results, or `mass_kg` and `com_m` of a pendulum for its gravity moment.
+    pub fn from_meta(meta: &Meta, coordinate: Coordinate) -> Self {
+        let get = |name: &str| meta.known.get(name).copied().filter(|v| v.is_finite());
+        let mut values = Vec::new();
+        for term in [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset] {
+            if let Some(value) = get(term.name(coordinate)) {
+                values.push((term, value));
+            }
+        }
+        if coordinate == Coordinate::Angular {
+            let mass_and_arm = get("mass_kg").zip(get("com_m")).map(|(m, r)| m * r * meta.gravity());
+            if let Some(moment) = get("gravity_moment_Nm").or(mass_and_arm) {
+                let phase = get("gravity_phase_rad").unwrap_or(0.0);
+                values.push((Term::GravitySine, moment * phase.cos()));
+                values.push((Term::GravityCosine, -moment * phase.sin()));
+            }
+        }
+        Self { values }
+    }
+
+    /// The value of a term, when it is known.
+    pub fn value(&self, term: Term) -> Option<f64> {
+        self.values.iter().find(|(t, _)| *t == term).map(|(_, v)| *v)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mass_and_arm_make_a_gravity_moment_only_for_an_angle() {
+        let meta: Meta =
+            serde_json::from_str(r#"{"known":{"mass_kg":0.5,"com_m":0.2},"gravity_m_s2":10}"#).expect("meta");
+        let known = Known::from_meta(&meta, Coordinate::Angular);
+        assert_eq!(known.value(Term::GravitySine), Some(1.0));
+        assert_eq!(known.value(Term::Inertia), None, "the mass of a pendulum is not its inertia");
+        assert_eq!(Known::from_meta(&meta, Coordinate::Linear).values, [(Term::Inertia, 0.5)]);
+    }
+
+    #[test]
+    fn the_columns_are_the_laws() {
+        let motion = Motion { velocity: 2.0, acceleration: 3.0, direction: -1.0, position: 0.5, ..Motion::default() };
+        let all = [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset].map(|t| t.regressor(&motion));
+        assert_eq!(all, [3.0, 2.0, -1.0, 1.0]);
+        assert_eq!(Term::GravitySine.regressor(&motion), 0.5_f64.sin());
+    }
+}

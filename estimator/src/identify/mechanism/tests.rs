@@ -1,0 +1,278 @@
+//! Recovery: known parameters are simulated and must come back within their own stated uncertainty; what the motion cannot
+//! show must say so.
+
+use super::*;
+use haptics::recording::{Channel, Meta};
+use rand::{RngExt as _, SeedableRng as _, rngs::StdRng};
+use rand_distr::StandardNormal;
+
+/// A motion q(t) with its first two derivatives.
+type Motion = fn(f64) -> [f64; 3];
+
+/// Truth: inertia, viscous, Coulomb, offset, gravity moment.
+#[derive(Clone, Copy)]
+struct Truth {
+    inertia: f64,
+    viscous: f64,
+    coulomb: f64,
+    offset: f64,
+    gravity: f64,
+}
+
+const SLIDE: Truth = Truth { inertia: 3.0, viscous: 12.0, coulomb: 4.0, offset: 0.7, gravity: 0.0 };
+
+struct Setup {
+    rate_hz: f64,
+    seconds: f64,
+    position_noise: f64,
+    force_noise: f64,
+    angular: bool,
+}
+
+const PLAIN: Setup = Setup { rate_hz: 500.0, seconds: 20.0, position_noise: 2e-6, force_noise: 0.2, angular: false };
+
+fn two_tones(t: f64) -> [f64; 3] {
+    let (a, b) = (2.1_f64, 5.3_f64);
+    [
+        0.15 * (a * t).sin() + 0.04 * (b * t).sin(),
+        0.15 * a * (a * t).cos() + 0.04 * b * (b * t).cos(),
+        -0.15 * a * a * (a * t).sin() - 0.04 * b * b * (b * t).sin(),
+    ]
+}
+
+fn record(truth: Truth, setup: &Setup, motion: Motion, seed: u64) -> Recording {
+    let mut rng = StdRng::seed_from_u64(seed);
+    let n = (setup.rate_hz * setup.seconds) as usize;
+    let time: Vec<f64> = (0..n).map(|i| i as f64 / setup.rate_hz).collect();
+    let mut noise = |sigma: f64| sigma * rng.sample::<f64, _>(StandardNormal);
+    let (mut position, mut force) = (Vec::new(), Vec::new());
+    for &t in &time {
+        let [q, v, a] = motion(t);
+        let drive = truth.inertia * a
+            + truth.viscous * v
+            + truth.coulomb * if v == 0.0 { 0.0 } else { v.signum() }
+            + truth.offset
+            + truth.gravity * q.sin();
+        position.push(q + noise(setup.position_noise));
+        force.push(drive + noise(setup.force_noise));
+    }
+    let channel = |name: &str, values: Vec<f64>| Channel { name: name.to_owned(), unit: String::new(), values };
+    let (q, f) = if setup.angular { ("q_rad", "tau_Nm") } else { ("q_m", "f_N") };
+    Recording {
+        name: "made".to_owned(),
+        time_s: Some(time),
+        channels: vec![channel(q, position), channel(f, force)],
+        ..Recording::default()
+    }
+}
+
+fn demand(fit: &Fit, name: &str, truth: f64, relative: f64) {
+    let parameter = fit.parameter(OBJECT, name).unwrap_or_else(|| panic!("{name} is missing: {fit:#?}"));
+    let value = parameter.value.unwrap_or_else(|| panic!("{name} is not identified: {}", parameter.how));
+    let error = parameter.std_error.expect("an identified value has an error");
+    println!("{name}: {value} ± {error} (truth {truth})");
+    assert!((value - truth).abs() <= relative * truth.abs(), "{name}: {value} against {truth}");
+    assert!((value - truth).abs() <= 4.0 * error, "{name}: {value} ± {error} against {truth}");
+}
+
+fn refuses(fit: &Fit, name: &str, reason: &str) {
+    let parameter = fit.parameter(OBJECT, name).unwrap_or_else(|| panic!("{name} is missing"));
+    assert!(!parameter.identified && parameter.value.is_none(), "{name} must not be identified: {parameter:?}");
+    assert!(parameter.how.contains(reason), "{name}: {}", parameter.how);
+}
+
+#[test]
+fn a_slide_is_recovered_from_20_hz_to_4_khz() {
+    for (rate_hz, position_noise, tolerance) in
+        [(20.0, 1e-5, 0.04), (100.0, 1e-5, 0.02), (1000.0, 1e-6, 0.01), (4000.0, 1e-6, 0.01)]
+    {
+        let setup = Setup { rate_hz, position_noise, ..PLAIN };
+        let fit = fit(&[record(SLIDE, &setup, two_tones, 3)]).expect("fits");
+        println!("{rate_hz} Hz: {:?}", fit.quality);
+        demand(&fit, "mass_kg", 3.0, tolerance);
+        demand(&fit, "viscous_N_s_m", 12.0, tolerance);
+        demand(&fit, "coulomb_N", 4.0, tolerance);
+        demand(&fit, "offset_N", 0.7, 3.0 * tolerance);
+        let quality = fit.quality.expect("a held-out figure");
+        assert!(quality.heldout_rms < 0.6 && quality.heldout_relative < 0.1, "{quality:?}");
+    }
+}
+
+#[test]
+fn a_revolute_axis_with_gravity_is_recovered_in_torque() {
+    let truth = Truth { inertia: 0.02, viscous: 0.05, coulomb: 0.08, offset: 0.0, gravity: 0.9 };
+    let setup = Setup { angular: true, force_noise: 0.01, position_noise: 1e-4, ..PLAIN };
+    let swing: Motion = |t| two_tones(t).map(|v| 6.0 * v);
+    let fit = fit(&[record(truth, &setup, swing, 5)]).expect("fits");
+    demand(&fit, "inertia_kg_m2", 0.02, 0.03);
+    demand(&fit, "viscous_Nm_s", 0.05, 0.05);
+    demand(&fit, "coulomb_Nm", 0.08, 0.05);
+    demand(&fit, "gravity_moment_Nm", 0.9, 0.01);
+}
+
+#[test]
+fn without_gravity_none_is_invented() {
+    let truth = Truth { inertia: 0.02, viscous: 0.05, coulomb: 0.08, offset: 0.01, gravity: 0.0 };
+    let setup = Setup { angular: true, force_noise: 0.01, position_noise: 1e-4, ..PLAIN };
+    let swing: Motion = |t| two_tones(t).map(|v| 6.0 * v);
+    for seed in 0..10 {
+        let fit = fit(&[record(truth, &setup, swing, seed)]).expect("fits");
+        refuses(&fit, "gravity_moment_Nm", "no gravity moment");
+        demand(&fit, "offset_Nm", 0.01, 0.5);
+    }
+}
+
+#[test]
+fn what_the_motion_does_not_show_is_not_given_a_number() {
+    let steady: Motion = |t| [0.05 * t, 0.05, 0.0];
+    let one_way = fit(&[record(SLIDE, &PLAIN, steady, 1)]).expect("fits");
+    refuses(&one_way, "coulomb_N", "never reverses");
+    refuses(&one_way, "offset_N", "never reverses");
+    refuses(&one_way, "viscous_N_s_m", "speed hardly varies");
+    refuses(&one_way, "mass_kg", "acceleration");
+    let sum = one_way.value(OBJECT, "resistance_N").expect("the sum is known");
+    assert!((sum - (4.0 + 0.7 + 12.0 * 0.05)).abs() < 0.05, "{sum}");
+
+    let wavering: Motion = |t| [0.2 * t + 0.02 * (5.0 * t).sin(), 0.2 + 0.1 * (5.0 * t).cos(), -0.5 * (5.0 * t).sin()];
+    let one_way = fit(&[record(SLIDE, &PLAIN, wavering, 1)]).expect("fits");
+    refuses(&one_way, "coulomb_N", "never reverses");
+    demand(&one_way, "viscous_N_s_m", 12.0, 0.1);
+    demand(&one_way, "mass_kg", 3.0, 0.1);
+
+    let triangle: Motion = |t| {
+        let phase = (t / 2.0).fract();
+        let forth = phase < 0.5;
+        let v = if forth { 0.1 } else { -0.1 };
+        [0.2 * if forth { phase } else { 1.0 - phase }, v, 0.0]
+    };
+    let both_ways = fit(&[record(SLIDE, &PLAIN, triangle, 1)]).expect("fits");
+    refuses(&both_ways, "viscous_N_s_m", "speed hardly varies");
+    refuses(&both_ways, "coulomb_N", "speed hardly varies");
+    demand(&both_ways, "offset_N", 0.7, 0.15);
+
+    let rest: Motion = |_| [0.1, 0.0, 0.0];
+    let still = fit(&[record(SLIDE, &PLAIN, rest, 1)]).expect("fits");
+    for name in ["mass_kg", "viscous_N_s_m", "coulomb_N", "offset_N"] {
+        refuses(&still, name, "does not move");
+    }
+}
+
+#[test]
+fn known_parameters_are_taken_as_given() {
+    let mut recording = record(SLIDE, &PLAIN, two_tones, 2);
+    recording.meta.known.insert("mass_kg".to_owned(), 3.0);
+    let fit = fit(&[recording]).expect("fits");
+    let mass = fit.parameter(OBJECT, "mass_kg").expect("listed");
+    assert!(mass.value == Some(3.0) && mass.how.contains("not estimated"));
+    demand(&fit, "coulomb_N", 4.0, 0.01);
+}
+
+#[test]
+fn several_recordings_share_their_parameters() {
+    // One shows the mass, the other the friction; neither alone shows both well.
+    let slow: Motion = |t| [0.2 * (0.5 * t).sin(), 0.1 * (0.5 * t).cos(), -0.05 * (0.5 * t).sin()];
+    let fast: Motion = |t| [0.004 * (25.0 * t).sin(), 0.1 * (25.0 * t).cos(), -2.5 * (25.0 * t).sin()];
+    let both = [record(SLIDE, &PLAIN, slow, 1), record(SLIDE, &PLAIN, fast, 2)];
+    let fit = fit(&both).expect("fits");
+    demand(&fit, "mass_kg", 3.0, 0.01);
+    demand(&fit, "coulomb_N", 4.0, 0.02);
+}
+
+#[test]
+fn intervals_hold_the_truth() {
+    let (mut hits, mut all) = (0, 0);
+    for seed in 0..100 {
+        let setup = Setup { rate_hz: 200.0, seconds: 8.0, ..PLAIN };
+        let fit = fit(&[record(SLIDE, &setup, two_tones, seed)]).expect("fits");
+        for (name, truth) in [("mass_kg", 3.0), ("viscous_N_s_m", 12.0), ("coulomb_N", 4.0), ("offset_N", 0.7)] {
+            let parameter = fit.parameter(OBJECT, name).expect("listed");
+            let (value, error) = (parameter.value.expect("shown"), parameter.std_error.expect("shown"));
+            hits += u32::from((value - truth).abs() < 1.96 * error);
+            all += 1;
+        }
+    }
+    println!("coverage {hits} of {all}");
+    assert!(f64::from(hits) > 0.9 * f64::from(all), "{hits} of {all}");
+}
+
+/// A free pendulum by semi-implicit Euler at 20 kHz: the laws' own integrator.
+fn pendulum(truth: Truth, start_rad: f64, hanging_at: f64, rate_hz: f64, noise: f64) -> Recording {
+    use haptics::law::{CoulombFriction, EccentricMass, Effect, Inertia, Motion, ViscousFriction, step_coordinate};
+    let effects = [
+        Effect::new(&Inertia, &[truth.inertia]),
+        Effect::new(&ViscousFriction, &[truth.viscous]),
+        Effect::new(&CoulombFriction, &[truth.coulomb]),
+        Effect::new(&EccentricMass, &[truth.gravity]),
+    ];
+    let mut rng = StdRng::seed_from_u64(9);
+    let mut state = Motion { position: start_rad, ..Motion::default() };
+    let inner = 20_000.0;
+    let every = (inner / rate_hz) as usize;
+    let (mut time, mut angle) = (Vec::new(), Vec::new());
+    for i in 0..(20.0 * inner) as usize {
+        if i % every == 0 {
+            time.push(i as f64 / inner);
+            angle.push(state.position + hanging_at + noise * rng.sample::<f64, _>(StandardNormal));
+        }
+        (state.position, state.velocity) = step_coordinate(&effects, &state, 0.0, 0.0, 1.0 / inner);
+    }
+    let channel = Channel { name: "q_rad".to_owned(), unit: "rad".to_owned(), values: angle };
+    Recording { name: "pendulum".to_owned(), time_s: Some(time), channels: vec![channel], ..Recording::default() }
+}
+
+#[test]
+fn a_free_pendulum_is_recovered_from_its_known_gravity_moment() {
+    let (mass, arm) = (0.107, 0.23);
+    let truth = Truth { inertia: 0.0076, viscous: 4e-4, coulomb: 8e-4, offset: 0.0, gravity: mass * arm * 9.81 };
+    for hanging_at in [0.0, 0.3] {
+        let mut recording = pendulum(truth, 1.2, hanging_at, 200.0, 2e-4);
+        recording.meta.known = [("mass_kg".to_owned(), mass), ("com_m".to_owned(), arm)].into();
+        let fit = fit(std::slice::from_ref(&recording)).expect("fits");
+        demand(&fit, "inertia_kg_m2", truth.inertia, 0.01);
+        demand(&fit, "viscous_Nm_s", truth.viscous, 0.1);
+        demand(&fit, "coulomb_Nm", truth.coulomb, 0.15);
+        assert!((fit.value(OBJECT, PHASE).expect("hanging") - hanging_at).abs() < 5e-3);
+        recording.meta = Meta::default();
+        let blind = super::fit(&[recording]).expect("fits");
+        refuses(&blind, "inertia_kg_m2", "only ratios");
+        let ratio = blind.value(OBJECT, "viscous_per_inertia_1_s").expect("a ratio");
+        assert!((ratio / (truth.viscous / truth.inertia) - 1.0).abs() < 0.1);
+    }
+}
+
+#[test]
+fn a_fitted_world_predicts_the_force() {
+    let recording = record(SLIDE, &PLAIN, two_tones, 4);
+    let fit = fit(std::slice::from_ref(&recording)).expect("fits");
+    let mechanism = world(&fit, &recording);
+    let force = predict(&mechanism, &recording).expect("predicts");
+    let measured = recording.channel("f_N").expect("there");
+    let n = force.len();
+    assert_eq!(n, measured.len());
+    let rms = (force.iter().zip(measured).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / n as f64).sqrt();
+    assert!(rms < 0.35, "noise 0.2 and a few reversal samples: {rms}");
+}
+
+#[test]
+fn uneven_time_and_gaps_are_taken() {
+    let mut recording = record(SLIDE, &PLAIN, two_tones, 4);
+    let keep: Vec<usize> = (0..recording.len()).filter(|i| i % 7 != 3 && !(3000..3600).contains(i)).collect();
+    let pick = |values: &[f64]| keep.iter().map(|&i| values[i]).collect::<Vec<f64>>();
+    recording.time_s = recording.time_s.as_deref().map(pick);
+    for channel in &mut recording.channels {
+        channel.values = pick(&channel.values);
+    }
+    let fit = fit(std::slice::from_ref(&recording)).expect("fits");
+    demand(&fit, "mass_kg", 3.0, 0.03);
+    demand(&fit, "coulomb_N", 4.0, 0.03);
+    assert_eq!(predict(&world(&fit, &recording), &recording).expect("predicts").len(), recording.len());
+}
+
+#[test]
+fn nothing_to_fit_is_one_sentence() {
+    assert!(fit(&[]).is_err());
+    let empty = Recording { name: "a".to_owned(), time_s: Some(Vec::new()), ..Recording::default() };
+    assert!(fit(&[empty]).expect_err("no columns").to_string().contains("q_m"));
+    let short = record(SLIDE, &Setup { seconds: 0.02, ..PLAIN }, two_tones, 1);
+    assert!(fit(&[short]).expect_err("ten samples").to_string().contains("only 10 usable samples"));
+}

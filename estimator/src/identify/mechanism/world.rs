@@ -1,0 +1,71 @@
+//! The fitted mechanism as a world, and the force that it predicts for a measured motion.
+
+use super::report::{OBJECT, PHASE};
+use super::{path, signals};
+use crate::constraint;
+use crate::estimate::{ConstraintKind, EstimateError, Fit};
+use haptics::law::{
+    Coordinate, CoulombFriction, EccentricMass, Effect, ForceBias, Inertia, ViscousFriction, drive_force,
+};
+use haptics::recording::Recording;
+use haptics::world::Mechanism;
+
+/// The mechanism of a world file: laws with the fitted values, the path with its zero at the start of `recording`, the blur
+/// of its velocity noise. Parameters that were not identified are left out; friction below zero counts as none.
+pub fn world(fit: &Fit, recording: &Recording) -> Mechanism {
+    let path = fit
+        .constraints
+        .iter()
+        .find(|c| matches!(c.kind, ConstraintKind::Revolute | ConstraintKind::Prismatic))
+        .and_then(|c| path::from_constraint(c, recording));
+    let angular = fit.parameters.iter().any(|p| p.object == OBJECT && p.name == "inertia_kg_m2");
+    let raw = signals::raw(recording, path.as_ref()).ok();
+    let pieces = raw.as_ref().and_then(|raw| signals::pieces(raw, &recording.name).ok()).unwrap_or_default();
+    let noise = pieces.iter().map(|p| p.velocity_noise).fold(0.0, f64::max);
+    Mechanism {
+        coordinate: if angular { Coordinate::Angular } else { Coordinate::Linear },
+        path,
+        effects: effects(fit),
+        direction_blur: signals::noise_blur(noise),
+    }
+}
+
+fn effects(fit: &Fit) -> Vec<Effect> {
+    let either = |a: &str, b: &str| fit.value(OBJECT, a).or_else(|| fit.value(OBJECT, b));
+    let mut effects = Vec::new();
+    if let Some(inertia) = either("mass_kg", "inertia_kg_m2") {
+        effects.push(Effect::new(&Inertia, &[inertia.max(0.0)]));
+    }
+    if let Some(viscous) = either("viscous_N_s_m", "viscous_Nm_s") {
+        effects.push(Effect::new(&ViscousFriction, &[viscous.max(0.0)]));
+    }
+    let coulomb = either("coulomb_N", "coulomb_Nm");
+    // Constant resistance that one direction cannot split: friction is what a mechanism at hand most likely has.
+    if let Some(dry) = coulomb.or_else(|| either("resistance_N", "resistance_Nm").map(f64::abs)) {
+        effects.push(Effect::new(&CoulombFriction, &[dry.max(0.0)]));
+    }
+    if let Some(moment) = fit.value(OBJECT, "gravity_moment_Nm") {
+        let phase = fit.value(OBJECT, PHASE).unwrap_or(0.0);
+        effects.push(Effect::new(&EccentricMass, &[moment * phase.cos(), -moment * phase.sin()]));
+    }
+    if let Some(offset) = either("offset_N", "offset_Nm") {
+        effects.push(Effect::new(&ForceBias, &[offset]));
+    }
+    effects
+}
+
+/// The force (N, or N m) that the mechanism needs at every sample of the recording's motion.
+pub fn predict(mechanism: &Mechanism, recording: &Recording) -> Result<Vec<f64>, EstimateError> {
+    let raw = signals::raw(recording, mechanism.path.as_ref())?;
+    Ok(signals::motion(&raw, mechanism).iter().map(|m| drive_force(&mechanism.effects, m)).collect())
+}
+
+/// The measured force along the mechanism's coordinate, N or N m; `None` for a free motion.
+pub fn measured(mechanism: &Mechanism, recording: &Recording) -> Result<Option<Vec<f64>>, EstimateError> {
+    Ok(signals::raw(recording, mechanism.path.as_ref())?.force)
+}
+
+/// The path of a recording by itself, when its constraint is decided.
+pub fn path_of(recording: &Recording) -> Option<haptics::world::MechanismPath> {
+    path::from_constraint(&constraint::detect_in(recording)?, recording)
+}
