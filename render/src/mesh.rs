@@ -51,9 +51,9 @@ impl MeshKind {
     /// Makes the mesh.
     pub fn build(self) -> Mesh {
         match self {
-            Self::Box => rounded_box(3),
-            Self::Plate => plate(6),
-            Self::Disc => plate(15),
+            Self::Box => rounded_box(2),
+            Self::Plate => plate(4),
+            Self::Disc => plate(12),
             Self::Arrow => arrow(20),
         }
     }
@@ -132,7 +132,8 @@ fn rounded_box(steps: u16) -> Mesh {
     mesh
 }
 
-/// A stadium-like plate: `steps` segments for each quarter turn, walls along z, one bevel ring at each rim.
+/// A stadium-like plate: `steps` segments for each quarter turn, walls along z, a bevel at the
+/// front rim; nobody sees the back.
 fn plate(steps: u16) -> Mesh {
     let mut mesh = Mesh::default();
     let outline: Vec<([f32; 2], [f32; 2])> = (0..4_u16)
@@ -148,10 +149,8 @@ fn plate(steps: u16) -> Mesh {
     // (z corner, bevelled, z offset, normal z) from the back face to the front face.
     let slope = std::f32::consts::FRAC_1_SQRT_2;
     let rings = [
-        (-1.0, 1.0, -1.0, -1.0),
-        (-1.0, 1.0, -1.0, -slope),
-        (-1.0, 0.0, 0.0, -slope),
-        (-1.0, 0.0, 0.0, 0.0),
+        (-1.0, 0.0, -1.0, -1.0),
+        (-1.0, 0.0, -1.0, 0.0),
         (1.0, 0.0, 0.0, 0.0),
         (1.0, 0.0, 0.0, slope),
         (1.0, 1.0, 1.0, slope),
@@ -169,10 +168,10 @@ fn plate(steps: u16) -> Mesh {
         }
     }
     mesh.cap(0, n, true);
-    for pair in [1, 3, 5] {
+    for pair in [1, 3] {
         mesh.join_rings(pair * n, (pair + 1) * n, n);
     }
-    mesh.cap(7 * n, n, false);
+    mesh.cap(5 * n, n, false);
     mesh
 }
 
@@ -223,14 +222,14 @@ mod tests {
 
     #[test]
     fn box_is_closed_and_wound_outwards() {
-        let v = volume(&rounded_box(3), Vec3::new(1.0, 2.0, 3.0), Vec3::splat(1e-4));
+        let v = volume(&rounded_box(6), Vec3::new(1.0, 2.0, 3.0), Vec3::splat(1e-4));
         assert!((v - 48.0).abs() < 0.05, "{v}");
     }
 
     #[test]
-    fn ball_has_the_volume_of_a_ball() {
-        let v = volume(&rounded_box(3), Vec3::ZERO, Vec3::ONE);
-        assert!((v - 4.19).abs() < 0.25, "{v}");
+    fn ball_has_nearly_the_volume_of_a_ball() {
+        let v = volume(&rounded_box(6), Vec3::ZERO, Vec3::ONE);
+        assert!((v - 4.19).abs() < 0.2, "{v}");
     }
 
     #[test]

@@ -17,6 +17,9 @@ pub const SAMPLES: u32 = 4;
 /// What lies in front of everything has the nearest part of the depth range to itself.
 const OVERLAY_DEPTH: f32 = 0.05;
 
+/// Cells of the background; see `background.wgsl`.
+const BACKGROUND_CELLS: u32 = 16 * 12;
+
 /// Pipelines and meshes for one target format. Made once for a device.
 #[derive(Debug)]
 pub struct Renderer {
@@ -99,10 +102,10 @@ impl Renderer {
         let [width, height] = frame.size.map(|n| n as f32);
         pass.set_bind_group(0, &frame.bind_group, &[]);
         pass.set_viewport(0.0, 0.0, width, height, OVERLAY_DEPTH, 1.0);
+        pass.set_pipeline(&self.pipelines.background);
+        pass.draw(0..4, 0..BACKGROUND_CELLS);
         self.draw_solids(pass, frame, Layer::World, &self.pipelines.solid);
         self.draw_solids(pass, frame, Layer::Table, &self.pipelines.table);
-        pass.set_pipeline(&self.pipelines.background);
-        pass.draw(0..3, 0..1);
         frame.shadows.draw_quads(pass, &self.pipelines.shadow);
         frame.strokes.draw_quads(pass, &self.pipelines.stroke);
         self.draw_solids(pass, frame, Layer::Ghost, &self.pipelines.ghost_depth);

@@ -104,7 +104,13 @@ impl Pipelines {
         };
         Self {
             table: make.pipeline(&Spec { label: "table", fragment: "fs_table", ..opaque }),
-            ghost_depth: make.pipeline(&Spec { label: "ghost depth", ink: Ink::None, depth_bias: 24, ..opaque }),
+            ghost_depth: make.pipeline(&Spec {
+                label: "ghost depth",
+                fragment: "fs_depth",
+                ink: Ink::None,
+                depth_bias: 24,
+                ..opaque
+            }),
             ghost: make.pipeline(&Spec {
                 label: "ghost",
                 ink: Ink::Translucent,
@@ -128,7 +134,8 @@ impl Pipelines {
                 fragment: "fs_background",
                 buffers: &[],
                 depth_write: false,
-                depth_compare: see_through,
+                depth_compare: wgpu::CompareFunction::Always,
+                topology: wgpu::PrimitiveTopology::TriangleStrip,
                 ..opaque
             }),
             overlay_stroke: make.pipeline(&Spec {

@@ -66,6 +66,12 @@ fn fs_solid(in: SolidOut) -> @location(0) vec4<f32> {
     return vec4(to_target(sqrt(shade(in, occlusion))), in.color.a);
 }
 
+// Depth only: the colour is masked out.
+@fragment
+fn fs_depth() -> @location(0) vec4<f32> {
+    return vec4(0.0);
+}
+
 // One line of the table's grid, 0 to 1, about one pixel wide whatever the distance.
 fn grid_lines(position: vec2<f32>, pitch: f32) -> f32 {
     let cell = position / pitch;
