@@ -53,10 +53,16 @@ impl Headless {
         &self.adapter
     }
 
+    /// Its device and queue, to share with other drawing.
+    pub fn device_and_queue(&self) -> (&wgpu::Device, &wgpu::Queue) {
+        (&self.device, &self.queue)
+    }
+
     /// Draws one picture.
     pub fn render(&mut self, view: &SceneView<'_>, width: u32, height: u32) -> Result<RgbaImage, RenderError> {
         self.draw(view, width, height)?;
-        self.read(width, height)
+        let picture = self.target.texture().clone();
+        self.read(&picture)
     }
 
     /// Draws a series of pictures of one size, for instance the frames of a film.
@@ -88,7 +94,9 @@ impl Headless {
         polled.map(|_| ()).map_err(|error| RenderError::ReadBack(error.to_string()))
     }
 
-    fn read(&mut self, width: u32, height: u32) -> Result<RgbaImage, RenderError> {
+    /// Copies a texture of this device back; it must hold four bytes a pixel and allow `COPY_SRC`.
+    pub fn read(&mut self, texture: &wgpu::Texture) -> Result<RgbaImage, RenderError> {
+        let (width, height) = (texture.width(), texture.height());
         let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let size = u64::from(row) * u64::from(height);
         let buffer = match self.read_back.take() {
@@ -102,7 +110,7 @@ impl Headless {
         };
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encoder.copy_texture_to_buffer(
-            self.target.texture().as_image_copy(),
+            texture.as_image_copy(),
             wgpu::TexelCopyBufferInfo {
                 buffer: &buffer,
                 layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },

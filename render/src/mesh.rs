@@ -52,7 +52,7 @@ impl MeshKind {
     pub fn build(self) -> Mesh {
         match self {
             Self::Box => rounded_box(2),
-            Self::Plate => plate(4),
+            Self::Plate => plate(5),
             Self::Disc => plate(12),
             Self::Arrow => arrow(20),
         }
