@@ -1,28 +1,22 @@
-//! Geometric constraints.
+//! Geometric constraints: what kind of joint a tool path shows, with an honest interval for its radius.
 
-use crate::estimate::{Constraint, ConstraintKind};
+mod circle;
+mod decide;
+mod frame;
+mod noise;
+mod normals;
+
+pub use decide::{Context, detect};
+pub use normals::{THESIS_SAMPLES, normals_center};
+
+use crate::estimate::Constraint;
+use crate::identify::mechanism::path;
 use haptics::recording::Recording;
 
 /// The constraint of a recording with a tool path; `None` without one.
 pub fn detect_in(recording: &Recording) -> Option<Constraint> {
-    recording.channel("x_m")?;
-    Some(Constraint {
-        kind: ConstraintKind::Undecided,
-        recording: Some(recording.name.clone()),
-        center_m: None,
-        radius_m: None,
-        radius_interval_m: None,
-        direction: None,
-        rigid: None,
-        std_error: std::collections::BTreeMap::new(),
-        coverage_rad: None,
-        coverage_m: None,
-        residual_m: None,
-        constraint_force_n: None,
-        evidence: "not looked at yet".to_owned(),
-    })
+    let points = path::points(recording)?;
+    let forces = path::forces(recording);
+    let context = Context { recording: Some(recording.name.clone()), planar: recording.channel("z_m").is_none() };
+    Some(detect(&points, forces.as_deref(), &context))
 }
-
-mod normals;
-
-pub use normals::{THESIS_SAMPLES, normals_center};

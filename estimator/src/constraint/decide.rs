@@ -1,0 +1,269 @@
+//! Which kind of constraint a path shows.
+
+use super::circle::{Arc, cost, fit, refine};
+use super::frame::Frame;
+use super::noise::{Direction, PathNoise, sensitivity};
+use super::normals::{THESIS_SAMPLES, normals_center};
+use crate::estimate::{Constraint, ConstraintKind};
+use crate::identify::linear::least_squares;
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+
+/// Kept points below which nothing is said.
+const MIN_POINTS: usize = 16;
+/// The kinds are decided at this level of error, the interval is given at 5 %.
+const DECISION_P: f64 = 0.01;
+const INTERVAL_P: f64 = 0.05;
+/// A path that bends by less than this over its length, with certainty, is called straight, rad.
+const STRAIGHT_RAD: f64 = 0.3;
+/// A path that bends by more than this, with certainty, is called round, rad.
+const ROUND_RAD: f64 = 0.15;
+/// A hinge further away than this is not distinguished from a slide, m.
+const FARTHEST_HINGE_M: f64 = 2.5;
+/// Distance from line and plane, as a share of the extent, up to which a path is still one.
+const CLOSE_SHARE: f64 = 0.025;
+/// … and from which on it is certainly none.
+const FAR_SHARE: f64 = 0.04;
+/// Width of a path in its plane as a share of its length from which on it fills a region.
+const REGION_SHARE: f64 = 0.15;
+/// Stiffness above which manipulator and sensors cannot tell a constraint from a rigid one, N/m.
+const RIGID_N_M: f64 = 2000.0;
+
+/// What is known about a path beside its points.
+#[derive(Clone, Debug, Default)]
+pub struct Context {
+    /// Name of the recording or trial.
+    pub recording: Option<String>,
+    /// The path lies in the x-y plane by construction.
+    pub planar: bool,
+}
+
+/// Everything measured about the path's shape.
+struct Shape {
+    frame: Frame,
+    arc: Arc,
+    rms_m: f64,
+    /// Curvature interval at 5 % and at the decision level, 1/m.
+    interval: (f64, f64),
+    decision: (f64, f64),
+    curvature_error: f64,
+    angle_error: f64,
+}
+
+/// Decides between revolute, prismatic, free and undecided.
+///
+/// `points`: tool positions in order of time, m (no clock needed); `forces`: force of the tool on the environment, N, same
+/// length. Distances are taken along the path, so dwelling does not count.
+pub fn detect(points: &[Vector3<f64>], forces: Option<&[Vector3<f64>]>, context: &Context) -> Constraint {
+    let finite = points.iter().all(|p| p.iter().all(|v| v.is_finite()));
+    let frame = if finite { Frame::new(points, context.planar) } else { None };
+    let Some(frame) = frame else { return blank(context, "the tool does not move, so no constraint can be seen") };
+    if frame.flat.len() < MIN_POINTS {
+        let text = format!("only {} distinct points of a path; {MIN_POINTS} are needed", frame.flat.len());
+        return blank(context, &text);
+    }
+    let Some(shape) = Shape::new(frame) else { return blank(context, "the path is too short against its noise") };
+    let (kind, evidence) = shape.kind();
+    let mut found = blank(context, &evidence);
+    found.kind = kind;
+    shape.describe(&mut found, context.planar);
+    if let Some(forces) = forces.filter(|f| f.len() == points.len() && kind == ConstraintKind::Revolute) {
+        shape.add_forces(&mut found, points, forces);
+    }
+    found
+}
+
+fn blank(context: &Context, evidence: &str) -> Constraint {
+    Constraint {
+        kind: ConstraintKind::Undecided,
+        recording: context.recording.clone(),
+        center_m: None,
+        radius_m: None,
+        radius_interval_m: None,
+        direction: None,
+        rigid: None,
+        std_error: BTreeMap::new(),
+        coverage_rad: None,
+        coverage_m: None,
+        residual_m: None,
+        constraint_force_n: None,
+        evidence: evidence.to_owned(),
+    }
+}
+
+impl Shape {
+    fn new(frame: Frame) -> Option<Self> {
+        let extent = frame.extent_m;
+        let (arc, best) = fit(&frame.flat, extent);
+        let noise = PathNoise::new(&frame.flat, &arc, extent, Direction::Curvature)?;
+        let turn = PathNoise::new(&frame.flat, &arc, extent, Direction::Angle)?;
+        let size = sensitivity(&frame.flat, &arc, extent, Direction::Curvature);
+        let bounds = |p: f64| profile(&frame, &arc, best, noise.quantile(p), size);
+        let (interval, decision) = (bounds(INTERVAL_P), bounds(DECISION_P));
+        Some(Self {
+            interval,
+            decision,
+            curvature_error: noise.quantile(0.317) / size,
+            angle_error: turn.quantile(0.317) / sensitivity(&frame.flat, &arc, extent, Direction::Angle),
+            rms_m: (best / frame.flat.len() as f64).sqrt(),
+            arc,
+            frame,
+        })
+    }
+
+    /// Root mean square distance from the fitted circle in space, m.
+    fn residual_m(&self) -> f64 {
+        self.rms_m.hypot(self.frame.plane_rms_m)
+    }
+
+    fn kind(&self) -> (ConstraintKind, String) {
+        let extent = self.frame.extent_m;
+        let share = self.residual_m() / extent;
+        let bend = |curvature: f64| curvature * extent;
+        let (low, high) = self.decision;
+        let sizes = format!(
+            "{:.1} mm from a circle, {:.1} mm from a line over {:.0} mm",
+            1e3 * self.residual_m(),
+            1e3 * self.frame.line_rms_m,
+            1e3 * extent
+        );
+        if share > FAR_SHARE && self.frame.width_m > REGION_SHARE * extent {
+            return (ConstraintKind::Free, format!("the path fills a region: {sizes} (root mean square)"));
+        }
+        if share > CLOSE_SHARE {
+            return (ConstraintKind::Undecided, format!("neither a line nor a circle fits well: {sizes}"));
+        }
+        let round = bend(low) > ROUND_RAD && 1.0 / low < FARTHEST_HINGE_M && self.rms_m < 0.5 * self.frame.line_rms_m;
+        if round {
+            return (
+                ConstraintKind::Revolute,
+                format!("a circle fits and a line does not: {sizes}{}", self.thesis_center()),
+            );
+        }
+        let straight = bend(high) < STRAIGHT_RAD && (low <= 0.0 || 1.0 / high > FARTHEST_HINGE_M);
+        if straight {
+            let text = format!("a line fits: {sizes}; it bends by less than {:.2} rad for certain", bend(high));
+            return (ConstraintKind::Prismatic, text);
+        }
+        let text = format!(
+            "a line and an arc of radius from {:.2} m fit alike ({sizes}); follow the mechanism further",
+            1.0 / self.interval.1.max(f64::MIN_POSITIVE)
+        );
+        (ConstraintKind::Undecided, text)
+    }
+
+    /// The centre by the thesis's method, as a cross-check.
+    fn thesis_center(&self) -> String {
+        let (Some(found), Some(center)) = (normals_center(&self.frame.flat, THESIS_SAMPLES), self.arc.center()) else {
+            return String::new();
+        };
+        format!(
+            "; the normals over {THESIS_SAMPLES} samples meet {:.1} mm from its centre",
+            1e3 * (found - center).norm()
+        )
+    }
+
+    fn describe(&self, found: &mut Constraint, planar: bool) {
+        let dimensions = if planar { 2 } else { 3 };
+        let numbers = |v: Vector3<f64>| v.iter().take(dimensions).copied().collect::<Vec<f64>>();
+        found.coverage_m = Some(self.frame.travelled_m);
+        let (low, high) = self.interval;
+        let interval = (1.0 / high.max(f64::MIN_POSITIVE), (low > 0.0).then(|| 1.0 / low));
+        match found.kind {
+            ConstraintKind::Revolute => {
+                let radius = 1.0 / self.arc.curvature;
+                let error = radius * radius * self.curvature_error;
+                found.radius_m = Some(radius);
+                found.radius_interval_m = Some(interval);
+                found.center_m = self.arc.center().map(|c| numbers(self.frame.lift(c)));
+                found.direction = Some(self.frame.axes[2].iter().copied().collect());
+                found.std_error = [("radius_m", error), ("center_m", error)].map(|(k, v)| (k.to_owned(), v)).into();
+                found.coverage_rad = Some(self.turned_rad());
+                found.residual_m = Some(self.residual_m());
+            }
+            ConstraintKind::Prismatic => {
+                found.direction = Some(numbers(self.travel()));
+                found.std_error = [("direction_rad".to_owned(), self.angle_error)].into();
+                found.radius_interval_m = Some(interval);
+                found.residual_m = Some(self.frame.line_rms_m);
+            }
+            ConstraintKind::Undecided => {
+                found.radius_m = (self.arc.curvature * self.frame.extent_m > 1e-3).then(|| 1.0 / self.arc.curvature);
+                found.radius_interval_m = Some(interval);
+                found.residual_m = Some(self.residual_m());
+            }
+            _ => found.residual_m = Some(self.residual_m()),
+        }
+    }
+
+    /// Direction of a slide, from its first point to its last.
+    fn travel(&self) -> Vector3<f64> {
+        let flat = &self.frame.flat;
+        let forward = flat.last().map_or(0.0, |l| l.x) - flat.first().map_or(0.0, |f| f.x);
+        if forward < 0.0 { -self.frame.axes[0] } else { self.frame.axes[0] }
+    }
+
+    /// Angle between the two ends of the arc that was covered, rad; more than 2π when it went round.
+    fn turned_rad(&self) -> f64 {
+        let Some(center) = self.arc.center() else { return 0.0 };
+        let angles: Vec<f64> = self.frame.flat.iter().map(|p| (p.y - center.y).atan2(p.x - center.x)).collect();
+        let angles = crate::identify::mechanism::path::unwrap(&angles);
+        let (low, high) = angles.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
+        high - low
+    }
+
+    /// Mean constraint force along the outward normal, and whether the constraint yields to it.
+    fn add_forces(&self, found: &mut Constraint, points: &[Vector3<f64>], forces: &[Vector3<f64>]) {
+        let Some(center) = self.arc.center().map(|c| self.frame.lift(c)) else { return };
+        let axis = self.frame.axes[2];
+        let outward = |i: usize| {
+            let arm = points[i] - center;
+            (arm - axis * axis.dot(&arm)).try_normalize(1e-12).unwrap_or_else(Vector3::zeros)
+        };
+        let normal: Vec<f64> = self.frame.kept.iter().map(|&i| outward(i).dot(&forces[i])).collect();
+        found.constraint_force_n = Some(normal.iter().sum::<f64>() / normal.len() as f64);
+        let deviation: Vec<f64> = self.frame.flat.iter().map(|p| self.arc.distance(*p)).collect();
+        let yields = least_squares(&[normal, vec![1.0; deviation.len()]], &deviation, None)
+            .is_ok_and(|f| f.t_value(0) > 3.0 && f.values[0] > 1.0 / RIGID_N_M);
+        found.rigid = Some(!yields);
+    }
+}
+
+/// Curvatures whose best arcs exceed the best fit by less than `amplitude`²: the interval, asymmetric where the geometry is.
+fn profile(frame: &Frame, arc: &Arc, best: f64, amplitude: f64, size: f64) -> (f64, f64) {
+    let linear = amplitude / size.max(f64::MIN_POSITIVE);
+    let bound = |side: f64| {
+        let (mut inner, mut outer) = (*arc, *arc);
+        let mut step = 0.5 * linear;
+        // Grow until the fit is worse than the noise allows …
+        for _ in 0..40 {
+            let start = Arc { curvature: inner.curvature + side * step, ..inner };
+            let (trial, trial_cost) = refine(&frame.flat, start, true, frame.extent_m);
+            outer = trial;
+            if trial_cost - best > amplitude * amplitude {
+                break;
+            }
+            inner = trial;
+            step *= 1.3;
+        }
+        // … and close in.
+        for _ in 0..30 {
+            let middle = Arc { curvature: 0.5 * (inner.curvature + outer.curvature), ..inner };
+            let (trial, trial_cost) = refine(&frame.flat, middle, true, frame.extent_m);
+            if trial_cost - best > amplitude * amplitude {
+                outer = trial
+            } else {
+                inner = trial
+            }
+            if (outer.curvature - inner.curvature).abs() < 1e-4 * linear {
+                break;
+            }
+        }
+        inner.curvature
+    };
+    debug_assert!(best <= cost(&frame.flat, arc) * (1.0 + 1e-9) + f64::MIN_POSITIVE, "best is the arc's own cost");
+    (bound(-1.0), bound(1.0))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,161 @@
+//! Kinds and intervals on made paths with white and strongly correlated errors.
+
+use super::*;
+use rand::{RngExt as _, SeedableRng as _, rngs::StdRng};
+use rand_distr::StandardNormal;
+
+/// Error along a path of `n` samples with standard deviation `sigma`: AR(1) with a correlation length of `length` samples.
+fn path_error(rng: &mut StdRng, n: usize, sigma: f64, length: f64) -> Vec<f64> {
+    let rho = if length > 0.0 { (-1.0 / length).exp() } else { 0.0 };
+    let mut state: f64 = rng.sample(StandardNormal);
+    (0..n)
+        .map(|_| {
+            state = rho * state + (1.0 - rho * rho).sqrt() * rng.sample::<f64, _>(StandardNormal);
+            sigma * state
+        })
+        .collect()
+}
+
+/// A tilted arc in space.
+fn arc(radius: f64, sweep: f64, n: usize, sigma: f64, length: f64, seed: u64) -> Vec<Vector3<f64>> {
+    let mut rng = StdRng::seed_from_u64(seed);
+    let errors: Vec<Vec<f64>> = (0..3).map(|_| path_error(&mut rng, n, sigma, length)).collect();
+    let (x, y) = (Vector3::new(0.8, 0.6, 0.0), Vector3::new(0.0, 0.0, 1.0));
+    (0..n)
+        .map(|i| {
+            let a = 0.4 + sweep * i as f64 / n as f64;
+            Vector3::new(0.5, -0.2, 0.1)
+                + radius * (x * a.cos() + y * a.sin())
+                + Vector3::new(errors[0][i], errors[1][i], errors[2][i])
+        })
+        .collect()
+}
+
+fn line(length_m: f64, n: usize, sigma: f64, length: f64, seed: u64) -> Vec<Vector3<f64>> {
+    let mut rng = StdRng::seed_from_u64(seed);
+    let errors: Vec<Vec<f64>> = (0..3).map(|_| path_error(&mut rng, n, sigma, length)).collect();
+    let along = Vector3::new(0.6, -0.64, 0.48);
+    (0..n)
+        .map(|i| along * (length_m * i as f64 / n as f64) + Vector3::new(errors[0][i], errors[1][i], errors[2][i]))
+        .collect()
+}
+
+fn look(points: &[Vector3<f64>]) -> Constraint {
+    detect(points, None, &Context::default())
+}
+
+#[test]
+fn a_door_a_drawer_and_a_carried_block_are_told_apart() {
+    let door = look(&arc(0.4, 1.3, 500, 1e-3, 20.0, 1));
+    assert_eq!(door.kind, ConstraintKind::Revolute, "{door:#?}");
+    let axis = door.direction.as_ref().expect("an axis");
+    let true_axis = Vector3::new(0.8, 0.6, 0.0).cross(&Vector3::z());
+    assert!((Vector3::new(axis[0], axis[1], axis[2]).dot(&true_axis)).abs() > 0.999);
+    assert!((door.coverage_rad.expect("an angle") - 1.3).abs() < 0.05);
+    let drawer = look(&line(0.45, 300, 1e-3, 20.0, 2));
+    assert_eq!(drawer.kind, ConstraintKind::Prismatic, "{drawer:#?}");
+    let direction = drawer.direction.as_ref().expect("a direction");
+    assert!((direction[0] - 0.6).abs() < 0.01 && (direction[2] - 0.48).abs() < 0.01);
+    let carried: Vec<Vector3<f64>> = (0..600)
+        .map(|i| {
+            let t = f64::from(i) * 0.01;
+            Vector3::new(0.1 * (1.3 * t).sin(), 0.06 * (2.9 * t).sin(), 0.0)
+        })
+        .collect();
+    assert_eq!(look(&carried).kind, ConstraintKind::Free);
+}
+
+#[test]
+fn a_full_turn_in_the_plane_and_many_turns() {
+    for turns in [1.0, 5.0] {
+        let points: Vec<Vector3<f64>> = (0..2000)
+            .map(|i| {
+                let a = std::f64::consts::TAU * turns * f64::from(i) / 2000.0;
+                Vector3::new(0.01 + 0.02 * a.cos(), -0.1 + 0.02 * a.sin(), 0.0)
+            })
+            .collect();
+        let found = detect(&points, None, &Context { planar: true, recording: None });
+        assert_eq!(found.kind, ConstraintKind::Revolute, "{found:?}");
+        let center = found.center_m.expect("a centre");
+        assert!(center.len() == 2 && (center[0] - 0.01).abs() < 1e-5 && (center[1] + 0.1).abs() < 1e-5);
+        assert!((found.radius_m.expect("a radius") - 0.02).abs() < 1e-6);
+        assert!((found.coverage_rad.expect("an angle") - std::f64::consts::TAU * turns).abs() < 0.05);
+        assert_eq!(found.direction.as_deref(), Some(&[0.0, 0.0, 1.0][..]));
+    }
+}
+
+/// Share of 95 % intervals that hold the radius, and of wrong kinds.
+fn coverage(radius: f64, sweep: f64, sigma: f64, length: f64) -> (f64, usize) {
+    let (trials, mut hits, mut wrong) = (150, 0, 0);
+    for seed in 0..trials {
+        let found = look(&arc(radius, sweep, 400, sigma, length, 100 + seed));
+        wrong += usize::from(matches!(found.kind, ConstraintKind::Prismatic | ConstraintKind::Free));
+        let Some((low, high)) = found.radius_interval_m else { continue };
+        hits += u32::from(low <= radius && high.is_none_or(|h| radius <= h));
+    }
+    (f64::from(hits) / trials as f64, wrong)
+}
+
+#[test]
+fn radius_intervals_are_honest_for_any_arc_and_any_correlation() {
+    // 150 trials: a coverage of 0.95 has a standard error of 0.018.
+    for (radius, sweep) in [(0.3, 1.6), (0.3, 0.8), (0.3, 0.4), (0.7, 1.0)] {
+        for (sigma, length) in [(5e-4, 0.0), (1e-3, 10.0), (2e-3, 60.0), (3e-3, 300.0)] {
+            let (share, wrong) = coverage(radius, sweep, sigma, length);
+            println!("R {radius} sweep {sweep} σ {sigma} length {length}: coverage {share}, wrong kind {wrong}");
+            assert!(share > 0.9, "R {radius} sweep {sweep} σ {sigma} length {length}: {share}");
+            assert_eq!(wrong, 0, "R {radius} sweep {sweep} σ {sigma} length {length}");
+        }
+    }
+}
+
+#[test]
+fn a_line_is_never_called_a_circle() {
+    let mut straight = 0;
+    for (sigma, length) in [(5e-4, 0.0), (1e-3, 20.0), (2e-3, 60.0), (3e-3, 300.0)] {
+        for seed in 0..100 {
+            let found = look(&line(0.45, 300, sigma, length, 500 + seed));
+            assert!(
+                matches!(found.kind, ConstraintKind::Prismatic | ConstraintKind::Undecided),
+                "σ {sigma} length {length}: {found:?}"
+            );
+            straight += u32::from(found.kind == ConstraintKind::Prismatic);
+        }
+    }
+    println!("{straight} of 400 lines decided");
+    assert!(straight > 200, "{straight}");
+}
+
+#[test]
+fn dwelling_does_not_move_the_answer() {
+    let mut points = arc(0.4, 1.3, 500, 0.0, 0.0, 1);
+    let still = points[100];
+    points.splice(100..100, std::iter::repeat_n(still, 3000));
+    let found = look(&points);
+    assert!((found.radius_m.expect("a radius") - 0.4).abs() < 1e-4);
+}
+
+#[test]
+fn a_pull_outward_is_a_positive_constraint_force() {
+    let points = arc(0.4, 1.3, 500, 1e-4, 5.0, 1);
+    let center = Vector3::new(0.5, -0.2, 0.1);
+    let forces: Vec<Vector3<f64>> = points.iter().map(|p| (p - center).normalize() * 6.0).collect();
+    let found = detect(&points, Some(&forces), &Context::default());
+    assert!((found.constraint_force_n.expect("a force") - 6.0).abs() < 0.05 && found.rigid == Some(true));
+}
+
+#[test]
+fn hardly_anything_is_undecided_and_nothing_panics() {
+    for points in [
+        vec![],
+        vec![Vector3::zeros(); 1],
+        vec![Vector3::zeros(); 100],
+        vec![Vector3::repeat(f64::NAN); 100],
+        line(0.1, 5, 0.0, 0.0, 1),
+    ] {
+        assert_eq!(look(&points).kind, ConstraintKind::Undecided);
+    }
+    assert_eq!(look(&line(0.5, 200, 0.0, 0.0, 1)).kind, ConstraintKind::Prismatic);
+    // A short arc is left open rather than called a slide.
+    assert_ne!(look(&arc(0.3, 0.25, 200, 1e-3, 50.0, 3)).kind, ConstraintKind::Revolute);
+}
