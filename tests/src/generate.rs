@@ -5,7 +5,7 @@ use haptics::law::{CoulombFriction, Effect, Inertia, LoadFriction, ViscousFricti
 use haptics::recording::Recording;
 use haptics::servo::TickRecord;
 use haptics::servo::recorder::{SensorModel, to_recording};
-use haptics::world::{Block, Input, State, World, presets, step, true_label};
+use haptics::world::{Block, Input, State, Surface, World, presets, step, true_label};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use std::collections::BTreeMap;
@@ -16,16 +16,32 @@ pub type Truth = BTreeMap<(String, String), f64>;
 /// Step of the generator, s: a fifth of the usual servo's.
 pub const STEP_S: f64 = 0.2e-3;
 
+/// A recording and what only the generator knows about how it went.
+pub struct Performance {
+    /// What the sensors saw.
+    pub recording: Recording,
+    /// Mean height of the grasp points above the middle of the crank's handle, m: the circle that the fingers follow is the
+    /// handle's, shifted by this. Zero without a crank.
+    pub grasp_offset_y_m: f64,
+}
+
 /// Performs the task of `world` and records every `every`-th fine step.
-pub fn perform(world: &World, seed: u64, skill: Skill, every: usize, sensor: &SensorModel) -> Recording {
+pub fn perform(world: &World, seed: u64, skill: Skill, every: usize, sensor: &SensorModel) -> Performance {
     let mut state = State::resting(world);
     let mut operator = ScriptedOperator::new(world, &state, skill, seed);
     let mut ticks = Vec::new();
     let mut count = 0_usize;
+    let (mut offset_sum, mut offset_count) = (0.0, 0_usize);
     while !operator.finished() {
         let sample = operator.exchange(&Command { force_n: state.tip_force_n.map(|f| -f) }, STEP_S);
         let input = Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity };
         step(world, &mut state, &input, STEP_S);
+        if let Some(handle) = state.handle_in_world(world) {
+            for contact in state.contacts.iter().filter(|c| c.by == Surface::Handle) {
+                offset_sum += contact.point_m.y - handle.y - contact.shear_m * contact.tangent().y;
+                offset_count += 1;
+            }
+        }
         if count.is_multiple_of(every) {
             ticks.push(TickRecord {
                 time_s: state.time_s,
@@ -37,7 +53,8 @@ pub fn perform(world: &World, seed: u64, skill: Skill, every: usize, sensor: &Se
         }
         count += 1;
     }
-    to_recording(&format!("seed {seed}"), world, &ticks, 1, sensor, seed ^ 0x5eed)
+    let recording = to_recording(&format!("seed {seed}"), world, &ticks, 1, sensor, seed ^ 0x5eed);
+    Performance { recording, grasp_offset_y_m: offset_sum / offset_count.max(1) as f64 }
 }
 
 /// Two blocks of random weight, size and friction, block 1 on block 2, with their truth.
@@ -91,7 +108,6 @@ pub fn crank_world(seed: u64) -> (World, Truth) {
         crank.radius_m = draw(0.016, 0.025);
         crank.center_m.x += draw(-0.004, 0.004);
         crank.center_m.y += draw(-0.004, 0.004);
-        crank.start_rad = draw(-2.0, -1.0);
         crank.effects = vec![
             Effect::new(&Weight, &[weight]),
             Effect::new(&Inertia, &[inertia]),

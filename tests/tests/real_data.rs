@@ -1,10 +1,11 @@
 //! Real measurements: published values must come back. The data are not part of this repository; they are looked for in
 //! `../shared/data` beside the workspace, and each test says so when they are absent.
 
-use estimator::estimate::Fit;
+use estimator::constraint;
+use estimator::estimate::{ConstraintKind, Fit};
 use estimator::identify::mechanism;
 use estimator::log;
-use haptics::recording::{Meta, Recording};
+use haptics::recording::{Meta, Recording, Span};
 use std::path::PathBuf;
 
 /// The file, or `None` with a visible word.
@@ -77,5 +78,107 @@ fn real_recordings_raise_no_false_warnings() {
                 .collect();
             assert!(doubtful.is_empty(), "{}: {doubtful:?}", recording.name);
         }
+    }
+}
+
+const CABINET: &str = r#"{"columns":{"x_m":"tip_x_m","y_m":"tip_y_m","z_m":"tip_z_m","fx_N":"fx_wrist_sensor_N","fy_N":"fy_wrist_sensor_N","fz_N":"fz_wrist_sensor_N"}}"#;
+
+/// The radius over the whole run, m: what the halves and quarters must not contradict.
+const CABINET_RADIUS_M: f64 = 0.3005;
+
+fn cabinet() -> Option<Recording> {
+    load("cabinet_pull/kitchen_cabinet_run1.csv", CABINET).map(|mut r| r.remove(0))
+}
+
+#[test]
+fn the_cabinet_is_a_door_and_its_radius_comes_with_an_interval() {
+    let Some(run) = cabinet() else { return };
+    let found = constraint::detect_in(&run).expect("a tool path");
+    println!("{found:#?}");
+    assert_eq!(found.kind, ConstraintKind::Revolute);
+    assert!((found.radius_m.expect("a radius") - CABINET_RADIUS_M).abs() < 0.003);
+    let (low, high) = found.radius_interval_m.expect("an interval");
+    assert!(low < CABINET_RADIUS_M && high.is_some_and(|h| h > CABINET_RADIUS_M));
+    let fit = mechanism::fit(std::slice::from_ref(&run)).expect("a clockless log still shows its constraint");
+    assert!(fit.constraints.len() == 1 && fit.parameters.iter().all(|p| !p.identified));
+}
+
+#[test]
+fn intervals_on_parts_of_the_cabinet_run_hold_the_radius() {
+    let Some(run) = cabinet() else { return };
+    let n = run.len();
+    let mut parts = vec![("first quarter".to_owned(), run.slice(Span { first: 0, end: n / 4 }))];
+    for (name, a, b) in [
+        ("first third", 0.0, 0.333),
+        ("first half", 0.0, 0.5),
+        ("second half", 0.5, 1.0),
+        ("middle third", 0.333, 0.667),
+        ("middle half", 0.25, 0.75),
+        ("second quarter", 0.25, 0.5),
+        ("third quarter", 0.5, 0.75),
+        ("last quarter", 0.75, 1.0),
+        ("last third", 0.667, 1.0),
+    ] {
+        let span = Span { first: (a * n as f64) as usize, end: (b * n as f64) as usize };
+        parts.push((name.to_owned(), run.slice(span)));
+    }
+    for every in [2, 5, 10, 20] {
+        let mut thin = run.clone();
+        for channel in &mut thin.channels {
+            channel.values = channel.values.iter().copied().step_by(every).collect();
+        }
+        parts.push((format!("every {every}th"), thin));
+    }
+    for (name, part) in parts {
+        let found = constraint::detect_in(&part).expect("a tool path");
+        println!("{name}: {:?} R {:?} in {:?}", found.kind, found.radius_m, found.radius_interval_m);
+        assert!(matches!(found.kind, ConstraintKind::Revolute | ConstraintKind::Undecided), "{name}");
+        let (low, high) = found.radius_interval_m.expect("an interval");
+        assert!(low <= CABINET_RADIUS_M && high.is_none_or(|h| h >= CABINET_RADIUS_M), "{name}");
+    }
+}
+
+#[test]
+fn doors_turn_and_drawers_slide() {
+    let known = [
+        ("dishwasher", ConstraintKind::Revolute),
+        ("left_door", ConstraintKind::Revolute),
+        ("right_door", ConstraintKind::Revolute),
+        ("cabinet_one", ConstraintKind::Revolute),
+        ("drawer", ConstraintKind::Prismatic),
+        ("drawer_one", ConstraintKind::Prismatic),
+        ("sliding_cabinet", ConstraintKind::Prismatic),
+    ];
+    for (name, kind) in known {
+        let meta = format!(r#"{{"select":{{"mechanism":"{name}"}}}}"#);
+        let meta: Meta = serde_json::from_str(&meta).expect("a sidecar");
+        let Some(path) = data("articulated_paths/paths.csv") else { return };
+        let Ok(trials) = log::load_with_meta(&path, &meta) else {
+            println!("skipped: {name} is not in this copy of the data");
+            continue;
+        };
+        let (mut decided, mut parts_decided, mut parts) = (0, 0, 0);
+        for trial in &trials {
+            let found = constraint::detect_in(trial).expect("a tool path");
+            println!(
+                "{}: {:?} R {:?} {:?} {}",
+                trial.name, found.kind, found.radius_m, found.radius_interval_m, found.evidence
+            );
+            assert!(found.kind == kind || found.kind == ConstraintKind::Undecided, "{name} {:?}", trial.trial);
+            decided += usize::from(found.kind == kind);
+            let n = trial.len();
+            for (first, end) in
+                [(0, n / 2), (n / 2, n), (0, n / 4), (n / 4, n / 2), (n / 2, 3 * n / 4), (3 * n / 4, n), (0, n / 8)]
+            {
+                let part = constraint::detect_in(&trial.slice(Span { first, end })).expect("a tool path");
+                let fine = part.kind == kind || part.kind == ConstraintKind::Undecided;
+                assert!(fine, "{name} {:?} {first}..{end}: {part:?}", trial.trial);
+                parts += 1;
+                parts_decided += usize::from(part.kind == kind);
+            }
+        }
+        println!("{name}: {parts_decided} of {parts} parts decided");
+        println!("{name}: {decided} of {} decided", trials.len());
+        assert!(2 * decided > trials.len(), "{name}: {decided} of {}", trials.len());
     }
 }

@@ -8,7 +8,7 @@ use super::linear::{LinearFit, least_squares};
 use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::segment::{Segmentation, segment_signals, threshold::Levels};
 use crate::signal::noise::quantum;
-use crate::signal::task::{TaskSignals, TipSeries, smooth, task_signals};
+use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signals};
 use haptics::Vec2;
 use haptics::recording::{Recording, Task};
 
@@ -46,7 +46,7 @@ pub fn fit(recording: &Recording) -> Result<(Fit, Segmentation), EstimateError> 
     let segmentation = segment_signals(&signals, Task::BlockStack, None)?;
     let levels = Levels::of(&signals);
     let vertical: Vec<f64> = signals.velocity.iter().map(|v| v.y).collect();
-    let acceleration_y = smooth(&signals.time_s, &vertical).first;
+    let acceleration_y = smooth(&signals.time_s, &vertical).slope;
     let width = smooth(&signals.time_s, &signals.grip_width_m);
     let normal =
         |finger: usize, i: usize| signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x) - levels.bias_n[finger].x;
@@ -68,7 +68,7 @@ pub fn fit(recording: &Recording) -> Result<(Fit, Segmentation), EstimateError> 
         height,
         grip,
         lift,
-        width_rate: width.first,
+        width_rate: width.slope,
         signals,
     };
 
@@ -121,6 +121,15 @@ impl Blocks<'_> {
         subtasks.iter().flat_map(|s| self.segmentation.samples_of(s)).collect()
     }
 
+    /// Samples a filter window apart: smoothed channels say nothing new in between, and errors counted from neighbours that
+    /// share their noise come out too small.
+    fn rows(&self, samples: &[usize]) -> Vec<usize> {
+        const LEAST_ROWS: usize = 12;
+        let window = 2 * half_width(&self.signals.time_s);
+        let stride = window.min(samples.len() / LEAST_ROWS).max(1);
+        samples.iter().copied().step_by(stride).collect()
+    }
+
     /// Force of a finger without its bias, N.
     fn force(&self, finger: usize, i: usize) -> Vec2 {
         let raw = self.signals.tips[finger].force.as_ref().map_or_else(Vec2::zeros, |f| f[i]);
@@ -141,8 +150,9 @@ impl Blocks<'_> {
     /// Weight: mean of the summed vertical forces over the carry, accelerations taken out.
     fn weight(&self, number: usize) -> Result<[Parameter; 2], EstimateError> {
         let samples = self.samples(&[&format!("carry-block-{number}")]);
-        let lift: Vec<f64> = samples.iter().map(|i| self.lift(*i)).collect();
-        let acceleration: Vec<f64> = samples.iter().map(|i| self.acceleration_y[*i]).collect();
+        let rows = self.rows(&samples);
+        let lift: Vec<f64> = rows.iter().map(|i| self.lift[*i]).collect();
+        let acceleration: Vec<f64> = rows.iter().map(|i| self.acceleration_y[*i]).collect();
         let fit = intercept(&lift, &[acceleration])?;
         let resolution = std::f64::consts::SQRT_2 * self.resolution_n;
         let error = fit.std_errors[0].hypot(self.bias_error()).hypot(resolution);
@@ -161,9 +171,10 @@ impl Blocks<'_> {
     fn width(&self, number: usize) -> Result<Parameter, EstimateError> {
         let [pick, carry, place] = ["pick-up", "carry", "place"].map(|verb| format!("{verb}-block-{number}"));
         let samples = self.samples(&[&pick, &carry, &place]);
-        let width: Vec<f64> = samples.iter().map(|i| self.width[*i]).collect();
-        let grip: Vec<f64> = samples.iter().map(|i| self.grip[*i]).collect();
-        let rate: Vec<f64> = samples.iter().map(|i| self.width_rate[*i]).collect();
+        let rows = self.rows(&samples);
+        let width: Vec<f64> = rows.iter().map(|i| self.width[*i]).collect();
+        let grip: Vec<f64> = rows.iter().map(|i| self.grip[*i]).collect();
+        let rate: Vec<f64> = rows.iter().map(|i| self.width_rate[*i]).collect();
         let (mean_grip, spread_grip) = mean_and_spread(&grip);
         let name = object(number);
         let resolution = std::f64::consts::SQRT_2 * self.resolution_m;
@@ -225,8 +236,9 @@ impl Blocks<'_> {
 
     /// Grip height where the lift equals the weight: intercept and slope over (lift − weight).
     fn unloaded_height(&self, samples: &[usize], weight_n: f64) -> Result<LinearFit, EstimateError> {
-        let height: Vec<f64> = samples.iter().map(|i| self.height[*i]).collect();
-        let load: Vec<f64> = samples.iter().map(|i| self.lift[*i] - weight_n).collect();
+        let rows = self.rows(samples);
+        let height: Vec<f64> = rows.iter().map(|i| self.height[*i]).collect();
+        let load: Vec<f64> = rows.iter().map(|i| self.lift[*i] - weight_n).collect();
         intercept(&height, &[load])
     }
 

@@ -80,6 +80,13 @@ pub fn least_squares(columns: &[Vec<f64>], rhs: &[f64], weights: Option<&[f64]>)
     let effective_samples = (used as f64 / correlation_time(&scores)).clamp(1.0, used as f64);
     let middle = long_run_variance(&scores, effective_samples, p, used);
     let mut covariance = &inverse * middle * &inverse;
+    // A long-run variance from few waves scatters. Never below what independent samples would give: that is the least.
+    let variance = weight_sum_of_squares(&residuals, weights) / (used as f64 - p as f64).max(1.0);
+    let raise: Vec<f64> =
+        (0..p).map(|j| (inverse[(j, j)] * variance / covariance[(j, j)]).max(1.0).sqrt()).map(finite_or_one).collect();
+    for (i, j) in (0..p).flat_map(|i| (0..p).map(move |j| (i, j))) {
+        covariance[(i, j)] *= raise[i] * raise[j];
+    }
     for (i, j) in (0..p).flat_map(|i| (0..p).map(move |j| (i, j))) {
         covariance[(i, j)] /= scales[i] * scales[j];
         if !(identified[i] && identified[j]) {
@@ -95,6 +102,14 @@ impl LinearFit {
     pub fn t_value(&self, index: usize) -> f64 {
         if self.identified[index] { self.values[index] / self.std_errors[index].max(f64::MIN_POSITIVE) } else { 0.0 }
     }
+}
+
+fn weight_sum_of_squares(residuals: &[f64], weights: Option<&[f64]>) -> f64 {
+    residuals.iter().enumerate().map(|(i, r)| weights.map_or(1.0, |w| w[i].max(0.0)) * r * r).sum()
+}
+
+fn finite_or_one(factor: f64) -> f64 {
+    if factor.is_finite() { factor } else { 1.0 }
 }
 
 fn check(columns: &[Vec<f64>], rhs: &[f64], weights: Option<&[f64]>) -> Result<(), EstimateError> {

@@ -1,5 +1,6 @@
 //! Identification.
 
 pub mod block;
+pub mod crank;
 pub mod linear;
 pub mod mechanism;

@@ -274,7 +274,7 @@ fn single_tool(recording: &Recording, given: Option<Thresholds>) -> Result<Motio
             Some(rate) => rate.to_vec(),
             None => {
                 let time = recording.time_s.as_ref().ok_or_else(clockless)?;
-                crate::signal::task::smooth(time, q).first
+                crate::signal::task::smooth(time, q).slope
             }
         };
         (rate.iter().map(|v| v.abs()).collect::<Vec<_>>(), None)

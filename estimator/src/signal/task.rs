@@ -1,6 +1,6 @@
 //! Stage 1 of the segmentation: from finger samples to the signals of the task (thesis, chapter 5.2.2).
 
-use super::derive::{Derivatives, savitzky_golay};
+use super::derive::savitzky_golay;
 use crate::estimate::EstimateError;
 use haptics::Vec2;
 use haptics::hand::{Finger, JointAngles};
@@ -125,18 +125,50 @@ fn derived(recording: &Recording, position: &[Vec2]) -> Option<Vec<Vec2>> {
     let time = recording.time_s.as_ref()?;
     let axis = |pick: fn(&Vec2) -> f64| {
         let values: Vec<f64> = position.iter().map(pick).collect();
-        smooth(time, &values).first
+        smooth(time, &values).slope
     };
     let (vx, vy) = (axis(|p| p.x), axis(|p| p.y));
     Some(vx.iter().zip(&vy).map(|(x, y)| Vec2::new(*x, *y)).collect())
 }
 
-/// Quadratic fits over [`DERIVATIVE_WINDOW_S`] (at least three samples): value and derivatives of a channel.
-pub fn smooth(time_s: &[f64], values: &[f64]) -> Derivatives {
+/// A channel through one filter, and the derivative of exactly that filtered channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Smoothed {
+    /// Filtered value, in the channel's unit.
+    pub value: Vec<f64>,
+    /// Its derivative, per second.
+    pub slope: Vec<f64>,
+}
+
+/// Samples on each side that [`smooth`] looks at: half of [`DERIVATIVE_WINDOW_S`], at least one.
+pub fn half_width(time_s: &[f64]) -> usize {
     let n = time_s.len();
     let period_s = if n > 1 { (time_s[n - 1] - time_s[0]) / (n - 1) as f64 } else { 1.0 };
-    let half_width = ((0.5 * DERIVATIVE_WINDOW_S / period_s).round() as usize).max(1);
-    savitzky_golay(time_s, values, half_width, 2)
+    ((0.5 * DERIVATIVE_WINDOW_S / period_s).round() as usize).max(1)
+}
+
+/// Zero-phase smoothing over [`DERIVATIVE_WINDOW_S`] (at least three samples).
+///
+/// The slope is that of a straight line fitted to the window (Savitzky & Golay 1964, first order). Such a slope is the
+/// derivative of the channel smoothed with parabolic weights h² − k²; the value is smoothed with just these. So a channel, its
+/// derivative and every other channel have seen the same filter, and none looks delayed or weakened against another.
+pub fn smooth(time_s: &[f64], values: &[f64]) -> Smoothed {
+    let (n, half) = (values.len(), half_width(time_s));
+    let slope = savitzky_golay(time_s, values, half, 1).first;
+    let reach = (half as f64 + 0.5).powi(2);
+    let value = (0..n)
+        .map(|i| {
+            let side = half.min(i).min(n - 1 - i);
+            let (mut sum, mut total) = (0.0, 0.0);
+            for (k, value) in (i - side..=i + side).zip(&values[i - side..=i + side]) {
+                let weight = reach - (k as f64 - i as f64).powi(2);
+                sum += weight * value;
+                total += weight;
+            }
+            sum / total
+        })
+        .collect();
+    Smoothed { value, slope }
 }
 
 fn velocity_origin(recording: &Recording, finger: &str) -> String {
@@ -146,7 +178,7 @@ fn velocity_origin(recording: &Recording, finger: &str) -> String {
     } else if has(format!("dqb{finger}_rad_s")) {
         "measured joint rates".to_owned()
     } else {
-        format!("derived from positions (quadratic fits over {:.0} ms)", DERIVATIVE_WINDOW_S * 1e3)
+        format!("derived from positions (straight lines fitted over {:.0} ms)", DERIVATIVE_WINDOW_S * 1e3)
     }
 }
 
@@ -211,6 +243,18 @@ mod tests {
         assert!((tip.position[0] - Vec2::new(-0.04 + 0.08, 0.08)).norm() < 1e-12);
         assert!((tip.velocity.expect("from rates")[0] - Vec2::new(0.0, 0.16)).norm() < 1e-12);
         assert!(tip.force.is_none());
+    }
+
+    #[test]
+    fn value_and_slope_have_seen_the_same_filter() {
+        // A 10 Hz wave: filtered value and slope are weakened by the same factor, and the slope is the value's derivative.
+        let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 1e-3).collect();
+        let omega = 20.0 * std::f64::consts::PI;
+        let wave: Vec<f64> = time.iter().map(|t| (omega * t).sin()).collect();
+        let out = smooth(&time, &wave);
+        let gain_value = out.value[525] / wave[525];
+        let gain_slope = out.slope[500] / (omega * (omega * time[500]).cos());
+        assert!((gain_value - gain_slope).abs() < 1e-3 && gain_value < 0.95, "{gain_value} {gain_slope}");
     }
 
     #[test]
