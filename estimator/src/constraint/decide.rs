@@ -14,18 +14,22 @@ const MIN_POINTS: usize = 16;
 /// The kinds are decided at this level of error, the interval is given at 5 %.
 const DECISION_P: f64 = 0.01;
 const INTERVAL_P: f64 = 0.05;
-/// A path that bends by less than this over its length, with certainty, is called straight, rad.
-const STRAIGHT_RAD: f64 = 0.3;
+/// Posterior probability from which on a path is called straight.
+const STRAIGHT_PROBABILITY: f64 = 0.95;
+/// … provided that it bends by no more than this over its length with 95 % certainty, rad.
+const STRAIGHT_RAD: f64 = 0.5;
+/// Hinges within reach lie this far away, m: their radii are taken as equally likely in logarithm.
+const HINGE_M: (f64, f64) = (0.03, 2.0);
 /// A path that bends by more than this, with certainty, is called round, rad.
 const ROUND_RAD: f64 = 0.15;
-/// A hinge further away than this is not distinguished from a slide, m.
-const FARTHEST_HINGE_M: f64 = 2.5;
 /// Distance from line and plane, as a share of the extent, up to which a path is still one.
 const CLOSE_SHARE: f64 = 0.025;
 /// … and from which on it is certainly none.
 const FAR_SHARE: f64 = 0.04;
 /// Width of a path in its plane as a share of its length from which on it fills a region.
 const REGION_SHARE: f64 = 0.15;
+/// A constrained grip may leave its path by this much, m: less is no sign of freedom.
+const GRIP_SLIP_M: f64 = 2.5e-3;
 /// Stiffness above which manipulator and sensors cannot tell a constraint from a rigid one, N/m.
 const RIGID_N_M: f64 = 2000.0;
 
@@ -43,9 +47,11 @@ struct Shape {
     frame: Frame,
     arc: Arc,
     rms_m: f64,
-    /// Curvature interval at 5 % and at the decision level, 1/m.
+    /// Curvature interval at 5 %, 1/m, and lower end at the decision level.
     interval: (f64, f64),
-    decision: (f64, f64),
+    decision_low: f64,
+    /// Probability of a straight line against a circle, even odds before.
+    straight_probability: f64,
     curvature_error: f64,
     angle_error: f64,
 }
@@ -99,10 +105,10 @@ impl Shape {
         let turn = PathNoise::new(&frame.flat, &arc, extent, Direction::Angle)?;
         let size = sensitivity(&frame.flat, &arc, extent, Direction::Curvature);
         let bounds = |p: f64| profile(&frame, &arc, best, noise.quantile(p), size);
-        let (interval, decision) = (bounds(INTERVAL_P), bounds(DECISION_P));
         Some(Self {
-            interval,
-            decision,
+            interval: bounds(INTERVAL_P),
+            decision_low: bounds(DECISION_P).0,
+            straight_probability: straight_probability(&noise, arc.curvature, size),
             curvature_error: noise.quantile(0.317) / size,
             angle_error: turn.quantile(0.317) / sensitivity(&frame.flat, &arc, extent, Direction::Angle),
             rms_m: (best / frame.flat.len() as f64).sqrt(),
@@ -120,29 +126,32 @@ impl Shape {
         let extent = self.frame.extent_m;
         let share = self.residual_m() / extent;
         let bend = |curvature: f64| curvature * extent;
-        let (low, high) = self.decision;
+        let low = self.decision_low;
         let sizes = format!(
             "{:.1} mm from a circle, {:.1} mm from a line over {:.0} mm",
             1e3 * self.residual_m(),
             1e3 * self.frame.line_rms_m,
             1e3 * extent
         );
-        if share > FAR_SHARE && self.frame.width_m > REGION_SHARE * extent {
+        let real = self.residual_m() > (4.0 * self.frame.noise_m).max(GRIP_SLIP_M);
+        if real && share > FAR_SHARE && self.frame.width_m > REGION_SHARE * extent {
             return (ConstraintKind::Free, format!("the path fills a region: {sizes} (root mean square)"));
         }
         if share > CLOSE_SHARE {
             return (ConstraintKind::Undecided, format!("neither a line nor a circle fits well: {sizes}"));
         }
-        let round = bend(low) > ROUND_RAD && 1.0 / low < FARTHEST_HINGE_M && self.rms_m < 0.5 * self.frame.line_rms_m;
+        let round = bend(low) > ROUND_RAD && 1.0 / low < HINGE_M.1 * 1.25 && self.rms_m < 0.5 * self.frame.line_rms_m;
         if round {
             return (
                 ConstraintKind::Revolute,
                 format!("a circle fits and a line does not: {sizes}{}", self.thesis_center()),
             );
         }
-        let straight = bend(high) < STRAIGHT_RAD && (low <= 0.0 || 1.0 / high > FARTHEST_HINGE_M);
-        if straight {
-            let text = format!("a line fits: {sizes}; it bends by less than {:.2} rad for certain", bend(high));
+        if self.straight_probability > STRAIGHT_PROBABILITY && bend(self.interval.1) < STRAIGHT_RAD {
+            let text = format!(
+                "a line fits: {sizes}; against all hinges within {:.0} m its probability is {:.3}",
+                HINGE_M.1, self.straight_probability
+            );
             return (ConstraintKind::Prismatic, text);
         }
         let text = format!(
@@ -227,6 +236,20 @@ impl Shape {
             .is_ok_and(|f| f.t_value(0) > 3.0 && f.values[0] > 1.0 / RIGID_N_M);
         found.rigid = Some(!yields);
     }
+}
+
+/// Probability of curvature 0 against curvatures of hinges within reach, bending either way.
+fn straight_probability(noise: &PathNoise, curvature: f64, size: f64) -> f64 {
+    let likelihood = |k: f64| noise.density((curvature - k) * size);
+    let steps = 200;
+    let ratio = HINGE_M.1 / HINGE_M.0;
+    let round: f64 = (0..steps)
+        .map(|i| 1.0 / (HINGE_M.0 * ratio.powf((f64::from(i) + 0.5) / f64::from(steps))))
+        .map(|k| 0.5 * (likelihood(k) + likelihood(-k)))
+        .sum::<f64>()
+        / f64::from(steps);
+    let line = likelihood(0.0);
+    if line + round > 0.0 { line / (line + round) } else { 0.5 }
 }
 
 /// Curvatures whose best arcs exceed the best fit by less than `amplitude`²: the interval, asymmetric where the geometry is.

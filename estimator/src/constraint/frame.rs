@@ -30,12 +30,15 @@ pub struct Frame {
     pub width_m: f64,
     /// Travelled length, m.
     pub travelled_m: f64,
+    /// White part of the noise of a coordinate, m.
+    pub noise_m: f64,
 }
 
 impl Frame {
     /// `points`: n ≥ 2 tool positions, m; `planar`: all in the x-y plane, whose normal is then +z. `None` when nothing moves.
     pub fn new(points: &[Vector3<f64>], planar: bool) -> Option<Self> {
-        let kept = thin(points)?;
+        let noise_m = noise(points);
+        let kept = thin(points, noise_m)?;
         let chosen: Vec<Vector3<f64>> = kept.iter().map(|&i| points[i]).collect();
         let n = chosen.len() as f64;
         let origin = chosen.iter().sum::<Vector3<f64>>() / n;
@@ -61,6 +64,7 @@ impl Frame {
             travelled_m: chosen.windows(2).map(|w| (w[1] - w[0]).norm()).sum(),
             plane_rms_m: out.sqrt(),
             line_rms_m: (out + aside).sqrt(),
+            noise_m,
             origin,
             axes,
             flat,
@@ -84,8 +88,13 @@ fn in_plane(axis: Vector3<f64>) -> Vector3<f64> {
     Vector3::new(axis.x, axis.y, 0.0).try_normalize(1e-12).unwrap_or_else(Vector3::x)
 }
 
+/// White noise of the noisiest coordinate, m.
+fn noise(points: &[Vector3<f64>]) -> f64 {
+    (0..3).map(|k| white_noise(&points.iter().map(|p| p[k]).collect::<Vec<f64>>())).fold(0.0, f64::max)
+}
+
 /// Indices of points at even distance along the path: time spent at rest must not count.
-fn thin(points: &[Vector3<f64>]) -> Option<Vec<usize>> {
+fn thin(points: &[Vector3<f64>], noise: f64) -> Option<Vec<usize>> {
     let first = points.first()?;
     let (mut low, mut high) = (*first, *first);
     for p in points {
@@ -93,7 +102,6 @@ fn thin(points: &[Vector3<f64>]) -> Option<Vec<usize>> {
         high = high.sup(p);
     }
     let extent = (high - low).norm();
-    let noise = (0..3).map(|k| white_noise(&points.iter().map(|p| p[k]).collect::<Vec<f64>>())).fold(0.0, f64::max);
     let mut spacing = (extent / POINTS_PER_EXTENT).max(3.0 * noise);
     if extent.is_nan() || extent <= 0.0 {
         return None;

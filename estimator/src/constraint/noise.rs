@@ -9,7 +9,7 @@
 use super::circle::{Arc, gradient};
 use haptics::Vec2;
 use nalgebra::DMatrix;
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::{Continuous, ContinuousCDF, StudentsT};
 use std::f64::consts::PI;
 
 /// Cosines that are used.
@@ -91,6 +91,16 @@ impl PathNoise {
     fn exceeds(&self, level: f64) -> f64 {
         let Ok(student) = StudentsT::new(0.0, 1.0, self.freedom) else { return 1.0 };
         self.parts.iter().map(|(w, s)| w * 2.0 * (1.0 - student.cdf(level / s.hypot(self.grip).max(1e-300)))).sum()
+    }
+
+    /// Probability density of the amplitude at `level`.
+    pub fn density(&self, level: f64) -> f64 {
+        let Ok(student) = StudentsT::new(0.0, 1.0, self.freedom) else { return 0.0 };
+        let at = |(w, s): &(f64, f64)| {
+            let scale = s.hypot(self.grip).max(1e-300);
+            w * student.pdf(level / scale) / scale
+        };
+        self.parts.iter().map(at).sum()
     }
 
     /// Amplitude that is exceeded with probability `p`, m · √samples.

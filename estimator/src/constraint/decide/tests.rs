@@ -86,7 +86,7 @@ fn a_full_turn_in_the_plane_and_many_turns() {
 
 /// Share of 95 % intervals that hold the radius, and of wrong kinds.
 fn coverage(radius: f64, sweep: f64, sigma: f64, length: f64) -> (f64, usize) {
-    let (trials, mut hits, mut wrong) = (150, 0, 0);
+    let (trials, mut hits, mut wrong) = (60, 0, 0);
     for seed in 0..trials {
         let found = look(&arc(radius, sweep, 400, sigma, length, 100 + seed));
         wrong += usize::from(matches!(found.kind, ConstraintKind::Prismatic | ConstraintKind::Free));
@@ -98,12 +98,12 @@ fn coverage(radius: f64, sweep: f64, sigma: f64, length: f64) -> (f64, usize) {
 
 #[test]
 fn radius_intervals_are_honest_for_any_arc_and_any_correlation() {
-    // 150 trials: a coverage of 0.95 has a standard error of 0.018.
+    // 60 trials: a coverage of 0.95 has a standard error of 0.028.
     for (radius, sweep) in [(0.3, 1.6), (0.3, 0.8), (0.3, 0.4), (0.7, 1.0)] {
         for (sigma, length) in [(5e-4, 0.0), (1e-3, 10.0), (2e-3, 60.0), (3e-3, 300.0)] {
             let (share, wrong) = coverage(radius, sweep, sigma, length);
             println!("R {radius} sweep {sweep} σ {sigma} length {length}: coverage {share}, wrong kind {wrong}");
-            assert!(share > 0.9, "R {radius} sweep {sweep} σ {sigma} length {length}: {share}");
+            assert!(share > 0.88, "R {radius} sweep {sweep} σ {sigma} length {length}: {share}");
             assert_eq!(wrong, 0, "R {radius} sweep {sweep} σ {sigma} length {length}");
         }
     }
@@ -124,6 +124,24 @@ fn a_line_is_never_called_a_circle() {
     }
     println!("{straight} of 400 lines decided");
     assert!(straight > 200, "{straight}");
+}
+
+#[test]
+fn a_short_arc_is_hardly_ever_called_a_slide() {
+    let (mut slides, mut all) = (0, 0);
+    for (radius, sweep) in [(0.3, 0.1), (0.3, 0.2), (0.6, 0.15), (0.6, 0.3), (1.0, 0.2), (1.0, 0.4)] {
+        for (sigma, length) in [(5e-4, 0.0), (1e-3, 20.0), (2e-3, 60.0)] {
+            let seeds = (0..15).map(|seed| look(&arc(radius, sweep, 300, sigma, length, 900 + seed)).kind);
+            let wrong = seeds.filter(|k| *k == ConstraintKind::Prismatic).count();
+            if wrong > 0 {
+                println!("R {radius} sweep {sweep} σ {sigma} length {length}: {wrong} of 15");
+            }
+            slides += wrong;
+            all += 15;
+        }
+    }
+    println!("{slides} of {all} short arcs called a slide");
+    assert!(100 * slides <= 2 * all, "{slides} of {all}");
 }
 
 #[test]
