@@ -274,9 +274,9 @@ fn profile(frame: &Frame, arc: &Arc, best: f64, amplitude: f64, size: f64) -> (f
             let middle = Arc { curvature: 0.5 * (inner.curvature + outer.curvature), ..inner };
             let (trial, trial_cost) = refine(&frame.flat, middle, true, frame.extent_m);
             if trial_cost - best > amplitude * amplitude {
-                outer = trial
+                outer = trial;
             } else {
-                inner = trial
+                inner = trial;
             }
             if (outer.curvature - inner.curvature).abs() < 1e-4 * linear {
                 break;

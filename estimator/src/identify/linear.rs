@@ -66,7 +66,7 @@ pub fn least_squares(columns: &[Vec<f64>], rhs: &[f64], weights: Option<&[f64]>)
         .collect();
     let design = DMatrix::from_fn(n, p, |i, j| columns[j][i] * root(i) / scales[j]);
     let target = DVector::from_fn(n, |i, _| rhs[i] * root(i));
-    let (scaled_values, inverse, condition, identified) = solve(design, &target)?;
+    let Solution { values: scaled_values, inverse, condition, identified } = solve(design, &target)?;
 
     let values: Vec<f64> = (0..p).map(|j| if identified[j] { scaled_values[j] / scales[j] } else { 0.0 }).collect();
     // Residuals belong to the full minimum-norm solution, also when single parameters cannot be told apart.
@@ -123,14 +123,21 @@ fn check(columns: &[Vec<f64>], rhs: &[f64], weights: Option<&[f64]>) -> Result<(
     if finite { Ok(()) } else { Err(EstimateError::Other("a fit was given a number that is not finite".to_owned())) }
 }
 
-/// Pseudo-inverse solution of the scaled problem: values, (XᵀX)⁺, condition number, which parameters are identified.
-fn solve(
-    design: DMatrix<f64>,
-    target: &DVector<f64>,
-) -> Result<(DVector<f64>, DMatrix<f64>, f64, Vec<bool>), EstimateError> {
+/// Solution of the scaled problem.
+struct Solution {
+    values: DVector<f64>,
+    /// `(XᵀX)⁺`.
+    inverse: DMatrix<f64>,
+    condition: f64,
+    identified: Vec<bool>,
+}
+
+/// Pseudo-inverse solution of the scaled problem.
+fn solve(design: DMatrix<f64>, target: &DVector<f64>) -> Result<Solution, EstimateError> {
     let p = design.ncols();
     if p == 0 {
-        return Ok((DVector::zeros(0), DMatrix::zeros(0, 0), 1.0, Vec::new()));
+        let (values, inverse) = (DVector::zeros(0), DMatrix::zeros(0, 0));
+        return Ok(Solution { values, inverse, condition: 1.0, identified: Vec::new() });
     }
     let qr = design.qr();
     let mut rotated = target.clone();
@@ -158,7 +165,7 @@ fn solve(
         }
     }
     let condition = if kept.iter().all(|&k| k) { largest / smallest } else { f64::INFINITY };
-    Ok((values, inverse, condition, identified))
+    Ok(Solution { values, inverse, condition, identified })
 }
 
 /// Weighted scores wᵢ xᵢⱼ rᵢ in scaled columns, summed over consecutive blocks: p series of at most 2 × `SCORE_BLOCKS`.
@@ -201,7 +208,7 @@ pub fn integrated_autocorrelation(series: &[f64]) -> f64 {
 
 /// n times the long-run covariance of the scores, inflated so that 1.96 standard errors cover 95 %.
 ///
-/// Ω = (1/ν) Σₖ ΛₖΛₖᵀ with Λₖ = √2 Σᵢ gᵢ cos(πk(i + ½)/n), ν = 0.4 `n_eff`^(2/3), referred to Student's t with ν degrees.
+/// Ω = (1/ν) Σₖ `Λₖ Λₖᵀ` with Λₖ = √2 Σᵢ gᵢ cos(πk(i + ½)/n), ν = 0.4 `n_eff`^(2/3), referred to Student's t with ν degrees.
 fn long_run_variance(scores: &[Vec<f64>], effective_samples: f64, p: usize, used: usize) -> DMatrix<f64> {
     let length = scores.first().map_or(0, Vec::len);
     let wanted = (0.4 * effective_samples.powf(2.0 / 3.0)).round() as usize;

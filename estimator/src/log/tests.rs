@@ -2,6 +2,7 @@
 
 use super::*;
 use proptest::prelude::*;
+use std::fmt::Write as _;
 use std::path::PathBuf;
 
 struct Folder(tempfile::TempDir);
@@ -156,7 +157,7 @@ fn a_channel_copied_from_another_trial_is_found_also_when_only_one_is_selected()
         for i in 0..100 {
             let torque = if run == 2 { (f64::from(i) * 0.3).sin() } else { (f64::from(i + run) * 0.3).sin() };
             let angle = f64::from(i * (run + 1)) * 0.01 + f64::from(run);
-            table += &format!("{run},{},{angle},{torque}\n", f64::from(i) * 0.01);
+            let _ = writeln!(table, "{run},{},{angle},{torque}", f64::from(i) * 0.01);
         }
     }
     let meta = r#"{"columns":{"trial":"run"},"select":{"run":2}}"#;
@@ -171,7 +172,7 @@ fn a_channel_copied_from_another_trial_is_found_also_when_only_one_is_selected()
 #[test]
 fn a_recording_is_written_and_reads_back_to_the_same_bits() {
     let folder = Folder::new();
-    let values = vec![0.1 + 0.2, -1e-300, 1.0 / 3.0, f64::MAX, 5e-324, 12345.678_9];
+    let values = vec![0.1 + 0.2, -1e-300, 1.0 / 3.0, f64::MAX, 5e-324, 12_345.678_9];
     let channel = |name: &str, unit: &str| Channel { name: name.into(), unit: unit.into(), values: values.clone() };
     let mut meta: Meta = serde_json::from_str(r#"{"known":{"mass_kg":1.5},"scale":{"f_N":3}}"#).expect("a sidecar");
     let recording = Recording {

@@ -56,12 +56,17 @@ fn local_weights(time: &[f64], at: f64, order: usize) -> [Vec<f64>; 3] {
     // Scaled so that the powers stay near 1.
     let reach = time.iter().map(|t| (t - at).abs()).fold(0.0, f64::max);
     let reach = if reach > 0.0 { reach } else { 1.0 };
-    let powers = DMatrix::from_fn(n, order + 1, |i, j| ((time[i] - at) / reach).powi(j as i32));
+    let powers = DMatrix::from_fn(n, order + 1, |i, j| power((time[i] - at) / reach, j));
     let pseudo = powers.svd(true, true).pseudo_inverse(1e-12).unwrap_or_else(|_| DMatrix::zeros(order + 1, n));
     let row = |k: usize, factor: f64| -> Vec<f64> {
         if k > order { vec![0.0; n] } else { pseudo.row(k).iter().map(|w| w * factor).collect() }
     };
     [row(0, 1.0), row(1, 1.0 / reach), row(2, 2.0 / (reach * reach))]
+}
+
+/// x to a small whole power.
+fn power(x: f64, exponent: usize) -> f64 {
+    (0..exponent).fold(1.0, |product, _| product * x)
 }
 
 /// The sampling period when the steps agree within 0.1 % of it, else `None`.
@@ -153,7 +158,7 @@ pub fn interpolate(time_s: &[f64], values: &[f64], wanted: &[f64]) -> Vec<f64> {
 pub fn polynomial(x: &[f64], y: &[f64], order: usize) -> Vec<f64> {
     let n = x.len().min(y.len());
     let order = order.min(n.saturating_sub(1));
-    let powers = DMatrix::from_fn(n, order + 1, |i, j| x[i].powi(j as i32));
+    let powers = DMatrix::from_fn(n, order + 1, |i, j| power(x[i], j));
     let target = DVector::from_fn(n, |i, _| y[i]);
     powers.svd(true, true).solve(&target, 1e-12).map_or_else(|_| vec![0.0; order + 1], |c| c.iter().copied().collect())
 }
