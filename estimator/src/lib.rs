@@ -3,9 +3,12 @@
 //! `log` reads, `signal` derives, `segment` says what was happening when, `identify` and `constraint` estimate, `calibrate`
 //! writes a world, `simulate` replays the measured motion through it. Every stage is a plain function between plain types.
 
+pub mod calibrate;
 pub mod constraint;
 pub mod estimate;
 pub mod identify;
 pub mod log;
+pub mod pipeline;
 pub mod segment;
 pub mod signal;
+pub mod simulate;

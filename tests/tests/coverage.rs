@@ -58,7 +58,7 @@ fn stacked_blocks_are_covered() {
         .map(|seed| {
             let (world, truth) = stacking_world(seed);
             let recording = perform(&world, seed, Skill::default(), 5, &SensorModel::TYPICAL).recording;
-            let (fit, segmentation) = estimator::identify::block::fit(&recording).expect("blocks were carried");
+            let (fit, segmentation) = estimator::identify::block::fit(&recording, None).expect("blocks were carried");
             for block in ["block-1", "block-2"] {
                 let bound = fit.parameter(block, "friction_lower_bound").expect("always reported");
                 let (value, error) = (bound.value.expect("a firm grip"), bound.std_error.expect("with its error"));
@@ -85,7 +85,7 @@ fn cranks_are_covered() {
         .map(|seed| {
             let (world, mut truth) = crank_world(seed);
             let performance = perform(&world, seed, Skill::default(), 5, &SensorModel::TYPICAL);
-            let (fit, _) = estimator::identify::crank::fit(&performance.recording).expect("the crank was turned");
+            let (fit, _) = estimator::identify::crank::fit(&performance.recording, None).expect("the crank was turned");
             // The centre that a fit can know is that of the grasp points' circle.
             *truth.get_mut(&("crank".to_owned(), "center_y_m".to_owned())).expect("drawn") +=
                 performance.grasp_offset_y_m;

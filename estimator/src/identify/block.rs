@@ -6,7 +6,7 @@
 
 use super::linear::{LinearFit, least_squares};
 use crate::estimate::{EstimateError, Fit, Parameter};
-use crate::segment::{Segmentation, segment_signals, threshold::Levels};
+use crate::segment::{Segmentation, Thresholds, segment_signals, threshold::Levels};
 use crate::signal::noise::quantum;
 use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signals};
 use haptics::Vec2;
@@ -40,10 +40,11 @@ struct Blocks<'a> {
     width_rate: Vec<f64>,
 }
 
-/// Fits the blocks of one recording. The segmentation that was used comes with the fit.
-pub fn fit(recording: &Recording) -> Result<(Fit, Segmentation), EstimateError> {
+/// Fits the blocks of one recording, with `thresholds` or those chosen from its noise. The segmentation that was used comes
+/// with the fit.
+pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit, Segmentation), EstimateError> {
     let signals = task_signals(recording)?;
-    let segmentation = segment_signals(&signals, Task::BlockStack, None)?;
+    let segmentation = segment_signals(&signals, Task::BlockStack, thresholds)?;
     let levels = Levels::of(&signals);
     let vertical: Vec<f64> = signals.velocity.iter().map(|v| v.y).collect();
     let acceleration_y = smooth(&signals.time_s, &vertical).slope;
@@ -85,6 +86,8 @@ pub fn fit(recording: &Recording) -> Result<(Fit, Segmentation), EstimateError> 
         parameters.push(blocks.width(number)?);
     }
     parameters.extend(blocks.heights(count)?);
+    parameters.push(blocks.pad_stiffness(count));
+    parameters.push(blocks.pad_shear_stiffness(count));
     for number in 1..=count {
         parameters.extend(blocks.friction(number));
     }
@@ -192,6 +195,29 @@ impl Blocks<'_> {
         let how = "mean distance of the tips while held; the grip was too even to tell the pads' give, so 7 % is added \
                    to the error";
         Ok(Parameter::identified(&name, "width_m", fit.values[0], error, samples.len(), how))
+    }
+
+    /// Stiffness of one pad: both give under the grip, so the width falls by 2 F / k. Blocks averaged by their errors.
+    fn pad_stiffness(&self, count: usize) -> Parameter {
+        let slopes = (1..=count).filter_map(|number| {
+            let [pick, carry, place] = ["pick-up", "carry", "place"].map(|verb| format!("{verb}-block-{number}"));
+            let rows = self.rows(&self.samples(&[&pick, &carry, &place]));
+            let column = |series: &[f64]| rows.iter().map(|i| series[*i]).collect::<Vec<f64>>();
+            let fit = intercept(&column(&self.width), &[column(&self.grip), column(&self.width_rate)]).ok()?;
+            fit.identified[1].then(|| (-0.5 * fit.values[1], 0.5 * fit.std_errors[1], rows.len()))
+        });
+        pad_parameter("stiffness_N_m", slopes, "the grip varied too little to tell the pads' give")
+    }
+
+    /// Tangential stiffness of one pad: both carry the lift, so the grip height rises by F / 2 k over a block that rests.
+    fn pad_shear_stiffness(&self, count: usize) -> Parameter {
+        let slopes = (1..=count).flat_map(|number| ["pick-up", "place"].map(|verb| format!("{verb}-block-{number}")));
+        let slopes = slopes.filter_map(|subtask| {
+            let samples = self.samples(&[&subtask]);
+            let fit = self.unloaded_height(&samples, 0.0).ok()?;
+            fit.identified[1].then(|| (2.0 * fit.values[1], 2.0 * fit.std_errors[1], self.rows(&samples).len()))
+        });
+        pad_parameter("shear_stiffness_N_m", slopes, "the lift varied too little while a block rested")
     }
 
     /// Heights from where the blocks were picked up and put down.
@@ -305,6 +331,24 @@ impl Blocks<'_> {
             end += 1;
         }
         (first..end).map(|j| self.force(finger, j)).sum::<Vec2>() / (end - first) as f64
+    }
+}
+
+/// A stiffness from several measurements of a give (value, standard error, rows), averaged by their errors.
+fn pad_parameter(name: &str, gives: impl Iterator<Item = (f64, f64, usize)>, missing: &str) -> Parameter {
+    const SIGNIFICANT: f64 = 3.0;
+    let (mut weights, mut sum, mut rows) = (0.0, 0.0, 0);
+    for (give, error, count) in gives.filter(|(_, error, _)| *error > 0.0 && error.is_finite()) {
+        weights += error.powi(-2);
+        sum += give * error.powi(-2);
+        rows += count;
+    }
+    let (give, error) = (sum / weights, weights.powf(-0.5));
+    if weights > 0.0 && give > SIGNIFICANT * error {
+        let how = "give of the pads under load, one pad";
+        Parameter::identified("pad", name, 1.0 / give, error / (give * give), rows, how)
+    } else {
+        Parameter::unidentified("pad", name, rows, missing)
     }
 }
 

@@ -6,7 +6,7 @@
 
 use super::linear::{LinearFit, least_squares};
 use crate::estimate::{Constraint, ConstraintKind, EstimateError, Fit, Parameter, Quality};
-use crate::segment::{Segmentation, segment};
+use crate::segment::{Segmentation, Thresholds, segment};
 use crate::signal::derive::savitzky_golay;
 use crate::signal::noise::{quantum, white_noise};
 use crate::signal::task::{TaskSignals, TipSeries, half_width, is_two_fingered, task_signals, times, tip_series};
@@ -64,9 +64,10 @@ struct Geometry {
     rms_m: f64,
 }
 
-/// Fits one recording of a crank. The segmentation that was used comes with the fit.
-pub fn fit(recording: &Recording) -> Result<(Fit, Segmentation), EstimateError> {
-    let segmentation = segment(recording, Some(Task::Crank), None)?;
+/// Fits one recording of a crank, with `thresholds` or those chosen from its noise. The segmentation that was used comes with
+/// the fit.
+pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit, Segmentation), EstimateError> {
+    let segmentation = segment(recording, Some(Task::Crank), thresholds)?;
     let held = held(recording, &segmentation)?;
     if held.turning.len() < LEAST_SAMPLES {
         return Err(EstimateError::TooFewSamples {

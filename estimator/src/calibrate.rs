@@ -1,0 +1,222 @@
+//! From a fit to a world: measured numbers go in with their errors, what was not measured is a stated assumption.
+
+use crate::estimate::{Fit, Parameter};
+use crate::identify::mechanism;
+use crate::segment::Segmentation;
+use crate::signal::task::{is_two_fingered, task_signals};
+use haptics::Vec2;
+use haptics::law::{CoulombFriction, Effect, Inertia, LoadFriction, ViscousFriction, Weight};
+use haptics::recording::{Recording, Task};
+use haptics::world::{Block, Crank, Floor, Provenance, Source, World};
+
+/// Height of a block that no carry spanned, m.
+const ASSUMED_HEIGHT_M: f64 = 0.015;
+/// Friction where not even a lower bound was seen.
+const ASSUMED_FRICTION: f64 = 0.8;
+/// Spare above a lower bound of friction: the operator kept a margin (Johansson & Westling 1984 find 10 to 40 %).
+const FRICTION_MARGIN: f64 = 1.3;
+/// Handle mass where the turning was too even to show it, kg.
+const ASSUMED_HANDLE_KG: f64 = 0.03;
+
+/// The calibrated world of a fit.
+pub fn world(task: Task, recordings: &[Recording], fit: &Fit, segmentations: &[Option<Segmentation>]) -> World {
+    let Some(recording) = recordings.first() else { return World::empty("nothing") };
+    let mut world = World::empty(&format!("calibrated from {}", recording.name));
+    world.hand = recording.meta.hand();
+    world.gravity_m_s2 = recording.meta.gravity();
+    let mut builder = Builder { world, fit, from: recording.name.clone() };
+    builder.pads();
+    let segmentation = segmentations.first().and_then(Option::as_ref);
+    match task {
+        Task::BlockStack | Task::Barrel => builder.blocks(recording, segmentation),
+        Task::Crank => builder.crank(recording, segmentation),
+        _ => {
+            builder.world.floor = None;
+            builder.world.mechanism = Some(mechanism::world(fit, recording));
+            builder.note_all("mechanism");
+        }
+    }
+    builder.world
+}
+
+struct Builder<'a> {
+    world: World,
+    fit: &'a Fit,
+    from: String,
+}
+
+impl Builder<'_> {
+    /// A parameter's value with its origin noted, or an assumption with its reason.
+    fn take(&mut self, object: &str, name: &str, assumed: f64) -> f64 {
+        match self.fit.parameter(object, name) {
+            Some(Parameter { value: Some(value), std_error, .. }) => {
+                self.note(object, name, *value, *std_error, Source::Measured, &self.from.clone());
+                *value
+            }
+            other => {
+                let why = other.map_or("the recording does not show it", |p| p.how.as_str()).to_owned();
+                self.note(object, name, assumed, None, Source::Assumed, &why);
+                assumed
+            }
+        }
+    }
+
+    fn note(&mut self, object: &str, name: &str, value: f64, std_error: Option<f64>, source: Source, from: &str) {
+        self.world.provenance.push(Provenance {
+            object: object.to_owned(),
+            name: name.to_owned(),
+            value,
+            std_error,
+            source,
+            from: from.to_owned(),
+        });
+    }
+
+    fn note_all(&mut self, object: &str) {
+        let measured: Vec<Parameter> = self.fit.parameters.iter().filter(|p| p.object == object).cloned().collect();
+        for parameter in measured {
+            if let Some(value) = parameter.value {
+                let from = self.from.clone();
+                self.note(object, &parameter.name, value, parameter.std_error, Source::Measured, &from);
+            }
+        }
+    }
+
+    fn pads(&mut self) {
+        let default = self.world.pad;
+        if self.fit.parameter("pad", "stiffness_N_m").is_some() {
+            self.world.pad.stiffness_n_m = self.take("pad", "stiffness_N_m", default.stiffness_n_m);
+            self.world.pad.shear_stiffness_n_m = self.take("pad", "shear_stiffness_N_m", default.shear_stiffness_n_m);
+        } else if let Some((stiffness, std_error)) =
+            self.fit.parameter("crank", "constraint_stiffness_N_m").and_then(|p| Some((p.value?, p.std_error)))
+        {
+            // Two pads side by side carry the handle: each has half of what was seen.
+            let from = format!("half of the crank's radial stiffness, {}", self.from);
+            self.world.pad.stiffness_n_m = 0.5 * stiffness;
+            self.world.pad.shear_stiffness_n_m = 0.5 * stiffness;
+            self.note("pad", "stiffness_N_m", 0.5 * stiffness, std_error.map(|e| 0.5 * e), Source::Measured, &from);
+        }
+    }
+
+    fn blocks(&mut self, recording: &Recording, segmentation: Option<&Segmentation>) {
+        let count = (1..).take_while(|n| self.fit.parameter(&format!("block-{n}"), "weight_N").is_some()).count();
+        let spots = segmentation.and_then(|s| picked_and_placed(recording, s, count));
+        for number in 1..=count {
+            let name = format!("block-{number}");
+            let mass = self.take(&name, "mass_kg", 0.03).max(1e-4);
+            let width = self.take(&name, "width_m", 0.02).max(1e-3);
+            let height = self.take(&name, "height_m", ASSUMED_HEIGHT_M).max(1e-3);
+            let mut block = Block::upright(&name, mass, width, height, 0.0, 0.0);
+            block.finger_friction = self.friction(&name);
+            self.world.blocks.push(block);
+        }
+        self.place(spots.as_deref().unwrap_or(&[]));
+    }
+
+    fn friction(&mut self, name: &str) -> f64 {
+        if let Some(friction) = self.fit.value(name, "friction") {
+            return self.take(name, "friction", friction);
+        }
+        let Some(bound) = self.fit.value(name, "friction_lower_bound") else {
+            return self.take(name, "friction", ASSUMED_FRICTION);
+        };
+        let friction = (FRICTION_MARGIN * bound).max(0.3);
+        let why = format!("no slip was seen: the lower bound {bound:.2} with a margin of 30 %");
+        self.note(name, "friction", friction, None, Source::Assumed, &why);
+        friction
+    }
+
+    /// Puts the blocks where they were picked up and the floor under them, taking them as gripped at mid-height.
+    fn place(&mut self, spots: &[Spot]) {
+        let floor_of = |spot: &Spot, block: &Block| spot.y_m - 0.5 * block.height_m;
+        // What was put on the floor last in the thesis's task: block 1. It shows the floor best.
+        let floor = spots.first().zip(self.world.blocks.first()).map(|(spot, block)| floor_of(&spot.placed(), block));
+        let height = floor.unwrap_or(Floor::default().height_m);
+        self.world.floor = Some(Floor { height_m: height, ..Floor::default() });
+        let why = "where block 1 was put down, gripped at mid-height";
+        self.note("floor", "height_m", height, None, Source::Assumed, why);
+        let mut base = height;
+        for index in (0..self.world.blocks.len()).rev() {
+            let block = &mut self.world.blocks[index];
+            let x = spots.get(index).map_or(-0.014, |spot| spot.x_m);
+            block.start.center_m = Vec2::new(x, base + 0.5 * block.height_m);
+            base += block.height_m;
+        }
+    }
+
+    fn crank(&mut self, recording: &Recording, segmentation: Option<&Segmentation>) {
+        self.world.floor = None;
+        let center_m = Vec2::new(self.take("crank", "center_x_m", 0.0), self.take("crank", "center_y_m", -0.1));
+        let radius_m = self.take("crank", "radius_m", 0.02).max(1e-3);
+        let inertia = self.take("crank", "inertia_kg_m2", ASSUMED_HANDLE_KG * radius_m.powi(2));
+        let (width, start) = handle(recording, segmentation, center_m, self.world.pad.stiffness_n_m);
+        self.note("crank", "handle_width_m", width, None, Source::Assumed, "distance of the tips plus the pads' give");
+        let friction = self.take("crank", "finger_friction", 1.0);
+        let mut effect = |law, name: &str| Effect::new(law, &[self.take("crank", name, 0.0).max(0.0)]);
+        let effects = vec![
+            effect(&Weight, "weight_N"),
+            effect(&LoadFriction, "friction_mu"),
+            effect(&ViscousFriction, "viscous_N_s_m"),
+            effect(&CoulombFriction, "coulomb_N"),
+            Effect::new(&Inertia, &[(inertia / radius_m.powi(2)).max(1e-3)]),
+        ];
+        self.world.crank = Some(Crank {
+            center_m,
+            radius_m,
+            handle_width_m: width,
+            finger_friction: friction,
+            constraint_stiffness_n_m: None,
+            effects,
+            start_rad: start,
+        });
+    }
+}
+
+/// Where a block was picked up and put down, by the middle of the grip, m.
+struct Spot {
+    x_m: f64,
+    y_m: f64,
+    placed_m: Vec2,
+}
+
+impl Spot {
+    fn placed(&self) -> Self {
+        Self { x_m: self.placed_m.x, y_m: self.placed_m.y, placed_m: self.placed_m }
+    }
+}
+
+fn picked_and_placed(recording: &Recording, segmentation: &Segmentation, count: usize) -> Option<Vec<Spot>> {
+    let signals = task_signals(recording).ok()?;
+    let mean = |subtask: String| {
+        let samples = segmentation.samples_of(&subtask);
+        (!samples.is_empty()).then(|| samples.iter().map(|i| signals.position[*i]).sum::<Vec2>() / samples.len() as f64)
+    };
+    (1..=count)
+        .map(|n| {
+            let picked = mean(format!("pick-up-block-{n}"))?;
+            let placed_m = mean(format!("place-block-{n}")).unwrap_or(picked);
+            Some(Spot { x_m: picked.x, y_m: picked.y, placed_m })
+        })
+        .collect()
+}
+
+/// Width of the handle between the pads, m, and the angle at which it was grasped, rad.
+fn handle(recording: &Recording, segmentation: Option<&Segmentation>, center_m: Vec2, pad_n_m: f64) -> (f64, f64) {
+    let fallback = (0.010, -std::f64::consts::FRAC_PI_2);
+    if !is_two_fingered(recording) {
+        return fallback;
+    }
+    let (Ok(signals), Some(segmentation)) = (task_signals(recording), segmentation) else { return fallback };
+    let held: Vec<usize> = segmentation
+        .states
+        .iter()
+        .filter(|i| i.state != crate::segment::SystemState::FreeMotion)
+        .flat_map(|i| i.first..i.end)
+        .collect();
+    let Some(first) = held.first() else { return fallback };
+    let n = held.len() as f64;
+    let width = held.iter().map(|i| signals.grip_width_m[*i]).sum::<f64>() / n;
+    let grip = held.iter().map(|i| signals.grip_force_n[*i]).sum::<f64>() / n;
+    let outward = signals.position[*first] - center_m;
+    ((width + 2.0 * grip / pad_n_m).max(1e-3), outward.y.atan2(outward.x))
+}

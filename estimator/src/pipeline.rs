@@ -1,0 +1,174 @@
+//! The whole way from recordings to a calibrated world, for the command line, the app and the tests alike.
+
+use crate::calibrate;
+use crate::estimate::{EstimateError, Fit, Parameter};
+use crate::identify::{block, crank, mechanism};
+use crate::segment::{Segmentation, Thresholds, segment, task_of};
+use haptics::recording::{Recording, Task};
+use haptics::world::World;
+
+/// What may be stated by the user.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options {
+    /// The task; told from sidecar and columns when absent.
+    pub task: Option<Task>,
+    /// Thresholds; chosen from the noise when absent.
+    pub thresholds: Option<Thresholds>,
+}
+
+/// Everything that one or several recordings of the same object show.
+#[derive(Clone, Debug)]
+pub struct Analysis {
+    /// The task they were read as.
+    pub task: Task,
+    /// Parameters and constraints.
+    pub fit: Fit,
+    /// Segmentation of every recording, where there is one (a clockless path has none).
+    pub segmentations: Vec<Option<Segmentation>>,
+    /// A world with the fitted values.
+    pub world: World,
+}
+
+/// Segments, fits and calibrates. All recordings must be of one task and one object.
+pub fn analyse(recordings: &[Recording], options: &Options) -> Result<Analysis, EstimateError> {
+    let first = recordings
+        .first()
+        .ok_or_else(|| EstimateError::Other("no recording was given; name at least one log".to_owned()))?;
+    let task = task_of(first, options.task)?;
+    for recording in &recordings[1..] {
+        let other = task_of(recording, options.task)?;
+        if other != task {
+            return Err(EstimateError::Other(format!(
+                "{} is of the task {} and {} of {}; fit them one after the other",
+                first.name,
+                task.name(),
+                recording.name,
+                other.name()
+            )));
+        }
+    }
+    let (fit, segmentations) = match task {
+        Task::BlockStack => each(recordings, |r| block::fit(r, options.thresholds))?,
+        Task::Crank => each(recordings, |r| crank::fit(r, options.thresholds))?,
+        Task::Mechanism => {
+            let fit = mechanism::fit(recordings)?;
+            let segmentations = recordings.iter().map(|r| segment(r, Some(task), options.thresholds).ok()).collect();
+            (fit, segmentations)
+        }
+        Task::Needle | Task::Barrel | Task::Switch => {
+            return Err(EstimateError::Other(format!(
+                "recordings of the task {} cannot be fitted yet; block-stack, crank and mechanism can",
+                task.name()
+            )));
+        }
+    };
+    let world = calibrate::world(task, recordings, &fit, &segmentations);
+    Ok(Analysis { task, fit, segmentations, world })
+}
+
+type Fitted = (Fit, Vec<Option<Segmentation>>);
+
+/// Fits every recording by itself and combines the parameters.
+fn each(
+    recordings: &[Recording],
+    fit: impl Fn(&Recording) -> Result<(Fit, Segmentation), EstimateError>,
+) -> Result<Fitted, EstimateError> {
+    let mut fits = Vec::new();
+    let mut segmentations = Vec::new();
+    for recording in recordings {
+        let (one, segmentation) = fit(recording)?;
+        fits.push(one);
+        segmentations.push(Some(segmentation));
+    }
+    Ok((combine(fits), segmentations))
+}
+
+/// Recordings that disagree by more than this many standard errors are said to.
+const DISAGREEMENT: f64 = 3.0;
+
+/// Averages equal parameters of several fits by their errors; the rest is listed one after the other.
+fn combine(fits: Vec<Fit>) -> Fit {
+    let several = fits.len() > 1;
+    let mut all = fits.into_iter();
+    let Some(mut total) = all.next() else { return Fit::default() };
+    for fit in all {
+        total.constraints.extend(fit.constraints);
+        for warning in fit.warnings {
+            if !total.warnings.contains(&warning) {
+                total.warnings.push(warning);
+            }
+        }
+        for parameter in fit.parameters {
+            match total.parameters.iter_mut().find(|p| p.object == parameter.object && p.name == parameter.name) {
+                Some(mean) => {
+                    if let Some(warning) = merge(mean, &parameter) {
+                        total.warnings.push(warning);
+                    }
+                }
+                None => total.parameters.push(parameter),
+            }
+        }
+    }
+    if several {
+        // It belonged to the first recording only.
+        total.quality = None;
+    }
+    total
+}
+
+/// Takes a second measurement into a first one. A lower bound is not averaged: the larger one holds for both.
+fn merge(mean: &mut Parameter, other: &Parameter) -> Option<String> {
+    let (Some(b), Some(eb)) = (other.value, other.std_error) else { return None };
+    let (Some(a), Some(ea)) = (mean.value, mean.std_error) else {
+        *mean = other.clone();
+        return None;
+    };
+    if mean.name == "friction_lower_bound" {
+        if b > a {
+            *mean = other.clone();
+        }
+        return None;
+    }
+    let apart = (a - b).abs() / ea.hypot(eb).max(f64::MIN_POSITIVE);
+    let (wa, wb) = (ea.max(1e-300).powi(-2), eb.max(1e-300).powi(-2));
+    mean.value = Some((a * wa + b * wb) / (wa + wb));
+    // When they disagree, the spread between them is the better error.
+    mean.std_error = Some((wa + wb).powf(-0.5) * (apart / std::f64::consts::SQRT_2).max(1.0));
+    mean.samples += other.samples;
+    (apart > DISAGREEMENT).then(|| {
+        format!(
+            "the recordings disagree about {} {}: {a:.4} and {b:.4}, {apart:.1} standard errors apart; were they of the same object?",
+            mean.object, mean.name
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fit(value: f64, error: f64) -> Fit {
+        Fit { parameters: vec![Parameter::identified("crank", "radius_m", value, error, 10, "")], ..Fit::default() }
+    }
+
+    #[test]
+    fn equal_errors_average_and_shrink() {
+        let total = combine(vec![fit(1.0, 0.1), fit(1.1, 0.1)]);
+        let p = total.parameter("crank", "radius_m").expect("combined");
+        assert!((p.value.expect("a value") - 1.05).abs() < 1e-12);
+        assert!((p.std_error.expect("an error") - 0.1 / 2.0_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(p.samples, 20);
+    }
+
+    #[test]
+    fn a_disagreement_is_said_and_widens_the_error() {
+        let total = combine(vec![fit(1.0, 0.01), fit(1.2, 0.01)]);
+        assert!(total.warnings.iter().any(|w| w.contains("disagree")));
+        assert!(total.parameters[0].std_error.expect("an error") > 0.05);
+    }
+
+    #[test]
+    fn nothing_to_fit_is_a_sentence() {
+        assert!(analyse(&[], &Options::default()).expect_err("no recording").to_string().contains("no recording"));
+    }
+}

@@ -1,0 +1,131 @@
+//! The measured motion through a world: what forces would have been felt?
+
+use crate::estimate::EstimateError;
+use crate::identify::mechanism;
+use crate::segment::task_of;
+use crate::signal::task::{TipSeries, is_two_fingered, task_signals};
+use haptics::Vec2;
+use haptics::recording::{Channel, Recording, Task};
+use haptics::world::{Input, State, World, step};
+
+/// Longest step of the simulation, s: that of the usual servo.
+const STEP_S: f64 = 1e-3;
+
+/// Predicted forces at the recording's sample times.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulation {
+    /// Sample times, s (sample numbers for a clockless log).
+    pub time_s: Vec<f64>,
+    /// Predicted channels, named like the measured ones (`fx1_N`, `f_N`, …).
+    pub predicted: Vec<Channel>,
+    /// RMS of measured minus predicted by channel, where it was measured, in the channel's unit.
+    pub residual_rms: Vec<(String, f64)>,
+}
+
+impl Simulation {
+    /// The prediction as a recording of its own, with the measured channels beside it as `measured_<name>`.
+    pub fn to_recording(&self, recording: &Recording) -> Recording {
+        let mut channels = self.predicted.clone();
+        for channel in &self.predicted {
+            if let Some(measured) = recording.channel(&channel.name) {
+                channels.push(Channel {
+                    name: format!("measured_{}", channel.name),
+                    unit: channel.unit.clone(),
+                    values: measured.to_vec(),
+                });
+            }
+        }
+        Recording {
+            name: format!("simulation of {}", recording.name),
+            time_s: Some(self.time_s.clone()),
+            channels,
+            meta: recording.meta.clone(),
+            ..Recording::default()
+        }
+    }
+}
+
+/// Runs the measured motion of `recording` through `world`.
+pub fn simulate(world: &World, recording: &Recording) -> Result<Simulation, EstimateError> {
+    let task =
+        task_of(recording, None).or_else(|error| world.mechanism.as_ref().map(|_| Task::Mechanism).ok_or(error))?;
+    if let (Some(model), true) = (&world.mechanism, task == Task::Mechanism || !is_two_fingered(recording)) {
+        let unit =
+            if recording.channel("q_rad").is_some() || recording.channel("tau_Nm").is_some() { "Nm" } else { "N" };
+        let name = if unit == "Nm" { "tau_Nm" } else { "f_N" };
+        let values = mechanism::predict(model, recording)?;
+        let measured = match recording.channel(name) {
+            Some(measured) => Some(measured.to_vec()),
+            None => mechanism::measured(model, recording)?,
+        };
+        let channel = Channel { name: name.to_owned(), unit: unit.to_owned(), values };
+        return Ok(assemble(recording, vec![channel], |_| measured.clone()));
+    }
+    if !is_two_fingered(recording) {
+        return Err(EstimateError::Other(format!(
+            "{} has a single tool, and this world has no mechanism for it; fit the recording to make one",
+            recording.name
+        )));
+    }
+    if world.blocks.is_empty() && world.crank.is_none() {
+        return Err(EstimateError::Other("the world holds nothing that two fingers could touch".to_owned()));
+    }
+    let forces = play(world, recording)?;
+    let channel = |name: &str, finger: usize, pick: fn(&Vec2) -> f64| Channel {
+        name: name.to_owned(),
+        unit: "N".to_owned(),
+        values: forces[finger].iter().map(pick).collect(),
+    };
+    let predicted = vec![
+        channel("fx1_N", 0, |f| f.x),
+        channel("fy1_N", 0, |f| f.y),
+        channel("fx2_N", 1, |f| f.x),
+        channel("fy2_N", 1, |f| f.y),
+    ];
+    Ok(assemble(recording, predicted, |name| recording.channel(name).map(<[f64]>::to_vec)))
+}
+
+fn assemble(recording: &Recording, predicted: Vec<Channel>, measured: impl Fn(&str) -> Option<Vec<f64>>) -> Simulation {
+    let residual_rms = predicted
+        .iter()
+        .filter_map(|channel| {
+            let measured = measured(&channel.name)?;
+            let n = measured.len().min(channel.values.len()).max(1) as f64;
+            let square: f64 = measured.iter().zip(&channel.values).map(|(m, p)| (m - p).powi(2)).sum();
+            Some((channel.name.clone(), (square / n).sqrt()))
+        })
+        .collect();
+    Simulation { time_s: crate::signal::task::times(recording), predicted, residual_rms }
+}
+
+/// Moves the world's fingers as they were measured; the force of each tip on the environment at every sample, N.
+fn play(world: &World, recording: &Recording) -> Result<[Vec<Vec2>; 2], EstimateError> {
+    let signals = task_signals(recording)?;
+    let n = signals.len();
+    let tip = |finger: usize, i: usize| signals.tips[finger].position[i];
+    let mut state = State::new(world, [tip(0, 0), tip(1, 0)]);
+    let mut forces = [Vec::with_capacity(n), Vec::with_capacity(n)];
+    for i in 0..n {
+        if i > 0 {
+            let gap_s = signals.time_s[i] - signals.time_s[i - 1];
+            let parts = (gap_s / STEP_S).ceil().max(1.0) as usize;
+            for part in 1..=parts {
+                let share = part as f64 / parts as f64;
+                let between = |finger: usize| tip(finger, i - 1) + (tip(finger, i) - tip(finger, i - 1)) * share;
+                let input = Input {
+                    tip_in_world: [between(0), between(1)],
+                    tip_velocity: [velocity(&signals.tips[0], i), velocity(&signals.tips[1], i)],
+                };
+                step(world, &mut state, &input, gap_s / parts as f64);
+            }
+        }
+        for (finger, series) in forces.iter_mut().enumerate() {
+            series.push(state.tip_force_n[finger]);
+        }
+    }
+    Ok(forces)
+}
+
+fn velocity(tip: &TipSeries, i: usize) -> Vec2 {
+    tip.velocity.as_ref().map_or_else(Vec2::zeros, |v| v[i])
+}
