@@ -9,6 +9,8 @@ use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::identify::linear::{LinearFit, least_squares};
 use haptics::law::Coordinate;
 
+/// Relative error of the integration that the refinement rests on.
+const INTEGRATION_ERROR: f64 = 2e-5;
 /// Ratios that are reported when nothing gives the scale.
 const RATIO_NAMES: [(Term, &str, &str); 4] = [
     (Term::Viscous, "viscous_per_inertia_1_s", "viscous_per_mass_1_s"),
@@ -35,7 +37,12 @@ pub fn fit(raws: &[Raw], pieces: &[Piece], known: &Known) -> Result<Fit, Estimat
     let coordinate = raws[0].coordinate;
     let mut result = Fit { task: "mechanism".to_owned(), ..Fit::default() };
     let samples = pieces.iter().map(|p| p.usable.iter().filter(|u| **u).count()).sum();
-    let ratios = ratios(pieces, known, coordinate)?;
+    let mut ratios = ratios(pieces, known, coordinate)?;
+    if ratios.fit.identified.iter().all(|i| *i)
+        && let Some(refined) = super::swing::refine(raws, pieces, &ratios.terms, &ratios.fit.values)
+    {
+        ratios.fit = refined;
+    }
     let scale = scale(&ratios, known);
     let Some((inertia, relative_error)) = scale else {
         unscaled(&mut result, &ratios, coordinate, samples);
@@ -109,7 +116,7 @@ fn scale(ratios: &Ratios, known: &Known) -> Option<(f64, f64)> {
         let (a, error) = ratios.get(Term::GravitySine)?;
         let b = ratios.get(Term::GravityCosine).map_or(0.0, |(b, _)| b);
         let ratio = a.hypot(b);
-        return (ratio > 3.0 * error).then(|| (moment / ratio, error / ratio));
+        return (ratio > 3.0 * error).then(|| (moment / ratio, (error / ratio).hypot(INTEGRATION_ERROR)));
     }
     let other = [Term::Viscous, Term::Coulomb].into_iter().find_map(|t| Some((known.value(t)?, ratios.get(t)?)));
     let (value, (ratio, error)) = other?;

@@ -9,6 +9,8 @@ use crate::identify::linear::LinearFit;
 /// Evidence (log-likelihood ratio less the BIC penalty) that a gravity moment must bring. 10 is "very strong" (Kass and
 /// Raftery 1995).
 const EVIDENCE: f64 = 10.0;
+/// … and a value this many standard errors from zero.
+const CLEAR_T: f64 = 4.0;
 /// Smallest range of the angle in which sine and line can differ, rad.
 const MIN_RANGE_RAD: f64 = 0.3;
 
@@ -42,7 +44,8 @@ pub fn decide(pieces: &[Piece], base: &[Term], known: &Known) -> Result<Gravity,
             - parameters * independent.ln()
     };
     let (alone, phased) = (gain(&plain, &one, 1.0), gain(&plain, &two, 2.0));
-    if alone.max(phased) < EVIDENCE {
+    let clear = |f: &LinearFit| (base.len()..f.values.len()).any(|i| f.t_value(i).abs() > CLEAR_T);
+    if alone.max(phased) < EVIDENCE || !(clear(&one) || clear(&two)) {
         return Ok(Gravity::Absent("no gravity moment stands out of the residual".to_owned()));
     }
     if gain(&plain, &spring, 1.0) > alone.max(phased) + 1e-9 {

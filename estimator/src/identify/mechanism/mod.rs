@@ -11,6 +11,7 @@ pub mod path;
 mod regress;
 mod report;
 mod signals;
+mod swing;
 mod terms;
 mod world;
 

@@ -228,15 +228,15 @@ fn a_free_pendulum_is_recovered_from_its_known_gravity_moment() {
         let mut recording = pendulum(truth, 1.2, hanging_at, 200.0, 2e-4);
         recording.meta.known = [("mass_kg".to_owned(), mass), ("com_m".to_owned(), arm)].into();
         let fit = fit(std::slice::from_ref(&recording)).expect("fits");
-        demand(&fit, "inertia_kg_m2", truth.inertia, 0.01);
-        demand(&fit, "viscous_Nm_s", truth.viscous, 0.1);
-        demand(&fit, "coulomb_Nm", truth.coulomb, 0.15);
-        assert!((fit.value(OBJECT, PHASE).expect("hanging") - hanging_at).abs() < 5e-3);
+        demand(&fit, "inertia_kg_m2", truth.inertia, 1e-4);
+        demand(&fit, "viscous_Nm_s", truth.viscous, 0.02);
+        demand(&fit, "coulomb_Nm", truth.coulomb, 0.02);
+        assert!((fit.value(OBJECT, PHASE).expect("hanging") - hanging_at).abs() < 1e-3);
         recording.meta = Meta::default();
         let blind = super::fit(&[recording]).expect("fits");
         refuses(&blind, "inertia_kg_m2", "only ratios");
         let ratio = blind.value(OBJECT, "viscous_per_inertia_1_s").expect("a ratio");
-        assert!((ratio / (truth.viscous / truth.inertia) - 1.0).abs() < 0.1);
+        assert!((ratio / (truth.viscous / truth.inertia) - 1.0).abs() < 0.02);
     }
 }
 
