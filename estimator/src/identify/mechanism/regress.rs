@@ -12,6 +12,8 @@ const DISTINCT: f64 = 0.05;
 const STEADY_DIRECTION: f64 = 0.98;
 /// Smaller share of the moving time that must lie in each direction for a reversal to count.
 const REVERSAL_SHARE: f64 = 0.02;
+/// Standard deviation of the place of a reversal between two samples, in samples: that of a uniform distribution.
+const SKEW_SAMPLES: f64 = 0.29;
 /// The velocity must exceed its noise by this much to be a motion.
 const MOTION_RATIO: f64 = 2.0;
 
@@ -117,10 +119,11 @@ impl System {
     }
 }
 
-/// 1 where the sign of the motion is anybody's guess, 0 where it is certain: velocity noise and half a sample of skew.
+/// 1 where the sign of the motion is anybody's guess, 0 where it is certain: velocity noise and the place
+/// of the reversal between two samples.
 fn direction_uncertainty(piece: &Piece) -> Vec<f64> {
     let blur = |m: &haptics::law::Motion| {
-        1.2 * piece.velocity_noise.hypot(m.acceleration * piece.period_s).max(f64::MIN_POSITIVE)
+        1.2 * piece.velocity_noise.hypot(SKEW_SAMPLES * m.acceleration * piece.period_s).max(f64::MIN_POSITIVE)
     };
     piece.motion.iter().map(|m| 1.0 - (m.velocity / blur(m)).tanh().powi(2)).collect()
 }
