@@ -10,7 +10,7 @@ use std::io::{BufReader, Read as _};
 use std::path::{Path, PathBuf};
 
 /// How many bytes are looked at to tell a table from something else.
-const SNIFF_BYTES: usize = 8192;
+const SNIFF_BYTES: usize = 1 << 16;
 
 /// What the first bytes of a file say about it.
 #[derive(Debug)]
@@ -72,6 +72,9 @@ pub fn sniff(path: &Path) -> Result<Dialect, LogError> {
     let not_a_table = |why: &str| LogError::NotATable { why: why.to_owned(), path: path.to_path_buf() };
     if start.starts_with(b"PAR1") || start.starts_with(b"\x89MCAP") {
         return Err(not_a_table("a Parquet or MCAP file, read here as text"));
+    }
+    if start.starts_with(&[0xff, 0xfe]) || start.starts_with(&[0xfe, 0xff]) {
+        return Err(not_a_table("UTF-16 text; save it as UTF-8"));
     }
     if start.contains(&0) {
         return Err(not_a_table("binary data"));

@@ -170,7 +170,8 @@ fn notes(plan: &Plan, table: &Table, headers: &[String], recording: &Recording) 
         text,
     };
     let mut notes: Vec<Warning> = plan.notes.iter().map(|n| note("columns", None, n.clone())).collect();
-    for &column in table.text_columns.iter().filter(|&&c| !headers[c].is_empty()) {
+    let named = |c: usize| !headers[c].is_empty() && !plan.select.iter().any(|w| w.column == c);
+    for &column in table.text_columns.iter().filter(|&&c| named(c)) {
         let name = &headers[column];
         notes.push(note("text-column", Some(name), format!("the column `{name}` holds text and is not used")));
     }

@@ -40,6 +40,7 @@ fn bad_tables_end_in_one_sentence_each() {
     assert!(refusal(" \n\n").contains("empty"));
     assert!(refusal("t_s,q_m\n").contains("no samples"));
     assert!(refusal("# only a comment\n").contains("no samples"));
+    assert!(refusal(b"\xff\xfet\0_\0s\0").contains("UTF-16"));
     assert!(refusal([0x89, b'P', b'N', b'G', 0, 1, 2]).contains("binary"));
     assert!(refusal("Dear all,\nthe log is attached.\nYours\n").contains("has 1 cells and the header has 2"));
     assert!(refusal("notes\nhello\nworld\n").contains("no column holds numbers"));
@@ -69,6 +70,16 @@ fn bad_files_end_in_one_sentence_each() {
     file.set_len(5_000_000_000).expect("a sparse file");
     let text = sentence(&large);
     assert!(text.contains("4.7 GiB") && text.contains("at most 4.0 GiB"), "{text}");
+}
+
+#[test]
+fn a_table_that_grows_while_it_is_read_is_refused() {
+    let folder = Folder::new();
+    let path = folder.0.path().join("log.csv");
+    std::fs::write(&path, "t_s,q_m\n0,1\n1,2\n").expect("writable");
+    // The size that was seen before reading: four bytes have come since.
+    let error = load_with(&path, &Meta::default(), 12).expect_err("refused").to_string();
+    assert!(error.contains("changed from 12 to 16 bytes"), "{error}");
 }
 
 #[test]
