@@ -1,0 +1,66 @@
+# Sourced by ./run and ./test: sees to it that what they need at build and run time is there.
+# Everything is either found, installed through apt (as root or with passwordless sudo), or asked for in one sentence.
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then "$@"; else sudo -n "$@"; fi
+}
+
+can_install() {
+  command -v apt-get >/dev/null 2>&1 || return 1
+  [ "$(id -u)" = 0 ] || sudo -n true >/dev/null 2>&1
+}
+
+# need WHAT PACKAGE...: installs the packages, or says that they are needed.
+need() {
+  what=$1
+  shift
+  if can_install; then
+    echo "Installing $* ($what)." >&2
+    if [ -z "${TOUCHSTONE_APT_UPDATED:-}" ]; then
+      as_root apt-get update -qq >&2 || true
+      TOUCHSTONE_APT_UPDATED=1
+    fi
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null 2>&1 && return 0
+  fi
+  echo "Please install $* ($what); it could not be installed from here." >&2
+  return 1
+}
+
+have_library() {
+  { ldconfig -p 2>/dev/null || /sbin/ldconfig -p 2>/dev/null; } | grep -q "$1"
+}
+
+have_vulkan() {
+  have_library 'libvulkan\.so\.1' || return 1
+  for folder in /usr/share/vulkan/icd.d /etc/vulkan/icd.d "${XDG_DATA_HOME:-$HOME/.local/share}/vulkan/icd.d"; do
+    for driver in "$folder"/*.json; do
+      [ -e "$driver" ] && return 0
+    done
+  done
+  [ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ]
+}
+
+setup_build() {
+  if ! command -v cargo >/dev/null 2>&1 && [ -f "$HOME/.cargo/env" ]; then . "$HOME/.cargo/env"; fi
+  if ! command -v cargo >/dev/null 2>&1; then
+    echo "Please install Rust first (rustup.rs): cargo was not found." >&2
+    exit 1
+  fi
+  if ! command -v cc >/dev/null 2>&1; then need "a linker" gcc libc6-dev || exit 1; fi
+}
+
+# Pictures work without it only where a graphics card brings its own driver.
+setup_pictures() {
+  have_vulkan || need "software Vulkan, for pictures" libvulkan1 mesa-vulkan-drivers || true
+  if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
+    XDG_RUNTIME_DIR=$(mktemp -d)
+    chmod 700 "$XDG_RUNTIME_DIR"
+    export XDG_RUNTIME_DIR
+  fi
+}
+
+setup_window() {
+  if [ -n "${DISPLAY:-}" ] && ! have_library 'libxkbcommon-x11\.so\.0'; then
+    need "the window under X11" libxkbcommon-x11-0 libxcursor1 libxi6 || true
+  fi
+}
