@@ -1,1 +1,7 @@
-fn main() {}
+//! `touchstone`: with no arguments the app, otherwise a command (see `touchstone --help`).
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    app::cli::main()
+}

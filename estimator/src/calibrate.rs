@@ -150,7 +150,7 @@ impl Builder<'_> {
         let radius_m = self.take("crank", "radius_m", 0.02).max(1e-3);
         let inertia = self.take("crank", "inertia_kg_m2", ASSUMED_HANDLE_KG * radius_m.powi(2));
         let (width, start) = handle(recording, segmentation, center_m, self.world.pad.stiffness_n_m);
-        self.note("crank", "handle_width_m", width, None, Source::Assumed, "distance of the tips plus the pads' give");
+        let width = self.take("crank", "handle_width_m", width).max(1e-3);
         let friction = self.take("crank", "finger_friction", 1.0);
         let mut effect = |law, name: &str| Effect::new(law, &[self.take("crank", name, 0.0).max(0.0)]);
         let effects = vec![

@@ -91,7 +91,16 @@ pub fn stacking_world(seed: u64) -> (World, Truth) {
         floor.damping_n_s_m = 12.0;
     }
     world.blocks = vec![upper, lower];
+    note_pads(&world, &mut truth);
     (world, truth)
+}
+
+fn note_pads(world: &World, truth: &mut Truth) {
+    for (name, value) in
+        [("stiffness_N_m", world.pad.stiffness_n_m), ("shear_stiffness_N_m", world.pad.shear_stiffness_n_m)]
+    {
+        truth.insert(("pad".to_owned(), name.to_owned()), value);
+    }
 }
 
 /// A crank of random size, weight and friction, with its truth.
@@ -121,6 +130,7 @@ pub fn crank_world(seed: u64) -> (World, Truth) {
             ("viscous_N_s_m", viscous),
             ("coulomb_N", coulomb),
             ("radius_m", crank.radius_m),
+            ("handle_width_m", crank.handle_width_m),
             ("center_x_m", crank.center_m.x),
             ("center_y_m", crank.center_m.y),
             ("inertia_kg_m2", inertia * crank.radius_m.powi(2)),
@@ -128,5 +138,6 @@ pub fn crank_world(seed: u64) -> (World, Truth) {
             truth.insert(("crank".to_owned(), name.to_owned()), value);
         }
     }
+    note_pads(&world, &mut truth);
     (world, truth)
 }

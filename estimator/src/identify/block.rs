@@ -338,12 +338,16 @@ impl Blocks<'_> {
 fn pad_parameter(name: &str, gives: impl Iterator<Item = (f64, f64, usize)>, missing: &str) -> Parameter {
     const SIGNIFICANT: f64 = 3.0;
     let (mut weights, mut sum, mut rows) = (0.0, 0.0, 0);
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
     for (give, error, count) in gives.filter(|(_, error, _)| *error > 0.0 && error.is_finite()) {
         weights += error.powi(-2);
         sum += give * error.powi(-2);
         rows += count;
+        (least, most) = (least.min(give), most.max(give));
     }
-    let (give, error) = (sum / weights, weights.powf(-0.5));
+    // What lies under the block gives way as well, differently each time: the spread between the measurements shows how
+    // much, and is a systematic error.
+    let (give, error) = (sum / weights, weights.powf(-0.5).hypot((most - least).max(0.0)));
     if weights > 0.0 && give > SIGNIFICANT * error {
         let how = "give of the pads under load, one pad";
         Parameter::identified("pad", name, 1.0 / give, error / (give * give), rows, how)

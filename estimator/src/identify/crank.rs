@@ -9,7 +9,7 @@ use crate::estimate::{Constraint, ConstraintKind, EstimateError, Fit, Parameter,
 use crate::segment::{Segmentation, Thresholds, segment};
 use crate::signal::derive::savitzky_golay;
 use crate::signal::noise::{quantum, white_noise};
-use crate::signal::task::{TaskSignals, TipSeries, half_width, is_two_fingered, task_signals, times, tip_series};
+use crate::signal::task::{TaskSignals, TipSeries, half_width, is_two_fingered, smooth, task_signals, times, tip_series};
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Inertia, Law, LoadFriction, MAX_PARAMETERS, Motion, ViscousFriction, Weight};
 use haptics::recording::{Recording, Task};
@@ -85,6 +85,9 @@ pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit
 
     let mut parameters = geometry_parameters(&held, &geometry);
     parameters.extend(friction.parameters(&held, &geometry, &rows));
+    if is_two_fingered(recording) {
+        parameters.extend(grip_parameters(recording, &held, &geometry)?);
+    }
     let turning: Vec<Motion> = held.turning.iter().map(|i| motions[*i]).collect();
     let constraint = constraint(recording, &held, &geometry, &turning, &friction);
     let quality = heldout_quality(recording, &rows);
@@ -501,6 +504,47 @@ fn geometry_parameters(held: &Held, geometry: &Geometry) -> Vec<Parameter> {
         ),
     });
     parameters
+}
+
+/// Width of the handle and stiffness of one pad: what a virtual grip needs to feel like the real one.
+///
+/// The tips' distance is the handle's width less the give of both pads, 2 F / k; along y two pads side by side carry the
+/// handle in shear, as the radius residual shows.
+fn grip_parameters(recording: &Recording, held: &Held, geometry: &Geometry) -> Result<Vec<Parameter>, EstimateError> {
+    let signals = task_signals(recording)?;
+    let width = smooth(&held.time_s, &signals.grip_width_m);
+    let grip = smooth(&held.time_s, &signals.grip_force_n).value;
+    let stride = 2 * half_width(&held.time_s);
+    let rows: Vec<usize> = held.turning.iter().copied().step_by(stride).collect();
+    let column = |series: &[f64]| rows.iter().map(|i| series[*i]).collect::<Vec<f64>>();
+    let columns = [vec![1.0; rows.len()], column(&grip), column(&width.slope)];
+    let fit = least_squares(&columns, &column(&width.value), None)?;
+    let samples = held.turning.len();
+    let (give, give_error) = (-0.5 * fit.values[1], 0.5 * fit.std_errors[1]);
+    let mut parameters = Vec::new();
+    if fit.identified[1] && give > SIGNIFICANT * give_error {
+        let how = "distance of the tips while turning, extrapolated to zero grip force";
+        let error = fit.std_errors[0].hypot(held.resolution_m);
+        parameters.push(Parameter::identified("crank", "handle_width_m", fit.values[0], error, samples, how));
+        parameters.push(stiffness("stiffness_N_m", give, give_error, samples));
+    } else {
+        let why = "the grip was too even to tell the handle's width from the pads' give";
+        parameters.push(Parameter::unidentified("crank", "handle_width_m", samples, why));
+        let (give, error) = (geometry.give_m_per_n.x, geometry.give_errors.x);
+        parameters.push(stiffness("stiffness_N_m", 2.0 * give, 2.0 * error, samples));
+    }
+    let (give, error) = (geometry.give_m_per_n.y, geometry.give_errors.y);
+    parameters.push(stiffness("shear_stiffness_N_m", 2.0 * give, 2.0 * error, samples));
+    Ok(parameters)
+}
+
+/// Stiffness of one pad from its give, m/N.
+fn stiffness(name: &str, give: f64, error: f64, samples: usize) -> Parameter {
+    if give > SIGNIFICANT * error {
+        Parameter::identified("pad", name, 1.0 / give, error / (give * give), samples, "give of the grip, one pad")
+    } else {
+        Parameter::unidentified("pad", name, samples, "no give shows under the forces of this recording")
+    }
 }
 
 fn constraint(

@@ -13,13 +13,15 @@ use rand_distr::{Distribution, Normal};
 pub struct SensorModel {
     /// White position noise per axis, m.
     pub position_noise_m: f64,
-    /// Position resolution, m; zero: none.
+    /// Position resolution, m, one over a whole number; zero: none.
     pub position_step_m: f64,
     /// White velocity noise per axis, m/s.
     pub velocity_noise_m_s: f64,
+    /// Velocity resolution, m/s; zero: none.
+    pub velocity_step_m_s: f64,
     /// White force noise per axis, N.
     pub force_noise_n: f64,
-    /// Force resolution, N; zero: none.
+    /// Force resolution, N, one over a whole number; zero: none.
     pub force_step_n: f64,
 }
 
@@ -29,6 +31,7 @@ impl SensorModel {
         position_noise_m: 0.0,
         position_step_m: 0.0,
         velocity_noise_m_s: 0.0,
+        velocity_step_m_s: 0.0,
         force_noise_n: 0.0,
         force_step_n: 0.0,
     };
@@ -38,6 +41,7 @@ impl SensorModel {
         position_noise_m: 15e-6,
         position_step_m: 10e-6,
         velocity_noise_m_s: 0.8e-3,
+        velocity_step_m_s: 1e-5,
         force_noise_n: 0.010,
         force_step_n: 0.002,
     };
@@ -112,12 +116,14 @@ fn row(tick: &TickRecord, sensor: &SensorModel, rng: &mut StdRng) -> [f64; 12] {
         let mut draw = |value: f64| {
             // A negative or non-finite spread cannot be sampled; it means no noise.
             let noisy = Normal::new(0.0, noise).map_or(value, |d| value + d.sample(rng));
-            if step > 0.0 { (noisy / step).round() * step } else { noisy }
+            // Divided by a whole number of steps a unit, not multiplied: 0.08126, not 0.081260000000000001, in the file.
+            let per_unit = (1.0 / step).round();
+            if step > 0.0 { (noisy * per_unit).round() / per_unit } else { noisy }
         };
         [draw(v.x), draw(v.y)]
     };
     let [p1, p2] = tick.input.tip_in_world.map(|v| sense(v, sensor.position_noise_m, sensor.position_step_m));
-    let [v1, v2] = tick.input.tip_velocity.map(|v| sense(v, sensor.velocity_noise_m_s, 0.0));
+    let [v1, v2] = tick.input.tip_velocity.map(|v| sense(v, sensor.velocity_noise_m_s, sensor.velocity_step_m_s));
     let [f1, f2] = tick.tip_force_n.map(|v| sense(v, sensor.force_noise_n, sensor.force_step_n));
     [p1[0], p1[1], p2[0], p2[1], v1[0], v1[1], v2[0], v2[1], f1[0], f1[1], f2[0], f2[1]]
 }

@@ -1,0 +1,195 @@
+//! `touchstone demo`: the whole chain on built-in recordings, without a display.
+
+use super::{Output, fit, screenshot};
+use anyhow::Context;
+use clap::Args;
+use estimator::pipeline::{Analysis, Options, analyse};
+use haptics::recording::Recording;
+use haptics::world::World;
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Arguments of `demo`.
+#[derive(Args)]
+pub struct Demo {
+    /// Folder for recordings, worlds, predictions and pictures
+    #[arg(long, default_value = "demo-out")]
+    out: PathBuf,
+}
+
+/// A recording that travels with the program: made by the scripted operator in a world that the fit does not see.
+struct BuiltIn {
+    name: &'static str,
+    title: &'static str,
+    csv: &'static str,
+    meta: &'static str,
+    /// The world it was made in: opened only to compare in the end.
+    truth: &'static str,
+}
+
+const RECORDINGS: [BuiltIn; 2] = [
+    BuiltIn {
+        name: "stack",
+        title: "Two blocks, unstacked and restacked",
+        csv: include_str!("../../../assets/recordings/stack.csv"),
+        meta: include_str!("../../../assets/recordings/stack.meta.json"),
+        truth: include_str!("../../../assets/worlds/demo-blocks.json"),
+    },
+    BuiltIn {
+        name: "crank",
+        title: "A crank, turned forwards and back",
+        csv: include_str!("../../../assets/recordings/crank.csv"),
+        meta: include_str!("../../../assets/recordings/crank.meta.json"),
+        truth: include_str!("../../../assets/worlds/demo-crank.json"),
+    },
+];
+
+const PICTURE: [u32; 2] = [1280, 720];
+const WORKBENCH: [u32; 2] = [1600, 1000];
+
+impl Demo {
+    pub(super) fn run(&self) -> anyhow::Result<Output> {
+        let started = Instant::now();
+        std::fs::create_dir_all(&self.out)
+            .with_context(|| format!("the folder could not be made: {}", self.out.display()))?;
+        let mut text = String::new();
+        let mut results = Vec::new();
+        for built_in in &RECORDINGS {
+            let result = self.chain(built_in, &mut text)?;
+            results.push(result);
+        }
+        let pictures = self.pictures(&mut text);
+        let seconds = started.elapsed().as_secs_f64();
+        let _ = writeln!(text, "\nDone in {seconds:.1} s; everything is in {}", self.out.display());
+        let json = json!({ "out": self.out, "seconds": seconds, "recordings": results, "pictures": pictures });
+        Ok(Output { text, json })
+    }
+
+    /// Log → segments → fit → world → simulation of one recording.
+    fn chain(&self, built_in: &BuiltIn, text: &mut String) -> anyhow::Result<Value> {
+        progress(&format!("{}: segment, fit, calibrate, simulate", built_in.title));
+        let log = self.file(&format!("{}.csv", built_in.name));
+        write(&log, built_in.csv)?;
+        write(&self.file(&format!("{}.meta.json", built_in.name)), built_in.meta)?;
+        let recordings = estimator::log::load(&log, None)?;
+        let analysis = analyse(&recordings, &Options::default())?;
+        let world_file = self.file(&format!("{}.world.json", built_in.name));
+        write(&world_file, &(analysis.world.to_json() + "\n"))?;
+        let recording = recordings.first().context("the built-in log is empty")?;
+        let simulation = estimator::simulate::simulate(&analysis.world, recording)?;
+        let prediction = self.file(&format!("{}.simulated.csv", built_in.name));
+        estimator::log::write_csv(&simulation.to_recording(recording), &prediction)?;
+
+        let _ = writeln!(text, "\n{}", built_in.title);
+        if let Some(segmentation) = analysis.segmentations.first().and_then(Option::as_ref) {
+            let _ = writeln!(text, "  states: {}", segmentation.sequence());
+        }
+        text.push_str(&fit::describe(&analysis.fit));
+        for (name, rms) in &simulation.residual_rms {
+            let _ = writeln!(text, "  simulated {name}: measured − predicted {rms:.3} N RMS");
+        }
+        let within = self.compare(built_in, &analysis, text)?;
+        Ok(json!({
+            "name": built_in.name,
+            "log": log, "world": world_file, "simulation": prediction,
+            "fit": analysis.fit,
+            "residual_rms": simulation.residual_rms,
+            "within_two_errors": within,
+        }))
+    }
+
+    /// How many estimates lie within two of their errors of what the recording was made with.
+    fn compare(&self, built_in: &BuiltIn, analysis: &Analysis, text: &mut String) -> anyhow::Result<Value> {
+        let truth = World::from_json(built_in.truth)?;
+        let (mut hits, mut all) = (0, 0);
+        for (object, name, value) in true_values(&truth) {
+            let Some(parameter) = analysis.fit.parameter(&object, &name) else { continue };
+            if let (Some(found), Some(error)) = (parameter.value, parameter.std_error) {
+                all += 1;
+                hits += usize::from((found - value).abs() <= 2.0 * error);
+            }
+        }
+        let _ = writeln!(text, "  against the world it was recorded in: {hits} of {all} values within two of their errors");
+        Ok(json!({ "hits": hits, "of": all }))
+    }
+
+    /// The pictures; without any Vulkan driver the demo goes on and says so.
+    fn pictures(&self, text: &mut String) -> Vec<PathBuf> {
+        let mut made = Vec::new();
+        let _ = writeln!(text, "\nPictures");
+        for (name, dark) in [("stack", false), ("crank", true)] {
+            progress(&format!("pictures of {name}"));
+            let world = self.file(&format!("{name}.world.json"));
+            let scene = screenshot::scene_picture(&world.to_string_lossy(), None, PICTURE, dark);
+            self.keep(&format!("{name}-scene.png"), scene, &mut made, text);
+            let panel = estimator::log::load(&self.file(&format!("{name}.csv")), None)
+                .map_err(anyhow::Error::from)
+                .and_then(|recordings: Vec<Recording>| screenshot::workbench(recordings, WORKBENCH, dark));
+            self.keep(&format!("{name}-workbench.png"), panel, &mut made, text);
+        }
+        made
+    }
+
+    fn keep(
+        &self,
+        name: &str,
+        picture: anyhow::Result<image::RgbaImage>,
+        made: &mut Vec<PathBuf>,
+        text: &mut String,
+    ) {
+        let path = self.file(name);
+        match picture.and_then(|picture| screenshot::save(&picture, &path)) {
+            Ok(()) => {
+                let _ = writeln!(text, "  {}", path.display());
+                made.push(path);
+            }
+            Err(error) => {
+                let _ = writeln!(text, "  no {name}: {error:#}");
+            }
+        }
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.out.join(name)
+    }
+}
+
+fn progress(what: &str) {
+    eprintln!("… {what}");
+}
+
+fn write(path: &Path, text: &str) -> anyhow::Result<()> {
+    std::fs::write(path, text).with_context(|| format!("the file could not be written: {}", path.display()))
+}
+
+/// Names and values of what a fit should find in a world.
+fn true_values(world: &World) -> Vec<(String, String, f64)> {
+    let mut values = Vec::new();
+    for block in &world.blocks {
+        for (name, value) in [
+            ("weight_N", block.mass_kg * world.gravity_m_s2),
+            ("width_m", block.width_m),
+            ("height_m", block.height_m),
+        ] {
+            values.push((block.name.clone(), name.to_owned(), value));
+        }
+    }
+    if let Some(crank) = &world.crank {
+        let mut push = |name: &str, value: f64| values.push(("crank".to_owned(), name.to_owned(), value));
+        push("radius_m", crank.radius_m);
+        push("center_x_m", crank.center_m.x);
+        for (id, name) in [
+            ("weight", "weight_N"),
+            ("load-friction", "friction_mu"),
+            ("viscous-friction", "viscous_N_s_m"),
+            ("coulomb-friction", "coulomb_N"),
+        ] {
+            if let Some(effect) = crank.effects.iter().find(|e| e.law().id() == id) {
+                push(name, effect.values[0]);
+            }
+        }
+    }
+    values
+}

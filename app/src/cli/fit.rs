@@ -1,0 +1,89 @@
+//! `touchstone fit`: parameters with their errors, constraints, and a calibrated world.
+
+use super::table::{parameter_line, with_error};
+use super::{LogArgs, Output};
+use anyhow::Context;
+use clap::Args;
+use estimator::estimate::{Constraint, Fit as Fitted};
+use estimator::pipeline::{Options, analyse};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Arguments of `fit`.
+#[derive(Args)]
+pub struct Fit {
+    /// Log files of one object
+    #[arg(required = true)]
+    logs: Vec<PathBuf>,
+    #[command(flatten)]
+    source: LogArgs,
+    /// Write the calibrated world here
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+impl Fit {
+    pub(super) fn run(&self) -> anyhow::Result<Output> {
+        let mut recordings = Vec::new();
+        for log in &self.logs {
+            recordings.extend(self.source.load(log)?);
+        }
+        let mut analysis = analyse(&recordings, &Options::default())?;
+        for recording in &recordings {
+            for warning in &recording.warnings {
+                if !analysis.fit.warnings.contains(&warning.text) {
+                    analysis.fit.warnings.push(warning.text.clone());
+                }
+            }
+        }
+        if let Some(path) = &self.out {
+            std::fs::write(path, analysis.world.to_json() + "\n")
+                .with_context(|| format!("the world could not be written: {}", path.display()))?;
+        }
+        let mut text = describe(&analysis.fit);
+        if let Some(path) = &self.out {
+            let _ = writeln!(text, "world: {}", path.display());
+        }
+        Ok(Output { text, json: serde_json::to_value(&analysis.fit)? })
+    }
+}
+
+/// A fit in words and columns.
+pub(super) fn describe(fit: &Fitted) -> String {
+    let mut text = format!("task: {}\n", fit.task);
+    for parameter in &fit.parameters {
+        let _ = writeln!(text, "{}", parameter_line(parameter));
+    }
+    for constraint in &fit.constraints {
+        let _ = writeln!(text, "  {}", constraint_line(constraint));
+    }
+    if let Some(quality) = &fit.quality {
+        let _ = writeln!(
+            text,
+            "  force residual {:.4} {unit}; on the {:.0} % held out {:.4} {unit} ({:.1} % of the force)",
+            quality.rms,
+            quality.heldout_share * 100.0,
+            quality.heldout_rms,
+            quality.heldout_relative * 100.0,
+            unit = quality.unit
+        );
+    }
+    for warning in &fit.warnings {
+        let _ = writeln!(text, "  ! {warning}");
+    }
+    text
+}
+
+fn constraint_line(constraint: &Constraint) -> String {
+    let kind = format!("{:?}", constraint.kind).to_lowercase();
+    let radius = constraint.radius_m.map_or(String::new(), |radius| {
+        let error = constraint.std_error.get("radius_m").copied().unwrap_or(0.0);
+        format!(", radius {} mm", with_error(radius * 1e3, error * 1e3))
+    });
+    let interval = constraint.radius_interval_m.map_or(String::new(), |(low, high)| {
+        let high = high.map_or("∞ (it could be straight)".to_owned(), |h| format!("{:.3} mm", h * 1e3));
+        format!(", 95 % within {:.3} … {high}", low * 1e3)
+    });
+    let name = constraint.recording.as_deref().map_or(String::new(), |name| format!("{name}: "));
+    format!("{name}{kind}{radius}{interval}: {}", constraint.evidence)
+}

@@ -1,0 +1,74 @@
+//! `touchstone info`: what is in a log.
+
+use super::{LogArgs, Output};
+use clap::Args;
+use haptics::recording::Recording;
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Arguments of `info`.
+#[derive(Args)]
+pub struct Info {
+    /// Log file
+    log: PathBuf,
+    #[command(flatten)]
+    source: LogArgs,
+}
+
+impl Info {
+    pub(super) fn run(&self) -> anyhow::Result<Output> {
+        let recordings = self.source.load(&self.log)?;
+        let text = recordings.iter().map(describe).collect::<Vec<_>>().join("\n");
+        let mut all: Vec<Value> = recordings.iter().map(to_json).collect();
+        let json = if all.len() == 1 { all.remove(0) } else { json!({ "recordings": all }) };
+        Ok(Output { text, json })
+    }
+}
+
+fn range(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
+}
+
+fn describe(recording: &Recording) -> String {
+    let mut text = String::new();
+    let _ = writeln!(text, "{}", recording.name);
+    let clock = match (recording.rate_hz(), recording.duration_s()) {
+        (Some(rate), Some(duration)) => format!("{duration:.3} s at {rate:.1} Hz"),
+        _ => "no clock".to_owned(),
+    };
+    let _ = writeln!(text, "  {} samples, {clock}", recording.len());
+    if let Some(task) = recording.meta.task {
+        let _ = writeln!(text, "  task: {}", task.name());
+    }
+    for channel in &recording.channels {
+        let (low, high) = range(&channel.values);
+        let _ = writeln!(text, "  {:<22} {:>12.6} … {:<12.6} {}", channel.name, low, high, channel.unit);
+    }
+    for warning in &recording.warnings {
+        let _ = writeln!(text, "  ! {}", warning.text);
+    }
+    text
+}
+
+fn to_json(recording: &Recording) -> Value {
+    let columns: Vec<Value> = recording
+        .channels
+        .iter()
+        .map(|channel| {
+            let (low, high) = range(&channel.values);
+            json!({ "name": channel.name, "unit": channel.unit, "min": low, "max": high })
+        })
+        .collect();
+    json!({
+        "name": recording.name,
+        "trial": recording.trial,
+        "task": recording.meta.task,
+        "samples": recording.len(),
+        "rate_hz": recording.rate_hz(),
+        "duration_s": recording.duration_s(),
+        "columns": columns,
+        "labelled": recording.labels.is_some(),
+        "warnings": recording.warnings,
+    })
+}

@@ -1,0 +1,218 @@
+//! The command line: one command a file, `--json` everywhere, one sentence when something fails.
+//!
+//! Exit codes: 0 done, 1 the input or the run failed, 2 wrong usage.
+
+mod demo;
+mod fit;
+mod info;
+mod record;
+mod screenshot;
+mod segment;
+mod simulate;
+pub mod table;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use haptics::recording::{Recording, Task};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Touchstone: a trainer whose virtual objects are measured, not guessed.
+#[derive(Parser)]
+#[command(name = "touchstone", version, about, max_term_width = 100)]
+struct Cli {
+    /// One JSON object on standard output and nothing else there
+    #[arg(long, global = true)]
+    json: bool,
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// The whole chain on built-in recordings: segment, fit, calibrate, simulate, pictures
+    Demo(demo::Demo),
+    /// Columns, units, rate, length, warnings of a log
+    Info(info::Info),
+    /// States and subtasks of a log
+    Segment(segment::Segment),
+    /// Parameters, constraints, uncertainty; writes a calibrated world
+    Fit(fit::Fit),
+    /// The measured motion of a log through a world: predicted forces
+    Simulate(simulate::Simulate),
+    /// Make a recording from the virtual hand
+    Record(record::Record),
+    /// A picture without a window
+    Screenshot(screenshot::Screenshot),
+    /// Open the app, optionally on a log or a world
+    App(AppArgs),
+}
+
+/// What the app opens with.
+#[derive(Args, Default)]
+struct AppArgs {
+    /// Log to open
+    log: Option<PathBuf>,
+    /// Sidecar of the log, when it does not lie beside it
+    #[arg(long)]
+    meta: Option<PathBuf>,
+    /// World to open in the trainer
+    #[arg(long)]
+    world: Option<PathBuf>,
+    /// Task of the log
+    #[arg(long)]
+    task: Option<TaskName>,
+}
+
+/// A log on the command line.
+#[derive(Args, Clone)]
+struct LogArgs {
+    /// Sidecar, when it is not `<stem>.meta.json` beside the log
+    #[arg(long)]
+    meta: Option<PathBuf>,
+    /// What was done; told from the sidecar and the columns when not given
+    #[arg(long)]
+    task: Option<TaskName>,
+}
+
+/// Task names as on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TaskName {
+    /// Two blocks, unstacked and restacked
+    BlockStack,
+    /// A crank turned by its handle
+    Crank,
+    /// A needle through a membrane
+    Needle,
+    /// A mechanism with one degree of freedom
+    Mechanism,
+    /// A heavy object of unknown contents
+    Barrel,
+    /// A toggle switch
+    Switch,
+}
+
+impl From<TaskName> for Task {
+    fn from(name: TaskName) -> Self {
+        match name {
+            TaskName::BlockStack => Self::BlockStack,
+            TaskName::Crank => Self::Crank,
+            TaskName::Needle => Self::Needle,
+            TaskName::Mechanism => Self::Mechanism,
+            TaskName::Barrel => Self::Barrel,
+            TaskName::Switch => Self::Switch,
+        }
+    }
+}
+
+impl LogArgs {
+    fn load(&self, path: &Path) -> anyhow::Result<Vec<Recording>> {
+        let mut recordings = estimator::log::load(path, self.meta.as_deref())?;
+        if let Some(task) = self.task {
+            for recording in &mut recordings {
+                recording.meta.task = Some(task.into());
+            }
+        }
+        Ok(recordings)
+    }
+}
+
+/// What a command prints: text for people, or one JSON object.
+pub(crate) struct Output {
+    /// For people.
+    pub text: String,
+    /// For programs.
+    pub json: serde_json::Value,
+}
+
+/// Parses the arguments and runs the command.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    start_log(cli.json);
+    let result = match cli.command {
+        None => return open_app(AppArgs::default()),
+        Some(Command::App(args)) => return open_app(args),
+        Some(Command::Demo(args)) => args.run(),
+        Some(Command::Info(args)) => args.run(),
+        Some(Command::Segment(args)) => args.run(),
+        Some(Command::Fit(args)) => args.run(),
+        Some(Command::Simulate(args)) => args.run(),
+        Some(Command::Record(args)) => args.run(),
+        Some(Command::Screenshot(args)) => args.run(),
+    };
+    match result {
+        Ok(output) => {
+            use std::io::Write;
+            let text = if cli.json { output.json.to_string() } else { output.text };
+            // A closed pipe (`| head`) is no fault of ours.
+            let _ = writeln!(std::io::stdout(), "{}", text.trim_end());
+            ExitCode::SUCCESS
+        }
+        Err(error) => fail(&error),
+    }
+}
+
+fn fail(error: &anyhow::Error) -> ExitCode {
+    eprintln!("{}", sentence(error));
+    ExitCode::FAILURE
+}
+
+/// The error as one line: what, then why.
+fn sentence(error: &anyhow::Error) -> String {
+    let chain: Vec<String> = error.chain().map(|cause| cause.to_string().replace('\n', " ")).collect();
+    let mut parts: Vec<&str> = Vec::new();
+    for part in &chain {
+        // Many causes repeat themselves in their parent's sentence.
+        if !parts.iter().any(|before| before.contains(part.as_str())) {
+            parts.push(part);
+        }
+    }
+    parts.join(": ")
+}
+
+fn open_app(args: AppArgs) -> ExitCode {
+    let _ = args;
+    fail(&anyhow::anyhow!("the window is not built into this version yet"))
+}
+
+/// Log messages go to standard error: warnings by default, more with `RUST_LOG`.
+fn start_log(quiet: bool) {
+    let default = if quiet { "error" } else { "warn,wgpu_hal=off,wgpu_core=error,zbus=error" };
+    let filter =
+        tracing_subscriber::EnvFilter::try_from_default_env().unwrap_or_else(|_| tracing_subscriber::EnvFilter::new(default));
+    let _ = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).without_time().try_init();
+}
+
+/// Parses `1280x720`.
+pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let (w, h) = text.split_once(['x', 'X', '×']).ok_or("a size is written like 1280x720")?;
+    let side = |s: &str| match s.trim().parse::<u32>() {
+        Ok(n) if (16..=8192).contains(&n) => Ok(n),
+        _ => Err(format!("`{s}` is not a side between 16 and 8192 pixels")),
+    };
+    Ok([side(w)?, side(h)?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_are_read_or_refused_in_words() {
+        assert_eq!(parse_size("1280x720"), Ok([1280, 720]));
+        assert!(parse_size("1280").is_err_and(|e| e.contains("1280x720")));
+        assert!(parse_size("9x9999999").is_err());
+    }
+
+    #[test]
+    fn a_sentence_says_nothing_twice() {
+        let inner = std::io::Error::other("disk full");
+        let error = anyhow::Error::new(inner).context("the log could not be written (disk full)");
+        assert_eq!(sentence(&error), "the log could not be written (disk full)");
+    }
+}

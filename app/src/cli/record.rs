@@ -1,0 +1,155 @@
+//! `touchstone record`: a recording made by the virtual hand.
+
+use super::{Output, TaskName};
+use anyhow::Context;
+use clap::{Args, ValueEnum};
+use haptics::device::{Device, ReplayDevice, ScriptedOperator, Skill};
+use haptics::recording::{Recording, Task};
+use haptics::servo::recorder::{SensorModel, to_recording};
+use haptics::servo::safety::Limits;
+use haptics::servo::{Loop, Swap, TickRecord};
+use haptics::world::{State, World, presets};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `record`.
+#[derive(Args)]
+pub struct Record {
+    /// What is done
+    #[arg(long)]
+    task: TaskName,
+    /// Who does it: `scripted`, `mouse`, or `replay:LOG`
+    #[arg(long, default_value = "scripted")]
+    operator: String,
+    /// Length; a scripted operator stops when it is done if this is not given
+    #[arg(long)]
+    seconds: Option<f64>,
+    /// Where to write the recording (CSV, with a sidecar beside it)
+    #[arg(long)]
+    out: PathBuf,
+    /// World to act in; a built-in one for the task when not given
+    #[arg(long)]
+    world: Option<PathBuf>,
+    /// Ticks a second, all of them recorded
+    #[arg(long, default_value_t = 1000.0)]
+    rate: f64,
+    /// Write every n-th tick only (the servo's rate stays)
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    every: u32,
+    /// Draws the operator's habits and the sensors' noise
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// How the virtual sensors see it
+    #[arg(long, default_value = "typical")]
+    sensors: Sensors,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Sensors {
+    /// Noise and resolution of good encoders and strain gauges
+    Typical,
+    /// No error at all
+    Ideal,
+}
+
+/// Longest recording, s: an hour at 1 kHz is half a gigabyte of ticks.
+pub(super) const LONGEST_S: f64 = 3600.0;
+
+impl Record {
+    pub(super) fn run(&self) -> anyhow::Result<Output> {
+        anyhow::ensure!((50.0..=8000.0).contains(&self.rate), "a rate of {} Hz is not possible; choose 50 to 8000", self.rate);
+        if let Some(seconds) = self.seconds {
+            anyhow::ensure!(
+                seconds > 0.0 && seconds <= LONGEST_S,
+                "{seconds} s cannot be recorded; choose up to {LONGEST_S} s"
+            );
+        }
+        let world = self.world()?;
+        let recording = self.perform(world)?;
+        estimator::log::write_csv(&recording, &self.out)?;
+        let sidecar = estimator::log::write_meta(&recording, &self.out)?;
+        let seconds = recording.duration_s().unwrap_or(0.0);
+        let text = format!(
+            "{}: {} samples, {seconds:.2} s\n{}",
+            self.out.display(),
+            recording.len(),
+            sidecar.display()
+        );
+        let json = json!({ "out": self.out, "meta": sidecar, "samples": recording.len(), "seconds": seconds });
+        Ok(Output { text, json })
+    }
+
+    fn world(&self) -> anyhow::Result<World> {
+        if let Some(path) = &self.world {
+            return World::load(path).with_context(|| path.display().to_string());
+        }
+        match Task::from(self.task) {
+            Task::BlockStack => Ok(presets::stacking()),
+            Task::Crank => Ok(presets::crank()),
+            other => anyhow::bail!(
+                "there is no built-in world for the task {} yet; name one with --world",
+                other.name()
+            ),
+        }
+    }
+
+    fn perform(&self, world: World) -> anyhow::Result<Recording> {
+        let mut state = State::resting(&world);
+        let device: Box<dyn Device> = match self.operator.split_once(':') {
+            None if self.operator == "scripted" => {
+                Box::new(ScriptedOperator::new(&world, &state, Skill::default(), self.seed))
+            }
+            Some(("replay", log)) => {
+                let (device, start) = replay(Path::new(log))?;
+                state = State::new(&world, start);
+                Box::new(device)
+            }
+            None if self.operator == "mouse" => anyhow::bail!(
+                "recording by mouse needs the window: run touchstone, open the trainer and press Record"
+            ),
+            _ => anyhow::bail!("there is no operator `{}`; use scripted, mouse or replay:LOG", self.operator),
+        };
+        let ticks = run(world.clone(), state, device, self.rate, self.seconds);
+        let sensor = if self.sensors == Sensors::Ideal { SensorModel::IDEAL } else { SensorModel::TYPICAL };
+        let name = self.out.file_stem().map_or("recording".into(), |s| s.to_string_lossy().into_owned());
+        let mut recording = to_recording(&name, &world, &ticks, self.every as usize, &sensor, self.seed);
+        recording.meta.task = Some(self.task.into());
+        Ok(recording)
+    }
+}
+
+/// Runs the servo's tick in simulated time until the operator is done or the time is up.
+pub(super) fn run(
+    world: World,
+    state: State,
+    device: Box<dyn Device>,
+    rate_hz: f64,
+    seconds: Option<f64>,
+) -> Vec<TickRecord> {
+    let limits = Limits { max_force_n: device.spec().max_force_n, ..Limits::default() };
+    let mut servo = Loop::new(Box::new(Swap { world, state }), device, limits);
+    let most = (seconds.unwrap_or(LONGEST_S) * rate_hz).round() as usize;
+    let mut ticks = Vec::new();
+    while ticks.len() < most && (seconds.is_some() || !servo.finished()) {
+        ticks.push(servo.tick(1.0 / rate_hz));
+    }
+    servo.make_safe();
+    ticks
+}
+
+fn replay(log: &Path) -> anyhow::Result<(ReplayDevice, [haptics::Vec2; 2])> {
+    use estimator::signal::task::tip_series;
+    let recordings = estimator::log::load(log, None)?;
+    let recording = recordings.first().context("the log holds no recording")?;
+    let time = recording
+        .time_s
+        .clone()
+        .with_context(|| format!("{} has no clock and cannot be replayed; give rate_hz in its sidecar", recording.name))?;
+    let (left, right) = (tip_series(recording, "1")?, tip_series(recording, "2")?);
+    let start = [left.position[0], right.position[0]];
+    let still = || vec![haptics::Vec2::zeros(); time.len()];
+    let velocities = [left.velocity.unwrap_or_else(still), right.velocity.unwrap_or_else(still)];
+    let device = ReplayDevice::new(&recording.name, time, [left.position, right.position], velocities)
+        .map_err(anyhow::Error::msg)?;
+    Ok((device, start))
+}

@@ -1,0 +1,82 @@
+//! `touchstone segment`: which state held when.
+
+use super::{LogArgs, Output};
+use clap::{Args, ValueEnum};
+use estimator::segment::{Segmentation, Thresholds};
+use haptics::recording::Recording;
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Arguments of `segment`.
+#[derive(Args)]
+pub struct Segment {
+    /// Log file
+    log: PathBuf,
+    #[command(flatten)]
+    source: LogArgs,
+    /// How states are told apart
+    #[arg(long, default_value = "threshold")]
+    method: Method,
+    /// Force threshold, N; chosen from the noise when not given (with --velocity-threshold)
+    #[arg(long, requires = "velocity_threshold")]
+    force_threshold: Option<f64>,
+    /// Velocity threshold, m/s
+    #[arg(long, requires = "force_threshold")]
+    velocity_threshold: Option<f64>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Method {
+    /// Qualitative reasoning: thresholds and rules
+    Threshold,
+    /// A hidden Markov model
+    Hmm,
+}
+
+impl Segment {
+    pub(super) fn run(&self) -> anyhow::Result<Output> {
+        anyhow::ensure!(
+            self.method == Method::Threshold,
+            "segmentation by a hidden Markov model is not built yet; use --method threshold"
+        );
+        let recordings = self.source.load(&self.log)?;
+        let given = self.force_threshold.zip(self.velocity_threshold);
+        let given = given.map(|(force_n, velocity_m_s)| Thresholds { velocity_m_s, force_n });
+        let mut text = String::new();
+        let mut all = Vec::new();
+        for recording in &recordings {
+            let mut result = estimator::segment::segment(recording, None, given)?;
+            result.warnings.extend(recording.warnings.iter().map(|w| w.text.clone()));
+            describe(&mut text, recording, &result);
+            all.push(serde_json::to_value(&result)?);
+        }
+        let json: Value = if all.len() == 1 { all.remove(0) } else { json!({ "recordings": all }) };
+        Ok(Output { text, json })
+    }
+}
+
+fn describe(text: &mut String, recording: &Recording, result: &Segmentation) {
+    let _ = writeln!(text, "{}: {} by {}", recording.name, result.task, result.method);
+    let _ = writeln!(
+        text,
+        "  thresholds: {:.4} N, {:.2} mm/s",
+        result.thresholds.force_n,
+        result.thresholds.velocity_m_s * 1e3
+    );
+    for state in &result.states {
+        let _ = writeln!(
+            text,
+            "  {:>9.3} … {:<9.3} {:<18} {:<20} {:.2}",
+            state.t0,
+            state.t1,
+            state.state.name(),
+            state.subtask.as_deref().unwrap_or("–"),
+            state.probability
+        );
+    }
+    let _ = writeln!(text, "  sequence: {}", result.sequence());
+    for warning in &result.warnings {
+        let _ = writeln!(text, "  ! {warning}");
+    }
+}

@@ -1,0 +1,52 @@
+//! `touchstone simulate`: the measured motion through a world.
+
+use super::{LogArgs, Output};
+use anyhow::Context;
+use clap::Args;
+use haptics::world::World;
+use serde_json::{Map, json};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Arguments of `simulate`.
+#[derive(Args)]
+pub struct Simulate {
+    /// World file
+    world: PathBuf,
+    /// Log file with the motion
+    log: PathBuf,
+    #[command(flatten)]
+    source: LogArgs,
+    /// Where to write the predicted forces
+    #[arg(long)]
+    out: PathBuf,
+}
+
+impl Simulate {
+    pub(super) fn run(&self) -> anyhow::Result<Output> {
+        let world = World::load(&self.world).with_context(|| self.world.display().to_string())?;
+        let recordings = self.source.load(&self.log)?;
+        let [recording] = recordings.as_slice() else {
+            anyhow::bail!(
+                "the log holds {} recordings; choose one with \"select\" in its sidecar: {}",
+                recordings.len(),
+                self.log.display()
+            );
+        };
+        let simulation = estimator::simulate::simulate(&world, recording)?;
+        estimator::log::write_csv(&simulation.to_recording(recording), &self.out)?;
+        let mut text = format!("{}: {} samples of {} predicted\n", self.out.display(), simulation.time_s.len(), recording.name);
+        let mut rms = Map::new();
+        for (name, value) in &simulation.residual_rms {
+            let _ = writeln!(text, "  {name:<10} measured − predicted: {value:.4} RMS");
+            rms.insert(name.clone(), json!(value));
+        }
+        let json = json!({
+            "out": self.out,
+            "samples": simulation.time_s.len(),
+            "columns": simulation.predicted.iter().map(|c| &c.name).collect::<Vec<_>>(),
+            "residual_rms": rms,
+        });
+        Ok(Output { text, json })
+    }
+}
