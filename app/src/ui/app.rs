@@ -1,0 +1,234 @@
+//! The window: top bar, messages, the two workspaces, keys, files dropped on it.
+
+use super::files;
+use super::jobs::Purpose;
+use super::panels::Panel as _;
+use super::panels::log::LogPanel;
+use super::panels::recording::RecordingPanel;
+use super::panels::results::ResultsPanel;
+use super::panels::scene::ScenePanel;
+use super::panels::trainer_side::TrainerSide;
+use super::panels::trainer_view::TrainerView;
+use super::session::{Session, Tone, Workspace};
+use super::theme::{self, palette, space};
+use super::trainer::WorldChoice;
+use super::widgets::segmented;
+use egui::{Align, CentralPanel, Frame, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
+
+/// The application.
+pub struct App {
+    /// What it knows.
+    pub session: Session,
+    log: LogPanel,
+    recording: RecordingPanel,
+    results: ResultsPanel,
+    scene: ScenePanel,
+    trainer_view: TrainerView,
+    trainer_side: TrainerSide,
+}
+
+impl App {
+    /// A window over a session.
+    pub fn new(session: Session) -> Self {
+        Self {
+            session,
+            log: LogPanel::default(),
+            recording: RecordingPanel::default(),
+            results: ResultsPanel::default(),
+            scene: ScenePanel::default(),
+            trainer_view: TrainerView::default(),
+            trainer_side: TrainerSide,
+        }
+    }
+
+    /// Draws everything.
+    pub fn show(&mut self, ui: &mut Ui) {
+        let ctx = ui.ctx().clone();
+        self.session.poll(&ctx);
+        self.take_worlds();
+        super::keys::handle(ui, &mut self.session);
+        dropped_files(&ctx, &mut self.session);
+        self.session.advance(f64::from(ctx.input(|i| i.stable_dt)));
+        self.top_bar(ui);
+        banners(ui, &mut self.session);
+        match self.session.workspace {
+            Workspace::Train => self.train(ui),
+            Workspace::Calibrate => self.calibrate(ui),
+        }
+        if self.session.playing {
+            ctx.request_repaint();
+        }
+        drop_hint(&ctx);
+    }
+
+    /// Worlds that were opened or asked for go to the trainer.
+    fn take_worlds(&mut self) {
+        let session = &mut self.session;
+        let choice = if let Some(world) = session.opened_world.take() {
+            session.trainer.file = Some(*world);
+            session.workspace = Workspace::Train;
+            WorldChoice::File
+        } else if std::mem::take(&mut session.train_calibrated) {
+            session.trainer.calibrated = session.analysis.as_ref().map(|a| a.world.clone());
+            WorldChoice::Calibrated
+        } else {
+            return;
+        };
+        if let Err(problem) = session.trainer.choose(choice) {
+            session.fail(problem);
+        }
+    }
+
+    fn top_bar(&mut self, ui: &mut Ui) {
+        let p = palette(ui);
+        let frame = Frame::new().fill(p.card).inner_margin(Margin::symmetric(space::L as i8, 8));
+        Side::top("top bar").frame(frame).show_separator_line(true).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                logo(ui);
+                ui.label(theme::title("Touchstone"));
+                ui.add_space(space::L);
+                let choices = [
+                    (Workspace::Train, "Train", "Touch a virtual world (Ctrl+1)"),
+                    (Workspace::Calibrate, "Calibrate", "Measure a real one from a log (Ctrl+2)"),
+                ];
+                segmented(ui, &mut self.session.workspace, &choices);
+                ui.add_space(space::L);
+                ui.label(RichText::new(self.subject()).color(p.secondary));
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| self.tools(ui));
+            });
+        });
+    }
+
+    /// What is being looked at.
+    fn subject(&self) -> String {
+        match self.session.workspace {
+            Workspace::Train => self.session.trainer.scene().map(|(_, w)| w.name.clone()).unwrap_or_default(),
+            Workspace::Calibrate => self.session.prepared().map(|p| p.recording.name.clone()).unwrap_or_default(),
+        }
+    }
+
+    fn tools(&mut self, ui: &mut Ui) {
+        let dark = ui.visuals().dark_mode;
+        if ui.button(if dark { "Light" } else { "Dark" }).on_hover_text("Switch the theme").clicked() {
+            ui.ctx().set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
+        }
+        if ui.button("Open log …").on_hover_text("Ctrl+O, or drop a file on the window").clicked() {
+            files::ask(ui.ctx(), &mut self.session.jobs, Purpose::OpenLog);
+        }
+        if self.session.jobs.is_busy() {
+            ui.add(egui::Spinner::new().size(16.0));
+        }
+    }
+
+    fn train(&mut self, ui: &mut Ui) {
+        let session = &mut self.session;
+        let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
+        Side::right("trainer side").frame(plain).default_size(316.0).size_range(270.0..=460.0).show(ui, |ui| {
+            self.trainer_side.ui(ui, session);
+        });
+        let frame = Frame::new().inner_margin(Margin { left: 12, right: 0, top: 12, bottom: 12 });
+        CentralPanel::default().frame(frame).show(ui, |ui| self.trainer_view.ui(ui, session));
+    }
+
+    fn calibrate(&mut self, ui: &mut Ui) {
+        let session = &mut self.session;
+        if !session.trainer.is_recording() {
+            session.trainer.pause();
+        } else {
+            // A running recording goes on while the user looks elsewhere.
+            session.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
+        }
+        let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
+        Side::left("recording").frame(plain).default_size(262.0).size_range(220.0..=380.0).show(ui, |ui| {
+            self.recording.ui(ui, session);
+        });
+        Side::right("results").frame(plain).default_size(372.0).size_range(310.0..=560.0).show(ui, |ui| {
+            self.results.ui(ui, session);
+        });
+        let height = ui.available_height();
+        let upper = Frame::new().inner_margin(Margin { left: 0, right: 0, top: 12, bottom: 6 });
+        Side::top("scene").frame(upper).resizable(true).default_size(0.42 * height).size_range(120.0..=0.75 * height).show(
+            ui,
+            |ui| self.scene.ui(ui, session),
+        );
+        let lower = Frame::new().inner_margin(Margin { left: 0, right: 0, top: 6, bottom: 12 });
+        CentralPanel::default().frame(lower).show(ui, |ui| self.log.ui(ui, session));
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        self.show(ui);
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+
+    fn persist_egui_memory(&self) -> bool {
+        true
+    }
+}
+
+/// A stone with a golden streak.
+fn logo(ui: &mut Ui) {
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(22.0, 22.0), egui::Sense::hover());
+    let dark = ui.visuals().dark_mode;
+    let stone = if dark { egui::Color32::from_rgb(0x3A, 0x45, 0x54) } else { egui::Color32::from_rgb(0x2A, 0x33, 0x40) };
+    ui.painter().rect_filled(rect.shrink(1.0), 5, stone);
+    let gold = Stroke::new(2.6, egui::Color32::from_rgb(0xE3, 0xB3, 0x41));
+    ui.painter().line_segment([rect.left_bottom() + egui::vec2(6.0, -7.0), rect.right_top() + egui::vec2(-6.0, 7.0)], gold);
+}
+
+fn banners(ui: &mut Ui, session: &mut Session) {
+    if session.banners.is_empty() {
+        return;
+    }
+    let p = palette(ui);
+    let mut closed = None;
+    let frame = Frame::new().inner_margin(Margin { left: 12, right: 12, top: 10, bottom: 0 });
+    Side::top("messages").frame(frame).show_separator_line(false).show(ui, |ui| {
+        for (index, banner) in session.banners.iter().enumerate() {
+            let color = if banner.tone == Tone::Error { p.danger } else { p.good };
+            let fill = theme::mix(p.card, color, 0.10);
+            Frame::new().fill(fill).stroke(Stroke::new(1.0, color)).corner_radius(6).inner_margin(Margin::symmetric(12, 6)).show(
+                ui,
+                |ui| {
+                    ui.horizontal(|ui| {
+                        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                            if ui.small_button("Dismiss").clicked() {
+                                closed = Some(index);
+                            }
+                            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                                ui.add(egui::Label::new(RichText::new(&banner.text).color(p.text)).wrap());
+                            });
+                        });
+                    });
+                },
+            );
+        }
+    });
+    if let Some(index) = closed {
+        session.banners.remove(index);
+    }
+}
+
+fn dropped_files(ctx: &egui::Context, session: &mut Session) {
+    let paths: Vec<std::path::PathBuf> = ctx.input(|i| i.raw.dropped_files.iter().map(|f| f.path().to_path_buf()).collect());
+    if let Some(path) = paths.first() {
+        session.open_any(ctx, path);
+    }
+}
+
+/// While a file hangs over the window.
+fn drop_hint(ctx: &egui::Context) {
+    if ctx.input(|i| i.raw.hovered_files.is_empty()) {
+        return;
+    }
+    let painter = ctx.layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop hint")));
+    let rect = ctx.content_rect();
+    painter.rect_filled(rect, 0, egui::Color32::from_black_alpha(170));
+    let font = egui::FontId::new(22.0, theme::semibold());
+    painter.text(rect.center(), egui::Align2::CENTER_CENTER, "Drop a log or a world", font, egui::Color32::WHITE);
+}

@@ -1,0 +1,50 @@
+//! File dialogs and saving, all in the background. Where the system has no dialog, the path fields do the same.
+
+use super::jobs::{JobKind, Jobs, Outcome, Purpose};
+use super::session::{Session, sentence};
+use std::path::{Path, PathBuf};
+
+/// Opens a file dialog on a thread of its own.
+pub fn ask(ctx: &egui::Context, jobs: &mut Jobs, purpose: Purpose) {
+    jobs.start(ctx, JobKind::Dialog, move || Outcome::Chosen(purpose, dialog(purpose)));
+}
+
+fn dialog(purpose: Purpose) -> Option<PathBuf> {
+    let dialog = rfd::FileDialog::new();
+    match purpose {
+        Purpose::OpenLog => dialog.set_title("Open a log").add_filter("Logs", &["csv", "txt", "tsv"]).pick_file(),
+        Purpose::OpenWorld => dialog.set_title("Open a world").add_filter("Worlds", &["json"]).pick_file(),
+        Purpose::SaveLog => dialog.set_title("Save the recording").set_file_name("recording.csv").save_file(),
+        Purpose::SaveWorld => dialog.set_title("Save the world").set_file_name("world.json").save_file(),
+    }
+}
+
+/// Writes the shown recording and its sidecar.
+pub fn save_log(ctx: &egui::Context, session: &mut Session, field: &str) {
+    let Some(prepared) = session.prepared().cloned() else { return };
+    let path = PathBuf::from(field.trim());
+    session.jobs.start(ctx, JobKind::Save, move || {
+        let recording = &prepared.recording;
+        let written = estimator::log::write_csv(recording, &path)
+            .and_then(|()| estimator::log::write_meta(recording, &path).map(drop));
+        match written {
+            Ok(()) => Outcome::Saved(path),
+            Err(error) => Outcome::Failed(sentence(&error.to_string())),
+        }
+    });
+}
+
+/// Writes the calibrated world.
+pub fn save_world(ctx: &egui::Context, session: &mut Session, field: &str) {
+    let Some(analysis) = session.analysis.clone() else { return };
+    let path = PathBuf::from(field.trim());
+    session.jobs.start(ctx, JobKind::Save, move || match write(&path, &analysis.world.to_json()) {
+        Ok(()) => Outcome::Saved(path),
+        Err(problem) => Outcome::Failed(problem),
+    });
+}
+
+fn write(path: &Path, text: &str) -> Result<(), String> {
+    std::fs::write(path, text)
+        .map_err(|e| format!("The file cannot be written ({e}); check the folder and its permissions: {}", path.display()))
+}

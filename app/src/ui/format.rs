@@ -1,0 +1,151 @@
+//! Numbers as people write them: value ± error with sensible units.
+
+/// A quantity on the screen: what it is called, in which unit, and the factor from SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// For people.
+    pub label: String,
+    /// Shown unit; empty for a pure number.
+    pub unit: &'static str,
+    /// Shown value = SI value × factor.
+    pub factor: f64,
+}
+
+/// Unit suffixes of parameter names, the longest first, with the shown unit and its factor.
+const SUFFIXES: &[(&str, &str, f64)] = &[
+    ("_kg_m2", "g·cm²", 1e7),
+    ("_N_s_m", "N·s/m", 1.0),
+    ("_Nm_s", "N·m·s", 1.0),
+    ("_N_m", "N/m", 1.0),
+    ("_Nm", "N·m", 1.0),
+    ("_m_s", "mm/s", 1e3),
+    ("_kg", "g", 1e3),
+    ("_rad", "°", 180.0 / std::f64::consts::PI),
+    ("_m", "mm", 1e3),
+    ("_N", "N", 1.0),
+    ("_s", "s", 1.0),
+];
+
+/// How a parameter such as `weight_N` is shown; `value` decides between small and large units.
+pub fn parameter(name: &str, value: Option<f64>) -> Quantity {
+    let (stem, unit, factor) = SUFFIXES
+        .iter()
+        .find_map(|(suffix, unit, factor)| name.strip_suffix(suffix).map(|stem| (stem, *unit, *factor)))
+        .unwrap_or((name, "", 1.0));
+    let size = value.unwrap_or(0.0).abs();
+    let (unit, factor) = match unit {
+        "g" if size >= 1.0 => ("kg", 1.0),
+        "g·cm²" if size >= 1e-2 => ("kg·m²", 1.0),
+        other => (other, factor),
+    };
+    Quantity { label: words(stem), unit, factor }
+}
+
+/// How the samples of a channel with an SI unit are shown.
+pub fn channel_unit(unit: &str) -> (&str, f64) {
+    let degrees = 180.0 / std::f64::consts::PI;
+    match unit {
+        "m" => ("mm", 1e3),
+        "m/s" => ("mm/s", 1e3),
+        "rad" => ("°", degrees),
+        "rad/s" => ("°/s", degrees),
+        "Nm" => ("N·m", 1.0),
+        "degC" => ("°C", 1.0),
+        other => (other, 1.0),
+    }
+}
+
+/// `center_x` → `Center x`; the usual names are spelt out.
+fn words(stem: &str) -> String {
+    match stem {
+        "friction_mu" => return "Friction coefficient".to_owned(),
+        "friction_lower_bound" => return "Friction, at least".to_owned(),
+        "friction" => return "Friction at the slip".to_owned(),
+        "coulomb" => return "Coulomb friction".to_owned(),
+        "viscous" => return "Viscous friction".to_owned(),
+        "center_x" => return "Centre x".to_owned(),
+        "center_y" => return "Centre y".to_owned(),
+        _ => {}
+    }
+    capitalised(&stem.replace('_', " "))
+}
+
+/// The first letter in upper case.
+pub fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// `block-1` → `Block 1`.
+pub fn object(name: &str) -> String {
+    capitalised(&name.replace('-', " "))
+}
+
+/// Value and error as text, rounded to two digits of the error; a true minus sign.
+pub fn with_error(value: f64, error: Option<f64>) -> (String, Option<String>) {
+    match error.filter(|e| e.is_finite() && *e > 0.0) {
+        Some(error) => {
+            let decimals = (1 - error.log10().floor() as i32).clamp(0, 9) as usize;
+            (number(value, decimals), Some(number(error, decimals)))
+        }
+        None => (significant(value, 4), None),
+    }
+}
+
+/// With a fixed number of decimals and a true minus sign.
+pub fn number(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.'));
+    if zero { text.trim_start_matches('-').to_owned() } else { text.replace('-', "−") }
+}
+
+/// With a number of significant digits.
+pub fn significant(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return if value == 0.0 { "0".to_owned() } else { "–".to_owned() };
+    }
+    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 9) as usize;
+    number(value, decimals)
+}
+
+/// A duration as a stop-watch would show it.
+pub fn clock(seconds: f64) -> String {
+    let seconds = seconds.max(0.0);
+    let minutes = (seconds / 60.0).floor();
+    format!("{minutes:.0}:{:05.2}", seconds - 60.0 * minutes)
+}
+
+/// Microseconds or milliseconds.
+pub fn short_time(seconds: f64) -> String {
+    if seconds < 1e-3 { format!("{} µs", significant(seconds * 1e6, 3)) } else { format!("{} ms", significant(seconds * 1e3, 3)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_decide_the_digits() {
+        assert_eq!(with_error(15.8732, Some(0.0821)), ("15.873".to_owned(), Some("0.082".to_owned())));
+        assert_eq!(with_error(-203.4, Some(12.3)), ("−203".to_owned(), Some("12".to_owned())));
+        assert_eq!(with_error(0.352, None), ("0.3520".to_owned(), None));
+        assert_eq!(number(-0.0001, 2), "0.00");
+    }
+
+    #[test]
+    fn units_are_sensible() {
+        let width = parameter("width_m", Some(0.0159));
+        assert_eq!((width.label.as_str(), width.unit, width.factor), ("Width", "mm", 1e3));
+        assert_eq!(parameter("mass_kg", Some(0.035)).unit, "g");
+        assert_eq!(parameter("mass_kg", Some(95.1)).unit, "kg");
+        assert_eq!(parameter("viscous_N_s_m", None).unit, "N·s/m");
+        assert_eq!(parameter("constraint_stiffness_N_m", None).label, "Constraint stiffness");
+        assert_eq!(parameter("friction_mu", Some(0.05)).unit, "");
+    }
+
+    #[test]
+    fn a_clock_reads_like_one() {
+        assert_eq!(clock(75.5), "1:15.50");
+        assert_eq!(short_time(2.5e-5), "25.0 µs");
+    }
+}

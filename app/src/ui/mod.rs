@@ -1,0 +1,81 @@
+//! The window.
+//!
+//! * [`session`] is what the window knows; [`jobs`] fill it in the background; [`trainer`] is the live world.
+//! * [`panels`] show and change it, one panel a file; [`app`] lays them out into the two workspaces.
+//! * [`scene`] brings the pictures in, [`plots`] the curves; [`theme`] is the one place for colours and sizes.
+//! * [`screenshot`] draws any of it without a window.
+
+pub mod app;
+mod files;
+pub mod film;
+pub mod format;
+pub mod jobs;
+mod keys;
+pub mod panels;
+pub mod plots;
+pub mod prepare;
+pub mod scene;
+pub mod screenshot;
+pub mod session;
+pub mod theme;
+pub mod trainer;
+pub mod widgets;
+
+use haptics::recording::Task;
+use session::Session;
+use std::path::PathBuf;
+
+/// What the window opens with.
+#[derive(Clone, Debug, Default)]
+pub struct RunOptions {
+    /// A log to calibrate from.
+    pub log: Option<PathBuf>,
+    /// Its sidecar, where it is not beside the log.
+    pub meta: Option<PathBuf>,
+    /// A world to train in.
+    pub world: Option<PathBuf>,
+    /// The task of the log.
+    pub task: Option<Task>,
+    /// Light or dark; the system's choice when absent.
+    pub dark: Option<bool>,
+}
+
+/// Opens the window; returns when it is closed.
+pub fn run(options: RunOptions) -> anyhow::Result<()> {
+    let viewport = egui::ViewportBuilder::default()
+        .with_title("Touchstone")
+        .with_app_id("touchstone")
+        .with_inner_size([1480.0, 920.0])
+        .with_min_inner_size([900.0, 600.0])
+        .with_drag_and_drop(true);
+    let native = eframe::NativeOptions { viewport, renderer: eframe::Renderer::Wgpu, ..Default::default() };
+    let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
+        Ok(Box::new(create(cc, &options)))
+    };
+    eframe::run_native("touchstone", native, Box::new(start))
+        .map_err(|error| anyhow::anyhow!("the window could not be opened ({error}); is there a display and a graphics driver?"))
+}
+
+fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
+    theme::install(&cc.egui_ctx);
+    if let Some(dark) = options.dark {
+        cc.egui_ctx.set_theme(if dark { egui::Theme::Dark } else { egui::Theme::Light });
+    }
+    if let Some(state) = &cc.wgpu_render_state {
+        scene::announce(&cc.egui_ctx, state);
+    }
+    let mut session = Session::new();
+    session.meta.clone_from(&options.meta);
+    session.task_hint = options.task;
+    if let Some(world) = &options.world {
+        session.open_world(&cc.egui_ctx, world);
+    }
+    if let Some(log) = &options.log {
+        session.workspace = session::Workspace::Calibrate;
+        session.open(&cc.egui_ctx, log);
+    }
+    app::App::new(session)
+}
+
+#[cfg(test)]
+mod tests;

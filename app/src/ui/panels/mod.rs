@@ -1,0 +1,22 @@
+//! One panel a file, behind one trait.
+
+pub mod log;
+pub mod parameters;
+pub mod recording;
+pub mod results;
+pub mod scene;
+pub mod segments;
+pub mod trainer_side;
+pub mod trainer_view;
+pub mod transport;
+
+use super::session::Session;
+
+/// A part of the window that shows and changes the session.
+pub trait Panel {
+    /// Its name, for people and for tests.
+    fn title(&self) -> &'static str;
+
+    /// Draws it into all the room there is.
+    fn ui(&mut self, ui: &mut egui::Ui, session: &mut Session);
+}

@@ -1,0 +1,186 @@
+//! The fitted parameters: value ± error in sensible units; what the recording cannot show is greyed, with its reason.
+
+use super::Panel;
+use crate::ui::format;
+use crate::ui::jobs::JobKind;
+use crate::ui::session::Session;
+use crate::ui::theme::{self, palette, space};
+use crate::ui::widgets::{card, empty_state};
+use egui::{Align, Layout, RichText, Ui};
+use egui_extras::{Column, TableBody, TableBuilder};
+use estimator::estimate::{Fit, Parameter};
+
+/// Height of a line.
+const LINE: f32 = 23.0;
+
+/// The parameter table.
+#[derive(Default)]
+pub struct ParametersPanel;
+
+impl Panel for ParametersPanel {
+    fn title(&self) -> &'static str {
+        "Parameters"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        let busy = session.jobs.is_running(JobKind::Fit);
+        let analysis = session.analysis.clone();
+        let task = analysis.as_ref().map(|a| format::object(a.task.name()));
+        card(
+            ui,
+            "Parameters",
+            |ui| {
+                if busy {
+                    ui.add(egui::Spinner::new().size(14.0));
+                } else if let Some(task) = &task {
+                    ui.label(theme::caption(ui, task));
+                }
+            },
+            |ui| match &analysis {
+                Some(analysis) => {
+                    table(ui, &analysis.fit);
+                    quality(ui, session, &analysis.fit);
+                }
+                None => nothing(ui, session, busy),
+            },
+        );
+    }
+}
+
+fn nothing(ui: &mut Ui, session: &Session, busy: bool) {
+    ui.set_min_height(150.0);
+    if busy {
+        empty_state(ui, "Fitting …", "Segmenting the recording and estimating its parameters.", |_| {});
+    } else if let Some(problem) = &session.fit_problem {
+        empty_state(ui, "No fit", problem, |_| {});
+    } else {
+        empty_state(ui, "Nothing measured yet", "Weights, sizes and frictions with their errors appear here.", |_| {});
+    }
+}
+
+fn table(ui: &mut Ui, fit: &Fit) {
+    let mut objects: Vec<&str> = Vec::new();
+    for parameter in &fit.parameters {
+        if !objects.contains(&parameter.object.as_str()) {
+            objects.push(&parameter.object);
+        }
+    }
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let right = Layout::right_to_left(Align::Center);
+    TableBuilder::new(ui)
+        .id_salt("parameters")
+        .vscroll(false)
+        .cell_layout(Layout::left_to_right(Align::Center))
+        .column(Column::remainder().clip(true).at_least(90.0))
+        .column(Column::exact(78.0))
+        .column(Column::exact(78.0))
+        .column(Column::exact(52.0))
+        .header(20.0, |mut header| {
+            header.col(|_| {});
+            for text in ["Value", "± 1 σ"] {
+                header.col(|ui| {
+                    ui.with_layout(right, |ui| ui.label(theme::caption(ui, text)));
+                });
+            }
+            header.col(|ui| {
+                ui.label(theme::caption(ui, "Unit"));
+            });
+        })
+        .body(|mut body| {
+            for object in objects {
+                heading(&mut body, object);
+                for parameter in fit.parameters.iter().filter(|p| p.object == object) {
+                    line(&mut body, parameter);
+                }
+            }
+        });
+}
+
+fn heading(body: &mut TableBody<'_>, object: &str) {
+    body.row(LINE + 5.0, |mut row| {
+        row.col(|ui| {
+            ui.with_layout(Layout::left_to_right(Align::Max), |ui| {
+                ui.label(theme::strong(format::object(object)));
+            });
+        });
+        for _ in 0..3 {
+            row.col(|_| {});
+        }
+    });
+}
+
+fn line(body: &mut TableBody<'_>, parameter: &Parameter) {
+    let quantity = format::parameter(&parameter.name, parameter.value);
+    body.row(LINE, |mut row| {
+        let name = quantity.label.clone();
+        let shown = parameter.value.filter(|_| parameter.identified);
+        row.col(|ui| {
+            let p = palette(ui);
+            let color = if shown.is_some() { p.secondary } else { p.faint };
+            ui.add(egui::Label::new(RichText::new(name).color(color)).truncate());
+        });
+        match shown {
+            Some(value) => {
+                let error = parameter.std_error.map(|e| e * quantity.factor);
+                let (value, error) = format::with_error(value * quantity.factor, error);
+                number(&mut row, &value, true);
+                number(&mut row, &error.unwrap_or_default(), false);
+                row.col(|ui| {
+                    ui.label(RichText::new(quantity.unit).size(12.0).color(palette(ui).secondary));
+                });
+            }
+            None => {
+                row.col(|ui| {
+                    let text = RichText::new("not shown").size(12.0).italics().color(palette(ui).faint);
+                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(text));
+                });
+                row.col(|_| {});
+                row.col(|_| {});
+            }
+        }
+        row.response().on_hover_ui(|ui| explain(ui, parameter));
+    });
+}
+
+fn number(row: &mut egui_extras::TableRow<'_, '_>, text: &str, strong: bool) {
+    row.col(|ui| {
+        let text = if strong { theme::strong(text) } else { RichText::new(text).color(palette(ui).secondary) };
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(text));
+    });
+}
+
+/// How a number was found, or why there is none.
+fn explain(ui: &mut Ui, parameter: &Parameter) {
+    ui.set_max_width(320.0);
+    ui.label(theme::strong(if parameter.identified { "How it was found" } else { "Why there is no value" }));
+    ui.label(crate::ui::session::sentence(&parameter.how));
+    ui.label(theme::caption(ui, format!("{} · {} samples", parameter.name, parameter.samples)));
+}
+
+/// How well the model reproduces what was measured.
+fn quality(ui: &mut Ui, session: &Session, fit: &Fit) {
+    ui.add_space(space::S);
+    if let Some(quality) = &fit.quality {
+        let text = format!(
+            "The model leaves {} {} RMS of the force; {} on data it has not seen ({} %).",
+            format::significant(quality.rms, 2),
+            if quality.unit == "Nm" { "N·m" } else { &quality.unit },
+            format::significant(quality.heldout_rms, 2),
+            format::significant(100.0 * quality.heldout_relative, 2),
+        );
+        ui.label(theme::caption(ui, text));
+    }
+    if let Some(simulation) = session.replay().and_then(|r| r.simulation.as_ref()) {
+        let worst = simulation.residual_rms.iter().map(|(_, rms)| *rms).fold(0.0, f64::max);
+        if worst > 0.0 {
+            let unit = if simulation.predicted.iter().any(|c| c.unit == "Nm") { "N·m" } else { "N" };
+            let text = format!(
+                "Measured minus simulated force: at most {} {unit} RMS a channel.",
+                format::significant(worst, 2)
+            );
+            ui.label(theme::caption(ui, text));
+        }
+    } else if session.jobs.is_running(JobKind::Simulate) {
+        ui.label(theme::caption(ui, "Replaying the motion through the fitted world …"));
+    }
+}

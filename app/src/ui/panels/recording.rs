@@ -1,0 +1,214 @@
+//! The left column of the calibration: which recording, how it is read, refit, save.
+
+use super::Panel;
+use crate::ui::format;
+use crate::ui::files;
+use crate::ui::jobs::{JobKind, Purpose};
+use crate::ui::session::Session;
+use crate::ui::theme::{self, palette, space};
+use crate::ui::widgets::{fact, plain_card, primary_button};
+use egui::{ComboBox, DragValue, ScrollArea, TextEdit, Ui};
+use estimator::segment::Thresholds;
+use haptics::recording::Task;
+use std::path::PathBuf;
+
+/// Tasks on offer.
+const TASKS: [Task; 3] = [Task::BlockStack, Task::Crank, Task::Mechanism];
+
+/// The recording panel.
+#[derive(Default)]
+pub struct RecordingPanel {
+    log_field: String,
+    world_field: String,
+}
+
+impl Panel for RecordingPanel {
+    fn title(&self) -> &'static str {
+        "Recording"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        self.take_choice(ui, session);
+        ScrollArea::vertical().id_salt("recording").auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = space::S;
+            plain_card(ui, "Recording", |ui| source(ui, session));
+            if session.prepared().is_some() {
+                plain_card(ui, "Fit", |ui| fit(ui, session));
+                plain_card(ui, "Save", |ui| self.save(ui, session));
+            }
+        });
+    }
+}
+
+fn source(ui: &mut Ui, session: &mut Session) {
+    let field = TextEdit::singleline(&mut session.path_field).hint_text("Path of a log").desired_width(f32::INFINITY);
+    let response = ui.add(field);
+    let enter = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+    let ctx = ui.ctx().clone();
+    ui.horizontal(|ui| {
+        if ui.button("Open …").on_hover_text("Ctrl+O").clicked() {
+            files::ask(&ctx, &mut session.jobs, Purpose::OpenLog);
+        }
+        let named = !session.path_field.trim().is_empty();
+        if ui.add_enabled(named, egui::Button::new("Load")).on_hover_text("Read the file named above (F5)").clicked()
+            || (enter && named)
+        {
+            let path = PathBuf::from(session.path_field.trim());
+            session.open_any(&ctx, &path);
+        }
+        if session.jobs.is_running(JobKind::Load) {
+            ui.add(egui::Spinner::new().size(16.0));
+        }
+    });
+    let Some(prepared) = session.prepared().cloned() else {
+        ui.label(theme::caption(ui, "CSV tables with a sidecar .meta.json; drop a file anywhere on the window."));
+        return;
+    };
+    ui.add_space(space::XS);
+    let recording = &prepared.recording;
+    if session.recordings.len() > 1 {
+        choose_trial(ui, session);
+    } else {
+        fact(ui, "Name", recording.name.clone());
+    }
+    fact(ui, "Length", recording.duration_s().map_or_else(|| "no clock".to_owned(), |d| format!("{d:.1} s")));
+    fact(ui, "Samples", grouped(recording.len()));
+    if let Some(rate) = recording.rate_hz() {
+        fact(ui, "Rate", format!("{} Hz", format::significant(rate, 3)));
+    }
+    fact(ui, "Channels", recording.channels.len().to_string());
+    if let Some(signals) = &prepared.signals {
+        fact(ui, "Velocities", signals.velocity_from.split(' ').next().unwrap_or_default().to_owned());
+    }
+}
+
+/// `12345` → `12 345`.
+fn grouped(n: usize) -> String {
+    let digits = n.to_string();
+    let mut text = String::new();
+    for (i, c) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push('\u{2009}');
+        }
+        text.push(c);
+    }
+    text
+}
+
+fn choose_trial(ui: &mut Ui, session: &mut Session) {
+    let names: Vec<String> = session.recordings.iter().map(|p| p.recording.name.clone()).collect();
+    let mut chosen = session.current;
+    ComboBox::from_id_salt("trial").width(ui.available_width()).selected_text(&names[chosen]).show_ui(ui, |ui| {
+        for (index, name) in names.iter().enumerate() {
+            ui.selectable_value(&mut chosen, index, name);
+        }
+    });
+    if chosen != session.current {
+        session.select(chosen);
+    }
+}
+
+fn fit(ui: &mut Ui, session: &mut Session) {
+    let before = (session.choice.task, session.choice.thresholds);
+    ui.horizontal(|ui| {
+        ui.label(theme::caption(ui, "Task"));
+        let told = session.prepared().and_then(|p| p.task).map_or("unknown", Task::name);
+        let automatic = format!("Automatic ({})", told.replace('-', " "));
+        let text = session.choice.task.map_or(automatic.clone(), |t| format::object(t.name()));
+        ComboBox::from_id_salt("task").width(ui.available_width()).selected_text(text).show_ui(ui, |ui| {
+            ui.selectable_value(&mut session.choice.task, None, automatic);
+            for task in TASKS {
+                ui.selectable_value(&mut session.choice.task, Some(task), format::object(task.name()));
+            }
+        });
+    });
+    thresholds(ui, session);
+    session.stale |= before != (session.choice.task, session.choice.thresholds);
+    let running = session.jobs.is_running(JobKind::Fit);
+    ui.add_space(space::XS);
+    ui.horizontal(|ui| {
+        let text = if session.analysis.is_some() { "Refit" } else { "Fit" };
+        if primary_button(ui, !running, text).clicked() {
+            let ctx = ui.ctx().clone();
+            session.refit(&ctx);
+        }
+        if running {
+            ui.add(egui::Spinner::new().size(18.0));
+            ui.label(theme::caption(ui, "Fitting …"));
+        } else if session.stale {
+            ui.label(egui::RichText::new("settings changed").size(11.5).color(palette(ui).caution));
+        }
+    });
+}
+
+fn thresholds(ui: &mut Ui, session: &mut Session) {
+    let used = session.segmentation().map(|s| s.thresholds);
+    let default = used.unwrap_or(Thresholds { velocity_m_s: 0.05, force_n: 0.05 });
+    let mut given = session.choice.thresholds.is_some();
+    let response = ui.checkbox(&mut given, "Thresholds by hand");
+    response.on_hover_text("Automatic thresholds lie above the noise of this recording.");
+    session.choice.thresholds = given.then(|| session.choice.thresholds.unwrap_or(default));
+    if let Some(thresholds) = &mut session.choice.thresholds {
+        ui.horizontal(|ui| {
+            ui.label(theme::caption(ui, "Force ±"));
+            ui.add(DragValue::new(&mut thresholds.force_n).range(0.001..=10.0).speed(0.002).suffix(" N").max_decimals(3));
+        });
+        ui.horizontal(|ui| {
+            ui.label(theme::caption(ui, "Velocity ±"));
+            let mut shown = thresholds.velocity_m_s * 1e3;
+            ui.add(DragValue::new(&mut shown).range(0.1..=5_000.0).speed(0.5).suffix(" mm/s").max_decimals(1));
+            thresholds.velocity_m_s = shown * 1e-3;
+        });
+    } else if let Some(used) = used {
+        let (force, speed) = (format::number(used.force_n, 3), format::number(used.velocity_m_s * 1e3, 1));
+        ui.label(theme::caption(ui, format!("Automatic: ± {force} N, ± {speed} mm/s")));
+    }
+}
+
+impl RecordingPanel {
+    fn save(&mut self, ui: &mut Ui, session: &mut Session) {
+        if self.log_field.is_empty() {
+            "recording.csv".clone_into(&mut self.log_field);
+            "world.json".clone_into(&mut self.world_field);
+        }
+        ui.label(theme::caption(ui, "Recording, with its sidecar"));
+        if save_line(ui, session, &mut self.log_field, Purpose::SaveLog, true) {
+            files::save_log(ui.ctx(), session, &self.log_field);
+        }
+        ui.label(theme::caption(ui, "Calibrated world"));
+        let fitted = session.analysis.is_some();
+        if save_line(ui, session, &mut self.world_field, Purpose::SaveWorld, fitted) {
+            files::save_world(ui.ctx(), session, &self.world_field);
+        }
+    }
+
+    /// A file dialog has answered.
+    fn take_choice(&mut self, ui: &Ui, session: &mut Session) {
+        match session.chosen.take() {
+            Some((Purpose::SaveLog, path)) => {
+                self.log_field = path.display().to_string();
+                files::save_log(ui.ctx(), session, &self.log_field);
+            }
+            Some((Purpose::SaveWorld, path)) => {
+                self.world_field = path.display().to_string();
+                files::save_world(ui.ctx(), session, &self.world_field);
+            }
+            other => session.chosen = other,
+        }
+    }
+}
+
+/// A path field with `…` and `Save`; true when it is to be saved there.
+fn save_line(ui: &mut Ui, session: &mut Session, field: &mut String, purpose: Purpose, enabled: bool) -> bool {
+    ui.add_enabled_ui(enabled, |ui| {
+        ui.horizontal(|ui| {
+            ui.add(TextEdit::singleline(field).desired_width((ui.available_width() - 96.0).max(60.0)));
+            if ui.button("…").on_hover_text("Choose a place").clicked() {
+                files::ask(ui.ctx(), &mut session.jobs, purpose);
+            }
+            ui.button("Save").clicked()
+        })
+        .inner
+    })
+    .inner
+}

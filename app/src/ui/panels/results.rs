@@ -1,0 +1,164 @@
+//! Everything that was found: parameters, constraints, warnings, and what to do with them.
+
+use super::Panel;
+use super::parameters::ParametersPanel;
+use crate::ui::format;
+use crate::ui::session::{Session, Workspace, sentence};
+use crate::ui::theme::{self, palette, space};
+use crate::ui::widgets::{card, plain_card, primary_button};
+use egui::{RichText, ScrollArea, Ui};
+use estimator::estimate::{Constraint, ConstraintKind};
+
+/// The right column of the calibration.
+#[derive(Default)]
+pub struct ResultsPanel {
+    parameters: ParametersPanel,
+}
+
+impl Panel for ResultsPanel {
+    fn title(&self) -> &'static str {
+        "Results"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        ScrollArea::vertical().id_salt("results").auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = space::S;
+            self.parameters.ui(ui, session);
+            constraints(ui, session);
+            warnings(ui, session);
+            train_with_it(ui, session);
+        });
+    }
+}
+
+fn constraints(ui: &mut Ui, session: &Session) {
+    let Some(analysis) = session.analysis.as_ref().filter(|a| !a.fit.constraints.is_empty()) else { return };
+    plain_card(ui, "Constraints", |ui| {
+        for (index, constraint) in analysis.fit.constraints.iter().enumerate() {
+            if index > 0 {
+                ui.separator();
+            }
+            let name = if analysis.fit.constraints.len() > 1 { constraint.recording.as_deref() } else { None };
+            ui.horizontal(|ui| {
+                ui.label(theme::strong(kind(constraint.kind)));
+                ui.label(theme::caption(ui, name.unwrap_or_default()));
+            });
+            for fact in facts(constraint) {
+                ui.label(fact);
+            }
+            ui.label(theme::caption(ui, sentence(&constraint.evidence)));
+        }
+    });
+}
+
+fn kind(kind: ConstraintKind) -> &'static str {
+    match kind {
+        ConstraintKind::Revolute => "Turns about a centre",
+        ConstraintKind::Prismatic => "Slides along a line",
+        ConstraintKind::Free => "Moves freely",
+        ConstraintKind::Membrane => "Membrane",
+        ConstraintKind::Unilateral => "Pushes one way only",
+        ConstraintKind::Spline => "Follows a path that is neither line nor circle",
+        ConstraintKind::Undecided => "Undecided",
+    }
+}
+
+/// Numbers of a constraint as short lines.
+fn facts(constraint: &Constraint) -> Vec<String> {
+    let mut facts = Vec::new();
+    let millimetres = |value: f64, error: Option<&f64>| {
+        let (value, error) = format::with_error(value * 1e3, error.map(|e| e * 1e3));
+        error.map_or_else(|| format!("{value} mm"), |e| format!("{value} ± {e} mm"))
+    };
+    if let Some(radius) = constraint.radius_m {
+        facts.push(format!("Radius {}", millimetres(radius, constraint.std_error.get("radius_m"))));
+    }
+    if let Some(center) = &constraint.center_m {
+        let at: Vec<String> = center.iter().map(|v| format::number(v * 1e3, 2)).collect();
+        let error = constraint.std_error.get("center_m").map(|e| format!(" ± {}", format::significant(e * 1e3, 2)));
+        facts.push(format!("Centre ({}){} mm", at.join(", "), error.unwrap_or_default()));
+    }
+    if constraint.kind == ConstraintKind::Prismatic
+        && let Some(direction) = &constraint.direction
+    {
+        let along: Vec<String> = direction.iter().map(|v| format::number(*v, 3)).collect();
+        facts.push(format!("Direction ({})", along.join(", ")));
+    }
+    if let Some(turned) = constraint.coverage_rad {
+        facts.push(format!("Turned {}° in all", format::number(turned.to_degrees(), 0)));
+    }
+    if let Some(covered) = constraint.coverage_m {
+        facts.push(format!("Path of {} mm", format::number(covered * 1e3, 1)));
+    }
+    if let Some(force) = constraint.constraint_force_n {
+        facts.push(format!("Mean constraint force {} N outwards", format::number(force, 3)));
+    }
+    match constraint.rigid {
+        Some(true) => facts.push("As rigid as hand and sensors can tell".to_owned()),
+        Some(false) => facts.push("Gives way measurably".to_owned()),
+        None => {}
+    }
+    facts
+}
+
+fn warnings(ui: &mut Ui, session: &mut Session) {
+    let Some(prepared) = session.prepared().cloned() else { return };
+    let mut texts: Vec<(String, Option<f64>)> = Vec::new();
+    for warning in &prepared.recording.warnings {
+        let at = warning.spans.first().and_then(|s| prepared.times.get(s.first)).copied();
+        texts.push((sentence(&warning.text), at));
+    }
+    let analysis = session.analysis.clone();
+    let fitted = analysis.iter().flat_map(|a| a.fit.warnings.iter());
+    let segmented = session.segmentation().into_iter().flat_map(|s| s.warnings.iter());
+    for text in fitted.chain(segmented).map(|w| sentence(w)) {
+        if !texts.iter().any(|(t, _)| *t == text) {
+            texts.push((text, None));
+        }
+    }
+    let count = texts.len();
+    let count = |ui: &mut Ui| {
+        ui.label(RichText::new(count.to_string()).color(if count > 0 { palette(ui).caution } else { palette(ui).good }));
+    };
+    let mut seek = None;
+    card(ui, "Warnings", count, |ui| {
+        if texts.is_empty() {
+            ui.label(theme::caption(ui, "Nothing doubtful was found."));
+        }
+        for (text, at) in texts {
+            ui.horizontal_top(|ui| {
+                ui.label(RichText::new("▲").size(9.0).color(palette(ui).caution));
+                let label = egui::Label::new(RichText::new(text).size(12.0)).wrap();
+                match at {
+                    Some(time) => {
+                        let response = ui.add(label.sense(egui::Sense::click())).on_hover_text("Click to go there");
+                        if response.clicked() {
+                            seek = Some(time);
+                        }
+                    }
+                    None => drop(ui.add(label)),
+                }
+            });
+        }
+    });
+    if let Some(time) = seek {
+        session.seek(time);
+    }
+}
+
+fn train_with_it(ui: &mut Ui, session: &mut Session) {
+    let Some(analysis) = session.analysis.clone() else { return };
+    if analysis.world.blocks.is_empty() && analysis.world.crank.is_none() {
+        return;
+    }
+    plain_card(ui, "Calibrated world", |ui| {
+        ui.label(theme::caption(ui, "The virtual objects now have the measured properties."));
+        ui.add_space(space::XS);
+        ui.horizontal(|ui| {
+            if primary_button(ui, true, "Train in this world").clicked() {
+                session.train_calibrated = true;
+                session.workspace = Workspace::Train;
+            }
+        });
+    });
+}

@@ -1,0 +1,84 @@
+//! The recording in space: the hand follows the cursor, path, forces and constraints lie over it.
+
+use super::Panel;
+use crate::ui::scene::{Wheel, camera_for, mechanism_view, options_for, scene_view, scene_world};
+use crate::ui::session::Session;
+use crate::ui::theme::{palette, space};
+use crate::ui::widgets::{empty_state, sheet};
+use egui::{Color32, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
+use render::Camera;
+use std::sync::Arc;
+
+/// The 3-D view of the recording.
+pub struct ScenePanel {
+    camera: Camera,
+    home: Camera,
+    /// The recording that the camera was set up for.
+    of: usize,
+}
+
+impl Default for ScenePanel {
+    fn default() -> Self {
+        Self { camera: Camera::hand(), home: Camera::hand(), of: 0 }
+    }
+}
+
+impl Panel for ScenePanel {
+    fn title(&self) -> &'static str {
+        "Scene"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        sheet(ui).show(ui, |ui| {
+            ui.set_min_size(ui.available_size());
+            let Some(prepared) = session.prepared().cloned() else {
+                let text = "The recorded hand moves here, with its path, forces and the constraints that were found.";
+                empty_state(ui, "The recording in space", text, |_| {});
+                return;
+            };
+            if prepared.tips.is_none() && prepared.tool.is_none() {
+                mechanism_view(ui, session, &prepared);
+                return;
+            }
+            let of = Arc::as_ptr(&prepared) as usize;
+            if self.of != of {
+                self.home = camera_for(&prepared);
+                (self.camera, self.of) = (self.home, of);
+            }
+            let world = scene_world(session, &prepared);
+            let (state, options) = options_for(session, &prepared, &world);
+            let view = scene_view(ui, "recording", &mut self.camera, self.home, Wheel::Zooms, (world, state, options));
+            if view.response.hovered() && ui.input(|i| i.key_pressed(egui::Key::Num0)) {
+                self.camera = self.home;
+            }
+            layers(ui, view.rect, session);
+        });
+    }
+}
+
+/// Switches in the corner of the picture.
+fn layers(ui: &mut Ui, rect: Rect, session: &mut Session) {
+    let line = Rect::from_min_size(rect.left_top() + vec2(space::M, space::M), vec2(rect.width() - 120.0, 24.0));
+    ui.scope_builder(UiBuilder::new().max_rect(line), |ui| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 6.0;
+            let layers = &mut session.layers;
+            toggle(ui, &mut layers.path, "Path", "Where the fingers went, in the visible time");
+            toggle(ui, &mut layers.forces_on_path, "Forces", "Net force along the path");
+            toggle(ui, &mut layers.constraints, "Constraints", "Centres of rotation and directions of motion");
+            toggle(ui, &mut layers.contacts, "Contacts", "Contacts of the replay through the fitted world");
+        });
+    });
+}
+
+fn toggle(ui: &mut Ui, on: &mut bool, label: &str, hint: &str) {
+    let p = palette(ui);
+    let ink = if *on { p.text } else { p.faint };
+    let fill = if *on { p.card } else { Color32::TRANSPARENT };
+    let button = egui::Button::new(RichText::new(label).size(11.5).color(ink)).small().corner_radius(12).fill(fill);
+    let response = ui.add(button.stroke(Stroke::new(1.0, p.border))).on_hover_text(hint);
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, *on, label));
+    if response.clicked() {
+        *on = !*on;
+    }
+}

@@ -1,0 +1,219 @@
+//! The segmentation: a coloured band of states, the subtasks under it, a legend.
+
+use super::Panel;
+use crate::ui::format;
+use crate::ui::session::Session;
+use crate::ui::theme::{self, palette, space, state_color, state_name};
+use crate::ui::widgets::{card, empty_state, swatch};
+use egui::{Align2, FontId, Pos2, Rangef, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
+use estimator::segment::{Interval, Segmentation, SystemState};
+use std::ops::Range;
+
+/// Height of the band.
+const BAND: f32 = 22.0;
+/// Height of the subtasks' line.
+const SUBTASKS: f32 = 18.0;
+
+/// The segmentation by itself.
+#[derive(Default)]
+pub struct SegmentsPanel;
+
+impl Panel for SegmentsPanel {
+    fn title(&self) -> &'static str {
+        "Segments"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        let sequence = session.segmentation().map(Segmentation::sequence).unwrap_or_default();
+        card(
+            ui,
+            "States and subtasks",
+            |ui| {
+                if !sequence.is_empty() {
+                    ui.label(theme::caption(ui, format!("sequence {}", spaced(&sequence))))
+                        .on_hover_text("1 free motion, 2 hold above ground, 3 hold on ground, x sliding, 0 none");
+                }
+            },
+            |ui| {
+                if session.segmentation().is_none() {
+                    empty_state(ui, "No states yet", "Open a recording; its states are told from motion and force.", |_| {});
+                    return;
+                }
+                let left = ui.max_rect().left() + 76.0;
+                let area = Rangef::new(left, ui.max_rect().right());
+                band(ui, session, area);
+                ui.add_space(space::S);
+                intervals(ui, session);
+            },
+        );
+    }
+}
+
+fn spaced(sequence: &str) -> String {
+    sequence.chars().flat_map(|c| [c, ' ']).collect::<String>().trim_end().to_owned()
+}
+
+/// The band between the given edges, with its names to the left, and the legend below.
+pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
+    let busy = session.jobs.is_running(crate::ui::jobs::JobKind::Fit);
+    let analysis = session.analysis.clone();
+    let segmentation = analysis.as_ref().and_then(|a| a.segmentations.get(session.current)?.as_ref());
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), BAND + SUBTASKS + 2.0), Sense::hover());
+    let p = palette(ui);
+    let label = |y: f32, text: &str| {
+        ui.painter().text(Pos2::new(rect.left(), y), Align2::LEFT_CENTER, text, FontId::proportional(11.5), p.secondary);
+    };
+    let band = Rect::from_x_y_ranges(area, rect.top()..=rect.top() + BAND);
+    label(band.center().y, "States");
+    ui.painter().rect_filled(band, 4, p.sunken);
+    let Some(segmentation) = segmentation else {
+        let text = if busy { "Fitting …" } else { "No states: the fit did not succeed." };
+        ui.painter().text(band.center(), Align2::CENTER_CENTER, text, FontId::proportional(11.5), p.faint);
+        return;
+    };
+    label(band.bottom() + 2.0 + 0.5 * SUBTASKS, "Subtasks");
+    draw_states(ui, session, segmentation, band);
+    draw_subtasks(ui, session, segmentation, Rect::from_x_y_ranges(area, band.bottom() + 2.0..=rect.bottom()));
+    legend(ui, segmentation, area.min - rect.left());
+}
+
+fn x_of(session: &Session, area: Rangef, time: f64) -> f32 {
+    let (from, to) = session.view_s;
+    let share = ((time - from) / (to - from).max(1e-12)).clamp(-1.0, 2.0);
+    (area.min + share as f32 * area.span()).clamp(area.min, area.max)
+}
+
+fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, band: Rect) {
+    let dark = ui.visuals().dark_mode;
+    let mut seek = None;
+    for (index, interval) in segmentation.states.iter().enumerate() {
+        let (left, right) =
+            (x_of(session, band.x_range(), interval.t0), x_of(session, band.x_range(), interval.t1));
+        if right - left < 0.4 {
+            continue;
+        }
+        let rect = Rect::from_x_y_ranges(left..=(right - 0.5).max(left + 0.5), band.y_range());
+        let color = state_color(dark, interval.state);
+        ui.painter().rect_filled(rect, if rect.width() > 8.0 { 3 } else { 0 }, color);
+        caption(ui, rect, state_name(interval.state), theme::ink_on(color));
+        let response = ui.interact(rect, ui.scope_id().with(("state", index)), Sense::click());
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, true, state_name(interval.state))
+        });
+        if response.hovered() {
+            ui.painter().rect_stroke(rect, 3, Stroke::new(1.5, palette(ui).text), StrokeKind::Inside);
+        }
+        if response.clicked() {
+            seek = ui.input(|i| i.pointer.interact_pos()).map(|at| {
+                let share = f64::from((at.x - band.left()) / band.width());
+                session.view_s.0 + share * (session.view_s.1 - session.view_s.0)
+            });
+        }
+        response.on_hover_ui(|ui| tooltip(ui, interval));
+    }
+    if let Some(time) = seek {
+        session.seek(time);
+    }
+    let x = x_of(session, band.x_range(), session.cursor_s);
+    ui.painter().vline(x, band.y_range(), Stroke::new(1.6, palette(ui).accent));
+}
+
+/// Text in a box when it fits.
+fn caption(ui: &Ui, rect: Rect, text: &str, ink: egui::Color32) {
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(11.0), ink);
+    if galley.size().x + 8.0 < rect.width() {
+        let at = rect.center() - 0.5 * galley.size();
+        ui.painter().galley(at, galley, ink);
+    }
+}
+
+fn tooltip(ui: &mut Ui, interval: &Interval) {
+    ui.label(theme::strong(state_name(interval.state)));
+    if let Some(subtask) = &interval.subtask {
+        ui.label(format!("Subtask: {}", format::object(subtask).to_lowercase()));
+    }
+    let (from, to) = (format::number(interval.t0, 2), format::number(interval.t1, 2));
+    ui.label(theme::caption(ui, format!("{from} to {to} s · {} s", format::number(interval.t1 - interval.t0, 2))));
+    let share = format::number(100.0 * interval.probability, 0);
+    ui.label(theme::caption(ui, format!("{share} % of its samples show this state by themselves")));
+}
+
+/// Neighbouring intervals of one subtask, as one bracket.
+fn runs(segmentation: &Segmentation) -> Vec<(Range<f64>, String)> {
+    let mut runs: Vec<(Range<f64>, String)> = Vec::new();
+    for interval in &segmentation.states {
+        let Some(subtask) = &interval.subtask else { continue };
+        match runs.last_mut() {
+            Some((range, name)) if name == subtask => range.end = interval.t1,
+            _ => runs.push((interval.t0..interval.t1, subtask.clone())),
+        }
+    }
+    runs
+}
+
+fn draw_subtasks(ui: &mut Ui, session: &Session, segmentation: &Segmentation, line: Rect) {
+    let p = palette(ui);
+    for (range, name) in runs(segmentation) {
+        let (left, right) = (x_of(session, line.x_range(), range.start), x_of(session, line.x_range(), range.end));
+        if right - left < 3.0 {
+            continue;
+        }
+        let y = line.top() + 2.0;
+        ui.painter().hline(left + 1.5..=right - 1.5, y, Stroke::new(1.5, p.faint));
+        let name = format::object(&name);
+        let rect = Rect::from_x_y_ranges(left..=right, line.top() + 3.0..=line.bottom());
+        caption(ui, rect, &name, p.secondary);
+        ui.interact(rect, ui.scope_id().with(("subtask", &name)), Sense::hover()).on_hover_text(name);
+    }
+}
+
+fn legend(ui: &mut Ui, segmentation: &Segmentation, indent: f32) {
+    let dark = ui.visuals().dark_mode;
+    let mut present: Vec<SystemState> = Vec::new();
+    for interval in &segmentation.states {
+        if !present.contains(&interval.state) {
+            present.push(interval.state);
+        }
+    }
+    ui.horizontal(|ui| {
+        ui.add_space(indent - ui.spacing().item_spacing.x);
+        for state in present {
+            let total: f64 = segmentation.states.iter().filter(|i| i.state == state).map(|i| i.t1 - i.t0).sum();
+            swatch(ui, state_color(dark, state));
+            ui.label(theme::caption(ui, state_name(state))).on_hover_text(format!("{} s in all", format::number(total, 1)));
+            ui.add_space(space::XS);
+        }
+    });
+}
+
+/// All intervals as a list: for reading, and for the picture of this panel.
+fn intervals(ui: &mut Ui, session: &mut Session) {
+    let analysis = session.analysis.clone();
+    let Some(segmentation) = analysis.as_ref().and_then(|a| a.segmentations.get(session.current)?.as_ref()) else {
+        return;
+    };
+    let dark = ui.visuals().dark_mode;
+    let mut seek = None;
+    egui::ScrollArea::vertical().id_salt("intervals").show(ui, |ui| {
+        egui::Grid::new("interval list").num_columns(5).spacing(vec2(18.0, 5.0)).show(ui, |ui| {
+            for text in ["", "From", "Length", "State", "Subtask"] {
+                ui.label(theme::caption(ui, text));
+            }
+            ui.end_row();
+            for interval in &segmentation.states {
+                swatch(ui, state_color(dark, interval.state));
+                if ui.link(format!("{} s", format::number(interval.t0, 2))).clicked() {
+                    seek = Some(interval.t0);
+                }
+                ui.label(format!("{} s", format::number(interval.t1 - interval.t0, 2)));
+                ui.label(state_name(interval.state));
+                let subtask = interval.subtask.as_deref().map(format::object).unwrap_or_default();
+                ui.label(RichText::new(subtask).color(palette(ui).secondary));
+                ui.end_row();
+            }
+        });
+    });
+    if let Some(time) = seek {
+        session.seek(time);
+    }
+}

@@ -1,0 +1,240 @@
+//! Beside the trainer's picture: world, operator, recording, forces, timing.
+
+use super::Panel;
+use crate::ui::files;
+use crate::ui::format;
+use crate::ui::jobs::Purpose;
+use crate::ui::session::{Session, Workspace};
+use crate::ui::theme::{self, palette, role, space};
+use crate::ui::trainer::{History, Operator, Trainer, WorldChoice};
+use crate::ui::widgets::{bar, card, fact, light, plain_card, primary_button, segmented};
+use egui::{Align, Layout, Pos2, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
+use haptics::servo::timing::Percentiles;
+use render::ColorRole;
+
+/// Seconds that the running curve shows.
+const STRIP_S: f64 = 8.0;
+
+/// The right column of the trainer.
+#[derive(Default)]
+pub struct TrainerSide;
+
+impl Panel for TrainerSide {
+    fn title(&self) -> &'static str {
+        "Trainer controls"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        ScrollArea::vertical().id_salt("trainer side").auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = space::S;
+            plain_card(ui, "World", |ui| world(ui, session));
+            plain_card(ui, "Operator", |ui| operator(ui, session));
+            plain_card(ui, "Recording", |ui| recording(ui, session));
+            forces(ui, &session.trainer);
+            timing(ui, &session.trainer);
+        });
+    }
+}
+
+fn world(ui: &mut Ui, session: &mut Session) {
+    let calibrated = session.analysis.as_ref().filter(|a| !a.world.blocks.is_empty() || a.world.crank.is_some());
+    session.trainer.calibrated = calibrated.map(|a| a.world.clone());
+    let (has_calibrated, has_file) = (session.trainer.calibrated.is_some(), session.trainer.file.is_some());
+    let mut chosen = None;
+    let choices = [
+        (WorldChoice::Blocks, "Two blocks", true, "The two wooden blocks of the thesis"),
+        (WorldChoice::Crank, "Crank", true, "A handle on an arm"),
+        (WorldChoice::Table, "Empty table", true, "Somewhere to try the fingers"),
+        (WorldChoice::Calibrated, "Calibrated from the log", has_calibrated, "Fit a recording in Calibrate first"),
+        (WorldChoice::File, "From a file", has_file, "Open a world file first"),
+    ];
+    for (choice, label, enabled, hint) in choices {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().interact_size.y = 20.0;
+            let on = session.trainer.choice == choice;
+            let response = ui.add_enabled(enabled, egui::RadioButton::new(on, label));
+            let response = if enabled { response } else { response.on_disabled_hover_text(hint) };
+            if response.clicked() {
+                chosen = Some(choice);
+            }
+            if choice == WorldChoice::File {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    if ui.small_button("Open …").clicked() {
+                        files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenWorld);
+                    }
+                });
+            }
+        });
+    }
+    ui.add_space(space::XS);
+    if ui.button("Start over").on_hover_text("Puts everything back where it started").clicked() {
+        chosen = Some(session.trainer.choice);
+    }
+    if let Some(choice) = chosen
+        && let Err(problem) = session.trainer.choose(choice)
+    {
+        session.fail(problem);
+    }
+}
+
+fn operator(ui: &mut Ui, session: &mut Session) {
+    let mut operator = session.trainer.operator;
+    let choices = [
+        (Operator::You, "You", "Mouse and keyboard"),
+        (Operator::Scripted, "Scripted", "Watch the task done by a scripted operator"),
+    ];
+    if segmented(ui, &mut operator, &choices)
+        && let Err(problem) = session.trainer.hand_to(operator)
+    {
+        session.fail(problem);
+    }
+    match session.trainer.operator {
+        Operator::You => {
+            let text = format!("Pinch strength {} N", format::number(session.trainer.pinch.strength_n(), 1));
+            ui.label(theme::caption(ui, text));
+        }
+        Operator::Scripted => {
+            let over = session.trainer.performance_over();
+            let text = if over { "Done." } else { "Reaches, pinches, lifts and trembles like a person." };
+            ui.label(theme::caption(ui, text));
+            if over
+                && ui.button("Watch again").clicked()
+                && let Err(problem) = session.trainer.restart()
+            {
+                session.fail(problem);
+            }
+        }
+    }
+}
+
+fn recording(ui: &mut Ui, session: &mut Session) {
+    if session.trainer.is_recording() {
+        let p = palette(ui);
+        ui.horizontal(|ui| {
+            let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
+            ui.painter().circle_filled(rect.center(), 5.0, p.danger);
+            ui.label(theme::strong(format::clock(session.trainer.recorded_s())));
+            ui.label(theme::caption(ui, "every tick is kept"));
+        });
+        ui.horizontal(|ui| {
+            if primary_button(ui, true, "Stop and calibrate").clicked() {
+                match session.trainer.stop_recording() {
+                    Some(recording) => {
+                        let ctx = ui.ctx().clone();
+                        session.adopt(&ctx, vec![recording]);
+                        session.workspace = Workspace::Calibrate;
+                    }
+                    None => session.fail("The recording is too short to be calibrated from."),
+                }
+            }
+            if ui.button("Discard").clicked() {
+                drop(session.trainer.stop_recording());
+            }
+        });
+    } else {
+        ui.label(theme::caption(ui, "Record what you do, then measure the objects from it."));
+        if primary_button(ui, true, "Record").on_hover_text("R").clicked() {
+            session.trainer.start_recording();
+        }
+    }
+}
+
+fn forces(ui: &mut Ui, trainer: &Trainer) {
+    let dark = ui.visuals().dark_mode;
+    let p = palette(ui);
+    let Some((snapshot, _)) = trainer.scene() else { return };
+    let (tick, limit) = (snapshot.tick, trainer.config().limits.max_force_n);
+    plain_card(ui, "Forces", |ui| {
+        let grip = tick.tip_force_n[0].x.min(-tick.tip_force_n[1].x).max(0.0);
+        let lift = tick.tip_force_n[0].y + tick.tip_force_n[1].y;
+        for (label, value, color) in [
+            ("Left finger", tick.tip_force_n[0].norm(), role(dark, ColorRole::Finger(0))),
+            ("Right finger", tick.tip_force_n[1].norm(), role(dark, ColorRole::Finger(1))),
+            ("Grip", grip, role(dark, ColorRole::Measured)),
+        ] {
+            let over = value > limit;
+            measure(ui, label, value);
+            bar(ui, value, 1.25 * limit, Some(limit), if over { p.danger } else { color });
+        }
+        measure(ui, "Net force, up", lift);
+        strip(ui, &trainer.history, limit);
+        ui.add_space(space::XS);
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = space::M;
+            light(ui, tick.flags.saturated, p.danger, "Saturated", "A force was clamped to the maximum");
+            light(ui, tick.flags.slewing, p.caution, "Slew", "A force was slowed down: it changed too fast");
+            light(ui, tick.flags.stale, p.danger, "Stale", "No fresh sample from the device: the force is zero");
+            light(ui, tick.flags.not_finite, p.danger, "Invalid", "A value was not a number and was refused");
+        });
+    });
+}
+
+fn measure(ui: &mut Ui, label: &str, newtons: f64) {
+    ui.horizontal(|ui| {
+        ui.label(theme::caption(ui, label));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.label(RichText::new(format!("{} N", format::number(newtons, 2))).size(12.0));
+        });
+    });
+}
+
+/// Grip and net force of the last seconds.
+fn strip(ui: &mut Ui, history: &History, limit: f64) {
+    let (dark, p) = (ui.visuals().dark_mode, palette(ui));
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 74.0), Sense::hover());
+    ui.painter().rect_filled(rect, 4, p.sunken);
+    let Some(now_s) = history.newest().map(|m| m.time_s) else { return };
+    let (low, high) = (-0.3 * limit, 1.1 * limit);
+    let at = |time_s: f64, newtons: f64| {
+        let x = rect.right() - ((now_s - time_s) / STRIP_S) as f32 * rect.width();
+        let y = rect.bottom() - ((newtons - low) / (high - low)).clamp(0.0, 1.0) as f32 * rect.height();
+        Pos2::new(x, y)
+    };
+    ui.painter().hline(rect.x_range(), at(now_s, 0.0).y, Stroke::new(1.0, p.border));
+    let limit_line = [at(now_s - STRIP_S, limit), at(now_s, limit)];
+    ui.painter().extend(Shape::dashed_line(&limit_line, Stroke::new(1.0, p.danger.gamma_multiply(0.6)), 4.0, 4.0));
+    let curves = [
+        (ColorRole::Measured, history.moments().map(|m| at(m.time_s, m.grip_n)).collect::<Vec<_>>()),
+        (ColorRole::Block(0), history.moments().map(|m| at(m.time_s, m.lift_n)).collect()),
+    ];
+    for (color, points) in curves {
+        ui.painter().with_clip_rect(rect).add(Shape::line(points, Stroke::new(1.6, role(dark, color))));
+    }
+    ui.horizontal(|ui| {
+        for (color, label) in [(ColorRole::Measured, "grip"), (ColorRole::Block(0), "net force, up")] {
+            crate::ui::widgets::swatch(ui, role(dark, color));
+            ui.label(theme::caption(ui, label));
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(theme::caption(ui, "last 8 s")));
+    });
+}
+
+fn timing(ui: &mut Ui, trainer: &Trainer) {
+    let Some((snapshot, _)) = trainer.scene() else { return };
+    let timing = snapshot.timing;
+    let rate = format!("{} Hz", format::number(trainer.config().rate_hz, 0));
+    card(ui, "Timing", |ui| drop(ui.label(theme::caption(ui, rate))), |ui| {
+        egui::Grid::new("timing").num_columns(5).min_col_width(46.0).spacing(vec2(8.0, 3.0)).show(ui, |ui| {
+            for text in ["", "p50", "p99", "p99.9", "max"] {
+                ui.label(theme::caption(ui, text));
+            }
+            ui.end_row();
+            percentiles(ui, "Lateness", &timing.lateness);
+            percentiles(ui, "Compute", &timing.compute);
+        });
+        ui.add_space(space::XS);
+        fact(ui, "Missed deadlines", timing.missed.to_string());
+        fact(ui, "Age of the newest sample", format::short_time(timing.sample_age_s));
+        if let Some(privileges) = trainer.privileges() {
+            ui.label(theme::caption(ui, privileges.sentence()));
+        }
+    });
+}
+
+fn percentiles(ui: &mut Ui, label: &str, p: &Percentiles) {
+    ui.label(theme::caption(ui, label));
+    for seconds in [p.p50_s, p.p99_s, p.p999_s, p.max_s] {
+        ui.label(RichText::new(format::short_time(seconds)).size(11.5));
+    }
+    ui.end_row();
+}

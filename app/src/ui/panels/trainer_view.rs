@@ -1,0 +1,157 @@
+//! The virtual world, touched with the mouse.
+
+use super::Panel;
+use crate::ui::scene::{SceneResponse, Wheel, scene_view};
+use crate::ui::session::Session;
+use crate::ui::theme::{self, palette, space};
+use crate::ui::trainer::{Operator, Trainer};
+use crate::ui::widgets::{empty_state, key_hint, sheet};
+use egui::{Align2, Color32, CursorIcon, FontId, Key, PointerButton, Rect, Sense, Ui, UiBuilder, pos2, vec2};
+use haptics::Vec2;
+use render::{Camera, ViewOptions};
+
+/// Speed of the fingers under the arrow keys, m/s.
+const KEY_SPEED_M_S: f64 = 0.04;
+/// Newtons of pinch a point of scrolling.
+const WHEEL_N: f64 = 0.004;
+
+/// The picture of the trainer, and what the mouse does in it.
+pub struct TrainerView {
+    camera: Camera,
+}
+
+impl Default for TrainerView {
+    fn default() -> Self {
+        Self { camera: home() }
+    }
+}
+
+/// Fingers, objects and table large, the links partly out of the picture.
+fn home() -> Camera {
+    Camera::hand().framing([-0.078, -0.146].into(), [0.078, -0.022].into())
+}
+
+impl Panel for TrainerView {
+    fn title(&self) -> &'static str {
+        "Trainer"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        if let Err(problem) = session.trainer.ensure_running() {
+            session.fail(problem);
+        }
+        let frame_s = f64::from(ui.input(|i| i.stable_dt));
+        session.trainer.update(frame_s);
+        sheet(ui).show(ui, |ui| {
+            ui.set_min_size(ui.available_size());
+            let Some((snapshot, world)) = session.trainer.scene() else {
+                empty_state(ui, "The servo is not running", "See the message above; then choose a world again.", |_| {});
+                return;
+            };
+            let limit = session.trainer.config().limits.max_force_n;
+            let saturated = snapshot.tick.tip_force_n.map(|f| f.norm() > limit);
+            let options = ViewOptions { saturated, ..ViewOptions::default() };
+            let scene = (std::sync::Arc::clone(world), snapshot.state.clone(), options);
+            let fault = snapshot.fault;
+            let view = scene_view(ui, "trainer", &mut self.camera, home(), Wheel::ZoomsWithCtrl, scene);
+            if session.trainer.operator == Operator::You {
+                self.steer(ui, &view, &mut session.trainer, frame_s);
+                hints(ui, view.rect);
+            } else {
+                watching(ui, view.rect, &session.trainer);
+            }
+            if let Some(fault) = fault {
+                session.fail(fault);
+            }
+        });
+        if session.trainer.is_moving() {
+            ui.ctx().request_repaint();
+        } else {
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(66));
+        }
+    }
+}
+
+impl TrainerView {
+    fn steer(&mut self, ui: &Ui, view: &SceneResponse, trainer: &mut Trainer, frame_s: f64) {
+        let response = &view.response;
+        let pointer = ui.input(|i| i.pointer.latest_pos()).filter(|at| view.rect.contains(*at));
+        if let (Some(at), false) = (pointer.filter(|_| response.contains_pointer()), view.camera_moves) {
+            if ui.input(|i| i.pointer.delta() != egui::Vec2::ZERO || i.pointer.any_pressed())
+                && let Some(point) = view.point_in_world(ui, &self.camera, at)
+            {
+                trainer.pinch.move_to(point);
+            }
+            ui.ctx().set_cursor_icon(if trainer.pinch.closed() { CursorIcon::Grabbing } else { CursorIcon::Crosshair });
+            let (scroll, ctrl) = ui.input(|i| (f64::from(i.smooth_scroll_delta().y), i.modifiers.command));
+            if scroll != 0.0 && !ctrl {
+                trainer.pinch.strengthen(scroll * WHEEL_N);
+            }
+        }
+        trainer.pinch.button =
+            response.is_pointer_button_down_on() && ui.input(|i| i.pointer.button_down(PointerButton::Primary));
+        if !ui.ctx().egui_wants_keyboard_input() {
+            keys(ui, trainer, frame_s);
+        }
+        if ui.input(|i| i.key_pressed(Key::Home)) {
+            self.camera = home();
+        }
+    }
+}
+
+fn keys(ui: &Ui, trainer: &mut Trainer, frame_s: f64) {
+    ui.input(|i| {
+        let mut step = Vec2::zeros();
+        for (key, along) in [
+            (Key::ArrowLeft, Vec2::new(-1.0, 0.0)),
+            (Key::ArrowRight, Vec2::new(1.0, 0.0)),
+            (Key::ArrowUp, Vec2::new(0.0, 1.0)),
+            (Key::ArrowDown, Vec2::new(0.0, -1.0)),
+        ] {
+            if i.key_down(key) {
+                step += along;
+            }
+        }
+        if step != Vec2::zeros() {
+            trainer.pinch.move_by(step * KEY_SPEED_M_S * frame_s.min(0.1));
+        }
+        if i.key_pressed(Key::Space) {
+            trainer.pinch.latched = !trainer.pinch.latched;
+        }
+        let firmer = i32::from(i.key_pressed(Key::Plus) || i.key_pressed(Key::Equals));
+        let change = firmer - i32::from(i.key_pressed(Key::Minus));
+        trainer.pinch.strengthen(0.2 * f64::from(change));
+    });
+}
+
+/// What mouse and keys do, along the lower edge.
+fn hints(ui: &mut Ui, rect: Rect) {
+    let line = Rect::from_min_max(pos2(rect.left() + space::M, rect.bottom() - 34.0), rect.right_bottom());
+    ui.scope_builder(UiBuilder::new().max_rect(line).sense(Sense::hover()), |ui| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 10.0;
+            for (key, what) in [
+                ("Move", "fingers"),
+                ("Left button", "pinch"),
+                ("Wheel", "strength"),
+                ("Right drag", "turn the view"),
+                ("Arrows", "move"),
+                ("Space", "pinch and hold"),
+            ] {
+                if ui.available_width() > 130.0 {
+                    key_hint(ui, key, what);
+                }
+            }
+        });
+    });
+}
+
+fn watching(ui: &Ui, rect: Rect, trainer: &Trainer) {
+    let p = palette(ui);
+    let text = if trainer.performance_over() { "The scripted operator is done." } else { "The scripted operator at work" };
+    let at = rect.center_top() + vec2(0.0, 16.0);
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::new(13.0, theme::semibold()), p.text);
+    let back = Rect::from_center_size(at + vec2(0.0, 10.0), galley.size() + vec2(24.0, 12.0));
+    ui.painter().rect(back, 14, p.card, egui::Stroke::new(1.0, p.border), egui::StrokeKind::Inside);
+    ui.painter().galley(Align2::CENTER_CENTER.anchor_size(back.center(), galley.size()).min, galley, Color32::WHITE);
+}

@@ -1,0 +1,82 @@
+//! Play, pause, speed, and an overview of the whole recording to move in.
+
+use crate::ui::format;
+use crate::ui::session::Session;
+use crate::ui::theme::{self, palette, space, state_color};
+use egui::{Pos2, Rangef, Rect, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, vec2};
+
+/// Playback speeds on offer.
+const SPEEDS: [f64; 5] = [0.1, 0.25, 0.5, 1.0, 2.0];
+
+/// The line under the band; the slider lies between the given edges.
+pub fn transport(ui: &mut Ui, session: &mut Session, area: Rangef) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::hover());
+    let buttons = Rect::from_min_max(rect.min, Pos2::new(area.min - space::S, rect.bottom()));
+    ui.scope_builder(UiBuilder::new().max_rect(buttons).layout(egui::Layout::left_to_right(egui::Align::Center)), |ui| {
+        ui.spacing_mut().item_spacing.x = space::S;
+        if play_button(ui, session.playing).clicked() {
+            session.toggle_play();
+        }
+        let text = match session.prepared() {
+            Some(prepared) if prepared.clockless() => format!("{:.0}", session.cursor_s),
+            _ => format::clock(session.cursor_s),
+        };
+        ui.add_sized(vec2(62.0, 20.0), egui::Label::new(theme::strong(text)));
+        egui::ComboBox::from_id_salt("speed").width(58.0).selected_text(speed_text(session.speed)).show_ui(ui, |ui| {
+            for speed in SPEEDS {
+                ui.selectable_value(&mut session.speed, speed, speed_text(speed));
+            }
+        });
+    });
+    overview(ui, session, Rect::from_x_y_ranges(area, rect.center().y - 7.0..=rect.center().y + 7.0));
+}
+
+fn speed_text(speed: f64) -> String {
+    format!("{speed} ×")
+}
+
+/// A triangle or two bars, drawn: no font needs to have them.
+pub fn play_button(ui: &mut Ui, playing: bool) -> egui::Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(30.0, 28.0), Sense::click());
+    let hint = if playing { "Pause" } else { "Play" };
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, hint));
+    let visuals = ui.style().interact(&response);
+    ui.painter().rect_filled(rect, 6, visuals.weak_bg_fill);
+    let (c, ink) = (rect.center(), palette(ui).text);
+    if playing {
+        for x in [-4.0, 4.0] {
+            ui.painter().rect_filled(Rect::from_center_size(c + vec2(x, 0.0), vec2(3.5, 12.0)), 1, ink);
+        }
+    } else {
+        let points = vec![c + vec2(-4.0, -6.5), c + vec2(7.0, 0.0), c + vec2(-4.0, 6.5)];
+        ui.painter().add(Shape::convex_polygon(points, ink, Stroke::NONE));
+    }
+    response.on_hover_text(format!("{hint} (Space)"))
+}
+
+/// The whole recording in its states' colours, the visible part framed, the cursor as a handle.
+fn overview(ui: &mut Ui, session: &mut Session, rect: Rect) {
+    let Some(prepared) = session.prepared().cloned() else { return };
+    let (p, dark) = (palette(ui), ui.visuals().dark_mode);
+    let (first, last) = prepared.span();
+    let x_of = |t: f64| rect.left() + ((t - first) / (last - first)).clamp(0.0, 1.0) as f32 * rect.width();
+    let track = rect.shrink2(vec2(0.0, 3.5));
+    ui.painter().rect_filled(track, 3, p.sunken);
+    for interval in session.segmentation().iter().flat_map(|s| &s.states) {
+        let part = Rect::from_x_y_ranges(x_of(interval.t0)..=x_of(interval.t1), track.y_range());
+        ui.painter().rect_filled(part, 0, state_color(dark, interval.state).gamma_multiply(0.75));
+    }
+    let (from, to) = session.view_s;
+    if to - from < 0.999 * (last - first) {
+        let window = Rect::from_x_y_ranges(x_of(from)..=x_of(to).max(x_of(from) + 3.0), rect.y_range());
+        ui.painter().rect_stroke(window, 3, Stroke::new(1.2, p.secondary), StrokeKind::Outside);
+    }
+    let response = ui.interact(rect.expand2(vec2(0.0, 6.0)), ui.scope_id().with("overview"), Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::slider(true, session.cursor_s, "Time"));
+    if let Some(at) = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on()) {
+        session.playing = false;
+        session.seek(first + f64::from((at.x - rect.left()) / rect.width()) * (last - first));
+    }
+    let handle = Pos2::new(x_of(session.cursor_s), rect.center().y);
+    ui.painter().circle(handle, 7.0, p.accent, Stroke::new(2.0, p.card));
+}

@@ -1,0 +1,7 @@
+//! Plots that stay fast: thinned to what a pixel can show, kept until the view changes.
+
+mod decimate;
+mod row;
+
+pub use decimate::{Levels, decimate};
+pub use row::{GUTTER, PlotCache, RowInput, axis_height, row};

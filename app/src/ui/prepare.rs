@@ -1,0 +1,261 @@
+//! A recording made ready to be looked at: task signals, paths, and channels grouped by quantity. Computed once, in the
+//! background.
+
+use super::format;
+use super::plots::Levels;
+use estimator::segment::task_of;
+use estimator::signal::task::{TaskSignals, TipSeries, is_two_fingered, task_signals, times, tip_series};
+use haptics::Vec2;
+use haptics::recording::{Recording, Task};
+use render::ColorRole;
+use std::sync::Arc;
+
+/// Points that a path in space is thinned to.
+const PATH_POINTS: usize = 4_000;
+
+/// One curve.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    /// Channel name, or the task signal's.
+    pub name: String,
+    /// For people, short.
+    pub label: String,
+    /// Its colour.
+    pub role: ColorRole,
+    /// A lighter shade, to tell y from x of one finger.
+    pub second: bool,
+    /// Values in the shown unit, and their extremes in blocks.
+    pub levels: Arc<Levels>,
+}
+
+/// Curves of one quantity, drawn in one plot.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// What they are.
+    pub title: String,
+    /// The shown unit.
+    pub unit: String,
+    /// Shown value = SI value × factor.
+    pub factor: f64,
+    /// The curves.
+    pub traces: Vec<Trace>,
+    /// Shown unless the user hides it.
+    pub shown: bool,
+}
+
+/// A recording and everything that is drawn of it.
+#[derive(Debug)]
+pub struct Prepared {
+    /// The recording itself.
+    pub recording: Recording,
+    /// Sample times, s, or sample numbers of a clockless log.
+    pub times: Vec<f64>,
+    /// The task that it is read as, when that is known.
+    pub task: Option<Task>,
+    /// Fingers, where the recording has two.
+    pub tips: Option<[TipSeries; 2]>,
+    /// The single tool, where it has one.
+    pub tool: Option<TipSeries>,
+    /// Signals that states are told from.
+    pub signals: Option<TaskSignals>,
+    /// Plots.
+    pub groups: Vec<Group>,
+    /// Samples that paths in space are drawn through.
+    pub path_samples: Vec<usize>,
+}
+
+impl Prepared {
+    /// Derives everything; takes a moment for long logs.
+    pub fn new(recording: Recording) -> Self {
+        let times = times(&recording);
+        let tips = is_two_fingered(&recording)
+            .then(|| Some([tip_series(&recording, "1").ok()?, tip_series(&recording, "2").ok()?]))
+            .flatten();
+        let tool = if tips.is_none() { tip_series(&recording, "").ok() } else { None };
+        let signals = if tips.is_some() { task_signals(&recording).ok() } else { None };
+        let task = task_of(&recording, None).ok();
+        let groups = groups(&recording, signals.as_ref());
+        let step = times.len().div_ceil(PATH_POINTS).max(1);
+        let path_samples = (0..times.len()).step_by(step).collect();
+        Self { recording, times, task, tips, tool, signals, groups, path_samples }
+    }
+
+    /// First and last time.
+    pub fn span(&self) -> (f64, f64) {
+        match (self.times.first(), self.times.last()) {
+            (Some(first), Some(last)) if last > first => (*first, *last),
+            (Some(first), _) => (*first, *first + 1.0),
+            _ => (0.0, 1.0),
+        }
+    }
+
+    /// The last sample at or before a time.
+    pub fn sample_at(&self, time: f64) -> usize {
+        self.times.partition_point(|t| *t <= time).saturating_sub(1)
+    }
+
+    /// True when the log has no clock and "times" are sample numbers.
+    pub fn clockless(&self) -> bool {
+        self.recording.time_s.is_none()
+    }
+
+    /// The point that moves through space: the middle of the fingers, or the tool.
+    pub fn point_at(&self, sample: usize) -> Option<Vec2> {
+        match (&self.tips, &self.tool) {
+            (Some([left, right]), _) => Some(0.5 * (left.position.get(sample)? + right.position.get(sample)?)),
+            (None, Some(tool)) => tool.position.get(sample).copied(),
+            _ => None,
+        }
+    }
+
+    /// The force on the environment at that point.
+    pub fn force_at(&self, sample: usize) -> Option<Vec2> {
+        let of = |series: &TipSeries| series.force.as_ref()?.get(sample).copied();
+        match (&self.tips, &self.tool) {
+            (Some([left, right]), _) => Some(of(left)? + of(right)?),
+            (None, Some(tool)) => of(tool),
+            _ => None,
+        }
+    }
+}
+
+/// Title of the group that a channel belongs to, its rank, and whether it is shown from the start.
+fn kind(name: &str, unit: &str) -> (u8, &'static str, bool) {
+    match unit {
+        "m" => (0, "Position", true),
+        "rad" => (1, "Angle", true),
+        "m/s" => (3, "Velocity", false),
+        "rad/s" => (4, "Angular velocity", false),
+        "N" => (5, "Force", true),
+        "Nm" => (6, "Torque", true),
+        _ if name.is_empty() => (9, "Other", false),
+        _ => (8, "Other", false),
+    }
+}
+
+fn groups(recording: &Recording, signals: Option<&TaskSignals>) -> Vec<Group> {
+    let mut ranked: Vec<(u8, Group)> = Vec::new();
+    for channel in &recording.channels {
+        let (rank, title, shown) = kind(&channel.name, &channel.unit);
+        let (unit, factor) = format::channel_unit(&channel.unit);
+        let trace = trace(&channel.name, &channel.values, factor);
+        match ranked.iter_mut().find(|(r, g)| *r == rank && g.unit == unit) {
+            Some((_, group)) => group.traces.push(trace),
+            None => ranked.push((
+                rank,
+                Group { title: title.to_owned(), unit: unit.to_owned(), factor, traces: vec![trace], shown },
+            )),
+        }
+    }
+    if let Some(signals) = signals {
+        ranked.push((7, task_group(signals)));
+    }
+    ranked.sort_by_key(|(rank, _)| *rank);
+    ranked.into_iter().map(|(_, group)| group).collect()
+}
+
+/// Signals of the task (thesis, 5.2.2).
+fn task_group(signals: &TaskSignals) -> Group {
+    let made = |name: &str, label: &str, role, second, values: Vec<f64>| Trace {
+        name: name.to_owned(),
+        label: label.to_owned(),
+        role,
+        second,
+        levels: Arc::new(Levels::new(values)),
+    };
+    Group {
+        title: "Task signals".to_owned(),
+        unit: "N".to_owned(),
+        factor: 1.0,
+        shown: true,
+        traces: vec![
+            made("grip_N", "grip force", ColorRole::Measured, false, signals.grip_force_n.clone()),
+            made(
+                "net_y_N",
+                "net force, up",
+                ColorRole::Block(0),
+                false,
+                signals.net_force_n.iter().map(|f| f.y).collect(),
+            ),
+            made(
+                "net_x_N",
+                "net force, right",
+                ColorRole::Block(5),
+                false,
+                signals.net_force_n.iter().map(|f| f.x).collect(),
+            ),
+        ],
+    }
+}
+
+/// A channel's label and colour from its name: `fx1_N` is the left finger's horizontal force.
+fn trace(name: &str, values: &[f64], factor: f64) -> Trace {
+    let stem = name.split('_').next().unwrap_or(name);
+    let finger = match stem.chars().last() {
+        Some('1') => Some(0),
+        Some('2') => Some(1),
+        _ => None,
+    };
+    let quantity = stem.trim_end_matches(['1', '2']);
+    let second = matches!(quantity, "y" | "vy" | "fy" | "qt" | "dqt");
+    let (label, role) = match (finger, quantity) {
+        (Some(finger), "x" | "y" | "vx" | "vy" | "fx" | "fy" | "qb" | "qt" | "dqb" | "dqt") => {
+            let axis = match quantity {
+                "qb" | "dqb" => "bottom",
+                "qt" | "dqt" => "top",
+                other if other.ends_with('x') => "x",
+                _ => "y",
+            };
+            (format!("{} {axis}", ["left", "right"][finger]), ColorRole::Finger(finger))
+        }
+        (None, "x" | "vx" | "fx" | "y" | "vy" | "fy" | "z" | "vz" | "fz") => {
+            let (axis, role) = match quantity.chars().last() {
+                Some('x') => ("x", ColorRole::Finger(0)),
+                Some('y') => ("y", ColorRole::Block(0)),
+                _ => ("z", ColorRole::Block(5)),
+            };
+            (axis.to_owned(), role)
+        }
+        (None, "q" | "dq" | "ddq") => ("coordinate".to_owned(), ColorRole::Measured),
+        (None, "f") => ("force".to_owned(), ColorRole::Measured),
+        (None, "tau") => ("torque".to_owned(), ColorRole::Measured),
+        _ => (name.to_owned(), ColorRole::Neutral),
+    };
+    let second = second && finger.is_some();
+    let levels = Arc::new(Levels::new(values.iter().map(|v| v * factor).collect()));
+    Trace { name: name.to_owned(), label, role, second, levels }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::recording::Channel;
+
+    fn channel(name: &str, unit: &str) -> Channel {
+        Channel { name: name.to_owned(), unit: unit.to_owned(), values: vec![0.001, 0.002] }
+    }
+
+    #[test]
+    fn channels_are_grouped_by_unit_and_named_for_people() {
+        let recording = Recording {
+            time_s: Some(vec![0.0, 0.5]),
+            channels: vec![channel("fx2_N", "N"), channel("x1_m", "m"), channel("y1_m", "m"), channel("motor_A", "A")],
+            ..Recording::default()
+        };
+        let prepared = Prepared::new(recording);
+        let titles: Vec<&str> = prepared.groups.iter().map(|g| g.title.as_str()).collect();
+        assert_eq!(titles, ["Position", "Force", "Other"]);
+        let position = &prepared.groups[0];
+        assert_eq!((position.unit.as_str(), position.traces[1].label.as_str()), ("mm", "left y"));
+        assert_eq!(position.traces[0].levels.value(1), 2.0);
+        assert_eq!(prepared.sample_at(0.4), 0);
+        assert_eq!(prepared.sample_at(0.5), 1);
+    }
+
+    #[test]
+    fn an_empty_recording_is_harmless() {
+        let prepared = Prepared::new(Recording::default());
+        assert_eq!(prepared.span(), (0.0, 1.0));
+        assert!(prepared.groups.is_empty() && prepared.point_at(0).is_none());
+    }
+}

@@ -1,0 +1,100 @@
+//! The 3-D view as a widget: picture, orbit, zoom, pan, reset.
+
+use super::callback::{picture, pixels};
+use crate::ui::theme::{self, palette};
+use egui::{PointerButton, Rect, Response, Sense};
+use haptics::world::{State, World};
+use render::{Camera, ViewOptions};
+use std::sync::Arc;
+
+/// Radians of orbit a point of drag.
+const ORBIT_RAD: f32 = 0.006;
+
+/// What happened in the view.
+pub struct SceneResponse {
+    /// The whole picture.
+    pub response: Response,
+    /// Where it is, points.
+    pub rect: Rect,
+    /// Its size, pixels.
+    pub size: [u32; 2],
+    /// True while the camera is being moved.
+    pub camera_moves: bool,
+}
+
+impl SceneResponse {
+    /// The point of the world's plane under a position of the pointer.
+    pub fn point_in_world(&self, ui: &egui::Ui, camera: &Camera, position: egui::Pos2) -> Option<haptics::Vec2> {
+        let offset = (position - self.rect.min) * ui.pixels_per_point();
+        camera.point_in_plane([offset.x, offset.y].into(), self.size)
+    }
+}
+
+/// Whether the plain wheel magnifies, or only together with Ctrl.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Wheel {
+    /// The wheel magnifies.
+    Zooms,
+    /// The wheel is used otherwise; with Ctrl it magnifies.
+    ZoomsWithCtrl,
+}
+
+/// Draws the scene into all the room there is. Right drag turns, middle drag moves, wheel magnifies.
+pub fn scene_view(
+    ui: &mut egui::Ui,
+    view: &'static str,
+    camera: &mut Camera,
+    home: Camera,
+    wheel: Wheel,
+    scene: (Arc<World>, State, ViewOptions),
+) -> SceneResponse {
+    let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+    let size = pixels(ui, rect);
+    let camera_moves = steer(ui, &response, camera, wheel, size);
+    let (world, state, options) = scene;
+    let options = ViewOptions { camera: *camera, theme: theme::scene_theme(ui.visuals().dark_mode), ..options };
+    if !picture(ui, rect, view, world, state, options) {
+        let p = palette(ui);
+        ui.painter().rect_filled(rect, 0, p.sunken);
+        let text = "No graphics device: the picture cannot be drawn.";
+        ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, text, egui::FontId::proportional(13.0), p.faint);
+    }
+    reset_button(ui, rect, camera, home);
+    SceneResponse { response, rect, size, camera_moves }
+}
+
+fn steer(ui: &egui::Ui, response: &Response, camera: &mut Camera, wheel: Wheel, size: [u32; 2]) -> bool {
+    let mut moves = false;
+    let drag = response.drag_delta();
+    if response.dragged_by(PointerButton::Secondary) {
+        camera.orbit(-drag.x * ORBIT_RAD, drag.y * ORBIT_RAD);
+        moves = true;
+    }
+    if response.dragged_by(PointerButton::Middle) {
+        let drag = drag * ui.pixels_per_point();
+        camera.pan([drag.x, drag.y].into(), size);
+        moves = true;
+    }
+    if response.hovered() {
+        let (scroll, pinch, ctrl) =
+            ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.modifiers.ctrl || i.modifiers.command));
+        if pinch != 1.0 {
+            camera.zoom(pinch);
+        } else if scroll != 0.0 && (wheel == Wheel::Zooms || ctrl) {
+            camera.zoom((scroll * 0.004).exp());
+        }
+    }
+    moves
+}
+
+fn reset_button(ui: &mut egui::Ui, rect: Rect, camera: &mut Camera, home: Camera) {
+    if *camera == home {
+        return;
+    }
+    let size = egui::vec2(92.0, 26.0);
+    let at = Rect::from_min_size(rect.right_top() + egui::vec2(-size.x - 12.0, 12.0), size);
+    let button = egui::Button::new(theme::caption(ui, "Reset view")).fill(palette(ui).card);
+    if ui.put(at, button).on_hover_text("Home key").clicked() {
+        *camera = home;
+    }
+}

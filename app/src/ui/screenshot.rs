@@ -1,0 +1,169 @@
+//! Panels and workspaces drawn without a window: for the command line, reports and tests.
+
+use super::app::App;
+use super::panels::log::LogPanel;
+use super::panels::parameters::ParametersPanel;
+use super::panels::results::ResultsPanel;
+use super::panels::scene::ScenePanel;
+use super::panels::segments::SegmentsPanel;
+use super::panels::trainer_view::TrainerView;
+use super::prepare::Prepared;
+use super::scene;
+use super::session::{self, FitChoice, Session, Workspace};
+use super::theme::{self, space};
+use super::trainer::{Clock, Operator, Trainer, WorldChoice};
+use anyhow::{Context as _, anyhow};
+use egui::{Frame, Ui};
+use egui_kittest::wgpu::WgpuTestRenderer;
+use haptics::recording::{Recording, Task};
+use haptics::world::World;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// What can be drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Panel {
+    /// Plots, band and time slider.
+    Log,
+    /// States and subtasks.
+    Segments,
+    /// The parameter table.
+    Parameters,
+    /// Parameters, constraints and warnings.
+    Results,
+    /// The recording in space.
+    Scene,
+    /// The virtual world.
+    Trainer,
+    /// The whole Calibrate workspace.
+    Workbench,
+    /// The whole Train workspace.
+    Train,
+}
+
+/// What is shown.
+#[derive(Clone, Debug, Default)]
+pub struct PanelInput {
+    /// A log to load.
+    pub log: Option<PathBuf>,
+    /// Its sidecar, where it is not beside the log.
+    pub meta: Option<PathBuf>,
+    /// Recordings in memory, instead of a log.
+    pub recordings: Vec<Recording>,
+    /// The task; told from the recording when absent.
+    pub task: Option<Task>,
+    /// The world of the trainer; the two blocks when absent.
+    pub world: Option<World>,
+    /// Where the cursor stands, s (in the trainer: how far the scripted operator is); two fifths of the way when absent.
+    pub time_s: Option<f64>,
+}
+
+/// Draws a panel in `size` pixels.
+pub fn panel(input: &PanelInput, panel: Panel, size: [u32; 2], dark: bool) -> anyhow::Result<image::RgbaImage> {
+    let session = session_for(input, panel)?;
+    draw(session, panel, size, dark)
+}
+
+/// Draws a panel over recordings in memory; the cursor stands at `time_s`.
+pub fn recordings(
+    recordings: Vec<Recording>,
+    panel: Panel,
+    time_s: Option<f64>,
+    size: [u32; 2],
+    dark: bool,
+) -> anyhow::Result<image::RgbaImage> {
+    self::panel(&PanelInput { recordings, time_s, ..PanelInput::default() }, panel, size, dark)
+}
+
+/// A session with everything computed, for a picture.
+fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Session> {
+    let mut session = Session::new();
+    session.trainer.clock = Clock::Manual;
+    if matches!(panel, Panel::Trainer | Panel::Train) {
+        session.trainer = performing(input).map_err(|problem| anyhow!(problem))?;
+        return Ok(session);
+    }
+    session.workspace = Workspace::Calibrate;
+    let recordings = match &input.log {
+        Some(path) if input.recordings.is_empty() => estimator::log::load(path, input.meta.as_deref())?,
+        _ => input.recordings.clone(),
+    };
+    if recordings.is_empty() {
+        return Ok(session);
+    }
+    session.show(recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect());
+    session.choice = FitChoice { task: input.task, thresholds: None };
+    match session::analyse(&session.recordings, session.choice) {
+        Ok(analysis) => {
+            session.replays = session::replay_all(&analysis.world, &session.recordings);
+            session.analysis = Some(Arc::new(analysis));
+        }
+        Err(problem) => {
+            session.fit_problem = Some(problem.clone());
+            session.fail(problem);
+        }
+    }
+    let (first, last) = session.view_s;
+    session.seek(input.time_s.unwrap_or(first + 0.4 * (last - first)));
+    Ok(session)
+}
+
+/// The scripted operator in the middle of its task.
+fn performing(input: &PanelInput) -> Result<Trainer, String> {
+    let mut trainer = Trainer::default();
+    (trainer.clock, trainer.operator) = (Clock::Manual, Operator::Scripted);
+    if let Some(world) = &input.world {
+        trainer.file = Some(world.clone());
+        trainer.choice = WorldChoice::File;
+    }
+    trainer.ensure_running()?;
+    trainer.advance(input.time_s.unwrap_or(6.3));
+    Ok(trainer)
+}
+
+/// Draws a session's panel.
+pub fn draw(session: Session, panel: Panel, size: [u32; 2], dark: bool) -> anyhow::Result<image::RgbaImage> {
+    // The renderer of the test kit panics without a driver; ours says what is missing.
+    render::Headless::new().map(drop)?;
+    let options = egui_wgpu::RendererOptions::default();
+    let state = egui_kittest::wgpu::create_render_state(egui_kittest::wgpu::default_wgpu_setup(), options);
+    let surface = state.clone();
+    let mut app = App::new(session);
+    let mut contents = contents(panel);
+    let mut harness = egui_kittest::Harness::builder()
+        .with_size(egui::vec2(size[0] as f32, size[1] as f32))
+        .with_theme(if dark { egui::Theme::Dark } else { egui::Theme::Light })
+        .with_accessibility_check(false)
+        .allow_missing_glyphs()
+        .with_render_cursor(false)
+        .with_context_setup(move |ctx| {
+            theme::install(ctx);
+            scene::announce(ctx, &surface);
+        })
+        .renderer(WgpuTestRenderer::from_render_state(state))
+        .build_ui(move |ui| {
+            ui.painter().rect_filled(ui.ctx().content_rect(), 0, theme::palette(ui).window);
+            contents(ui, &mut app);
+        });
+    harness.run_steps(4);
+    harness.render().map_err(|error| anyhow!(error)).context("the panel could not be drawn")
+}
+
+type Contents = Box<dyn FnMut(&mut Ui, &mut App)>;
+
+fn contents(panel: Panel) -> Contents {
+    fn framed(mut panel: impl super::panels::Panel + 'static) -> Contents {
+        Box::new(move |ui, app| {
+            Frame::new().inner_margin(space::M).show(ui, |ui| panel.ui(ui, &mut app.session));
+        })
+    }
+    match panel {
+        Panel::Log => framed(LogPanel::default()),
+        Panel::Segments => framed(SegmentsPanel),
+        Panel::Parameters => framed(ParametersPanel),
+        Panel::Results => framed(ResultsPanel::default()),
+        Panel::Scene => framed(ScenePanel::default()),
+        Panel::Trainer => framed(TrainerView::default()),
+        Panel::Workbench | Panel::Train => Box::new(|ui, app| app.show(ui)),
+    }
+}

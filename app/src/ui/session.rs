@@ -1,0 +1,388 @@
+//! What the window knows: loaded recordings, their fit, the replay, the time cursor. Panels read and change it; jobs fill it.
+
+use super::jobs::{JobKind, Jobs, Outcome, Purpose, Replayed};
+use super::film::Film;
+use super::plots::Levels;
+use super::prepare::Prepared;
+use super::trainer::Trainer;
+use estimator::pipeline::{self, Analysis};
+use estimator::segment::{Segmentation, Thresholds};
+use haptics::recording::{Recording, Task};
+use haptics::world::World;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The two workspaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Workspace {
+    /// Touch a virtual world.
+    #[default]
+    Train,
+    /// Measure a real one.
+    Calibrate,
+}
+
+/// How grave a message is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// Something did not work.
+    Error,
+    /// Something was done.
+    Done,
+}
+
+/// A message above the workspace.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Banner {
+    /// How grave.
+    pub tone: Tone,
+    /// One sentence.
+    pub text: String,
+}
+
+/// What the 3-D view of a recording shows beside the hand.
+#[allow(clippy::struct_excessive_bools)] // four independent switches, shown as such
+#[derive(Clone, Copy, Debug)]
+pub struct SceneLayers {
+    /// The path of the fingers or the tool.
+    pub path: bool,
+    /// Force vectors along the path.
+    pub forces_on_path: bool,
+    /// Found constraints.
+    pub constraints: bool,
+    /// Marks at contacts.
+    pub contacts: bool,
+}
+
+impl Default for SceneLayers {
+    fn default() -> Self {
+        Self { path: true, forces_on_path: false, constraints: true, contacts: true }
+    }
+}
+
+/// How the fit is to be made.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FitChoice {
+    /// The task; absent: told from the recording.
+    pub task: Option<Task>,
+    /// Thresholds given by hand; absent: chosen above the noise.
+    pub thresholds: Option<Thresholds>,
+}
+
+/// Everything that is shared between panels.
+#[derive(Default)]
+pub struct Session {
+    /// The open workspace.
+    pub workspace: Workspace,
+    /// Loaded recordings.
+    pub recordings: Vec<Arc<Prepared>>,
+    /// The one that is shown.
+    pub current: usize,
+    /// Where they came from; absent for a recording made here.
+    pub path: Option<PathBuf>,
+    /// A sidecar named by hand.
+    pub meta: Option<PathBuf>,
+    /// The task that the user named when opening.
+    pub task_hint: Option<Task>,
+    /// The live world.
+    pub trainer: Trainer,
+    /// The path field.
+    pub path_field: String,
+    /// How to fit.
+    pub choice: FitChoice,
+    /// The choice that the fit on the screen was made with differs from `choice`.
+    pub stale: bool,
+    /// The fit.
+    pub analysis: Option<Arc<Analysis>>,
+    /// Why there is none, in one sentence.
+    pub fit_problem: Option<String>,
+    /// The replay through the fitted world, by recording.
+    pub replays: Vec<Option<Replayed>>,
+    /// The time that is looked at.
+    pub cursor_s: f64,
+    /// The part of the recording that plots show.
+    pub view_s: (f64, f64),
+    /// Whether the cursor runs.
+    pub playing: bool,
+    /// Playback speed, times real time.
+    pub speed: f64,
+    /// What the 3-D view shows.
+    pub layers: SceneLayers,
+    /// Messages.
+    pub banners: Vec<Banner>,
+    /// Background work.
+    pub jobs: Jobs,
+    /// A world that was opened from a file, for the trainer to take.
+    pub opened_world: Option<Box<World>>,
+    /// Where to save: the dialog's answer for the panels.
+    pub chosen: Option<(Purpose, PathBuf)>,
+    /// Set by a panel: the trainer should take the calibrated world.
+    pub train_calibrated: bool,
+}
+
+impl Session {
+    /// An empty session.
+    pub fn new() -> Self {
+        Self { speed: 1.0, view_s: (0.0, 1.0), ..Self::default() }
+    }
+
+    /// The recording that is shown.
+    pub fn prepared(&self) -> Option<&Arc<Prepared>> {
+        self.recordings.get(self.current)
+    }
+
+    /// Its segmentation.
+    pub fn segmentation(&self) -> Option<&Segmentation> {
+        self.analysis.as_ref()?.segmentations.get(self.current)?.as_ref()
+    }
+
+    /// Its replay through the fitted world.
+    pub fn replay(&self) -> Option<&Replayed> {
+        self.replays.get(self.current)?.as_ref()
+    }
+
+    /// Adds an error.
+    pub fn fail(&mut self, text: impl Into<String>) {
+        self.say(Tone::Error, text.into());
+    }
+
+    /// Adds a message; the same one is not shown twice.
+    pub fn say(&mut self, tone: Tone, text: String) {
+        let banner = Banner { tone, text };
+        if !self.banners.contains(&banner) {
+            self.banners.push(banner);
+        }
+    }
+
+    /// Reads a log in the background, then fits it.
+    pub fn open(&mut self, ctx: &egui::Context, path: &Path) {
+        let (path, meta) = (path.to_path_buf(), self.meta.clone());
+        self.path_field = path.display().to_string();
+        self.jobs.start(ctx, JobKind::Load, move || match estimator::log::load(&path, meta.as_deref()) {
+            Ok(recordings) => {
+                let prepared = recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect();
+                Outcome::Loaded(path, prepared)
+            }
+            Err(error) => Outcome::Failed(sentence(&error.to_string())),
+        });
+    }
+
+    /// Reads the same log again.
+    pub fn reload(&mut self, ctx: &egui::Context) {
+        match self.path.clone() {
+            Some(path) => self.open(ctx, &path),
+            None => self.fail("There is no file to reload: open a log first, or save this recording."),
+        }
+    }
+
+    /// Takes recordings that are in memory, and fits them.
+    pub fn adopt(&mut self, ctx: &egui::Context, recordings: Vec<Recording>) {
+        let prepared = recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect();
+        self.path = None;
+        self.path_field.clear();
+        self.show(prepared);
+        self.refit(ctx);
+    }
+
+    /// Shows prepared recordings from the start.
+    pub fn show(&mut self, recordings: Vec<Arc<Prepared>>) {
+        self.recordings = recordings;
+        self.replays.clear();
+        self.analysis = None;
+        self.fit_problem = None;
+        self.playing = false;
+        self.choice = FitChoice { task: self.task_hint, thresholds: None };
+        self.select(0);
+    }
+
+    /// Shows another recording of the file.
+    pub fn select(&mut self, index: usize) {
+        self.current = index.min(self.recordings.len().saturating_sub(1));
+        if let Some(prepared) = self.prepared() {
+            self.view_s = prepared.span();
+            self.cursor_s = self.view_s.0;
+        }
+    }
+
+    /// Segments and fits in the background.
+    pub fn refit(&mut self, ctx: &egui::Context) {
+        if self.recordings.is_empty() {
+            return;
+        }
+        self.stale = false;
+        self.jobs.forget(JobKind::Simulate);
+        let (recordings, choice) = (self.recordings.clone(), self.choice);
+        self.jobs.start(ctx, JobKind::Fit, move || match analyse(&recordings, choice) {
+            Ok(analysis) => Outcome::Fitted(Box::new(analysis)),
+            Err(problem) => Outcome::Failed(problem),
+        });
+    }
+
+    /// Takes in what the jobs bring; call once a frame.
+    pub fn poll(&mut self, ctx: &egui::Context) {
+        for outcome in self.jobs.poll() {
+            self.take(ctx, outcome);
+        }
+    }
+
+    fn take(&mut self, ctx: &egui::Context, outcome: Outcome) {
+        match outcome {
+            Outcome::Loaded(path, recordings) => {
+                self.path = Some(path);
+                self.workspace = Workspace::Calibrate;
+                self.show(recordings);
+                self.refit(ctx);
+            }
+            Outcome::Fitted(analysis) => self.fitted(ctx, *analysis),
+            Outcome::Simulated(replays) => self.replays = replays,
+            Outcome::Chosen(_, None) => {}
+            Outcome::Chosen(Purpose::OpenLog, Some(path)) => self.open(ctx, &path),
+            Outcome::Chosen(Purpose::OpenWorld, Some(path)) => self.open_world(ctx, &path),
+            Outcome::Chosen(purpose, Some(path)) => self.chosen = Some((purpose, path)),
+            Outcome::World(world) => self.opened_world = Some(world),
+            Outcome::Saved(path) => self.say(Tone::Done, format!("Saved to {}.", path.display())),
+            Outcome::Failed(problem) => {
+                if !self.recordings.is_empty() && self.analysis.is_none() {
+                    self.fit_problem = Some(problem.clone());
+                }
+                self.fail(problem);
+            }
+        }
+    }
+
+    fn fitted(&mut self, ctx: &egui::Context, analysis: Analysis) {
+        let analysis = Arc::new(analysis);
+        self.analysis = Some(Arc::clone(&analysis));
+        self.fit_problem = None;
+        let recordings = self.recordings.clone();
+        self.jobs.start(ctx, JobKind::Simulate, move || Outcome::Simulated(replay_all(&analysis.world, &recordings)));
+    }
+
+    /// Reads a world in the background.
+    pub fn open_world(&mut self, ctx: &egui::Context, path: &Path) {
+        let path = path.to_path_buf();
+        self.jobs.start(ctx, JobKind::Load, move || match World::load(&path) {
+            Ok(world) => Outcome::World(Box::new(world)),
+            Err(error) => Outcome::Failed(sentence(&format!("{error}: {}", path.display()))),
+        });
+    }
+
+    /// Opens whatever a file is: a world when it ends in .json, else a log.
+    pub fn open_any(&mut self, ctx: &egui::Context, path: &Path) {
+        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
+            self.open_world(ctx, path);
+        } else {
+            self.open(ctx, path);
+        }
+    }
+
+    /// Moves the cursor, within the recording.
+    pub fn seek(&mut self, time: f64) {
+        if let Some(prepared) = self.prepared() {
+            let (first, last) = prepared.span();
+            self.cursor_s = time.clamp(first, last);
+            let (from, to) = self.view_s;
+            if self.cursor_s < from || self.cursor_s > to {
+                // The view follows a cursor that leaves it.
+                let width = to - from;
+                let start = (self.cursor_s - 0.1 * width).clamp(first, (last - width).max(first));
+                self.view_s = (start, start + width);
+            }
+        }
+    }
+
+    /// Starts or stops the playback; at the end it starts over.
+    pub fn toggle_play(&mut self) {
+        if let Some(prepared) = self.prepared() {
+            let (first, last) = prepared.span();
+            if !self.playing && self.cursor_s >= last - 1e-9 {
+                self.seek(first);
+            }
+            self.playing = !self.playing;
+        }
+    }
+
+    /// Runs the cursor on by a frame.
+    pub fn advance(&mut self, frame_s: f64) {
+        let Some(prepared) = self.prepared().filter(|_| self.playing) else { return };
+        let (first, last) = prepared.span();
+        // A clockless log is played in ten seconds.
+        let rate = if prepared.clockless() { (last - first) / 10.0 } else { 1.0 };
+        let next = self.cursor_s + frame_s * rate * self.speed;
+        self.playing = next < last;
+        self.seek(next);
+    }
+}
+
+/// Segments and fits; the sentence of an error.
+pub fn analyse(recordings: &[Arc<Prepared>], choice: FitChoice) -> Result<Analysis, String> {
+    let plain: Vec<Recording> = recordings.iter().map(|p| p.recording.clone()).collect();
+    let options = pipeline::Options { task: choice.task, thresholds: choice.thresholds };
+    pipeline::analyse(&plain, &options).map_err(|error| sentence(&error.to_string()))
+}
+
+/// Plays every recording through the world.
+pub fn replay_all(world: &World, recordings: &[Arc<Prepared>]) -> Vec<Option<Replayed>> {
+    recordings
+        .iter()
+        .map(|prepared| {
+            let simulation = estimator::simulate::simulate(world, &prepared.recording).ok().map(Arc::new);
+            let film = Film::shoot(world, prepared).map(Arc::new);
+            let curves = simulation.as_deref().map(curves).unwrap_or_default();
+            (simulation.is_some() || film.is_some()).then_some(Replayed { simulation, curves, film })
+        })
+        .collect()
+}
+
+fn curves(simulation: &estimator::simulate::Simulation) -> Vec<(String, Levels)> {
+    let shown = |channel: &haptics::recording::Channel| {
+        let (_, factor) = super::format::channel_unit(&channel.unit);
+        (channel.name.clone(), Levels::new(channel.values.iter().map(|v| v * factor).collect()))
+    };
+    simulation.predicted.iter().map(shown).collect()
+}
+
+/// Capital first, full stop last.
+pub fn sentence(text: &str) -> String {
+    let text = super::format::capitalised(text.trim());
+    if text.ends_with(['.', '!', '?']) { text } else { format!("{text}.") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn clockless(n: usize) -> Session {
+        let mut session = Session::new();
+        let channel = haptics::recording::Channel { name: "x_m".into(), unit: "m".into(), values: vec![0.0; n] };
+        let recording = Recording { channels: vec![channel], ..Recording::default() };
+        session.show(vec![Arc::new(Prepared::new(recording))]);
+        session
+    }
+
+    #[test]
+    fn the_cursor_stays_inside_and_the_view_follows() {
+        let mut session = clockless(1_001);
+        session.view_s = (0.0, 100.0);
+        session.seek(500.0);
+        assert!(session.view_s.0 <= 500.0 && session.view_s.1 >= 500.0);
+        assert!((session.view_s.1 - session.view_s.0 - 100.0).abs() < 1e-9);
+        session.seek(1e9);
+        assert_eq!(session.cursor_s, 1_000.0);
+    }
+
+    #[test]
+    fn playback_ends_and_starts_over() {
+        let mut session = clockless(1_001);
+        session.toggle_play();
+        session.advance(20.0);
+        assert!(!session.playing && session.cursor_s == 1_000.0);
+        session.toggle_play();
+        assert!(session.playing && session.cursor_s == 0.0);
+    }
+
+    #[test]
+    fn sentences_are_sentences() {
+        assert_eq!(sentence("the file is empty"), "The file is empty.");
+    }
+}

@@ -1,0 +1,114 @@
+//! The servo on its thread, or the same loop stepped by hand for tests and pictures.
+
+use haptics::device::Device;
+use haptics::servo::safety::Limits;
+use haptics::servo::timing::Timing;
+use haptics::servo::{Loop, Privileges, Servo, ServoConfig, Snapshot, Swap, TickRecord};
+
+/// Where ticks come from.
+pub enum Engine {
+    /// The real-time thread.
+    Thread(Box<Servo>),
+    /// The same loop, stepped when told to.
+    Inline(Box<Inline>),
+}
+
+/// The servo's loop without a thread.
+pub struct Inline {
+    body: Loop,
+    config: ServoConfig,
+    ticks: Vec<TickRecord>,
+    snapshot: Snapshot,
+    owed_s: f64,
+}
+
+impl Engine {
+    /// Starts the thread.
+    pub fn thread(swap: Box<Swap>, device: Box<dyn Device>, config: ServoConfig) -> Result<Self, String> {
+        let servo = Servo::start(swap, device, config);
+        servo.map(|s| Self::Thread(Box::new(s))).map_err(|e| crate::ui::session::sentence(&e.to_string()))
+    }
+
+    /// Makes a loop that waits to be stepped.
+    pub fn inline(swap: Box<Swap>, device: Box<dyn Device>, config: ServoConfig) -> Self {
+        let period_s = 1.0 / config.rate_hz;
+        let limits = Limits { max_force_n: config.limits.max_force_n.min(device.spec().max_force_n), ..config.limits };
+        let tick = TickRecord { input: swap.state.input, label: "free-motion", ..TickRecord::default() };
+        let timing = Timing { period_s, ..Timing::default() };
+        let snapshot = Snapshot { state: swap.state.clone(), generation: 0, tick, timing, fault: None };
+        let body = Loop::new(swap, device, limits);
+        Self::Inline(Box::new(Inline { body, config, ticks: Vec::new(), snapshot, owed_s: 0.0 }))
+    }
+
+    /// The newest snapshot.
+    pub fn newest(&mut self) -> &Snapshot {
+        match self {
+            Self::Thread(servo) => servo.newest(),
+            Self::Inline(inline) => &inline.snapshot,
+        }
+    }
+
+    /// All ticks since the last call.
+    pub fn drain(&mut self, into: &mut Vec<TickRecord>) {
+        match self {
+            Self::Thread(servo) => servo.drain(into),
+            Self::Inline(inline) => into.append(&mut inline.ticks),
+        }
+    }
+
+    /// Puts another world in; false when it could not be taken.
+    pub fn swap(&mut self, next: Box<Swap>) -> bool {
+        match self {
+            Self::Thread(servo) => servo.swap(next).is_ok(),
+            Self::Inline(inline) => {
+                inline.body.swap(next);
+                inline.publish();
+                true
+            }
+        }
+    }
+
+    /// Steps a manual loop; the thread needs no help.
+    pub fn advance(&mut self, seconds: f64) {
+        if let Self::Inline(inline) = self {
+            inline.advance(seconds);
+        }
+    }
+
+    /// What the system granted; `None` without a thread.
+    pub fn privileges(&self) -> Option<Privileges> {
+        match self {
+            Self::Thread(servo) => Some(servo.privileges()),
+            Self::Inline(_) => None,
+        }
+    }
+
+    /// Its settings.
+    pub fn config(&self) -> ServoConfig {
+        match self {
+            Self::Thread(servo) => servo.config(),
+            Self::Inline(inline) => inline.config,
+        }
+    }
+}
+
+impl Inline {
+    fn advance(&mut self, seconds: f64) {
+        let period_s = 1.0 / self.config.rate_hz;
+        self.owed_s += seconds;
+        while self.owed_s >= period_s {
+            self.owed_s -= period_s;
+            let tick = self.body.tick(period_s);
+            self.ticks.push(tick);
+            self.snapshot.tick = tick;
+            self.snapshot.timing.ticks += 1;
+        }
+        self.publish();
+    }
+
+    fn publish(&mut self) {
+        self.snapshot.state.copy_from(self.body.state());
+        self.snapshot.generation = self.body.generation();
+        self.snapshot.timing.sample_age_s = self.body.sample_age_s();
+    }
+}

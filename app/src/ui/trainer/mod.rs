@@ -1,0 +1,297 @@
+//! The trainer behind its panels: servo, device, worlds, recording. No drawing here.
+
+mod engine;
+mod history;
+mod pinch;
+
+pub use engine::{Engine, Inline};
+pub use history::{History, Moment};
+pub use pinch::Pinch;
+
+use haptics::device::{Device, MouseHandle, MouseTarget, ScriptedOperator, Skill, mouse};
+use haptics::recording::Recording;
+use haptics::servo::recorder::{SensorModel, to_recording};
+use haptics::servo::{Privileges, ServoConfig, Snapshot, Swap, TickRecord};
+use haptics::world::{State, World, presets};
+use std::sync::Arc;
+
+/// Longest recording, s: ten minutes at a kilohertz are 100 MB of ticks.
+const LONGEST_S: f64 = 600.0;
+
+/// Who moves the fingers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Operator {
+    /// The person at the mouse.
+    #[default]
+    You,
+    /// The scripted operator.
+    Scripted,
+}
+
+/// Which world is touched.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WorldChoice {
+    /// Two blocks to be unstacked and restacked.
+    #[default]
+    Blocks,
+    /// A crank to be turned.
+    Crank,
+    /// A bare table.
+    Table,
+    /// The world that was measured from the log.
+    Calibrated,
+    /// A world from a file.
+    File,
+}
+
+/// How the servo is run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Clock {
+    /// On its own thread, in real time.
+    #[default]
+    RealTime,
+    /// Only when told to: tests and pictures.
+    Manual,
+}
+
+/// Everything behind the trainer's panels.
+#[derive(Default)]
+pub struct Trainer {
+    /// How the servo is run.
+    pub clock: Clock,
+    /// Which world is touched.
+    pub choice: WorldChoice,
+    /// Who moves the fingers.
+    pub operator: Operator,
+    /// What the mouse does to the fingers.
+    pub pinch: Pinch,
+    /// Forces of the last seconds.
+    pub history: History,
+    /// The calibrated world, when there is one.
+    pub calibrated: Option<World>,
+    /// The world from a file, when there is one.
+    pub file: Option<World>,
+    engine: Option<Engine>,
+    handle: Option<MouseHandle>,
+    /// Worlds by generation of the running engine.
+    worlds: Vec<Arc<World>>,
+    newest: Option<Snapshot>,
+    recorded: Option<Vec<TickRecord>>,
+    scratch: Vec<TickRecord>,
+    recordings_made: usize,
+    performances: u64,
+    finished_at_s: f64,
+}
+
+impl Trainer {
+    /// The world of a choice; the blocks where the choice has none.
+    fn world_of(&self, choice: WorldChoice) -> World {
+        match choice {
+            WorldChoice::Blocks => presets::stacking(),
+            WorldChoice::Crank => presets::crank(),
+            WorldChoice::Table => presets::table(),
+            WorldChoice::Calibrated => self.calibrated.clone().unwrap_or_else(presets::stacking),
+            WorldChoice::File => self.file.clone().unwrap_or_else(presets::stacking),
+        }
+    }
+
+    /// Starts the servo unless it runs; goes on where it was stopped.
+    pub fn ensure_running(&mut self) -> Result<(), String> {
+        if self.engine.is_some() {
+            return Ok(());
+        }
+        let resumed = self.newest.take().zip(self.worlds.last().cloned()).filter(|_| self.operator == Operator::You);
+        let swap = match resumed {
+            Some((snapshot, world)) if snapshot.state.bodies.len() == world.blocks.len() => {
+                Box::new(Swap { world: (*world).clone(), state: snapshot.state })
+            }
+            _ => Swap::new(self.world_of(self.choice)),
+        };
+        self.start(swap)
+    }
+
+    /// Starts over: the chosen world in its starting state, the chosen operator.
+    pub fn restart(&mut self) -> Result<(), String> {
+        self.newest = None;
+        let swap = Swap::new(self.world_of(self.choice));
+        self.start(swap)
+    }
+
+    fn start(&mut self, swap: Box<Swap>) -> Result<(), String> {
+        swap.world.check().map_err(|error| super::session::sentence(&error.to_string()))?;
+        self.engine = None;
+        self.stop_recording();
+        self.history = History::default();
+        self.pinch.prepare_for(&swap.world, &swap.state);
+        self.worlds = vec![Arc::new(swap.world.clone())];
+        let device = self.device(&swap.world, &swap.state);
+        let engine = match self.clock {
+            Clock::RealTime => Engine::thread(swap, device, ServoConfig::default())?,
+            Clock::Manual => Engine::inline(swap, device, ServoConfig::default()),
+        };
+        self.engine = Some(engine);
+        self.update(0.0);
+        Ok(())
+    }
+
+    fn device(&mut self, world: &World, state: &State) -> Box<dyn Device> {
+        match self.operator {
+            Operator::You => {
+                let tips = state.input.tip_in_world;
+                let start =
+                    MouseTarget { center_in_world: 0.5 * (tips[0] + tips[1]), aperture_m: tips[1].x - tips[0].x };
+                let (handle, device) = mouse(start, world.hand.workspace);
+                self.handle = Some(handle);
+                Box::new(device)
+            }
+            Operator::Scripted => {
+                self.handle = None;
+                self.performances += 1;
+                let operator = ScriptedOperator::new(world, state, Skill::default(), self.performances);
+                self.finished_at_s = operator.duration_s();
+                Box::new(operator)
+            }
+        }
+    }
+
+    /// Stops the servo; the world is kept for the next start.
+    pub fn pause(&mut self) {
+        self.engine = None;
+        self.handle = None;
+    }
+
+    /// Takes another world while the servo runs, without a bump; the scripted operator starts over.
+    pub fn choose(&mut self, choice: WorldChoice) -> Result<(), String> {
+        self.choice = choice;
+        let swap = Swap::new(self.world_of(choice));
+        let running = self.engine.is_some() && self.operator == Operator::You;
+        if !running {
+            return self.restart();
+        }
+        swap.world.check().map_err(|error| super::session::sentence(&error.to_string()))?;
+        self.stop_recording();
+        self.pinch.prepare_for(&swap.world, &swap.state);
+        let world = Arc::new(swap.world.clone());
+        match self.engine.as_mut().map(|engine| engine.swap(swap)) {
+            Some(true) => {
+                self.worlds.push(world);
+                Ok(())
+            }
+            _ => self.restart(),
+        }
+    }
+
+    /// Takes another operator; the world starts over.
+    pub fn hand_to(&mut self, operator: Operator) -> Result<(), String> {
+        self.operator = operator;
+        self.restart()
+    }
+
+    /// Once a frame: fetches every tick, moves the mouse's goal.
+    pub fn update(&mut self, frame_s: f64) {
+        let Some(engine) = &mut self.engine else { return };
+        self.scratch.clear();
+        engine.drain(&mut self.scratch);
+        self.history.extend(&self.scratch);
+        if let Some(recorded) = &mut self.recorded {
+            recorded.extend_from_slice(&self.scratch);
+        }
+        let snapshot = engine.newest();
+        match &mut self.newest {
+            Some(kept) => {
+                kept.state.copy_from(&snapshot.state);
+                kept.generation = snapshot.generation;
+                kept.tick = snapshot.tick;
+                kept.timing = snapshot.timing;
+                kept.fault = snapshot.fault;
+            }
+            None => self.newest = Some(snapshot.clone()),
+        }
+        if let (Some(handle), Some(newest)) = (&mut self.handle, &self.newest) {
+            handle.set(self.pinch.follow(&newest.tick, frame_s));
+        }
+        if self.recorded_s() > LONGEST_S {
+            self.stop_recording();
+        }
+    }
+
+    /// Runs a manual clock on; the mouse's goal follows in steps of a picture.
+    pub fn advance(&mut self, seconds: f64) {
+        const FRAME_S: f64 = 1.0 / 60.0;
+        let mut left = seconds;
+        while left > 1e-9 {
+            let part = left.min(FRAME_S);
+            if let Some(engine) = &mut self.engine {
+                engine.advance(part);
+            }
+            self.update(part);
+            left -= part;
+        }
+    }
+
+    /// The newest state and the world it belongs to.
+    pub fn scene(&self) -> Option<(&Snapshot, &Arc<World>)> {
+        let snapshot = self.newest.as_ref()?;
+        let world = self.worlds.get(snapshot.generation as usize).or(self.worlds.last())?;
+        (snapshot.state.bodies.len() == world.blocks.len()).then_some((snapshot, world))
+    }
+
+    /// What the system granted to the servo thread.
+    pub fn privileges(&self) -> Option<Privileges> {
+        self.engine.as_ref()?.privileges()
+    }
+
+    /// The servo's settings.
+    pub fn config(&self) -> ServoConfig {
+        self.engine.as_ref().map_or_else(ServoConfig::default, Engine::config)
+    }
+
+    /// True once the scripted operator is done.
+    pub fn performance_over(&self) -> bool {
+        let now_s = self.newest.as_ref().map_or(0.0, |s| s.state.time_s);
+        self.operator == Operator::Scripted && self.engine.is_some() && now_s > self.finished_at_s
+    }
+
+    /// True while pictures must follow each other quickly.
+    pub fn is_moving(&self) -> bool {
+        let Some(snapshot) = &self.newest else { return false };
+        let fast = |v: &haptics::Vec2| v.norm() > 2e-4;
+        self.recorded.is_some()
+            || snapshot.state.input.tip_velocity.iter().any(fast)
+            || snapshot.state.bodies.iter().any(|b| fast(&b.velocity_m_s))
+            || snapshot.state.crank.rate_rad_s.abs() > 1e-2
+    }
+
+    /// Begins to keep every tick.
+    pub fn start_recording(&mut self) {
+        self.recorded = Some(Vec::new());
+    }
+
+    /// True while every tick is kept.
+    pub fn is_recording(&self) -> bool {
+        self.recorded.is_some()
+    }
+
+    /// Length of the running recording, s.
+    pub fn recorded_s(&self) -> f64 {
+        let ends = self.recorded.as_ref().and_then(|ticks| Some(ticks.last()?.time_s - ticks.first()?.time_s));
+        ends.unwrap_or(0.0)
+    }
+
+    /// Ends the recording and gives it, seen through good sensors; `None` when it is too short for anything.
+    pub fn stop_recording(&mut self) -> Option<Recording> {
+        let mut ticks = self.recorded.take().filter(|ticks| ticks.len() > 1)?;
+        let start_s = ticks[0].time_s;
+        for tick in &mut ticks {
+            tick.time_s -= start_s;
+        }
+        let (_, world) = self.scene()?;
+        let world = Arc::clone(world);
+        self.recordings_made += 1;
+        let name = format!("{} {}", world.name, self.recordings_made);
+        Some(to_recording(&name, &world, &ticks, 1, &SensorModel::TYPICAL, self.recordings_made as u64))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,116 @@
+//! The trainer without a window and without a thread: a pointer path through the mouse device.
+
+use super::*;
+use haptics::Vec2;
+
+fn manual() -> Trainer {
+    let mut trainer = Trainer { clock: Clock::Manual, ..Trainer::default() };
+    trainer.ensure_running().expect("a loop");
+    trainer
+}
+
+/// Moves the pointer in a straight line, as a person would.
+fn drag(trainer: &mut Trainer, from: Vec2, to: Vec2, seconds: f64) {
+    let steps = (seconds * 60.0) as usize;
+    for step in 1..=steps {
+        trainer.pinch.move_to(from + (to - from) * (step as f64 / steps as f64));
+        trainer.advance(1.0 / 60.0);
+    }
+}
+
+fn body(trainer: &Trainer, index: usize) -> Vec2 {
+    trainer.scene().expect("running").0.state.bodies[index].center_m
+}
+
+/// Picks a block up where it stands and puts it down elsewhere.
+fn carry(trainer: &mut Trainer, index: usize, to: Vec2) {
+    let from = body(trainer, index);
+    let up = Vec2::new(0.0, 0.024);
+    drag(trainer, from + up, from, 0.6);
+    trainer.pinch.button = true;
+    trainer.advance(0.8);
+    drag(trainer, from, from + up, 0.8);
+    let lifted = body(trainer, index);
+    assert!(lifted.y - from.y > 0.02, "block {index} was lifted by {} m", lifted.y - from.y);
+    drag(trainer, from + up, to + up, 1.0);
+    drag(trainer, to + up, to, 0.8);
+    trainer.pinch.button = false;
+    trainer.advance(0.6);
+    drag(trainer, to, to + up, 0.6);
+}
+
+#[test]
+fn a_pointer_path_pinches_lifts_and_restacks_the_blocks() {
+    let mut trainer = manual();
+    let floor_m = -0.125;
+    carry(&mut trainer, 0, Vec2::new(0.015, floor_m + 0.0080));
+    carry(&mut trainer, 1, Vec2::new(0.015, floor_m + 0.0160 + 0.00635));
+    trainer.advance(0.5);
+    let (one, two) = (body(&trainer, 0), body(&trainer, 1));
+    assert!((one.x - 0.015).abs() < 3e-3, "block 1 at {one:?}");
+    assert!((one.x - two.x).abs() < 3e-3, "block 2 above block 1: {two:?}");
+    assert!((two.y - one.y - 0.5 * (0.0160 + 0.0127)).abs() < 5e-4, "block 2 stands on block 1: {one:?} {two:?}");
+}
+
+#[test]
+fn the_pinch_reaches_its_strength_and_the_wheel_changes_it() {
+    let mut trainer = manual();
+    let block = body(&trainer, 0);
+    drag(&mut trainer, block + Vec2::new(0.0, 0.02), block, 0.6);
+    trainer.pinch.latched = true;
+    trainer.advance(1.5);
+    let grip = |trainer: &Trainer| trainer.history.newest().expect("ticks").grip_n;
+    assert!((grip(&trainer) - trainer.pinch.strength_n()).abs() < 0.05, "{}", grip(&trainer));
+    trainer.pinch.strengthen(1.0);
+    trainer.advance(1.0);
+    assert!((grip(&trainer) - 2.5).abs() < 0.08, "{}", grip(&trainer));
+}
+
+#[test]
+fn the_crank_can_be_turned_with_the_mouse() {
+    let mut trainer = manual();
+    trainer.choose(WorldChoice::Crank).expect("the crank");
+    trainer.advance(0.3);
+    let (snapshot, world) = trainer.scene().expect("running");
+    let crank = world.crank.clone().expect("a crank");
+    let start = snapshot.state.crank.angle_rad;
+    let at = |angle: f64| crank.center_m + Vec2::new(angle.cos(), angle.sin()) * crank.radius_m;
+    drag(&mut trainer, at(start) + Vec2::new(0.0, -0.01), at(start), 0.5);
+    trainer.pinch.strengthen(2.0);
+    trainer.pinch.button = true;
+    trainer.advance(0.8);
+    for step in 1..=240 {
+        trainer.pinch.move_to(at(start + std::f64::consts::TAU * f64::from(step) / 240.0));
+        trainer.advance(1.0 / 60.0);
+    }
+    let turned = trainer.scene().expect("running").0.state.crank.angle_rad - start;
+    assert!(turned > 5.0, "turned by {turned} rad");
+}
+
+#[test]
+fn a_recording_starts_at_zero_and_can_be_fitted() {
+    let mut trainer = Trainer { clock: Clock::Manual, operator: Operator::Scripted, ..Trainer::default() };
+    trainer.ensure_running().expect("a loop");
+    trainer.advance(0.5);
+    trainer.start_recording();
+    while !trainer.performance_over() {
+        trainer.advance(0.5);
+    }
+    let recording = trainer.stop_recording().expect("a recording");
+    assert_eq!(recording.time_s.as_ref().map(|t| t[0]), Some(0.0));
+    let analysis = estimator::pipeline::analyse(&[recording], &estimator::pipeline::Options::default()).expect("a fit");
+    let weight = analysis.fit.value("block-1", "weight_N").expect("carried");
+    assert!((weight - 0.343).abs() < 0.02, "{weight}");
+}
+
+#[test]
+fn a_pause_keeps_the_world_as_it_was() {
+    let mut trainer = manual();
+    let block = body(&trainer, 0);
+    drag(&mut trainer, block + Vec2::new(0.0, 0.02), block, 0.6);
+    let before = trainer.scene().expect("running").0.state.input.tip_in_world;
+    trainer.pause();
+    trainer.ensure_running().expect("again");
+    let after = trainer.scene().expect("running").0.state.input.tip_in_world;
+    assert!((before[0] - after[0]).norm() < 1e-3 && (before[1] - after[1]).norm() < 1e-3);
+}

@@ -1,0 +1,156 @@
+//! Small pieces that every panel is made of.
+
+use super::theme::{self, CARD_RADIUS, palette, space};
+use egui::{Align, Color32, CornerRadius, Frame, Layout, Margin, Response, RichText, Sense, Stroke, Ui, vec2};
+
+/// A card: heading on the left, whatever `trailing` adds on the right, contents below.
+pub fn card<R>(ui: &mut Ui, heading: &str, trailing: impl FnOnce(&mut Ui), contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let p = palette(ui);
+    Frame::new()
+        .fill(p.card)
+        .stroke(Stroke::new(1.0, p.border))
+        .corner_radius(CornerRadius::same(CARD_RADIUS))
+        .inner_margin(Margin::same(space::M as i8))
+        .show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            ui.horizontal(|ui| {
+                ui.label(theme::heading(heading));
+                ui.with_layout(Layout::right_to_left(Align::Center), trailing);
+            });
+            ui.add_space(space::XS);
+            contents(ui)
+        })
+        .inner
+}
+
+/// A card without anything beside its heading.
+pub fn plain_card<R>(ui: &mut Ui, heading: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    card(ui, heading, |_| {}, contents)
+}
+
+/// A frame for panels that fill their place to the edge (pictures, plots).
+pub fn sheet(ui: &Ui) -> Frame {
+    let p = palette(ui);
+    Frame::new().fill(p.card).stroke(Stroke::new(1.0, p.border)).corner_radius(CornerRadius::same(CARD_RADIUS))
+}
+
+/// One of several, side by side.
+pub fn segmented<T: PartialEq + Copy>(ui: &mut Ui, value: &mut T, choices: &[(T, &str, &str)]) -> bool {
+    let p = palette(ui);
+    let mut changed = false;
+    Frame::new().fill(p.sunken).stroke(Stroke::new(1.0, p.border)).corner_radius(7).inner_margin(2).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        ui.horizontal(|ui| {
+            for (choice, label, hint) in choices {
+                let on = *value == *choice;
+                let text = if on { theme::strong(*label) } else { RichText::new(*label).color(p.secondary) };
+                let fill = if on { p.raised } else { Color32::TRANSPARENT };
+                let mut button = egui::Button::new(text).fill(fill).corner_radius(5).min_size(vec2(64.0, 24.0));
+                if on {
+                    button = button.stroke(Stroke::new(1.0, p.border));
+                }
+                let response = ui.add(button);
+                response.widget_info(|| egui::WidgetInfo::selected(egui::Role::RadioButton, true, on, *label));
+                let clicked = if hint.is_empty() { response.clicked() } else { response.on_hover_text(*hint).clicked() };
+                if clicked && !on {
+                    *value = *choice;
+                    changed = true;
+                }
+            }
+        });
+    });
+    changed
+}
+
+/// The one thing to do.
+pub fn primary_button(ui: &mut Ui, enabled: bool, text: &str) -> Response {
+    let p = palette(ui);
+    let label = RichText::new(text).font(egui::FontId::new(13.0, theme::semibold())).color(p.on_accent);
+    ui.add_enabled(enabled, egui::Button::new(label).fill(p.accent).min_size(vec2(0.0, 28.0)))
+}
+
+/// What to do where there is nothing yet.
+pub fn empty_state(ui: &mut Ui, title: &str, text: &str, action: impl FnOnce(&mut Ui)) {
+    let height = ui.available_height();
+    ui.vertical_centered(|ui| {
+        ui.add_space((0.5 * height - 60.0).max(space::M));
+        ui.label(theme::title(title));
+        ui.add_space(space::XS);
+        ui.scope(|ui| {
+            ui.set_max_width(420.0);
+            ui.label(RichText::new(text).color(palette(ui).secondary));
+        });
+        ui.add_space(space::M);
+        action(ui);
+    });
+}
+
+/// A round light with its name; grey when off.
+pub fn light(ui: &mut Ui, on: bool, color: Color32, label: &str, hint: &str) -> Response {
+    let p = palette(ui);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+        if on {
+            ui.painter().circle_filled(rect.center(), 7.0, color.gamma_multiply(0.25));
+            ui.painter().circle_filled(rect.center(), 4.5, color);
+        } else {
+            ui.painter().circle_stroke(rect.center(), 4.0, Stroke::new(1.2, p.faint));
+        }
+        ui.label(RichText::new(label).size(11.5).color(if on { p.text } else { p.faint }));
+    })
+    .response
+    .on_hover_text(hint)
+}
+
+/// A key as it is printed on the keyboard, and what it does.
+pub fn key_hint(ui: &mut Ui, key: &str, what: &str) {
+    let p = palette(ui);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        Frame::new()
+            .fill(p.sunken)
+            .stroke(Stroke::new(1.0, p.border))
+            .corner_radius(4)
+            .inner_margin(Margin::symmetric(5, 1))
+            .show(ui, |ui| ui.label(RichText::new(key).size(11.0).color(p.text)));
+        ui.label(theme::caption(ui, what));
+    });
+}
+
+/// A label on the left and a value on the right of one line.
+pub fn fact(ui: &mut Ui, label: &str, value: impl Into<String>) {
+    ui.horizontal(|ui| {
+        ui.label(theme::caption(ui, label));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.add(egui::Label::new(RichText::new(value.into()).size(12.0)).truncate());
+        });
+    });
+}
+
+/// A horizontal bar of a value out of `most`, with a tick where it is limited.
+pub fn bar(ui: &mut Ui, value: f64, most: f64, limit: Option<f64>, color: Color32) {
+    let p = palette(ui);
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 10.0), Sense::hover());
+    let x_of = |v: f64| rect.left() + rect.width() * (v / most.max(1e-9)).clamp(0.0, 1.0) as f32;
+    ui.painter().rect_filled(rect, 3, p.sunken);
+    if value > 0.0 {
+        let mut filled = rect;
+        filled.set_right(x_of(value).max(rect.left() + 2.0));
+        ui.painter().rect_filled(filled, 3, color);
+    }
+    if let Some(limit) = limit {
+        let x = x_of(limit);
+        ui.painter().line_segment(
+            [egui::pos2(x, rect.top() - 2.0), egui::pos2(x, rect.bottom() + 2.0)],
+            Stroke::new(1.5, p.secondary),
+        );
+    }
+}
+
+/// A small coloured square.
+pub fn swatch(ui: &mut Ui, color: Color32) -> Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+    ui.painter().rect_filled(rect, 2, color);
+    response
+}
