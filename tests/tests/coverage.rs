@@ -51,6 +51,14 @@ fn report(all: &[Scores]) -> Vec<(String, usize, usize)> {
         .collect()
 }
 
+/// Every property at least ninety times; what a recording could not show must say so, and may not do it often.
+fn demand(rows: &[(String, usize, usize)]) {
+    for (name, covered, shown) in rows {
+        assert!(*shown >= 95, "{name} was found only {shown} times");
+        assert!(100 * covered >= 90 * shown, "{name} was covered only {covered} times of {shown}");
+    }
+}
+
 #[test]
 fn stacked_blocks_are_covered() {
     let all: Vec<(String, Scores)> = seeds()
@@ -75,7 +83,7 @@ fn stacked_blocks_are_covered() {
     let joint = scores.iter().filter(|s| s.iter().all(|(_, z, _)| z.abs() <= 2.0)).count();
     println!("all properties at once: {joint} of {SEEDS}");
     assert_eq!(wrong, 0);
-    assert!(rows.iter().all(|(_, covered, n)| *covered >= 90 && *n == 100), "{rows:?}");
+    demand(&rows);
 }
 
 #[test]
@@ -95,5 +103,5 @@ fn cranks_are_covered() {
     let rows = report(&scores);
     let joint = scores.iter().filter(|s| s.iter().all(|(_, z, _)| z.abs() <= 2.0)).count();
     println!("all properties at once: {joint} of {SEEDS}");
-    assert!(rows.iter().all(|(_, covered, n)| *covered >= 90 && *n == 100), "{rows:?}");
+    demand(&rows);
 }

@@ -111,7 +111,8 @@ impl Demo {
                 hits += usize::from((found - value).abs() <= 2.0 * error);
             }
         }
-        let _ = writeln!(text, "  against the world it was recorded in: {hits} of {all} values within two of their errors");
+        let _ =
+            writeln!(text, "  against the world it was recorded in: {hits} of {all} values within two of their errors");
         Ok(json!({ "hits": hits, "of": all }))
     }
 
@@ -132,13 +133,7 @@ impl Demo {
         made
     }
 
-    fn keep(
-        &self,
-        name: &str,
-        picture: anyhow::Result<image::RgbaImage>,
-        made: &mut Vec<PathBuf>,
-        text: &mut String,
-    ) {
+    fn keep(&self, name: &str, picture: anyhow::Result<image::RgbaImage>, made: &mut Vec<PathBuf>, text: &mut String) {
         let path = self.file(name);
         match picture.and_then(|picture| screenshot::save(&picture, &path)) {
             Ok(()) => {
@@ -168,11 +163,9 @@ fn write(path: &Path, text: &str) -> anyhow::Result<()> {
 fn true_values(world: &World) -> Vec<(String, String, f64)> {
     let mut values = Vec::new();
     for block in &world.blocks {
-        for (name, value) in [
-            ("weight_N", block.mass_kg * world.gravity_m_s2),
-            ("width_m", block.width_m),
-            ("height_m", block.height_m),
-        ] {
+        for (name, value) in
+            [("weight_N", block.mass_kg * world.gravity_m_s2), ("width_m", block.width_m), ("height_m", block.height_m)]
+        {
             values.push((block.name.clone(), name.to_owned(), value));
         }
     }

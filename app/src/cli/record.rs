@@ -57,7 +57,11 @@ pub(super) const LONGEST_S: f64 = 3600.0;
 
 impl Record {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
-        anyhow::ensure!((50.0..=8000.0).contains(&self.rate), "a rate of {} Hz is not possible; choose 50 to 8000", self.rate);
+        anyhow::ensure!(
+            (50.0..=8000.0).contains(&self.rate),
+            "a rate of {} Hz is not possible; choose 50 to 8000",
+            self.rate
+        );
         if let Some(seconds) = self.seconds {
             anyhow::ensure!(
                 seconds > 0.0 && seconds <= LONGEST_S,
@@ -69,12 +73,8 @@ impl Record {
         estimator::log::write_csv(&recording, &self.out)?;
         let sidecar = estimator::log::write_meta(&recording, &self.out)?;
         let seconds = recording.duration_s().unwrap_or(0.0);
-        let text = format!(
-            "{}: {} samples, {seconds:.2} s\n{}",
-            self.out.display(),
-            recording.len(),
-            sidecar.display()
-        );
+        let text =
+            format!("{}: {} samples, {seconds:.2} s\n{}", self.out.display(), recording.len(), sidecar.display());
         let json = json!({ "out": self.out, "meta": sidecar, "samples": recording.len(), "seconds": seconds });
         Ok(Output { text, json })
     }
@@ -86,10 +86,9 @@ impl Record {
         match Task::from(self.task) {
             Task::BlockStack => Ok(presets::stacking()),
             Task::Crank => Ok(presets::crank()),
-            other => anyhow::bail!(
-                "there is no built-in world for the task {} yet; name one with --world",
-                other.name()
-            ),
+            other => {
+                anyhow::bail!("there is no built-in world for the task {} yet; name one with --world", other.name())
+            }
         }
     }
 
@@ -104,9 +103,9 @@ impl Record {
                 state = State::new(&world, start);
                 Box::new(device)
             }
-            None if self.operator == "mouse" => anyhow::bail!(
-                "recording by mouse needs the window: run touchstone, open the trainer and press Record"
-            ),
+            None if self.operator == "mouse" => {
+                anyhow::bail!("recording by mouse needs the window: run touchstone, open the trainer and press Record")
+            }
             _ => anyhow::bail!("there is no operator `{}`; use scripted, mouse or replay:LOG", self.operator),
         };
         let ticks = run(world.clone(), state, device, self.rate, self.seconds);
@@ -141,10 +140,9 @@ fn replay(log: &Path) -> anyhow::Result<(ReplayDevice, [haptics::Vec2; 2])> {
     use estimator::signal::task::tip_series;
     let recordings = estimator::log::load(log, None)?;
     let recording = recordings.first().context("the log holds no recording")?;
-    let time = recording
-        .time_s
-        .clone()
-        .with_context(|| format!("{} has no clock and cannot be replayed; give rate_hz in its sidecar", recording.name))?;
+    let time = recording.time_s.clone().with_context(|| {
+        format!("{} has no clock and cannot be replayed; give rate_hz in its sidecar", recording.name)
+    })?;
     let (left, right) = (tip_series(recording, "1")?, tip_series(recording, "2")?);
     let start = [left.position[0], right.position[0]];
     let still = || vec![haptics::Vec2::zeros(); time.len()];

@@ -3,8 +3,8 @@
 use super::{LogArgs, Output, parse_size, record};
 use anyhow::Context;
 use clap::Args;
-use haptics::recording::Recording;
 use haptics::device::{Device, ScriptedOperator, Skill};
+use haptics::recording::Recording;
 use haptics::servo::{Loop, Swap, safety::Limits};
 use haptics::world::{State, World, presets};
 use render::{Headless, SceneView, Theme, Trajectory, ViewOptions};

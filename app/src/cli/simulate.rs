@@ -35,7 +35,8 @@ impl Simulate {
         };
         let simulation = estimator::simulate::simulate(&world, recording)?;
         estimator::log::write_csv(&simulation.to_recording(recording), &self.out)?;
-        let mut text = format!("{}: {} samples of {} predicted\n", self.out.display(), simulation.time_s.len(), recording.name);
+        let mut text =
+            format!("{}: {} samples of {} predicted\n", self.out.display(), simulation.time_s.len(), recording.name);
         let mut rms = Map::new();
         for (name, value) in &simulation.residual_rms {
             let _ = writeln!(text, "  {name:<10} measured − predicted: {value:.4} RMS");

@@ -9,7 +9,9 @@ use crate::estimate::{Constraint, ConstraintKind, EstimateError, Fit, Parameter,
 use crate::segment::{Segmentation, Thresholds, segment};
 use crate::signal::derive::savitzky_golay;
 use crate::signal::noise::{quantum, white_noise};
-use crate::signal::task::{TaskSignals, TipSeries, half_width, is_two_fingered, smooth, task_signals, times, tip_series};
+use crate::signal::task::{
+    TaskSignals, TipSeries, half_width, is_two_fingered, smooth, task_signals, times, tip_series,
+};
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Inertia, Law, LoadFriction, MAX_PARAMETERS, Motion, ViscousFriction, Weight};
 use haptics::recording::{Recording, Task};
@@ -513,7 +515,10 @@ fn geometry_parameters(held: &Held, geometry: &Geometry) -> Vec<Parameter> {
 fn grip_parameters(recording: &Recording, held: &Held, geometry: &Geometry) -> Result<Vec<Parameter>, EstimateError> {
     let signals = task_signals(recording)?;
     let width = smooth(&held.time_s, &signals.grip_width_m);
-    let grip = smooth(&held.time_s, &signals.grip_force_n).value;
+    // The mean of the two normal forces: their difference moves the handle, not the tips apart.
+    let normal = |finger: usize, i: usize| signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x);
+    let grip: Vec<f64> = (0..signals.len()).map(|i| 0.5 * (normal(0, i) - normal(1, i))).collect();
+    let grip = smooth(&held.time_s, &grip).value;
     let stride = 2 * half_width(&held.time_s);
     let rows: Vec<usize> = held.turning.iter().copied().step_by(stride).collect();
     let column = |series: &[f64]| rows.iter().map(|i| series[*i]).collect::<Vec<f64>>();

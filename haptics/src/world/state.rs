@@ -41,6 +41,8 @@ pub struct CrankState {
     pub radial_m: f64,
     /// Its rate, m/s.
     pub radial_rate_m_s: f64,
+    /// Velocity of the handle as it moved in the last part of a tick, m/s.
+    pub handle_velocity: Vec2,
     /// Force that arm and bearing put on the handle along the outward normal, N.
     pub constraint_force_n: f64,
 }

@@ -70,8 +70,10 @@ fn advance(world: &World, state: &mut State, dt_s: f64) {
     for (block, (body, load)) in world.blocks.iter().zip(state.bodies.iter_mut().zip(&state.load)) {
         move_body(block, body, *load, gravity, dt_s);
     }
-    if let Some(crank) = &world.crank {
+    if let Some((crank, before)) = world.crank.as_ref().zip(state.handle_in_world(world)) {
         move_crank(crank, state, on_handle, dt_s);
+        let after = state.handle_in_world(world).unwrap_or(before);
+        state.crank.handle_velocity = (after - before) / dt_s;
     }
 }
 
@@ -215,7 +217,8 @@ fn touch_fingers(world: &World, state: &mut State, dt_s: f64) {
 /// The flat pads against the crank's handle. Returns the force on the handle, N.
 fn touch_handle(world: &World, state: &mut State, dt_s: f64) -> Vec2 {
     let (Some(crank), Some(handle)) = (&world.crank, state.handle_in_world(world)) else { return Vec2::zeros() };
-    let velocity = handle_velocity(crank, state);
+    // The chord that it moved along, not the tangent: what the pads' anchors add up must be the way that was gone.
+    let velocity = state.crank.handle_velocity;
     let mut total = Vec2::zeros();
     for finger in 0..2_u8 {
         // The left pad faces right, the right pad faces left.
@@ -233,12 +236,6 @@ fn touch_handle(world: &World, state: &mut State, dt_s: f64) -> Vec2 {
         }
     }
     total
-}
-
-fn handle_velocity(crank: &Crank, state: &State) -> Vec2 {
-    let (sin, cos) = state.crank.angle_rad.sin_cos();
-    let speed = state.crank.rate_rad_s * (crank.radius_m + state.crank.radial_m);
-    Vec2::new(-sin, cos) * speed + Vec2::new(cos, sin) * state.crank.radial_rate_m_s
 }
 
 fn move_body(block: &Block, body: &mut BodyState, (force, moment): (Vec2, f64), gravity: Vec2, dt_s: f64) {
