@@ -170,8 +170,17 @@ fn sentence(error: &anyhow::Error) -> String {
 }
 
 fn open_app(args: AppArgs) -> ExitCode {
-    let _ = args;
-    fail(&anyhow::anyhow!("the window is not built into this version yet"))
+    let options = crate::ui::RunOptions {
+        log: args.log,
+        meta: args.meta,
+        world: args.world,
+        task: args.task.map(Task::from),
+        dark: None,
+    };
+    match crate::ui::run(options) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => fail(&error),
+    }
 }
 
 /// Log messages go to standard error: warnings by default, more with `RUST_LOG`.
