@@ -46,9 +46,10 @@ pub fn channel_unit(unit: &str) -> (&str, f64) {
     let degrees = 180.0 / std::f64::consts::PI;
     match unit {
         "m" => ("mm", 1e3),
-        "m/s" => ("mm/s", 1e3),
+        "m/s" | "m_s" => ("mm/s", 1e3),
         "rad" => ("°", degrees),
-        "rad/s" => ("°/s", degrees),
+        "rad/s" | "rad_s" => ("°/s", degrees),
+        "m/s²" | "m_s2" => ("m/s²", 1.0),
         "Nm" => ("N·m", 1.0),
         "degC" => ("°C", 1.0),
         other => (other, 1.0),
@@ -117,7 +118,9 @@ pub fn clock(seconds: f64) -> String {
 
 /// Microseconds or milliseconds.
 pub fn short_time(seconds: f64) -> String {
-    if seconds < 1e-3 { format!("{} µs", significant(seconds * 1e6, 3)) } else { format!("{} ms", significant(seconds * 1e3, 3)) }
+    let (value, unit) = if seconds < 1e-3 { (seconds * 1e6, "µs") } else { (seconds * 1e3, "ms") };
+    let decimals = if value < 10.0 { 2 } else { usize::from(value < 100.0) };
+    format!("{} {unit}", number(value, decimals))
 }
 
 #[cfg(test)]

@@ -124,8 +124,8 @@ fn kind(name: &str, unit: &str) -> (u8, &'static str, bool) {
     match unit {
         "m" => (0, "Position", true),
         "rad" => (1, "Angle", true),
-        "m/s" => (3, "Velocity", false),
-        "rad/s" => (4, "Angular velocity", false),
+        "m/s" | "m_s" => (3, "Velocity", false),
+        "rad/s" | "rad_s" => (4, "Angular velocity", false),
         "N" => (5, "Force", true),
         "Nm" => (6, "Torque", true),
         _ if name.is_empty() => (9, "Other", false),

@@ -13,7 +13,7 @@ use super::session::{self, FitChoice, Session, Workspace};
 use super::theme::{self, space};
 use super::trainer::{Clock, Operator, Trainer, WorldChoice};
 use anyhow::{Context as _, anyhow};
-use egui::{Frame, Ui};
+use egui::{Frame, Ui, UiBuilder};
 use egui_kittest::wgpu::WgpuTestRenderer;
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
@@ -142,8 +142,13 @@ pub fn draw(session: Session, panel: Panel, size: [u32; 2], dark: bool) -> anyho
         })
         .renderer(WgpuTestRenderer::from_render_state(state))
         .build_ui(move |ui| {
-            ui.painter().rect_filled(ui.ctx().content_rect(), 0, theme::palette(ui).window);
-            contents(ui, &mut app);
+            // The test kit's margin is not ours.
+            let whole = ui.ctx().content_rect();
+            ui.scope_builder(UiBuilder::new().max_rect(whole), |ui| {
+                ui.set_clip_rect(whole);
+                ui.painter().rect_filled(whole, 0, theme::palette(ui).window);
+                contents(ui, &mut app);
+            });
         });
     harness.run_steps(4);
     harness.render().map_err(|error| anyhow!(error)).context("the panel could not be drawn")

@@ -244,7 +244,7 @@ fn visuals(dark: bool) -> Visuals {
         expansion: 0.0,
     };
     v.widgets.noninteractive = widget(p.card, p.border, p.text);
-    v.widgets.inactive = widget(p.raised, Color32::TRANSPARENT, p.text);
+    v.widgets.inactive = widget(p.raised, mix(p.border, p.faint, 0.25), p.text);
     v.widgets.hovered = widget(p.hovered, p.border, p.text);
     v.widgets.active = widget(mix(p.hovered, p.accent, 0.25), p.accent, p.text);
     v.widgets.open = widget(p.hovered, p.border, p.text);

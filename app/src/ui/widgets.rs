@@ -13,7 +13,7 @@ pub fn card<R>(ui: &mut Ui, heading: &str, trailing: impl FnOnce(&mut Ui), conte
         .inner_margin(Margin::same(space::M as i8))
         .show(ui, |ui| {
             ui.set_width(ui.available_width());
-            ui.horizontal(|ui| {
+            compact(ui, |ui| {
                 ui.label(theme::heading(heading));
                 ui.with_layout(Layout::right_to_left(Align::Center), trailing);
             });
@@ -40,15 +40,16 @@ pub fn segmented<T: PartialEq + Copy>(ui: &mut Ui, value: &mut T, choices: &[(T,
     let mut changed = false;
     Frame::new().fill(p.sunken).stroke(Stroke::new(1.0, p.border)).corner_radius(7).inner_margin(2).show(ui, |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
+        // In a layout from right to left the last choice comes first.
+        let reversed = ui.layout().prefer_right_to_left();
         ui.horizontal(|ui| {
-            for (choice, label, hint) in choices {
+            for index in 0..choices.len() {
+                let (choice, label, hint) = &choices[if reversed { choices.len() - 1 - index } else { index }];
                 let on = *value == *choice;
                 let text = if on { theme::strong(*label) } else { RichText::new(*label).color(p.secondary) };
                 let fill = if on { p.raised } else { Color32::TRANSPARENT };
-                let mut button = egui::Button::new(text).fill(fill).corner_radius(5).min_size(vec2(64.0, 24.0));
-                if on {
-                    button = button.stroke(Stroke::new(1.0, p.border));
-                }
+                let edge = if on { Stroke::new(1.0, p.border) } else { Stroke::NONE };
+                let button = egui::Button::new(text).fill(fill).stroke(edge).corner_radius(5).min_size(vec2(64.0, 24.0));
                 let response = ui.add(button);
                 response.widget_info(|| egui::WidgetInfo::selected(egui::Role::RadioButton, true, on, *label));
                 let clicked = if hint.is_empty() { response.clicked() } else { response.on_hover_text(*hint).clicked() };
@@ -120,7 +121,7 @@ pub fn key_hint(ui: &mut Ui, key: &str, what: &str) {
 
 /// A label on the left and a value on the right of one line.
 pub fn fact(ui: &mut Ui, label: &str, value: impl Into<String>) {
-    ui.horizontal(|ui| {
+    compact(ui, |ui| {
         ui.label(theme::caption(ui, label));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.add(egui::Label::new(RichText::new(value.into()).size(12.0)).truncate());
@@ -128,10 +129,36 @@ pub fn fact(ui: &mut Ui, label: &str, value: impl Into<String>) {
     });
 }
 
+/// A line that is no higher than its words.
+pub fn compact<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.scope(|ui| {
+        ui.spacing_mut().interact_size.y = 16.0;
+        ui.horizontal(contents).inner
+    })
+    .inner
+}
+
+/// A labelled bar with its value, N, in one line.
+pub fn gauge(ui: &mut Ui, label: &str, newtons: f64, most: f64, limit: f64, color: Color32) {
+    compact(ui, |ui| {
+        ui.allocate_ui_with_layout(vec2(70.0, 16.0), Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_width(70.0);
+            ui.label(theme::caption(ui, label));
+        });
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.allocate_ui_with_layout(vec2(46.0, 16.0), Layout::right_to_left(Align::Center), |ui| {
+                ui.set_min_width(46.0);
+                ui.label(RichText::new(format!("{} N", super::format::number(newtons, 2))).size(12.0));
+            });
+            bar(ui, newtons, most, Some(limit), color);
+        });
+    });
+}
+
 /// A horizontal bar of a value out of `most`, with a tick where it is limited.
 pub fn bar(ui: &mut Ui, value: f64, most: f64, limit: Option<f64>, color: Color32) {
     let p = palette(ui);
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 10.0), Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 8.0), Sense::hover());
     let x_of = |v: f64| rect.left() + rect.width() * (v / most.max(1e-9)).clamp(0.0, 1.0) as f32;
     ui.painter().rect_filled(rect, 3, p.sunken);
     if value > 0.0 {

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// Least height of a plot, points.
 const LEAST_HEIGHT: f32 = 56.0;
 /// Height of band, subtasks, legend and slider together.
-const FOOT: f32 = 116.0;
+const FOOT: f32 = 102.0;
 
 /// The log panel.
 #[derive(Default)]

@@ -11,7 +11,7 @@ use egui_extras::{Column, TableBody, TableBuilder};
 use estimator::estimate::{Fit, Parameter};
 
 /// Height of a line.
-const LINE: f32 = 23.0;
+const LINE: f32 = 21.0;
 
 /// The parameter table.
 #[derive(Default)]
@@ -71,11 +71,11 @@ fn table(ui: &mut Ui, fit: &Fit) {
         .id_salt("parameters")
         .vscroll(false)
         .cell_layout(Layout::left_to_right(Align::Center))
-        .column(Column::remainder().clip(true).at_least(90.0))
-        .column(Column::exact(78.0))
-        .column(Column::exact(78.0))
-        .column(Column::exact(52.0))
-        .header(20.0, |mut header| {
+        .column(Column::remainder().clip(true).at_least(96.0))
+        .column(Column::exact(70.0))
+        .column(Column::exact(62.0))
+        .column(Column::exact(46.0))
+        .header(16.0, |mut header| {
             header.col(|_| {});
             for text in ["Value", "± 1 σ"] {
                 header.col(|ui| {

@@ -160,8 +160,12 @@ fn thresholds(ui: &mut Ui, session: &mut Session) {
             thresholds.velocity_m_s = shown * 1e-3;
         });
     } else if let Some(used) = used {
-        let (force, speed) = (format::number(used.force_n, 3), format::number(used.velocity_m_s * 1e3, 1));
-        ui.label(theme::caption(ui, format!("Automatic: ± {force} N, ± {speed} mm/s")));
+        let mut parts = Vec::new();
+        if used.force_n > 0.0 {
+            parts.push(format!("± {} N", format::number(used.force_n, 3)));
+        }
+        parts.push(format!("± {} mm/s", format::number(used.velocity_m_s * 1e3, 1)));
+        ui.label(theme::caption(ui, format!("Automatic: {}", parts.join(", "))));
     }
 }
 

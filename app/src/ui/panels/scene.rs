@@ -5,7 +5,7 @@ use crate::ui::scene::{Wheel, camera_for, mechanism_view, options_for, scene_vie
 use crate::ui::session::Session;
 use crate::ui::theme::{palette, space};
 use crate::ui::widgets::{empty_state, sheet};
-use egui::{Color32, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
+use egui::{Rect, RichText, Stroke, Ui, UiBuilder, vec2};
 use render::Camera;
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ pub struct ScenePanel {
 
 impl Default for ScenePanel {
     fn default() -> Self {
-        Self { camera: Camera::hand(), home: Camera::hand(), of: 0 }
+        Self { camera: Camera::workspace(), home: Camera::workspace(), of: 0 }
     }
 }
 
@@ -62,6 +62,7 @@ fn layers(ui: &mut Ui, rect: Rect, session: &mut Session) {
     ui.scope_builder(UiBuilder::new().max_rect(line), |ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
+            ui.spacing_mut().button_padding = vec2(9.0, 2.0);
             let layers = &mut session.layers;
             toggle(ui, &mut layers.path, "Path", "Where the fingers went, in the visible time");
             toggle(ui, &mut layers.forces_on_path, "Forces", "Net force along the path");
@@ -73,10 +74,11 @@ fn layers(ui: &mut Ui, rect: Rect, session: &mut Session) {
 
 fn toggle(ui: &mut Ui, on: &mut bool, label: &str, hint: &str) {
     let p = palette(ui);
-    let ink = if *on { p.text } else { p.faint };
-    let fill = if *on { p.card } else { Color32::TRANSPARENT };
-    let button = egui::Button::new(RichText::new(label).size(11.5).color(ink)).small().corner_radius(12).fill(fill);
-    let response = ui.add(button.stroke(Stroke::new(1.0, p.border))).on_hover_text(hint);
+    let ink = if *on { p.text } else { p.secondary };
+    let fill = if *on { p.card } else { p.card.gamma_multiply(0.45) };
+    let edge = if *on { p.accent } else { p.border };
+    let button = egui::Button::new(RichText::new(label).size(11.5).color(ink)).corner_radius(11).fill(fill);
+    let response = ui.add(button.min_size(vec2(0.0, 22.0)).stroke(Stroke::new(1.0, edge))).on_hover_text(hint);
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, *on, label));
     if response.clicked() {
         *on = !*on;

@@ -4,7 +4,7 @@ use super::Panel;
 use crate::ui::format;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space, state_color, state_name};
-use crate::ui::widgets::{card, empty_state, swatch};
+use crate::ui::widgets::{card, compact, empty_state, swatch};
 use egui::{Align2, FontId, Pos2, Rangef, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
 use estimator::segment::{Interval, Segmentation, SystemState};
 use std::ops::Range;
@@ -175,7 +175,7 @@ fn legend(ui: &mut Ui, segmentation: &Segmentation, indent: f32) {
             present.push(interval.state);
         }
     }
-    ui.horizontal(|ui| {
+    compact(ui, |ui| {
         ui.add_space(indent - ui.spacing().item_spacing.x);
         for state in present {
             let total: f64 = segmentation.states.iter().filter(|i| i.state == state).map(|i| i.t1 - i.t0).sum();

@@ -7,7 +7,7 @@ use crate::ui::jobs::Purpose;
 use crate::ui::session::{Session, Workspace};
 use crate::ui::theme::{self, palette, role, space};
 use crate::ui::trainer::{History, Operator, Trainer, WorldChoice};
-use crate::ui::widgets::{bar, card, fact, light, plain_card, primary_button, segmented};
+use crate::ui::widgets::{card, compact, fact, gauge, light, plain_card, primary_button, segmented};
 use egui::{Align, Layout, Pos2, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
 use haptics::servo::timing::Percentiles;
 use render::ColorRole;
@@ -28,7 +28,7 @@ impl Panel for TrainerSide {
         ScrollArea::vertical().id_salt("trainer side").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             plain_card(ui, "World", |ui| world(ui, session));
-            plain_card(ui, "Operator", |ui| operator(ui, session));
+            operator(ui, session);
             plain_card(ui, "Recording", |ui| recording(ui, session));
             forces(ui, &session.trainer);
             timing(ui, &session.trainer);
@@ -49,8 +49,7 @@ fn world(ui: &mut Ui, session: &mut Session) {
         (WorldChoice::File, "From a file", has_file, "Open a world file first"),
     ];
     for (choice, label, enabled, hint) in choices {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().interact_size.y = 20.0;
+        compact(ui, |ui| {
             let on = session.trainer.choice == choice;
             let response = ui.add_enabled(enabled, egui::RadioButton::new(on, label));
             let response = if enabled { response } else { response.on_disabled_hover_text(hint) };
@@ -59,14 +58,14 @@ fn world(ui: &mut Ui, session: &mut Session) {
             }
             if choice == WorldChoice::File {
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    if ui.small_button("Open …").clicked() {
+                    if ui.link("Open …").clicked() {
                         files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenWorld);
                     }
                 });
             }
         });
     }
-    ui.add_space(space::XS);
+    ui.add_space(2.0);
     if ui.button("Start over").on_hover_text("Puts everything back where it started").clicked() {
         chosen = Some(session.trainer.choice);
     }
@@ -83,11 +82,19 @@ fn operator(ui: &mut Ui, session: &mut Session) {
         (Operator::You, "You", "Mouse and keyboard"),
         (Operator::Scripted, "Scripted", "Watch the task done by a scripted operator"),
     ];
-    if segmented(ui, &mut operator, &choices)
-        && let Err(problem) = session.trainer.hand_to(operator)
-    {
+    let mut changed = false;
+    card(
+        ui,
+        "Operator",
+        |ui| changed = segmented(ui, &mut operator, &choices),
+        |ui| operator_state(ui, session),
+    );
+    if changed && let Err(problem) = session.trainer.hand_to(operator) {
         session.fail(problem);
     }
+}
+
+fn operator_state(ui: &mut Ui, session: &mut Session) {
     match session.trainer.operator {
         Operator::You => {
             let text = format!("Pinch strength {} N", format::number(session.trainer.pinch.strength_n(), 1));
@@ -95,7 +102,7 @@ fn operator(ui: &mut Ui, session: &mut Session) {
         }
         Operator::Scripted => {
             let over = session.trainer.performance_over();
-            let text = if over { "Done." } else { "Reaches, pinches, lifts and trembles like a person." };
+            let text = if over { "Done." } else { "Works and trembles like a person." };
             ui.label(theme::caption(ui, text));
             if over
                 && ui.button("Watch again").clicked()
@@ -132,7 +139,7 @@ fn recording(ui: &mut Ui, session: &mut Session) {
             }
         });
     } else {
-        ui.label(theme::caption(ui, "Record what you do, then measure the objects from it."));
+        ui.label(theme::caption(ui, "Keeps every tick, to measure the objects from."));
         if primary_button(ui, true, "Record").on_hover_text("R").clicked() {
             session.trainer.start_recording();
         }
@@ -153,8 +160,7 @@ fn forces(ui: &mut Ui, trainer: &Trainer) {
             ("Grip", grip, role(dark, ColorRole::Measured)),
         ] {
             let over = value > limit;
-            measure(ui, label, value);
-            bar(ui, value, 1.25 * limit, Some(limit), if over { p.danger } else { color });
+            gauge(ui, label, value, 1.25 * limit, limit, if over { p.danger } else { color });
         }
         measure(ui, "Net force, up", lift);
         strip(ui, &trainer.history, limit);
@@ -170,7 +176,7 @@ fn forces(ui: &mut Ui, trainer: &Trainer) {
 }
 
 fn measure(ui: &mut Ui, label: &str, newtons: f64) {
-    ui.horizontal(|ui| {
+    compact(ui, |ui| {
         ui.label(theme::caption(ui, label));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.label(RichText::new(format!("{} N", format::number(newtons, 2))).size(12.0));
@@ -181,7 +187,7 @@ fn measure(ui: &mut Ui, label: &str, newtons: f64) {
 /// Grip and net force of the last seconds.
 fn strip(ui: &mut Ui, history: &History, limit: f64) {
     let (dark, p) = (ui.visuals().dark_mode, palette(ui));
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 74.0), Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 64.0), Sense::hover());
     ui.painter().rect_filled(rect, 4, p.sunken);
     let Some(now_s) = history.newest().map(|m| m.time_s) else { return };
     let (low, high) = (-0.3 * limit, 1.1 * limit);
@@ -200,7 +206,7 @@ fn strip(ui: &mut Ui, history: &History, limit: f64) {
     for (color, points) in curves {
         ui.painter().with_clip_rect(rect).add(Shape::line(points, Stroke::new(1.6, role(dark, color))));
     }
-    ui.horizontal(|ui| {
+    compact(ui, |ui| {
         for (color, label) in [(ColorRole::Measured, "grip"), (ColorRole::Block(0), "net force, up")] {
             crate::ui::widgets::swatch(ui, role(dark, color));
             ui.label(theme::caption(ui, label));

@@ -26,9 +26,9 @@ impl Default for TrainerView {
     }
 }
 
-/// Fingers, objects and table large, the links partly out of the picture.
+/// The whole hand, fingers and objects as large as it allows.
 fn home() -> Camera {
-    Camera::hand().framing([-0.078, -0.146].into(), [0.078, -0.022].into())
+    Camera { pitch_rad: 0.16, ..Camera::hand() }.framing([-0.094, -0.142].into(), [0.094, 0.014].into())
 }
 
 impl Panel for TrainerView {

@@ -5,14 +5,14 @@ use crate::ui::format;
 use crate::ui::prepare::{Group, Prepared, Trace};
 use crate::ui::theme::{self, mix, palette, space};
 use egui::{Align, Color32, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
-use egui_plot::{Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotTransform, Span};
+use egui_plot::{GridMark, Line, Plot, PlotBounds, PlotPoint, PlotPoints, PlotTransform, Span};
 use estimator::segment::Segmentation;
 use render::ColorRole;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// Width of the column left of the plots.
-pub const GUTTER: f32 = 172.0;
+pub const GUTTER: f32 = 196.0;
 /// Width of the labels of the vertical axis.
 const AXIS_WIDTH: f32 = 44.0;
 /// Height of the labels of the time axis.
@@ -122,13 +122,26 @@ fn draw_gutter(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) {
     });
     let sample = input.prepared.sample_at(input.cursor_s);
     egui::ScrollArea::vertical().id_salt(("curves", input.index)).show(ui, |ui| {
-        for trace in &input.group.traces {
-            curve_entry(ui, cache, input, trace, sample);
+        ui.spacing_mut().interact_size.y = 15.0;
+        let traces = &input.group.traces;
+        // Two columns when one would not fit.
+        let columns = if traces.len() as f32 * 15.0 > ui.available_height() { 2 } else { 1 };
+        let width = (ui.available_width() - space::S) / columns as f32;
+        for line in traces.chunks(columns) {
+            ui.horizontal(|ui| {
+                for trace in line {
+                    let size = vec2(width - 4.0, 15.0);
+                    ui.allocate_ui(size, |ui| {
+                        ui.set_min_size(size);
+                        curve_entry(ui, cache, input, trace, sample);
+                    });
+                }
+            });
         }
         if input.group.traces.iter().any(|t| predicted(input, t).is_some()) {
             let color = theme::role(ui.visuals().dark_mode, ColorRole::Simulated);
             ui.horizontal(|ui| {
-                dash(ui, color, true);
+                dash(ui, color.gamma_multiply(0.75), 5.0);
                 ui.label(RichText::new("simulated").size(11.5).color(color));
             });
         }
@@ -142,11 +155,10 @@ fn curve_entry(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, trace: 
     let color = if shown { curve_color(ui.visuals().dark_mode, trace) } else { p.faint };
     let entry = ui.scope_builder(UiBuilder::new().sense(Sense::click()).id_salt(&trace.name), |ui| {
         ui.horizontal(|ui| {
-            dash(ui, if shown { color } else { p.border }, false);
+            dash(ui, if shown { color } else { p.border }, 2.5);
             let words = if shown { p.secondary } else { p.faint };
             ui.add(egui::Label::new(RichText::new(&trace.label).size(11.5).color(words)).truncate());
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                ui.add_space(space::S);
                 let value = trace.levels.value(sample);
                 let text = if shown && value.is_finite() { value_text(value, &input.group.unit) } else { String::new() };
                 ui.label(RichText::new(text).size(11.5).color(p.text));
@@ -171,15 +183,9 @@ fn value_text(value: f64, unit: &str) -> String {
     format::number(value, decimals)
 }
 
-fn dash(ui: &mut Ui, color: Color32, broken: bool) {
-    let (rect, _) = ui.allocate_exact_size(vec2(14.0, 15.0), Sense::hover());
-    let (y, stroke) = (rect.center().y, Stroke::new(2.5, color));
-    if broken {
-        ui.painter().hline(rect.left()..=rect.left() + 5.0, y, stroke);
-        ui.painter().hline(rect.right() - 5.0..=rect.right(), y, stroke);
-    } else {
-        ui.painter().hline(rect.x_range(), y, stroke);
-    }
+fn dash(ui: &mut Ui, color: Color32, width: f32) {
+    let (rect, _) = ui.allocate_exact_size(vec2(10.0, 15.0), Sense::hover());
+    ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(width, color));
 }
 
 /// The role's colour; the second curve of a finger is a lighter or darker shade of it.
@@ -200,7 +206,7 @@ fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) -> RowOut
     let shown: Vec<(usize, &Trace)> =
         input.group.traces.iter().enumerate().filter(|(_, t)| cache.is_shown(input.group, t)).collect();
     let y_range = y_range(cache, input, &shown);
-    let clockless = input.prepared.clockless();
+    let (clockless, height) = (input.prepared.clockless(), input.height);
     let plot = Plot::new(("row", input.index))
         .width(ui.available_width())
         .height(input.height)
@@ -217,7 +223,10 @@ fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) -> RowOut
         .allow_double_click_reset(false)
         .allow_axis_zoom_drag(false)
         .grid_color(p.faint)
-        .grid_fade(2.0)
+        .grid_fade(1.2)
+        .grid_spacing(Rangef::new(4.0, 40.0))
+        .x_grid_spacer(|input| marks(input.bounds, 10.0))
+        .y_grid_spacer(move |input| marks(input.bounds, if height > 130.0 { 6.0 } else { 4.0 }))
         .set_margin_fraction(egui::Vec2::ZERO)
         .sense(Sense::click_and_drag())
         .x_axis_formatter(move |mark, _| {
@@ -231,20 +240,33 @@ fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) -> RowOut
             let tint = theme::state_color(dark, interval.state).gamma_multiply(if dark { 0.16 } else { 0.22 });
             plot.span(Span::new("", interval.t0..=interval.t1).fill(tint).border_width(0.0));
         }
+        for (t, _) in &shown {
+            // A broad band under the measured curve: seen where they agree and where they part.
+            if let Some(cached) = cache.curves.get(&(input.index, *t, true)) {
+                let line = Line::new("", PlotPoints::Borrowed(&cached.points));
+                let color = theme::role(dark, ColorRole::Simulated).gamma_multiply(0.75);
+                plot.line(line.color(color).width(4.0).allow_hover(false));
+            }
+        }
         for (t, trace) in &shown {
             if let Some(cached) = cache.curves.get(&(input.index, *t, false)) {
                 let line = Line::new("", PlotPoints::Borrowed(&cached.points));
                 plot.line(line.color(curve_color(dark, trace)).width(1.4).allow_hover(false));
             }
-            if let Some(cached) = cache.curves.get(&(input.index, *t, true)) {
-                let line = Line::new("", PlotPoints::Borrowed(&cached.points));
-                let color = theme::role(dark, ColorRole::Simulated);
-                plot.line(line.color(color).width(1.2).style(LineStyle::dashed_loose()).allow_hover(false));
-            }
         }
     });
     draw_cursor(ui, &response.transform, input, &shown);
     react(ui, &response.response, &response.transform, input)
+}
+
+/// About `wanted` lines at a step of 1, 2 or 5 times a power of ten.
+fn marks((low, high): (f64, f64), wanted: f64) -> Vec<GridMark> {
+    let rough = ((high - low) / wanted).max(1e-12);
+    let decade = 10.0_f64.powf(rough.log10().floor());
+    let step_size = [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|s| *s >= rough).unwrap_or(10.0 * decade);
+    let (first, last) = ((low / step_size).ceil(), (high / step_size).floor());
+    let count = (last - first).clamp(-1.0, 100.0);
+    (0..=count as i64).filter(|_| count >= 0.0).map(|i| GridMark { value: (first + i as f64) * step_size, step_size }).collect()
 }
 
 fn decimals(step: f64) -> usize {

@@ -43,7 +43,7 @@ fn rail(ui: &egui::Ui, rect: Rect, q: &[f64], sample: usize, force: Option<(f64,
         let long = if tick % 5 == 0 { 12.0 } else { 7.0 };
         painter.line_segment([Pos2::new(x, y + 26.0), Pos2::new(x, y + 26.0 + long)], Stroke::new(1.0, p.faint));
         if tick % 5 == 0 {
-            let text = format!("{} mm", format::significant(value * 1e3, 3));
+            let text = format!("{} mm", format::number(value * 1e3, 0));
             let at = Pos2::new(x, y + 44.0);
             painter.text(at, Align2::CENTER_TOP, text, FontId::proportional(11.5), p.secondary);
         }

@@ -66,7 +66,7 @@ pub fn camera_for(prepared: &Prepared) -> Camera {
             let [low, high] = [low, high].map(|v| [v.x as f32, v.y as f32]);
             Camera { pitch_rad: 0.0, ..Camera::hand() }.framing(low.into(), high.into())
         }
-        _ => Camera::hand(),
+        _ => Camera::workspace(),
     }
 }
 
