@@ -4,3 +4,41 @@
 //! travels apart from the recording; only an assertion opens it.
 
 pub mod generate;
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// The `touchstone` program, built once in the profile of the tests.
+pub fn touchstone() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    PROGRAM.get_or_init(|| {
+        // …/target/<profile>/deps/<test> → …/target/<profile>
+        let test = std::env::current_exe().expect("a test knows its own path");
+        let folder = test.ancestors().nth(2).expect("tests lie in target/<profile>/deps").to_owned();
+        let release = folder.ends_with("release");
+        let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
+        let mut build = std::process::Command::new(cargo);
+        build.args(["build", "--quiet", "-p", "app", "--bin", "touchstone"]).current_dir(workspace());
+        build.arg("--target-dir").arg(folder.parent().expect("a profile folder has a parent"));
+        if release {
+            build.arg("--release");
+        }
+        assert!(build.status().expect("cargo runs").success(), "the program could not be built");
+        folder.join(format!("touchstone{}", std::env::consts::EXE_SUFFIX))
+    })
+}
+
+/// The workspace's root.
+pub fn workspace() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("tests/ lies in the workspace")
+}
+
+/// A file of the measured data beside the checkout, or `None` with a visible word that it was skipped.
+pub fn shared_data(file: &str) -> Option<PathBuf> {
+    let path = workspace().join("../shared/data").join(file);
+    if path.is_file() {
+        return Some(path);
+    }
+    println!("skipped: {file} is not here (../shared/data)");
+    None
+}

@@ -1,0 +1,80 @@
+//! The servo's tick allocates nothing: every built-in world, every device, a swap, and copying the state out.
+
+use assert_no_alloc::{AllocDisabler, assert_no_alloc};
+use haptics::device::{Device, MouseTarget, ReplayDevice, ScriptedOperator, Skill, mouse};
+use haptics::servo::safety::Limits;
+use haptics::servo::{Loop, Swap};
+use haptics::world::{State, World, presets};
+
+#[global_allocator]
+static GUARD: AllocDisabler = AllocDisabler;
+
+const DT: f64 = 1e-3;
+
+fn servo(world: &World, device: Box<dyn Device>) -> Loop {
+    let state = State::resting(world);
+    Loop::new(Box::new(Swap { world: world.clone(), state }), device, Limits::default())
+}
+
+/// Ticks under the guard; an allocation aborts the test.
+fn run(servo: &mut Loop, ticks: usize) {
+    let mut newest = servo.state().clone();
+    assert_no_alloc(|| {
+        for _ in 0..ticks {
+            servo.tick(DT);
+            newest.copy_from(servo.state());
+        }
+    });
+    assert!(servo.state().tick as usize >= ticks);
+}
+
+#[test]
+fn scripted_operator_in_every_world() {
+    for world in [presets::stacking(), presets::crank(), presets::table()] {
+        let operator = ScriptedOperator::new(&world, &State::resting(&world), Skill::default(), 3);
+        run(&mut servo(&world, Box::new(operator)), 20_000);
+    }
+}
+
+#[test]
+fn mouse_and_replay() {
+    let world = presets::stacking();
+    let start = MouseTarget { center_in_world: world.hand.workspace.center_m, aperture_m: 0.03 };
+    let (mut handle, device) = mouse(start, world.hand.workspace);
+    handle.set(MouseTarget { aperture_m: 0.01, ..start });
+    run(&mut servo(&world, Box::new(device)), 3_000);
+
+    let tips = || vec![world.hand.workspace.center_m; 3];
+    let replay = ReplayDevice::new("test", vec![0.0, 0.5, 1.0], [tips(), tips()], [tips(), tips()])
+        .expect("three samples of two fingers");
+    run(&mut servo(&world, Box::new(replay)), 2_000);
+}
+
+#[test]
+fn a_larger_world_is_swapped_in() {
+    let small = presets::table();
+    let mut large = presets::stacking();
+    for number in 3..40_u32 {
+        let mut block = large.blocks[1].clone();
+        block.name = format!("block-{number}");
+        block.start.center_m.x += 0.03 * f64::from(number);
+        large.blocks.push(block);
+    }
+    let operator = ScriptedOperator::new(&small, &State::resting(&small), Skill::default(), 1);
+    let mut servo = servo(&small, Box::new(operator));
+    run(&mut servo, 100);
+    let mut next = Some(Swap::new(large));
+    let mut newest = servo.state().clone();
+    let mut old = None;
+    assert_no_alloc(|| {
+        if let Some(next) = next.take() {
+            old = Some(servo.swap(next));
+        }
+        for _ in 0..500 {
+            servo.tick(DT);
+            newest.copy_from(servo.state());
+        }
+    });
+    assert_eq!(servo.state().bodies.len(), 39);
+    drop(old);
+}
