@@ -123,7 +123,7 @@ impl App {
     fn train(&mut self, ui: &mut Ui) {
         let session = &mut self.session;
         let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
-        Side::right("trainer side").frame(plain).show_separator_line(false).default_size(316.0).size_range(270.0..=460.0).show(ui, |ui| {
+        Side::right("trainer side").frame(plain).show_separator_line(false).resizable(false).exact_size(330.0).show(ui, |ui| {
             self.trainer_side.ui(ui, session);
         });
         let frame = Frame::new().inner_margin(Margin { left: 12, right: 0, top: 12, bottom: 12 });
@@ -140,10 +140,10 @@ impl App {
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
         }
         let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
-        Side::left("recording").frame(plain).show_separator_line(false).default_size(252.0).size_range(220.0..=380.0).show(ui, |ui| {
+        Side::left("recording").frame(plain).show_separator_line(false).resizable(false).exact_size(264.0).show(ui, |ui| {
             self.recording.ui(ui, session);
         });
-        Side::right("results").frame(plain).show_separator_line(false).default_size(372.0).size_range(310.0..=560.0).show(ui, |ui| {
+        Side::right("results").frame(plain).show_separator_line(false).resizable(false).exact_size(384.0).show(ui, |ui| {
             self.results.ui(ui, session);
         });
         let height = ui.available_height();

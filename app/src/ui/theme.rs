@@ -74,7 +74,7 @@ const LIGHT: Palette = Palette {
     accent: Color32::from_rgb(0x4C, 0x50, 0xC4),
     on_accent: Color32::WHITE,
     danger: Color32::from_rgb(0xC9, 0x2B, 0x00),
-    caution: Color32::from_rgb(0x94, 0x66, 0x00),
+    caution: Color32::from_rgb(0x82, 0x58, 0x00),
     good: Color32::from_rgb(0x00, 0x7A, 0x5C),
 };
 

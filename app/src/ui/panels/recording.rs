@@ -205,12 +205,14 @@ impl RecordingPanel {
 /// A path field with `…` and `Save`; true when it is to be saved there.
 fn save_line(ui: &mut Ui, session: &mut Session, field: &mut String, purpose: Purpose, enabled: bool) -> bool {
     ui.add_enabled_ui(enabled, |ui| {
-        ui.horizontal(|ui| {
-            ui.add(TextEdit::singleline(field).desired_width((ui.available_width() - 96.0).max(60.0)));
+        let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
+        ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let save = ui.button("Save").clicked();
             if ui.button("…").on_hover_text("Choose a place").clicked() {
                 files::ask(ui.ctx(), &mut session.jobs, purpose);
             }
-            ui.button("Save").clicked()
+            ui.add(TextEdit::singleline(field).desired_width(ui.available_width()));
+            save
         })
         .inner
     })

@@ -59,17 +59,15 @@ impl Panel for ScenePanel {
 /// Switches in the corner of the picture.
 fn layers(ui: &mut Ui, rect: Rect, session: &mut Session) {
     let line = Rect::from_min_size(rect.left_top() + vec2(space::M, space::M), vec2(rect.width() - 120.0, 24.0));
-    ui.scope_builder(UiBuilder::new().max_rect(line), |ui| {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 6.0;
-            ui.spacing_mut().button_padding = vec2(9.0, 2.0);
-            let layers = &mut session.layers;
-            toggle(ui, &mut layers.path, "Path", "Where the fingers went, in the visible time");
-            toggle(ui, &mut layers.forces_on_path, "Forces", "Net force along the path");
-            toggle(ui, &mut layers.constraints, "Constraints", "Centres of rotation and directions of motion");
-            toggle(ui, &mut layers.contacts, "Contacts", "Contacts of the replay through the fitted world");
-        });
-    });
+    // A child of its own: it lies over the picture and takes no room.
+    let mut ui = ui.new_child(UiBuilder::new().max_rect(line).layout(egui::Layout::left_to_right(egui::Align::Center)));
+    ui.spacing_mut().item_spacing.x = 6.0;
+    ui.spacing_mut().button_padding = vec2(9.0, 2.0);
+    let layers = &mut session.layers;
+    toggle(&mut ui, &mut layers.path, "Path", "Where the fingers went, in the visible time");
+    toggle(&mut ui, &mut layers.forces_on_path, "Forces", "Net force along the path");
+    toggle(&mut ui, &mut layers.constraints, "Constraints", "Centres of rotation and directions of motion");
+    toggle(&mut ui, &mut layers.contacts, "Contacts", "Contacts of the replay through the fitted world");
 }
 
 fn toggle(ui: &mut Ui, on: &mut bool, label: &str, hint: &str) {

@@ -6,7 +6,7 @@ use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::{Operator, Trainer};
 use crate::ui::widgets::{empty_state, key_hint, sheet};
-use egui::{Align2, Color32, CursorIcon, FontId, Key, PointerButton, Rect, Sense, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, Color32, CursorIcon, FontId, Key, PointerButton, Rect, Ui, UiBuilder, pos2, vec2};
 use haptics::Vec2;
 use render::{Camera, ViewOptions};
 
@@ -127,23 +127,21 @@ fn keys(ui: &Ui, trainer: &mut Trainer, frame_s: f64) {
 /// What mouse and keys do, along the lower edge.
 fn hints(ui: &mut Ui, rect: Rect) {
     let line = Rect::from_min_max(pos2(rect.left() + space::M, rect.bottom() - 34.0), rect.right_bottom());
-    ui.scope_builder(UiBuilder::new().max_rect(line).sense(Sense::hover()), |ui| {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 10.0;
-            for (key, what) in [
-                ("Move", "fingers"),
-                ("Left button", "pinch"),
-                ("Wheel", "strength"),
-                ("Right drag", "turn the view"),
-                ("Arrows", "move"),
-                ("Space", "pinch and hold"),
-            ] {
-                if ui.available_width() > 130.0 {
-                    key_hint(ui, key, what);
-                }
-            }
-        });
-    });
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let mut ui = ui.new_child(UiBuilder::new().max_rect(line.with_max_y(rect.bottom() - 8.0)).layout(layout));
+    ui.spacing_mut().item_spacing.x = 12.0;
+    for (key, what) in [
+        ("Mouse", "moves the fingers"),
+        ("Left button", "pinches"),
+        ("Wheel", "strength"),
+        ("Right drag", "turns the view"),
+        ("Arrows", "move"),
+        ("Space", "pinches and holds"),
+    ] {
+        if ui.available_width() > 150.0 {
+            key_hint(&mut ui, key, what);
+        }
+    }
 }
 
 fn watching(ui: &Ui, rect: Rect, trainer: &Trainer) {

@@ -3,9 +3,9 @@
 use super::{Levels, decimate};
 use crate::ui::format;
 use crate::ui::prepare::{Group, Prepared, Trace};
-use crate::ui::theme::{self, mix, palette, space};
-use egui::{Align, Color32, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
-use egui_plot::{GridMark, Line, Plot, PlotBounds, PlotPoint, PlotPoints, PlotTransform, Span};
+use crate::ui::theme::{self, Palette, mix, palette, space};
+use egui::{Align, Color32, FontId, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
+use egui_plot::{AxisHints, GridMark, Line, Plot, PlotBounds, PlotPoint, PlotPoints, PlotTransform, Span};
 use estimator::segment::Segmentation;
 use render::ColorRole;
 use std::collections::{HashMap, HashSet};
@@ -211,7 +211,6 @@ fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) -> RowOut
         .width(ui.available_width())
         .height(input.height)
         .show_axes([input.time_axis, true])
-        .y_axis_min_width(AXIS_WIDTH)
         .show_background(false)
         .show_x(false)
         .show_y(false)
@@ -222,17 +221,15 @@ fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) -> RowOut
         .allow_boxed_zoom(false)
         .allow_double_click_reset(false)
         .allow_axis_zoom_drag(false)
-        .grid_color(p.faint)
+        .grid_color(p.border)
         .grid_fade(1.2)
         .grid_spacing(Rangef::new(4.0, 40.0))
         .x_grid_spacer(|input| marks(input.bounds, 10.0))
         .y_grid_spacer(move |input| marks(input.bounds, if height > 130.0 { 6.0 } else { 4.0 }))
         .set_margin_fraction(egui::Vec2::ZERO)
         .sense(Sense::click_and_drag())
-        .x_axis_formatter(move |mark, _| {
-            format!("{}{}", format::number(mark.value, decimals(mark.step_size)), if clockless { "" } else { " s" })
-        })
-        .y_axis_formatter(|mark, _| format::number(mark.value, decimals(mark.step_size)));
+        .custom_x_axes(vec![time_axis(p, clockless)])
+        .custom_y_axes(vec![value_axis(p)]);
     let response = plot.show(ui, |plot| {
         let bounds = PlotBounds::from_min_max([input.view_s.0, y_range.0], [input.view_s.1, y_range.1]);
         plot.set_plot_bounds(bounds);
@@ -257,6 +254,24 @@ fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) -> RowOut
     });
     draw_cursor(ui, &response.transform, input, &shown);
     react(ui, &response.response, &response.transform, input)
+}
+
+fn time_axis(p: &Palette, clockless: bool) -> AxisHints<'static> {
+    let unit = if clockless { "" } else { " s" };
+    AxisHints::new_x()
+        .formatter(move |mark, _| format!("{}{unit}", format::number(mark.value, decimals(mark.step_size))))
+        .label_spacing(Rangef::new(20.0, 30.0))
+        .tick_label_color(p.secondary)
+        .tick_label_font(FontId::proportional(11.0))
+}
+
+fn value_axis(p: &Palette) -> AxisHints<'static> {
+    AxisHints::new_y()
+        .formatter(|mark, _| format::number(mark.value, decimals(mark.step_size)))
+        .min_thickness(AXIS_WIDTH)
+        .label_spacing(Rangef::new(10.0, 14.0))
+        .tick_label_color(p.secondary)
+        .tick_label_font(FontId::proportional(11.0))
 }
 
 /// About `wanted` lines at a step of 1, 2 or 5 times a power of ten.

@@ -59,6 +59,7 @@ pub fn scene_view(
         let text = "No graphics device: the picture cannot be drawn.";
         ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, text, egui::FontId::proportional(13.0), p.faint);
     }
+    round_corners(ui, rect);
     reset_button(ui, rect, camera, home);
     SceneResponse { response, rect, size, camera_moves }
 }
@@ -87,6 +88,14 @@ fn steer(ui: &egui::Ui, response: &Response, camera: &mut Camera, wheel: Wheel, 
     moves
 }
 
+/// A picture is square; the card around it is not.
+fn round_corners(ui: &egui::Ui, rect: Rect) {
+    let p = palette(ui);
+    let painter = ui.painter().with_clip_rect(rect.expand(1.0));
+    painter.rect_stroke(rect, theme::CARD_RADIUS, egui::Stroke::new(5.0, p.window), egui::StrokeKind::Outside);
+    painter.rect_stroke(rect, theme::CARD_RADIUS, egui::Stroke::new(1.0, p.border), egui::StrokeKind::Inside);
+}
+
 fn reset_button(ui: &mut egui::Ui, rect: Rect, camera: &mut Camera, home: Camera) {
     if *camera == home {
         return;
@@ -94,6 +103,7 @@ fn reset_button(ui: &mut egui::Ui, rect: Rect, camera: &mut Camera, home: Camera
     let size = egui::vec2(92.0, 26.0);
     let at = Rect::from_min_size(rect.right_top() + egui::vec2(-size.x - 12.0, 12.0), size);
     let button = egui::Button::new(theme::caption(ui, "Reset view")).fill(palette(ui).card);
+    let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(at));
     if ui.put(at, button).on_hover_text("Home key").clicked() {
         *camera = home;
     }
