@@ -9,6 +9,8 @@ use haptics::law::{CoulombFriction, Effect, Inertia, LoadFriction, ViscousFricti
 use haptics::recording::{Recording, Task};
 use haptics::world::{Block, Crank, Floor, Provenance, Source, World};
 
+/// Most blocks in one fit.
+const MOST_BLOCKS: usize = 64;
 /// Height of a block that no carry spanned, m.
 const ASSUMED_HEIGHT_M: f64 = 0.015;
 /// Friction where not even a lower bound was seen.
@@ -99,7 +101,8 @@ impl Builder<'_> {
     }
 
     fn blocks(&mut self, recording: &Recording, segmentation: Option<&Segmentation>) {
-        let count = (1..).take_while(|n| self.fit.parameter(&format!("block-{n}"), "weight_N").is_some()).count();
+        let count =
+            (1..=MOST_BLOCKS).take_while(|n| self.fit.parameter(&format!("block-{n}"), "weight_N").is_some()).count();
         let spots = segmentation.and_then(|s| picked_and_placed(recording, s, count));
         for number in 1..=count {
             let name = format!("block-{number}");
@@ -128,9 +131,9 @@ impl Builder<'_> {
 
     /// Puts the blocks where they were picked up and the floor under them, taking them as gripped at mid-height.
     fn place(&mut self, spots: &[Spot]) {
-        let floor_of = |spot: &Spot, block: &Block| spot.y_m - 0.5 * block.height_m;
         // What was put on the floor last in the thesis's task: block 1. It shows the floor best.
-        let floor = spots.first().zip(self.world.blocks.first()).map(|(spot, block)| floor_of(&spot.placed(), block));
+        let floor =
+            spots.first().zip(self.world.blocks.first()).map(|(spot, block)| spot.placed.y - 0.5 * block.height_m);
         let height = floor.unwrap_or(Floor::default().height_m);
         self.world.floor = Some(Floor { height_m: height, ..Floor::default() });
         let why = "where block 1 was put down, gripped at mid-height";
@@ -138,7 +141,7 @@ impl Builder<'_> {
         let mut base = height;
         for index in (0..self.world.blocks.len()).rev() {
             let block = &mut self.world.blocks[index];
-            let x = spots.get(index).map_or(-0.014, |spot| spot.x_m);
+            let x = spots.get(index).map_or(-0.014, |spot| spot.picked.x);
             block.start.center_m = Vec2::new(x, base + 0.5 * block.height_m);
             base += block.height_m;
         }
@@ -174,15 +177,8 @@ impl Builder<'_> {
 
 /// Where a block was picked up and put down, by the middle of the grip, m.
 struct Spot {
-    x_m: f64,
-    y_m: f64,
-    placed_m: Vec2,
-}
-
-impl Spot {
-    fn placed(&self) -> Self {
-        Self { x_m: self.placed_m.x, y_m: self.placed_m.y, placed_m: self.placed_m }
-    }
+    picked: Vec2,
+    placed: Vec2,
 }
 
 fn picked_and_placed(recording: &Recording, segmentation: &Segmentation, count: usize) -> Option<Vec<Spot>> {
@@ -194,8 +190,8 @@ fn picked_and_placed(recording: &Recording, segmentation: &Segmentation, count: 
     (1..=count)
         .map(|n| {
             let picked = mean(format!("pick-up-block-{n}"))?;
-            let placed_m = mean(format!("place-block-{n}")).unwrap_or(picked);
-            Some(Spot { x_m: picked.x, y_m: picked.y, placed_m })
+            let placed = mean(format!("place-block-{n}")).unwrap_or(picked);
+            Some(Spot { picked, placed })
         })
         .collect()
 }

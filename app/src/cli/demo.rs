@@ -90,7 +90,7 @@ impl Demo {
         for (name, rms) in &simulation.residual_rms {
             let _ = writeln!(text, "  simulated {name}: measured − predicted {rms:.3} N RMS");
         }
-        let within = self.compare(built_in, &analysis, text)?;
+        let within = compare(built_in, &analysis, text)?;
         Ok(json!({
             "name": built_in.name,
             "log": log, "world": world_file, "simulation": prediction,
@@ -98,22 +98,6 @@ impl Demo {
             "residual_rms": simulation.residual_rms,
             "within_two_errors": within,
         }))
-    }
-
-    /// How many estimates lie within two of their errors of what the recording was made with.
-    fn compare(&self, built_in: &BuiltIn, analysis: &Analysis, text: &mut String) -> anyhow::Result<Value> {
-        let truth = World::from_json(built_in.truth)?;
-        let (mut hits, mut all) = (0, 0);
-        for (object, name, value) in true_values(&truth) {
-            let Some(parameter) = analysis.fit.parameter(&object, &name) else { continue };
-            if let (Some(found), Some(error)) = (parameter.value, parameter.std_error) {
-                all += 1;
-                hits += usize::from((found - value).abs() <= 2.0 * error);
-            }
-        }
-        let _ =
-            writeln!(text, "  against the world it was recorded in: {hits} of {all} values within two of their errors");
-        Ok(json!({ "hits": hits, "of": all }))
     }
 
     /// The pictures; without any Vulkan driver the demo goes on and says so.
@@ -149,6 +133,21 @@ impl Demo {
     fn file(&self, name: &str) -> PathBuf {
         self.out.join(name)
     }
+}
+
+/// How many estimates lie within two of their errors of what the recording was made with.
+fn compare(built_in: &BuiltIn, analysis: &Analysis, text: &mut String) -> anyhow::Result<Value> {
+    let truth = World::from_json(built_in.truth)?;
+    let (mut hits, mut all) = (0, 0);
+    for (object, name, value) in true_values(&truth) {
+        let Some(parameter) = analysis.fit.parameter(&object, &name) else { continue };
+        if let (Some(found), Some(error)) = (parameter.value, parameter.std_error) {
+            all += 1;
+            hits += usize::from((found - value).abs() <= 2.0 * error);
+        }
+    }
+    let _ = writeln!(text, "  against the world it was recorded in: {hits} of {all} values within two of their errors");
+    Ok(json!({ "hits": hits, "of": all }))
 }
 
 fn progress(what: &str) {

@@ -69,7 +69,7 @@ impl Record {
             );
         }
         let world = self.world()?;
-        let recording = self.perform(world)?;
+        let recording = self.perform(&world)?;
         estimator::log::write_csv(&recording, &self.out)?;
         let sidecar = estimator::log::write_meta(&recording, &self.out)?;
         let seconds = recording.duration_s().unwrap_or(0.0);
@@ -92,15 +92,15 @@ impl Record {
         }
     }
 
-    fn perform(&self, world: World) -> anyhow::Result<Recording> {
-        let mut state = State::resting(&world);
+    fn perform(&self, world: &World) -> anyhow::Result<Recording> {
+        let mut state = State::resting(world);
         let device: Box<dyn Device> = match self.operator.split_once(':') {
             None if self.operator == "scripted" => {
-                Box::new(ScriptedOperator::new(&world, &state, Skill::default(), self.seed))
+                Box::new(ScriptedOperator::new(world, &state, Skill::default(), self.seed))
             }
             Some(("replay", log)) => {
                 let (device, start) = replay(Path::new(log))?;
-                state = State::new(&world, start);
+                state = State::new(world, start);
                 Box::new(device)
             }
             None if self.operator == "mouse" => {
@@ -111,7 +111,7 @@ impl Record {
         let ticks = run(world.clone(), state, device, self.rate, self.seconds);
         let sensor = if self.sensors == Sensors::Ideal { SensorModel::IDEAL } else { SensorModel::TYPICAL };
         let name = self.out.file_stem().map_or("recording".into(), |s| s.to_string_lossy().into_owned());
-        let mut recording = to_recording(&name, &world, &ticks, self.every as usize, &sensor, self.seed);
+        let mut recording = to_recording(&name, world, &ticks, self.every as usize, &sensor, self.seed);
         recording.meta.task = Some(self.task.into());
         Ok(recording)
     }

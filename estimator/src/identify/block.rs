@@ -6,7 +6,7 @@
 
 use super::linear::{LinearFit, least_squares};
 use crate::estimate::{EstimateError, Fit, Parameter};
-use crate::segment::{Segmentation, Thresholds, segment_signals, threshold::Levels};
+use crate::segment::{Segmentation, Thresholds, segment_signals, subtasks, threshold::Levels};
 use crate::signal::noise::quantum;
 use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signals};
 use haptics::Vec2;
@@ -117,7 +117,7 @@ fn object(number: usize) -> String {
 impl Blocks<'_> {
     /// Blocks that were seen carried.
     fn count(&self) -> usize {
-        (1..).take_while(|n| !self.samples(&[&format!("carry-block-{n}")]).is_empty()).count()
+        (1..=subtasks::MOST_CARRIES).take_while(|n| !self.samples(&[&format!("carry-block-{n}")]).is_empty()).count()
     }
 
     fn samples(&self, subtasks: &[&str]) -> Vec<usize> {
@@ -177,15 +177,15 @@ impl Blocks<'_> {
         let rows = self.rows(&samples);
         let width: Vec<f64> = rows.iter().map(|i| self.width[*i]).collect();
         let grip: Vec<f64> = rows.iter().map(|i| self.grip[*i]).collect();
-        let rate: Vec<f64> = rows.iter().map(|i| self.width_rate[*i]).collect();
         let (mean_grip, spread_grip) = mean_and_spread(&grip);
         let name = object(number);
         let resolution = std::f64::consts::SQRT_2 * self.resolution_m;
         if spread_grip > LEAST_GRIP_VARIATION * mean_grip {
-            let fit = intercept(&width, &[grip, rate])?;
+            let (fit, hardening) = self.width_over_grip(&rows)?;
             let stiffness = -2.0 / fit.values[1];
+            let harder = if hardening { " when hardly pressed, and harden" } else { "" };
             let how = format!(
-                "distance of the tips while held, extrapolated to zero grip force (pads give: {stiffness:.0} N/m each)"
+                "distance of the tips while held, extrapolated to zero grip force (pads give {stiffness:.0} N/m each{harder})"
             );
             let error = fit.std_errors[0].hypot(resolution);
             return Ok(Parameter::identified(&name, "width_m", fit.values[0], error, samples.len(), &how));
@@ -202,8 +202,7 @@ impl Blocks<'_> {
         let slopes = (1..=count).filter_map(|number| {
             let [pick, carry, place] = ["pick-up", "carry", "place"].map(|verb| format!("{verb}-block-{number}"));
             let rows = self.rows(&self.samples(&[&pick, &carry, &place]));
-            let column = |series: &[f64]| rows.iter().map(|i| series[*i]).collect::<Vec<f64>>();
-            let fit = intercept(&column(&self.width), &[column(&self.grip), column(&self.width_rate)]).ok()?;
+            let (fit, _) = self.width_over_grip(&rows).ok()?;
             fit.identified[1].then(|| (-0.5 * fit.values[1], 0.5 * fit.std_errors[1], rows.len()))
         });
         pad_parameter("stiffness_N_m", slopes, "the grip varied too little to tell the pads' give")
@@ -218,6 +217,20 @@ impl Blocks<'_> {
             fit.identified[1].then(|| (2.0 * fit.values[1], 2.0 * fit.std_errors[1], self.rows(&samples).len()))
         });
         pad_parameter("shear_stiffness_N_m", slopes, "the lift varied too little while a block rested")
+    }
+
+    /// Width as a line over the grip force, or as a parabola when the pads clearly harden (foam does): intercept, slope, …
+    /// The answer says whether it was a parabola.
+    fn width_over_grip(&self, rows: &[usize]) -> Result<(LinearFit, bool), EstimateError> {
+        const CLEARLY: f64 = 3.0;
+        let column = |series: &[f64]| rows.iter().map(|i| series[*i]).collect::<Vec<f64>>();
+        let (width, grip, rate) = (column(&self.width), column(&self.grip), column(&self.width_rate));
+        let line = intercept(&width, &[grip.clone(), rate.clone()])?;
+        let squares = grip.iter().map(|f| f * f).collect();
+        let parabola = intercept(&width, &[grip, rate, squares])?;
+        // Pads that harden give less and less: the width falls ever more slowly, the square's coefficient is positive.
+        let hardening = parabola.identified[3] && parabola.t_value(3) > CLEARLY;
+        Ok(if hardening { (parabola, true) } else { (line, false) })
     }
 
     /// Heights from where the blocks were picked up and put down.

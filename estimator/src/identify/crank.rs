@@ -27,6 +27,8 @@ const NAMES: [&str; 5] = ["weight_N", "friction_mu", "viscous_N_s_m", "coulomb_N
 
 /// A radial stiffness is reported when its give is this many standard errors above zero.
 const SIGNIFICANT: f64 = 3.0;
+/// The force passes through zero in a turn, too: shorter rests are not free motion, s.
+const LEAST_FREE_S: f64 = 0.25;
 /// Fewer turning samples than this cannot carry nine parameters.
 const LEAST_SAMPLES: usize = 40;
 
@@ -117,7 +119,7 @@ fn held(recording: &Recording, segmentation: &Segmentation) -> Result<Held, Esti
     let free: Vec<usize> = segmentation
         .states
         .iter()
-        .filter(|i| i.state == crate::segment::SystemState::FreeMotion)
+        .filter(|i| i.state == crate::segment::SystemState::FreeMotion && i.t1 - i.t0 >= LEAST_FREE_S)
         .flat_map(|i| i.first..i.end)
         .collect();
     let bias =

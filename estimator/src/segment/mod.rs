@@ -8,7 +8,7 @@ pub mod subtasks;
 pub mod threshold;
 
 use crate::estimate::EstimateError;
-use crate::signal::task::{TaskSignals, is_two_fingered, task_signals};
+use crate::signal::task::{TaskSignals, calmed, is_two_fingered, task_signals};
 use haptics::recording::{Recording, Task};
 use serde::{Deserialize, Serialize};
 pub use threshold::Thresholds;
@@ -181,9 +181,10 @@ pub fn segment_signals(
             needed: subtasks::LEAST_SAMPLES,
         });
     }
-    let levels = threshold::Levels::of(signals);
-    let thresholds = given.unwrap_or_else(|| threshold::choose(signals, &levels));
-    let quality = rules::qualify(signals, &levels, &thresholds);
+    let calm = calmed(signals);
+    let levels = threshold::Levels::of(&calm);
+    let thresholds = given.unwrap_or_else(|| threshold::choose(&calm, &levels));
+    let quality = rules::qualify(&calm, &levels, &thresholds);
     let raw = rules::states(&quality);
     Ok(subtasks::assemble(&signals.time_s, &raw, task, thresholds, levels.warnings()))
 }

@@ -6,7 +6,7 @@
 use super::threshold::{Levels, Thresholds, choose, percentile};
 use super::{Interval, Segmentation, SystemState};
 use crate::estimate::EstimateError;
-use crate::signal::task::{TaskSignals, TipSeries, is_two_fingered, task_signals, times, tip_series};
+use crate::signal::task::{TaskSignals, TipSeries, calmed, is_two_fingered, task_signals, times, tip_series};
 use haptics::Vec2;
 use haptics::recording::{Recording, Task};
 
@@ -18,7 +18,7 @@ const MAJORITY_S: f64 = 0.06;
 /// A run that is shorter enters no estimate.
 const LEAST_RUN_S: f64 = 0.08;
 /// Most objects carried in one recording.
-const MOST_CARRIES: usize = 8;
+pub const MOST_CARRIES: usize = 8;
 /// What one more carry must explain, as a share of the recording's length.
 const CARRY_PENALTY: f64 = 0.015;
 
@@ -134,6 +134,9 @@ fn runs_of(time_s: &[f64], states: &[SystemState]) -> Vec<Run> {
     runs
 }
 
+/// Number of states.
+const STATES: usize = 7;
+
 /// The most frequent state in a window about every sample; a tie keeps the sample's own.
 fn majority(time_s: &[f64], raw: &[SystemState]) -> Vec<SystemState> {
     let n = raw.len();
@@ -142,7 +145,6 @@ fn majority(time_s: &[f64], raw: &[SystemState]) -> Vec<SystemState> {
     if half == 0 {
         return raw.to_vec();
     }
-    const STATES: usize = 7;
     let mut counts = [0_u32; STATES];
     for state in &raw[..half.min(n)] {
         counts[*state as usize] += 1;
@@ -226,7 +228,7 @@ pub fn segment_motion(
         });
     }
     let (speed, load, thresholds, warnings) = if is_two_fingered(recording) {
-        let signals = task_signals(recording)?;
+        let signals = calmed(&task_signals(recording)?);
         let levels = Levels::of(&signals);
         let thresholds = given.unwrap_or_else(|| choose(&signals, &levels));
         let grip = grip_without_bias(&signals, &levels);
@@ -270,12 +272,11 @@ fn single_tool(recording: &Recording, given: Option<Thresholds>) -> Result<Motio
         || EstimateError::Clockless { what: "telling rest from motion".to_owned(), recording: recording.name.clone() };
     let (speed, load) = if let Some(q) = coordinate {
         let measured = recording.channel("dq_m_s").or_else(|| recording.channel("dq_rad_s"));
-        let rate = match measured {
-            Some(rate) => rate.to_vec(),
-            None => {
-                let time = recording.time_s.as_ref().ok_or_else(clockless)?;
-                crate::signal::task::smooth(time, q).slope
-            }
+        let rate = if let Some(rate) = measured {
+            rate.to_vec()
+        } else {
+            let time = recording.time_s.as_ref().ok_or_else(clockless)?;
+            crate::signal::task::smooth(time, q).slope
         };
         (rate.iter().map(|v| v.abs()).collect::<Vec<_>>(), None)
     } else {

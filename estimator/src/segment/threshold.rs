@@ -1,5 +1,6 @@
 //! Thresholds above the noise, chosen from the recording itself.
 
+use crate::signal::noise::white_noise;
 use crate::signal::task::TaskSignals;
 use haptics::Vec2;
 use serde::{Deserialize, Serialize};
@@ -61,12 +62,22 @@ impl Levels {
                 bias[finger] = Vec2::new(median(|f| f.x), median(|f| f.y));
             }
         }
+        let usual_load =
+            percentile(&mut (0..n).map(|i| forces[0][i].norm() + forces[1][i].norm()).collect::<Vec<_>>(), 0.95);
+        if !is_free_phase(&free, signals, bias, usual_load) {
+            bias = [Vec2::zeros(); 2];
+            free.clear();
+        }
         let spread = |finger: usize, pick: fn(&Vec2) -> f64| {
             let center = pick(&bias[finger]);
             let sum: f64 = free.iter().map(|i| (pick(&forces[finger][*i]) - center).powi(2)).sum();
             (sum / free.len().max(1) as f64).sqrt()
         };
-        let noise = [spread(0, |f| f.x), spread(0, |f| f.y), spread(1, |f| f.x), spread(1, |f| f.y)];
+        let noise = if free.is_empty() {
+            white_noises(forces)
+        } else {
+            [spread(0, |f| f.x), spread(0, |f| f.y), spread(1, |f| f.x), spread(1, |f| f.y)]
+        };
         Self {
             bias_n: bias,
             force_noise_n: noise.into_iter().fold(0.0, f64::max),
@@ -78,6 +89,13 @@ impl Levels {
     /// What the reader should know about the forces at rest.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
+        if self.free.is_empty() {
+            warnings.push(
+                "nothing was ever let go in this recording: a bias of the force sensors cannot be told from a load; \
+                 start and end with a second of free motion"
+                    .to_owned(),
+            );
+        }
         for (finger, bias) in self.bias_n.iter().enumerate() {
             if bias.norm() > (2.0 * self.force_noise_n).max(0.005) {
                 warnings.push(format!(
@@ -90,6 +108,30 @@ impl Levels {
         }
         warnings
     }
+}
+
+/// Whether the least loaded samples are a phase without contact: they stay together for a while, and their mean is small
+/// against what the hand does otherwise.
+fn is_free_phase(free: &[usize], signals: &TaskSignals, bias_n: [Vec2; 2], usual_load_n: f64) -> bool {
+    const LEAST_S: f64 = 0.25;
+    const LARGEST_BIAS: f64 = 0.35;
+    let mut longest_s: f64 = 0.0;
+    let mut start = 0;
+    for k in 1..=free.len() {
+        if k == free.len() || free[k] != free[k - 1] + 1 {
+            longest_s = longest_s.max(signals.time_s[free[k - 1]] - signals.time_s[free[start]]);
+            start = k;
+        }
+    }
+    let total_s = signals.time_s[signals.len() - 1] - signals.time_s[0];
+    longest_s >= LEAST_S.min(0.02 * total_s) && bias_n[0].norm() + bias_n[1].norm() <= LARGEST_BIAS * usual_load_n
+}
+
+/// Noise of the four force channels from their fast changes, where there is no free phase to see it in.
+fn white_noises(forces: [&[Vec2]; 2]) -> [f64; 4] {
+    let noise =
+        |finger: usize, pick: fn(&Vec2) -> f64| white_noise(&forces[finger].iter().map(pick).collect::<Vec<_>>());
+    [noise(0, |f| f.x), noise(0, |f| f.y), noise(1, |f| f.x), noise(1, |f| f.y)]
 }
 
 /// Thresholds above the noise and above what is not the event.

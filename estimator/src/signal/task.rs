@@ -131,6 +131,55 @@ fn derived(recording: &Recording, position: &[Vec2]) -> Option<Vec<Vec2>> {
     Some(vx.iter().zip(&vy).map(|(x, y)| Vec2::new(*x, *y)).collect())
 }
 
+/// Half of the window in which forces and velocities are calmed before states are told from them, s.
+const CALM_HALF_S: f64 = 0.04;
+
+/// The signals with forces and velocities calmed for the segmentation: states last longer than the window, noise does not.
+pub fn calmed(signals: &TaskSignals) -> TaskSignals {
+    let time_s = &signals.time_s;
+    let n = time_s.len();
+    let period_s = if n > 1 { (time_s[n - 1] - time_s[0]) / (n - 1) as f64 } else { 1.0 };
+    let half = ((CALM_HALF_S / period_s).round() as usize).min(n / 20);
+    if half == 0 {
+        return signals.clone();
+    }
+    let calm = |series: &[Vec2]| -> Vec<Vec2> {
+        let axis = |pick: fn(&Vec2) -> f64| parabolic_mean(&series.iter().map(pick).collect::<Vec<_>>(), half);
+        axis(|v| v.x).into_iter().zip(axis(|v| v.y)).map(|(x, y)| Vec2::new(x, y)).collect()
+    };
+    let tips = [0, 1].map(|finger: usize| TipSeries {
+        force: signals.tips[finger].force.as_deref().map(calm),
+        velocity: signals.tips[finger].velocity.as_deref().map(calm),
+        position: signals.tips[finger].position.clone(),
+    });
+    TaskSignals {
+        velocity: calm(&signals.velocity),
+        net_force_n: calm(&signals.net_force_n),
+        grip_force_n: parabolic_mean(&signals.grip_force_n, half),
+        shear_n: parabolic_mean(&signals.shear_n, half),
+        tips,
+        ..signals.clone()
+    }
+}
+
+/// Mean with weights (h + ½)² − k² over `half` = h samples on each side, fewer at the ends.
+fn parabolic_mean(values: &[f64], half: usize) -> Vec<f64> {
+    let n = values.len();
+    let reach = (half as f64 + 0.5).powi(2);
+    (0..n)
+        .map(|i| {
+            let side = half.min(i).min(n - 1 - i);
+            let (mut sum, mut total) = (0.0, 0.0);
+            for (k, value) in (i - side..=i + side).zip(&values[i - side..=i + side]) {
+                let weight = reach - (k as f64 - i as f64).powi(2);
+                sum += weight * value;
+                total += weight;
+            }
+            sum / total
+        })
+        .collect()
+}
+
 /// A channel through one filter, and the derivative of exactly that filtered channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Smoothed {
@@ -153,21 +202,9 @@ pub fn half_width(time_s: &[f64]) -> usize {
 /// derivative of the channel smoothed with parabolic weights h² − k²; the value is smoothed with just these. So a channel, its
 /// derivative and every other channel have seen the same filter, and none looks delayed or weakened against another.
 pub fn smooth(time_s: &[f64], values: &[f64]) -> Smoothed {
-    let (n, half) = (values.len(), half_width(time_s));
+    let half = half_width(time_s);
     let slope = savitzky_golay(time_s, values, half, 1).first;
-    let reach = (half as f64 + 0.5).powi(2);
-    let value = (0..n)
-        .map(|i| {
-            let side = half.min(i).min(n - 1 - i);
-            let (mut sum, mut total) = (0.0, 0.0);
-            for (k, value) in (i - side..=i + side).zip(&values[i - side..=i + side]) {
-                let weight = reach - (k as f64 - i as f64).powi(2);
-                sum += weight * value;
-                total += weight;
-            }
-            sum / total
-        })
-        .collect();
+    let value = parabolic_mean(values, half);
     Smoothed { value, slope }
 }
 

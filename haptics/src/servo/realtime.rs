@@ -8,7 +8,7 @@ use thread_priority::{
 /// What the system granted to the servo thread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Privileges {
-    /// SCHED_FIFO.
+    /// First-in-first-out real-time scheduling (`SCHED_FIFO`).
     pub fifo: bool,
     /// All memory locked.
     pub memory_locked: bool,

@@ -203,11 +203,11 @@ fn clip(
         .unwrap_or(0);
     let (edge_normal, edge_offset) = incident.face(incident_face);
     let along = Vec2::new(-edge_normal.y, edge_normal.x);
-    let edge_half = if incident_face % 2 == 0 { incident.half_m.y } else { incident.half_m.x };
+    let edge_half = if incident_face.is_multiple_of(2) { incident.half_m.y } else { incident.half_m.x };
     let middle = incident.center_m + edge_normal * edge_offset;
 
     let side = Vec2::new(-normal.y, normal.x);
-    let side_half = if face % 2 == 0 { reference.half_m.y } else { reference.half_m.x };
+    let side_half = if face.is_multiple_of(2) { reference.half_m.y } else { reference.half_m.x };
     // The edge as middle + u along, u in [-edge_half, edge_half]; |coordinate along the side| must be ≤ side_half.
     let (start, slope) = ((middle - reference.center_m).dot(&side), along.dot(&side));
     let (mut low, mut high) = (-edge_half, edge_half);
