@@ -102,7 +102,9 @@ impl App {
     /// What is being looked at.
     fn subject(&self) -> String {
         match self.session.workspace {
-            Workspace::Train => self.session.trainer.scene().map(|(_, w)| w.name.clone()).unwrap_or_default(),
+            Workspace::Train => {
+                self.session.trainer.scene().map(|(_, w)| super::format::capitalised(&w.name)).unwrap_or_default()
+            }
             Workspace::Calibrate => self.session.prepared().map(|p| p.recording.name.clone()).unwrap_or_default(),
         }
     }
@@ -123,35 +125,47 @@ impl App {
     fn train(&mut self, ui: &mut Ui) {
         let session = &mut self.session;
         let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
-        Side::right("trainer side").frame(plain).show_separator_line(false).resizable(false).exact_size(330.0).show(ui, |ui| {
-            self.trainer_side.ui(ui, session);
-        });
+        Side::right("trainer side").frame(plain).show_separator_line(false).resizable(false).exact_size(330.0).show(
+            ui,
+            |ui| {
+                self.trainer_side.ui(ui, session);
+            },
+        );
         let frame = Frame::new().inner_margin(Margin { left: 12, right: 0, top: 12, bottom: 12 });
         CentralPanel::default().frame(frame).show(ui, |ui| self.trainer_view.ui(ui, session));
     }
 
     fn calibrate(&mut self, ui: &mut Ui) {
         let session = &mut self.session;
-        if !session.trainer.is_recording() {
-            session.trainer.pause();
-        } else {
+        if session.trainer.is_recording() {
             // A running recording goes on while the user looks elsewhere.
             session.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
+        } else {
+            session.trainer.pause();
         }
         let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
-        Side::left("recording").frame(plain).show_separator_line(false).resizable(false).exact_size(264.0).show(ui, |ui| {
-            self.recording.ui(ui, session);
-        });
-        Side::right("results").frame(plain).show_separator_line(false).resizable(false).exact_size(384.0).show(ui, |ui| {
-            self.results.ui(ui, session);
-        });
+        Side::left("recording").frame(plain).show_separator_line(false).resizable(false).exact_size(264.0).show(
+            ui,
+            |ui| {
+                self.recording.ui(ui, session);
+            },
+        );
+        Side::right("results").frame(plain).show_separator_line(false).resizable(false).exact_size(384.0).show(
+            ui,
+            |ui| {
+                self.results.ui(ui, session);
+            },
+        );
         let height = ui.available_height();
         let upper = Frame::new().inner_margin(Margin { left: 0, right: 0, top: 12, bottom: 6 });
-        Side::top("scene").frame(upper).show_separator_line(false).resizable(true).default_size(0.40 * height).size_range(120.0..=0.75 * height).show(
-            ui,
-            |ui| self.scene.ui(ui, session),
-        );
+        Side::top("scene")
+            .frame(upper)
+            .show_separator_line(false)
+            .resizable(true)
+            .default_size(0.40 * height)
+            .size_range(120.0..=0.75 * height)
+            .show(ui, |ui| self.scene.ui(ui, session));
         let lower = Frame::new().inner_margin(Margin { left: 0, right: 0, top: 6, bottom: 12 });
         CentralPanel::default().frame(lower).show(ui, |ui| self.log.ui(ui, session));
     }
@@ -175,10 +189,12 @@ impl eframe::App for App {
 fn logo(ui: &mut Ui) {
     let (rect, _) = ui.allocate_exact_size(egui::vec2(22.0, 22.0), egui::Sense::hover());
     let dark = ui.visuals().dark_mode;
-    let stone = if dark { egui::Color32::from_rgb(0x3A, 0x45, 0x54) } else { egui::Color32::from_rgb(0x2A, 0x33, 0x40) };
+    let stone =
+        if dark { egui::Color32::from_rgb(0x3A, 0x45, 0x54) } else { egui::Color32::from_rgb(0x2A, 0x33, 0x40) };
     ui.painter().rect_filled(rect.shrink(1.0), 5, stone);
     let gold = Stroke::new(2.6, egui::Color32::from_rgb(0xE3, 0xB3, 0x41));
-    ui.painter().line_segment([rect.left_bottom() + egui::vec2(6.0, -7.0), rect.right_top() + egui::vec2(-6.0, 7.0)], gold);
+    ui.painter()
+        .line_segment([rect.left_bottom() + egui::vec2(6.0, -7.0), rect.right_top() + egui::vec2(-6.0, 7.0)], gold);
 }
 
 fn banners(ui: &mut Ui, session: &mut Session) {
@@ -192,9 +208,12 @@ fn banners(ui: &mut Ui, session: &mut Session) {
         for (index, banner) in session.banners.iter().enumerate() {
             let color = if banner.tone == Tone::Error { p.danger } else { p.good };
             let fill = theme::mix(p.card, color, 0.10);
-            Frame::new().fill(fill).stroke(Stroke::new(1.0, color)).corner_radius(6).inner_margin(Margin::symmetric(12, 6)).show(
-                ui,
-                |ui| {
+            Frame::new()
+                .fill(fill)
+                .stroke(Stroke::new(1.0, color))
+                .corner_radius(6)
+                .inner_margin(Margin::symmetric(12, 6))
+                .show(ui, |ui| {
                     ui.horizontal(|ui| {
                         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                             if ui.small_button("Dismiss").clicked() {
@@ -205,8 +224,7 @@ fn banners(ui: &mut Ui, session: &mut Session) {
                             });
                         });
                     });
-                },
-            );
+                });
         }
     });
     if let Some(index) = closed {
@@ -215,7 +233,8 @@ fn banners(ui: &mut Ui, session: &mut Session) {
 }
 
 fn dropped_files(ctx: &egui::Context, session: &mut Session) {
-    let paths: Vec<std::path::PathBuf> = ctx.input(|i| i.raw.dropped_files.iter().map(|f| f.path().to_path_buf()).collect());
+    let paths: Vec<std::path::PathBuf> =
+        ctx.input(|i| i.raw.dropped_files.iter().map(|f| f.path().to_path_buf()).collect());
     if let Some(path) = paths.first() {
         session.open_any(ctx, path);
     }

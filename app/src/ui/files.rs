@@ -45,6 +45,7 @@ pub fn save_world(ctx: &egui::Context, session: &mut Session, field: &str) {
 }
 
 fn write(path: &Path, text: &str) -> Result<(), String> {
-    std::fs::write(path, text)
-        .map_err(|e| format!("The file cannot be written ({e}); check the folder and its permissions: {}", path.display()))
+    std::fs::write(path, text).map_err(|e| {
+        format!("The file cannot be written ({e}); check the folder and its permissions: {}", path.display())
+    })
 }

@@ -52,8 +52,9 @@ pub fn run(options: RunOptions) -> anyhow::Result<()> {
     let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
         Ok(Box::new(create(cc, &options)))
     };
-    eframe::run_native("touchstone", native, Box::new(start))
-        .map_err(|error| anyhow::anyhow!("the window could not be opened ({error}); is there a display and a graphics driver?"))
+    eframe::run_native("touchstone", native, Box::new(start)).map_err(|error| {
+        anyhow::anyhow!("the window could not be opened ({error}); is there a display and a graphics driver?")
+    })
 }
 
 fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {

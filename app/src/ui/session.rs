@@ -1,7 +1,7 @@
 //! What the window knows: loaded recordings, their fit, the replay, the time cursor. Panels read and change it; jobs fill it.
 
-use super::jobs::{JobKind, Jobs, Outcome, Purpose, Replayed};
 use super::film::Film;
+use super::jobs::{JobKind, Jobs, Outcome, Purpose, Replayed};
 use super::plots::Levels;
 use super::prepare::Prepared;
 use super::trainer::Trainer;

@@ -107,20 +107,16 @@ fn panels() -> Vec<Box<dyn Panel>> {
 
 fn harness<'a, S: 'a>(state: S, size: [f32; 2], mut show: impl FnMut(&mut egui::Ui, &mut S) + 'a) -> Harness<'a, S> {
     let builder = Harness::builder().with_size(size).with_max_steps(8).with_accessibility_check(false);
-    let mut harness = builder.with_context_setup(theme::install).build_ui_state(move |ui, state| show(ui, state), state);
+    let mut harness =
+        builder.with_context_setup(theme::install).build_ui_state(move |ui, state| show(ui, state), state);
     harness.run_steps(3);
     harness
 }
 
 #[test]
 fn every_panel_draws_every_kind_of_session() {
-    let sessions: [fn() -> Session; 5] = [
-        empty,
-        || session(STACK.clone()),
-        || session(CRANK.clone()),
-        || session(cart()),
-        || session(clockless_path()),
-    ];
+    let sessions: [fn() -> Session; 5] =
+        [empty, || session(STACK.clone()), || session(CRANK.clone()), || session(cart()), || session(clockless_path())];
     for make in sessions {
         for mut panel in panels() {
             let title = panel.title();
@@ -159,7 +155,7 @@ fn refit_starts_a_job_and_brings_a_fit() {
     harness.run_steps(1);
     let begun = Instant::now();
     assert!(harness.state().jobs.is_running(JobKind::Fit) || harness.state().analysis.is_some());
-    while harness.state().analysis.is_none() && begun.elapsed() < Duration::from_secs(60) {
+    while harness.state().analysis.is_none() && begun.elapsed() < Duration::from_mins(1) {
         std::thread::sleep(Duration::from_millis(5));
         harness.run_steps(1);
     }
@@ -212,7 +208,7 @@ fn a_recording_made_in_the_trainer_is_calibrated_from() {
     harness.run_steps(1);
     harness.get_by_label("Stop and calibrate").click();
     let begun = Instant::now();
-    while harness.state().session.analysis.is_none() && begun.elapsed() < Duration::from_secs(60) {
+    while harness.state().session.analysis.is_none() && begun.elapsed() < Duration::from_mins(1) {
         std::thread::sleep(Duration::from_millis(5));
         harness.run_steps(1);
     }
@@ -259,7 +255,8 @@ fn the_picture_of_the_log_has_a_band_in_the_states_colours() {
         return;
     }
     for dark in [false, true] {
-        let picture = screenshot::draw(session(STACK.clone()), screenshot::Panel::Log, [900, 560], dark).expect("drawn");
+        let picture =
+            screenshot::draw(session(STACK.clone()), screenshot::Panel::Log, [900, 560], dark).expect("drawn");
         for state in [SystemState::FreeMotion, SystemState::HoldOnGround, SystemState::HoldAboveGround] {
             let found = count_near(&picture, theme::state_color(dark, state));
             assert!(found > 500, "{state:?}, dark {dark}: {found} pixels");
@@ -292,4 +289,39 @@ fn a_whole_workspace_is_drawn_without_anything() {
         let picture = screenshot::draw(empty(), panel, [1000, 700], false).expect("drawn");
         assert_eq!(picture.dimensions(), (1000, 700));
     }
+}
+
+#[test]
+fn a_million_samples_stay_fast() {
+    let n = 1_000_000;
+    let wave = |k: usize| (0..n).map(|i| (f64::from(i) * 1e-4 * k as f64).sin()).collect();
+    let channel = |k: usize| Channel { name: format!("s{k}_V"), unit: "V".to_owned(), values: wave(k) };
+    let recording = Recording {
+        channels: (1..=6)
+            .map(channel)
+            .chain([Channel { name: "q_m".into(), unit: "m".into(), values: wave(7) }])
+            .collect(),
+        time_s: Some((0..n).map(|i| f64::from(i) * 1e-3).collect()),
+        ..Recording::default()
+    };
+    let mut session = Session::new();
+    session.show(vec![Arc::new(Prepared::new(recording))]);
+    let mut panel = LogPanel::default();
+    let mut harness = harness(session, [1400.0, 800.0], move |ui, session: &mut Session| panel.ui(ui, session));
+    let begun = Instant::now();
+    for i in 0..20 {
+        harness.state_mut().cursor_s = f64::from(i);
+        harness.step();
+    }
+    let moving_cursor = begun.elapsed() / 20;
+    let begun = Instant::now();
+    for i in 0..20 {
+        harness.state_mut().view_s = (0.0, 1_000.0 - f64::from(i));
+        harness.step();
+    }
+    let moving_view = begun.elapsed() / 20;
+    println!("cursor {moving_cursor:?}, view {moving_view:?} a picture");
+    // Unoptimised; a picture has 16 ms, these are limits against a relapse to drawing every sample.
+    assert!(moving_cursor < Duration::from_millis(150), "{moving_cursor:?}");
+    assert!(moving_view < Duration::from_millis(300), "{moving_view:?}");
 }

@@ -4,7 +4,9 @@
 //! a curve has the colour of the finger it belongs to.
 
 use egui::style::{Selection, WidgetVisuals};
-use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, RichText, Stroke, TextStyle, Visuals};
+use egui::{
+    Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, RichText, Stroke, TextStyle, Visuals,
+};
 use estimator::segment::SystemState;
 use render::ColorRole;
 use std::sync::Arc;
@@ -146,6 +148,19 @@ pub fn state_name(state: SystemState) -> &'static str {
     }
 }
 
+/// What a state is called where there is little room.
+pub fn state_short(state: SystemState) -> &'static str {
+    match state {
+        SystemState::FreeMotion => "Free",
+        SystemState::HoldOnGround => "Ground",
+        SystemState::HoldAboveGround => "In the air",
+        SystemState::SlidingOnGround => "Slides",
+        SystemState::Turning => "Turns",
+        SystemState::Holding => "Holds",
+        SystemState::NoState => "–",
+    }
+}
+
 /// Black or white, whichever reads better on `background`.
 pub fn ink_on(background: Color32) -> Color32 {
     let [r, g, b, _] = background.to_array().map(f32::from);
@@ -248,7 +263,7 @@ fn visuals(dark: bool) -> Visuals {
     v.widgets.hovered = widget(p.hovered, p.border, p.text);
     v.widgets.active = widget(mix(p.hovered, p.accent, 0.25), p.accent, p.text);
     v.widgets.open = widget(p.hovered, p.border, p.text);
-    v.selection = Selection { bg_fill: mix(p.card, p.accent, 0.28), stroke: Stroke::new(1.0, p.accent) };
+    v.selection = Selection { bg_fill: mix(p.card, p.accent, 0.28), stroke: Stroke::new(1.0, p.text) };
     v.hyperlink_color = p.accent;
     v.panel_fill = p.window;
     v.window_fill = p.card;

@@ -5,6 +5,17 @@ use egui::{Align, Color32, CornerRadius, Frame, Layout, Margin, Response, RichTe
 
 /// A card: heading on the left, whatever `trailing` adds on the right, contents below.
 pub fn card<R>(ui: &mut Ui, heading: &str, trailing: impl FnOnce(&mut Ui), contents: impl FnOnce(&mut Ui) -> R) -> R {
+    card_with_head(ui, heading, 16.0, trailing, contents)
+}
+
+/// A card whose heading line is `height` points high, for controls beside the heading.
+pub fn card_with_head<R>(
+    ui: &mut Ui,
+    heading: &str,
+    height: f32,
+    trailing: impl FnOnce(&mut Ui),
+    contents: impl FnOnce(&mut Ui) -> R,
+) -> R {
     let p = palette(ui);
     Frame::new()
         .fill(p.card)
@@ -14,6 +25,7 @@ pub fn card<R>(ui: &mut Ui, heading: &str, trailing: impl FnOnce(&mut Ui), conte
         .show(ui, |ui| {
             ui.set_width(ui.available_width());
             compact(ui, |ui| {
+                ui.set_min_height(height);
                 ui.label(theme::heading(heading));
                 ui.with_layout(Layout::right_to_left(Align::Center), trailing);
             });
@@ -49,10 +61,12 @@ pub fn segmented<T: PartialEq + Copy>(ui: &mut Ui, value: &mut T, choices: &[(T,
                 let text = if on { theme::strong(*label) } else { RichText::new(*label).color(p.secondary) };
                 let fill = if on { p.raised } else { Color32::TRANSPARENT };
                 let edge = if on { Stroke::new(1.0, p.border) } else { Stroke::NONE };
-                let button = egui::Button::new(text).fill(fill).stroke(edge).corner_radius(5).min_size(vec2(64.0, 24.0));
+                let button =
+                    egui::Button::new(text).fill(fill).stroke(edge).corner_radius(5).min_size(vec2(64.0, 24.0));
                 let response = ui.add(button);
                 response.widget_info(|| egui::WidgetInfo::selected(egui::Role::RadioButton, true, on, *label));
-                let clicked = if hint.is_empty() { response.clicked() } else { response.on_hover_text(*hint).clicked() };
+                let clicked =
+                    if hint.is_empty() { response.clicked() } else { response.on_hover_text(*hint).clicked() };
                 if clicked && !on {
                     *value = *choice;
                     changed = true;

@@ -1,8 +1,8 @@
 //! The log: plots with one time axis, the states under them, the time slider.
 
+use super::Panel;
 use super::segments::band;
 use super::transport::transport;
-use super::Panel;
 use crate::ui::plots::{GUTTER, PlotCache, RowInput, axis_height, row};
 use crate::ui::prepare::Prepared;
 use crate::ui::session::Session;

@@ -70,9 +70,10 @@ fn table(ui: &mut Ui, fit: &Fit) {
     TableBuilder::new(ui)
         .id_salt("parameters")
         .vscroll(false)
+        .sense(egui::Sense::click())
         .cell_layout(Layout::left_to_right(Align::Center))
         .column(Column::remainder().clip(true).at_least(96.0))
-        .column(Column::exact(70.0))
+        .column(Column::exact(80.0))
         .column(Column::exact(62.0))
         .column(Column::exact(46.0))
         .header(16.0, |mut header| {
@@ -119,24 +120,21 @@ fn line(body: &mut TableBody<'_>, parameter: &Parameter) {
             let color = if shown.is_some() { p.secondary } else { p.faint };
             ui.add(egui::Label::new(RichText::new(name).color(color)).truncate());
         });
-        match shown {
-            Some(value) => {
-                let error = parameter.std_error.map(|e| e * quantity.factor);
-                let (value, error) = format::with_error(value * quantity.factor, error);
-                number(&mut row, &value, true);
-                number(&mut row, &error.unwrap_or_default(), false);
-                row.col(|ui| {
-                    ui.label(RichText::new(quantity.unit).size(12.0).color(palette(ui).secondary));
-                });
-            }
-            None => {
-                row.col(|ui| {
-                    let text = RichText::new("not shown").size(12.0).italics().color(palette(ui).faint);
-                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(text));
-                });
-                row.col(|_| {});
-                row.col(|_| {});
-            }
+        if let Some(value) = shown {
+            let error = parameter.std_error.map(|e| e * quantity.factor);
+            let (value, error) = format::with_error(value * quantity.factor, error);
+            number(&mut row, &value, true);
+            number(&mut row, &error.unwrap_or_default(), false);
+            row.col(|ui| {
+                ui.label(RichText::new(quantity.unit).size(12.0).color(palette(ui).secondary));
+            });
+        } else {
+            row.col(|ui| {
+                let text = RichText::new("not shown").size(12.0).italics().color(palette(ui).faint);
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(text));
+            });
+            row.col(|_| {});
+            row.col(|_| {});
         }
         row.response().on_hover_ui(|ui| explain(ui, parameter));
     });

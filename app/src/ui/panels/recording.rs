@@ -1,8 +1,8 @@
 //! The left column of the calibration: which recording, how it is read, refit, save.
 
 use super::Panel;
-use crate::ui::format;
 use crate::ui::files;
+use crate::ui::format;
 use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
@@ -98,11 +98,15 @@ fn grouped(n: usize) -> String {
 fn choose_trial(ui: &mut Ui, session: &mut Session) {
     let names: Vec<String> = session.recordings.iter().map(|p| p.recording.name.clone()).collect();
     let mut chosen = session.current;
-    ComboBox::from_id_salt("trial").width(ui.available_width()).selected_text(&names[chosen]).show_ui(ui, |ui| {
-        for (index, name) in names.iter().enumerate() {
-            ui.selectable_value(&mut chosen, index, name);
-        }
-    });
+    ComboBox::from_id_salt("trial")
+        .width(ui.available_width() - 2.0 * ui.spacing().button_padding.x)
+        .selected_text(&names[chosen])
+        .truncate()
+        .show_ui(ui, |ui| {
+            for (index, name) in names.iter().enumerate() {
+                ui.selectable_value(&mut chosen, index, name);
+            }
+        });
     if chosen != session.current {
         session.select(chosen);
     }
@@ -115,12 +119,16 @@ fn fit(ui: &mut Ui, session: &mut Session) {
         let told = session.prepared().and_then(|p| p.task).map_or("unknown", Task::name);
         let automatic = format!("Automatic ({})", told.replace('-', " "));
         let text = session.choice.task.map_or(automatic.clone(), |t| format::object(t.name()));
-        ComboBox::from_id_salt("task").width(ui.available_width()).selected_text(text).show_ui(ui, |ui| {
-            ui.selectable_value(&mut session.choice.task, None, automatic);
-            for task in TASKS {
-                ui.selectable_value(&mut session.choice.task, Some(task), format::object(task.name()));
-            }
-        });
+        ComboBox::from_id_salt("task")
+            .width(ui.available_width() - 2.0 * ui.spacing().button_padding.x)
+            .selected_text(text)
+            .truncate()
+            .show_ui(ui, |ui| {
+                ui.selectable_value(&mut session.choice.task, None, automatic);
+                for task in TASKS {
+                    ui.selectable_value(&mut session.choice.task, Some(task), format::object(task.name()));
+                }
+            });
     });
     thresholds(ui, session);
     session.stale |= before != (session.choice.task, session.choice.thresholds);
@@ -151,7 +159,9 @@ fn thresholds(ui: &mut Ui, session: &mut Session) {
     if let Some(thresholds) = &mut session.choice.thresholds {
         ui.horizontal(|ui| {
             ui.label(theme::caption(ui, "Force ±"));
-            ui.add(DragValue::new(&mut thresholds.force_n).range(0.001..=10.0).speed(0.002).suffix(" N").max_decimals(3));
+            ui.add(
+                DragValue::new(&mut thresholds.force_n).range(0.001..=10.0).speed(0.002).suffix(" N").max_decimals(3),
+            );
         });
         ui.horizontal(|ui| {
             ui.label(theme::caption(ui, "Velocity ±"));

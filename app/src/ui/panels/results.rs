@@ -118,7 +118,11 @@ fn warnings(ui: &mut Ui, session: &mut Session) {
     }
     let count = texts.len();
     let count = |ui: &mut Ui| {
-        ui.label(RichText::new(count.to_string()).color(if count > 0 { palette(ui).caution } else { palette(ui).good }));
+        ui.label(RichText::new(count.to_string()).color(if count > 0 {
+            palette(ui).caution
+        } else {
+            palette(ui).good
+        }));
     };
     let mut seek = None;
     card(ui, "Warnings", count, |ui| {

@@ -36,7 +36,12 @@ impl Panel for SegmentsPanel {
             },
             |ui| {
                 if session.segmentation().is_none() {
-                    empty_state(ui, "No states yet", "Open a recording; its states are told from motion and force.", |_| {});
+                    empty_state(
+                        ui,
+                        "No states yet",
+                        "Open a recording; its states are told from motion and force.",
+                        |_| {},
+                    );
                     return;
                 }
                 let left = ui.max_rect().left() + 76.0;
@@ -61,7 +66,13 @@ pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), BAND + SUBTASKS + 2.0), Sense::hover());
     let p = palette(ui);
     let label = |y: f32, text: &str| {
-        ui.painter().text(Pos2::new(rect.left(), y), Align2::LEFT_CENTER, text, FontId::proportional(11.5), p.secondary);
+        ui.painter().text(
+            Pos2::new(rect.left(), y),
+            Align2::LEFT_CENTER,
+            text,
+            FontId::proportional(11.5),
+            p.secondary,
+        );
     };
     let band = Rect::from_x_y_ranges(area, rect.top()..=rect.top() + BAND);
     label(band.center().y, "States");
@@ -87,19 +98,20 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
     let dark = ui.visuals().dark_mode;
     let mut seek = None;
     for (index, interval) in segmentation.states.iter().enumerate() {
-        let (left, right) =
-            (x_of(session, band.x_range(), interval.t0), x_of(session, band.x_range(), interval.t1));
+        let (left, right) = (x_of(session, band.x_range(), interval.t0), x_of(session, band.x_range(), interval.t1));
         if right - left < 0.4 {
             continue;
         }
         let rect = Rect::from_x_y_ranges(left..=(right - 0.5).max(left + 0.5), band.y_range());
         let color = state_color(dark, interval.state);
         ui.painter().rect_filled(rect, if rect.width() > 8.0 { 3 } else { 0 }, color);
-        caption(ui, rect, state_name(interval.state), theme::ink_on(color));
+        let ink = theme::ink_on(color);
+        if !caption(ui, rect, word(segmentation, interval.state), ink) {
+            caption(ui, rect, theme::state_short(interval.state), ink);
+        }
         let response = ui.interact(rect, ui.scope_id().with(("state", index)), Sense::click());
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Button, true, state_name(interval.state))
-        });
+        response
+            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, word(segmentation, interval.state)));
         if response.hovered() {
             ui.painter().rect_stroke(rect, 3, Stroke::new(1.5, palette(ui).text), StrokeKind::Inside);
         }
@@ -109,7 +121,7 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
                 session.view_s.0 + share * (session.view_s.1 - session.view_s.0)
             });
         }
-        response.on_hover_ui(|ui| tooltip(ui, interval));
+        response.on_hover_ui(|ui| tooltip(ui, interval, word(segmentation, interval.state)));
     }
     if let Some(time) = seek {
         session.seek(time);
@@ -118,17 +130,24 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
     ui.painter().vline(x, band.y_range(), Stroke::new(1.6, palette(ui).accent));
 }
 
+/// The state in words; what turns or slides is not known of every mechanism.
+fn word(segmentation: &Segmentation, state: SystemState) -> &'static str {
+    if state == SystemState::Turning && segmentation.task != "crank" { "Moving" } else { state_name(state) }
+}
+
 /// Text in a box when it fits.
-fn caption(ui: &Ui, rect: Rect, text: &str, ink: egui::Color32) {
+fn caption(ui: &Ui, rect: Rect, text: &str, ink: egui::Color32) -> bool {
     let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(11.0), ink);
-    if galley.size().x + 8.0 < rect.width() {
+    let fits = galley.size().x + 6.0 < rect.width();
+    if fits {
         let at = rect.center() - 0.5 * galley.size();
         ui.painter().galley(at, galley, ink);
     }
+    fits
 }
 
-fn tooltip(ui: &mut Ui, interval: &Interval) {
-    ui.label(theme::strong(state_name(interval.state)));
+fn tooltip(ui: &mut Ui, interval: &Interval, state: &str) {
+    ui.label(theme::strong(state));
     if let Some(subtask) = &interval.subtask {
         ui.label(format!("Subtask: {}", format::object(subtask).to_lowercase()));
     }
@@ -180,7 +199,8 @@ fn legend(ui: &mut Ui, segmentation: &Segmentation, indent: f32) {
         for state in present {
             let total: f64 = segmentation.states.iter().filter(|i| i.state == state).map(|i| i.t1 - i.t0).sum();
             swatch(ui, state_color(dark, state));
-            ui.label(theme::caption(ui, state_name(state))).on_hover_text(format!("{} s in all", format::number(total, 1)));
+            ui.label(theme::caption(ui, word(segmentation, state)))
+                .on_hover_text(format!("{} s in all", format::number(total, 1)));
             ui.add_space(space::XS);
         }
     });
@@ -206,7 +226,7 @@ fn intervals(ui: &mut Ui, session: &mut Session) {
                     seek = Some(interval.t0);
                 }
                 ui.label(format!("{} s", format::number(interval.t1 - interval.t0, 2)));
-                ui.label(state_name(interval.state));
+                ui.label(word(segmentation, interval.state));
                 let subtask = interval.subtask.as_deref().map(format::object).unwrap_or_default();
                 ui.label(RichText::new(subtask).color(palette(ui).secondary));
                 ui.end_row();

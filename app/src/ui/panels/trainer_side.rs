@@ -7,7 +7,7 @@ use crate::ui::jobs::Purpose;
 use crate::ui::session::{Session, Workspace};
 use crate::ui::theme::{self, palette, role, space};
 use crate::ui::trainer::{History, Operator, Trainer, WorldChoice};
-use crate::ui::widgets::{card, compact, fact, gauge, light, plain_card, primary_button, segmented};
+use crate::ui::widgets::{card, card_with_head, compact, fact, gauge, light, plain_card, primary_button, segmented};
 use egui::{Align, Layout, Pos2, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
 use haptics::servo::timing::Percentiles;
 use render::ColorRole;
@@ -27,7 +27,7 @@ impl Panel for TrainerSide {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ScrollArea::vertical().id_salt("trainer side").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
-            plain_card(ui, "World", |ui| world(ui, session));
+            world(ui, session);
             operator(ui, session);
             plain_card(ui, "Recording", |ui| recording(ui, session));
             forces(ui, &session.trainer);
@@ -40,7 +40,10 @@ fn world(ui: &mut Ui, session: &mut Session) {
     let calibrated = session.analysis.as_ref().filter(|a| !a.world.blocks.is_empty() || a.world.crank.is_some());
     session.trainer.calibrated = calibrated.map(|a| a.world.clone());
     let (has_calibrated, has_file) = (session.trainer.calibrated.is_some(), session.trainer.file.is_some());
-    let mut chosen = None;
+    let (mut chosen, mut again) = (None, false);
+    let start_over = |ui: &mut Ui| {
+        again = ui.link("Start over").on_hover_text("Puts everything back where it started").clicked();
+    };
     let choices = [
         (WorldChoice::Blocks, "Two blocks", true, "The two wooden blocks of the thesis"),
         (WorldChoice::Crank, "Crank", true, "A handle on an arm"),
@@ -48,25 +51,12 @@ fn world(ui: &mut Ui, session: &mut Session) {
         (WorldChoice::Calibrated, "Calibrated from the log", has_calibrated, "Fit a recording in Calibrate first"),
         (WorldChoice::File, "From a file", has_file, "Open a world file first"),
     ];
-    for (choice, label, enabled, hint) in choices {
-        compact(ui, |ui| {
-            let on = session.trainer.choice == choice;
-            let response = ui.add_enabled(enabled, egui::RadioButton::new(on, label));
-            let response = if enabled { response } else { response.on_disabled_hover_text(hint) };
-            if response.clicked() {
-                chosen = Some(choice);
-            }
-            if choice == WorldChoice::File {
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    if ui.link("Open …").clicked() {
-                        files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenWorld);
-                    }
-                });
-            }
-        });
-    }
-    ui.add_space(2.0);
-    if ui.button("Start over").on_hover_text("Puts everything back where it started").clicked() {
+    card(ui, "World", start_over, |ui| {
+        for (choice, label, enabled, hint) in choices {
+            chosen = chosen.or(world_choice(ui, session, choice, (label, hint), enabled));
+        }
+    });
+    if again {
         chosen = Some(session.trainer.choice);
     }
     if let Some(choice) = chosen
@@ -76,6 +66,29 @@ fn world(ui: &mut Ui, session: &mut Session) {
     }
 }
 
+/// One line of the list; the choice when it was clicked.
+fn world_choice(
+    ui: &mut Ui,
+    session: &mut Session,
+    choice: WorldChoice,
+    (label, hint): (&str, &str),
+    enabled: bool,
+) -> Option<WorldChoice> {
+    compact(ui, |ui| {
+        let on = session.trainer.choice == choice;
+        let response = ui.add_enabled(enabled, egui::RadioButton::new(on, label));
+        let response = if enabled { response } else { response.on_disabled_hover_text(hint) };
+        if choice == WorldChoice::File {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if ui.link("Open …").clicked() {
+                    files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenWorld);
+                }
+            });
+        }
+        response.clicked().then_some(choice)
+    })
+}
+
 fn operator(ui: &mut Ui, session: &mut Session) {
     let mut operator = session.trainer.operator;
     let choices = [
@@ -83,9 +96,10 @@ fn operator(ui: &mut Ui, session: &mut Session) {
         (Operator::Scripted, "Scripted", "Watch the task done by a scripted operator"),
     ];
     let mut changed = false;
-    card(
+    card_with_head(
         ui,
         "Operator",
+        30.0,
         |ui| changed = segmented(ui, &mut operator, &choices),
         |ui| operator_state(ui, session),
     );
@@ -219,22 +233,28 @@ fn timing(ui: &mut Ui, trainer: &Trainer) {
     let Some((snapshot, _)) = trainer.scene() else { return };
     let timing = snapshot.timing;
     let rate = format!("{} Hz", format::number(trainer.config().rate_hz, 0));
-    card(ui, "Timing", |ui| drop(ui.label(theme::caption(ui, rate))), |ui| {
-        egui::Grid::new("timing").num_columns(5).min_col_width(46.0).spacing(vec2(8.0, 3.0)).show(ui, |ui| {
-            for text in ["", "p50", "p99", "p99.9", "max"] {
-                ui.label(theme::caption(ui, text));
+    card(
+        ui,
+        "Timing",
+        |ui| drop(ui.label(theme::caption(ui, rate))),
+        |ui| {
+            ui.spacing_mut().interact_size.y = 15.0;
+            egui::Grid::new("timing").num_columns(5).min_col_width(46.0).spacing(vec2(8.0, 3.0)).show(ui, |ui| {
+                for text in ["", "p50", "p99", "p99.9", "max"] {
+                    ui.label(theme::caption(ui, text));
+                }
+                ui.end_row();
+                percentiles(ui, "Lateness", &timing.lateness);
+                percentiles(ui, "Compute", &timing.compute);
+            });
+            ui.add_space(space::XS);
+            fact(ui, "Missed deadlines", timing.missed.to_string());
+            fact(ui, "Age of the newest sample", format::short_time(timing.sample_age_s));
+            if let Some(privileges) = trainer.privileges() {
+                ui.label(theme::caption(ui, privileges.sentence()));
             }
-            ui.end_row();
-            percentiles(ui, "Lateness", &timing.lateness);
-            percentiles(ui, "Compute", &timing.compute);
-        });
-        ui.add_space(space::XS);
-        fact(ui, "Missed deadlines", timing.missed.to_string());
-        fact(ui, "Age of the newest sample", format::short_time(timing.sample_age_s));
-        if let Some(privileges) = trainer.privileges() {
-            ui.label(theme::caption(ui, privileges.sentence()));
-        }
-    });
+        },
+    );
 }
 
 fn percentiles(ui: &mut Ui, label: &str, p: &Percentiles) {

@@ -45,7 +45,12 @@ impl Panel for TrainerView {
         sheet(ui).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
             let Some((snapshot, world)) = session.trainer.scene() else {
-                empty_state(ui, "The servo is not running", "See the message above; then choose a world again.", |_| {});
+                empty_state(
+                    ui,
+                    "The servo is not running",
+                    "See the message above; then choose a world again.",
+                    |_| {},
+                );
                 return;
             };
             let limit = session.trainer.config().limits.max_force_n;
@@ -146,7 +151,8 @@ fn hints(ui: &mut Ui, rect: Rect) {
 
 fn watching(ui: &Ui, rect: Rect, trainer: &Trainer) {
     let p = palette(ui);
-    let text = if trainer.performance_over() { "The scripted operator is done." } else { "The scripted operator at work" };
+    let text =
+        if trainer.performance_over() { "The scripted operator is done." } else { "The scripted operator at work" };
     let at = rect.center_top() + vec2(0.0, 16.0);
     let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::new(13.0, theme::semibold()), p.text);
     let back = Rect::from_center_size(at + vec2(0.0, 10.0), galley.size() + vec2(24.0, 12.0));

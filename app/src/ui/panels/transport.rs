@@ -12,22 +12,28 @@ const SPEEDS: [f64; 5] = [0.1, 0.25, 0.5, 1.0, 2.0];
 pub fn transport(ui: &mut Ui, session: &mut Session, area: Rangef) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::hover());
     let buttons = Rect::from_min_max(rect.min, Pos2::new(area.min - space::S, rect.bottom()));
-    ui.scope_builder(UiBuilder::new().max_rect(buttons).layout(egui::Layout::left_to_right(egui::Align::Center)), |ui| {
-        ui.spacing_mut().item_spacing.x = space::S;
-        if play_button(ui, session.playing).clicked() {
-            session.toggle_play();
-        }
-        let text = match session.prepared() {
-            Some(prepared) if prepared.clockless() => format!("{:.0}", session.cursor_s),
-            _ => format::clock(session.cursor_s),
-        };
-        ui.add_sized(vec2(62.0, 20.0), egui::Label::new(theme::strong(text)));
-        egui::ComboBox::from_id_salt("speed").width(58.0).selected_text(speed_text(session.speed)).show_ui(ui, |ui| {
-            for speed in SPEEDS {
-                ui.selectable_value(&mut session.speed, speed, speed_text(speed));
+    ui.scope_builder(
+        UiBuilder::new().max_rect(buttons).layout(egui::Layout::left_to_right(egui::Align::Center)),
+        |ui| {
+            ui.spacing_mut().item_spacing.x = space::S;
+            if play_button(ui, session.playing).clicked() {
+                session.toggle_play();
             }
-        });
-    });
+            let text = match session.prepared() {
+                Some(prepared) if prepared.clockless() => format!("{:.0}", session.cursor_s),
+                _ => format::clock(session.cursor_s),
+            };
+            ui.add_sized(vec2(62.0, 20.0), egui::Label::new(theme::strong(text)));
+            egui::ComboBox::from_id_salt("speed").width(58.0).selected_text(speed_text(session.speed)).show_ui(
+                ui,
+                |ui| {
+                    for speed in SPEEDS {
+                        ui.selectable_value(&mut session.speed, speed, speed_text(speed));
+                    }
+                },
+            );
+        },
+    );
     overview(ui, session, Rect::from_x_y_ranges(area, rect.center().y - 7.0..=rect.center().y + 7.0));
 }
 

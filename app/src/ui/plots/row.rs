@@ -110,7 +110,8 @@ pub fn row(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) -> RowOutco
     ui.scope_builder(UiBuilder::new().max_rect(gutter).id_salt(("gutter", input.index)), |ui| {
         draw_gutter(ui, cache, input);
     });
-    ui.scope_builder(UiBuilder::new().max_rect(plot).id_salt(("plot", input.index)), |ui| draw_plot(ui, cache, input)).inner
+    ui.scope_builder(UiBuilder::new().max_rect(plot).id_salt(("plot", input.index)), |ui| draw_plot(ui, cache, input))
+        .inner
 }
 
 fn draw_gutter(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) {
@@ -160,12 +161,14 @@ fn curve_entry(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, trace: 
             ui.add(egui::Label::new(RichText::new(&trace.label).size(11.5).color(words)).truncate());
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let value = trace.levels.value(sample);
-                let text = if shown && value.is_finite() { value_text(value, &input.group.unit) } else { String::new() };
+                let text =
+                    if shown && value.is_finite() { value_text(value, &input.group.unit) } else { String::new() };
                 ui.label(RichText::new(text).size(11.5).color(p.text));
             });
         });
     });
-    let response = entry.response.on_hover_text(format!("{}: click to {}", trace.name, if shown { "hide" } else { "show" }));
+    let response =
+        entry.response.on_hover_text(format!("{}: click to {}", trace.name, if shown { "hide" } else { "show" }));
     if response.clicked() {
         let key = key_of(input.group, trace);
         if !cache.hidden.remove(&key) {
@@ -278,10 +281,14 @@ fn value_axis(p: &Palette) -> AxisHints<'static> {
 fn marks((low, high): (f64, f64), wanted: f64) -> Vec<GridMark> {
     let rough = ((high - low) / wanted).max(1e-12);
     let decade = 10.0_f64.powf(rough.log10().floor());
-    let step_size = [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|s| *s >= rough).unwrap_or(10.0 * decade);
+    let step_size =
+        [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|s| *s >= rough).unwrap_or(10.0 * decade);
     let (first, last) = ((low / step_size).ceil(), (high / step_size).floor());
     let count = (last - first).clamp(-1.0, 100.0);
-    (0..=count as i64).filter(|_| count >= 0.0).map(|i| GridMark { value: (first + i as f64) * step_size, step_size }).collect()
+    (0..=count as i64)
+        .filter(|_| count >= 0.0)
+        .map(|i| GridMark { value: (first + i as f64) * step_size, step_size })
+        .collect()
 }
 
 fn decimals(step: f64) -> usize {

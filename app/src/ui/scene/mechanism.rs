@@ -1,9 +1,9 @@
 //! A recording without a place in space: one coordinate, drawn as a carriage on a rail or as a dial.
 
+use crate::ui::format;
 use crate::ui::prepare::Prepared;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette};
-use crate::ui::format;
 use egui::{Align2, FontId, Pos2, Rect, Stroke, Vec2, vec2};
 use render::ColorRole;
 
@@ -11,7 +11,7 @@ use render::ColorRole;
 pub fn mechanism_view(ui: &mut egui::Ui, session: &Session, prepared: &Prepared) {
     let (rect, _) = ui.allocate_exact_size(ui.available_size(), egui::Sense::hover());
     let p = palette(ui);
-    ui.painter().rect_filled(rect, 0, p.sunken);
+    ui.painter().rect_filled(rect.shrink(1.0), theme::CARD_RADIUS, p.sunken);
     let sample = prepared.sample_at(session.cursor_s);
     let recording = &prepared.recording;
     let force = recording.channel("f_N").or_else(|| recording.channel("tau_Nm"));
