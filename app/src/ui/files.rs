@@ -3,10 +3,21 @@
 use super::jobs::{JobKind, Jobs, Outcome, Purpose};
 use super::session::{Session, sentence};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 /// Opens a file dialog on a thread of its own.
 pub fn ask(ctx: &egui::Context, jobs: &mut Jobs, purpose: Purpose) {
-    jobs.start(ctx, JobKind::Dialog, move || Outcome::Chosen(purpose, dialog(purpose)));
+    jobs.start(ctx, JobKind::Dialog, move || {
+        let asked = Instant::now();
+        let chosen = dialog(purpose);
+        // Nobody cancels this fast: there is no dialog.
+        if chosen.is_none() && asked.elapsed() < Duration::from_millis(250) {
+            let text =
+                "This system opens no file dialog; type the path into the field, or drop the file on the window.";
+            return Outcome::Failed(text.to_owned());
+        }
+        Outcome::Chosen(purpose, chosen)
+    });
 }
 
 fn dialog(purpose: Purpose) -> Option<PathBuf> {

@@ -12,6 +12,7 @@ pub mod format;
 pub mod jobs;
 mod keys;
 pub mod panels;
+mod playback;
 pub mod plots;
 pub mod prepare;
 pub mod scene;

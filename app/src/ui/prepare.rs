@@ -135,10 +135,10 @@ fn kind(name: &str, unit: &str) -> (u8, &'static str, bool) {
 
 fn groups(recording: &Recording, signals: Option<&TaskSignals>) -> Vec<Group> {
     let mut ranked: Vec<(u8, Group)> = Vec::new();
-    for channel in &recording.channels {
+    for (extra, channel) in recording.channels.iter().enumerate() {
         let (rank, title, shown) = kind(&channel.name, &channel.unit);
         let (unit, factor) = format::channel_unit(&channel.unit);
-        let trace = trace(&channel.name, &channel.values, factor);
+        let trace = trace(&channel.name, &channel.values, factor, extra);
         match ranked.iter_mut().find(|(r, g)| *r == rank && g.unit == unit) {
             Some((_, group)) => group.traces.push(trace),
             None => ranked.push((
@@ -188,8 +188,9 @@ fn task_group(signals: &TaskSignals) -> Group {
     }
 }
 
-/// A channel's label and colour from its name: `fx1_N` is the left finger's horizontal force.
-fn trace(name: &str, values: &[f64], factor: f64) -> Trace {
+/// A channel's label and colour from its name: `fx1_N` is the left finger's horizontal force. Extra channels are told apart by
+/// their number.
+fn trace(name: &str, values: &[f64], factor: f64, extra: usize) -> Trace {
     let stem = name.split('_').next().unwrap_or(name);
     let finger = match stem.chars().last() {
         Some('1') => Some(0),
@@ -197,6 +198,9 @@ fn trace(name: &str, values: &[f64], factor: f64) -> Trace {
         _ => None,
     };
     let quantity = stem.trim_end_matches(['1', '2']);
+    // `fx_wrist_N` is not `fx_N`: only the program's own names have a meaning.
+    let own = matches!(&name[stem.len()..], "_m" | "_m_s" | "_N" | "_rad" | "_rad_s" | "_Nm");
+    let quantity = if own { quantity } else { "" };
     let second = matches!(quantity, "y" | "vy" | "fy" | "qt" | "dqt");
     let (label, role) = match (finger, quantity) {
         (Some(finger), "x" | "y" | "vx" | "vy" | "fx" | "fy" | "qb" | "qt" | "dqb" | "dqt") => {
@@ -219,7 +223,7 @@ fn trace(name: &str, values: &[f64], factor: f64) -> Trace {
         (None, "q" | "dq" | "ddq") => ("coordinate".to_owned(), ColorRole::Measured),
         (None, "f") => ("force".to_owned(), ColorRole::Measured),
         (None, "tau") => ("torque".to_owned(), ColorRole::Measured),
-        _ => (name.to_owned(), ColorRole::Neutral),
+        _ => (name.to_owned(), ColorRole::Block(extra)),
     };
     let second = second && finger.is_some();
     let levels = Arc::new(Levels::new(values.iter().map(|v| v * factor).collect()));

@@ -275,43 +275,6 @@ impl Session {
             self.open(ctx, path);
         }
     }
-
-    /// Moves the cursor, within the recording.
-    pub fn seek(&mut self, time: f64) {
-        if let Some(prepared) = self.prepared() {
-            let (first, last) = prepared.span();
-            self.cursor_s = time.clamp(first, last);
-            let (from, to) = self.view_s;
-            if self.cursor_s < from || self.cursor_s > to {
-                // The view follows a cursor that leaves it.
-                let width = to - from;
-                let start = (self.cursor_s - 0.1 * width).clamp(first, (last - width).max(first));
-                self.view_s = (start, start + width);
-            }
-        }
-    }
-
-    /// Starts or stops the playback; at the end it starts over.
-    pub fn toggle_play(&mut self) {
-        if let Some(prepared) = self.prepared() {
-            let (first, last) = prepared.span();
-            if !self.playing && self.cursor_s >= last - 1e-9 {
-                self.seek(first);
-            }
-            self.playing = !self.playing;
-        }
-    }
-
-    /// Runs the cursor on by a frame.
-    pub fn advance(&mut self, frame_s: f64) {
-        let Some(prepared) = self.prepared().filter(|_| self.playing) else { return };
-        let (first, last) = prepared.span();
-        // A clockless log is played in ten seconds.
-        let rate = if prepared.clockless() { (last - first) / 10.0 } else { 1.0 };
-        let next = self.cursor_s + frame_s * rate * self.speed;
-        self.playing = next < last;
-        self.seek(next);
-    }
 }
 
 /// Segments and fits; the sentence of an error.
@@ -351,35 +314,6 @@ pub fn sentence(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn clockless(n: usize) -> Session {
-        let mut session = Session::new();
-        let channel = haptics::recording::Channel { name: "x_m".into(), unit: "m".into(), values: vec![0.0; n] };
-        let recording = Recording { channels: vec![channel], ..Recording::default() };
-        session.show(vec![Arc::new(Prepared::new(recording))]);
-        session
-    }
-
-    #[test]
-    fn the_cursor_stays_inside_and_the_view_follows() {
-        let mut session = clockless(1_001);
-        session.view_s = (0.0, 100.0);
-        session.seek(500.0);
-        assert!(session.view_s.0 <= 500.0 && session.view_s.1 >= 500.0);
-        assert!((session.view_s.1 - session.view_s.0 - 100.0).abs() < 1e-9);
-        session.seek(1e9);
-        assert_eq!(session.cursor_s, 1_000.0);
-    }
-
-    #[test]
-    fn playback_ends_and_starts_over() {
-        let mut session = clockless(1_001);
-        session.toggle_play();
-        session.advance(20.0);
-        assert!(!session.playing && session.cursor_s == 1_000.0);
-        session.toggle_play();
-        assert!(session.playing && session.cursor_s == 0.0);
-    }
 
     #[test]
     fn sentences_are_sentences() {

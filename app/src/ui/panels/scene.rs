@@ -1,6 +1,7 @@
 //! The recording in space: the hand follows the cursor, path, forces and constraints lie over it.
 
 use super::Panel;
+use crate::ui::prepare::Prepared;
 use crate::ui::scene::{Wheel, camera_for, mechanism_view, options_for, scene_view, scene_world};
 use crate::ui::session::Session;
 use crate::ui::theme::{palette, space};
@@ -40,19 +41,24 @@ impl Panel for ScenePanel {
                 mechanism_view(ui, session, &prepared);
                 return;
             }
-            let of = Arc::as_ptr(&prepared) as usize;
-            if self.of != of {
-                self.home = camera_for(&prepared);
-                (self.camera, self.of) = (self.home, of);
-            }
+            self.set_up(session, &prepared);
             let world = scene_world(session, &prepared);
             let (state, options) = options_for(session, &prepared, &world);
             let view = scene_view(ui, "recording", &mut self.camera, self.home, Wheel::Zooms, (world, state, options));
-            if view.response.hovered() && ui.input(|i| i.key_pressed(egui::Key::Num0)) {
-                self.camera = self.home;
-            }
             layers(ui, view.rect, session);
         });
+    }
+}
+
+impl ScenePanel {
+    /// Another recording, or a fit of it, changes what the whole picture is; a camera that was moved stays.
+    fn set_up(&mut self, session: &Session, prepared: &Arc<Prepared>) {
+        let of = Arc::as_ptr(prepared) as usize;
+        let home = camera_for(session, prepared);
+        if self.of != of || self.camera == self.home {
+            (self.camera, self.of) = (home, of);
+        }
+        self.home = home;
     }
 }
 

@@ -78,7 +78,13 @@ pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
     label(band.center().y, "States");
     ui.painter().rect_filled(band, 4, p.sunken);
     let Some(segmentation) = segmentation else {
-        let text = if busy { "Fitting …" } else { "No states: the fit did not succeed." };
+        let clockless = session.prepared().is_some_and(|p| p.clockless());
+        let text = match (busy, clockless, analysis.is_some()) {
+            (true, ..) => "Fitting …",
+            (_, true, _) => "No states: they are told from velocities, and this log has no clock.",
+            (_, _, true) => "No states were told in this recording.",
+            _ => "No states: the fit did not succeed.",
+        };
         ui.painter().text(band.center(), Align2::CENTER_CENTER, text, FontId::proportional(11.5), p.faint);
         return;
     };

@@ -98,9 +98,6 @@ impl TrainerView {
         if !ui.ctx().egui_wants_keyboard_input() {
             keys(ui, trainer, frame_s);
         }
-        if ui.input(|i| i.key_pressed(Key::Home)) {
-            self.camera = home();
-        }
     }
 }
 

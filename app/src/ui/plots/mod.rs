@@ -1,5 +1,6 @@
 //! Plots that stay fast: thinned to what a pixel can show, kept until the view changes.
 
+mod axes;
 mod decimate;
 mod row;
 

@@ -1,11 +1,12 @@
 //! One plot with its gutter: title, unit, curves with their values at the cursor.
 
+use super::axes::{AXIS_WIDTH, marks, time_axis, value_axis};
 use super::{Levels, decimate};
 use crate::ui::format;
 use crate::ui::prepare::{Group, Prepared, Trace};
-use crate::ui::theme::{self, Palette, mix, palette, space};
-use egui::{Align, Color32, FontId, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
-use egui_plot::{AxisHints, GridMark, Line, Plot, PlotBounds, PlotPoint, PlotPoints, PlotTransform, Span};
+use crate::ui::theme::{self, mix, palette, space};
+use egui::{Align, Color32, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
+use egui_plot::{Line, Plot, PlotBounds, PlotPoint, PlotPoints, PlotTransform, Span};
 use estimator::segment::Segmentation;
 use render::ColorRole;
 use std::collections::{HashMap, HashSet};
@@ -13,8 +14,6 @@ use std::sync::Arc;
 
 /// Width of the column left of the plots.
 pub const GUTTER: f32 = 196.0;
-/// Width of the labels of the vertical axis.
-const AXIS_WIDTH: f32 = 44.0;
 /// Height of the labels of the time axis.
 const AXIS_HEIGHT: f32 = 20.0;
 
@@ -257,42 +256,6 @@ fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) -> RowOut
     });
     draw_cursor(ui, &response.transform, input, &shown);
     react(ui, &response.response, &response.transform, input)
-}
-
-fn time_axis(p: &Palette, clockless: bool) -> AxisHints<'static> {
-    let unit = if clockless { "" } else { " s" };
-    AxisHints::new_x()
-        .formatter(move |mark, _| format!("{}{unit}", format::number(mark.value, decimals(mark.step_size))))
-        .label_spacing(Rangef::new(20.0, 30.0))
-        .tick_label_color(p.secondary)
-        .tick_label_font(FontId::proportional(11.0))
-}
-
-fn value_axis(p: &Palette) -> AxisHints<'static> {
-    AxisHints::new_y()
-        .formatter(|mark, _| format::number(mark.value, decimals(mark.step_size)))
-        .min_thickness(AXIS_WIDTH)
-        .label_spacing(Rangef::new(10.0, 14.0))
-        .tick_label_color(p.secondary)
-        .tick_label_font(FontId::proportional(11.0))
-}
-
-/// About `wanted` lines at a step of 1, 2 or 5 times a power of ten.
-fn marks((low, high): (f64, f64), wanted: f64) -> Vec<GridMark> {
-    let rough = ((high - low) / wanted).max(1e-12);
-    let decade = 10.0_f64.powf(rough.log10().floor());
-    let step_size =
-        [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|s| *s >= rough).unwrap_or(10.0 * decade);
-    let (first, last) = ((low / step_size).ceil(), (high / step_size).floor());
-    let count = (last - first).clamp(-1.0, 100.0);
-    (0..=count as i64)
-        .filter(|_| count >= 0.0)
-        .map(|i| GridMark { value: (first + i as f64) * step_size, step_size })
-        .collect()
-}
-
-fn decimals(step: f64) -> usize {
-    (-step.abs().log10().floor()).clamp(0.0, 6.0) as usize
 }
 
 /// The visible curves with a little air; never an empty range.

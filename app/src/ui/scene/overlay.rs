@@ -59,10 +59,18 @@ pub fn options_for(session: &Session, prepared: &Prepared, world: &World) -> (St
     (state, options)
 }
 
-/// The camera that shows a recording whole.
-pub fn camera_for(prepared: &Prepared) -> Camera {
+/// The camera that shows a recording whole, with a centre of rotation that is not far away.
+pub fn camera_for(session: &Session, prepared: &Prepared) -> Camera {
     match bounds(prepared) {
-        Some((low, high)) if prepared.tool.is_some() => {
+        Some((mut low, mut high)) if prepared.tool.is_some() => {
+            let extent = (high - low).norm();
+            for marker in markers(session, prepared) {
+                if let ConstraintMarker::Revolute { center_m, radius_m, .. } = marker
+                    && radius_m < 1.5 * extent
+                {
+                    (low, high) = (low.inf(&center_m), high.sup(&center_m));
+                }
+            }
             let [low, high] = [low, high].map(|v| [v.x as f32, v.y as f32]);
             Camera { pitch_rad: 0.0, ..Camera::hand() }.framing(low.into(), high.into())
         }

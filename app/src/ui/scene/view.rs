@@ -100,11 +100,15 @@ fn reset_button(ui: &mut egui::Ui, rect: Rect, camera: &mut Camera, home: Camera
     if *camera == home {
         return;
     }
+    if ui.input(|i| i.key_pressed(egui::Key::Num0)) && !ui.ctx().egui_wants_keyboard_input() {
+        *camera = home;
+        return;
+    }
     let size = egui::vec2(92.0, 26.0);
     let at = Rect::from_min_size(rect.right_top() + egui::vec2(-size.x - 12.0, 12.0), size);
     let button = egui::Button::new(theme::caption(ui, "Reset view")).fill(palette(ui).card);
     let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(at));
-    if ui.put(at, button).on_hover_text("Home key").clicked() {
+    if ui.put(at, button).on_hover_text("Key 0").clicked() {
         *camera = home;
     }
 }

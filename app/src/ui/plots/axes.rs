@@ -1,0 +1,59 @@
+//! Axes with even ticks and quiet labels.
+
+use crate::ui::format;
+use crate::ui::theme::Palette;
+use egui::{FontId, Rangef};
+use egui_plot::{AxisHints, GridMark};
+
+/// Width of the labels of the vertical axis.
+pub const AXIS_WIDTH: f32 = 44.0;
+
+/// Seconds, or sample numbers.
+pub fn time_axis(p: &Palette, clockless: bool) -> AxisHints<'static> {
+    let unit = if clockless { "" } else { " s" };
+    AxisHints::new_x()
+        .formatter(move |mark, _| format!("{}{unit}", format::number(mark.value, decimals(mark.step_size))))
+        .label_spacing(Rangef::new(20.0, 30.0))
+        .tick_label_color(p.secondary)
+        .tick_label_font(FontId::proportional(11.0))
+}
+
+/// Values in the group's unit.
+pub fn value_axis(p: &Palette) -> AxisHints<'static> {
+    AxisHints::new_y()
+        .formatter(|mark, _| format::number(mark.value, decimals(mark.step_size)))
+        .min_thickness(AXIS_WIDTH)
+        .label_spacing(Rangef::new(10.0, 14.0))
+        .tick_label_color(p.secondary)
+        .tick_label_font(FontId::proportional(11.0))
+}
+
+/// About `wanted` lines at a step of 1, 2 or 5 times a power of ten.
+pub fn marks((low, high): (f64, f64), wanted: f64) -> Vec<GridMark> {
+    let rough = ((high - low) / wanted).max(1e-12);
+    let decade = 10.0_f64.powf(rough.log10().floor());
+    let step_size =
+        [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|s| *s >= rough).unwrap_or(10.0 * decade);
+    let (first, last) = ((low / step_size).ceil(), (high / step_size).floor());
+    let count = (last - first).clamp(-1.0, 100.0);
+    (0..=count as i64)
+        .filter(|_| count >= 0.0)
+        .map(|i| GridMark { value: (first + i as f64) * step_size, step_size })
+        .collect()
+}
+
+fn decimals(step: f64) -> usize {
+    (-step.abs().log10().floor()).clamp(0.0, 6.0) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_even_and_round() {
+        let values: Vec<f64> = marks((-0.3, 18.9), 10.0).iter().map(|m| m.value).collect();
+        assert_eq!(values, [0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0]);
+        assert!(marks((1.0, 1.0), 5.0).len() < 5, "an empty range has no forest of lines");
+    }
+}
