@@ -17,6 +17,8 @@ const UNKNOWN_COMPRESSION: f64 = 0.07;
 /// The grip must vary by this share of its mean for the pads' give to be told from the width.
 const LEAST_GRIP_VARIATION: f64 = 0.05;
 
+/// No two seatings of a block on its base, nor of the pads on a block, agree better than surfaces are flat, m.
+const SEATING_M: f64 = 10e-6;
 /// Standard deviation of an error that is even over one step: 1/√12 (GUM, 4.3.7).
 const RESOLUTION_SHARE: f64 = 0.288_675;
 
@@ -59,7 +61,7 @@ pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit
     let height: Vec<f64> = signals.position.iter().map(|p| p.y).collect();
     let height = smooth(&signals.time_s, &height).value;
     let blocks = Blocks {
-        resolution_m: RESOLUTION_SHARE * coarsest(&signals, |tip| Some(&tip.position)),
+        resolution_m: RESOLUTION_SHARE * coarsest(&signals, |tip| Some(&tip.position)).max(joint_step_m(recording)),
         resolution_n: RESOLUTION_SHARE * coarsest(&signals, |tip| tip.force.as_ref()),
         levels,
         segmentation,
@@ -108,6 +110,13 @@ fn coarsest(signals: &TaskSignals, series: impl Fn(&TipSeries) -> Option<&Vec<Ve
         of(&signals.tips[0]).max(of(&signals.tips[1]))
     };
     step(|v| v.x).max(step(|v| v.y))
+}
+
+/// What one step of the joint encoders moves a tip by, m; 0 for a log of tip positions.
+fn joint_step_m(recording: &Recording) -> f64 {
+    let finger = recording.meta.hand().fingers[0];
+    let step = |name: &str| recording.channel(name).map_or(0.0, quantum);
+    ["qb1_rad", "qt1_rad", "qb2_rad", "qt2_rad"].into_iter().map(step).fold(0.0, f64::max) * finger.link_m
 }
 
 fn object(number: usize) -> String {
@@ -262,7 +271,7 @@ impl Blocks<'_> {
         // A block that turned between the pads moved the two fingers differently: that much is unknown about its height.
         let tilt = self.finger_disagreement(&pick, &place);
         let fitted = up.std_errors[0].hypot(down.std_errors[0]);
-        let error = fitted.hypot(give).hypot(tilt).hypot(self.resolution_m);
+        let error = fitted.hypot(give).hypot(tilt).hypot(self.resolution_m).hypot(SEATING_M);
         let how = format!(
             "grip height between picking block {carried} up and putting it down, extrapolated to an unloaded contact \
              ({:.3} mm from turning in the grip and {:.3} mm from contact give in the error)",
@@ -324,7 +333,8 @@ impl Blocks<'_> {
             Some((ratio, error)) => Parameter::identified(
                 &name,
                 "friction_lower_bound",
-                ratio,
+                // The largest of many noisy ratios lies about one error too high.
+                ratio - error,
                 error,
                 samples.len(),
                 "largest ratio of vertical to horizontal tip force while grasped; true friction is at least this",
@@ -334,9 +344,9 @@ impl Blocks<'_> {
         [bound, slip]
     }
 
-    /// Tip force averaged over 20 ms about a sample, N: sensor noise falls, friction does not change that fast.
+    /// Tip force averaged over 60 ms about a sample, N: sensor noise falls, friction does not change that fast.
     fn mean_force(&self, finger: usize, i: usize) -> Vec2 {
-        const HALF_S: f64 = 0.01;
+        const HALF_S: f64 = 0.03;
         let time = &self.signals.time_s;
         let first = time[..i].partition_point(|t| *t < time[i] - HALF_S);
         let mut end = i + 1;

@@ -10,7 +10,8 @@ use crate::segment::{Segmentation, Thresholds, segment};
 use crate::signal::derive::savitzky_golay;
 use crate::signal::noise::{quantum, white_noise};
 use crate::signal::task::{
-    TaskSignals, TipSeries, half_width, is_two_fingered, smooth, task_signals, times, tip_series,
+    CUBIC_HALF, TaskSignals, TipSeries, half_width, has_velocity, is_two_fingered, smooth, task_signals, times,
+    tip_series,
 };
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Inertia, Law, LoadFriction, MAX_PARAMETERS, Motion, ViscousFriction, Weight};
@@ -25,6 +26,10 @@ const COULOMB: usize = 3;
 /// Names of the laws' parameters in a fit; inertia is reported about the axis.
 const NAMES: [&str; 5] = ["weight_N", "friction_mu", "viscous_N_s_m", "coulomb_N", "inertia_kg_m2"];
 
+/// A path that misses its best circle by more than this share of the radius is no crank's.
+const LARGEST_RESIDUAL: f64 = 0.08;
+/// A parameter whose error alone moves the predicted force by more than this share of the measured one is not identified.
+const LARGEST_ERROR: f64 = 0.3;
 /// A radial stiffness is reported when its give is this many standard errors above zero.
 const SIGNIFICANT: f64 = 3.0;
 /// The force passes through zero in a turn, too: shorter rests are not free motion, s.
@@ -82,6 +87,14 @@ pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit
         });
     }
     let geometry = geometry(&held)?;
+    if geometry.rms_m > LARGEST_RESIDUAL * geometry.radius_m {
+        return Err(EstimateError::Other(format!(
+            "{} does not move on a circle: the best one, of radius {:.1} mm, is missed by {:.1} mm RMS; is it a crank?",
+            recording.name,
+            geometry.radius_m * 1e3,
+            geometry.rms_m * 1e3
+        )));
+    }
     let (motions, tangential) = motions(recording, &held, &geometry);
     let rows = Rows::new(&held, &motions, &tangential);
     let mut friction = friction(recording, &rows)?;
@@ -131,7 +144,7 @@ fn held(recording: &Recording, segmentation: &Segmentation) -> Result<Held, Esti
         .flat_map(|subtask| segmentation.samples_of(subtask))
         .collect();
     let axis = |series: &[Vec2], pick: fn(&Vec2) -> f64| series.iter().map(pick).collect::<Vec<f64>>();
-    let half = half_width(&time_s);
+    let half = (2 * half_width(&time_s)).max(CUBIC_HALF);
     // Cubics, because lines and plain averages would shrink a rotating vector towards the centre of its arc.
     let smoothed = |series: &[Vec2]| {
         let x = savitzky_golay(&time_s, &axis(series, |v| v.x), half, 3);
@@ -139,9 +152,14 @@ fn held(recording: &Recording, segmentation: &Segmentation) -> Result<Held, Esti
         let pair = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| Vec2::new(*x, *y)).collect::<Vec<_>>();
         [pair(&x.value, &y.value), pair(&x.first, &y.first), pair(&x.second, &y.second)]
     };
-    let [position_smooth, _, _] = smoothed(&position);
-    let [velocity_smooth, acceleration, _] = smoothed(&velocity);
+    let [position_smooth, position_rate, position_bend] = smoothed(&position);
+    let [mut velocity_smooth, mut acceleration, _] = smoothed(&velocity);
     let [force_smooth, force_rate, force_bend] = smoothed(&force);
+    if !has_velocity(recording, if is_two_fingered(recording) { "1" } else { "" }) {
+        // Derived twice over, a velocity would be weaker than the motion: take it from the positions' own cubics.
+        velocity_smooth = position_rate;
+        acceleration = position_bend;
+    }
     // What the filter took out, scaled to what it left: a cubic fit over m samples leaves 9/(4 m) of the variance.
     let removed: Vec<f64> = velocity.iter().zip(&velocity_smooth).map(|(a, b)| (a - b).y).collect();
     let velocity_noise = white_noise(&removed) * (2.25 / (2 * half + 1) as f64).min(1.0).sqrt();
@@ -365,6 +383,13 @@ impl Friction {
         fitted.or_else(|| self.known.get(&law).copied()).unwrap_or(0.0)
     }
 
+    /// Whether the recording shows the parameter of a column: it is told from the others, and its error matters little.
+    fn shown(&self, column: usize, rows: &Rows, load_n: f64) -> bool {
+        let regressor = &rows.columns[self.used[column]];
+        let size = (regressor.iter().map(|c| c * c).sum::<f64>() / regressor.len().max(1) as f64).sqrt();
+        self.fit.identified[column] && self.fit.std_errors[column] * size <= LARGEST_ERROR * load_n
+    }
+
     fn parameters(&self, held: &Held, geometry: &Geometry, rows: &Rows) -> Vec<Parameter> {
         let samples = held.turning.len();
         let load = (rows.tangential.iter().map(|f| f * f).sum::<f64>() / rows.len().max(1) as f64).sqrt();
@@ -377,7 +402,7 @@ impl Friction {
             }
             let column = self.used.iter().position(|l| *l == law);
             match column {
-                Some(column) if self.fit.identified[column] => {
+                Some(column) if self.shown(column, rows, load) => {
                     // A force that is off by the log's resolution shifts every parameter by that share of the load.
                     let resolution = self.fit.values[column].abs() * held.resolution_n / load.max(1e-9);
                     let fitted = self.fit.std_errors[column].hypot(self.geometry_errors[column]);

@@ -117,7 +117,7 @@ mod tests {
     #[test]
     fn hysteresis_keeps_a_value_near_the_threshold() {
         use Sign::{Minus, Plus, Zero};
-        let mut sign = Sign::Zero;
+        let mut sign = Zero;
         let seen: Vec<_> = [0.9, 1.1, 0.8, 0.75, 0.6, 0.9, -1.2]
             .into_iter()
             .map(|v| {

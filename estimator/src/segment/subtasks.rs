@@ -22,6 +22,12 @@ pub const MOST_CARRIES: usize = 8;
 /// What one more carry must explain, as a share of the recording's length.
 const CARRY_PENALTY: f64 = 0.015;
 
+/// The recording may start as late as with the first placing; each step left out costs a little of its length.
+const LATEST_START: usize = 3;
+const START_PENALTY: f64 = 0.005;
+/// A gap without a state that is shorter is the transition between its neighbours, s.
+const ISLAND_S: f64 = 0.1;
+
 /// A step of the task: its name and the state the system is then in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Subtask {
@@ -53,14 +59,16 @@ pub fn assemble(
     thresholds: Thresholds,
     mut warnings: Vec<String>,
 ) -> Segmentation {
-    let smooth = majority(time_s, raw);
+    let smooth = without_islands(time_s, majority(time_s, raw));
     let runs = runs_of(time_s, &smooth);
     let total = runs.iter().map(|r| r.length).sum::<f64>();
     let best = (0..=MOST_CARRIES)
-        .filter_map(|carries| {
-            let order = expected_order(task, carries);
+        .flat_map(|carries| (0..=LATEST_START.min(4 * carries)).map(move |start| (carries, start)))
+        .filter_map(|(carries, start)| {
+            let order = expected_order(task, carries).split_off(start);
             let (cost, steps) = align(&runs, &order)?;
-            Some((cost + CARRY_PENALTY * total * carries as f64, order, steps))
+            let price = CARRY_PENALTY * carries as f64 + START_PENALTY * start as f64;
+            Some((cost + price * total, order, steps))
         })
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let (order, steps) = match best {
@@ -78,6 +86,12 @@ pub fn assemble(
             interval(time_s, raw, run, belongs.then(|| subtask.name.clone()))
         })
         .collect::<Vec<_>>();
+    if order[0].name != expected_order(task, 0)[0].name {
+        warnings.push(format!(
+            "the recording starts in the middle of the task, with {}; what came before is missing from the fit",
+            order[0].name
+        ));
+    }
     for subtask in &order {
         if !states.iter().any(|i| i.subtask.as_deref() == Some(&subtask.name)) {
             warnings
@@ -169,6 +183,20 @@ fn majority(time_s: &[f64], raw: &[SystemState]) -> Vec<SystemState> {
         smooth.push(winner);
     }
     smooth
+}
+
+/// Divides short gaps without a state between their neighbours: contact is made and lost in no time, sensors need some.
+fn without_islands(time_s: &[f64], mut states: Vec<SystemState>) -> Vec<SystemState> {
+    let runs = runs_of(time_s, &states);
+    for window in runs.windows(3) {
+        let [before, gap, after] = window else { continue };
+        if gap.state == SystemState::NoState && gap.length <= ISLAND_S {
+            let middle = gap.first + (gap.end - gap.first) / 2;
+            states[gap.first..middle].fill(before.state);
+            states[middle..gap.end].fill(after.state);
+        }
+    }
+    states
 }
 
 /// Cost per unit of time of being in `seen` while `expected` should hold.

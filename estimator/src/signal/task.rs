@@ -52,6 +52,9 @@ impl TaskSignals {
     }
 }
 
+/// Least samples on each side of a cubic fit.
+pub const CUBIC_HALF: usize = 2;
+
 /// Window of the derivation of velocities from positions, s.
 pub const DERIVATIVE_WINDOW_S: f64 = 0.03;
 
@@ -125,7 +128,7 @@ fn derived(recording: &Recording, position: &[Vec2]) -> Option<Vec<Vec2>> {
     let time = recording.time_s.as_ref()?;
     let axis = |pick: fn(&Vec2) -> f64| {
         let values: Vec<f64> = position.iter().map(pick).collect();
-        smooth(time, &values).slope
+        savitzky_golay(time, &values, half_width(time).max(CUBIC_HALF), 3).first
     };
     let (vx, vy) = (axis(|p| p.x), axis(|p| p.y));
     Some(vx.iter().zip(&vy).map(|(x, y)| Vec2::new(*x, *y)).collect())
@@ -208,6 +211,12 @@ pub fn smooth(time_s: &[f64], values: &[f64]) -> Smoothed {
     Smoothed { value, slope }
 }
 
+/// True when velocities were recorded, not derived.
+pub fn has_velocity(recording: &Recording, finger: &str) -> bool {
+    recording.channel(&format!("vx{finger}_m_s")).is_some()
+        || recording.channel(&format!("dqb{finger}_rad_s")).is_some()
+}
+
 fn velocity_origin(recording: &Recording, finger: &str) -> String {
     let has = |name: String| recording.channel(&name).is_some();
     if has(format!("vx{finger}_m_s")) {
@@ -215,7 +224,7 @@ fn velocity_origin(recording: &Recording, finger: &str) -> String {
     } else if has(format!("dqb{finger}_rad_s")) {
         "measured joint rates".to_owned()
     } else {
-        format!("derived from positions (straight lines fitted over {:.0} ms)", DERIVATIVE_WINDOW_S * 1e3)
+        format!("derived from positions (cubics fitted over {:.0} ms, or five samples)", DERIVATIVE_WINDOW_S * 1e3)
     }
 }
 
