@@ -1,12 +1,13 @@
 //! The measured motion through a world: what forces would have been felt?
 
 use crate::estimate::EstimateError;
-use crate::identify::mechanism;
+use crate::identify::{block, crank, mechanism};
 use crate::segment::task_of;
 use crate::signal::task::{TipSeries, is_two_fingered, task_signals};
 use haptics::Vec2;
+use haptics::law::Coordinate;
 use haptics::recording::{Channel, Recording, Task};
-use haptics::world::{Input, State, World, step};
+use haptics::world::{Input, Mechanism, Source, State, World, step};
 
 /// Longest step of the simulation, s: that of the usual servo.
 const STEP_S: f64 = 1e-3;
@@ -46,31 +47,71 @@ impl Simulation {
 }
 
 /// Runs the measured motion of `recording` through `world`.
+///
+/// Where the give of the pads was measured the world is stepped: the fingers go where they went and the world answers. Fingers
+/// that do not give cannot drive a world by their positions; there the laws say what the measured motion needs (along a crank's
+/// circle, or while a block is in the air), and the operator's own pull and grip, which no world can know, stay as measured.
 pub fn simulate(world: &World, recording: &Recording) -> Result<Simulation, EstimateError> {
     let task =
         task_of(recording, None).or_else(|error| world.mechanism.as_ref().map(|_| Task::Mechanism).ok_or(error))?;
-    if let (Some(model), true) = (&world.mechanism, task == Task::Mechanism || !is_two_fingered(recording)) {
-        let unit =
-            if recording.channel("q_rad").is_some() || recording.channel("tau_Nm").is_some() { "Nm" } else { "N" };
-        let name = if unit == "Nm" { "tau_Nm" } else { "f_N" };
-        let values = mechanism::predict(model, recording)?;
-        let measured = match recording.channel(name) {
-            Some(measured) => Some(measured.to_vec()),
-            None => mechanism::measured(model, recording)?,
-        };
-        let channel = Channel { name: name.to_owned(), unit: unit.to_owned(), values };
-        return Ok(assemble(recording, vec![channel], |_| measured.clone()));
+    let mismatch = |what: &str| {
+        Err(EstimateError::Other(format!(
+            "{} is a recording of the task {}, and this world has {what}; fit the recording to make a world for it",
+            recording.name,
+            task.name()
+        )))
+    };
+    match task {
+        Task::Mechanism => match &world.mechanism {
+            Some(model) => simulate_mechanism(model, recording),
+            None => mismatch("no mechanism"),
+        },
+        Task::Crank => match &world.crank {
+            Some(_) if is_two_fingered(recording) && pads_are_measured(world) => {
+                play(world, recording).map(|forces| assemble_tips(recording, &forces))
+            }
+            Some(crank) => crank::needed_forces(crank, recording)
+                .map(|predicted| assemble(recording, predicted, |name| recording.channel(name).map(<[f64]>::to_vec))),
+            None => mismatch("no crank"),
+        },
+        _ if world.blocks.is_empty() => mismatch("no blocks"),
+        _ if pads_are_measured(world) => play(world, recording).map(|forces| assemble_tips(recording, &forces)),
+        _ => block::needed_forces(world, recording)
+            .map(|predicted| assemble(recording, predicted, |name| recording.channel(name).map(<[f64]>::to_vec))),
     }
-    if !is_two_fingered(recording) {
+}
+
+/// Whether the world's pads come from a measurement: assumed ones would turn micrometres into newtons.
+fn pads_are_measured(world: &World) -> bool {
+    world.provenance.is_empty()
+        || world
+            .provenance
+            .iter()
+            .any(|p| p.object == "pad" && p.name == "stiffness_N_m" && p.source == Source::Measured)
+}
+
+fn simulate_mechanism(model: &Mechanism, recording: &Recording) -> Result<Simulation, EstimateError> {
+    let angular = recording.channel("q_rad").is_some() || recording.channel("tau_Nm").is_some();
+    let linear = recording.channel("q_m").is_some();
+    if (angular && model.coordinate == Coordinate::Linear) || (linear && model.coordinate == Coordinate::Angular) {
         return Err(EstimateError::Other(format!(
-            "{} has a single tool, and this world has no mechanism for it; fit the recording to make one",
-            recording.name
+            "the world's mechanism moves along a {} and {} along a {}; choose the world that was fitted to it",
+            if angular { "line" } else { "circle" },
+            recording.name,
+            if angular { "circle" } else { "line" }
         )));
     }
-    if world.blocks.is_empty() && world.crank.is_none() {
-        return Err(EstimateError::Other("the world holds nothing that two fingers could touch".to_owned()));
-    }
-    let forces = play(world, recording)?;
+    let (name, unit) = if angular { ("tau_Nm", "Nm") } else { ("f_N", "N") };
+    let values = mechanism::predict(model, recording)?;
+    let measured = match recording.channel(name) {
+        Some(measured) => Some(measured.to_vec()),
+        None => mechanism::measured(model, recording)?,
+    };
+    let channel = Channel { name: name.to_owned(), unit: unit.to_owned(), values };
+    Ok(assemble(recording, vec![channel], |_| measured.clone()))
+}
+
+fn assemble_tips(recording: &Recording, forces: &[Vec<Vec2>; 2]) -> Simulation {
     let channel = |name: &str, finger: usize, pick: fn(&Vec2) -> f64| Channel {
         name: name.to_owned(),
         unit: "N".to_owned(),
@@ -82,7 +123,7 @@ pub fn simulate(world: &World, recording: &Recording) -> Result<Simulation, Esti
         channel("fx2_N", 1, |f| f.x),
         channel("fy2_N", 1, |f| f.y),
     ];
-    Ok(assemble(recording, predicted, |name| recording.channel(name).map(<[f64]>::to_vec)))
+    assemble(recording, predicted, |name| recording.channel(name).map(<[f64]>::to_vec))
 }
 
 fn assemble(recording: &Recording, predicted: Vec<Channel>, measured: impl Fn(&str) -> Option<Vec<f64>>) -> Simulation {

@@ -10,7 +10,8 @@ use crate::segment::{Segmentation, Thresholds, segment_signals, subtasks, thresh
 use crate::signal::noise::quantum;
 use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signals};
 use haptics::Vec2;
-use haptics::recording::{Recording, Task};
+use haptics::recording::{Channel, Recording, Task};
+use haptics::world::World;
 
 /// Relative error of a width whose pad compression could not be measured: the thesis's blocks came out 7 % too narrow.
 const UNKNOWN_COMPRESSION: f64 = 0.07;
@@ -117,6 +118,37 @@ fn joint_step_m(recording: &Recording) -> f64 {
     let finger = recording.meta.hand().fingers[0];
     let step = |name: &str| recording.channel(name).map_or(0.0, quantum);
     ["qb1_rad", "qt1_rad", "qb2_rad", "qt2_rad"].into_iter().map(step).fold(0.0, f64::max) * finger.link_m
+}
+
+/// The forces that the measured motion of carried blocks needs, channels named as measured.
+///
+/// In the air the net force is m (g + a), shared by both fingers; grip and leaning are the operator's own and stay as measured,
+/// as does everything while a block rests.
+pub fn needed_forces(world: &World, recording: &Recording) -> Result<Vec<Channel>, EstimateError> {
+    let signals = task_signals(recording)?;
+    let segmentation = segment_signals(&signals, Task::BlockStack, None)?;
+    let rate = |pick: fn(&Vec2) -> f64| {
+        let values: Vec<f64> = signals.velocity.iter().map(pick).collect();
+        smooth(&signals.time_s, &values).slope
+    };
+    let (ax, ay) = (rate(|v| v.x), rate(|v| v.y));
+    let mut correction = vec![Vec2::zeros(); signals.len()];
+    for (index, block) in world.blocks.iter().enumerate() {
+        let name = format!("carry-block-{}", index + 1);
+        for interval in segmentation.states.iter().filter(|i| i.subtask.as_deref() == Some(&name)) {
+            for i in interval.first..interval.end {
+                let needed = (Vec2::new(ax[i], ay[i]) - world.gravity_vector()) * block.mass_kg;
+                correction[i] = 0.5 * (needed - signals.net_force_n[i]);
+            }
+        }
+    }
+    let mut channels = Vec::new();
+    for (name, axis) in [("fx1_N", 0), ("fy1_N", 1), ("fx2_N", 0), ("fy2_N", 1)] {
+        let Some(measured) = recording.channel(name) else { continue };
+        let values = measured.iter().zip(&correction).map(|(force, c)| force + c[axis]).collect();
+        channels.push(Channel { name: name.to_owned(), unit: "N".to_owned(), values });
+    }
+    Ok(channels)
 }
 
 fn object(number: usize) -> String {

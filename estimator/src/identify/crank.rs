@@ -14,8 +14,11 @@ use crate::signal::task::{
     tip_series,
 };
 use haptics::Vec2;
-use haptics::law::{CoulombFriction, Inertia, Law, LoadFriction, MAX_PARAMETERS, Motion, ViscousFriction, Weight};
-use haptics::recording::{Recording, Task};
+use haptics::law::{
+    CoulombFriction, Inertia, Law, LoadFriction, MAX_PARAMETERS, Motion, ViscousFriction, Weight, drive_force,
+};
+use haptics::recording::{Channel, Recording, Task};
+use haptics::world::Crank;
 use std::collections::BTreeMap;
 
 /// The laws of eq. 5.2, with the two that it left out: each linear in one parameter.
@@ -23,6 +26,7 @@ static LAWS: [&dyn Law; 5] = [&Weight, &LoadFriction, &ViscousFriction, &Coulomb
 const WEIGHT: usize = 0;
 const INERTIA: usize = 4;
 const COULOMB: usize = 3;
+const FRICTION: [usize; 3] = [1, 2, COULOMB];
 /// Names of the laws' parameters in a fit; inertia is reported about the axis.
 const NAMES: [&str; 5] = ["weight_N", "friction_mu", "viscous_N_s_m", "coulomb_N", "inertia_kg_m2"];
 
@@ -145,10 +149,12 @@ fn held(recording: &Recording, segmentation: &Segmentation) -> Result<Held, Esti
         .collect();
     let axis = |series: &[Vec2], pick: fn(&Vec2) -> f64| series.iter().map(pick).collect::<Vec<f64>>();
     let half = (2 * half_width(&time_s)).max(CUBIC_HALF);
+    // Five samples of a slow log span much of a motion: there only their full polynomial does not weaken its bends.
+    let order = if half == CUBIC_HALF { 4 } else { 3 };
     // Cubics, because lines and plain averages would shrink a rotating vector towards the centre of its arc.
     let smoothed = |series: &[Vec2]| {
-        let x = savitzky_golay(&time_s, &axis(series, |v| v.x), half, 3);
-        let y = savitzky_golay(&time_s, &axis(series, |v| v.y), half, 3);
+        let x = savitzky_golay(&time_s, &axis(series, |v| v.x), half, order);
+        let y = savitzky_golay(&time_s, &axis(series, |v| v.y), half, order);
         let pair = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| Vec2::new(*x, *y)).collect::<Vec<_>>();
         [pair(&x.value, &y.value), pair(&x.first, &y.first), pair(&x.second, &y.second)]
     };
@@ -301,6 +307,43 @@ fn motions(recording: &Recording, held: &Held, geometry: &Geometry) -> (Vec<Moti
         .unzip()
 }
 
+/// The forces that the measured motion of a crank needs, channels named as measured.
+///
+/// Along the circle the world's laws say what it takes; the pull along the arm and the grip are the operator's own and stay as
+/// measured. Where nothing is held the prediction is the measured (free) force.
+pub fn needed_forces(crank: &Crank, recording: &Recording) -> Result<Vec<Channel>, EstimateError> {
+    let segmentation = segment(recording, Some(Task::Crank), None)?;
+    let held = held(recording, &segmentation)?;
+    let geometry = Geometry {
+        center_m: crank.center_m,
+        radius_m: crank.radius_m,
+        give_m_per_n: Vec2::zeros(),
+        give_errors: Vec2::zeros(),
+        errors_m: [0.0; 3],
+        stiffness: None,
+        rms_m: 0.0,
+    };
+    let (motions, tangential) = motions(recording, &held, &geometry);
+    let mut correction = vec![Vec2::zeros(); motions.len()];
+    for i in &held.turning {
+        let outward = (held.position[*i] - crank.center_m).normalize();
+        let along = Vec2::new(-outward.y, outward.x);
+        correction[*i] = along * (drive_force(&crank.effects, &motions[*i]) - tangential[*i]);
+    }
+    let fingers: &[&str] = if is_two_fingered(recording) { &["1", "2"] } else { &[""] };
+    let mut channels = Vec::new();
+    for finger in fingers {
+        for (axis, letter) in ["x", "y"].into_iter().enumerate() {
+            let name = format!("f{letter}{finger}_N");
+            let Some(measured) = recording.channel(&name) else { continue };
+            let share = |i: usize| correction[i][axis] / fingers.len() as f64;
+            let values = measured.iter().enumerate().map(|(i, force)| force + share(i)).collect();
+            channels.push(Channel { name, unit: "N".to_owned(), values });
+        }
+    }
+    Ok(channels)
+}
+
 /// The regression's rows: every law's column and the tangential force, all through one more low-pass.
 ///
 /// A linear filter over both sides leaves the equation as it is (parallel filtering, Gautier 1997). It takes out what the
@@ -383,8 +426,26 @@ impl Friction {
         fitted.or_else(|| self.known.get(&law).copied()).unwrap_or(0.0)
     }
 
-    /// Whether the recording shows the parameter of a column: it is told from the others, and its error matters little.
+    /// Whether the recording shows the parameter of a column: it is told from the others, its error matters little, and it is
+    /// not the other side of one that is not shown.
     fn shown(&self, column: usize, rows: &Rows, load_n: f64) -> bool {
+        const SAME_THING: f64 = 0.9;
+        let covariance = &self.fit.covariance;
+        let tied = |other: usize| {
+            let scale = (covariance[(column, column)] * covariance[(other, other)]).sqrt();
+            covariance[(column, other)].abs() > SAME_THING * scale
+        };
+        // Where one kind of friction is not shown, another one near zero may only have lost its share to it.
+        let is_friction = |law: usize| FRICTION.contains(&law);
+        let doubtful = is_friction(self.used[column])
+            && self.fit.t_value(column).abs() < SIGNIFICANT
+            && (0..self.used.len()).any(|o| is_friction(self.used[o]) && !self.certain(o, rows, load_n));
+        !doubtful
+            && self.certain(column, rows, load_n)
+            && (0..self.used.len()).filter(|o| *o != column).all(|o| self.certain(o, rows, load_n) || !tied(o))
+    }
+
+    fn certain(&self, column: usize, rows: &Rows, load_n: f64) -> bool {
         let regressor = &rows.columns[self.used[column]];
         let size = (regressor.iter().map(|c| c * c).sum::<f64>() / regressor.len().max(1) as f64).sqrt();
         self.fit.identified[column] && self.fit.std_errors[column] * size <= LARGEST_ERROR * load_n
