@@ -125,7 +125,7 @@ impl App {
     fn train(&mut self, ui: &mut Ui) {
         let session = &mut self.session;
         let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
-        Side::right("trainer side").frame(plain).show_separator_line(false).resizable(false).exact_size(330.0).show(
+        Side::right("trainer side").frame(plain).show_separator_line(false).resizable(false).exact_size(336.0).show(
             ui,
             |ui| {
                 self.trainer_side.ui(ui, session);
@@ -144,19 +144,24 @@ impl App {
         } else {
             session.trainer.pause();
         }
+        let width = ui.available_width();
         let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
-        Side::left("recording").frame(plain).show_separator_line(false).resizable(false).exact_size(264.0).show(
-            ui,
-            |ui| {
+        Side::left("recording")
+            .frame(plain)
+            .show_separator_line(false)
+            .resizable(false)
+            .exact_size((0.18 * width).clamp(220.0, 264.0))
+            .show(ui, |ui| {
                 self.recording.ui(ui, session);
-            },
-        );
-        Side::right("results").frame(plain).show_separator_line(false).resizable(false).exact_size(384.0).show(
-            ui,
-            |ui| {
+            });
+        Side::right("results")
+            .frame(plain)
+            .show_separator_line(false)
+            .resizable(false)
+            .exact_size((0.26 * width).clamp(362.0, 384.0))
+            .show(ui, |ui| {
                 self.results.ui(ui, session);
-            },
-        );
+            });
         let height = ui.available_height();
         let upper = Frame::new().inner_margin(Margin { left: 0, right: 0, top: 12, bottom: 6 });
         Side::top("scene")

@@ -47,7 +47,7 @@ pub fn run(options: RunOptions) -> anyhow::Result<()> {
         .with_title("Touchstone")
         .with_app_id("touchstone")
         .with_inner_size([1480.0, 920.0])
-        .with_min_inner_size([900.0, 600.0])
+        .with_min_inner_size([1120.0, 680.0])
         .with_drag_and_drop(true);
     let native = eframe::NativeOptions { viewport, renderer: eframe::Renderer::Wgpu, ..Default::default() };
     let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {

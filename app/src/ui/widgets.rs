@@ -92,7 +92,7 @@ pub fn empty_state(ui: &mut Ui, title: &str, text: &str, action: impl FnOnce(&mu
         ui.label(theme::title(title));
         ui.add_space(space::XS);
         ui.scope(|ui| {
-            ui.set_max_width(420.0);
+            ui.set_max_width(ui.available_width().min(420.0));
             ui.label(RichText::new(text).color(palette(ui).secondary));
         });
         ui.add_space(space::M);

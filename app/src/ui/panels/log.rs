@@ -3,11 +3,13 @@
 use super::Panel;
 use super::segments::band;
 use super::transport::transport;
+use crate::ui::files;
+use crate::ui::jobs::Purpose;
 use crate::ui::plots::{GUTTER, PlotCache, RowInput, axis_height, row};
 use crate::ui::prepare::Prepared;
-use crate::ui::session::Session;
+use crate::ui::session::{Session, Workspace};
 use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{empty_state, key_hint, sheet};
+use crate::ui::widgets::{empty_state, primary_button, sheet};
 use egui::{Rangef, RichText, Stroke, Ui};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -34,7 +36,7 @@ impl Panel for LogPanel {
         sheet(ui).inner_margin(space::M).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
             let Some(prepared) = session.prepared().cloned() else {
-                nothing_loaded(ui);
+                nothing_loaded(ui, session);
                 return;
             };
             self.header(ui, &prepared);
@@ -45,14 +47,17 @@ impl Panel for LogPanel {
     }
 }
 
-fn nothing_loaded(ui: &mut Ui) {
-    empty_state(
-        ui,
-        "No recording yet",
-        "Open a log (Ctrl+O, or drop a file on the window), or record one in the Train workspace. Its channels, \
-         states and forces appear here.",
-        |ui| key_hint(ui, "Ctrl+O", "open a log"),
-    );
+fn nothing_loaded(ui: &mut Ui, session: &mut Session) {
+    let text =
+        "Open a log, drop a file on the window, or record one yourself. Its channels, states and forces appear here.";
+    empty_state(ui, "No recording yet", text, |ui| {
+        if primary_button(ui, true, "Open a log …").on_hover_text("Ctrl+O").clicked() {
+            files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
+        }
+        if ui.link("or record one in Train").clicked() {
+            session.workspace = Workspace::Train;
+        }
+    });
 }
 
 impl LogPanel {
@@ -76,7 +81,9 @@ impl LogPanel {
                 }
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.label(theme::caption(ui, "wheel zooms · right drag moves · double click shows all"));
+                if ui.available_width() > 280.0 {
+                    ui.label(theme::caption(ui, "wheel zooms · right drag moves · double click shows all"));
+                }
             });
         });
         ui.add_space(space::XS);

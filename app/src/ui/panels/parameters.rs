@@ -5,10 +5,11 @@ use crate::ui::format;
 use crate::ui::jobs::JobKind;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{card, empty_state};
+use crate::ui::widgets::card;
 use egui::{Align, Layout, RichText, Ui};
 use egui_extras::{Column, TableBody, TableBuilder};
 use estimator::estimate::{Fit, Parameter};
+use estimator::simulate::Simulation;
 
 /// Height of a line.
 const LINE: f32 = 21.0;
@@ -47,15 +48,15 @@ impl Panel for ParametersPanel {
     }
 }
 
+/// Why there is no table yet.
 fn nothing(ui: &mut Ui, session: &Session, busy: bool) {
-    ui.set_min_height(150.0);
-    if busy {
-        empty_state(ui, "Fitting …", "Segmenting the recording and estimating its parameters.", |_| {});
-    } else if let Some(problem) = &session.fit_problem {
-        empty_state(ui, "No fit", problem, |_| {});
-    } else {
-        empty_state(ui, "Nothing measured yet", "Weights, sizes and frictions with their errors appear here.", |_| {});
-    }
+    let (title, text) = match (&session.fit_problem, busy) {
+        (_, true) => ("Fitting …", "Segmenting the recording and estimating its parameters."),
+        (Some(problem), _) => ("No fit", problem.as_str()),
+        _ => ("Nothing measured yet", "Weights, sizes and frictions with their errors appear here."),
+    };
+    ui.label(theme::strong(title));
+    ui.label(theme::caption(ui, text));
 }
 
 fn table(ui: &mut Ui, fit: &Fit) {
@@ -169,16 +170,39 @@ fn quality(ui: &mut Ui, session: &Session, fit: &Fit) {
         ui.label(theme::caption(ui, text));
     }
     if let Some(simulation) = session.replay().and_then(|r| r.simulation.as_ref()) {
-        let worst = simulation.residual_rms.iter().map(|(_, rms)| *rms).fold(0.0, f64::max);
-        if worst > 0.0 {
-            let unit = if simulation.predicted.iter().any(|c| c.unit == "Nm") { "N·m" } else { "N" };
-            let text = format!(
-                "Measured minus simulated force: at most {} {unit} RMS a channel.",
-                format::significant(worst, 2)
-            );
-            ui.label(theme::caption(ui, text));
-        }
+        residual(ui, session, simulation);
     } else if session.jobs.is_running(JobKind::Simulate) {
         ui.label(theme::caption(ui, "Replaying the motion through the fitted world …"));
+    }
+}
+
+/// Share of the measured force above which the replay is said to depart.
+const DEPARTS: f64 = 0.5;
+
+/// What the replay through the fitted world leaves of the measured force.
+fn residual(ui: &mut Ui, session: &Session, simulation: &Simulation) {
+    let Some(prepared) = session.prepared() else { return };
+    let mut worst = (0.0, 0.0);
+    for (name, rms) in &simulation.residual_rms {
+        let measured = prepared.recording.channel(name).unwrap_or_default();
+        let size = (measured.iter().map(|v| v * v).sum::<f64>() / measured.len().max(1) as f64).sqrt();
+        if *rms > worst.0 {
+            worst = (*rms, size);
+        }
+    }
+    let (rms, size) = worst;
+    if rms <= 0.0 {
+        return;
+    }
+    let unit = if simulation.predicted.iter().any(|c| c.unit == "Nm") { "N·m" } else { "N" };
+    let number = format::significant(rms, 2);
+    if rms > DEPARTS * size {
+        let text = format!(
+            "The replay departs from the measured force by up to {number} {unit} RMS: this world does not hold all that was touched."
+        );
+        ui.label(RichText::new(text).size(11.5).color(palette(ui).caution));
+    } else {
+        let text = format!("Measured minus simulated force: at most {number} {unit} RMS a channel.");
+        ui.label(theme::caption(ui, text));
     }
 }

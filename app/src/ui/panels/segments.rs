@@ -201,7 +201,10 @@ fn legend(ui: &mut Ui, segmentation: &Segmentation, indent: f32) {
         }
     }
     compact(ui, |ui| {
-        ui.add_space(indent - ui.spacing().item_spacing.x);
+        // Where the band is too short for the legend, the legend starts at the left edge.
+        if ui.available_width() - indent > 125.0 * present.len() as f32 {
+            ui.add_space(indent - ui.spacing().item_spacing.x);
+        }
         for state in present {
             let total: f64 = segmentation.states.iter().filter(|i| i.state == state).map(|i| i.t1 - i.t0).sum();
             swatch(ui, state_color(dark, state));

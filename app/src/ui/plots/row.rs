@@ -121,35 +121,40 @@ fn draw_gutter(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) {
         ui.label(theme::caption(ui, &input.group.unit));
     });
     let sample = input.prepared.sample_at(input.cursor_s);
-    egui::ScrollArea::vertical().id_salt(("curves", input.index)).show(ui, |ui| {
-        ui.spacing_mut().interact_size.y = 15.0;
-        let traces = &input.group.traces;
-        // Two columns when one would not fit.
-        let columns = if traces.len() as f32 * 15.0 > ui.available_height() { 2 } else { 1 };
-        let width = (ui.available_width() - space::S) / columns as f32;
-        for line in traces.chunks(columns) {
-            ui.horizontal(|ui| {
-                for trace in line {
-                    let size = vec2(width - 4.0, 15.0);
-                    ui.allocate_ui(size, |ui| {
-                        ui.set_min_size(size);
-                        curve_entry(ui, cache, input, trace, sample);
-                    });
-                }
-            });
-        }
-        if input.group.traces.iter().any(|t| predicted(input, t).is_some()) {
-            let color = theme::role(ui.visuals().dark_mode, ColorRole::Simulated);
-            ui.horizontal(|ui| {
-                dash(ui, color.gamma_multiply(0.75), 5.0);
-                ui.label(RichText::new("simulated").size(11.5).color(color));
-            });
-        }
-    });
+    let room = ui.available_height();
+    egui::ScrollArea::vertical().id_salt(("curves", input.index)).min_scrolled_height(0.0).max_height(room).show(
+        ui,
+        |ui| {
+            ui.spacing_mut().interact_size.y = 15.0;
+            let traces = &input.group.traces;
+            // Two columns when one would not fit.
+            let lines = traces.len() + usize::from(traces.iter().any(|t| predicted(input, t).is_some()));
+            let columns = if lines as f32 * 15.0 > room { 2 } else { 1 };
+            let width = (ui.available_width() - space::S) / columns as f32;
+            for line in traces.chunks(columns) {
+                ui.horizontal(|ui| {
+                    for trace in line {
+                        let size = vec2(width - 4.0, 15.0);
+                        ui.allocate_ui(size, |ui| {
+                            ui.set_min_size(size);
+                            curve_entry(ui, cache, input, trace, sample);
+                        });
+                    }
+                });
+            }
+            if input.group.traces.iter().any(|t| predicted(input, t).is_some()) {
+                let color = theme::role(ui.visuals().dark_mode, ColorRole::Simulated);
+                ui.horizontal(|ui| {
+                    dash(ui, color.gamma_multiply(0.75), 5.0);
+                    ui.label(RichText::new("simulated").size(11.5).color(color));
+                });
+            }
+        },
+    );
 }
 
 /// Swatch, name and value at the cursor; a click hides or shows the curve.
-fn curve_entry(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, trace: &Trace, sample: usize) {
+fn curve_entry(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, trace: &Trace, sample: usize, narrow: bool) {
     let shown = cache.is_shown(input.group, trace);
     let p = palette(ui);
     let color = if shown { curve_color(ui.visuals().dark_mode, trace) } else { p.faint };
@@ -160,8 +165,11 @@ fn curve_entry(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, trace: 
             ui.add(egui::Label::new(RichText::new(&trace.label).size(11.5).color(words)).truncate());
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let value = trace.levels.value(sample);
-                let text =
-                    if shown && value.is_finite() { value_text(value, &input.group.unit) } else { String::new() };
+                let text = if shown && value.is_finite() {
+                    value_text(value, &input.group.unit, narrow)
+                } else {
+                    String::new()
+                };
                 ui.label(RichText::new(text).size(11.5).color(p.text));
             });
         });
@@ -176,8 +184,9 @@ fn curve_entry(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, trace: 
     }
 }
 
-fn value_text(value: f64, unit: &str) -> String {
+fn value_text(value: f64, unit: &str, narrow: bool) -> String {
     let decimals = match unit {
+        "mm" if narrow => 1,
         "mm" | "N" | "N·m" => 2,
         "mm/s" | "°" | "°/s" => 1,
         _ => 3,
