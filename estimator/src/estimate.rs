@@ -83,6 +83,9 @@ pub struct Constraint {
     /// Centre of rotation, m; two numbers for a planar recording, three otherwise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub center_m: Option<Vec<f64>>,
+    /// Centre by the thesis's own method, normals over twelve samples, m; for comparison.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub normals_center_m: Option<Vec<f64>>,
     /// Radius, m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius_m: Option<f64>,

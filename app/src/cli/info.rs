@@ -2,7 +2,7 @@
 
 use super::{LogArgs, Output};
 use clap::Args;
-use haptics::recording::Recording;
+use haptics::recording::{Recording, Warning};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -21,7 +21,12 @@ impl Info {
         let recordings = self.source.load(&self.log)?;
         let text = recordings.iter().map(describe).collect::<Vec<_>>().join("\n");
         let mut all: Vec<Value> = recordings.iter().map(to_json).collect();
-        let json = if all.len() == 1 { all.remove(0) } else { json!({ "recordings": all }) };
+        let json = if all.len() == 1 {
+            all.remove(0)
+        } else {
+            let warnings: Vec<&Warning> = recordings.iter().flat_map(|r| &r.warnings).collect();
+            json!({ "recordings": all, "warnings": warnings })
+        };
         Ok(Output { text, json })
     }
 }

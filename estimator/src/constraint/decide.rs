@@ -84,6 +84,7 @@ fn blank(context: &Context, evidence: &str) -> Constraint {
         kind: ConstraintKind::Undecided,
         recording: context.recording.clone(),
         center_m: None,
+        normals_center_m: None,
         radius_m: None,
         radius_interval_m: None,
         direction: None,

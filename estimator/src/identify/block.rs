@@ -222,13 +222,13 @@ impl Blocks<'_> {
         let name = object(number);
         let resolution = std::f64::consts::SQRT_2 * self.resolution_m;
         if spread_grip > LEAST_GRIP_VARIATION * mean_grip {
-            let (fit, hardening) = self.width_over_grip(&rows)?;
+            let (fit, hardening, model_error) = self.width_over_grip(&rows)?;
             let stiffness = -2.0 / fit.values[1];
             let harder = if hardening { " when hardly pressed, and harden" } else { "" };
             let how = format!(
                 "distance of the tips while held, extrapolated to zero grip force (pads give {stiffness:.0} N/m each{harder})"
             );
-            let error = fit.std_errors[0].hypot(resolution);
+            let error = fit.std_errors[0].hypot(resolution).hypot(model_error);
             return Ok(Parameter::identified(&name, "width_m", fit.values[0], error, samples.len(), &how));
         }
         let fit = intercept(&width, &[])?;
@@ -243,7 +243,7 @@ impl Blocks<'_> {
         let slopes = (1..=count).filter_map(|number| {
             let [pick, carry, place] = ["pick-up", "carry", "place"].map(|verb| format!("{verb}-block-{number}"));
             let rows = self.rows(&self.samples(&[&pick, &carry, &place]));
-            let (fit, _) = self.width_over_grip(&rows).ok()?;
+            let (fit, _, _) = self.width_over_grip(&rows).ok()?;
             fit.identified[1].then(|| (-0.5 * fit.values[1], 0.5 * fit.std_errors[1], rows.len()))
         });
         pad_parameter("stiffness_N_m", slopes, "the grip varied too little to tell the pads' give")
@@ -261,8 +261,8 @@ impl Blocks<'_> {
     }
 
     /// Width as a line over the grip force, or as a parabola when the pads clearly harden (foam does): intercept, slope, …
-    /// The answer says whether it was a parabola.
-    fn width_over_grip(&self, rows: &[usize]) -> Result<(LinearFit, bool), EstimateError> {
+    /// The answer says whether it was a parabola, and how much the choice between the two leaves open, m.
+    fn width_over_grip(&self, rows: &[usize]) -> Result<(LinearFit, bool, f64), EstimateError> {
         const CLEARLY: f64 = 3.0;
         let column = |series: &[f64]| rows.iter().map(|i| series[*i]).collect::<Vec<f64>>();
         let (width, grip, rate) = (column(&self.width), column(&self.grip), column(&self.width_rate));
@@ -271,7 +271,9 @@ impl Blocks<'_> {
         let parabola = intercept(&width, &[grip, rate, squares])?;
         // Pads that harden give less and less: the width falls ever more slowly, the square's coefficient is positive.
         let hardening = parabola.identified[3] && parabola.t_value(3) > CLEARLY;
-        Ok(if hardening { (parabola, true) } else { (line, false) })
+        // A bend that is too weak to be called one may still be there: half of what it would move the width by.
+        let open = 0.5 * (line.values[0] - parabola.values[0]).abs();
+        Ok(if hardening { (parabola, true, 0.0) } else { (line, false, open) })
     }
 
     /// Heights from where the blocks were picked up and put down.
@@ -366,7 +368,7 @@ impl Blocks<'_> {
                 &name,
                 "friction_lower_bound",
                 // The largest of many noisy ratios lies about one error too high.
-                ratio - error,
+                (ratio - error).max(0.0),
                 error,
                 samples.len(),
                 "largest ratio of vertical to horizontal tip force while grasped; true friction is at least this",

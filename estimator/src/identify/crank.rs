@@ -57,6 +57,8 @@ struct Held {
     turning: Vec<usize>,
     /// Noise of one velocity component after smoothing, m/s.
     velocity_noise: f64,
+    /// Standard error of the vertical force bias that was taken out, N; `None` without a free phase to see it in.
+    bias_error_n: Option<f64>,
     /// Error by the resolution of the log, m and N.
     resolution_m: f64,
     resolution_n: f64,
@@ -112,7 +114,14 @@ pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit
     let turning: Vec<Motion> = held.turning.iter().map(|i| motions[*i]).collect();
     let constraint = constraint(recording, &held, &geometry, &turning, &friction);
     let quality = heldout_quality(recording, &rows);
-    let warnings = warnings(&segmentation, &turning, &constraint);
+    let mut warnings = warnings(&segmentation, &turning, &constraint);
+    if held.bias_error_n.is_none() && !warnings.iter().any(|w| w.contains("let go")) {
+        warnings.push(
+            "the handle was never let go in this recording: a bias of the force sensor would pass for weight; start and \
+             end with a second of free motion"
+                .to_owned(),
+        );
+    }
     let fit = Fit { task: Task::Crank.name().to_owned(), parameters, constraints: vec![constraint], quality, warnings };
     Ok((fit, segmentation))
 }
@@ -141,6 +150,10 @@ fn held(recording: &Recording, segmentation: &Segmentation) -> Result<Held, Esti
         .collect();
     let bias =
         if free.is_empty() { Vec2::zeros() } else { free.iter().map(|i| force[*i]).sum::<Vec2>() / free.len() as f64 };
+    let bias_error_n = (!free.is_empty()).then(|| {
+        let vertical: Vec<f64> = free.iter().map(|i| force[*i].y).collect();
+        least_squares(&[vec![1.0; vertical.len()]], &vertical, None).map_or(0.0, |fit| fit.std_errors[0])
+    });
     let turning = segmentation
         .states
         .iter()
@@ -173,6 +186,7 @@ fn held(recording: &Recording, segmentation: &Segmentation) -> Result<Held, Esti
     let resolution = |series: &[Vec2]| 0.288_675 * quantum(&axis(series, |v| v.x)).max(quantum(&axis(series, |v| v.y)));
     Ok(Held {
         velocity_noise,
+        bias_error_n,
         resolution_m: resolution(&position),
         resolution_n: resolution(&force),
         position: position_smooth,
@@ -467,7 +481,9 @@ impl Friction {
                     // A force that is off by the log's resolution shifts every parameter by that share of the load.
                     let resolution = self.fit.values[column].abs() * held.resolution_n / load.max(1e-9);
                     let fitted = self.fit.std_errors[column].hypot(self.geometry_errors[column]);
-                    let error = fitted.hypot(resolution) * scale;
+                    // A vertical bias acts just as the weight does.
+                    let bias = if law == WEIGHT { held.bias_error_n.unwrap_or(0.0) } else { 0.0 };
+                    let error = fitted.hypot(resolution).hypot(bias) * scale;
                     let how = format!("{} in the tangential force (eq. 5.2)", LAWS[law].title());
                     let value = self.fit.values[column] * scale;
                     parameters.push(Parameter::identified("crank", name, value, error, samples, &how));
@@ -654,12 +670,13 @@ fn constraint(
     let (low, high) = motions.iter().map(angle).fold((f64::MAX, f64::MIN), |(low, high), a| (low.min(a), high.max(a)));
     let [ex, ey, er] = geometry.errors_m.map(|e| e.hypot(held.resolution_m));
     let points: Vec<Vec2> = held.turning.iter().map(|i| held.position[*i]).collect();
-    let by_normals = normals_sentence(&points, geometry.center_m);
+    let by_normals = crate::constraint::normals_center(&points, crate::constraint::THESIS_SAMPLES);
     let rigid = geometry.stiffness.is_none_or(|(k, _)| k > RIGID_N_M);
     Constraint {
         kind: ConstraintKind::Revolute,
         recording: Some(recording.name.clone()),
         center_m: Some(vec![geometry.center_m.x, geometry.center_m.y]),
+        normals_center_m: by_normals.map(|center| vec![center.x, center.y]),
         radius_m: Some(geometry.radius_m),
         radius_interval_m: Some((geometry.radius_m - 1.96 * er, Some(geometry.radius_m + 1.96 * er))),
         direction: None,
@@ -670,9 +687,10 @@ fn constraint(
         residual_m: Some(geometry.rms_m),
         constraint_force_n: Some(force),
         evidence: format!(
-            "the handle stays within {:.2} mm of one circle over {:.1} turns; {by_normals}",
+            "the handle stays within {:.3} mm (RMS) of one circle over {:.1} turns; {}",
             geometry.rms_m * 1e3,
-            (high - low) / std::f64::consts::TAU
+            (high - low) / std::f64::consts::TAU,
+            normals_sentence(by_normals, geometry.center_m)
         ),
     }
 }
@@ -681,8 +699,8 @@ fn constraint(
 const RIGID_N_M: f64 = 1000.0;
 
 /// What the thesis's own method, normals over twelve samples, says of the centre.
-fn normals_sentence(points: &[Vec2], center: Vec2) -> String {
-    match crate::constraint::normals_center(points, crate::constraint::THESIS_SAMPLES) {
+fn normals_sentence(by_normals: Option<Vec2>, center: Vec2) -> String {
+    match by_normals {
         Some(found) => {
             format!("normals over twelve samples meet {:.2} mm from its centre", (found - center).norm() * 1e3)
         }
