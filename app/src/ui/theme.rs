@@ -164,7 +164,7 @@ pub fn state_short(state: SystemState) -> &'static str {
 /// Black or white, whichever reads better on `background`.
 pub fn ink_on(background: Color32) -> Color32 {
     let [r, g, b, _] = background.to_array().map(f32::from);
-    if 0.299 * r + 0.587 * g + 0.114 * b > 130.0 { Color32::from_rgb(0x14, 0x18, 0x1E) } else { Color32::WHITE }
+    if 0.299 * r + 0.587 * g + 0.114 * b > 105.0 { Color32::from_rgb(0x14, 0x18, 0x1E) } else { Color32::WHITE }
 }
 
 /// `a` and `b` mixed, 0 … 1.

@@ -137,7 +137,7 @@ fn draw_gutter(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) {
                         let size = vec2(width - 4.0, 15.0);
                         ui.allocate_ui(size, |ui| {
                             ui.set_min_size(size);
-                            curve_entry(ui, cache, input, trace, sample);
+                            curve_entry(ui, cache, input, trace, sample, columns > 1);
                         });
                     }
                 });
