@@ -182,21 +182,20 @@ const DEPARTS: f64 = 0.5;
 /// What the replay through the fitted world leaves of the measured force.
 fn residual(ui: &mut Ui, session: &Session, simulation: &Simulation) {
     let Some(prepared) = session.prepared() else { return };
-    let mut worst = (0.0, 0.0);
+    // Together: a channel that carries little force may well be wrong by all of it.
+    let (mut worst, mut left, mut measured) = (0.0_f64, 0.0, 0.0);
     for (name, rms) in &simulation.residual_rms {
-        let measured = prepared.recording.channel(name).unwrap_or_default();
-        let size = (measured.iter().map(|v| v * v).sum::<f64>() / measured.len().max(1) as f64).sqrt();
-        if *rms > worst.0 {
-            worst = (*rms, size);
-        }
+        let values = prepared.recording.channel(name).unwrap_or_default();
+        measured += values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64;
+        left += rms * rms;
+        worst = worst.max(*rms);
     }
-    let (rms, size) = worst;
-    if rms <= 0.0 {
+    if worst <= 0.0 {
         return;
     }
     let unit = if simulation.predicted.iter().any(|c| c.unit == "Nm") { "N·m" } else { "N" };
-    let number = format::significant(rms, 2);
-    if rms > DEPARTS * size {
+    let number = format::significant(worst, 2);
+    if left > DEPARTS * DEPARTS * measured {
         let text = format!(
             "The replay departs from the measured force by up to {number} {unit} RMS: this world does not hold all that was touched."
         );
