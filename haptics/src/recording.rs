@@ -114,7 +114,7 @@ impl Meta {
 pub struct Channel {
     /// The program's name for it: `<quantity>[finger]_<unit>`, e.g. `fx1_N`.
     pub name: String,
-    /// SI unit, e.g. `N`; empty when the quantity has none.
+    /// SI unit as in column names, e.g. `N`, `m_s`; empty when the quantity has none.
     pub unit: String,
     /// One value a sample.
     pub values: Vec<f64>,

@@ -89,7 +89,7 @@ fn unit(column: &str) -> &'static str {
     if column.starts_with('f') {
         "N"
     } else if column.starts_with('v') {
-        "m/s"
+        "m_s"
     } else {
         "m"
     }

@@ -104,21 +104,8 @@ impl Pipelines {
         };
         Self {
             table: make.pipeline(&Spec { label: "table", fragment: "fs_table", ..opaque }),
-            ghost_depth: make.pipeline(&Spec {
-                label: "ghost depth",
-                fragment: "fs_depth",
-                ink: Ink::None,
-                depth_bias: 24,
-                ..opaque
-            }),
-            ghost: make.pipeline(&Spec {
-                label: "ghost",
-                ink: Ink::Translucent,
-                depth_write: false,
-                depth_compare: see_through,
-                depth_bias: 24,
-                ..opaque
-            }),
+            ghost_depth: make.pipeline(&ghost_depth(&opaque)),
+            ghost: make.pipeline(&ghost(&opaque)),
             shadow: make.pipeline(&Spec {
                 label: "shadow",
                 module: &shadow,
@@ -146,6 +133,26 @@ impl Pipelines {
             stroke: make.pipeline(&strokes),
             solid: make.pipeline(&opaque),
         }
+    }
+}
+
+/// Steps of depth that a ghost is pushed back by, so that it does not fight with what it coincides with.
+const GHOST_DEPTH_BIAS: i32 = 24;
+
+/// First pass of a ghost: only depth, so that its own inner faces do not show through.
+fn ghost_depth<'a>(opaque: &Spec<'a>) -> Spec<'a> {
+    Spec { label: "ghost depth", fragment: "fs_depth", ink: Ink::None, depth_bias: GHOST_DEPTH_BIAS, ..*opaque }
+}
+
+/// Second pass of a ghost: its nearest faces, translucent.
+fn ghost<'a>(opaque: &Spec<'a>) -> Spec<'a> {
+    Spec {
+        label: "ghost",
+        ink: Ink::Translucent,
+        depth_write: false,
+        depth_compare: wgpu::CompareFunction::LessEqual,
+        depth_bias: GHOST_DEPTH_BIAS,
+        ..*opaque
     }
 }
 
