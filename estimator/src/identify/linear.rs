@@ -39,6 +39,8 @@ pub struct LinearFit {
     pub identified: Vec<bool>,
     /// How many independent samples the residuals amount to.
     pub effective_samples: f64,
+    /// Inverse (pseudo-inverse) of the normal matrix `Σ wᵢ xᵢ xᵢᵀ`, in the columns' own units.
+    pub normal_inverse: DMatrix<f64>,
 }
 
 /// Minimises Σ wᵢ (rhsᵢ − Σⱼ columns[j][i] valuesⱼ)².
@@ -94,10 +96,61 @@ pub fn least_squares(columns: &[Vec<f64>], rhs: &[f64], weights: Option<&[f64]>)
         }
     }
     let std_errors = (0..p).map(|j| covariance[(j, j)].max(0.0).sqrt()).collect();
-    Ok(LinearFit { values, covariance, std_errors, residuals, condition, rms, identified, effective_samples })
+    let normal_inverse = DMatrix::from_fn(p, p, |i, j| inverse[(i, j)] / (scales[i] * scales[j]));
+    Ok(LinearFit {
+        values,
+        covariance,
+        std_errors,
+        residuals,
+        condition,
+        rms,
+        identified,
+        effective_samples,
+        normal_inverse,
+    })
 }
 
+/// The noise in the columns is known to about this share (a white level read from its upper band).
+const COLUMN_NOISE_UNCERTAINTY: f64 = 0.25;
+/// Columns whose noise makes up more than this share of what only they explain are not corrected: it would amplify errors.
+const CORRECTABLE: f64 = 0.5;
+
 impl LinearFit {
+    /// Adds independent errors (one standard deviation a parameter) to the covariance; parameters beyond `errors` keep theirs.
+    pub fn widen(&mut self, errors: &[f64]) {
+        for (j, error) in errors.iter().enumerate().take(self.values.len()) {
+            self.covariance[(j, j)] += error * error;
+            self.std_errors[j] = self.covariance[(j, j)].max(0.0).sqrt();
+        }
+    }
+
+    /// Takes out the attenuation by noise in the columns (errors in variables, Fuller 1987, §2.2): the normal matrix is
+    /// larger than that of the true columns by `noise`, `Σ wᵢ E[eᵢ eᵢᵀ]`. A share of the correction joins the errors; where
+    /// the noise is too large to be taken out, the values stay and all of it does.
+    #[must_use]
+    pub fn without_attenuation(mut self, noise: &DMatrix<f64>) -> Self {
+        let p = self.values.len();
+        if noise.shape() != (p, p) || self.normal_inverse.shape() != (p, p) || !self.identified.iter().all(|i| *i) {
+            return self;
+        }
+        let values = DVector::from_column_slice(&self.values);
+        let loss = &self.normal_inverse * noise;
+        // Its trace sums the shares of noise in what each column alone explains.
+        let correctable = loss.trace().abs() < CORRECTABLE;
+        let regained = if correctable { (DMatrix::identity(p, p) - &loss).try_inverse() } else { None };
+        let (change, known_to) = match &regained {
+            Some(regained) => (regained * &values - &values, COLUMN_NOISE_UNCERTAINTY),
+            None => (&loss * &values, 1.0),
+        };
+        if let Some(regained) = regained {
+            self.values = (&values + &change).iter().copied().collect();
+            self.covariance = &regained * &self.covariance * regained.transpose();
+        }
+        self.covariance += &change * change.transpose() * (known_to * known_to);
+        self.std_errors = (0..p).map(|j| self.covariance[(j, j)].max(0.0).sqrt()).collect();
+        self
+    }
+
     /// The parameter's t-value; 0 when it is not identified.
     pub fn t_value(&self, index: usize) -> f64 {
         if self.identified[index] { self.values[index] / self.std_errors[index].max(f64::MIN_POSITIVE) } else { 0.0 }
@@ -301,6 +354,27 @@ mod tests {
         let fit = least_squares(&[x, doubled, vec![1.0; 40], vec![0.0; 40]], &rhs, None).expect("solves");
         assert_eq!(fit.identified, [false, false, true, false]);
         assert!((fit.values[2] - 1.0).abs() < 1e-12 && fit.condition.is_infinite() && fit.rms < 1e-12);
+    }
+
+    #[test]
+    fn noise_in_a_column_no_longer_attenuates() {
+        let mut rng = StdRng::seed_from_u64(11);
+        let n = 4000;
+        let clean: Vec<f64> = (0..n).map(|i| (0.05 * f64::from(i)).sin()).collect();
+        // Nearly the same as the first column: what only one of them explains is small.
+        let other: Vec<f64> = (0..n).map(|i| (0.05 * f64::from(i) + 0.3).sin()).collect();
+        let rhs: Vec<f64> = clean.iter().zip(&other).map(|(a, b)| 2.0 * a - b).collect();
+        let noisy: Vec<f64> = clean.iter().map(|v| v + 0.05 * rng.sample::<f64, _>(StandardNormal)).collect();
+        let plain = least_squares(&[noisy, other], &rhs, None).expect("solves");
+        assert!(plain.values[0] < 1.93, "the noise attenuates: {:?}", plain.values);
+        let mut noise = DMatrix::zeros(2, 2);
+        noise[(0, 0)] = f64::from(n) * 0.05_f64.powi(2);
+        let first = plain.values[0];
+        let corrected = plain.without_attenuation(&noise);
+        for (value, (error, truth)) in corrected.values.iter().zip(corrected.std_errors.iter().zip([2.0, -1.0])) {
+            assert!((value - truth).abs() < 2.5 * error && *error < 0.05, "{value} ± {error} against {truth}");
+        }
+        assert!(corrected.std_errors[0] > 0.2 * (corrected.values[0] - first), "a share of the correction is an error");
     }
 
     #[test]

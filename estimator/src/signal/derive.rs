@@ -154,6 +154,30 @@ pub fn interpolate(time_s: &[f64], values: &[f64], wanted: &[f64]) -> Vec<f64> {
         .collect()
 }
 
+/// The signal at the times `wanted` by cubics through the samples, with the slopes of the three-point formula; held at the
+/// ends. Linear in `values`, and local: a jump is smeared over its neighbours only. Both times increasing.
+pub fn interpolate_cubic(time_s: &[f64], values: &[f64], wanted: &[f64]) -> Vec<f64> {
+    let n = values.len().min(time_s.len());
+    if n < 3 {
+        return interpolate(&time_s[..n], &values[..n], wanted);
+    }
+    let slopes = central_differences(time_s, values);
+    let mut at = 0;
+    wanted
+        .iter()
+        .map(|&t| {
+            while at + 2 < n && time_s[at + 1] < t {
+                at += 1;
+            }
+            let step = time_s[at + 1] - time_s[at];
+            let x = ((t - time_s[at]) / step).clamp(0.0, 1.0);
+            let rise = values[at + 1] - values[at];
+            let (before, after) = (slopes[at] * step - rise, slopes[at + 1] * step - rise);
+            values[at] + x * rise + x * (1.0 - x) * ((1.0 - x) * before - x * after)
+        })
+        .collect()
+}
+
 /// The coefficients c0 + c1 x + … of the least-squares polynomial.
 pub fn polynomial(x: &[f64], y: &[f64], order: usize) -> Vec<f64> {
     let n = x.len().min(y.len());
@@ -219,6 +243,19 @@ mod tests {
             assert_eq!(savitzky_golay(&time, &time, 7, 3).first.len(), time.len());
             assert_eq!(stencil(&time, 1.0).0.len(), time.len());
         }
+    }
+
+    #[test]
+    fn cubic_interpolation_is_exact_for_a_parabola_and_held_at_the_ends() {
+        let time = [0.0, 0.1, 0.25, 0.3, 0.6, 0.7];
+        let values: Vec<f64> = time.iter().map(|t| 3.0 * t * t - t).collect();
+        let wanted = [-1.0, 0.1, 0.17, 0.27, 0.3, 0.55, 2.0];
+        let got = interpolate_cubic(&time, &values, &wanted);
+        for (t, v) in wanted.iter().zip(&got).skip(1).take(5) {
+            assert!((v - (3.0 * t * t - t)).abs() < 1e-12, "{t}: {v}");
+        }
+        assert!(got[0] == values[0] && (got[6] - values[5]).abs() < 1e-12);
+        assert_eq!(interpolate_cubic(&[0.0, 1.0], &[0.0, 2.0], &[0.5]), [1.0]);
     }
 
     #[test]

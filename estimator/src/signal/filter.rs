@@ -84,6 +84,26 @@ pub fn white_noise_gain(rate_hz: f64, cutoff_hz: f64) -> f64 {
     (2.0 * width / rate_hz).min(1.0)
 }
 
+/// Points of the numerical integral in [`derivative_noise`]: exact to 1e-4.
+const NOISE_POINTS: u32 = 400;
+
+/// Variance of the `order`-th time derivative of unit white noise after [`low_pass`], in 1/s^(2 order): the power density
+/// 2/rate times the squared gains of the filter, 1/(1 + x⁸), and of the derivative, (2πf)^order, summed over all frequencies.
+pub fn derivative_noise(rate_hz: f64, cutoff_hz: f64, order: i32) -> f64 {
+    let usable = cutoff_hz > 0.0 && cutoff_hz < 0.45 * rate_hz;
+    // Beyond four cut-offs the filter leaves 1e-9 of the power.
+    let top = if usable { (4.0 * cutoff_hz).min(0.5 * rate_hz) } else { 0.5 * rate_hz };
+    let step = top / f64::from(NOISE_POINTS);
+    let power = |k: u32| {
+        let frequency = (f64::from(k) + 0.5) * step;
+        // The bilinear transform bends the frequency axis.
+        let x = (PI * frequency / rate_hz).tan() / (PI * cutoff_hz / rate_hz).tan();
+        let gain = if usable { 1.0 / (1.0 + x.powi(8)) } else { 1.0 };
+        (gain * (2.0 * PI * frequency).powi(order)).powi(2)
+    };
+    2.0 / rate_hz * step * (0..NOISE_POINTS).map(power).sum::<f64>()
+}
+
 /// Mean of each block of `factor` samples; an incomplete last block is dropped. Zero phase about the block's middle.
 pub fn decimate(values: &[f64], factor: usize) -> Vec<f64> {
     let factor = factor.max(1);
@@ -124,6 +144,20 @@ mod tests {
         assert_eq!(low_pass(&[1.0, 1.0, 1.0], 100.0, f64::NAN), [1.0, 1.0, 1.0]);
         assert_eq!(low_pass(&[5.0; 7], 100.0, 1.0).len(), 7);
         assert_eq!(decimate(&[1.0, 3.0, 5.0, 7.0, 9.0], 2), [2.0, 6.0]);
+    }
+
+    #[test]
+    fn the_noise_of_derivatives_is_that_of_filter_and_stencil() {
+        use rand::{RngExt as _, SeedableRng as _};
+        let mut rng = rand::rngs::StdRng::seed_from_u64(4);
+        let noise: Vec<f64> = (0..200_000).map(|_| rng.sample::<f64, _>(rand_distr::StandardNormal)).collect();
+        let (first, second) = crate::signal::derive::stencil(&low_pass(&noise, 1000.0, 50.0), 1e-3);
+        for (order, derived) in [(1, first), (2, second)] {
+            let power = derived.iter().map(|v| v * v).sum::<f64>() / derived.len() as f64;
+            let expected = derivative_noise(1000.0, 50.0, order);
+            assert!((power / expected - 1.0).abs() < 0.05, "{order}: {power} against {expected}");
+        }
+        assert!((derivative_noise(1000.0, 50.0, 0) / white_noise_gain(1000.0, 50.0) - 1.0).abs() < 0.02);
     }
 
     #[test]

@@ -4,7 +4,7 @@
 use super::regress::{System, shown};
 use super::report;
 use super::signals::{Piece, Raw};
-use super::terms::{Known, Term};
+use super::terms::{CLOCK_TOLERANCE, Known, Term};
 use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::identify::linear::{LinearFit, least_squares};
 use haptics::law::Coordinate;
@@ -28,7 +28,9 @@ struct Ratios {
 impl Ratios {
     fn get(&self, term: Term) -> Option<(f64, f64)> {
         let i = self.terms.iter().position(|t| *t == term)?;
-        self.fit.identified[i].then(|| (self.fit.values[i], self.fit.std_errors[i]))
+        let value = self.fit.values[i];
+        let by_clock = value * CLOCK_TOLERANCE * term.powers_of_time();
+        self.fit.identified[i].then(|| (value, self.fit.std_errors[i].hypot(by_clock)))
     }
 }
 

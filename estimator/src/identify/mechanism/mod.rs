@@ -5,6 +5,7 @@
 //! constraint is found first; a coordinate without a force, which moves freely; and a path without a clock, which shows its
 //! constraint only.
 
+mod even;
 mod free;
 mod gravity;
 pub mod path;
@@ -27,7 +28,7 @@ use haptics::world::MechanismPath;
 use regress::{Shown, System, shown};
 use report::Material;
 use signals::{Piece, Raw};
-use terms::{Known, Term};
+use terms::{CLOCK_TOLERANCE, Known, Term};
 
 /// Share of each recording's end that the quality figures hold out.
 const HELD_OUT: f64 = 0.3;
@@ -147,7 +148,11 @@ fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> R
         seen.fitted.extend(terms);
     }
     let system = System::stack(pieces, &seen.fitted, known, force_of);
-    let solution = system.solve()?;
+    let mut solution = system.solve()?;
+    if let Some(Gravity::Absent { doubt, .. }) = &gravity {
+        solution.widen(doubt);
+    }
+    solution.widen(&clock_errors(&system.terms, &solution.values));
     let rms = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt();
     let effect: Vec<f64> = system.columns.iter().map(|c| rms(c)).collect();
     let mut result = Fit { task: "mechanism".to_owned(), ..Fit::default() };
@@ -165,6 +170,13 @@ fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> R
     result.quality = quality(pieces, &system, solution.rms, coordinate, known);
     result.warnings = warnings(pieces, &seen, &solution);
     Ok(result)
+}
+
+/// What the clock's tolerance does to parameters of a motion under a measured force: inertia goes as time squared, viscous
+/// friction as time.
+fn clock_errors(terms: &[Term], values: &[f64]) -> Vec<f64> {
+    let powers = |term: &Term| Term::GravitySine.powers_of_time() - term.powers_of_time();
+    terms.iter().zip(values).map(|(term, value)| (value * CLOCK_TOLERANCE * powers(term)).abs()).collect()
 }
 
 fn force_of(piece: &Piece) -> Vec<f64> {

@@ -1,6 +1,6 @@
 //! The fit itself: stacked pieces, effective-variance weights, which terms the motion can show.
 
-use super::signals::Piece;
+use super::signals::{Piece, StateNoise};
 use super::terms::{Known, Term};
 use crate::estimate::EstimateError;
 use crate::identify::linear::{LinearFit, least_squares};
@@ -28,6 +28,8 @@ pub struct System {
     pub target: Vec<f64>,
     /// Share of 1 by which the direction of motion is uncertain, 0 … 1.
     pub uncertainty: Vec<f64>,
+    /// Filtered position of each sample, m or rad, and the noise of the motion there: how much the columns are off.
+    pub motion: Vec<(f64, StateNoise)>,
     /// Place of each sample in its recording, 0 … 1: for holding out the end.
     pub place: Vec<f64>,
 }
@@ -40,6 +42,7 @@ impl System {
             columns: vec![Vec::new(); terms.len()],
             target: Vec::new(),
             uncertainty: Vec::new(),
+            motion: Vec::new(),
             place: Vec::new(),
         };
         for piece in pieces {
@@ -55,23 +58,50 @@ impl System {
                 column.extend(keep(term.column(piece)));
             }
             system.uncertainty.extend(keep(direction_uncertainty(piece)));
+            let used = piece.motion.iter().zip(&piece.usable).filter(|(_, u)| **u);
+            system.motion.extend(used.map(|(m, _)| (m.position, piece.noise)));
             let n = piece.motion.len() as f64;
             system.place.extend(keep((0..piece.motion.len()).map(|i| i as f64 / n).collect()));
         }
         system
     }
 
-    /// Solves with weights that silence the samples whose direction is uncertain (`facts/diagnosis.md`, step 3).
+    /// Solves with weights that silence the samples whose direction is uncertain (`facts/diagnosis.md`, step 3), and takes
+    /// out what noise in the columns attenuates.
     pub fn solve(&self) -> Result<LinearFit, EstimateError> {
         let mut fit = least_squares(&self.columns, &self.target, None)?;
-        let Some(dry) = self.terms.iter().position(|t| *t == Term::Coulomb) else { return Ok(fit) };
+        let Some(dry) = self.terms.iter().position(|t| *t == Term::Coulomb) else {
+            return Ok(fit.without_attenuation(&self.column_noise(None)));
+        };
+        let mut weights = Vec::new();
         for _ in 0..2 {
             let level = fit.values[dry].powi(2);
             let floor = fit.rms.powi(2).max(1e-12 * level).max(f64::MIN_POSITIVE);
-            let weights: Vec<f64> = self.uncertainty.iter().map(|u| 1.0 / (1.0 + level * u / floor)).collect();
+            weights = self.uncertainty.iter().map(|u| 1.0 / (1.0 + level * u / floor)).collect();
             fit = least_squares(&self.columns, &self.target, Some(&weights))?;
         }
-        Ok(fit)
+        Ok(fit.without_attenuation(&self.column_noise(Some(&weights))))
+    }
+
+    /// Σ wᵢ E[eᵢ eᵢᵀ] of the errors e in the columns that come from noise in the motion.
+    fn column_noise(&self, weights: Option<&[f64]>) -> DMatrix<f64> {
+        let p = self.terms.len();
+        let mut sum = DMatrix::zeros(p, p);
+        for (i, (position, noise)) in self.motion.iter().enumerate() {
+            let weight = weights.map_or(1.0, |w| w[i]);
+            for (j, a) in self.terms.iter().enumerate() {
+                let [q, v, acceleration] = a.slopes(*position);
+                for (k, b) in self.terms.iter().enumerate() {
+                    let other = b.slopes(*position);
+                    let both = q * other[0] * noise.position
+                        + v * other[1] * noise.velocity
+                        + acceleration * other[2] * noise.acceleration
+                        + (q * other[2] + acceleration * other[0]) * noise.position_acceleration;
+                    sum[(j, k)] += weight * both;
+                }
+            }
+        }
+        sum
     }
 
     /// The samples for which `keep(place)` holds.
@@ -95,6 +125,7 @@ impl System {
             columns: self.columns.iter().map(pick).collect(),
             target: pick(&self.target),
             uncertainty: pick(&self.uncertainty),
+            motion: self.motion.iter().zip(kept).filter(|(_, k)| **k).map(|(m, _)| *m).collect(),
             place: pick(&self.place),
         }
     }

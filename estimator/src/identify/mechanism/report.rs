@@ -99,7 +99,7 @@ impl Material<'_> {
         let name = Term::GravitySine.name(self.coordinate);
         let terms = match gravity {
             Gravity::Present(terms) => terms,
-            Gravity::Absent(why) => {
+            Gravity::Absent { why, .. } => {
                 result.parameters.push(Parameter::unidentified(OBJECT, name, self.samples(), why));
                 return;
             }

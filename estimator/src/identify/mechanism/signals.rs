@@ -1,9 +1,9 @@
 //! From a recording to the coordinate of a mechanism, its derivatives and the force along it: one zero-phase filter for all.
 
+use super::even::Even;
 use crate::estimate::EstimateError;
-use crate::signal::derive::{central_differences, even_period, interpolate, stencil};
-use crate::signal::filter::{MAX_CUTOFF_SHARE, edge_samples, low_pass, white_noise_gain};
-use crate::signal::noise::white_noise;
+use crate::signal::derive::{central_differences, stencil};
+use crate::signal::filter::{MAX_CUTOFF_SHARE, derivative_noise, edge_samples, low_pass};
 use haptics::law::{Coordinate, Motion};
 use haptics::recording::Recording;
 use haptics::world::{Mechanism, MechanismPath};
@@ -39,6 +39,19 @@ pub struct Raw {
     pub saturated: Vec<bool>,
 }
 
+/// Variances of the noise left on the filtered motion, for the regressors made of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StateNoise {
+    /// Of the position, m² or rad².
+    pub position: f64,
+    /// Of the velocity, per s².
+    pub velocity: f64,
+    /// Of the acceleration, per s⁴.
+    pub acceleration: f64,
+    /// Covariance of position and acceleration, per s²: minus the velocity's variance when both come from the position.
+    pub position_acceleration: f64,
+}
+
 /// Filtered signals of one uninterrupted piece of a recording, evenly sampled.
 #[derive(Clone, Debug)]
 pub struct Piece {
@@ -56,6 +69,8 @@ pub struct Piece {
     pub cutoff_hz: f64,
     /// Standard deviation of the noise left on the velocity, m/s or rad/s.
     pub velocity_noise: f64,
+    /// Variances of the noise left on the motion.
+    pub noise: StateNoise,
     /// True when there is an acceleration that stands clear of its noise.
     pub accelerates: bool,
     /// Index of the first sample of this piece in the recording (nearest, when it was resampled).
@@ -159,28 +174,18 @@ fn too_few(name: &str, samples: usize) -> EstimateError {
 
 fn piece(raw: &Raw, first: usize, end: usize, period: f64) -> Piece {
     let time = &raw.time_s[first..end];
-    let even = even_period(time);
-    let period_s = even.unwrap_or(period);
-    let grid: Vec<f64> = if even.is_some() {
-        time.to_vec()
-    } else {
-        let count = ((time[time.len() - 1] - time[0]) / period).floor() as usize + 1;
-        (0..count).map(|i| time[0] + i as f64 * period).collect()
-    };
-    let onto = |values: &[f64]| {
-        let part = &values[first..end];
-        if even.is_some() { part.to_vec() } else { interpolate(time, part, &grid) }
-    };
+    let even = Even::new(time, period);
+    let onto = |values: &[f64]| even.onto(&values[first..end]);
     let position = onto(&raw.position);
-    let measured_rate = raw.rate.as_ref().map(|r| onto(r));
-    let flags: Vec<f64> = raw.saturated.iter().map(|&f| f64::from(u8::from(f))).collect();
-    let saturated = onto(&flags);
+    let measured_rate = raw.rate.as_ref().map(|r| Noisy { values: onto(r), noise: even.noise(&r[first..end]) });
+    let saturated = even.flags(time, &raw.saturated[first..end]);
     let raw_force = raw.force.as_ref().map(|f| onto(f));
-    let rate_hz = 1.0 / period_s;
+    let rate_hz = 1.0 / even.period_s;
 
-    let choice = choose_cutoff(&position, rate_hz);
-    let derived = derive(&position, measured_rate.as_deref(), rate_hz, &choice);
+    let choice = choose_cutoff(&position, even.noise(&raw.position[first..end]), rate_hz);
+    let derived = derive(&position, measured_rate.as_ref(), rate_hz, &choice);
     let up = raw.up_along.as_ref().map(|u| onto(u));
+    let grid = &even.grid;
     let n = grid.len();
     let motion: Vec<Motion> = (0..n)
         .map(|i| Motion {
@@ -193,16 +198,18 @@ fn piece(raw: &Raw, first: usize, end: usize, period: f64) -> Piece {
             up_along: up.as_ref().map_or(0.0, |u| u[i]),
         })
         .collect();
-    let blur = noise_blur(derived.velocity_noise);
+    let velocity_noise = derived.noise.velocity.sqrt();
+    let blur = noise_blur(velocity_noise);
     let edge = edge_samples(rate_hz, choice.cutoff_hz).min(n / 4);
     Piece {
-        direction: motion.iter().map(|m| direction(m.velocity, blur)).collect(),
+        direction: even.through(&derived.velocity, |v| direction(v, blur)),
         motion,
         force: raw_force.as_ref().map(|f| low_pass(f, rate_hz, choice.cutoff_hz)),
-        usable: (0..n).map(|i| i >= edge && i + edge < n && saturated[i] == 0.0).collect(),
-        period_s,
+        usable: (0..n).map(|i| i >= edge && i + edge < n && !saturated[i]).collect(),
+        period_s: even.period_s,
         cutoff_hz: choice.cutoff_hz,
-        velocity_noise: derived.velocity_noise,
+        velocity_noise,
+        noise: derived.noise,
         accelerates: choice.accelerates,
         first,
         start_s: grid[0],
@@ -231,18 +238,20 @@ struct Choice {
     accelerates: bool,
 }
 
-/// Noise that white position noise σ leaves on velocity and acceleration after the filter:
-/// ∫ (2πf)^(2k) of a one-sided density 2σ²/rate up to the cut-off.
+/// Noise that white position noise σ leaves on velocity and acceleration after the filter.
 fn derived_noise(sigma: f64, rate_hz: f64, cutoff_hz: f64, order: i32) -> f64 {
-    let power = f64::from(2 * order);
-    let integral = TAU.powf(power) * cutoff_hz.powf(power + 1.0) / (power + 1.0);
-    sigma * (2.0 / rate_hz * integral).sqrt()
+    sigma * derivative_noise(rate_hz, cutoff_hz, order).sqrt()
+}
+
+/// A channel with the standard deviation of its white noise.
+struct Noisy {
+    values: Vec<f64>,
+    noise: f64,
 }
 
 /// The highest cut-off at which the acceleration still stands clear of its noise: within that bound, more bandwidth means
 /// better told reversals. Where there is no acceleration to speak of, the same for the velocity.
-fn choose_cutoff(position: &[f64], rate_hz: f64) -> Choice {
-    let sigma = white_noise(position);
+fn choose_cutoff(position: &[f64], sigma: f64, rate_hz: f64) -> Choice {
     let bottom = (8.0 * rate_hz / position.len() as f64).min(MAX_CUTOFF_SHARE * rate_hz);
     let ladder =
         || std::iter::successors(Some(MAX_CUTOFF_SHARE * rate_hz), |c| Some(c * 0.8)).take_while(move |c| *c >= bottom);
@@ -283,33 +292,44 @@ struct Derived {
     position: Vec<f64>,
     velocity: Vec<f64>,
     acceleration: Vec<f64>,
-    velocity_noise: f64,
+    noise: StateNoise,
 }
 
 /// Velocity and acceleration from the positions, or from the measured rate where that is the quieter source and agrees.
-fn derive(position: &[f64], measured: Option<&[f64]>, rate_hz: f64, choice: &Choice) -> Derived {
+fn derive(position: &[f64], measured: Option<&Noisy>, rate_hz: f64, choice: &Choice) -> Derived {
     let cutoff = choice.cutoff_hz;
     let smooth = low_pass(position, rate_hz, cutoff);
     let (velocity, acceleration) = stencil(&smooth, 1.0 / rate_hz);
+    let variance = |sigma: f64, order: i32| derived_noise(sigma, rate_hz, cutoff, order).powi(2);
+    let sigma = choice.position_noise;
     let from_position = Derived {
-        velocity_noise: derived_noise(choice.position_noise, rate_hz, cutoff, 1),
+        noise: StateNoise {
+            position: variance(sigma, 0),
+            velocity: variance(sigma, 1),
+            acceleration: variance(sigma, 2),
+            position_acceleration: -variance(sigma, 1),
+        },
         position: smooth,
         velocity,
         acceleration,
     };
     let Some(measured) = measured else { return from_position };
-    let sigma = white_noise(measured);
-    let velocity_noise = sigma * white_noise_gain(rate_hz, cutoff).sqrt();
-    let filtered = low_pass(measured, rate_hz, cutoff);
+    let noise = StateNoise {
+        velocity: variance(measured.noise, 0),
+        acceleration: variance(measured.noise, 1),
+        position_acceleration: 0.0,
+        ..from_position.noise
+    };
+    let filtered = low_pass(&measured.values, rate_hz, cutoff);
     // Slope of the measured rate on the derived one: anything but 1 is a unit, a sign or a delay.
     let product: f64 = filtered.iter().zip(&from_position.velocity).map(|(a, b)| a * b).sum();
     let power: f64 = from_position.velocity.iter().map(|v| v * v).sum();
     let agrees = (product / power.max(f64::MIN_POSITIVE) - 1.0).abs() < 0.05;
-    if !agrees || velocity_noise >= from_position.velocity_noise {
+    if !agrees || noise.velocity >= from_position.noise.velocity {
         return from_position;
     }
     let (acceleration, _) = stencil(&filtered, 1.0 / rate_hz);
-    Derived { velocity: filtered, acceleration, velocity_noise, ..from_position }
+    Derived { velocity: filtered, acceleration, noise, ..from_position }
 }
 
 /// The motion at every sample of the recording, for a prediction (also at the ends and across gaps).

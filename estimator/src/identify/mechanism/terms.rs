@@ -7,6 +7,9 @@ use haptics::law::{
 };
 use haptics::recording::Meta;
 
+/// Relative error of the clock of a recording: 100 ppm, the usual tolerance of an uncompensated quartz.
+pub const CLOCK_TOLERANCE: f64 = 1e-4;
+
 /// One column of the fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Term {
@@ -63,6 +66,28 @@ impl Term {
         let mut columns = [0.0; MAX_PARAMETERS];
         law.regressor(motion, &mut columns);
         columns[index]
+    }
+
+    /// The power of 1/time in the ratio of this term to the inertia: what a wrong clock does to it.
+    pub fn powers_of_time(self) -> f64 {
+        match self {
+            Self::Inertia => 0.0,
+            Self::Viscous => 1.0,
+            _ => 2.0,
+        }
+    }
+
+    /// How the regressor answers to small errors of position, velocity and acceleration. The sign of the motion is left out:
+    /// its errors are weighted down instead.
+    pub fn slopes(self, position: f64) -> [f64; 3] {
+        match self {
+            Self::Inertia => [0.0, 0.0, 1.0],
+            Self::Viscous => [0.0, 1.0, 0.0],
+            Self::Coulomb | Self::Offset => [0.0; 3],
+            Self::GravitySine => [position.cos(), 0.0, 0.0],
+            Self::GravityCosine => [-position.sin(), 0.0, 0.0],
+            Self::Spring => [1.0, 0.0, 0.0],
+        }
     }
 
     /// The regressor along a piece, filtered like the force: what is a function of filtered motion is filtered already,
