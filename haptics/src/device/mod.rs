@@ -30,15 +30,6 @@ pub struct DeviceSpec {
     pub resolution_m: f64,
 }
 
-impl DeviceSpec {
-    /// Largest wall stiffness that keeps a sampled wall passive, N/m: the smaller of 2 b/T (Colgate & Schenkel 1997, B = 0)
-    /// and the encoder limit 2 fc/Δ (Abbott & Okamura 2005), for a servo period `period_s`.
-    pub fn max_stiffness_n_m(&self, period_s: f64) -> f64 {
-        let sampled = 2.0 * self.damping_n_s_m / period_s;
-        if self.resolution_m > 0.0 { sampled.min(2.0 * self.coulomb_n / self.resolution_m) } else { sampled }
-    }
-}
-
 /// What the servo sends to the device at every tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Command {

@@ -1,5 +1,6 @@
 //! One tick of the servo as a plain function.
 
+use super::passivity::{Observer, control};
 use super::safety::{Limits, Safety, SafetyFlags};
 use super::timing::Timing;
 use crate::Vec2;
@@ -19,6 +20,8 @@ pub struct TickRecord {
     pub sent_force_n: [Vec2; 2],
     /// What the safety stage did.
     pub flags: SafetyFlags,
+    /// Energy that the virtual environment has taken from each finger since the start, J; below zero it has given some out.
+    pub energy_j: [f64; 2],
     /// The true contact state (generators write it as the label).
     pub label: &'static str,
 }
@@ -61,6 +64,8 @@ pub struct Loop {
     device: Box<dyn Device>,
     safety: Safety,
     sent_force_n: [Vec2; 2],
+    observers: [Observer; 2],
+    passivity_control_n_s_m: Option<f64>,
     generation: u64,
 }
 
@@ -68,7 +73,22 @@ impl Loop {
     /// Ready to tick; the fingers start where the state has them.
     pub fn new(current: Box<Swap>, device: Box<dyn Device>, limits: Limits) -> Self {
         let safety = Safety::new(limits, current.state.input.tip_in_world);
-        Self { current, device, safety, sent_force_n: [Vec2::zeros(); 2], generation: 0 }
+        Self {
+            current,
+            device,
+            safety,
+            sent_force_n: [Vec2::zeros(); 2],
+            observers: [Observer::default(); 2],
+            passivity_control_n_s_m: None,
+            generation: 0,
+        }
+    }
+
+    /// Lets the passivity controller add up to so much damping (N s/m) while energy has been given out; off by default.
+    #[must_use]
+    pub fn with_passivity_control(mut self, most_n_s_m: Option<f64>) -> Self {
+        self.passivity_control_n_s_m = most_n_s_m;
+        self
     }
 
     /// Device, world, force: one tick of `dt_s`. Allocates, locks, prints and waits for nothing.
@@ -81,13 +101,23 @@ impl Loop {
         let input = Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity };
         step(world, state, &input, dt_s);
         // The operator feels the reaction to what the tips exert.
-        self.sent_force_n = self.safety.limit(state.tip_force_n.map(|f| -f), dt_s, &mut flags);
+        let mut wanted = state.tip_force_n.map(|f| -f);
+        if let Some(most) = self.passivity_control_n_s_m {
+            for (finger, force) in wanted.iter_mut().enumerate() {
+                *force += control(&self.observers[finger], input.tip_velocity[finger], dt_s, most);
+            }
+        }
+        self.sent_force_n = self.safety.limit(wanted, dt_s, &mut flags);
+        for (finger, observer) in self.observers.iter_mut().enumerate() {
+            observer.add(input.tip_in_world[finger], -self.sent_force_n[finger]);
+        }
         TickRecord {
             time_s: state.time_s,
             input,
             tip_force_n: state.tip_force_n,
             sent_force_n: self.sent_force_n,
             flags,
+            energy_j: self.observers.map(|o| o.energy_j()),
             label: crate::world::true_label(world, state),
         }
     }
@@ -129,5 +159,59 @@ impl Loop {
     /// Age of the newest good sample, s.
     pub fn sample_age_s(&self) -> f64 {
         self.safety.sample_age_s()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::{DeviceSpec, ReplayDevice, Sample};
+    use crate::world::presets;
+
+    /// Fingers that press against the table along a sine, faster than a stiff pad sampled at 1 kHz can follow passively.
+    struct Prodding(DeviceSpec, f64);
+
+    impl Device for Prodding {
+        fn spec(&self) -> &DeviceSpec {
+            &self.0
+        }
+
+        fn exchange(&mut self, _: &Command, dt_s: f64) -> Sample {
+            self.1 += dt_s;
+            let omega = std::f64::consts::TAU * 25.0;
+            let (sin, cos) = (omega * self.1).sin_cos();
+            let tip = |x: f64| Vec2::new(x, -0.1262 + 0.001 * sin);
+            let velocity = Vec2::new(0.0, 0.001 * omega * cos);
+            Sample { tip_in_world: [tip(-0.03), tip(0.03)], tip_velocity: [velocity; 2], fresh: true }
+        }
+
+        fn make_safe(&mut self) {}
+    }
+
+    fn prodding(control: Option<f64>) -> TickRecord {
+        let mut world = presets::table();
+        // No damping at all: a sampled spring gives out K/2 Σ Δx².
+        world.pad.damping_n_s_m = 0.0;
+        let still = || vec![Vec2::zeros(); 2];
+        let spec = ReplayDevice::new("spec", vec![0.0, 1.0], [still(), still()], [still(), still()])
+            .expect("two samples")
+            .spec()
+            .clone();
+        let limits = Limits { max_force_n: 50.0, max_slew_n_s: 1e6, ramp_s: 1e-3, ..Limits::default() };
+        let mut servo =
+            Loop::new(Swap::new(world), Box::new(Prodding(spec, 0.0)), limits).with_passivity_control(control);
+        let mut last = TickRecord::default();
+        for _ in 0..2_000 {
+            last = servo.tick(1e-3);
+        }
+        last
+    }
+
+    #[test]
+    fn the_observer_sees_a_sampled_spring_give_out_energy_and_the_controller_takes_it_back() {
+        let watched = prodding(None).energy_j;
+        assert!(watched[0] < -1e-3, "a sampled spring is active: {watched:?}");
+        let controlled = prodding(Some(50.0)).energy_j;
+        assert!(controlled[0] > 0.02 * watched[0], "{controlled:?} against {watched:?}");
     }
 }

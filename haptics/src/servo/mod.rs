@@ -9,6 +9,7 @@
 
 mod clock;
 mod r#loop;
+pub mod passivity;
 mod realtime;
 pub mod recorder;
 pub mod safety;

@@ -26,11 +26,13 @@ pub struct ServoConfig {
     pub limits: Limits,
     /// Ask the system for real-time scheduling.
     pub real_time: bool,
+    /// Largest damping that the passivity controller may add, N s/m; `None`: it only observes.
+    pub passivity_control_n_s_m: Option<f64>,
 }
 
 impl Default for ServoConfig {
     fn default() -> Self {
-        Self { rate_hz: 1000.0, limits: Limits::default(), real_time: true }
+        Self { rate_hz: 1000.0, limits: Limits::default(), real_time: true, passivity_control_n_s_m: None }
     }
 }
 
@@ -78,7 +80,7 @@ impl Servo {
         let granted = Arc::new(AtomicU8::new(0));
         let limits = Limits { max_force_n: config.limits.max_force_n.min(device.spec().max_force_n), ..config.limits };
         let runner = Runner {
-            body: Loop::new(swap, device, limits),
+            body: Loop::new(swap, device, limits).with_passivity_control(config.passivity_control_n_s_m),
             snapshot: snapshot_in,
             ticks: tick_in,
             swaps: swap_out,
