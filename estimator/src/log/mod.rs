@@ -5,6 +5,7 @@
 mod checks;
 mod csv;
 mod errors;
+mod facts;
 mod fingerprint;
 mod plan;
 mod sidecar;
@@ -34,6 +35,9 @@ pub fn load(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError
 /// Reads a log with a sidecar that is already in memory (the app's mapping dialog).
 pub fn load_with_meta(path: &Path, meta: &Meta) -> Result<Vec<Recording>, LogError> {
     let size = admissible_size(path)?;
+    if let Some(why) = facts::complaint(meta) {
+        return Err(LogError::Sidecar { why, path: sidecar::path_for(path) });
+    }
     load_with(path, meta, size)
 }
 
@@ -101,7 +105,11 @@ fn assemble(
             let why = "no column holds numbers beside the time".to_owned();
             return Err(LogError::NotATable { why, path: path.to_path_buf() });
         }
+        if let Some(why) = facts::up_not_honoured(&recording) {
+            return Err(LogError::Sidecar { why, path: sidecar::path_for(path) });
+        }
         recording.warnings = notes(plan, &table, headers, &recording);
+        recording.warnings.extend(facts::doubts(&recording));
         recording.warnings.extend(checks::warnings(&recording));
         recording.warnings.extend(checks::copied(&recording, plan, &copies));
         recordings.push(recording);

@@ -1,6 +1,7 @@
 //! The sidecar `<stem>.meta.json`: reading, checking, writing.
 
 use super::errors::LogError;
+use super::facts;
 use haptics::recording::{Meta, Recording};
 use std::path::{Path, PathBuf};
 
@@ -20,26 +21,14 @@ pub fn load(log: &Path, given: Option<&Path>) -> Result<Meta, LogError> {
         }
         Err(error) => return Err(LogError::Io { reason: error.to_string(), path }),
     };
-    let meta: Meta = serde_json::from_str(text.trim_start_matches('\u{feff}'))
-        .map_err(|error| LogError::Sidecar { why: error.to_string(), path: path.clone() })?;
-    match complaint(&meta) {
-        Some(why) => Err(LogError::Sidecar { why, path }),
-        None => Ok(meta),
+    let malformed = |why: String| LogError::Sidecar { why, path: path.clone() };
+    let value: serde_json::Value =
+        serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| malformed(error.to_string()))?;
+    if let Some(why) = facts::wrong_type(&value) {
+        return Err(malformed(why));
     }
-}
-
-/// The first number in the sidecar that cannot be meant.
-fn complaint(meta: &Meta) -> Option<String> {
-    if let Some(rate) = meta.rate_hz.filter(|r| !(r.is_finite() && *r > 0.0)) {
-        return Some(format!("rate_hz is {rate} and must be positive"));
-    }
-    if let Some((name, value)) = meta.sign.iter().find(|(_, v)| v.abs() != 1.0) {
-        return Some(format!("sign of {name} is {value} and must be 1 or -1"));
-    }
-    if let Some((name, value)) = meta.scale.iter().find(|(_, v)| !v.is_finite() || **v == 0.0) {
-        return Some(format!("scale of {name} is {value} and must be a number other than 0"));
-    }
-    None
+    let meta: Meta = serde_json::from_value(value).map_err(|error| malformed(error.to_string()))?;
+    facts::complaint(&meta).map_or(Ok(meta), |why| Err(malformed(why)))
 }
 
 /// Writes the sidecar of `recording` beside `log` and returns its path.
