@@ -1,0 +1,166 @@
+//! Weighted regression of the tangential force on the laws; what it shows and what it does not.
+
+use super::SIGNIFICANT;
+use super::geometry::Geometry;
+use super::held::Held;
+use super::laws::{COULOMB, FRICTION, INERTIA, LAWS, NAMES, WEIGHT, missing_motion};
+use super::motion::{Rows, motions};
+use crate::estimate::{EstimateError, Parameter, Quality};
+use crate::identify::linear::{LinearFit, least_squares};
+use haptics::Vec2;
+use haptics::recording::Recording;
+use std::collections::BTreeMap;
+
+/// A parameter whose error alone moves the predicted force by more than this share of the measured one is not identified.
+const LARGEST_ERROR: f64 = 0.3;
+
+/// The fitted friction laws.
+pub(super) struct Friction {
+    pub(super) fit: LinearFit,
+    /// Which of [`LAWS`] took part, in the order of the fit's columns.
+    pub(super) used: Vec<usize>,
+    pub(super) known: BTreeMap<usize, f64>,
+    /// What the uncertainty of centre and give adds to the error of each fitted parameter.
+    pub(super) geometry_errors: Vec<f64>,
+}
+
+impl Friction {
+    pub(super) fn value(&self, law: usize) -> f64 {
+        let fitted = self.used.iter().position(|l| *l == law).map(|column| self.fit.values[column]);
+        fitted.or_else(|| self.known.get(&law).copied()).unwrap_or(0.0)
+    }
+
+    /// Whether the recording shows the parameter of a column: it is told from the others, its error matters little, and it is
+    /// not the other side of one that is not shown.
+    fn shown(&self, column: usize, rows: &Rows, load_n: f64) -> bool {
+        const SAME_THING: f64 = 0.9;
+        let covariance = &self.fit.covariance;
+        let tied = |other: usize| {
+            let scale = (covariance[(column, column)] * covariance[(other, other)]).sqrt();
+            covariance[(column, other)].abs() > SAME_THING * scale
+        };
+        // Where one kind of friction is not shown, another one near zero may only have lost its share to it.
+        let is_friction = |law: usize| FRICTION.contains(&law);
+        let doubtful = is_friction(self.used[column])
+            && self.fit.t_value(column).abs() < SIGNIFICANT
+            && (0..self.used.len()).any(|o| is_friction(self.used[o]) && !self.certain(o, rows, load_n));
+        !doubtful
+            && self.certain(column, rows, load_n)
+            && (0..self.used.len()).filter(|o| *o != column).all(|o| self.certain(o, rows, load_n) || !tied(o))
+    }
+
+    fn certain(&self, column: usize, rows: &Rows, load_n: f64) -> bool {
+        let regressor = &rows.columns[self.used[column]];
+        let size = (regressor.iter().map(|c| c * c).sum::<f64>() / regressor.len().max(1) as f64).sqrt();
+        self.fit.identified[column] && self.fit.std_errors[column] * size <= LARGEST_ERROR * load_n
+    }
+
+    pub(super) fn parameters(&self, held: &Held, geometry: &Geometry, rows: &Rows) -> Vec<Parameter> {
+        let samples = held.turning.len();
+        let load = (rows.tangential.iter().map(|f| f * f).sum::<f64>() / rows.len().max(1) as f64).sqrt();
+        let mut parameters = Vec::new();
+        for (law, name) in NAMES.into_iter().enumerate() {
+            let scale = if law == INERTIA { geometry.radius_m.powi(2) } else { 1.0 };
+            if let Some(known) = self.known.get(&law) {
+                parameters.push(Parameter::identified("crank", name, known * scale, 0.0, 0, "stated in the sidecar"));
+                continue;
+            }
+            let column = self.used.iter().position(|l| *l == law);
+            match column {
+                Some(column) if self.shown(column, rows, load) => {
+                    // A force that is off by the log's resolution shifts every parameter by that share of the load.
+                    let resolution = self.fit.values[column].abs() * held.resolution_n / load.max(1e-9);
+                    let fitted = self.fit.std_errors[column].hypot(self.geometry_errors[column]);
+                    // A vertical bias acts just as the weight does.
+                    let bias = if law == WEIGHT { held.bias_error_n.unwrap_or(0.0) } else { 0.0 };
+                    let error = fitted.hypot(resolution).hypot(bias) * scale;
+                    let how = format!("{} in the tangential force (eq. 5.2)", LAWS[law].title());
+                    let value = self.fit.values[column] * scale;
+                    parameters.push(Parameter::identified("crank", name, value, error, samples, &how));
+                }
+                _ => parameters.push(Parameter::unidentified("crank", name, samples, missing_motion(law))),
+            }
+        }
+        parameters
+    }
+}
+
+pub(super) fn friction(recording: &Recording, rows: &Rows) -> Result<Friction, EstimateError> {
+    let known: BTreeMap<usize, f64> = NAMES
+        .iter()
+        .enumerate()
+        .filter_map(|(law, name)| recording.meta.known.get(*name).map(|value| (law, *value)))
+        .collect();
+    let mut used: Vec<usize> = (0..LAWS.len()).filter(|law| !known.contains_key(law)).collect();
+    let mut fit = regress(rows, &used, &known)?;
+    // What this recording cannot separate is left out, the least essential first; what remains keeps its meaning.
+    for law in [INERTIA, COULOMB] {
+        if fit.identified.iter().all(|i| *i) {
+            break;
+        }
+        used.retain(|l| *l != law);
+        fit = regress(rows, &used, &known)?;
+    }
+    let geometry_errors = vec![0.0; used.len()];
+    Ok(Friction { fit, used, known, geometry_errors })
+}
+
+/// Change of every friction parameter when centre and give are off by one standard error each, added in quadrature.
+pub(super) fn geometry_errors(
+    recording: &Recording,
+    held: &Held,
+    geometry: &Geometry,
+    friction: &Friction,
+) -> Vec<f64> {
+    let [ex, ey, _] = geometry.errors_m;
+    let give = geometry.give_errors;
+    let shifts = [
+        (Vec2::new(ex, 0.0), Vec2::zeros()),
+        (Vec2::new(0.0, ey), Vec2::zeros()),
+        (Vec2::zeros(), Vec2::new(give.x, 0.0)),
+        (Vec2::zeros(), Vec2::new(0.0, give.y)),
+    ];
+    let mut squares = vec![0.0; friction.used.len()];
+    for (center, give) in shifts {
+        let shifted =
+            Geometry { center_m: geometry.center_m + center, give_m_per_n: geometry.give_m_per_n + give, ..*geometry };
+        let (motions, tangential) = motions(recording, held, &shifted);
+        if let Ok(fit) = regress(&Rows::new(held, &motions, &tangential), &friction.used, &friction.known) {
+            for (square, (a, b)) in squares.iter_mut().zip(fit.values.iter().zip(&friction.fit.values)) {
+                *square += (a - b).powi(2);
+            }
+        }
+    }
+    squares.into_iter().map(f64::sqrt).collect()
+}
+
+/// One weighted regression of the tangential force on the laws.
+fn regress(rows: &Rows, used: &[usize], known: &BTreeMap<usize, f64>) -> Result<LinearFit, EstimateError> {
+    let columns: Vec<Vec<f64>> = used.iter().map(|law| rows.columns[*law].clone()).collect();
+    let rest: Vec<f64> = (0..rows.len())
+        .map(|i| rows.tangential[i] - known.iter().map(|(law, value)| value * rows.columns[*law][i]).sum::<f64>())
+        .collect();
+    least_squares(&columns, &rest, Some(&rows.weights))
+}
+
+/// Fit on the first 70 %, tested on the rest.
+pub(super) fn heldout_quality(recording: &Recording, rows: &Rows) -> Option<Quality> {
+    const TRAIN: f64 = 0.7;
+    let cut = (TRAIN * rows.len() as f64) as usize;
+    let trained = friction(recording, &rows.head(cut)).ok()?;
+    let rms = |from: usize, to: usize, model: bool| {
+        let square = |i: usize| {
+            let predicted: f64 = (0..LAWS.len()).map(|law| trained.value(law) * rows.columns[law][i]).sum();
+            (rows.tangential[i] - if model { predicted } else { 0.0 }).powi(2)
+        };
+        ((from..to).map(square).sum::<f64>() / (to - from).max(1) as f64).sqrt()
+    };
+    let heldout_rms = rms(cut, rows.len(), true);
+    Some(Quality {
+        rms: rms(0, cut, true),
+        heldout_rms,
+        heldout_relative: heldout_rms / rms(cut, rows.len(), false).max(1e-12),
+        heldout_share: 1.0 - TRAIN,
+        unit: "N".to_owned(),
+    })
+}

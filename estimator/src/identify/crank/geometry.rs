@@ -1,0 +1,108 @@
+//! Circle and give of the pads, from the radius residual.
+
+use super::SIGNIFICANT;
+use super::held::Held;
+use crate::estimate::EstimateError;
+use crate::identify::linear::{LinearFit, least_squares};
+use haptics::Vec2;
+
+/// Circle and give of the pads.
+pub(super) struct Geometry {
+    pub(super) center_m: Vec2,
+    pub(super) radius_m: f64,
+    /// Displacement of the tips against the handle per force, x and y, m/N.
+    pub(super) give_m_per_n: Vec2,
+    /// Its standard errors, m/N.
+    pub(super) give_errors: Vec2,
+    /// Standard errors of centre x, centre y, radius, m.
+    pub(super) errors_m: [f64; 3],
+    /// Radial stiffness from one common give and its standard error, N/m.
+    pub(super) stiffness: Option<(f64, f64)>,
+    pub(super) rms_m: f64,
+}
+
+/// Circle through the positions: Kåsa's linear fit as a start, then Gauss–Newton on the radius residual with the pads' give.
+pub(super) fn geometry(held: &Held) -> Result<Geometry, EstimateError> {
+    let points: Vec<Vec2> = held.turning.iter().map(|i| held.position[*i]).collect();
+    let forces: Vec<Vec2> = held.turning.iter().map(|i| held.force[*i]).collect();
+    let mut center = kasa(&points)?;
+    let mut give = [true, true];
+    let mut solved = None;
+    for _ in 0..12 {
+        let (fit, columns) = radius_fit(&points, &forces, center, give)?;
+        let step = Vec2::new(fit.values[1], fit.values[2]);
+        center += step;
+        // A give stays in the fit even when it is small: leaving it out would hide what it does to the centre, because the
+        // steady part of the load (the weight) moves the tips as a shifted centre would.
+        let keep = |k: usize| columns[k].is_some_and(|j| fit.identified[j]);
+        let next = [give[0] && keep(0), give[1] && keep(1)];
+        let settled = step.norm() < 1e-9 && next == give;
+        give = next;
+        solved = Some((fit, columns));
+        if settled {
+            break;
+        }
+    }
+    let Some((fit, columns)) = solved else { return Err(EstimateError::Other("no circle was fitted".to_owned())) };
+    let value = |k: usize| columns[k].map_or(0.0, |j| fit.values[j]);
+    let error = |k: usize| columns[k].map_or(0.0, |j| fit.std_errors[j]);
+    Ok(Geometry {
+        center_m: center,
+        radius_m: fit.values[0],
+        give_m_per_n: Vec2::new(value(0), value(1)),
+        give_errors: Vec2::new(error(0), error(1)),
+        errors_m: [fit.std_errors[1], fit.std_errors[2], fit.std_errors[0]],
+        stiffness: common_stiffness(&points, &forces, center)?,
+        rms_m: fit.rms,
+    })
+}
+
+/// Centre by Kåsa (1976): |p|² = 2 c·p + const is linear.
+fn kasa(points: &[Vec2]) -> Result<Vec2, EstimateError> {
+    let mean = points.iter().sum::<Vec2>() / points.len() as f64;
+    let columns = vec![
+        points.iter().map(|p| 2.0 * (p - mean).x).collect(),
+        points.iter().map(|p| 2.0 * (p - mean).y).collect(),
+        vec![1.0; points.len()],
+    ];
+    let squares: Vec<f64> = points.iter().map(|p| (p - mean).norm_squared()).collect();
+    let fit = least_squares(&columns, &squares, None)?;
+    Ok(mean + Vec2::new(fit.values[0], fit.values[1]))
+}
+
+/// Linearised radius residual at `center`: columns 1, cos θ, sin θ and the wanted gives. The second part of the answer says
+/// which column carries the give along x and along y.
+fn radius_fit(
+    points: &[Vec2],
+    forces: &[Vec2],
+    center: Vec2,
+    give: [bool; 2],
+) -> Result<(LinearFit, [Option<usize>; 2]), EstimateError> {
+    let outward: Vec<Vec2> = points.iter().map(|p| (p - center).normalize()).collect();
+    let radius: Vec<f64> = points.iter().map(|p| (p - center).norm()).collect();
+    let mut columns =
+        vec![vec![1.0; points.len()], outward.iter().map(|n| n.x).collect(), outward.iter().map(|n| n.y).collect()];
+    let mut place = [None; 2];
+    for (k, wanted) in give.into_iter().enumerate() {
+        if wanted {
+            place[k] = Some(columns.len());
+            columns.push(outward.iter().zip(forces).map(|(n, f)| n[k] * f[k]).collect());
+        }
+    }
+    Ok((least_squares(&columns, &radius, None)?, place))
+}
+
+/// Radial stiffness if the give is the same in all directions: r = R + Fn/k.
+fn common_stiffness(points: &[Vec2], forces: &[Vec2], center: Vec2) -> Result<Option<(f64, f64)>, EstimateError> {
+    let outward: Vec<Vec2> = points.iter().map(|p| (p - center).normalize()).collect();
+    let radius: Vec<f64> = points.iter().map(|p| (p - center).norm()).collect();
+    let columns = vec![
+        vec![1.0; points.len()],
+        outward.iter().map(|n| n.x).collect(),
+        outward.iter().map(|n| n.y).collect(),
+        outward.iter().zip(forces).map(|(n, f)| n.dot(f)).collect(),
+    ];
+    let fit = least_squares(&columns, &radius, None)?;
+    let (give, error) = (fit.values[3], fit.std_errors[3]);
+    Ok((fit.identified[3] && give > SIGNIFICANT * error).then(|| (1.0 / give, error / (give * give))))
+}

@@ -1,0 +1,112 @@
+//! What is known of the handle while it is held: smoothed motion and force, with their noise.
+
+use crate::estimate::EstimateError;
+use crate::identify::linear::least_squares;
+use crate::segment::{Segmentation, SystemState};
+use crate::signal::derive::savitzky_golay;
+use crate::signal::noise::{quantum, white_noise};
+use crate::signal::task::{
+    CUBIC_HALF, TaskSignals, TipSeries, half_width, has_velocity, is_two_fingered, task_signals, times, tip_series,
+};
+use haptics::Vec2;
+use haptics::recording::Recording;
+
+/// The force passes through zero in a turn, too: shorter rests are not free motion, s.
+const LEAST_FREE_S: f64 = 0.25;
+
+/// The handle's motion and force while it is held, all channels through the same smoothing filter. One entry a sample.
+pub(super) struct Held {
+    pub(super) time_s: Vec<f64>,
+    /// Mean of the tips, m.
+    pub(super) position: Vec<Vec2>,
+    pub(super) velocity: Vec<Vec2>,
+    /// Derivative of the velocity, m/s².
+    pub(super) acceleration: Vec<Vec2>,
+    /// Net force on the handle, N, bias taken out, with its first two derivatives, N/s and N/s².
+    pub(super) force: Vec<Vec2>,
+    pub(super) force_rate: Vec<Vec2>,
+    pub(super) force_bend: Vec<Vec2>,
+    /// Samples that turn (the rest is held still or let go).
+    pub(super) turning: Vec<usize>,
+    /// Noise of one velocity component after smoothing, m/s.
+    pub(super) velocity_noise: f64,
+    /// Standard error of the vertical force bias that was taken out, N; `None` without a free phase to see it in.
+    pub(super) bias_error_n: Option<f64>,
+    /// Error by the resolution of the log, m and N.
+    pub(super) resolution_m: f64,
+    pub(super) resolution_n: f64,
+}
+
+pub(super) fn held(recording: &Recording, segmentation: &Segmentation) -> Result<Held, EstimateError> {
+    let time_s = times(recording);
+    let (position, velocity, force) = if is_two_fingered(recording) {
+        let TaskSignals { position, velocity, net_force_n, .. } = task_signals(recording)?;
+        (position, velocity, net_force_n)
+    } else {
+        let TipSeries { position, velocity, force } = tip_series(recording, "")?;
+        let clockless =
+            || EstimateError::Clockless { what: "friction in a crank".to_owned(), recording: recording.name.clone() };
+        let missing = || EstimateError::MissingColumn {
+            task: "the crank".to_owned(),
+            column: "fx_N".to_owned(),
+            recording: recording.name.clone(),
+        };
+        (position, velocity.ok_or_else(clockless)?, force.ok_or_else(missing)?)
+    };
+    let free: Vec<usize> = segmentation
+        .states
+        .iter()
+        .filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= LEAST_FREE_S)
+        .flat_map(|i| i.first..i.end)
+        .collect();
+    let bias =
+        if free.is_empty() { Vec2::zeros() } else { free.iter().map(|i| force[*i]).sum::<Vec2>() / free.len() as f64 };
+    let bias_error_n = (!free.is_empty()).then(|| {
+        let vertical: Vec<f64> = free.iter().map(|i| force[*i].y).collect();
+        least_squares(&[vec![1.0; vertical.len()]], &vertical, None).map_or(0.0, |fit| fit.std_errors[0])
+    });
+    let turning = segmentation
+        .states
+        .iter()
+        .filter_map(|i| i.subtask.as_deref())
+        .flat_map(|subtask| segmentation.samples_of(subtask))
+        .collect();
+    let axis = |series: &[Vec2], pick: fn(&Vec2) -> f64| series.iter().map(pick).collect::<Vec<f64>>();
+    let half = (2 * half_width(&time_s)).max(CUBIC_HALF);
+    // Five samples of a slow log span much of a motion: there only their full polynomial does not weaken its bends.
+    let order = if half == CUBIC_HALF { 4 } else { 3 };
+    // Cubics, because lines and plain averages would shrink a rotating vector towards the centre of its arc.
+    let smoothed = |series: &[Vec2]| {
+        let x = savitzky_golay(&time_s, &axis(series, |v| v.x), half, order);
+        let y = savitzky_golay(&time_s, &axis(series, |v| v.y), half, order);
+        let pair = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| Vec2::new(*x, *y)).collect::<Vec<_>>();
+        [pair(&x.value, &y.value), pair(&x.first, &y.first), pair(&x.second, &y.second)]
+    };
+    let [position_smooth, position_rate, position_bend] = smoothed(&position);
+    let [mut velocity_smooth, mut acceleration, _] = smoothed(&velocity);
+    let [force_smooth, force_rate, force_bend] = smoothed(&force);
+    if !has_velocity(recording, if is_two_fingered(recording) { "1" } else { "" }) {
+        // Derived twice over, a velocity would be weaker than the motion: take it from the positions' own cubics.
+        velocity_smooth = position_rate;
+        acceleration = position_bend;
+    }
+    // What the filter took out, scaled to what it left: a cubic fit over m samples leaves 9/(4 m) of the variance.
+    let removed: Vec<f64> = velocity.iter().zip(&velocity_smooth).map(|(a, b)| (a - b).y).collect();
+    let velocity_noise = white_noise(&removed) * (2.25 / (2 * half + 1) as f64).min(1.0).sqrt();
+    // 1/√12: the standard deviation of an error that is even over one step (GUM, 4.3.7).
+    let resolution = |series: &[Vec2]| 0.288_675 * quantum(&axis(series, |v| v.x)).max(quantum(&axis(series, |v| v.y)));
+    Ok(Held {
+        velocity_noise,
+        bias_error_n,
+        resolution_m: resolution(&position),
+        resolution_n: resolution(&force),
+        position: position_smooth,
+        velocity: velocity_smooth,
+        acceleration,
+        force: force_smooth.iter().map(|f| f - bias).collect(),
+        force_rate,
+        force_bend,
+        turning,
+        time_s,
+    })
+}

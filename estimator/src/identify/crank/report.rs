@@ -1,0 +1,184 @@
+//! Parameters, constraint and warnings in the words of a fit.
+
+use super::SIGNIFICANT;
+use super::friction::Friction;
+use super::geometry::Geometry;
+use super::held::Held;
+use super::laws::WEIGHT;
+use crate::constraint::{THESIS_SAMPLES, normals_center};
+use crate::estimate::{Constraint, ConstraintKind, EstimateError, Parameter};
+use crate::identify::linear::least_squares;
+use crate::segment::Segmentation;
+use crate::signal::task::{half_width, smooth, task_signals};
+use haptics::Vec2;
+use haptics::law::Motion;
+use haptics::recording::Recording;
+use std::collections::BTreeMap;
+
+pub(super) fn geometry_parameters(held: &Held, geometry: &Geometry) -> Vec<Parameter> {
+    let samples = held.turning.len();
+    let how = "circle through the handle's positions, the give of the pads taken out";
+    let with_resolution = |error: f64| error.hypot(held.resolution_m);
+    let mut parameters = vec![
+        Parameter::identified(
+            "crank",
+            "radius_m",
+            geometry.radius_m,
+            with_resolution(geometry.errors_m[2]),
+            samples,
+            how,
+        ),
+        Parameter::identified(
+            "crank",
+            "center_x_m",
+            geometry.center_m.x,
+            with_resolution(geometry.errors_m[0]),
+            samples,
+            how,
+        ),
+        Parameter::identified(
+            "crank",
+            "center_y_m",
+            geometry.center_m.y,
+            with_resolution(geometry.errors_m[1]),
+            samples,
+            how,
+        ),
+    ];
+    parameters.push(match geometry.stiffness {
+        Some((stiffness, error)) => Parameter::identified(
+            "crank",
+            "constraint_stiffness_N_m",
+            stiffness,
+            error,
+            samples,
+            "growth of the radius with the outward force: arm, bearing and pads in series",
+        ),
+        None => Parameter::unidentified(
+            "crank",
+            "constraint_stiffness_N_m",
+            samples,
+            "the radius does not grow with the outward force: stiffer than this recording can show",
+        ),
+    });
+    parameters
+}
+
+/// Width of the handle and stiffness of one pad: what a virtual grip needs to feel like the real one.
+///
+/// The tips' distance is the handle's width less the give of both pads, 2 F / k; along y two pads side by side carry the
+/// handle in shear, as the radius residual shows.
+pub(super) fn grip_parameters(
+    recording: &Recording,
+    held: &Held,
+    geometry: &Geometry,
+) -> Result<Vec<Parameter>, EstimateError> {
+    let signals = task_signals(recording)?;
+    let width = smooth(&held.time_s, &signals.grip_width_m);
+    // The mean of the two normal forces: their difference moves the handle, not the tips apart.
+    let normal = |finger: usize, i: usize| signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x);
+    let grip: Vec<f64> = (0..signals.len()).map(|i| 0.5 * (normal(0, i) - normal(1, i))).collect();
+    let grip = smooth(&held.time_s, &grip).value;
+    let stride = 2 * half_width(&held.time_s);
+    let rows: Vec<usize> = held.turning.iter().copied().step_by(stride).collect();
+    let column = |series: &[f64]| rows.iter().map(|i| series[*i]).collect::<Vec<f64>>();
+    let columns = [vec![1.0; rows.len()], column(&grip), column(&width.slope)];
+    let fit = least_squares(&columns, &column(&width.value), None)?;
+    let samples = held.turning.len();
+    let (give, give_error) = (-0.5 * fit.values[1], 0.5 * fit.std_errors[1]);
+    let mut parameters = Vec::new();
+    if fit.identified[1] && give > SIGNIFICANT * give_error {
+        let how = "distance of the tips while turning, extrapolated to zero grip force";
+        let error = fit.std_errors[0].hypot(held.resolution_m);
+        parameters.push(Parameter::identified("crank", "handle_width_m", fit.values[0], error, samples, how));
+        parameters.push(stiffness("stiffness_N_m", give, give_error, samples));
+    } else {
+        let why = "the grip was too even to tell the handle's width from the pads' give";
+        parameters.push(Parameter::unidentified("crank", "handle_width_m", samples, why));
+        let (give, error) = (geometry.give_m_per_n.x, geometry.give_errors.x);
+        parameters.push(stiffness("stiffness_N_m", 2.0 * give, 2.0 * error, samples));
+    }
+    let (give, error) = (geometry.give_m_per_n.y, geometry.give_errors.y);
+    parameters.push(stiffness("shear_stiffness_N_m", 2.0 * give, 2.0 * error, samples));
+    Ok(parameters)
+}
+
+/// Stiffness of one pad from its give, m/N.
+fn stiffness(name: &str, give: f64, error: f64, samples: usize) -> Parameter {
+    if give > SIGNIFICANT * error {
+        Parameter::identified("pad", name, 1.0 / give, error / (give * give), samples, "give of the grip, one pad")
+    } else {
+        Parameter::unidentified("pad", name, samples, "no give shows under the forces of this recording")
+    }
+}
+
+pub(super) fn constraint(
+    recording: &Recording,
+    held: &Held,
+    geometry: &Geometry,
+    motions: &[Motion],
+    friction: &Friction,
+) -> Constraint {
+    let weight = friction.value(WEIGHT);
+    // Fc = Fn − (mg)n, the weight's part along the outward normal being mg sin θ (eq. 5.1).
+    let angle = |m: &Motion| m.position / geometry.radius_m;
+    let force = motions.iter().map(|m| m.normal_force_n - weight * angle(m).sin()).sum::<f64>() / motions.len() as f64;
+    let (low, high) = motions.iter().map(angle).fold((f64::MAX, f64::MIN), |(low, high), a| (low.min(a), high.max(a)));
+    let [ex, ey, er] = geometry.errors_m.map(|e| e.hypot(held.resolution_m));
+    let points: Vec<Vec2> = held.turning.iter().map(|i| held.position[*i]).collect();
+    let by_normals = normals_center(&points, THESIS_SAMPLES);
+    let rigid = geometry.stiffness.is_none_or(|(k, _)| k > RIGID_N_M);
+    Constraint {
+        kind: ConstraintKind::Revolute,
+        recording: Some(recording.name.clone()),
+        center_m: Some(vec![geometry.center_m.x, geometry.center_m.y]),
+        normals_center_m: by_normals.map(|center| vec![center.x, center.y]),
+        radius_m: Some(geometry.radius_m),
+        radius_interval_m: Some((geometry.radius_m - 1.96 * er, Some(geometry.radius_m + 1.96 * er))),
+        direction: None,
+        rigid: Some(rigid),
+        std_error: BTreeMap::from([("center_m".to_owned(), ex.max(ey)), ("radius_m".to_owned(), er)]),
+        coverage_rad: Some(high - low),
+        coverage_m: None,
+        residual_m: Some(geometry.rms_m),
+        constraint_force_n: Some(force),
+        evidence: format!(
+            "the handle stays within {:.3} mm (RMS) of one circle over {:.1} turns; {}",
+            geometry.rms_m * 1e3,
+            (high - low) / std::f64::consts::TAU,
+            normals_sentence(by_normals, geometry.center_m)
+        ),
+    }
+}
+
+/// Stiffer than the manipulator's own finger compliance in the thesis (0.11 cm under a few newtons): rigid.
+const RIGID_N_M: f64 = 1000.0;
+
+/// What the thesis's own method, normals over twelve samples, says of the centre.
+fn normals_sentence(by_normals: Option<Vec2>, center: Vec2) -> String {
+    match by_normals {
+        Some(found) => {
+            format!("normals over twelve samples meet {:.2} mm from its centre", (found - center).norm() * 1e3)
+        }
+        None => "normals over twelve samples are too nearly parallel to meet".to_owned(),
+    }
+}
+
+pub(super) fn warnings(segmentation: &Segmentation, motions: &[Motion], constraint: &Constraint) -> Vec<String> {
+    let mut warnings = segmentation.warnings.clone();
+    let share = motions.iter().filter(|m| m.normal_force_n > 0.0).count() as f64 / motions.len().max(1) as f64;
+    if !(0.05..=0.95).contains(&share) {
+        let way = if share > 0.5 { "pulled outwards" } else { "pushed inwards" };
+        warnings.push(format!(
+            "the handle was only {way}: that the constraint holds both ways was not seen; push and pull to show it"
+        ));
+    }
+    if constraint.coverage_rad.is_some_and(|a| a < std::f64::consts::PI) {
+        warnings.push("less than half a turn was seen: centre and radius rest on a short arc".to_owned());
+    }
+    if !(motions.iter().any(|m| m.velocity > 0.0) && motions.iter().any(|m| m.velocity < 0.0)) {
+        warnings
+            .push("the crank was turned one way only: friction and constant errors cannot be told apart".to_owned());
+    }
+    warnings
+}
