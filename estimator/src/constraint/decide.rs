@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
 /// Kept points below which nothing is said.
-const MIN_POINTS: usize = 16;
+const MIN_POINTS: usize = 8;
 /// The kinds are decided at this level of error, the interval is given at 5 %.
 const DECISION_P: f64 = 0.01;
 const INTERVAL_P: f64 = 0.05;

@@ -1,6 +1,6 @@
 //! A path in its own plane: mean, axes, evenly spaced points in travelled order.
 
-use crate::signal::noise::white_noise;
+use crate::signal::noise::{white_noise, white_noise_uneven};
 use haptics::Vec2;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
@@ -88,9 +88,30 @@ fn in_plane(axis: Vector3<f64>) -> Vector3<f64> {
     Vector3::new(axis.x, axis.y, 0.0).try_normalize(1e-12).unwrap_or_else(Vector3::x)
 }
 
+/// Paths of up to this many points are sparse: from one to the next, the path itself bends more than the noise.
+const SPARSE_POINTS: usize = 64;
+
 /// White noise of the noisiest coordinate, m.
 fn noise(points: &[Vector3<f64>]) -> f64 {
-    (0..3).map(|k| white_noise(&points.iter().map(|p| p[k]).collect::<Vec<f64>>())).fold(0.0, f64::max)
+    let coordinate = |k: usize| points.iter().map(|p| p[k]).collect::<Vec<f64>>();
+    let in_order = (0..3).map(|k| white_noise(&coordinate(k))).fold(0.0, f64::max);
+    if points.len() > SPARSE_POINTS {
+        return in_order;
+    }
+    // Over the travelled distance instead of the sample number, however unevenly the points lie.
+    let mut moved: Vec<Vector3<f64>> = points.to_vec();
+    moved.dedup();
+    let mut travelled = 0.0;
+    let along: Vec<f64> = moved
+        .iter()
+        .enumerate()
+        .map(|(i, p)| {
+            travelled += if i > 0 { (p - moved[i - 1]).norm() } else { 0.0 };
+            travelled
+        })
+        .collect();
+    let over_distance = |k: usize| white_noise_uneven(&along, &moved.iter().map(|p| p[k]).collect::<Vec<f64>>());
+    (0..3).map(over_distance).fold(0.0, f64::max).min(in_order)
 }
 
 /// Indices of points at even distance along the path: time spent at rest must not count.

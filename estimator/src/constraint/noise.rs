@@ -14,6 +14,8 @@ use std::f64::consts::PI;
 
 /// Cosines that are used.
 const MAX_MODES: usize = 30;
+/// Cosines of a short path: as many as its points allow, up to this.
+const FEW_MODES: usize = 8;
 /// Cosines over which the direction of interest is spread out.
 const SPREAD_MODES: usize = 80;
 /// A cosine of which the fit leaves less than this share tells nothing.
@@ -48,7 +50,7 @@ impl PathNoise {
     /// From the residual of `arc` at `points`, which are in travelled order and evenly spaced; `None` when they are too few.
     pub fn new(points: &[Vec2], arc: &Arc, extent_m: f64, direction: Direction) -> Option<Self> {
         let n = points.len();
-        let modes = (n / 4).min(MAX_MODES);
+        let modes = (n / 4).max(FEW_MODES.min(n / 2)).min(MAX_MODES);
         if modes < 4 {
             return None;
         }

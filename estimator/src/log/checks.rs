@@ -19,6 +19,14 @@ const PLATEAU_EXCESS: usize = 4;
 const STUCK_SAMPLES: usize = 25;
 /// Share of unchanged steps above which a channel is taken as coarsely quantised, and holding is normal.
 const QUIET_SHARE: f64 = 0.2;
+/// A value this many times the spread of the others away from them is no measurement …
+const OUTLIER_SPREADS: f64 = 1e6;
+/// … nor is one of this size in m, rad, N, or their rates.
+const IMPOSSIBLE: f64 = 1e9;
+/// Share of a force channel that may stand at its limit; more is a channel that does not work.
+const SATURATED_SHARE: f64 = 0.9;
+/// … and of a voltage or current, which may be switched.
+const SWITCHED_SHARE: f64 = 0.5;
 /// No more spans than this are listed.
 const MAX_SPANS: usize = 50;
 
@@ -30,10 +38,39 @@ pub fn warnings(recording: &Recording) -> Vec<Warning> {
     }
     for channel in &recording.channels {
         let known = units::is_program_name(&channel.name);
-        found.extend(if known { stuck(channel) } else { None });
-        found.extend(saturated(channel));
+        let limit = saturated(channel);
+        found.extend(if known { outliers(channel) } else { None });
+        found.extend(if known { stuck(channel, limit.as_ref()) } else { None });
+        found.extend(limit);
     }
     found
+}
+
+/// Values that no hand and no mechanism reach, in SI units, or too far beyond the channel's own spread.
+fn outliers(channel: &Channel) -> Option<Warning> {
+    let mut sorted = channel.values.clone();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let n = sorted.len();
+    let middle = *sorted.get(n / 2)?;
+    // Nine tenths of the samples: a force that is zero most of the time still has a spread.
+    let spread = sorted[n - 1 - n / 20] - sorted[n / 20];
+    let reach = if spread > 0.0 { (OUTLIER_SPREADS * spread).min(IMPOSSIBLE) } else { IMPOSSIBLE };
+    let beyond = |v: f64| (v - middle).abs() > reach || v.abs() > IMPOSSIBLE;
+    let places: Vec<usize> = (0..n).filter(|&i| beyond(channel.values[i])).collect();
+    let &first = places.first()?;
+    let spans = places.iter().map(|&i| Span { first: i, end: i + 1 }).collect();
+    Some(Warning {
+        kind: "outlier".to_owned(),
+        column: Some(channel.name.clone()),
+        spans: limited(spans),
+        text: format!(
+            "{} is {:e} in row {} and {} in all lie(s) impossibly far from the rest: every result that uses it is spoilt; correct or remove the row(s)",
+            channel.name,
+            channel.values[first],
+            first + 1,
+            places.len()
+        ),
+    })
 }
 
 /// Warnings about channels that another trial of the same file repeats: `copies` from the fingerprints.
@@ -157,8 +194,8 @@ fn is_position(channel: &Channel) -> bool {
     units::is_program_name(&channel.name) && matches!(channel.unit.as_str(), "m" | "rad")
 }
 
-/// A channel of the program that is constant, or that stops changing for a while.
-fn stuck(channel: &Channel) -> Option<Warning> {
+/// A channel of the program that is constant, or that stops changing for a while other than at its `limit`.
+fn stuck(channel: &Channel, limit: Option<&Warning>) -> Option<Warning> {
     let values = &channel.values;
     let first = *values.first()?;
     if values.len() < STUCK_SAMPLES {
@@ -182,7 +219,9 @@ fn stuck(channel: &Channel) -> Option<Warning> {
     let moving = values.len() - 1 - held;
     // Besides its holds the channel must change at nearly every sample, and a zero is a tool that touches nothing.
     let quiet = (unchanged - held) as f64 > QUIET_SHARE * moving as f64 || moving < STUCK_SAMPLES;
-    let holds: Vec<Span> = holds.into_iter().filter(|s| values[s.first] != 0.0).collect();
+    let at_limit =
+        |hold: &Span| limit.is_some_and(|l| l.spans.iter().any(|s| s.first < hold.end && hold.first < s.end));
+    let holds: Vec<Span> = holds.into_iter().filter(|s| values[s.first] != 0.0 && !at_limit(s)).collect();
     if quiet || holds.is_empty() || is_position(channel) && !moves_around(values, &holds) {
         return None;
     }
@@ -231,7 +270,8 @@ fn saturated(channel: &Channel) -> Option<Warning> {
     if !sensed || channel.values.len() < 2 * PLATEAU_SAMPLES {
         return None;
     }
-    let both = [1.0, -1.0].map(|side| rail(&channel.values, side));
+    let share = if matches!(channel.unit.as_str(), "V" | "A") { SWITCHED_SHARE } else { SATURATED_SHARE };
+    let both = [1.0, -1.0].map(|side| rail(&channel.values, side, share));
     let mut spans: Vec<Span> = both.iter().flatten().flatten().copied().collect();
     if spans.is_empty() {
         return None;
@@ -251,7 +291,7 @@ fn saturated(channel: &Channel) -> Option<Warning> {
 }
 
 /// Spans where `side`·value is exactly the largest, when they are too many for chance.
-fn rail(values: &[f64], side: f64) -> Option<Vec<Span>> {
+fn rail(values: &[f64], side: f64, share: f64) -> Option<Vec<Span>> {
     let top = values.iter().map(|v| side * v).fold(f64::NEG_INFINITY, f64::max);
     let next = values.iter().map(|v| side * v).filter(|&v| v < top).fold(f64::NEG_INFINITY, f64::max);
     let count = |level: f64| values.iter().filter(|&&v| side * v == level).count();
@@ -260,9 +300,9 @@ fn rail(values: &[f64], side: f64) -> Option<Vec<Span>> {
         return None;
     }
     let spans: Vec<Span> = runs(values).into_iter().filter(|s| side * values[s.first] == top).collect();
-    // More than half of the record at one value is a stuck or switched channel.
+    // Most of the record at one value is a stuck or switched channel.
     let held: usize = spans.iter().map(|s| s.end - s.first).sum();
-    (2 * held <= values.len()).then_some(spans)
+    (held as f64 <= share * values.len() as f64).then_some(spans)
 }
 
 #[cfg(test)]
@@ -328,6 +368,30 @@ mod tests {
             .map(|i: i32| f64::from((i - 300).min(0) + (i - 700).max(0)) * 1e-4 + f64::from(i % 2) * 0.0)
             .collect();
         assert!(warnings(&recording(time, vec![channel("q_m", rest)])).is_empty());
+    }
+
+    #[test]
+    fn an_impossible_value_is_named_with_its_row() {
+        let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 1e-3).collect();
+        let mut force = wave(1000);
+        force[50] = 1e300;
+        let found = warnings(&recording(time.clone(), vec![channel("fx1_N", force)]));
+        assert_eq!(kinds(&found), ["outlier"]);
+        assert!(found[0].text.contains("fx1_N is 1e300 in row 51"), "{}", found[0].text);
+        // Mostly zero, then a blow: that is what contact looks like.
+        let blow: Vec<f64> = (0..1000).map(|i| if i > 980 { 30.0 + f64::from(i % 7) } else { 0.0 }).collect();
+        assert!(!kinds(&warnings(&recording(time, vec![channel("fx1_N", blow)]))).contains(&"outlier"));
+    }
+
+    #[test]
+    fn long_clipping_is_a_limit_and_not_a_stuck_channel() {
+        let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 1e-3).collect();
+        // A grip force that is beyond the sensor for six tenths of the recording.
+        let grip: Vec<f64> = (0..1000)
+            .map(|i: i32| (0.8 - (f64::from(i - 500) / 350.0).powi(2) + 1e-3 * (f64::from(i) * 17.3).sin()).min(0.1))
+            .collect();
+        let found = warnings(&recording(time, vec![channel("fx1_N", grip)]));
+        assert_eq!(kinds(&found), ["saturation"]);
     }
 
     #[test]

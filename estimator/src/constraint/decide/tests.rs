@@ -177,3 +177,41 @@ fn hardly_anything_is_undecided_and_nothing_panics() {
     // A short arc is left open rather than called a slide.
     assert_ne!(look(&arc(0.3, 0.25, 200, 1e-3, 50.0, 3)).kind, ConstraintKind::Revolute);
 }
+
+#[test]
+fn sparse_paths_are_decided_where_their_evidence_suffices_and_never_wrongly() {
+    // Points at uneven places, as someone marks them by hand.
+    let sparse = |n: usize, seed: u64, at: &dyn Fn(f64) -> Vector3<f64>, sigma: f64| -> Vec<Vector3<f64>> {
+        let mut rng = StdRng::seed_from_u64(seed);
+        let mut places: Vec<f64> = (0..n).map(|_| rng.random::<f64>()).collect();
+        places.sort_by(f64::total_cmp);
+        let mut noise = || sigma * rng.sample::<f64, _>(StandardNormal);
+        places.into_iter().map(|u| at(u) + Vector3::new(noise(), noise(), noise())).collect()
+    };
+    let on_arc = |radius: f64, sweep: f64| {
+        move |u: f64| Vector3::new(radius * (sweep * u).cos(), 0.0, radius * (sweep * u).sin())
+    };
+    let on_line = |u: f64| Vector3::new(0.3 * u, 0.1 * u, 0.0);
+    let (mut arcs, mut lines) = (0, 0);
+    for seed in 0..30 {
+        let door = look(&sparse(20, seed, &on_arc(0.1, 1.92), 5e-4));
+        assert_ne!(door.kind, ConstraintKind::Prismatic, "{}", door.evidence);
+        let (low, high) = door.radius_interval_m.expect("an interval");
+        assert!(low <= 0.1 && high.is_none_or(|h| h >= 0.1), "{low} {high:?}");
+        arcs += usize::from(door.kind == ConstraintKind::Revolute);
+        let drawer = look(&sparse(12, 100 + seed, &on_line, 1e-3));
+        assert_ne!(drawer.kind, ConstraintKind::Revolute, "{}", drawer.evidence);
+        lines += usize::from(drawer.kind == ConstraintKind::Prismatic);
+        // Short pieces of wide doors bend by no more than their noise: nothing may be said.
+        let piece = look(&sparse(12, 200 + seed, &on_arc(0.5, 0.15), 1e-3));
+        assert_ne!(piece.kind, ConstraintKind::Prismatic, "{}", piece.evidence);
+        let bent = look(&sparse(14, 300 + seed, &on_arc(0.3, 0.5), 2e-3));
+        assert_ne!(bent.kind, ConstraintKind::Prismatic, "{}", bent.evidence);
+        // Nor of a hand that wanders.
+        let wander = |u: f64| Vector3::new(0.2 * (7.0 * u).sin(), 0.2 * (4.0 * u).cos(), 0.1 * (9.0 * u).sin());
+        let free = look(&sparse(16, 400 + seed, &wander, 1e-3));
+        assert!(!matches!(free.kind, ConstraintKind::Revolute | ConstraintKind::Prismatic), "{}", free.evidence);
+    }
+    println!("{arcs} of 30 sparse arcs and {lines} of 30 sparse lines decided");
+    assert!(arcs > 20 && lines > 10, "{arcs} {lines}");
+}
