@@ -1,0 +1,163 @@
+//! One board on its own thread: serial ports wait, the servo must not.
+//!
+//! The thread writes the newest torques and reads the angles, as fast as the board answers. When the servo has sent nothing new
+//! for [`GUARD`], it writes zero torque by itself: the firmware keeps the last one for ever.
+
+use super::fivebar::FiveBar;
+use super::protocol::{Axis, REPLY_BYTES, Turn, read_reply, setup_frame, torque_frame};
+use crate::Vec2;
+use std::io::{Read, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+use triple_buffer::{Input, Output, triple_buffer};
+
+/// Without a new command for this long the board gets zero torque.
+pub const GUARD: Duration = Duration::from_millis(20);
+
+/// A serial line with a read time-out: a real port, or one end of a pseudo-terminal.
+pub trait Line: Read + Write + Send {}
+impl<T: Read + Write + Send> Line for T {}
+
+/// What is known of a board.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoardModel {
+    /// Id in every frame.
+    pub id: u8,
+    /// Linkage.
+    pub linkage: FiveBar,
+    /// Motors and encoders in port order.
+    pub ports: [Axis; 2],
+}
+
+impl BoardModel {
+    /// Haply 2DIY, third version, id 5.
+    pub const V3: Self = Self {
+        id: 5,
+        linkage: FiveBar::V3,
+        ports: [
+            Axis { turn: Turn::CounterClockwise, offset_degrees: 12.0, counts: 4880.0 },
+            Axis { turn: Turn::CounterClockwise, offset_degrees: 168.0, counts: 4880.0 },
+        ],
+    };
+}
+
+/// The newest answer of a board.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Answer {
+    /// Tip in the device's frame, m.
+    pub tip_m: Vec2,
+    /// Counts the good answers: an unchanged number is an old answer.
+    pub number: u64,
+    /// Answers that were late, cut short or another board's.
+    pub faults: u64,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Order {
+    force_n: Vec2,
+    number: u64,
+}
+
+/// The servo's end of a board.
+pub struct Board {
+    answers: Output<Answer>,
+    orders: Input<Order>,
+    number: u64,
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Board {
+    /// Sets the board up and starts its thread. The line must have a read time-out of a few milliseconds.
+    pub fn start(mut line: Box<dyn Line>, model: BoardModel) -> std::io::Result<Self> {
+        line.write_all(&setup_frame(model.id, model.ports))?;
+        line.flush()?;
+        let (answers_in, answers) = triple_buffer(&Answer::default());
+        let (orders, orders_out) = triple_buffer(&Order::default());
+        let stop = Arc::new(AtomicBool::new(false));
+        let worker = Worker { line, model, answers: answers_in, orders: orders_out, stop: Arc::clone(&stop) };
+        let thread = std::thread::Builder::new().name("haply".to_owned()).spawn(move || worker.run())?;
+        Ok(Self { answers, orders, number: 0, stop, thread: Some(thread) })
+    }
+
+    /// Orders a force on the operator, N, in the device's frame. Never waits.
+    pub fn order(&mut self, force_n: Vec2) {
+        self.number += 1;
+        self.orders.write(Order { force_n, number: self.number });
+    }
+
+    /// The newest answer. Never waits.
+    pub fn answer(&mut self) -> Answer {
+        *self.answers.read()
+    }
+}
+
+impl Drop for Board {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+struct Worker {
+    line: Box<dyn Line>,
+    model: BoardModel,
+    answers: Input<Answer>,
+    orders: Output<Order>,
+    stop: Arc<AtomicBool>,
+}
+
+impl Worker {
+    fn run(mut self) {
+        let mut answer = Answer::default();
+        let mut angles: Option<[f64; 2]> = None;
+        let (mut last_number, mut last_order) = (0, Instant::now());
+        while !self.stop.load(Ordering::Relaxed) {
+            let order = *self.orders.read();
+            if order.number != last_number {
+                (last_number, last_order) = (order.number, Instant::now());
+            }
+            let fresh = last_order.elapsed() < GUARD;
+            let torques = match angles {
+                Some(angles) if fresh => self.model.linkage.torques(angles, order.force_n),
+                _ => [0.0; 2],
+            };
+            angles = self.exchange(torques);
+            match angles.and_then(|a| self.model.linkage.tip(a)) {
+                Some(tip_m) => answer = Answer { tip_m, number: answer.number + 1, ..answer },
+                None => answer.faults += 1,
+            }
+            self.answers.write(answer);
+        }
+        // Whatever happened: the last word is zero torque.
+        let _ = self.line.write_all(&torque_frame(self.model.id, [0.0; 2]));
+        let _ = self.line.flush();
+    }
+
+    /// Writes torques (actuators 1 and 2), reads the angles, rad; `None` for anything but a whole reply of this board.
+    fn exchange(&mut self, [first, second]: [f64; 2]) -> Option<[f64; 2]> {
+        // Actuator 1 sits on port 2, actuator 2 on port 1.
+        let frame = torque_frame(self.model.id, [second as f32, first as f32]);
+        self.line.write_all(&frame).ok()?;
+        let mut reply = [0; REPLY_BYTES];
+        if self.line.read_exact(&mut reply).is_err() {
+            self.resynchronise();
+            return None;
+        }
+        let Some(degrees) = read_reply(self.model.id, &reply) else {
+            self.resynchronise();
+            return None;
+        };
+        Some([f64::from(degrees[1]).to_radians(), f64::from(degrees[0]).to_radians()])
+    }
+
+    /// Reads until the line is silent: the next reply then starts at its first byte.
+    fn resynchronise(&mut self) {
+        let mut rest = [0; 64];
+        while matches!(self.line.read(&mut rest), Ok(n) if n == rest.len()) {}
+    }
+}

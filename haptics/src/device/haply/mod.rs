@@ -1,0 +1,145 @@
+//! Haply 2DIY over USB serial (hAPI): an open planar two-joint device; two boards make a two-fingered hand.
+
+mod board;
+mod fivebar;
+mod protocol;
+#[cfg(all(test, unix))]
+mod tests;
+
+pub use board::{Answer, Board, BoardModel, GUARD, Line};
+pub use fivebar::FiveBar;
+pub use protocol::{Axis, MAX_TORQUE_NM, Turn};
+
+use super::{Command, Device, DeviceSpec, Sample};
+use crate::Vec2;
+use std::time::Duration;
+
+/// How a device's plane lies in the world: its middle goes to the workspace's middle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// A point of the device's workspace, m in the device's frame.
+    pub device_m: Vec2,
+    /// Where that point is in the world, m.
+    pub world_m: Vec2,
+    /// World motion per device motion.
+    pub scale: f64,
+}
+
+/// Time constant of the velocity estimate, s: encoder steps of 0.1 mm at 1 kHz would be 0.1 m/s of noise.
+const VELOCITY_SMOOTHING_S: f64 = 0.004;
+/// How long a read may take before the answer counts as lost.
+const READ_TIMEOUT: Duration = Duration::from_millis(5);
+
+/// Why a board could not be used.
+#[derive(Debug, thiserror::Error)]
+pub enum HaplyError {
+    /// The port did not open.
+    #[error(
+        "the port {port} could not be opened ({reason}); is the board plugged in, and may you use it (group dialout)?"
+    )]
+    Open {
+        /// Its name.
+        port: String,
+        /// What the system says.
+        reason: String,
+    },
+    /// It opened and did not take the set-up.
+    #[error("the board at {port} did not take its set-up ({reason}); unplug it, plug it in and try again")]
+    Setup {
+        /// Its name.
+        port: String,
+        /// What the system says.
+        reason: String,
+    },
+}
+
+/// Serial ports that a board could be behind, by name.
+pub fn ports() -> Vec<String> {
+    let mut names: Vec<String> =
+        serialport::available_ports().unwrap_or_default().into_iter().map(|port| port.port_name).collect();
+    names.retain(|name| ["ttyACM", "ttyUSB", "usbmodem", "COM"].iter().any(|kind| name.contains(kind)));
+    names.sort();
+    names
+}
+
+/// Opens a port and sets a board up.
+pub fn open(port: &str, model: BoardModel) -> Result<Board, HaplyError> {
+    // The rate does not matter on a USB port; it must be stated all the same.
+    let line = serialport::new(port, 115_200)
+        .timeout(READ_TIMEOUT)
+        .open()
+        .map_err(|e| HaplyError::Open { port: port.to_owned(), reason: e.to_string() })?;
+    Board::start(Box::new(line), model).map_err(|e| HaplyError::Setup { port: port.to_owned(), reason: e.to_string() })
+}
+
+/// Two boards as the two fingers.
+pub struct HaplyHand {
+    spec: DeviceSpec,
+    boards: [Board; 2],
+    placements: [Placement; 2],
+    seen: [Answer; 2],
+    position: [Vec2; 2],
+    velocity: [Vec2; 2],
+}
+
+impl HaplyHand {
+    /// The left and the right board.
+    pub fn new(boards: [Board; 2], placements: [Placement; 2]) -> Self {
+        Self {
+            spec: DeviceSpec {
+                name: "Two Haply 2DIY boards".to_owned(),
+                force_feedback: true,
+                max_force_n: 3.0,
+                // Measured figures are not published; a free 2DIY moves with about this much (order of magnitude).
+                damping_n_s_m: 0.1,
+                coulomb_n: 0.05,
+                resolution_m: 0.1e-3,
+            },
+            boards,
+            placements,
+            seen: [Answer::default(); 2],
+            position: placements.map(|p| p.world_m),
+            velocity: [Vec2::zeros(); 2],
+        }
+    }
+
+    /// Answers that were lost so far, left and right.
+    pub fn faults(&self) -> [u64; 2] {
+        self.seen.map(|answer| answer.faults)
+    }
+}
+
+impl Device for HaplyHand {
+    fn spec(&self) -> &DeviceSpec {
+        &self.spec
+    }
+
+    fn exchange(&mut self, command: &Command, dt_s: f64) -> Sample {
+        let mut fresh = true;
+        for (finger, board) in self.boards.iter_mut().enumerate() {
+            board.order(command.force_n[finger]);
+            let answer = board.answer();
+            let place = &self.placements[finger];
+            if answer.number == self.seen[finger].number {
+                fresh = false;
+            } else {
+                let position = place.world_m + (answer.tip_m - place.device_m) * place.scale;
+                // The first answer says where the finger is, not how fast it came there.
+                if self.seen[finger].number > 0 {
+                    let blend = 1.0 - (-dt_s / VELOCITY_SMOOTHING_S).exp();
+                    let raw = (position - self.position[finger]) / dt_s.max(1e-6);
+                    self.velocity[finger] += (raw - self.velocity[finger]) * blend;
+                }
+                self.position[finger] = position;
+            }
+            self.seen[finger] = answer;
+        }
+        Sample { tip_in_world: self.position, tip_velocity: self.velocity, fresh }
+    }
+
+    fn make_safe(&mut self) {
+        for board in &mut self.boards {
+            board.order(Vec2::zeros());
+        }
+    }
+}
