@@ -99,6 +99,19 @@ mod tests {
     }
 
     #[test]
+    fn a_made_direction_is_smeared_exactly_like_a_recorded_force() {
+        let time: Vec<f64> = (0..400).map(|i| f64::from(i) * 0.01 + 0.004 * (f64::from(i) * 2.3).sin()).collect();
+        let even = Even::new(&time, 0.01);
+        let friction: Vec<f64> = time.iter().map(|t| (9.0 * t).sin().signum()).collect();
+        let velocity: Vec<f64> = even.grid.iter().map(|t| (9.0 * t).sin()).collect();
+        let (recorded, made) = (even.onto(&friction), even.through(&velocity, f64::signum));
+        let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).skip(2).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+        assert!(apart(&recorded, &made) < 1e-12, "{}", apart(&recorded, &made));
+        let on_the_grid: Vec<f64> = velocity.iter().map(|v| v.signum()).collect();
+        assert!(apart(&recorded, &on_the_grid) > 0.2);
+    }
+
+    #[test]
     fn twins_count_as_one_sample() {
         let mut time: Vec<f64> = (0..50).map(|i| f64::from(i) * 0.1 + 0.02 * f64::from(i % 3)).collect();
         time[20] = time[19] + 1e-9;

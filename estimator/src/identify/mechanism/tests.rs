@@ -267,7 +267,11 @@ fn over_a_short_arc_an_offset_may_be_gravity_and_its_error_says_so() {
 
 #[test]
 fn uneven_sampling_does_not_bias_friction() {
-    let motion: Motion = |t| reaching(t, 0.0, 0.06);
+    // Many reversals: each one shows how sharp the direction is against the force.
+    let motion: Motion = |t| {
+        let [q, v, a] = reaching(1.6 * t, 0.0, 0.06);
+        [q, 1.6 * v, 2.56 * a]
+    };
     for rate_hz in [100.0, 1000.0] {
         let setup = Setup { rate_hz, seconds: 10.0, position_noise: 5e-6, force_noise: 0.02, ..PLAIN };
         let truth = Truth { inertia: 1.5, viscous: 3.5, coulomb: 1.7, offset: -1.0, gravity: 0.0 };
