@@ -134,6 +134,16 @@ fn screenshot_draws_the_scene() {
     assert!(colors.len() > 200, "a picture has more than {} colours", colors.len());
 }
 
+#[test]
+fn device_lists_and_tests_itself() {
+    let list = json(&["device", "list"]);
+    assert!(list["devices"].as_array().is_some_and(|d| d.iter().any(|d| d["id"] == "mouse")));
+    let test = json(&["device", "test", "--seconds", "1"]);
+    assert!(test["ticks"].as_u64().is_some_and(|n| n > 300), "{test}");
+    assert!(test["timing"]["compute"]["p50_s"].as_f64().is_some_and(|t| t > 0.0));
+    refused(&["device", "test", "--device", "haply:/dev/nowhere,/dev/nowhere"], "/dev/nowhere");
+}
+
 /// Exit 1, one sentence on standard error, nothing on standard output.
 fn refused(arguments: &[&str], wanted: &str) {
     let mut all = arguments.to_vec();

@@ -3,6 +3,7 @@
 //! Exit codes: 0 done, 1 the input or the run failed, 2 wrong usage.
 
 mod demo;
+mod device;
 mod fit;
 mod info;
 mod record;
@@ -43,6 +44,8 @@ enum Command {
     Record(record::Record),
     /// A picture without a window
     Screenshot(screenshot::Screenshot),
+    /// Devices that drive the hand, and a self-test in words
+    Device(device::Device),
     /// Open the app, optionally on a log or a world
     App(AppArgs),
 }
@@ -138,6 +141,7 @@ pub fn main() -> ExitCode {
         Some(Command::Simulate(args)) => args.run(),
         Some(Command::Record(args)) => args.run(),
         Some(Command::Screenshot(args)) => args.run(),
+        Some(Command::Device(args)) => args.run(),
     };
     match result {
         Ok(output) => {

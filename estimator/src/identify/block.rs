@@ -94,6 +94,8 @@ pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit
     for number in 1..=count {
         parameters.extend(blocks.friction(number));
     }
+    // Read by object: all of block 1, all of block 2, then the pads.
+    parameters.sort_by(|a, b| a.object.cmp(&b.object));
     let fit = Fit {
         task: Task::BlockStack.name().to_owned(),
         parameters,
