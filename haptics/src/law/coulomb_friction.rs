@@ -1,33 +1,30 @@
-//! Coulomb friction: Fc sgn(v), independent of the load (Coulomb 1785). Fc ≥ 0.
+//! Coulomb friction: Fc sgn(v), independent of the load (Coulomb 1785). Fc ≥ 0. At rest it holds up to Fc.
 
-use super::{Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec};
+use super::entry::POSITIVE;
+use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
 
 /// Coulomb friction; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]
 pub struct CoulombFriction;
 
-static PARAMETERS: [ParameterSpec; 1] =
-    [ParameterSpec { name: "Fc", unit: "N", unit_angular: "N m", bounds: (0.0, f64::INFINITY) }];
+static ENTRY: Entry = Entry {
+    id: "coulomb-friction",
+    kind: Kind::Plant,
+    title: "Coulomb friction",
+    equation: "Fc sgn(v)",
+    about: "Dry friction that does not depend on the load. It shows as a step of 2 Fc at every reversal. At \
+            constant load it cannot be told from load friction, at constant speed not from viscous friction, \
+            without reversals not from a bias. Reversals with changing load and speed reveal it.",
+    parameters: &[ParameterSpec::linear("Fc", "N", "N m", POSITIVE)],
+};
 
 impl Law for CoulombFriction {
-    fn id(&self) -> &'static str {
-        "coulomb-friction"
+    fn entry(&self) -> &'static Entry {
+        &ENTRY
     }
 
-    fn kind(&self) -> Kind {
-        Kind::Plant
-    }
-
-    fn title(&self) -> &'static str {
-        "Coulomb friction"
-    }
-
-    fn parameters(&self) -> &'static [ParameterSpec] {
-        &PARAMETERS
-    }
-
-    fn is_dry(&self) -> bool {
-        true
+    fn role(&self) -> Role {
+        Role::Dry
     }
 
     fn regressor(&self, motion: &Motion, columns: &mut [f64; MAX_PARAMETERS]) {

@@ -1,29 +1,30 @@
 //! Force bias: F + b: a constant error of the force channel along the coordinate.
 
-use super::{Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec};
+use super::entry::ANY;
+use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
 
 /// Force bias; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]
 pub struct ForceBias;
 
-static PARAMETERS: [ParameterSpec; 1] =
-    [ParameterSpec { name: "b", unit: "N", unit_angular: "N m", bounds: (f64::NEG_INFINITY, f64::INFINITY) }];
+static ENTRY: Entry = Entry {
+    id: "force-bias",
+    kind: Kind::Instrument,
+    title: "Force bias",
+    equation: "F + b",
+    about: "The force sensor reads something when nothing is touched. It shows as a constant in free motion. A \
+            weight mimics it while an object is carried, a tilt along a line, friction that differs by direction \
+            where the motion does not reverse. A second of free motion at the start and at the end reveals it.",
+    parameters: &[ParameterSpec::linear("b", "N", "N m", ANY)],
+};
 
 impl Law for ForceBias {
-    fn id(&self) -> &'static str {
-        "force-bias"
+    fn entry(&self) -> &'static Entry {
+        &ENTRY
     }
 
-    fn kind(&self) -> Kind {
-        Kind::Instrument
-    }
-
-    fn title(&self) -> &'static str {
-        "Force bias"
-    }
-
-    fn parameters(&self) -> &'static [ParameterSpec] {
-        &PARAMETERS
+    fn role(&self) -> Role {
+        Role::Smooth
     }
 
     fn regressor(&self, _motion: &Motion, columns: &mut [f64; MAX_PARAMETERS]) {

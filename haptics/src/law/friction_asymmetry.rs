@@ -1,41 +1,44 @@
-//! Direction-dependent friction: Half differences of friction between the two directions: positive motion meets Fc + dFc, negative motion Fc − dFc (and c ± dc).
-//! dFc therefore acts as a constant while the coordinate moves and vanishes at rest.
+//! Direction-dependent friction: half differences of Fc, c and mu between the two directions: positive motion meets Fc + dFc,
+//! negative motion Fc − dFc (and c ± dc, mu ± dmu). dFc therefore acts as a constant while the coordinate moves and vanishes
+//! at rest. Needs friction beside it: the sum of both stays ≥ 0.
 
-use super::{Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec};
+use super::entry::ANY;
+use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
 
 /// Direction-dependent friction; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]
 pub struct FrictionAsymmetry;
 
-static PARAMETERS: [ParameterSpec; 2] = [
-    ParameterSpec { name: "dFc", unit: "N", unit_angular: "N m", bounds: (f64::NEG_INFINITY, f64::INFINITY) },
-    ParameterSpec { name: "dc", unit: "N s/m", unit_angular: "N m s", bounds: (f64::NEG_INFINITY, f64::INFINITY) },
-];
+static ENTRY: Entry = Entry {
+    id: "friction-asymmetry",
+    kind: Kind::Plant,
+    title: "Direction-dependent friction",
+    equation: "(dFc + dc abs(v) + dmu abs(Fn)) abs(sgn(v))",
+    about: "Friction that is larger in one direction than in the other (a ratchet, a worn thread, a lip seal). \
+            It shows as a constant offset while moving, in the direction's sense. A force bias and a tilt mimic \
+            it; for dmu an error across the axes of the force sensor is identical unless the load changes its \
+            sign. Reversals, rests at different places and a free phase reveal it.",
+    parameters: &[
+        ParameterSpec::linear("dFc", "N", "N m", ANY),
+        ParameterSpec::linear("dc", "N s/m", "N m s", ANY),
+        ParameterSpec::linear("dmu", "1", "1", ANY),
+    ],
+};
 
 impl Law for FrictionAsymmetry {
-    fn id(&self) -> &'static str {
-        "friction-asymmetry"
+    fn entry(&self) -> &'static Entry {
+        &ENTRY
     }
 
-    fn kind(&self) -> Kind {
-        Kind::Plant
-    }
-
-    fn title(&self) -> &'static str {
-        "Direction-dependent friction"
-    }
-
-    fn parameters(&self) -> &'static [ParameterSpec] {
-        &PARAMETERS
-    }
-
-    fn is_dry(&self) -> bool {
-        true
+    fn role(&self) -> Role {
+        Role::Dry
     }
 
     fn regressor(&self, motion: &Motion, columns: &mut [f64; MAX_PARAMETERS]) {
-        columns[0] = motion.direction.abs();
-        columns[1] = motion.velocity.abs() * motion.direction.abs();
+        let moving = motion.direction.abs();
+        columns[0] = moving;
+        columns[1] = motion.velocity.abs() * moving;
+        columns[2] = motion.normal_force_n.abs() * moving;
     }
 }
 
@@ -45,9 +48,10 @@ mod tests {
 
     #[test]
     fn one_effect() {
-        let motion = Motion { direction: -1.0, velocity: -2.0, ..Motion::default() };
+        // 0.1 + 0.2 · 2 + 0.05 · 3.
+        let motion = Motion { direction: -1.0, velocity: -2.0, normal_force_n: -3.0, ..Motion::default() };
         let mut values = [0.0; MAX_PARAMETERS];
-        values[..2].copy_from_slice(&[0.1, 0.2]);
-        assert!((FrictionAsymmetry.force(&motion, &values) - 0.5).abs() < 1e-12);
+        values[..3].copy_from_slice(&[0.1, 0.2, 0.05]);
+        assert!((FrictionAsymmetry.force(&motion, &values) - 0.65).abs() < 1e-12);
     }
 }

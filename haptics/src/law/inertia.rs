@@ -1,29 +1,30 @@
 //! Inertia: m dv/dt. m > 0. The integrator reads m directly; the replay and the fit use the term.
 
-use super::{Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec};
+use super::entry::POSITIVE;
+use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
 
 /// Inertia; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]
 pub struct Inertia;
 
-static PARAMETERS: [ParameterSpec; 1] =
-    [ParameterSpec { name: "m", unit: "kg", unit_angular: "kg m²", bounds: (0.0, f64::INFINITY) }];
+static ENTRY: Entry = Entry {
+    id: "inertia",
+    kind: Kind::Plant,
+    title: "Inertia",
+    equation: "m dv/dt",
+    about: "The effective mass along the motion. It shows in proportion to the acceleration and vanishes at \
+            constant speed. Quadratic drag mimics it when speed and acceleration go together, a delay between \
+            force and motion when the motion is one sine. Bursts and changes of frequency reveal it.",
+    parameters: &[ParameterSpec::linear("m", "kg", "kg m²", POSITIVE)],
+};
 
 impl Law for Inertia {
-    fn id(&self) -> &'static str {
-        "inertia"
+    fn entry(&self) -> &'static Entry {
+        &ENTRY
     }
 
-    fn kind(&self) -> Kind {
-        Kind::Plant
-    }
-
-    fn title(&self) -> &'static str {
-        "Inertia"
-    }
-
-    fn parameters(&self) -> &'static [ParameterSpec] {
-        &PARAMETERS
+    fn role(&self) -> Role {
+        Role::Inertia
     }
 
     fn regressor(&self, motion: &Motion, columns: &mut [f64; MAX_PARAMETERS]) {

@@ -1,34 +1,30 @@
 //! Load friction: mu |Fn| sgn(v): friction in proportion to the normal force (thesis, eq. 5.2). mu ≥ 0.
 //! The coordinate is a length; for an angle the caller passes the normal force times its arm.
 
-use super::{Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec};
+use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
 
 /// Load friction; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]
 pub struct LoadFriction;
 
-static PARAMETERS: [ParameterSpec; 1] =
-    [ParameterSpec { name: "mu", unit: "1", unit_angular: "1", bounds: (0.0, 10.0) }];
+static ENTRY: Entry = Entry {
+    id: "load-friction",
+    kind: Kind::Plant,
+    title: "Load friction",
+    equation: "mu abs(Fn) sgn(v)",
+    about: "Dry friction in proportion to the normal force. It shows as a step at reversals that grows with the \
+            pull across the motion. At constant load it is Coulomb friction. Pulling and pushing with different \
+            strength while reversing reveals it.",
+    parameters: &[ParameterSpec::linear("mu", "1", "1", (0.0, 10.0))],
+};
 
 impl Law for LoadFriction {
-    fn id(&self) -> &'static str {
-        "load-friction"
+    fn entry(&self) -> &'static Entry {
+        &ENTRY
     }
 
-    fn kind(&self) -> Kind {
-        Kind::Plant
-    }
-
-    fn title(&self) -> &'static str {
-        "Load friction"
-    }
-
-    fn parameters(&self) -> &'static [ParameterSpec] {
-        &PARAMETERS
-    }
-
-    fn is_dry(&self) -> bool {
-        true
+    fn role(&self) -> Role {
+        Role::Dry
     }
 
     fn regressor(&self, motion: &Motion, columns: &mut [f64; MAX_PARAMETERS]) {

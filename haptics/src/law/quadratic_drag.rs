@@ -1,29 +1,30 @@
-//! Quadratic drag: k v |v|. k ≥ 0.
+//! Quadratic drag: k v |v| (Newton 1687, Rayleigh 1876). k ≥ 0: it takes energy out.
 
-use super::{Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec};
+use super::entry::POSITIVE;
+use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
 
 /// Quadratic drag; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]
 pub struct QuadraticDrag;
 
-static PARAMETERS: [ParameterSpec; 1] =
-    [ParameterSpec { name: "k", unit: "N s²/m²", unit_angular: "N m s²", bounds: (0.0, f64::INFINITY) }];
+static ENTRY: Entry = Entry {
+    id: "quadratic-drag",
+    kind: Kind::Plant,
+    title: "Quadratic drag",
+    equation: "k v abs(v)",
+    about: "Resistance of a fluid that is pushed aside. It shows as a force that grows with the square of the \
+            speed. Viscous friction mimics it over a narrow range of speeds, inertia and Stribeck friction at \
+            one-way speeds. A sweep from slow to fast in both directions reveals it.",
+    parameters: &[ParameterSpec::linear("k", "N s²/m²", "N m s²", POSITIVE)],
+};
 
 impl Law for QuadraticDrag {
-    fn id(&self) -> &'static str {
-        "quadratic-drag"
+    fn entry(&self) -> &'static Entry {
+        &ENTRY
     }
 
-    fn kind(&self) -> Kind {
-        Kind::Plant
-    }
-
-    fn title(&self) -> &'static str {
-        "Quadratic drag"
-    }
-
-    fn parameters(&self) -> &'static [ParameterSpec] {
-        &PARAMETERS
+    fn role(&self) -> Role {
+        Role::Viscous
     }
 
     fn regressor(&self, motion: &Motion, columns: &mut [f64; MAX_PARAMETERS]) {

@@ -1,36 +1,52 @@
-//! Return spring: k q + f0, i.e. k (q − q0) with q0 = −f0/k. k ≥ 0.
+//! Return spring: k (q − q0) + k3 (q − q0)³ + f0 (Hooke 1678; hardening as in Duffing 1918). k ≥ 0, k3 ≥ 0. f0 is a preload; with
+//! q0 = 0 it carries the spring's rest place as −k q0, which keeps the law linear. k3 = 0 is the linear spring.
 
-use super::{Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec};
+use super::entry::{ANY, POSITIVE};
+use super::{Entry, Kind, Law, MAX_PARAMETERS, Memory, Motion, ParameterSpec, Role};
 
 /// Return spring; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]
 pub struct ReturnSpring;
 
-static PARAMETERS: [ParameterSpec; 2] = [
-    ParameterSpec { name: "k", unit: "N/m", unit_angular: "N m/rad", bounds: (0.0, f64::INFINITY) },
-    ParameterSpec { name: "f0", unit: "N", unit_angular: "N m", bounds: (f64::NEG_INFINITY, f64::INFINITY) },
-];
+static ENTRY: Entry = Entry {
+    id: "return-spring",
+    kind: Kind::Plant,
+    title: "Return spring",
+    equation: "k (q − q0) + k3 (q − q0)³ + f0",
+    about: "A spring towards a rest place. It shows as a force in proportion to the position, the same in both \
+            directions; when it hardens, as a bend of that line. An eccentric mass mimics it over a short arc \
+            and a hardening spring over a short range. A long range in both directions reveals it.",
+    parameters: &[
+        ParameterSpec::linear("k", "N/m", "N m/rad", POSITIVE),
+        ParameterSpec::linear("f0", "N", "N m", ANY),
+        ParameterSpec::linear("k3", "N/m³", "N m/rad³", POSITIVE),
+        ParameterSpec::nonlinear("q0", "m", "rad", ANY),
+    ],
+};
 
 impl Law for ReturnSpring {
-    fn id(&self) -> &'static str {
-        "return-spring"
+    fn entry(&self) -> &'static Entry {
+        &ENTRY
     }
 
-    fn kind(&self) -> Kind {
-        Kind::Plant
-    }
-
-    fn title(&self) -> &'static str {
-        "Return spring"
-    }
-
-    fn parameters(&self) -> &'static [ParameterSpec] {
-        &PARAMETERS
+    fn role(&self) -> Role {
+        Role::Stiff
     }
 
     fn regressor(&self, motion: &Motion, columns: &mut [f64; MAX_PARAMETERS]) {
         columns[0] = motion.position;
         columns[1] = 1.0;
+        columns[2] = motion.position.powi(3);
+    }
+
+    fn force(&self, motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> f64 {
+        let stretch = motion.position - parameters[3];
+        (parameters[0] + parameters[2] * stretch * stretch) * stretch + parameters[1]
+    }
+
+    fn stiffness(&self, motion: &Motion, parameters: &[f64; MAX_PARAMETERS], _memory: &Memory) -> f64 {
+        // The linear part stays explicit: a free swing keeps its amplitude.
+        3.0 * parameters[2] * (motion.position - parameters[3]).powi(2)
     }
 }
 
@@ -44,5 +60,12 @@ mod tests {
         let mut values = [0.0; MAX_PARAMETERS];
         values[..2].copy_from_slice(&[5.0, -0.5]);
         assert!((ReturnSpring.force(&motion, &values) - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn hardening() {
+        // 5 · 0.2 + 100 · 0.2³ = 1.8 N, 0.2 m from the rest place at 0.1 m.
+        let motion = Motion { position: 0.3, ..Motion::default() };
+        assert!((ReturnSpring.force(&motion, &[5.0, 0.0, 100.0, 0.1, 0.0]) - 1.8).abs() < 1e-12);
     }
 }

@@ -1,29 +1,30 @@
-//! Viscous friction: c v. c ≥ 0.
+//! Viscous friction: c v (Newton 1687). c ≥ 0: it takes energy out.
 
-use super::{Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec};
+use super::entry::POSITIVE;
+use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
 
 /// Viscous friction; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]
 pub struct ViscousFriction;
 
-static PARAMETERS: [ParameterSpec; 1] =
-    [ParameterSpec { name: "c", unit: "N s/m", unit_angular: "N m s", bounds: (0.0, f64::INFINITY) }];
+static ENTRY: Entry = Entry {
+    id: "viscous-friction",
+    kind: Kind::Plant,
+    title: "Viscous friction",
+    equation: "c v",
+    about: "Resistance in proportion to speed. It shows as a slope of force over speed through zero. At constant \
+            speed it is Coulomb friction; over a narrow range of speeds quadratic drag or the falling branch of \
+            Stribeck friction mimic it. Slow and fast motion in both directions reveals it.",
+    parameters: &[ParameterSpec::linear("c", "N s/m", "N m s", POSITIVE)],
+};
 
 impl Law for ViscousFriction {
-    fn id(&self) -> &'static str {
-        "viscous-friction"
+    fn entry(&self) -> &'static Entry {
+        &ENTRY
     }
 
-    fn kind(&self) -> Kind {
-        Kind::Plant
-    }
-
-    fn title(&self) -> &'static str {
-        "Viscous friction"
-    }
-
-    fn parameters(&self) -> &'static [ParameterSpec] {
-        &PARAMETERS
+    fn role(&self) -> Role {
+        Role::Viscous
     }
 
     fn regressor(&self, motion: &Motion, columns: &mut [f64; MAX_PARAMETERS]) {
@@ -37,9 +38,10 @@ mod tests {
 
     #[test]
     fn one_effect() {
-        let motion = Motion { velocity: -0.5, ..Motion::default() };
+        // 1.5 N s/m · 0.2 m/s.
+        let motion = Motion { velocity: 0.2, ..Motion::default() };
         let mut values = [0.0; MAX_PARAMETERS];
-        values[..1].copy_from_slice(&[3.0]);
-        assert!((ViscousFriction.force(&motion, &values) - (-1.5)).abs() < 1e-12);
+        values[..1].copy_from_slice(&[1.5]);
+        assert!((ViscousFriction.force(&motion, &values) - 0.3).abs() < 1e-12);
     }
 }

@@ -1,29 +1,32 @@
-//! Weight of the handle: mg (up · t): the weight of what is carried along the coordinate (thesis, eq. 5.2, the (mg)t term). mg ≥ 0.
+//! Weight of the handle: mg (up · t): the weight of what is carried along the coordinate (thesis, eq. 5.2, the (mg)t term).
+//! mg ≥ 0. Zero along a horizontal path.
 
-use super::{Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec};
+use super::entry::POSITIVE;
+use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
 
 /// Weight of the handle; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]
 pub struct Weight;
 
-static PARAMETERS: [ParameterSpec; 1] =
-    [ParameterSpec { name: "mg", unit: "N", unit_angular: "N m", bounds: (0.0, f64::INFINITY) }];
+static ENTRY: Entry = Entry {
+    id: "weight",
+    kind: Kind::Plant,
+    title: "Weight of the handle",
+    equation: "mg (up · t)",
+    about: "The weight of what is carried. It shows as a force that follows the height of the path, the same in \
+            both directions and at every speed. A bias of the vertical force channel mimics it over a short arc, \
+            a tilt or an eccentric mass over a turn. A full turn, or a path up and down, with a phase of free \
+            motion for the bias, reveals it.",
+    parameters: &[ParameterSpec::linear("mg", "N", "N m", POSITIVE)],
+};
 
 impl Law for Weight {
-    fn id(&self) -> &'static str {
-        "weight"
+    fn entry(&self) -> &'static Entry {
+        &ENTRY
     }
 
-    fn kind(&self) -> Kind {
-        Kind::Plant
-    }
-
-    fn title(&self) -> &'static str {
-        "Weight of the handle"
-    }
-
-    fn parameters(&self) -> &'static [ParameterSpec] {
-        &PARAMETERS
+    fn role(&self) -> Role {
+        Role::Gravity
     }
 
     fn regressor(&self, motion: &Motion, columns: &mut [f64; MAX_PARAMETERS]) {

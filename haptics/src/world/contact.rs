@@ -5,12 +5,13 @@
 
 use super::state::{Contact, Surface};
 use crate::Vec2;
+use crate::law::contact::StiffnessHardening;
 
 /// Contact law of a pair of surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// Normal stiffness, N/m.
-    pub stiffness_n_m: f64,
+    /// Normal elastic force over depth.
+    pub elastic: StiffnessHardening,
     /// Normal damping, N s/m.
     pub damping_n_s_m: f64,
     /// Tangential stiffness while sticking, N/m.
@@ -26,7 +27,7 @@ impl Material {
     pub fn hard(stiffness_n_m: f64, damping_n_s_m: f64, friction: f64) -> Self {
         const TANGENTIAL_SHARE: f64 = 2.0 / 3.0;
         Self {
-            stiffness_n_m,
+            elastic: StiffnessHardening { k1: stiffness_n_m, ..StiffnessHardening::default() },
             damping_n_s_m,
             shear_stiffness_n_m: TANGENTIAL_SHARE * stiffness_n_m,
             shear_damping_n_s_m: TANGENTIAL_SHARE * damping_n_s_m,
@@ -58,7 +59,7 @@ pub fn resolve(overlap: &Overlap, material: &Material, shear_before_m: f64, dt_s
     let tangent = Vec2::new(normal.y, -normal.x);
     let opening = overlap.relative_velocity.dot(&normal);
     let slip = overlap.relative_velocity.dot(&tangent);
-    let normal_force = (material.stiffness_n_m * overlap.depth_m - material.damping_n_s_m * opening).max(0.0);
+    let normal_force = (material.elastic.force_n(overlap.depth_m) - material.damping_n_s_m * opening).max(0.0);
 
     let mut shear = shear_before_m + slip * dt_s;
     let limit = material.friction * normal_force;

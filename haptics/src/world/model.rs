@@ -2,7 +2,8 @@
 
 use crate::Vec2;
 use crate::hand::Hand;
-use crate::law::{Coordinate, Effect};
+use crate::law::contact::StiffnessHardening;
+use crate::law::{Coordinate, Effect, MAX_EFFECTS};
 use serde::{Deserialize, Serialize};
 
 /// Version of the file format.
@@ -53,6 +54,12 @@ pub struct World {
 pub struct Pad {
     /// Normal stiffness, N/m, positive.
     pub stiffness_n_m: f64,
+    /// Hardening of the normal stiffness, N/m³, ≥ 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub cubic_n_m3: f64,
+    /// Hertz's part of the normal force, N/m^1.5, ≥ 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub hertz_n_m15: f64,
     /// Normal damping, N s/m, ≥ 0.
     pub damping_n_s_m: f64,
     /// Tangential stiffness of the sticking pad, N/m, positive.
@@ -63,8 +70,28 @@ pub struct Pad {
 
 impl Default for Pad {
     fn default() -> Self {
-        Self { stiffness_n_m: 2500.0, damping_n_s_m: 1.5, shear_stiffness_n_m: 1500.0, shear_damping_n_s_m: 1.5 }
+        Self {
+            stiffness_n_m: 2500.0,
+            cubic_n_m3: 0.0,
+            hertz_n_m15: 0.0,
+            damping_n_s_m: 1.5,
+            shear_stiffness_n_m: 1500.0,
+            shear_damping_n_s_m: 1.5,
+        }
     }
+}
+
+impl Pad {
+    /// The pad's normal force over its compression.
+    pub fn elastic(&self) -> StiffnessHardening {
+        StiffnessHardening { k1: self.stiffness_n_m, k3: self.cubic_n_m3, hertz: self.hertz_n_m15 }
+    }
+}
+
+// serde hands over a reference.
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// A horizontal table.
@@ -228,6 +255,9 @@ pub enum WorldError {
     /// More blocks than the state can hold.
     #[error("the world has {0} blocks; at most {MAX_BLOCKS} can be simulated")]
     TooManyBlocks(usize),
+    /// More laws than the state can remember for.
+    #[error("the crank has {0} effects; at most {MAX_EFFECTS} can be simulated")]
+    TooManyEffects(usize),
     /// A newer file.
     #[error("the world file has format {0}, this program reads up to {SCHEMA}; update the program")]
     NewerSchema(u32),
@@ -293,6 +323,8 @@ impl World {
         positive("pad", "shear_stiffness_n_m", self.pad.shear_stiffness_n_m)?;
         not_negative("pad", "damping_n_s_m", self.pad.damping_n_s_m)?;
         not_negative("pad", "shear_damping_n_s_m", self.pad.shear_damping_n_s_m)?;
+        not_negative("pad", "cubic_n_m3", self.pad.cubic_n_m3)?;
+        not_negative("pad", "hertz_n_m15", self.pad.hertz_n_m15)?;
         finite("the world", "gravity_m_s2", self.gravity_m_s2)?;
         finite("the world", "tilt_rad", self.tilt_rad)?;
         for finger in &self.hand.fingers {
@@ -308,6 +340,9 @@ impl World {
             block.check()?;
         }
         if let Some(crank) = &self.crank {
+            if crank.effects.len() > MAX_EFFECTS {
+                return Err(WorldError::TooManyEffects(crank.effects.len()));
+            }
             positive("the crank", "radius_m", crank.radius_m)?;
             positive("the crank", "handle_width_m", crank.handle_width_m)?;
             not_negative("the crank", "finger_friction", crank.finger_friction)?;
@@ -364,7 +399,7 @@ impl Block {
 impl Crank {
     /// Sum of the inertia effects, kg at the handle.
     pub fn mass_at_handle_kg(&self) -> f64 {
-        crate::law::resistance(&self.effects, &crate::law::Motion::default()).inertia
+        crate::law::inertia(&self.effects)
     }
 }
 

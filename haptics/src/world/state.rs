@@ -2,6 +2,7 @@
 
 use super::model::{MAX_BLOCKS, World};
 use crate::Vec2;
+use crate::law::Memories;
 
 /// Contacts that a state has room for: four corners of every block against the table, two points for each touching pair (a
 /// planar packing has at most 3 n pairs), two fingers on every block, and some on table and handle. Every state has this
@@ -45,6 +46,8 @@ pub struct CrankState {
     pub handle_velocity: Vec2,
     /// Force that arm and bearing put on the handle along the outward normal, N.
     pub constraint_force_n: f64,
+    /// What its laws remember, by effect.
+    pub memories: Memories,
 }
 
 /// What a contact is between.

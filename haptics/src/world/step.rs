@@ -4,10 +4,13 @@ use super::contact::{Material, Overlap, Rect, point_in_rect, rect_rect, resolve}
 use super::model::{Block, Crank, World};
 use super::state::{BodyState, Contact, Input, State, Surface};
 use crate::Vec2;
-use crate::law::{Motion, resistance, step_coordinate};
+use crate::law::{Motion, Role, step_coordinate_with};
 
 /// Half the height of a flat finger pad, m: how far off its middle it still touches the crank's handle.
 pub const PAD_HALF_HEIGHT_M: f64 = 0.008;
+
+/// Thickness of the foam on a fingertip, m (thesis): a hardening pad is as stiff as at this depth for the choice of the step.
+const PAD_THICKNESS_M: f64 = 0.002;
 
 /// Impact speeds below this are resting contact, m/s.
 const IMPACT_THRESHOLD_M_S: f64 = 0.01;
@@ -39,7 +42,8 @@ pub fn substeps(world: &World, dt_s: f64) -> u32 {
     // Rotation is up to three times as stiff as translation: contact at the corners of a body of inertia m(w²+h²)/12.
     const ROTATION: f64 = 3.0;
     let mut rate = 1.0_f64;
-    let pads = 2.0 * (world.pad.stiffness_n_m + world.pad.shear_stiffness_n_m);
+    let pad_stiffness_n_m = world.pad.elastic().stiffness_n_m(PAD_THICKNESS_M);
+    let pads = 2.0 * (pad_stiffness_n_m + world.pad.shear_stiffness_n_m);
     let pad_damping = 2.0 * (world.pad.damping_n_s_m + world.pad.shear_damping_n_s_m);
     for block in &world.blocks {
         let floor = world.floor.as_ref().map_or((0.0, 0.0), |f| (2.0 * f.stiffness_n_m, 2.0 * f.damping_n_s_m));
@@ -162,7 +166,7 @@ fn touch_floor(world: &World, state: &mut State, dt_s: f64) {
 
 fn pad_material(world: &World, friction: f64) -> Material {
     Material {
-        stiffness_n_m: world.pad.stiffness_n_m,
+        elastic: world.pad.elastic(),
         damping_n_s_m: world.pad.damping_n_s_m,
         shear_stiffness_n_m: world.pad.shear_stiffness_n_m,
         shear_damping_n_s_m: world.pad.shear_damping_n_s_m,
@@ -263,7 +267,7 @@ fn move_crank(crank: &Crank, state: &mut State, force: Vec2, dt_s: f64) {
     let (outward, along) = (Vec2::new(cos, sin), Vec2::new(-sin, cos));
     let (pull, drive) = (force.dot(&outward), force.dot(&along));
     let motion = crank_motion(crank, state.time_s, state.crank.angle_rad, state.crank.rate_rad_s, pull);
-    let (_, speed) = step_coordinate(&crank.effects, &motion, drive, 0.0, dt_s);
+    let (_, speed) = step_coordinate_with(&crank.effects, &motion, &mut state.crank.memories, drive, 0.0, dt_s);
     state.crank.rate_rad_s = speed / crank.radius_m;
     state.crank.angle_rad += state.crank.rate_rad_s * dt_s;
     move_radially(crank, state, pull, &motion, dt_s);
@@ -271,10 +275,14 @@ fn move_crank(crank: &Crank, state: &mut State, force: Vec2, dt_s: f64) {
 
 /// The handle's give along the arm, and the force of the arm on it (thesis, eq. 5.1: Fn = (mg)n + Fc).
 fn move_radially(crank: &Crank, state: &mut State, pull: f64, motion: &Motion, dt_s: f64) {
-    let mass = resistance(&crank.effects, motion).inertia;
-    // The weight law gives mg (up · t); the same mg acts along the outward normal as mg sin θ.
-    let upright = Motion { up_along: state.crank.angle_rad.sin(), ..Motion::default() };
-    let weight: f64 = crank.effects.iter().filter(|e| e.law().id() == "weight").map(|e| e.force(&upright)).sum();
+    let mass = crank.mass_at_handle_kg();
+    // Gravity gives W (up · t) along the path; across it, a quarter of a turn back, up · n = sin θ.
+    let across = Motion {
+        position: motion.position - crank.radius_m * std::f64::consts::FRAC_PI_2,
+        up_along: state.crank.angle_rad.sin(),
+        ..*motion
+    };
+    let weight: f64 = crank.effects.iter().filter(|e| e.role() == Role::Gravity).map(|e| e.force(&across)).sum();
     let centrifugal = mass * crank.radius_m * state.crank.rate_rad_s.powi(2);
     let outward = pull - weight + centrifugal;
     match crank.constraint_stiffness_n_m {

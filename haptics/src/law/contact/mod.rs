@@ -1,0 +1,17 @@
+//! Laws of contacts and grasps: they act on no coordinate, so each gives its formula as a plain function. One law a file.
+
+mod fingertip_slip;
+mod pad_compliance;
+mod stiffness_hardening;
+mod velocity_loss;
+
+pub use fingertip_slip::FingertipSlip;
+pub use pad_compliance::PadCompliance;
+pub use stiffness_hardening::StiffnessHardening;
+pub use velocity_loss::VelocityLoss;
+
+use super::Entry;
+
+/// Their pages of the catalogue.
+pub static ENTRIES: [&Entry; 4] =
+    [&PadCompliance::ENTRY, &StiffnessHardening::ENTRY, &FingertipSlip::ENTRY, &VelocityLoss::ENTRY];

@@ -1,0 +1,46 @@
+//! Force drift: F + r t: a slow error of the force channel along the coordinate. r = 0 is none.
+
+use super::entry::ANY;
+use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+
+/// Force drift; equation and sign in the module's head.
+#[derive(Clone, Copy, Debug)]
+pub struct ForceDrift;
+
+static ENTRY: Entry = Entry {
+    id: "force-drift",
+    kind: Kind::Instrument,
+    title: "Force drift",
+    equation: "F + r t",
+    about: "The zero of the force sensor moves, mostly with temperature. It shows as a slope in time, also in \
+            free motion. A leaking weight mimics it while an object is held. Free motion at the start and at the \
+            end reveals it.",
+    parameters: &[ParameterSpec::linear("rate", "N/s", "N m/s", ANY)],
+};
+
+impl Law for ForceDrift {
+    fn entry(&self) -> &'static Entry {
+        &ENTRY
+    }
+
+    fn role(&self) -> Role {
+        Role::Smooth
+    }
+
+    fn regressor(&self, motion: &Motion, columns: &mut [f64; MAX_PARAMETERS]) {
+        columns[0] = motion.time_s;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_effect() {
+        let motion = Motion { time_s: 20.0, ..Motion::default() };
+        let mut values = [0.0; MAX_PARAMETERS];
+        values[..1].copy_from_slice(&[-0.01]);
+        assert!((ForceDrift.force(&motion, &values) - (-0.2)).abs() < 1e-12);
+    }
+}

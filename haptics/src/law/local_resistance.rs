@@ -1,0 +1,66 @@
+//! Local resistance: F ½ (1 + cos(2π (q − place)/width)) sgn(v) within half a width of the place: a bind, a catch, a burr.
+//! F ≥ 0; it resists both ways and holds at rest. A period makes it come again (2π R on a crank's path); 0 is once.
+//! width = 0 adds nothing. For a stop that springs back see `added-constraint`.
+
+use super::entry::{ANY, POSITIVE};
+use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+
+/// Local resistance; equation and sign in the module's head.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalResistance;
+
+static ENTRY: Entry = Entry {
+    id: "local-resistance",
+    kind: Kind::Plant,
+    title: "Local resistance",
+    equation: "F hann((q − place)/width) sgn(v)",
+    about: "Extra resistance in one range of the motion: a bind, a catch, something that is brushed. It shows as \
+            a hump of force at one place that changes sign with the direction. Ripple mimics it when less than a \
+            turn is seen, a change of friction with time when the place is passed once. Passing the place \
+            several times, in both directions, reveals it.",
+    parameters: &[
+        ParameterSpec::linear("F", "N", "N m", POSITIVE),
+        ParameterSpec::nonlinear("place", "m", "rad", ANY),
+        ParameterSpec::nonlinear("width", "m", "rad", POSITIVE),
+        ParameterSpec::fixed("period", "m", "rad", POSITIVE),
+    ],
+};
+
+impl Law for LocalResistance {
+    fn entry(&self) -> &'static Entry {
+        &ENTRY
+    }
+
+    fn role(&self) -> Role {
+        Role::Dry
+    }
+
+    fn force(&self, motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> f64 {
+        let [force, place, width, period, ..] = *parameters;
+        let mut off = motion.position - place;
+        if period > 0.0 {
+            off -= period * (off / period).round();
+        }
+        if off.abs() < 0.5 * width {
+            force * 0.5 * (1.0 + (std::f64::consts::TAU * off / width).cos()) * motion.direction
+        } else {
+            0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_effect() {
+        // A quarter of a width off the place half of 0.8 N is left; moving back it is −0.4 N; half a width off nothing.
+        let mut values = [0.0; MAX_PARAMETERS];
+        values[..4].copy_from_slice(&[0.8, 0.05, 0.02, 0.1]);
+        let at =
+            |position: f64| LocalResistance.force(&Motion { position, direction: -1.0, ..Motion::default() }, &values);
+        assert!((at(0.055) + 0.4).abs() < 1e-12 && at(0.061) == 0.0);
+        assert!((at(0.255) + 0.4).abs() < 1e-12, "it comes again every 0.1 m");
+    }
+}

@@ -1,0 +1,57 @@
+//! Changing weight: W(t) (up · t), W(t) = W0 + rate · (time since t0, at most `duration`): a leak, a filling, a lost part.
+//! It adds to the `weight` beside it (W0 = 0 then). duration = 0 is without end. The inertia that leaves with the weight is
+//! neglected: at g/10 it is a hundredth of the force. rate < 0 loses weight.
+
+use super::entry::{ANY, POSITIVE};
+use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+
+/// Changing weight; equation and sign in the module's head.
+#[derive(Clone, Copy, Debug)]
+pub struct MassChange;
+
+static ENTRY: Entry = Entry {
+    id: "mass-change",
+    kind: Kind::Plant,
+    title: "Changing weight",
+    equation: "(W0 + rate (t − t0)) (up · t)",
+    about: "The weight changes while it is carried: a leaking barrel. It shows as a slow change of the vertical \
+            force only while the object is held. Drift of the vertical force channel mimics it. A phase of free \
+            motion at the start and at the end, or a second weight, reveals it.",
+    parameters: &[
+        ParameterSpec::linear("W0", "N", "N m", ANY),
+        ParameterSpec::linear("rate", "N/s", "N m/s", ANY),
+        ParameterSpec::nonlinear("t0", "s", "s", ANY),
+        ParameterSpec::nonlinear("duration", "s", "s", POSITIVE),
+    ],
+};
+
+impl Law for MassChange {
+    fn entry(&self) -> &'static Entry {
+        &ENTRY
+    }
+
+    fn role(&self) -> Role {
+        Role::Gravity
+    }
+
+    fn force(&self, motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> f64 {
+        let [first, rate, start_s, duration_s, ..] = *parameters;
+        let since = (motion.time_s - start_s).max(0.0);
+        let since = if duration_s > 0.0 { since.min(duration_s) } else { since };
+        (first + rate * since) * motion.up_along
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_effect() {
+        // (0.4 N − 0.02 N/s · 5 s, the leak stops) · ½.
+        let motion = Motion { time_s: 12.0, up_along: 0.5, ..Motion::default() };
+        let mut values = [0.0; MAX_PARAMETERS];
+        values[..4].copy_from_slice(&[0.4, -0.02, 2.0, 5.0]);
+        assert!((MassChange.force(&motion, &values) - 0.15).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,66 @@
+//! Stribeck friction: (Fs − Fc) exp(−(v/vs)²) sgn(v) (Stribeck 1902, in the form of Bo & Pavelescu 1982). dFs = Fs − Fc ≥ 0 is
+//! what the static level is above the Coulomb level of the effect beside it. vs = 0: friction of rest alone. Holds at rest.
+
+use super::entry::POSITIVE;
+use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+
+/// Stribeck friction; equation and sign in the module's head.
+#[derive(Clone, Copy, Debug)]
+pub struct Stribeck;
+
+static ENTRY: Entry = Entry {
+    id: "stribeck",
+    kind: Kind::Plant,
+    title: "Stribeck friction",
+    equation: "(Fs − Fc) exp(−(v/vs)²) sgn(v)",
+    about: "Friction that falls from its static level to the Coulomb level as the motion gets faster. It shows \
+            as a peak of force at every start and as stick-slip of a soft drive. Coulomb friction mimics it in \
+            slow motion, quadratic drag or a falling viscous slope over a narrow range of speeds, presliding \
+            friction at reversals. Very slow and fast motion in one recording reveals it; small fast strokes do \
+            not.",
+    parameters: &[
+        ParameterSpec::linear("dFs", "N", "N m", POSITIVE),
+        ParameterSpec::nonlinear("vs", "m/s", "rad/s", POSITIVE),
+    ],
+};
+
+/// exp(−(v/vs)²); for vs = 0 one at rest and zero in motion.
+pub(super) fn falling(velocity: f64, vs: f64) -> f64 {
+    if vs > 0.0 {
+        let ratio = velocity / vs;
+        (-ratio * ratio).exp()
+    } else {
+        f64::from(velocity == 0.0)
+    }
+}
+
+impl Law for Stribeck {
+    fn entry(&self) -> &'static Entry {
+        &ENTRY
+    }
+
+    fn role(&self) -> Role {
+        Role::Dry
+    }
+
+    fn force(&self, motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> f64 {
+        parameters[0] * falling(motion.velocity, parameters[1]) * motion.direction
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_effect() {
+        // Coulomb 0.3 N beside it; at v = vs the total is Fc + (Fs − Fc)/e with Fs = 0.8 N.
+        let motion = Motion { direction: 1.0, velocity: 0.02, ..Motion::default() };
+        let mut values = [0.0; MAX_PARAMETERS];
+        values[..2].copy_from_slice(&[0.5, 0.02]);
+        let expected = 0.5 / std::f64::consts::E;
+        assert!((Stribeck.force(&motion, &values) - expected).abs() < 1e-12);
+        let rest = Motion { velocity: 0.0, ..motion };
+        assert_eq!(Stribeck.force(&rest, &values), 0.5);
+    }
+}
