@@ -276,6 +276,41 @@ fn the_same_inputs_give_the_same_bits_on_any_thread() {
     assert!(!here.contacts.is_empty());
 }
 
+#[test]
+fn a_hardening_pad_presses_harder() {
+    // 0.5 mm: 2500 N/m give 1.25 N, 4e9 N/m³ another 0.5 N; a world without hardening keeps its file as it was.
+    let (mut world, _) = pinched(0.0005, 0.9);
+    assert!(!world.to_json().contains("cubic"));
+    world.pad.cubic_n_m3 = 4e9;
+    let mut state = State::new(&world, [Vec2::new(-0.0095, 0.0), Vec2::new(0.0095, 0.0)]);
+    run(&world, &mut state, 3.0);
+    assert!((state.tip_force_n[0].x - 1.75).abs() < 1e-6, "{:?}", state.tip_force_n);
+    assert_eq!(World::from_json(&world.to_json()).expect("reads back"), world);
+}
+
+#[test]
+fn a_crank_remembers_its_presliding_and_hangs_in_it() {
+    // A handle of 0.16 N level with the axis hangs in presliding friction of 0.4 N and 800 N/m: Fc z = W, so z = 0.4 and it
+    // sinks by l ln(1/(1 − 0.4)), l = 0.5 mm, along its path (cos θ = 1 to 1e-4), and stays there.
+    let mut world = presets::crank();
+    let crank = world.crank.as_mut().expect("there is one");
+    crank.effects = vec![
+        crate::law::Effect::new(&crate::law::Inertia, &[0.05]),
+        crate::law::Effect::new(&crate::law::Weight, &[0.16]),
+        crate::law::Effect::new(&crate::law::Hysteresis, &[0.4, 800.0]),
+        // Enough to come to rest without overshoot: 2 √(k m) = 13 N s/m.
+        crate::law::Effect::new(&crate::law::ViscousFriction, &[20.0]),
+    ];
+    crank.start_rad = 0.0;
+    let radius = crank.radius_m;
+    let mut state = State::new(&world, AWAY);
+    run(&world, &mut state, 3.0);
+    let sunk = -radius * state.crank.angle_rad;
+    assert!((sunk / (5e-4 * (1.0_f64 / 0.6).ln()) - 1.0).abs() < 2e-3, "{sunk}");
+    run(&world, &mut state, 10.0);
+    assert!((-radius * state.crank.angle_rad - sunk).abs() < 1e-9);
+}
+
 /// Cost of a crank's tick; `cargo test --release -p haptics tick_cost -- --ignored --nocapture`.
 #[test]
 #[ignore = "a measurement, not a check"]
