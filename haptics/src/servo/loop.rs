@@ -20,8 +20,8 @@ pub struct TickRecord {
     pub sent_force_n: [Vec2; 2],
     /// What the safety stage did.
     pub flags: SafetyFlags,
-    /// Energy that the virtual environment has taken from each finger since the start, J; below zero it has given some out.
-    pub energy_j: [f64; 2],
+    /// Energy that the virtual environment has taken from the hand since the start, J; below zero it has given some out.
+    pub energy_j: f64,
     /// The true contact state (generators write it as the label).
     pub label: &'static str,
 }
@@ -64,7 +64,7 @@ pub struct Loop {
     device: Box<dyn Device>,
     safety: Safety,
     sent_force_n: [Vec2; 2],
-    observers: [Observer; 2],
+    observer: Observer,
     passivity_control_n_s_m: Option<f64>,
     generation: u64,
 }
@@ -78,7 +78,7 @@ impl Loop {
             device,
             safety,
             sent_force_n: [Vec2::zeros(); 2],
-            observers: [Observer::default(); 2],
+            observer: Observer::default(),
             passivity_control_n_s_m: None,
             generation: 0,
         }
@@ -103,21 +103,20 @@ impl Loop {
         // The operator feels the reaction to what the tips exert.
         let mut wanted = state.tip_force_n.map(|f| -f);
         if let Some(most) = self.passivity_control_n_s_m {
-            for (finger, force) in wanted.iter_mut().enumerate() {
-                *force += control(&self.observers[finger], input.tip_velocity[finger], dt_s, most);
+            let extra = control(&self.observer, input.tip_velocity, dt_s, most);
+            for (force, extra) in wanted.iter_mut().zip(extra) {
+                *force += extra;
             }
         }
         self.sent_force_n = self.safety.limit(wanted, dt_s, &mut flags);
-        for (finger, observer) in self.observers.iter_mut().enumerate() {
-            observer.add(input.tip_in_world[finger], -self.sent_force_n[finger]);
-        }
+        self.observer.add(input.tip_in_world, self.sent_force_n.map(|f| -f));
         TickRecord {
             time_s: state.time_s,
             input,
             tip_force_n: state.tip_force_n,
             sent_force_n: self.sent_force_n,
             flags,
-            energy_j: self.observers.map(|o| o.energy_j()),
+            energy_j: self.observer.energy_j(),
             label: crate::world::true_label(world, state),
         }
     }
@@ -210,8 +209,8 @@ mod tests {
     #[test]
     fn the_observer_sees_a_sampled_spring_give_out_energy_and_the_controller_takes_it_back() {
         let watched = prodding(None).energy_j;
-        assert!(watched[0] < -1e-3, "a sampled spring is active: {watched:?}");
+        assert!(watched < -1e-3, "a sampled spring is active: {watched}");
         let controlled = prodding(Some(50.0)).energy_j;
-        assert!(controlled[0] > 0.02 * watched[0], "{controlled:?} against {watched:?}");
+        assert!(controlled > 0.02 * watched, "{controlled} against {watched}");
     }
 }

@@ -46,21 +46,22 @@ pub fn stable_stiffness(device_damping: f64, damping_n_s_m: f64, period_s: f64, 
     (device_damping + damping_n_s_m) / (0.5 * period_s + delay_s)
 }
 
-/// Time-domain passivity observer of one finger (Hannaford & Ryu 2002): the energy that the virtual environment has taken in,
-/// E = Σ F (`x_{k+1}` − `x_k`) with F the force of the operator on the environment. A passive environment never has E < 0.
+/// Time-domain passivity observer (Hannaford & Ryu 2002): the energy that the virtual environment has taken in,
+/// E = Σ F (`x_{k+1}` − `x_k`), summed over both fingers, with F the force of the operator on the environment. A passive
+/// environment never has E < 0. A single finger may: it is pushed when the other one moves what both hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Observer {
     energy_j: f64,
-    last: Option<(Vec2, Vec2)>,
+    last: Option<([Vec2; 2], [Vec2; 2])>,
 }
 
 impl Observer {
-    /// Takes the newest position (m) and the force that will be held from now on (N, of the operator on the environment).
-    pub fn add(&mut self, position: Vec2, force_n: Vec2) {
+    /// Takes the newest positions (m) and the forces that will be held from now on (N, of the operator on the environment).
+    pub fn add(&mut self, positions: [Vec2; 2], forces_n: [Vec2; 2]) {
         if let Some((before, held)) = self.last {
-            self.energy_j += held.dot(&(position - before));
+            self.energy_j += (0..2).map(|finger| held[finger].dot(&(positions[finger] - before[finger]))).sum::<f64>();
         }
-        self.last = Some((position, force_n));
+        self.last = Some((positions, forces_n));
     }
 
     /// Energy taken in so far, J; negative: the environment has given energy out.
@@ -70,17 +71,18 @@ impl Observer {
 }
 
 /// Passivity controller: while the observer is in the red, an extra damping that takes back what was given out within one
-/// period, α = −E/(T v²), capped; nothing at rest, where it would be without bound.
+/// period, α = −E/(T Σ v²), capped; nothing at rest, where it would be without bound.
 ///
-/// Returns the extra force on the operator, N.
-pub fn control(observer: &Observer, velocity: Vec2, period_s: f64, most_n_s_m: f64) -> Vec2 {
+/// Returns the extra force on each of the operator's fingers, N.
+pub fn control(observer: &Observer, velocities: [Vec2; 2], period_s: f64, most_n_s_m: f64) -> [Vec2; 2] {
     const REST_M_S: f64 = 1e-4;
     let energy = observer.energy_j();
-    let speed = velocity.norm();
-    if energy >= 0.0 || speed < REST_M_S {
-        return Vec2::zeros();
+    let square: f64 = velocities.iter().map(Vec2::norm_squared).sum();
+    if energy >= 0.0 || square < REST_M_S * REST_M_S {
+        return [Vec2::zeros(); 2];
     }
-    -velocity * (-energy / (period_s * speed * speed)).min(most_n_s_m)
+    let damping = (-energy / (period_s * square)).min(most_n_s_m);
+    velocities.map(|velocity| -velocity * damping)
 }
 
 #[cfg(test)]
@@ -105,7 +107,7 @@ mod tests {
         let mut observer = Observer::default();
         for k in 0..=10 * steps {
             let x = position(k);
-            observer.add(Vec2::new(x, 0.0), Vec2::new(stiffness * x, 0.0));
+            observer.add([Vec2::new(x, 0.0), Vec2::zeros()], [Vec2::new(stiffness * x, 0.0), Vec2::zeros()]);
         }
         // The damper takes b A² ω²/2 a second.
         observer.energy_j() + device_damping * (amplitude * omega).powi(2) / 2.0 * f64::from(10 * steps) * T
@@ -181,14 +183,27 @@ mod tests {
 
     #[test]
     fn the_controller_only_acts_in_the_red_and_is_capped() {
+        let still = Vec2::zeros();
+        let along = |x: f64| [Vec2::new(x, 0.0), still];
         let mut observer = Observer::default();
-        observer.add(Vec2::zeros(), Vec2::new(-1.0, 0.0));
-        observer.add(Vec2::new(1e-3, 0.0), Vec2::zeros());
+        observer.add([still; 2], along(-1.0));
+        observer.add(along(1e-3), [still; 2]);
         assert!((observer.energy_j() + 1e-3).abs() < 1e-15, "1 N helped along 1 mm: 1 mJ was given out");
-        let force = control(&observer, Vec2::new(0.5, 0.0), T, 100.0);
+        let [force, other] = control(&observer, along(0.5), T, 100.0);
         assert!((force.x + 0.5 * 4.0).abs() < 1e-9, "α = 1 mJ / (1 ms · 0.25 m²/s²) = 4 N s/m: {force}");
-        assert!((control(&observer, Vec2::new(0.5, 0.0), T, 1.0).x + 0.5).abs() < 1e-12);
-        assert_eq!(control(&observer, Vec2::zeros(), T, 100.0), Vec2::zeros());
-        assert_eq!(control(&Observer::default(), Vec2::new(1.0, 0.0), T, 100.0), Vec2::zeros());
+        assert_eq!(other, still);
+        assert!((control(&observer, along(0.5), T, 1.0)[0].x + 0.5).abs() < 1e-12);
+        assert_eq!(control(&observer, [still; 2], T, 100.0), [still; 2]);
+        assert_eq!(control(&Observer::default(), along(1.0), T, 100.0), [still; 2]);
+    }
+
+    #[test]
+    fn what_one_finger_gives_and_the_other_takes_is_no_activity() {
+        // A rigid block pinched with 2 N and carried 10 mm: the left finger pushes, the right one is pushed.
+        let mut observer = Observer::default();
+        let pinch = [Vec2::new(2.0, 0.0), Vec2::new(-2.0, 0.0)];
+        observer.add([Vec2::new(-0.01, 0.0), Vec2::new(0.01, 0.0)], pinch);
+        observer.add([Vec2::new(0.0, 0.0), Vec2::new(0.02, 0.0)], pinch);
+        assert!(observer.energy_j().abs() < 1e-15);
     }
 }

@@ -233,7 +233,7 @@ fn timing(ui: &mut Ui, trainer: &Trainer) {
     let Some((snapshot, _)) = trainer.scene() else { return };
     let timing = snapshot.timing;
     // A passive world takes energy in and never gives any out: below zero the controller would have to act.
-    let [left, right] = snapshot.tick.energy_j.map(|energy| format::number(energy * 1e3, 1));
+    let energy = format::number(snapshot.tick.energy_j * 1e3, 1);
     let rate = format!("{} Hz", format::number(trainer.config().rate_hz, 0));
     card(
         ui,
@@ -252,7 +252,7 @@ fn timing(ui: &mut Ui, trainer: &Trainer) {
             ui.add_space(space::XS);
             fact(ui, "Missed deadlines", timing.missed.to_string());
             fact(ui, "Age of the newest sample", format::short_time(timing.sample_age_s));
-            fact(ui, "Energy taken in, left and right", format!("{left} · {right} mJ"));
+            fact(ui, "Energy taken in", format!("{energy} mJ"));
             if let Some(privileges) = trainer.privileges() {
                 ui.label(theme::caption(ui, privileges.sentence()));
             }
