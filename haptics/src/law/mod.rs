@@ -22,6 +22,7 @@ mod friction_change;
 mod gravity_tilt;
 mod hysteresis;
 mod inertia;
+mod instrument;
 mod load_friction;
 mod local_resistance;
 mod mass_change;
@@ -194,9 +195,9 @@ pub fn law(id: &str) -> Option<&'static dyn Law> {
     CATALOGUE.iter().copied().find(|law| law.id() == id)
 }
 
-/// The page of every cause that the catalogue knows: laws of coordinates, then of contacts.
+/// The page of every cause that the catalogue knows: laws of coordinates, then of contacts, then faults of the measurement.
 pub fn entries() -> impl Iterator<Item = &'static Entry> {
-    CATALOGUE.iter().map(|law| law.entry()).chain(contact::ENTRIES.iter().copied())
+    CATALOGUE.iter().map(|law| law.entry()).chain(contact::ENTRIES.iter().copied()).chain(&instrument::ENTRIES)
 }
 
 /// A finite force for the servo: no number of a file or a device may leave it with a NaN.

@@ -14,6 +14,15 @@ fn ids_are_unique_and_bounds_are_ordered() {
     }
 }
 
+#[test]
+fn every_instrument_cause_has_its_page() {
+    let ids = "force-bias force-drift force-gain force-cross-axis force-saturation time-delay joint-offset length-scale \
+        axis-sign channel-fault";
+    for id in ids.split_whitespace() {
+        assert!(entries().any(|e| e.id == id && e.kind == Kind::Instrument), "{id}");
+    }
+}
+
 /// The plant causes of the vocabulary.
 #[test]
 fn every_plant_cause_is_there() {
