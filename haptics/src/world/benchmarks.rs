@@ -310,25 +310,3 @@ fn a_crank_remembers_its_presliding_and_hangs_in_it() {
     run(&world, &mut state, 10.0);
     assert!((-radius * state.crank.angle_rad - sunk).abs() < 1e-9);
 }
-
-/// Cost of a crank's tick; `cargo test --release -p haptics tick_cost -- --ignored --nocapture`.
-#[test]
-#[ignore = "a measurement, not a check"]
-fn tick_cost() {
-    let world = presets::crank();
-    let mut state = State::resting(&world);
-    let handle = state.handle_in_world(&world).expect("there is one");
-    let half = Vec2::new(0.0045, 0.0);
-    let best = (0..20)
-        .map(|_| {
-            let start = std::time::Instant::now();
-            for tick in 0..50_000_u32 {
-                let wobble = Vec2::new(1e-3 * (f64::from(tick) * DT).sin(), 0.0);
-                let tips = [handle - half + wobble, handle + half + wobble];
-                step(&world, &mut state, &Input { tip_in_world: tips, ..Input::default() }, DT);
-            }
-            start.elapsed().as_secs_f64() / 50_000.0
-        })
-        .fold(f64::MAX, f64::min);
-    println!("crank tick: {:.1} ns", best * 1e9);
-}
