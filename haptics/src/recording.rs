@@ -23,6 +23,15 @@ pub enum Task {
 }
 
 impl Task {
+    /// Every task.
+    pub const ALL: [Self; 6] =
+        [Self::BlockStack, Self::Crank, Self::Needle, Self::Mechanism, Self::Barrel, Self::Switch];
+
+    /// The task of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|task| task.name() == name)
+    }
+
     /// The name used in files and on the command line.
     pub fn name(self) -> &'static str {
         match self {

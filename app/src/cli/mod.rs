@@ -12,7 +12,8 @@ mod segment;
 mod simulate;
 pub mod table;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand};
 use haptics::recording::{Recording, Task};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -62,8 +63,8 @@ struct AppArgs {
     #[arg(long)]
     world: Option<PathBuf>,
     /// Task of the log
-    #[arg(long)]
-    task: Option<TaskName>,
+    #[arg(long, value_parser = task_parser())]
+    task: Option<Task>,
 }
 
 /// A log on the command line.
@@ -73,38 +74,14 @@ struct LogArgs {
     #[arg(long)]
     meta: Option<PathBuf>,
     /// What was done; told from the sidecar and the columns when not given
-    #[arg(long)]
-    task: Option<TaskName>,
+    #[arg(long, value_parser = task_parser())]
+    task: Option<Task>,
 }
 
-/// Task names as on the command line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum TaskName {
-    /// Two blocks, unstacked and restacked
-    BlockStack,
-    /// A crank turned by its handle
-    Crank,
-    /// A needle through a membrane
-    Needle,
-    /// A mechanism with one degree of freedom
-    Mechanism,
-    /// A heavy object of unknown contents
-    Barrel,
-    /// A toggle switch
-    Switch,
-}
-
-impl From<TaskName> for Task {
-    fn from(name: TaskName) -> Self {
-        match name {
-            TaskName::BlockStack => Self::BlockStack,
-            TaskName::Crank => Self::Crank,
-            TaskName::Needle => Self::Needle,
-            TaskName::Mechanism => Self::Mechanism,
-            TaskName::Barrel => Self::Barrel,
-            TaskName::Switch => Self::Switch,
-        }
-    }
+/// Reads a task by the name it has in files, and offers the names in the help.
+fn task_parser() -> impl TypedValueParser<Value = Task> {
+    PossibleValuesParser::new(Task::ALL.map(Task::name))
+        .try_map(|name| Task::from_name(&name).ok_or_else(|| format!("there is no task `{name}`")))
 }
 
 impl LogArgs {
@@ -112,7 +89,7 @@ impl LogArgs {
         let mut recordings = estimator::log::load(path, self.meta.as_deref())?;
         if let Some(task) = self.task {
             for recording in &mut recordings {
-                recording.meta.task = Some(task.into());
+                recording.meta.task = Some(task);
             }
         }
         Ok(recordings)
@@ -174,13 +151,8 @@ fn sentence(error: &anyhow::Error) -> String {
 }
 
 fn open_app(args: AppArgs) -> ExitCode {
-    let options = crate::ui::RunOptions {
-        log: args.log,
-        meta: args.meta,
-        world: args.world,
-        task: args.task.map(Task::from),
-        dark: None,
-    };
+    let options =
+        crate::ui::RunOptions { log: args.log, meta: args.meta, world: args.world, task: args.task, dark: None };
     match crate::ui::run(options) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => fail(&error),

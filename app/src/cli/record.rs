@@ -1,6 +1,6 @@
 //! `touchstone record`: a recording made by the virtual hand.
 
-use super::{Output, TaskName};
+use super::{Output, task_parser};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use haptics::device::{Device, ReplayDevice, ScriptedOperator, Skill};
@@ -16,8 +16,8 @@ use std::path::{Path, PathBuf};
 #[derive(Args)]
 pub struct Record {
     /// What is done
-    #[arg(long)]
-    task: TaskName,
+    #[arg(long, value_parser = task_parser())]
+    task: Task,
     /// Who does it: `scripted`, `mouse`, or `replay:LOG`
     #[arg(long, default_value = "scripted")]
     operator: String,
@@ -83,7 +83,7 @@ impl Record {
         if let Some(path) = &self.world {
             return World::load(path).with_context(|| path.display().to_string());
         }
-        match Task::from(self.task) {
+        match self.task {
             Task::BlockStack => Ok(presets::stacking()),
             Task::Crank => Ok(presets::crank()),
             other => {
@@ -112,7 +112,7 @@ impl Record {
         let sensor = if self.sensors == Sensors::Ideal { SensorModel::IDEAL } else { SensorModel::TYPICAL };
         let name = self.out.file_stem().map_or("recording".into(), |s| s.to_string_lossy().into_owned());
         let mut recording = to_recording(&name, world, &ticks, self.every as usize, &sensor, self.seed);
-        recording.meta.task = Some(self.task.into());
+        recording.meta.task = Some(self.task);
         Ok(recording)
     }
 }
