@@ -1,7 +1,7 @@
 //! The servo's tick allocates nothing: every built-in world, every device, a swap, and copying the state out.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
-use haptics::device::{Device, MouseTarget, ReplayDevice, ScriptedOperator, Skill, mouse};
+use haptics::device::{Device, KeysHeld, MouseTarget, ReplayDevice, ScriptedOperator, Skill, keyboard, mouse, touch};
 use haptics::servo::safety::Limits;
 use haptics::servo::{Loop, Swap};
 use haptics::world::{State, World, presets};
@@ -48,6 +48,23 @@ fn mouse_and_replay() {
     let replay = ReplayDevice::new("test", vec![0.0, 0.5, 1.0], [tips(), tips()], [tips(), tips()])
         .expect("three samples of two fingers");
     run(&mut servo(&world, Box::new(replay)), 2_000);
+}
+
+#[test]
+fn touch_screen_and_keyboard() {
+    let world = presets::stacking();
+    let tips = State::resting(&world).input.tip_in_world;
+    let (mut handle, device) = touch(tips, world.hand.workspace);
+    let mut servo_touch = servo(&world, Box::new(device));
+    handle.begin(1, tips[0]);
+    handle.begin(2, tips[1]);
+    run(&mut servo_touch, 500);
+    handle.end(2);
+    run(&mut servo_touch, 500);
+
+    let (mut handle, device) = keyboard(tips, world.hand.workspace);
+    handle.set(KeysHeld { down: true, close: true, ..KeysHeld::default() });
+    run(&mut servo(&world, Box::new(device)), 2_000);
 }
 
 #[test]

@@ -2,14 +2,19 @@
 
 pub mod haply;
 mod impedance;
+mod keyboard;
 mod mouse;
+mod pointer;
 mod replay;
 mod scripted;
+mod touch;
 
 pub use impedance::HandImpedance;
+pub use keyboard::{KeyboardDevice, KeyboardHandle, KeysHeld, keyboard};
 pub use mouse::{MouseDevice, MouseHandle, MouseTarget, mouse};
 pub use replay::ReplayDevice;
 pub use scripted::{ScriptedOperator, Skill};
+pub use touch::{TouchDevice, TouchHandle, touch};
 
 use crate::Vec2;
 use crate::world::{State, World};

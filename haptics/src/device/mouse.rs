@@ -1,12 +1,10 @@
 //! The mouse as a pair of fingers with adjustable pinch: position only, the force is shown.
 
-use super::{Command, Device, DeviceSpec, HandImpedance, Sample};
+use super::pointer::{Pointer, tips};
+use super::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;
 use crate::hand::Workspace;
 use triple_buffer::{Input, Output, triple_buffer};
-
-/// Time constant that turns 60 Hz pointer steps into a smooth motion, s.
-const SMOOTHING_S: f64 = 0.02;
 
 /// Where the pointer wants the fingers to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,38 +31,14 @@ impl MouseHandle {
 pub struct MouseDevice {
     spec: DeviceSpec,
     target: Output<MouseTarget>,
-    smooth: MouseTarget,
-    workspace: Workspace,
-    impedance: HandImpedance,
-    position: [Vec2; 2],
-    velocity: [Vec2; 2],
+    pointer: Pointer,
 }
 
 /// A mouse device whose fingers start at `start` and stay in `workspace`.
 pub fn mouse(start: MouseTarget, workspace: Workspace) -> (MouseHandle, MouseDevice) {
     let (input, output) = triple_buffer(&start);
-    let device = MouseDevice {
-        spec: DeviceSpec {
-            name: "Mouse".to_owned(),
-            force_feedback: false,
-            max_force_n: 8.0,
-            damping_n_s_m: HandImpedance::default().damping_n_s_m,
-            coulomb_n: 0.0,
-            resolution_m: 0.0,
-        },
-        target: output,
-        smooth: start,
-        workspace,
-        impedance: HandImpedance::default(),
-        position: tips(&start),
-        velocity: [Vec2::zeros(); 2],
-    };
-    (MouseHandle { target: input }, device)
-}
-
-fn tips(target: &MouseTarget) -> [Vec2; 2] {
-    let half = Vec2::new(0.5 * target.aperture_m, 0.0);
-    [target.center_in_world - half, target.center_in_world + half]
+    let pointer = Pointer::new(tips(start.center_in_world, start.aperture_m), workspace);
+    (MouseHandle { target: input }, MouseDevice { spec: Pointer::spec("Mouse"), target: output, pointer })
 }
 
 impl Device for MouseDevice {
@@ -74,19 +48,8 @@ impl Device for MouseDevice {
 
     fn exchange(&mut self, command: &Command, dt_s: f64) -> Sample {
         let target = *self.target.read();
-        let blend = 1.0 - (-dt_s / SMOOTHING_S).exp();
-        let before = tips(&self.smooth);
-        let center = self.workspace.clamp(target.center_in_world);
-        self.smooth.center_in_world += (center - self.smooth.center_in_world) * blend;
-        self.smooth.aperture_m += (target.aperture_m - self.smooth.aperture_m) * blend;
-        let wanted = tips(&self.smooth);
-        for finger in 0..2 {
-            let goal = (wanted[finger], (wanted[finger] - before[finger]) / dt_s.max(1e-6));
-            let (position, velocity) = (&mut self.position[finger], &mut self.velocity[finger]);
-            self.impedance.advance(position, velocity, goal, command.force_n[finger], dt_s);
-        }
-        // A still pointer is a pointer at rest, not a lost device: a mouse is always fresh.
-        Sample { tip_in_world: self.position, tip_velocity: self.velocity, fresh: true }
+        let center = self.pointer.workspace().clamp(target.center_in_world);
+        self.pointer.advance(tips(center, target.aperture_m), command.force_n, dt_s)
     }
 
     fn make_safe(&mut self) {}
