@@ -37,6 +37,19 @@ fn scripted_operator_in_every_world() {
 }
 
 #[test]
+fn operators_that_drop_blocks_and_fetch_them_again() {
+    let world = presets::stacking();
+    for mistake in [Mistake::WeakPinch, Mistake::EarlyRelease] {
+        let state = State::resting(&world);
+        let operator = ScriptedOperator::with_mistakes(&world, &state, Skill::novice(), &[mistake], 3);
+        let planned = operator.duration_s();
+        let mut servo = servo(&world, Box::new(operator));
+        run(&mut servo, 60_000);
+        assert!(servo.finished() && planned < 60.0, "the plan of {planned} s was made longer and done");
+    }
+}
+
+#[test]
 fn mouse_and_replay() {
     let world = presets::stacking();
     let start = MouseTarget { center_in_world: world.hand.workspace.center_m, aperture_m: 0.03 };

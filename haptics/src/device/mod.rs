@@ -13,7 +13,7 @@ pub use impedance::HandImpedance;
 pub use keyboard::{KeyboardDevice, KeyboardHandle, KeysHeld, keyboard};
 pub use mouse::{MouseDevice, MouseHandle, MouseTarget, mouse};
 pub use replay::ReplayDevice;
-pub use scripted::{ScriptedOperator, Skill};
+pub use scripted::{Mistake, ScriptedOperator, Skill};
 pub use touch::{TouchDevice, TouchHandle, touch};
 
 use crate::Vec2;

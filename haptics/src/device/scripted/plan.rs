@@ -1,15 +1,19 @@
-//! What the scripted operator wants to do when: a list of minimum-jerk movements (Flash & Hogan 1985), made once.
+//! What the scripted operator wants to do when: a list of minimum-jerk movements (Flash & Hogan 1985), made ahead, and made anew
+//! from where the hand is when the operator sees that a block was lost.
 
-use super::Skill;
+use super::builder::Builder;
+use super::eye::Frame;
+use super::{Mistake, Skill};
 use crate::Vec2;
-use crate::world::{State, World};
-use rand::RngExt;
+use crate::world::{Block, State, World};
 use rand::rngs::StdRng;
 
-/// Spare opening of the fingers around an object, m on both sides together.
-const CLEARANCE_M: f64 = 0.006;
-/// Height that objects are carried above what stands in the way, m.
-const CARRY_HEIGHT_M: f64 = 0.012;
+/// A block that is farther from the fingers than this is not held any more, m.
+const LOST_M: f64 = 0.005;
+/// After so many failures with one block the operator goes on to the next.
+const MOST_ATTEMPTS: u8 = 4;
+/// Movements that one carry takes at the most, with its corrections.
+const PER_CARRY: usize = 32;
 
 /// Where the pair of fingers is wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +43,7 @@ impl Goal {
 
 /// One movement.
 #[derive(Clone, Copy, Debug)]
-enum Move {
+pub(super) enum Move {
     /// Straight, in minimum jerk.
     Reach { from: Goal, to: Goal },
     /// About a centre, in minimum jerk of the angle, pulling or pushing along the arm.
@@ -47,33 +51,138 @@ enum Move {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Phase {
-    start_s: f64,
-    end_s: f64,
-    movement: Move,
+pub(super) struct Phase {
+    pub start_s: f64,
+    pub end_s: f64,
+    pub movement: Move,
+    /// The job whose block should be between the fingers meanwhile.
+    pub holds: Option<usize>,
+}
+
+/// One block to carry.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Job {
+    /// Its index in the world.
+    pub block: usize,
+    /// Where its centre is to go, m.
+    pub to_m: Vec2,
+    /// Height at which nothing is in the way, m.
+    pub clear_y_m: f64,
+    /// Width that the world gives it between the pads, m.
+    pub width_m: f64,
+    /// Least pinch that holds it, N per finger.
+    pub least_pinch_n: f64,
+    /// What goes wrong with it.
+    pub mistake: Option<Mistake>,
+    attempts: u8,
+}
+
+impl Job {
+    pub fn new(world: &World, block: usize, to_m: Vec2, clear_y_m: f64) -> Self {
+        let shape = &world.blocks[block];
+        let least_pinch_n = 0.5 * shape.mass_kg * world.gravity_m_s2 / shape.finger_friction.max(0.05);
+        Self { block, to_m, clear_y_m, width_m: shape.width_m, least_pinch_n, mistake: None, attempts: 0 }
+    }
 }
 
 /// The whole performance.
-#[derive(Clone, Debug)]
 pub struct Plan {
     phases: Vec<Phase>,
     current: usize,
+    jobs: Vec<Job>,
+    retry: Option<usize>,
+    skill: Skill,
+    habits: [StdRng; 2],
 }
 
 impl Plan {
-    /// Turn the crank if there is one, else unstack and restack the blocks, else look around.
-    pub fn for_world(world: &World, state: &State, start: Goal, skill: Skill, rng: &mut StdRng) -> Self {
-        let mut builder = Builder { phases: Vec::new(), now_s: 0.0, at: start, skill, rng };
+    /// Turn the crank if there is one, else unstack and restack the blocks, else look around. `rng` draws what every operator
+    /// varies, `habits` what only some levels of skill do.
+    pub fn for_world(
+        world: &World,
+        state: &State,
+        start: Goal,
+        skill: Skill,
+        mistakes: &[Mistake],
+        rng: &mut StdRng,
+        habits: [StdRng; 2],
+    ) -> Self {
+        let mut plan = Self { phases: Vec::new(), current: 0, jobs: Vec::new(), retry: None, skill, habits };
+        let mut builder = Builder::new(&mut plan.phases, 0.0, start, skill, rng, &mut plan.habits[0]);
+        builder.growing = true;
         builder.wait(1.0);
         if world.crank.is_some() {
-            builder.turn_crank(world, state);
+            builder.turn_crank(world, state, mistakes);
         } else if world.blocks.is_empty() {
             builder.look_around(world);
         } else {
-            builder.restack(world, state);
+            plan.jobs = builder.plan_restack(world, state);
+            builder.spoil(&mut plan.jobs, mistakes);
+            for (index, job) in plan.jobs.iter().enumerate() {
+                builder.carry(index, job, state.bodies[job.block].center_m, job.width_m);
+            }
         }
         builder.wait(1.0);
-        Self { phases: builder.phases, current: 0 }
+        // Room for every attempt that may follow: nothing grows in the tick.
+        plan.phases.reserve(plan.jobs.len() * usize::from(MOST_ATTEMPTS) * PER_CARRY);
+        plan
+    }
+
+    /// Acts on what was seen of the world (that the jobs are about) one reaction time ago: lost blocks are fetched again.
+    pub fn notice(&mut self, blocks: &[Block], seen: &Frame, now_s: f64) {
+        if let Some(job) = self.retry {
+            if now_s >= self.duration_s() {
+                self.try_again(job, blocks, seen, now_s);
+            }
+        } else if let (Some(job), Some(then)) = (self.holding(now_s), self.holding(seen.time_s))
+            && job == then
+            && let Some((center_m, _)) = seen.bodies.get(self.jobs[job].block)
+            && (center_m - seen.hand_m).norm() > LOST_M
+        {
+            self.stop_and_open(job, now_s);
+        }
+    }
+
+    /// True while a lost block has not been fetched yet: there is more to come than the list says.
+    pub fn is_recovering(&self) -> bool {
+        self.retry.is_some()
+    }
+
+    fn holding(&self, time_s: f64) -> Option<usize> {
+        let upto = &self.phases[..=self.current];
+        upto.iter().rev().find(|phase| phase.start_s <= time_s)?.holds
+    }
+
+    /// Breaks off, opens the fingers, goes up out of the way and waits for things to come to rest.
+    fn stop_and_open(&mut self, job: usize, now_s: f64) {
+        let (here, _) = self.at(now_s);
+        self.phases.truncate(self.current + 1);
+        self.phases[self.current].end_s = now_s;
+        self.jobs[job].attempts += 1;
+        self.jobs[job].mistake = None;
+        let given_up = self.jobs[job].attempts >= MOST_ATTEMPTS;
+        self.retry = Some(job + usize::from(given_up));
+        let Job { width_m, clear_y_m, .. } = self.jobs[job];
+        let [usual, habits] = &mut self.habits;
+        let mut builder = Builder::new(&mut self.phases, now_s, here, self.skill, usual, habits);
+        builder.back_off(width_m, clear_y_m);
+    }
+
+    /// Carries this block and all that follow from where they are seen to lie.
+    fn try_again(&mut self, first: usize, blocks: &[Block], seen: &Frame, now_s: f64) {
+        let (here, _) = self.at(now_s);
+        self.retry = None;
+        let [usual, habits] = &mut self.habits;
+        let mut builder = Builder::new(&mut self.phases, now_s, here, self.skill, usual, habits);
+        for (index, job) in self.jobs.iter().enumerate().skip(first) {
+            if let (Some((center_m, angle_rad)), Some(block)) = (seen.bodies.get(job.block), blocks.get(job.block)) {
+                let (sin, cos) = angle_rad.sin_cos();
+                // A block that lies on its side is taken by what is its width now.
+                let width_m = block.width_m * cos.abs() + block.height_m * sin.abs();
+                builder.carry(index, job, *center_m, width_m);
+            }
+        }
+        builder.wait(1.0);
     }
 
     /// Length, s.
@@ -112,124 +221,5 @@ impl Plan {
                 (Goal { center_m: center, ..grasp }, rates)
             }
         }
-    }
-}
-
-struct Builder<'a> {
-    phases: Vec<Phase>,
-    now_s: f64,
-    at: Goal,
-    skill: Skill,
-    rng: &'a mut StdRng,
-}
-
-impl Builder<'_> {
-    fn vary(&mut self, usual: f64, share: f64) -> f64 {
-        usual * self.rng.random_range(1.0 - share..1.0 + share)
-    }
-
-    fn push(&mut self, usual_s: f64, movement: Move) {
-        let span_s = self.vary(usual_s * self.skill.pace, 0.2);
-        self.phases.push(Phase { start_s: self.now_s, end_s: self.now_s + span_s, movement });
-        self.now_s += span_s;
-    }
-
-    fn reach(&mut self, usual_s: f64, to: Goal) {
-        self.push(usual_s, Move::Reach { from: self.at, to });
-        self.at = to;
-    }
-
-    fn wait(&mut self, usual_s: f64) {
-        self.reach(usual_s, self.at);
-    }
-
-    fn look_around(&mut self, world: &World) {
-        let workspace = world.hand.workspace;
-        for corner in [(-0.5, 0.4), (0.5, 0.4), (0.5, -0.2), (-0.5, -0.2), (0.0, 0.0)] {
-            let center_m = workspace.center_m + Vec2::new(corner.0, corner.1) * workspace.radius_m;
-            self.reach(0.8, Goal { center_m, ..self.at });
-        }
-    }
-
-    /// Moves a tower block by block to the other side of the middle, top first, so that it ends upside down.
-    fn restack(&mut self, world: &World, state: &State) {
-        let floor_m = world.floor.as_ref().map_or(state.bodies[0].center_m.y, |f| f.height_m);
-        let mut order: Vec<usize> = (0..world.blocks.len()).collect();
-        order.sort_by(|a, b| state.bodies[*b].center_m.y.total_cmp(&state.bodies[*a].center_m.y));
-        let middle = world.hand.workspace.center_m.x;
-        let from_x = state.bodies[order[0]].center_m.x;
-        let to_x = middle + (middle - from_x) + self.rng.random_range(-0.001..0.001);
-        let tower: f64 = world.blocks.iter().map(|b| b.height_m).sum();
-        let clear_y = floor_m + tower + CARRY_HEIGHT_M;
-        let mut base_y = floor_m;
-        for index in order {
-            let body = state.bodies[index].center_m;
-            let block = &world.blocks[index];
-            self.carry(body, block.width_m, Vec2::new(to_x, base_y + 0.5 * block.height_m), clear_y);
-            base_y += block.height_m;
-        }
-    }
-
-    fn carry(&mut self, from: Vec2, width_m: f64, to: Vec2, clear_y: f64) {
-        let open = Goal { center_m: from, aperture_m: width_m + CLEARANCE_M, pinch_n: 0.0 };
-        let grasp_dy = self.rng.random_range(-0.001..0.001);
-        let up = |y: f64, goal: &Goal| Goal { center_m: Vec2::new(goal.center_m.x, y), ..*goal };
-        self.reach(0.9, up(clear_y, &open));
-        let around = Goal { center_m: from + Vec2::new(0.0, grasp_dy), ..open };
-        self.reach(0.7, around);
-        self.wait(0.2);
-        let pinch_n = self.vary(self.skill.pinch_n, 0.25);
-        let held = Goal { aperture_m: width_m, pinch_n, ..around };
-        self.reach(0.5, held);
-        // Leaning on it a little before lifting is what people do; it also separates holding from lifting.
-        let lean_m = self.rng.random_range(0.0002..0.0006);
-        let leaning = Goal { center_m: held.center_m - Vec2::new(0.0, lean_m), ..held };
-        self.reach(0.25, leaning);
-        self.wait(0.5);
-        let carried = up(clear_y, &held);
-        self.reach(0.8, carried);
-        self.wait(0.3);
-        let above = Goal { center_m: Vec2::new(to.x, clear_y), ..carried };
-        self.reach(1.0, above);
-        self.wait(0.3);
-        let press_m = self.rng.random_range(0.0006..0.0012);
-        let placed = Goal { center_m: to + Vec2::new(0.0, grasp_dy - press_m), ..above };
-        self.reach(0.9, placed);
-        self.wait(0.6);
-        let released = Goal { aperture_m: width_m + CLEARANCE_M, pinch_n: 0.0, ..placed };
-        self.reach(0.5, released);
-        self.wait(0.2);
-        self.reach(0.7, up(clear_y, &released));
-    }
-
-    fn turn_crank(&mut self, world: &World, state: &State) {
-        let (Some(crank), Some(handle)) = (&world.crank, state.handle_in_world(world)) else { return };
-        let open = Goal { center_m: handle, aperture_m: crank.handle_width_m + CLEARANCE_M, pinch_n: 0.0 };
-        self.reach(1.0, open);
-        self.wait(0.3);
-        let pinch_n = self.vary(2.0 * self.skill.pinch_n, 0.2);
-        let held = Goal { aperture_m: crank.handle_width_m, pinch_n, ..open };
-        self.reach(0.5, held);
-        self.wait(0.4);
-        let turn = std::f64::consts::TAU;
-        let mut angle = state.crank.angle_rad;
-        for turns in [2.0, 1.25, -1.5, 0.25] {
-            let to_rad = angle + turns * turn;
-            let pull_m = self.rng.random_range(0.0008..0.0016);
-            let movement = Move::Turn {
-                center_m: crank.center_m,
-                radius_m: crank.radius_m,
-                from_rad: angle,
-                to_rad,
-                pull_m,
-                grasp: held,
-            };
-            self.push(1.1 + 1.6 * turns.abs(), movement);
-            angle = to_rad;
-            let (sin, cos) = angle.sin_cos();
-            self.at = Goal { center_m: crank.center_m + Vec2::new(cos, sin) * crank.radius_m, ..held };
-            self.wait(0.3);
-        }
-        self.reach(0.5, Goal { aperture_m: crank.handle_width_m + 2.0 * CLEARANCE_M, pinch_n: 0.0, ..self.at });
     }
 }
