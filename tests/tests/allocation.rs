@@ -1,7 +1,9 @@
 //! The servo's tick allocates nothing: every built-in world, every device, a swap, and copying the state out.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
-use haptics::device::{Device, KeysHeld, MouseTarget, ReplayDevice, ScriptedOperator, Skill, keyboard, mouse, touch};
+use haptics::device::{
+    Device, KeysHeld, Mistake, MouseTarget, ReplayDevice, ScriptedOperator, Skill, keyboard, mouse, touch,
+};
 use haptics::servo::safety::Limits;
 use haptics::servo::{Loop, Swap};
 use haptics::world::{State, World, presets};
@@ -44,8 +46,10 @@ fn operators_that_drop_blocks_and_fetch_them_again() {
         let operator = ScriptedOperator::with_mistakes(&world, &state, Skill::novice(), &[mistake], 3);
         let planned = operator.duration_s();
         let mut servo = servo(&world, Box::new(operator));
+        run(&mut servo, (planned / DT) as usize + 1_000);
+        assert!(!servo.finished(), "the second attempt made the performance longer than {planned} s");
         run(&mut servo, 60_000);
-        assert!(servo.finished() && planned < 60.0, "the plan of {planned} s was made longer and done");
+        assert!(servo.finished());
     }
 }
 
