@@ -67,6 +67,12 @@ pub trait Device: Send {
     /// hold their last force.
     fn make_safe(&mut self);
 
+    /// A second way to zero force, for another thread, while `exchange` does not come back; asked for once, before the first
+    /// `exchange`. Devices that wait for nothing, or guard themselves on a thread of their own, need none.
+    fn guard(&mut self) -> Option<crate::servo::ForceGuard> {
+        None
+    }
+
     /// What the operator sees. Only simulated operators look.
     fn see(&mut self, _world: &World, _state: &State) {}
 

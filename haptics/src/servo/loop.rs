@@ -1,6 +1,8 @@
 //! One tick of the servo as a plain function.
 
+use super::coupling::{Coupling, Proxy};
 use super::passivity::{Observer, control};
+use super::rate::RateReport;
 use super::safety::{Limits, Safety, SafetyFlags};
 use super::timing::Timing;
 use crate::Vec2;
@@ -12,8 +14,10 @@ use crate::world::{Input, State, World, step};
 pub struct TickRecord {
     /// Simulated time, s.
     pub time_s: f64,
-    /// Where the fingers are.
+    /// Where the fingertips are in the world. On a virtual coupling they are the proxies.
     pub input: Input,
+    /// Where the device has the fingers, m in the world; the same as the tips without a virtual coupling.
+    pub device_in_world: [Vec2; 2],
     /// Force of the tips on the environment, N.
     pub tip_force_n: [Vec2; 2],
     /// Force sent to the device, N on the operator's fingers.
@@ -37,6 +41,8 @@ pub struct Snapshot {
     pub tick: TickRecord,
     /// Timing so far (a few times a second).
     pub timing: Timing,
+    /// The virtual coupling that the device needs in this world at this rate; `None`: it renders the world directly.
+    pub coupling: Option<Coupling>,
     /// Why the servo stopped, if it did.
     pub fault: Option<&'static str>,
 }
@@ -58,11 +64,32 @@ impl Swap {
     }
 }
 
+impl Snapshot {
+    /// Before the first tick.
+    pub fn starting(swap: &Swap, rate: RateReport) -> Self {
+        let input = swap.state.input;
+        let tick =
+            TickRecord { input, device_in_world: input.tip_in_world, label: "free-motion", ..TickRecord::default() };
+        Self {
+            state: swap.state.clone(),
+            generation: 0,
+            tick,
+            timing: Timing::starting(rate),
+            coupling: None,
+            fault: None,
+        }
+    }
+}
+
 /// Device, world and safety: everything that a tick touches.
 pub struct Loop {
     current: Box<Swap>,
     device: Box<dyn Device>,
     safety: Safety,
+    proxy: Option<Proxy>,
+    /// The period that the coupling was computed for, s.
+    coupled_for_s: f64,
+    last: TickRecord,
     sent_force_n: [Vec2; 2],
     observer: Observer,
     passivity_control_n_s_m: Option<f64>,
@@ -72,11 +99,21 @@ pub struct Loop {
 impl Loop {
     /// Ready to tick; the fingers start where the state has them.
     pub fn new(current: Box<Swap>, device: Box<dyn Device>, limits: Limits) -> Self {
-        let safety = Safety::new(limits, current.state.input.tip_in_world);
+        let tips = current.state.input;
+        let safety = Safety::new(limits, tips.tip_in_world);
+        let last = TickRecord {
+            input: tips,
+            device_in_world: tips.tip_in_world,
+            label: "free-motion",
+            ..TickRecord::default()
+        };
         Self {
             current,
             device,
             safety,
+            proxy: None,
+            coupled_for_s: 0.0,
+            last,
             sent_force_n: [Vec2::zeros(); 2],
             observer: Observer::default(),
             passivity_control_n_s_m: None,
@@ -92,41 +129,92 @@ impl Loop {
     }
 
     /// Device, world, force: one tick of `dt_s`. Allocates, locks, prints and waits for nothing.
+    ///
+    /// A clock that stands still, runs backwards or is not a number moves nothing and ends in zero force.
     pub fn tick(&mut self, dt_s: f64) -> TickRecord {
+        if !(dt_s > 0.0 && dt_s.is_finite()) {
+            return self.tick_without_time();
+        }
+        if dt_s != self.coupled_for_s {
+            self.couple(dt_s);
+        }
         let Swap { world, state } = &mut *self.current;
         let mut flags = SafetyFlags::default();
         self.device.see(world, state);
         let raw = self.device.exchange(&Command { force_n: self.sent_force_n }, dt_s);
         let sample = self.safety.admit(&raw, dt_s, &mut flags);
-        let input = Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity };
+        let input = match &mut self.proxy {
+            Some(proxy) => proxy.follow(&sample, world, state, dt_s),
+            None => Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity },
+        };
         step(world, state, &input, dt_s);
-        // The operator feels the reaction to what the tips exert.
-        let mut wanted = state.tip_force_n.map(|f| -f);
+        // The operator feels the reaction to what the tips exert, or the coupling that they hang on.
+        let mut wanted = match &self.proxy {
+            Some(proxy) => proxy.force_n(&sample),
+            None => state.tip_force_n.map(|f| -f),
+        };
         if let Some(most) = self.passivity_control_n_s_m {
-            let extra = control(&self.observer, input.tip_velocity, dt_s, most);
+            let extra = control(&self.observer, sample.tip_velocity, dt_s, most);
             for (force, extra) in wanted.iter_mut().zip(extra) {
                 *force += extra;
             }
         }
         self.sent_force_n = self.safety.limit(wanted, dt_s, &mut flags);
-        self.observer.add(input.tip_in_world, self.sent_force_n.map(|f| -f));
-        TickRecord {
+        self.observer.add(sample.tip_in_world, self.sent_force_n.map(|f| -f));
+        self.last = TickRecord {
             time_s: state.time_s,
             input,
+            device_in_world: sample.tip_in_world,
             tip_force_n: state.tip_force_n,
             sent_force_n: self.sent_force_n,
             flags,
             energy_j: self.observer.energy_j(),
             label: crate::world::true_label(world, state),
-        }
+        };
+        self.last
     }
 
-    /// Puts a new world in; returns the old one, to be dropped on another thread. The fingers stay where they are, and the
-    /// safety stage keeps the force from jumping.
+    fn tick_without_time(&mut self) -> TickRecord {
+        self.make_safe();
+        self.safety.interrupted();
+        let flags = SafetyFlags { stale: true, ..SafetyFlags::default() };
+        self.last = TickRecord { flags, sent_force_n: self.sent_force_n, ..self.last };
+        self.last
+    }
+
+    /// The coupling that device, world and period ask for; the tips stay where they are.
+    fn couple(&mut self, period_s: f64) {
+        self.coupled_for_s = period_s;
+        let delay_s = 0.0;
+        let needed = Coupling::needed(self.device.spec(), &self.current.world, period_s, delay_s);
+        let tips = self.current.state.input;
+        self.proxy = needed.map(|coupling| match self.proxy {
+            Some(proxy) => proxy.with_coupling(coupling),
+            None => Proxy::new(coupling, tips),
+        });
+    }
+
+    /// Puts a new world in; returns the old one, to be dropped on another thread. The fingers stay where they are; the old
+    /// force fades and a new one that presses much harder comes up with the start ramp.
     pub fn swap(&mut self, mut next: Box<Swap>) -> Box<Swap> {
         next.state.input = self.current.state.input;
         self.generation += 1;
-        std::mem::replace(&mut self.current, next)
+        let old = std::mem::replace(&mut self.current, next);
+        self.safety.swapped();
+        if self.coupled_for_s > 0.0 {
+            self.couple(self.coupled_for_s);
+        }
+        old
+    }
+
+    /// Says that the loop stood still for longer than the watchdog allows: zero force, then up again softly.
+    pub fn interrupted(&mut self) {
+        self.safety.interrupted();
+    }
+
+    /// The virtual coupling in use; `None`: the device renders the world directly.
+    pub fn coupling(&self) -> Option<Coupling> {
+        self.proxy.map(|proxy| proxy.coupling())
     }
 
     /// Zero force on the device.

@@ -1,22 +1,28 @@
 //! The servo: one thread that reads the device, steps the world and returns the force, a thousand times a second.
 //!
 //! * [`Loop`] is one tick as a plain function: the thread, the headless recorder and the tests all call it.
-//! * [`Servo`] is the thread with its absolute deadlines.
-//! * [`timing`] measures, [`safety`] limits, [`recorder`] keeps every tick.
+//! * [`Servo`] is the thread with its absolute deadlines, and a guard that watches it.
+//! * [`rate`] chooses how often, [`timing`] measures, [`safety`] limits, [`recorder`] keeps every tick.
+//! * [`coupling`] keeps a force device passive in worlds that are stiffer than it can render; [`passivity`] has the limits.
 //!
 //! Newest state out by triple buffer, every tick out by ring, commands in by ring. Worlds are built elsewhere, swapped in, and
 //! dropped elsewhere. Nothing in the tick allocates, locks, prints, waits or panics.
 
 mod clock;
+pub mod coupling;
+mod guard;
 mod r#loop;
 pub mod passivity;
+pub mod rate;
 mod realtime;
 pub mod recorder;
+mod runner;
 pub mod safety;
 mod thread;
 pub mod timing;
 
 pub use clock::Deadlines;
+pub use guard::{FAULT_AFTER_S, ForceGuard};
 pub use r#loop::{Loop, Snapshot, Swap, TickRecord};
 pub use realtime::Privileges;
 pub use thread::{Servo, ServoConfig, ServoError};

@@ -31,10 +31,19 @@ impl Privileges {
 /// Asks for everything, for the calling thread.
 pub fn acquire() -> Privileges {
     // Half of the range: above everything ordinary, below the kernel's own threads.
-    let priority = ThreadPriorityValue::try_from(50_u8).map_or(ThreadPriority::Max, ThreadPriority::Crossplatform);
+    Privileges { fifo: fifo(50), memory_locked: lock_memory_and_sharpen_timers() }
+}
+
+/// Puts the calling thread above the servo, which spins: a guard that waits for its prisoner guards nothing.
+pub fn raise_guard() {
+    // A refusal leaves two ordinary threads, which share the processor.
+    let _ = fifo(60);
+}
+
+fn fifo(priority: u8) -> bool {
+    let priority = ThreadPriorityValue::try_from(priority).map_or(ThreadPriority::Max, ThreadPriority::Crossplatform);
     let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
-    let fifo = set_thread_priority_and_policy(thread_native_id(), priority, policy).is_ok();
-    Privileges { fifo, memory_locked: lock_memory_and_sharpen_timers() }
+    set_thread_priority_and_policy(thread_native_id(), priority, policy).is_ok()
 }
 
 #[cfg(target_os = "linux")]

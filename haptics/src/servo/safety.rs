@@ -22,6 +22,14 @@ impl Default for Limits {
     }
 }
 
+/// Time over which the force of a world that was swapped out goes, s.
+const FADE_S: f64 = 0.05;
+/// A new world that presses harder than the old one by more than this comes up with the start ramp, N.
+const JUMP_N: f64 = 1.0;
+/// No hand is farther away than this, m, nor faster, m/s: such a sample is a fault.
+const FARTHEST_M: f64 = 10.0;
+const FASTEST_M_S: f64 = 100.0;
+
 /// Why the force is not what the world says.
 #[allow(clippy::struct_excessive_bools)] // four independent lights, shown as such
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -30,10 +38,22 @@ pub struct SafetyFlags {
     pub saturated: bool,
     /// A force was slowed by the slew limit.
     pub slewing: bool,
-    /// No fresh sample for longer than the watchdog allows: force is zero.
+    /// No fresh sample for longer than the watchdog allows, or the servo itself stood still as long: force is zero.
     pub stale: bool,
-    /// A sample or force was not a finite number and was refused.
+    /// A sample or force was not a possible number and was refused.
     pub not_finite: bool,
+}
+
+/// How the force of a new world comes in.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Swapping {
+    /// No swap under way.
+    #[default]
+    Done,
+    /// The new world has not said yet how hard it presses.
+    Asked,
+    /// The old force still counts with this share.
+    Fading { old_n: [Vec2; 2], share: f64 },
 }
 
 /// The state of the safety stage.
@@ -44,20 +64,42 @@ pub struct Safety {
     last_force_n: [Vec2; 2],
     last_good: Sample,
     sample_age_s: f64,
+    interrupted: bool,
+    swapping: Swapping,
 }
 
 impl Safety {
     /// Starts at zero force with the fingers at `start`.
     pub fn new(limits: Limits, start: [Vec2; 2]) -> Self {
         let last_good = Sample { tip_in_world: start, tip_velocity: [Vec2::zeros(); 2], fresh: true };
-        Self { limits, ramp: 0.0, last_force_n: [Vec2::zeros(); 2], last_good, sample_age_s: 0.0 }
+        Self {
+            limits,
+            ramp: 0.0,
+            last_force_n: [Vec2::zeros(); 2],
+            last_good,
+            sample_age_s: 0.0,
+            interrupted: false,
+            swapping: Swapping::Done,
+        }
+    }
+
+    /// Says that the world was swapped: the old force fades, and a new one that presses much harder comes up softly.
+    pub fn swapped(&mut self) {
+        self.swapping = Swapping::Asked;
+    }
+
+    /// Says that the servo stood still for longer than the watchdog allows: the next force is zero, then it comes back softly.
+    pub fn interrupted(&mut self) {
+        self.interrupted = true;
     }
 
     /// The sample to simulate with: the given one when it is fresh and finite, else the last good one at rest.
     pub fn admit(&mut self, sample: &Sample, dt_s: f64, flags: &mut SafetyFlags) -> Sample {
-        let finite = sample.tip_in_world.iter().chain(&sample.tip_velocity).all(|v| v.x.is_finite() && v.y.is_finite());
-        flags.not_finite |= !finite;
-        if finite && sample.fresh {
+        // Written so that what is not a number is impossible too.
+        let possible = sample.tip_in_world.iter().all(|v| v.norm() <= FARTHEST_M)
+            && sample.tip_velocity.iter().all(|v| v.norm() <= FASTEST_M_S);
+        flags.not_finite |= !possible;
+        if possible && sample.fresh {
             self.last_good = *sample;
             self.sample_age_s = 0.0;
         } else {
@@ -69,17 +111,20 @@ impl Safety {
 
     /// The force to send: ramped, clamped, slew-limited; zero at once when the samples are stale.
     pub fn limit(&mut self, wanted_n: [Vec2; 2], dt_s: f64, flags: &mut SafetyFlags) -> [Vec2; 2] {
-        if self.sample_age_s > self.limits.watchdog_s {
+        if self.sample_age_s > self.limits.watchdog_s || self.interrupted {
             flags.stale = true;
+            self.interrupted = false;
             self.ramp = 0.0;
+            self.swapping = Swapping::Done;
             self.last_force_n = [Vec2::zeros(); 2];
             return self.last_force_n;
         }
         self.ramp = (self.ramp + dt_s / self.limits.ramp_s.max(dt_s)).min(1.0);
+        let wanted_n = self.blend(wanted_n, dt_s);
         for (last, wanted) in self.last_force_n.iter_mut().zip(wanted_n) {
             let finite = wanted.x.is_finite() && wanted.y.is_finite();
             flags.not_finite |= !finite;
-            let mut force = if finite { wanted * self.ramp } else { Vec2::zeros() };
+            let mut force = if finite { wanted } else { Vec2::zeros() };
             let size = force.norm();
             if size > self.limits.max_force_n {
                 flags.saturated = true;
@@ -94,6 +139,27 @@ impl Safety {
             *last = force;
         }
         self.last_force_n
+    }
+
+    /// The ramped force of the world, with what is left of the one before.
+    fn blend(&mut self, wanted_n: [Vec2; 2], dt_s: f64) -> [Vec2; 2] {
+        if self.swapping == Swapping::Asked {
+            let old_n = self.last_force_n;
+            let jumps = wanted_n.iter().zip(&old_n).any(|(new, old)| new.norm() > old.norm() + JUMP_N);
+            if jumps {
+                self.ramp = 0.0;
+            }
+            self.swapping = Swapping::Fading { old_n, share: 1.0 };
+        }
+        let mut blended = wanted_n.map(|force| force * self.ramp);
+        if let Swapping::Fading { old_n, share } = self.swapping {
+            for (force, old) in blended.iter_mut().zip(old_n) {
+                *force = *force * (1.0 - share) + old * share;
+            }
+            let share = share - dt_s / FADE_S;
+            self.swapping = if share > 0.0 { Swapping::Fading { old_n, share } } else { Swapping::Done };
+        }
+        blended
     }
 
     /// Age of the newest good sample, s.
@@ -166,5 +232,65 @@ mod tests {
         assert!(flags.not_finite);
         let force = safety.limit([Vec2::new(f64::INFINITY, 0.0), Vec2::zeros()], DT, &mut flags);
         assert!(force[0].x.is_finite());
+    }
+
+    /// The forces after a swap from a world that presses with `old_n` to one that presses with `new_n`.
+    fn after_swap(old_n: f64, new_n: f64) -> Vec<f64> {
+        let mut safety = Safety::new(Limits::default(), [Vec2::zeros(); 2]);
+        let mut flags = SafetyFlags::default();
+        let along = |n: f64| [Vec2::new(n, 0.0), Vec2::zeros()];
+        for _ in 0..1_000 {
+            safety.admit(&fresh(), DT, &mut flags);
+            safety.limit(along(old_n), DT, &mut flags);
+        }
+        safety.swapped();
+        (0..1_000)
+            .map(|_| {
+                safety.admit(&fresh(), DT, &mut flags);
+                safety.limit(along(new_n), DT, &mut flags)[0].x
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_swap_fades_the_old_force_and_brings_a_much_harder_one_up_softly() {
+        let softer = after_swap(2.5, 0.5);
+        assert!((softer[0] - 2.5).abs() < 0.1, "no jump: {}", softer[0]);
+        assert!((softer[60] - 0.5).abs() < 1e-9, "and soon there: {}", softer[60]);
+        let harder = after_swap(0.2, 3.0);
+        let steepest = harder.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max);
+        assert!(steepest < 3.0 * DT / 0.5 + 0.2 * DT / FADE_S + 1e-3, "ramped: {steepest} N a tick");
+        assert!((harder[999] - 3.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn an_interruption_is_zero_at_once_and_said() {
+        let mut safety = safety();
+        let mut flags = SafetyFlags::default();
+        for _ in 0..1_000 {
+            safety.admit(&fresh(), DT, &mut flags);
+            safety.limit([Vec2::new(1.0, 0.0); 2], DT, &mut flags);
+        }
+        safety.interrupted();
+        safety.admit(&fresh(), DT, &mut flags);
+        assert_eq!(safety.limit([Vec2::new(1.0, 0.0); 2], DT, &mut flags), [Vec2::zeros(); 2]);
+        assert!(flags.stale);
+        let mut flags = SafetyFlags::default();
+        safety.admit(&fresh(), DT, &mut flags);
+        let next = safety.limit([Vec2::new(1.0, 0.0); 2], DT, &mut flags)[0].x;
+        assert!(!flags.stale && next > 0.0 && next < 0.01, "{next}");
+    }
+
+    #[test]
+    fn impossible_places_and_speeds_are_refused_like_what_is_not_a_number() {
+        for (place, speed) in [(f64::INFINITY, 0.0), (1e6, 0.0), (0.0, 1e4), (0.0, f64::NEG_INFINITY)] {
+            let mut safety = safety();
+            let mut flags = SafetyFlags::default();
+            let mut broken = fresh();
+            (broken.tip_in_world[0].x, broken.tip_velocity[1].y) = (place, speed);
+            let admitted = safety.admit(&broken, DT, &mut flags);
+            assert!(flags.not_finite, "{place} m, {speed} m/s");
+            assert_eq!(admitted.tip_in_world, [Vec2::zeros(); 2]);
+        }
     }
 }

@@ -1,27 +1,33 @@
-//! The servo thread and the handle that the window keeps.
+//! The handle of a running servo: what the window keeps.
 
-use super::clock::Deadlines;
+use super::guard::{Beat, FAULT_AFTER_S, watch};
 use super::r#loop::{Loop, Snapshot, Swap, TickRecord};
-use super::realtime::{Privileges, acquire};
+use super::rate::{RateChoice, RateReport};
+use super::realtime::Privileges;
+use super::runner::Runner;
 use super::safety::Limits;
-use super::timing::{Timing, TimingCollector};
 use crate::device::Device;
 use rtrb::{Consumer, Producer, RingBuffer};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
-use triple_buffer::{Input, Output, triple_buffer};
+use triple_buffer::{Output, triple_buffer};
 
 /// Seconds of ticks that the ring holds before the reader must have fetched them.
 const RING_SECONDS: f64 = 8.0;
+/// A servo that is told to stop gets this long; a device that has not come back by then is left to its guard.
+const FAREWELL: Duration = Duration::from_millis(500);
+
+/// Shown while the servo stands still.
+const STANDSTILL: &str = "The servo stands still: the device does not answer or the machine is overloaded. The force was set \
+                          to zero; check the cable, or choose the device again.";
 
 /// How the servo runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServoConfig {
-    /// Ticks a second, 50 … 8000.
-    pub rate_hz: f64,
+    /// How the rate is chosen.
+    pub rate: RateChoice,
     /// Safety limits.
     pub limits: Limits,
     /// Ask the system for real-time scheduling.
@@ -32,7 +38,14 @@ pub struct ServoConfig {
 
 impl Default for ServoConfig {
     fn default() -> Self {
-        Self { rate_hz: 1000.0, limits: Limits::default(), real_time: true, passivity_control_n_s_m: None }
+        Self { rate: RateChoice::Auto, limits: Limits::default(), real_time: true, passivity_control_n_s_m: None }
+    }
+}
+
+impl ServoConfig {
+    /// A servo at a fixed rate, Hz.
+    pub fn at(rate_hz: f64) -> Self {
+        Self { rate: RateChoice::Fixed(rate_hz), ..Self::default() }
     }
 }
 
@@ -55,30 +68,30 @@ pub struct Servo {
     retired: Consumer<Box<Swap>>,
     stop: Arc<AtomicBool>,
     granted: Arc<AtomicU8>,
+    beat: Arc<Beat>,
     config: ServoConfig,
-    thread: Option<JoinHandle<()>>,
+    threads: Vec<JoinHandle<()>>,
 }
 
 impl Servo {
-    /// Starts the thread on a checked world with a device.
-    pub fn start(swap: Box<Swap>, device: Box<dyn Device>, config: ServoConfig) -> Result<Self, ServoError> {
-        if !(50.0..=8000.0).contains(&config.rate_hz) {
-            return Err(ServoError::Rate(config.rate_hz));
+    /// Starts the thread on a checked world with a device, and a second one that watches it.
+    pub fn start(swap: Box<Swap>, mut device: Box<dyn Device>, config: ServoConfig) -> Result<Self, ServoError> {
+        let most_hz = config.rate.most_hz();
+        if !(50.0..=8000.0).contains(&most_hz) {
+            return Err(ServoError::Rate(most_hz));
         }
-        let first = Snapshot {
-            state: swap.state.clone(),
-            generation: 0,
-            tick: TickRecord { input: swap.state.input, label: "free-motion", ..TickRecord::default() },
-            timing: Timing { period_s: 1.0 / config.rate_hz, ..Timing::default() },
-            fault: None,
-        };
+        let nominal = RateReport { rate_hz: config.rate.nominal_hz(), ..RateReport::default() };
+        let first = Snapshot::starting(&swap, nominal);
         let (snapshot_in, newest) = triple_buffer(&first);
-        let (tick_in, ticks) = RingBuffer::new((config.rate_hz * RING_SECONDS) as usize);
+        let (tick_in, ticks) = RingBuffer::new((most_hz * RING_SECONDS) as usize);
         let (swaps, swap_out) = RingBuffer::new(4);
         let (retired_in, retired) = RingBuffer::new(8);
         let stop = Arc::new(AtomicBool::new(false));
         let granted = Arc::new(AtomicU8::new(0));
+        let beat = Arc::new(Beat::default());
         let limits = Limits { max_force_n: config.limits.max_force_n.min(device.spec().max_force_n), ..config.limits };
+        let guard = device.guard();
+        let scratch = swap.state.clone();
         let runner = Runner {
             body: Loop::new(swap, device, limits).with_passivity_control(config.passivity_control_n_s_m),
             snapshot: snapshot_in,
@@ -87,17 +100,32 @@ impl Servo {
             retired: retired_in,
             stop: Arc::clone(&stop),
             granted: Arc::clone(&granted),
+            beat: Arc::clone(&beat),
             config,
-            timing: TimingCollector::default(),
             summary: first.timing,
+            rate: nominal,
         };
-        let thread = std::thread::Builder::new().name("servo".to_owned()).spawn(move || runner.run())?;
-        Ok(Self { newest, ticks, swaps, retired, stop, granted, config, thread: Some(thread) })
+        let (watched, watchdog_s, real_time) = (Arc::clone(&beat), config.limits.watchdog_s, config.real_time);
+        // The guard first: there is no moment in which a device is driven and nobody watches.
+        let threads = vec![
+            std::thread::Builder::new()
+                .name("servo-guard".to_owned())
+                .spawn(move || watch(&watched, guard, watchdog_s, real_time))?,
+            std::thread::Builder::new().name("servo".to_owned()).spawn(move || runner.run(scratch)).inspect_err(
+                // Nobody else would tell the guard.
+                |_| beat.finish(),
+            )?,
+        ];
+        Ok(Self { newest, ticks, swaps, retired, stop, granted, beat, config, threads })
     }
 
-    /// The newest snapshot; never waits.
+    /// The newest snapshot; never waits. It has a fault while the servo stands still.
     pub fn newest(&mut self) -> &Snapshot {
-        self.newest.read()
+        self.newest.update();
+        if self.beat.standing_still_s() > FAULT_AFTER_S {
+            self.newest.output_buffer_mut().fault = Some(STANDSTILL);
+        }
+        self.newest.output_buffer()
     }
 
     /// All ticks since the last call, oldest first, into `into`. Call it at least every few seconds while recording.
@@ -125,92 +153,32 @@ impl Servo {
         self.config
     }
 
+    /// How often the guard made the device safe because the servo stood still.
+    pub fn guarded(&self) -> u64 {
+        self.beat.guarded()
+    }
+
     /// True while the thread runs.
     pub fn is_running(&self) -> bool {
-        self.thread.as_ref().is_some_and(|t| !t.is_finished())
+        self.threads.last().is_some_and(|t| !t.is_finished())
     }
 }
 
 impl Drop for Servo {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
-        if let Some(thread) = self.thread.take() {
-            // The thread catches its own panics; joining cannot bring one here.
-            let _ = thread.join();
-        }
-    }
-}
-
-struct Runner {
-    body: Loop,
-    snapshot: Input<Snapshot>,
-    ticks: Producer<TickRecord>,
-    swaps: Consumer<Box<Swap>>,
-    retired: Producer<Box<Swap>>,
-    stop: Arc<AtomicBool>,
-    granted: Arc<AtomicU8>,
-    config: ServoConfig,
-    timing: TimingCollector,
-    summary: Timing,
-}
-
-impl Runner {
-    fn run(mut self) {
-        if self.config.real_time {
-            let granted = acquire();
-            let bits = u8::from(granted.fifo) | (u8::from(granted.memory_locked) << 1);
-            self.granted.store(bits, Ordering::Relaxed);
-        }
-        // A panic in the tick would be a bug; it must still end in zero force and be said.
-        let ended = catch_unwind(AssertUnwindSafe(|| self.tick_until_stopped()));
-        self.body.make_safe();
-        if ended.is_err() {
-            self.publish(
-                TickRecord::default(),
-                Some("The servo met an internal fault and stopped; the force is zero."),
-            );
-        }
-    }
-
-    fn tick_until_stopped(&mut self) {
-        let period_s = 1.0 / self.config.rate_hz;
-        let mut deadlines = Deadlines::new(Duration::from_secs_f64(period_s));
-        let mut count = 0_u64;
-        while !self.stop.load(Ordering::Relaxed) {
-            let (late_s, missed) = deadlines.wait();
-            let started = Instant::now();
-            self.take_swap();
-            let tick = self.body.tick(period_s);
-            // A full ring means that nobody records: the newest ticks are dropped, the servo goes on.
-            let _ = self.ticks.push(tick);
-            self.timing.add(late_s, started.elapsed().as_secs_f64(), missed);
-            count += 1;
-            if count.is_multiple_of((0.25 * self.config.rate_hz) as u64) {
-                self.summary = self.timing.summary(period_s, self.body.sample_age_s());
+        let asked = Instant::now();
+        for thread in self.threads.drain(..).rev() {
+            while !thread.is_finished() && asked.elapsed() < FAREWELL {
+                // A stop is rare and waits for another thread's last tick.
+                std::thread::sleep(Duration::from_millis(1));
             }
-            self.publish(tick, None);
+            if thread.is_finished() {
+                // The threads catch their own panics; joining cannot bring one here.
+                let _ = thread.join();
+            }
+            // Else the device's driver hangs: the guard has made it safe and stays until the driver comes back.
         }
-    }
-
-    fn take_swap(&mut self) {
-        // Only when the old world can be handed back for dropping elsewhere.
-        if self.retired.slots() == 0 {
-            return;
-        }
-        if let Ok(next) = self.swaps.pop() {
-            let old = self.body.swap(next);
-            let _ = self.retired.push(old);
-        }
-    }
-
-    fn publish(&mut self, tick: TickRecord, fault: Option<&'static str>) {
-        let buffer = self.snapshot.input_buffer_mut();
-        buffer.state.copy_from(self.body.state());
-        buffer.generation = self.body.generation();
-        buffer.tick = tick;
-        buffer.timing = self.summary;
-        buffer.fault = fault;
-        self.snapshot.publish();
     }
 }
 
@@ -224,7 +192,7 @@ mod tests {
         let world = presets::stacking();
         let state = State::resting(&world);
         let device = ScriptedOperator::new(&world, &state, Skill::default(), 1);
-        let config = ServoConfig { rate_hz, ..ServoConfig::default() };
+        let config = ServoConfig::at(rate_hz);
         Servo::start(Swap::new(world), Box::new(device), config).expect("a thread")
     }
 
@@ -293,7 +261,7 @@ mod tests {
     fn impossible_rates_are_refused() {
         let world = presets::table();
         let device = ScriptedOperator::new(&world, &State::resting(&world), Skill::default(), 0);
-        let config = ServoConfig { rate_hz: 0.0, ..ServoConfig::default() };
+        let config = ServoConfig::at(0.0);
         assert!(matches!(Servo::start(Swap::new(world), Box::new(device), config), Err(ServoError::Rate(_))));
     }
 }

@@ -1,5 +1,7 @@
 //! Timing statistics without allocation: logarithmic histograms and their percentiles.
 
+use super::rate::RateReport;
+
 /// Buckets per factor of ten.
 const PER_DECADE: usize = 40;
 /// 10 ns … 1 s.
@@ -83,48 +85,122 @@ pub struct Percentiles {
     pub max_s: f64,
 }
 
+/// A tick that starts so late, or works so long, is a stall of its own and named, s.
+pub const STALL_S: f64 = 1e-3;
+
 /// What the servo knows about its own timing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Timing {
-    /// Ticks since the start.
+    /// Ticks since the start, or since the rate changed.
     pub ticks: u64,
     /// Wanted period, s.
     pub period_s: f64,
+    /// The rate and why it is that.
+    pub rate: RateReport,
+    /// Time from the start of one tick to the start of the next.
+    pub period: Percentiles,
     /// How late the ticks start after their deadline.
     pub lateness: Percentiles,
     /// How long reading, stepping and writing take.
     pub compute: Percentiles,
+    /// How old the sample is that a force was computed from, at the moment when the device gets the force.
+    pub force_age: Percentiles,
     /// Deadlines missed by more than a period: the schedule was re-anchored, no tick was made up for.
     pub missed: u64,
+    /// Single ticks that came or took longer than [`STALL_S`].
+    pub stalls: u64,
+    /// The longest of them, s.
+    pub longest_stall_s: f64,
     /// Age of the newest device sample, s.
+    pub sample_age_s: f64,
+}
+
+impl Timing {
+    /// Before the first tick at a rate.
+    pub fn starting(rate: RateReport) -> Self {
+        Self { period_s: 1.0 / rate.rate_hz, rate, ..Self::default() }
+    }
+
+    /// One sentence about the stalls; `None` without any.
+    pub fn stall_sentence(&self) -> Option<String> {
+        if self.stalls == 0 {
+            return None;
+        }
+        let longest_ms = 1e3 * self.longest_stall_s;
+        let which = if self.stalls == 1 {
+            format!("A single stall of {longest_ms:.1} ms")
+        } else {
+            format!("{} single stalls of up to {longest_ms:.1} ms", self.stalls)
+        };
+        let why = if self.compute.p50_s > 0.5 * self.period_s {
+            "this world needs more than half of every period"
+        } else {
+            "the machine took the processor away"
+        };
+        Some(format!("{which}: {why}."))
+    }
+}
+
+/// What one tick took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TickTiming {
+    /// Start after the deadline, s.
+    pub lateness_s: f64,
+    /// Time since the start of the tick before, s; absent for the first.
+    pub interval_s: Option<f64>,
+    /// Reading, stepping, writing, s.
+    pub compute_s: f64,
+    /// Whether the deadline was missed by more than a period.
+    pub missed: bool,
+    /// Age of the newest sample when its force was computed, s.
     pub sample_age_s: f64,
 }
 
 /// Collects the timing; summaries are made a few times a second, not at every tick.
 #[derive(Clone, Debug, Default)]
 pub struct TimingCollector {
+    period: Histogram,
     lateness: Histogram,
     compute: Histogram,
+    force_age: Histogram,
     missed: u64,
+    stalls: u64,
+    longest_stall_s: f64,
+    sample_age_s: f64,
 }
 
 impl TimingCollector {
     /// Counts one tick.
-    pub fn add(&mut self, lateness_s: f64, compute_s: f64, missed: bool) {
-        self.lateness.add(lateness_s);
-        self.compute.add(compute_s);
-        self.missed += u64::from(missed);
+    pub fn add(&mut self, tick: &TickTiming) {
+        self.lateness.add(tick.lateness_s);
+        self.compute.add(tick.compute_s);
+        if let Some(interval_s) = tick.interval_s {
+            self.period.add(interval_s);
+            // The force of the tick before goes out in this one.
+            self.force_age.add(interval_s + self.sample_age_s);
+        }
+        self.sample_age_s = tick.sample_age_s;
+        self.missed += u64::from(tick.missed);
+        let longest = tick.lateness_s.max(tick.compute_s);
+        if longest > STALL_S {
+            self.stalls += 1;
+            self.longest_stall_s = self.longest_stall_s.max(longest);
+        }
     }
 
     /// The figures so far.
-    pub fn summary(&self, period_s: f64, sample_age_s: f64) -> Timing {
+    pub fn summary(&self, rate: RateReport) -> Timing {
         Timing {
             ticks: self.lateness.len(),
-            period_s,
+            period: self.period.summary(),
             lateness: self.lateness.summary(),
             compute: self.compute.summary(),
+            force_age: self.force_age.summary(),
             missed: self.missed,
-            sample_age_s,
+            stalls: self.stalls,
+            longest_stall_s: self.longest_stall_s,
+            sample_age_s: self.sample_age_s,
+            ..Timing::starting(rate)
         }
     }
 }
@@ -154,5 +230,31 @@ mod tests {
         }
         assert_eq!(histogram.len(), 4);
         assert_eq!(histogram.summary().max_s, 5.0);
+    }
+
+    #[test]
+    fn stalls_are_named_and_the_age_of_a_force_counts_from_its_sample() {
+        let mut collector = TimingCollector::default();
+        let usual = TickTiming { lateness_s: 5e-6, compute_s: 4e-6, interval_s: Some(1e-3), ..TickTiming::default() };
+        collector.add(&TickTiming { interval_s: None, ..usual });
+        for _ in 0..100 {
+            collector.add(&usual);
+        }
+        let rate = RateReport { rate_hz: 1000.0, ..RateReport::default() };
+        let calm = collector.summary(rate);
+        assert_eq!((calm.ticks, calm.stalls, calm.stall_sentence()), (101, 0, None));
+        assert!((calm.force_age.p50_s - 1e-3).abs() < 1e-9 && (calm.period.max_s - 1e-3).abs() < 1e-12);
+
+        let late = TickTiming { lateness_s: 0.012, missed: true, interval_s: Some(0.013), ..usual };
+        collector.add(&late);
+        let stalled = collector.summary(rate);
+        assert_eq!(
+            stalled.stall_sentence().as_deref(),
+            Some("A single stall of 12.0 ms: the machine took the processor away.")
+        );
+        assert_eq!(stalled.missed, 1);
+        collector.add(&TickTiming { sample_age_s: 0.004, ..usual });
+        collector.add(&usual);
+        assert!(collector.summary(rate).force_age.max_s > 0.0129);
     }
 }

@@ -166,7 +166,8 @@ fn a_stalled_board_makes_the_hand_stale_and_the_servo_safe() {
     let mut felt = false;
     assert!(until(|| {
         let tick = servo.tick(1e-3);
-        felt |= tick.sent_force_n[0].norm() > 0.5;
+        // Through the coupling that a board with so little damping needs: 2 mm of 150 N/m.
+        felt |= tick.sent_force_n[0].norm() > 0.2;
         if !tick.flags.stale {
             std::thread::sleep(Duration::from_micros(500));
         }

@@ -1,0 +1,269 @@
+//! Which rate the servo runs at: measured at the start, watched while it runs, said in one sentence.
+//!
+//! Before the first tick the servo keeps the deadlines of the fast rate for [`TEST_S`], with the world's own step as the load
+//! and no device. The machine holds the rate when 99 of 100 ticks start within [`LATE_SHARE`] of a period after their
+//! deadline, the step takes no more than [`COMPUTE_SHARE`] of a period in 99 of 100 ticks, and no more than [`MISSED_SHARE`]
+//! of the deadlines are missed altogether. Single long stalls do not decide: they hurt a slow servo just as much.
+
+use super::clock::Deadlines;
+use super::timing::{Histogram, Timing};
+use crate::world::{State, World, step};
+use std::time::{Duration, Instant};
+
+/// The rate wanted where the machine holds it, Hz.
+pub const FAST_HZ: f64 = 4000.0;
+/// The rate that is run anywhere, Hz.
+pub const SAFE_HZ: f64 = 1000.0;
+/// Length of the self-test, s.
+pub const TEST_S: f64 = 0.4;
+/// Share of a period that 99 of 100 ticks may be late by.
+pub const LATE_SHARE: f64 = 0.4;
+/// Share of a period that 99 of 100 steps may take.
+pub const COMPUTE_SHARE: f64 = 0.5;
+/// Share of the deadlines that may be missed.
+pub const MISSED_SHARE: f64 = 0.005;
+
+/// How long a window of the watch at run time is, s.
+const WINDOW_S: f64 = 1.0;
+/// Share of missed deadlines that makes a window bad.
+const BAD_SHARE: f64 = 0.05;
+/// Bad windows in a row that are believed.
+const BAD_WINDOWS: u32 = 3;
+
+/// How the rate is chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum RateChoice {
+    /// [`FAST_HZ`] where a self-test at the start shows that the machine holds it, else [`SAFE_HZ`].
+    #[default]
+    Auto,
+    /// This rate, Hz, 50 … 8000.
+    Fixed(f64),
+}
+
+impl RateChoice {
+    /// The rate before anything was measured, Hz: loops that run without a clock of their own stay at it.
+    pub fn nominal_hz(self) -> f64 {
+        match self {
+            Self::Auto => SAFE_HZ,
+            Self::Fixed(hz) => hz,
+        }
+    }
+
+    /// The highest rate that may come of it, Hz.
+    pub fn most_hz(self) -> f64 {
+        match self {
+            Self::Auto => FAST_HZ,
+            Self::Fixed(hz) => hz,
+        }
+    }
+}
+
+/// What the self-test found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Trial {
+    /// Rate that was tried, Hz.
+    pub rate_hz: f64,
+    /// 99 of 100 ticks started within this time after their deadline, s.
+    pub late_p99_s: f64,
+    /// 99 of 100 steps took no longer, s.
+    pub compute_p99_s: f64,
+    /// Share of the deadlines that were missed by more than a period.
+    pub missed_share: f64,
+}
+
+impl Trial {
+    /// Whether the machine holds the rate.
+    pub fn holds(&self) -> bool {
+        self.late_p99_s <= LATE_SHARE / self.rate_hz
+            && self.compute_p99_s <= COMPUTE_SHARE / self.rate_hz
+            && self.missed_share <= MISSED_SHARE
+    }
+}
+
+/// Why the servo runs at its rate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum RateReason {
+    /// It was asked for.
+    #[default]
+    Fixed,
+    /// The self-test decided.
+    Measured(Trial),
+    /// Too many deadlines were missed while it ran at a higher rate.
+    FellBack {
+        /// Rate before, Hz.
+        from_hz: f64,
+        /// Share of the deadlines that were missed in the last window.
+        missed_share: f64,
+    },
+}
+
+/// The rate and how it came about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct RateReport {
+    /// Ticks a second.
+    pub rate_hz: f64,
+    /// Why.
+    pub reason: RateReason,
+    /// True when the machine does not hold even this rate.
+    pub overloaded: bool,
+}
+
+impl RateReport {
+    /// The choice and its reason in one sentence for people, and a second one when the machine does not keep up.
+    pub fn sentence(&self) -> String {
+        let micro = |seconds: f64| seconds * 1e6;
+        let hz = self.rate_hz;
+        let mut text = match self.reason {
+            RateReason::Fixed => format!("{hz:.0} Hz, as asked for."),
+            RateReason::Measured(t) => format!(
+                "{hz:.0} Hz: in a self-test at {:.0} Hz 99 of 100 ticks were late by less than {:.0} µs, worked for less than \
+                 {:.0} µs, and {:.1} % of the deadlines were missed.",
+                t.rate_hz,
+                micro(t.late_p99_s),
+                micro(t.compute_p99_s),
+                100.0 * t.missed_share
+            ),
+            RateReason::FellBack { from_hz, missed_share } => format!(
+                "{hz:.0} Hz: it had begun at {from_hz:.0} Hz and missed {:.0} % of the deadlines there.",
+                100.0 * missed_share
+            ),
+        };
+        if self.overloaded {
+            text.push_str(" The machine does not hold this rate; close other programs or choose a lower one.");
+        }
+        text
+    }
+}
+
+/// Tries the fast rate with the world's step as the load. Runs on the servo's thread before its first tick; allocates nothing.
+pub(super) fn choose(choice: RateChoice, world: &World, scratch: &mut State) -> RateReport {
+    match choice {
+        RateChoice::Fixed(rate_hz) => RateReport { rate_hz, ..RateReport::default() },
+        RateChoice::Auto => {
+            let trial = measure(FAST_HZ, world, scratch);
+            let rate_hz = if trial.holds() { FAST_HZ } else { SAFE_HZ };
+            RateReport { rate_hz, reason: RateReason::Measured(trial), overloaded: false }
+        }
+    }
+}
+
+fn measure(rate_hz: f64, world: &World, scratch: &mut State) -> Trial {
+    let period_s = 1.0 / rate_hz;
+    let mut deadlines = Deadlines::new(Duration::from_secs_f64(period_s));
+    let (mut lateness, mut compute) = (Histogram::default(), Histogram::default());
+    let ticks = (TEST_S * rate_hz) as u32;
+    let mut missed = 0_u32;
+    let begun = Instant::now();
+    let mut done = 0_u32;
+    // On a machine that misses everything the test still ends in time.
+    while done < ticks && begun.elapsed().as_secs_f64() < 2.0 * TEST_S {
+        let (late_s, overrun) = deadlines.wait();
+        let started = Instant::now();
+        let input = scratch.input;
+        step(world, scratch, &input, period_s);
+        lateness.add(late_s);
+        compute.add(started.elapsed().as_secs_f64());
+        missed += u32::from(overrun);
+        done += 1;
+    }
+    Trial {
+        rate_hz,
+        late_p99_s: lateness.percentile_s(0.99),
+        compute_p99_s: compute.percentile_s(0.99),
+        missed_share: f64::from(missed) / f64::from(done.max(1)),
+    }
+}
+
+/// Watches the missed deadlines of a running servo.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Watch {
+    ticks: u32,
+    missed: u32,
+    bad: u32,
+}
+
+impl Watch {
+    /// Counts one tick; the share of missed deadlines when there were too many for [`BAD_WINDOWS`] windows in a row.
+    pub fn add(&mut self, missed: bool, rate_hz: f64) -> Option<f64> {
+        self.ticks += 1;
+        self.missed += u32::from(missed);
+        if f64::from(self.ticks) < WINDOW_S * rate_hz {
+            return None;
+        }
+        let share = f64::from(self.missed) / f64::from(self.ticks);
+        self.bad = if share > BAD_SHARE { self.bad + 1 } else { 0 };
+        (self.ticks, self.missed) = (0, 0);
+        if self.bad < BAD_WINDOWS {
+            return None;
+        }
+        self.bad = 0;
+        Some(share)
+    }
+}
+
+/// What follows from too many misses: down to [`SAFE_HZ`] where the rate was the servo's own choice, else only said.
+pub(super) fn degrade(choice: RateChoice, report: RateReport, missed_share: f64) -> RateReport {
+    if choice == RateChoice::Auto && report.rate_hz > SAFE_HZ {
+        let reason = RateReason::FellBack { from_hz: report.rate_hz, missed_share };
+        return RateReport { rate_hz: SAFE_HZ, reason, overloaded: false };
+    }
+    RateReport { overloaded: true, ..report }
+}
+
+/// Whether the timing so far is what the rate needs: for verdicts after a run.
+pub fn held(timing: &Timing) -> bool {
+    let period_s = timing.period_s;
+    timing.lateness.p99_s <= LATE_SHARE * period_s
+        && timing.compute.p99_s <= COMPUTE_SHARE * period_s
+        && timing.missed as f64 <= MISSED_SHARE * timing.ticks.max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::presets;
+
+    #[test]
+    fn the_criterion_is_what_it_says() {
+        let good = Trial { rate_hz: 4000.0, late_p99_s: 90e-6, compute_p99_s: 20e-6, missed_share: 0.004 };
+        assert!(good.holds());
+        assert!(!Trial { late_p99_s: 110e-6, ..good }.holds());
+        assert!(!Trial { compute_p99_s: 130e-6, ..good }.holds());
+        assert!(!Trial { missed_share: 0.01, ..good }.holds());
+    }
+
+    #[test]
+    fn a_self_test_measures_and_a_fixed_rate_is_not_tested() {
+        let world = presets::stacking();
+        let mut state = State::resting(&world);
+        let report = choose(RateChoice::Auto, &world, &mut state);
+        let RateReason::Measured(trial) = report.reason else { panic!("not measured: {report:?}") };
+        assert_eq!(report.rate_hz == FAST_HZ, trial.holds());
+        assert!(trial.late_p99_s > 0.0 && trial.compute_p99_s > 0.0 && state.tick > 100);
+        assert!(report.sentence().contains("self-test at 4000 Hz"), "{}", report.sentence());
+        let fixed = choose(RateChoice::Fixed(500.0), &world, &mut state);
+        assert_eq!(fixed.sentence(), "500 Hz, as asked for.");
+    }
+
+    #[test]
+    fn many_misses_over_seconds_lower_a_chosen_rate_and_only_blame_a_fixed_one() {
+        let mut watch = Watch::default();
+        let mut verdicts = Vec::new();
+        // A bad second, a good one, then four bad ones.
+        for tick in 0..6 * 4000_u32 {
+            let bad = !(4000..8000).contains(&tick);
+            verdicts.extend(watch.add(bad && tick.is_multiple_of(10), 4000.0).map(|share| (tick, share)));
+        }
+        assert_eq!(verdicts.len(), 1, "{verdicts:?}");
+        let (tick, share) = verdicts[0];
+        assert!(tick == 5 * 4000 - 1 && (share - 0.1).abs() < 1e-9, "{verdicts:?}");
+        let fast = RateReport { rate_hz: FAST_HZ, ..RateReport::default() };
+        let slower = degrade(RateChoice::Auto, fast, share);
+        assert_eq!(slower.rate_hz, SAFE_HZ);
+        assert!(slower.sentence().contains("begun at 4000 Hz and missed 10 %"), "{}", slower.sentence());
+        assert!(degrade(RateChoice::Auto, slower, share).overloaded, "there is nothing below");
+        let fixed = degrade(RateChoice::Fixed(4000.0), fast, share);
+        assert!(fixed.rate_hz == FAST_HZ && fixed.sentence().contains("does not hold"), "{}", fixed.sentence());
+    }
+}
