@@ -84,7 +84,7 @@ impl Test {
         let world = presets::stacking();
         let device = self.device(&world)?;
         let spec = device.spec().clone();
-        let config = ServoConfig { rate_hz: self.rate, ..ServoConfig::default() };
+        let config = ServoConfig::at(self.rate);
         let mut servo = Servo::start(Swap::new(world), device, config)?;
         let mut ticks = Vec::new();
         let begun = Instant::now();

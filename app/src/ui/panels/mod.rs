@@ -7,6 +7,7 @@ pub mod results;
 pub mod scene;
 pub mod segments;
 pub mod trainer_side;
+pub mod trainer_timing;
 pub mod trainer_view;
 pub mod transport;
 

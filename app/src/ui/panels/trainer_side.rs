@@ -7,9 +7,8 @@ use crate::ui::jobs::Purpose;
 use crate::ui::session::{Session, Workspace};
 use crate::ui::theme::{self, palette, role, space};
 use crate::ui::trainer::{History, Operator, Trainer, WorldChoice};
-use crate::ui::widgets::{card, card_with_head, compact, fact, gauge, light, plain_card, primary_button, segmented};
+use crate::ui::widgets::{card, card_with_head, compact, gauge, light, plain_card, primary_button, segmented};
 use egui::{Align, Layout, Pos2, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
-use haptics::servo::timing::Percentiles;
 use render::ColorRole;
 
 /// Seconds that the running curve shows.
@@ -31,7 +30,7 @@ impl Panel for TrainerSide {
             operator(ui, session);
             plain_card(ui, "Recording", |ui| recording(ui, session));
             forces(ui, &session.trainer);
-            timing(ui, &session.trainer);
+            super::trainer_timing::timing(ui, &session.trainer);
         });
     }
 }
@@ -227,43 +226,4 @@ fn strip(ui: &mut Ui, history: &History, limit: f64) {
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(theme::caption(ui, "last 8 s")));
     });
-}
-
-fn timing(ui: &mut Ui, trainer: &Trainer) {
-    let Some((snapshot, _)) = trainer.scene() else { return };
-    let timing = snapshot.timing;
-    // A passive world takes energy in and never gives any out: below zero the controller would have to act.
-    let energy = format::number(snapshot.tick.energy_j * 1e3, 1);
-    let rate = format!("{} Hz", format::number(trainer.config().rate_hz, 0));
-    card(
-        ui,
-        "Timing",
-        |ui| drop(ui.label(theme::caption(ui, rate))),
-        |ui| {
-            ui.spacing_mut().interact_size.y = 15.0;
-            egui::Grid::new("timing").num_columns(5).min_col_width(46.0).spacing(vec2(8.0, 3.0)).show(ui, |ui| {
-                for text in ["", "p50", "p99", "p99.9", "max"] {
-                    ui.label(theme::caption(ui, text));
-                }
-                ui.end_row();
-                percentiles(ui, "Lateness", &timing.lateness);
-                percentiles(ui, "Compute", &timing.compute);
-            });
-            ui.add_space(space::XS);
-            fact(ui, "Missed deadlines", timing.missed.to_string());
-            fact(ui, "Age of the newest sample", format::short_time(timing.sample_age_s));
-            fact(ui, "Energy taken in", format!("{energy} mJ"));
-            if let Some(privileges) = trainer.privileges() {
-                ui.label(theme::caption(ui, privileges.sentence()));
-            }
-        },
-    );
-}
-
-fn percentiles(ui: &mut Ui, label: &str, p: &Percentiles) {
-    ui.label(theme::caption(ui, label));
-    for seconds in [p.p50_s, p.p99_s, p.p999_s, p.max_s] {
-        ui.label(RichText::new(format::short_time(seconds)).size(11.5));
-    }
-    ui.end_row();
 }

@@ -1,8 +1,8 @@
 //! The servo on its thread, or the same loop stepped by hand for tests and pictures.
 
 use haptics::device::Device;
+use haptics::servo::rate::RateReport;
 use haptics::servo::safety::Limits;
-use haptics::servo::timing::Timing;
 use haptics::servo::{Loop, Privileges, Servo, ServoConfig, Snapshot, Swap, TickRecord};
 
 /// Where ticks come from.
@@ -31,11 +31,10 @@ impl Engine {
 
     /// Makes a loop that waits to be stepped.
     pub fn inline(swap: Box<Swap>, device: Box<dyn Device>, config: ServoConfig) -> Self {
-        let period_s = 1.0 / config.rate_hz;
         let limits = Limits { max_force_n: config.limits.max_force_n.min(device.spec().max_force_n), ..config.limits };
-        let tick = TickRecord { input: swap.state.input, label: "free-motion", ..TickRecord::default() };
-        let timing = Timing { period_s, ..Timing::default() };
-        let snapshot = Snapshot { state: swap.state.clone(), generation: 0, tick, timing, fault: None };
+        // Without a clock of its own there is nothing to measure: always the nominal rate, so that runs can be repeated.
+        let rate = RateReport { rate_hz: config.rate.nominal_hz(), ..RateReport::default() };
+        let snapshot = Snapshot::starting(&swap, rate);
         let body = Loop::new(swap, device, limits);
         Self::Inline(Box::new(Inline { body, config, ticks: Vec::new(), snapshot, owed_s: 0.0 }))
     }
@@ -94,7 +93,7 @@ impl Engine {
 
 impl Inline {
     fn advance(&mut self, seconds: f64) {
-        let period_s = 1.0 / self.config.rate_hz;
+        let period_s = self.snapshot.timing.period_s;
         self.owed_s += seconds;
         while self.owed_s >= period_s {
             self.owed_s -= period_s;
@@ -109,6 +108,7 @@ impl Inline {
     fn publish(&mut self) {
         self.snapshot.state.copy_from(self.body.state());
         self.snapshot.generation = self.body.generation();
+        self.snapshot.coupling = self.body.coupling();
         self.snapshot.timing.sample_age_s = self.body.sample_age_s();
     }
 }

@@ -11,12 +11,15 @@ pub use pinch::Pinch;
 use haptics::device::{Device, MouseHandle, MouseTarget, ScriptedOperator, Skill, mouse};
 use haptics::recording::Recording;
 use haptics::servo::recorder::{SensorModel, to_recording};
+use haptics::servo::timing::Timing;
 use haptics::servo::{Privileges, ServoConfig, Snapshot, Swap, TickRecord};
 use haptics::world::{State, World, presets};
 use std::sync::Arc;
 
-/// Longest recording, s: ten minutes at a kilohertz are 100 MB of ticks.
+/// Longest recording, s.
 const LONGEST_S: f64 = 600.0;
+/// Most ticks of a recording, about 300 MB of them: ten minutes at a kilohertz, five at four.
+const MOST_TICKS: usize = 1_200_000;
 
 /// Who moves the fingers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -203,6 +206,7 @@ impl Trainer {
                 kept.generation = snapshot.generation;
                 kept.tick = snapshot.tick;
                 kept.timing = snapshot.timing;
+                kept.coupling = snapshot.coupling;
                 kept.fault = snapshot.fault;
             }
             None => self.newest = Some(snapshot.clone()),
@@ -210,7 +214,7 @@ impl Trainer {
         if let (Some(handle), Some(newest)) = (&mut self.handle, &self.newest) {
             handle.set(self.pinch.follow(&newest.tick, frame_s));
         }
-        if self.recorded_s() > LONGEST_S {
+        if self.recorded_s() > LONGEST_S || self.recorded.as_ref().is_some_and(|ticks| ticks.len() > MOST_TICKS) {
             self.stop_recording();
         }
     }
@@ -285,12 +289,20 @@ impl Trainer {
         for tick in &mut ticks {
             tick.time_s -= start_s;
         }
-        let (_, world) = self.scene()?;
-        let world = Arc::clone(world);
+        let (snapshot, world) = self.scene()?;
+        let (world, servo) = (Arc::clone(world), servo_facts(&snapshot.timing, self.privileges()));
         self.recordings_made += 1;
         let name = format!("{} {}", world.name, self.recordings_made);
-        Some(to_recording(&name, &world, &ticks, 1, &SensorModel::TYPICAL, self.recordings_made as u64))
+        let seed = self.recordings_made as u64;
+        let mut recording = to_recording(&name, &world, &ticks, 1, &SensorModel::TYPICAL, seed);
+        recording.meta.other.insert("servo".to_owned(), servo);
+        Some(recording)
     }
+}
+
+/// How the servo kept its time, for the sidecar of a recording.
+fn servo_facts(timing: &Timing, privileges: Option<Privileges>) -> serde_json::Value {
+    serde_json::json!({ "why": timing.rate.sentence(), "timing": timing, "privileges": privileges })
 }
 
 #[cfg(test)]

@@ -98,6 +98,9 @@ fn a_recording_starts_at_zero_and_can_be_fitted() {
     }
     let recording = trainer.stop_recording().expect("a recording");
     assert_eq!(recording.time_s.as_ref().map(|t| t[0]), Some(0.0));
+    let servo = recording.meta.other.get("servo").expect("how the servo kept its time");
+    assert_eq!(servo["timing"]["rate"]["rate_hz"], 1000.0);
+    assert!(servo["timing"]["force_age"]["p999_s"].is_number() && servo["why"].is_string());
     let analysis = estimator::pipeline::analyse(&[recording], &estimator::pipeline::Options::default()).expect("a fit");
     let weight = analysis.fit.value("block-1", "weight_N").expect("carried");
     assert!((weight - 0.343).abs() < 0.02, "{weight}");

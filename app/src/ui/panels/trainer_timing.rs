@@ -1,0 +1,79 @@
+//! How well the servo keeps its time, in numbers.
+
+use crate::ui::format;
+use crate::ui::theme::{self, palette, space};
+use crate::ui::trainer::Trainer;
+use crate::ui::widgets::{card, fact};
+use egui::{RichText, Ui, vec2};
+use haptics::servo::Snapshot;
+use haptics::servo::coupling::Coupling;
+use haptics::servo::timing::Percentiles;
+
+/// The card beside the trainer's picture.
+pub fn timing(ui: &mut Ui, trainer: &Trainer) {
+    let Some((snapshot, _)) = trainer.scene() else { return };
+    let timing = &snapshot.timing;
+    let rate = format!("{} Hz", format::number(timing.rate.rate_hz, 0));
+    card(
+        ui,
+        "Timing",
+        |ui| drop(ui.label(theme::caption(ui, rate)).on_hover_text(timing.rate.sentence())),
+        |ui| {
+            ui.spacing_mut().interact_size.y = 15.0;
+            egui::Grid::new("timing").num_columns(5).min_col_width(46.0).spacing(vec2(8.0, 3.0)).show(ui, |ui| {
+                for text in ["", "p50", "p99", "p99.9", "max"] {
+                    ui.label(theme::caption(ui, text));
+                }
+                ui.end_row();
+                percentiles(ui, "Period", &timing.period);
+                percentiles(ui, "Lateness", &timing.lateness);
+                percentiles(ui, "Compute", &timing.compute);
+                percentiles(ui, "Force age", &timing.force_age);
+            });
+            ui.add_space(space::XS);
+            facts(ui, snapshot);
+            sentences(ui, trainer, snapshot);
+        },
+    );
+}
+
+fn facts(ui: &mut Ui, snapshot: &Snapshot) {
+    let timing = &snapshot.timing;
+    fact(ui, "Missed deadlines", format!("{} of {} ticks", timing.missed, timing.ticks));
+    fact(ui, "Age of the newest sample", format::short_time(timing.sample_age_s));
+    // A passive world takes energy in and never gives any out: below zero the controller would have to act.
+    fact(ui, "Energy taken in", format!("{} mJ", format::number(snapshot.tick.energy_j * 1e3, 1)));
+}
+
+fn sentences(ui: &mut Ui, trainer: &Trainer, snapshot: &Snapshot) {
+    let p = palette(ui);
+    let timing = &snapshot.timing;
+    ui.add_space(space::XS);
+    let color = if timing.rate.overloaded { p.danger } else { p.secondary };
+    ui.label(RichText::new(timing.rate.sentence()).size(11.5).color(color));
+    if let Some(stalls) = timing.stall_sentence() {
+        ui.label(theme::caption(ui, stalls));
+    }
+    if let Some(coupling) = &snapshot.coupling {
+        ui.label(theme::caption(ui, coupling_sentence(coupling)));
+    }
+    if let Some(privileges) = trainer.privileges() {
+        ui.label(theme::caption(ui, privileges.sentence()));
+    }
+}
+
+/// What the operator feels through a virtual coupling.
+pub fn coupling_sentence(coupling: &Coupling) -> String {
+    format!(
+        "The device feels the world through a spring of {} N/m: the stiffest that stays passive on it at this rate.",
+        format::number(coupling.stiffness_n_m, 0)
+    )
+}
+
+fn percentiles(ui: &mut Ui, label: &str, p: &Percentiles) {
+    ui.label(theme::caption(ui, label));
+    for seconds in [p.p50_s, p.p99_s, p.p999_s, p.max_s] {
+        ui.label(RichText::new(format::short_time(seconds)).size(11.5));
+    }
+    ui.end_row();
+}
