@@ -35,6 +35,14 @@ fn beyond(motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> f64 {
     }
 }
 
+impl AddedConstraint {
+    /// Pull of a cable of `rest_m` at a length, N: the law on its one side.
+    pub fn cable_n(stiffness_n_m: f64, rest_m: f64, length_m: f64) -> f64 {
+        let motion = Motion { position: length_m, ..Motion::default() };
+        Self.force(&motion, &[stiffness_n_m, rest_m, 1.0, 0.0, 0.0])
+    }
+}
+
 impl Law for AddedConstraint {
     fn entry(&self) -> &'static Entry {
         &ENTRY

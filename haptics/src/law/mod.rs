@@ -5,7 +5,8 @@
 //! proposed by the diagnosis. Ids are those of `spec/causes.md`.
 //!
 //! Adding a law: one file here, one line in [`CATALOGUE`], one one-effect test in its file, one recovery test in `tests/`.
-//! Laws of contacts, which act on no coordinate, are in [`contact`]; every cause, law or not, is in [`entries`].
+//! Laws of contacts, which act on no coordinate, are in [`contact`], those of captured objects in [`object`]; every cause, law or
+//! not, is in [`entries`].
 
 mod added_constraint;
 mod backlash;
@@ -27,6 +28,7 @@ mod load_friction;
 mod local_resistance;
 mod mass_change;
 mod memory;
+pub mod object;
 mod position_ripple;
 mod quadratic_drag;
 mod return_spring;

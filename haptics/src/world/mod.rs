@@ -1,14 +1,24 @@
 //! The virtual world: an immutable [`World`], a mutable [`State`], and [`step`], deterministic to the bit.
 
 mod benchmarks;
+mod block;
+mod check;
+mod collide;
 pub mod contact;
+mod driven;
+mod fixture;
 mod label;
 mod model;
 pub mod presets;
+mod rect;
 mod state;
 mod step;
 
+pub use block::{Block, Cable, Content, Pose, Shape, Wall};
+pub use check::WorldError;
+pub use collide::PAD_HALF_HEIGHT_M;
+pub use fixture::{Membrane, Switch};
 pub use label::true_label;
 pub use model::*;
 pub use state::*;
-pub use step::{PAD_HALF_HEIGHT_M, finger_contacts, step, substeps};
+pub use step::{finger_contacts, step, substeps};

@@ -1,8 +1,11 @@
 //! The immutable description of a virtual world: what stands in a world file.
 
+use super::block::Block;
+use super::check::{WorldError, finite, not_negative, positive};
+use super::fixture::{Membrane, Switch};
 use crate::Vec2;
 use crate::hand::Hand;
-use crate::law::contact::StiffnessHardening;
+use crate::law::contact::{FingertipSlip, StiffnessHardening, VelocityLoss};
 use crate::law::{Coordinate, Effect, MAX_EFFECTS};
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +44,12 @@ pub struct World {
     /// A crank, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crank: Option<Crank>,
+    /// A sheet that a needle can pierce, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub membrane: Option<Membrane>,
+    /// A toggle switch, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub switch: Option<Switch>,
     /// A mechanism with one degree of freedom that is driven directly, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mechanism: Option<Mechanism>,
@@ -66,6 +75,9 @@ pub struct Pad {
     pub shear_stiffness_n_m: f64,
     /// Tangential damping of the sticking pad, N s/m, ≥ 0.
     pub shear_damping_n_s_m: f64,
+    /// A slip of what is held, at a given time and over a given way; absent: it slips when friction says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slip: Option<FingertipSlip>,
 }
 
 impl Default for Pad {
@@ -77,6 +89,7 @@ impl Default for Pad {
             damping_n_s_m: 1.5,
             shear_stiffness_n_m: 1500.0,
             shear_damping_n_s_m: 1.5,
+            slip: None,
         }
     }
 }
@@ -105,39 +118,9 @@ pub struct Floor {
     pub stiffness_n_m: f64,
     /// Contact damping per contact point, N s/m.
     pub damping_n_s_m: f64,
-}
-
-/// A rectangular block that may rotate.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Block {
-    /// `block-1`, `block-2`, …: the name in fits and reports.
-    pub name: String,
-    /// Mass, kg, positive.
-    pub mass_kg: f64,
-    /// Horizontal size when upright, m.
-    pub width_m: f64,
-    /// Vertical size when upright, m.
-    pub height_m: f64,
-    /// Friction coefficient against the finger pads.
-    pub finger_friction: f64,
-    /// Friction coefficient against other blocks.
-    pub block_friction: f64,
-    /// Contact stiffness against blocks per contact point, N/m.
-    pub stiffness_n_m: f64,
-    /// Contact damping against blocks per contact point, N s/m.
-    pub damping_n_s_m: f64,
-    /// Where it starts: centre, m, and angle, rad counter-clockwise.
-    pub start: Pose,
-}
-
-/// Position and orientation in the plane.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Pose {
-    /// Centre in the world, m.
-    pub center_m: Vec2,
-    /// Rotation, rad, counter-clockwise.
-    #[serde(default)]
-    pub angle_rad: f64,
+    /// What an impact takes, when it was measured: it stands in for damping and friction under blocks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loss: Option<VelocityLoss>,
 }
 
 /// A handle on an arm about a fixed axis. The handle keeps upright on its own bearing, as a block held by the pads does.
@@ -237,38 +220,6 @@ fn gravity() -> f64 {
     9.81
 }
 
-/// A world that cannot be run, in one sentence.
-#[derive(Debug, thiserror::Error)]
-pub enum WorldError {
-    /// A number out of its physical range.
-    #[error("{object} has {name} = {value}, which must be {must}; correct it in the world file")]
-    OutOfRange {
-        /// Which object.
-        object: String,
-        /// Which number.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// The condition.
-        must: &'static str,
-    },
-    /// More blocks than the state can hold.
-    #[error("the world has {0} blocks; at most {MAX_BLOCKS} can be simulated")]
-    TooManyBlocks(usize),
-    /// More laws than the state can remember for.
-    #[error("the crank has {0} effects; at most {MAX_EFFECTS} can be simulated")]
-    TooManyEffects(usize),
-    /// A newer file.
-    #[error("the world file has format {0}, this program reads up to {SCHEMA}; update the program")]
-    NewerSchema(u32),
-    /// Not a world at all.
-    #[error("the file is not a world: {0}")]
-    Parse(#[from] serde_json::Error),
-    /// The file could not be read.
-    #[error("the world file could not be read ({0})")]
-    Io(#[from] std::io::Error),
-}
-
 impl World {
     /// An empty world with the default hand and a table.
     pub fn empty(name: &str) -> Self {
@@ -282,6 +233,8 @@ impl World {
             floor: Some(Floor::default()),
             blocks: Vec::new(),
             crank: None,
+            membrane: None,
+            switch: None,
             mechanism: None,
             provenance: Vec::new(),
         }
@@ -335,9 +288,19 @@ impl World {
             positive("the floor", "stiffness_n_m", floor.stiffness_n_m)?;
             not_negative("the floor", "friction", floor.friction)?;
             not_negative("the floor", "damping_n_s_m", floor.damping_n_s_m)?;
+            if let Some(loss) = &floor.loss {
+                not_negative("the floor", "loss.e", loss.e)?;
+                not_negative("the floor", "loss.mu", loss.mu)?;
+            }
         }
         for block in &self.blocks {
             block.check()?;
+        }
+        if let Some(membrane) = &self.membrane {
+            membrane.check()?;
+        }
+        if let Some(switch) = &self.switch {
+            switch.check()?;
         }
         if let Some(crank) = &self.crank {
             if crank.effects.len() > MAX_EFFECTS {
@@ -357,42 +320,7 @@ impl World {
 
 impl Default for Floor {
     fn default() -> Self {
-        Self { height_m: -0.125, friction: 0.5, stiffness_n_m: 8000.0, damping_n_s_m: 6.0 }
-    }
-}
-
-impl Block {
-    /// A block with usual contact values, standing upright with its base at (`x_m`, `base_y_m`).
-    pub fn upright(name: &str, mass_kg: f64, width_m: f64, height_m: f64, x_m: f64, base_y_m: f64) -> Self {
-        Self {
-            name: name.to_owned(),
-            mass_kg,
-            width_m,
-            height_m,
-            finger_friction: 0.9,
-            block_friction: 0.5,
-            stiffness_n_m: 8000.0,
-            damping_n_s_m: 6.0,
-            start: Pose { center_m: Vec2::new(x_m, base_y_m + 0.5 * height_m), angle_rad: 0.0 },
-        }
-    }
-
-    /// Moment of inertia about the centre, kg m² (a homogeneous rectangle).
-    pub fn inertia_kg_m2(&self) -> f64 {
-        self.mass_kg * (self.width_m.powi(2) + self.height_m.powi(2)) / 12.0
-    }
-
-    fn check(&self) -> Result<(), WorldError> {
-        positive(&self.name, "mass_kg", self.mass_kg)?;
-        positive(&self.name, "width_m", self.width_m)?;
-        positive(&self.name, "height_m", self.height_m)?;
-        positive(&self.name, "stiffness_n_m", self.stiffness_n_m)?;
-        not_negative(&self.name, "damping_n_s_m", self.damping_n_s_m)?;
-        not_negative(&self.name, "finger_friction", self.finger_friction)?;
-        not_negative(&self.name, "block_friction", self.block_friction)?;
-        finite(&self.name, "start.center_m[0]", self.start.center_m.x)?;
-        finite(&self.name, "start.center_m[1]", self.start.center_m.y)?;
-        finite(&self.name, "start.angle_rad", self.start.angle_rad)
+        Self { height_m: -0.125, friction: 0.5, stiffness_n_m: 8000.0, damping_n_s_m: 6.0, loss: None }
     }
 }
 
@@ -401,20 +329,4 @@ impl Crank {
     pub fn mass_at_handle_kg(&self) -> f64 {
         crate::law::inertia(&self.effects)
     }
-}
-
-fn range_error(object: &str, name: &'static str, value: f64, must: &'static str) -> WorldError {
-    WorldError::OutOfRange { object: object.to_owned(), name, value, must }
-}
-
-fn positive(object: &str, name: &'static str, value: f64) -> Result<(), WorldError> {
-    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(range_error(object, name, value, "positive and finite")) }
-}
-
-fn not_negative(object: &str, name: &'static str, value: f64) -> Result<(), WorldError> {
-    if value >= 0.0 && value.is_finite() { Ok(()) } else { Err(range_error(object, name, value, "zero or positive")) }
-}
-
-fn finite(object: &str, name: &'static str, value: f64) -> Result<(), WorldError> {
-    if value.is_finite() { Ok(()) } else { Err(range_error(object, name, value, "a finite number")) }
 }

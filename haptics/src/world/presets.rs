@@ -1,6 +1,7 @@
 //! Worlds to start from.
 
-use super::model::{Block, Crank, Floor, World};
+use super::block::Block;
+use super::model::{Crank, Floor, World};
 use crate::law::{CoulombFriction, Effect, Inertia, LoadFriction, ViscousFriction, Weight};
 
 /// The thesis's two blocks (table 5.4, actual values), block 1 on block 2, to the left of the middle.

@@ -1,8 +1,11 @@
 //! The mutable part of a world: where everything is now. Copied to the pictures without allocation.
 
+use super::contact::Touch;
 use super::model::{MAX_BLOCKS, World};
+use super::rect::Rect;
 use crate::Vec2;
 use crate::law::Memories;
+use crate::law::object::{MembraneHistory, MembranePhase};
 
 /// Contacts that a state has room for: four corners of every block against the table, two points for each touching pair (a
 /// planar packing has at most 3 n pairs), two fingers on every block, and some on table and handle. Every state has this
@@ -29,6 +32,54 @@ pub struct BodyState {
     pub velocity_m_s: Vec2,
     /// Angular velocity, rad/s.
     pub rate_rad_s: f64,
+    /// What has run out of it so far, kg.
+    pub leaked_kg: f64,
+    /// True once its wall is broken.
+    pub broken: bool,
+    /// Pull of its cable, N.
+    pub cable_n: f64,
+}
+
+/// Places of a membrane that are remembered; the oldest is forgotten first.
+pub const MAX_HOLES: usize = 8;
+
+/// A place of the membrane that a needle has touched.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hole {
+    /// Where along the sheet, m from its middle, to the right.
+    pub along_m: f64,
+    /// What the sheet remembers there.
+    pub history: MembraneHistory,
+}
+
+/// The membrane and the needle in it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MembraneState {
+    /// Places touched so far.
+    pub holes: [Hole; MAX_HOLES],
+    /// How many of them are in use.
+    pub touched: usize,
+    /// The place that the needle is in.
+    pub active: Option<usize>,
+    /// How far the point is beyond the undisturbed surface, m; below zero it is above it.
+    pub insertion_m: f64,
+    /// Force of the sheet along the needle, N, positive: out.
+    pub force_n: f64,
+    /// What the needle is doing.
+    pub phase: MembranePhase,
+}
+
+/// The toggle switch.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SwitchState {
+    /// Way of the knob along its arc, m, positive to the right.
+    pub at_m: f64,
+    /// Its rate, m/s.
+    pub rate_m_s: f64,
+    /// 1 on the forward branch of the curve, 0 on the backward one.
+    pub branch: f64,
+    /// Force of the mechanism against a displacement to the right, N.
+    pub force_n: f64,
 }
 
 /// The crank's handle.
@@ -61,6 +112,10 @@ pub enum Surface {
     Floor,
     /// The crank's handle.
     Handle,
+    /// The knob of the toggle switch.
+    Knob,
+    /// The sheet that a needle can pierce, under a finger.
+    Membrane,
 }
 
 /// One active contact point.
@@ -100,6 +155,47 @@ impl Contact {
     }
 }
 
+/// What one tick works with; nothing in it outlives the tick.
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
+    /// Places that touch or may touch within the tick.
+    pub touches: Vec<Touch>,
+    /// The movable bodies as this tick finds them.
+    pub solids: Vec<Solid>,
+}
+
+/// A movable body as a tick finds it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Solid {
+    /// Its outline.
+    pub rect: Rect,
+    /// Radius of the circle around it, m.
+    pub reach_m: f64,
+    /// How far any of its points may come within the tick, m.
+    pub sweep_m: f64,
+    /// 1/kg.
+    pub inverse_mass: f64,
+    /// 1/(kg m²); zero when it cannot turn.
+    pub inverse_inertia: f64,
+    /// Force on it in this part of the tick, N.
+    pub force_n: Vec2,
+    /// Moment about its centre in this part, N m.
+    pub moment_n_m: f64,
+}
+
+impl Scratch {
+    fn with_room() -> Self {
+        Self { touches: Vec::with_capacity(MAX_CONTACTS), solids: Vec::with_capacity(MAX_BLOCKS) }
+    }
+}
+
+/// The scratch space is no part of what a state is.
+impl PartialEq for Scratch {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
 /// Everything that changes. All buffers are sized for the largest world when it is made; `copy_from` never allocates.
 #[derive(Debug, PartialEq)]
 pub struct State {
@@ -115,12 +211,14 @@ pub struct State {
     pub bodies: Vec<BodyState>,
     /// Crank, zero when there is none.
     pub crank: CrankState,
-    /// Active contacts of the last tick.
+    /// Membrane, at rest when there is none.
+    pub membrane: MembraneState,
+    /// Toggle switch, at rest when there is none.
+    pub switch: SwitchState,
+    /// Active contacts of the last tick, in the order in which they are found.
     pub contacts: Vec<Contact>,
-    /// Contacts of the tick before: scratch space.
-    pub(super) previous: Vec<Contact>,
-    /// Sum of forces and moment on each block: scratch space.
-    pub(super) load: Vec<(Vec2, f64)>,
+    /// Scratch space of a tick.
+    pub(super) scratch: Scratch,
     /// Largest impact speed since it was last cleared, m/s: drives sound and flash.
     pub impact_m_s: f64,
 }
@@ -141,9 +239,10 @@ impl State {
             tip_force_n: [Vec2::zeros(); 2],
             bodies,
             crank: CrankState { angle_rad: world.crank.as_ref().map_or(0.0, |c| c.start_rad), ..CrankState::default() },
+            membrane: MembraneState::default(),
+            switch: SwitchState { at_m: world.switch.as_ref().map_or(0.0, |s| s.start_m), ..SwitchState::default() },
             contacts: Vec::with_capacity(MAX_CONTACTS),
-            previous: Vec::with_capacity(MAX_CONTACTS),
-            load: vec![(Vec2::zeros(), 0.0); world.blocks.len()],
+            scratch: Scratch::with_room(),
             impact_m_s: 0.0,
         }
     }
@@ -164,6 +263,8 @@ impl State {
         self.tip_force_n = other.tip_force_n;
         self.bodies.clone_from(&other.bodies);
         self.crank = other.crank;
+        self.membrane = other.membrane;
+        self.switch = other.switch;
         self.contacts.clone_from(&other.contacts);
         self.impact_m_s = other.impact_m_s;
     }
@@ -190,9 +291,10 @@ impl Clone for State {
             tip_force_n: self.tip_force_n,
             bodies,
             crank: self.crank,
+            membrane: self.membrane,
+            switch: self.switch,
             contacts,
-            previous: Vec::with_capacity(MAX_CONTACTS),
-            load: self.load.clone(),
+            scratch: Scratch::with_room(),
             impact_m_s: self.impact_m_s,
         }
     }

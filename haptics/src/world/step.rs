@@ -1,13 +1,16 @@
 //! One tick of the world: contacts, laws, semi-implicit Euler. Deterministic to the bit; allocates nothing.
+//!
+//! Touches are found once a tick, the forces between them in each of its parts from the way that the surfaces have gone since
+//! (as the small-step solvers of game physics do, Macklin et al. 2019): finding them costs most.
 
-use super::contact::{Material, Overlap, Rect, point_in_rect, rect_rect, resolve};
-use super::model::{Block, Crank, World};
-use super::state::{BodyState, Contact, Input, State, Surface};
+use super::block::{Block, Shape};
+use super::collide::collide;
+use super::contact::Touch;
+use super::driven::{handle, move_crank, move_switch, pierce};
+use super::model::World;
+use super::state::{BodyState, Contact, Input, Scratch, Solid, State, Surface};
 use crate::Vec2;
-use crate::law::{Motion, Role, step_coordinate_with};
-
-/// Half the height of a flat finger pad, m: how far off its middle it still touches the crank's handle.
-pub const PAD_HALF_HEIGHT_M: f64 = 0.008;
+use crate::law::AddedConstraint;
 
 /// Thickness of the foam on a fingertip, m (thesis): a hardening pad is as stiff as at this depth for the choice of the step.
 const PAD_THICKNESS_M: f64 = 0.002;
@@ -21,285 +24,261 @@ const IMPACT_THRESHOLD_M_S: f64 = 0.01;
 /// forces in the state are those at the end of the tick. The same inputs give the same bits, on any thread.
 pub fn step(world: &World, state: &mut State, input: &Input, dt_s: f64) {
     let parts = substeps(world, dt_s);
-    let part_s = dt_s / f64::from(parts);
-    let from = state.input.tip_in_world;
-    for part in 1..=parts {
-        let share = f64::from(part) / f64::from(parts);
-        let tips = [0, 1].map(|finger| from[finger] + (input.tip_in_world[finger] - from[finger]) * share);
-        state.input = Input { tip_in_world: tips, tip_velocity: input.tip_velocity };
-        advance(world, state, part_s);
+    let part = Part {
+        dt_s: dt_s / f64::from(parts),
+        gravity: world.gravity_vector(),
+        tip_velocity: input.tip_velocity,
+        // What the anchors add up is the way that the tips went, whatever velocity the device reports.
+        tip_chord: [0, 1].map(|f| (input.tip_in_world[f] - state.input.tip_in_world[f]) / dt_s),
+    };
+    collide(world, state, input, dt_s);
+    for index in 0..parts {
+        for (tip, chord) in state.input.tip_in_world.iter_mut().zip(&part.tip_chord) {
+            *tip += chord * part.dt_s;
+        }
+        advance(world, state, &part, index == 0);
     }
     state.input = *input;
     state.time_s += dt_s;
     state.tick += 1;
+    keep_contacts(state);
 }
 
-/// Parts that a tick of `dt_s` is divided into: ω h ≤ 0.5 and damping h / m ≤ 0.5 for the stiffest body.
+/// What is the same in all parts of a tick.
+struct Part {
+    dt_s: f64,
+    gravity: Vec2,
+    tip_velocity: [Vec2; 2],
+    tip_chord: [Vec2; 2],
+}
+
+/// Parts that a tick of `dt_s` is divided into: ω h ≤ 0.5 and damping h / m ≤ 1 for the stiffest body.
 ///
 /// Semi-implicit Euler is stable up to ω h = 2 without damping; a quarter of that keeps the energy error small.
 pub fn substeps(world: &World, dt_s: f64) -> u32 {
     const LIMIT: f64 = 0.5;
+    const DAMPING_LIMIT: f64 = 1.0;
     // Rotation is up to three times as stiff as translation: contact at the corners of a body of inertia m(w²+h²)/12.
     const ROTATION: f64 = 3.0;
-    let mut rate = 1.0_f64;
+    // Largest stiffness and damping for a mass, 1/s² and 1/s.
+    let (mut stiff, mut damped) = (0.0_f64, 0.0_f64);
     let pad_stiffness_n_m = world.pad.elastic().stiffness_n_m(PAD_THICKNESS_M);
     let pads = 2.0 * (pad_stiffness_n_m + world.pad.shear_stiffness_n_m);
     let pad_damping = 2.0 * (world.pad.damping_n_s_m + world.pad.shear_damping_n_s_m);
+    let (floor_stiffness, floor_damping) =
+        world.floor.as_ref().map_or((0.0, 0.0), |f| (2.0 * f.stiffness_n_m, 2.0 * f.damping_n_s_m));
     for block in &world.blocks {
-        let floor = world.floor.as_ref().map_or((0.0, 0.0), |f| (2.0 * f.stiffness_n_m, 2.0 * f.damping_n_s_m));
-        let stiffness = floor.0.max(block.stiffness_n_m) + pads;
-        let damping = floor.1.max(block.damping_n_s_m) + pad_damping;
-        rate = rate.max((ROTATION * stiffness / block.mass_kg).sqrt()).max(ROTATION * damping / block.mass_kg);
+        // What may run out counts as gone: the step must not change as it leaks.
+        let mass_kg = block.mass_kg - block.content.map_or(0.0, |c| c.mass_kg);
+        let turning = if block.shape == Shape::Needle { 1.0 } else { ROTATION };
+        let (held, held_damping) = held_by(world, block);
+        let stiffness = floor_stiffness.max(block.stiffness_n_m) + pads + held;
+        let damping = floor_damping.max(block.damping_n_s_m) + pad_damping + held_damping;
+        stiff = stiff.max(turning * stiffness / mass_kg);
+        damped = damped.max(turning * damping / mass_kg);
     }
     if let Some(crank) = &world.crank {
         let mass = crank.mass_at_handle_kg();
         let stiffness = pads + crank.constraint_stiffness_n_m.unwrap_or(0.0);
-        rate = rate.max((stiffness / mass).sqrt()).max(pad_damping / mass);
+        stiff = stiff.max(stiffness / mass);
+        damped = damped.max(pad_damping / mass);
     }
-    ((dt_s * rate / LIMIT).ceil() as u32).clamp(1, 64)
+    if let Some(switch) = &world.switch {
+        stiff = stiff.max(pads / switch.mass_kg);
+        damped = damped.max(pad_damping / switch.mass_kg);
+    }
+    ((dt_s * (stiff.sqrt() / LIMIT).max(damped / DAMPING_LIMIT)).ceil() as u32).clamp(1, 64)
 }
 
-fn advance(world: &World, state: &mut State, dt_s: f64) {
-    std::mem::swap(&mut state.contacts, &mut state.previous);
-    state.contacts.clear();
-    state.load.fill((Vec2::zeros(), 0.0));
+/// Stiffness and damping of what holds one body besides contacts: cable and membrane, N/m and N s/m.
+fn held_by(world: &World, block: &Block) -> (f64, f64) {
+    let (mut stiffness, mut damping) = block.cable.map_or((0.0, 0.0), |c| (c.stiffness_n_m, c.damping_n_s_m));
+    if let (Shape::Needle, Some(membrane)) = (block.shape, &world.membrane) {
+        stiffness += membrane.law.stiffness_n_m(membrane.law.puncture_depth_m()) + membrane.side_stiffness_n_m;
+        damping += membrane.law.drag_n_s_m;
+    }
+    (stiffness, damping)
+}
+
+fn advance(world: &World, state: &mut State, part: &Part, first: bool) {
+    for solid in &mut state.scratch.solids {
+        (solid.force_n, solid.moment_n_m) = (Vec2::zeros(), 0.0);
+    }
     state.tip_force_n = [Vec2::zeros(); 2];
+    let handle_m = world.crank.as_ref().map(|crank| handle(crank, &state.crank));
+    let knob_m = world.switch.as_ref().map(|switch| switch.knob_in_world(state.switch.at_m));
 
-    touch_floor(world, state, dt_s);
-    touch_blocks(world, state, dt_s);
-    touch_fingers(world, state, dt_s);
-    let on_handle = touch_handle(world, state, dt_s);
-
-    let gravity = world.gravity_vector();
-    for (block, (body, load)) in world.blocks.iter().zip(state.bodies.iter_mut().zip(&state.load)) {
-        move_body(block, body, *load, gravity, dt_s);
+    let (on_handle, on_knob) = press_all(world, state, part, first, (handle_m, knob_m));
+    hold(world, state, part.dt_s);
+    move_bodies(world, state, part);
+    if let (Some(crank), Some(handle_m)) = (&world.crank, handle_m) {
+        move_crank(crank, &mut state.crank, handle_m, on_handle, state.time_s, part.dt_s);
     }
-    if let Some((crank, before)) = world.crank.as_ref().zip(state.handle_in_world(world)) {
-        move_crank(crank, state, on_handle, dt_s);
-        let after = state.handle_in_world(world).unwrap_or(before);
-        state.crank.handle_velocity = (after - before) / dt_s;
+    if let Some(switch) = &world.switch {
+        move_switch(switch, &mut state.switch, on_knob, part.gravity, part.dt_s);
     }
 }
 
-fn rect_of(block: &Block, body: &BodyState) -> Rect {
-    let (sin, cos) = body.angle_rad.sin_cos();
-    Rect {
-        center_m: body.center_m,
-        half_m: 0.5 * Vec2::new(block.width_m, block.height_m),
-        axis_x: Vec2::new(cos, sin),
-    }
-}
-
-fn velocity_at(body: &BodyState, point_in_world: Vec2) -> Vec2 {
-    let arm = point_in_world - body.center_m;
-    body.velocity_m_s + Vec2::new(-arm.y, arm.x) * body.rate_rad_s
-}
-
-/// Resolves one overlap against the tick before, stores the contact and loads the blocks that take part. Returns the force
-/// on the pushed body, N.
-fn press(state: &mut State, overlap: &Overlap, material: &Material, dt_s: f64) -> Vec2 {
-    let before = state.previous.iter().find(|c| (c.on, c.by) == overlap.pair && c.feature == overlap.feature);
-    let contact = resolve(overlap, material, before.map_or(0.0, |c| c.shear_m), dt_s);
-    if before.is_none() {
-        let closing = -overlap.relative_velocity.dot(&overlap.normal);
-        if closing > IMPACT_THRESHOLD_M_S {
-            state.impact_m_s = state.impact_m_s.max(closing);
+/// Presses all touches and loads what takes part. Returns the force on the crank's handle and on the switch's knob, N.
+fn press_all(
+    world: &World,
+    state: &mut State,
+    part: &Part,
+    first: bool,
+    (handle_m, knob_m): (Option<Vec2>, Option<Vec2>),
+) -> (Vec2, Vec2) {
+    let State { scratch: Scratch { touches, solids }, bodies, .. } = state;
+    let knob_velocity = knob_m.map_or_else(Vec2::zeros, |_| {
+        let (sin, cos) = world.switch.as_ref().map_or((0.0, 1.0), |s| (state.switch.at_m / s.lever_m).sin_cos());
+        Vec2::new(cos, -sin) * state.switch.rate_m_s
+    });
+    let (mut on_handle, mut on_knob) = (Vec2::zeros(), Vec2::zeros());
+    for touch in touches {
+        let by = match touch.contact.by {
+            Surface::Block(index) => velocity_at(&bodies[usize::from(index)], touch.arm_by_m),
+            Surface::Handle => state.crank.handle_velocity,
+            Surface::Knob => knob_velocity,
+            Surface::Finger(_) | Surface::Floor | Surface::Membrane => Vec2::zeros(),
+        };
+        // Velocity for the damper, and the way since the part before, as a velocity, for springs.
+        let (on, way_on) = match touch.contact.on {
+            Surface::Finger(finger) => (part.tip_velocity[usize::from(finger)], part.tip_chord[usize::from(finger)]),
+            Surface::Block(index) => {
+                let velocity = velocity_at(&bodies[usize::from(index)], touch.arm_on_m);
+                (velocity, velocity)
+            }
+            _ => (Vec2::zeros(), Vec2::zeros()),
+        };
+        let normal = touch.contact.normal;
+        match (touch.contact.by, handle_m, knob_m) {
+            (Surface::Handle, Some(handle_m), _) => on_curve(world, touch, &state.input, handle_m),
+            (Surface::Knob, _, Some(knob_m)) => on_curve(world, touch, &state.input, knob_m),
+            // The first part finds the bodies where the touches were found, but the fingers on their way.
+            _ if first => touch.contact.depth_m -= fingers_way(touch, way_on).dot(&normal) * part.dt_s,
+            _ => touch.contact.depth_m -= (way_on - by).dot(&normal) * part.dt_s,
+        }
+        let relative = on - by;
+        if !touch.met && touch.contact.depth_m > 0.0 {
+            touch.met = true;
+            let closing = -relative.dot(&normal);
+            if closing > IMPACT_THRESHOLD_M_S {
+                state.impact_m_s = state.impact_m_s.max(closing);
+            }
+        }
+        let way_along_m = (way_on - by).dot(&touch.contact.tangent()) * part.dt_s;
+        let force = touch.press(relative, way_along_m);
+        match touch.contact.on {
+            // A finger feels the reaction; its sensor reads what it exerts.
+            Surface::Finger(finger) => state.tip_force_n[usize::from(finger)] -= force,
+            Surface::Block(index) => load(&mut solids[usize::from(index)], touch.arm_on_m, force),
+            _ => {}
+        }
+        match touch.contact.by {
+            Surface::Block(index) => load(&mut solids[usize::from(index)], touch.arm_by_m, -force),
+            Surface::Handle => on_handle -= force,
+            Surface::Knob => on_knob -= force,
+            _ => {}
         }
     }
-    let force = contact.force_n();
-    load(state, overlap.pair.0, contact.point_m, force);
-    load(state, overlap.pair.1, contact.point_m, -force);
-    // The buffer is sized for the densest packing; should that ever be wrong, the force still acts and only the record of
-    // the contact is lost, because growing here would allocate in the servo.
-    if state.contacts.len() < state.contacts.capacity() {
-        state.contacts.push(contact);
-    }
-    force
+    (on_handle, on_knob)
 }
 
-fn load(state: &mut State, surface: Surface, point_m: Vec2, force: Vec2) {
-    match surface {
-        Surface::Block(index) => {
-            let index = usize::from(index);
-            let arm = point_m - state.bodies[index].center_m;
-            state.load[index].0 += force;
-            state.load[index].1 += arm.x * force.y - arm.y * force.x;
+/// The part of the way that a finger goes; bodies stand still in the first part.
+fn fingers_way(touch: &Touch, way_on: Vec2) -> Vec2 {
+    if matches!(touch.contact.on, Surface::Finger(_)) { way_on } else { Vec2::zeros() }
+}
+
+/// Depth of a finger in handle or knob, whose middle is at `middle_m` now.
+fn on_curve(world: &World, touch: &mut Touch, input: &Input, middle_m: Vec2) {
+    let Surface::Finger(finger) = touch.contact.on else { return };
+    let away = input.tip_in_world[usize::from(finger)] - middle_m;
+    match (touch.contact.by, &world.crank, &world.switch) {
+        (Surface::Handle, Some(crank), _) => {
+            touch.contact.depth_m = 0.5 * crank.handle_width_m - away.dot(&touch.contact.normal);
         }
-        // A finger feels the reaction; its sensor reads what it exerts.
-        Surface::Finger(finger) => state.tip_force_n[usize::from(finger)] -= force,
-        Surface::Floor | Surface::Handle => {}
+        (Surface::Knob, _, Some(switch)) => {
+            let distance = away.norm();
+            touch.contact.depth_m = switch.knob_radius_m - distance;
+            if distance > 1e-9 {
+                touch.contact.normal = away / distance;
+            }
+        }
+        _ => {}
     }
 }
 
-fn touch_floor(world: &World, state: &mut State, dt_s: f64) {
-    let Some(floor) = &world.floor else { return };
-    let up = Vec2::new(0.0, 1.0);
-    let material = Material::hard(floor.stiffness_n_m, floor.damping_n_s_m, floor.friction);
+fn load(solid: &mut Solid, arm_m: Vec2, force: Vec2) {
+    solid.force_n += force;
+    solid.moment_n_m += arm_m.perp(&force);
+}
+
+fn velocity_at(body: &BodyState, arm_m: Vec2) -> Vec2 {
+    body.velocity_m_s + Vec2::new(-arm_m.y, arm_m.x) * body.rate_rad_s
+}
+
+/// What holds bodies besides contacts: cables and the membrane; and what runs out of them.
+fn hold(world: &World, state: &mut State, dt_s: f64) {
+    let State { scratch: Scratch { touches, solids }, bodies, membrane, time_s, .. } = state;
     for (index, block) in world.blocks.iter().enumerate() {
-        let body = state.bodies[index];
-        let rect = rect_of(block, &body);
-        if body.center_m.y - rect.reach_m() > floor.height_m {
-            continue;
-        }
-        for corner in 0..4_u8 {
-            let point_m = rect.corner(corner);
-            let depth_m = floor.height_m - point_m.y;
-            if depth_m > 0.0 {
-                let pair = (Surface::Block(index as u16), Surface::Floor);
-                let relative_velocity = velocity_at(&body, point_m);
-                let overlap = Overlap { pair, feature: corner, point_m, normal: up, depth_m, relative_velocity };
-                press(state, &overlap, &material, dt_s);
+        let (body, solid) = (&mut bodies[index], &mut solids[index]);
+        if let Some(cable) = &block.cable {
+            let way = body.center_m - cable.anchor_m;
+            let length_m = way.norm();
+            if length_m > cable.length_m && length_m > 0.0 {
+                let along = way / length_m;
+                let spring = AddedConstraint::cable_n(cable.stiffness_n_m, cable.length_m, length_m);
+                body.cable_n = (spring + cable.damping_n_s_m * body.velocity_m_s.dot(&along)).max(0.0);
+                load(solid, Vec2::zeros(), -along * body.cable_n);
+            } else {
+                body.cable_n = 0.0;
             }
         }
-    }
-    for finger in 0..2_u8 {
-        let tip = state.input.tip_in_world[usize::from(finger)];
-        let depth_m = floor.height_m - tip.y;
-        if depth_m > 0.0 {
-            let pair = (Surface::Finger(finger), Surface::Floor);
-            let relative_velocity = state.input.tip_velocity[usize::from(finger)];
-            let overlap = Overlap { pair, feature: 0, point_m: tip, normal: up, depth_m, relative_velocity };
-            press(state, &overlap, &pad_material(world, floor.friction), dt_s);
+        if let (Shape::Needle, Some(sheet)) = (block.shape, &world.membrane) {
+            let point_m = body.center_m - Vec2::new(0.0, 0.5 * block.height_m);
+            let force = pierce(sheet, membrane, point_m, body.velocity_m_s);
+            load(solid, Vec2::zeros(), force);
+        }
+        if block.content.is_some() {
+            leak(block, body, touches, index, *time_s, dt_s);
         }
     }
 }
 
-fn pad_material(world: &World, friction: f64) -> Material {
-    Material {
-        elastic: world.pad.elastic(),
-        damping_n_s_m: world.pad.damping_n_s_m,
-        shear_stiffness_n_m: world.pad.shear_stiffness_n_m,
-        shear_damping_n_s_m: world.pad.shear_damping_n_s_m,
-        friction,
+/// Breaks an overloaded wall and lets the content run out: the law of `mass-change` with rate −g · leak, as a mass.
+fn leak(block: &Block, body: &mut BodyState, touches: &[Touch], index: usize, time_s: f64, dt_s: f64) {
+    let Some(content) = &block.content else { return };
+    if let Some(strength_n) = block.wall.and_then(|wall| wall.strength_n) {
+        let this = Surface::Block(index as u16);
+        let squeezed = |t: &Touch| t.contact.by == this && matches!(t.contact.on, Surface::Finger(_));
+        body.broken |= touches.iter().any(|t| squeezed(t) && t.contact.normal_force_n > strength_n);
+    }
+    if body.broken || content.leaks_from_s.is_some_and(|from_s| time_s >= from_s) {
+        body.leaked_kg = (body.leaked_kg + content.leak_kg_s * dt_s).min(content.mass_kg);
     }
 }
 
-fn block_material(a: &Block, b: &Block) -> Material {
-    // Two surfaces in series; friction as the geometric mean, the usual choice when only single surfaces are known.
-    let series = |x: f64, y: f64| if x + y > 0.0 { x * y / (x + y) } else { 0.0 };
-    Material::hard(
-        series(a.stiffness_n_m, b.stiffness_n_m),
-        series(a.damping_n_s_m, b.damping_n_s_m),
-        (a.block_friction * b.block_friction).sqrt(),
-    )
-}
-
-fn touch_blocks(world: &World, state: &mut State, dt_s: f64) {
-    for (i, a) in world.blocks.iter().enumerate() {
-        for (j, b) in world.blocks.iter().enumerate().skip(i + 1) {
-            let (body_a, body_b) = (state.bodies[i], state.bodies[j]);
-            let Some((normal, points)) = rect_rect(&rect_of(a, &body_a), &rect_of(b, &body_b)) else { continue };
-            let material = block_material(a, b);
-            for (point_m, depth_m, feature) in points.into_iter().flatten() {
-                let relative_velocity = velocity_at(&body_a, point_m) - velocity_at(&body_b, point_m);
-                let pair = (Surface::Block(i as u16), Surface::Block(j as u16));
-                let overlap = Overlap { pair, feature, point_m, normal, depth_m, relative_velocity };
-                press(state, &overlap, &material, dt_s);
-            }
-        }
+fn move_bodies(world: &World, state: &mut State, part: &Part) {
+    let dt_s = part.dt_s;
+    for (body, (solid, block)) in state.bodies.iter_mut().zip(state.scratch.solids.iter().zip(&world.blocks)) {
+        body.velocity_m_s += (solid.force_n * solid.inverse_mass + part.gravity) * dt_s;
+        body.rate_rad_s += solid.moment_n_m * solid.inverse_inertia * dt_s;
+        body.center_m += body.velocity_m_s * dt_s;
+        body.angle_rad += body.rate_rad_s * dt_s;
+        debug_assert!(block.mass_kg > body.leaked_kg);
     }
 }
 
-fn touch_fingers(world: &World, state: &mut State, dt_s: f64) {
-    for finger in 0..2_u8 {
-        let tip = state.input.tip_in_world[usize::from(finger)];
-        let tip_velocity = state.input.tip_velocity[usize::from(finger)];
-        for (index, block) in world.blocks.iter().enumerate() {
-            let pair = (Surface::Finger(finger), Surface::Block(index as u16));
-            let kept = state.previous.iter().find(|c| (c.on, c.by) == pair).map(|c| c.feature);
-            let body = state.bodies[index];
-            let rect = rect_of(block, &body);
-            let Some((face, depth_m)) = point_in_rect(&rect, tip, kept) else { continue };
-            let normal = rect.face(face).0;
-            let relative_velocity = tip_velocity - velocity_at(&body, tip);
-            let overlap = Overlap { pair, feature: face, point_m: tip, normal, depth_m, relative_velocity };
-            press(state, &overlap, &pad_material(world, block.finger_friction), dt_s);
-        }
-    }
-}
-
-/// The flat pads against the crank's handle. Returns the force on the handle, N.
-fn touch_handle(world: &World, state: &mut State, dt_s: f64) -> Vec2 {
-    let (Some(crank), Some(handle)) = (&world.crank, state.handle_in_world(world)) else { return Vec2::zeros() };
-    // The chord that it moved along, not the tangent: what the pads' anchors add up must be the way that was gone.
-    let velocity = state.crank.handle_velocity;
-    let mut total = Vec2::zeros();
-    for finger in 0..2_u8 {
-        // The left pad faces right, the right pad faces left.
-        let facing = if finger == 0 { 1.0 } else { -1.0 };
-        let tip = state.input.tip_in_world[usize::from(finger)];
-        let depth_m = facing * (tip.x - handle.x) + 0.5 * crank.handle_width_m;
-        let pair = (Surface::Finger(finger), Surface::Handle);
-        let held = state.previous.iter().any(|c| (c.on, c.by) == pair);
-        let on_own_side = facing * (tip.x - handle.x) < 0.0 || held;
-        if depth_m > 0.0 && on_own_side && (tip.y - handle.y).abs() < PAD_HALF_HEIGHT_M + 0.5 * crank.handle_width_m {
-            let normal = Vec2::new(-facing, 0.0);
-            let relative_velocity = state.input.tip_velocity[usize::from(finger)] - velocity;
-            let overlap = Overlap { pair, feature: 0, point_m: tip, normal, depth_m, relative_velocity };
-            total -= press(state, &overlap, &pad_material(world, crank.finger_friction), dt_s);
-        }
-    }
-    total
-}
-
-fn move_body(block: &Block, body: &mut BodyState, (force, moment): (Vec2, f64), gravity: Vec2, dt_s: f64) {
-    body.velocity_m_s += (force / block.mass_kg + gravity) * dt_s;
-    body.rate_rad_s += moment / block.inertia_kg_m2() * dt_s;
-    body.center_m += body.velocity_m_s * dt_s;
-    body.angle_rad += body.rate_rad_s * dt_s;
-}
-
-/// What the crank's laws see: path length along the circle, forces in N at the handle.
-pub(crate) fn crank_motion(crank: &Crank, time_s: f64, angle_rad: f64, rate_rad_s: f64, normal_force_n: f64) -> Motion {
-    Motion {
-        time_s,
-        position: crank.radius_m * angle_rad,
-        velocity: crank.radius_m * rate_rad_s,
-        acceleration: 0.0,
-        direction: rate_rad_s.signum(),
-        normal_force_n,
-        up_along: angle_rad.cos(),
-    }
-}
-
-fn move_crank(crank: &Crank, state: &mut State, force: Vec2, dt_s: f64) {
-    let (sin, cos) = state.crank.angle_rad.sin_cos();
-    let (outward, along) = (Vec2::new(cos, sin), Vec2::new(-sin, cos));
-    let (pull, drive) = (force.dot(&outward), force.dot(&along));
-    let motion = crank_motion(crank, state.time_s, state.crank.angle_rad, state.crank.rate_rad_s, pull);
-    let (_, speed) = step_coordinate_with(&crank.effects, &motion, &mut state.crank.memories, drive, 0.0, dt_s);
-    state.crank.rate_rad_s = speed / crank.radius_m;
-    state.crank.angle_rad += state.crank.rate_rad_s * dt_s;
-    move_radially(crank, state, pull, &motion, dt_s);
-}
-
-/// The handle's give along the arm, and the force of the arm on it (thesis, eq. 5.1: Fn = (mg)n + Fc).
-fn move_radially(crank: &Crank, state: &mut State, pull: f64, motion: &Motion, dt_s: f64) {
-    let mass = crank.mass_at_handle_kg();
-    // Gravity gives W (up · t) along the path; across it, a quarter of a turn back, up · n = sin θ.
-    let across = Motion {
-        position: motion.position - crank.radius_m * std::f64::consts::FRAC_PI_2,
-        up_along: state.crank.angle_rad.sin(),
-        ..*motion
-    };
-    let weight: f64 = crank.effects.iter().filter(|e| e.role() == Role::Gravity).map(|e| e.force(&across)).sum();
-    let centrifugal = mass * crank.radius_m * state.crank.rate_rad_s.powi(2);
-    let outward = pull - weight + centrifugal;
-    match crank.constraint_stiffness_n_m {
-        None => {
-            state.crank.radial_m = 0.0;
-            state.crank.radial_rate_m_s = 0.0;
-            state.crank.constraint_force_n = -outward;
-        }
-        Some(stiffness) => {
-            // Damping ratio 0.7: a stiff mechanical stop that does not ring.
-            let damping = 1.4 * (stiffness * mass).sqrt();
-            let back = stiffness * state.crank.radial_m + damping * state.crank.radial_rate_m_s;
-            state.crank.radial_rate_m_s += (outward - back) / mass * dt_s;
-            state.crank.radial_m += state.crank.radial_rate_m_s * dt_s;
-            state.crank.constraint_force_n = -back;
-        }
-    }
+/// Keeps the touches that press for the next tick, for pictures and for labels.
+fn keep_contacts(state: &mut State) {
+    let State { scratch, contacts, input, .. } = state;
+    contacts.clear();
+    contacts.extend(scratch.touches.iter().filter(|t| t.contact.depth_m > 0.0).map(|t| {
+        let point_m = match t.contact.on {
+            Surface::Finger(finger) => input.tip_in_world[usize::from(finger)],
+            _ => t.contact.point_m,
+        };
+        Contact { point_m, ..t.contact }
+    }));
 }
 
 /// A copy of the contacts between finger `finger` (0, 1) and anything, for pictures and labels.

@@ -3,9 +3,10 @@
 
 use super::super::entry::{ANY, Entry, Kind, POSITIVE, ParameterSpec};
 use crate::Vec2;
+use serde::{Deserialize, Serialize};
 
 /// Fingertip slip; equation and sign in the module's head.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FingertipSlip {
     /// The whole way that the tips move on the object, m.
     pub way_m: Vec2,

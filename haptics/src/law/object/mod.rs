@@ -1,0 +1,8 @@
+//! Laws of captured objects: force over displacement with a history. They are no causes of the catalogue, but live beside them
+//! because servo, fits and pictures share them. One law a file.
+
+mod membrane;
+mod toggle;
+
+pub use membrane::{MembraneHistory, MembraneLaw, MembranePhase};
+pub use toggle::{CurvePoint, ToggleCurve};

@@ -1,0 +1,277 @@
+//! Where surfaces touch, or may touch before the tick is over: found once a tick, in a fixed order.
+
+use super::block::{Block, Shape};
+use super::contact::{Material, Touch, meeting};
+use super::model::World;
+use super::rect::{Rect, point_in_rect, rect_rect};
+use super::state::{BodyState, Contact, Input, Scratch, Solid, State, Surface};
+use crate::Vec2;
+use crate::law::contact::{PadCompliance, StiffnessHardening};
+
+/// Half the height of a flat finger pad, m: how far off its middle it still touches the crank's handle.
+pub const PAD_HALF_HEIGHT_M: f64 = 0.008;
+
+/// How far below its surface a finger still feels the membrane, m: a finger under it is not on it.
+const SHEET_DEPTH_M: f64 = 0.02;
+
+/// Looks up the contacts of the tick before. Touches are found in the same order every tick, so that the search goes on
+/// where the last one ended and mostly hits at once.
+struct Memory<'a> {
+    before: &'a [Contact],
+    next: usize,
+}
+
+impl Memory<'_> {
+    fn find(&mut self, wanted: impl Fn(&Contact) -> bool) -> Option<&Contact> {
+        let count = self.before.len();
+        let index = (self.next..count).chain(0..self.next.min(count)).find(|i| wanted(&self.before[*i]))?;
+        self.next = index + 1;
+        Some(&self.before[index])
+    }
+}
+
+/// Gathers touches with what the tick before knew of them.
+struct Gather<'a> {
+    world: &'a World,
+    tips: [Vec2; 2],
+    /// How far each tip goes within the tick, m.
+    tip_sweep_m: [f64; 2],
+    memory: Memory<'a>,
+    touches: &'a mut Vec<Touch>,
+    solids: &'a [Solid],
+    /// What this tick's slip in the fingers adds, m (see [`crate::law::contact::FingertipSlip`]).
+    slipped_m: Vec2,
+}
+
+/// Fills the scratch space of `state`: outlines, masses and touches as they are now, with the tips on their way to `input`.
+pub(super) fn collide(world: &World, state: &mut State, input: &Input, dt_s: f64) {
+    let State { scratch: Scratch { touches, solids }, bodies, contacts, time_s, .. } = state;
+    solids.clear();
+    solids.extend(world.blocks.iter().zip(&*bodies).map(|(block, body)| solid(block, body, world.gravity_m_s2, dt_s)));
+    touches.clear();
+    let tips = state.input.tip_in_world;
+    let slipped_m = world
+        .pad
+        .slip
+        .map_or_else(Vec2::zeros, |slip| slip.displacement_m(*time_s + dt_s) - slip.displacement_m(*time_s));
+    let tip_sweep_m = [0, 1].map(|f| (input.tip_in_world[f] - tips[f]).norm());
+    let memory = Memory { before: contacts, next: 0 };
+    let mut gather = Gather { world, tips, tip_sweep_m, memory, touches, solids, slipped_m };
+    gather.floor();
+    gather.blocks();
+    gather.fingers();
+    gather.driven(state.crank.angle_rad, state.crank.radial_m, state.switch.at_m);
+}
+
+/// A body's outline, how far it may come within the tick, and its mass.
+fn solid(block: &Block, body: &BodyState, gravity_m_s2: f64, dt_s: f64) -> Solid {
+    let (sin, cos) = if block.shape == Shape::Needle { (0.0, 1.0) } else { body.angle_rad.sin_cos() };
+    let half_m = 0.5 * Vec2::new(block.width_m, block.height_m);
+    let reach_m = half_m.norm();
+    let speed = body.velocity_m_s.norm() + reach_m * body.rate_rad_s.abs() + gravity_m_s2.abs() * dt_s;
+    let mass_kg = block.mass_kg - body.leaked_kg;
+    let turns = block.shape != Shape::Needle;
+    Solid {
+        rect: Rect { center_m: body.center_m, half_m, axis_x: Vec2::new(cos, sin) },
+        reach_m,
+        sweep_m: speed * dt_s,
+        inverse_mass: 1.0 / mass_kg,
+        inverse_inertia: if turns { 12.0 / (mass_kg * 4.0 * half_m.norm_squared()) } else { 0.0 },
+        force_n: Vec2::zeros(),
+        moment_n_m: 0.0,
+    }
+}
+
+impl Gather<'_> {
+    /// Adds a touch with the shear that the tick before left.
+    fn add(&mut self, mut contact: Contact, material: Material) {
+        let (pair, feature) = ((contact.on, contact.by), contact.feature);
+        let before = self.memory.find(|c| (c.on, c.by) == pair && c.feature == feature);
+        let met = before.is_some();
+        contact.shear_m = before.map_or(0.0, |c| c.shear_m);
+        if matches!(contact.on, Surface::Finger(_)) {
+            contact.shear_m -= self.slipped_m.dot(&contact.tangent());
+        }
+        let arm = |surface: Surface| match surface {
+            Surface::Block(index) => contact.point_m - self.solids[usize::from(index)].rect.center_m,
+            _ => Vec2::zeros(),
+        };
+        let (arm_on_m, arm_by_m) = (arm(contact.on), arm(contact.by));
+        // The buffer is sized for the densest packing; should that ever be wrong, the tick goes on without this touch, because
+        // growing here would allocate in the servo.
+        if self.touches.len() < self.touches.capacity() {
+            self.touches.push(Touch { contact, arm_on_m, arm_by_m, material, met });
+        }
+    }
+
+    fn floor(&mut self) {
+        let Some(floor) = &self.world.floor else { return };
+        let up = Vec2::new(0.0, 1.0);
+        for (index, block) in self.world.blocks.iter().enumerate() {
+            let Solid { rect, reach_m, sweep_m, inverse_mass, .. } = self.solids[index];
+            if rect.center_m.y - reach_m - sweep_m > floor.height_m {
+                continue;
+            }
+            let pair = (Surface::Block(index as u16), Surface::Floor);
+            let material = match &floor.loss {
+                // Two corners carry the block: each has half of what stops it.
+                Some(loss) => {
+                    let damping = 0.5 * loss.damping_n_s_m(2.0 * floor.stiffness_n_m, 1.0 / inverse_mass);
+                    Material::hard(floor.stiffness_n_m, damping, loss.mu)
+                }
+                None => Material::hard(floor.stiffness_n_m, floor.damping_n_s_m, floor.friction),
+            };
+            if block.shape == Shape::Needle {
+                let point_m = rect.center_m - rect.axis_y() * rect.half_m.y;
+                let depth_m = floor.height_m - point_m.y;
+                if depth_m > -sweep_m {
+                    self.add(meeting(pair, 0, point_m, up, depth_m), material);
+                }
+                continue;
+            }
+            for corner in 0..4_u8 {
+                let point_m = rect.corner(corner);
+                let depth_m = floor.height_m - point_m.y;
+                if depth_m > -sweep_m {
+                    self.add(meeting(pair, corner, point_m, up, depth_m), material);
+                }
+            }
+        }
+        for finger in 0..2_u8 {
+            let tip = self.tips[usize::from(finger)];
+            let depth_m = floor.height_m - tip.y;
+            if depth_m > -self.tip_sweep_m[usize::from(finger)] {
+                let pair = (Surface::Finger(finger), Surface::Floor);
+                self.add(meeting(pair, 0, tip, up, depth_m), pad_material(self.world, floor.friction));
+            }
+        }
+    }
+
+    fn blocks(&mut self) {
+        let solids = self.solids;
+        for (i, a) in solids.iter().enumerate() {
+            for (j, b) in solids.iter().enumerate().skip(i + 1) {
+                let margin_m = a.sweep_m + b.sweep_m;
+                let near = a.reach_m + b.reach_m + margin_m;
+                if (a.rect.center_m - b.rect.center_m).norm_squared() > near * near {
+                    continue;
+                }
+                let Some((normal, points)) = rect_rect(&a.rect, &b.rect, margin_m) else { continue };
+                let material = block_material(&self.world.blocks[i], &self.world.blocks[j]);
+                let pair = (Surface::Block(i as u16), Surface::Block(j as u16));
+                for (point_m, depth_m, feature) in points.into_iter().flatten() {
+                    self.add(meeting(pair, feature, point_m, normal, depth_m), material);
+                }
+            }
+        }
+    }
+
+    fn fingers(&mut self) {
+        for finger in 0..2_u8 {
+            let tip = self.tips[usize::from(finger)];
+            let tip_sweep_m = self.tip_sweep_m[usize::from(finger)];
+            for (index, block) in self.world.blocks.iter().enumerate() {
+                let Solid { rect, reach_m, sweep_m, .. } = self.solids[index];
+                let margin_m = tip_sweep_m + sweep_m;
+                let near = reach_m + margin_m;
+                if (rect.center_m - tip).norm_squared() > near * near {
+                    continue;
+                }
+                let pair = (Surface::Finger(finger), Surface::Block(index as u16));
+                let kept = self.memory.find(|c| (c.on, c.by) == pair).map(|c| c.feature);
+                let Some((face, depth_m)) = point_in_rect(&rect, tip, kept, margin_m) else { continue };
+                let mut material = pad_material(self.world, block.finger_friction);
+                if let Some(wall) = &block.wall {
+                    material.elastic = behind_wall(&material.elastic, wall.stiffness_n_m);
+                }
+                // Start again at this pair: its contact is the next to be asked for.
+                self.memory.next = self.memory.next.saturating_sub(1);
+                self.add(meeting(pair, face, tip, rect.face(face).0, depth_m), material);
+            }
+        }
+        self.sheet();
+    }
+
+    /// A finger on the membrane: it is blunt and pierces nothing.
+    fn sheet(&mut self) {
+        let Some(membrane) = &self.world.membrane else { return };
+        for finger in 0..2_u8 {
+            let tip = self.tips[usize::from(finger)];
+            let depth_m = membrane.center_m.y - tip.y;
+            let over_it = (tip.x - membrane.center_m.x).abs() < membrane.half_width_m;
+            if over_it && depth_m > -self.tip_sweep_m[usize::from(finger)] && depth_m < SHEET_DEPTH_M {
+                let pair = (Surface::Finger(finger), Surface::Membrane);
+                let mut material = pad_material(self.world, self.world.floor.map_or(0.5, |f| f.friction));
+                material.elastic = behind_wall(&material.elastic, membrane.law.stiffness_n_m);
+                self.add(meeting(pair, 0, tip, Vec2::new(0.0, 1.0), depth_m), material);
+            }
+        }
+    }
+
+    /// Fingers on what is driven along one coordinate: handle and knob. Depth and normal are found anew in each part of the
+    /// tick, because these surfaces go on curves.
+    fn driven(&mut self, crank_rad: f64, radial_m: f64, knob_at_m: f64) {
+        if let Some(crank) = &self.world.crank {
+            let (sin, cos) = crank_rad.sin_cos();
+            let handle = crank.center_m + Vec2::new(cos, sin) * (crank.radius_m + radial_m);
+            for finger in 0..2_u8 {
+                let tip = self.tips[usize::from(finger)];
+                let pair = (Surface::Finger(finger), Surface::Handle);
+                // The left pad faces right, the right pad faces left.
+                let facing = if finger == 0 { 1.0 } else { -1.0 };
+                let held = self.memory.find(|c| (c.on, c.by) == pair).is_some();
+                let on_own_side = facing * (tip.x - handle.x) < 0.0 || held;
+                let level = (tip.y - handle.y).abs() < PAD_HALF_HEIGHT_M + 0.5 * crank.handle_width_m;
+                if on_own_side && level {
+                    let depth_m = facing * (tip.x - handle.x) + 0.5 * crank.handle_width_m;
+                    let contact = meeting(pair, 0, tip, Vec2::new(-facing, 0.0), depth_m);
+                    self.memory.next = self.memory.next.saturating_sub(1);
+                    self.add(contact, pad_material(self.world, crank.finger_friction));
+                }
+            }
+        }
+        if let Some(switch) = &self.world.switch {
+            let knob = switch.knob_in_world(knob_at_m);
+            for finger in 0..2_u8 {
+                let tip = self.tips[usize::from(finger)];
+                let away = tip - knob;
+                let distance = away.norm();
+                // Twice the radius: near enough to come to it within a tick, and a tip in the very middle has no side.
+                if distance > 1e-9 && distance < 2.0 * switch.knob_radius_m {
+                    let pair = (Surface::Finger(finger), Surface::Knob);
+                    let depth_m = switch.knob_radius_m - distance;
+                    let contact = meeting(pair, 0, tip, away / distance, depth_m);
+                    self.add(contact, pad_material(self.world, switch.finger_friction));
+                }
+            }
+        }
+    }
+}
+
+fn pad_material(world: &World, friction: f64) -> Material {
+    Material {
+        elastic: world.pad.elastic(),
+        damping_n_s_m: world.pad.damping_n_s_m,
+        shear_stiffness_n_m: world.pad.shear_stiffness_n_m,
+        shear_damping_n_s_m: world.pad.shear_damping_n_s_m,
+        friction,
+    }
+}
+
+/// A pad on a wall that gives. The compression is shared as the linear stiffnesses share it: exact for linear pads, to first
+/// order for hardening ones.
+fn behind_wall(pad: &StiffnessHardening, wall_n_m: f64) -> StiffnessHardening {
+    let series = PadCompliance { k: wall_n_m }.behind(pad.k1);
+    let share = series / pad.k1;
+    StiffnessHardening { k1: series, k3: pad.k3 * share.powi(3), hertz: pad.hertz * share.powf(1.5) }
+}
+
+fn block_material(a: &Block, b: &Block) -> Material {
+    // Two surfaces in series; friction as the geometric mean, the usual choice when only single surfaces are known.
+    let series = |x: f64, y: f64| if x + y > 0.0 { x * y / (x + y) } else { 0.0 };
+    Material::hard(
+        series(a.stiffness_n_m, b.stiffness_n_m),
+        series(a.damping_n_s_m, b.damping_n_s_m),
+        (a.block_friction * b.block_friction).sqrt(),
+    )
+}
