@@ -158,7 +158,8 @@ fn surface_velocity(state: &State, contact: &Contact) -> Vec2 {
             body.velocity_m_s + Vec2::new(-arm.y, arm.x) * body.rate_rad_s
         }),
         Surface::Handle => state.crank.handle_velocity,
-        Surface::Floor | Surface::Finger(_) => Vec2::zeros(),
+        Surface::Knob => state.switch.knob_velocity,
+        Surface::Floor | Surface::Membrane | Surface::Finger(_) => Vec2::zeros(),
     }
 }
 

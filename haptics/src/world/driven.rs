@@ -72,8 +72,9 @@ fn move_radially(crank: &Crank, state: &mut CrankState, pull: f64, motion: &Moti
 /// Moves the knob by `dt_s` under the pads' `force`, N, and gravity: semi-implicit Euler with the curve's slope, the reversal
 /// and the stops taken where the step ends, so that a hard stop never rings.
 pub(super) fn move_switch(switch: &Switch, state: &mut SwitchState, force: Vec2, gravity: Vec2, dt_s: f64) {
-    let (sin, cos) = (state.at_m / switch.lever_m).sin_cos();
-    let along = Vec2::new(cos, -sin);
+    let knob_m = switch.knob_in_world(state.at_m);
+    let outward = (knob_m - switch.pivot_m) / switch.lever_m;
+    let along = Vec2::new(outward.y, -outward.x);
     let drive = (force + gravity * switch.mass_kg).dot(&along);
     let held = switch.curve.force_n(state.at_m, state.branch);
     let stiffness = switch.curve.stiffness_n_m(state.at_m, state.branch);
@@ -82,6 +83,7 @@ pub(super) fn move_switch(switch: &Switch, state: &mut SwitchState, force: Vec2,
     let way_m = state.rate_m_s * dt_s;
     state.branch = switch.curve.advance(state.branch, way_m);
     state.at_m += way_m;
+    state.knob_velocity = (switch.knob_in_world(state.at_m) - knob_m) / dt_s;
     state.force_n = held;
 }
 

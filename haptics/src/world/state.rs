@@ -76,6 +76,8 @@ pub struct SwitchState {
     pub at_m: f64,
     /// Its rate, m/s.
     pub rate_m_s: f64,
+    /// Velocity of the knob as it moved in the last part of a tick, m/s.
+    pub knob_velocity: Vec2,
     /// 1 on the forward branch of the curve, 0 on the backward one.
     pub branch: f64,
     /// Force of the mechanism against a displacement to the right, N.

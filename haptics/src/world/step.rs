@@ -128,16 +128,12 @@ fn press_all(
     (handle_m, knob_m): (Option<Vec2>, Option<Vec2>),
 ) -> (Vec2, Vec2) {
     let State { scratch: Scratch { touches, solids }, bodies, .. } = state;
-    let knob_velocity = knob_m.map_or_else(Vec2::zeros, |_| {
-        let (sin, cos) = world.switch.as_ref().map_or((0.0, 1.0), |s| (state.switch.at_m / s.lever_m).sin_cos());
-        Vec2::new(cos, -sin) * state.switch.rate_m_s
-    });
     let (mut on_handle, mut on_knob) = (Vec2::zeros(), Vec2::zeros());
     for touch in touches {
         let by = match touch.contact.by {
             Surface::Block(index) => velocity_at(&bodies[usize::from(index)], touch.arm_by_m),
             Surface::Handle => state.crank.handle_velocity,
-            Surface::Knob => knob_velocity,
+            Surface::Knob => state.switch.knob_velocity,
             Surface::Finger(_) | Surface::Floor | Surface::Membrane => Vec2::zeros(),
         };
         // Velocity for the damper, and the way since the part before, as a velocity, for springs.
