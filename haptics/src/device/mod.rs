@@ -12,7 +12,7 @@ mod touch;
 pub use impedance::HandImpedance;
 pub use keyboard::{KeyboardDevice, KeyboardHandle, KeysHeld, keyboard};
 pub use mouse::{MouseDevice, MouseHandle, MouseTarget, mouse};
-pub use replay::ReplayDevice;
+pub use replay::{ReplayDevice, ReplayError};
 pub use scripted::{Mistake, ScriptedOperator, Skill};
 pub use touch::{TouchDevice, TouchHandle, touch};
 
