@@ -1,6 +1,7 @@
 //! The servo's tick allocates nothing: every built-in world, every device, a swap, and copying the state out.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
+use haptics::device::udp::{Force, Key, Motion, UdpConfig, UdpDevice};
 use haptics::device::{
     Device, KeysHeld, Mistake, MouseTarget, ReplayDevice, ScriptedOperator, Skill, keyboard, mouse, touch,
 };
@@ -82,6 +83,30 @@ fn touch_screen_and_keyboard() {
     let (mut handle, device) = keyboard(tips, world.hand.workspace);
     handle.set(KeysHeld { down: true, close: true, ..KeysHeld::default() });
     run(&mut servo(&world, Box::new(device)), 2_000);
+}
+
+#[test]
+fn a_remote_device() {
+    let world = presets::table();
+    let tips = State::resting(&world).input.tip_in_world;
+    let key = Key::new([9; 32]);
+    let listen = (std::net::Ipv4Addr::LOCALHOST, 0).into();
+    let device = UdpDevice::open(UdpConfig { listen, ..UdpConfig::loopback(key.clone()) }, tips).expect("a free port");
+    let (monitor, client) = (device.monitor(), std::net::UdpSocket::bind("127.0.0.1:0").expect("a free port"));
+    let mut servo = servo(&world, Box::new(device));
+    let mut motion = Motion { tip_in_world: tips, ..Motion::default() };
+    let mut buffer = [0; 256];
+    client.send_to(&motion.encode(&key), monitor.address()).expect("loopback");
+    run(&mut servo, 5);
+    let size = client.recv(&mut buffer).expect("a greeting");
+    motion.session = Force::decode(&buffer[..size], &key).expect("sealed").session;
+    for sequence in 1..200 {
+        motion.sequence = sequence;
+        client.send_to(&motion.encode(&key), monitor.address()).expect("loopback");
+        client.send_to(&[1; 50], monitor.address()).expect("loopback");
+        run(&mut servo, 1);
+    }
+    assert!(monitor.accepted() > 100);
 }
 
 #[test]

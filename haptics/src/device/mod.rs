@@ -8,6 +8,7 @@ mod pointer;
 mod replay;
 mod scripted;
 mod touch;
+pub mod udp;
 
 pub use impedance::HandImpedance;
 pub use keyboard::{KeyboardDevice, KeyboardHandle, KeysHeld, keyboard};
@@ -62,6 +63,11 @@ pub trait Device: Send {
 
     /// Sends a force and takes the newest positions; `dt_s` is the time since the call before.
     fn exchange(&mut self, command: &Command, dt_s: f64) -> Sample;
+
+    /// Delay that the device adds between a motion and the force that answers it, s: a network's. Limits count with it.
+    fn delay_s(&self) -> f64 {
+        0.0
+    }
 
     /// Brings the device to zero force. Called when the servo stops, also after a fault; called again on drop by devices that
     /// hold their last force.

@@ -185,7 +185,7 @@ impl Loop {
     /// The coupling that device, world and period ask for; the tips stay where they are.
     fn couple(&mut self, period_s: f64) {
         self.coupled_for_s = period_s;
-        let delay_s = 0.0;
+        let delay_s = self.device.delay_s();
         let needed = Coupling::needed(self.device.spec(), &self.current.world, period_s, delay_s);
         let tips = self.current.state.input;
         self.proxy = needed.map(|coupling| match self.proxy {
