@@ -143,8 +143,13 @@ fn solve(
     let all = sum(effects, &probe, memories, true);
     let inertia = (all.inertia + extra_inertia).max(LEAST_INERTIA);
     let free = motion.velocity + (drive - all.smooth) / inertia * dt_s;
-    probe.direction = free.signum();
-    let ahead = sum(effects, &probe, memories, false);
+    // Most ticks go on the way they went: only a turn asks the laws again.
+    let ahead = if free.signum() == probe.direction {
+        all
+    } else {
+        probe.direction = free.signum();
+        sum(effects, &probe, memories, false)
+    };
     let brake = ahead.dry / inertia * dt_s;
     // m v' = m v + (drive − F − K v' dt − dry) dt: stiff laws are met where the step ends, so that they never ring.
     let slowed = 1.0 + ahead.stiffness / inertia * dt_s * dt_s;

@@ -2,6 +2,7 @@
 
 use super::block::{Block, Shape};
 use super::contact::{Material, Touch, meeting};
+use super::driven::handle;
 use super::model::World;
 use super::rect::{Rect, point_in_rect, rect_rect};
 use super::state::{BodyState, Contact, Input, Scratch, Solid, State, Surface};
@@ -45,7 +46,7 @@ struct Gather<'a> {
 
 /// Fills the scratch space of `state`: outlines, masses and touches as they are now, with the tips on their way to `input`.
 pub(super) fn collide(world: &World, state: &mut State, input: &Input, dt_s: f64) {
-    let State { scratch: Scratch { touches, solids }, bodies, contacts, time_s, .. } = state;
+    let State { scratch: Scratch { touches, solids, arm }, bodies, contacts, time_s, .. } = state;
     solids.clear();
     solids.extend(world.blocks.iter().zip(&*bodies).map(|(block, body)| solid(block, body, world.gravity_m_s2, dt_s)));
     touches.clear();
@@ -56,11 +57,12 @@ pub(super) fn collide(world: &World, state: &mut State, input: &Input, dt_s: f64
         .map_or_else(Vec2::zeros, |slip| slip.displacement_m(*time_s + dt_s) - slip.displacement_m(*time_s));
     let tip_sweep_m = [0, 1].map(|f| (input.tip_in_world[f] - tips[f]).norm());
     let memory = Memory { before: contacts, next: 0 };
+    let handle_m = world.crank.as_ref().map(|crank| handle(crank, &state.crank, arm));
     let mut gather = Gather { world, tips, tip_sweep_m, memory, touches, solids, slipped_m };
     gather.floor();
     gather.blocks();
     gather.fingers();
-    gather.driven(state.crank.angle_rad, state.crank.radial_m, state.switch.at_m);
+    gather.driven(handle_m, state.switch.at_m);
 }
 
 /// A body's outline, how far it may come within the tick, and its mass.
@@ -210,10 +212,8 @@ impl Gather<'_> {
 
     /// Fingers on what is driven along one coordinate: handle and knob. Depth and normal are found anew in each part of the
     /// tick, because these surfaces go on curves.
-    fn driven(&mut self, crank_rad: f64, radial_m: f64, knob_at_m: f64) {
-        if let Some(crank) = &self.world.crank {
-            let (sin, cos) = crank_rad.sin_cos();
-            let handle = crank.center_m + Vec2::new(cos, sin) * (crank.radius_m + radial_m);
+    fn driven(&mut self, handle_m: Option<Vec2>, knob_at_m: f64) {
+        if let (Some(crank), Some(handle)) = (&self.world.crank, handle_m) {
             for finger in 0..2_u8 {
                 let tip = self.tips[usize::from(finger)];
                 let pair = (Surface::Finger(finger), Surface::Handle);

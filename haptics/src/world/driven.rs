@@ -2,7 +2,7 @@
 
 use super::fixture::{Membrane, Switch};
 use super::model::Crank;
-use super::state::{CrankState, Hole, MAX_HOLES, MembraneState, SwitchState};
+use super::state::{Arm, CrankState, Hole, MAX_HOLES, MembraneState, SwitchState};
 use crate::Vec2;
 use crate::law::object::{MembraneHistory, MembraneLaw, MembranePhase};
 use crate::law::{Motion, Role, step_coordinate_with};
@@ -21,28 +21,41 @@ pub(crate) fn crank_motion(crank: &Crank, time_s: f64, angle_rad: f64, rate_rad_
 }
 
 /// Middle of the handle in the world, m.
-pub(super) fn handle(crank: &Crank, state: &CrankState) -> Vec2 {
-    let (sin, cos) = state.angle_rad.sin_cos();
-    crank.center_m + Vec2::new(cos, sin) * (crank.radius_m + state.radial_m)
+pub(super) fn handle(crank: &Crank, state: &CrankState, arm: &mut Arm) -> Vec2 {
+    crank.center_m + arm.outward(state.angle_rad) * (crank.radius_m + state.radial_m)
 }
 
-/// Moves the handle, which is at `handle_m`, by `dt_s` under the pads' `force`, N.
-pub(super) fn move_crank(crank: &Crank, state: &mut CrankState, handle_m: Vec2, force: Vec2, time_s: f64, dt_s: f64) {
-    let outward = (handle_m - crank.center_m) / (crank.radius_m + state.radial_m);
+/// Moves the handle of `mass_kg` by `dt_s` under the pads' `force`, N.
+pub(super) fn move_crank(
+    (crank, mass_kg): (&Crank, f64),
+    state: &mut CrankState,
+    arm: &mut Arm,
+    force: Vec2,
+    time_s: f64,
+    dt_s: f64,
+) {
+    let outward = arm.outward(state.angle_rad);
+    let before_m = handle(crank, state, arm);
     let (pull, drive) = (force.dot(&outward), outward.perp(&force));
     let mut motion = crank_motion(crank, time_s, state.angle_rad, state.rate_rad_s, pull);
     motion.up_along = outward.x;
     let (_, speed) = step_coordinate_with(&crank.effects, &motion, &mut state.memories, drive, 0.0, dt_s);
     state.rate_rad_s = speed / crank.radius_m;
     state.angle_rad += state.rate_rad_s * dt_s;
-    move_radially(crank, state, pull, &motion, outward.y, dt_s);
+    move_radially((crank, mass_kg), state, pull, &motion, outward.y, dt_s);
     // The chord that it moved along, not the tangent: what the pads' anchors add up must be the way that was gone.
-    state.handle_velocity = (handle(crank, state) - handle_m) / dt_s;
+    state.handle_velocity = (handle(crank, state, arm) - before_m) / dt_s;
 }
 
 /// The handle's give along the arm, and the force of the arm on it (thesis, eq. 5.1: Fn = (mg)n + Fc).
-fn move_radially(crank: &Crank, state: &mut CrankState, pull: f64, motion: &Motion, up_outward: f64, dt_s: f64) {
-    let mass = crank.mass_at_handle_kg();
+fn move_radially(
+    (crank, mass): (&Crank, f64),
+    state: &mut CrankState,
+    pull: f64,
+    motion: &Motion,
+    up_outward: f64,
+    dt_s: f64,
+) {
     // Gravity gives W (up · t) along the path; across it, a quarter of a turn back, up · n = sin θ.
     let across = Motion {
         position: motion.position - crank.radius_m * std::f64::consts::FRAC_PI_2,

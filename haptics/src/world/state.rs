@@ -164,6 +164,33 @@ pub(super) struct Scratch {
     pub touches: Vec<Touch>,
     /// The movable bodies as this tick finds them.
     pub solids: Vec<Solid>,
+    /// Direction of the crank's arm.
+    pub arm: Arm,
+}
+
+/// Direction of an arm at the angle it was last asked for: the same angle is asked for several times a tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arm {
+    angle_rad: f64,
+    outward: Vec2,
+}
+
+impl Default for Arm {
+    fn default() -> Self {
+        Self { angle_rad: 0.0, outward: Vec2::new(1.0, 0.0) }
+    }
+}
+
+impl Arm {
+    /// Unit vector from the axis outwards at an angle.
+    #[inline]
+    pub fn outward(&mut self, angle_rad: f64) -> Vec2 {
+        if angle_rad.to_bits() != self.angle_rad.to_bits() {
+            let (sin, cos) = angle_rad.sin_cos();
+            *self = Self { angle_rad, outward: Vec2::new(cos, sin) };
+        }
+        self.outward
+    }
 }
 
 /// A movable body as a tick finds it.
@@ -187,7 +214,7 @@ pub(super) struct Solid {
 
 impl Scratch {
     fn with_room() -> Self {
-        Self { touches: Vec::with_capacity(MAX_CONTACTS), solids: Vec::with_capacity(MAX_BLOCKS) }
+        Self { touches: Vec::with_capacity(MAX_CONTACTS), solids: Vec::with_capacity(MAX_BLOCKS), arm: Arm::default() }
     }
 }
 
