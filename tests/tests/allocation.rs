@@ -1,11 +1,15 @@
 //! The servo's tick allocates nothing: every built-in world, every device, a swap, and copying the state out.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
+use haptics::Vec2;
 use haptics::device::udp::{Force, Key, Motion, UdpConfig, UdpDevice};
 use haptics::device::{
-    Device, KeysHeld, Mistake, MouseTarget, ReplayDevice, ScriptedOperator, Skill, keyboard, mouse, touch,
+    Command, Device, DeviceSpec, KeysHeld, Mistake, MouseTarget, ReplayDevice, Sample, ScriptedOperator, Skill,
+    keyboard, mouse, touch,
 };
+use haptics::servo::rate::{RateReport, Watch};
 use haptics::servo::safety::Limits;
+use haptics::servo::timing::{TickTiming, TimingCollector};
 use haptics::servo::{Loop, Swap};
 use haptics::world::{State, World, presets};
 
@@ -136,4 +140,64 @@ fn a_larger_world_is_swapped_in() {
     });
     assert_eq!(servo.state().bodies.len(), 39);
     drop(old);
+}
+
+/// Two fingers at rest on the table, on a device that needs a virtual coupling.
+struct Coupled(DeviceSpec);
+
+impl Device for Coupled {
+    fn spec(&self) -> &DeviceSpec {
+        &self.0
+    }
+
+    fn exchange(&mut self, _: &Command, _: f64) -> Sample {
+        let tip_in_world = [Vec2::new(-0.02, -0.126), Vec2::new(0.02, -0.126)];
+        Sample { tip_in_world, tip_velocity: [Vec2::zeros(); 2], fresh: true }
+    }
+
+    fn make_safe(&mut self) {}
+}
+
+#[test]
+fn the_virtual_coupling_a_swap_under_it_and_a_change_of_the_rate() {
+    let spec = DeviceSpec {
+        name: "coupled".to_owned(),
+        force_feedback: true,
+        max_force_n: 4.0,
+        damping_n_s_m: 0.5,
+        coulomb_n: 0.0,
+        resolution_m: 0.0,
+    };
+    let mut servo = servo(&presets::table(), Box::new(Coupled(spec)));
+    run(&mut servo, 1_000);
+    assert!(servo.coupling().is_some());
+    let mut next = Some(Swap::new(presets::stacking()));
+    let mut old = None;
+    assert_no_alloc(|| {
+        old = next.take().map(|next| servo.swap(next));
+        for _ in 0..500 {
+            servo.tick(0.25 * DT);
+        }
+        // A clock that stands still, and a standstill that is noticed.
+        servo.tick(0.0);
+        servo.interrupted();
+        servo.tick(DT);
+    });
+    drop(old);
+}
+
+#[test]
+fn the_timing_of_a_tick_and_its_summary() {
+    let mut collector = TimingCollector::default();
+    let mut watch = Watch::default();
+    let rate = RateReport { rate_hz: 1000.0, ..RateReport::default() };
+    let timing = assert_no_alloc(|| {
+        for tick in 0..5_000_u32 {
+            let missed = tick.is_multiple_of(3);
+            collector.add(&TickTiming { compute_s: 1e-6, interval_s: Some(DT), missed, ..TickTiming::default() });
+            watch.add(missed, 1000.0);
+        }
+        collector.summary(rate)
+    });
+    assert_eq!(timing.ticks, 5_000);
 }
