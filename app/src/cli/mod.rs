@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 done, 1 the input or the run failed, 2 wrong usage.
 
+mod bench;
 mod demo;
 mod device;
 mod fit;
@@ -47,6 +48,8 @@ enum Command {
     Screenshot(screenshot::Screenshot),
     /// Devices that drive the hand, and a self-test in words
     Device(device::Device),
+    /// How punctual the servo is on this machine
+    Bench(bench::Bench),
     /// Open the app, optionally on a log or a world
     App(AppArgs),
 }
@@ -119,6 +122,7 @@ pub fn main() -> ExitCode {
         Some(Command::Record(args)) => args.run(),
         Some(Command::Screenshot(args)) => args.run(),
         Some(Command::Device(args)) => args.run(),
+        Some(Command::Bench(args)) => args.run(),
     };
     match result {
         Ok(output) => {
