@@ -100,10 +100,10 @@ fn from_soft_to_stiff_the_force_comes_up_with_the_ramp_and_back_it_fades() {
     let limits = Limits::default();
     let mut body = Loop::new(Swap::new(table(400.0)), rigid(false, leaning()), limits);
     let run = |body: &mut Loop| -> Vec<TickRecord> { (0..1_000).map(|_| body.tick(DT)).collect() };
-    let soft = run(&mut body)[999].sent_force_n[0].norm();
+    let soft = run(&mut body)[999].sent_force_n[0].y;
     body.swap(Swap::new(table(2500.0)));
     let up = run(&mut body);
-    let stiff = up[999].sent_force_n[0].norm();
+    let stiff = up[999].sent_force_n[0].y;
     assert!(stiff > soft + 2.0, "{soft} N, then {stiff} N");
     // The ramp of half a second is a thousand times gentler than the slew limit; the fade adds a little of the old force.
     let gentle = stiff * DT / limits.ramp_s + soft * DT / 0.05;
@@ -111,7 +111,9 @@ fn from_soft_to_stiff_the_force_comes_up_with_the_ramp_and_back_it_fades() {
     body.swap(Swap::new(table(400.0)));
     let down = run(&mut body);
     assert!(largest_jump(&down) < 1.1 * (stiff - soft) * DT / 0.05, "{} N a tick", largest_jump(&down));
-    assert!((down[100].sent_force_n[0].norm() - soft).abs() < 0.02, "soft again after a tenth of a second");
+    // Upwards: the jump into the table at the start left a pull along it, which a new world does not know.
+    let after = down[100].sent_force_n[0].y;
+    assert!((after - soft).abs() < 0.02, "soft again after a tenth of a second: {soft} N, {after} N");
 }
 
 #[test]
