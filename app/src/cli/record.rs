@@ -86,6 +86,9 @@ impl Record {
         match self.task {
             Task::BlockStack => Ok(presets::stacking()),
             Task::Crank => Ok(presets::crank()),
+            Task::Needle => Ok(presets::needle()),
+            Task::Barrel => Ok(presets::barrel()),
+            Task::Switch => Ok(presets::switch()),
             other => {
                 anyhow::bail!("there is no built-in world for the task {} yet; name one with --world", other.name())
             }

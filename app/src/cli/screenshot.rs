@@ -74,9 +74,14 @@ fn scene_world(scene: &str) -> anyhow::Result<World> {
     match scene {
         "stack" => Ok(presets::stacking()),
         "crank" => Ok(presets::crank()),
+        "needle" => Ok(presets::needle()),
+        "barrel" => Ok(presets::barrel()),
+        "switch" => Ok(presets::switch()),
         "table" => Ok(presets::table()),
         file if Path::new(file).is_file() => World::load(Path::new(file)).with_context(|| file.to_owned()),
-        other => anyhow::bail!("there is no scene `{other}`; use stack, crank, table or a world file"),
+        other => anyhow::bail!(
+            "there is no scene `{other}`; use stack, crank, needle, barrel, switch, table or a world file"
+        ),
     }
 }
 

@@ -2,6 +2,7 @@
 //! lets go. It sees the world as a person sees the screen, and drives the fingers through the arm's impedance.
 
 mod builder;
+mod captured;
 mod eye;
 mod noise;
 mod plan;

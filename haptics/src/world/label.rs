@@ -2,6 +2,7 @@
 
 use super::model::World;
 use super::state::{State, Surface};
+use crate::law::object::MembranePhase;
 
 /// Speed above which a held block slides rather than rests, m/s.
 const SLIDING_M_S: f64 = 0.01;
@@ -11,6 +12,18 @@ pub fn true_label(world: &World, state: &State) -> &'static str {
     if world.crank.is_some() {
         let held = [0, 1].iter().all(|f| touches(state, Surface::Finger(*f), Surface::Handle));
         return if held { "turning" } else { "free-motion" };
+    }
+    if world.membrane.is_some() {
+        return match state.membrane.phase {
+            MembranePhase::Free => "free-motion",
+            MembranePhase::Insertion => "insertion",
+            MembranePhase::Penetration => "penetration",
+            MembranePhase::Extraction => "extraction",
+        };
+    }
+    if world.switch.is_some() {
+        let pushed = [0, 1].iter().any(|f| touches(state, Surface::Finger(*f), Surface::Knob));
+        return if pushed { "pushing" } else { "free-motion" };
     }
     for index in 0..world.blocks.len() {
         let block = Surface::Block(index as u16);

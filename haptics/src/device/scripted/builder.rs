@@ -44,6 +44,21 @@ impl<'a> Builder<'a> {
         Self { phases, now_s, at, skill, rng, habits, holds: None, growing: false }
     }
 
+    /// Where the hand will be when the movements so far are done.
+    pub(super) fn at(&self) -> Goal {
+        self.at
+    }
+
+    /// Who does it.
+    pub(super) fn skill(&self) -> Skill {
+        self.skill
+    }
+
+    /// A number that every operator draws anew.
+    pub(super) fn between(&mut self, least: f64, most: f64) -> f64 {
+        self.rng.random_range(least..most)
+    }
+
     fn vary(&mut self, usual: f64, share: f64) -> f64 {
         usual * self.rng.random_range(1.0 - share..1.0 + share)
     }
@@ -58,7 +73,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn reach(&mut self, usual_s: f64, to: Goal) {
+    pub(super) fn reach(&mut self, usual_s: f64, to: Goal) {
         self.push(usual_s, Move::Reach { from: self.at, to });
         self.at = to;
     }
@@ -68,7 +83,7 @@ impl<'a> Builder<'a> {
     }
 
     /// A reach through the air: it ends beside its goal, mostly beyond it, and is corrected once that has been seen.
-    fn aim(&mut self, usual_s: f64, to: Goal) {
+    pub(super) fn aim(&mut self, usual_s: f64, to: Goal) {
         if self.skill.aim_error_m == 0.0 && self.skill.overshoot == 0.0 {
             return self.reach(usual_s, to);
         }
@@ -84,7 +99,7 @@ impl<'a> Builder<'a> {
     }
 
     /// A pinch as this operator chooses it, N per finger.
-    fn choose_pinch(&mut self, usual_n: f64, share: f64) -> f64 {
+    pub(super) fn choose_pinch(&mut self, usual_n: f64, share: f64) -> f64 {
         let pinch_n = self.vary(usual_n, share);
         if self.skill.pinch_spread == 0.0 {
             return pinch_n;

@@ -5,7 +5,7 @@ use super::builder::Builder;
 use super::eye::Frame;
 use super::{Mistake, Skill};
 use crate::Vec2;
-use crate::world::{Block, State, World};
+use crate::world::{Block, Shape, State, World};
 use rand::rngs::StdRng;
 
 /// A block that is farther from the fingers than this is not held any more, m.
@@ -96,7 +96,8 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Turn the crank if there is one, else unstack and restack the blocks, else look around. `rng` draws what every operator
+    /// Turn the crank if there is one, pierce the membrane, throw the switch, examine the barrel, else unstack and restack the
+    /// blocks, else look around. `rng` draws what every operator
     /// varies, `habits` what only some levels of skill do.
     pub fn for_world(
         world: &World,
@@ -113,6 +114,12 @@ impl Plan {
         builder.wait(1.0);
         if world.crank.is_some() {
             builder.turn_crank(world, state, mistakes);
+        } else if world.membrane.is_some() {
+            builder.pierce_sheet(world, state, mistakes);
+        } else if world.switch.is_some() {
+            builder.throw_switch(world, state);
+        } else if world.blocks.iter().any(|b| b.shape == Shape::Barrel) {
+            builder.examine_barrel(world, state, mistakes);
         } else if world.blocks.is_empty() {
             builder.look_around(world);
         } else {

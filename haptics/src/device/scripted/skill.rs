@@ -124,15 +124,23 @@ pub enum Mistake {
     EarlyRelease,
     /// The first turn of the crank starts the wrong way round.
     WrongDirection,
+    /// The needle is pushed far beyond the sheet.
+    Overshoot,
 }
 
 impl Mistake {
     /// Every mistake.
-    pub const ALL: [Self; 5] =
-        [Self::WeakPinch, Self::Crush, Self::MisalignedStack, Self::EarlyRelease, Self::WrongDirection];
+    pub const ALL: [Self; 6] = [
+        Self::WeakPinch,
+        Self::Crush,
+        Self::MisalignedStack,
+        Self::EarlyRelease,
+        Self::WrongDirection,
+        Self::Overshoot,
+    ];
 
     /// Whether it can happen when blocks are carried.
     pub fn is_of_blocks(self) -> bool {
-        self != Self::WrongDirection
+        !matches!(self, Self::WrongDirection | Self::Overshoot)
     }
 }

@@ -231,3 +231,64 @@ fn the_same_seed_gives_the_same_bits_with_mistakes_and_looks() {
     let other = perform(&world, Skill::novice(), &[Mistake::WeakPinch], 6);
     assert_ne!(other.tips, perform(&world, Skill::novice(), &[Mistake::WeakPinch], 5).tips);
 }
+
+#[test]
+fn pierces_the_sheet_twice_and_leaves_the_needle_in_it() {
+    let world = presets::needle();
+    for seed in 0..5 {
+        let shown = perform(&world, Skill::default(), &[], seed);
+        let (free, inside) = ("free-motion", "penetration");
+        let held: Vec<_> = shown.labels.iter().filter(|l| **l != "insertion" || shown.labels[0] != **l).collect();
+        let through = shown.labels.iter().filter(|l| **l == "insertion").count();
+        assert!(through >= 2 && shown.labels.contains(&"extraction"), "seed {seed}: {held:?}");
+        assert!(shown.labels.contains(&free) && shown.labels.last() == Some(&inside), "seed {seed}: {held:?}");
+        let pierced = shown.state.membrane.holes.iter().filter(|h| h.history.punctured).count();
+        assert_eq!(pierced, 2, "seed {seed}");
+        let far = perform(&world, Skill::default(), &[Mistake::Overshoot], seed);
+        let deepest = |s: &Shown| s.state.membrane.holes.iter().map(|h| h.history.deepest_m).fold(0.0, f64::max);
+        assert!(deepest(&far) > deepest(&shown) + 0.003, "seed {seed}: {} {}", deepest(&far), deepest(&shown));
+    }
+}
+
+#[test]
+fn examines_the_barrel_to_the_end_of_its_cable_without_dropping_or_breaking_it() {
+    let world = presets::barrel();
+    for seed in 0..5 {
+        let mut taut = 0.0_f64;
+        let shown = perform(&world, Skill::default(), &[], seed);
+        assert_eq!(shown.drops, 0, "seed {seed}: {:?}", shown.labels);
+        assert!(shown.labels.contains(&"hold-above-ground") && !shown.state.bodies[0].broken, "seed {seed}");
+        let mut operator = ScriptedOperator::new(&world, &State::resting(&world), Skill::default(), seed);
+        let mut state = State::resting(&world);
+        while !operator.finished() {
+            let sample = operator.exchange(&Command { force_n: state.tip_force_n.map(|f| -f) }, DT);
+            let input = Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity };
+            step(&world, &mut state, &input, DT);
+            taut = taut.max(state.bodies[0].cable_n);
+        }
+        assert!(taut > 0.2, "seed {seed}: the cable was never taut ({taut} N)");
+        let moved = (state.bodies[0].center_m - world.blocks[0].start.center_m).norm();
+        assert!(moved < 6e-3 && state.bodies[0].angle_rad.abs() < 0.1, "seed {seed}: put back, {moved} m off");
+        let crushed = perform(&world, Skill::default(), &[Mistake::Crush], seed);
+        assert!(crushed.state.bodies[0].broken && crushed.state.bodies[0].leaked_kg > 0.0, "seed {seed}");
+    }
+}
+
+#[test]
+fn throws_the_switch_over_and_back() {
+    let world = presets::switch();
+    for seed in 0..5 {
+        let mut operator = ScriptedOperator::new(&world, &State::resting(&world), Skill::default(), seed);
+        let mut state = State::resting(&world);
+        let (mut throws, mut side) = (0, -1.0);
+        while !operator.finished() {
+            let sample = operator.exchange(&Command { force_n: state.tip_force_n.map(|f| -f) }, DT);
+            let input = Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity };
+            step(&world, &mut state, &input, DT);
+            if state.switch.at_m * side < -6e-3 {
+                (throws, side) = (throws + 1, -side);
+            }
+        }
+        assert_eq!(throws, 6, "seed {seed}");
+    }
+}
