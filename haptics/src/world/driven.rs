@@ -124,14 +124,14 @@ pub(super) fn pierce(membrane: &Membrane, state: &mut MembraneState, point_m: Ve
         state.active = None;
         return Vec2::zeros();
     }
-    Vec2::new(-sideways(membrane, hole, from_middle, out_n), out_n)
+    Vec2::new(-sideways(membrane, hole, from_middle, velocity.x, out_n), out_n)
 }
 
 /// The rim's push against a needle beside the middle of its hole, N. Before the puncture the point slides on the sheet when it
 /// is pulled harder than it is pressed.
-fn sideways(membrane: &Membrane, hole: &mut Hole, from_middle: f64, out_n: f64) -> f64 {
+fn sideways(membrane: &Membrane, hole: &mut Hole, from_middle: f64, velocity_m_s: f64, out_n: f64) -> f64 {
     let off_m = from_middle - hole.along_m;
-    let wanted = membrane.side_stiffness_n_m * off_m;
+    let wanted = membrane.side_stiffness_n_m * off_m + membrane.law.drag_n_s_m * velocity_m_s;
     if hole.history.punctured || wanted.abs() <= out_n {
         return wanted;
     }

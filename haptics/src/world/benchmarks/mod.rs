@@ -6,6 +6,7 @@ mod captured;
 mod crank;
 mod grip;
 mod heap;
+mod rough;
 
 use super::*;
 use crate::Vec2;
