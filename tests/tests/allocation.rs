@@ -2,6 +2,7 @@
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use haptics::Vec2;
+use haptics::device::channel::{ChannelConfig, ChannelDevice, Waves};
 use haptics::device::udp::{Force, Key, Motion, UdpConfig, UdpDevice};
 use haptics::device::{
     Command, Device, DeviceSpec, KeysHeld, Mistake, MouseTarget, ReplayDevice, Sample, ScriptedOperator, Skill,
@@ -111,6 +112,19 @@ fn a_remote_device() {
         run(&mut servo, 1);
     }
     assert!(monitor.accepted() > 100);
+}
+
+#[test]
+fn a_device_behind_a_slow_network() {
+    for world in [presets::stacking(), presets::crank()] {
+        for with_waves in [false, true] {
+            let operator = ScriptedOperator::new(&world, &State::resting(&world), Skill::expert(), 3);
+            let waves = with_waves.then(|| Waves::new(operator.spec(), &world, DT));
+            let config = ChannelConfig { delay_s: 0.25, jitter_s: 0.05, loss: 0.1, seed: 1, waves };
+            let device = ChannelDevice::new(Box::new(operator), config).expect("a possible network");
+            run(&mut servo(&world, Box::new(device)), 10_000);
+        }
+    }
 }
 
 #[test]

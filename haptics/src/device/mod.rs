@@ -1,5 +1,6 @@
 //! Where finger positions come from and forces go to: one trait, one backend a file.
 
+pub mod channel;
 pub mod haply;
 mod impedance;
 mod keyboard;
