@@ -74,6 +74,9 @@ pub fn simulate(world: &World, recording: &Recording) -> Result<Simulation, Esti
                 .map(|predicted| assemble(recording, predicted, |name| recording.channel(name).map(<[f64]>::to_vec))),
             None => mismatch("no crank"),
         },
+        Task::Needle if world.membrane.is_none() => mismatch("no membrane"),
+        Task::Switch if world.switch.is_none() => mismatch("no switch"),
+        Task::Needle | Task::Switch => play(world, recording).map(|forces| assemble_tips(recording, &forces)),
         _ if world.blocks.is_empty() => mismatch("no blocks"),
         _ if pads_are_measured(world) => play(world, recording).map(|forces| assemble_tips(recording, &forces)),
         _ => block::needed_forces(world, recording)

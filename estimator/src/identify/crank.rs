@@ -17,7 +17,7 @@ use crate::signal::task::is_two_fingered;
 use friction::{friction, geometry_errors, heldout_quality};
 use geometry::{Geometry, geometry};
 use haptics::Vec2;
-use haptics::law::{Motion, drive_force};
+use haptics::law::{Motion, drive_forces};
 use haptics::recording::{Channel, Recording, Task};
 use haptics::world::Crank;
 use held::held;
@@ -97,11 +97,12 @@ pub fn needed_forces(crank: &Crank, recording: &Recording) -> Result<Vec<Channel
         rms_m: 0.0,
     };
     let (motions, tangential) = motions(recording, &held, &geometry);
+    let needed = drive_forces(&crank.effects, &motions);
     let mut correction = vec![Vec2::zeros(); motions.len()];
     for i in &held.turning {
         let outward = (held.position[*i] - crank.center_m).normalize();
         let along = Vec2::new(-outward.y, outward.x);
-        correction[*i] = along * (drive_force(&crank.effects, &motions[*i]) - tangential[*i]);
+        correction[*i] = along * (needed[*i] - tangential[*i]);
     }
     let fingers: &[&str] = if is_two_fingered(recording) { &["1", "2"] } else { &[""] };
     let mut channels = Vec::new();

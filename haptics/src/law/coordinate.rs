@@ -105,6 +105,25 @@ pub fn advance(effects: &[Effect], motion: &Motion, memories: &mut Memories, dt_
     }
 }
 
+/// Total drive force along a motion that is given sample by sample, N or N m, with what the laws remember of the samples
+/// before: what a replay predicts. The first sample finds every law at rest.
+pub fn drive_forces(effects: &[Effect], motions: &[Motion]) -> Vec<f64> {
+    let mut memories = Memories::default();
+    let mut before: Option<&Motion> = None;
+    let mut forces = Vec::with_capacity(motions.len());
+    for motion in motions {
+        if let Some(before) = before {
+            // Memories follow the way that was gone, whatever velocity was measured.
+            let dt_s = (motion.time_s - before.time_s).max(1e-9);
+            let velocity = (motion.position - before.position) / dt_s;
+            advance(effects, &Motion { velocity, ..*motion }, &mut memories, dt_s);
+        }
+        forces.push(drive_force_with(effects, motion, &memories));
+        before = Some(motion);
+    }
+    forces
+}
+
 /// Advances one coordinate by `dt_s` under `drive` (N or N m): semi-implicit Euler with dry friction solved exactly, so that
 /// a coordinate at rest stays at rest until the drive exceeds the friction level. Laws with memory count as developed.
 ///
@@ -160,8 +179,26 @@ fn solve(
 
 #[cfg(test)]
 mod tests {
-    use super::super::{CoulombFriction, Inertia};
+    use super::super::{CoulombFriction, Hysteresis, Inertia};
     use super::*;
+
+    #[test]
+    fn a_replay_remembers_presliding_and_agrees_with_the_integrator() {
+        // Pushed 0.1 mm into presliding of 0.4 N and 800 N/m (0.5 mm long) the level is 0.4 (1 − exp(−0.2)) N; there and
+        // back it is not at zero.
+        let effects = [Effect::new(&Hysteresis, &[0.4, 800.0])];
+        let there = (0..=1000).map(|i| f64::from(i) * 1e-7);
+        let back = (0..=1000).map(|i| 1e-4 - f64::from(i) * 1e-7);
+        let motions: Vec<Motion> = there
+            .chain(back)
+            .enumerate()
+            .map(|(i, position)| Motion { time_s: i as f64 * 1e-3, position, velocity: 1e-4, ..Motion::default() })
+            .collect();
+        let forces = drive_forces(&effects, &motions);
+        assert!((forces[1000] / (0.4 * (1.0 - (-0.2_f64).exp())) - 1.0).abs() < 1e-2, "{}", forces[1000]);
+        assert!(forces[2001] < -1e-3, "there and back it has turned round: {}", forces[2001]);
+        assert_eq!(forces[0], 0.0);
+    }
 
     #[test]
     fn dry_friction_holds_at_rest_and_stops_without_reversal() {

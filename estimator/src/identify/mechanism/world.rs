@@ -5,7 +5,7 @@ use super::{path, signals};
 use crate::constraint;
 use crate::estimate::{ConstraintKind, EstimateError, Fit};
 use haptics::law::{
-    Coordinate, CoulombFriction, EccentricMass, Effect, ForceBias, Inertia, ViscousFriction, drive_force,
+    Coordinate, CoulombFriction, EccentricMass, Effect, ForceBias, Inertia, ViscousFriction, drive_forces,
 };
 use haptics::recording::Recording;
 use haptics::world::Mechanism;
@@ -57,7 +57,7 @@ fn effects(fit: &Fit) -> Vec<Effect> {
 /// The force (N, or N m) that the mechanism needs at every sample of the recording's motion.
 pub fn predict(mechanism: &Mechanism, recording: &Recording) -> Result<Vec<f64>, EstimateError> {
     let raw = signals::raw(recording, mechanism.path.as_ref())?;
-    Ok(signals::motion(&raw, mechanism).iter().map(|m| drive_force(&mechanism.effects, m)).collect())
+    Ok(drive_forces(&mechanism.effects, &signals::motion(&raw, mechanism)))
 }
 
 /// The measured force along the mechanism's coordinate, N or N m; `None` for a free motion.
