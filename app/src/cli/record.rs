@@ -89,8 +89,8 @@ impl Record {
             Task::Needle => Ok(presets::needle()),
             Task::Barrel => Ok(presets::barrel()),
             Task::Switch => Ok(presets::switch()),
-            other => {
-                anyhow::bail!("there is no built-in world for the task {} yet; name one with --world", other.name())
+            Task::Mechanism => {
+                anyhow::bail!("there is no built-in world for a mechanism; name one with --world")
             }
         }
     }
