@@ -1,6 +1,7 @@
 //! One tick of the servo as a plain function.
 
 use super::coupling::{Coupling, Proxy};
+use super::force_test::{Change, ForceTest};
 use super::passivity::{Observer, control};
 use super::rate::RateReport;
 use super::safety::{Limits, Safety, SafetyFlags};
@@ -26,6 +27,10 @@ pub struct TickRecord {
     pub flags: SafetyFlags,
     /// Energy that the virtual environment has taken from the hand since the start, J; below zero it has given some out.
     pub energy_j: f64,
+    /// Largest speed at which something struck something during this tick, m/s; zero without an impact.
+    pub impact_m_s: f64,
+    /// Where that was, m in the world.
+    pub impact_in_world: Vec2,
     /// The true contact state (generators write it as the label).
     pub label: &'static str,
 }
@@ -93,6 +98,7 @@ pub struct Loop {
     sent_force_n: [Vec2; 2],
     observer: Observer,
     passivity_control_n_s_m: Option<f64>,
+    test: ForceTest,
     generation: u64,
 }
 
@@ -117,6 +123,7 @@ impl Loop {
             sent_force_n: [Vec2::zeros(); 2],
             observer: Observer::default(),
             passivity_control_n_s_m: None,
+            test: ForceTest::default(),
             generation: 0,
         }
     }
@@ -153,6 +160,16 @@ impl Loop {
             Some(proxy) => proxy.force_n(&sample),
             None => state.tip_force_n.map(|f| -f),
         };
+        match self.test.advance(dt_s) {
+            Change::Off => {}
+            Change::On(test_n, first) => {
+                wanted = test_n;
+                if first {
+                    self.safety.swapped();
+                }
+            }
+            Change::Ended => self.safety.swapped(),
+        }
         if let Some(most) = self.passivity_control_n_s_m {
             let extra = control(&self.observer, sample.tip_velocity, dt_s, most);
             for (force, extra) in wanted.iter_mut().zip(extra) {
@@ -169,6 +186,9 @@ impl Loop {
             sent_force_n: self.sent_force_n,
             flags,
             energy_j: self.observer.energy_j(),
+            // Cleared with every tick: each impact is told once.
+            impact_m_s: std::mem::take(&mut state.impact_m_s),
+            impact_in_world: state.impact_in_world,
             label: crate::world::true_label(world, state),
         };
         self.last
@@ -178,7 +198,7 @@ impl Loop {
         self.make_safe();
         self.safety.interrupted();
         let flags = SafetyFlags { stale: true, ..SafetyFlags::default() };
-        self.last = TickRecord { flags, sent_force_n: self.sent_force_n, ..self.last };
+        self.last = TickRecord { flags, sent_force_n: self.sent_force_n, impact_m_s: 0.0, ..self.last };
         self.last
     }
 
@@ -210,6 +230,12 @@ impl Loop {
     /// Says that the loop stood still for longer than the watchdog allows: zero force, then up again softly.
     pub fn interrupted(&mut self) {
         self.safety.interrupted();
+    }
+
+    /// Pushes with a small force instead of the world's, N on the operator's fingers, to try the device; `None` ends it. It
+    /// comes up slowly and passes the safety stage like any force.
+    pub fn test_force(&mut self, wanted_n: Option<[Vec2; 2]>) {
+        self.test.ask(wanted_n);
     }
 
     /// The virtual coupling in use; `None`: the device renders the world directly.

@@ -3,13 +3,14 @@
 //! * [`Loop`] is one tick as a plain function: the thread, the headless recorder and the tests all call it.
 //! * [`Servo`] is the thread with its absolute deadlines, and a guard that watches it.
 //! * [`rate`] chooses how often, [`timing`] measures, [`safety`] limits, [`recorder`] keeps every tick.
-//! * [`coupling`] keeps a force device passive in worlds that are stiffer than it can render; [`passivity`] has the limits.
+//! * [`force_test`] tries a device; [`coupling`] keeps a force device passive in worlds that are stiffer than it can render; [`passivity`] has the limits.
 //!
 //! Newest state out by triple buffer, every tick out by ring, commands in by ring. Worlds are built elsewhere, swapped in, and
 //! dropped elsewhere. Nothing in the tick allocates, locks, prints, waits or panics.
 
 mod clock;
 pub mod coupling;
+pub mod force_test;
 mod guard;
 mod r#loop;
 pub mod passivity;

@@ -1,6 +1,7 @@
 //! What runs on the servo's thread.
 
 use super::clock::Deadlines;
+use super::force_test::Request;
 use super::guard::Beat;
 use super::r#loop::{Loop, Snapshot, Swap, TickRecord};
 use super::rate::{self, RateReport, Watch};
@@ -31,6 +32,7 @@ pub(super) struct Runner {
     pub stop: Arc<AtomicBool>,
     pub granted: Arc<AtomicU8>,
     pub beat: Arc<Beat>,
+    pub test: Arc<Request>,
     pub config: ServoConfig,
     pub summary: Timing,
     pub rate: RateReport,
@@ -78,6 +80,7 @@ impl Runner {
                 self.body.interrupted();
             }
             self.take_swap();
+            self.body.test_force(self.test.get());
             let tick = self.body.tick(period_s);
             // A full ring means that nobody records: the newest ticks are dropped, the servo goes on.
             let _ = self.ticks.push(tick);

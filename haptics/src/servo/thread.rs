@@ -1,11 +1,13 @@
 //! The handle of a running servo: what the window keeps.
 
+use super::force_test::Request;
 use super::guard::{Beat, FAULT_AFTER_S, watch};
 use super::r#loop::{Loop, Snapshot, Swap, TickRecord};
 use super::rate::{RateChoice, RateReport};
 use super::realtime::Privileges;
 use super::runner::Runner;
 use super::safety::Limits;
+use crate::Vec2;
 use crate::device::Device;
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::sync::Arc;
@@ -69,6 +71,7 @@ pub struct Servo {
     stop: Arc<AtomicBool>,
     granted: Arc<AtomicU8>,
     beat: Arc<Beat>,
+    test: Arc<Request>,
     config: ServoConfig,
     threads: Vec<JoinHandle<()>>,
 }
@@ -89,6 +92,7 @@ impl Servo {
         let stop = Arc::new(AtomicBool::new(false));
         let granted = Arc::new(AtomicU8::new(0));
         let beat = Arc::new(Beat::default());
+        let test = Arc::new(Request::default());
         let limits = Limits { max_force_n: config.limits.max_force_n.min(device.spec().max_force_n), ..config.limits };
         let guard = device.guard();
         let scratch = swap.state.clone();
@@ -101,6 +105,7 @@ impl Servo {
             stop: Arc::clone(&stop),
             granted: Arc::clone(&granted),
             beat: Arc::clone(&beat),
+            test: Arc::clone(&test),
             config,
             summary: first.timing,
             rate: nominal,
@@ -116,7 +121,7 @@ impl Servo {
                 |_| beat.finish(),
             )?,
         ];
-        Ok(Self { newest, ticks, swaps, retired, stop, granted, beat, config, threads })
+        Ok(Self { newest, ticks, swaps, retired, stop, granted, beat, test, config, threads })
     }
 
     /// The newest snapshot; never waits. It has a fault while the servo stands still.
@@ -140,6 +145,11 @@ impl Servo {
     /// Puts a new world in at the next tick. Returns it when four are already waiting.
     pub fn swap(&mut self, next: Box<Swap>) -> Result<(), Box<Swap>> {
         self.swaps.push(next).map_err(|rtrb::PushError::Full(back)| back)
+    }
+
+    /// Pushes with a small force instead of the world's, N on the operator's fingers, to try the device; `None` ends it.
+    pub fn test_force(&self, wanted_n: Option<[Vec2; 2]>) {
+        self.test.set(wanted_n);
     }
 
     /// What the system granted.

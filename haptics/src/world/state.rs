@@ -250,6 +250,8 @@ pub struct State {
     pub(super) scratch: Scratch,
     /// Largest impact speed since it was last cleared, m/s: drives sound and flash.
     pub impact_m_s: f64,
+    /// Where that was, m.
+    pub impact_in_world: Vec2,
 }
 
 impl State {
@@ -273,6 +275,7 @@ impl State {
             contacts: Vec::with_capacity(MAX_CONTACTS),
             scratch: Scratch::with_room(),
             impact_m_s: 0.0,
+            impact_in_world: Vec2::zeros(),
         }
     }
 
@@ -296,6 +299,7 @@ impl State {
         self.switch = other.switch;
         self.contacts.clone_from(&other.contacts);
         self.impact_m_s = other.impact_m_s;
+        self.impact_in_world = other.impact_in_world;
     }
 
     /// Position of the crank's handle in the world, m.
@@ -325,6 +329,7 @@ impl Clone for State {
             contacts,
             scratch: Scratch::with_room(),
             impact_m_s: self.impact_m_s,
+            impact_in_world: self.impact_in_world,
         }
     }
 }

@@ -163,8 +163,8 @@ fn press_all(
         if !touch.met && touch.contact.depth_m > 0.0 {
             touch.met = true;
             let closing = -relative.dot(&normal);
-            if closing > IMPACT_THRESHOLD_M_S {
-                state.impact_m_s = state.impact_m_s.max(closing);
+            if closing > IMPACT_THRESHOLD_M_S && closing > state.impact_m_s {
+                (state.impact_m_s, state.impact_in_world) = (closing, touch.contact.point_m);
             }
         }
         let way_along_m = (way_on - by).dot(&touch.contact.tangent()) * part.dt_s;
