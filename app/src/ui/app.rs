@@ -3,6 +3,8 @@
 use super::files;
 use super::jobs::Purpose;
 use super::panels::Panel as _;
+use super::panels::device_detail::DeviceDetail;
+use super::panels::devices::DeviceList;
 use super::panels::log::LogPanel;
 use super::panels::recording::RecordingPanel;
 use super::panels::results::ResultsPanel;
@@ -25,6 +27,8 @@ pub struct App {
     scene: ScenePanel,
     trainer_view: TrainerView,
     trainer_side: TrainerSide,
+    device_list: DeviceList,
+    device_detail: DeviceDetail,
 }
 
 impl App {
@@ -38,6 +42,8 @@ impl App {
             scene: ScenePanel::default(),
             trainer_view: TrainerView::default(),
             trainer_side: TrainerSide,
+            device_list: DeviceList::default(),
+            device_detail: DeviceDetail,
         }
     }
 
@@ -51,9 +57,14 @@ impl App {
         self.session.advance(f64::from(ctx.input(|i| i.stable_dt)));
         self.top_bar(ui);
         banners(ui, &mut self.session);
+        if self.session.workspace != Workspace::Devices {
+            // A test force is for the page that shows its button to stop.
+            self.session.trainer.trial.abort();
+        }
         match self.session.workspace {
             Workspace::Train => self.train(ui),
             Workspace::Calibrate => self.calibrate(ui),
+            Workspace::Devices => self.devices(ui),
         }
         if self.session.playing {
             ctx.request_repaint();
@@ -90,6 +101,7 @@ impl App {
                 let choices = [
                     (Workspace::Train, "Train", "Touch a virtual world (Ctrl+1)"),
                     (Workspace::Calibrate, "Calibrate", "Measure a real one from a log (Ctrl+2)"),
+                    (Workspace::Devices, "Devices", "What moves the fingers, and how well (Ctrl+3)"),
                 ];
                 segmented(ui, &mut self.session.workspace, &choices);
                 ui.add_space(space::L);
@@ -102,7 +114,7 @@ impl App {
     /// What is being looked at.
     fn subject(&self) -> String {
         match self.session.workspace {
-            Workspace::Train => {
+            Workspace::Train | Workspace::Devices => {
                 self.session.trainer.scene().map(|(_, w)| super::format::capitalised(&w.name)).unwrap_or_default()
             }
             Workspace::Calibrate => self.session.prepared().map(|p| p.recording.name.clone()).unwrap_or_default(),
@@ -133,6 +145,19 @@ impl App {
         );
         let frame = Frame::new().inner_margin(Margin { left: 12, right: 0, top: 12, bottom: 12 });
         CentralPanel::default().frame(frame).show(ui, |ui| self.trainer_view.ui(ui, session));
+    }
+
+    fn devices(&mut self, ui: &mut Ui) {
+        let session = &mut self.session;
+        let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
+        Side::left("device list").frame(plain).show_separator_line(false).resizable(false).exact_size(380.0).show(
+            ui,
+            |ui| {
+                self.device_list.ui(ui, session);
+            },
+        );
+        let frame = Frame::new().inner_margin(Margin { left: 0, right: 12, top: 12, bottom: 12 });
+        CentralPanel::default().frame(frame).show(ui, |ui| self.device_detail.ui(ui, session));
     }
 
     fn calibrate(&mut self, ui: &mut Ui) {

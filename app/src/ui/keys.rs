@@ -21,6 +21,9 @@ pub fn handle(ui: &Ui, session: &mut Session) {
     if ctx.input_mut(|i| i.consume_shortcut(&command(Key::Num2))) {
         session.workspace = Workspace::Calibrate;
     }
+    if ctx.input_mut(|i| i.consume_shortcut(&command(Key::Num3))) {
+        session.workspace = Workspace::Devices;
+    }
     if ctx.input(|i| i.key_pressed(Key::F5)) {
         session.reload(&ctx);
     }
@@ -33,6 +36,7 @@ pub fn handle(ui: &Ui, session: &mut Session) {
     }
     match session.workspace {
         Workspace::Calibrate => playback(&ctx, session),
+        Workspace::Devices => {}
         Workspace::Train => {
             if ctx.input(|i| i.key_pressed(Key::R)) && !session.trainer.is_recording() {
                 session.trainer.start_recording();

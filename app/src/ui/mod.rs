@@ -80,4 +80,6 @@ fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
 }
 
 #[cfg(test)]
+mod device_tests;
+#[cfg(test)]
 mod tests;

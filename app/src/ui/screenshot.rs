@@ -39,6 +39,8 @@ pub enum Panel {
     Workbench,
     /// The whole Train workspace.
     Train,
+    /// The whole Devices page.
+    Devices,
 }
 
 /// What is shown.
@@ -79,8 +81,11 @@ pub fn recordings(
 fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Session> {
     let mut session = Session::new();
     session.trainer.clock = Clock::Manual;
-    if matches!(panel, Panel::Trainer | Panel::Train) {
+    if matches!(panel, Panel::Trainer | Panel::Train | Panel::Devices) {
         session.trainer = performing(input).map_err(|problem| anyhow!(problem))?;
+        if panel == Panel::Devices {
+            session.workspace = Workspace::Devices;
+        }
         return Ok(session);
     }
     session.workspace = Workspace::Calibrate;
@@ -169,6 +174,6 @@ fn contents(panel: Panel) -> Contents {
         Panel::Results => framed(ResultsPanel::default()),
         Panel::Scene => framed(ScenePanel::default()),
         Panel::Trainer => framed(TrainerView::default()),
-        Panel::Workbench | Panel::Train => Box::new(|ui, app| app.show(ui)),
+        Panel::Workbench | Panel::Train | Panel::Devices => Box::new(|ui, app| app.show(ui)),
     }
 }

@@ -12,7 +12,7 @@ use haptics::world::World;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The two workspaces.
+/// The workspaces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Workspace {
     /// Touch a virtual world.
@@ -20,6 +20,8 @@ pub enum Workspace {
     Train,
     /// Measure a real one.
     Calibrate,
+    /// What moves the fingers, and how well.
+    Devices,
 }
 
 /// How grave a message is.

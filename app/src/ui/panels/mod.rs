@@ -1,11 +1,15 @@
 //! One panel a file, behind one trait.
 
+pub mod device_detail;
+pub mod devices;
 pub mod log;
+mod marks;
 pub mod parameters;
 pub mod recording;
 pub mod results;
 pub mod scene;
 pub mod segments;
+mod steering;
 pub mod trainer_side;
 pub mod trainer_timing;
 pub mod trainer_view;

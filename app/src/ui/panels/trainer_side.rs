@@ -6,7 +6,7 @@ use crate::ui::format;
 use crate::ui::jobs::Purpose;
 use crate::ui::session::{Session, Workspace};
 use crate::ui::theme::{self, palette, role, space};
-use crate::ui::trainer::{History, Operator, Trainer, WorldChoice};
+use crate::ui::trainer::{HandDevice, History, Operator, Trainer, WorldChoice};
 use crate::ui::widgets::{card, card_with_head, compact, gauge, light, plain_card, primary_button, segmented};
 use egui::{Align, Layout, Pos2, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
 use render::ColorRole;
@@ -91,7 +91,7 @@ fn world_choice(
 fn operator(ui: &mut Ui, session: &mut Session) {
     let mut operator = session.trainer.operator;
     let choices = [
-        (Operator::You, "You", "Mouse and keyboard"),
+        (Operator::You, "You", "The device that is chosen on the Devices page"),
         (Operator::Scripted, "Scripted", "Watch the task done by a scripted operator"),
     ];
     let mut changed = false;
@@ -110,8 +110,21 @@ fn operator(ui: &mut Ui, session: &mut Session) {
 fn operator_state(ui: &mut Ui, session: &mut Session) {
     match session.trainer.operator {
         Operator::You => {
-            let text = format!("Pinch strength {} N", format::number(session.trainer.pinch.strength_n(), 1));
-            ui.label(theme::caption(ui, text));
+            let text = match session.trainer.hand {
+                HandDevice::Mouse => {
+                    format!("Mouse · pinch strength {} N", format::number(session.trainer.pinch.strength_n(), 1))
+                }
+                _ => session.trainer.hand.title(),
+            };
+            compact(ui, |ui| {
+                ui.label(theme::caption(ui, text));
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    if ui.link("Devices …").on_hover_text("Choose and try what moves the fingers (Ctrl+3)").clicked()
+                    {
+                        session.workspace = Workspace::Devices;
+                    }
+                });
+            });
         }
         Operator::Scripted => {
             let over = session.trainer.performance_over();

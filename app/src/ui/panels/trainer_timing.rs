@@ -6,7 +6,7 @@ use crate::ui::trainer::Trainer;
 use crate::ui::widgets::{card, fact};
 use egui::{RichText, Ui, vec2};
 use haptics::servo::Snapshot;
-use haptics::servo::coupling::Coupling;
+use haptics::servo::coupling::{Coupling, SOFTEST_N_M};
 use haptics::servo::timing::Percentiles;
 
 /// The card beside the trainer's picture.
@@ -64,6 +64,13 @@ fn sentences(ui: &mut Ui, trainer: &Trainer, snapshot: &Snapshot) {
 
 /// What the operator feels through a virtual coupling.
 pub fn coupling_sentence(coupling: &Coupling) -> String {
+    if coupling.stiffness_n_m <= SOFTEST_N_M {
+        return format!(
+            "The device feels the world through a soft spring of {} N/m: with what is known of its damping, friction and steps \
+             nothing stiffer is surely passive.",
+            format::number(coupling.stiffness_n_m, 0)
+        );
+    }
     format!(
         "The device feels the world through a spring of {} N/m: the stiffest that stays passive on it at this rate.",
         format::number(coupling.stiffness_n_m, 0)

@@ -1,10 +1,10 @@
 //! The virtual world, touched with the mouse.
 
-use super::Panel;
+use super::{Panel, marks, steering};
 use crate::ui::scene::{SceneResponse, Wheel, scene_view};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::{Operator, Trainer};
+use crate::ui::trainer::{HandDevice, Operator, Steering, Trainer};
 use crate::ui::widgets::{empty_state, key_hint, sheet};
 use egui::{Align2, Color32, CursorIcon, FontId, Key, PointerButton, Rect, Ui, UiBuilder, pos2, vec2};
 use haptics::Vec2;
@@ -59,9 +59,19 @@ impl Panel for TrainerView {
             let scene = (std::sync::Arc::clone(world), snapshot.state.clone(), options);
             let fault = snapshot.fault;
             let view = scene_view(ui, "trainer", &mut self.camera, home(), Wheel::ZoomsWithCtrl, scene);
-            if session.trainer.operator == Operator::You {
-                self.steer(ui, &view, &mut session.trainer, frame_s);
-                hints(ui, view.rect);
+            if let Some((snapshot, _)) = session.trainer.scene() {
+                marks::device(ui, &view, &self.camera, snapshot);
+            }
+            marks::flashes(ui, &view, &self.camera, &session.trainer.impacts);
+            if session.trainer.operator == Operator::You && session.trainer.hand != HandDevice::Replay {
+                if let Err(problem) = steering::touches(ui, &view, &self.camera, &mut session.trainer) {
+                    session.fail(problem);
+                }
+                steering::keys(ui, &mut session.trainer);
+                if matches!(session.trainer.steering, Steering::Mouse(_)) {
+                    self.steer(ui, &view, &mut session.trainer, frame_s);
+                }
+                hints(ui, view.rect, &session.trainer.hand);
             } else {
                 watching(ui, view.rect, &session.trainer);
             }
@@ -127,29 +137,45 @@ fn keys(ui: &Ui, trainer: &mut Trainer, frame_s: f64) {
 }
 
 /// What mouse and keys do, along the lower edge.
-fn hints(ui: &mut Ui, rect: Rect) {
+fn hints(ui: &mut Ui, rect: Rect, hand: &HandDevice) {
     let line = Rect::from_min_max(pos2(rect.left() + space::M, rect.bottom() - 34.0), rect.right_bottom());
     let layout = egui::Layout::left_to_right(egui::Align::Center);
     let mut ui = ui.new_child(UiBuilder::new().max_rect(line.with_max_y(rect.bottom() - 8.0)).layout(layout));
     ui.spacing_mut().item_spacing.x = 12.0;
-    for (key, what) in [
-        ("Mouse", "moves the fingers"),
-        ("Left button", "pinches"),
-        ("Wheel", "strength"),
-        ("Right drag", "turns the view"),
-        ("Arrows", "move"),
-        ("Space", "pinches and holds"),
-    ] {
+    for (key, what) in hints_of(hand) {
         if ui.available_width() > 150.0 {
             key_hint(&mut ui, key, what);
         }
     }
 }
 
+fn hints_of(hand: &HandDevice) -> &'static [(&'static str, &'static str)] {
+    match hand {
+        HandDevice::Mouse => &[
+            ("Mouse", "moves the fingers"),
+            ("Left button", "pinches"),
+            ("Wheel", "strength"),
+            ("Right drag", "turns the view"),
+            ("Arrows", "move"),
+            ("Space", "pinches and holds"),
+        ],
+        HandDevice::Touch => &[("Two fingers", "on the glass are the two fingertips"), ("Together", "pinches")],
+        HandDevice::Keyboard => &[("Arrows", "move"), ("Space", "closes"), ("Backspace", "opens"), ("Shift", "slowly")],
+        HandDevice::Replay => &[],
+        HandDevice::Haply(..) | HandDevice::Udp => {
+            &[("Your device", "moves the fingers"), ("Right drag", "turns the view"), ("Ctrl 3", "device page")]
+        }
+    }
+}
+
 fn watching(ui: &Ui, rect: Rect, trainer: &Trainer) {
     let p = palette(ui);
-    let text =
-        if trainer.performance_over() { "The scripted operator is done." } else { "The scripted operator at work" };
+    let text = match (trainer.operator, trainer.performance_over()) {
+        (Operator::Scripted, true) => "The scripted operator is done.",
+        (Operator::Scripted, false) => "The scripted operator at work",
+        (Operator::You, true) => "The replay is over.",
+        (Operator::You, false) => "Replay of the open log",
+    };
     let at = rect.center_top() + vec2(0.0, 16.0);
     let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::new(13.0, theme::semibold()), p.text);
     let back = Rect::from_center_size(at + vec2(0.0, 10.0), galley.size() + vec2(24.0, 12.0));

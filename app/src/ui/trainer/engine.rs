@@ -1,5 +1,6 @@
 //! The servo on its thread, or the same loop stepped by hand for tests and pictures.
 
+use haptics::Vec2;
 use haptics::device::Device;
 use haptics::servo::rate::RateReport;
 use haptics::servo::safety::Limits;
@@ -64,6 +65,14 @@ impl Engine {
                 inline.publish();
                 true
             }
+        }
+    }
+
+    /// Pushes with a small force instead of the world's, N on the operator's fingers; `None` ends it.
+    pub fn test_force(&mut self, wanted_n: Option<[Vec2; 2]>) {
+        match self {
+            Self::Thread(servo) => servo.test_force(wanted_n),
+            Self::Inline(inline) => inline.body.test_force(wanted_n),
         }
     }
 

@@ -1,14 +1,20 @@
 //! The trainer behind its panels: servo, device, worlds, recording. No drawing here.
 
 mod engine;
+mod hand;
 mod history;
+mod impacts;
 mod pinch;
+mod trial;
 
 pub use engine::{Engine, Inline};
+pub use hand::{HandDevice, HandSettings, Steering, spec_sentences};
 pub use history::{History, Moment};
+pub use impacts::{Flash, Impacts};
 pub use pinch::Pinch;
+pub use trial::{Direction, Trial};
 
-use haptics::device::{Device, MouseHandle, MouseTarget, ScriptedOperator, Skill, mouse};
+use haptics::device::{Device, DeviceSpec, ScriptedOperator, Skill};
 use haptics::recording::Recording;
 use haptics::servo::recorder::{SensorModel, to_recording};
 use haptics::servo::timing::Timing;
@@ -24,7 +30,7 @@ const MOST_TICKS: usize = 1_200_000;
 /// Who moves the fingers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Operator {
-    /// The person at the mouse.
+    /// A person at a device, or a log.
     #[default]
     You,
     /// The scripted operator.
@@ -66,8 +72,18 @@ pub struct Trainer {
     pub choice: WorldChoice,
     /// Who moves the fingers.
     pub operator: Operator,
+    /// Which device moves them, unless the script does.
+    pub hand: HandDevice,
+    /// What devices need beside the world.
+    pub settings: HandSettings,
+    /// The window's end of the running device.
+    pub steering: Steering,
+    /// The force test.
+    pub trial: Trial,
     /// What the mouse does to the fingers.
     pub pinch: Pinch,
+    /// Impacts of the last moment.
+    pub impacts: Impacts,
     /// Forces of the last seconds.
     pub history: History,
     /// The calibrated world, when there is one.
@@ -75,7 +91,7 @@ pub struct Trainer {
     /// The world from a file, when there is one.
     pub file: Option<World>,
     engine: Option<Engine>,
-    handle: Option<MouseHandle>,
+    spec: Option<DeviceSpec>,
     /// Worlds by generation of the running engine.
     worlds: Vec<Arc<World>>,
     newest: Option<Snapshot>,
@@ -120,47 +136,70 @@ impl Trainer {
         self.start(swap)
     }
 
-    fn start(&mut self, swap: Box<Swap>) -> Result<(), String> {
+    fn start(&mut self, mut swap: Box<Swap>) -> Result<(), String> {
         swap.world.check().map_err(|error| super::session::sentence(&error.to_string()))?;
+        // The old device first: a port can be open only once.
         self.engine = None;
+        self.steering = Steering::None;
+        self.trial.abort();
         self.stop_recording();
+        let Swap { world, state } = &mut *swap;
+        let (device, problem) = match self.device(world, state) {
+            Ok(device) => (device, None),
+            // The mouse is always there; what is wrong with the other device is said.
+            Err(problem) => {
+                self.hand = HandDevice::Mouse;
+                (self.device(world, state)?, Some(problem))
+            }
+        };
+        self.spec = Some(device.spec().clone());
         self.history = History::default();
         self.pinch.prepare_for(&swap.world, &swap.state);
         self.worlds = vec![Arc::new(swap.world.clone())];
-        let device = self.device(&swap.world, &swap.state);
         let engine = match self.clock {
             Clock::RealTime => Engine::thread(swap, device, ServoConfig::default())?,
             Clock::Manual => Engine::inline(swap, device, ServoConfig::default()),
         };
         self.engine = Some(engine);
         self.update(0.0);
-        Ok(())
+        problem.map_or(Ok(()), Err)
     }
 
-    fn device(&mut self, world: &World, state: &State) -> Box<dyn Device> {
+    fn device(&mut self, world: &World, state: &mut State) -> Result<Box<dyn Device>, String> {
+        self.steering = Steering::None;
         match self.operator {
             Operator::You => {
-                let tips = state.input.tip_in_world;
-                let start =
-                    MouseTarget { center_in_world: 0.5 * (tips[0] + tips[1]), aperture_m: tips[1].x - tips[0].x };
-                let (handle, device) = mouse(start, world.hand.workspace);
-                self.handle = Some(handle);
-                Box::new(device)
+                let (device, steering, seconds) = self.hand.make(world, state, &self.settings)?;
+                (self.steering, self.finished_at_s) = (steering, state.time_s + seconds);
+                Ok(device)
             }
             Operator::Scripted => {
-                self.handle = None;
                 self.performances += 1;
                 let operator = ScriptedOperator::new(world, state, Skill::default(), self.performances);
                 self.finished_at_s = operator.duration_s();
-                Box::new(operator)
+                Ok(Box::new(operator))
             }
         }
+    }
+
+    /// Hands the fingers to another device; the world stays as it is. When that device cannot be used, the mouse takes over and
+    /// the error says why.
+    pub fn take_up(&mut self, hand: HandDevice) -> Result<(), String> {
+        (self.operator, self.hand) = (Operator::You, hand);
+        self.pause();
+        self.ensure_running()
+    }
+
+    /// What the running device can do.
+    pub fn spec(&self) -> Option<&DeviceSpec> {
+        self.engine.as_ref().and(self.spec.as_ref())
     }
 
     /// Stops the servo; the world is kept for the next start.
     pub fn pause(&mut self) {
         self.engine = None;
-        self.handle = None;
+        self.steering = Steering::None;
+        self.trial.abort();
     }
 
     /// Takes another world while the servo runs, without a bump; the scripted operator starts over.
@@ -211,8 +250,10 @@ impl Trainer {
             }
             None => self.newest = Some(snapshot.clone()),
         }
-        if let (Some(handle), Some(newest)) = (&mut self.handle, &self.newest) {
-            handle.set(self.pinch.follow(&newest.tick, frame_s));
+        self.impacts.update(&self.scratch, frame_s);
+        engine.test_force(self.trial.advance(frame_s));
+        if let Some(newest) = &self.newest {
+            self.steering.follow(&mut self.pinch, &newest.tick, frame_s);
         }
         if self.recorded_s() > LONGEST_S || self.recorded.as_ref().is_some_and(|ticks| ticks.len() > MOST_TICKS) {
             self.stop_recording();
@@ -250,10 +291,10 @@ impl Trainer {
         self.engine.as_ref().map_or_else(ServoConfig::default, Engine::config)
     }
 
-    /// True once the scripted operator is done.
+    /// True once a script or a replay is done.
     pub fn performance_over(&self) -> bool {
         let now_s = self.newest.as_ref().map_or(0.0, |s| s.state.time_s);
-        self.operator == Operator::Scripted && self.engine.is_some() && now_s > self.finished_at_s
+        self.engine.is_some() && now_s > self.finished_at_s
     }
 
     /// True while pictures must follow each other quickly.
@@ -261,6 +302,7 @@ impl Trainer {
         let Some(snapshot) = &self.newest else { return false };
         let fast = |v: &haptics::Vec2| v.norm() > 2e-4;
         self.recorded.is_some()
+            || self.impacts.any()
             || snapshot.state.input.tip_velocity.iter().any(fast)
             || snapshot.state.bodies.iter().any(|b| fast(&b.velocity_m_s))
             || snapshot.state.crank.rate_rad_s.abs() > 1e-2

@@ -1,0 +1,226 @@
+//! The devices page, right column: what the running device can do, what it does now, and a soft push to try it.
+
+use super::{Panel, trainer_timing};
+use crate::ui::format::number;
+use crate::ui::session::Session;
+use crate::ui::theme::{self, palette, space};
+use crate::ui::trainer::{Direction, Operator, Steering, Trainer, spec_sentences};
+use crate::ui::widgets::{empty_state, fact, light, plain_card, primary_button, segmented};
+use egui::{RichText, ScrollArea, Slider, Ui, vec2};
+use haptics::Vec2;
+use haptics::device::DeviceSpec;
+use haptics::device::udp::Refused;
+use haptics::servo::force_test::MOST_N;
+use haptics::servo::{Snapshot, passivity};
+
+/// The running device.
+#[derive(Default)]
+pub struct DeviceDetail;
+
+impl Panel for DeviceDetail {
+    fn title(&self) -> &'static str {
+        "Device"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        if let Err(problem) = session.trainer.ensure_running() {
+            session.fail(problem);
+        }
+        session.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
+        // Live values: the page is drawn like a film as long as it is open.
+        ui.ctx().request_repaint_after(std::time::Duration::from_millis(33));
+        let Some(spec) = session.trainer.spec().cloned() else {
+            empty_state(ui, "No device is running", "Choose one on the left.", |_| {});
+            return;
+        };
+        if let Some(fault) = session.trainer.scene().and_then(|(snapshot, _)| snapshot.fault) {
+            session.fail(fault);
+        }
+        ScrollArea::vertical().id_salt("device detail").auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = space::S;
+            let half = 0.5 * (ui.available_width() - space::M);
+            ui.horizontal_top(|ui| {
+                ui.spacing_mut().item_spacing.x = space::M;
+                column(ui, half, |ui| {
+                    about(ui, session, &spec);
+                    limits(ui, &session.trainer, &spec);
+                    force_test(ui, &mut session.trainer, &spec);
+                });
+                column(ui, half, |ui| {
+                    live(ui, &session.trainer);
+                    packets(ui, &session.trainer);
+                    trainer_timing::timing(ui, &session.trainer);
+                });
+            });
+        });
+    }
+}
+
+fn column(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
+    ui.allocate_ui_with_layout(vec2(width, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
+        ui.set_width(width);
+        ui.spacing_mut().item_spacing.y = space::S;
+        contents(ui);
+    });
+}
+
+fn about(ui: &mut Ui, session: &Session, spec: &DeviceSpec) {
+    plain_card(ui, &spec.name, |ui| {
+        let trainer = &session.trainer;
+        let what = match trainer.operator {
+            Operator::You => trainer.hand.sentence(),
+            Operator::Scripted => "Does the task of the world like a person.",
+        };
+        ui.label(theme::caption(ui, what));
+        ui.add_space(space::XS);
+        for (label, value) in spec_sentences(spec) {
+            fact(ui, label, value);
+        }
+    });
+}
+
+fn limits(ui: &mut Ui, trainer: &Trainer, spec: &DeviceSpec) {
+    let Some((snapshot, _)) = trainer.scene() else { return };
+    plain_card(ui, "What it can render", |ui| {
+        for (value, sentence) in limit_sentences(spec, snapshot) {
+            if let Some((label, value)) = value {
+                fact(ui, label, value);
+            }
+            ui.label(theme::caption(ui, sentence));
+        }
+    });
+}
+
+/// A label with its value, where there is one, and the sentence that explains it.
+type Limit = (Option<(&'static str, String)>, String);
+
+/// The limits at the actual rate, computed from the device's figures.
+fn limit_sentences(spec: &DeviceSpec, snapshot: &Snapshot) -> Vec<Limit> {
+    if !spec.force_feedback {
+        let text =
+            "The force is shown and not felt: nothing can become unstable in the operator's hand, so no limit applies.";
+        return vec![(None, text.to_owned())];
+    }
+    let period_s = snapshot.timing.period_s;
+    let hertz = number(snapshot.timing.rate.rate_hz, 0);
+    let stiffness = passivity::passive_stiffness(spec, 0.0, period_s);
+    let steps = if spec.resolution_m > 0.0 { "; steps of the position allow 2 × friction / step" } else { "" };
+    let damper = spec.damping_n_s_m;
+    let felt = snapshot
+        .coupling
+        .as_ref()
+        .map_or_else(|| "It renders this world directly.".to_owned(), trainer_timing::coupling_sentence);
+    vec![
+        (
+            Some(("Stiffest passive wall", format!("{} N/m", number(stiffness, 0)))),
+            format!("At {hertz} Hz nothing can draw energy out of a softer wall: 2 b / period{steps}."),
+        ),
+        (
+            Some(("Strongest passive damper", format!("{} N s/m", number(damper, 2)))),
+            "A virtual damper may take no more than the device's own damping b.".to_owned(),
+        ),
+        (None, felt),
+    ]
+}
+
+fn live(ui: &mut Ui, trainer: &Trainer) {
+    let p = palette(ui);
+    let Some((snapshot, _)) = trainer.scene() else { return };
+    let tick = snapshot.tick;
+    plain_card(ui, "Now", |ui| {
+        ui.spacing_mut().interact_size.y = 16.0;
+        egui::Grid::new("live").num_columns(3).min_col_width(116.0).spacing(vec2(8.0, 4.0)).show(ui, |ui| {
+            for text in ["", "Left finger", "Right finger"] {
+                ui.label(theme::caption(ui, text));
+            }
+            ui.end_row();
+            pair(ui, "Position", tick.device_in_world.map(|v| v * 1e3), 1, "mm");
+            pair(ui, "Velocity", tick.input.tip_velocity.map(|v| v * 1e3), 0, "mm/s");
+            pair(ui, "Force on you", tick.sent_force_n, 2, "N");
+        });
+        ui.add_space(space::XS);
+        fact(ui, "Age of the newest sample", crate::ui::format::short_time(snapshot.timing.sample_age_s));
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = space::M;
+            light(ui, tick.flags.saturated, p.danger, "Saturated", "A force was clamped to the maximum");
+            light(ui, tick.flags.slewing, p.caution, "Slew", "A force was slowed down: it changed too fast");
+            light(ui, tick.flags.stale, p.danger, "Stale", "No fresh sample from the device: the force is zero");
+            light(ui, tick.flags.not_finite, p.danger, "Invalid", "An impossible value was refused");
+        });
+    });
+}
+
+fn pair(ui: &mut Ui, label: &str, values: [Vec2; 2], decimals: usize, unit: &str) {
+    ui.label(theme::caption(ui, label));
+    for value in values {
+        let text = format!("{}, {} {unit}", number(value.x, decimals), number(value.y, decimals));
+        ui.label(RichText::new(text).size(12.0));
+    }
+    ui.end_row();
+}
+
+fn packets(ui: &mut Ui, trainer: &Trainer) {
+    let Steering::Udp(monitor) = &trainer.steering else { return };
+    plain_card(ui, "Packets", |ui| {
+        fact(ui, "Listens at", monitor.address().to_string());
+        fact(ui, "Sessions asked for", monitor.greeted().to_string());
+        fact(ui, "Taken", monitor.accepted().to_string());
+        let refused: u64 = Refused::ALL.into_iter().map(|why| monitor.refused(why)).sum();
+        fact(ui, "Refused", refused.to_string());
+    });
+}
+
+fn force_test(ui: &mut Ui, trainer: &mut Trainer, spec: &DeviceSpec) {
+    plain_card(ui, "Force test", |ui| {
+        if !spec.force_feedback {
+            ui.label(theme::caption(ui, "This device gives no force, so there is none to try."));
+            return;
+        }
+        if trainer.trial.is_running() {
+            let left = number(trainer.trial.left_s(), 1);
+            ui.label(theme::caption(ui, format!("It pushes; {left} s are left. Let go or press Esc when in doubt.")));
+            if primary_button(ui, true, "Stop").clicked() || ui.input(|i| i.key_pressed(egui::Key::Escape)) {
+                trainer.trial.abort();
+            }
+            return;
+        }
+        let text = "Hold the device loosely. It pushes both fingers softly in one direction for five seconds, in place of the world.";
+        ui.label(theme::caption(ui, text));
+        segmented(ui, &mut trainer.trial.direction, &Direction::ALL);
+        let most = MOST_N.min(spec.max_force_n);
+        ui.add(Slider::new(&mut trainer.trial.newtons, 0.1..=most).suffix(" N").fixed_decimals(1));
+        if primary_button(ui, true, "Push").clicked() {
+            trainer.trial.start();
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::servo::Swap;
+    use haptics::servo::rate::RateReport;
+    use haptics::world::presets;
+
+    #[test]
+    fn limits_are_computed_at_the_actual_rate() {
+        let spec = DeviceSpec {
+            name: "x".to_owned(),
+            force_feedback: true,
+            max_force_n: 3.0,
+            damping_n_s_m: 0.5,
+            coulomb_n: 0.0,
+            resolution_m: 0.0,
+        };
+        let swap = Swap::new(presets::table());
+        for (rate_hz, expected) in [(1000.0, "1000 N/m"), (4000.0, "4000 N/m")] {
+            let snapshot = Snapshot::starting(&swap, RateReport { rate_hz, ..RateReport::default() });
+            let limits = limit_sentences(&spec, &snapshot);
+            let (_, value) = limits[0].0.clone().expect("a value");
+            assert_eq!(value, expected);
+        }
+        let shown = DeviceSpec { force_feedback: false, ..spec };
+        let snapshot = Snapshot::starting(&swap, RateReport { rate_hz: 1000.0, ..RateReport::default() });
+        assert!(limit_sentences(&shown, &snapshot)[0].1.contains("no limit applies"));
+    }
+}

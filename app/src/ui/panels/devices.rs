@@ -1,0 +1,153 @@
+//! The devices page, left column: everything that could move the fingers, one line each, to be chosen.
+
+use super::Panel;
+use crate::ui::session::Session;
+use crate::ui::theme::{self, palette, space};
+use crate::ui::trainer::{HandDevice, Operator};
+use crate::ui::widgets::{card, plain_card};
+use egui::{CornerRadius, Frame, Margin, RichText, ScrollArea, Sense, Stroke, TextEdit, Ui};
+use haptics::device::haply;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Ports are looked for this often.
+const LOOK_AGAIN: Duration = Duration::from_secs(2);
+
+/// The list of devices.
+#[derive(Default)]
+pub struct DeviceList {
+    ports: Vec<String>,
+    looked_at: Option<Instant>,
+}
+
+/// What a click asks for.
+#[derive(Clone, PartialEq)]
+enum Choice {
+    Hand(HandDevice),
+    Scripted,
+}
+
+impl Panel for DeviceList {
+    fn title(&self) -> &'static str {
+        "Devices"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        self.look_for_ports(ui);
+        let mut chosen = None;
+        ScrollArea::vertical().id_salt("devices").auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = space::S;
+            plain_card(ui, "Built in", |ui| {
+                for hand in [HandDevice::Mouse, HandDevice::Touch, HandDevice::Keyboard] {
+                    chosen = chosen.take().or(row(ui, session, Choice::Hand(hand), Ok(())));
+                }
+                chosen = chosen.take().or(row(ui, session, Choice::Scripted, Ok(())));
+                let log = session.prepared().map(drop).ok_or("Open a log in Calibrate first.");
+                chosen = chosen.take().or(row(ui, session, Choice::Hand(HandDevice::Replay), log));
+            });
+            chosen = chosen.take().or(self.boards(ui, session));
+            chosen = chosen.take().or(remote(ui, session));
+        });
+        if let Some(choice) = chosen {
+            take(session, choice);
+        }
+    }
+}
+
+impl DeviceList {
+    fn look_for_ports(&mut self, ui: &Ui) {
+        if self.looked_at.is_none_or(|at| at.elapsed() > LOOK_AGAIN) {
+            self.ports = haply::ports();
+            self.looked_at = Some(Instant::now());
+        }
+        ui.ctx().request_repaint_after(LOOK_AGAIN);
+    }
+
+    fn boards(&self, ui: &mut Ui, session: &Session) -> Option<Choice> {
+        let found = format!("{} ports found", self.ports.len());
+        let mut chosen = None;
+        card(
+            ui,
+            "Haply 2DIY boards",
+            |ui| drop(ui.label(theme::caption(ui, found))),
+            |ui| {
+                // Any port may be the left board: both orders are offered.
+                for left in &self.ports {
+                    for right in self.ports.iter().filter(|right| *right != left) {
+                        let hand = HandDevice::Haply(left.clone(), right.clone());
+                        chosen = chosen.take().or(row(ui, session, Choice::Hand(hand), Ok(())));
+                    }
+                }
+                if self.ports.len() < 2 {
+                    let text = "Two boards make two fingers. Plug them in over USB; on Linux your user must be in the group \
+                                dialout. They are found by themselves.";
+                    ui.label(theme::caption(ui, text));
+                }
+            },
+        );
+        chosen
+    }
+}
+
+fn remote(ui: &mut Ui, session: &mut Session) -> Option<Choice> {
+    let mut chosen = None;
+    plain_card(ui, "Over the network", |ui| {
+        ui.label(theme::caption(ui, "File with the shared key (64 hexadecimal digits)"));
+        let field = TextEdit::singleline(&mut session.trainer.settings.udp_key).hint_text("/path/to/key");
+        ui.add(field.desired_width(f32::INFINITY));
+        let named = !session.trainer.settings.udp_key.trim().is_empty();
+        let ready = if named { Ok(()) } else { Err("Name the file with the key first.") };
+        chosen = row(ui, session, Choice::Hand(HandDevice::Udp), ready);
+    });
+    chosen
+}
+
+/// One device as a line that can be clicked; the choice when it was.
+fn row(ui: &mut Ui, session: &Session, choice: Choice, ready: Result<(), &str>) -> Option<Choice> {
+    let p = palette(ui);
+    let trainer = &session.trainer;
+    let (title, sentence) = match &choice {
+        Choice::Hand(hand) => (hand.title(), hand.sentence()),
+        Choice::Scripted => (
+            "Scripted operator".to_owned(),
+            "Does the task of the world like a person: reaches, trembles, reacts late.",
+        ),
+    };
+    let active = match &choice {
+        Choice::Hand(hand) => trainer.operator == Operator::You && trainer.hand == *hand,
+        Choice::Scripted => trainer.operator == Operator::Scripted,
+    };
+    let fill = if active { theme::mix(p.card, p.accent, 0.12) } else { p.sunken };
+    let edge = if active { p.accent } else { p.border };
+    let text = if ready.is_ok() { p.text } else { p.faint };
+    let inner = Frame::new()
+        .fill(fill)
+        .stroke(Stroke::new(1.0, edge))
+        .corner_radius(CornerRadius::same(6))
+        .inner_margin(Margin::symmetric(10, 5))
+        .show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            ui.spacing_mut().item_spacing.y = 2.0;
+            ui.add(egui::Label::new(theme::strong(title.clone()).color(text)).selectable(false));
+            let under = ready.err().unwrap_or(sentence);
+            ui.add(egui::Label::new(RichText::new(under).size(11.5).color(p.secondary)).selectable(false).wrap());
+        });
+    let response = ui.interact(inner.response.rect, ui.scope_id().with(("device", &title)), Sense::click());
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::RadioButton, ready.is_ok(), active, &title));
+    (response.clicked() && ready.is_ok() && !active).then_some(choice)
+}
+
+/// The engine is started again with the device; what is wrong is said.
+fn take(session: &mut Session, choice: Choice) {
+    let log = session.prepared().map(|prepared| Arc::new(prepared.recording.clone()));
+    let taken = match choice {
+        Choice::Hand(hand) => {
+            session.trainer.settings.log = log;
+            session.trainer.take_up(hand)
+        }
+        Choice::Scripted => session.trainer.hand_to(Operator::Scripted),
+    };
+    if let Err(problem) = taken {
+        session.fail(problem);
+    }
+}

@@ -1,0 +1,173 @@
+//! Which device moves the fingers, and how it is made.
+
+use super::Pinch;
+use haptics::Vec2;
+use haptics::device::haply::{self, BoardModel, HaplyHand, Placement};
+use haptics::device::udp::{Key, PORT, UdpConfig, UdpDevice, UdpMonitor};
+use haptics::device::{
+    Device, DeviceSpec, KeyboardHandle, MouseHandle, MouseTarget, ReplayDevice, TouchHandle, keyboard, mouse, touch,
+};
+use haptics::recording::Recording;
+use haptics::world::{State, World};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A device that a person, a log or another machine moves the fingers with.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum HandDevice {
+    /// Both fingers with one pointer.
+    #[default]
+    Mouse,
+    /// One finger a touch.
+    Touch,
+    /// Keys that are held.
+    Keyboard,
+    /// The log that is open in Calibrate.
+    Replay,
+    /// Two boards, by the names of their ports: left, right.
+    Haply(String, String),
+    /// Packets from a network.
+    Udp,
+}
+
+/// What a device needs to know that is not in the world.
+#[derive(Default)]
+pub struct HandSettings {
+    /// The log to replay.
+    pub log: Option<Arc<Recording>>,
+    /// File with the key of the UDP device.
+    pub udp_key: String,
+    /// Its port, when it is not the usual one; 0: any that is free.
+    pub udp_port: Option<u16>,
+}
+
+/// The window's end of the running device.
+#[derive(Default)]
+pub enum Steering {
+    /// Nothing that the window could steer.
+    #[default]
+    None,
+    /// The pointer's goal.
+    Mouse(MouseHandle),
+    /// Touches.
+    Touch(TouchHandle),
+    /// Keys.
+    Keyboard(KeyboardHandle),
+    /// Packet counters.
+    Udp(UdpMonitor),
+}
+
+/// A device, the window's end of it, and how long it performs, s (people perform for ever).
+pub type Made = (Box<dyn Device>, Steering, f64);
+
+impl HandDevice {
+    /// Makes the device, its fingers where the state has them. The error is one sentence.
+    pub fn make(&self, world: &World, state: &mut State, settings: &HandSettings) -> Result<Made, String> {
+        let tips = state.input.tip_in_world;
+        let workspace = world.hand.workspace;
+        let made = |device: Box<dyn Device>, steering| Ok((device, steering, f64::INFINITY));
+        match self {
+            Self::Mouse => {
+                let (handle, device) = mouse(mouse_start(tips), workspace);
+                made(Box::new(device), Steering::Mouse(handle))
+            }
+            Self::Touch => {
+                let (handle, device) = touch(tips, workspace);
+                made(Box::new(device), Steering::Touch(handle))
+            }
+            Self::Keyboard => {
+                let (handle, device) = keyboard(tips, workspace);
+                made(Box::new(device), Steering::Keyboard(handle))
+            }
+            Self::Replay => {
+                let log = settings.log.as_ref().ok_or("There is no log to replay: open one in Calibrate first.")?;
+                let device = ReplayDevice::from_recording(log).map_err(|e| said(&e))?;
+                state.input.tip_in_world = device.start_in_world();
+                let seconds = device.duration_s();
+                Ok((Box::new(device), Steering::None, seconds))
+            }
+            Self::Haply(left, right) => made(Box::new(haply_hand(left, right, world)?), Steering::None),
+            Self::Udp => {
+                let path = settings.udp_key.trim();
+                if path.is_empty() {
+                    return Err("A remote device needs a key: name a file with 64 hexadecimal digits.".to_owned());
+                }
+                let key = Key::load(Path::new(path)).map_err(|e| said(&e))?;
+                let mut config = UdpConfig::loopback(key);
+                config.listen.set_port(settings.udp_port.unwrap_or(PORT));
+                let device = UdpDevice::open(config, tips).map_err(|e| said(&e))?;
+                let monitor = device.monitor();
+                made(Box::new(device), Steering::Udp(monitor))
+            }
+        }
+    }
+
+    /// Its name on the page and beside the trainer.
+    pub fn title(&self) -> String {
+        match self {
+            Self::Mouse => "Mouse".to_owned(),
+            Self::Touch => "Touch screen".to_owned(),
+            Self::Keyboard => "Keyboard".to_owned(),
+            Self::Replay => "Replay of the open log".to_owned(),
+            Self::Haply(left, right) => format!("Haply boards {left}, {right}"),
+            Self::Udp => "Remote device over UDP".to_owned(),
+        }
+    }
+
+    /// One sentence for those who have never seen it.
+    pub fn sentence(&self) -> &'static str {
+        match self {
+            Self::Mouse => "One pointer moves both fingers, the button pinches; the force is shown, not felt.",
+            Self::Touch => "Two real fingers on the glass, one a fingertip; bring them together to pinch.",
+            Self::Keyboard => "Arrows move, Space closes, Backspace opens, Shift makes it slow.",
+            Self::Replay => "The fingers go where they went in the log that is open in Calibrate.",
+            Self::Haply(..) => "Two Haply 2DIY boards, one a finger; the force is felt.",
+            Self::Udp => "A device at the other end of this machine's port 47474; every packet is sealed with a key.",
+        }
+    }
+}
+
+fn said(error: &dyn std::error::Error) -> String {
+    crate::ui::session::sentence(&error.to_string())
+}
+
+fn mouse_start(tips: [Vec2; 2]) -> MouseTarget {
+    MouseTarget { center_in_world: 0.5 * (tips[0] + tips[1]), aperture_m: tips[1].x - tips[0].x }
+}
+
+/// Two boards, the middle of each one's workspace a little left and right of the hand's.
+fn haply_hand(left: &str, right: &str, world: &World) -> Result<HaplyHand, String> {
+    let open = |port: &str| haply::open(port, BoardModel::V3).map_err(|e| said(&e));
+    let center = world.hand.workspace.center_m;
+    let place = |x: f64| Placement {
+        // The middle of a 2DIY's workspace.
+        device_m: Vec2::new(0.019, 0.12),
+        world_m: center + Vec2::new(x, 0.0),
+        scale: 1.0,
+    };
+    Ok(HaplyHand::new([open(left)?, open(right)?], [place(-0.012), place(0.012)]))
+}
+
+impl Steering {
+    /// Hands the pointer's goal on, where there is a pointer.
+    pub fn follow(&mut self, pinch: &mut Pinch, tick: &haptics::servo::TickRecord, frame_s: f64) {
+        if let Self::Mouse(handle) = self {
+            handle.set(pinch.follow(tick, frame_s));
+        }
+    }
+}
+
+/// What the page says about a device in plain words.
+pub fn spec_sentences(spec: &DeviceSpec) -> Vec<(&'static str, String)> {
+    use crate::ui::format::number;
+    let unit = |value: f64, decimals: usize, unit: &str, none: &str| {
+        if value > 0.0 { format!("{} {unit}", number(value, decimals)) } else { none.to_owned() }
+    };
+    vec![
+        ("Force", if spec.force_feedback { "felt by the operator" } else { "shown, not felt" }.to_owned()),
+        ("Largest force", format!("{} N a finger", number(spec.max_force_n, 1))),
+        ("Own damping b", unit(spec.damping_n_s_m, 2, "N s/m", "none stated")),
+        ("Own friction", unit(spec.coulomb_n, 2, "N", "none stated")),
+        ("Position step", unit(1e3 * spec.resolution_m, 3, "mm", "none: continuous")),
+    ]
+}
