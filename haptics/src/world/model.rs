@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub const SCHEMA: u32 = 1;
 
 /// Most blocks that a world may hold: the state's buffers are sized once, the servo never allocates.
-pub const MAX_BLOCKS: usize = 64;
+pub const MAX_BLOCKS: usize = 256;
 
 /// A virtual world. Build or load it, then [`World::check`] it; `step` never changes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
