@@ -3,6 +3,7 @@
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use haptics::Vec2;
 use haptics::device::channel::{ChannelConfig, ChannelDevice, Waves};
+use haptics::device::gamepad::{GamepadMode, PadState, gamepad};
 use haptics::device::udp::{Force, Key, Motion, UdpConfig, UdpDevice};
 use haptics::device::{
     Command, Device, DeviceSpec, KeysHeld, Mistake, MouseTarget, ReplayDevice, Sample, ScriptedOperator, Skill,
@@ -74,7 +75,7 @@ fn mouse_and_replay() {
 }
 
 #[test]
-fn touch_screen_and_keyboard() {
+fn touch_screen_gamepad_and_keyboard() {
     let world = presets::stacking();
     let tips = State::resting(&world).input.tip_in_world;
     let (mut handle, device) = touch(tips, world.hand.workspace);
@@ -84,6 +85,13 @@ fn touch_screen_and_keyboard() {
     run(&mut servo_touch, 500);
     handle.end(2);
     run(&mut servo_touch, 500);
+
+    for mode in [GamepadMode::Hand, GamepadMode::Tips] {
+        let (mut handle, device) = gamepad(tips, world.hand.workspace, mode);
+        let sticks = [Vec2::new(0.5, -1.0); 2];
+        handle.set(PadState { sticks, triggers: [0.0, 1.0], connected: true, number: 1 });
+        run(&mut servo(&world, Box::new(device)), 500);
+    }
 
     let (mut handle, device) = keyboard(tips, world.hand.workspace);
     handle.set(KeysHeld { down: true, close: true, ..KeysHeld::default() });

@@ -3,7 +3,8 @@
 //! Only what is held counts, never how often the system repeats a key. Speeds come up and go down with a bounded acceleration, and
 //! the fine mode makes everything five times slower.
 
-use super::pointer::{Pointer, tips};
+use super::pointer::Pointer;
+use super::steering::Steering;
 use super::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;
 use crate::hand::Workspace;
@@ -11,19 +12,10 @@ use triple_buffer::{Input, Output, triple_buffer};
 
 /// Speed of the hand, m/s: across the workspace in 1.3 s.
 const HAND_M_S: f64 = 0.06;
-/// Its acceleration, m/s².
-const HAND_M_S2: f64 = 0.4;
 /// Speed at which the fingers open and close, m/s of their distance. On an object that is 6 N/s of pinch.
 const APERTURE_M_S: f64 = 0.03;
-/// Its acceleration, m/s².
-const APERTURE_M_S2: f64 = 0.3;
 /// Speeds in fine mode.
 const FINE: f64 = 0.2;
-/// A key that stays down squeezes or leans up to this force, N, and not beyond it.
-const MAX_LEAN_N: f64 = 6.0;
-/// Tips closer than this have nothing between them, m.
-const CLOSED_M: f64 = 1e-3;
-
 /// The keys that are held down now. Which keys they are is the window's business.
 #[allow(clippy::struct_excessive_bools)] // seven keys
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,10 +53,7 @@ pub struct KeyboardDevice {
     spec: DeviceSpec,
     keys: Output<KeysHeld>,
     pointer: Pointer,
-    center_m: Vec2,
-    aperture_m: f64,
-    center_m_s: Vec2,
-    aperture_m_s: f64,
+    steering: Steering,
 }
 
 /// A keyboard device whose tips start at `start_in_world` (left, right; m) and stay in `workspace`.
@@ -74,10 +63,7 @@ pub fn keyboard(start_in_world: [Vec2; 2], workspace: Workspace) -> (KeyboardHan
         spec: Pointer::spec("Keyboard"),
         keys: output,
         pointer: Pointer::new(start_in_world, workspace),
-        center_m: 0.5 * (start_in_world[0] + start_in_world[1]),
-        aperture_m: start_in_world[1].x - start_in_world[0].x,
-        center_m_s: Vec2::zeros(),
-        aperture_m_s: 0.0,
+        steering: Steering::new(start_in_world),
     };
     (KeyboardHandle { keys: input }, device)
 }
@@ -87,37 +73,6 @@ fn axis(plus: bool, minus: bool) -> f64 {
     f64::from(i8::from(plus) - i8::from(minus))
 }
 
-impl KeyboardDevice {
-    fn steer(&mut self, keys: KeysHeld, dt_s: f64) {
-        let scale = if keys.fine { FINE } else { 1.0 };
-        let direction = Vec2::new(axis(keys.right, keys.left), axis(keys.up, keys.down));
-        // Two keys at once are no faster than one.
-        let wanted = direction / direction.norm().max(1.0) * (HAND_M_S * scale);
-        self.center_m_s = super::pointer::towards(self.center_m_s, wanted, HAND_M_S2 * dt_s);
-        let wanted = axis(keys.open, keys.close) * APERTURE_M_S * scale;
-        let most = APERTURE_M_S2 * dt_s;
-        self.aperture_m_s += (wanted - self.aperture_m_s).clamp(-most, most);
-        self.center_m += self.center_m_s * dt_s;
-        self.aperture_m += self.aperture_m_s * dt_s;
-    }
-
-    /// Keeps the goal within reach of the real fingers: a key held against an obstacle must not wind up a force that then takes
-    /// as long to unwind.
-    fn keep_near(&mut self) {
-        let [left, right] = self.pointer.tips();
-        let reach = self.pointer.reach_m(MAX_LEAN_N);
-        let workspace = self.pointer.workspace();
-        let middle = 0.5 * (left + right);
-        let near = super::pointer::towards(middle, self.center_m, reach);
-        self.center_m = workspace.clamp(near);
-        let apart = right.x - left.x;
-        // With nothing between them the tips meet and stay; on an object the goal goes on inwards, which is the squeeze.
-        let least = if apart > CLOSED_M { apart - 2.0 * reach } else { 0.0 };
-        let most = (apart + 2.0 * reach).min(2.0 * workspace.radius_m).max(least);
-        self.aperture_m = self.aperture_m.clamp(least, most);
-    }
-}
-
 impl Device for KeyboardDevice {
     fn spec(&self) -> &DeviceSpec {
         &self.spec
@@ -125,9 +80,13 @@ impl Device for KeyboardDevice {
 
     fn exchange(&mut self, command: &Command, dt_s: f64) -> Sample {
         let keys = *self.keys.read();
-        self.steer(keys, dt_s);
-        self.keep_near();
-        self.pointer.advance(tips(self.center_m, self.aperture_m), command.force_n, dt_s)
+        let scale = if keys.fine { FINE } else { 1.0 };
+        let direction = Vec2::new(axis(keys.right, keys.left), axis(keys.up, keys.down));
+        // Two keys at once are no faster than one.
+        let hand_m_s = direction / direction.norm().max(1.0) * (HAND_M_S * scale);
+        let aperture_m_s = axis(keys.open, keys.close) * APERTURE_M_S * scale;
+        let goals = self.steering.steer(hand_m_s, aperture_m_s, &self.pointer, dt_s);
+        self.pointer.advance(goals, command.force_n, dt_s)
     }
 
     fn make_safe(&mut self) {}
@@ -135,6 +94,8 @@ impl Device for KeyboardDevice {
 
 #[cfg(test)]
 mod tests {
+    use super::super::pointer::tips;
+    use super::super::steering::{HAND_M_S2, MAX_LEAN_N};
     use super::*;
     use crate::hand::Hand;
     use crate::servo::safety::Limits;

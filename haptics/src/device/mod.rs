@@ -1,6 +1,7 @@
 //! Where finger positions come from and forces go to: one trait, one backend a file.
 
 pub mod channel;
+pub mod gamepad;
 pub mod haply;
 mod impedance;
 mod keyboard;
@@ -8,6 +9,7 @@ mod mouse;
 mod pointer;
 mod replay;
 mod scripted;
+mod steering;
 mod touch;
 pub mod udp;
 

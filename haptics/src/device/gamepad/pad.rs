@@ -1,0 +1,143 @@
+//! The thread that reads a real gamepad and makes it rumble. Never the servo's: reading waits.
+
+use super::{GamepadDevice, GamepadHandle, GamepadMode, PadState, gamepad};
+use crate::Vec2;
+use crate::hand::Workspace;
+use gilrs::ff::{BaseEffect, BaseEffectType, Effect, EffectBuilder, Repeat, Replay, Ticks};
+use gilrs::{Axis, Button, GamepadId, Gilrs};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// Time between two readings.
+const PERIOD: Duration = Duration::from_millis(4);
+/// A change of rumble smaller than this is not sent: pads take some thirty commands a second.
+const RUMBLE_STEP: f32 = 0.05;
+
+/// Why a gamepad could not be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GamepadError {
+    /// Nothing there.
+    #[error("no gamepad was found; plug one in, and see that you may read /dev/input (group input)")]
+    None,
+    /// The system does not do gamepads.
+    #[error("gamepads cannot be read here ({0})")]
+    System(String),
+}
+
+/// The reading thread. Dropping it stops it, and the rumble with it.
+pub struct GamepadThread {
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+    name: String,
+}
+
+impl GamepadThread {
+    /// What the pad calls itself.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+impl Drop for GamepadThread {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Opens the first gamepad and starts to read it; the tips start at `start_in_world` (left, right; m).
+pub fn open(
+    start_in_world: [Vec2; 2],
+    workspace: Workspace,
+    mode: GamepadMode,
+) -> Result<(GamepadThread, GamepadDevice), GamepadError> {
+    let (handle, device) = gamepad(start_in_world, workspace, mode);
+    let stop = Arc::new(AtomicBool::new(false));
+    let end = Arc::clone(&stop);
+    // gilrs is opened where it is used: what it holds may not move between threads on every system.
+    let (report, opened) = mpsc::channel();
+    let thread = std::thread::Builder::new()
+        .name("gamepad".to_owned())
+        .spawn(move || match start() {
+            Ok((gilrs, id, name)) => {
+                let _ = report.send(Ok(name));
+                read(gilrs, id, handle, &end);
+            }
+            Err(error) => {
+                let _ = report.send(Err(error));
+            }
+        })
+        .map_err(|e| GamepadError::System(e.to_string()))?;
+    let name = opened.recv().unwrap_or_else(|_| Err(GamepadError::System("its thread ended".to_owned())))?;
+    Ok((GamepadThread { stop, thread: Some(thread), name }, device))
+}
+
+fn start() -> Result<(Gilrs, GamepadId, String), GamepadError> {
+    let gilrs = Gilrs::new().map_err(|e| GamepadError::System(e.to_string()))?;
+    let found = gilrs.gamepads().next().map(|(id, pad)| (id, pad.name().to_owned()));
+    let (id, name) = found.ok_or(GamepadError::None)?;
+    Ok((gilrs, id, name))
+}
+
+fn read(mut gilrs: Gilrs, id: GamepadId, mut handle: GamepadHandle, stop: &AtomicBool) {
+    let effect = rumble(&mut gilrs, id);
+    let (mut strength, mut number) = (0.0_f32, 0);
+    while !stop.load(Ordering::Relaxed) {
+        // Events update the pad's state; between them the wait is the period.
+        if gilrs.next_event_blocking(Some(PERIOD)).is_some() {
+            while gilrs.next_event().is_some() {}
+        }
+        number += 1;
+        handle.set(state(&gilrs, id, number));
+        let wanted = handle.rumble();
+        if let Some(effect) = &effect
+            && ((wanted - strength).abs() > RUMBLE_STEP || (wanted == 0.0 && strength != 0.0))
+        {
+            strength = wanted;
+            // A pad that does not take it is a pad without rumble.
+            let _ = effect.set_gain(strength);
+        }
+    }
+    if let Some(effect) = &effect {
+        let _ = effect.set_gain(0.0);
+        let _ = effect.stop();
+    }
+}
+
+fn state(gilrs: &Gilrs, id: GamepadId, number: u64) -> PadState {
+    let Some(pad) = gilrs.connected_gamepad(id) else { return PadState { number, ..PadState::default() } };
+    let stick = |x: Axis, y: Axis| Vec2::new(f64::from(pad.value(x)), f64::from(pad.value(y)));
+    let trigger = |button: Button| pad.button_data(button).map_or(0.0, |data| f64::from(data.value()));
+    PadState {
+        sticks: [stick(Axis::LeftStickX, Axis::LeftStickY), stick(Axis::RightStickX, Axis::RightStickY)],
+        triggers: [trigger(Button::LeftTrigger2), trigger(Button::RightTrigger2)],
+        connected: true,
+        number,
+    }
+}
+
+/// An endless rumble at gain zero, whose gain then follows the force; `None` for a pad without.
+fn rumble(gilrs: &mut Gilrs, id: GamepadId) -> Option<Effect> {
+    if !gilrs.connected_gamepad(id)?.is_ff_supported() {
+        return None;
+    }
+    let scheduling = Replay { play_for: Ticks::from_ms(1_000), ..Replay::default() };
+    let effect = EffectBuilder::new()
+        .add_effect(BaseEffect {
+            kind: BaseEffectType::Weak { magnitude: u16::MAX },
+            scheduling,
+            ..BaseEffect::default()
+        })
+        .gamepads(&[id])
+        .repeat(Repeat::Infinitely)
+        .gain(0.0)
+        .finish(gilrs)
+        .ok()?;
+    effect.play().ok()?;
+    Some(effect)
+}
