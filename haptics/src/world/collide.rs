@@ -5,7 +5,8 @@ use super::contact::{Material, Touch, meeting};
 use super::driven::handle;
 use super::model::World;
 use super::rect::{Rect, point_in_rect, rect_rect};
-use super::state::{BodyState, Contact, Input, Scratch, Solid, State, Surface};
+use super::scratch::{Scratch, Solid};
+use super::state::{BodyState, Contact, Input, State, Surface};
 use crate::Vec2;
 use crate::law::contact::{PadCompliance, StiffnessHardening};
 

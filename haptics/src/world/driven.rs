@@ -2,7 +2,8 @@
 
 use super::fixture::{Membrane, Switch};
 use super::model::Crank;
-use super::state::{Arm, CrankState, Hole, MAX_HOLES, MembraneState, SwitchState};
+use super::scratch::Arm;
+use super::state::{CrankState, Hole, MAX_HOLES, MembraneState, SwitchState};
 use crate::Vec2;
 use crate::law::object::{MembraneHistory, MembraneLaw, MembranePhase};
 use crate::law::{Motion, Role, step_coordinate_with};

@@ -11,6 +11,7 @@ mod label;
 mod model;
 pub mod presets;
 mod rect;
+mod scratch;
 mod state;
 mod step;
 

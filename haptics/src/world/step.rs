@@ -8,7 +8,8 @@ use super::collide::collide;
 use super::contact::Touch;
 use super::driven::{handle, move_crank, move_switch, pierce};
 use super::model::{Crank, World};
-use super::state::{BodyState, Contact, Input, Scratch, Solid, State, Surface};
+use super::scratch::{Scratch, Solid};
+use super::state::{BodyState, Contact, Input, State, Surface};
 use crate::Vec2;
 use crate::law::AddedConstraint;
 
