@@ -43,16 +43,25 @@ fn world(ui: &mut Ui, session: &mut Session) {
     let start_over = |ui: &mut Ui| {
         again = ui.link("Start over").on_hover_text("Puts everything back where it started").clicked();
     };
+    let without_log = (!has_calibrated).then_some("Fit a recording in Calibrate first");
+    let without_file = (!has_file).then_some("Open a world file first");
     let choices = [
-        (WorldChoice::Blocks, "Two blocks", true, "The two wooden blocks of the thesis"),
-        (WorldChoice::Crank, "Crank", true, "A handle on an arm"),
-        (WorldChoice::Table, "Empty table", true, "Somewhere to try the fingers"),
-        (WorldChoice::Calibrated, "Calibrated from the log", has_calibrated, "Fit a recording in Calibrate first"),
-        (WorldChoice::File, "From a file", has_file, "Open a world file first"),
+        (WorldChoice::Blocks, "Two blocks", "The two wooden blocks of the thesis", None),
+        (WorldChoice::Crank, "Crank", "A handle on an arm", None),
+        (WorldChoice::Needle, "Needle", "Push it through the bottom of a paper cup, gently", None),
+        (WorldChoice::Barrel, "Barrel", "Heavy and on a cable; squeezed too hard, its wall breaks", None),
+        (WorldChoice::Switch, "Switch", "Push its knob over and back", None),
+        (WorldChoice::Table, "Empty table", "Somewhere to try the fingers", None),
+        (WorldChoice::Calibrated, "Calibrated", "The object that was measured from the log", without_log),
+        (WorldChoice::File, "From a file", "A world file", without_file),
     ];
     card(ui, "World", start_over, |ui| {
-        for (choice, label, enabled, hint) in choices {
-            chosen = chosen.or(world_choice(ui, session, choice, (label, hint), enabled));
+        for pair in choices.chunks(2) {
+            ui.columns(pair.len(), |columns| {
+                for (ui, (choice, label, hint, missing)) in columns.iter_mut().zip(pair) {
+                    chosen = chosen.or(world_choice(ui, session, *choice, (label, hint), *missing));
+                }
+            });
         }
     });
     if again {
@@ -65,18 +74,18 @@ fn world(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// One line of the list; the choice when it was clicked.
+/// One place of the list, with what is `missing` for it; the choice when it was clicked.
 fn world_choice(
     ui: &mut Ui,
     session: &mut Session,
     choice: WorldChoice,
     (label, hint): (&str, &str),
-    enabled: bool,
+    missing: Option<&str>,
 ) -> Option<WorldChoice> {
     compact(ui, |ui| {
         let on = session.trainer.choice == choice;
-        let response = ui.add_enabled(enabled, egui::RadioButton::new(on, label));
-        let response = if enabled { response } else { response.on_disabled_hover_text(hint) };
+        let response = ui.add_enabled(missing.is_none(), egui::RadioButton::new(on, label));
+        let response = response.on_hover_text(hint).on_disabled_hover_text(missing.unwrap_or(hint));
         if choice == WorldChoice::File {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if ui.link("Open …").clicked() {

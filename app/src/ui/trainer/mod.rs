@@ -45,6 +45,12 @@ pub enum WorldChoice {
     Blocks,
     /// A crank to be turned.
     Crank,
+    /// A needle on a paper cup.
+    Needle,
+    /// A barrel on a cable.
+    Barrel,
+    /// A toggle switch.
+    Switch,
     /// A bare table.
     Table,
     /// The world that was measured from the log.
@@ -108,6 +114,9 @@ impl Trainer {
         match choice {
             WorldChoice::Blocks => presets::stacking(),
             WorldChoice::Crank => presets::crank(),
+            WorldChoice::Needle => presets::needle(),
+            WorldChoice::Barrel => presets::barrel(),
+            WorldChoice::Switch => presets::switch(),
             WorldChoice::Table => presets::table(),
             WorldChoice::Calibrated => self.calibrated.clone().unwrap_or_else(presets::stacking),
             WorldChoice::File => self.file.clone().unwrap_or_else(presets::stacking),

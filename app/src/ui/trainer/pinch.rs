@@ -53,6 +53,7 @@ impl Pinch {
     /// Takes over where the fingers are, and opens wide enough for what is in the world.
     pub fn prepare_for(&mut self, world: &World, state: &State) {
         let widths = world.blocks.iter().map(|b| b.width_m).chain(world.crank.iter().map(|c| c.handle_width_m));
+        let widths = widths.chain(world.switch.iter().map(|s| 2.0 * s.knob_radius_m));
         let widest = widths.fold(0.0, f64::max);
         self.opening_m = if widest > 0.0 { widest + CLEARANCE_M } else { USUAL_OPENING_M };
         let tips = state.input.tip_in_world;
