@@ -18,6 +18,8 @@ pub mod prepare;
 pub mod scene;
 pub mod screenshot;
 pub mod session;
+#[cfg(feature = "sound")]
+pub mod sound;
 pub mod theme;
 pub mod trainer;
 pub mod widgets;

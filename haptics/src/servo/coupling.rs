@@ -18,9 +18,11 @@ use nalgebra::Matrix2;
 pub const MARGIN: f64 = 0.9;
 /// Share of the device's damping that the coupling's own damper uses up.
 pub const DAMPER_SHARE: f64 = 0.1;
-/// No softer than this, N/m. A device without known damping renders nothing that is provably passive; a spring this soft
-/// needs 0.02 N s/m at 1 kHz, which any hand that holds the device gives.
+/// A device that states neither damping nor friction renders nothing that is provably passive. It gets this spring, N/m, or a
+/// softer one where there is delay: one that [`HAND_DAMPING_N_S_M`] makes passive.
 pub const SOFTEST_N_M: f64 = 40.0;
+/// Damping that any hand gives which holds a device, N s/m (a tenth of what a relaxed finger has).
+pub const HAND_DAMPING_N_S_M: f64 = 0.5;
 /// Depth at which a hardening pad's stiffness counts, m (the foam's thickness).
 const PAD_DEPTH_M: f64 = 0.002;
 
@@ -37,9 +39,13 @@ impl Coupling {
     /// The stiffest coupling that is passive on a device at a period (s), with an extra delay (s) in the loop.
     pub fn passive(spec: &DeviceSpec, period_s: f64, delay_s: f64) -> Self {
         let damping = DAMPER_SHARE * spec.damping_n_s_m;
-        let sampled = (MARGIN * spec.damping_n_s_m - damping) / (0.5 * period_s + delay_s);
+        let lag_s = 0.5 * period_s + delay_s;
+        let sampled = (MARGIN * spec.damping_n_s_m - damping) / lag_s;
         let stiffness = sampled.min(MARGIN * quantised_limit(spec));
-        Self { stiffness_n_m: stiffness.max(SOFTEST_N_M), damping_n_s_m: damping }
+        if stiffness > 0.0 {
+            return Self { stiffness_n_m: stiffness, damping_n_s_m: damping };
+        }
+        Self { stiffness_n_m: SOFTEST_N_M.min(HAND_DAMPING_N_S_M / lag_s), damping_n_s_m: 0.0 }
     }
 
     /// The coupling that a device needs in a world; `None` when it renders the pads directly, or renders no force at all.

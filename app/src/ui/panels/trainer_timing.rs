@@ -64,7 +64,7 @@ fn sentences(ui: &mut Ui, trainer: &Trainer, snapshot: &Snapshot) {
 
 /// What the operator feels through a virtual coupling.
 pub fn coupling_sentence(coupling: &Coupling) -> String {
-    if coupling.stiffness_n_m <= SOFTEST_N_M {
+    if coupling.damping_n_s_m == 0.0 && coupling.stiffness_n_m <= SOFTEST_N_M {
         return format!(
             "The device feels the world through a soft spring of {} N/m: with what is known of its damping, friction and steps \
              nothing stiffer is surely passive.",

@@ -18,11 +18,17 @@ const WHEEL_N: f64 = 0.004;
 /// The picture of the trainer, and what the mouse does in it.
 pub struct TrainerView {
     camera: Camera,
+    #[cfg(feature = "sound")]
+    sound: Option<Result<crate::ui::sound::Sound, String>>,
 }
 
 impl Default for TrainerView {
     fn default() -> Self {
-        Self { camera: home() }
+        Self {
+            camera: home(),
+            #[cfg(feature = "sound")]
+            sound: None,
+        }
     }
 }
 
@@ -42,6 +48,8 @@ impl Panel for TrainerView {
         }
         let frame_s = f64::from(ui.input(|i| i.stable_dt));
         session.trainer.update(frame_s);
+        #[cfg(feature = "sound")]
+        self.knock(session);
         sheet(ui).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
             let Some((snapshot, world)) = session.trainer.scene() else {
@@ -88,6 +96,17 @@ impl Panel for TrainerView {
 }
 
 impl TrainerView {
+    /// Lets the newest impact be heard. The output is opened with the first one; a machine without sound is told about once.
+    #[cfg(feature = "sound")]
+    fn knock(&mut self, session: &mut Session) {
+        let Some(speed_m_s) = session.trainer.struck_m_s.take() else { return };
+        match self.sound.get_or_insert_with(crate::ui::sound::Sound::open) {
+            Ok(sound) => sound.strike(speed_m_s),
+            Err(problem) if !problem.is_empty() => session.fail(std::mem::take(problem)),
+            Err(_) => {}
+        }
+    }
+
     fn steer(&mut self, ui: &Ui, view: &SceneResponse, trainer: &mut Trainer, frame_s: f64) {
         let response = &view.response;
         let pointer = ui.input(|i| i.pointer.latest_pos()).filter(|at| view.rect.contains(*at));

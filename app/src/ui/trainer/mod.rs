@@ -90,6 +90,8 @@ pub struct Trainer {
     pub pinch: Pinch,
     /// Impacts of the last moment.
     pub impacts: Impacts,
+    /// The fastest impact since the last picture, m/s: to be heard once.
+    pub struck_m_s: Option<f64>,
     /// Forces of the last seconds.
     pub history: History,
     /// The calibrated world, when there is one.
@@ -259,7 +261,7 @@ impl Trainer {
             }
             None => self.newest = Some(snapshot.clone()),
         }
-        self.impacts.update(&self.scratch, frame_s);
+        self.struck_m_s = self.impacts.update(&self.scratch, frame_s);
         engine.test_force(self.trial.advance(frame_s));
         if let Some(newest) = &self.newest {
             self.steering.follow(&mut self.pinch, &newest.tick, frame_s);

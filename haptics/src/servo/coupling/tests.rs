@@ -144,6 +144,9 @@ fn the_coupling_is_what_the_formulas_allow() {
     let coarse = DeviceSpec { coulomb_n: 0.05, resolution_m: 0.2e-3, ..spec(0.5) };
     assert!((Coupling::passive(&coarse, T, 0.0).stiffness_n_m - 450.0).abs() < 1e-9);
     assert_eq!(Coupling::passive(&spec(0.0), T, 0.0).stiffness_n_m, SOFTEST_N_M);
+    // Nothing is known and half a second of delay: what 0.5 N s/m of a hand make passive.
+    let slow = Coupling::passive(&spec(0.0), T, 0.5);
+    assert!((slow.stiffness_n_m * (0.5 * T + 0.5) - HAND_DAMPING_N_S_M).abs() < 1e-12 && slow.damping_n_s_m == 0.0);
     assert!((coupling.felt_n_m(2500.0) - 800.0 * 2500.0 / 3300.0).abs() < 1e-9);
 }
 
