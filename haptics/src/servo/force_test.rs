@@ -96,8 +96,9 @@ mod tests {
         assert_eq!(test.advance(DT), Change::Off);
         request.set(Some([Vec2::new(0.0, 9.0), Vec2::zeros()]));
         test.ask(request.get());
-        assert!(matches!(test.advance(DT), Change::On(_, true)));
-        let mut last: f64 = 0.0;
+        let Change::On([first, _], true) = test.advance(DT) else { panic!("the test begins") };
+        let mut last = first.norm();
+        assert!(last < UP_N_S * DT + 1e-12);
         for _ in 0..4_000 {
             let Change::On([force, _], false) = test.advance(DT) else { panic!("the test goes on") };
             assert!(force.norm() - last < UP_N_S * DT + 1e-12);
