@@ -8,6 +8,8 @@ use thread_priority::{
 /// What the system granted to the servo thread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Privileges {
+    /// Whether it was asked for.
+    pub asked: bool,
     /// First-in-first-out real-time scheduling (`SCHED_FIFO`).
     pub fifo: bool,
     /// All memory locked.
@@ -17,6 +19,9 @@ pub struct Privileges {
 impl Privileges {
     /// One sentence for the timing panel.
     pub fn sentence(self) -> &'static str {
+        if !self.asked {
+            return "Normal scheduling: real time was not asked for.";
+        }
         match (self.fifo, self.memory_locked) {
             (true, true) => "Real-time scheduling and locked memory.",
             (true, false) => "Real-time scheduling; memory could not be locked.",
@@ -31,7 +36,7 @@ impl Privileges {
 /// Asks for everything, for the calling thread.
 pub fn acquire() -> Privileges {
     // Half of the range: above everything ordinary, below the kernel's own threads.
-    Privileges { fifo: fifo(50), memory_locked: lock_memory_and_sharpen_timers() }
+    Privileges { asked: true, fifo: fifo(50), memory_locked: lock_memory_and_sharpen_timers() }
 }
 
 /// Puts the calling thread above the servo, which spins: a guard that waits for its prisoner guards nothing.

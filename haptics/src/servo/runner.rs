@@ -44,7 +44,7 @@ impl Runner {
     pub fn run(mut self, mut scratch: State) {
         if self.config.real_time {
             let granted = acquire();
-            let bits = u8::from(granted.fifo) | (u8::from(granted.memory_locked) << 1);
+            let bits = u8::from(granted.fifo) | (u8::from(granted.memory_locked) << 1) | (u8::from(granted.asked) << 2);
             self.granted.store(bits, Ordering::Relaxed);
         }
         // A panic in the tick would be a bug; it must still end in zero force and be said.

@@ -155,7 +155,7 @@ impl Servo {
     /// What the system granted.
     pub fn privileges(&self) -> Privileges {
         let bits = self.granted.load(Ordering::Relaxed);
-        Privileges { fifo: bits & 1 != 0, memory_locked: bits & 2 != 0 }
+        Privileges { asked: bits & 4 != 0, fifo: bits & 1 != 0, memory_locked: bits & 2 != 0 }
     }
 
     /// How it was started.

@@ -127,13 +127,19 @@ impl Timing {
             return None;
         }
         let longest_ms = 1e3 * self.longest_stall_s;
-        let which = if self.stalls == 1 {
+        // One in a thousand is a habit.
+        let often = self.stalls * 1000 > self.ticks;
+        let which = if often {
+            format!("{} stalls of up to {longest_ms:.1} ms", self.stalls)
+        } else if self.stalls == 1 {
             format!("A single stall of {longest_ms:.1} ms")
         } else {
             format!("{} single stalls of up to {longest_ms:.1} ms", self.stalls)
         };
         let why = if self.compute.p50_s > 0.5 * self.period_s {
             "this world needs more than half of every period"
+        } else if often {
+            "the machine is busy with other work"
         } else {
             "the machine took the processor away"
         };
@@ -237,12 +243,12 @@ mod tests {
         let mut collector = TimingCollector::default();
         let usual = TickTiming { lateness_s: 5e-6, compute_s: 4e-6, interval_s: Some(1e-3), ..TickTiming::default() };
         collector.add(&TickTiming { interval_s: None, ..usual });
-        for _ in 0..100 {
+        for _ in 0..2_000 {
             collector.add(&usual);
         }
         let rate = RateReport { rate_hz: 1000.0, ..RateReport::default() };
         let calm = collector.summary(rate);
-        assert_eq!((calm.ticks, calm.stalls, calm.stall_sentence()), (101, 0, None));
+        assert_eq!((calm.ticks, calm.stalls, calm.stall_sentence()), (2_001, 0, None));
         assert!((calm.force_age.p50_s - 1e-3).abs() < 1e-9 && (calm.period.max_s - 1e-3).abs() < 1e-12);
 
         let late = TickTiming { lateness_s: 0.012, missed: true, interval_s: Some(0.013), ..usual };
@@ -256,5 +262,9 @@ mod tests {
         collector.add(&TickTiming { sample_age_s: 0.004, ..usual });
         collector.add(&usual);
         assert!(collector.summary(rate).force_age.max_s > 0.0129);
+        collector.add(&late);
+        collector.add(&late);
+        let busy = collector.summary(rate).stall_sentence().expect("three stalls");
+        assert_eq!(busy, "3 stalls of up to 12.0 ms: the machine is busy with other work.");
     }
 }
