@@ -138,6 +138,13 @@ fn screenshot_draws_the_scene() {
 fn device_lists_and_tests_itself() {
     let list = json(&["device", "list"]);
     assert!(list["devices"].as_array().is_some_and(|d| d.iter().any(|d| d["id"] == "mouse")));
+    let slow =
+        |rate| json(&["device", "list", "--rate", rate])["devices"][3]["limits"]["passive_stiffness_N_m"].as_f64();
+    assert!(slow("1000").zip(slow("500")).is_some_and(|(one, half)| (one / half - 2.0).abs() < 1e-9), "computed");
+    let late = json(&["device", "test", "mouse", "--seconds", "0.5", "--delay", "50", "--loss", "0.1", "--waves"]);
+    assert!(late["checks"].as_array().is_some_and(|checks| checks.len() == 3), "{late}");
+    refused(&["device", "test", "mouse", "--loss", "2"], "loss");
+    refused(&["device", "test", "udp:127.0.0.1,/nowhere"], "/nowhere");
     let test = json(&["device", "test", "--seconds", "1"]);
     assert!(test["ticks"].as_u64().is_some_and(|n| n > 300), "{test}");
     assert!(test["timing"]["compute"]["p50_s"].as_f64().is_some_and(|t| t > 0.0));

@@ -1,14 +1,17 @@
 //! `touchstone device`: what could drive the hand, and a self-test in words.
 
+mod open;
+mod report;
+
 use super::Output;
 use clap::{Args, Subcommand};
 use haptics::Vec2;
-use haptics::device::haply::{self, BoardModel, HaplyHand, Placement};
-use haptics::device::{Device as Hand, DeviceSpec, ScriptedOperator, Skill};
-use haptics::servo::timing::Timing;
-use haptics::servo::{Privileges, Servo, ServoConfig, Swap, passivity};
+use haptics::device::channel::ChannelConfig;
+use haptics::device::haply;
+use haptics::servo::force_test::MOST_N;
+use haptics::servo::{Servo, ServoConfig, Swap, TickRecord};
 use haptics::world::{State, World, presets};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
@@ -21,138 +24,170 @@ pub struct Device {
 
 #[derive(Subcommand)]
 enum What {
-    /// Devices that are built in or plugged in
-    List,
+    /// Devices that are built in or plugged in, with what each can render
+    List(List),
     /// Run the servo with a device and say how well it goes
     Test(Test),
 }
 
 #[derive(Args)]
+struct List {
+    /// Servo rate for which the limits are computed, Hz
+    #[arg(long, default_value_t = 1000.0)]
+    rate: f64,
+}
+
+#[derive(Args)]
 struct Test {
-    /// `scripted`, or `haply:LEFT_PORT,RIGHT_PORT`
-    #[arg(long, default_value = "scripted")]
-    device: String,
+    /// A device as `device list` writes it, like `udp:127.0.0.1,hand.key`
+    #[arg(value_name = "DEVICE", conflicts_with = "device")]
+    named: Option<String>,
+    /// The same
+    #[arg(long)]
+    device: Option<String>,
     /// Servo rate, Hz
     #[arg(long, default_value_t = 1000.0)]
     rate: f64,
     /// How long to watch
     #[arg(long, default_value_t = 3.0)]
     seconds: f64,
+    /// Push both fingers upwards with so much force, N, coming up softly; hold the device when you use this
+    #[arg(long, default_value_t = 0.0)]
+    push: f64,
+    /// Put the device behind a network: delay one way, ms
+    #[arg(long, default_value_t = 0.0)]
+    delay: f64,
+    /// Extra delay of each packet, up to this, ms
+    #[arg(long, default_value_t = 0.0)]
+    jitter: f64,
+    /// Share of the packets that is lost, 0 to 1
+    #[arg(long, default_value_t = 0.0)]
+    loss: f64,
+    /// Use wave variables on this network
+    #[arg(long)]
+    waves: bool,
 }
 
 impl Device {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         match &self.what {
-            What::List => Ok(list()),
+            What::List(list) => list.run(),
             What::Test(test) => test.run(),
         }
     }
 }
 
-fn list() -> Output {
-    let built_in = [
-        ("mouse", "Mouse: moves both fingers, the left button pinches; the force is shown, not felt"),
-        ("scripted", "Scripted operator: does the tasks like a person"),
-        ("replay:LOG", "Replay of a log"),
-    ];
-    let ports = haply::ports();
-    let mut text = String::from("Built in\n");
-    for (id, what) in built_in {
-        let _ = writeln!(text, "  {id:<12} {what}");
+fn check_rate(rate_hz: f64) -> anyhow::Result<()> {
+    anyhow::ensure!((50.0..=8000.0).contains(&rate_hz), "a rate of {rate_hz} Hz is not possible; choose 50 to 8000");
+    Ok(())
+}
+
+impl List {
+    fn run(&self) -> anyhow::Result<Output> {
+        check_rate(self.rate)?;
+        let period_s = 1.0 / self.rate;
+        let kinds = open::kinds(&presets::stacking());
+        let ports = haply::ports();
+        let mut text = String::from("Devices\n");
+        for kind in &kinds {
+            let _ = writeln!(text, "  {}\n      {}", kind.id, kind.what);
+            if let Some(spec) = &kind.spec {
+                let _ = writeln!(text, "      {}", report::limit_sentence(spec, period_s));
+            }
+        }
+        text.push_str("Serial ports that a Haply board could be behind\n");
+        if ports.is_empty() {
+            text.push_str("  none; plug a board in, and see that you are in the group dialout\n");
+        }
+        for port in &ports {
+            let _ = writeln!(text, "  {port}");
+        }
+        if let [left, right, ..] = ports.as_slice() {
+            let _ = writeln!(text, "Try: touchstone device test haply:{left},{right}");
+        }
+        let devices: Vec<Value> = kinds
+            .iter()
+            .map(|kind| {
+                json!({
+                    "id": kind.id,
+                    "what": kind.what,
+                    "spec": kind.spec.as_ref().map(report::spec_json),
+                    "limits": kind.spec.as_ref().map_or(Value::Null, |spec| report::limits(spec, period_s)),
+                })
+            })
+            .collect();
+        Ok(Output { text, json: json!({ "devices": devices, "serial_ports": ports }) })
     }
-    text.push_str("Serial ports that a Haply board could be behind\n");
-    if ports.is_empty() {
-        text.push_str("  none; plug a board in, and see that you are in the group dialout\n");
-    }
-    for port in &ports {
-        let _ = writeln!(text, "  {port}");
-    }
-    if ports.len() >= 2 {
-        let _ = writeln!(text, "Try: touchstone device test --device haply:{},{}", ports[0], ports[1]);
-    }
-    let devices: Vec<_> = built_in.iter().map(|(id, what)| json!({ "id": id, "what": what })).collect();
-    Output { text, json: json!({ "devices": devices, "serial_ports": ports }) }
 }
 
 impl Test {
     fn run(&self) -> anyhow::Result<Output> {
+        check_rate(self.rate)?;
         anyhow::ensure!(
             self.seconds > 0.0 && self.seconds <= 3600.0,
             "a test of {} s is not possible; choose up to 3600 s",
             self.seconds
         );
+        anyhow::ensure!(
+            (0.0..=MOST_N).contains(&self.push),
+            "a push of {} N is not possible; choose up to {MOST_N} N",
+            self.push
+        );
         let world = presets::stacking();
-        let device = self.device(&world)?;
-        let spec = device.spec().clone();
-        let config = ServoConfig::at(self.rate);
-        let mut servo = Servo::start(Swap::new(world), device, config)?;
-        let mut ticks = Vec::new();
-        let begun = Instant::now();
-        while begun.elapsed().as_secs_f64() < self.seconds && servo.is_running() {
-            // The servo works on its own thread; this one only empties the ring in time.
-            std::thread::sleep(Duration::from_millis(50));
-            servo.drain(&mut ticks);
-        }
-        let stale = ticks.iter().filter(|t| t.flags.stale).count();
+        let name = self.named.as_deref().or(self.device.as_deref()).unwrap_or("scripted");
+        let opened = self.behind_a_network(open::open(name, &world)?, &world)?;
+        let spec = opened.device.spec().clone();
+        // Lives until the test is over: the thread that reads a gamepad, for example.
+        let _keep = opened.keep;
+        let state = State::new(&world, opened.start_in_world);
+        let mut servo = Servo::start(Box::new(Swap { world, state }), opened.device, ServoConfig::at(self.rate))?;
+        eprintln!("{}: watching for {} s. {}", spec.name, self.seconds, opened.hint);
+        let ticks = self.watch(&mut servo);
         let privileges = servo.privileges();
         let snapshot = servo.newest();
         if let Some(fault) = snapshot.fault {
             anyhow::bail!("{fault}");
         }
-        let timing = snapshot.timing;
-        Ok(report(&spec, &timing, privileges, ticks.len(), stale))
+        let measured = report::Measured {
+            spec: &spec,
+            timing: &snapshot.timing,
+            privileges,
+            ticks: &ticks,
+            hint: opened.hint,
+            packets: opened.packets.as_ref(),
+            push_n: self.push,
+            coupling_n_m: snapshot.coupling.map(|coupling| coupling.stiffness_n_m),
+        };
+        Ok(measured.report())
     }
 
-    fn device(&self, world: &World) -> anyhow::Result<Box<dyn Hand>> {
-        if self.device == "scripted" {
-            return Ok(Box::new(ScriptedOperator::new(world, &State::resting(world), Skill::default(), 1)));
+    fn behind_a_network(&self, opened: open::Opened, world: &World) -> anyhow::Result<open::Opened> {
+        let config = ChannelConfig {
+            delay_s: 1e-3 * self.delay,
+            jitter_s: 1e-3 * self.jitter,
+            loss: self.loss,
+            seed: 1,
+            waves: None,
+        };
+        open::behind_a_network(opened, config, self.waves, world, 1.0 / self.rate)
+    }
+
+    /// Lets the servo run; pushes in the second half, when that was asked for.
+    fn watch(&self, servo: &mut Servo) -> Vec<TickRecord> {
+        let mut ticks = Vec::new();
+        let begun = Instant::now();
+        loop {
+            let elapsed_s = begun.elapsed().as_secs_f64();
+            if elapsed_s >= self.seconds || !servo.is_running() {
+                break;
+            }
+            let pushing = self.push > 0.0 && elapsed_s > 0.5 * self.seconds;
+            servo.test_force(pushing.then(|| [Vec2::new(0.0, self.push); 2]));
+            // The servo works on its own thread; this one only empties the ring in time.
+            std::thread::sleep(Duration::from_millis(50));
+            servo.drain(&mut ticks);
         }
-        let Some((left, right)) = self.device.strip_prefix("haply:").and_then(|ports| ports.split_once(',')) else {
-            anyhow::bail!("there is no device `{}`; use scripted or haply:LEFT_PORT,RIGHT_PORT", self.device);
-        };
-        let boards = [haply::open(left, BoardModel::V3)?, haply::open(right, BoardModel::V3)?];
-        let center = world.hand.workspace.center_m;
-        let place = |x: f64| Placement {
-            // The middle of a 2DIY's workspace.
-            device_m: Vec2::new(0.019, 0.12),
-            world_m: center + Vec2::new(x, 0.0),
-            scale: 1.0,
-        };
-        Ok(Box::new(HaplyHand::new(boards, [place(-0.012), place(0.012)])))
+        servo.test_force(None);
+        ticks
     }
-}
-
-fn report(spec: &DeviceSpec, timing: &Timing, privileges: Privileges, ticks: usize, stale: usize) -> Output {
-    let period_s = timing.period_s;
-    let stiffness = passivity::passive_stiffness(spec, 0.0, period_s);
-    let mut text = format!("{}\n", spec.name);
-    let _ = writeln!(text, "  {} ticks at {:.0} Hz; {}", ticks, 1.0 / period_s, privileges.sentence());
-    for (what, p) in [("late by", timing.lateness), ("working for", timing.compute)] {
-        let [p50, p99, p999, max] = [p.p50_s, p.p99_s, p.p999_s, p.max_s].map(crate::ui::format::short_time);
-        let _ = writeln!(text, "  {what:<12} p50 {p50:>9}   p99 {p99:>9}   p99.9 {p999:>9}   max {max:>9}");
-    }
-    let _ = writeln!(text, "  deadlines missed: {}; ticks without fresh positions: {stale}", timing.missed);
-    let _ = writeln!(
-        text,
-        "  stiffest wall that stays passive at this rate: {stiffness:.0} N/m ({})",
-        if spec.force_feedback { "computed from the device's damping, friction and resolution" } else { "not felt" }
-    );
-    let verdict = if stale > 0 {
-        "The device did not keep up: positions were stale and the force was zero then. Check the cable."
-    } else if timing.lateness.p99_s > 0.5 * period_s {
-        "The machine does not hold this rate; choose a lower one."
-    } else {
-        "The servo holds this rate."
-    };
-    let _ = writeln!(text, "  {verdict}");
-    let json = json!({
-        "device": spec.name,
-        "ticks": ticks,
-        "stale_ticks": stale,
-        "timing": timing,
-        "privileges": privileges,
-        "passive_stiffness_N_m": stiffness,
-        "verdict": verdict,
-    });
-    Output { text, json }
 }

@@ -83,18 +83,23 @@ pub struct HaplyHand {
 }
 
 impl HaplyHand {
+    /// What two 2DIY boards can do.
+    pub fn two_boards() -> DeviceSpec {
+        DeviceSpec {
+            name: "Two Haply 2DIY boards".to_owned(),
+            force_feedback: true,
+            max_force_n: 3.0,
+            // Measured figures are not published; a free 2DIY moves with about this much (order of magnitude).
+            damping_n_s_m: 0.1,
+            coulomb_n: 0.05,
+            resolution_m: 0.1e-3,
+        }
+    }
+
     /// The left and the right board.
     pub fn new(boards: [Board; 2], placements: [Placement; 2]) -> Self {
         Self {
-            spec: DeviceSpec {
-                name: "Two Haply 2DIY boards".to_owned(),
-                force_feedback: true,
-                max_force_n: 3.0,
-                // Measured figures are not published; a free 2DIY moves with about this much (order of magnitude).
-                damping_n_s_m: 0.1,
-                coulomb_n: 0.05,
-                resolution_m: 0.1e-3,
-            },
+            spec: Self::two_boards(),
             boards,
             placements,
             seen: [Answer::default(); 2],

@@ -45,18 +45,19 @@ pub struct UdpConfig {
 impl UdpConfig {
     /// On this machine only, at the usual port, for a device that feels up to 4 N and states nothing else of itself.
     pub fn loopback(key: Key) -> Self {
-        Self {
-            listen: SocketAddr::from((Ipv4Addr::LOCALHOST, PORT)),
-            key,
-            spec: DeviceSpec {
-                name: "Remote device over UDP".to_owned(),
-                force_feedback: true,
-                max_force_n: 4.0,
-                // Not stated is none: the computed limits are then zero, which is the safe side.
-                damping_n_s_m: 0.0,
-                coulomb_n: 0.0,
-                resolution_m: 0.0,
-            },
+        Self { listen: SocketAddr::from((Ipv4Addr::LOCALHOST, PORT)), key, spec: Self::unstated() }
+    }
+
+    /// A device of which nothing is known.
+    pub fn unstated() -> DeviceSpec {
+        DeviceSpec {
+            name: "Remote device over UDP".to_owned(),
+            force_feedback: true,
+            max_force_n: 4.0,
+            // Not stated is none: the computed limits are then zero, which is the safe side.
+            damping_n_s_m: 0.0,
+            coulomb_n: 0.0,
+            resolution_m: 0.0,
         }
     }
 }

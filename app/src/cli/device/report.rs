@@ -1,0 +1,302 @@
+//! What a test found, in plain words and as JSON.
+
+use super::super::Output;
+use crate::ui::format::short_time;
+use haptics::Vec2;
+use haptics::device::DeviceSpec;
+use haptics::device::udp::{Refused, UdpMonitor};
+use haptics::servo::{Privileges, TickRecord, passivity, timing::Timing};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// A finger that moved less than this did not move, m.
+const STILL_M: f64 = 0.5e-3;
+/// The watchdog has spoken after this, s.
+const WAIT_S: f64 = 0.1;
+
+/// What a device can render at a period: computed from its figures, never typed in. `null` where no force is felt.
+pub fn limits(spec: &DeviceSpec, period_s: f64) -> Value {
+    if !spec.force_feedback {
+        return Value::Null;
+    }
+    json!({
+        "rate_hz": 1.0 / period_s,
+        "passive_stiffness_N_m": passivity::passive_stiffness(spec, 0.0, period_s),
+        "passive_damping_N_s_m": spec.damping_n_s_m,
+    })
+}
+
+/// The same as one sentence.
+pub fn limit_sentence(spec: &DeviceSpec, period_s: f64) -> String {
+    if !spec.force_feedback {
+        return "the force is shown, not felt: no limit".to_owned();
+    }
+    let stiffness = passivity::passive_stiffness(spec, 0.0, period_s);
+    if stiffness <= 0.0 {
+        return "no damping of its own is known, so nothing is surely passive: the world is felt through a soft spring"
+            .to_owned();
+    }
+    format!(
+        "passive up to {stiffness:.0} N/m and {:.2} N s/m at {:.0} Hz; up to {:.1} N a finger",
+        spec.damping_n_s_m,
+        1.0 / period_s,
+        spec.max_force_n
+    )
+}
+
+/// A device's figures as JSON.
+pub fn spec_json(spec: &DeviceSpec) -> Value {
+    json!({
+        "name": spec.name,
+        "force_feedback": spec.force_feedback,
+        "max_force_N": spec.max_force_n,
+        "damping_N_s_m": spec.damping_n_s_m,
+        "coulomb_N": spec.coulomb_n,
+        "resolution_m": spec.resolution_m,
+    })
+}
+
+/// What was measured.
+pub struct Measured<'a> {
+    /// What it says of itself.
+    pub spec: &'a DeviceSpec,
+    /// The servo's punctuality.
+    pub timing: &'a Timing,
+    /// What the system granted.
+    pub privileges: Privileges,
+    /// Every tick.
+    pub ticks: &'a [TickRecord],
+    /// How to move it.
+    pub hint: &'a str,
+    /// Packets, of a remote device.
+    pub packets: Option<&'a UdpMonitor>,
+    /// The soft push that was asked for, N.
+    pub push_n: f64,
+    /// The coupling's stiffness, N/m, when the world is felt through one.
+    pub coupling_n_m: Option<f64>,
+}
+
+/// One thing that was looked at.
+struct Check {
+    name: &'static str,
+    ok: bool,
+    text: String,
+}
+
+impl Measured<'_> {
+    /// Words and JSON.
+    pub fn report(&self) -> Output {
+        let checks = self.checks();
+        let verdict =
+            checks.iter().find(|check| !check.ok).map_or("Nothing wrong was found.", |check| check.text.as_str());
+        let period_s = self.timing.period_s;
+        let mut text = format!("{}\n", self.spec.name);
+        let _ =
+            writeln!(text, "  {} ticks at {:.0} Hz; {}", self.ticks.len(), 1.0 / period_s, self.privileges.sentence());
+        for (what, p) in [("late by", self.timing.lateness), ("working for", self.timing.compute)] {
+            let [p50, p99, p999, max] = [p.p50_s, p.p99_s, p.p999_s, p.max_s].map(short_time);
+            let _ = writeln!(text, "  {what:<12} p50 {p50:>9}   p99 {p99:>9}   p99.9 {p999:>9}   max {max:>9}");
+        }
+        let _ = writeln!(text, "  {}", limit_sentence(self.spec, period_s));
+        for check in &checks {
+            let _ = writeln!(text, "  {} {}", if check.ok { "ok  " } else { "look" }, check.text);
+        }
+        let _ = writeln!(text, "  {verdict}");
+        Output { text, json: self.json(&checks, verdict) }
+    }
+
+    fn json(&self, checks: &[Check], verdict: &str) -> Value {
+        let checks: Vec<Value> = checks.iter().map(|c| json!({ "name": c.name, "ok": c.ok, "text": c.text })).collect();
+        let packets = self.packets.map(|packets| {
+            let refused: serde_json::Map<String, Value> =
+                Refused::ALL.iter().map(|why| (why.words().to_owned(), packets.refused(*why).into())).collect();
+            json!({ "address": packets.address().to_string(), "accepted": packets.accepted(), "refused": refused })
+        });
+        json!({
+            "device": self.spec.name,
+            "spec": spec_json(self.spec),
+            "limits": limits(self.spec, self.timing.period_s),
+            "coupling_N_m": self.coupling_n_m,
+            "ticks": self.ticks.len(),
+            "stale_ticks": self.stale(),
+            "range_m": self.ranges().map(|range| [range.x, range.y]),
+            "largest_force_N": self.largest_force_n(),
+            "packets": packets,
+            "timing": self.timing,
+            "privileges": self.privileges,
+            "passive_stiffness_N_m": passivity::passive_stiffness(self.spec, 0.0, self.timing.period_s),
+            "checks": checks,
+            "verdict": verdict,
+        })
+    }
+
+    fn checks(&self) -> Vec<Check> {
+        let mut checks = vec![self.rate(), self.freshness(), self.motion()];
+        checks.extend(self.packets.map(Self::seals));
+        if self.push_n > 0.0 {
+            checks.push(self.push());
+        }
+        checks
+    }
+
+    fn rate(&self) -> Check {
+        let ok = self.timing.lateness.p99_s <= 0.5 * self.timing.period_s;
+        let text = if ok {
+            format!("The servo holds this rate; {} deadlines were missed.", self.timing.missed)
+        } else {
+            "The machine does not hold this rate; choose a lower one with --rate.".to_owned()
+        };
+        Check { name: "rate", ok, text }
+    }
+
+    fn stale(&self) -> usize {
+        self.ticks.iter().filter(|tick| tick.flags.stale).count()
+    }
+
+    /// First tick with positions after the wait for the device, and one past the last; `None` when there never were any.
+    fn present(&self) -> Option<(usize, usize)> {
+        let stale = |tick: &TickRecord| tick.flags.stale;
+        // The watchdog takes its time to speak: silence from the start is said a little later.
+        let said = (WAIT_S / self.timing.period_s) as usize;
+        let first = match self.ticks.iter().position(stale) {
+            Some(at) if at <= said => at + self.ticks[at..].iter().position(|tick| !stale(tick))?,
+            _ => 0,
+        };
+        let end = self.ticks.iter().rposition(|tick| !stale(tick))? + 1;
+        Some((first, end))
+    }
+
+    fn freshness(&self) -> Check {
+        let name = "positions";
+        let Some((first, end)) = self.present() else {
+            return Check { name, ok: false, text: format!("No positions came, so the force was zero. {}", self.hint) };
+        };
+        let seconds = |ticks: usize| ticks as f64 * self.timing.period_s;
+        let gaps = self.ticks[first..end].iter().filter(|tick| tick.flags.stale).count();
+        let left = self.ticks.len() - end;
+        let mut text = if gaps == 0 {
+            format!("Positions came for {:.1} s without a gap.", seconds(end - first))
+        } else {
+            format!(
+                "Positions stayed away for {:.2} s, and the force was zero then. Check cable and program.",
+                seconds(gaps)
+            )
+        };
+        if left > 0 {
+            let _ = write!(text, " They ended {:.1} s before the test did.", seconds(left));
+        }
+        // A program may end when it likes; a device on a cable may not.
+        Check { name, ok: gaps == 0 && (left == 0 || self.packets.is_some()), text }
+    }
+
+    /// Width and height of where each finger went, m.
+    fn ranges(&self) -> [Vec2; 2] {
+        [0, 1].map(|finger| {
+            let far = Vec2::repeat(f64::INFINITY);
+            let (low, high) = self.ticks.iter().fold((far, -far), |(low, high), tick| {
+                let tip = tick.input.tip_in_world[finger];
+                (low.inf(&tip), high.sup(&tip))
+            });
+            if self.ticks.is_empty() { Vec2::zeros() } else { high - low }
+        })
+    }
+
+    fn motion(&self) -> Check {
+        let ranges = self.ranges();
+        let words = |finger: usize| {
+            let range = 1e3 * ranges[finger];
+            if ranges[finger].norm() < STILL_M {
+                "did not move".to_owned()
+            } else {
+                format!("moved over {:.0} mm across and {:.0} mm up", range.x, range.y)
+            }
+        };
+        let still = ranges.iter().any(|range| range.norm() < STILL_M);
+        let hint = if still { self.hint } else { "" };
+        let text = format!("The left finger {}, the right one {}. {hint}", words(0), words(1));
+        // Nothing moves by itself: standing still is for the person to judge.
+        Check { name: "motion", ok: true, text: text.trim_end().to_owned() }
+    }
+
+    fn seals(packets: &UdpMonitor) -> Check {
+        let refused: Vec<String> = Refused::ALL
+            .iter()
+            .filter(|why| packets.refused(**why) > 0)
+            .map(|why| format!("{} {}", packets.refused(*why), why.words()))
+            .collect();
+        let tail =
+            if refused.is_empty() { "none refused".to_owned() } else { format!("refused: {}", refused.join(", ")) };
+        let text = format!("At {}: {} packets accepted, {tail}.", packets.address(), packets.accepted());
+        Check { name: "packets", ok: packets.refused(Refused::Seal) == 0, text }
+    }
+
+    fn largest_force_n(&self) -> f64 {
+        self.ticks.iter().flat_map(|tick| tick.sent_force_n).map(|force| force.norm()).fold(0.0, f64::max)
+    }
+
+    fn push(&self) -> Check {
+        let reached = self.largest_force_n();
+        let ok = reached > 0.5 * self.push_n;
+        let text = if ok {
+            format!("Pushed both fingers upwards, softly, up to {reached:.2} N. Did you feel it on both?")
+        } else {
+            format!(
+                "The push of {:.2} N did not come up (largest {reached:.2} N): no fresh positions, no force.",
+                self.push_n
+            )
+        };
+        Check { name: "push", ok, text }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::device::haply::HaplyHand;
+    use haptics::servo::safety::SafetyFlags;
+
+    fn ticks(parts: &[(usize, bool)]) -> Vec<TickRecord> {
+        let tick =
+            |stale| TickRecord { flags: SafetyFlags { stale, ..SafetyFlags::default() }, ..TickRecord::default() };
+        parts.iter().flat_map(|(count, stale)| vec![tick(*stale); *count]).collect()
+    }
+
+    fn freshness(parts: &[(usize, bool)]) -> (bool, String) {
+        let timing = Timing { period_s: 1e-3, ..Timing::default() };
+        let measured = Measured {
+            spec: &HaplyHand::two_boards(),
+            timing: &timing,
+            privileges: Privileges::default(),
+            ticks: &ticks(parts),
+            hint: "Plug it in.",
+            packets: None,
+            push_n: 0.0,
+            coupling_n_m: None,
+        };
+        let check = measured.freshness();
+        (check.ok, check.text)
+    }
+
+    #[test]
+    fn waiting_gaps_and_an_end_are_told_apart() {
+        let (fine, stale) = (false, true);
+        assert_eq!(freshness(&[(1_000, fine)]), (true, "Positions came for 1.0 s without a gap.".to_owned()));
+        assert!(freshness(&[(20, fine), (500, stale), (1_000, fine)]).0, "it came late");
+        let (ok, text) = freshness(&[(300, fine), (50, stale), (300, fine)]);
+        assert!(!ok && text.contains("0.05 s"), "{text}");
+        let (ok, text) = freshness(&[(300, fine), (700, stale)]);
+        assert!(!ok && text.contains("ended 0.7 s before"), "{text}");
+        let (ok, text) = freshness(&[(20, fine), (700, stale)]);
+        assert!(!ok && text.contains("No positions came") && text.contains("Plug it in."), "{text}");
+        assert!(!freshness(&[]).0);
+    }
+
+    #[test]
+    fn limits_are_computed_and_absent_where_nothing_is_felt() {
+        let boards = HaplyHand::two_boards();
+        assert!((limits(&boards, 1e-3)["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 200.0).abs() < 1e-9);
+        assert!((limits(&boards, 0.25e-3)["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 800.0).abs() < 1e-9);
+        let shown = DeviceSpec { force_feedback: false, ..boards };
+        assert_eq!(limits(&shown, 1e-3), Value::Null);
+    }
+}
