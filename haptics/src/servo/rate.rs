@@ -112,13 +112,14 @@ pub struct RateReport {
 impl RateReport {
     /// The choice and its reason in one sentence for people, and a second one when the machine does not keep up.
     pub fn sentence(&self) -> String {
-        let micro = |seconds: f64| seconds * 1e6;
+        // Rounded up: "less than" must be true.
+        let micro = |seconds: f64| (seconds * 1e6).ceil().max(1.0);
         let hz = self.rate_hz;
         let mut text = match self.reason {
             RateReason::Fixed => format!("{hz:.0} Hz, as asked for."),
             RateReason::Measured(t) => format!(
-                "{hz:.0} Hz: in a self-test at {:.0} Hz 99 of 100 ticks were late by less than {:.0} µs, worked for less than \
-                 {:.0} µs, and {:.1} % of the deadlines were missed.",
+                "{hz:.0} Hz: in a self-test at {:.0} Hz 99 of 100 ticks were late by less than {:.0}\u{a0}µs, worked for less than \
+                 {:.0}\u{a0}µs, and {:.1}\u{a0}% of the deadlines were missed.",
                 t.rate_hz,
                 micro(t.late_p99_s),
                 micro(t.compute_p99_s),

@@ -4,7 +4,7 @@ use super::{Panel, trainer_timing};
 use crate::ui::format::number;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::{Direction, Operator, Steering, Trainer, spec_sentences};
+use crate::ui::trainer::{Direction, HandDevice, Operator, Steering, Trainer, spec_sentences};
 use crate::ui::widgets::{empty_state, fact, light, plain_card, primary_button, segmented};
 use egui::{RichText, ScrollArea, Slider, Ui, vec2};
 use haptics::Vec2;
@@ -172,8 +172,11 @@ fn packets(ui: &mut Ui, trainer: &Trainer) {
 
 fn force_test(ui: &mut Ui, trainer: &mut Trainer, spec: &DeviceSpec) {
     plain_card(ui, "Force test", |ui| {
-        if !spec.force_feedback {
-            ui.label(theme::caption(ui, "This device gives no force, so there is none to try."));
+        let somebody_feels = trainer.operator == Operator::You
+            && matches!(trainer.hand, HandDevice::Haply(..) | HandDevice::Udp)
+            && spec.force_feedback;
+        if !somebody_feels {
+            ui.label(theme::caption(ui, "This device gives nobody a force, so there is none to try."));
             return;
         }
         if trainer.trial.is_running() {
