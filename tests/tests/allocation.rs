@@ -217,7 +217,7 @@ fn the_timing_of_a_tick_and_its_summary() {
         for tick in 0..5_000_u32 {
             let missed = tick.is_multiple_of(3);
             collector.add(&TickTiming { compute_s: 1e-6, interval_s: Some(DT), missed, ..TickTiming::default() });
-            watch.add(missed, 1000.0);
+            watch.add(missed, DT);
         }
         collector.summary(rate)
     });

@@ -2,6 +2,7 @@
 
 use haptics::Vec2;
 use haptics::device::{Command, Device, DeviceSpec, Sample};
+use haptics::servo::rate::{FAST_HZ, SAFE_HZ};
 use haptics::servo::safety::Limits;
 use haptics::servo::{ForceGuard, Loop, Servo, ServoConfig, Snapshot, Swap, TickRecord};
 use haptics::world::presets;
@@ -33,6 +34,8 @@ enum Fault {
     Blocks,
     /// One exchange that takes 0.3 s.
     LongExchange,
+    /// Every exchange takes 0.7 ms: too long for 4 kHz, not for 1 kHz.
+    Slow,
 }
 
 /// What can be seen from outside: the force that the hardware holds, as a motor would, until it is told otherwise.
@@ -121,6 +124,12 @@ impl Device for FaultyDevice {
             Fault::Blocks => {
                 while !self.hardware.unblock.load(Ordering::Relaxed) {
                     std::thread::sleep(Duration::from_millis(1));
+                }
+            }
+            Fault::Slow => {
+                let begun = Instant::now();
+                while begun.elapsed() < Duration::from_micros(700) {
+                    std::hint::spin_loop();
                 }
             }
             Fault::LongExchange => {
@@ -331,4 +340,39 @@ fn a_window_that_panics_takes_the_force_with_it() {
     assert!(window.join().is_err());
     assert_eq!(hardware.held_n(), 0.0, "the handle was dropped: zero force");
     assert!(until(|| Arc::strong_count(&hardware) == 1), "and the threads ended");
+}
+
+#[test]
+fn a_rate_that_is_no_longer_held_is_lowered_without_a_jump_and_said() {
+    let (device, hardware) = FaultyDevice::new(false, false);
+    // Nothing but the rate is to be seen here.
+    let limits = Limits { watchdog_s: WATCHDOG_S, ..limits() };
+    let config = ServoConfig { limits, ..ServoConfig::default() };
+    let mut servo = Servo::start(Swap::new(presets::table()), Box::new(device), config).expect("a thread");
+    assert!(until(|| hardware.held_n() > 0.5), "there is a force");
+    let chosen = servo.newest().timing.rate;
+    assert!(chosen.sentence().contains("self-test"), "{}", chosen.sentence());
+    if chosen.rate_hz < FAST_HZ {
+        // This machine does not hold the fast rate to begin with: that was said, and there is nothing to fall from.
+        assert_eq!(chosen.rate_hz, SAFE_HZ);
+        return;
+    }
+    hardware.begin(Fault::Slow);
+    let mut ticks = Vec::new();
+    assert!(until(|| {
+        servo.drain(&mut ticks);
+        servo.newest().timing.rate.rate_hz == SAFE_HZ
+    }));
+    assert!(servo.newest().timing.rate.sentence().contains("begun at 4000 Hz"));
+    let lowered = ticks.len();
+    assert!(until(|| {
+        servo.drain(&mut ticks);
+        ticks.len() > lowered + 300
+    }));
+    let step = |w: &[TickRecord]| w[1].time_s - w[0].time_s;
+    assert!(ticks.windows(2).any(|w| (step(w) - 1.0 / SAFE_HZ).abs() < 1e-9), "the ticks are longer now");
+    for w in ticks.windows(2).filter(|w| !w[1].flags.stale) {
+        let change = (w[1].sent_force_n[0] - w[0].sent_force_n[0]).norm();
+        assert!(change < 0.05, "a jump of {change} N");
+    }
 }

@@ -179,22 +179,25 @@ fn measure(rate_hz: f64, world: &World, scratch: &mut State) -> Trial {
 /// Watches the missed deadlines of a running servo.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Watch {
+    passed_s: f64,
     ticks: u32,
     missed: u32,
     bad: u32,
 }
 
 impl Watch {
-    /// Counts one tick; the share of missed deadlines when there were too many for [`BAD_WINDOWS`] windows in a row.
-    pub fn add(&mut self, missed: bool, rate_hz: f64) -> Option<f64> {
+    /// Counts one tick that began `interval_s` after the one before; the share of missed deadlines when there were too many
+    /// for three windows of a second in a row.
+    pub fn add(&mut self, missed: bool, interval_s: f64) -> Option<f64> {
+        self.passed_s += interval_s;
         self.ticks += 1;
         self.missed += u32::from(missed);
-        if f64::from(self.ticks) < WINDOW_S * rate_hz {
+        if self.passed_s < WINDOW_S {
             return None;
         }
         let share = f64::from(self.missed) / f64::from(self.ticks);
         self.bad = if share > BAD_SHARE { self.bad + 1 } else { 0 };
-        (self.ticks, self.missed) = (0, 0);
+        (self.passed_s, self.ticks, self.missed) = (0.0, 0, 0);
         if self.bad < BAD_WINDOWS {
             return None;
         }
@@ -252,13 +255,13 @@ mod tests {
         let mut watch = Watch::default();
         let mut verdicts = Vec::new();
         // A bad second, a good one, then four bad ones.
-        for tick in 0..6 * 4000_u32 {
-            let bad = !(4000..8000).contains(&tick);
-            verdicts.extend(watch.add(bad && tick.is_multiple_of(10), 4000.0).map(|share| (tick, share)));
+        for tick in 0..6 * 4096_u32 {
+            let bad = !(4096..8192).contains(&tick);
+            verdicts.extend(watch.add(bad && tick.is_multiple_of(10), 1.0 / 4096.0).map(|share| (tick, share)));
         }
         assert_eq!(verdicts.len(), 1, "{verdicts:?}");
         let (tick, share) = verdicts[0];
-        assert!(tick == 5 * 4000 - 1 && (share - 0.1).abs() < 1e-9, "{verdicts:?}");
+        assert!(tick == 5 * 4096 - 1 && (share - 0.1).abs() < 1e-3, "{verdicts:?}");
         let fast = RateReport { rate_hz: FAST_HZ, ..RateReport::default() };
         let slower = degrade(RateChoice::Auto, fast, share);
         assert_eq!(slower.rate_hz, SAFE_HZ);

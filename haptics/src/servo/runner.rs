@@ -87,7 +87,7 @@ impl Runner {
             let compute_s = started.elapsed().as_secs_f64();
             let sample_age_s = self.body.sample_age_s();
             collector.add(&TickTiming { lateness_s, interval_s, compute_s, missed, sample_age_s });
-            if let Some(share) = watch.add(missed, self.rate.rate_hz) {
+            if let Some(share) = watch.add(missed, interval_s.unwrap_or(period_s)) {
                 self.rate = rate::degrade(self.config.rate, self.rate, share);
                 if period_s != 1.0 / self.rate.rate_hz {
                     period_s = 1.0 / self.rate.rate_hz;
