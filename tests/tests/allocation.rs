@@ -9,11 +9,13 @@ use haptics::device::{
     Command, Device, DeviceSpec, KeysHeld, Mistake, MouseTarget, ReplayDevice, Sample, ScriptedOperator, Skill,
     keyboard, mouse, touch,
 };
+use haptics::law::contact::{FingertipSlip, VelocityLoss};
+use haptics::law::{CATALOGUE, Effect};
 use haptics::servo::rate::{RateReport, Watch};
 use haptics::servo::safety::Limits;
 use haptics::servo::timing::{TickTiming, TimingCollector};
 use haptics::servo::{Loop, Swap};
-use haptics::world::{State, World, presets};
+use haptics::world::{State, Wall, World, presets};
 
 #[global_allocator]
 static GUARD: AllocDisabler = AllocDisabler;
@@ -39,10 +41,32 @@ fn run(servo: &mut Loop, ticks: usize) {
 
 #[test]
 fn scripted_operator_in_every_world() {
-    for world in [presets::stacking(), presets::crank(), presets::table()] {
+    for world in presets::all() {
         let operator = ScriptedOperator::new(&world, &State::resting(&world), Skill::default(), 3);
         run(&mut servo(&world, Box::new(operator)), 20_000);
     }
+}
+
+#[test]
+fn every_law_of_the_catalogue_and_of_contacts() {
+    for law in CATALOGUE {
+        let mut world = presets::crank();
+        let crank = world.crank.as_mut().expect("there is one");
+        crank.constraint_stiffness_n_m = Some(5000.0);
+        // Every parameter at something that acts.
+        let values = vec![0.05; law.parameters().len()];
+        crank.effects.push(Effect::new(law, &values));
+        world.check().expect("a world with one law more");
+        let operator = ScriptedOperator::new(&world, &State::resting(&world), Skill::default(), 3);
+        run(&mut servo(&world, Box::new(operator)), 8_000);
+    }
+    let mut world = presets::stacking();
+    (world.pad.cubic_n_m3, world.pad.hertz_n_m15) = (1e9, 1e4);
+    world.pad.slip = Some(FingertipSlip { way_m: Vec2::new(0.0, 1e-3), t0_s: 5.0, duration_s: 1.0 });
+    world.floor.as_mut().expect("there is one").loss = Some(VelocityLoss { e: 0.3, mu: 0.4 });
+    world.blocks[0].wall = Some(Wall { stiffness_n_m: 4000.0, strength_n: Some(3.0) });
+    let operator = ScriptedOperator::new(&world, &State::resting(&world), Skill::default(), 3);
+    run(&mut servo(&world, Box::new(operator)), 20_000);
 }
 
 #[test]

@@ -42,6 +42,11 @@ pub fn crank() -> World {
     world
 }
 
+/// Every built-in world.
+pub fn all() -> [World; 6] {
+    [stacking(), crank(), needle(), barrel(), switch(), table()]
+}
+
 /// A bare table: somewhere to try the fingers.
 pub fn table() -> World {
     World::empty("Empty table")
