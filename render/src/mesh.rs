@@ -1,9 +1,13 @@
-//! Stretchable unit meshes: every solid of the scene is one of four, drawn many times.
+//! Stretchable unit meshes: every solid of the scene is one of a few, drawn many times.
 //!
 //! A vertex has a `corner` (which end or corner of the solid it belongs to, components −1, 0 or 1) and an `offset` (its place on
 //! the rounding around that corner). An instance stretches both apart: `position = corner · half + offset · radius`, with the
 //! rims of plates drawn in by `inset · radius.z`. So a bevel keeps its radius whatever the size, and a bar keeps round ends
 //! whatever its length.
+
+mod round;
+
+pub use round::{SHEET_STATIONS, dent};
 
 use bytemuck::{Pod, Zeroable};
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
@@ -42,11 +46,20 @@ pub enum MeshKind {
     Disc,
     /// Arrow along +x, its tip at `half.x`.
     Arrow,
+    /// Box with finely rounded edges, for large balls.
+    Ball,
+    /// Slender shaft about x with a radius at each end.
+    Cone,
+    /// Back half of a cup's wall, about y.
+    Shell,
+    /// Back half of a level round sheet with a dent.
+    Sheet,
 }
 
 impl MeshKind {
     /// All of them, in the order of their buffers.
-    pub const ALL: [Self; 4] = [Self::Box, Self::Plate, Self::Disc, Self::Arrow];
+    pub const ALL: [Self; 8] =
+        [Self::Box, Self::Plate, Self::Disc, Self::Arrow, Self::Ball, Self::Cone, Self::Shell, Self::Sheet];
 
     /// Makes the mesh.
     pub fn build(self) -> Mesh {
@@ -55,6 +68,10 @@ impl MeshKind {
             Self::Plate => plate(5),
             Self::Disc => plate(12),
             Self::Arrow => arrow(20),
+            Self::Ball => rounded_box(5),
+            Self::Cone => round::cone(16),
+            Self::Shell => round::shell(24),
+            Self::Sheet => round::sheet(24),
         }
     }
 }
@@ -247,7 +264,8 @@ mod tests {
 
     #[test]
     fn normals_are_unit() {
-        for kind in MeshKind::ALL {
+        // A sheet's normals get their length from the depth of its dent.
+        for kind in MeshKind::ALL.into_iter().filter(|kind| *kind != MeshKind::Sheet) {
             for vertex in kind.build().vertices {
                 assert!((Vec3::from(vertex.normal).length() - 1.0).abs() < 1e-4, "{kind:?}");
             }

@@ -96,10 +96,12 @@ pub enum ArrowAnchor {
 /// An object of the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolidRef {
-    /// A block, by index.
+    /// A block, barrel or needle, by index.
     Block(usize),
     /// The crank's handle.
     Handle,
+    /// The knob of the toggle switch.
+    Knob,
 }
 
 /// A curve in the plane.

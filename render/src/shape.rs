@@ -49,6 +49,46 @@ impl Solid {
         Self::new(center, Vec2::X, Vec3::ZERO, Vec3::splat(radius), color)
     }
 
+    /// A stick with round ends between two points in space (mesh: box).
+    pub fn capsule(a: Vec3, b: Vec3, radius: f32, color: Color) -> Self {
+        let half = Vec3::X * 0.5 * a.distance(b);
+        Self::with_axes(0.5 * (a + b), axes_along(b - a), half, Vec3::splat(radius), color)
+    }
+
+    /// A slender shaft from `a` to `b` with a radius at each end (mesh: cone).
+    pub fn cone(a: Vec3, b: Vec3, radii: [f32; 2], color: Color) -> Self {
+        let half = Vec3::new(0.5 * a.distance(b), radii[0], radii[0]);
+        Self::with_axes(0.5 * (a + b), axes_along(b - a), half, Vec3::new(0.0, radii[1], radii[1]), color)
+    }
+
+    /// A cylinder about its height, standing upright when `angle_rad` is zero (mesh: plate or disc, turned up). `radii` are those
+    /// across the plane and in depth. Its upper rim is bevelled.
+    pub fn drum(center: Vec3, radii: Vec2, half_height: f32, angle_rad: f32, color: Color) -> Self {
+        let across = Vec2::from_angle(angle_rad);
+        let axes = [across.extend(0.0), Vec3::NEG_Z, across.perp().extend(0.0)];
+        let bevel = (0.12 * radii.min_element()).min(0.0006).min(half_height);
+        let half = Vec3::new(0.0, 0.0, half_height - bevel);
+        Self::with_axes(center, axes, half, radii.extend(bevel), color)
+    }
+
+    /// The back half of a cup's wall: `radii` at the bottom and at the top, `y` from bottom to top (mesh: shell).
+    pub fn shell(middle_x: f32, radii: [f32; 2], y: [f32; 2], color: Color) -> Self {
+        let center = Vec3::new(middle_x, 0.5 * (y[0] + y[1]), 0.0);
+        let half = Vec3::new(radii[1], 0.5 * (y[1] - y[0]), radii[1]);
+        Self::new(center, Vec2::X, half, Vec3::new(radii[0], 0.0, radii[0]), color)
+    }
+
+    /// The back half of a round sheet about `center`, dented downwards by `depth` at `apex` beside its middle (mesh: sheet).
+    pub fn sheet(center: Vec3, radius: f32, apex: f32, depth: f32, color: Color) -> Self {
+        // The stored normals suit a dent as deep as the radius. Shrinking the frame to the true slope makes them right, for the
+        // shader normalises them; half extents and apex grow by as much, so that the places stay.
+        let slope = depth / radius;
+        let slope = if slope.abs() < 1e-3 { 1e-3 } else { slope };
+        let axes = [Vec3::X * slope, Vec3::Y, Vec3::Z * slope];
+        let half = Vec3::new(radius / slope, 0.0, radius / slope);
+        Self::with_axes(center, axes, half, Vec3::new(apex / slope, depth, 0.0), color)
+    }
+
     /// An arrow from `tail` to `tip` in the plane `z`; the head shrinks with short arrows.
     pub fn arrow(tail: Vec2, tip: Vec2, z: f32, shaft_radius: f32, color: Color) -> Self {
         let along = tip - tail;
@@ -82,13 +122,24 @@ impl Solid {
     }
 
     fn new(origin: Vec3, axis: Vec2, half: Vec3, radius: Vec3, color: Color) -> Self {
+        Self::with_axes(origin, [axis.extend(0.0), axis.perp().extend(0.0), Vec3::Z], half, radius, color)
+    }
+
+    fn with_axes(origin: Vec3, [x, y, z]: [Vec3; 3], half: Vec3, radius: Vec3, color: Color) -> Self {
         Self {
-            rows: [[axis.x, -axis.y, 0.0, origin.x], [axis.y, axis.x, 0.0, origin.y], [0.0, 0.0, 1.0, origin.z]],
+            rows: [[x.x, y.x, z.x, origin.x], [x.y, y.y, z.y, origin.y], [x.z, y.z, z.z, origin.z]],
             half_and_gloss: half.extend(0.25).into(),
             radius_and_unlit: radius.extend(0.0).into(),
             color: color.linear().into(),
         }
     }
+}
+
+/// A right-handed frame whose first axis points along `direction`.
+fn axes_along(direction: Vec3) -> [Vec3; 3] {
+    let x = direction.normalize_or(Vec3::X);
+    let y = x.any_orthonormal_vector();
+    [x, y, x.cross(y)]
 }
 
 /// A straight line of constant width in pixels.

@@ -1,37 +1,66 @@
-//! Blocks: boxes with slightly rounded edges and their shadows.
+//! Movable bodies: blocks are boxes with slightly rounded edges; barrels and needles have files of their own.
 
-use super::{Canvas, HALF_DEPTH_M};
+use super::{Canvas, HALF_DEPTH_M, barrel, needle};
 use crate::mesh::MeshKind;
 use crate::scene::{SceneView, SolidRef};
 use crate::shape::Solid;
 use crate::theme::{Color, ColorRole};
 use crate::{lift, vec2};
 use glam::{Vec2, Vec3};
+use haptics::world::Shape;
 
 /// Radius of the edges, m.
 const EDGE_M: f32 = 0.0009;
 
-pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
-    for (index, (block, body)) in view.world.blocks.iter().zip(&view.state.bodies).enumerate() {
-        let center = vec2(body.center_m);
-        let half = 0.5 * Vec2::new(block.width_m as f32, block.height_m as f32);
-        let turn = body.angle_rad as f32;
-        let highlighted = view.options.highlight == Some(SolidRef::Block(index));
-        let mut color = canvas.color(ColorRole::Block(index));
-        if highlighted {
-            color = color.mix(Color::rgb8(0xFF, 0xFF, 0xFF), 0.35);
-        }
-        let solid = Solid::rounded_box(lift(center, 0.0), half.extend(HALF_DEPTH_M), turn, EDGE_M, color)
-            .gloss(0.3)
-            .unlit(if highlighted { 0.35 } else { 0.0 });
-        canvas.solid(MeshKind::Box, solid);
-        let reach = reach(half, turn);
-        canvas.cast_shadow(Vec2::new(center.x, 0.0), Vec2::new(reach.x, HALF_DEPTH_M), center.y - reach.y, 1.0);
+/// Where a body is and how it looks.
+#[derive(Clone, Copy)]
+pub(super) struct Body {
+    pub center: Vec2,
+    /// Half width and half height.
+    pub half: Vec2,
+    pub turn: f32,
+    pub color: Color,
+    /// How much of the colour shines by itself: while the body is being talked about.
+    pub unlit: f32,
+}
+
+impl Body {
+    /// A point of the body's own frame (x across, y along its height), in the plane.
+    pub fn to_world(self, local: Vec2) -> Vec2 {
+        self.center + Vec2::from_angle(self.turn).rotate(local)
     }
 }
 
+pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
+    for (index, (block, state)) in view.world.blocks.iter().zip(&view.state.bodies).enumerate() {
+        let highlighted = view.options.highlight == Some(SolidRef::Block(index));
+        let (color, unlit) = canvas.body_color(ColorRole::Block(index), highlighted);
+        let body = Body {
+            center: vec2(state.center_m),
+            half: 0.5 * Vec2::new(block.width_m as f32, block.height_m as f32),
+            turn: state.angle_rad as f32,
+            color,
+            unlit,
+        };
+        match block.shape {
+            Shape::Block => draw_box(canvas, body),
+            Shape::Barrel => barrel::draw(canvas, body, state.broken),
+            // The pads keep it upright, whatever angle is stored.
+            Shape::Needle => needle::draw(canvas, Body { turn: 0.0, ..body }),
+        }
+    }
+}
+
+fn draw_box(canvas: &mut Canvas<'_>, body: Body) {
+    let Body { center, half, turn, color, unlit } = body;
+    let solid = Solid::rounded_box(lift(center, 0.0), half.extend(HALF_DEPTH_M), turn, EDGE_M, color);
+    canvas.solid(MeshKind::Box, solid.gloss(0.3).unlit(unlit));
+    let reach = reach(half, turn);
+    canvas.cast_shadow(Vec2::new(center.x, 0.0), Vec2::new(reach.x, HALF_DEPTH_M), center.y - reach.y, 1.0);
+}
+
 /// Half extents of the upright rectangle around a turned one.
-fn reach(half: Vec2, turn: f32) -> Vec2 {
+pub(super) fn reach(half: Vec2, turn: f32) -> Vec2 {
     let Vec3 { x: cos, y: sin, .. } = Vec3::new(turn.cos().abs(), turn.sin().abs(), 0.0);
     Vec2::new(cos * half.x + sin * half.y, sin * half.x + cos * half.y)
 }

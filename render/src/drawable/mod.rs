@@ -1,14 +1,20 @@
 //! One drawable thing a file. Each looks at the scene and adds its shapes to a [`Canvas`].
 
 mod arrow;
+mod barrel;
 mod block;
+mod cable;
 mod contact;
 mod crank;
 mod force_field;
+mod leak;
 mod link;
 mod marker;
 mod mechanism;
+mod membrane;
+mod needle;
 mod pad;
+mod switch;
 pub(crate) mod table;
 mod tool;
 mod trajectory;
@@ -24,6 +30,8 @@ use haptics::world::State;
 
 /// Half the depth of blocks and handle along z, m.
 pub(crate) const HALF_DEPTH_M: f32 = 0.010;
+
+const WHITE: Color = Color::rgb8(0xFF, 0xFF, 0xFF);
 
 /// Lists all shapes of a scene.
 pub(crate) fn draw_scene(data: &mut DrawData, view: &SceneView<'_>) {
@@ -52,6 +60,10 @@ pub(crate) fn draw_scene(data: &mut DrawData, view: &SceneView<'_>) {
 /// The moving things: objects and fingers.
 fn draw_state(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
     block::draw(canvas, view);
+    leak::draw(canvas, view);
+    cable::draw(canvas, view);
+    membrane::draw(canvas, view);
+    switch::draw(canvas, view);
     crank::draw(canvas, view);
     match view.options.fingers {
         FingerStyle::Linkage => {
@@ -88,6 +100,12 @@ impl<'a> Canvas<'a> {
 
     fn color(&self, role: ColorRole) -> Color {
         self.theme.color(role)
+    }
+
+    /// Colour of an object, brighter while it is being talked about, and how much of it then shines by itself.
+    fn body_color(&self, role: ColorRole, highlighted: bool) -> (Color, f32) {
+        let color = self.color(role);
+        if highlighted { (color.mix(WHITE, 0.35), 0.35) } else { (color, 0.0) }
     }
 
     fn solid(&mut self, mesh: MeshKind, solid: Solid) {

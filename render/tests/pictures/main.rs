@@ -1,5 +1,7 @@
 //! Properties of the pictures: what must be seen, and where. Without a Vulkan driver they say so and pass.
 
+mod objects;
+
 use haptics::Vec2;
 use haptics::world::{Block, Contact, State, Surface, World};
 use image::{Rgba, RgbaImage};

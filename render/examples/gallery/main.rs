@@ -1,6 +1,8 @@
 //! Draws one picture of everything that the renderer can show:
 //! `cargo run -p render --example gallery -- FOLDER [NAME]`.
 
+mod tasks;
+
 use haptics::Vec2;
 use haptics::world::{Block, Contact, Crank, Floor, State, Surface, World};
 use render::{
@@ -56,6 +58,7 @@ fn plates() -> Vec<Plate> {
         plate.options.camera = camera;
         plates.push(plate);
     }
+    plates.extend(tasks::plates());
     plates
 }
 
