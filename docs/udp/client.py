@@ -28,6 +28,7 @@ class Hand:
         self.session = 0
         self.sequence = 0
         self.newest_force = 0
+        self.asked_us = set()
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.socket.connect(address)
         self.socket.setblocking(False)
@@ -36,6 +37,8 @@ class Hand:
         """Sends positions (m) and velocities (m/s) as [x1, y1, x2, y2]."""
         self.sequence += 1
         clock_us = time.monotonic_ns() // 1000
+        if self.session == 0:
+            self.asked_us.add(clock_us)
         message = struct.pack(HEADER, MAGIC, VERSION, MOTION, flags, self.session, self.sequence, clock_us)
         message += struct.pack("<8d", *tips, *velocities)
         try:
@@ -66,7 +69,9 @@ class Hand:
             return None
         *force, echo_us = struct.unpack_from("<4dQ", message, 32)
         if flags & GREETING:
-            self.session, self.newest_force = session, sequence
+            # Only the answer to a question of this run: a greeting recorded long ago would lead astray.
+            if self.session == 0 and echo_us in self.asked_us:
+                self.session, self.newest_force = session, sequence
             return None
         if session != self.session or sequence <= self.newest_force:
             return None
@@ -94,7 +99,7 @@ def greet(hand, limit_s):
 def press(hand, seconds, rate_hz=500.0):
     """Goes down onto the table and up again along a cosine, once every two seconds."""
     start = time.monotonic()
-    # 1 mm above the middle: from 12 mm over the table to 3 mm into it.
+    # The table is at -0.125 m: from 12 mm over it to 3 mm into it.
     middle, swing, omega = -0.1205, 0.0075, math.pi
     largest, answers, round_trips = 0.0, 0, []
     while (now := time.monotonic() - start) < seconds:

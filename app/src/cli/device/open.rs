@@ -47,8 +47,8 @@ pub fn kinds(world: &World) -> Vec<Kind> {
             spec: Some(HaplyHand::two_boards()),
         },
         Kind {
-            id: "udp:ADDRESS[:PORT],KEYFILE[,DAMPING]",
-            what: "A device over the network, sealed with a shared key (docs/udp); its damping in N s/m, if known",
+            id: "udp:ADDRESS[:PORT],KEYFILE[,DAMPING[,ROUND_TRIP]]",
+            what: "A device over the network, sealed with a shared key (docs/udp); its damping in N s/m and round trip in ms, if known",
             spec: Some(UdpConfig::unstated()),
         },
     ];
@@ -130,7 +130,7 @@ fn haply_hand(ports: &str, world: &World) -> anyhow::Result<HaplyHand> {
     Ok(HaplyHand::new(boards, [place(-0.012), place(0.012)]))
 }
 
-/// `ADDRESS[:PORT],KEYFILE[,DAMPING]`
+/// `ADDRESS[:PORT],KEYFILE[,DAMPING[,ROUND_TRIP]]`
 fn remote(text: &str, tips: [Vec2; 2]) -> anyhow::Result<Opened> {
     let mut parts = text.split(',');
     let address = parts.next().unwrap_or_default();
@@ -138,15 +138,21 @@ fn remote(text: &str, tips: [Vec2; 2]) -> anyhow::Result<Opened> {
     let mut config = UdpConfig::loopback(Key::load(Path::new(key_file))?);
     config.listen = listen(address)?;
     if let Some(damping) = parts.next() {
-        let wrong = || format!("`{damping}` is no damping; write it in N s/m, like 0.5");
-        let value: f64 = damping.parse().with_context(wrong)?;
-        anyhow::ensure!((0.0..=1000.0).contains(&value), wrong());
-        config.spec.damping_n_s_m = value;
+        config.spec.damping_n_s_m = figure(damping, 1000.0, "damping; write it in N s/m, like 0.5")?;
+    }
+    if let Some(round_trip) = parts.next() {
+        config.delay_s = 1e-3 * figure(round_trip, 5000.0, "round trip; write it in ms, like 12")?;
     }
     let device = UdpDevice::open(config, tips)?;
     let packets = Some(device.monitor());
     let hint = "Start the device's program while it runs (docs/udp has examples).";
     Ok(Opened { device: Box::new(device), start_in_world: tips, hint, packets, keep: None })
+}
+
+/// A number of 0 to `most`.
+fn figure(text: &str, most: f64, what: &str) -> anyhow::Result<f64> {
+    let value = text.parse().ok().filter(|value| (0.0..=most).contains(value));
+    value.with_context(|| format!("`{text}` is no {what}"))
 }
 
 fn listen(address: &str) -> anyhow::Result<SocketAddr> {
@@ -216,6 +222,8 @@ mod tests {
             let error = open(name, &world).err().map(|e| format!("{e:#}")).unwrap_or_default();
             assert!(error.contains(wanted), "{name}: {error}");
         }
+        assert!(figure("-1", 10.0, "number").is_err_and(|e| e.to_string() == "`-1` is no number"));
+        assert!(figure("NaN", 10.0, "number").is_err() && figure("2.5", 10.0, "number").is_ok_and(|v| v == 2.5));
         assert!(listen("elsewhere").is_err());
         assert_eq!(listen("").expect("the usual one").to_string(), "127.0.0.1:47474");
         assert_eq!(listen("0.0.0.0").expect("an address").port(), PORT);

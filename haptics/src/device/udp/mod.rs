@@ -40,12 +40,14 @@ pub struct UdpConfig {
     pub key: Key,
     /// What the remote device can do.
     pub spec: DeviceSpec,
+    /// Round trip to it, s: the stiffness that may be rendered is computed with it.
+    pub delay_s: f64,
 }
 
 impl UdpConfig {
     /// On this machine only, at the usual port, for a device that feels up to 4 N and states nothing else of itself.
     pub fn loopback(key: Key) -> Self {
-        Self { listen: SocketAddr::from((Ipv4Addr::LOCALHOST, PORT)), key, spec: Self::unstated() }
+        Self { listen: SocketAddr::from((Ipv4Addr::LOCALHOST, PORT)), key, spec: Self::unstated(), delay_s: 0.0 }
     }
 
     /// A device of which nothing is known.
@@ -112,6 +114,7 @@ impl UdpMonitor {
 #[derive(Debug)]
 pub struct UdpDevice {
     spec: DeviceSpec,
+    delay_s: f64,
     socket: UdpSocket,
     key: Key,
     monitor: UdpMonitor,
@@ -136,6 +139,7 @@ impl UdpDevice {
         let address = socket.local_addr().map_err(fail)?;
         Ok(Self {
             spec: config.spec,
+            delay_s: config.delay_s,
             socket,
             key: config.key,
             monitor: UdpMonitor { counters: Arc::new(Counters::default()), address },
@@ -223,6 +227,10 @@ impl Device for UdpDevice {
         }
         self.sample.fresh = self.age_s < FRESH_S;
         self.sample
+    }
+
+    fn delay_s(&self) -> f64 {
+        self.delay_s
     }
 
     fn make_safe(&mut self) {

@@ -165,3 +165,17 @@ fn goodbye_is_stale_at_once_and_a_taken_port_is_said() {
     let error = UdpDevice::open(config, [Vec2::zeros(); 2]).expect_err("the port is taken").to_string();
     assert!(error.contains("could not be opened"), "{error}");
 }
+
+#[test]
+fn a_stated_round_trip_makes_the_coupling_softer() {
+    let felt = |delay_s: f64| {
+        let listen = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
+        let mut config = UdpConfig { listen, delay_s, ..UdpConfig::loopback(key()) };
+        config.spec.damping_n_s_m = 2.0;
+        let device = UdpDevice::open(config, [Vec2::zeros(); 2]).expect("a free port");
+        let coupling = crate::servo::coupling::Coupling::needed(device.spec(), &presets::table(), DT, device.delay_s());
+        coupling.expect("2 N s/m is too little for the pads").stiffness_n_m
+    };
+    assert!((felt(0.0) - 3200.0).abs() < 1e-6, "0.8 b / (T/2): {}", felt(0.0));
+    assert!((felt(0.0095) - 160.0).abs() < 1e-6, "0.8 b / (T/2 + 9.5 ms): {}", felt(0.0095));
+}
