@@ -41,6 +41,10 @@ impl Panel for DeviceList {
                 for hand in [HandDevice::Mouse, HandDevice::Touch, HandDevice::Keyboard] {
                     chosen = chosen.take().or(row(ui, session, Choice::Hand(hand), Ok(())));
                 }
+                #[cfg(feature = "gamepad")]
+                {
+                    chosen = chosen.take().or(row(ui, session, Choice::Hand(HandDevice::Gamepad), Ok(())));
+                }
                 chosen = chosen.take().or(row(ui, session, Choice::Scripted, Ok(())));
                 let log = session.prepared().map(drop).ok_or("Open a log in Calibrate first.");
                 chosen = chosen.take().or(row(ui, session, Choice::Hand(HandDevice::Replay), log));

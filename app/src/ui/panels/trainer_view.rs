@@ -181,6 +181,8 @@ fn hints_of(hand: &HandDevice) -> &'static [(&'static str, &'static str)] {
         HandDevice::Touch => &[("Two fingers", "on the glass are the two fingertips"), ("Together", "pinches")],
         HandDevice::Keyboard => &[("Arrows", "move"), ("Space", "closes"), ("Backspace", "opens"), ("Shift", "slowly")],
         HandDevice::Replay => &[],
+        #[cfg(feature = "gamepad")]
+        HandDevice::Gamepad => &[("Left stick", "moves"), ("Triggers", "close and open")],
         HandDevice::Haply(..) | HandDevice::Udp => {
             &[("Your device", "moves the fingers"), ("Right drag", "turns the view"), ("Ctrl 3", "device page")]
         }

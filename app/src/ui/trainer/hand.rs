@@ -28,6 +28,9 @@ pub enum HandDevice {
     Haply(String, String),
     /// Packets from a network.
     Udp,
+    /// The first gamepad.
+    #[cfg(feature = "gamepad")]
+    Gamepad,
 }
 
 /// What a device needs to know that is not in the world.
@@ -55,6 +58,9 @@ pub enum Steering {
     Keyboard(KeyboardHandle),
     /// Packet counters.
     Udp(UdpMonitor),
+    /// The thread that reads the pad, as long as it is held here.
+    #[cfg(feature = "gamepad")]
+    Gamepad(haptics::device::gamepad::GamepadThread),
 }
 
 /// A device, the window's end of it, and how long it performs, s (people perform for ever).
@@ -99,6 +105,12 @@ impl HandDevice {
                 let monitor = device.monitor();
                 made(Box::new(device), Steering::Udp(monitor))
             }
+            #[cfg(feature = "gamepad")]
+            Self::Gamepad => {
+                use haptics::device::gamepad::{GamepadMode, open};
+                let (thread, device) = open(tips, workspace, GamepadMode::Hand).map_err(|e| said(&e))?;
+                made(Box::new(device), Steering::Gamepad(thread))
+            }
         }
     }
 
@@ -111,6 +123,8 @@ impl HandDevice {
             Self::Replay => "Replay of the open log".to_owned(),
             Self::Haply(left, right) => format!("Haply boards {left}, {right}"),
             Self::Udp => "Remote device over UDP".to_owned(),
+            #[cfg(feature = "gamepad")]
+            Self::Gamepad => "Gamepad".to_owned(),
         }
     }
 
@@ -122,6 +136,8 @@ impl HandDevice {
             Self::Keyboard => "Arrows move, Space closes, Backspace opens, Shift makes it slow.",
             Self::Replay => "The fingers go where they went in the log that is open in Calibrate.",
             Self::Haply(..) => "Two Haply 2DIY boards, one a finger; the force is felt.",
+            #[cfg(feature = "gamepad")]
+            Self::Gamepad => "The left stick moves, the triggers close and open; the rumble hints at the force.",
             Self::Udp => "A device at the other end of this machine's port 47474; every packet is sealed with a key.",
         }
     }
