@@ -4,6 +4,7 @@ use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use haptics::Vec2;
 use haptics::device::channel::{ChannelConfig, ChannelDevice, Waves};
 use haptics::device::gamepad::{GamepadMode, PadState, gamepad};
+use haptics::device::haply::{Board, BoardModel, HaplyHand, Placement};
 use haptics::device::udp::{Force, Key, Motion, UdpConfig, UdpDevice};
 use haptics::device::{
     Command, Device, DeviceSpec, KeysHeld, Mistake, MouseTarget, ReplayDevice, Sample, ScriptedOperator, Skill,
@@ -16,6 +17,8 @@ use haptics::servo::safety::Limits;
 use haptics::servo::timing::{TickTiming, TimingCollector};
 use haptics::servo::{Loop, Swap};
 use haptics::world::{State, Wall, World, presets};
+use std::io::{Read, Write};
+use std::time::Duration;
 
 #[global_allocator]
 static GUARD: AllocDisabler = AllocDisabler;
@@ -246,4 +249,50 @@ fn the_timing_of_a_tick_and_its_summary() {
         collector.summary(rate)
     });
     assert_eq!(timing.ticks, 5_000);
+}
+
+/// A board that answers every question with the same two angles.
+struct Echo(usize);
+
+impl Read for Echo {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        if self.0 == 0 {
+            std::thread::sleep(Duration::from_millis(1));
+            return Err(std::io::ErrorKind::TimedOut.into());
+        }
+        let mut reply = vec![BoardModel::V3.id];
+        reply.extend([60.0_f32, 120.0].iter().flat_map(|angle| angle.to_le_bytes()));
+        let count = buffer.len().min(self.0);
+        buffer[..count].copy_from_slice(&reply[reply.len() - self.0..][..count]);
+        self.0 -= count;
+        Ok(count)
+    }
+}
+
+impl Write for Echo {
+    fn write(&mut self, frame: &[u8]) -> std::io::Result<usize> {
+        self.0 = if frame.first() == Some(&2) { 9 } else { self.0 };
+        Ok(frame.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn two_haply_boards() {
+    let board = || Board::start(Box::new(Echo(0)), BoardModel::V3).expect("it takes its set-up");
+    let place = Placement { device_m: Vec2::new(0.019, 0.12), world_m: Vec2::new(0.0, -0.1), scale: 1.0 };
+    let mut servo = servo(&presets::stacking(), Box::new(HaplyHand::new([board(), board()], [place, place])));
+    let begun = std::time::Instant::now();
+    // The boards answer on threads of their own: until both have, the samples are old.
+    let mut answered = false;
+    while !answered || servo.state().tick < 500 {
+        let before = servo.state().tick as usize;
+        run(&mut servo, 50);
+        assert_eq!(servo.state().tick as usize, before + 50);
+        answered |= servo.sample_age_s() < 0.05;
+        assert!(begun.elapsed() < Duration::from_secs(20), "no board answered");
+    }
 }

@@ -140,17 +140,9 @@ pub(super) fn run(
 }
 
 fn replay(log: &Path) -> anyhow::Result<(ReplayDevice, [haptics::Vec2; 2])> {
-    use estimator::signal::task::tip_series;
     let recordings = estimator::log::load(log, None)?;
     let recording = recordings.first().context("the log holds no recording")?;
-    let time = recording.time_s.clone().with_context(|| {
-        format!("{} has no clock and cannot be replayed; give rate_hz in its sidecar", recording.name)
-    })?;
-    let (left, right) = (tip_series(recording, "1")?, tip_series(recording, "2")?);
-    let start = [left.position[0], right.position[0]];
-    let still = || vec![haptics::Vec2::zeros(); time.len()];
-    let velocities = [left.velocity.unwrap_or_else(still), right.velocity.unwrap_or_else(still)];
-    let device = ReplayDevice::new(&recording.name, time, [left.position, right.position], velocities)
-        .map_err(anyhow::Error::msg)?;
+    let device = ReplayDevice::from_recording(recording)?;
+    let start = device.start_in_world();
     Ok((device, start))
 }

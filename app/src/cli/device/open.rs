@@ -3,7 +3,7 @@
 use anyhow::Context;
 use haptics::Vec2;
 use haptics::device::channel::{ChannelConfig, ChannelDevice, Waves};
-use haptics::device::haply::{self, BoardModel, HaplyHand, Placement};
+use haptics::device::haply::HaplyHand;
 use haptics::device::udp::{Key, PORT, UdpConfig, UdpDevice, UdpMonitor};
 use haptics::device::{Device, DeviceSpec, MouseTarget, ReplayDevice, ScriptedOperator, Skill, keyboard, mouse, touch};
 use haptics::world::{State, World};
@@ -119,15 +119,7 @@ fn replay(log: &str) -> anyhow::Result<Opened> {
 fn haply_hand(ports: &str, world: &World) -> anyhow::Result<HaplyHand> {
     let (left, right) =
         ports.split_once(',').context("two boards are two fingers: name both ports, haply:LEFT_PORT,RIGHT_PORT")?;
-    let boards = [haply::open(left, BoardModel::V3)?, haply::open(right, BoardModel::V3)?];
-    let center = world.hand.workspace.center_m;
-    let place = |x: f64| Placement {
-        // The middle of a 2DIY's workspace.
-        device_m: Vec2::new(0.019, 0.12),
-        world_m: center + Vec2::new(x, 0.0),
-        scale: 1.0,
-    };
-    Ok(HaplyHand::new(boards, [place(-0.012), place(0.012)]))
+    Ok(HaplyHand::open(left, right, world.hand.workspace.center_m)?)
 }
 
 /// `ADDRESS[:PORT],KEYFILE[,DAMPING[,ROUND_TRIP]]`

@@ -2,7 +2,7 @@
 
 use super::Pinch;
 use haptics::Vec2;
-use haptics::device::haply::{self, BoardModel, HaplyHand, Placement};
+use haptics::device::haply::HaplyHand;
 use haptics::device::udp::{Key, PORT, UdpConfig, UdpDevice, UdpMonitor};
 use haptics::device::{
     Device, DeviceSpec, KeyboardHandle, MouseHandle, MouseTarget, ReplayDevice, TouchHandle, keyboard, mouse, touch,
@@ -92,7 +92,10 @@ impl HandDevice {
                 let seconds = device.duration_s();
                 Ok((Box::new(device), Steering::None, seconds))
             }
-            Self::Haply(left, right) => made(Box::new(haply_hand(left, right, world)?), Steering::None),
+            Self::Haply(left, right) => {
+                let hand = HaplyHand::open(left, right, world.hand.workspace.center_m).map_err(|e| said(&e))?;
+                made(Box::new(hand), Steering::None)
+            }
             Self::Udp => {
                 let path = settings.udp_key.trim();
                 if path.is_empty() {
@@ -149,19 +152,6 @@ fn said(error: &dyn std::error::Error) -> String {
 
 fn mouse_start(tips: [Vec2; 2]) -> MouseTarget {
     MouseTarget { center_in_world: 0.5 * (tips[0] + tips[1]), aperture_m: tips[1].x - tips[0].x }
-}
-
-/// Two boards, the middle of each one's workspace a little left and right of the hand's.
-fn haply_hand(left: &str, right: &str, world: &World) -> Result<HaplyHand, String> {
-    let open = |port: &str| haply::open(port, BoardModel::V3).map_err(|e| said(&e));
-    let center = world.hand.workspace.center_m;
-    let place = |x: f64| Placement {
-        // The middle of a 2DIY's workspace.
-        device_m: Vec2::new(0.019, 0.12),
-        world_m: center + Vec2::new(x, 0.0),
-        scale: 1.0,
-    };
-    Ok(HaplyHand::new([open(left)?, open(right)?], [place(-0.012), place(0.012)]))
 }
 
 impl Steering {

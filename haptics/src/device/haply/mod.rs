@@ -96,6 +96,19 @@ impl HaplyHand {
         }
     }
 
+    /// Opens two third-version boards by their ports; the middle of each one's workspace lies a little left and right of
+    /// `center_in_world`, the hand's.
+    pub fn open(left_port: &str, right_port: &str, center_in_world: Vec2) -> Result<Self, HaplyError> {
+        let boards = [open(left_port, BoardModel::V3)?, open(right_port, BoardModel::V3)?];
+        let place = |x: f64| Placement {
+            // The middle of a 2DIY's workspace.
+            device_m: Vec2::new(0.019, 0.12),
+            world_m: center_in_world + Vec2::new(x, 0.0),
+            scale: 1.0,
+        };
+        Ok(Self::new(boards, [place(-0.012), place(0.012)]))
+    }
+
     /// The left and the right board.
     pub fn new(boards: [Board; 2], placements: [Placement; 2]) -> Self {
         Self {
