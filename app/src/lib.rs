@@ -4,3 +4,10 @@
 
 pub mod cli;
 pub mod ui;
+
+use std::path::PathBuf;
+
+/// The running `touchstone` program, to be started again as a helper of itself; `None` inside other programs (tests).
+pub(crate) fn program() -> Option<PathBuf> {
+    std::env::current_exe().ok().filter(|path| path.file_stem().is_some_and(|stem| stem == "touchstone"))
+}

@@ -15,6 +15,7 @@ pub mod table;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
+use haptics::device::haply::farewell;
 use haptics::recording::{Recording, Task};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -52,6 +53,12 @@ enum Command {
     Bench(bench::Bench),
     /// Open the app, optionally on a log or a world
     App(AppArgs),
+    /// Ends a board's torque when the program that started this is gone (started by `touchstone` itself)
+    #[command(name = farewell::ARGUMENT, hide = true)]
+    TorqueGuard {
+        /// The board's id
+        id: u8,
+    },
 }
 
 /// What the app opens with.
@@ -114,6 +121,12 @@ pub fn main() -> ExitCode {
     let result = match cli.command {
         None => return open_app(AppArgs::default()),
         Some(Command::App(args)) => return open_app(args),
+        Some(Command::TorqueGuard { id }) => {
+            return match farewell::guard(std::io::stdin(), std::io::stdout(), id) {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(_) => ExitCode::FAILURE,
+            };
+        }
         Some(Command::Demo(args)) => args.run(),
         Some(Command::Info(args)) => args.run(),
         Some(Command::Segment(args)) => args.run(),

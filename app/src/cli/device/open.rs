@@ -119,7 +119,7 @@ fn replay(log: &str) -> anyhow::Result<Opened> {
 fn haply_hand(ports: &str, world: &World) -> anyhow::Result<HaplyHand> {
     let (left, right) =
         ports.split_once(',').context("two boards are two fingers: name both ports, haply:LEFT_PORT,RIGHT_PORT")?;
-    Ok(HaplyHand::open(left, right, world.hand.workspace.center_m)?)
+    Ok(HaplyHand::open([left, right], world.hand.workspace.center_m, crate::program().as_deref())?)
 }
 
 /// `ADDRESS[:PORT],KEYFILE[,DAMPING[,ROUND_TRIP]]`

@@ -93,7 +93,8 @@ impl HandDevice {
                 Ok((Box::new(device), Steering::None, seconds))
             }
             Self::Haply(left, right) => {
-                let hand = HaplyHand::open(left, right, world.hand.workspace.center_m).map_err(|e| said(&e))?;
+                let hand = HaplyHand::open([left, right], world.hand.workspace.center_m, crate::program().as_deref())
+                    .map_err(|e| said(&e))?;
                 made(Box::new(hand), Steering::None)
             }
             Self::Udp => {

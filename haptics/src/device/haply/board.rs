@@ -3,6 +3,7 @@
 //! The thread writes the newest torques and reads the angles, as fast as the board answers. When the servo has sent nothing new
 //! for [`GUARD`], it writes zero torque by itself: the firmware keeps the last one for ever.
 
+use super::farewell::Outliving;
 use super::fivebar::FiveBar;
 use super::protocol::{Axis, REPLY_BYTES, Turn, read_reply, setup_frame, torque_frame};
 use crate::Vec2;
@@ -67,6 +68,7 @@ pub struct Board {
     number: u64,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
+    guard: Option<Outliving>,
 }
 
 impl Board {
@@ -79,7 +81,18 @@ impl Board {
         let stop = Arc::new(AtomicBool::new(false));
         let worker = Worker { line, model, answers: answers_in, orders: orders_out, stop: Arc::clone(&stop) };
         let thread = std::thread::Builder::new().name("haply".to_owned()).spawn(move || worker.run())?;
-        Ok(Self { answers, orders, number: 0, stop, thread: Some(thread) })
+        Ok(Self { answers, orders, number: 0, stop, thread: Some(thread), guard: None })
+    }
+
+    /// Keeps the process that ends the torque when this one dies.
+    pub(super) fn outlived_by(mut self, guard: Option<Outliving>) -> Self {
+        self.guard = guard;
+        self
+    }
+
+    /// Whether a process stands by that ends the torque when this one is killed.
+    pub fn is_outlived(&self) -> bool {
+        self.guard.is_some()
     }
 
     /// Orders a force on the operator, N, in the device's frame. Never waits.

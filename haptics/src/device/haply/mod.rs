@@ -1,6 +1,7 @@
 //! Haply 2DIY over USB serial (hAPI): an open planar two-joint device; two boards make a two-fingered hand.
 
 mod board;
+pub mod farewell;
 mod fivebar;
 mod protocol;
 #[cfg(all(test, unix))]
@@ -12,6 +13,7 @@ pub use protocol::{Axis, MAX_TORQUE_NM, Turn};
 
 use super::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;
+use std::path::Path;
 use std::time::Duration;
 
 /// How a device's plane lies in the world: its middle goes to the workspace's middle.
@@ -62,14 +64,35 @@ pub fn ports() -> Vec<String> {
     names
 }
 
-/// Opens a port and sets a board up.
-pub fn open(port: &str, model: BoardModel) -> Result<Board, HaplyError> {
+/// Opens a port and sets a board up. With `program`, the `touchstone` program, a process that outlives this one stands by to
+/// end the torque ([`farewell`]); without it, or where that cannot be had, a killed program leaves the last torque.
+pub fn open(port: &str, model: BoardModel, program: Option<&Path>) -> Result<Board, HaplyError> {
+    let failed = |reason: String| HaplyError::Open { port: port.to_owned(), reason };
     // The rate does not matter on a USB port; it must be stated all the same.
-    let line = serialport::new(port, 115_200)
-        .timeout(READ_TIMEOUT)
-        .open()
-        .map_err(|e| HaplyError::Open { port: port.to_owned(), reason: e.to_string() })?;
-    Board::start(Box::new(line), model).map_err(|e| HaplyError::Setup { port: port.to_owned(), reason: e.to_string() })
+    let builder = serialport::new(port, 115_200).timeout(READ_TIMEOUT);
+    let line = builder.open_native().map_err(|e| failed(e.to_string()))?;
+    #[cfg(unix)]
+    let (line, guard) = outlived(line, port, model.id, program);
+    #[cfg(not(unix))]
+    let guard = program.and_then(|program| farewell::Outliving::start(program, port, model.id).ok());
+    Board::start(Box::new(line), model)
+        .map(|board| board.outlived_by(guard))
+        .map_err(|e| HaplyError::Setup { port: port.to_owned(), reason: e.to_string() })
+}
+
+/// Starts the guard of an open port; others cannot open it before or after that.
+#[cfg(unix)]
+fn outlived(
+    mut line: serialport::TTYPort,
+    port: &str,
+    id: u8,
+    program: Option<&Path>,
+) -> (serialport::TTYPort, Option<farewell::Outliving>) {
+    let Some(program) = program else { return (line, None) };
+    // Where a port cannot be shared there is no guard; the board works all the same.
+    let guard = line.set_exclusive(false).ok().and_then(|()| farewell::Outliving::start(program, port, id).ok());
+    let _ = line.set_exclusive(true);
+    (line, guard)
 }
 
 /// Two boards as the two fingers.
@@ -97,9 +120,13 @@ impl HaplyHand {
     }
 
     /// Opens two third-version boards by their ports; the middle of each one's workspace lies a little left and right of
-    /// `center_in_world`, the hand's.
-    pub fn open(left_port: &str, right_port: &str, center_in_world: Vec2) -> Result<Self, HaplyError> {
-        let boards = [open(left_port, BoardModel::V3)?, open(right_port, BoardModel::V3)?];
+    /// `center_in_world`, the hand's. `program`: see [`open`].
+    pub fn open(
+        [left_port, right_port]: [&str; 2],
+        center_in_world: Vec2,
+        program: Option<&Path>,
+    ) -> Result<Self, HaplyError> {
+        let boards = [open(left_port, BoardModel::V3, program)?, open(right_port, BoardModel::V3, program)?];
         let place = |x: f64| Placement {
             // The middle of a 2DIY's workspace.
             device_m: Vec2::new(0.019, 0.12),
