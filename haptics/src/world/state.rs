@@ -28,6 +28,8 @@ pub struct BodyState {
     pub rate_rad_s: f64,
     /// What has run out of it so far, kg.
     pub leaked_kg: f64,
+    /// Mean place along the table where that fell, m in the world.
+    pub spilled_x_m: f64,
     /// True once its wall is broken.
     pub broken: bool,
     /// Pull of its cable, N.

@@ -256,7 +256,12 @@ fn leak(block: &Block, body: &mut BodyState, touches: &[Touch], index: usize, ti
         body.broken |= touches.iter().any(|t| squeezed(t) && t.contact.normal_force_n > strength_n);
     }
     if body.broken || content.leaks_from_s.is_some_and(|from_s| time_s >= from_s) {
-        body.leaked_kg = (body.leaked_kg + content.leak_kg_s * dt_s).min(content.mass_kg);
+        let before_kg = body.leaked_kg;
+        body.leaked_kg = (before_kg + content.leak_kg_s * dt_s).min(content.mass_kg);
+        if body.leaked_kg > before_kg {
+            let share = (body.leaked_kg - before_kg) / body.leaked_kg;
+            body.spilled_x_m += (body.center_m.x - body.spilled_x_m) * share;
+        }
     }
 }
 

@@ -39,7 +39,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
         let (center, turn) = (vec2(state.center_m), state.angle_rad as f32);
         let body = Body { center, half, turn, color, unlit: 0.0 };
         if canvas.mode == Mode::Real {
-            puddle(canvas, body, share);
+            puddle(canvas, body, state.spilled_x_m as f32, share);
         }
         if block.shape == Shape::Barrel && state.broken {
             streak(canvas, body, share);
@@ -51,10 +51,10 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
 }
 
 /// Thin overlapping discs on the table, a darker rim below a lighter face.
-fn puddle(canvas: &mut Canvas<'_>, body: Body, share: f32) {
+fn puddle(canvas: &mut Canvas<'_>, body: Body, spilled_x: f32, share: f32) {
     let Some(top) = canvas.table_top_m.filter(|_| share > 0.0) else { return };
     let radius = PUDDLE * body.half.x * share.sqrt();
-    let middle = Vec2::new(body.center.x + 0.3 * body.half.x, 0.35 * body.half.x);
+    let middle = Vec2::new(spilled_x + 0.3 * body.half.x, 0.35 * body.half.x);
     let rim = body.color.mix(canvas.palette.frame, 0.35);
     let glint = body.color.mix(WHITE, 0.32);
     let mut face = |at: Vec2, radii: Vec2, height: f32, color| {

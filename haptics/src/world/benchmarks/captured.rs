@@ -119,6 +119,11 @@ fn a_barrel_squeezed_too_hard_breaks_and_leaks_as_the_law_of_mass_change_says() 
     assert!((carried - weight).abs() < 1e-3, "{carried} against {weight}");
     run(&world, &mut state, 60.0);
     assert!((state.bodies[0].leaked_kg - content.mass_kg).abs() < 1e-12, "no more than there was");
+    // It fell where the barrel was held.
+    assert!((state.bodies[0].spilled_x_m - state.bodies[0].center_m.x).abs() < 1e-3);
+    let spilled_x_m = state.bodies[0].spilled_x_m;
+    carry(&world, &mut state, Vec2::new(0.01, 0.0), 1.0, |_| {});
+    assert_eq!(state.bodies[0].spilled_x_m, spilled_x_m, "the puddle stays");
 }
 
 #[test]
