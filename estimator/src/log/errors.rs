@@ -51,6 +51,12 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
+    /// Somebody ended the reading.
+    #[error("reading was cancelled; nothing of the file is loaded: {path}", path = path.display())]
+    Cancelled {
+        /// The file.
+        path: PathBuf,
+    },
     /// No content.
     #[error("the file is empty; record again or choose another file: {path}", path = path.display())]
     Empty {

@@ -16,6 +16,21 @@ struct Track {
     checkpoints: Vec<u64>,
 }
 
+impl Track {
+    fn new() -> Self {
+        Self { hash: 0xcbf2_9ce4_8422_2325, last: 0, changes: 0, checkpoints: Vec::new() }
+    }
+
+    fn add(&mut self, cell: u64, checked: bool) {
+        self.changes += usize::from(cell != self.last);
+        self.last = cell;
+        self.hash = fnv(self.hash, &cell.to_le_bytes());
+        if checked {
+            self.checkpoints.push(self.hash);
+        }
+    }
+}
+
 /// Running hashes of the watched columns, by trial.
 #[derive(Debug, Default)]
 pub struct Fingerprints {
@@ -31,34 +46,46 @@ fn fnv(mut hash: u64, bytes: &[u8]) -> u64 {
 }
 
 /// Separates the parts of a trial's key.
-const SEPARATOR: &[u8] = b" / ";
+pub const SEPARATOR: &[u8] = b" / ";
+
+/// What rows in the order of the file leave for the comparison of trials.
+#[derive(Debug, Default)]
+pub struct Marks {
+    /// Key of the trial, and how many rows it holds on for.
+    pub keys: Vec<(Vec<u8>, usize)>,
+    /// One [`cell_hash`] a watched column and row, row after row.
+    pub hashes: Vec<u64>,
+}
+
+/// Hash of one cell.
+pub fn cell_hash(cell: &[u8]) -> u64 {
+    fnv(1, cell)
+}
 
 impl Fingerprints {
     /// Takes one row in. Costs nothing when the file holds a single recording.
+    #[allow(dead_code, reason = "for readers of containers, which hand their rows in one by one")]
     pub fn add(&mut self, plan: &Plan, record: &ByteRecord) {
         if plan.watched.is_empty() {
             return;
         }
         let cells: Vec<&[u8]> = plan.trial_keys.iter().map(|&k| record[k].trim_ascii()).collect();
-        let key = cells.join(SEPARATOR);
-        let fresh = || {
-            (
-                0,
-                vec![
-                    Track { hash: 0xcbf2_9ce4_8422_2325, last: 0, changes: 0, checkpoints: Vec::new() };
-                    plan.watched.len()
-                ],
-            )
-        };
-        let (rows, tracks) = self.trials.entry(key).or_insert_with(fresh);
-        *rows += 1;
-        for (track, &column) in tracks.iter_mut().zip(&plan.watched) {
-            let cell = fnv(1, &record[column]);
-            track.changes += usize::from(cell != track.last);
-            track.last = cell;
-            track.hash = fnv(track.hash, &cell.to_le_bytes());
-            if rows.is_multiple_of(STRIDE) {
-                track.checkpoints.push(track.hash);
+        let hashes = plan.watched.iter().map(|&c| cell_hash(&record[c])).collect();
+        self.extend(plan.watched.len(), &Marks { keys: vec![(cells.join(SEPARATOR), 1)], hashes });
+    }
+
+    /// Takes the rows of `marks` in, each with `width` hashes.
+    pub fn extend(&mut self, width: usize, marks: &Marks) {
+        let mut hashes = marks.hashes.chunks_exact(width.max(1));
+        for (key, count) in &marks.keys {
+            if !self.trials.contains_key(key) {
+                self.trials.insert(key.clone(), (0, vec![Track::new(); width]));
+            }
+            let Some((rows, tracks)) = self.trials.get_mut(key) else { continue };
+            for row in hashes.by_ref().take(*count) {
+                *rows += 1;
+                let checked = rows.is_multiple_of(STRIDE);
+                tracks.iter_mut().zip(row).for_each(|(track, &cell)| track.add(cell, checked));
             }
         }
     }

@@ -9,17 +9,20 @@ mod facts;
 mod fingerprint;
 mod plan;
 mod sidecar;
+mod table;
 pub mod units;
+mod watch;
 mod write;
 
 pub use errors::LogError;
 pub use sidecar::{path_for as sidecar_path, write as write_meta, write_as_is as write_sidecar};
+pub use watch::Watch;
 pub use write::write_csv;
 
-use self::csv::{Group, Table};
 use haptics::recording::{Channel, Meta, Recording, Warning};
 use plan::{Plan, Use};
 use std::path::Path;
+use table::{Group, Table};
 
 /// Largest file that is read, bytes (4 GiB): the table needs about as much memory again.
 pub const MAX_BYTES: u64 = 4 << 30;
@@ -27,9 +30,14 @@ pub const MAX_BYTES: u64 = 4 << 30;
 /// Reads a log and its sidecar (`meta`, or `<stem>.meta.json` beside it): one recording for every value of the `trial`
 /// column, in the order of the file, else one.
 pub fn load(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError> {
+    load_watched(path, meta, &Watch::none())
+}
+
+/// [`load`] that tells how far it has come and that can be ended from outside: then nothing is loaded.
+pub fn load_watched(path: &Path, meta: Option<&Path>, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
     let size = admissible_size(path)?;
     let meta = sidecar::load(path, meta)?;
-    load_with(path, &meta, size)
+    load_with(path, &meta, size, watch)
 }
 
 /// Reads a log with a sidecar that is already in memory (the app's mapping dialog).
@@ -38,7 +46,7 @@ pub fn load_with_meta(path: &Path, meta: &Meta) -> Result<Vec<Recording>, LogErr
     if let Some(why) = facts::complaint(meta) {
         return Err(LogError::Sidecar { why, path: sidecar::path_for(path) });
     }
-    load_with(path, meta, size)
+    load_with(path, meta, size, &Watch::none())
 }
 
 /// The column names of a table, for a mapping dialog.
@@ -47,10 +55,10 @@ pub fn headers(path: &Path) -> Result<Vec<String>, LogError> {
     Ok(csv::sniff(path)?.headers)
 }
 
-fn load_with(path: &Path, meta: &Meta, size: u64) -> Result<Vec<Recording>, LogError> {
+fn load_with(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
     let dialect = csv::sniff(path)?;
     let plan = plan::plan(&dialect.headers, meta, path)?;
-    let table = csv::read(path, &dialect, &plan, size);
+    let table = csv::read(path, &dialect, &plan, size, watch);
     // A table that grows is reported as such, also when its last line was half written.
     let after = std::fs::metadata(path).map_or(size, |m| m.len());
     if after != size {

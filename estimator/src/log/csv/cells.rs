@@ -1,0 +1,182 @@
+//! Cells and records: where one ends, and what number it holds.
+
+use memchr::{memchr, memchr2};
+
+/// A number from the bytes of a cell; a decimal comma counts where the comma is not the delimiter. NaN and infinities come
+/// back as such. Correctly rounded.
+pub fn number(cell: &[u8], delimiter: u8) -> Option<f64> {
+    let cell = cell.trim_ascii();
+    if let Ok(value) = fast_float2::parse::<f64, _>(cell) {
+        return Some(value);
+    }
+    if delimiter == b',' || cell.contains(&b'.') {
+        return None;
+    }
+    let comma = memchr(b',', cell)?;
+    let mut point = cell.to_vec();
+    point[comma] = b'.';
+    fast_float2::parse(&point).ok()
+}
+
+/// Where a record stands in its quotes.
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    /// At the start of a cell: only here does a quote open.
+    Start,
+    /// In a cell without quotes, or behind the closing quote.
+    Plain,
+    /// Between quotes.
+    Quoted,
+    /// At a quote between quotes: it closes, or is the first of two that stand for one.
+    Closing,
+}
+
+impl Place {
+    fn after(self, byte: u8, delimiter: u8) -> Self {
+        match (self, byte) {
+            (Self::Quoted, b'"') => Self::Closing,
+            (Self::Quoted, _) | (Self::Closing | Self::Start, b'"') => Self::Quoted,
+            (_, b) if b == delimiter => Self::Start,
+            // Blanks before an opening quote do not hide it.
+            (Self::Start, b' ') => Self::Start,
+            _ => Self::Plain,
+        }
+    }
+}
+
+/// Index of the line end that ends the record starting at `from`; `None` when it goes on behind `bytes`.
+pub fn record_end(bytes: &[u8], from: usize, delimiter: u8) -> Option<usize> {
+    let line_end = memchr(b'\n', &bytes[from..]).map(|at| from + at);
+    let line = &bytes[from..line_end.unwrap_or(bytes.len())];
+    if line.first() == Some(&b'#') || memchr(b'"', line).is_none() {
+        return line_end;
+    }
+    let mut place = Place::Start;
+    for (i, &byte) in bytes[from..].iter().enumerate() {
+        if byte == b'\n' && place != Place::Quoted {
+            return Some(from + i);
+        }
+        place = place.after(byte, delimiter);
+    }
+    None
+}
+
+/// The cells of one record. Those of a record without quotes lie in the record itself, others are copied.
+#[derive(Debug, Default)]
+pub struct Cells {
+    ranges: Vec<(usize, usize)>,
+    unquoted: Vec<u8>,
+    copied: bool,
+}
+
+impl Cells {
+    /// Splits `record`, which has no line end.
+    pub fn split(&mut self, record: &[u8], delimiter: u8) {
+        self.ranges.clear();
+        self.copied = memchr(b'"', record).is_some();
+        if self.copied {
+            return self.split_quoted(record, delimiter);
+        }
+        let mut first = 0;
+        while let Some(at) = memchr(delimiter, &record[first..]) {
+            self.ranges.push((first, first + at));
+            first += at + 1;
+        }
+        self.ranges.push((first, record.len()));
+    }
+
+    fn split_quoted(&mut self, record: &[u8], delimiter: u8) {
+        self.unquoted.clear();
+        let mut place = Place::Start;
+        let mut first = 0;
+        for &byte in record {
+            let next = place.after(byte, delimiter);
+            match (place, next) {
+                _ if next == Place::Start && byte == delimiter => {
+                    self.ranges.push((first, self.unquoted.len()));
+                    first = self.unquoted.len();
+                }
+                // The opening quote, and the closing one.
+                (Place::Start, Place::Quoted) | (_, Place::Closing) => {}
+                _ => self.unquoted.push(byte),
+            }
+            place = next;
+        }
+        self.ranges.push((first, self.unquoted.len()));
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.ranges.len()
+    }
+
+    /// One of them, without blanks around it; `record` as it was split.
+    pub fn get<'a>(&'a self, record: &'a [u8], index: usize) -> &'a [u8] {
+        let (first, end) = self.ranges[index];
+        let source = if self.copied { &self.unquoted } else { record };
+        source[first..end].trim_ascii()
+    }
+}
+
+/// The number at the start of `bytes`, when nothing but its delimiter, a line end or the end of the bytes follows it, and
+/// its length. `None` for whatever needs a closer look.
+#[inline]
+pub fn number_ahead(bytes: &[u8], delimiter: u8) -> Option<(f64, usize)> {
+    let (value, length) = fast_float2::parse_partial::<f64, _>(bytes).ok()?;
+    let clean = bytes.get(length).is_none_or(|&b| b == delimiter || b == b'\n' || b == b'\r');
+    (clean && value.is_finite()).then_some((value, length))
+}
+
+/// Length of the cell at the start of `bytes`, in a record without quotes.
+#[inline]
+pub fn length_ahead(bytes: &[u8], delimiter: u8) -> usize {
+    memchr2(delimiter, b'\n', bytes).unwrap_or(bytes.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn cells(record: &str, delimiter: u8) -> Vec<String> {
+        let mut cells = Cells::default();
+        cells.split(record.as_bytes(), delimiter);
+        (0..cells.len()).map(|i| String::from_utf8_lossy(cells.get(record.as_bytes(), i)).into_owned()).collect()
+    }
+
+    #[test]
+    fn quotes_are_taken_off_where_they_open_a_cell() {
+        assert_eq!(cells(r#"a,"b,""c""" , "d" ,5" pipe,"#, b','), ["a", "b,\"c\"", "d", "5\" pipe", ""]);
+        assert_eq!(cells("1;2,5;", b';'), ["1", "2,5", ""]);
+    }
+
+    #[test]
+    fn a_record_ends_at_the_first_line_end_outside_quotes() {
+        let text = b"a,\"b\nc\",d\ne\n";
+        assert_eq!(record_end(text, 0, b','), Some(9));
+        assert_eq!(record_end(text, 10, b','), Some(11));
+        assert_eq!(record_end(b"a,\"b\n", 0, b','), None);
+        assert_eq!(record_end(b"# an \"open quote\nx", 0, b','), Some(16));
+    }
+
+    #[test]
+    fn decimal_commas_count_where_the_comma_is_free() {
+        assert_eq!(number(b" 1,5 ", b';'), Some(1.5));
+        assert_eq!(number(b"1,5", b','), None);
+        assert_eq!(number(b"1.234,5", b';'), None);
+        assert_eq!(number(b"+2e0", b','), Some(2.0));
+    }
+
+    proptest! {
+        /// The library's parser accepts what the standard library accepts, to the bit.
+        #[test]
+        fn numbers_are_those_of_the_standard_library(bits in any::<u64>(), digits in "[+-]?[0-9]{0,25}\\.?[0-9]{0,25}([eE][+-]?[0-9]{1,3})?") {
+            let value = f64::from_bits(bits);
+            for text in [format!("{value:?}"), format!("{value}"), format!("{value:e}"), format!("{value:.3}"), digits] {
+                let own = number(text.as_bytes(), b',').map(f64::to_bits);
+                let reference = text.parse::<f64>().ok().map(f64::to_bits);
+                prop_assert!(own == reference || value.is_nan(), "{text}: {own:?} {reference:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Parts of a table put together in the order of the file.
+
+use super::Dialect;
+use super::part::{Fault, Part};
+use crate::log::errors::LogError;
+use crate::log::plan::{Plan, Use};
+use crate::log::table::{Group, Table};
+use std::collections::{BTreeMap, HashMap};
+use std::path::Path;
+
+/// How many values of a selected column a sentence lists.
+const SHOWN_VALUES: usize = 6;
+
+/// Takes parts in any order and keeps those that are early.
+#[derive(Debug)]
+pub struct Join<'a> {
+    /// What is joined.
+    pub table: Table,
+    /// Bytes joined.
+    pub bytes: usize,
+    plan: &'a Plan,
+    dialect: &'a Dialect,
+    path: &'a Path,
+    size: u64,
+    early: BTreeMap<usize, Part>,
+    next: usize,
+    rows: usize,
+    lines: u64,
+    /// Trial → its group.
+    index: HashMap<Vec<u8>, usize>,
+    seen: Vec<Vec<String>>,
+}
+
+impl<'a> Join<'a> {
+    /// Nothing joined yet; `size` of the file in bytes, to reserve room.
+    pub fn new(plan: &'a Plan, dialect: &'a Dialect, path: &'a Path, size: u64) -> Self {
+        Self {
+            table: Table::default(),
+            bytes: 0,
+            plan,
+            dialect,
+            path,
+            size,
+            early: BTreeMap::new(),
+            next: 0,
+            rows: 0,
+            lines: 0,
+            index: HashMap::new(),
+            seen: vec![Vec::new(); plan.select.len()],
+        }
+    }
+
+    /// Blocks handed in that wait for an earlier one.
+    pub fn waiting(&self) -> usize {
+        self.early.len()
+    }
+
+    /// Takes the part of block `index`, and joins what has its turn; an error for the first row that is wrong.
+    pub fn take(&mut self, index: usize, part: Part) -> Result<(), LogError> {
+        self.early.insert(index, part);
+        while let Some(part) = self.early.remove(&self.next) {
+            self.next += 1;
+            self.join(part)?;
+        }
+        Ok(())
+    }
+
+    fn join(&mut self, part: Part) -> Result<(), LogError> {
+        self.table.text_columns.extend_from_slice(&part.text_columns);
+        self.table.fingerprints.extend(self.plan.watched.len(), &part.marks);
+        for (all, seen) in self.seen.iter_mut().zip(&part.seen) {
+            for text in seen {
+                if all.len() < SHOWN_VALUES && !all.contains(text) {
+                    all.push(text.clone());
+                }
+            }
+        }
+        let mut labels = part.labels.into_iter();
+        for (i, run) in part.runs.iter().enumerate() {
+            let end = part.runs.get(i + 1).map_or(part.kept, |next| next.first);
+            let at = self.group(run.trial.as_deref(), part.kept, part.bytes);
+            let group = &mut self.table.groups[at].1;
+            let (row, line) = (self.rows + run.place.0 + 1, self.dialect.line + self.lines + run.place.1);
+            group.note_place(group.rows(), row, line);
+            for (target, source) in group.columns.iter_mut().zip(&part.columns) {
+                if !source.is_empty() {
+                    target.extend_from_slice(&source[run.first..end]);
+                }
+            }
+            if self.plan.label.is_some() {
+                group.labels.extend(labels.by_ref().take(end - run.first));
+            }
+        }
+        if let Some((row, line, fault)) = part.fault {
+            return Err(self.sentence(self.rows + row + 1, self.dialect.line + self.lines + line, fault));
+        }
+        self.rows += part.rows;
+        self.lines += part.lines;
+        self.bytes += part.bytes;
+        Ok(())
+    }
+
+    fn group(&mut self, trial: Option<&[u8]>, rows: usize, bytes: usize) -> usize {
+        let key = trial.unwrap_or_default();
+        if let Some(&found) = self.index.get(key) {
+            return found;
+        }
+        let mut group = Group::default();
+        group.columns = vec![Vec::new(); self.plan.uses.len()];
+        if self.plan.trial.is_none() && self.plan.select.is_empty() {
+            // One table: as many rows as the first block promises, and no more than the file can hold.
+            let widths = self.dialect.headers.len().max(1) as u64;
+            let expected = self.size * rows as u64 / bytes.max(1) as u64 * 101 / 100 + 16;
+            let room = expected.min(self.size / (2 * widths) + 16) as usize;
+            for (target, wanted) in group.columns.iter_mut().zip(&self.plan.uses) {
+                if matches!(wanted, Use::Number { .. }) {
+                    target.reserve_exact(room);
+                }
+            }
+        }
+        self.index.insert(key.to_vec(), self.table.groups.len());
+        self.table.groups.push((trial.map(|t| String::from_utf8_lossy(t).into_owned()), group));
+        self.table.groups.len() - 1
+    }
+
+    fn sentence(&self, row: usize, line: u64, fault: Fault) -> LogError {
+        let path = self.path.to_path_buf();
+        match fault {
+            Fault::Unequal(found) => {
+                LogError::UnequalRow { row, line, found, expected: self.dialect.headers.len(), path }
+            }
+            Fault::Cell(column, what) => {
+                LogError::BadCell { row, line, column: self.dialect.headers[column].clone(), what, path }
+            }
+        }
+    }
+
+    /// The whole table, when every block has been taken.
+    pub fn finish(mut self) -> Result<Table, LogError> {
+        if self.rows == 0 {
+            return Err(LogError::HeaderOnly { path: self.path.to_path_buf() });
+        }
+        if self.table.groups.is_empty() {
+            return Err(self.nothing_selected());
+        }
+        for (_, group) in &mut self.table.groups {
+            group.columns.iter_mut().for_each(Vec::shrink_to_fit);
+        }
+        Ok(self.table)
+    }
+
+    fn nothing_selected(&self) -> LogError {
+        let at = self.seen.iter().position(|s| !s.is_empty()).unwrap_or(0);
+        let (wanted, seen) = (&self.plan.select[at], &self.seen[at]);
+        let more = if seen.len() < SHOWN_VALUES { "" } else { ", …" };
+        LogError::NothingSelected {
+            column: self.dialect.headers[wanted.column].clone(),
+            wanted: wanted.text.clone(),
+            present: if seen.is_empty() { "no rows".to_owned() } else { seen.join(", ") + more },
+            path: self.path.to_path_buf(),
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! Reading the text of a table: delimiter, header, cells to numbers, straight from the bytes.
+//!
+//! The file is cut into blocks of whole records ([`blocks`]); as many threads as there are cores parse them ([`part`]), and
+//! the parts are put together in the order of the file ([`join`]). Rows, lines, sentences and bits do not depend on the
+//! number of threads.
+
+mod blocks;
+mod cells;
+mod join;
+mod part;
+
+use super::errors::LogError;
+use super::plan::Plan;
+use super::table::Table;
+use super::watch::Watch;
+use blocks::{BLOCK_BYTES, Blocks, Stop};
+use cells::{Cells, number, record_end};
+use join::Join;
+use part::Layout;
+use std::fs::File;
+use std::io::{Read, Seek as _, SeekFrom};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// How many bytes are looked at to tell a table from something else.
+const SNIFF_BYTES: usize = 1 << 16;
+/// More threads gain nothing: the parts are joined one after the other.
+const MAX_THREADS: usize = 8;
+/// Parts that may wait for an earlier one before a thread pauses.
+const MAX_WAITING: usize = 16;
+
+/// What the first bytes of a file say about it.
+#[derive(Debug)]
+pub struct Dialect {
+    delimiter: u8,
+    /// Column names as they stand in the file, trimmed.
+    pub headers: Vec<String>,
+    /// Where the first row starts, bytes.
+    start: u64,
+    /// … and on which line, from 1.
+    line: u64,
+}
+
+/// Looks at the beginning of a file; an error when it cannot be a table.
+pub fn sniff(path: &Path) -> Result<Dialect, LogError> {
+    let io = |error: std::io::Error| LogError::Io { reason: error.to_string(), path: path.to_path_buf() };
+    let mut start = Vec::with_capacity(SNIFF_BYTES);
+    File::open(path).map_err(io)?.take(SNIFF_BYTES as u64).read_to_end(&mut start).map_err(io)?;
+    dialect(&start, path)
+}
+
+fn dialect(start: &[u8], path: &Path) -> Result<Dialect, LogError> {
+    let not_a_table = |why: &str| LogError::NotATable { why: why.to_owned(), path: path.to_path_buf() };
+    if start.starts_with(&[0xff, 0xfe]) || start.starts_with(&[0xfe, 0xff]) {
+        return Err(not_a_table("UTF-16 text; save it as UTF-8"));
+    }
+    if start.contains(&0) {
+        return Err(not_a_table("binary data"));
+    }
+    let text = start.strip_prefix("\u{feff}".as_bytes()).unwrap_or(start);
+    if text.iter().all(u8::is_ascii_whitespace) {
+        return Err(LogError::Empty { path: path.to_path_buf() });
+    }
+    let (mut at, mut line) = (0, 1);
+    let header_line = loop {
+        if at >= text.len() {
+            return Err(LogError::HeaderOnly { path: path.to_path_buf() });
+        }
+        let end = memchr::memchr(b'\n', &text[at..]).map_or(text.len(), |n| at + n);
+        let one = &text[at..end];
+        if !one.starts_with(b"#") && !one.trim_ascii().is_empty() {
+            break one;
+        }
+        (at, line) = (end + 1, line + 1);
+    };
+    let delimiter = delimiter_of(header_line);
+    // A quoted name may hold line ends.
+    let end = record_end(text, at, delimiter).unwrap_or(text.len());
+    let header = &text[at..end];
+    if header.len() >= SNIFF_BYTES - 3 || std::str::from_utf8(header).is_err() {
+        return Err(not_a_table("the first line is not a header of column names"));
+    }
+    let headers = names(header, delimiter);
+    if headers.iter().all(|h| number(h.as_bytes(), delimiter).is_some()) {
+        return Err(LogError::NoHeader { path: path.to_path_buf() });
+    }
+    if header.trim_ascii_end().contains(&b'\r') && !header.contains(&b'"') {
+        return Err(not_a_table("its lines end with carriage returns only; save it with line feeds"));
+    }
+    let line = line + 1 + memchr::memchr_iter(b'\n', header).count() as u64;
+    Ok(Dialect { delimiter, headers, start: (start.len() - text.len() + end + 1) as u64, line })
+}
+
+fn names(header: &[u8], delimiter: u8) -> Vec<String> {
+    let mut cells = Cells::default();
+    cells.split(header, delimiter);
+    (0..cells.len()).map(|i| String::from_utf8_lossy(cells.get(header, i)).into_owned()).collect()
+}
+
+/// The most frequent of tab, semicolon and comma outside quotes.
+fn delimiter_of(header: &[u8]) -> u8 {
+    let mut quoted = false;
+    let mut counts = [(b'\t', 0), (b';', 0), (b',', 0)];
+    for &byte in header {
+        quoted ^= byte == b'"';
+        if let Some(entry) = counts.iter_mut().find(|(d, _)| *d == byte && !quoted) {
+            entry.1 += 1;
+        }
+    }
+    counts.into_iter().max_by_key(|&(_, n)| n).map_or(b',', |(d, _)| d)
+}
+
+/// Reads the whole table as `plan` says.
+pub fn read(path: &Path, dialect: &Dialect, plan: &Plan, size: u64, watch: &Watch<'_>) -> Result<Table, LogError> {
+    let io = |error: std::io::Error| LogError::Io { reason: error.to_string(), path: path.to_path_buf() };
+    let mut file = File::open(path).map_err(io)?;
+    file.seek(SeekFrom::Start(dialect.start)).map_err(io)?;
+    let cores = std::thread::available_parallelism().map_or(1, usize::from).min(MAX_THREADS);
+    let threads = if size < 2 * BLOCK_BYTES as u64 { 1 } else { cores };
+    let split = Split { threads, block_bytes: BLOCK_BYTES.min(size as usize + 1) };
+    Reading::new(file, path, dialect, plan, size, *watch, split).run()
+}
+
+/// How the work is divided.
+#[derive(Clone, Copy, Debug)]
+struct Split {
+    threads: usize,
+    block_bytes: usize,
+}
+
+/// What the threads share.
+struct Reading<'a, R> {
+    blocks: Mutex<Blocks<R>>,
+    join: Mutex<Join<'a>>,
+    layout: Layout<'a>,
+    path: &'a Path,
+    size: u64,
+    watch: Watch<'a>,
+    split: Split,
+    /// Set by the first thread that cannot go on.
+    stop: AtomicBool,
+    error: Mutex<Option<LogError>>,
+    /// Why there are no more blocks.
+    refused: Mutex<Option<Stop>>,
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Stops the other threads when one ends, also when it panics.
+struct StopOnDrop<'a>(&'a AtomicBool);
+
+impl Drop for StopOnDrop<'_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+impl<'a, R: Read + Send> Reading<'a, R> {
+    fn new(
+        source: R,
+        path: &'a Path,
+        dialect: &'a Dialect,
+        plan: &'a Plan,
+        size: u64,
+        watch: Watch<'a>,
+        split: Split,
+    ) -> Self {
+        let width = dialect.headers.len();
+        let delimiter = dialect.delimiter;
+        Self {
+            blocks: Mutex::new(Blocks::new(source, delimiter, split.block_bytes)),
+            join: Mutex::new(Join::new(plan, dialect, path, size)),
+            layout: Layout { delimiter, width, plan, uses: plan.uses.clone(), undecided: true },
+            path,
+            size,
+            watch,
+            split,
+            stop: AtomicBool::new(false),
+            error: Mutex::new(None),
+            refused: Mutex::new(None),
+        }
+    }
+
+    fn run(mut self) -> Result<Table, LogError> {
+        // The first selected row shows which columns hold text: until then one block after the other.
+        let mut layout = self.layout.clone();
+        while layout.undecided && self.step(&mut layout) {}
+        self.layout = layout;
+        let this = &self;
+        std::thread::scope(|scope| {
+            for _ in 1..this.split.threads {
+                // A thread that cannot be had is no loss: this one works too.
+                let _ = std::thread::Builder::new().name("csv".to_owned()).spawn_scoped(scope, || this.work());
+            }
+            this.work();
+        });
+        if let Some(error) = lock(&self.error).take() {
+            return Err(error);
+        }
+        if let Some(stop) = lock(&self.refused).take() {
+            return Err(self.refusal(stop));
+        }
+        self.join.into_inner().unwrap_or_else(PoisonError::into_inner).finish()
+    }
+
+    fn work(&self) {
+        let _guard = StopOnDrop(&self.stop);
+        let mut layout = self.layout.clone();
+        while self.step(&mut layout) {}
+    }
+
+    /// Reads, parses and joins one block; false when there is nothing more to do.
+    fn step(&self, layout: &mut Layout<'_>) -> bool {
+        if self.watch.is_cancelled() {
+            return self.end(LogError::Cancelled { path: self.path.to_path_buf() });
+        }
+        while lock(&self.join).waiting() > MAX_WAITING && !self.stop.load(Ordering::Relaxed) {
+            std::thread::sleep(Duration::from_micros(200));
+        }
+        if self.stop.load(Ordering::Relaxed) {
+            return false;
+        }
+        let block = lock(&self.blocks).next();
+        let (index, bytes) = match block {
+            Ok(Some(block)) => block,
+            Ok(None) => return false,
+            Err(stop) => {
+                // The blocks before it are still being parsed: what is wrong in one of them comes first.
+                lock(&self.refused).get_or_insert(stop);
+                return false;
+            }
+        };
+        let part = part::parse(layout, &bytes);
+        let mut join = lock(&self.join);
+        if let Err(error) = join.take(index, part) {
+            drop(join);
+            return self.end(error);
+        }
+        (self.watch.progress)((join.bytes as f64 / self.size.max(1) as f64).min(1.0));
+        true
+    }
+
+    /// The first error counts.
+    fn end(&self, error: LogError) -> bool {
+        lock(&self.error).get_or_insert(error);
+        self.stop.store(true, Ordering::Relaxed);
+        false
+    }
+
+    fn refusal(&self, stop: Stop) -> LogError {
+        let path = self.path.to_path_buf();
+        match stop {
+            Stop::Io(error) => LogError::Io { reason: error.to_string(), path },
+            Stop::Endless(quoted) => {
+                let why = if quoted { "a quote is opened and never closed" } else { "a line does not end" };
+                LogError::NotATable { why: why.to_owned(), path }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

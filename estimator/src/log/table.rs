@@ -1,0 +1,47 @@
+//! The common intermediate of every format: rows by trial, column by column, with their places in the file.
+
+use super::fingerprint::Fingerprints;
+
+/// Rows of one trial value, column by column.
+#[derive(Debug, Default)]
+pub struct Group {
+    /// One vector for every column of the file; empty where the column is not read.
+    pub columns: Vec<Vec<f64>>,
+    /// Labels, when there is such a column.
+    pub labels: Vec<String>,
+    /// Line in the file of every row, run-length coded: (first row index in the group, its line, its row in the file).
+    lines: Vec<(usize, u64, usize)>,
+}
+
+/// A parsed table: groups in the order in which their trial value first appears.
+#[derive(Debug, Default)]
+pub struct Table {
+    /// The rows, by trial.
+    pub groups: Vec<(Option<String>, Group)>,
+    /// Columns that hold text and were left out.
+    pub text_columns: Vec<usize>,
+    /// Contents of every trial, also of those not selected.
+    pub fingerprints: Fingerprints,
+}
+
+impl Group {
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.columns.iter().map(Vec::len).max().unwrap_or(0)
+    }
+
+    /// Row in the file (from 1) and line (from 1; 0 where the format has no lines) of row `index` of the group.
+    pub fn place(&self, index: usize) -> (usize, u64) {
+        let at = self.lines.partition_point(|&(first, _, _)| first <= index).saturating_sub(1);
+        self.lines.get(at).map_or((index + 1, 0), |&(first, line, row)| {
+            (row + index - first, if line == 0 { 0 } else { line + (index - first) as u64 })
+        })
+    }
+
+    /// Says where row `index` of the group stands in the file.
+    pub fn note_place(&mut self, index: usize, row: usize, line: u64) {
+        if self.lines.is_empty() || self.place(index) != (row, line) {
+            self.lines.push((index, line, row));
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Watching and ending a long read.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What a caller gives along to see how far a read has come and to end it.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Told the share that is done, 0 … 1, never less than before; from any thread, about once a megabyte.
+    pub progress: &'a (dyn Fn(f64) + Sync),
+    /// Set by anybody to end the read; it then answers [`LogError::Cancelled`](super::LogError::Cancelled).
+    pub cancelled: &'a AtomicBool,
+}
+
+/// Never set.
+static NEVER: AtomicBool = AtomicBool::new(false);
+
+impl Watch<'_> {
+    /// Nobody looks and nobody ends it.
+    pub fn none() -> Watch<'static> {
+        Watch { progress: &|_| {}, cancelled: &NEVER }
+    }
+
+    /// True when somebody has ended it.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+}
+
+impl std::fmt::Debug for Watch<'_> {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        out.debug_struct("Watch").field("cancelled", &self.is_cancelled()).finish_non_exhaustive()
+    }
+}
