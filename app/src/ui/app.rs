@@ -52,7 +52,9 @@ impl App {
         let ctx = ui.ctx().clone();
         self.session.poll(&ctx);
         self.take_worlds();
-        super::keys::handle(ui, &mut self.session);
+        if self.session.mapping.is_none() {
+            super::keys::handle(ui, &mut self.session);
+        }
         dropped_files(&ctx, &mut self.session);
         self.session.advance(f64::from(ctx.input(|i| i.stable_dt)));
         self.top_bar(ui);
@@ -62,6 +64,7 @@ impl App {
             self.session.trainer.trial.abort();
         }
         match self.session.workspace {
+            _ if self.session.mapping.is_some() => self.mapping(ui),
             Workspace::Train => self.train(ui),
             Workspace::Calibrate => self.calibrate(ui),
             Workspace::Devices => self.devices(ui),
@@ -103,7 +106,9 @@ impl App {
                     (Workspace::Calibrate, "Calibrate", "Measure a real one from a log (Ctrl+2)"),
                     (Workspace::Devices, "Devices", "What moves the fingers, and how well (Ctrl+3)"),
                 ];
-                segmented(ui, &mut self.session.workspace, &choices);
+                // A dialog waits for an answer first.
+                let free = self.session.mapping.is_none();
+                ui.add_enabled_ui(free, |ui| segmented(ui, &mut self.session.workspace, &choices));
                 ui.add_space(space::L);
                 ui.label(RichText::new(self.subject()).color(p.secondary));
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| self.tools(ui));
@@ -126,12 +131,46 @@ impl App {
         if ui.button(if dark { "Light" } else { "Dark" }).on_hover_text("Switch the theme").clicked() {
             ui.ctx().set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
         }
-        if ui.button("Open log …").on_hover_text("Ctrl+O, or drop a file on the window").clicked() {
+        let free = self.session.mapping.is_none();
+        if ui.add_enabled(free, egui::Button::new("Open log …")).on_hover_text("Ctrl+O, or drop a file on the window").clicked() {
             files::ask(ui.ctx(), &mut self.session.jobs, Purpose::OpenLog);
         }
-        if self.session.jobs.is_busy() {
-            ui.add(egui::Spinner::new().size(16.0));
+        self.progress(ui);
+    }
+
+    /// What takes its time, how far it is, and the way to end it.
+    fn progress(&mut self, ui: &mut Ui) {
+        let Some(progress) = self.session.jobs.progress() else {
+            if self.session.jobs.is_busy() {
+                ui.add(egui::Spinner::new().size(16.0));
+                // In time for the bar.
+                ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
+            }
+            return;
+        };
+        ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
+        if ui.button("Cancel").on_hover_text(format!("End this: {}", progress.what)).clicked() {
+            self.session.give_up(progress.kind);
         }
+        match progress.share {
+            Some(share) => {
+                let text = RichText::new(format!("{:.0} %", 100.0 * share)).size(11.5);
+                ui.add(egui::ProgressBar::new(share as f32).desired_width(120.0).text(text));
+            }
+            None => drop(ui.add(egui::Spinner::new().size(16.0))),
+        }
+        let seconds = progress.elapsed.as_secs();
+        let since = if seconds > 0 { format!(" · {seconds} s") } else { String::new() };
+        ui.label(theme::caption(ui, format!("{} …{since}", progress.what)));
+    }
+
+    fn mapping(&mut self, ui: &mut Ui) {
+        if self.session.trainer.is_recording() {
+            self.session.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
+        } else {
+            self.session.trainer.pause();
+        }
+        super::mapping::dialog::show(ui, &mut self.session);
     }
 
     fn train(&mut self, ui: &mut Ui) {
@@ -265,9 +304,7 @@ fn banners(ui: &mut Ui, session: &mut Session) {
 fn dropped_files(ctx: &egui::Context, session: &mut Session) {
     let paths: Vec<std::path::PathBuf> =
         ctx.input(|i| i.raw.dropped_files.iter().map(|f| f.path().to_path_buf()).collect());
-    if let Some(path) = paths.first() {
-        session.open_any(ctx, path);
-    }
+    session.open_dropped(ctx, &paths);
 }
 
 /// While a file hangs over the window.
@@ -279,5 +316,5 @@ fn drop_hint(ctx: &egui::Context) {
     let rect = ctx.content_rect();
     painter.rect_filled(rect, 0, egui::Color32::from_black_alpha(170));
     let font = egui::FontId::new(22.0, theme::semibold());
-    painter.text(rect.center(), egui::Align2::CENTER_CENTER, "Drop a log or a world", font, egui::Color32::WHITE);
+    painter.text(rect.center(), egui::Align2::CENTER_CENTER, "Drop a log, a world or a sidecar", font, egui::Color32::WHITE);
 }

@@ -23,7 +23,12 @@ pub fn ask(ctx: &egui::Context, jobs: &mut Jobs, purpose: Purpose) {
 fn dialog(purpose: Purpose) -> Option<PathBuf> {
     let dialog = rfd::FileDialog::new();
     match purpose {
-        Purpose::OpenLog => dialog.set_title("Open a log").add_filter("Logs", &["csv", "txt", "tsv"]).pick_file(),
+        Purpose::OpenLog => dialog
+            .set_title("Open a log")
+            .add_filter("Logs", &["csv", "txt", "tsv", "dat", "mcap", "parquet"])
+            // What a file is, its content tells.
+            .add_filter("All files", &["*"])
+            .pick_file(),
         Purpose::OpenWorld => dialog.set_title("Open a world").add_filter("Worlds", &["json"]).pick_file(),
         Purpose::SaveLog => dialog.set_title("Save the recording").set_file_name("recording.csv").save_file(),
         Purpose::SaveWorld => dialog.set_title("Save the world").set_file_name("world.json").save_file(),

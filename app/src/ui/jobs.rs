@@ -1,5 +1,7 @@
 //! Work in the background: nothing here ever makes the window wait.
 
+use super::mapping::Looked;
+use super::mapping::preview::Seen;
 use super::plots::Levels;
 use super::prepare::Prepared;
 use estimator::pipeline::Analysis;
@@ -8,7 +10,12 @@ use haptics::world::World;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
+
+/// A job that takes longer than this is shown, with a way to cancel it.
+const SHOWN_AFTER: Duration = Duration::from_millis(600);
 
 /// What a job does; at most one of each runs at a time as far as the window is concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +30,10 @@ pub enum JobKind {
     Dialog,
     /// Writing a file.
     Save,
+    /// Looking at a log whose columns are to be mapped.
+    Look,
+    /// Reading a log for the preview of a mapping.
+    Preview,
 }
 
 /// Why a file is being chosen.
@@ -53,6 +64,21 @@ pub enum Outcome {
     World(Box<World>),
     /// Where something was written.
     Saved(PathBuf),
+    /// A log that cannot be read as it stands, and why: its columns can be mapped.
+    Unmapped(PathBuf, String),
+    /// A log that was looked at, for the mapping dialog.
+    Looked(Box<Looked>),
+    /// What a mapping makes of its log.
+    Previewed(Box<Result<Seen, String>>),
+    /// A mapping was saved; the log can be opened with it.
+    Mapped {
+        /// The log.
+        log: PathBuf,
+        /// The sidecar that was written.
+        sidecar: PathBuf,
+    },
+    /// Nothing: the user has cancelled it.
+    Cancelled,
     /// One sentence.
     Failed(String),
 }
@@ -74,11 +100,60 @@ struct Report {
     outcome: Outcome,
 }
 
+/// What a job and the window have in common while it runs.
+#[derive(Clone, Debug, Default)]
+pub struct Ticket(Arc<Shared>);
+
+#[derive(Debug, Default)]
+struct Shared {
+    /// Share done in ten-thousandths; 0: nothing is known.
+    done: AtomicU32,
+    cancelled: AtomicBool,
+}
+
+impl Ticket {
+    /// Tells how much is done, 0 … 1.
+    pub fn tell(&self, share: f64) {
+        self.0.done.store((1e4 * share.clamp(0.0, 1.0)) as u32, Ordering::Relaxed);
+    }
+
+    /// Set when nobody wants the answer any more.
+    pub fn cancelled(&self) -> &AtomicBool {
+        &self.0.cancelled
+    }
+
+    fn share(&self) -> Option<f64> {
+        let done = self.0.done.load(Ordering::Relaxed);
+        (done > 0).then(|| f64::from(done) * 1e-4)
+    }
+}
+
+struct Running {
+    kind: JobKind,
+    generation: u64,
+    what: String,
+    begun: Instant,
+    ticket: Ticket,
+}
+
+/// A job that takes its time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress {
+    /// Which.
+    pub kind: JobKind,
+    /// In words.
+    pub what: String,
+    /// How much is done, 0 … 1, where that is known.
+    pub share: Option<f64>,
+    /// Since when.
+    pub elapsed: Duration,
+}
+
 /// Starts jobs and collects what they bring.
 pub struct Jobs {
     sender: Sender<Report>,
     receiver: Receiver<Report>,
-    running: Vec<(JobKind, u64)>,
+    running: Vec<Running>,
     generation: u64,
 }
 
@@ -92,13 +167,25 @@ impl Default for Jobs {
 impl Jobs {
     /// Runs `work` on a thread of its own. A job of the same kind that still runs is forgotten: only the newest answer counts.
     pub fn start(&mut self, ctx: &egui::Context, kind: JobKind, work: impl FnOnce() -> Outcome + Send + 'static) {
+        self.start_watched(ctx, kind, String::new(), move |_| work());
+    }
+
+    /// [`Jobs::start`] for work that may take long: `what` it does stands in the window, it tells how far it is, and it looks
+    /// whether it is still wanted.
+    pub fn start_watched(
+        &mut self,
+        ctx: &egui::Context,
+        kind: JobKind,
+        what: String,
+        work: impl FnOnce(&Ticket) -> Outcome + Send + 'static,
+    ) {
+        self.cancel(kind);
         self.generation += 1;
-        let generation = self.generation;
-        self.running.retain(|(running, _)| *running != kind);
-        self.running.push((kind, generation));
+        let (generation, ticket) = (self.generation, Ticket::default());
+        self.running.push(Running { kind, generation, what, begun: Instant::now(), ticket: ticket.clone() });
         let (sender, ctx) = (self.sender.clone(), ctx.clone());
         let spawned = std::thread::Builder::new().name(format!("{kind:?}").to_lowercase()).spawn(move || {
-            let outcome = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
+            let outcome = catch_unwind(AssertUnwindSafe(|| work(&ticket))).unwrap_or_else(|_| {
                 Outcome::Failed("An internal fault stopped this step; the rest of the program goes on.".to_owned())
             });
             // A closed window needs no answer.
@@ -111,27 +198,42 @@ impl Jobs {
         }
     }
 
-    /// Forgets a job: its answer will be dropped.
-    pub fn forget(&mut self, kind: JobKind) {
-        self.running.retain(|(running, _)| *running != kind);
+    /// Ends a job: it is told to stop, and its answer will be dropped.
+    pub fn cancel(&mut self, kind: JobKind) {
+        for running in self.running.iter().filter(|r| r.kind == kind) {
+            running.ticket.cancelled().store(true, Ordering::Relaxed);
+        }
+        self.running.retain(|running| running.kind != kind);
     }
 
     /// True while such a job runs.
     pub fn is_running(&self, kind: JobKind) -> bool {
-        self.running.iter().any(|(running, _)| *running == kind)
+        self.running.iter().any(|running| running.kind == kind)
     }
 
     /// True while anything computes (a waiting dialog does not count).
     pub fn is_busy(&self) -> bool {
-        self.running.iter().any(|(kind, _)| *kind != JobKind::Dialog)
+        self.running.iter().any(|running| running.kind != JobKind::Dialog)
+    }
+
+    /// The job that has been running longest, of those that say what they do, once it takes its time.
+    pub fn progress(&self) -> Option<Progress> {
+        let longest = self.running.iter().filter(|r| !r.what.is_empty()).min_by_key(|r| r.begun)?;
+        let elapsed = longest.begun.elapsed();
+        (elapsed > SHOWN_AFTER).then(|| Progress {
+            kind: longest.kind,
+            what: longest.what.clone(),
+            share: longest.ticket.share(),
+            elapsed,
+        })
     }
 
     /// What has come back since the last call; never waits.
     pub fn poll(&mut self) -> Vec<Outcome> {
         let mut outcomes = Vec::new();
         while let Ok(report) = self.receiver.try_recv() {
-            let key = (report.kind, report.generation);
-            if let Some(index) = self.running.iter().position(|running| *running == key) {
+            let mine = |r: &Running| (r.kind, r.generation) == (report.kind, report.generation);
+            if let Some(index) = self.running.iter().position(mine) {
                 self.running.remove(index);
                 outcomes.push(report.outcome);
             }
@@ -143,7 +245,6 @@ impl Jobs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::{Duration, Instant};
 
     fn wait(jobs: &mut Jobs) -> Vec<Outcome> {
         let begun = Instant::now();
@@ -177,5 +278,28 @@ mod tests {
         let outcomes = wait(&mut jobs);
         assert!(!jobs.is_busy());
         assert!(matches!(outcomes.as_slice(), [Outcome::Saved(path)] if path.ends_with("new")), "{outcomes:?}");
+    }
+
+    #[test]
+    fn a_cancelled_job_is_told_and_its_answer_dropped() {
+        let mut jobs = Jobs::default();
+        let (told, heard) = channel();
+        jobs.start_watched(&egui::Context::default(), JobKind::Load, "Reading".to_owned(), move |ticket| {
+            ticket.tell(0.25);
+            while !ticket.cancelled().load(Ordering::Relaxed) {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            told.send(()).expect("the test listens");
+            Outcome::Cancelled
+        });
+        let begun = Instant::now();
+        while jobs.progress().is_none_or(|p| p.share.is_none()) && begun.elapsed() < Duration::from_secs(10) {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let progress = jobs.progress().expect("it takes its time");
+        assert_eq!((progress.what.as_str(), progress.share), ("Reading", Some(0.25)));
+        jobs.cancel(JobKind::Load);
+        heard.recv_timeout(Duration::from_secs(10)).expect("it ends");
+        assert!(!jobs.is_busy() && jobs.progress().is_none() && jobs.poll().is_empty());
     }
 }

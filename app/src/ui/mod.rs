@@ -2,6 +2,7 @@
 //!
 //! * [`session`] is what the window knows; [`jobs`] fill it in the background; [`trainer`] is the live world.
 //! * [`panels`] show and change it, one panel a file; [`app`] lays them out into the two workspaces.
+//! * [`mapping`] is the dialog that says what the columns of a foreign table mean.
 //! * [`scene`] brings the pictures in, [`plots`] the curves; [`theme`] is the one place for colours and sizes.
 //! * [`screenshot`] draws any of it without a window.
 
@@ -11,6 +12,8 @@ pub mod film;
 pub mod format;
 pub mod jobs;
 mod keys;
+pub mod mapping;
+mod opening;
 pub mod panels;
 mod playback;
 pub mod plots;

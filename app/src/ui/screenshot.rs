@@ -1,6 +1,7 @@
 //! Panels and workspaces drawn without a window: for the command line, reports and tests.
 
 use super::app::App;
+use super::mapping::Mapping;
 use super::panels::log::LogPanel;
 use super::panels::parameters::ParametersPanel;
 use super::panels::results::ResultsPanel;
@@ -41,6 +42,8 @@ pub enum Panel {
     Train,
     /// The whole Devices page.
     Devices,
+    /// The dialog that maps the columns of the log.
+    Mapping,
 }
 
 /// What is shown.
@@ -89,6 +92,10 @@ fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Session> {
         return Ok(session);
     }
     session.workspace = Workspace::Calibrate;
+    if panel == Panel::Mapping {
+        session.mapping = Some(Box::new(mapping(input)?));
+        return Ok(session);
+    }
     let recordings = match &input.log {
         Some(path) if input.recordings.is_empty() => estimator::log::load(path, input.meta.as_deref())?,
         _ => input.recordings.clone(),
@@ -111,6 +118,15 @@ fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Session> {
     let (first, last) = session.view_s;
     session.seek(input.time_s.unwrap_or(first + 0.4 * (last - first)));
     Ok(session)
+}
+
+/// The dialog over a log, with its preview.
+fn mapping(input: &PanelInput) -> anyhow::Result<Mapping> {
+    let path = input.log.clone().context("name a log with --log: the dialog maps its columns")?;
+    let looked = super::mapping::look_now(path, input.meta.clone(), None).map_err(|problem| anyhow!(problem))?;
+    let mut mapping = Mapping::from(looked);
+    mapping.preview.read_now(&mapping.path, mapping.draft.sidecar());
+    Ok(mapping)
 }
 
 /// The scripted operator in the middle of its task.
@@ -174,6 +190,6 @@ fn contents(panel: Panel) -> Contents {
         Panel::Results => framed(ResultsPanel::default()),
         Panel::Scene => framed(ScenePanel::default()),
         Panel::Trainer => framed(TrainerView::default()),
-        Panel::Workbench | Panel::Train | Panel::Devices => Box::new(|ui, app| app.show(ui)),
+        Panel::Workbench | Panel::Train | Panel::Devices | Panel::Mapping => Box::new(|ui, app| app.show(ui)),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::film::Film;
 use super::jobs::{JobKind, Jobs, Outcome, Purpose, Replayed};
+use super::mapping::Mapping;
 use super::plots::Levels;
 use super::prepare::Prepared;
 use super::trainer::Trainer;
@@ -9,7 +10,7 @@ use estimator::pipeline::{self, Analysis};
 use estimator::segment::{Segmentation, Thresholds};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The workspaces.
@@ -120,6 +121,8 @@ pub struct Session {
     pub chosen: Option<(Purpose, PathBuf)>,
     /// Set by a panel: the trainer should take the calibrated world.
     pub train_calibrated: bool,
+    /// The open mapping dialog.
+    pub mapping: Option<Box<Mapping>>,
 }
 
 impl Session {
@@ -154,19 +157,6 @@ impl Session {
         if !self.banners.contains(&banner) {
             self.banners.push(banner);
         }
-    }
-
-    /// Reads a log in the background, then fits it.
-    pub fn open(&mut self, ctx: &egui::Context, path: &Path) {
-        let (path, meta) = (path.to_path_buf(), self.meta.clone());
-        self.path_field = path.display().to_string();
-        self.jobs.start(ctx, JobKind::Load, move || match estimator::log::load(&path, meta.as_deref()) {
-            Ok(recordings) => {
-                let prepared = recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect();
-                Outcome::Loaded(path, prepared)
-            }
-            Err(error) => Outcome::Failed(sentence(&error.to_string())),
-        });
     }
 
     /// Reads the same log again.
@@ -212,12 +202,20 @@ impl Session {
             return;
         }
         self.stale = false;
-        self.jobs.forget(JobKind::Simulate);
+        self.jobs.cancel(JobKind::Simulate);
         let (recordings, choice) = (self.recordings.clone(), self.choice);
-        self.jobs.start(ctx, JobKind::Fit, move || match analyse(&recordings, choice) {
+        self.jobs.start_watched(ctx, JobKind::Fit, "Fitting".to_owned(), move |_| match analyse(&recordings, choice) {
             Ok(analysis) => Outcome::Fitted(Box::new(analysis)),
             Err(problem) => Outcome::Failed(problem),
         });
+    }
+
+    /// Ends a job that the user does not want to wait for; what was there before stays.
+    pub fn give_up(&mut self, kind: JobKind) {
+        self.jobs.cancel(kind);
+        if kind == JobKind::Fit && self.analysis.is_none() {
+            self.fit_problem = Some("The fit was cancelled; press Fit to start it again.".to_owned());
+        }
     }
 
     /// Takes in what the jobs bring; call once a frame.
@@ -230,15 +228,35 @@ impl Session {
     fn take(&mut self, ctx: &egui::Context, outcome: Outcome) {
         match outcome {
             Outcome::Loaded(path, recordings) => {
+                let mute = super::opening::says_nothing(&recordings);
                 self.path = Some(path);
                 self.workspace = Workspace::Calibrate;
                 self.show(recordings);
-                self.refit(ctx);
+                match mute {
+                    Some(why) => self.map_columns(ctx, Some(why)),
+                    None => self.refit(ctx),
+                }
             }
+            Outcome::Unmapped(path, why) => {
+                self.path_field = path.display().to_string();
+                self.map_columns_of(ctx, &path, Some(why));
+            }
+            Outcome::Looked(looked) => self.mapping = Some(Box::new((*looked).into())),
+            Outcome::Previewed(seen) => {
+                if let Some(mapping) = &mut self.mapping {
+                    mapping.preview.seen = Some(*seen);
+                }
+            }
+            Outcome::Mapped { log, sidecar } => {
+                self.mapping = None;
+                self.say(Tone::Done, format!("Saved to {}.", sidecar.display()));
+                self.open_with(ctx, &log, Some(sidecar));
+            }
+            Outcome::Cancelled => {}
             Outcome::Fitted(analysis) => self.fitted(ctx, *analysis),
             Outcome::Simulated(replays) => self.replays = replays,
             Outcome::Chosen(_, None) => {}
-            Outcome::Chosen(Purpose::OpenLog, Some(path)) => self.open(ctx, &path),
+            Outcome::Chosen(Purpose::OpenLog, Some(path)) => self.open_any(ctx, &path),
             Outcome::Chosen(Purpose::OpenWorld, Some(path)) => self.open_world(ctx, &path),
             Outcome::Chosen(purpose, Some(path)) => self.chosen = Some((purpose, path)),
             Outcome::World(world) => self.opened_world = Some(world),
@@ -257,25 +275,9 @@ impl Session {
         self.analysis = Some(Arc::clone(&analysis));
         self.fit_problem = None;
         let recordings = self.recordings.clone();
-        self.jobs.start(ctx, JobKind::Simulate, move || Outcome::Simulated(replay_all(&analysis.world, &recordings)));
-    }
-
-    /// Reads a world in the background.
-    pub fn open_world(&mut self, ctx: &egui::Context, path: &Path) {
-        let path = path.to_path_buf();
-        self.jobs.start(ctx, JobKind::Load, move || match World::load(&path) {
-            Ok(world) => Outcome::World(Box::new(world)),
-            Err(error) => Outcome::Failed(sentence(&format!("{error}: {}", path.display()))),
+        self.jobs.start_watched(ctx, JobKind::Simulate, "Replaying in the fitted world".to_owned(), move |_| {
+            Outcome::Simulated(replay_all(&analysis.world, &recordings))
         });
-    }
-
-    /// Opens whatever a file is: a world when it ends in .json, else a log.
-    pub fn open_any(&mut self, ctx: &egui::Context, path: &Path) {
-        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
-            self.open_world(ctx, path);
-        } else {
-            self.open(ctx, path);
-        }
     }
 }
 

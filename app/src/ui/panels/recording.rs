@@ -56,12 +56,13 @@ fn source(ui: &mut Ui, session: &mut Session) {
             let path = PathBuf::from(session.path_field.trim());
             session.open_any(&ctx, &path);
         }
-        if session.jobs.is_running(JobKind::Load) {
-            ui.add(egui::Spinner::new().size(16.0));
+        let hint = "Say what the columns of this table mean; a sidecar remembers it";
+        if ui.add_enabled(named, egui::Button::new("Map columns …")).on_hover_text(hint).clicked() {
+            session.map_columns(&ctx, None);
         }
     });
     let Some(prepared) = session.prepared().cloned() else {
-        ui.label(theme::caption(ui, "CSV tables with a sidecar .meta.json; drop a file anywhere on the window."));
+        ui.label(theme::caption(ui, "Drop a log, a world or a sidecar anywhere on the window; its columns can be mapped."));
         return;
     };
     ui.add_space(space::XS);

@@ -1,0 +1,251 @@
+//! A look at a file before anybody has said what its columns mean: names, first values, ranges.
+//!
+//! Tables of text are looked at as text, so that columns of words can be trials, labels and selections. What is no text goes
+//! through the reader under neutral names.
+
+use estimator::log::{self, LogError, units};
+use haptics::recording::Meta;
+use std::collections::BTreeSet;
+use std::io::Read as _;
+use std::path::Path;
+
+/// How many bytes of a table of text are looked at.
+const LOOK_BYTES: u64 = 32 << 20;
+/// First values that are shown.
+const SHOWN_CELLS: usize = 3;
+/// A clock that starts afresh for every trial goes up for at least this many rows in between.
+const ROWS_A_START: usize = 20;
+/// Distinct values that are kept: enough to choose from.
+const MOST_DISTINCT: usize = 60;
+
+/// What is known of a column from looking at it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ColumnFacts {
+    /// Its name in the file.
+    pub header: String,
+    /// The first values, as they stand there.
+    pub first: Vec<String>,
+    /// Every cell is a number.
+    pub numeric: bool,
+    /// Smallest and largest number.
+    pub range: Option<(f64, f64)>,
+    /// Numbers go up from row to row, but for a few fresh starts.
+    pub increasing: bool,
+    /// Every number is whole.
+    pub whole: bool,
+    /// The middle of the steps from row to row.
+    pub step: Option<f64>,
+    /// How often the value changes from row to row.
+    pub changes: usize,
+    /// Distinct values in the order of the file; `None` when there are more than a list can hold.
+    pub distinct: Option<Vec<String>>,
+}
+
+/// A file that has been looked at.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FileFacts {
+    /// Its columns.
+    pub columns: Vec<ColumnFacts>,
+    /// Rows that were looked at.
+    pub rows: usize,
+    /// False when the file goes on behind them.
+    pub whole_file: bool,
+}
+
+/// Looks at a file.
+pub fn look(path: &Path) -> Result<FileFacts, LogError> {
+    let headers = log::headers(path)?;
+    match text_rows(path, &headers)? {
+        Some((rows, whole_file)) => Ok(from_cells(&headers, &rows, whole_file)),
+        None => through_the_reader(path, headers),
+    }
+}
+
+type Rows = Vec<csv::StringRecord>;
+
+/// The rows of a table of text; `None` when the file is none.
+fn text_rows(path: &Path, headers: &[String]) -> Result<Option<(Rows, bool)>, LogError> {
+    let io = |error: std::io::Error| LogError::Io { reason: error.to_string(), path: path.to_path_buf() };
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(io)?;
+    let size = file.metadata().map_err(io)?.len();
+    file.take(LOOK_BYTES).read_to_end(&mut bytes).map_err(io)?;
+    let whole = size <= LOOK_BYTES;
+    if bytes.contains(&0) {
+        return Ok(None);
+    }
+    let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(&bytes);
+    let parsed = [b'\t', b';', b','].into_iter().find_map(|delimiter| {
+        let mut reader = csv::ReaderBuilder::new()
+            .delimiter(delimiter)
+            .comment(Some(b'#'))
+            .trim(csv::Trim::All)
+            .flexible(true)
+            .from_reader(text);
+        // The reader has read the header; the delimiter that splits it the same way is the file's.
+        let same = reader.headers().is_ok_and(|found| found.iter().eq(headers.iter().map(String::as_str)));
+        same.then(|| {
+            let decimal_comma = delimiter != b',';
+            let rows = reader.records().map_while(Result::ok).map(|row| plain(row, decimal_comma));
+            rows.filter(|row| row.len() == headers.len()).collect::<Rows>()
+        })
+    });
+    Ok(parsed.map(|mut rows| {
+        if !whole {
+            rows.pop();
+        }
+        (rows, whole)
+    }))
+}
+
+/// Numbers with a decimal point.
+fn plain(row: csv::StringRecord, decimal_comma: bool) -> csv::StringRecord {
+    if !decimal_comma || !row.iter().any(|cell| cell.contains(',')) {
+        return row;
+    }
+    let point = |cell: &str| {
+        let pointed = cell.replace(',', ".");
+        if pointed.parse::<f64>().is_ok() { pointed } else { cell.to_owned() }
+    };
+    row.iter().map(point).collect()
+}
+
+fn from_cells(headers: &[String], rows: &Rows, whole_file: bool) -> FileFacts {
+    let columns = headers
+        .iter()
+        .enumerate()
+        .map(|(column, header)| {
+            let cells = || rows.iter().filter_map(|row| row.get(column));
+            let numbers: Vec<f64> = cells().map_while(|cell| cell.parse().ok()).collect();
+            let mut facts = if numbers.len() == rows.len() { of_numbers(&numbers) } else { ColumnFacts::default() };
+            facts.header.clone_from(header);
+            facts.first = cells().take(SHOWN_CELLS).map(str::to_owned).collect();
+            facts.changes = cells().zip(cells().skip(1)).filter(|(a, b)| a != b).count();
+            facts.distinct = distinct(cells());
+            facts
+        })
+        .collect();
+    FileFacts { columns, rows: rows.len(), whole_file }
+}
+
+fn distinct<'a>(cells: impl Iterator<Item = &'a str>) -> Option<Vec<String>> {
+    let (mut seen, mut listed) = (BTreeSet::new(), Vec::new());
+    for cell in cells {
+        if seen.insert(cell) {
+            listed.push(cell.to_owned());
+            if listed.len() > MOST_DISTINCT {
+                return None;
+            }
+        }
+    }
+    Some(listed)
+}
+
+fn of_numbers(values: &[f64]) -> ColumnFacts {
+    let mut steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).collect();
+    let starts = steps.iter().filter(|s| **s <= 0.0).count();
+    let increasing = !steps.is_empty() && starts * ROWS_A_START <= steps.len();
+    let middle = steps.len() / 2;
+    let step = (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1);
+    let range = values.iter().filter(|v| v.is_finite()).fold(None, |range, &v| match range {
+        None => Some((v, v)),
+        Some((low, high)) => Some((v.min(low), v.max(high))),
+    });
+    ColumnFacts {
+        numeric: !values.is_empty(),
+        range,
+        increasing,
+        whole: values.iter().all(|v| v.fract() == 0.0),
+        step,
+        ..ColumnFacts::default()
+    }
+}
+
+/// Facts about a file that is not text: every column under a name that means nothing.
+fn through_the_reader(path: &Path, headers: Vec<String>) -> Result<FileFacts, LogError> {
+    let neutral = |at: usize| format!("column {}", at + 1);
+    let mut hidden: Vec<usize> = (0..headers.len()).filter(|&at| has_a_meaning(&headers[at])).collect();
+    let recordings = loop {
+        let meta = Meta {
+            columns: hidden.iter().map(|&at| (neutral(at), headers[at].clone())).collect(),
+            ..Meta::default()
+        };
+        match log::load_with_meta(path, &meta) {
+            // A column of words under the name of a quantity: it is left to itself.
+            Err(LogError::BadCell { column, .. }) if hidden.iter().any(|&at| headers[at] == column) => {
+                hidden.retain(|&at| headers[at] != column);
+            }
+            other => break other?,
+        }
+    };
+    let of = |at: usize| {
+        let (own, name) = (&headers[at], neutral(at));
+        let si = units::split(own).map(|(quantity, unit)| (format!("{quantity}_{}", unit.si), unit.factor));
+        let mut values = Vec::new();
+        for recording in &recordings {
+            if let Some(found) = recording.channel(&name).or_else(|| recording.channel(own)) {
+                values.extend_from_slice(found);
+            } else if let Some((si, factor)) = &si
+                && let Some(found) = recording.channel(si)
+            {
+                values.extend(found.iter().map(|v| v / factor));
+            }
+        }
+        let mut facts = of_numbers(&values);
+        facts.header.clone_from(own);
+        facts.first = values.iter().take(SHOWN_CELLS).map(f64::to_string).collect();
+        facts.changes = values.windows(2).filter(|w| w[0] != w[1]).count();
+        facts
+    };
+    Ok(FileFacts {
+        columns: (0..headers.len()).map(of).collect(),
+        rows: recordings.iter().map(haptics::recording::Recording::len).sum(),
+        whole_file: true,
+    })
+}
+
+/// True for a name that the reader would take as a quantity, or refuse because of its unit.
+fn has_a_meaning(header: &str) -> bool {
+    let known = |part: &str| units::quantity_dimensions(part).is_some();
+    known(header)
+        || header.match_indices('_').any(|(at, _)| known(&header[..at]))
+        || ["time", "timestamp", "force", "torque", "angle", "position"].iter().any(|w| header.starts_with(w))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(text: &str) -> FileFacts {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("log.csv");
+        std::fs::write(&path, text).expect("writable");
+        look(&path).expect("a table")
+    }
+
+    #[test]
+    fn a_german_table_is_looked_at() {
+        let facts = file("# Prüfstand\nZeit [s];Kraft [N];Gerät;Nr\n0,0;1,5;Tür;1\n0,1;-2;Tür;1\n0,2;3;Lade;2\n");
+        let [time, force, device, number] = &facts.columns[..] else { panic!("{facts:?}") };
+        assert!(time.increasing && time.range == Some((0.0, 0.2)) && !time.whole);
+        assert!((time.step.expect("a step") - 0.1).abs() < 1e-12);
+        assert_eq!((force.range, force.numeric, force.increasing), (Some((-2.0, 3.0)), true, false));
+        assert_eq!(force.first, ["1.5", "-2", "3"]);
+        assert_eq!((device.numeric, device.changes), (false, 1));
+        assert_eq!(device.distinct.as_deref(), Some(&["Tür".to_owned(), "Lade".to_owned()][..]));
+        assert!(number.whole && number.changes == 1);
+        assert!(facts.rows == 3 && facts.whole_file);
+    }
+
+    #[test]
+    fn the_other_way_sees_the_same_numbers() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("log.csv");
+        std::fs::write(&path, "t_ms,x_mm,fx1_lbf,q,time_s\n0,1,2,3,9\n10,5,4,6,8\n").expect("writable");
+        let text = look(&path).expect("a table");
+        let read = through_the_reader(&path, log::headers(&path).expect("headers")).expect("a table");
+        for (a, b) in text.columns.iter().zip(&read.columns) {
+            assert_eq!((&a.header, a.range, a.increasing), (&b.header, b.range, b.increasing));
+        }
+    }
+}

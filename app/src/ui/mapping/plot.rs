@@ -1,0 +1,180 @@
+//! The preview: the path or the curves, what is still missing, and what is doubtful.
+
+use super::Mapping;
+use super::preview::Seen;
+use crate::ui::format;
+use crate::ui::plots::decimate;
+use crate::ui::prepare::{Group, Prepared};
+use crate::ui::session::Session;
+use crate::ui::theme::{self, mix, palette, space};
+use crate::ui::widgets::{fact, sheet};
+use egui::{RichText, ScrollArea, Ui};
+use egui_plot::{Line, Plot, PlotPoint, PlotPoints};
+use haptics::Vec2;
+use render::ColorRole;
+
+/// What is drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum View {
+    /// The path where there is one, else the first curves.
+    #[default]
+    Automatic,
+    /// The path in the plane.
+    Path,
+    /// The curves of a group, by its title.
+    Curves(String),
+}
+
+/// Draws the preview.
+pub fn preview(ui: &mut Ui, mapping: &mut Mapping, session: &Session) {
+    let stale = mapping.preview.is_stale(&session.jobs);
+    sheet(ui).inner_margin(space::M).show(ui, |ui| {
+        ui.set_min_size(ui.available_size());
+        ui.horizontal(|ui| {
+            ui.label(theme::heading("Preview"));
+            if stale {
+                ui.add(egui::Spinner::new().size(14.0));
+                ui.label(theme::caption(ui, "reading …"));
+            }
+        });
+        match &mapping.preview.seen {
+            None => {}
+            Some(Err(problem)) => {
+                ui.add(egui::Label::new(RichText::new(problem).color(palette(ui).danger)).wrap());
+            }
+            Some(Ok(seen)) => {
+                drawn(ui, &mut mapping.view, seen);
+                verdict(ui, seen);
+            }
+        }
+    });
+}
+
+fn drawn(ui: &mut Ui, view: &mut View, seen: &Seen) {
+    let Some(prepared) = seen.recordings.first() else { return };
+    let paths = paths(prepared);
+    let automatic = match prepared.groups.first() {
+        Some(group) if paths.is_empty() => View::Curves(group.title.clone()),
+        _ => View::Path,
+    };
+    let exists = match view {
+        View::Automatic => false,
+        View::Path => !paths.is_empty(),
+        View::Curves(title) => prepared.groups.iter().any(|g| g.title == *title),
+    };
+    let now = if exists { view.clone() } else { automatic };
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let mut choices: Vec<View> = Vec::new();
+        if !paths.is_empty() {
+            choices.push(View::Path);
+        }
+        choices.extend(prepared.groups.iter().map(|g| View::Curves(g.title.clone())));
+        for choice in choices {
+            let words = if let View::Curves(title) = &choice { title.as_str() } else { "Path" };
+            if ui.selectable_label(now == choice, RichText::new(words).size(11.5)).clicked() {
+                *view = choice;
+            }
+        }
+    });
+    let height = (0.42 * ui.available_height()).clamp(120.0, 330.0);
+    match &now {
+        View::Curves(title) => {
+            if let Some(group) = prepared.groups.iter().find(|g| g.title == *title) {
+                curves(ui, prepared, group, height);
+            }
+        }
+        _ => path(ui, &paths, height),
+    }
+}
+
+/// The paths of fingers or tool, mm.
+fn paths(prepared: &Prepared) -> Vec<(ColorRole, Vec<PlotPoint>)> {
+    let thinned = |position: &[Vec2]| {
+        let at = |i: &usize| position.get(*i).map(|p| PlotPoint::new(1e3 * p.x, 1e3 * p.y));
+        prepared.path_samples.iter().filter_map(at).collect()
+    };
+    let fingers = prepared.tips.iter().flatten().zip([ColorRole::Finger(0), ColorRole::Finger(1)]);
+    let tool = prepared.tool.iter().map(|tool| (tool, ColorRole::Measured));
+    fingers.chain(tool).map(|(series, role)| (role, thinned(&series.position))).collect()
+}
+
+fn frame<'a>(ui: &Ui, id: &str, height: f32) -> Plot<'a> {
+    Plot::new(id)
+        .height(height)
+        .show_background(false)
+        .show_x(false)
+        .show_y(false)
+        .allow_scroll(false)
+        .grid_color(palette(ui).border)
+}
+
+fn path(ui: &mut Ui, paths: &[(ColorRole, Vec<PlotPoint>)], height: f32) {
+    let dark = ui.visuals().dark_mode;
+    frame(ui, "mapping path", height).data_aspect(1.0).show(ui, |plot| {
+        for (role, points) in paths {
+            let line = Line::new("", PlotPoints::Borrowed(points));
+            plot.line(line.color(theme::role(dark, *role)).width(1.5).allow_hover(false));
+        }
+    });
+    ui.label(theme::caption(ui, "in the plane, mm; y is up"));
+}
+
+fn curves(ui: &mut Ui, prepared: &Prepared, group: &Group, height: f32) {
+    let dark = ui.visuals().dark_mode;
+    let (from, to) = prepared.span();
+    let columns = (ui.available_width() * ui.pixels_per_point()) as usize;
+    let points: Vec<Vec<PlotPoint>> =
+        group.traces.iter().map(|t| decimate(&prepared.times, &t.levels, from, to, columns)).collect();
+    let color = |at: usize| {
+        let trace = &group.traces[at];
+        let plain = theme::role(dark, trace.role);
+        if trace.second { mix(plain, palette(ui).text, 0.4) } else { plain }
+    };
+    let colors: Vec<egui::Color32> = (0..points.len()).map(color).collect();
+    frame(ui, "mapping curves", height).show(ui, |plot| {
+        for (points, color) in points.iter().zip(&colors) {
+            plot.line(Line::new("", PlotPoints::Borrowed(points)).color(*color).width(1.3).allow_hover(false));
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        for (trace, color) in group.traces.iter().zip(&colors).take(8) {
+            ui.label(RichText::new(&trace.label).size(11.5).color(*color));
+        }
+        let axis = if prepared.clockless() { "sample" } else { "s" };
+        ui.label(theme::caption(ui, format!("{} over {axis}", if group.unit.is_empty() { "values" } else { &group.unit })));
+    });
+}
+
+/// What has come of it, what is missing, what is doubtful.
+fn verdict(ui: &mut Ui, seen: &Seen) {
+    let p = palette(ui);
+    ui.add_space(space::XS);
+    if let Some(first) = seen.recordings.first() {
+        let recording = &first.recording;
+        if seen.recordings.len() > 1 {
+            fact(ui, "Recordings in the file", seen.recordings.len().to_string());
+        }
+        fact(ui, "Samples", recording.len().to_string());
+        if let (Some(length), Some(rate)) = (recording.duration_s(), recording.rate_hz()) {
+            fact(ui, "Length", format!("{length:.2} s at {} Hz", format::significant(rate, 3)));
+        }
+        fact(ui, "Task", first.task.map_or("not told yet".to_owned(), |t| t.name().replace('-', " ")));
+    }
+    ui.add_space(space::XS);
+    ScrollArea::vertical().id_salt("mapping verdict").auto_shrink(false).show(ui, |ui| {
+        let line = |ui: &mut Ui, mark: &str, color, text: &str| {
+            ui.horizontal_top(|ui| {
+                ui.label(RichText::new(mark).size(9.0).color(color));
+                ui.add(egui::Label::new(RichText::new(text).size(12.0)).wrap());
+            });
+        };
+        match &seen.missing {
+            Some(missing) => line(ui, "●", p.danger, missing),
+            None => line(ui, "●", p.good, "Nothing is missing: the log can be fitted."),
+        }
+        for warning in &seen.warnings {
+            line(ui, "▲", p.caution, warning);
+        }
+    });
+}

@@ -1,0 +1,144 @@
+//! What comes of a mapping: loaded in the background, a moment after the last edit.
+
+use super::draft::Draft;
+use crate::ui::jobs::{JobKind, Jobs, Outcome};
+use crate::ui::prepare::Prepared;
+use crate::ui::session::sentence;
+use estimator::log::LogError;
+use estimator::segment::task_of;
+use estimator::signal::task::{is_two_fingered, task_signals, tip_series};
+use haptics::recording::{Meta, Recording, Task};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Rest after an edit before the file is read again, s.
+const REST_S: f64 = 0.25;
+
+/// What a log becomes with a sidecar.
+#[derive(Debug)]
+pub struct Seen {
+    /// The recordings.
+    pub recordings: Vec<Arc<Prepared>>,
+    /// What is missing before it can be fitted, in one sentence.
+    pub missing: Option<String>,
+    /// What is doubtful, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// The state of the preview.
+#[derive(Debug, Default)]
+pub struct Preview {
+    /// What the last reading gave: recordings, or why there are none.
+    pub seen: Option<Result<Seen, String>>,
+    /// The sidecar that was asked for last.
+    asked: Option<Meta>,
+    /// The sidecar of the last picture, and since when it is the same.
+    edited: Option<(Meta, f64)>,
+}
+
+impl Preview {
+    /// Once a picture: reads the file again when the mapping has changed and rests.
+    pub fn follow(&mut self, ctx: &egui::Context, jobs: &mut Jobs, path: &Path, draft: &Draft) {
+        if let Some(clash) = draft.clash() {
+            jobs.cancel(JobKind::Preview);
+            (self.seen, self.asked, self.edited) = (Some(Err(clash)), Some(draft.meta.clone()), None);
+            return;
+        }
+        let (now, meta) = (ctx.input(|i| i.time), draft.sidecar());
+        if self.asked.as_ref() == Some(&meta) {
+            self.edited = None;
+            return;
+        }
+        if self.edited.as_ref().is_none_or(|(edited, _)| *edited != meta) {
+            self.edited = Some((meta.clone(), now));
+        }
+        let rested = self.edited.as_ref().map_or(0.0, |(_, since)| now - since);
+        if self.asked.is_some() && rested < REST_S {
+            ctx.request_repaint_after(std::time::Duration::from_secs_f64(REST_S - rested + 0.01));
+            return;
+        }
+        self.asked = Some(meta.clone());
+        let path = path.to_path_buf();
+        jobs.start_watched(ctx, JobKind::Preview, "Reading for the preview".to_owned(), move |_| {
+            Outcome::Previewed(Box::new(see(&path, &meta)))
+        });
+    }
+
+    /// Reads the file here and now: for pictures.
+    pub fn read_now(&mut self, path: &Path, meta: Meta) {
+        self.seen = Some(see(path, &meta));
+        self.asked = Some(meta);
+    }
+
+    /// True while the picture is older than the mapping.
+    pub fn is_stale(&self, jobs: &Jobs) -> bool {
+        self.edited.is_some() || jobs.is_running(JobKind::Preview) || self.asked.is_none()
+    }
+}
+
+/// Reads the log with this sidecar.
+pub fn see(path: &Path, meta: &Meta) -> Result<Seen, String> {
+    let recordings = estimator::log::load_with_meta(path, meta).map_err(|error| explained(&error))?;
+    let missing = recordings.first().and_then(missing);
+    let mut warnings: Vec<String> = Vec::new();
+    for warning in recordings.iter().flat_map(|r| &r.warnings) {
+        let text = sentence(&warning.text);
+        if !warnings.contains(&text) {
+            warnings.push(text);
+        }
+    }
+    warnings.extend(recordings.first().and_then(free_motion));
+    let recordings = recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect();
+    Ok(Seen { recordings, missing, warnings })
+}
+
+/// The sentence of an error; here nobody needs to be told of sidecars.
+fn explained(error: &LogError) -> String {
+    if let LogError::MissingColumn { column, why, .. } = error {
+        return sentence(&format!("`{column}` is still missing: {why}"));
+    }
+    sentence(&error.to_string())
+}
+
+/// A mechanism that nothing is known to push.
+fn free_motion(recording: &Recording) -> Option<String> {
+    let coordinate = ["q_m", "q_rad"].iter().any(|q| recording.channel(q).is_some());
+    let pushed = ["f_N", "tau_Nm", "fx_N"].iter().any(|f| recording.channel(f).is_some());
+    let text = "There is no force: what a free motion shows is found, relative to what is known.";
+    (coordinate && !pushed).then(|| text.to_owned())
+}
+
+/// What a recording lacks before its task can be fitted.
+pub fn missing(recording: &Recording) -> Option<String> {
+    let has = |name: &str| recording.channel(name).is_some();
+    let task = match task_of(recording, None) {
+        Ok(task) => task,
+        Err(_) if is_two_fingered(recording) => {
+            return Some("Choose the task above: two fingers stack blocks, turn a crank, or carry a barrel.".to_owned());
+        }
+        Err(_) => {
+            let text = "No column says what moved: name a coordinate (q_m or q_rad), the tool's x_m and y_m, or the \
+                        fingers' x1_m, y1_m, x2_m and y2_m.";
+            return Some(text.to_owned());
+        }
+    };
+    match task {
+        Task::BlockStack | Task::Barrel => task_signals(recording).err().map(|e| sentence(&e.to_string())),
+        Task::Crank if is_two_fingered(recording) => task_signals(recording).err().map(|e| sentence(&e.to_string())),
+        Task::Crank => match tip_series(recording, "") {
+            Err(error) => Some(sentence(&error.to_string())),
+            Ok(series) if series.force.is_none() => {
+                Some("The forces fx_N and fy_N are missing: without them only the circle can be found.".to_owned())
+            }
+            Ok(_) => None,
+        },
+        Task::Mechanism if !has("q_m") && !has("q_rad") && !has("x_m") => {
+            Some("No column says how far it moved: name a coordinate (q_m or q_rad), or the tool's x_m and y_m.".to_owned())
+        }
+        Task::Mechanism if recording.time_s.is_none() => {
+            Some("There is no clock: name the time t_s, or state the rate; without it only the path can be used.".to_owned())
+        }
+        Task::Mechanism => None,
+        Task::Needle | Task::Switch => Some(format!("Recordings of the task {} can be looked at, not fitted yet.", task.name())),
+    }
+}

@@ -1,0 +1,190 @@
+//! Opening files of any kind: logs, worlds, sidecars; told apart by what is in them, not by their names.
+
+use super::jobs::{JobKind, Outcome};
+use super::mapping::{self, name_of};
+use super::prepare::Prepared;
+use super::session::{Session, sentence};
+use estimator::log::{LogError, Watch};
+use haptics::recording::Meta;
+use haptics::world::World;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Bytes that tell JSON from anything else.
+const START_BYTES: u64 = 4096;
+/// Endings that the log of a sidecar may have.
+const LOG_ENDINGS: [&str; 6] = ["csv", "mcap", "parquet", "tsv", "txt", "dat"];
+
+/// What a file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileKind {
+    /// A table of samples in any format, or what the reader of logs will refuse in one sentence.
+    Log,
+    /// A world.
+    World,
+    /// The facts about a log.
+    Sidecar,
+}
+
+/// Tells what a file is.
+pub fn kind_of(path: &Path) -> FileKind {
+    let mut start = Vec::new();
+    let read = std::fs::File::open(path).and_then(|f| f.take(START_BYTES).read_to_end(&mut start));
+    let text = start.strip_prefix("\u{feff}".as_bytes()).unwrap_or(&start);
+    if read.is_err() || text.trim_ascii_start().first() != Some(&b'{') {
+        return FileKind::Log;
+    }
+    let named = path.file_name().is_some_and(|n| n.to_string_lossy().to_lowercase().ends_with(".meta.json"));
+    if named || is_sidecar(path) { FileKind::Sidecar } else { FileKind::World }
+}
+
+/// True for JSON that says something about a log and nothing else.
+fn is_sidecar(path: &Path) -> bool {
+    let Ok(text) = std::fs::read_to_string(path) else { return false };
+    let meta: Option<Meta> = serde_json::from_str(text.trim_start_matches('\u{feff}')).ok();
+    meta.is_some_and(|meta| meta != Meta { other: meta.other.clone(), ..Meta::default() } && World::from_json(&text).is_err())
+}
+
+/// Why a mapping should be offered for recordings that could be read: nothing in them has a name that the program knows.
+pub fn says_nothing(recordings: &[Arc<Prepared>]) -> Option<String> {
+    let warnings = &recordings.first()?.recording.warnings;
+    let mute = warnings.iter().any(|w| w.kind == "no-known-column");
+    mute.then(|| "No column has a name that the program knows: say what they mean.".to_owned())
+}
+
+impl Session {
+    /// Reads a log in the background, with the sidecar named by hand if there is one, then fits it.
+    pub fn open(&mut self, ctx: &egui::Context, path: &Path) {
+        let (path, meta) = (path.to_path_buf(), self.meta.clone());
+        self.path_field = path.display().to_string();
+        let what = format!("Reading {}", name_of(&path));
+        self.jobs.start_watched(ctx, JobKind::Load, what, move |ticket| {
+            let progress = |share| ticket.tell(share);
+            let watch = Watch { progress: &progress, cancelled: ticket.cancelled() };
+            match estimator::log::load_watched(&path, meta.as_deref(), &watch) {
+            Ok(recordings) => {
+                let prepared = recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect();
+                Outcome::Loaded(path, prepared)
+            }
+            Err(LogError::Cancelled { .. }) => Outcome::Cancelled,
+            Err(error) if mapping::mends(&error) => Outcome::Unmapped(path, sentence(&error.to_string())),
+            Err(error) => Outcome::Failed(sentence(&error.to_string())),
+        }});
+    }
+
+    /// Reads a log with this sidecar; without one, with the sidecar beside it.
+    pub fn open_with(&mut self, ctx: &egui::Context, path: &Path, sidecar: Option<PathBuf>) {
+        self.meta = sidecar;
+        self.open(ctx, path);
+    }
+
+    /// Reads a world in the background.
+    pub fn open_world(&mut self, ctx: &egui::Context, path: &Path) {
+        let path = path.to_path_buf();
+        self.jobs.start(ctx, JobKind::Load, move || match World::load(&path) {
+            Ok(world) => Outcome::World(Box::new(world)),
+            Err(error) => Outcome::Failed(sentence(&format!("{error}: {}", path.display()))),
+        });
+    }
+
+    /// Opens whatever a file is.
+    pub fn open_any(&mut self, ctx: &egui::Context, path: &Path) {
+        match kind_of(path) {
+            FileKind::World => self.open_world(ctx, path),
+            FileKind::Sidecar => self.open_sidecar(ctx, path),
+            FileKind::Log => {
+                let again = self.path.as_deref() == Some(path);
+                let sidecar = self.meta.clone().filter(|_| again);
+                self.open_with(ctx, path, sidecar);
+            }
+        }
+    }
+
+    /// Opens what was dropped on the window: one file, or a log with its sidecar.
+    pub fn open_dropped(&mut self, ctx: &egui::Context, paths: &[PathBuf]) {
+        if self.mapping.is_some() && !paths.is_empty() {
+            self.fail("Finish or cancel the mapping first, then drop the file again.");
+            return;
+        }
+        match paths {
+            [] => {}
+            [one] => self.open_any(ctx, one),
+            [a, b] => match (kind_of(a), kind_of(b)) {
+                (FileKind::Log, FileKind::Sidecar) => self.open_with(ctx, a, Some(b.clone())),
+                (FileKind::Sidecar, FileKind::Log) => self.open_with(ctx, b, Some(a.clone())),
+                _ => self.open_first(ctx, paths),
+            },
+            _ => self.open_first(ctx, paths),
+        }
+    }
+
+    fn open_first(&mut self, ctx: &egui::Context, paths: &[PathBuf]) {
+        if let Some(first) = paths.first() {
+            self.fail(format!("One file at a time: of {} files, {} was taken.", paths.len(), name_of(first)));
+            self.open_any(ctx, first);
+        }
+    }
+
+    /// A sidecar: for the log that it stands beside, else for the one that is open.
+    fn open_sidecar(&mut self, ctx: &egui::Context, sidecar: &Path) {
+        let name = name_of(sidecar);
+        let stem = name.strip_suffix(".meta.json");
+        let beside = stem.and_then(|stem| {
+            let at = |ending: &&str| sidecar.with_file_name(format!("{stem}.{ending}"));
+            LOG_ENDINGS.iter().map(|e| at(e)).find(|log| log.is_file())
+        });
+        match beside.or_else(|| self.path.clone()) {
+            Some(log) => self.open_with(ctx, &log, Some(sidecar.to_path_buf())),
+            None => self.fail(format!(
+                "{name} is a sidecar and no log stands beside it; open its log first, or drop both together."
+            )),
+        }
+    }
+
+    /// Opens the mapping dialog for the log that is open, or that the path field names.
+    pub fn map_columns(&mut self, ctx: &egui::Context, why: Option<String>) {
+        let named = PathBuf::from(self.path_field.trim());
+        let path = self.path.clone().filter(|p| named.as_os_str().is_empty() || *p == named).unwrap_or(named);
+        self.map_columns_of(ctx, &path, why);
+    }
+
+    /// Opens the mapping dialog for a log.
+    pub fn map_columns_of(&mut self, ctx: &egui::Context, path: &Path, why: Option<String>) {
+        mapping::look(ctx, &mut self.jobs, path, self.meta.clone(), why);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_told_apart_by_their_content() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).expect("writable");
+            path
+        };
+        let world = haptics::world::presets::stacking().to_json();
+        assert_eq!(kind_of(&file("a.csv", "t_s,q_m\n0,1\n")), FileKind::Log);
+        assert_eq!(kind_of(&file("b.json", &world)), FileKind::World);
+        assert_eq!(kind_of(&file("world.txt", &world)), FileKind::World);
+        assert_eq!(kind_of(&file("c.json", r#"{"rate_hz": 100}"#)), FileKind::Sidecar);
+        assert_eq!(kind_of(&file("d.meta.json", "{}")), FileKind::Sidecar);
+        assert_eq!(kind_of(&file("e.json", r#"{"hello": 1}"#)), FileKind::World, "the world's reader says what is wrong");
+        assert_eq!(kind_of(&file("f.json", "t_s,q_m\n0,1\n")), FileKind::Log);
+        assert_eq!(kind_of(folder.path()), FileKind::Log);
+    }
+
+    #[test]
+    fn a_sidecar_alone_says_what_it_needs() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let sidecar = folder.path().join("a.meta.json");
+        std::fs::write(&sidecar, r#"{"rate_hz": 100}"#).expect("writable");
+        let mut session = Session::new();
+        session.open_any(&egui::Context::default(), &sidecar);
+        assert!(session.banners[0].text.contains("open its log first"), "{:?}", session.banners);
+    }
+}
