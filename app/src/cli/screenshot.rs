@@ -52,6 +52,12 @@ impl Screenshot {
     }
 
     fn panel_picture(&self, log: &Path) -> anyhow::Result<image::RgbaImage> {
+        if self.panel == crate::ui::screenshot::Panel::Mapping {
+            // The dialog is there for logs that cannot be loaded as they stand.
+            let (log, meta) = (Some(log.to_path_buf()), self.source.meta.clone());
+            let input = crate::ui::screenshot::PanelInput { log, meta, ..Default::default() };
+            return crate::ui::screenshot::panel(&input, self.panel, self.size, self.dark);
+        }
         let recordings = self.source.load(log)?;
         crate::ui::screenshot::recordings(recordings, self.panel, self.at, self.size, self.dark)
     }

@@ -132,7 +132,11 @@ impl App {
             ui.ctx().set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
         }
         let free = self.session.mapping.is_none();
-        if ui.add_enabled(free, egui::Button::new("Open log …")).on_hover_text("Ctrl+O, or drop a file on the window").clicked() {
+        if ui
+            .add_enabled(free, egui::Button::new("Open log …"))
+            .on_hover_text("Ctrl+O, or drop a file on the window")
+            .clicked()
+        {
             files::ask(ui.ctx(), &mut self.session.jobs, Purpose::OpenLog);
         }
         self.progress(ui);
@@ -316,5 +320,11 @@ fn drop_hint(ctx: &egui::Context) {
     let rect = ctx.content_rect();
     painter.rect_filled(rect, 0, egui::Color32::from_black_alpha(170));
     let font = egui::FontId::new(22.0, theme::semibold());
-    painter.text(rect.center(), egui::Align2::CENTER_CENTER, "Drop a log, a world or a sidecar", font, egui::Color32::WHITE);
+    painter.text(
+        rect.center(),
+        egui::Align2::CENTER_CENTER,
+        "Drop a log, a world or a sidecar",
+        font,
+        egui::Color32::WHITE,
+    );
 }

@@ -43,7 +43,9 @@ pub fn kind_of(path: &Path) -> FileKind {
 fn is_sidecar(path: &Path) -> bool {
     let Ok(text) = std::fs::read_to_string(path) else { return false };
     let meta: Option<Meta> = serde_json::from_str(text.trim_start_matches('\u{feff}')).ok();
-    meta.is_some_and(|meta| meta != Meta { other: meta.other.clone(), ..Meta::default() } && World::from_json(&text).is_err())
+    meta.is_some_and(|meta| {
+        meta != Meta { other: meta.other.clone(), ..Meta::default() } && World::from_json(&text).is_err()
+    })
 }
 
 /// Why a mapping should be offered for recordings that could be read: nothing in them has a name that the program knows.
@@ -63,14 +65,15 @@ impl Session {
             let progress = |share| ticket.tell(share);
             let watch = Watch { progress: &progress, cancelled: ticket.cancelled() };
             match estimator::log::load_watched(&path, meta.as_deref(), &watch) {
-            Ok(recordings) => {
-                let prepared = recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect();
-                Outcome::Loaded(path, prepared)
+                Ok(recordings) => {
+                    let prepared = recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect();
+                    Outcome::Loaded(path, prepared)
+                }
+                Err(LogError::Cancelled { .. }) => Outcome::Cancelled,
+                Err(error) if mapping::mends(&error) => Outcome::Unmapped(path, sentence(&error.to_string())),
+                Err(error) => Outcome::Failed(sentence(&error.to_string())),
             }
-            Err(LogError::Cancelled { .. }) => Outcome::Cancelled,
-            Err(error) if mapping::mends(&error) => Outcome::Unmapped(path, sentence(&error.to_string())),
-            Err(error) => Outcome::Failed(sentence(&error.to_string())),
-        }});
+        });
     }
 
     /// Reads a log with this sidecar; without one, with the sidecar beside it.
@@ -132,7 +135,7 @@ impl Session {
         let stem = name.strip_suffix(".meta.json");
         let beside = stem.and_then(|stem| {
             let at = |ending: &&str| sidecar.with_file_name(format!("{stem}.{ending}"));
-            LOG_ENDINGS.iter().map(|e| at(e)).find(|log| log.is_file())
+            LOG_ENDINGS.iter().map(at).find(|log| log.is_file())
         });
         match beside.or_else(|| self.path.clone()) {
             Some(log) => self.open_with(ctx, &log, Some(sidecar.to_path_buf())),
@@ -173,7 +176,11 @@ mod tests {
         assert_eq!(kind_of(&file("world.txt", &world)), FileKind::World);
         assert_eq!(kind_of(&file("c.json", r#"{"rate_hz": 100}"#)), FileKind::Sidecar);
         assert_eq!(kind_of(&file("d.meta.json", "{}")), FileKind::Sidecar);
-        assert_eq!(kind_of(&file("e.json", r#"{"hello": 1}"#)), FileKind::World, "the world's reader says what is wrong");
+        assert_eq!(
+            kind_of(&file("e.json", r#"{"hello": 1}"#)),
+            FileKind::World,
+            "the world's reader says what is wrong"
+        );
         assert_eq!(kind_of(&file("f.json", "t_s,q_m\n0,1\n")), FileKind::Log);
         assert_eq!(kind_of(folder.path()), FileKind::Log);
     }

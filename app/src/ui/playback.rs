@@ -3,6 +3,16 @@
 use super::session::Session;
 
 impl Session {
+    /// Puts the cursor to the beginning of a span and shows the span with its surroundings.
+    pub fn look_at(&mut self, from_s: f64, to_s: f64) {
+        let Some((first, last)) = self.prepared().map(|p| p.span()) else { return };
+        let width = (4.0 * (to_s - from_s)).max(0.02 * (last - first)).min(last - first);
+        let start = (0.5 * (from_s + to_s - width)).clamp(first, (last - width).max(first));
+        self.view_s = (start, start + width);
+        self.playing = false;
+        self.seek(from_s);
+    }
+
     /// Moves the cursor, within the recording.
     pub fn seek(&mut self, time: f64) {
         if let Some(prepared) = self.prepared() {
@@ -65,6 +75,17 @@ mod tests {
         assert!((session.view_s.1 - session.view_s.0 - 100.0).abs() < 1e-9);
         session.seek(1e9);
         assert_eq!(session.cursor_s, 1_000.0);
+    }
+
+    #[test]
+    fn a_span_is_shown_with_its_surroundings() {
+        let mut session = clockless(1_001);
+        session.look_at(500.0, 510.0);
+        assert_eq!((session.view_s, session.cursor_s), ((485.0, 525.0), 500.0));
+        session.look_at(0.0, 1_000.0);
+        assert_eq!(session.view_s, (0.0, 1_000.0));
+        session.look_at(1_000.0, 1_000.0);
+        assert_eq!((session.view_s, session.cursor_s), ((980.0, 1_000.0), 1_000.0));
     }
 
     #[test]

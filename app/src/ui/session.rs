@@ -252,10 +252,9 @@ impl Session {
                 self.say(Tone::Done, format!("Saved to {}.", sidecar.display()));
                 self.open_with(ctx, &log, Some(sidecar));
             }
-            Outcome::Cancelled => {}
             Outcome::Fitted(analysis) => self.fitted(ctx, *analysis),
             Outcome::Simulated(replays) => self.replays = replays,
-            Outcome::Chosen(_, None) => {}
+            Outcome::Cancelled | Outcome::Chosen(_, None) => {}
             Outcome::Chosen(Purpose::OpenLog, Some(path)) => self.open_any(ctx, &path),
             Outcome::Chosen(Purpose::OpenWorld, Some(path)) => self.open_world(ctx, &path),
             Outcome::Chosen(purpose, Some(path)) => self.chosen = Some((purpose, path)),

@@ -265,6 +265,38 @@ fn the_picture_of_the_log_has_a_band_in_the_states_colours() {
 }
 
 #[test]
+fn doubtful_spans_are_shaded_and_listed() {
+    let mut recording = cart();
+    let spans = [(1_000, 1_200), (4_000, 4_001)].map(|(first, end)| haptics::recording::Span { first, end });
+    recording.warnings.push(haptics::recording::Warning {
+        kind: "stuck-channel".to_owned(),
+        column: Some("f_N".to_owned()),
+        spans: spans.to_vec(),
+        text: "f_N is stuck".to_owned(),
+    });
+    let mut harness =
+        harness(session(recording.clone()), [420.0, 900.0], |ui, session| ResultsPanel::default().ui(ui, session));
+    harness.get_by_label("Go to 2.00 s (1 of 2)").click();
+    harness.run_steps(3);
+    let (from, to) = harness.state().view_s;
+    assert!(harness.state().cursor_s == 2.0 && from < 2.0 && to > 2.4 && to - from < 3.0);
+    harness.get_by_label("Go to 8.00 s (2 of 2)").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().cursor_s, 8.0);
+    if no_driver() {
+        return;
+    }
+    for dark in [false, true] {
+        let marks = |recording: &Recording| {
+            let picture = screenshot::draw(session(recording.clone()), screenshot::Panel::Log, [900, 560], dark);
+            count_near(&picture.expect("drawn"), theme::Palette::of(dark).caution)
+        };
+        let (with, without) = (marks(&recording), marks(&cart()));
+        assert!(with > without + 30, "{with} and {without} pixels, dark {dark}");
+    }
+}
+
+#[test]
 fn the_scene_stands_in_the_picture_of_the_workbench() {
     if no_driver() {
         return;

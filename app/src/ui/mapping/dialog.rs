@@ -43,7 +43,8 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
             table::table(ui, &mut mapping.draft);
         });
     });
-    if ctx.input(|i| i.key_pressed(Key::Escape)) && !ctx.egui_wants_keyboard_input() && !egui::Popup::is_any_open(&ctx) {
+    if ctx.input(|i| i.key_pressed(Key::Escape)) && !ctx.egui_wants_keyboard_input() && !egui::Popup::is_any_open(&ctx)
+    {
         done = Some(Done::Cancel);
     }
     match done {

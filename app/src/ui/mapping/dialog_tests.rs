@@ -57,7 +57,7 @@ fn drop_file(harness: &mut Harness<'_, App>, path: &Path) {
 
 /// Opens a drop-down and takes an entry of it.
 fn choose(harness: &mut Harness<'_, App>, list: &str, entry: &str) {
-    harness.get_by_label(list).click();
+    harness.get_by_role_and_label(egui::Role::ComboBox, list).click();
     harness.run_steps(3);
     // Long lists scroll.
     last(harness, entry).scroll_to_me();

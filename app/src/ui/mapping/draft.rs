@@ -145,7 +145,9 @@ impl Draft {
         let mut entries: Vec<(&String, &String)> = self.meta.columns.iter().collect();
         entries.sort_by_key(|(name, _)| stranger(name));
         for (name, source) in entries {
-            let Some(row) = self.rows.iter_mut().find(|r| r.facts.header == *source && r.key.is_none()) else { continue };
+            let Some(row) = self.rows.iter_mut().find(|r| r.facts.header == *source && r.key.is_none()) else {
+                continue;
+            };
             let split = units::split(name);
             let si = split.map_or_else(|| name.clone(), |(quantity, unit)| format!("{quantity}_{}", unit.si));
             row.key = Some(name.clone());
@@ -323,8 +325,15 @@ impl Row {
 }
 
 /// Axes that may point up, with words.
-pub const UP: [(&str, &str); 7] =
-    [("y", "y (usual)"), ("-y", "−y"), ("z", "z"), ("-z", "−z"), ("x", "x"), ("-x", "−x"), ("none", "none: it lies flat")];
+pub const UP: [(&str, &str); 7] = [
+    ("y", "y (usual)"),
+    ("-y", "−y"),
+    ("z", "z"),
+    ("-z", "−z"),
+    ("x", "x"),
+    ("-x", "−x"),
+    ("none", "none: it lies flat"),
+];
 
 /// What a task is called.
 pub fn task_words(task: Option<Task>) -> String {

@@ -70,9 +70,13 @@ fn nothing_of_a_sidecar_is_lost() {
 fn a_sidecar_comes_back_as_the_dialog_left_it() {
     let table = Table::new("a,b [mm],c_V,d_mm,e\n0,1,2,3,5\n1,2,3,4,6\n2,3,4,5,7\n");
     let mut draft = table.draft("{}");
-    for (row, name, unit, scale) in
-        [(0, "t_s", "ns", 1.0), (1, "x_m", "mm", 1.0), (2, "fx_N", "N", 12.5), (3, "y_m", "cm", 1.0), (4, "fy_N", "lbf", 2.0)]
-    {
+    for (row, name, unit, scale) in [
+        (0, "t_s", "ns", 1.0),
+        (1, "x_m", "mm", 1.0),
+        (2, "fx_N", "N", 12.5),
+        (3, "y_m", "cm", 1.0),
+        (4, "fy_N", "lbf", 2.0),
+    ] {
         draft.rows[row].set_role(Role::Named(name.to_owned()));
         draft.rows[row].unit = spelled(unit);
         draft.rows[row].scale = scale;

@@ -57,7 +57,7 @@ pub fn look(path: &Path) -> Result<FileFacts, LogError> {
     let headers = log::headers(path)?;
     match text_rows(path, &headers)? {
         Some((rows, whole_file)) => Ok(from_cells(&headers, &rows, whole_file)),
-        None => through_the_reader(path, headers),
+        None => through_the_reader(path, &headers),
     }
 }
 
@@ -162,14 +162,12 @@ fn of_numbers(values: &[f64]) -> ColumnFacts {
 }
 
 /// Facts about a file that is not text: every column under a name that means nothing.
-fn through_the_reader(path: &Path, headers: Vec<String>) -> Result<FileFacts, LogError> {
+fn through_the_reader(path: &Path, headers: &[String]) -> Result<FileFacts, LogError> {
     let neutral = |at: usize| format!("column {}", at + 1);
     let mut hidden: Vec<usize> = (0..headers.len()).filter(|&at| has_a_meaning(&headers[at])).collect();
     let recordings = loop {
-        let meta = Meta {
-            columns: hidden.iter().map(|&at| (neutral(at), headers[at].clone())).collect(),
-            ..Meta::default()
-        };
+        let meta =
+            Meta { columns: hidden.iter().map(|&at| (neutral(at), headers[at].clone())).collect(), ..Meta::default() };
         match log::load_with_meta(path, &meta) {
             // A column of words under the name of a quantity: it is left to itself.
             Err(LogError::BadCell { column, .. }) if hidden.iter().any(|&at| headers[at] == column) => {
@@ -243,7 +241,7 @@ mod tests {
         let path = folder.path().join("log.csv");
         std::fs::write(&path, "t_ms,x_mm,fx1_lbf,q,time_s\n0,1,2,3,9\n10,5,4,6,8\n").expect("writable");
         let text = look(&path).expect("a table");
-        let read = through_the_reader(&path, log::headers(&path).expect("headers")).expect("a table");
+        let read = through_the_reader(&path, &log::headers(&path).expect("headers")).expect("a table");
         for (a, b) in text.columns.iter().zip(&read.columns) {
             assert_eq!((&a.header, a.range, a.increasing), (&b.header, b.range, b.increasing));
         }

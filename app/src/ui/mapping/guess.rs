@@ -94,9 +94,7 @@ fn clock_unit(facts: &ColumnFacts, reach: f64) -> &'static FileUnit {
 }
 
 fn candidate(column: usize, facts: &ColumnFacts, reading: &Reading) -> Option<Candidate> {
-    let made = |name: String, points: i32| {
-        Some(Candidate { column, name, points, words: reading.words.clone() })
-    };
+    let made = |name: String, points: i32| Some(Candidate { column, name, points, words: reading.words.clone() });
     // The program's own names, in any unit.
     if let Some((quantity, unit)) = units::split(&facts.header)
         && units::quantity_dimensions(quantity).is_some_and(|d| d.contains(&unit.dimension))
@@ -109,7 +107,9 @@ fn candidate(column: usize, facts: &ColumnFacts, reading: &Reading) -> Option<Ca
     }
     if reading.kind == Some(Kind::Trial) && (facts.whole || !facts.numeric) && facts.distinct.is_some() {
         // A number that changes with every row is a counter of samples.
-        return (facts.changes < facts.distinct.as_ref().map_or(0, Vec::len).max(1)).then(|| made("trial".to_owned(), 5)).flatten();
+        return (facts.changes < facts.distinct.as_ref().map_or(0, Vec::len).max(1))
+            .then(|| made("trial".to_owned(), 5))
+            .flatten();
     }
     if reading.kind == Some(Kind::Label) && !facts.numeric {
         return made("label".to_owned(), 5);
@@ -171,9 +171,8 @@ fn prefer_pairs(candidates: &mut [Candidate]) {
     let mates = [("q_m", "f_N"), ("q_rad", "tau_Nm")];
     let shared = |a: &Candidate, b: &Candidate| a.words.iter().filter(|w| b.words.contains(w)).count();
     for (motion, drive) in mates {
-        let places = |name: &str| -> Vec<usize> {
-            (0..candidates.len()).filter(|&i| candidates[i].name == name).collect()
-        };
+        let places =
+            |name: &str| -> Vec<usize> { (0..candidates.len()).filter(|&i| candidates[i].name == name).collect() };
         let pairs = places(motion).into_iter().flat_map(|a| places(drive).into_iter().map(move |b| (a, b)));
         let mut best: Option<(usize, usize, usize)> = None;
         for (a, b) in pairs {

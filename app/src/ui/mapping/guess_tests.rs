@@ -78,10 +78,7 @@ fn real_recordings() {
              torque1_measured_Nm,torque2_measured_Nm",
             &["trial = run", "t_s = time_s s"],
         ),
-        (
-            "trial|0|2|0,sample|0|900|1,x_m,y_m,z_m",
-            &["trial = trial", "x_m = x_m m", "y_m = y_m m", "z_m = z_m m"],
-        ),
+        ("trial|0|2|0,sample|0|900|1,x_m,y_m,z_m", &["trial = trial", "x_m = x_m m", "y_m = y_m m", "z_m = z_m m"]),
     ] {
         let columns: Vec<&str> = headers.split(',').map(str::trim).collect();
         assert_eq!(guessed(&columns), expected, "{headers}");
@@ -148,11 +145,10 @@ fn invented_ones() {
         // Nothing that could be meant.
         ("a;b;voltage;comment", &[]),
         // Units that need a factor.
-        ("time [ns]|0|9e9|1000000;pull_lbf|0|40;stroke (in)|0|9", &[
-            "t_s = time [ns] ns",
-            "f_N = pull_lbf lbf",
-            "q_m = stroke (in) in",
-        ]),
+        (
+            "time [ns]|0|9e9|1000000;pull_lbf|0|40;stroke (in)|0|9",
+            &["t_s = time [ns] ns", "f_N = pull_lbf lbf", "q_m = stroke (in) in"],
+        ),
     ] {
         let columns: Vec<&str> = headers.split(';').map(str::trim).collect();
         assert_eq!(guessed(&columns), expected, "{headers}");

@@ -62,13 +62,7 @@ impl From<Looked> for Mapping {
 }
 
 /// Looks at a log in the background; the dialog opens when that is done.
-pub fn look(
-    ctx: &egui::Context,
-    jobs: &mut Jobs,
-    path: &Path,
-    sidecar: Option<PathBuf>,
-    why: Option<String>,
-) {
+pub fn look(ctx: &egui::Context, jobs: &mut Jobs, path: &Path, sidecar: Option<PathBuf>, why: Option<String>) {
     let path = path.to_path_buf();
     let what = format!("Looking at {}", name_of(&path));
     jobs.start_watched(ctx, JobKind::Look, what, move |_| {

@@ -142,7 +142,10 @@ fn curves(ui: &mut Ui, prepared: &Prepared, group: &Group, height: f32) {
             ui.label(RichText::new(&trace.label).size(11.5).color(*color));
         }
         let axis = if prepared.clockless() { "sample" } else { "s" };
-        ui.label(theme::caption(ui, format!("{} over {axis}", if group.unit.is_empty() { "values" } else { &group.unit })));
+        ui.label(theme::caption(
+            ui,
+            format!("{} over {axis}", if group.unit.is_empty() { "values" } else { &group.unit }),
+        ));
     });
 }
 

@@ -114,7 +114,9 @@ pub fn missing(recording: &Recording) -> Option<String> {
     let task = match task_of(recording, None) {
         Ok(task) => task,
         Err(_) if is_two_fingered(recording) => {
-            return Some("Choose the task above: two fingers stack blocks, turn a crank, or carry a barrel.".to_owned());
+            return Some(
+                "Choose the task above: two fingers stack blocks, turn a crank, or carry a barrel.".to_owned(),
+            );
         }
         Err(_) => {
             let text = "No column says what moved: name a coordinate (q_m or q_rad), the tool's x_m and y_m, or the \
@@ -132,13 +134,15 @@ pub fn missing(recording: &Recording) -> Option<String> {
             }
             Ok(_) => None,
         },
-        Task::Mechanism if !has("q_m") && !has("q_rad") && !has("x_m") => {
-            Some("No column says how far it moved: name a coordinate (q_m or q_rad), or the tool's x_m and y_m.".to_owned())
-        }
-        Task::Mechanism if recording.time_s.is_none() => {
-            Some("There is no clock: name the time t_s, or state the rate; without it only the path can be used.".to_owned())
-        }
+        Task::Mechanism if !has("q_m") && !has("q_rad") && !has("x_m") => Some(
+            "No column says how far it moved: name a coordinate (q_m or q_rad), or the tool's x_m and y_m.".to_owned(),
+        ),
+        Task::Mechanism if recording.time_s.is_none() => Some(
+            "There is no clock: name the time t_s, or state the rate; without it only the path can be used.".to_owned(),
+        ),
         Task::Mechanism => None,
-        Task::Needle | Task::Switch => Some(format!("Recordings of the task {} can be looked at, not fitted yet.", task.name())),
+        Task::Needle | Task::Switch => {
+            Some(format!("Recordings of the task {} can be looked at, not fitted yet.", task.name()))
+        }
     }
 }

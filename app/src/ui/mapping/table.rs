@@ -5,7 +5,7 @@ use super::file_units::FileUnit;
 use super::names::{dimension, find};
 use crate::ui::format;
 use crate::ui::theme::{self, palette};
-use egui::{Align, ComboBox, DragValue, Label, Layout, Role as Accessible, RichText, Ui, WidgetInfo};
+use egui::{Align, ComboBox, DragValue, Label, Layout, RichText, Role as Accessible, Ui, WidgetInfo};
 use egui_extras::{Column, TableBuilder};
 
 /// Height of a line, points.
@@ -34,9 +34,21 @@ pub fn table(ui: &mut Ui, draft: &mut Draft) {
                 line.col(|ui| means(ui, draft, at));
                 let row = &mut draft.rows[at];
                 let number = row.name().and_then(dimension).is_some();
-                line.col(|ui| if number { unit(ui, row) });
-                line.col(|ui| if number { sign(ui, row) });
-                line.col(|ui| if number { factor(ui, row) });
+                line.col(|ui| {
+                    if number {
+                        unit(ui, row);
+                    }
+                });
+                line.col(|ui| {
+                    if number {
+                        sign(ui, row);
+                    }
+                });
+                line.col(|ui| {
+                    if number {
+                        factor(ui, row);
+                    }
+                });
             });
         });
 }
@@ -151,7 +163,8 @@ fn factor(ui: &mut Ui, row: &mut Row) {
         if row.needs_a_factor() {
             ui.visuals_mut().override_text_color = Some(palette(ui).caution);
         }
-        let response = ui.add_sized([ui.available_width() - 2.0, 24.0], DragValue::new(&mut value).speed(speed).max_decimals(9));
+        let response =
+            ui.add_sized([ui.available_width() - 2.0, 24.0], DragValue::new(&mut value).speed(speed).max_decimals(9));
         let hint = if row.needs_a_factor() {
             "The column's own unit measures something else: how much is one of it?"
         } else {

@@ -126,8 +126,8 @@ pub fn read(header: &str) -> Reading {
 
 /// One quantity out of several words: the force of a position sensor is a force, the rate of an angle an angular velocity.
 fn combined(kinds: &[Kind], by_unit: Option<Kind>) -> Option<Kind> {
-    let has = |kind| kinds.contains(&kind);
     use Kind::{Angle, AngularVelocity, Force, Label, Position, Time, Torque, Trial, Velocity};
+    let has = |kind| kinds.contains(&kind);
     // A unit decides between words that are all there: `angle_rate_deg`, `joint velocity rad/s`.
     if has(Velocity) && (by_unit == Some(AngularVelocity) || has(Angle)) {
         return Some(AngularVelocity);
@@ -157,8 +157,8 @@ fn meaning(word: &str) -> Meaning {
         "t" | "time" | "zeit" | "stamp" | "timestamp" | "zeitstempel" | "clock" | "uhrzeit" | "elapsed" => {
             Meaning::Kind(Kind::Time)
         }
-        "pos" | "position" | "weg" | "lage" | "ort" | "tip" | "tcp" | "displacement" | "disp" | "auslenkung" | "hub"
-        | "stroke" | "travel" | "extension" | "schlitten" => Meaning::Kind(Kind::Position),
+        "pos" | "position" | "weg" | "lage" | "ort" | "tip" | "tcp" | "displacement" | "disp" | "auslenkung"
+        | "hub" | "stroke" | "travel" | "extension" | "schlitten" => Meaning::Kind(Kind::Position),
         "angle" | "winkel" | "theta" | "phi" | "alpha" | "q" | "drehwinkel" | "rotation" | "encoder" => {
             Meaning::Kind(Kind::Angle)
         }

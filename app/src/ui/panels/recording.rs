@@ -62,7 +62,10 @@ fn source(ui: &mut Ui, session: &mut Session) {
         }
     });
     let Some(prepared) = session.prepared().cloned() else {
-        ui.label(theme::caption(ui, "Drop a log, a world or a sidecar anywhere on the window; its columns can be mapped."));
+        ui.label(theme::caption(
+            ui,
+            "Drop a log, a world or a sidecar anywhere on the window; its columns can be mapped.",
+        ));
         return;
     };
     ui.add_space(space::XS);

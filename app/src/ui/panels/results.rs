@@ -3,6 +3,7 @@
 use super::Panel;
 use super::parameters::ParametersPanel;
 use crate::ui::format;
+use crate::ui::plots::places;
 use crate::ui::session::{Session, Workspace, sentence};
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{card, plain_card, primary_button};
@@ -103,17 +104,16 @@ fn facts(constraint: &Constraint) -> Vec<String> {
 
 fn warnings(ui: &mut Ui, session: &mut Session) {
     let Some(prepared) = session.prepared().cloned() else { return };
-    let mut texts: Vec<(String, Option<f64>)> = Vec::new();
+    let mut texts: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for warning in &prepared.recording.warnings {
-        let at = warning.spans.first().and_then(|s| prepared.times.get(s.first)).copied();
-        texts.push((sentence(&warning.text), at));
+        texts.push((sentence(&warning.text), places(&prepared, warning)));
     }
     let analysis = session.analysis.clone();
     let fitted = analysis.iter().flat_map(|a| a.fit.warnings.iter());
     let segmented = session.segmentation().into_iter().flat_map(|s| s.warnings.iter());
     for text in fitted.chain(segmented).map(|w| sentence(w)) {
         if !texts.iter().any(|(t, _)| *t == text) {
-            texts.push((text, None));
+            texts.push((text, Vec::new()));
         }
     }
     let count = texts.len();
@@ -124,30 +124,37 @@ fn warnings(ui: &mut Ui, session: &mut Session) {
             palette(ui).good
         }));
     };
-    let mut seek = None;
+    let mut jump = None;
     card(ui, "Warnings", count, |ui| {
         if texts.is_empty() {
             ui.label(theme::caption(ui, "Nothing doubtful was found."));
         }
-        for (text, at) in texts {
+        for (text, places) in texts {
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new("▲").size(9.0).color(palette(ui).caution));
-                let label = egui::Label::new(RichText::new(text).size(12.0)).wrap();
-                match at {
-                    Some(time) => {
-                        let response = ui.add(label.sense(egui::Sense::click())).on_hover_text("Click to go there");
-                        if response.clicked() {
-                            seek = Some(time);
-                        }
-                    }
-                    None => drop(ui.add(label)),
-                }
+                ui.vertical(|ui| {
+                    ui.spacing_mut().item_spacing.y = 2.0;
+                    ui.add(egui::Label::new(RichText::new(text).size(12.0)).wrap());
+                    jump = jump.or(go_there(ui, &places, session.cursor_s, prepared.clockless()));
+                });
             });
         }
     });
-    if let Some(time) = seek {
-        session.seek(time);
+    if let Some((from, to)) = jump {
+        session.look_at(from, to);
     }
+}
+
+/// A link to the next of several places; the one that was asked for.
+fn go_there(ui: &mut Ui, places: &[(f64, f64)], cursor_s: f64, clockless: bool) -> Option<(f64, f64)> {
+    let next = places.iter().position(|(from, _)| *from > cursor_s + 1e-9).unwrap_or(0);
+    let place = places.get(next)?;
+    let at = if clockless { format!("sample {:.0}", place.0) } else { format!("{} s", format::number(place.0, 2)) };
+    let text = match places.len() {
+        1 => format!("Go to {at}"),
+        n => format!("Go to {at} ({} of {n})", next + 1),
+    };
+    ui.link(RichText::new(text).size(11.5)).clicked().then_some(*place)
 }
 
 fn train_with_it(ui: &mut Ui, session: &mut Session) {

@@ -2,7 +2,9 @@
 
 mod axes;
 mod decimate;
+mod doubts;
 mod row;
 
 pub use decimate::{Levels, decimate};
+pub use doubts::places;
 pub use row::{GUTTER, PlotCache, RowInput, axis_height, row};

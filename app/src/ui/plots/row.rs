@@ -1,6 +1,7 @@
 //! One plot with its gutter: title, unit, curves with their values at the cursor.
 
 use super::axes::{AXIS_WIDTH, marks, time_axis, value_axis};
+use super::doubts::shade;
 use super::{Levels, decimate};
 use crate::ui::format;
 use crate::ui::prepare::{Group, Prepared, Trace};
@@ -263,7 +264,11 @@ fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) -> RowOut
             }
         }
     });
+    let doubt = shade(ui, &response.transform, input.prepared, input.group);
     draw_cursor(ui, &response.transform, input, &shown);
+    if let Some(doubt) = doubt {
+        response.response.clone().on_hover_text_at_pointer(doubt);
+    }
     react(ui, &response.response, &response.transform, input)
 }
 
