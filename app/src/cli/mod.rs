@@ -3,6 +3,7 @@
 //! Exit codes: 0 done, 1 the input or the run failed, 2 wrong usage.
 
 mod bench;
+mod convert;
 mod demo;
 mod device;
 mod fit;
@@ -47,6 +48,8 @@ enum Command {
     Record(record::Record),
     /// A picture without a window
     Screenshot(screenshot::Screenshot),
+    /// A log in another format: csv, mcap or parquet, by the ending of the output
+    Convert(convert::Convert),
     /// Devices that drive the hand, and a self-test in words
     Device(device::Device),
     /// How punctual the servo is on this machine
@@ -134,6 +137,7 @@ pub fn main() -> ExitCode {
         Some(Command::Simulate(args)) => args.run(),
         Some(Command::Record(args)) => args.run(),
         Some(Command::Screenshot(args)) => args.run(),
+        Some(Command::Convert(args)) => args.run(),
         Some(Command::Device(args)) => args.run(),
         Some(Command::Bench(args)) => args.run(),
     };

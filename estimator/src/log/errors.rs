@@ -70,9 +70,55 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Not a table at all.
-    #[error("this is not a table of numbers ({why}); give a CSV file with a header line: {path}", path = path.display())]
+    #[error("this is not a table of numbers ({why}); give a CSV file with a header line, an MCAP or a Parquet file: {path}", path = path.display())]
     NotATable {
         /// What it looks like.
+        why: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// Cut off, or with contents that cannot be.
+    #[error("the {format} file is damaged ({why}); copy or export it again: {path}", path = path.display())]
+    Damaged {
+        /// `MCAP`, `Parquet`, …
+        format: &'static str,
+        /// What is wrong, and where.
+        why: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The recorder still runs or did not end well, and it is not known to write whole blocks.
+    #[error("the {format} file ends in the middle ({why}); wait until the recording has ended, or copy it again: {path}", path = path.display())]
+    CutOff {
+        /// `MCAP`, `Parquet`, …
+        format: &'static str,
+        /// Where it ends.
+        why: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// A container without anything that can be read as columns of numbers.
+    #[error("nothing in the {format} file can be read as columns of numbers ({why}); export the log with JSON, protobuf or ROS 2 messages, or as CSV: {path}", path = path.display())]
+    NoColumns {
+        /// `MCAP`, `Parquet`, …
+        format: &'static str,
+        /// What there is.
+        why: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// Topics that cannot be put on one clock.
+    #[error("the topics cannot be put on one clock ({why}); choose other columns in the sidecar, or record them together: {path}", path = path.display())]
+    Clocks {
+        /// What does not fit.
+        why: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// A recording cannot be kept in this format.
+    #[error("the recording cannot be written ({why}): {path}", path = path.display())]
+    NotWritable {
+        /// What, and what to do.
         why: String,
         /// The file.
         path: PathBuf,
@@ -135,11 +181,11 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Text where a number belongs.
-    #[error("row {row} (line {line}), column `{column}`: {what}; correct that cell or remove the row: {path}", path = path.display())]
+    #[error("{at}, column `{column}`: {what}; correct that cell or remove the row: {path}", at = place(*row, *line), path = path.display())]
     BadCell {
         /// Row of data, from 1.
         row: usize,
-        /// Line in the file, from 1.
+        /// Line in the file, from 1; 0 where the format has no lines.
         line: u64,
         /// Column.
         column: String,
@@ -149,11 +195,11 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A row of another length.
-    #[error("row {row} (line {line}) has {found} cells and the header has {expected}; the line may be cut off: complete or remove it: {path}", path = path.display())]
+    #[error("{at} has {found} cells and the header has {expected}; the line may be cut off: complete or remove it: {path}", at = place(*row, *line), path = path.display())]
     UnequalRow {
         /// Row of data, from 1.
         row: usize,
-        /// Line in the file, from 1.
+        /// Line in the file, from 1; 0 where the format has no lines.
         line: u64,
         /// Cells there.
         found: usize,
@@ -163,11 +209,11 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Time does not increase.
-    #[error("row {row} (line {line}), column `{column}`: time {how} ({previous} s, then {time} s); sort the rows, or split the recordings with a `trial` column: {path}", path = path.display())]
+    #[error("{at}, column `{column}`: time {how} ({previous} s, then {time} s); sort the rows, or split the recordings with a `trial` column: {path}", at = place(*row, *line), path = path.display())]
     Time {
         /// Row of data, from 1.
         row: usize,
-        /// Line in the file, from 1.
+        /// Line in the file, from 1; 0 where the format has no lines.
         line: u64,
         /// The time column.
         column: String,
@@ -208,4 +254,9 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
+}
+
+/// `row 3 (line 4)`, or without the line where the format has none.
+fn place(row: usize, line: u64) -> String {
+    if line == 0 { format!("row {row}") } else { format!("row {row} (line {line})") }
 }

@@ -64,7 +64,6 @@ pub fn cell_hash(cell: &[u8]) -> u64 {
 
 impl Fingerprints {
     /// Takes one row in. Costs nothing when the file holds a single recording.
-    #[allow(dead_code, reason = "for readers of containers, which hand their rows in one by one")]
     pub fn add(&mut self, plan: &Plan, record: &ByteRecord) {
         if plan.watched.is_empty() {
             return;

@@ -1,13 +1,21 @@
-//! Reading logs: tables of samples with a sidecar of facts (`spec/logs.md`).
+//! Reading and writing logs: tables of samples with a sidecar of facts (`spec/logs.md`).
 //!
-//! [`load`] goes from the file to [`Recording`]s in SI units, or to one sentence that says what is wrong and where.
+//! [`load`] goes from the file to [`Recording`]s in SI units, or to one sentence that says what is wrong and where. The format
+//! is told by the content. Every reader ends in the same table, so every rule of the sidecar holds for every format.
 
+mod assemble;
 mod checks;
+mod columnar;
 mod csv;
 mod errors;
 mod facts;
 mod fingerprint;
+mod format;
+mod mcap;
+#[cfg(feature = "parquet")]
+mod parquet;
 mod plan;
+mod raw;
 mod sidecar;
 mod table;
 pub mod units;
@@ -15,20 +23,21 @@ mod watch;
 mod write;
 
 pub use errors::LogError;
+pub use format::Format;
+pub use mcap::stream::McapStream;
 pub use sidecar::{path_for as sidecar_path, write as write_meta, write_as_is as write_sidecar};
 pub use watch::Watch;
-pub use write::write_csv;
+pub use write::{Attachment, write, write_csv};
 
-use haptics::recording::{Channel, Meta, Recording, Warning};
-use plan::{Plan, Use};
+use haptics::recording::{Meta, Recording, Warning};
+use raw::Raw;
 use std::path::Path;
-use table::{Group, Table};
 
 /// Largest file that is read, bytes (4 GiB): the table needs about as much memory again.
 pub const MAX_BYTES: u64 = 4 << 30;
 
-/// Reads a log and its sidecar (`meta`, or `<stem>.meta.json` beside it): one recording for every value of the `trial`
-/// column, in the order of the file, else one.
+/// Reads a log and its sidecar (`meta`, or the one that a file of ours carries, or `<stem>.meta.json` beside it): one
+/// recording for every value of the `trial` column, in the order of the file, else one.
 pub fn load(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError> {
     load_watched(path, meta, &Watch::none())
 }
@@ -36,35 +45,118 @@ pub fn load(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError
 /// [`load`] that tells how far it has come and that can be ended from outside: then nothing is loaded.
 pub fn load_watched(path: &Path, meta: Option<&Path>, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
     let size = admissible_size(path)?;
-    let meta = sidecar::load(path, meta)?;
-    load_with(path, &meta, size, watch)
+    let facts = Facts::Found { beside: sidecar::load(path, meta), named: meta.is_some() };
+    read(path, format::of(path)?, size, facts, watch)
 }
 
 /// Reads a log with a sidecar that is already in memory (the app's mapping dialog).
 pub fn load_with_meta(path: &Path, meta: &Meta) -> Result<Vec<Recording>, LogError> {
     let size = admissible_size(path)?;
+    load_with(path, meta, size, &Watch::none())
+}
+
+fn load_with(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
     if let Some(why) = facts::complaint(meta) {
         return Err(LogError::Sidecar { why, path: sidecar::path_for(path) });
     }
-    load_with(path, meta, size, &Watch::none())
+    read(path, format::of(path)?, size, Facts::Given(meta), watch)
 }
 
 /// The column names of a table, for a mapping dialog.
 pub fn headers(path: &Path) -> Result<Vec<String>, LogError> {
-    admissible_size(path)?;
-    Ok(csv::sniff(path)?.headers)
+    let size = admissible_size(path)?;
+    let nothing = Meta::default();
+    match format::of(path)? {
+        Format::Csv => Ok(csv::sniff(path)?.headers),
+        Format::Mcap => Ok(mcap::read(path, size, &Watch::none())?.columns(&nothing)?.0.headers),
+        Format::Parquet => Ok(read_parquet(path, size, &Watch::none())?.0.headers),
+    }
 }
 
-fn load_with(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
-    let dialect = csv::sniff(path)?;
-    let plan = plan::plan(&dialect.headers, meta, path)?;
-    let table = csv::read(path, &dialect, &plan, size, watch);
-    // A table that grows is reported as such, also when its last line was half written.
+/// Where the facts about a log come from.
+enum Facts<'a> {
+    /// The caller.
+    Given(&'a Meta),
+    /// The sidecar beside the log (or why it cannot be read), which the caller may have named.
+    Found { beside: Result<Meta, LogError>, named: bool },
+}
+
+impl Facts<'_> {
+    /// The facts that hold, with a note when a sidecar beside is not used.
+    fn settle(self, carried: Option<&str>, path: &Path) -> Result<(Meta, Option<Warning>), LogError> {
+        match (self, carried) {
+            (Self::Given(meta), _) => Ok((meta.clone(), None)),
+            (Self::Found { beside, named: false }, Some(text)) => {
+                let meta = sidecar::parse(text, path)?;
+                // The columns of a file of ours are in SI units already: another file's mapping would spoil them.
+                let file = sidecar::path_for(path);
+                let stray = !beside.is_ok_and(|beside| beside == Meta::default() || beside == meta);
+                let text =
+                    format!("the log carries its own sidecar; {} is not used unless it is named", file.display());
+                Ok((meta, stray.then(|| note("sidecar", text))))
+            }
+            (Self::Found { beside, .. }, _) => Ok((beside?, None)),
+        }
+    }
+}
+
+fn note(kind: &str, text: String) -> Warning {
+    Warning { kind: kind.to_owned(), column: None, spans: Vec::new(), text }
+}
+
+fn read(
+    path: &Path,
+    format: Format,
+    size: u64,
+    facts: Facts<'_>,
+    watch: &Watch<'_>,
+) -> Result<Vec<Recording>, LogError> {
+    let done = match format {
+        Format::Csv => facts.settle(None, path).and_then(|(meta, _)| read_csv(path, &meta, size, watch)),
+        Format::Mcap => mcap::read(path, size, watch).and_then(|log| {
+            let (meta, stray) = facts.settle(log.sidecar.as_deref(), path)?;
+            let (raw, mut said) = log.columns(&meta)?;
+            said.extend(stray);
+            finish(raw, &meta, path, &said)
+        }),
+        Format::Parquet => read_parquet(path, size, watch).and_then(|(raw, carried, mut said)| {
+            let (meta, stray) = facts.settle(carried.as_deref(), path)?;
+            said.extend(stray);
+            finish(raw, &meta, path, &said)
+        }),
+    };
+    // A file that grows is reported as such, also when its end was half written.
     let after = std::fs::metadata(path).map_or(size, |m| m.len());
     if after != size {
         return Err(LogError::Grew { before: size, after, path: path.to_path_buf() });
     }
-    assemble(table?, &plan, meta, path, &dialect.headers)
+    done
+}
+
+fn read_csv(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
+    let dialect = csv::sniff(path)?;
+    let plan = plan::plan(&dialect.headers, meta, path)?;
+    let table = csv::read(path, &dialect, &plan, size, watch)?;
+    assemble::recordings(table, &plan, meta, path, &dialect.headers, &[])
+}
+
+/// From the columns of a container to recordings.
+fn finish(raw: Raw, meta: &Meta, path: &Path, said: &[Warning]) -> Result<Vec<Recording>, LogError> {
+    let headers = raw.headers.clone();
+    let plan = plan::plan(&headers, &raw.resolved(meta), path)?;
+    let table = columnar::table(raw, &plan, path)?;
+    assemble::recordings(table, &plan, meta, path, &headers, said)
+}
+
+#[cfg(feature = "parquet")]
+fn read_parquet(path: &Path, size: u64, watch: &Watch<'_>) -> Result<parquet::Columns, LogError> {
+    parquet::read(path, size, watch)
+}
+
+#[cfg(not(feature = "parquet"))]
+fn read_parquet(path: &Path, _size: u64, _watch: &Watch<'_>) -> Result<(Raw, Option<String>, Vec<Warning>), LogError> {
+    let why = "Parquet was left out when this program was built".to_owned();
+    Err(LogError::NoColumns { format: "Parquet", why, path: path.to_path_buf() })
 }
 
 /// Size of a file that can be read.
@@ -87,122 +179,7 @@ fn admissible_size(path: &Path) -> Result<u64, LogError> {
     Ok(facts.len())
 }
 
-fn assemble(
-    mut table: Table,
-    plan: &Plan,
-    meta: &Meta,
-    path: &Path,
-    headers: &[String],
-) -> Result<Vec<Recording>, LogError> {
-    let groups = std::mem::take(&mut table.groups);
-    let several = groups.len() > 1;
-    let copies = table.fingerprints.copies();
-    let mut recordings = Vec::with_capacity(groups.len());
-    for (trial, mut group) in groups {
-        let time_s = time(&mut group, plan, meta, headers, path)?;
-        let mut recording = Recording {
-            name: name(path, trial.as_deref().filter(|_| several)),
-            trial,
-            time_s,
-            channels: channels(&mut group, plan, &table.text_columns),
-            labels: plan.label.map(|_| std::mem::take(&mut group.labels)),
-            meta: meta.clone(),
-            warnings: Vec::new(),
-        };
-        if recording.channels.is_empty() {
-            let why = "no column holds numbers beside the time".to_owned();
-            return Err(LogError::NotATable { why, path: path.to_path_buf() });
-        }
-        if let Some(why) = facts::up_not_honoured(&recording) {
-            return Err(LogError::Sidecar { why, path: sidecar::path_for(path) });
-        }
-        recording.warnings = notes(plan, &table, headers, &recording);
-        recording.warnings.extend(facts::doubts(&recording));
-        recording.warnings.extend(checks::warnings(&recording));
-        recording.warnings.extend(checks::copied(&recording, plan, &copies));
-        recordings.push(recording);
-    }
-    Ok(recordings)
-}
-
-fn name(path: &Path, trial: Option<&str>) -> String {
-    let file = path.file_name().map_or_else(|| path.display().to_string(), |f| f.to_string_lossy().into_owned());
-    trial.map_or(file.clone(), |t| format!("{file}, trial {t}"))
-}
-
-/// Takes the time column out of the group and checks that it increases; made from `rate_hz` when there is none.
-fn time(
-    group: &mut Group,
-    plan: &Plan,
-    meta: &Meta,
-    headers: &[String],
-    path: &Path,
-) -> Result<Option<Vec<f64>>, LogError> {
-    let Some(column) = plan.time else {
-        let rows = group.rows();
-        return Ok(meta.rate_hz.map(|rate| (0..rows).map(|i| i as f64 / rate).collect()));
-    };
-    let time = std::mem::take(&mut group.columns[column]);
-    if let Some(i) = time.windows(2).position(|w| w[1] <= w[0]) {
-        let (row, line) = group.place(i + 1);
-        let how = if time[i + 1] < time[i] { "goes backwards" } else { "stands still" };
-        return Err(LogError::Time {
-            row,
-            line,
-            column: headers[column].clone(),
-            how,
-            previous: time[i],
-            time: time[i + 1],
-            path: path.to_path_buf(),
-        });
-    }
-    Ok(Some(time))
-}
-
-/// The channels: columns are moved, and copied only where two names share one.
-fn channels(group: &mut Group, plan: &Plan, text_columns: &[usize]) -> Vec<Channel> {
-    let mut made: Vec<Channel> = Vec::with_capacity(plan.targets.len());
-    let mut owner: Vec<Option<usize>> = vec![None; plan.uses.len()];
-    for target in &plan.targets {
-        if text_columns.contains(&target.column) || plan.uses[target.column] == Use::Ignore {
-            continue;
-        }
-        let values = match owner[target.column] {
-            Some(first) => made[first].values.clone(),
-            None => std::mem::take(&mut group.columns[target.column]),
-        };
-        owner[target.column].get_or_insert(made.len());
-        made.push(Channel { name: target.name.clone(), unit: target.unit.clone(), values });
-    }
-    made
-}
-
-/// What the reader should know about the table itself.
-fn notes(plan: &Plan, table: &Table, headers: &[String], recording: &Recording) -> Vec<Warning> {
-    let note = |kind: &str, column: Option<&str>, text: String| Warning {
-        kind: kind.to_owned(),
-        column: column.map(str::to_owned),
-        spans: Vec::new(),
-        text,
-    };
-    let mut notes: Vec<Warning> = plan.notes.iter().map(|n| note("columns", None, n.clone())).collect();
-    let named = |c: usize| !headers[c].is_empty() && !plan.select.iter().any(|w| w.column == c);
-    for &column in table.text_columns.iter().filter(|&&c| named(c)) {
-        let name = &headers[column];
-        notes.push(note("text-column", Some(name), format!("the column `{name}` holds text and is not used")));
-    }
-    if !recording.channels.iter().any(|c| units::is_program_name(&c.name)) {
-        let text = "no column has a name that the program knows; map them with \"columns\" in the sidecar".to_owned();
-        notes.push(note("no-known-column", None, text));
-    }
-    if recording.time_s.is_none() {
-        let text = "the log has no clock (no t_s column, no rate_hz in the sidecar): paths and forces can be used; \
-                    velocities, viscous friction, inertia and delays cannot be known"
-            .to_owned();
-        notes.push(note("no-clock", None, text));
-    }
-    notes
-}
-
+#[cfg(test)]
+mod formats_tests;
 #[cfg(test)]
 mod tests;

@@ -21,7 +21,12 @@ pub fn load(log: &Path, given: Option<&Path>) -> Result<Meta, LogError> {
         }
         Err(error) => return Err(LogError::Io { reason: error.to_string(), path }),
     };
-    let malformed = |why: String| LogError::Sidecar { why, path: path.clone() };
+    parse(&text, &path)
+}
+
+/// Reads the text of a sidecar, which stands in `path`.
+pub fn parse(text: &str, path: &Path) -> Result<Meta, LogError> {
+    let malformed = |why: String| LogError::Sidecar { why, path: path.to_path_buf() };
     let value: serde_json::Value =
         serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| malformed(error.to_string()))?;
     if let Some(why) = facts::wrong_type(&value) {
@@ -36,13 +41,8 @@ pub fn load(log: &Path, given: Option<&Path>) -> Result<Meta, LogError> {
 /// A written table is in the program's names and SI units already: what the sidecar said about the old file's columns is
 /// left out, everything else is kept.
 pub fn write(recording: &Recording, log: &Path) -> Result<PathBuf, LogError> {
-    let mut meta = recording.meta.clone();
-    meta.columns.clear();
-    meta.scale.clear();
-    meta.sign.clear();
-    meta.select.clear();
     let path = path_for(log);
-    write_as_is(&meta, &path)?;
+    write_as_is(&super::write::portable_meta(&recording.meta), &path)?;
     Ok(path)
 }
 

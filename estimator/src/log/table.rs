@@ -10,7 +10,7 @@ pub struct Group {
     /// Labels, when there is such a column.
     pub labels: Vec<String>,
     /// Line in the file of every row, run-length coded: (first row index in the group, its line, its row in the file).
-    lines: Vec<(usize, u64, usize)>,
+    pub(super) lines: Vec<(usize, u64, usize)>,
 }
 
 /// A parsed table: groups in the order in which their trial value first appears.
@@ -20,6 +20,8 @@ pub struct Table {
     pub groups: Vec<(Option<String>, Group)>,
     /// Columns that hold text and were left out.
     pub text_columns: Vec<usize>,
+    /// Columns without a value in some rows that nobody asked for, left out too.
+    pub gappy_columns: Vec<usize>,
     /// Contents of every trial, also of those not selected.
     pub fingerprints: Fingerprints,
 }

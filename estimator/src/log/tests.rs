@@ -1,6 +1,7 @@
 //! Every bad input of `spec/logs.md`, and what must load.
 
 use super::*;
+use haptics::recording::Channel;
 use proptest::prelude::*;
 use std::fmt::Write as _;
 use std::path::PathBuf;

@@ -1,0 +1,75 @@
+//! `touchstone convert`: a log in another format.
+
+use super::{LogArgs, Output};
+use anyhow::Context;
+use clap::Args;
+use estimator::log::Attachment;
+use haptics::recording::Warning;
+use haptics::world::World;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `convert`.
+#[derive(Args)]
+pub struct Convert {
+    /// Log file: CSV, MCAP or Parquet, told by its content
+    #[arg(value_name = "IN")]
+    log: PathBuf,
+    /// Where to write it; the ending names the format: .csv (with a sidecar beside it), .mcap or .parquet (which carry it)
+    #[arg(value_name = "OUT")]
+    out: PathBuf,
+    /// Calibrated world to carry along in an MCAP file
+    #[arg(long)]
+    world: Option<PathBuf>,
+    #[command(flatten)]
+    source: LogArgs,
+}
+
+impl Convert {
+    pub(super) fn run(&self) -> anyhow::Result<Output> {
+        self.spare_the_input()?;
+        let recordings = self.source.load(&self.log)?;
+        estimator::log::write(&recordings, &self.out, &self.attachments()?)?;
+        let samples: usize = recordings.iter().map(haptics::recording::Recording::len).sum();
+        let warnings: Vec<&Warning> = recordings.iter().flat_map(|r| &r.warnings).collect();
+        let mut text = format!("{}: {} recording(s), {samples} samples", self.out.display(), recordings.len());
+        for warning in &warnings {
+            text += &format!("\n  ! {}", warning.text);
+        }
+        let json = json!({ "out": self.out, "recordings": recordings.len(), "samples": samples, "warnings": warnings });
+        Ok(Output { text, json })
+    }
+
+    /// Neither the input nor its sidecar may be written over.
+    fn spare_the_input(&self) -> anyhow::Result<()> {
+        let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
+            (Ok(a), Ok(b)) => a == b,
+            _ => false,
+        };
+        anyhow::ensure!(
+            !same(&self.log, &self.out),
+            "the output is the input; choose another name: {}",
+            self.out.display()
+        );
+        let ours = estimator::log::sidecar_path(&self.out);
+        let theirs = self.source.meta.clone().unwrap_or_else(|| estimator::log::sidecar_path(&self.log));
+        let csv = self.out.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+        anyhow::ensure!(
+            !csv || !same(&ours, &theirs),
+            "the sidecar of the output would replace that of the input ({}); choose another name: {}",
+            theirs.display(),
+            self.out.display()
+        );
+        Ok(())
+    }
+
+    fn attachments(&self) -> anyhow::Result<Vec<Attachment>> {
+        let Some(path) = &self.world else { return Ok(Vec::new()) };
+        let mcap = self.out.extension().is_some_and(|e| e.eq_ignore_ascii_case("mcap"));
+        anyhow::ensure!(mcap, "only an MCAP file can carry a world; name the output .mcap: {}", self.out.display());
+        World::load(path).with_context(|| path.display().to_string())?;
+        let data = std::fs::read(path).with_context(|| path.display().to_string())?;
+        let name = "world.json".to_owned();
+        Ok(vec![Attachment { name, media_type: "application/json".to_owned(), data }])
+    }
+}

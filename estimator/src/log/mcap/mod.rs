@@ -1,0 +1,278 @@
+//! MCAP files: topics of messages in JSON, protobuf or ROS 2 CDR, to one table.
+
+mod cdr;
+mod clocks;
+mod json;
+mod names;
+mod protobuf;
+pub mod records;
+mod resample;
+mod rosmsg;
+mod schema;
+pub mod stream;
+mod topic;
+pub mod write;
+
+use super::errors::LogError;
+use super::raw::Raw;
+use super::watch::Watch;
+use ::mcap::records::{Channel, Record};
+use haptics::recording::{Meta, Warning};
+use records::{End, Event};
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+use topic::Topic;
+
+/// Name of the metadata record in which our own files carry their sidecar, and key of its text.
+pub(in crate::log) const METADATA: &str = "touchstone";
+pub(in crate::log) const SIDECAR: &str = "sidecar";
+/// Key that says that the file was written block by block while recording.
+pub(in crate::log) const STREAMED: &str = "streamed";
+/// Keys in a channel's metadata: our column names by field, and whether the rows have a clock.
+pub(in crate::log) const COLUMNS: &str = "touchstone.columns";
+pub(in crate::log) const CLOCKLESS: &str = "touchstone.clockless";
+
+/// The table may take this much memory in any case …
+const TABLE_BYTES: u64 = 256 << 20;
+/// … and so many times the size of the file: real logs stay far below, packed nonsense does not.
+const TABLE_TIMES_FILE: u64 = 32;
+/// The memory is asked for after so many messages.
+const CHECK_EVERY: u64 = 1024;
+
+/// How the messages of a channel are read.
+enum Decoder {
+    Json,
+    Protobuf(Box<protobuf::Shape>),
+    Cdr(Box<rosmsg::Definitions>),
+    /// They are not, and why.
+    None(String),
+}
+
+/// One topic of the file.
+struct Source {
+    name: String,
+    decoder: Decoder,
+    topic: Topic,
+    messages: u64,
+    /// Our own column names by field, in files that we wrote.
+    own: Option<HashMap<String, String>>,
+    clockless: bool,
+}
+
+/// Everything that was read.
+pub struct Log {
+    sources: Vec<Source>,
+    end: End,
+    streamed: bool,
+    /// The sidecar that the file carries.
+    pub sidecar: Option<String>,
+    path: PathBuf,
+}
+
+/// Reads every message that can be read.
+pub fn read(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Log, LogError> {
+    let mut reading = Reading { path, size, ..Reading::new(path) };
+    let end = records::walk(path, size, watch, &mut |event| reading.take(event))?;
+    let log = Log {
+        sources: reading.sources,
+        end,
+        streamed: reading.streamed,
+        sidecar: reading.sidecar,
+        path: path.to_path_buf(),
+    };
+    match &log.end {
+        End::CutOff(why) if !log.streamed => {
+            Err(LogError::CutOff { format: "MCAP", why: why.clone(), path: path.to_path_buf() })
+        }
+        _ => Ok(log),
+    }
+}
+
+impl Log {
+    /// One table on one clock, with what the reader should know about it.
+    pub fn columns(self, meta: &Meta) -> Result<(Raw, Vec<Warning>), LogError> {
+        let mut notes = Vec::new();
+        if let End::CutOff(why) = &self.end {
+            notes.push(note(
+                "cut-off",
+                format!("the recording did not end properly ({why}); it is read up to its last whole block"),
+            ));
+        }
+        for source in &self.sources {
+            if let (Decoder::None(why), true) = (&source.decoder, source.messages > 0) {
+                notes.push(note("topic", format!("the topic {} is not read: {why}", source.name)));
+            }
+            if source.topic.long_lists {
+                let text = format!(
+                    "the topic {} has lists of more than {} items, of which the rest is not read",
+                    source.name,
+                    topic::MAX_ITEMS
+                );
+                notes.push(note("topic", text));
+            }
+        }
+        let there = self.sources.iter().map(|s| s.name.clone()).collect::<Vec<_>>();
+        let sources: Vec<Source> = self.sources.into_iter().filter(|s| !s.topic.columns.is_empty()).collect();
+        if sources.is_empty() {
+            let why = match (notes.iter().find(|n| n.kind == "topic"), there.is_empty()) {
+                (Some(note), _) => note.text.clone(),
+                (None, false) => return Err(LogError::HeaderOnly { path: self.path }),
+                (None, true) => "it has no topics".to_owned(),
+            };
+            return Err(LogError::NoColumns { format: "MCAP", why, path: self.path });
+        }
+        let raw = clocks::one_table(sources, meta, &mut notes, &self.path)?;
+        Ok((raw, notes))
+    }
+}
+
+/// A warning about the file as a whole.
+fn note(kind: &str, text: String) -> Warning {
+    Warning { kind: kind.to_owned(), column: None, spans: Vec::new(), text }
+}
+
+struct Reading<'a> {
+    path: &'a Path,
+    size: u64,
+    schemas: HashMap<u16, (String, String, Vec<u8>)>,
+    /// Channel of the file → source.
+    channels: HashMap<u16, usize>,
+    sources: Vec<Source>,
+    sidecar: Option<String>,
+    streamed: bool,
+    messages: u64,
+    /// Scratch for the path of a field.
+    field: String,
+}
+
+impl<'a> Reading<'a> {
+    fn new(path: &'a Path) -> Self {
+        Self {
+            path,
+            size: 0,
+            schemas: HashMap::new(),
+            channels: HashMap::new(),
+            sources: Vec::new(),
+            sidecar: None,
+            streamed: false,
+            messages: 0,
+            field: String::new(),
+        }
+    }
+
+    fn damaged(&self, why: String) -> LogError {
+        LogError::Damaged { format: "MCAP", why, path: self.path.to_path_buf() }
+    }
+
+    fn take(&mut self, event: Event<'_>) -> Result<(), LogError> {
+        match event {
+            Event::Message(channel, log_ns, data) => self.message(channel, log_ns, data),
+            Event::Record(Record::Schema { header, data }) => {
+                self.schemas.insert(header.id, (header.name, header.encoding, data.into_owned()));
+                Ok(())
+            }
+            Event::Record(Record::Channel(channel)) => {
+                self.channel(channel);
+                Ok(())
+            }
+            Event::Record(Record::Metadata(metadata)) if metadata.name == METADATA => {
+                self.streamed |= metadata.metadata.contains_key(STREAMED);
+                self.sidecar = metadata.metadata.get(SIDECAR).cloned().or(self.sidecar.take());
+                Ok(())
+            }
+            Event::Record(_) => Ok(()),
+        }
+    }
+
+    /// A channel of a topic that is known already (another publisher, or the record repeated) feeds the same columns.
+    fn channel(&mut self, channel: Channel) {
+        if self.channels.contains_key(&channel.id) {
+            return;
+        }
+        let mut topic = Topic::default();
+        let decoder = self.decoder(&channel, &mut topic);
+        let same = |s: &Source| {
+            s.name == channel.topic && matches!(s.decoder, Decoder::None(_)) == matches!(decoder, Decoder::None(_))
+        };
+        if let Some(known) = self.sources.iter().position(same) {
+            self.channels.insert(channel.id, known);
+            return;
+        }
+        let own = channel.metadata.get(COLUMNS).and_then(|text| serde_json::from_str(text).ok());
+        self.channels.insert(channel.id, self.sources.len());
+        self.sources.push(Source {
+            name: channel.topic,
+            decoder,
+            topic,
+            messages: 0,
+            own,
+            clockless: channel.metadata.contains_key(CLOCKLESS),
+        });
+    }
+
+    fn decoder(&self, channel: &Channel, topic: &mut Topic) -> Decoder {
+        let (name, encoding, data) =
+            self.schemas.get(&channel.schema_id).map_or(("", "", &[][..]), |(n, e, d)| (n, e, d));
+        let made = match (channel.message_encoding.as_str(), encoding) {
+            ("json", _) => Ok(Decoder::Json),
+            ("protobuf", _) => protobuf::prepare(name, data, topic).map(|s| Decoder::Protobuf(Box::new(s))),
+            ("cdr", "ros2msg") => std::str::from_utf8(data)
+                .map_err(|_| "its schema is not text".to_owned())
+                .and_then(|text| rosmsg::Definitions::parse(name, text))
+                .map(|d| Decoder::Cdr(Box::new(d))),
+            (message, schema) => Err(format!(
+                "messages in `{message}` with a schema in `{schema}` are not known; json, protobuf and cdr with ros2msg are"
+            )),
+        };
+        made.unwrap_or_else(|why| {
+            *topic = Topic::default();
+            Decoder::None(why)
+        })
+    }
+
+    fn message(&mut self, channel: u16, log_ns: u64, data: &[u8]) -> Result<(), LogError> {
+        let Some(&at) = self.channels.get(&channel) else {
+            return Err(self.damaged(format!("a message of channel {channel}, which it does not have")));
+        };
+        let source = &mut self.sources[at];
+        source.messages += 1;
+        self.messages += 1;
+        if matches!(source.decoder, Decoder::None(_)) {
+            return Ok(());
+        }
+        source.topic.begin(log_ns);
+        let done = match &mut source.decoder {
+            Decoder::Json => json::decode(data, &mut source.topic, &mut self.field),
+            Decoder::Protobuf(shape) => protobuf::decode(shape, data, &mut source.topic),
+            Decoder::Cdr(types) => cdr::decode(types, data, &mut source.topic, &mut self.field),
+            Decoder::None(_) => Ok(()),
+        };
+        source.topic.end();
+        if let Err(why) = done {
+            let (number, name) = (source.messages, source.name.clone());
+            return Err(self.damaged(format!("message {number} of {name}: {why}")));
+        }
+        if self.messages.is_multiple_of(CHECK_EVERY) { self.check_memory() } else { Ok(()) }
+    }
+
+    fn check_memory(&self) -> Result<(), LogError> {
+        let held: usize = self.sources.iter().map(|s| s.topic.bytes() + s.topic.text_bytes()).sum();
+        if held as u64 > TABLE_BYTES.max(TABLE_TIMES_FILE * self.size) {
+            return Err(self.damaged(format!("it unpacks to more than {} MiB of values", held >> 20)));
+        }
+        Ok(())
+    }
+}
+
+/// Metadata of a channel of ours.
+fn channel_metadata(columns: &BTreeMap<String, String>, clockless: bool) -> BTreeMap<String, String> {
+    let names = serde_json::to_string(columns).unwrap_or_default(); // a map of texts is always JSON
+    let mut metadata = BTreeMap::from([(COLUMNS.to_owned(), names)]);
+    if clockless {
+        metadata.insert(CLOCKLESS.to_owned(), "true".to_owned());
+    }
+    metadata
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,19 @@
+//! Parquet in and out, through the file format itself (no Arrow).
+
+mod column;
+mod guard;
+mod read;
+mod write;
+
+pub use read::{Columns, read};
+pub use write::write;
+
+/// Keys of the file's metadata: the sidecar, the units by column, and whether the rows have a clock.
+const SIDECAR: &str = "touchstone.sidecar";
+const UNITS: &str = "units";
+
+/// The first line of an error of the library.
+fn one_line(error: &impl std::fmt::Display) -> String {
+    let text = error.to_string();
+    text.lines().next().unwrap_or("malformed").chars().take(160).collect()
+}
