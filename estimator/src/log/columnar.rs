@@ -52,7 +52,9 @@ fn whole(raw: &mut Raw, plan: &Plan, uses: &[Option<f64>]) -> Group {
                 Cells::Text(_) => (0..cells.len()).map(|row| number(cells, row)).collect(),
             };
             if factor != 1.0 {
-                values.iter_mut().for_each(|v| *v *= factor);
+                for value in &mut values {
+                    *value *= factor;
+                }
             }
         }
         group.columns.push(values);

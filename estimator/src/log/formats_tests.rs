@@ -85,7 +85,9 @@ fn recordings() -> impl Strategy<Value = Vec<Recording>> {
         (proptest::collection::vec(one, if trials { 1..4 } else { 1..2 }), names).prop_map(move |(mut all, names)| {
             if trials {
                 all.truncate(names.len());
-                all.iter_mut().zip(names).for_each(|(r, name)| r.trial = Some(name));
+                for (recording, name) in all.iter_mut().zip(names) {
+                    recording.trial = Some(name);
+                }
             }
             for recording in &mut all {
                 recording.meta.known.insert("mass_kg".to_owned(), 0.1 + 0.2);

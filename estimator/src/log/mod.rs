@@ -45,7 +45,7 @@ pub fn load(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError
 /// [`load`] that tells how far it has come and that can be ended from outside: then nothing is loaded.
 pub fn load_watched(path: &Path, meta: Option<&Path>, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
     let size = admissible_size(path)?;
-    let facts = Facts::Found { beside: sidecar::load(path, meta), named: meta.is_some() };
+    let facts = Facts::Found { beside: Box::new(sidecar::load(path, meta)), named: meta.is_some() };
     read(path, format::of(path)?, size, facts, watch)
 }
 
@@ -78,7 +78,7 @@ enum Facts<'a> {
     /// The caller.
     Given(&'a Meta),
     /// The sidecar beside the log (or why it cannot be read), which the caller may have named.
-    Found { beside: Result<Meta, LogError>, named: bool },
+    Found { beside: Box<Result<Meta, LogError>>, named: bool },
 }
 
 impl Facts<'_> {
@@ -95,7 +95,7 @@ impl Facts<'_> {
                     format!("the log carries its own sidecar; {} is not used unless it is named", file.display());
                 Ok((meta, stray.then(|| note("sidecar", text))))
             }
-            (Self::Found { beside, .. }, _) => Ok((beside?, None)),
+            (Self::Found { beside, .. }, _) => Ok(((*beside)?, None)),
         }
     }
 }

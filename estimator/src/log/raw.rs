@@ -100,7 +100,9 @@ impl Cells {
             Self::Numbers(values) => Self::Numbers(keep.iter().map(|&i| values[i]).collect()),
             Self::Text(texts) => {
                 let mut kept = Texts::default();
-                keep.iter().for_each(|&i| kept.push(texts.get(i)));
+                for &i in keep {
+                    kept.push(texts.get(i));
+                }
                 Self::Text(kept)
             }
         }
@@ -132,7 +134,9 @@ impl Raw {
             alias.map_or_else(|| name.clone(), |at| self.headers[at].clone())
         };
         let mut meta = meta.clone();
-        meta.columns.values_mut().for_each(|v| *v = header(v));
+        for value in meta.columns.values_mut() {
+            *value = header(value);
+        }
         meta.select = meta.select.into_iter().map(|(k, v)| (header(&k), v)).collect();
         meta.scale = meta.scale.into_iter().map(|(k, v)| (header(&k), v)).collect();
         meta.sign = meta.sign.into_iter().map(|(k, v)| (header(&k), v)).collect();

@@ -61,7 +61,9 @@ pub fn one_table(
     }
     // Topics that nobody needs give way; where none is needed, all are shown.
     if parts.iter().all(|p| !p.needed) {
-        parts.iter_mut().for_each(|p| p.needed = true);
+        for part in &mut parts {
+            part.needed = true;
+        }
     }
     if parts.len() == 1 {
         return Ok(parts.pop().map(|part| single(part, meta, notes)).unwrap_or_default());
@@ -246,7 +248,7 @@ fn master(timed: &[(Part, Vec<f64>)], meta: &Meta) -> usize {
 
 /// The span that all needed topics cover; extra topics that would cut much off are taken out of `timed`.
 fn common_range(
-    timed: &mut Vec<(Part, Vec<f64>)>,
+    timed: &mut [(Part, Vec<f64>)],
     master: usize,
     notes: &mut Vec<Warning>,
     refused: &dyn Fn(String) -> LogError,

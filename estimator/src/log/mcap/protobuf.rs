@@ -95,8 +95,12 @@ impl Shape {
 
     /// What the message left out because it is zero.
     fn fill(&self, topic: &mut Topic) {
-        self.zeros.iter().for_each(|&column| topic.number(column, 0.0));
-        self.blanks.iter().for_each(|&column| topic.text(column, ""));
+        for &column in &self.zeros {
+            topic.number(column, 0.0);
+        }
+        for &column in &self.blanks {
+            topic.text(column, "");
+        }
     }
 }
 
@@ -106,7 +110,6 @@ fn join(path: &str, name: &str) -> String {
 
 fn node(kind: Kind, path: String, topic: &mut Topic, depth: usize) -> Result<Node, String> {
     Ok(match kind {
-        Kind::Bytes => Node::Skip,
         Kind::String => Node::Text(topic.column(&path, true)?),
         Kind::Message(message) if depth < MAX_DEPTH => {
             if holds_itself(&message) {
@@ -114,7 +117,7 @@ fn node(kind: Kind, path: String, topic: &mut Topic, depth: usize) -> Result<Nod
             }
             Node::Message(Box::new(Shape::new(&message, path, topic, depth + 1)?))
         }
-        Kind::Message(_) => Node::Skip,
+        Kind::Bytes | Kind::Message(_) => Node::Skip,
         number => Node::Number(number, topic.column(&path, false)?),
     })
 }

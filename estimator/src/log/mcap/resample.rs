@@ -67,7 +67,9 @@ pub fn onto(to: &[f64], from: &[f64], cells: &Cells) -> Cells {
     match cells {
         Cells::Text(texts) => {
             let mut held = Texts::default();
-            to.iter().for_each(|&t| held.push(texts.get(before(from, t))));
+            for &t in to {
+                held.push(texts.get(before(from, t)));
+            }
             Cells::Text(held)
         }
         Cells::Numbers(values) if goes_down(from, to) && values.iter().all(|v| v.is_finite()) => {
@@ -159,7 +161,9 @@ mod tests {
         let made = numbers(onto(&[0.05, 0.2], &from, &Cells::Numbers(vec![1.0, MISSING, 3.0, 4.0, 5.0])));
         assert!(is_missing(made[0]) && made[1].is_finite());
         let mut texts = Texts::default();
-        ["a", "b", "c", "d", "e"].iter().for_each(|t| texts.push(t));
+        for text in ["a", "b", "c", "d", "e"] {
+            texts.push(text);
+        }
         let held = onto(&[0.05, 0.15, 0.39], &from, &Cells::Text(texts));
         assert_eq!([held.text(0), held.text(1), held.text(2)], ["a", "c", "c"]);
     }

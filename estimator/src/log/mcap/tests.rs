@@ -146,7 +146,9 @@ fn ros_topics_with_two_clocks_come_onto_that_of_the_motion() {
     for i in 0..4000_u64 {
         let (ns, t) = (i * 500_000, i as f64 * 5e-4);
         let mut message = Cdr::stamped(start + ns);
-        [wave(t), 2.0 * t, 0.0, 0.0, 0.0, 0.0].into_iter().for_each(|v| message.number(v));
+        for v in [wave(t), 2.0 * t, 0.0, 0.0, 0.0, 0.0] {
+            message.number(v);
+        }
         out.put(wrench, start + ns + 3_000_000, &message.done());
     }
     for i in 0..2600_u64 {
@@ -246,7 +248,9 @@ fn nested_lists_and_defaults_of_protobuf() {
         data.extend([0x1a, 9, 0x09]);
         data.extend(x.to_le_bytes());
     }
-    (0..3).for_each(|i| out.put(topic, i * 1_000_000, &data));
+    for i in 0..3 {
+        out.put(topic, i * 1_000_000, &data);
+    }
     let log = out.load("{}").expect("loads");
     let value = |name: &str| log.channel(name).unwrap_or_else(|| panic!("{name} in {:?}", names(&log)))[1];
     assert_eq!([value("/m.v.x"), value("/m.v.n")], [0.0, -2.0], "an absent number is zero");
@@ -367,7 +371,9 @@ fn a_file_without_anything_readable_says_so() {
     assert!(out.load("{}").expect_err("no messages").to_string().contains("no samples"));
     let mut out = Out::new(None);
     let topic = out.json("/log");
-    (0..3).for_each(|_| out.put(topic, 7, br#"{"q_m": 1}"#));
+    for _ in 0..3 {
+        out.put(topic, 7, br#"{"q_m": 1}"#);
+    }
     assert!(out.load("{}").expect_err("one time").to_string().contains("time stands still"));
 }
 
@@ -376,7 +382,9 @@ fn missing_and_odd_values_follow_the_rules_of_tables() {
     let table = |rows: &[&str]| {
         let mut out = Out::new(None);
         let topic = out.json("/log");
-        rows.iter().enumerate().for_each(|(i, row)| out.put(topic, i as u64, row.as_bytes()));
+        for (i, row) in rows.iter().enumerate() {
+            out.put(topic, i as u64, row.as_bytes());
+        }
         out.load("{}").map_err(|e| e.to_string())
     };
     let text = table(&[r#"{"t_s":0,"q_m":1}"#, r#"{"t_s":1}"#]).expect_err("q_m is missing");

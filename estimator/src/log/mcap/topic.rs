@@ -97,7 +97,9 @@ impl Topic {
         let rows = self.log_ns.len();
         if let Cells::Numbers(values) = &self.columns[column] {
             let mut texts = Texts::default();
-            values.iter().for_each(|&v| texts.push(&if is_missing(v) { String::new() } else { v.to_string() }));
+            for &v in values {
+                texts.push(&if is_missing(v) { String::new() } else { v.to_string() });
+            }
             self.columns[column] = Cells::Text(texts);
         }
         if let Cells::Text(texts) = &mut self.columns[column]
@@ -172,7 +174,11 @@ fn split_item(field: &str) -> Option<(&str, &str)> {
 fn pad(cells: &mut Cells, rows: usize) {
     match cells {
         Cells::Numbers(values) => values.resize(rows.max(values.len()), MISSING),
-        Cells::Text(texts) => (texts.len()..rows).for_each(|_| texts.push("")),
+        Cells::Text(texts) => {
+            for _ in texts.len()..rows {
+                texts.push("");
+            }
+        }
     }
 }
 
@@ -185,15 +191,12 @@ mod tests {
         for (i, row) in rows.iter().enumerate() {
             topic.begin(i as u64);
             for (field, value) in *row {
-                match value.parse() {
-                    Ok(number) => {
-                        let column = topic.column(field, false).expect("few");
-                        topic.number(column, number);
-                    }
-                    Err(_) => {
-                        let column = topic.column(field, true).expect("few");
-                        topic.text(column, value);
-                    }
+                if let Ok(number) = value.parse() {
+                    let column = topic.column(field, false).expect("few");
+                    topic.number(column, number);
+                } else {
+                    let column = topic.column(field, true).expect("few");
+                    topic.text(column, value);
                 }
             }
             topic.end();
