@@ -26,12 +26,11 @@ pub fn table(mut raw: Raw, plan: &Plan, path: &Path) -> Result<Table, LogError> 
         return Ok(table);
     }
     for (trial, members) in groups {
-        let mut group = Group { columns: vec![Vec::new(); uses.len()], ..Group::default() };
+        let mut group = Group::new(vec![Vec::new(); uses.len()], labels(&raw, plan, &members));
         for (column, factor) in uses.iter().enumerate().filter_map(|(c, u)| Some((c, (*u)?))) {
             let value = |&row: &usize| number(&raw.columns[column], row) * factor;
             group.columns[column] = members.iter().map(value).collect();
         }
-        group.labels = labels(&raw, plan, &members);
         for (index, &row) in members.iter().enumerate() {
             group.note_place(index, row + 1, 0);
         }
@@ -43,7 +42,7 @@ pub fn table(mut raw: Raw, plan: &Plan, path: &Path) -> Result<Table, LogError> 
 /// The one group of a file without trials and selection: columns are moved, not copied.
 fn whole(raw: &mut Raw, plan: &Plan, uses: &[Option<f64>]) -> Group {
     let rows: Vec<usize> = if plan.label.is_some() { (0..raw.rows()).collect() } else { Vec::new() };
-    let mut group = Group { labels: labels(raw, plan, &rows), ..Group::default() };
+    let mut group = Group::new(Vec::new(), labels(raw, plan, &rows));
     for (cells, &factor) in raw.columns.iter_mut().zip(uses) {
         let mut values = Vec::new();
         if let Some(factor) = factor {

@@ -10,7 +10,7 @@ pub struct Group {
     /// Labels, when there is such a column.
     pub labels: Vec<String>,
     /// Line in the file of every row, run-length coded: (first row index in the group, its line, its row in the file).
-    pub(super) lines: Vec<(usize, u64, usize)>,
+    lines: Vec<(usize, u64, usize)>,
 }
 
 /// A parsed table: groups in the order in which their trial value first appears.
@@ -27,6 +27,11 @@ pub struct Table {
 }
 
 impl Group {
+    /// Rows whose places are still to be noted.
+    pub fn new(columns: Vec<Vec<f64>>, labels: Vec<String>) -> Self {
+        Self { columns, labels, lines: Vec::new() }
+    }
+
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.columns.iter().map(Vec::len).max().unwrap_or(0)
