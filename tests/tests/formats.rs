@@ -153,7 +153,8 @@ fn from_hex(text: &str) -> f64 {
     let (sign, digits) = text.strip_prefix('-').map_or((1.0, text), |rest| (-1.0, rest));
     let (mantissa, exponent) = digits.trim_start_matches("0x").split_once('p').expect("a hexadecimal float");
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, "0"));
-    let fraction_bits = u64::from_str_radix(fraction, 16).expect("digits") as f64 / 16_f64.powi(fraction.len() as i32);
+    let fraction_bits = u64::from_str_radix(fraction, 16).expect("digits") as f64
+        / 16_f64.powi(i32::try_from(fraction.len()).expect("few digits"));
     let whole: f64 = whole.parse().expect("a digit");
     sign * (whole + fraction_bits) * 2_f64.powi(exponent.parse().expect("an exponent"))
 }

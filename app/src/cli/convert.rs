@@ -7,6 +7,7 @@ use estimator::log::Attachment;
 use haptics::recording::Warning;
 use haptics::world::World;
 use serde_json::json;
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `convert`.
@@ -34,7 +35,7 @@ impl Convert {
         let warnings: Vec<&Warning> = recordings.iter().flat_map(|r| &r.warnings).collect();
         let mut text = format!("{}: {} recording(s), {samples} samples", self.out.display(), recordings.len());
         for warning in &warnings {
-            text += &format!("\n  ! {}", warning.text);
+            let _ = write!(text, "\n  ! {}", warning.text); // writing into a string cannot fail
         }
         let json = json!({ "out": self.out, "recordings": recordings.len(), "samples": samples, "warnings": warnings });
         Ok(Output { text, json })
