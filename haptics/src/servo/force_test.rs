@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// No test pushes harder, N a finger.
 pub const MOST_N: f64 = 2.0;
 /// How fast a test force comes up, N/s.
-const UP_N_S: f64 = 0.75;
+pub const UP_N_S: f64 = 0.75;
 /// How fast it goes when the test ends, N/s.
 const DOWN_N_S: f64 = 6.0;
 

@@ -103,7 +103,8 @@ pub struct Timing {
     pub lateness: Percentiles,
     /// How long reading, stepping and writing take.
     pub compute: Percentiles,
-    /// How old the sample is that a force was computed from, at the moment when the device gets the force.
+    /// How old the sample is that a force was computed from, at the moment when the device gets the force. While the force is
+    /// zero because no fresh sample came there is none.
     pub force_age: Percentiles,
     /// Deadlines missed by more than a period: the schedule was re-anchored, no tick was made up for.
     pub missed: u64,
@@ -158,8 +159,11 @@ pub struct TickTiming {
     pub compute_s: f64,
     /// Whether the deadline was missed by more than a period.
     pub missed: bool,
-    /// Age of the newest sample when its force was computed, s.
+    /// Age of the newest sample when the force was computed, s; before the first the time since the start.
     pub sample_age_s: f64,
+    /// Whether a force was computed from that sample. Not before the first sample, and not while the force is zero because the
+    /// samples are stale: who waits for a device has no old force.
+    pub has_force: bool,
 }
 
 /// Collects the timing; summaries are made a few times a second, not at every tick.
@@ -173,6 +177,7 @@ pub struct TimingCollector {
     stalls: u64,
     longest_stall_s: f64,
     sample_age_s: f64,
+    has_force: bool,
 }
 
 impl TimingCollector {
@@ -182,9 +187,12 @@ impl TimingCollector {
         self.compute.add(tick.compute_s);
         if let Some(interval_s) = tick.interval_s {
             self.period.add(interval_s);
-            // The force of the tick before goes out in this one.
-            self.force_age.add(interval_s + self.sample_age_s);
+            if self.has_force {
+                // The force of the tick before goes out in this one.
+                self.force_age.add(interval_s + self.sample_age_s);
+            }
         }
+        self.has_force = tick.has_force;
         self.sample_age_s = tick.sample_age_s;
         self.missed += u64::from(tick.missed);
         let longest = tick.lateness_s.max(tick.compute_s);
@@ -238,10 +246,36 @@ mod tests {
         assert_eq!(histogram.summary().max_s, 5.0);
     }
 
+    /// A punctual tick with a force from a fresh sample.
+    fn usual() -> TickTiming {
+        let (lateness_s, compute_s) = (5e-6, 4e-6);
+        TickTiming { lateness_s, compute_s, interval_s: Some(1e-3), has_force: true, ..TickTiming::default() }
+    }
+
+    #[test]
+    fn waiting_for_a_device_makes_no_force_old() {
+        let mut collector = TimingCollector::default();
+        let rate = RateReport { rate_hz: 1000.0, ..RateReport::default() };
+        // Two seconds nobody is there, then a device comes, goes for a second, and is back.
+        for (ticks, has_force) in [(2_000_i32, false), (1_000, true), (1_000, false), (1_000, true)] {
+            for tick in 0..ticks {
+                let sample_age_s = if has_force { 0.0 } else { f64::from(tick) * 1e-3 };
+                collector.add(&TickTiming { has_force, sample_age_s, ..usual() });
+            }
+        }
+        let timing = collector.summary(rate);
+        assert!((timing.force_age.max_s - 1e-3).abs() < 1e-9, "{:?}", timing.force_age);
+        assert_eq!(timing.ticks, 5_000);
+        // A sample that is 15 ms old, and still counts, makes an old force.
+        collector.add(&TickTiming { sample_age_s: 0.015, ..usual() });
+        collector.add(&usual());
+        assert!((collector.summary(rate).force_age.max_s - 0.016).abs() < 1e-9);
+    }
+
     #[test]
     fn stalls_are_named_and_the_age_of_a_force_counts_from_its_sample() {
         let mut collector = TimingCollector::default();
-        let usual = TickTiming { lateness_s: 5e-6, compute_s: 4e-6, interval_s: Some(1e-3), ..TickTiming::default() };
+        let usual = usual();
         collector.add(&TickTiming { interval_s: None, ..usual });
         for _ in 0..2_000 {
             collector.add(&usual);

@@ -6,6 +6,8 @@
 //!
 //! The wrapped device is asked every tick, as if it ran at the servo's clock at the far end.
 
+#[cfg(test)]
+mod hold;
 mod line;
 #[cfg(test)]
 mod tests;

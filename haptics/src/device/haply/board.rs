@@ -5,11 +5,12 @@
 
 use super::farewell::Outliving;
 use super::fivebar::FiveBar;
+use super::gate::{Gate, Verdict};
 use super::protocol::{Axis, REPLY_BYTES, Turn, read_reply, setup_frame, torque_frame};
 use crate::Vec2;
 use std::io::{Read, Write};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use triple_buffer::{Input, Output, triple_buffer};
@@ -51,8 +52,33 @@ pub struct Answer {
     pub tip_m: Vec2,
     /// Counts the good answers: an unchanged number is an old answer.
     pub number: u64,
-    /// Answers that were late, cut short or another board's.
+    /// Answers that were late, cut short, another board's, or where no hand can be.
     pub faults: u64,
+    /// Counts the places from which the hand set out anew: between two of them it has no speed.
+    pub beginnings: u64,
+}
+
+/// Counts a board's answers, for panels and tests; read from any thread.
+#[derive(Clone, Debug, Default)]
+pub struct Tally {
+    counts: Arc<[AtomicU64; 2]>,
+}
+
+impl Tally {
+    /// Questions that the board was asked.
+    pub fn asked(&self) -> u64 {
+        self.counts[0].load(Ordering::Relaxed)
+    }
+
+    /// Of these, those whose answer was lost or wrong (see [`Answer::faults`]).
+    pub fn faults(&self) -> u64 {
+        self.counts[1].load(Ordering::Relaxed)
+    }
+
+    fn add(&self, fault: bool) {
+        self.counts[0].fetch_add(1, Ordering::Relaxed);
+        self.counts[1].fetch_add(u64::from(fault), Ordering::Relaxed);
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -69,6 +95,7 @@ pub struct Board {
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
     guard: Option<Outliving>,
+    tally: Tally,
 }
 
 impl Board {
@@ -79,15 +106,28 @@ impl Board {
         let (answers_in, answers) = triple_buffer(&Answer::default());
         let (orders, orders_out) = triple_buffer(&Order::default());
         let stop = Arc::new(AtomicBool::new(false));
-        let worker = Worker { line, model, answers: answers_in, orders: orders_out, stop: Arc::clone(&stop) };
+        let tally = Tally::default();
+        let worker = Worker {
+            line,
+            model,
+            answers: answers_in,
+            orders: orders_out,
+            stop: Arc::clone(&stop),
+            tally: tally.clone(),
+        };
         let thread = std::thread::Builder::new().name("haply".to_owned()).spawn(move || worker.run())?;
-        Ok(Self { answers, orders, number: 0, stop, thread: Some(thread), guard: None })
+        Ok(Self { answers, orders, number: 0, stop, thread: Some(thread), guard: None, tally })
     }
 
     /// Keeps the process that ends the torque when this one dies.
     pub(super) fn outlived_by(mut self, guard: Option<Outliving>) -> Self {
         self.guard = guard;
         self
+    }
+
+    /// Counts its answers, from any thread.
+    pub fn tally(&self) -> Tally {
+        self.tally.clone()
     }
 
     /// Whether a process stands by that ends the torque when this one is killed.
@@ -122,11 +162,14 @@ struct Worker {
     answers: Input<Answer>,
     orders: Output<Order>,
     stop: Arc<AtomicBool>,
+    tally: Tally,
 }
 
 impl Worker {
     fn run(mut self) {
         let mut answer = Answer::default();
+        let mut gate = Gate::default();
+        // Only of answers that were believed: torques belong to a pose.
         let mut angles: Option<[f64; 2]> = None;
         let (mut last_number, mut last_order) = (0, Instant::now());
         while !self.stop.load(Ordering::Relaxed) {
@@ -139,11 +182,19 @@ impl Worker {
                 Some(angles) if fresh => self.model.linkage.torques(angles, order.force_n),
                 _ => [0.0; 2],
             };
-            angles = self.exchange(torques);
-            match angles.and_then(|a| self.model.linkage.tip(a)) {
-                Some(tip_m) => answer = Answer { tip_m, number: answer.number + 1, ..answer },
-                None => answer.faults += 1,
+            let heard = self.exchange(torques);
+            let tip = heard.and_then(|angles| self.model.linkage.tip(angles));
+            let verdict = tip.map_or(Verdict::Refused, |tip_m| gate.judge(tip_m, Instant::now()));
+            let believed = matches!(verdict, Verdict::Follows | Verdict::Begins);
+            angles = heard.filter(|_| believed);
+            match tip.filter(|_| believed) {
+                Some(tip_m) => {
+                    let beginnings = answer.beginnings + u64::from(verdict == Verdict::Begins);
+                    answer = Answer { tip_m, number: answer.number + 1, beginnings, ..answer };
+                }
+                None => answer.faults += u64::from(verdict == Verdict::Refused),
             }
+            self.tally.add(verdict == Verdict::Refused);
             self.answers.write(answer);
         }
         // Whatever happened: the last word is zero torque.
@@ -171,6 +222,11 @@ impl Worker {
     /// Reads until the line is silent: the next reply then starts at its first byte.
     fn resynchronise(&mut self) {
         let mut rest = [0; 64];
-        while matches!(self.line.read(&mut rest), Ok(n) if n == rest.len()) {}
+        // A board speaks only when asked; a line that never falls silent is no board, and must not hold this thread.
+        for _ in 0..64 {
+            if !matches!(self.line.read(&mut rest), Ok(n) if n > 0) {
+                return;
+            }
+        }
     }
 }

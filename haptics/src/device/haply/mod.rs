@@ -3,11 +3,12 @@
 mod board;
 pub mod farewell;
 mod fivebar;
+mod gate;
 mod protocol;
 #[cfg(all(test, unix))]
 mod tests;
 
-pub use board::{Answer, Board, BoardModel, GUARD, Line};
+pub use board::{Answer, Board, BoardModel, GUARD, Line, Tally};
 pub use fivebar::FiveBar;
 pub use protocol::{Axis, MAX_TORQUE_NM, Turn};
 
@@ -101,6 +102,8 @@ pub struct HaplyHand {
     boards: [Board; 2],
     placements: [Placement; 2],
     seen: [Answer; 2],
+    /// Time since the answer that was seen last, s.
+    since_s: [f64; 2],
     position: [Vec2; 2],
     velocity: [Vec2; 2],
 }
@@ -143,14 +146,15 @@ impl HaplyHand {
             boards,
             placements,
             seen: [Answer::default(); 2],
+            since_s: [0.0; 2],
             position: placements.map(|p| p.world_m),
             velocity: [Vec2::zeros(); 2],
         }
     }
 
-    /// Answers that were lost so far, left and right.
-    pub fn faults(&self) -> [u64; 2] {
-        self.seen.map(|answer| answer.faults)
+    /// Counts the answers of the left and the right board, from any thread.
+    pub fn tallies(&self) -> [Tally; 2] {
+        [self.boards[0].tally(), self.boards[1].tally()]
     }
 }
 
@@ -165,17 +169,23 @@ impl Device for HaplyHand {
             board.order(command.force_n[finger]);
             let answer = board.answer();
             let place = &self.placements[finger];
+            self.since_s[finger] += dt_s;
             if answer.number == self.seen[finger].number {
                 fresh = false;
             } else {
                 let position = place.world_m + (answer.tip_m - place.device_m) * place.scale;
-                // The first answer says where the finger is, not how fast it came there.
-                if self.seen[finger].number > 0 {
-                    let blend = 1.0 - (-dt_s / VELOCITY_SMOOTHING_S).exp();
-                    let raw = (position - self.position[finger]) / dt_s.max(1e-6);
+                if answer.beginnings == self.seen[finger].beginnings {
+                    // The servo may tick faster than the board answers.
+                    let way_s = self.since_s[finger].max(1e-6);
+                    let blend = 1.0 - (-way_s / VELOCITY_SMOOTHING_S).exp();
+                    let raw = (position - self.position[finger]) / way_s;
                     self.velocity[finger] += (raw - self.velocity[finger]) * blend;
+                } else {
+                    // A first answer says where the finger is, not how fast it came there.
+                    self.velocity[finger] = Vec2::zeros();
                 }
                 self.position[finger] = position;
+                self.since_s[finger] = 0.0;
             }
             self.seen[finger] = answer;
         }

@@ -63,6 +63,32 @@ impl Key {
         Self::from_hex(&text)
     }
 
+    /// What is wrong with a key file that can be read all the same, as sentences for a person: a key that anybody would try
+    /// first, a file that others on this machine may read (known on Unix only).
+    pub fn doubts(path: &Path) -> Vec<String> {
+        let mut doubts = Vec::new();
+        let digits = std::fs::read_to_string(path).unwrap_or_default();
+        let digits = digits.trim().as_bytes();
+        if digits.first().is_some_and(|first| digits.iter().all(|digit| digit == first)) {
+            doubts.push(format!(
+                "The key in {} is one digit over and over, which anybody can guess; `openssl rand -hex 32` makes a better one.",
+                path.display()
+            ));
+        }
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // Any right of the group or of others.
+            if std::fs::metadata(path).is_ok_and(|file| file.permissions().mode() & 0o077 != 0) {
+                doubts.push(format!(
+                    "Others on this machine may use the key file {}; `chmod 600` keeps it to yourself.",
+                    path.display()
+                ));
+            }
+        }
+        doubts
+    }
+
     pub(super) fn seal(&self, message: &[u8]) -> [u8; SEAL_BYTES] {
         let mut mac = self.keyed.clone();
         mac.update(message);
@@ -108,5 +134,25 @@ mod tests {
         let missing = Key::load(Path::new("/nowhere/key")).expect_err("no such file");
         assert!(missing.to_string().contains("/nowhere/key"));
         assert_eq!(format!("{:?}", Key::new([7; 32])), "Key(secret)");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn keys_that_anybody_knows_are_doubted() {
+        use std::os::unix::fs::PermissionsExt;
+        let file = std::env::temp_dir().join(format!("touchstone-key-{}", std::process::id()));
+        let doubts = |digits: &str, mode: u32| {
+            std::fs::write(&file, digits).expect("it takes text");
+            std::fs::set_permissions(&file, std::fs::Permissions::from_mode(mode)).expect("it is ours");
+            Key::doubts(&file).join(" ")
+        };
+        let random = "00112233445566778899aabbccddeeff".repeat(2);
+        assert_eq!(doubts(&random, 0o600), "");
+        assert!(doubts(&format!("{}\n", "0".repeat(64)), 0o600).contains("guess"));
+        for mode in [0o644, 0o640, 0o604] {
+            assert!(doubts(&random, mode).contains("chmod 600"), "{mode:o}");
+        }
+        std::fs::remove_file(&file).expect("it is ours");
+        assert!(Key::doubts(Path::new("/nowhere/key")).is_empty(), "what cannot be read is another sentence");
     }
 }

@@ -198,6 +198,10 @@ impl UdpDevice {
         let leaves = motion.flags & FLAG_BYE != 0;
         self.peer = (!leaves).then_some(from);
         self.age_s = if leaves { f64::INFINITY } else { 0.0 };
+        if leaves {
+            // The last word to a device that goes is zero force, like that of a session that ends here.
+            self.answer(from, 0, [Vec2::zeros(); 2], motion.time_us);
+        }
         Ok(())
     }
 

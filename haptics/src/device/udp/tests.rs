@@ -157,10 +157,20 @@ fn goodbye_is_stale_at_once_and_a_taken_port_is_said() {
     client.greet(&mut device);
     let motion = client.motion(0.0);
     client.send(&motion.encode(&key()));
-    assert!(device.exchange(&Command::default(), DT).fresh);
+    let pushing = Command { force_n: [Vec2::new(0.0, 1.0); 2] };
+    assert!(device.exchange(&pushing, DT).fresh);
+    let pushed = client.receive();
+    assert_eq!(pushed.force_n, pushing.force_n);
     let bye = Motion { flags: FLAG_BYE, ..client.motion(0.0) };
     client.send(&bye.encode(&key()));
-    assert!(!device.exchange(&Command::default(), DT).fresh);
+    assert!(!device.exchange(&pushing, DT).fresh);
+    // One more packet, with zero force, whatever the world says; then none.
+    let last = client.receive();
+    assert_eq!((last.force_n, last.echo_us), ([Vec2::zeros(); 2], bye.time_us));
+    assert!(last.sequence > pushed.sequence);
+    device.exchange(&pushing, DT);
+    client.socket.set_nonblocking(true).expect("a socket can do without waiting");
+    assert!(client.socket.recv(&mut [0; 200]).is_err(), "who has gone gets no more packets");
     let config = UdpConfig { listen: device.monitor().address(), ..UdpConfig::loopback(key()) };
     let error = UdpDevice::open(config, [Vec2::zeros(); 2]).expect_err("the port is taken").to_string();
     assert!(error.contains("could not be opened"), "{error}");
