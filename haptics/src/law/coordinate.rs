@@ -11,6 +11,9 @@ pub struct Resistance {
     pub dry: f64,
     /// Inertia that belongs to the coordinate itself, kg or kg m².
     pub inertia: f64,
+    /// Slope of the viscous laws over the speed, N s/m or N m s/rad, ≥ 0: taken implicitly by the integrator, so that no damper,
+    /// however strong, turns a motion round within a step.
+    pub damping: f64,
     /// Slope of the stiff laws towards `motion.direction`, N/m or N m/rad, ≥ 0: taken implicitly by the integrator.
     pub stiffness: f64,
 }
@@ -28,6 +31,26 @@ pub fn resistance_with(effects: &[Effect], motion: &Motion, memories: &Memories)
     sum(effects, motion, Some(memories), true)
 }
 
+/// Steepest slope over the position of what the integrator does not take implicitly, N/m or N m/rad, over positions from −`reach`
+/// to `reach`: the step must be able to follow it.
+pub fn explicit_stiffness(effects: &[Effect], reach: f64) -> f64 {
+    const PLACES: i32 = 8;
+    let step = 1e-4 * reach;
+    let explicit = effects.iter().filter(|e| e.enabled && matches!(e.role(), Role::Smooth | Role::Stiff));
+    explicit
+        .map(|effect| {
+            let at = |position: f64| effect.force(&Motion { position, ..Motion::default() });
+            let slope = |place: i32| {
+                let q = reach * f64::from(place) / f64::from(PLACES);
+                let motion = Motion { position: q, ..Motion::default() };
+                let taken = effect.law().stiffness(&motion, &effect.values, &super::memory::BLANK);
+                ((at(q + step) - at(q - step)) / (2.0 * step) - taken).abs()
+            };
+            (-PLACES..=PLACES).map(slope).fold(0.0, f64::max)
+        })
+        .sum()
+}
+
 /// Sum of the inertia effects, kg or kg m².
 pub fn inertia(effects: &[Effect]) -> f64 {
     effects.iter().filter(|e| e.enabled && e.role() == Role::Inertia).map(|e| e.values[0]).sum()
@@ -38,12 +61,17 @@ pub fn inertia(effects: &[Effect]) -> f64 {
 fn sum(effects: &[Effect], motion: &Motion, memories: Option<&Memories>, smooth: bool) -> Resistance {
     let mut total = Resistance::default();
     // Terms behind a gap: what resists motion, apart from what acts anyway.
-    let (mut viscous, mut gate) = (0.0, 1.0_f64);
+    let (mut viscous, mut damping, mut gate) = (0.0, 0.0, 1.0_f64);
     for (index, effect) in effects.iter().enumerate().filter(|(_, e)| e.enabled) {
         match effect.role() {
             Role::Inertia => total.inertia += effect.values[0],
             Role::Gravity | Role::Smooth if smooth => total.smooth += effect.force(motion),
-            Role::Viscous if smooth => viscous += effect.force(motion),
+            Role::Viscous if smooth => {
+                let force = effect.force(motion);
+                viscous += force;
+                // The slope from rest to here: exact for c v, and the safe one for what rises faster.
+                damping += if motion.velocity == 0.0 { 0.0 } else { (force / motion.velocity).max(0.0) };
+            }
             Role::Gravity | Role::Smooth | Role::Viscous => {}
             Role::Stiff => {
                 total.smooth += effect.force(motion);
@@ -72,6 +100,7 @@ fn sum(effects: &[Effect], motion: &Motion, memories: Option<&Memories>, smooth:
         }
     }
     total.smooth += gate * viscous;
+    total.damping += gate * damping;
     total.dry = gate * total.dry.max(0.0);
     total
 }
@@ -161,18 +190,23 @@ fn solve(
     let mut probe = Motion { direction: motion.velocity.signum(), ..*motion };
     let all = sum(effects, &probe, memories, true);
     let inertia = (all.inertia + extra_inertia).max(LEAST_INERTIA);
-    let free = motion.velocity + (drive - all.smooth) / inertia * dt_s;
+    // m v' = m v + (drive − F − c v' − K v' dt − dry) dt: dampers and stiff laws are met where the step ends, so that they
+    // neither ring nor overshoot.
+    let braked = inertia + all.damping * dt_s;
+    let push = inertia * motion.velocity + (drive - all.smooth + all.damping * motion.velocity) * dt_s;
     // Most ticks go on the way they went: only a turn asks the laws again.
-    let ahead = if free.signum() == probe.direction {
+    let ahead = if push.signum() == probe.direction {
         all
     } else {
-        probe.direction = free.signum();
+        probe.direction = push.signum();
         sum(effects, &probe, memories, false)
     };
-    let brake = ahead.dry / inertia * dt_s;
-    // m v' = m v + (drive − F − K v' dt − dry) dt: stiff laws are met where the step ends, so that they never ring.
-    let slowed = 1.0 + ahead.stiffness / inertia * dt_s * dt_s;
-    let velocity = if free.abs() <= brake { 0.0 } else { (free - brake * free.signum()) / slowed };
+    let brake = ahead.dry * dt_s;
+    let velocity = if push.abs() <= brake {
+        0.0
+    } else {
+        (push - brake * push.signum()) / (braked + ahead.stiffness * dt_s * dt_s)
+    };
     let position = motion.position + velocity * dt_s;
     if position.is_finite() && velocity.is_finite() { (position, velocity) } else { (motion.position, 0.0) }
 }

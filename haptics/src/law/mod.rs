@@ -41,8 +41,8 @@ mod weight;
 pub use added_constraint::AddedConstraint;
 pub use backlash::Backlash;
 pub use coordinate::{
-    Resistance, advance, drive_force, drive_force_with, drive_forces, inertia, resistance, resistance_with,
-    step_coordinate, step_coordinate_with,
+    Resistance, advance, drive_force, drive_force_with, drive_forces, explicit_stiffness, inertia, resistance,
+    resistance_with, step_coordinate, step_coordinate_with,
 };
 pub use coulomb_friction::CoulombFriction;
 pub use eccentric_mass::EccentricMass;

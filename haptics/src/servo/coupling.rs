@@ -115,13 +115,33 @@ impl Proxy {
     /// K (x − p − Δp) + B (v − Δp/T) + F − `K_c` (Δp − `v_o` T) − `B_c` (Δp/T − `v_p`) = 0, where F, `K_c`, `B_c` are the
     /// contacts' force, stiffness and damping after the tick before, and `v_o` is the speed of what is touched.
     fn advance(&self, finger: usize, device: &Sample, world: &World, state: &State, dt_s: f64) -> Vec2 {
+        let sliding_on = self.balance(finger, device, world, state, dt_s, false);
+        // A contact that slides has no stiffness along the surface as long as it slides on. Where the tip would turn round it
+        // sticks, with the pad's shear stiffness: without that the friction would throw a softly coupled tip to and fro.
+        let turns = state.contacts.iter().any(|c| {
+            c.on == Surface::Finger(finger as u8)
+                && c.sliding
+                && (sliding_on - surface_velocity(state, c) * dt_s).dot(&c.tangent()) * c.tangent_force_n > 0.0
+        });
+        if turns { self.balance(finger, device, world, state, dt_s, true) } else { sliding_on }
+    }
+
+    fn balance(
+        &self,
+        finger: usize,
+        device: &Sample,
+        world: &World,
+        state: &State,
+        dt_s: f64,
+        all_stick: bool,
+    ) -> Vec2 {
         let Coupling { stiffness_n_m, damping_n_s_m } = self.coupling;
         let stretch = device.tip_in_world[finger] - self.tips.tip_in_world[finger];
         let mut force = stretch * stiffness_n_m + device.tip_velocity[finger] * damping_n_s_m;
         let mut impedance = Matrix2::identity() * (stiffness_n_m + damping_n_s_m / dt_s);
         force -= state.tip_force_n[finger];
         for contact in state.contacts.iter().filter(|c| c.on == Surface::Finger(finger as u8)) {
-            let (spring, damper) = stiffness_of(contact, world);
+            let (spring, damper) = stiffness_of(contact, world, all_stick || !contact.sliding);
             let carried = surface_velocity(state, contact) * dt_s;
             force += spring * carried + damper * self.tips.tip_velocity[finger];
             impedance += spring + damper / dt_s;
@@ -140,14 +160,14 @@ impl Proxy {
 }
 
 /// How a contact's force changes with the tip's place and speed, N/m and N s/m.
-fn stiffness_of(contact: &Contact, world: &World) -> (Matrix2<f64>, Matrix2<f64>) {
+fn stiffness_of(contact: &Contact, world: &World, sticks: bool) -> (Matrix2<f64>, Matrix2<f64>) {
     let along = contact.normal * contact.normal.transpose();
     let (mut spring, mut damper) = (Matrix2::zeros(), Matrix2::zeros());
     if contact.normal_force_n > 0.0 {
         spring += along * world.pad.elastic().stiffness_n_m(contact.depth_m);
         damper += along * world.pad.damping_n_s_m;
     }
-    if !contact.sliding {
+    if sticks {
         let tangent = contact.tangent();
         let across = tangent * tangent.transpose();
         spring += across * world.pad.shear_stiffness_n_m;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// A rectangular block that may rotate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Block {
     /// `block-1`, `block-2`, …: the name in fits and reports.
     pub name: String,
@@ -62,6 +63,7 @@ impl Shape {
 
 /// A wall that gives: a spring in series with the finger's pad.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Wall {
     /// Stiffness, N/m, positive.
     pub stiffness_n_m: f64,
@@ -72,6 +74,7 @@ pub struct Wall {
 
 /// What a body holds; part of its `mass_kg`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Content {
     /// Mass of the content at the start, kg, less than the whole.
     pub mass_kg: f64,
@@ -84,6 +87,7 @@ pub struct Content {
 
 /// A cable from a fixed point to the body's centre. It pulls and never pushes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Cable {
     /// Where it is tied, m in the world.
     pub anchor_m: Vec2,
@@ -97,6 +101,7 @@ pub struct Cable {
 
 /// Position and orientation in the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Pose {
     /// Centre in the world, m.
     pub center_m: Vec2,

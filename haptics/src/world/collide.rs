@@ -8,13 +8,12 @@ use super::rect::{Rect, point_in_rect, rect_rect};
 use super::scratch::{Scratch, Solid};
 use super::state::{BodyState, Contact, Input, State, Surface};
 use crate::Vec2;
-use crate::law::contact::{PadCompliance, StiffnessHardening};
 
 /// Half the height of a flat finger pad, m: how far off its middle it still touches the crank's handle.
 pub const PAD_HALF_HEIGHT_M: f64 = 0.008;
 
-/// How far below its surface a finger still feels the membrane, m: a finger under it is not on it.
-const SHEET_DEPTH_M: f64 = 0.02;
+/// A finger that is no deeper than this has come through the membrane's surface just now, m.
+const ARRIVAL_M: f64 = 0.1e-3;
 
 /// Looks up the contacts of the tick before. Touches are found in the same order every tick, so that the search goes on
 /// where the last one ended and mostly hits at once.
@@ -184,9 +183,7 @@ impl Gather<'_> {
                 let kept = self.memory.find(|c| (c.on, c.by) == pair).map(|c| c.feature);
                 let Some((face, depth_m)) = point_in_rect(&rect, tip, kept, margin_m) else { continue };
                 let mut material = pad_material(self.world, block.finger_friction);
-                if let Some(wall) = &block.wall {
-                    material.elastic = behind_wall(&material.elastic, wall.stiffness_n_m);
-                }
+                material.wall_n_m = block.wall.map_or(0.0, |wall| wall.stiffness_n_m);
                 // Start again at this pair: its contact is the next to be asked for.
                 self.memory.next = self.memory.next.saturating_sub(1);
                 self.add(meeting(pair, face, tip, rect.face(face).0, depth_m), material);
@@ -195,17 +192,22 @@ impl Gather<'_> {
         self.sheet();
     }
 
-    /// A finger on the membrane: it is blunt and pierces nothing.
+    /// A finger on the membrane: it is blunt and pierces nothing. Whoever came from above stays on the sheet until it is let go
+    /// of, so that the force depends on the depth alone; from the side or from below nothing is felt.
     fn sheet(&mut self) {
         let Some(membrane) = &self.world.membrane else { return };
         for finger in 0..2_u8 {
             let tip = self.tips[usize::from(finger)];
+            let pair = (Surface::Finger(finger), Surface::Membrane);
             let depth_m = membrane.center_m.y - tip.y;
+            let sweep_m = self.tip_sweep_m[usize::from(finger)];
+            let held = self.memory.find(|c| (c.on, c.by) == pair).is_some();
             let over_it = (tip.x - membrane.center_m.x).abs() < membrane.half_width_m;
-            if over_it && depth_m > -self.tip_sweep_m[usize::from(finger)] && depth_m < SHEET_DEPTH_M {
-                let pair = (Surface::Finger(finger), Surface::Membrane);
+            let arrives = over_it && depth_m > -sweep_m && depth_m < sweep_m + ARRIVAL_M;
+            if held || arrives {
                 let mut material = pad_material(self.world, self.world.floor.map_or(0.5, |f| f.friction));
-                material.elastic = behind_wall(&material.elastic, membrane.law.stiffness_n_m);
+                material.wall_n_m = membrane.law.stiffness_n_m;
+                self.memory.next = self.memory.next.saturating_sub(1);
                 self.add(meeting(pair, 0, tip, Vec2::new(0.0, 1.0), depth_m), material);
             }
         }
@@ -256,15 +258,8 @@ fn pad_material(world: &World, friction: f64) -> Material {
         shear_stiffness_n_m: world.pad.shear_stiffness_n_m,
         shear_damping_n_s_m: world.pad.shear_damping_n_s_m,
         friction,
+        wall_n_m: 0.0,
     }
-}
-
-/// A pad on a wall that gives. The compression is shared as the linear stiffnesses share it: exact for linear pads, to first
-/// order for hardening ones.
-fn behind_wall(pad: &StiffnessHardening, wall_n_m: f64) -> StiffnessHardening {
-    let series = PadCompliance { k: wall_n_m }.behind(pad.k1);
-    let share = series / pad.k1;
-    StiffnessHardening { k1: series, k3: pad.k3 * share.powi(3), hertz: pad.hertz * share.powf(1.5) }
 }
 
 fn block_material(a: &Block, b: &Block) -> Material {

@@ -5,7 +5,7 @@
 
 use super::state::{Contact, Surface};
 use crate::Vec2;
-use crate::law::contact::StiffnessHardening;
+use crate::law::contact::{PadCompliance, StiffnessHardening};
 
 /// Contact law of a pair of surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +20,8 @@ pub struct Material {
     pub shear_damping_n_s_m: f64,
     /// Coulomb coefficient.
     pub friction: f64,
+    /// What is pressed gives, too: stiffness of a wall behind the elastic contact, N/m; zero when it is rigid.
+    pub wall_n_m: f64,
 }
 
 impl Material {
@@ -32,7 +34,25 @@ impl Material {
             shear_stiffness_n_m: TANGENTIAL_SHARE * stiffness_n_m,
             shear_damping_n_s_m: TANGENTIAL_SHARE * damping_n_s_m,
             friction,
+            wall_n_m: 0.0,
         }
+    }
+
+    /// Elastic force at a depth, N: pad and wall share it, each with the same force.
+    #[inline]
+    pub fn elastic_n(&self, depth_m: f64) -> f64 {
+        if self.wall_n_m == 0.0 { self.elastic.force_n(depth_m) } else { self.in_series_n(depth_m) }
+    }
+
+    /// The pad's compression p solves pad(p) = wall (depth − p), by Newton's method from where the linear pad would have it:
+    /// exact at once for linear pads, and in a few steps for those that harden.
+    fn in_series_n(&self, depth_m: f64) -> f64 {
+        let mut pressed_m = depth_m * PadCompliance { k: self.wall_n_m }.behind(self.elastic.k1) / self.elastic.k1;
+        for _ in 0..6 {
+            let miss = self.elastic.force_n(pressed_m) - self.wall_n_m * (depth_m - pressed_m);
+            pressed_m -= miss / (self.elastic.stiffness_n_m(pressed_m) + self.wall_n_m);
+        }
+        self.wall_n_m * (depth_m - pressed_m)
     }
 }
 
@@ -65,7 +85,7 @@ impl Touch {
         let material = &self.material;
         let tangent = contact.tangent();
         let opening = relative_velocity.dot(&contact.normal);
-        let normal_force = (material.elastic.force_n(contact.depth_m) - material.damping_n_s_m * opening).max(0.0);
+        let normal_force = (material.elastic_n(contact.depth_m) - material.damping_n_s_m * opening).max(0.0);
 
         let shear = contact.shear_m + way_along_m;
         let limit = material.friction * normal_force;
@@ -100,6 +120,19 @@ pub fn meeting(pair: (Surface, Surface), feature: u8, point_m: Vec2, normal: Vec
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_wall_behind_a_hardening_pad_shares_the_force() {
+        // 2500 N/m and 5e9 N/m³ before 3000 N/m, 2 mm together: p = 0.731 mm gives 2500 p + 5e9 p³ = 3.78 N = 3000 (2 − p) mm.
+        let pad = StiffnessHardening { k1: 2500.0, k3: 5e9, hertz: 0.0 };
+        let material = Material { elastic: pad, wall_n_m: 3000.0, ..Material::hard(1.0, 0.0, 0.5) };
+        let force = material.elastic_n(2e-3);
+        let pressed = 2e-3 - force / 3000.0;
+        assert!((2500.0 * pressed + 5e9 * pressed.powi(3) - force).abs() < 1e-9, "{force}");
+        assert!((force - 3.80).abs() < 0.02, "{force}");
+        let linear = Material { elastic: StiffnessHardening { k3: 0.0, ..pad }, ..material };
+        assert!((linear.elastic_n(2e-3) - 2e-3 / (1.0 / 2500.0 + 1.0 / 3000.0)).abs() < 1e-12);
+    }
 
     #[test]
     fn friction_sticks_below_the_cone_and_slides_at_it() {

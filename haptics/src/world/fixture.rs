@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// A level sheet, held at both ends, that a needle pierces from above (the bottom of an inverted cup in the thesis).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Membrane {
     /// Middle of the sheet in the world, m.
     pub center_m: Vec2,
@@ -21,6 +22,7 @@ pub struct Membrane {
 /// A lever with a round knob that snaps from one side to the other. Its coordinate is the way of the knob along its arc, m,
 /// zero when the lever stands upright, positive to the right.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Switch {
     /// Axis of the lever in the world, m.
     pub pivot_m: Vec2,

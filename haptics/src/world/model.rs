@@ -1,7 +1,7 @@
 //! The immutable description of a virtual world: what stands in a world file.
 
 use super::block::Block;
-use super::check::{WorldError, finite, not_negative, positive};
+use super::check::{self, WorldError, finite, not_negative, positive};
 use super::fixture::{Membrane, Switch};
 use crate::Vec2;
 use crate::hand::Hand;
@@ -17,6 +17,7 @@ pub const MAX_BLOCKS: usize = 256;
 
 /// A virtual world. Build or load it, then [`World::check`] it; `step` never changes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct World {
     /// File format version, [`SCHEMA`].
     #[serde(default = "schema")]
@@ -60,6 +61,7 @@ pub struct World {
 
 /// Compliant fingertip pad: a spring and damper with friction (closed-cell foam in the thesis).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Pad {
     /// Normal stiffness, N/m, positive.
     pub stiffness_n_m: f64,
@@ -109,6 +111,7 @@ fn is_zero(value: &f64) -> bool {
 
 /// A horizontal table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Floor {
     /// Height of its surface, m.
     pub height_m: f64,
@@ -125,6 +128,7 @@ pub struct Floor {
 
 /// A handle on an arm about a fixed axis. The handle keeps upright on its own bearing, as a block held by the pads does.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Crank {
     /// Axis in the world, m.
     pub center_m: Vec2,
@@ -145,6 +149,7 @@ pub struct Crank {
 
 /// A one-degree-of-freedom mechanism: a coordinate and the laws along it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Mechanism {
     /// Length or angle.
     pub coordinate: Coordinate,
@@ -184,6 +189,7 @@ pub enum MechanismPath {
 
 /// Where one number of the world comes from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Provenance {
     /// `block-1`, `crank`, `mechanism`, `pad`, …
     pub object: String,
@@ -290,6 +296,7 @@ impl World {
             not_negative("the floor", "damping_n_s_m", floor.damping_n_s_m)?;
             if let Some(loss) = &floor.loss {
                 not_negative("the floor", "loss.e", loss.e)?;
+                not_negative("the floor", "1 − loss.e", 1.0 - loss.e)?;
                 not_negative("the floor", "loss.mu", loss.mu)?;
             }
         }
@@ -313,8 +320,13 @@ impl World {
             if let Some(stiffness) = crank.constraint_stiffness_n_m {
                 positive("the crank", "constraint_stiffness_n_m", stiffness)?;
             }
+            check::effects(&crank.effects)?;
         }
-        Ok(())
+        if let Some(mechanism) = &self.mechanism {
+            check::effects(&mechanism.effects)?;
+        }
+        positive("the hand", "workspace.radius_m", self.hand.workspace.radius_m)?;
+        check::can_be_stepped(self)
     }
 }
 

@@ -11,7 +11,7 @@ use super::model::{Crank, World};
 use super::scratch::{Scratch, Solid};
 use super::state::{BodyState, Contact, Input, State, Surface};
 use crate::Vec2;
-use crate::law::AddedConstraint;
+use crate::law::{AddedConstraint, explicit_stiffness};
 
 /// Thickness of the foam on a fingertip, m (thesis): a hardening pad is as stiff as at this depth for the choice of the step.
 const PAD_THICKNESS_M: f64 = 0.002;
@@ -55,19 +55,33 @@ struct Part {
     crank_kg: f64,
 }
 
+/// Most parts of a tick; worlds that need more at 1 kHz are refused by their check, with a spare factor of two for slower servos.
+pub const MAX_PARTS: u32 = 256;
+
 /// Parts that a tick of `dt_s` is divided into: ω h ≤ 0.5 and damping h / m ≤ 1 for the stiffest body, ω h ≤ 0.6 for what is
 /// driven along one coordinate.
 ///
 /// Semi-implicit Euler is stable up to ω h = 2 without damping; a quarter of that keeps the energy error of tumbling blocks
 /// below two hundredths. Handle and knob do not tumble, and their own laws brake them.
 pub fn substeps(world: &World, dt_s: f64) -> u32 {
+    ((dt_s * part_rate(world).0).ceil() as u32).clamp(1, MAX_PARTS)
+}
+
+/// Parts a second that the world needs, and what needs them.
+pub(super) fn part_rate(world: &World) -> (f64, &str) {
     const LIMIT: f64 = 0.5;
-    const DRIVEN: f64 = (0.5 / 0.6) * (0.5 / 0.6);
     const DAMPING_LIMIT: f64 = 1.0;
+    const DRIVEN: f64 = (0.5 / 0.6) * (0.5 / 0.6);
     // Rotation is up to three times as stiff as translation: contact at the corners of a body of inertia m(w²+h²)/12.
     const ROTATION: f64 = 3.0;
-    // Largest stiffness and damping for a mass, 1/s² and 1/s.
-    let (mut stiff, mut damped) = (0.0_f64, 0.0_f64);
+    let mut most = (0.0_f64, "nothing");
+    let mut needs = |who, stiffness: f64, damping: f64, mass_kg: f64| {
+        // Squares are compared: one root for the winner.
+        let rate = (stiffness / mass_kg / (LIMIT * LIMIT)).max((damping / mass_kg / DAMPING_LIMIT).powi(2));
+        if rate > most.0 {
+            most = (rate, who);
+        }
+    };
     let pad_stiffness_n_m = world.pad.elastic().stiffness_n_m(PAD_THICKNESS_M);
     let pads = 2.0 * (pad_stiffness_n_m + world.pad.shear_stiffness_n_m);
     let pad_damping = 2.0 * (world.pad.damping_n_s_m + world.pad.shear_damping_n_s_m);
@@ -80,20 +94,17 @@ pub fn substeps(world: &World, dt_s: f64) -> u32 {
         let (held, held_damping) = held_by(world, block);
         let stiffness = floor_stiffness.max(block.stiffness_n_m) + pads + held;
         let damping = floor_damping.max(block.damping_n_s_m) + pad_damping + held_damping;
-        stiff = stiff.max(turning * stiffness / mass_kg);
-        damped = damped.max(turning * damping / mass_kg);
+        needs(&block.name, turning * stiffness, turning * damping, mass_kg);
     }
     if let Some(crank) = &world.crank {
-        let mass = crank.mass_at_handle_kg();
-        let stiffness = pads + crank.constraint_stiffness_n_m.unwrap_or(0.0);
-        stiff = stiff.max(DRIVEN * stiffness / mass);
-        damped = damped.max(pad_damping / mass);
+        let laws = explicit_stiffness(&crank.effects, std::f64::consts::TAU * crank.radius_m);
+        let stiffness = pads + crank.constraint_stiffness_n_m.unwrap_or(0.0) + laws;
+        needs("the crank's handle", DRIVEN * stiffness, pad_damping, crank.mass_at_handle_kg());
     }
     if let Some(switch) = &world.switch {
-        stiff = stiff.max(DRIVEN * pads / switch.mass_kg);
-        damped = damped.max(pad_damping / switch.mass_kg);
+        needs("the switch's knob", DRIVEN * pads, pad_damping, switch.mass_kg);
     }
-    ((dt_s * (stiff.sqrt() / LIMIT).max(damped / DAMPING_LIMIT)).ceil() as u32).clamp(1, 64)
+    (most.0.sqrt(), most.1)
 }
 
 /// Stiffness and damping of what holds one body besides contacts: cable and membrane, N/m and N s/m.

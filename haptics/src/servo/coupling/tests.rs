@@ -231,3 +231,41 @@ fn a_block_is_pinched_and_lifted_through_the_coupling_and_free_motion_is_free() 
     assert!(servo.state().bodies[0].center_m.y - ground.y > 0.018, "lifted");
     assert!(shake_m < 2e-5, "it is held still, within {shake_m} m");
 }
+
+/// Fingers that are carried along a path by something that takes no notice of force, on a device that states no damping.
+struct Carried(DeviceSpec, f64);
+
+impl Device for Carried {
+    fn spec(&self) -> &DeviceSpec {
+        &self.0
+    }
+
+    fn exchange(&mut self, _: &Command, dt_s: f64) -> Sample {
+        self.1 += dt_s;
+        // 2 mm in the table, still for a second, then drawn to and fro along it.
+        let (sin, cos) = (2.0 * (self.1 - 1.0).max(0.0)).sin_cos();
+        let tip_in_world = [Vec2::new(-0.02 + 0.01 * sin, -0.127), Vec2::new(0.03, -0.127)];
+        let moving = if self.1 > 1.0 { 0.02 * cos } else { 0.0 };
+        Sample { tip_in_world, tip_velocity: [Vec2::new(moving, 0.0), Vec2::zeros()], fresh: true }
+    }
+
+    fn make_safe(&mut self) {}
+}
+
+#[test]
+fn friction_does_not_throw_a_softly_coupled_tip_about() {
+    let device = Carried(spec(0.0), 0.0);
+    let mut servo = Loop::new(Swap::new(presets::table()), Box::new(device), Limits::default());
+    let (mut turns, mut before) = (0, 0.0_f64);
+    for tick in 0..6_000 {
+        let record = servo.tick(T);
+        for (tip, device) in record.input.tip_in_world.iter().zip(record.device_in_world) {
+            // The coupling of 40 N/m under 0.08 N of friction: 2 mm behind, and 1.8 mm of the depth.
+            assert!((tip - device).norm() < 4e-3 || tick < 600, "tick {tick}: {tip:?} for {device:?}");
+        }
+        let force = record.sent_force_n[1].x;
+        turns += usize::from(tick > 600 && force * before < 0.0);
+        before = force;
+    }
+    assert!(turns < 5, "the force on a finger at rest turned round {turns} times");
+}

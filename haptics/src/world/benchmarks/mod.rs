@@ -7,6 +7,7 @@ mod crank;
 mod grip;
 mod heap;
 mod rough;
+mod strong;
 
 use super::*;
 use crate::Vec2;
