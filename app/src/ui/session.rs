@@ -308,9 +308,11 @@ fn curves(simulation: &estimator::simulate::Simulation) -> Vec<(String, Levels)>
     simulation.predicted.iter().map(shown).collect()
 }
 
-/// Capital first, full stop last.
+/// Capital first, full stop last. A column's name in front stays as it is: `f_N` is no `F_N`.
 pub fn sentence(text: &str) -> String {
-    let text = super::format::capitalised(text.trim());
+    let text = text.trim();
+    let named = text.split(' ').next().is_some_and(|word| word.contains('_'));
+    let text = if named { text.to_owned() } else { super::format::capitalised(text) };
     if text.ends_with(['.', '!', '?']) { text } else { format!("{text}.") }
 }
 
@@ -321,5 +323,6 @@ mod tests {
     #[test]
     fn sentences_are_sentences() {
         assert_eq!(sentence("the file is empty"), "The file is empty.");
+        assert_eq!(sentence("f_N stops changing"), "f_N stops changing.");
     }
 }

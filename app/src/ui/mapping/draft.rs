@@ -3,7 +3,7 @@
 use super::facts::{ColumnFacts, FileFacts};
 use super::file_units::{FileUnit, spelled};
 use super::guess::{guess, unit_of};
-use super::names::{self, dimension};
+use super::names::{self, Form, dimension};
 use estimator::log::units;
 use haptics::recording::{Meta, Task};
 use serde_json::Value;
@@ -234,6 +234,9 @@ impl Draft {
         {
             offered.push(name);
         }
+        // What goes with the rest of the columns comes first.
+        let in_use = |form| form == Form::Any || self.rows.iter().any(|r| form_of(r) == Some(form));
+        offered.sort_by_key(|n| !in_use(n.form));
         offered
     }
 
@@ -248,6 +251,11 @@ impl Draft {
         }
         meta
     }
+}
+
+/// The way of recording that a column's meaning belongs to.
+fn form_of(row: &Row) -> Option<Form> {
+    row.name().and_then(names::find).map(|n| n.form)
 }
 
 /// Put before the name of a column that is not to be what its name says.

@@ -44,9 +44,8 @@ pub fn options(ui: &mut Ui, draft: &mut Draft) {
         }
     });
     ui.horizontal_wrapped(|ui| {
-        select(ui, draft);
-        ui.add_space(space::S);
         known(ui, draft);
+        select(ui, draft);
     });
     let strays = draft.strays();
     for (name, source) in strays {

@@ -3,7 +3,7 @@
 use super::Mapping;
 use super::preview::Seen;
 use crate::ui::format;
-use crate::ui::plots::decimate;
+use crate::ui::plots::{decimate, marks, time_axis, value_axis};
 use crate::ui::prepare::{Group, Prepared};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, mix, palette, space};
@@ -21,8 +21,8 @@ pub enum View {
     Automatic,
     /// The path in the plane.
     Path,
-    /// The curves of a group, by its title.
-    Curves(String),
+    /// The curves of a group.
+    Curves(usize),
 }
 
 /// Draws the preview.
@@ -53,14 +53,11 @@ pub fn preview(ui: &mut Ui, mapping: &mut Mapping, session: &Session) {
 fn drawn(ui: &mut Ui, view: &mut View, seen: &Seen) {
     let Some(prepared) = seen.recordings.first() else { return };
     let paths = paths(prepared);
-    let automatic = match prepared.groups.first() {
-        Some(group) if paths.is_empty() => View::Curves(group.title.clone()),
-        _ => View::Path,
-    };
+    let automatic = if paths.is_empty() { View::Curves(0) } else { View::Path };
     let exists = match view {
         View::Automatic => false,
         View::Path => !paths.is_empty(),
-        View::Curves(title) => prepared.groups.iter().any(|g| g.title == *title),
+        View::Curves(at) => *at < prepared.groups.len(),
     };
     let now = if exists { view.clone() } else { automatic };
     ui.horizontal_wrapped(|ui| {
@@ -69,9 +66,12 @@ fn drawn(ui: &mut Ui, view: &mut View, seen: &Seen) {
         if !paths.is_empty() {
             choices.push(View::Path);
         }
-        choices.extend(prepared.groups.iter().map(|g| View::Curves(g.title.clone())));
+        choices.extend((0..prepared.groups.len()).map(View::Curves));
         for choice in choices {
-            let words = if let View::Curves(title) = &choice { title.as_str() } else { "Path" };
+            let words = match choice {
+                View::Curves(at) => tab(&prepared.groups[at]),
+                _ => "Path".to_owned(),
+            };
             if ui.selectable_label(now == choice, RichText::new(words).size(11.5)).clicked() {
                 *view = choice;
             }
@@ -79,13 +79,18 @@ fn drawn(ui: &mut Ui, view: &mut View, seen: &Seen) {
     });
     let height = (0.42 * ui.available_height()).clamp(120.0, 330.0);
     match &now {
-        View::Curves(title) => {
-            if let Some(group) = prepared.groups.iter().find(|g| g.title == *title) {
+        View::Curves(at) => {
+            if let Some(group) = prepared.groups.get(*at) {
                 curves(ui, prepared, group, height);
             }
         }
         _ => path(ui, &paths, height),
     }
+}
+
+/// What a group is called on its tab; extra channels are told apart by their unit.
+fn tab(group: &Group) -> String {
+    if group.title == "Other" && !group.unit.is_empty() { group.unit.clone() } else { group.title.clone() }
 }
 
 /// The paths of fingers or tool, mm.
@@ -107,11 +112,21 @@ fn frame<'a>(ui: &Ui, id: &str, height: f32) -> Plot<'a> {
         .show_y(false)
         .allow_scroll(false)
         .grid_color(palette(ui).border)
+        .grid_spacing(egui::Rangef::new(4.0, 40.0))
+        .x_grid_spacer(|input| marks(input.bounds, 6.0))
+        .y_grid_spacer(|input| marks(input.bounds, 5.0))
+        .custom_y_axes(vec![value_axis(palette(ui))])
+}
+
+/// Millimetres along the lower edge, labelled as the times are.
+fn value_axis_below(ui: &Ui) -> egui_plot::AxisHints<'static> {
+    time_axis(palette(ui), true)
 }
 
 fn path(ui: &mut Ui, paths: &[(ColorRole, Vec<PlotPoint>)], height: f32) {
     let dark = ui.visuals().dark_mode;
-    frame(ui, "mapping path", height).data_aspect(1.0).show(ui, |plot| {
+    let axes = vec![value_axis_below(ui)];
+    frame(ui, "mapping path", height).data_aspect(1.0).custom_x_axes(axes).show(ui, |plot| {
         for (role, points) in paths {
             let line = Line::new("", PlotPoints::Borrowed(points));
             plot.line(line.color(theme::role(dark, *role)).width(1.5).allow_hover(false));
@@ -132,7 +147,8 @@ fn curves(ui: &mut Ui, prepared: &Prepared, group: &Group, height: f32) {
         if trace.second { mix(plain, palette(ui).text, 0.4) } else { plain }
     };
     let colors: Vec<egui::Color32> = (0..points.len()).map(color).collect();
-    frame(ui, "mapping curves", height).show(ui, |plot| {
+    let axes = vec![time_axis(palette(ui), prepared.clockless())];
+    frame(ui, "mapping curves", height).custom_x_axes(axes).show(ui, |plot| {
         for (points, color) in points.iter().zip(&colors) {
             plot.line(Line::new("", PlotPoints::Borrowed(points)).color(*color).width(1.3).allow_hover(false));
         }

@@ -82,6 +82,10 @@ pub fn see(path: &Path, meta: &Meta) -> Result<Seen, String> {
     let missing = recordings.first().and_then(missing);
     let mut warnings: Vec<String> = Vec::new();
     for warning in recordings.iter().flat_map(|r| &r.warnings) {
+        // What is missing says so already.
+        if warning.kind == "no-known-column" || (warning.kind == "no-clock" && missing.is_some()) {
+            continue;
+        }
         let text = sentence(&warning.text);
         if !warnings.contains(&text) {
             warnings.push(text);
@@ -137,9 +141,9 @@ pub fn missing(recording: &Recording) -> Option<String> {
         Task::Mechanism if !has("q_m") && !has("q_rad") && !has("x_m") => Some(
             "No column says how far it moved: name a coordinate (q_m or q_rad), or the tool's x_m and y_m.".to_owned(),
         ),
-        Task::Mechanism if recording.time_s.is_none() => Some(
-            "There is no clock: name the time t_s, or state the rate; without it only the path can be used.".to_owned(),
-        ),
+        Task::Mechanism if recording.time_s.is_none() && !has("x_m") => {
+            Some("There is no clock: name the time t_s, or state the rate.".to_owned())
+        }
         Task::Mechanism => None,
         Task::Needle | Task::Switch => {
             Some(format!("Recordings of the task {} can be looked at, not fitted yet.", task.name()))

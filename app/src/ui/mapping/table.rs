@@ -80,7 +80,7 @@ fn short(value: f64) -> String {
     if value != 0.0 && !(1e-3..1e6).contains(&value.abs()) {
         return format!("{value:.2e}").replace('-', "−");
     }
-    format::significant(value, 4)
+    if value.fract() == 0.0 { format::number(value, 0) } else { format::significant(value, 4) }
 }
 
 fn means(ui: &mut Ui, draft: &mut Draft, at: usize) {
@@ -100,6 +100,7 @@ fn means(ui: &mut Ui, draft: &mut Draft, at: usize) {
         .selected_text(RichText::new(&selected).color(color))
         .truncate()
         .show_ui(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
             ui.selectable_value(&mut chosen, Role::Extra, said(&Role::Extra));
             for name in offered {
                 let role = Role::Named(name.si.to_owned());

@@ -45,7 +45,7 @@ fn source(ui: &mut Ui, session: &mut Session) {
     let response = ui.add(field);
     let enter = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
     let ctx = ui.ctx().clone();
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         if ui.button("Open …").on_hover_text("Ctrl+O").clicked() {
             files::ask(&ctx, &mut session.jobs, Purpose::OpenLog);
         }

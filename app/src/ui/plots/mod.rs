@@ -5,6 +5,7 @@ mod decimate;
 mod doubts;
 mod row;
 
+pub use axes::{marks, time_axis, value_axis};
 pub use decimate::{Levels, decimate};
 pub use doubts::places;
 pub use row::{GUTTER, PlotCache, RowInput, axis_height, row};
