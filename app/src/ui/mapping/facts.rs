@@ -246,4 +246,20 @@ mod tests {
             assert_eq!((&a.header, a.range, a.increasing), (&b.header, b.range, b.increasing));
         }
     }
+
+    #[test]
+    fn a_container_is_looked_at_too() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("log.mcap");
+        let names = ["q_m".to_owned(), "motor_A".to_owned()];
+        let mut stream = log::McapStream::create(&path, &names, &Meta::default(), &[]).expect("creates");
+        for i in 0..50 {
+            stream.push(0.01 * f64::from(i), &[f64::from(i), -0.5]).expect("writes");
+        }
+        stream.finish().expect("ends");
+        let facts = look(&path).expect("a table");
+        let column = |name: &str| facts.columns.iter().find(|c| c.header == name).expect(name);
+        assert_eq!((column("q_m").range, column("motor_A").range), (Some((0.0, 49.0)), Some((-0.5, -0.5))));
+        assert!(column("t_s").increasing && facts.rows == 50);
+    }
 }
