@@ -4,6 +4,7 @@
 
 mod captured;
 mod crank;
+mod details;
 mod grip;
 mod heap;
 mod rough;
