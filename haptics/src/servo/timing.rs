@@ -260,7 +260,7 @@ mod tests {
         for (ticks, has_force) in [(2_000_i32, false), (1_000, true), (1_000, false), (1_000, true)] {
             for tick in 0..ticks {
                 let sample_age_s = if has_force { 0.0 } else { f64::from(tick) * 1e-3 };
-                collector.add(&TickTiming { has_force, sample_age_s, ..usual() });
+                collector.add(&TickTiming { sample_age_s, has_force, ..usual() });
             }
         }
         let timing = collector.summary(rate);
