@@ -69,9 +69,10 @@ struct Test {
 }
 
 impl Device {
-    pub(super) fn run(&self) -> anyhow::Result<Output> {
+    /// The report, and whether nothing failed outright.
+    pub(super) fn run(&self) -> anyhow::Result<(Output, bool)> {
         match &self.what {
-            What::List(list) => list.run(),
+            What::List(list) => Ok((list.run()?, true)),
             What::Test(test) => test.run(),
         }
     }
@@ -121,7 +122,7 @@ impl List {
 }
 
 impl Test {
-    fn run(&self) -> anyhow::Result<Output> {
+    fn run(&self) -> anyhow::Result<(Output, bool)> {
         check_rate(self.rate)?;
         anyhow::ensure!(
             self.seconds > 0.0 && self.seconds <= 3600.0,
@@ -155,10 +156,11 @@ impl Test {
             ticks: &ticks,
             hint: opened.hint,
             packets: opened.packets.as_ref(),
+            answers: opened.answers.as_ref(),
             push_n: self.push,
             coupling_n_m: snapshot.coupling.map(|coupling| coupling.stiffness_n_m),
         };
-        Ok(measured.report())
+        Ok((measured.report(), !measured.has_failed()))
     }
 
     fn behind_a_network(&self, opened: open::Opened, world: &World) -> anyhow::Result<open::Opened> {

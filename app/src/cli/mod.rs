@@ -117,6 +117,15 @@ pub(crate) struct Output {
     pub json: serde_json::Value,
 }
 
+impl Output {
+    fn say(self, json: bool) {
+        use std::io::Write;
+        let text = if json { self.json.to_string() } else { self.text };
+        // A closed pipe (`| head`) is no fault of ours.
+        let _ = writeln!(std::io::stdout(), "{}", text.trim_end());
+    }
+}
+
 /// Parses the arguments and runs the command.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -138,15 +147,21 @@ pub fn main() -> ExitCode {
         Some(Command::Record(args)) => args.run(),
         Some(Command::Screenshot(args)) => args.run(),
         Some(Command::Convert(args)) => args.run(),
-        Some(Command::Device(args)) => args.run(),
+        Some(Command::Device(args)) => {
+            return match args.run() {
+                Ok((output, passed)) => {
+                    output.say(cli.json);
+                    // A self-test that failed tells scripts so, after its report.
+                    if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+                }
+                Err(error) => fail(&error),
+            };
+        }
         Some(Command::Bench(args)) => args.run(),
     };
     match result {
         Ok(output) => {
-            use std::io::Write;
-            let text = if cli.json { output.json.to_string() } else { output.text };
-            // A closed pipe (`| head`) is no fault of ours.
-            let _ = writeln!(std::io::stdout(), "{}", text.trim_end());
+            output.say(cli.json);
             ExitCode::SUCCESS
         }
         Err(error) => fail(&error),

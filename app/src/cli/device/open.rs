@@ -3,7 +3,7 @@
 use anyhow::Context;
 use haptics::Vec2;
 use haptics::device::channel::{ChannelConfig, ChannelDevice, Waves};
-use haptics::device::haply::HaplyHand;
+use haptics::device::haply::{HaplyHand, Tally};
 use haptics::device::udp::{Key, PORT, UdpConfig, UdpDevice, UdpMonitor};
 use haptics::device::{Device, DeviceSpec, MouseTarget, ReplayDevice, ScriptedOperator, Skill, keyboard, mouse, touch};
 use haptics::world::{State, World};
@@ -72,6 +72,8 @@ pub struct Opened {
     pub hint: &'static str,
     /// Packet counters of a remote device.
     pub packets: Option<UdpMonitor>,
+    /// Answers of the left and the right board.
+    pub answers: Option<[Tally; 2]>,
     /// Whatever must live as long as the device.
     pub keep: Option<Box<dyn std::any::Any>>,
 }
@@ -83,8 +85,14 @@ pub fn open(name: &str, world: &World) -> anyhow::Result<Opened> {
     let state = State::resting(world);
     let tips = state.input.tip_in_world;
     let workspace = world.hand.workspace;
-    let opened =
-        |device: Box<dyn Device>, hint| Opened { device, start_in_world: tips, hint, packets: None, keep: None };
+    let opened = |device: Box<dyn Device>, hint| Opened {
+        device,
+        start_in_world: tips,
+        hint,
+        packets: None,
+        answers: None,
+        keep: None,
+    };
     let (kind, rest) = name.split_once(':').map_or((name, None), |(kind, rest)| (kind, Some(rest)));
     match (kind, rest) {
         ("mouse", None) => {
@@ -101,7 +109,11 @@ pub fn open(name: &str, world: &World) -> anyhow::Result<Opened> {
             Ok(opened(Box::new(ScriptedOperator::new(world, &state, skill, 1)), "It moves by itself."))
         }
         ("replay", Some(log)) => replay(log),
-        ("haply", Some(ports)) => Ok(opened(Box::new(haply_hand(ports, world)?), "Move both handles while it runs.")),
+        ("haply", Some(ports)) => {
+            let hand = haply_hand(ports, world)?;
+            let answers = Some(hand.tallies());
+            Ok(Opened { answers, ..opened(Box::new(hand), "Move both handles while it runs.") })
+        }
         ("udp", Some(rest)) => remote(rest, tips),
         ("gamepad", mode) => gamepad(mode, world, tips),
         _ => anyhow::bail!("there is no device `{name}`; `touchstone device list` shows what there is"),
@@ -113,7 +125,14 @@ fn replay(log: &str) -> anyhow::Result<Opened> {
     let recording = recordings.first().context("the log holds no recording")?;
     let device = ReplayDevice::from_recording(recording)?;
     let start_in_world = device.start_in_world();
-    Ok(Opened { device: Box::new(device), start_in_world, hint: "It moves by itself.", packets: None, keep: None })
+    Ok(Opened {
+        device: Box::new(device),
+        start_in_world,
+        hint: "It moves by itself.",
+        packets: None,
+        answers: None,
+        keep: None,
+    })
 }
 
 fn haply_hand(ports: &str, world: &World) -> anyhow::Result<HaplyHand> {
@@ -128,6 +147,9 @@ fn remote(text: &str, tips: [Vec2; 2]) -> anyhow::Result<Opened> {
     let address = parts.next().unwrap_or_default();
     let key_file = parts.next().context("a remote device needs a key: udp:ADDRESS,KEYFILE")?;
     let mut config = UdpConfig::loopback(Key::load(Path::new(key_file))?);
+    for doubt in Key::doubts(Path::new(key_file)) {
+        eprintln!("{doubt}");
+    }
     config.listen = listen(address)?;
     if let Some(damping) = parts.next() {
         config.spec.damping_n_s_m = figure(damping, 1000.0, "damping; write it in N s/m, like 0.5")?;
@@ -138,7 +160,7 @@ fn remote(text: &str, tips: [Vec2; 2]) -> anyhow::Result<Opened> {
     let device = UdpDevice::open(config, tips)?;
     let packets = Some(device.monitor());
     let hint = "Start the device's program while it runs (docs/udp has examples).";
-    Ok(Opened { device: Box::new(device), start_in_world: tips, hint, packets, keep: None })
+    Ok(Opened { device: Box::new(device), start_in_world: tips, hint, packets, answers: None, keep: None })
 }
 
 /// A number of 0 to `most`.
@@ -167,7 +189,14 @@ fn gamepad(mode: Option<&str>, world: &World, tips: [Vec2; 2]) -> anyhow::Result
     };
     let (thread, device) = open(tips, world.hand.workspace, mode)?;
     let hint = "Move the sticks while it runs.";
-    Ok(Opened { device: Box::new(device), start_in_world: tips, hint, packets: None, keep: Some(Box::new(thread)) })
+    Ok(Opened {
+        device: Box::new(device),
+        start_in_world: tips,
+        hint,
+        packets: None,
+        answers: None,
+        keep: Some(Box::new(thread)),
+    })
 }
 
 #[cfg(not(feature = "gamepad"))]

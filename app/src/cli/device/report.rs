@@ -1,9 +1,13 @@
 //! What a test found, in plain words and as JSON.
 
+mod board;
+mod push;
+
 use super::super::Output;
 use crate::ui::format::short_time;
 use haptics::Vec2;
 use haptics::device::DeviceSpec;
+use haptics::device::haply::Tally;
 use haptics::device::udp::{Refused, UdpMonitor};
 use haptics::servo::{Privileges, TickRecord, passivity, timing::Timing};
 use serde_json::{Value, json};
@@ -70,6 +74,8 @@ pub struct Measured<'a> {
     pub hint: &'a str,
     /// Packets, of a remote device.
     pub packets: Option<&'a UdpMonitor>,
+    /// Answers of the left and the right board.
+    pub answers: Option<&'a [Tally; 2]>,
     /// The soft push that was asked for, N.
     pub push_n: f64,
     /// The coupling's stiffness, N/m, when the world is felt through one.
@@ -80,7 +86,20 @@ pub struct Measured<'a> {
 struct Check {
     name: &'static str,
     ok: bool,
+    /// Not only worth a look: the device does not work.
+    failed: bool,
     text: String,
+}
+
+impl Check {
+    /// Fine, or worth a look.
+    fn new(name: &'static str, ok: bool, text: String) -> Self {
+        Self { name, ok, failed: false, text }
+    }
+
+    fn failed(name: &'static str, text: String) -> Self {
+        Self { name, ok: false, failed: true, text }
+    }
 }
 
 impl Measured<'_> {
@@ -105,8 +124,14 @@ impl Measured<'_> {
         Output { text, json: self.json(&checks, verdict) }
     }
 
+    /// Whether a check failed outright.
+    pub fn has_failed(&self) -> bool {
+        self.checks().iter().any(|check| check.failed)
+    }
+
     fn json(&self, checks: &[Check], verdict: &str) -> Value {
-        let checks: Vec<Value> = checks.iter().map(|c| json!({ "name": c.name, "ok": c.ok, "text": c.text })).collect();
+        let checks: Vec<Value> =
+            checks.iter().map(|c| json!({ "name": c.name, "ok": c.ok, "failed": c.failed, "text": c.text })).collect();
         let packets = self.packets.map(|packets| {
             let refused: serde_json::Map<String, Value> =
                 Refused::ALL.iter().map(|why| (why.words().to_owned(), packets.refused(*why).into())).collect();
@@ -122,6 +147,7 @@ impl Measured<'_> {
             "range_m": self.ranges().map(|range| [range.x, range.y]),
             "largest_force_N": self.largest_force_n(),
             "packets": packets,
+            "boards": self.answers.map(|tallies| tallies.each_ref().map(board::json)),
             "timing": self.timing,
             "privileges": self.privileges,
             "passive_stiffness_N_m": passivity::passive_stiffness(self.spec, 0.0, self.timing.period_s),
@@ -133,6 +159,7 @@ impl Measured<'_> {
     fn checks(&self) -> Vec<Check> {
         let mut checks = vec![self.rate(), self.freshness(), self.motion()];
         checks.extend(self.packets.map(Self::seals));
+        checks.extend(self.answers.into_iter().flat_map(|tallies| board::checks(tallies)));
         if self.push_n > 0.0 {
             checks.push(self.push());
         }
@@ -146,7 +173,7 @@ impl Measured<'_> {
         } else {
             "The machine does not hold this rate; choose a lower one with --rate.".to_owned()
         };
-        Check { name: "rate", ok, text }
+        Check::new("rate", ok, text)
     }
 
     fn stale(&self) -> usize {
@@ -169,7 +196,7 @@ impl Measured<'_> {
     fn freshness(&self) -> Check {
         let name = "positions";
         let Some((first, end)) = self.present() else {
-            return Check { name, ok: false, text: format!("No positions came, so the force was zero. {}", self.hint) };
+            return Check::failed(name, format!("No positions came, so the force was zero. {}", self.hint));
         };
         let seconds = |ticks: usize| ticks as f64 * self.timing.period_s;
         let gaps = self.ticks[first..end].iter().filter(|tick| tick.flags.stale).count();
@@ -178,15 +205,16 @@ impl Measured<'_> {
             format!("Positions came for {:.1} s without a gap.", seconds(end - first))
         } else {
             format!(
-                "Positions stayed away for {:.2} s, and the force was zero then. Check cable and program.",
-                seconds(gaps)
+                "The force was zero for {} in between, because positions stayed away for longer than the watchdog waits. \
+                 Check cable and program.",
+                duration(seconds(gaps))
             )
         };
         if left > 0 {
-            let _ = write!(text, " They ended {:.1} s before the test did.", seconds(left));
+            let _ = write!(text, " They ended {} before the test did.", duration(seconds(left)));
         }
         // A program may end when it likes; a device on a cable may not.
-        Check { name, ok: gaps == 0 && (left == 0 || self.packets.is_some()), text }
+        Check::new(name, gaps == 0 && (left == 0 || self.packets.is_some()), text)
     }
 
     /// Width and height of where each finger went, m.
@@ -215,7 +243,7 @@ impl Measured<'_> {
         let hint = if still { self.hint } else { "" };
         let text = format!("The left finger {}, the right one {}. {hint}", words(0), words(1));
         // Nothing moves by itself: standing still is for the person to judge.
-        Check { name: "motion", ok: true, text: text.trim_end().to_owned() }
+        Check::new("motion", true, text.trim_end().to_owned())
     }
 
     fn seals(packets: &UdpMonitor) -> Check {
@@ -227,30 +255,26 @@ impl Measured<'_> {
         let tail =
             if refused.is_empty() { "none refused".to_owned() } else { format!("refused: {}", refused.join(", ")) };
         let text = format!("At {}: {} packets accepted, {tail}.", packets.address(), packets.accepted());
-        Check { name: "packets", ok: packets.refused(Refused::Seal) == 0, text }
+        Check::new("packets", packets.refused(Refused::Seal) == 0, text)
     }
 
     fn largest_force_n(&self) -> f64 {
         self.ticks.iter().flat_map(|tick| tick.sent_force_n).map(|force| force.norm()).fold(0.0, f64::max)
     }
+}
 
-    fn push(&self) -> Check {
-        let reached = self.largest_force_n();
-        let ok = reached > 0.5 * self.push_n;
-        let text = if ok {
-            format!("Pushed both fingers upwards, softly, up to {reached:.2} N. Did you feel it on both?")
-        } else {
-            format!(
-                "The push of {:.2} N did not come up (largest {reached:.2} N): no fresh positions, no force.",
-                self.push_n
-            )
-        };
-        Check { name: "push", ok, text }
+/// A duration that is never nothing: `0.4 ms`, `50 ms`, `0.7 s`.
+fn duration(seconds: f64) -> String {
+    let ms = 1e3 * seconds;
+    match seconds {
+        _ if ms < 0.95 => format!("{ms:.1} ms"),
+        _ if seconds < 0.1 => format!("{ms:.0} ms"),
+        _ => format!("{seconds:.1} s"),
     }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use haptics::device::haply::HaplyHand;
     use haptics::servo::safety::SafetyFlags;
@@ -261,19 +285,32 @@ mod tests {
         parts.iter().flat_map(|(count, stale)| vec![tick(*stale); *count]).collect()
     }
 
-    fn freshness(parts: &[(usize, bool)]) -> (bool, String) {
-        let timing = Timing { period_s: 1e-3, ..Timing::default() };
-        let measured = Measured {
-            spec: &HaplyHand::two_boards(),
-            timing: &timing,
+    /// What is to be said of a device that was watched for some ticks of 1 ms, with nothing else known.
+    pub(super) fn measured<'a>(spec: &'a DeviceSpec, timing: &'a Timing, ticks: &'a [TickRecord]) -> Measured<'a> {
+        Measured {
+            spec,
+            timing,
             privileges: Privileges::default(),
-            ticks: &ticks(parts),
+            ticks,
             hint: "Plug it in.",
             packets: None,
+            answers: None,
             push_n: 0.0,
             coupling_n_m: None,
-        };
+        }
+    }
+
+    /// Timing of a servo of 1 kHz.
+    pub(super) fn kilohertz() -> Timing {
+        Timing { period_s: 1e-3, ..Timing::default() }
+    }
+
+    fn freshness(parts: &[(usize, bool)]) -> (bool, String) {
+        let (spec, timing, ticks) = (HaplyHand::two_boards(), kilohertz(), ticks(parts));
+        let measured = measured(&spec, &timing, &ticks);
         let check = measured.freshness();
+        assert_eq!(check.failed, check.text.contains("No positions came"));
+        assert_eq!(measured.has_failed(), check.failed);
         (check.ok, check.text)
     }
 
@@ -283,7 +320,9 @@ mod tests {
         assert_eq!(freshness(&[(1_000, fine)]), (true, "Positions came for 1.0 s without a gap.".to_owned()));
         assert!(freshness(&[(20, fine), (500, stale), (1_000, fine)]).0, "it came late");
         let (ok, text) = freshness(&[(300, fine), (50, stale), (300, fine)]);
-        assert!(!ok && text.contains("0.05 s"), "{text}");
+        assert!(!ok && text.contains("zero for 50 ms"), "{text}");
+        let (ok, text) = freshness(&[(300, fine), (1, stale), (300, fine)]);
+        assert!(!ok && text.contains("zero for 1 ms"), "{text}");
         let (ok, text) = freshness(&[(300, fine), (700, stale)]);
         assert!(!ok && text.contains("ended 0.7 s before"), "{text}");
         let (ok, text) = freshness(&[(20, fine), (700, stale)]);

@@ -110,6 +110,10 @@ fn limit_sentences(spec: &DeviceSpec, snapshot: &Snapshot) -> Vec<Limit> {
         .coupling
         .as_ref()
         .map_or_else(|| "It renders this world directly.".to_owned(), trainer_timing::coupling_sentence);
+    if damper <= 0.0 {
+        let unknown = "The device states no damping of its own, so no wall and no damper is surely passive.";
+        return vec![(None, unknown.to_owned()), (None, felt)];
+    }
     vec![
         (
             Some(("Stiffest passive wall", format!("{} N/m", number(stiffness, 0)))),
