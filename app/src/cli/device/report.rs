@@ -159,7 +159,7 @@ impl Measured<'_> {
     fn checks(&self) -> Vec<Check> {
         let mut checks = vec![self.rate(), self.freshness(), self.motion()];
         checks.extend(self.packets.map(Self::seals));
-        checks.extend(self.answers.into_iter().flat_map(|tallies| board::checks(tallies)));
+        checks.extend(self.answers.into_iter().flat_map(board::checks));
         if self.push_n > 0.0 {
             checks.push(self.push());
         }
