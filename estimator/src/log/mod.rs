@@ -25,6 +25,7 @@ mod write;
 pub use errors::LogError;
 pub use format::Format;
 pub use mcap::stream::McapStream;
+pub use plan::PAIRS;
 pub use sidecar::{path_for as sidecar_path, write as write_meta, write_as_is as write_sidecar};
 pub use watch::Watch;
 pub use write::{Attachment, write, write_csv};

@@ -6,6 +6,22 @@ use haptics::recording::Meta;
 use serde_json::Value;
 use std::path::Path;
 
+/// Columns that are of no use without each other; a log that has one of a pair must have both.
+pub const PAIRS: [(&str, &str); 12] = [
+    ("x_m", "y_m"),
+    ("fx_N", "fy_N"),
+    ("qb_rad", "qt_rad"),
+    ("x1_m", "y1_m"),
+    ("x2_m", "y2_m"),
+    ("fx1_N", "fy1_N"),
+    ("fx2_N", "fy2_N"),
+    ("qb1_rad", "qt1_rad"),
+    ("qb2_rad", "qt2_rad"),
+    ("x1_m", "x2_m"),
+    ("fx1_N", "fx2_N"),
+    ("qb1_rad", "qb2_rad"),
+];
+
 /// What is done with one column of the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Use {
@@ -320,21 +336,7 @@ impl Planner<'_> {
     /// Vectors must be complete: half a position or half a force is of no use.
     fn complete(&self) -> Result<(), LogError> {
         let has = |name: &str| self.plan.targets.iter().any(|t| t.name == name);
-        let pairs = [
-            ("x_m", "y_m"),
-            ("fx_N", "fy_N"),
-            ("qb_rad", "qt_rad"),
-            ("x1_m", "y1_m"),
-            ("x2_m", "y2_m"),
-            ("fx1_N", "fy1_N"),
-            ("fx2_N", "fy2_N"),
-            ("qb1_rad", "qt1_rad"),
-            ("qb2_rad", "qt2_rad"),
-            ("x1_m", "x2_m"),
-            ("fx1_N", "fx2_N"),
-            ("qb1_rad", "qb2_rad"),
-        ];
-        for (a, b) in pairs {
+        for (a, b) in PAIRS {
             for (there, absent) in [(a, b), (b, a)] {
                 if has(there) && !has(absent) {
                     return Err(self.missing(absent, format!("`{there}` is there and needs it")));

@@ -2,8 +2,9 @@
 
 use super::facts::ColumnFacts;
 use super::file_units::{FileUnit, unit_in};
-use super::names::{Form, PAIRS, find};
+use super::names::{Form, find};
 use super::words::{Axis, Joint, Kind, Reading, read};
+use estimator::log::PAIRS;
 use estimator::log::units::{self, Dimension};
 
 /// What is proposed for one column.

@@ -79,22 +79,6 @@ pub const NAMES: [Name; 42] = [
     name("label", "label of the state", Form::Any),
 ];
 
-/// Columns that are of no use without each other; a log that has one of a pair must have both.
-pub const PAIRS: [(&str, &str); 12] = [
-    ("x_m", "y_m"),
-    ("fx_N", "fy_N"),
-    ("qb_rad", "qt_rad"),
-    ("x1_m", "y1_m"),
-    ("x2_m", "y2_m"),
-    ("fx1_N", "fy1_N"),
-    ("fx2_N", "fy2_N"),
-    ("qb1_rad", "qt1_rad"),
-    ("qb2_rad", "qt2_rad"),
-    ("x1_m", "x2_m"),
-    ("fx1_N", "fx2_N"),
-    ("qb1_rad", "qb2_rad"),
-];
-
 /// The name with this SI form.
 pub fn find(si: &str) -> Option<&'static Name> {
     NAMES.iter().find(|n| n.si == si)
@@ -125,7 +109,7 @@ mod tests {
         for name in NAMES.iter().filter(|n| !matches!(n.si, "trial" | "label")) {
             assert!(units::is_program_name(name.si), "{}", name.si);
         }
-        for (a, b) in PAIRS {
+        for (a, b) in estimator::log::PAIRS {
             assert!(find(a).is_some() && find(b).is_some(), "{a} {b}");
         }
     }
