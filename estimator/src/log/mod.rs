@@ -15,6 +15,7 @@ mod mcap;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod plan;
+pub mod pyramid;
 mod raw;
 mod sidecar;
 mod table;
@@ -22,6 +23,7 @@ pub mod units;
 mod watch;
 mod write;
 
+pub use checks::warnings as quality;
 pub use errors::LogError;
 pub use format::Format;
 pub use mcap::stream::McapStream;

@@ -29,12 +29,22 @@ pub struct Blocks<R> {
     /// Blocks given so far.
     count: usize,
     ended: bool,
+    /// Memory of blocks that have been parsed.
+    spare: Vec<Vec<u8>>,
 }
 
 impl<R: Read> Blocks<R> {
     /// Blocks of about `block_bytes` from a source that stands behind the header.
     pub fn new(source: R, delimiter: u8, block_bytes: usize) -> Self {
-        Self { source: source.take(0), delimiter, block_bytes, rest: Vec::new(), count: 0, ended: false }
+        Self {
+            source: source.take(0),
+            delimiter,
+            block_bytes,
+            rest: Vec::new(),
+            count: 0,
+            ended: false,
+            spare: Vec::new(),
+        }
     }
 
     /// The next block and its number, counted from 0: whole records, the last of the file perhaps without its line end.
@@ -42,7 +52,9 @@ impl<R: Read> Blocks<R> {
         if self.ended {
             return Ok(None);
         }
-        let mut bytes = Vec::with_capacity(self.rest.len() + self.block_bytes + 1);
+        let mut bytes = self.spare.pop().unwrap_or_default();
+        bytes.clear();
+        bytes.reserve(self.rest.len() + self.block_bytes + 1);
         bytes.append(&mut self.rest);
         loop {
             self.source.set_limit(self.block_bytes as u64);
@@ -63,6 +75,14 @@ impl<R: Read> Blocks<R> {
         }
         self.count += 1;
         Ok((!bytes.is_empty()).then_some((self.count - 1, bytes)))
+    }
+
+    /// Gives the memory of a block back.
+    pub fn recycle(&mut self, bytes: Vec<u8>) {
+        // Not that of a block with an overlong record.
+        if bytes.capacity() <= 4 * self.block_bytes {
+            self.spare.push(bytes);
+        }
     }
 
     /// One past the line end of the last whole record.

@@ -118,13 +118,13 @@ impl Cells {
     }
 }
 
-/// The number at the start of `bytes`, when nothing but its delimiter, a line end or the end of the bytes follows it, and
-/// its length. `None` for whatever needs a closer look.
+/// The number at `bytes[at..]`, when nothing but its delimiter, a line end or the end of the bytes follows it, and the index
+/// behind it. `None` for whatever needs a closer look.
 #[inline]
-pub fn number_ahead(bytes: &[u8], delimiter: u8) -> Option<(f64, usize)> {
-    let (value, length) = fast_float2::parse_partial::<f64, _>(bytes).ok()?;
-    let clean = bytes.get(length).is_none_or(|&b| b == delimiter || b == b'\n' || b == b'\r');
-    (clean && value.is_finite()).then_some((value, length))
+pub fn number_ahead(bytes: &[u8], at: usize, delimiter: u8) -> Option<(f64, usize)> {
+    let clean = |end: usize| bytes.get(end).is_none_or(|&b| b == delimiter || b == b'\n' || b == b'\r');
+    let (value, length) = fast_float2::parse_partial::<f64, _>(bytes.get(at..)?).ok()?;
+    (clean(at + length) && value.is_finite()).then_some((value, at + length))
 }
 
 /// Length of the cell at the start of `bytes`, in a record without quotes.

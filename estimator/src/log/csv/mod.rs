@@ -176,7 +176,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
         Self {
             blocks: Mutex::new(Blocks::new(source, delimiter, split.block_bytes)),
             join: Mutex::new(Join::new(plan, dialect, path, size)),
-            layout: Layout { delimiter, width, plan, uses: plan.uses.clone(), undecided: true },
+            layout: Layout { delimiter, width, plan, uses: plan.uses.clone(), undecided: true, bytes_a_row: 0 },
             path,
             size,
             watch,
@@ -237,6 +237,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
             }
         };
         let part = part::parse(layout, &bytes);
+        lock(&self.blocks).recycle(bytes);
         let mut join = lock(&self.join);
         if let Err(error) = join.take(index, part) {
             drop(join);

@@ -21,6 +21,8 @@ pub struct Layout<'a> {
     pub uses: Vec<Use>,
     /// True until the first selected row has shown which columns hold text.
     pub undecided: bool,
+    /// In the block before; 0 before the first.
+    pub bytes_a_row: usize,
 }
 
 /// What is wrong with a record.
@@ -73,10 +75,12 @@ pub struct Part {
 /// Parses a block.
 pub fn parse(layout: &mut Layout<'_>, bytes: &[u8]) -> Part {
     let mut reader = Reader::new(layout, bytes.len());
+    reader.reserve();
     let mut at = 0;
     while at < bytes.len() && reader.part.fault.is_none() {
         at = reader.record(bytes, at);
     }
+    reader.layout.bytes_a_row = bytes.len() / reader.part.rows.max(1);
     reader.part
 }
 
@@ -110,6 +114,19 @@ impl<'a, 'p> Reader<'a, 'p> {
         Self { layout, part, cells: Cells::default(), plain, row: Vec::new() }
     }
 
+    /// Room for as many rows as the last block promises.
+    fn reserve(&mut self) {
+        if self.layout.bytes_a_row == 0 {
+            return;
+        }
+        let rows = self.part.bytes / self.layout.bytes_a_row + 8;
+        for (wanted, target) in self.layout.uses.iter().zip(&mut self.part.columns) {
+            if self.plain && matches!(wanted, Use::Number { .. }) {
+                target.reserve_exact(rows.min(self.part.bytes));
+            }
+        }
+    }
+
     /// Reads the record at `at`; returns where the next one starts.
     fn record(&mut self, bytes: &[u8], at: usize) -> usize {
         if self.plain
@@ -141,14 +158,14 @@ impl<'a, 'p> Reader<'a, 'p> {
         self.row.clear();
         let last = self.layout.uses.len() - 1;
         for (column, wanted) in self.layout.uses.iter().enumerate() {
-            let rest = &bytes[at..];
             match *wanted {
                 Use::Number { factor, .. } => {
-                    let (value, length) = number_ahead(rest, delimiter)?;
+                    let (value, end) = number_ahead(bytes, at, delimiter)?;
                     self.row.push(value * factor);
-                    at += length;
+                    at = end;
                 }
                 Use::Ignore => {
+                    let rest = &bytes[at..];
                     let length = length_ahead(rest, delimiter);
                     // A quote may hide a delimiter, and a record may start with a comment's sign.
                     if rest.first().is_none_or(|&b| b == b'#' && column == 0) || memchr(b'"', &rest[..length]).is_some()

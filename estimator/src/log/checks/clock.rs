@@ -1,0 +1,112 @@
+//! Gaps, dropped samples and jumps of the clock.
+
+use super::profile::thinned;
+use super::{is_position, limited, place};
+use haptics::recording::{Recording, Span, Warning};
+
+/// A step of more than this many periods is a gap, below it a few samples were dropped.
+const GAP_PERIODS: f64 = 10.0;
+/// A step of at least this many periods has lost a sample; a late cycle (measured: up to 1.8) has not.
+const DROPPED_PERIODS: f64 = 1.9;
+/// Samples on either side of a jump that show how fast a position moves.
+const AROUND: usize = 16;
+/// Fewer steps say nothing about what is usual.
+const MIN_STEPS: usize = 8;
+
+/// What the time column shows.
+pub fn warnings(recording: &Recording) -> Vec<Warning> {
+    let Some(time) = recording.time_s.as_ref().filter(|t| t.len() > MIN_STEPS) else { return Vec::new() };
+    let step = |i: usize| time[i + 1] - time[i];
+    let mut ordered: Vec<f64> = thinned(time.len() - 1).map(step).collect();
+    ordered.sort_unstable_by(f64::total_cmp);
+    let (median, high) = (ordered[ordered.len() / 2], ordered[ordered.len() * 95 / 100]);
+    // On an uneven clock only what is far outside its own spread counts.
+    let even = high <= 1.3 * median;
+    let dropped_above = if even { DROPPED_PERIODS * median } else { f64::INFINITY };
+    let gap_above = (GAP_PERIODS * median).max(5.0 * high);
+    let (mut gaps, mut jumps, mut dropped) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut lost, mut longest) = (0.0, 0.0_f64);
+    for (i, pair) in time.windows(2).enumerate() {
+        let step = pair[1] - pair[0];
+        if step <= dropped_above.min(gap_above) {
+            continue;
+        }
+        let span = Span { first: i, end: i + 2 };
+        if step > gap_above && continues(recording, i, median, step) {
+            jumps.push(span);
+        } else if step > gap_above {
+            longest = longest.max(step);
+            gaps.push(span);
+        } else {
+            lost += (step / median).round() - 1.0;
+            dropped.push(span);
+        }
+    }
+    let first = |spans: &[Span]| spans.first().map_or(String::new(), |s| place(recording, s.first));
+    let texts = [
+        (
+            "gap",
+            format!(
+                "{} gap(s) in the time, the first after {}, up to {longest:.3} s long; split the recording there",
+                gaps.len(),
+                first(&gaps)
+            ),
+            gaps,
+        ),
+        (
+            "clock-jump",
+            format!(
+                "the clock jumps {} time(s), first after {}, while the signals go on smoothly; check the time stamps",
+                jumps.len(),
+                first(&jumps)
+            ),
+            jumps,
+        ),
+        (
+            "dropped-samples",
+            format!(
+                "{lost:.0} sample(s) dropped in {} place(s), first after {}; rates are taken across them",
+                dropped.len(),
+                first(&dropped)
+            ),
+            dropped,
+        ),
+    ];
+    texts
+        .into_iter()
+        .filter(|(_, _, spans)| !spans.is_empty())
+        .map(|(kind, text, spans)| Warning {
+            kind: kind.to_owned(),
+            column: Some("t_s".to_owned()),
+            spans: limited(spans),
+            text,
+        })
+        .collect()
+}
+
+/// True when positions that move pass from sample `i` to the next as if only one period had gone by: the clock jumped, not
+/// the world.
+fn continues(recording: &Recording, i: usize, period: f64, step: f64) -> bool {
+    let mut moving = 0;
+    for channel in recording.channels.iter().filter(|c| is_position(c)) {
+        let values = &channel.values;
+        if i < AROUND || i + 1 + AROUND >= values.len() {
+            continue;
+        }
+        let (before, after) = (&values[i - AROUND..=i], &values[i + 1..=i + 1 + AROUND]);
+        let net = |part: &[f64]| (part[AROUND] - part[0]).abs();
+        let total = |part: &[f64]| part.windows(2).map(|w| (w[1] - w[0]).abs()).sum::<f64>();
+        let speed = 0.5 * (net(before) + net(after)) / AROUND as f64;
+        let jitter = 0.5 * (total(before) + total(after)) / AROUND as f64;
+        // Only what moves beyond its noise can show whether time went by.
+        if speed <= 0.0 || speed * (AROUND as f64) < 4.0 * jitter {
+            continue;
+        }
+        moving += 1;
+        let across = (values[i + 1] - values[i]).abs();
+        if across > speed + 4.0 * jitter || across > 0.5 * speed * step / period {
+            return false;
+        }
+    }
+    moving > 0
+}

@@ -1,0 +1,205 @@
+//! Rows that were written twice, and channels that are a copy of another one.
+
+use super::profile::{Profile, holds};
+use super::{limited, place};
+use crate::log::plan::Plan;
+use crate::log::units;
+use haptics::recording::{Channel, Recording, Span, Warning};
+
+/// Rows are called repeated where the liveliest channel repeats itself in no more than this share of its samples.
+const LIVELY_SHARE: f64 = 0.05;
+/// More equal rows than this in a row are a rest or a stuck recorder, not a repeated sample.
+const MOST_REPEATS: usize = 5;
+/// A copy is equal over at least so many samples …
+const COPY_SAMPLES: usize = 100;
+/// … of which this share moves.
+const COPY_MOVES: f64 = 0.5;
+/// Rows that are compared before looking closer: one in so many.
+const STRIDE: usize = 16;
+/// Largest delay at which a copy is looked for, samples.
+const MOST_DELAY: usize = 200;
+/// A channel whose second differences are smaller than this share of its steps carries no noise that it could share.
+const ROUGHNESS: f64 = 0.2;
+/// Two channels share their noise when a straight line explains one by the other this well.
+const SAME_NOISE: f64 = 1e-8;
+
+/// Repeated rows and copied channels of one recording.
+pub fn warnings(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
+    let known: Vec<usize> = (0..recording.channels.len())
+        .filter(|&i| units::is_program_name(&recording.channels[i].name) && !profiles[i].is_constant())
+        .collect();
+    let mut found: Vec<Warning> = repeated_rows(recording, profiles, &known).into_iter().collect();
+    for (k, &a) in known.iter().enumerate() {
+        for &b in &known[k + 1..] {
+            let (one, other) = (&recording.channels[a], &recording.channels[b]);
+            found.extend(copy(recording, one, other));
+        }
+    }
+    found
+}
+
+/// Samples that repeat the one before in every channel while everything moves.
+fn repeated_rows(recording: &Recording, profiles: &[Profile], known: &[usize]) -> Option<Warning> {
+    let n = recording.len();
+    let lively = *known.iter().min_by_key(|&&i| profiles[i].unchanged)?;
+    if known.len() < 2 || profiles[lively].unchanged as f64 > LIVELY_SHARE * n as f64 || profiles[lively].unchanged == 0
+    {
+        return None;
+    }
+    let same = |i: usize| known.iter().all(|&c| recording.channels[c].values[i] == recording.channels[c].values[i - 1]);
+    let spans: Vec<Span> = holds(&recording.channels[lively].values, 2)
+        .into_iter()
+        .filter(|s| s.end - s.first <= MOST_REPEATS + 1 && (s.first + 1..s.end).all(same))
+        .map(|s| Span { first: s.first + 1, end: s.end })
+        .collect();
+    let first = spans.first()?;
+    let text = format!(
+        "{} sample(s) repeat the one before in every channel, the first at {}: they were written again instead of measured; leave them out",
+        spans.iter().map(|s| s.end - s.first).sum::<usize>(),
+        place(recording, first.first)
+    );
+    Some(Warning { kind: "duplicate-samples".to_owned(), column: None, spans: limited(spans), text })
+}
+
+/// `other` as a copy of `one`: equal, equal but later, or scaled and shifted with the same noise.
+fn copy(recording: &Recording, one: &Channel, other: &Channel) -> Option<Warning> {
+    let (a, b) = (one.values.as_slice(), other.values.as_slice());
+    let warning = |span: Span, how: &str| Warning {
+        kind: "copied-channel".to_owned(),
+        column: Some(other.name.clone()),
+        spans: vec![span],
+        text: format!(
+            "{} is {how} {} from {} on, over {} samples: one of the two was not measured; do not use it",
+            other.name,
+            one.name,
+            place(recording, span.first),
+            span.end - span.first
+        ),
+    };
+    if let Some(span) = equal_stretch(a, b) {
+        return Some(warning(span, "the same as"));
+    }
+    if let Some((delay, span)) = delayed(a, b) {
+        let how = if delay > 0 {
+            format!("the same, {delay} samples late, as")
+        } else {
+            format!("the same, {} samples early, as", -delay)
+        };
+        return Some(warning(span, &how));
+    }
+    let (factor, offset) = same_noise(a, b)?;
+    let how = format!("to all digits {factor:.6} times, plus {offset:.4},");
+    Some(warning(Span { first: 0, end: b.len() }, &how))
+}
+
+/// The longest stretch in which `a` and `b` are equal and move.
+fn equal_stretch(a: &[f64], b: &[f64]) -> Option<Span> {
+    let n = a.len().min(b.len());
+    let probes = (0..n).step_by(STRIDE).filter(|&i| a[i] == b[i] && i > 0 && a[i] != a[i - 1]);
+    let mut best: Option<Span> = None;
+    for probe in probes {
+        if best.is_some_and(|s| s.end > probe) {
+            continue;
+        }
+        let first = (0..probe).rev().find(|&i| a[i] != b[i]).map_or(0, |i| i + 1);
+        let end = (probe..n).find(|&i| a[i] != b[i]).unwrap_or(n);
+        if best.is_none_or(|s| end - first > s.end - s.first) {
+            best = Some(Span { first, end });
+        }
+    }
+    best.filter(|s| moves(&a[s.first..s.end]))
+}
+
+fn moves(values: &[f64]) -> bool {
+    let changes = values.windows(2).filter(|w| w[0] != w[1]).count();
+    values.len() >= COPY_SAMPLES && changes as f64 >= COPY_MOVES * values.len() as f64
+}
+
+/// Delay in samples by which `b` repeats `a`, and where.
+fn delayed(a: &[f64], b: &[f64]) -> Option<(isize, Span)> {
+    let n = a.len().min(b.len());
+    if n < 2 * MOST_DELAY + 4 * COPY_SAMPLES {
+        return None;
+    }
+    // A pattern that moves, out of the middle.
+    let middle =
+        (n / 2..n - MOST_DELAY - COPY_SAMPLES).step_by(COPY_SAMPLES).find(|&i| moves(&a[i..i + COPY_SAMPLES]))?;
+    let pattern = &a[middle..middle + COPY_SAMPLES];
+    let place = (middle - MOST_DELAY..=middle + MOST_DELAY)
+        .find(|&i| b[i] == pattern[0] && b.get(i..i + COPY_SAMPLES) == Some(pattern))?;
+    let delay = place as isize - middle as isize;
+    let at = |i: usize| (i as isize - delay) as usize;
+    let (low, high) = (delay.max(0) as usize, (n as isize + delay.min(0)) as usize);
+    let first = (low..place).rev().find(|&i| b[i] != a[at(i)]).map_or(low, |i| i + 1);
+    let end = (place..high).find(|&i| b[i] != a[at(i)]).unwrap_or(high);
+    Some((delay, Span { first, end }))
+}
+
+/// Factor and offset that make `b` out of `a` to all digits, noise and all. Smooth signals have no noise to share: those
+/// of a hand that moves symmetrically are mirror images without being copies.
+fn same_noise(a: &[f64], b: &[f64]) -> Option<(f64, f64)> {
+    const PIECE: usize = 512;
+    let n = a.len().min(b.len());
+    let piece = PIECE.min(n);
+    if n < COPY_SAMPLES {
+        return None;
+    }
+    // A piece first: nearly all pairs end here.
+    let first = (n - piece) / 2;
+    line(&a[first..first + piece], &b[first..first + piece])?;
+    line(&a[..n], &b[..n])
+}
+
+fn line(a: &[f64], b: &[f64]) -> Option<(f64, f64)> {
+    let n = a.len() as f64;
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
+    let (mean_a, mean_b) = (mean(a), mean(b));
+    let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
+    for (x, y) in a.iter().zip(b) {
+        let (x, y) = (x - mean_a, y - mean_b);
+        (aa, ab, bb) = (aa + x * x, ab + x * y, bb + y * y);
+    }
+    if aa <= 0.0 || bb <= 0.0 || bb - ab * ab / aa > SAME_NOISE * bb {
+        return None;
+    }
+    let (mut steps, mut bends) = (0.0, 0.0);
+    for w in a.windows(3) {
+        steps += (w[2] - w[1]).powi(2);
+        bends += (w[2] - 2.0 * w[1] + w[0]).powi(2);
+    }
+    let changes = a.windows(2).filter(|w| w[0] != w[1]).count() as f64;
+    // Steps of coarse quanta are rough, and few.
+    let rough = bends > ROUGHNESS * ROUGHNESS * steps && changes >= COPY_MOVES * n;
+    // The bends must be noise that the line's misfit would show.
+    let noise = bends / (6.0 * n);
+    let misfit = (bb - ab * ab / aa).max(0.0) / n;
+    let factor = ab / aa;
+    (rough && misfit < 1e-3 * noise * factor * factor).then_some((factor, mean_b - factor * mean_a))
+}
+
+/// Warnings about channels that another trial of the same file repeats: `copies` from the fingerprints.
+pub fn copied(recording: &Recording, plan: &Plan, copies: &[(usize, String, String, usize)]) -> Vec<Warning> {
+    let selected: Vec<&str> = plan.select.iter().map(|w| w.text.as_str()).collect();
+    let mine = |trial: &str| {
+        let parts: Vec<&str> = trial.split(" / ").collect();
+        recording.trial.as_deref().is_none_or(|t| parts.contains(&t)) && selected.iter().all(|s| parts.contains(s))
+    };
+    let mut found = Vec::new();
+    for (watched, a, b, rows) in copies {
+        let Some(other) = [(a, b), (b, a)].into_iter().find(|(own, _)| mine(own)).map(|(_, other)| other) else {
+            continue;
+        };
+        let column = plan.watched[*watched];
+        let Some(target) = plan.targets.iter().find(|t| t.column == column) else { continue };
+        found.push(Warning {
+            kind: "copied-channel".to_owned(),
+            column: Some(target.name.clone()),
+            spans: vec![Span { first: 0, end: (*rows).min(recording.len()) }],
+            text: format!(
+                "{} is the same as in trial {other} over {rows} samples: one of the two was not measured; do not use it",
+                target.name
+            ),
+        });
+    }
+    found
+}

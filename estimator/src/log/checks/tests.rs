@@ -1,0 +1,96 @@
+//! Each fault once, and what must not be taken for one.
+
+use super::*;
+
+fn channel(name: &str, values: Vec<f64>) -> Channel {
+    let unit = units::split(name).map_or(String::new(), |(_, u)| u.si.to_owned());
+    Channel { name: name.to_owned(), unit, values }
+}
+
+fn wave(n: usize) -> Vec<f64> {
+    (0..n).map(|i| (i as f64 * 0.05).sin() + 1e-3 * (i as f64 * 17.3).sin()).collect()
+}
+
+fn recording(time_s: Vec<f64>, channels: Vec<Channel>) -> Recording {
+    Recording { time_s: Some(time_s), channels, ..Recording::default() }
+}
+
+fn kinds(warnings: &[Warning]) -> Vec<&str> {
+    warnings.iter().map(|w| w.kind.as_str()).collect()
+}
+
+#[test]
+fn a_clean_recording_has_no_warnings() {
+    let time = (0..1000).map(|i| f64::from(i) * 1e-3).collect();
+    let other = (0..1000).map(|i| (f64::from(i) * 0.03).cos() + 1e-3 * (f64::from(i) * 23.1).sin()).collect();
+    assert!(warnings(&recording(time, vec![channel("q_m", wave(1000)), channel("f_N", other)])).is_empty());
+}
+
+#[test]
+fn gaps_dropped_samples_and_jumps_are_told_apart() {
+    let mut time: Vec<f64> = (0..400).map(|i| f64::from(i) * 0.01).collect();
+    time[100..].iter_mut().for_each(|t| *t += 0.02);
+    let q = |time: &[f64]| channel("q_m", time.iter().map(|t| (3.0 * t).sin()).collect());
+    let dropped = warnings(&recording(time.clone(), vec![q(&time)]));
+    assert_eq!(kinds(&dropped), ["dropped-samples"]);
+    assert_eq!(dropped[0].spans, [Span { first: 99, end: 101 }]);
+    assert!(dropped[0].text.starts_with("2 sample(s)"));
+
+    time[200..].iter_mut().for_each(|t| *t += 0.5);
+    assert_eq!(kinds(&warnings(&recording(time.clone(), vec![q(&time)]))), ["gap", "dropped-samples"]);
+
+    let mut late: Vec<f64> = (0..400).map(|i| f64::from(i) * 0.01).collect();
+    let smooth = q(&late);
+    late[200..].iter_mut().for_each(|t| *t += 5.0);
+    assert_eq!(kinds(&warnings(&recording(late, vec![smooth]))), ["clock-jump"]);
+}
+
+#[test]
+fn stuck_channels_are_found_and_rest_is_not_one() {
+    let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 1e-3).collect();
+    let mut force = wave(1000);
+    let held = force[300];
+    force[300..420].fill(held);
+    let found = warnings(&recording(time.clone(), vec![channel("f_N", force)]));
+    assert_eq!((kinds(&found), found[0].spans[0]), (vec!["stuck-channel"], Span { first: 300, end: 420 }));
+    assert_eq!(kinds(&warnings(&recording(time.clone(), vec![channel("fx_N", vec![0.7; 1000])]))), ["stuck-channel"]);
+    // A slide that comes to rest, stays, and leaves slowly again.
+    let rest: Vec<f64> = (0..1000)
+        .map(|i: i32| f64::from((i - 300).min(0) + (i - 700).max(0)) * 1e-4 + f64::from(i % 2) * 0.0)
+        .collect();
+    assert!(warnings(&recording(time, vec![channel("q_m", rest)])).is_empty());
+}
+
+#[test]
+fn an_impossible_value_is_named_with_its_row() {
+    let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 1e-3).collect();
+    let mut force = wave(1000);
+    force[50] = 1e300;
+    let found = warnings(&recording(time.clone(), vec![channel("fx1_N", force)]));
+    assert_eq!(kinds(&found), ["outlier"]);
+    assert!(found[0].text.contains("fx1_N is 1e300 in row 51"), "{}", found[0].text);
+    // Mostly zero, then a blow: that is what contact looks like.
+    let blow: Vec<f64> = (0..1000).map(|i| if i > 980 { 30.0 + f64::from(i % 7) } else { 0.0 }).collect();
+    assert!(!kinds(&warnings(&recording(time, vec![channel("fx1_N", blow)]))).contains(&"outlier"));
+}
+
+#[test]
+fn long_clipping_is_a_limit_and_not_a_stuck_channel() {
+    let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 1e-3).collect();
+    // A grip force that is beyond the sensor for six tenths of the recording.
+    let grip: Vec<f64> = (0..1000)
+        .map(|i: i32| (0.8 - (f64::from(i - 500) / 350.0).powi(2) + 1e-3 * (f64::from(i) * 17.3).sin()).min(0.1))
+        .collect();
+    let found = warnings(&recording(time, vec![channel("fx1_N", grip)]));
+    assert_eq!(kinds(&found), ["saturation"]);
+}
+
+#[test]
+fn a_clipped_force_is_saturated_and_a_quantised_one_is_not() {
+    let time: Vec<f64> = (0..1000).map(|i| f64::from(i) * 1e-3).collect();
+    let clipped: Vec<f64> = wave(1000).into_iter().map(|v| v.clamp(-0.9, 0.9)).collect();
+    let found = warnings(&recording(time.clone(), vec![channel("f_N", clipped)]));
+    assert!(kinds(&found).contains(&"saturation"), "{found:?}");
+    let coarse: Vec<f64> = wave(1000).into_iter().map(|v| (v * 20.0).round() / 20.0).collect();
+    assert!(warnings(&recording(time, vec![channel("f_N", coarse)])).is_empty());
+}
