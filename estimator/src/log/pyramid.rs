@@ -145,7 +145,8 @@ impl Pyramid {
         to_s: f64,
         pixels: usize,
     ) -> Vec<Pixel> {
-        if !(to_s > from_s) || !(to_s - from_s).is_finite() {
+        let length = to_s - from_s;
+        if !length.is_finite() || length <= 0.0 {
             return Vec::new();
         }
         let width = (to_s - from_s) / pixels.max(1) as f64;

@@ -127,9 +127,9 @@ fn delayed(a: &[f64], b: &[f64]) -> Option<(isize, Span)> {
     let pattern = &a[middle..middle + COPY_SAMPLES];
     let place = (middle - MOST_DELAY..=middle + MOST_DELAY)
         .find(|&i| b[i] == pattern[0] && b.get(i..i + COPY_SAMPLES) == Some(pattern))?;
-    let delay = place as isize - middle as isize;
-    let at = |i: usize| (i as isize - delay) as usize;
-    let (low, high) = (delay.max(0) as usize, (n as isize + delay.min(0)) as usize);
+    let delay = place.cast_signed() - middle.cast_signed();
+    let at = |i: usize| (i.cast_signed() - delay) as usize;
+    let (low, high) = (delay.max(0) as usize, (n.cast_signed() + delay.min(0)) as usize);
     let first = (low..place).rev().find(|&i| b[i] != a[at(i)]).map_or(low, |i| i + 1);
     let end = (place..high).find(|&i| b[i] != a[at(i)]).unwrap_or(high);
     Some((delay, Span { first, end }))
