@@ -142,7 +142,9 @@ const FAULTS: [Fault; 13] = [
             let force = values(r, "fx1_N");
             let peak = force.iter().fold(0.0_f64, |a, v| a.max(v.abs())) * size;
             let first = force.iter().position(|v| v.abs() > peak)?;
-            force.iter_mut().for_each(|v| *v = v.clamp(-peak, peak));
+            for v in force.iter_mut() {
+                *v = v.clamp(-peak, peak);
+            }
             Some(("fx1_N", Span { first, end: first + 1 }))
         },
     },
@@ -154,7 +156,9 @@ const FAULTS: [Fault; 13] = [
         spoil: |r, size, _| {
             let range = spread(r.channel("fx1_N")?).max(spread(r.channel("fx2_N")?));
             let quantum = range * size;
-            values(r, "fx1_N").iter_mut().for_each(|v| *v = (*v / quantum).round() * quantum);
+            for v in values(r, "fx1_N").iter_mut() {
+                *v = (*v / quantum).round() * quantum;
+            }
             Some(("fx1_N", Span { first: 0, end: r.len() }))
         },
     },
@@ -222,7 +226,9 @@ const FAULTS: [Fault; 13] = [
         sizes: [0.001, 57.29578, 100.0, 1000.0],
         sure_from: 0,
         spoil: |r, size, _| {
-            values(r, "vx1_m_s").iter_mut().for_each(|v| *v *= size);
+            for v in values(r, "vx1_m_s").iter_mut() {
+                *v *= size;
+            }
             Some(("vx1_m_s", Span { first: 0, end: r.len() }))
         },
     },
