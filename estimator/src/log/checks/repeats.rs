@@ -38,6 +38,13 @@ pub fn warnings(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
     found
 }
 
+/// Median size of the steps of a channel that are steps at all.
+fn usual_step(values: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 0.0).collect();
+    steps.sort_unstable_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY)
+}
+
 /// Samples that repeat the one before in every channel while everything moves.
 fn repeated_rows(recording: &Recording, profiles: &[Profile], known: &[usize]) -> Option<Warning> {
     let n = recording.len();
@@ -47,8 +54,18 @@ fn repeated_rows(recording: &Recording, profiles: &[Profile], known: &[usize]) -
         return None;
     }
     let same = |i: usize| known.iter().all(|&c| recording.channels[c].values[i] == recording.channels[c].values[i - 1]);
-    let spans: Vec<Span> = holds(&recording.channels[lively].values, 2)
+    let values = &recording.channels[lively].values;
+    // Slow motion in coarse quanta repeats by itself: the steps around a repeat must be those of a motion.
+    let usual = usual_step(values);
+    let moving = |s: &Span| {
+        s.first > 0
+            && s.end < n
+            && (values[s.first] - values[s.first - 1]).abs() >= usual
+            && (values[s.end] - values[s.end - 1]).abs() >= usual
+    };
+    let spans: Vec<Span> = holds(values, 2)
         .into_iter()
+        .filter(moving)
         .filter(|s| s.end - s.first <= MOST_REPEATS + 1 && (s.first + 1..s.end).all(same))
         .map(|s| Span { first: s.first + 1, end: s.end })
         .collect();
