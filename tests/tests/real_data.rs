@@ -5,7 +5,7 @@ use estimator::constraint;
 use estimator::estimate::{ConstraintKind, Fit};
 use estimator::identify::mechanism;
 use estimator::log;
-use haptics::recording::{Meta, Recording, Span};
+use haptics::recording::{Meta, Recording, Span, Warning};
 use std::path::PathBuf;
 
 /// The file, or `None` with a visible word.
@@ -75,9 +75,38 @@ fn real_recordings_raise_no_false_warnings() {
                 .warnings
                 .iter()
                 .filter(|w| !["no-clock", "columns", "text-column"].contains(&w.kind.as_str()))
+                .filter(|w| !is_true(recording, w))
                 .collect();
             assert!(doubtful.is_empty(), "{}: {doubtful:?}", recording.name);
         }
+    }
+}
+
+/// What real recordings do have, seen without the program's own criteria: the torque of the double pendulum moves in steps of
+/// 5.86 mNm; the tracker of the drawers and the sensors of the cabinet gave some rows twice, in three and in six noisy channels.
+fn is_true(recording: &Recording, warning: &Warning) -> bool {
+    const PROGRAM: [&str; 6] = ["x_m", "y_m", "z_m", "fx_N", "fy_N", "fz_N"];
+    let repeated = |span: &Span| {
+        let channels = || recording.channels.iter().filter(|c| PROGRAM.contains(&c.name.as_str()));
+        let moves_around = |values: &[f64]| {
+            let around = &values[span.first.saturating_sub(6)..(span.end + 5).min(values.len())];
+            around.windows(2).filter(|w| w[0] != w[1]).count() * 2 > around.len()
+        };
+        channels().count() >= 3
+            && channels().all(|c| (span.first..span.end).all(|i| c.values[i] == c.values[i - 1]))
+            && channels().filter(|c| moves_around(&c.values)).count() >= 3
+    };
+    match warning.kind.as_str() {
+        "quantised" => {
+            let values = warning.column.as_deref().and_then(|name| recording.channel(name)).unwrap_or_default();
+            let mut sorted = values.to_vec();
+            sorted.sort_unstable_by(f64::total_cmp);
+            let mut usual = sorted[sorted.len() / 20..sorted.len() - sorted.len() / 20].to_vec();
+            usual.dedup();
+            (2..32).contains(&usual.len())
+        }
+        "duplicate-samples" => warning.spans.iter().all(repeated),
+        _ => false,
     }
 }
 

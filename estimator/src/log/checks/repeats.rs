@@ -6,8 +6,6 @@ use crate::log::plan::Plan;
 use crate::log::units;
 use haptics::recording::{Channel, Recording, Span, Warning};
 
-/// Rows are called repeated where the liveliest channel repeats itself in no more than this share of its samples.
-const LIVELY_SHARE: f64 = 0.05;
 /// More equal rows than this in a row are a rest or a stuck recorder, not a repeated sample.
 const MOST_REPEATS: usize = 5;
 /// A copy is equal over at least so many samples …
@@ -38,40 +36,72 @@ pub fn warnings(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
     found
 }
 
-/// Median size of the steps of a channel that are steps at all.
-fn usual_step(values: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|s| *s > 0.0).collect();
-    steps.sort_unstable_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY)
+/// Samples either side of a place that tell how lively a channel is there.
+const AROUND: usize = 8;
+/// Classes of liveliness: powers of two below the liveliest.
+const CLASSES: usize = 24;
+/// So many repeats may be taken for faults by chance in a whole recording.
+const BY_CHANCE: f64 = 0.02;
+
+/// How likely a channel repeats a value by itself, given how lively it is just there.
+///
+/// A slow, quantised channel repeats often and a fast or noisy one never: the share of repeats among all samples of the recording
+/// where the channel is about as lively tells which.
+struct Habit {
+    class: Vec<u8>,
+    chance: [f64; CLASSES],
 }
 
-/// Samples that repeat the one before in every channel while everything moves.
+impl Habit {
+    fn of(values: &[f64]) -> Self {
+        let steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+        let mut sum = vec![0.0; steps.len() + 1];
+        for (i, step) in steps.iter().enumerate() {
+            sum[i + 1] = sum[i] + step;
+        }
+        let mean = |i: usize| {
+            let (low, high) = (i.saturating_sub(AROUND), (i + AROUND + 1).min(steps.len()));
+            (sum[high] - sum[low]) / (high - low) as f64
+        };
+        let liveliest = (0..steps.len()).map(mean).fold(0.0, f64::max);
+        let class_of = |mean: f64| ((liveliest / mean).log2().floor()).clamp(0.0, CLASSES as f64 - 1.0) as u8;
+        let class: Vec<u8> = (0..steps.len()).map(|i| class_of(mean(i))).collect();
+        let (mut all, mut held) = ([1.0; CLASSES], [0.5; CLASSES]);
+        for (&class, &step) in class.iter().zip(&steps) {
+            all[usize::from(class)] += 1.0;
+            held[usize::from(class)] += f64::from(u8::from(step == 0.0));
+        }
+        Self { class, chance: std::array::from_fn(|k| held[k] / all[k]) }
+    }
+
+    /// Probability that sample `i`, at least 1, repeats the one before.
+    fn repeats(&self, i: usize) -> f64 {
+        self.class.get(i - 1).map_or(1.0, |&class| self.chance[usize::from(class)])
+    }
+}
+
+/// Samples that repeat the one before in every channel, where the channels' habits make that next to impossible.
 fn repeated_rows(recording: &Recording, profiles: &[Profile], known: &[usize]) -> Option<Warning> {
-    let n = recording.len();
     let lively = *known.iter().min_by_key(|&&i| profiles[i].unchanged)?;
-    if known.len() < 2 || profiles[lively].unchanged as f64 > LIVELY_SHARE * n as f64 || profiles[lively].unchanged == 0
-    {
+    if known.len() < 2 || profiles[lively].unchanged == 0 {
         return None;
     }
-    let same = |i: usize| known.iter().all(|&c| recording.channels[c].values[i] == recording.channels[c].values[i - 1]);
-    let values = &recording.channels[lively].values;
-    // Slow motion in coarse quanta repeats by itself: the steps around a repeat must be those of a motion.
-    let usual = usual_step(values);
-    let moving = |s: &Span| {
-        s.first > 0
-            && s.end < n
-            && (values[s.first] - values[s.first - 1]).abs() >= usual
-            && (values[s.end] - values[s.end - 1]).abs() >= usual
-    };
-    let spans: Vec<Span> = holds(values, 2)
+    let values = |c: usize| recording.channels[c].values.as_slice();
+    let same = |i: usize| known.iter().all(|&c| values(c)[i] == values(c)[i - 1]);
+    let mut spans: Vec<Span> = holds(values(lively), 2)
         .into_iter()
-        .filter(moving)
         .filter(|s| s.end - s.first <= MOST_REPEATS + 1 && (s.first + 1..s.end).all(same))
         .map(|s| Span { first: s.first + 1, end: s.end })
         .collect();
+    if spans.is_empty() {
+        return None;
+    }
+    let habits: Vec<Habit> = known.iter().map(|&c| Habit::of(values(c))).collect();
+    let by_itself = |s: &Span| habits.iter().map(|habit| habit.repeats(s.first)).product::<f64>();
+    spans.retain(|s| by_itself(s) * recording.len() as f64 <= BY_CHANCE);
     let first = spans.first()?;
     let text = format!(
-        "{} sample(s) repeat the one before in every channel, the first at {}: they were written again instead of measured; leave them out",
+        "{} sample(s) repeat the one before in every measured channel, the first at {}: they were written again instead of measured; leave them out",
         spans.iter().map(|s| s.end - s.first).sum::<usize>(),
         place(recording, first.first)
     );
