@@ -29,6 +29,8 @@ const WINDOW_S: f64 = 1.0;
 const BAD_SHARE: f64 = 0.05;
 /// Bad windows in a row that are believed.
 const BAD_WINDOWS: u32 = 3;
+/// Good windows in a row after which an overload is over.
+const GOOD_WINDOWS: u32 = 10;
 
 /// How the rate is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -183,12 +185,21 @@ pub struct Watch {
     ticks: u32,
     missed: u32,
     bad: u32,
+    good: u32,
+}
+
+/// What the watch has seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// Too many deadlines were missed for three windows of a second in a row; the share in the last one.
+    Overloaded(f64),
+    /// None of the last ten windows was bad.
+    Recovered,
 }
 
 impl Watch {
-    /// Counts one tick that began `interval_s` after the one before; the share of missed deadlines when there were too many
-    /// for three windows of a second in a row.
-    pub fn add(&mut self, missed: bool, interval_s: f64) -> Option<f64> {
+    /// Counts one tick that began `interval_s` after the one before; a verdict when the time has come for one.
+    pub fn add(&mut self, missed: bool, interval_s: f64) -> Option<Verdict> {
         self.passed_s += interval_s;
         self.ticks += 1;
         self.missed += u32::from(missed);
@@ -196,18 +207,30 @@ impl Watch {
             return None;
         }
         let share = f64::from(self.missed) / f64::from(self.ticks);
-        self.bad = if share > BAD_SHARE { self.bad + 1 } else { 0 };
+        (self.bad, self.good) = if share > BAD_SHARE { (self.bad + 1, 0) } else { (0, self.good + 1) };
         (self.passed_s, self.ticks, self.missed) = (0.0, 0, 0);
-        if self.bad < BAD_WINDOWS {
-            return None;
+        if self.bad >= BAD_WINDOWS {
+            self.bad = 0;
+            return Some(Verdict::Overloaded(share));
         }
-        self.bad = 0;
-        Some(share)
+        if self.good >= GOOD_WINDOWS {
+            self.good = 0;
+            return Some(Verdict::Recovered);
+        }
+        None
+    }
+}
+
+/// The report after a verdict. A rate that was lowered stays low: up and down again would be felt.
+pub(super) fn judge(choice: RateChoice, report: RateReport, verdict: Verdict) -> RateReport {
+    match verdict {
+        Verdict::Overloaded(share) => degrade(choice, report, share),
+        Verdict::Recovered => RateReport { overloaded: false, ..report },
     }
 }
 
 /// What follows from too many misses: down to [`SAFE_HZ`] where the rate was the servo's own choice, else only said.
-pub(super) fn degrade(choice: RateChoice, report: RateReport, missed_share: f64) -> RateReport {
+fn degrade(choice: RateChoice, report: RateReport, missed_share: f64) -> RateReport {
     if choice == RateChoice::Auto && report.rate_hz > SAFE_HZ {
         let reason = RateReason::FellBack { from_hz: report.rate_hz, missed_share };
         return RateReport { rate_hz: SAFE_HZ, reason, overloaded: false };
@@ -257,10 +280,9 @@ mod tests {
         // A bad second, a good one, then four bad ones.
         for tick in 0..6 * 4096_u32 {
             let bad = !(4096..8192).contains(&tick);
-            verdicts.extend(watch.add(bad && tick.is_multiple_of(10), 1.0 / 4096.0).map(|share| (tick, share)));
+            verdicts.extend(watch.add(bad && tick.is_multiple_of(10), 1.0 / 4096.0).map(|verdict| (tick, verdict)));
         }
-        assert_eq!(verdicts.len(), 1, "{verdicts:?}");
-        let (tick, share) = verdicts[0];
+        let [(tick, Verdict::Overloaded(share))] = verdicts[..] else { panic!("{verdicts:?}") };
         assert!(tick == 5 * 4096 - 1 && (share - 0.1).abs() < 1e-3, "{verdicts:?}");
         let fast = RateReport { rate_hz: FAST_HZ, ..RateReport::default() };
         let slower = degrade(RateChoice::Auto, fast, share);
@@ -269,5 +291,26 @@ mod tests {
         assert!(degrade(RateChoice::Auto, slower, share).overloaded, "there is nothing below");
         let fixed = degrade(RateChoice::Fixed(4000.0), fast, share);
         assert!(fixed.rate_hz == FAST_HZ && fixed.sentence().contains("does not hold"), "{}", fixed.sentence());
+    }
+
+    #[test]
+    fn an_overload_that_is_over_is_no_longer_blamed_and_a_lowered_rate_stays() {
+        let (mut watch, mut report) = (Watch::default(), RateReport { rate_hz: 4096.0, ..RateReport::default() });
+        let mut second = |bad: bool, report: &mut RateReport| {
+            for tick in 0..4096_u32 {
+                if let Some(verdict) = watch.add(bad && tick.is_multiple_of(10), 1.0 / 4096.0) {
+                    *report = judge(RateChoice::Fixed(4096.0), *report, verdict);
+                }
+            }
+        };
+        (0..3).for_each(|_| second(true, &mut report));
+        assert!(report.overloaded && report.sentence().contains("close other programs"));
+        (0..9).for_each(|_| second(false, &mut report));
+        assert!(report.overloaded, "nine good seconds are not yet believed");
+        second(false, &mut report);
+        assert!(!report.overloaded && report.rate_hz == 4096.0);
+        let fast = RateReport { rate_hz: FAST_HZ, ..RateReport::default() };
+        let lowered = judge(RateChoice::Auto, fast, Verdict::Overloaded(0.2));
+        assert_eq!(judge(RateChoice::Auto, lowered, Verdict::Recovered), lowered);
     }
 }

@@ -91,8 +91,8 @@ impl Runner {
             met |= sample_age_s == 0.0;
             let has_force = met && !tick.flags.stale;
             collector.add(&TickTiming { lateness_s, interval_s, compute_s, missed, sample_age_s, has_force });
-            if let Some(share) = watch.add(missed, interval_s.unwrap_or(period_s)) {
-                self.rate = rate::degrade(self.config.rate, self.rate, share);
+            if let Some(verdict) = watch.add(missed, interval_s.unwrap_or(period_s)) {
+                self.rate = rate::judge(self.config.rate, self.rate, verdict);
                 if period_s != 1.0 / self.rate.rate_hz {
                     period_s = 1.0 / self.rate.rate_hz;
                     deadlines = Deadlines::new(Duration::from_secs_f64(period_s));
