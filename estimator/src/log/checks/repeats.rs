@@ -27,10 +27,11 @@ pub fn warnings(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
         .filter(|&i| units::is_program_name(&recording.channels[i].name) && !profiles[i].is_constant())
         .collect();
     let mut found: Vec<Warning> = repeated_rows(recording, profiles, &known).into_iter().collect();
+    let pairs = Pairs::of(recording, &known);
     for (k, &a) in known.iter().enumerate() {
-        for &b in &known[k + 1..] {
+        for (j, &b) in known.iter().enumerate().skip(k + 1) {
             let (one, other) = (&recording.channels[a], &recording.channels[b]);
-            found.extend(copy(recording, one, other));
+            found.extend(copy(recording, one, other, pairs.equal(k, j)));
         }
     }
     found
@@ -108,8 +109,41 @@ fn repeated_rows(recording: &Recording, profiles: &[Profile], known: &[usize]) -
     Some(Warning { kind: "duplicate-samples".to_owned(), column: None, spans: limited(spans), text })
 }
 
+/// Where channels were met with equal values that move: one look at all of them, place by place, instead of one a pair.
+struct Pairs {
+    count: usize,
+    places: Vec<Vec<usize>>,
+}
+
+impl Pairs {
+    fn of(recording: &Recording, known: &[usize]) -> Self {
+        let count = known.len();
+        let mut places = vec![Vec::new(); count * count];
+        let columns: Vec<&[f64]> = known.iter().map(|&c| recording.channels[c].values.as_slice()).collect();
+        let mut here = vec![0.0; count];
+        for i in (STRIDE..recording.len()).step_by(STRIDE) {
+            for (value, column) in here.iter_mut().zip(&columns) {
+                *value = column[i];
+            }
+            for (a, &value) in here.iter().enumerate() {
+                for (b, &other) in here.iter().enumerate().skip(a + 1) {
+                    if value == other && value != columns[a][i - 1] {
+                        places[a * count + b].push(i);
+                    }
+                }
+            }
+        }
+        Self { count, places }
+    }
+
+    /// Places where the known channels `a` < `b` are equal and move.
+    fn equal(&self, a: usize, b: usize) -> &[usize] {
+        &self.places[a * self.count + b]
+    }
+}
+
 /// `other` as a copy of `one`: equal, equal but later, or scaled and shifted with the same noise.
-fn copy(recording: &Recording, one: &Channel, other: &Channel) -> Option<Warning> {
+fn copy(recording: &Recording, one: &Channel, other: &Channel, equal: &[usize]) -> Option<Warning> {
     let (a, b) = (one.values.as_slice(), other.values.as_slice());
     let warning = |span: Span, how: &str| Warning {
         kind: "copied-channel".to_owned(),
@@ -123,7 +157,7 @@ fn copy(recording: &Recording, one: &Channel, other: &Channel) -> Option<Warning
             span.end - span.first
         ),
     };
-    if let Some(span) = equal_stretch(a, b) {
+    if let Some(span) = equal_stretch(a, b, equal) {
         return Some(warning(span, "the same as"));
     }
     if let Some((delay, span)) = delayed(a, b) {
@@ -139,12 +173,11 @@ fn copy(recording: &Recording, one: &Channel, other: &Channel) -> Option<Warning
     Some(warning(Span { first: 0, end: b.len() }, &how))
 }
 
-/// The longest stretch in which `a` and `b` are equal and move.
-fn equal_stretch(a: &[f64], b: &[f64]) -> Option<Span> {
+/// The longest stretch in which `a` and `b` are equal and move, out of those that hold one of `probes`.
+fn equal_stretch(a: &[f64], b: &[f64], probes: &[usize]) -> Option<Span> {
     let n = a.len().min(b.len());
-    let probes = (0..n).step_by(STRIDE).filter(|&i| a[i] == b[i] && i > 0 && a[i] != a[i - 1]);
     let mut best: Option<Span> = None;
-    for probe in probes {
+    for &probe in probes {
         if best.is_some_and(|s| s.end > probe) {
             continue;
         }

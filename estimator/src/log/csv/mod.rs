@@ -21,8 +21,7 @@ use std::fs::File;
 use std::io::{Read, Seek as _, SeekFrom};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 /// How many bytes are looked at to tell a table from something else.
 const SNIFF_BYTES: usize = 1 << 16;
@@ -134,6 +133,8 @@ struct Split {
 struct Reading<'a, R> {
     blocks: Mutex<Blocks<R>>,
     join: Mutex<Join<'a>>,
+    /// Told after every part that was joined, and when the work stops.
+    joined: Condvar,
     layout: Layout<'a>,
     path: &'a Path,
     size: u64,
@@ -151,13 +152,23 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// Stops the other threads when one ends, also when it panics.
-struct StopOnDrop<'a>(&'a AtomicBool);
+struct StopOnDrop<'a, 'r, R>(&'a Reading<'r, R>);
 
-impl Drop for StopOnDrop<'_> {
+impl<R> Drop for StopOnDrop<'_, '_, R> {
     fn drop(&mut self) {
         if std::thread::panicking() {
-            self.0.store(true, Ordering::Relaxed);
+            self.0.stop();
         }
+    }
+}
+
+impl<R> Reading<'_, R> {
+    /// Nobody takes another block.
+    fn stop(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+        // Under the lock, so that no thread has looked at the flag and not yet begun to wait.
+        let _join = lock(&self.join);
+        self.joined.notify_all();
     }
 }
 
@@ -176,6 +187,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
         Self {
             blocks: Mutex::new(Blocks::new(source, delimiter, split.block_bytes)),
             join: Mutex::new(Join::new(plan, dialect, path, size)),
+            joined: Condvar::new(),
             layout: Layout { delimiter, width, plan, uses: plan.uses.clone(), undecided: true, bytes_a_row: 0 },
             path,
             size,
@@ -210,7 +222,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
     }
 
     fn work(&self) {
-        let _guard = StopOnDrop(&self.stop);
+        let _guard = StopOnDrop(self);
         let mut layout = self.layout.clone();
         while self.step(&mut layout) {}
     }
@@ -220,9 +232,11 @@ impl<'a, R: Read + Send> Reading<'a, R> {
         if self.watch.is_cancelled() {
             return self.end(LogError::Cancelled { path: self.path.to_path_buf() });
         }
-        while lock(&self.join).waiting() > MAX_WAITING && !self.stop.load(Ordering::Relaxed) {
-            std::thread::sleep(Duration::from_micros(200));
+        let mut join = lock(&self.join);
+        while join.waiting() > MAX_WAITING && !self.stop.load(Ordering::Relaxed) {
+            join = self.joined.wait(join).unwrap_or_else(PoisonError::into_inner);
         }
+        drop(join);
         if self.stop.load(Ordering::Relaxed) {
             return false;
         }
@@ -239,7 +253,9 @@ impl<'a, R: Read + Send> Reading<'a, R> {
         let part = part::parse(layout, &bytes);
         lock(&self.blocks).recycle(bytes);
         let mut join = lock(&self.join);
-        if let Err(error) = join.take(index, part) {
+        let taken = join.take(index, part);
+        self.joined.notify_all();
+        if let Err(error) = taken {
             drop(join);
             return self.end(error);
         }
@@ -250,7 +266,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
     /// The first error counts.
     fn end(&self, error: LogError) -> bool {
         lock(&self.error).get_or_insert(error);
-        self.stop.store(true, Ordering::Relaxed);
+        self.stop();
         false
     }
 

@@ -153,15 +153,35 @@ impl<'a, 'p> Reader<'a, 'p> {
     /// A row that holds nothing but plain numbers where numbers belong; `None` when it must be looked at more closely.
     #[inline]
     fn plain_row(&mut self, bytes: &[u8], at: usize) -> Option<usize> {
+        let end = self.plain_cells(bytes, at).and_then(|at| match bytes.get(at..) {
+            Some([b'\n', ..]) => Some(at),
+            Some([b'\r', b'\n', ..]) => Some(at + 1),
+            _ => None,
+        });
+        let Some(end) = end else {
+            // What was taken of the row goes again.
+            let kept = self.part.kept;
+            self.part.columns.iter_mut().for_each(|c| c.truncate(kept));
+            return None;
+        };
+        self.keep(None);
+        self.part.kept += 1;
+        self.part.rows += 1;
+        self.part.lines += 1;
+        Some(end + 1)
+    }
+
+    /// The cells of a plain row, straight into their columns; where its line ends.
+    #[inline]
+    fn plain_cells(&mut self, bytes: &[u8], at: usize) -> Option<usize> {
         let delimiter = self.layout.delimiter;
         let mut at = at;
-        self.row.clear();
         let last = self.layout.uses.len() - 1;
-        for (column, wanted) in self.layout.uses.iter().enumerate() {
+        for (column, (wanted, target)) in self.layout.uses.iter().zip(&mut self.part.columns).enumerate() {
             match *wanted {
                 Use::Number { factor, .. } => {
                     let (value, end) = number_ahead(bytes, at, delimiter)?;
-                    self.row.push(value * factor);
+                    target.push(value * factor);
                     at = end;
                 }
                 Use::Ignore => {
@@ -182,24 +202,7 @@ impl<'a, 'p> Reader<'a, 'p> {
                 at += 1;
             }
         }
-        let end = match bytes.get(at..) {
-            Some([b'\n', ..]) => at,
-            Some([b'\r', b'\n', ..]) => at + 1,
-            _ => return None,
-        };
-        self.keep(None);
-        let mut values = self.row.iter();
-        for (wanted, target) in self.layout.uses.iter().zip(&mut self.part.columns) {
-            if matches!(wanted, Use::Number { .. })
-                && let Some(&value) = values.next()
-            {
-                target.push(value);
-            }
-        }
-        self.part.kept += 1;
-        self.part.rows += 1;
-        self.part.lines += 1;
-        Some(end + 1)
+        Some(at)
     }
 
     /// Starts a run where the row about to be kept does not simply follow the last one.
