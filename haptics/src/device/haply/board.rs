@@ -58,26 +58,50 @@ pub struct Answer {
     pub beginnings: u64,
 }
 
+/// Why an answer counts for nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// Nothing came in time, or not all of it.
+    Late,
+    /// Another board's id, or angles that are no numbers.
+    Foreign,
+    /// A place where no hand can be, or can have come to so quickly.
+    Impossible,
+}
+
+impl Fault {
+    /// Every one.
+    pub const ALL: [Self; 3] = [Self::Late, Self::Foreign, Self::Impossible];
+}
+
 /// Counts a board's answers, for panels and tests; read from any thread.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
-    counts: Arc<[AtomicU64; 2]>,
+    asked: Arc<AtomicU64>,
+    faults: Arc<[AtomicU64; Fault::ALL.len()]>,
 }
 
 impl Tally {
     /// Questions that the board was asked.
     pub fn asked(&self) -> u64 {
-        self.counts[0].load(Ordering::Relaxed)
+        self.asked.load(Ordering::Relaxed)
     }
 
     /// Of these, those whose answer was lost or wrong (see [`Answer::faults`]).
     pub fn faults(&self) -> u64 {
-        self.counts[1].load(Ordering::Relaxed)
+        Fault::ALL.into_iter().map(|why| self.count(why)).sum()
     }
 
-    fn add(&self, fault: bool) {
-        self.counts[0].fetch_add(1, Ordering::Relaxed);
-        self.counts[1].fetch_add(u64::from(fault), Ordering::Relaxed);
+    /// Of these, those for one reason.
+    pub fn count(&self, why: Fault) -> u64 {
+        self.faults[why as usize].load(Ordering::Relaxed)
+    }
+
+    fn add(&self, fault: Option<Fault>) {
+        self.asked.fetch_add(1, Ordering::Relaxed);
+        if let Some(why) = fault {
+            self.faults[why as usize].fetch_add(1, Ordering::Relaxed);
+        }
     }
 }
 
@@ -183,10 +207,10 @@ impl Worker {
                 _ => [0.0; 2],
             };
             let heard = self.exchange(torques);
-            let tip = heard.and_then(|angles| self.model.linkage.tip(angles));
+            let tip = heard.ok().and_then(|angles| self.model.linkage.tip(angles));
             let verdict = tip.map_or(Verdict::Refused, |tip_m| gate.judge(tip_m, Instant::now()));
             let believed = matches!(verdict, Verdict::Follows | Verdict::Begins);
-            angles = heard.filter(|_| believed);
+            angles = heard.ok().filter(|_| believed);
             match tip.filter(|_| believed) {
                 Some(tip_m) => {
                     let beginnings = answer.beginnings + u64::from(verdict == Verdict::Begins);
@@ -194,7 +218,7 @@ impl Worker {
                 }
                 None => answer.faults += u64::from(verdict == Verdict::Refused),
             }
-            self.tally.add(verdict == Verdict::Refused);
+            self.tally.add((verdict == Verdict::Refused).then(|| heard.err().unwrap_or(Fault::Impossible)));
             self.answers.write(answer);
         }
         // Whatever happened: the last word is zero torque.
@@ -202,21 +226,21 @@ impl Worker {
         let _ = self.line.flush();
     }
 
-    /// Writes torques (actuators 1 and 2), reads the angles, rad; `None` for anything but a whole reply of this board.
-    fn exchange(&mut self, [first, second]: [f64; 2]) -> Option<[f64; 2]> {
+    /// Writes torques (actuators 1 and 2), reads the angles, rad; an error for anything but a whole reply of this board.
+    fn exchange(&mut self, [first, second]: [f64; 2]) -> Result<[f64; 2], Fault> {
         // Actuator 1 sits on port 2, actuator 2 on port 1.
         let frame = torque_frame(self.model.id, [second as f32, first as f32]);
-        self.line.write_all(&frame).ok()?;
+        self.line.write_all(&frame).map_err(|_| Fault::Late)?;
         let mut reply = [0; REPLY_BYTES];
         if self.line.read_exact(&mut reply).is_err() {
             self.resynchronise();
-            return None;
+            return Err(Fault::Late);
         }
         let Some(degrees) = read_reply(self.model.id, &reply) else {
             self.resynchronise();
-            return None;
+            return Err(Fault::Foreign);
         };
-        Some([f64::from(degrees[1]).to_radians(), f64::from(degrees[0]).to_radians()])
+        Ok([f64::from(degrees[1]).to_radians(), f64::from(degrees[0]).to_radians()])
     }
 
     /// Reads until the line is silent: the next reply then starts at its first byte.

@@ -8,7 +8,7 @@ mod protocol;
 #[cfg(all(test, unix))]
 mod tests;
 
-pub use board::{Answer, Board, BoardModel, GUARD, Line, Tally};
+pub use board::{Answer, Board, BoardModel, Fault, GUARD, Line, Tally};
 pub use fivebar::FiveBar;
 pub use protocol::{Axis, MAX_TORQUE_NM, Turn};
 

@@ -176,7 +176,12 @@ fn silence_from_the_servo_ends_in_zero_torque_within_hundredths_of_a_second() {
 
 #[test]
 fn after_every_broken_reply_the_next_are_right() {
-    for fault in [Fault::Truncate, Fault::WrongId, Fault::Noise] {
+    let told = [
+        (Fault::Truncate, board::Fault::Late),
+        (Fault::WrongId, board::Fault::Foreign),
+        (Fault::Noise, board::Fault::Foreign),
+    ];
+    for (fault, why) in told {
         let (mut board, emulator) = pair(fault);
         assert!(until(|| board.answer().number > 0));
         // Each pose is a new one: an answer of before cannot pass for that of now.
@@ -186,6 +191,7 @@ fn after_every_broken_reply_the_next_are_right() {
         }
         let (answer, tally) = (board.answer(), board.tally());
         assert!(answer.faults >= 3 && tally.faults() >= answer.faults, "{} faults seen", answer.faults);
+        assert!(tally.count(why) >= 3, "{} counted as {why:?}", tally.count(why));
         // At least every tenth; a busy machine loses more.
         assert!(tally.faults() * 15 >= tally.asked(), "{} of {} were counted", tally.faults(), tally.asked());
         drop(board);
@@ -211,7 +217,7 @@ fn a_reply_that_jumps_moves_no_finger_and_makes_no_torque() {
     let torques = emulator.shared.torques.lock().expect("not poisoned").clone();
     assert!(torques.iter().all(|t| *t == [0.0; 2] || right(t)), "no torque of a pose that was not there");
     assert!(torques.iter().filter(|t| right(t)).count() > 100, "and the right one often");
-    assert!(board.tally().faults() > 10 && board.tally().asked() > 1_000);
+    assert!(board.tally().count(board::Fault::Impossible) > 10 && board.tally().asked() > 1_000);
     drop(board);
     emulator.finish();
 }
