@@ -2,8 +2,11 @@
 //!
 //! Everything that computes lives in `haptics` and `estimator`, everything that draws the hand in `render`.
 
+pub mod boards;
 pub mod cli;
+pub mod operator;
 pub mod ui;
+pub mod worlds;
 
 use std::path::PathBuf;
 

@@ -111,3 +111,30 @@ fn a_killed_program_leaves_no_torque() {
         thread.join().expect("the emulator ends");
     }
 }
+
+#[test]
+fn a_self_test_of_boards_that_never_answer_ends_with_one_and_says_why() {
+    let mut keep = Vec::new();
+    let names: Vec<String> = (0..2)
+        .map(|_| {
+            // Nobody reads or writes at the far end: cables without boards.
+            let (far, near) = TTYPort::pair().expect("the system has pseudo-terminals");
+            let name = near.name().expect("the near end has a name");
+            keep.push((far, near));
+            name
+        })
+        .collect();
+    let device = format!("haply:{},{}", names[0], names[1]);
+    let output = Command::new(tests::touchstone())
+        .args(["device", "test", &device, "--seconds", "1", "--json"])
+        .output()
+        .expect("the program starts");
+    assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("the report is printed all the same");
+    assert!(report["verdict"].as_str().is_some_and(|v| v.contains("No positions came")), "{report}");
+    for board in report["boards"].as_array().expect("two boards") {
+        let count = |key: &str| board[key].as_u64().expect("a count");
+        assert!(count("answers") > 0 && count("late") == count("answers"), "every answer was late: {board}");
+    }
+    drop(keep);
+}

@@ -1,10 +1,12 @@
 //! `touchstone bench servo`: how punctual the servo is on this machine, with and without pictures being drawn beside it.
 
-use super::Output;
+mod verdict;
+
+use super::{ControlArgs, Output};
 use anyhow::Context;
 use clap::{Args, Subcommand};
 use haptics::device::{MouseTarget, mouse};
-use haptics::servo::rate::{RateChoice, held};
+use haptics::servo::rate::RateChoice;
 use haptics::servo::timing::{Percentiles, Timing};
 use haptics::servo::{Privileges, Servo, ServoConfig, Snapshot, Swap};
 use haptics::world::{World, presets};
@@ -47,6 +49,8 @@ struct ServoBench {
     /// Do not ask the system for real-time scheduling
     #[arg(long)]
     no_real_time: bool,
+    #[command(flatten)]
+    control: ControlArgs,
 }
 
 fn parse_rate(text: &str) -> Result<RateChoice, String> {
@@ -62,6 +66,12 @@ impl Bench {
             What::Servo(bench) => bench.run(),
         }
     }
+
+    #[cfg(test)]
+    pub(super) fn passivity_control(&self) -> Option<f64> {
+        let What::Servo(bench) = &self.what;
+        bench.control.passivity_control
+    }
 }
 
 /// What came out.
@@ -70,6 +80,8 @@ struct Measured {
     privileges: Privileges,
     guarded: u64,
     wall_s: f64,
+    /// Most damping of the passivity controller, N s/m.
+    control: Option<f64>,
     frames: Option<u64>,
     renderer: Option<String>,
 }
@@ -96,7 +108,12 @@ impl ServoBench {
         let center = world.blocks[0].start.center_m;
         let start = MouseTarget { center_in_world: center, aperture_m: 0.04 };
         let (mut handle, device) = mouse(start, world.hand.workspace);
-        let config = ServoConfig { rate: self.rate, real_time: !self.no_real_time, ..ServoConfig::default() };
+        let config = ServoConfig {
+            rate: self.rate,
+            real_time: !self.no_real_time,
+            passivity_control_n_s_m: self.control.passivity_control,
+            ..ServoConfig::default()
+        };
         let mut servo = Servo::start(Swap::new(world), Box::new(device), config)?;
         let mut ticks = Vec::new();
         let begun = Instant::now();
@@ -120,7 +137,8 @@ impl ServoBench {
         }
         let timing = snapshot.timing;
         anyhow::ensure!(timing.ticks > 0, "{} s are too short for a figure; choose a second or more", self.seconds);
-        Ok(Measured { timing, privileges, guarded, wall_s, frames: None, renderer: None })
+        let control = config.passivity_control_n_s_m;
+        Ok(Measured { timing, privileges, guarded, wall_s, control, frames: None, renderer: None })
     }
 }
 
@@ -143,7 +161,11 @@ fn report(m: &Measured) -> Output {
         }
         _ => text.push_str("  nothing was drawn beside it\n"),
     }
-    let verdict = if held(t) { "The machine holds this rate." } else { "The machine does not hold this rate." };
+    if let Some(most) = m.control {
+        let _ = writeln!(text, "  the passivity controller was on, with up to {most} N s/m");
+    }
+    let limits = verdict::limits(t);
+    let verdict = verdict::sentence(&limits);
     let _ = writeln!(text, "  {verdict}");
     let json = json!({
         "timing": t,
@@ -154,7 +176,10 @@ fn report(m: &Measured) -> Output {
         "seconds": m.wall_s,
         "pictures": m.frames,
         "renderer": m.renderer,
-        "holds": held(t),
+        "passivity_control_N_s_m": m.control,
+        "holds": limits.iter().all(verdict::Limit::is_kept),
+        "limits": limits.each_ref().map(verdict::Limit::json),
+        "verdict": verdict,
     });
     Output { text, json }
 }
@@ -230,7 +255,9 @@ mod tests {
 
     #[test]
     fn a_short_bench_measures_everything_it_prints() {
-        let bench = ServoBench { seconds: 0.8, rate: RateChoice::Fixed(500.0), render: false, no_real_time: true };
+        let control = ControlArgs { passivity_control: Some(2.0) };
+        let bench =
+            ServoBench { seconds: 0.8, rate: RateChoice::Fixed(500.0), render: false, no_real_time: true, control };
         let output = bench.run().expect("a servo");
         assert!(output.json["timing"]["ticks"].as_u64().is_some_and(|n| n >= 100), "{}", output.json);
         assert_eq!(output.json["privileges"]["fifo"], false);
@@ -240,6 +267,10 @@ mod tests {
             assert!(p50 > 0.0 && p999 >= p50, "{quantity}: {p}");
         }
         assert!(output.text.contains("500 Hz, as asked for."), "{}", output.text);
+        assert_eq!(output.json["passivity_control_N_s_m"], 2.0);
+        let kept = output.json["limits"].as_array().is_some_and(|all| all.iter().all(|limit| limit["holds"] == true));
+        assert_eq!(output.json["holds"], kept);
+        assert!(output.text.contains(if kept { "holds this rate" } else { "does not hold this rate" }));
         let nonsense = ServoBench { seconds: -1.0, ..bench };
         assert!(nonsense.run().is_err());
     }

@@ -3,7 +3,7 @@
 mod open;
 mod report;
 
-use super::Output;
+use super::{ControlArgs, Output};
 use clap::{Args, Subcommand};
 use haptics::Vec2;
 use haptics::device::channel::ChannelConfig;
@@ -66,6 +66,8 @@ struct Test {
     /// Use wave variables on this network
     #[arg(long)]
     waves: bool,
+    #[command(flatten)]
+    control: ControlArgs,
 }
 
 impl Device {
@@ -141,7 +143,9 @@ impl Test {
         // Lives until the test is over: the thread that reads a gamepad, for example.
         let _keep = opened.keep;
         let state = State::new(&world, opened.start_in_world);
-        let mut servo = Servo::start(Box::new(Swap { world, state }), opened.device, ServoConfig::at(self.rate))?;
+        let config =
+            ServoConfig { passivity_control_n_s_m: self.control.passivity_control, ..ServoConfig::at(self.rate) };
+        let mut servo = Servo::start(Box::new(Swap { world, state }), opened.device, config)?;
         eprintln!("{}: watching for {} s. {}", spec.name, self.seconds, opened.hint);
         let ticks = self.watch(&mut servo);
         let privileges = servo.privileges();

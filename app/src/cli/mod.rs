@@ -72,7 +72,7 @@ struct AppArgs {
     /// Sidecar of the log, when it does not lie beside it
     #[arg(long)]
     meta: Option<PathBuf>,
-    /// World to open in the trainer
+    /// World to open in the trainer: a file, or stack, crank, needle, barrel, switch or table
     #[arg(long)]
     world: Option<PathBuf>,
     /// Task of the log
@@ -89,6 +89,26 @@ struct LogArgs {
     /// What was done; told from the sidecar and the columns when not given
     #[arg(long, value_parser = task_parser())]
     task: Option<Task>,
+}
+
+/// The passivity controller, where a command runs a servo.
+#[derive(Args, Clone, Copy, Debug, Default)]
+struct ControlArgs {
+    /// Let the passivity controller brake while more energy was given out than taken in: it adds a damping of up to so many
+    /// N s/m; the observer alone always watches
+    #[arg(long, value_name = "MOST", num_args = 0..=1, require_equals = true, default_missing_value = USUAL_CONTROL,
+        value_parser = parse_control)]
+    passivity_control: Option<f64>,
+}
+
+/// What `--passivity-control` means without a number, N s/m.
+const USUAL_CONTROL: &str = "2";
+
+fn parse_control(text: &str) -> Result<f64, String> {
+    let most = text.parse().ok().filter(|most| *most > 0.0 && *most <= crate::ui::trainer::MOST_CONTROL_N_S_M);
+    most.ok_or_else(|| {
+        format!("`{text}` is no damping; write up to {} N s/m, like 2", crate::ui::trainer::MOST_CONTROL_N_S_M)
+    })
 }
 
 /// Reads a task by the name it has in files, and offers the names in the help.
@@ -228,6 +248,21 @@ mod tests {
         assert_eq!(parse_size("1280x720"), Ok([1280, 720]));
         assert!(parse_size("1280").is_err_and(|e| e.contains("1280x720")));
         assert!(parse_size("9x9999999").is_err());
+    }
+
+    #[test]
+    fn a_passivity_controller_has_a_number_or_the_usual_one() {
+        let of = |flag: &str| {
+            let cli = Cli::try_parse_from(["touchstone", "bench", "servo", flag]).ok()?;
+            let Some(Command::Bench(bench)) = cli.command else { return None };
+            bench.passivity_control()
+        };
+        assert_eq!(of("--passivity-control").map(|most| most.to_string()), Some(USUAL_CONTROL.to_owned()));
+        assert_eq!(of("--passivity-control=7.5"), Some(7.5));
+        assert_eq!(of("--no-real-time"), None);
+        for wrong in ["0", "-1", "NaN", "1e9", "much"] {
+            assert!(parse_control(wrong).is_err_and(|e| e.contains("N s/m")), "{wrong}");
+        }
     }
 
     #[test]

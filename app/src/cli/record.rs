@@ -1,9 +1,10 @@
 //! `touchstone record`: a recording made by the virtual hand.
 
-use super::{Output, task_parser};
+use super::{ControlArgs, Output, task_parser};
+use crate::operator;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
-use haptics::device::{Device, ReplayDevice, ScriptedOperator, Skill};
+use haptics::device::{Device, Mistake, ReplayDevice, ScriptedOperator};
 use haptics::recording::{Recording, Task};
 use haptics::servo::recorder::{SensorModel, to_recording};
 use haptics::servo::safety::Limits;
@@ -27,7 +28,14 @@ pub struct Record {
     /// Where to write the recording (CSV, with a sidecar beside it)
     #[arg(long)]
     out: PathBuf,
-    /// World to act in; a built-in one for the task when not given
+    /// How well the scripted operator does it: steady, novice, intermediate, advanced or expert
+    #[arg(long)]
+    skill: Option<String>,
+    /// What the scripted operator does wrong on purpose, once: weak-pinch, crush, misaligned-stack, early-release,
+    /// wrong-direction or overshoot; may be given several times
+    #[arg(long)]
+    mistake: Vec<String>,
+    /// World to act in: a file, or stack, crank, needle, barrel, switch or table; the task's own when not given
     #[arg(long)]
     world: Option<PathBuf>,
     /// Ticks a second, all of them recorded
@@ -42,6 +50,8 @@ pub struct Record {
     /// How the virtual sensors see it
     #[arg(long, default_value = "typical")]
     sensors: Sensors,
+    #[command(flatten)]
+    control: ControlArgs,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -80,8 +90,16 @@ impl Record {
     }
 
     fn world(&self) -> anyhow::Result<World> {
-        if let Some(path) = &self.world {
-            return World::load(path).with_context(|| path.display().to_string());
+        if let Some(name) = &self.world {
+            let world = crate::worlds::find(name)?;
+            if let Some(what) = crate::worlds::lacks(&world, self.task) {
+                anyhow::bail!(
+                    "the world {} has no {what}, so the task {} cannot be done in it; name another world or task",
+                    name.display(),
+                    self.task.name()
+                );
+            }
+            return Ok(world);
         }
         match self.task {
             Task::BlockStack => Ok(presets::stacking()),
@@ -95,11 +113,31 @@ impl Record {
         }
     }
 
+    /// The scripted operator as it was asked for.
+    fn scripted(&self, world: &World, state: &State) -> anyhow::Result<ScriptedOperator> {
+        let skill = operator::skill(self.skill.as_deref().unwrap_or(operator::USUAL)).map_err(anyhow::Error::msg)?;
+        let mistakes = self.mistakes()?;
+        operator::check_mistakes(&mistakes, world).map_err(anyhow::Error::msg)?;
+        Ok(ScriptedOperator::with_mistakes(world, state, skill, &mistakes, self.seed))
+    }
+
+    fn mistakes(&self) -> anyhow::Result<Vec<Mistake>> {
+        self.mistake.iter().map(|name| operator::mistake(name).map_err(anyhow::Error::msg)).collect()
+    }
+
+    /// Who it was, for the sidecar; nothing about the steady operator without mistakes.
+    fn about_the_operator(&self) -> Option<serde_json::Value> {
+        let skill = self.skill.as_deref().filter(|name| *name != operator::USUAL);
+        (skill.is_some() || !self.mistake.is_empty())
+            .then(|| json!({ "skill": skill.unwrap_or(operator::USUAL), "mistakes": self.mistake }))
+    }
+
     fn perform(&self, world: &World) -> anyhow::Result<Recording> {
         let mut state = State::resting(world);
         let device: Box<dyn Device> = match self.operator.split_once(':') {
-            None if self.operator == "scripted" => {
-                Box::new(ScriptedOperator::new(world, &state, Skill::default(), self.seed))
+            None if self.operator == "scripted" => Box::new(self.scripted(world, &state)?),
+            _ if self.skill.is_some() || !self.mistake.is_empty() => {
+                anyhow::bail!("--skill and --mistake are for the scripted operator; leave them out with another one")
             }
             Some(("replay", log)) => {
                 let (device, start) = replay(Path::new(log))?;
@@ -111,32 +149,30 @@ impl Record {
             }
             _ => anyhow::bail!("there is no operator `{}`; use scripted, mouse or replay:LOG", self.operator),
         };
-        let ticks = run(world.clone(), state, device, self.rate, self.seconds);
+        let ticks = self.run_servo(world.clone(), state, device);
         let sensor = if self.sensors == Sensors::Ideal { SensorModel::IDEAL } else { SensorModel::TYPICAL };
         let name = self.out.file_stem().map_or("recording".into(), |s| s.to_string_lossy().into_owned());
         let mut recording = to_recording(&name, world, &ticks, self.every as usize, &sensor, self.seed);
         recording.meta.task = Some(self.task);
+        if let Some(about) = self.about_the_operator() {
+            recording.meta.other.insert("operator".to_owned(), about);
+        }
         Ok(recording)
     }
-}
 
-/// Runs the servo's tick in simulated time until the operator is done or the time is up.
-pub(super) fn run(
-    world: World,
-    state: State,
-    device: Box<dyn Device>,
-    rate_hz: f64,
-    seconds: Option<f64>,
-) -> Vec<TickRecord> {
-    let limits = Limits { max_force_n: device.spec().max_force_n, ..Limits::default() };
-    let mut servo = Loop::new(Box::new(Swap { world, state }), device, limits);
-    let most = (seconds.unwrap_or(LONGEST_S) * rate_hz).round() as usize;
-    let mut ticks = Vec::new();
-    while ticks.len() < most && (seconds.is_some() || !servo.finished()) {
-        ticks.push(servo.tick(1.0 / rate_hz));
+    /// Runs the servo's tick in simulated time until the operator is done or the time is up.
+    fn run_servo(&self, world: World, state: State, device: Box<dyn Device>) -> Vec<TickRecord> {
+        let limits = Limits { max_force_n: device.spec().max_force_n, ..Limits::default() };
+        let mut servo = Loop::new(Box::new(Swap { world, state }), device, limits)
+            .with_passivity_control(self.control.passivity_control);
+        let most = (self.seconds.unwrap_or(LONGEST_S) * self.rate).round() as usize;
+        let mut ticks = Vec::new();
+        while ticks.len() < most && (self.seconds.is_some() || !servo.finished()) {
+            ticks.push(servo.tick(1.0 / self.rate));
+        }
+        servo.make_safe();
+        ticks
     }
-    servo.make_safe();
-    ticks
 }
 
 fn replay(log: &Path) -> anyhow::Result<(ReplayDevice, [haptics::Vec2; 2])> {

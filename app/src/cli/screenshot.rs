@@ -6,7 +6,7 @@ use clap::Args;
 use haptics::device::{Device, ScriptedOperator, Skill};
 use haptics::recording::Recording;
 use haptics::servo::{Loop, Swap, safety::Limits};
-use haptics::world::{State, World, presets};
+use haptics::world::State;
 use render::{Headless, SceneView, Theme, Trajectory, ViewOptions};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -75,22 +75,6 @@ pub(super) fn save(picture: &image::RgbaImage, path: &Path) -> anyhow::Result<()
         .with_context(|| format!("the picture could not be written: {}", path.display()))
 }
 
-/// The world of a scene name or file.
-fn scene_world(scene: &str) -> anyhow::Result<World> {
-    match scene {
-        "stack" => Ok(presets::stacking()),
-        "crank" => Ok(presets::crank()),
-        "needle" => Ok(presets::needle()),
-        "barrel" => Ok(presets::barrel()),
-        "switch" => Ok(presets::switch()),
-        "table" => Ok(presets::table()),
-        file if Path::new(file).is_file() => World::load(Path::new(file)).with_context(|| file.to_owned()),
-        other => anyhow::bail!(
-            "there is no scene `{other}`; use stack, crank, needle, barrel, switch, table or a world file"
-        ),
-    }
-}
-
 /// A scene with the scripted operator at work in it, `at` seconds into its performance.
 pub(super) fn scene_picture(
     scene: &str,
@@ -101,7 +85,7 @@ pub(super) fn scene_picture(
     /// The first block is in the air, the crank on its first turn.
     const TELLING_S: f64 = 5.6;
     const RATE_HZ: f64 = 1000.0;
-    let world = scene_world(scene)?;
+    let world = crate::worlds::find(Path::new(scene))?;
     world.check()?;
     let state = State::resting(&world);
     let operator = ScriptedOperator::new(&world, &state, Skill::default(), 1);

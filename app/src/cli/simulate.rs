@@ -1,9 +1,7 @@
 //! `touchstone simulate`: the measured motion through a world.
 
 use super::{LogArgs, Output};
-use anyhow::Context;
 use clap::Args;
-use haptics::world::World;
 use serde_json::{Map, json};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -11,7 +9,7 @@ use std::path::PathBuf;
 /// Arguments of `simulate`.
 #[derive(Args)]
 pub struct Simulate {
-    /// World file
+    /// World file, or a built-in world: stack, crank, needle, barrel, switch, table
     world: PathBuf,
     /// Log file with the motion
     log: PathBuf,
@@ -24,7 +22,7 @@ pub struct Simulate {
 
 impl Simulate {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
-        let world = World::load(&self.world).with_context(|| self.world.display().to_string())?;
+        let world = crate::worlds::find(&self.world)?;
         let recordings = self.source.load(&self.log)?;
         let [recording] = recordings.as_slice() else {
             anyhow::bail!(

@@ -193,7 +193,8 @@ impl App {
     fn devices(&mut self, ui: &mut Ui) {
         let session = &mut self.session;
         let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
-        Side::left("device list").frame(plain).show_separator_line(false).resizable(false).exact_size(380.0).show(
+        let width = (0.36 * ui.available_width()).clamp(330.0, 380.0);
+        Side::left("device list").frame(plain).show_separator_line(false).resizable(false).exact_size(width).show(
             ui,
             |ui| {
                 self.device_list.ui(ui, session);

@@ -36,8 +36,9 @@ fn remote() -> (tempfile::NamedTempFile, Session) {
     let mut file = tempfile::NamedTempFile::new().expect("a file");
     writeln!(file, "{}", "5a".repeat(32)).expect("written");
     let mut session = session();
-    session.trainer.settings.udp_key = file.path().display().to_string();
-    session.trainer.settings.udp_port = Some(0);
+    session.trainer.settings.remote.key = file.path().display().to_string();
+    // Any port that is free.
+    session.trainer.settings.remote.address = "127.0.0.1:0".to_owned();
     (file, session)
 }
 

@@ -82,12 +82,12 @@ impl Session {
         self.open(ctx, path);
     }
 
-    /// Reads a world in the background.
+    /// Reads a world in the background: a file, or a built-in one by its name.
     pub fn open_world(&mut self, ctx: &egui::Context, path: &Path) {
         let path = path.to_path_buf();
-        self.jobs.start(ctx, JobKind::Load, move || match World::load(&path) {
+        self.jobs.start(ctx, JobKind::Load, move || match crate::worlds::find(&path) {
             Ok(world) => Outcome::World(Box::new(world)),
-            Err(error) => Outcome::Failed(sentence(&format!("{error}: {}", path.display()))),
+            Err(error) => Outcome::Failed(sentence(&format!("{error:#}"))),
         });
     }
 

@@ -1,13 +1,14 @@
 //! Which devices there are, and how one is made from what stands on the command line.
 
+use crate::operator;
+use crate::ui::trainer::Remote;
 use anyhow::Context;
 use haptics::Vec2;
 use haptics::device::channel::{ChannelConfig, ChannelDevice, Waves};
 use haptics::device::haply::{HaplyHand, Tally};
-use haptics::device::udp::{Key, PORT, UdpConfig, UdpDevice, UdpMonitor};
-use haptics::device::{Device, DeviceSpec, MouseTarget, ReplayDevice, ScriptedOperator, Skill, keyboard, mouse, touch};
+use haptics::device::udp::{Key, UdpConfig, UdpDevice, UdpMonitor};
+use haptics::device::{Device, DeviceSpec, MouseTarget, ReplayDevice, ScriptedOperator, keyboard, mouse, touch};
 use haptics::world::{State, World};
-use std::net::{Ipv4Addr, SocketAddr};
 use std::path::Path;
 
 /// A kind of device, for the list.
@@ -102,10 +103,7 @@ pub fn open(name: &str, world: &World) -> anyhow::Result<Opened> {
         ("touch", None) => Ok(opened(Box::new(touch(tips, workspace).1), NO_WINDOW)),
         ("keyboard", None) => Ok(opened(Box::new(keyboard(tips, workspace).1), NO_WINDOW)),
         ("scripted", level) => {
-            let level = level.unwrap_or("steady");
-            let skill = Skill::from_name(level).with_context(|| {
-                format!("there is no level `{level}`; use steady, novice, intermediate, advanced or expert")
-            })?;
+            let skill = operator::skill(level.unwrap_or(operator::USUAL)).map_err(anyhow::Error::msg)?;
             Ok(opened(Box::new(ScriptedOperator::new(world, &state, skill, 1)), "It moves by itself."))
         }
         ("replay", Some(log)) => replay(log),
@@ -146,37 +144,17 @@ fn remote(text: &str, tips: [Vec2; 2]) -> anyhow::Result<Opened> {
     let mut parts = text.split(',');
     let address = parts.next().unwrap_or_default();
     let key_file = parts.next().context("a remote device needs a key: udp:ADDRESS,KEYFILE")?;
-    let mut config = UdpConfig::loopback(Key::load(Path::new(key_file))?);
+    let mut next = || parts.next().unwrap_or_default().to_owned();
+    let (damping, round_trip) = (next(), next());
+    let remote = Remote { key: key_file.to_owned(), address: address.to_owned(), damping, round_trip };
+    let config = remote.config().map_err(anyhow::Error::msg)?;
     for doubt in Key::doubts(Path::new(key_file)) {
         eprintln!("{doubt}");
-    }
-    config.listen = listen(address)?;
-    if let Some(damping) = parts.next() {
-        config.spec.damping_n_s_m = figure(damping, 1000.0, "damping; write it in N s/m, like 0.5")?;
-    }
-    if let Some(round_trip) = parts.next() {
-        config.delay_s = 1e-3 * figure(round_trip, 5000.0, "round trip; write it in ms, like 12")?;
     }
     let device = UdpDevice::open(config, tips)?;
     let packets = Some(device.monitor());
     let hint = "Start the device's program while it runs (docs/udp has examples).";
     Ok(Opened { device: Box::new(device), start_in_world: tips, hint, packets, answers: None, keep: None })
-}
-
-/// A number of 0 to `most`.
-fn figure(text: &str, most: f64, what: &str) -> anyhow::Result<f64> {
-    let value = text.parse().ok().filter(|value| (0.0..=most).contains(value));
-    value.with_context(|| format!("`{text}` is no {what}"))
-}
-
-fn listen(address: &str) -> anyhow::Result<SocketAddr> {
-    if address.is_empty() {
-        return Ok(SocketAddr::from((Ipv4Addr::LOCALHOST, PORT)));
-    }
-    let with_port = address.parse::<SocketAddr>().ok();
-    with_port.or_else(|| address.parse().ok().map(|ip| SocketAddr::new(ip, PORT))).with_context(|| {
-        format!("`{address}` is no address of this machine; write 127.0.0.1:{PORT}, or that of a network card")
-    })
 }
 
 #[cfg(feature = "gamepad")]
@@ -238,16 +216,13 @@ mod tests {
             ("haply:one", "both ports"),
             ("udp:127.0.0.1", "KEYFILE"),
             ("udp:127.0.0.1,/nowhere", "/nowhere"),
+            ("udp:elsewhere,/nowhere", "no address"),
+            ("udp:127.0.0.1,/nowhere,-1", "`-1` is no damping"),
+            ("udp:127.0.0.1,/nowhere,1,soon", "`soon` is no round trip"),
             ("replay:/nowhere.csv", "/nowhere.csv"),
         ] {
             let error = open(name, &world).err().map(|e| format!("{e:#}")).unwrap_or_default();
             assert!(error.contains(wanted), "{name}: {error}");
         }
-        assert!(figure("-1", 10.0, "number").is_err_and(|e| e.to_string() == "`-1` is no number"));
-        assert!(figure("NaN", 10.0, "number").is_err() && figure("2.5", 10.0, "number").is_ok_and(|v| v == 2.5));
-        assert!(listen("elsewhere").is_err());
-        assert_eq!(listen("").expect("the usual one").to_string(), "127.0.0.1:47474");
-        assert_eq!(listen("0.0.0.0").expect("an address").port(), PORT);
-        assert_eq!(listen("[::1]:9").expect("an address").port(), 9);
     }
 }

@@ -4,14 +4,16 @@ use super::{Panel, trainer_timing};
 use crate::ui::format::number;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::{Direction, HandDevice, Operator, Steering, Trainer, spec_sentences};
+use crate::ui::trainer::{Direction, HandDevice, Operator, Trainer, spec_sentences};
 use crate::ui::widgets::{empty_state, fact, light, plain_card, primary_button, segmented};
 use egui::{RichText, ScrollArea, Slider, Ui, vec2};
 use haptics::Vec2;
 use haptics::device::DeviceSpec;
-use haptics::device::udp::Refused;
 use haptics::servo::force_test::MOST_N;
 use haptics::servo::{Snapshot, passivity};
+
+/// From this width on there are two columns, points: the live values need half of it.
+const TWO_COLUMNS: f32 = 780.0;
 
 /// The running device.
 #[derive(Default)]
@@ -38,22 +40,34 @@ impl Panel for DeviceDetail {
         }
         ScrollArea::vertical().id_salt("device detail").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
+            if ui.available_width() < TWO_COLUMNS {
+                abilities(ui, session, &spec);
+                values(ui, session);
+                return;
+            }
             let half = 0.5 * (ui.available_width() - space::M);
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().item_spacing.x = space::M;
-                column(ui, half, |ui| {
-                    about(ui, session, &spec);
-                    limits(ui, &session.trainer, &spec);
-                    force_test(ui, &mut session.trainer, &spec);
-                });
-                column(ui, half, |ui| {
-                    live(ui, &session.trainer);
-                    packets(ui, &session.trainer);
-                    trainer_timing::timing(ui, &session.trainer);
-                });
+                column(ui, half, |ui| abilities(ui, session, &spec));
+                column(ui, half, |ui| values(ui, session));
             });
         });
     }
+}
+
+/// What it is, what it can do, what it does when asked.
+fn abilities(ui: &mut Ui, session: &mut Session, spec: &DeviceSpec) {
+    about(ui, session, spec);
+    limits(ui, &session.trainer, spec);
+    force_test(ui, &mut session.trainer, spec);
+    super::passivity::passivity(ui, session);
+}
+
+/// What comes from it, and when.
+fn values(ui: &mut Ui, session: &Session) {
+    live(ui, &session.trainer);
+    super::answers::answers(ui, &session.trainer);
+    trainer_timing::timing(ui, &session.trainer);
 }
 
 fn column(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
@@ -161,17 +175,6 @@ fn pair(ui: &mut Ui, label: &str, values: [Vec2; 2], decimals: usize, unit: &str
         ui.label(RichText::new(text).size(12.0));
     }
     ui.end_row();
-}
-
-fn packets(ui: &mut Ui, trainer: &Trainer) {
-    let Steering::Udp(monitor) = &trainer.steering else { return };
-    plain_card(ui, "Packets", |ui| {
-        fact(ui, "Listens at", monitor.address().to_string());
-        fact(ui, "Sessions asked for", monitor.greeted().to_string());
-        fact(ui, "Taken", monitor.accepted().to_string());
-        let refused: u64 = Refused::ALL.into_iter().map(|why| monitor.refused(why)).sum();
-        fact(ui, "Refused", refused.to_string());
-    });
 }
 
 fn force_test(ui: &mut Ui, trainer: &mut Trainer, spec: &DeviceSpec) {

@@ -1,11 +1,12 @@
 //! The devices page, left column: everything that could move the fingers, one line each, to be chosen.
 
 use super::Panel;
+use super::remote::RemoteCard;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::{HandDevice, Operator};
 use crate::ui::widgets::{card, plain_card};
-use egui::{CornerRadius, Frame, Margin, RichText, ScrollArea, Sense, Stroke, TextEdit, Ui};
+use egui::{CornerRadius, Frame, Margin, RichText, ScrollArea, Sense, Stroke, Ui};
 use haptics::device::haply;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -18,11 +19,12 @@ const LOOK_AGAIN: Duration = Duration::from_secs(2);
 pub struct DeviceList {
     ports: Vec<String>,
     looked_at: Option<Instant>,
+    remote: RemoteCard,
 }
 
 /// What a click asks for.
 #[derive(Clone, PartialEq)]
-enum Choice {
+pub(super) enum Choice {
     Hand(HandDevice),
     Scripted,
 }
@@ -50,7 +52,7 @@ impl Panel for DeviceList {
                 chosen = chosen.take().or(row(ui, session, Choice::Hand(HandDevice::Replay), log));
             });
             chosen = chosen.take().or(self.boards(ui, session));
-            chosen = chosen.take().or(remote(ui, session));
+            chosen = chosen.take().or(self.remote.ui(ui, session));
         });
         if let Some(choice) = chosen {
             take(session, choice);
@@ -68,7 +70,11 @@ impl DeviceList {
     }
 
     fn boards(&self, ui: &mut Ui, session: &Session) -> Option<Choice> {
-        let found = format!("{} ports found", self.ports.len());
+        let found = match self.ports.len() {
+            0 => "no port found".to_owned(),
+            1 => "1 port found".to_owned(),
+            many => format!("{many} ports found"),
+        };
         let mut chosen = None;
         card(
             ui,
@@ -93,21 +99,8 @@ impl DeviceList {
     }
 }
 
-fn remote(ui: &mut Ui, session: &mut Session) -> Option<Choice> {
-    let mut chosen = None;
-    plain_card(ui, "Over the network", |ui| {
-        ui.label(theme::caption(ui, "File with the shared key (64 hexadecimal digits)"));
-        let field = TextEdit::singleline(&mut session.trainer.settings.udp_key).hint_text("/path/to/key");
-        ui.add(field.desired_width(f32::INFINITY));
-        let named = !session.trainer.settings.udp_key.trim().is_empty();
-        let ready = if named { Ok(()) } else { Err("Name the file with the key first.") };
-        chosen = row(ui, session, Choice::Hand(HandDevice::Udp), ready);
-    });
-    chosen
-}
-
 /// One device as a line that can be clicked; the choice when it was.
-fn row(ui: &mut Ui, session: &Session, choice: Choice, ready: Result<(), &str>) -> Option<Choice> {
+pub(super) fn row(ui: &mut Ui, session: &Session, choice: Choice, ready: Result<(), &str>) -> Option<Choice> {
     let p = palette(ui);
     let trainer = &session.trainer;
     let (title, sentence) = match &choice {

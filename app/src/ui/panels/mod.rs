@@ -1,13 +1,18 @@
 //! One panel a file, behind one trait.
 
+mod answers;
 pub mod device_detail;
 pub mod devices;
+mod legend;
 pub mod log;
 mod marks;
 pub mod parameters;
+mod passivity;
 pub mod recording;
+mod remote;
 pub mod results;
 pub mod scene;
+mod script;
 pub mod segments;
 mod steering;
 pub mod trainer_side;

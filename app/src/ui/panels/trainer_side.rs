@@ -1,6 +1,6 @@
 //! Beside the trainer's picture: world, operator, recording, forces, timing.
 
-use super::Panel;
+use super::{Panel, legend};
 use crate::ui::files;
 use crate::ui::format;
 use crate::ui::jobs::Purpose;
@@ -30,6 +30,7 @@ impl Panel for TrainerSide {
             operator(ui, session);
             plain_card(ui, "Recording", |ui| recording(ui, session));
             forces(ui, &session.trainer);
+            super::passivity::passivity(ui, session);
             super::trainer_timing::timing(ui, &session.trainer);
         });
     }
@@ -136,15 +137,7 @@ fn operator_state(ui: &mut Ui, session: &mut Session) {
             });
         }
         Operator::Scripted => {
-            let over = session.trainer.performance_over();
-            let text = if over { "Done." } else { "Works and trembles like a person." };
-            ui.label(theme::caption(ui, text));
-            if over
-                && ui.button("Watch again").clicked()
-                && let Err(problem) = session.trainer.restart()
-            {
-                session.fail(problem);
-            }
+            super::script::script(ui, session);
         }
     }
 }
@@ -198,6 +191,7 @@ fn forces(ui: &mut Ui, trainer: &Trainer) {
             gauge(ui, label, value, 1.25 * limit, limit, if over { p.danger } else { color });
         }
         measure(ui, "Net force, up", lift);
+        legend::gauges(ui, limit);
         strip(ui, &trainer.history, limit);
         ui.add_space(space::XS);
         ui.horizontal(|ui| {
@@ -241,11 +235,5 @@ fn strip(ui: &mut Ui, history: &History, limit: f64) {
     for (color, points) in curves {
         ui.painter().with_clip_rect(rect).add(Shape::line(points, Stroke::new(1.6, role(dark, color))));
     }
-    compact(ui, |ui| {
-        for (color, label) in [(ColorRole::Measured, "grip"), (ColorRole::Block(0), "net force, up")] {
-            crate::ui::widgets::swatch(ui, role(dark, color));
-            ui.label(theme::caption(ui, label));
-        }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(theme::caption(ui, "last 8 s")));
-    });
+    legend::strip(ui, STRIP_S);
 }

@@ -41,8 +41,6 @@ fn facts(ui: &mut Ui, snapshot: &Snapshot) {
     let timing = &snapshot.timing;
     fact(ui, "Missed deadlines", format!("{} of {} ticks", timing.missed, timing.ticks));
     fact(ui, "Age of the newest sample", format::short_time(timing.sample_age_s));
-    // A passive world takes energy in and never gives any out: below zero the controller would have to act.
-    fact(ui, "Energy taken in", format!("{} mJ", format::number(snapshot.tick.energy_j * 1e3, 1)));
 }
 
 fn sentences(ui: &mut Ui, trainer: &Trainer, snapshot: &Snapshot) {

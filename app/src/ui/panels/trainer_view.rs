@@ -4,9 +4,9 @@ use super::{Panel, marks, steering};
 use crate::ui::scene::{SceneResponse, Wheel, scene_view};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::{HandDevice, Operator, Steering, Trainer};
+use crate::ui::trainer::{HandDevice, Operator, Steering, Trainer, task_hint};
 use crate::ui::widgets::{empty_state, key_hint, sheet};
-use egui::{Align2, Color32, CursorIcon, FontId, Key, PointerButton, Rect, Ui, UiBuilder, pos2, vec2};
+use egui::{Align, CursorIcon, Key, PointerButton, Rect, Ui, UiBuilder, pos2};
 use haptics::Vec2;
 use render::{Camera, ViewOptions};
 
@@ -80,8 +80,11 @@ impl Panel for TrainerView {
                     self.steer(ui, &view, &mut session.trainer, frame_s);
                 }
                 hints(ui, view.rect, &session.trainer.hand);
+                if let Some((_, world)) = session.trainer.scene() {
+                    pill(ui, view.rect, task_hint(world));
+                }
             } else {
-                watching(ui, view.rect, &session.trainer);
+                pill(ui, view.rect, watching(&session.trainer));
             }
             if let Some(fault) = fault {
                 session.fail(fault);
@@ -158,7 +161,7 @@ fn keys(ui: &Ui, trainer: &mut Trainer, frame_s: f64) {
 /// What mouse and keys do, along the lower edge.
 fn hints(ui: &mut Ui, rect: Rect, hand: &HandDevice) {
     let line = Rect::from_min_max(pos2(rect.left() + space::M, rect.bottom() - 34.0), rect.right_bottom());
-    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let layout = egui::Layout::left_to_right(Align::Center);
     let mut ui = ui.new_child(UiBuilder::new().max_rect(line.with_max_y(rect.bottom() - 8.0)).layout(layout));
     ui.spacing_mut().item_spacing.x = 12.0;
     for (key, what) in hints_of(hand) {
@@ -189,17 +192,24 @@ fn hints_of(hand: &HandDevice) -> &'static [(&'static str, &'static str)] {
     }
 }
 
-fn watching(ui: &Ui, rect: Rect, trainer: &Trainer) {
-    let p = palette(ui);
-    let text = match (trainer.operator, trainer.performance_over()) {
+fn watching(trainer: &Trainer) -> &'static str {
+    match (trainer.operator, trainer.performance_over()) {
         (Operator::Scripted, true) => "The scripted operator is done.",
         (Operator::Scripted, false) => "The scripted operator at work",
         (Operator::You, true) => "The replay is over.",
         (Operator::You, false) => "Replay of the open log",
-    };
-    let at = rect.center_top() + vec2(0.0, 16.0);
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::new(13.0, theme::semibold()), p.text);
-    let back = Rect::from_center_size(at + vec2(0.0, 10.0), galley.size() + vec2(24.0, 12.0));
-    ui.painter().rect(back, 14, p.card, egui::Stroke::new(1.0, p.border), egui::StrokeKind::Inside);
-    ui.painter().galley(Align2::CENTER_CENTER.anchor_size(back.center(), galley.size()).min, galley, Color32::WHITE);
+    }
+}
+
+/// One line along the upper edge, beside the button that resets the view.
+fn pill(ui: &mut Ui, rect: Rect, text: &str) {
+    let p = palette(ui);
+    let room = rect.shrink(space::M).with_max_x(rect.right() - 116.0);
+    let mut ui = ui.new_child(UiBuilder::new().max_rect(room).layout(egui::Layout::left_to_right(Align::Min)));
+    egui::Frame::new()
+        .fill(p.card)
+        .stroke(egui::Stroke::new(1.0, p.border))
+        .corner_radius(14)
+        .inner_margin(egui::Margin::symmetric(12, 5))
+        .show(&mut ui, |ui| ui.add(egui::Label::new(theme::strong(text)).selectable(false).wrap()));
 }

@@ -36,7 +36,7 @@ impl Engine {
         // Without a clock of its own there is nothing to measure: always the nominal rate, so that runs can be repeated.
         let rate = RateReport { rate_hz: config.rate.nominal_hz(), ..RateReport::default() };
         let snapshot = Snapshot::starting(&swap, rate);
-        let body = Loop::new(swap, device, limits);
+        let body = Loop::new(swap, device, limits).with_passivity_control(config.passivity_control_n_s_m);
         Self::Inline(Box::new(Inline { body, config, ticks: Vec::new(), snapshot, owed_s: 0.0 }))
     }
 

@@ -1,15 +1,14 @@
 //! Which device moves the fingers, and how it is made.
 
-use super::Pinch;
+use super::{Pinch, Remote};
 use haptics::Vec2;
-use haptics::device::haply::HaplyHand;
-use haptics::device::udp::{Key, PORT, UdpConfig, UdpDevice, UdpMonitor};
+use haptics::device::haply::{HaplyHand, Tally};
+use haptics::device::udp::{UdpDevice, UdpMonitor};
 use haptics::device::{
     Device, DeviceSpec, KeyboardHandle, MouseHandle, MouseTarget, ReplayDevice, TouchHandle, keyboard, mouse, touch,
 };
 use haptics::recording::Recording;
 use haptics::world::{State, World};
-use std::path::Path;
 use std::sync::Arc;
 
 /// A device that a person, a log or another machine moves the fingers with.
@@ -38,10 +37,8 @@ pub enum HandDevice {
 pub struct HandSettings {
     /// The log to replay.
     pub log: Option<Arc<Recording>>,
-    /// File with the key of the UDP device.
-    pub udp_key: String,
-    /// Its port, when it is not the usual one; 0: any that is free.
-    pub udp_port: Option<u16>,
+    /// What is known of the remote device.
+    pub remote: Remote,
 }
 
 /// The window's end of the running device.
@@ -56,6 +53,8 @@ pub enum Steering {
     Touch(TouchHandle),
     /// Keys.
     Keyboard(KeyboardHandle),
+    /// Answers of the left and the right board.
+    Haply([Tally; 2]),
     /// Packet counters.
     Udp(UdpMonitor),
     /// The thread that reads the pad, as long as it is held here.
@@ -95,16 +94,11 @@ impl HandDevice {
             Self::Haply(left, right) => {
                 let hand = HaplyHand::open([left, right], world.hand.workspace.center_m, crate::program().as_deref())
                     .map_err(|e| said(&e))?;
-                made(Box::new(hand), Steering::None)
+                let tallies = hand.tallies();
+                made(Box::new(hand), Steering::Haply(tallies))
             }
             Self::Udp => {
-                let path = settings.udp_key.trim();
-                if path.is_empty() {
-                    return Err("A remote device needs a key: name a file with 64 hexadecimal digits.".to_owned());
-                }
-                let key = Key::load(Path::new(path)).map_err(|e| said(&e))?;
-                let mut config = UdpConfig::loopback(key);
-                config.listen.set_port(settings.udp_port.unwrap_or(PORT));
+                let config = settings.remote.config()?;
                 let device = UdpDevice::open(config, tips).map_err(|e| said(&e))?;
                 let monitor = device.monitor();
                 made(Box::new(device), Steering::Udp(monitor))
@@ -142,7 +136,7 @@ impl HandDevice {
             Self::Haply(..) => "Two Haply 2DIY boards, one a finger; the force is felt.",
             #[cfg(feature = "gamepad")]
             Self::Gamepad => "The left stick moves, the triggers close and open; the rumble hints at the force.",
-            Self::Udp => "A device at the other end of this machine's port 47474; every packet is sealed with a key.",
+            Self::Udp => "A device at the other end of a network; every packet is sealed with a shared key.",
         }
     }
 }

@@ -1,31 +1,34 @@
 //! The trainer behind its panels: servo, device, worlds, recording. No drawing here.
 
+mod choice;
+mod control;
 mod engine;
 mod hand;
 mod history;
 mod impacts;
 mod pinch;
+mod recording;
+mod remote;
+mod script;
+mod task;
 mod trial;
 
+pub use choice::WorldChoice;
+pub use control::{MOST_CONTROL_N_S_M, USUAL_CONTROL_N_S_M};
 pub use engine::{Engine, Inline};
 pub use hand::{HandDevice, HandSettings, Steering, spec_sentences};
 pub use history::{History, Moment};
 pub use impacts::{Flash, Impacts};
 pub use pinch::Pinch;
+pub use remote::Remote;
+pub use script::Script;
+pub use task::task_hint;
 pub use trial::{Direction, Trial};
 
-use haptics::device::{Device, DeviceSpec, ScriptedOperator, Skill};
-use haptics::recording::Recording;
-use haptics::servo::recorder::{SensorModel, to_recording};
-use haptics::servo::timing::Timing;
+use haptics::device::{Device, DeviceSpec};
 use haptics::servo::{Privileges, ServoConfig, Snapshot, Swap, TickRecord};
-use haptics::world::{State, World, presets};
+use haptics::world::{State, World};
 use std::sync::Arc;
-
-/// Longest recording, s.
-const LONGEST_S: f64 = 600.0;
-/// Most ticks of a recording, about 300 MB of them: ten minutes at a kilohertz, five at four.
-const MOST_TICKS: usize = 1_200_000;
 
 /// Who moves the fingers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,28 +38,6 @@ pub enum Operator {
     You,
     /// The scripted operator.
     Scripted,
-}
-
-/// Which world is touched.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum WorldChoice {
-    /// Two blocks to be unstacked and restacked.
-    #[default]
-    Blocks,
-    /// A crank to be turned.
-    Crank,
-    /// A needle on a paper cup.
-    Needle,
-    /// A barrel on a cable.
-    Barrel,
-    /// A toggle switch.
-    Switch,
-    /// A bare table.
-    Table,
-    /// The world that was measured from the log.
-    Calibrated,
-    /// A world from a file.
-    File,
 }
 
 /// How the servo is run.
@@ -84,6 +65,8 @@ pub struct Trainer {
     pub settings: HandSettings,
     /// The window's end of the running device.
     pub steering: Steering,
+    /// How well the scripted operator does it, and what it does wrong.
+    pub script: Script,
     /// The force test.
     pub trial: Trial,
     /// What the mouse does to the fingers.
@@ -99,6 +82,8 @@ pub struct Trainer {
     /// The world from a file, when there is one.
     pub file: Option<World>,
     engine: Option<Engine>,
+    /// Most damping of the passivity controller, N s/m; `None`: off.
+    control_n_s_m: Option<f64>,
     spec: Option<DeviceSpec>,
     /// Worlds by generation of the running engine.
     worlds: Vec<Arc<World>>,
@@ -111,20 +96,6 @@ pub struct Trainer {
 }
 
 impl Trainer {
-    /// The world of a choice; the blocks where the choice has none.
-    fn world_of(&self, choice: WorldChoice) -> World {
-        match choice {
-            WorldChoice::Blocks => presets::stacking(),
-            WorldChoice::Crank => presets::crank(),
-            WorldChoice::Needle => presets::needle(),
-            WorldChoice::Barrel => presets::barrel(),
-            WorldChoice::Switch => presets::switch(),
-            WorldChoice::Table => presets::table(),
-            WorldChoice::Calibrated => self.calibrated.clone().unwrap_or_else(presets::stacking),
-            WorldChoice::File => self.file.clone().unwrap_or_else(presets::stacking),
-        }
-    }
-
     /// Starts the servo unless it runs; goes on where it was stopped.
     pub fn ensure_running(&mut self) -> Result<(), String> {
         if self.engine.is_some() {
@@ -167,9 +138,10 @@ impl Trainer {
         self.history = History::default();
         self.pinch.prepare_for(&swap.world, &swap.state);
         self.worlds = vec![Arc::new(swap.world.clone())];
+        let config = ServoConfig { passivity_control_n_s_m: self.control_n_s_m, ..ServoConfig::default() };
         let engine = match self.clock {
-            Clock::RealTime => Engine::thread(swap, device, ServoConfig::default())?,
-            Clock::Manual => Engine::inline(swap, device, ServoConfig::default()),
+            Clock::RealTime => Engine::thread(swap, device, config)?,
+            Clock::Manual => Engine::inline(swap, device, config),
         };
         self.engine = Some(engine);
         self.update(0.0);
@@ -186,7 +158,7 @@ impl Trainer {
             }
             Operator::Scripted => {
                 self.performances += 1;
-                let operator = ScriptedOperator::new(world, state, Skill::default(), self.performances);
+                let operator = self.script.operator(world, state, self.performances);
                 self.finished_at_s = operator.duration_s();
                 Ok(Box::new(operator))
             }
@@ -266,9 +238,7 @@ impl Trainer {
         if let Some(newest) = &self.newest {
             self.steering.follow(&mut self.pinch, &newest.tick, frame_s);
         }
-        if self.recorded_s() > LONGEST_S || self.recorded.as_ref().is_some_and(|ticks| ticks.len() > MOST_TICKS) {
-            self.stop_recording();
-        }
+        self.end_overlong_recording();
     }
 
     /// Runs a manual clock on; the mouse's goal follows in steps of a picture.
@@ -318,44 +288,6 @@ impl Trainer {
             || snapshot.state.bodies.iter().any(|b| fast(&b.velocity_m_s))
             || snapshot.state.crank.rate_rad_s.abs() > 1e-2
     }
-
-    /// Begins to keep every tick.
-    pub fn start_recording(&mut self) {
-        self.recorded = Some(Vec::new());
-    }
-
-    /// True while every tick is kept.
-    pub fn is_recording(&self) -> bool {
-        self.recorded.is_some()
-    }
-
-    /// Length of the running recording, s.
-    pub fn recorded_s(&self) -> f64 {
-        let ends = self.recorded.as_ref().and_then(|ticks| Some(ticks.last()?.time_s - ticks.first()?.time_s));
-        ends.unwrap_or(0.0)
-    }
-
-    /// Ends the recording and gives it, seen through good sensors; `None` when it is too short for anything.
-    pub fn stop_recording(&mut self) -> Option<Recording> {
-        let mut ticks = self.recorded.take().filter(|ticks| ticks.len() > 1)?;
-        let start_s = ticks[0].time_s;
-        for tick in &mut ticks {
-            tick.time_s -= start_s;
-        }
-        let (snapshot, world) = self.scene()?;
-        let (world, servo) = (Arc::clone(world), servo_facts(&snapshot.timing, self.privileges()));
-        self.recordings_made += 1;
-        let name = format!("{} {}", world.name, self.recordings_made);
-        let seed = self.recordings_made as u64;
-        let mut recording = to_recording(&name, &world, &ticks, 1, &SensorModel::TYPICAL, seed);
-        recording.meta.other.insert("servo".to_owned(), servo);
-        Some(recording)
-    }
-}
-
-/// How the servo kept its time, for the sidecar of a recording.
-fn servo_facts(timing: &Timing, privileges: Option<Privileges>) -> serde_json::Value {
-    serde_json::json!({ "why": timing.rate.sentence(), "timing": timing, "privileges": privileges })
 }
 
 #[cfg(test)]

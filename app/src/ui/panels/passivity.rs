@@ -1,0 +1,52 @@
+//! The passivity observer's figure, and the switch of the controller.
+
+use crate::ui::format::number;
+use crate::ui::session::Session;
+use crate::ui::theme;
+use crate::ui::trainer::USUAL_CONTROL_N_S_M;
+use crate::ui::widgets::{card, fact};
+use egui::{Align, Layout, Ui};
+
+const WHY: &str = "The observer always counts the energy that the world has taken in. When more was given out than taken in (below \
+                   zero) the force on you can start to swing; the controller then brakes your fingers until it is back. It is off \
+                   unless you want it: it makes some contacts feel sticky.";
+
+/// Strengths to choose from: the most damping, N s/m.
+const STRENGTHS: [(&str, f64); 3] = [("0.5", 0.5), ("2", USUAL_CONTROL_N_S_M), ("10", 10.0)];
+
+/// The card beside the trainer's picture and on the devices page.
+pub fn passivity(ui: &mut Ui, session: &mut Session) {
+    let Some(energy_j) = session.trainer.scene().map(|(snapshot, _)| snapshot.tick.energy_j) else { return };
+    let before = session.trainer.control_n_s_m();
+    let (mut on, mut most) = (before.is_some(), before.unwrap_or(USUAL_CONTROL_N_S_M));
+    // The servo starts anew, which would end a recording.
+    let free = !session.trainer.is_recording();
+    let switch = |ui: &mut Ui| {
+        let response = ui.add_enabled(free, egui::Checkbox::new(&mut on, "Controller"));
+        response.on_hover_text(WHY).on_disabled_hover_text("Not while a recording runs.");
+    };
+    card(ui, "Passivity", switch, |ui| {
+        fact(ui, "Energy taken in", format!("{} mJ", number(energy_j * 1e3, 1)));
+        if before.is_some() {
+            ui.add_enabled_ui(free, |ui| strength(ui, &mut most));
+        }
+    });
+    let wanted = on.then_some(most);
+    if wanted != before
+        && let Err(problem) = session.trainer.set_control(wanted)
+    {
+        session.fail(problem);
+    }
+}
+
+fn strength(ui: &mut Ui, most: &mut f64) {
+    ui.horizontal(|ui| {
+        ui.label(theme::caption(ui, "Brakes with at most, N s/m"));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            for (label, value) in STRENGTHS.iter().rev() {
+                let hint = "The extra damping on each of your fingers; more takes the energy back sooner";
+                ui.selectable_value(most, *value, *label).on_hover_text(hint);
+            }
+        });
+    });
+}

@@ -1,0 +1,42 @@
+//! Which world is touched.
+
+use super::Trainer;
+use haptics::world::{World, presets};
+
+/// Which world is touched.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WorldChoice {
+    /// Two blocks to be unstacked and restacked.
+    #[default]
+    Blocks,
+    /// A crank to be turned.
+    Crank,
+    /// A needle on a paper cup.
+    Needle,
+    /// A barrel on a cable.
+    Barrel,
+    /// A toggle switch.
+    Switch,
+    /// A bare table.
+    Table,
+    /// The world that was measured from the log.
+    Calibrated,
+    /// A world from a file.
+    File,
+}
+
+impl Trainer {
+    /// The world of a choice; the blocks where the choice has none.
+    pub(super) fn world_of(&self, choice: WorldChoice) -> World {
+        match choice {
+            WorldChoice::Blocks => presets::stacking(),
+            WorldChoice::Crank => presets::crank(),
+            WorldChoice::Needle => presets::needle(),
+            WorldChoice::Barrel => presets::barrel(),
+            WorldChoice::Switch => presets::switch(),
+            WorldChoice::Table => presets::table(),
+            WorldChoice::Calibrated => self.calibrated.clone().unwrap_or_else(presets::stacking),
+            WorldChoice::File => self.file.clone().unwrap_or_else(presets::stacking),
+        }
+    }
+}

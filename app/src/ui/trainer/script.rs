@@ -1,0 +1,34 @@
+//! The scripted operator as it was chosen: a level of skill, and what it does wrong on purpose.
+
+use crate::operator;
+use haptics::device::{Mistake, ScriptedOperator, Skill};
+use haptics::world::{State, World};
+
+/// How well the scripted operator does it, and what it does wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Script {
+    /// The level by its name in [`operator::LEVELS`].
+    pub level: &'static str,
+    /// The deliberate mistake; left out in worlds that give no occasion for it.
+    pub mistake: Option<Mistake>,
+}
+
+impl Default for Script {
+    fn default() -> Self {
+        Self { level: operator::USUAL, mistake: None }
+    }
+}
+
+impl Script {
+    /// The mistake that will be made in this world.
+    pub fn mistake_in(&self, world: &World) -> Option<Mistake> {
+        self.mistake.filter(|mistake| operator::mistakes_in(world).contains(mistake))
+    }
+
+    /// The operator for a world.
+    pub fn operator(&self, world: &World, state: &State, seed: u64) -> ScriptedOperator {
+        let skill = Skill::from_name(self.level).unwrap_or_default();
+        let mistakes: Vec<Mistake> = self.mistake_in(world).into_iter().collect();
+        ScriptedOperator::with_mistakes(world, state, skill, &mistakes, seed)
+    }
+}

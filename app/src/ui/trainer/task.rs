@@ -1,0 +1,36 @@
+//! What there is to do in a world, in one line.
+
+use haptics::world::{Shape, World};
+
+/// One sentence about the first of crank, sheet, switch, barrel and blocks that stands in the world.
+pub fn task_hint(world: &World) -> &'static str {
+    let has = |shape: Shape| world.blocks.iter().any(|block| block.shape == shape);
+    if world.crank.is_some() {
+        "Pinch the handle and turn the crank."
+    } else if world.membrane.is_some() {
+        "Pinch the needle and push it slowly through the cup: it resists, gives way, and drags when you pull it out."
+    } else if world.switch.is_some() {
+        "Push the knob over until it snaps, then back."
+    } else if has(Shape::Barrel) {
+        "Pinch the barrel and lift it against its cable; squeezed too hard it breaks and leaks."
+    } else {
+        match world.blocks.len() {
+            0 => "Nothing to do here: try the fingers on the table.",
+            1 => "Pinch the block, lift it, and put it somewhere else.",
+            _ => "Put the upper block on the table, then the lower one on top of it.",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::world::presets;
+
+    #[test]
+    fn every_built_in_world_has_a_line_of_its_own() {
+        let lines: std::collections::BTreeSet<&str> = presets::all().iter().map(task_hint).collect();
+        assert_eq!(lines.len(), presets::all().len());
+        assert!(lines.iter().all(|line| line.ends_with('.') && line.len() < 120));
+    }
+}
