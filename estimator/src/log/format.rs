@@ -36,6 +36,31 @@ fn of_bytes(start: &[u8]) -> Format {
     Format::Csv
 }
 
+/// What a file that is not read is, by its first bytes, and how its owner gets a log out of it.
+pub fn foreign(start: &[u8]) -> Option<&'static str> {
+    const KNOWN: [(&[u8], &str); 9] = [
+        (
+            b"MATLAB 5.0",
+            "a MATLAB file; write it as a table with writetable(…, 'log.csv') in MATLAB, or with scipy.io.loadmat and pandas",
+        ),
+        (
+            b"\x89HDF\r\n",
+            "an HDF5 file, which MATLAB 7.3 also writes; write it as CSV or Parquet, with pandas for example",
+        ),
+        (b"#ROSBAG", "a ROS 1 bag; convert it with `mcap convert`"),
+        (
+            b"SQLite format 3",
+            "an SQLite database, which ROS 2 bags of old are; convert it with `mcap convert` or `ros2 bag convert`",
+        ),
+        (b"RRF", "a Rerun recording; export the signals as MCAP, Parquet or CSV"),
+        (b"PK\x03\x04", "a zip archive or a spreadsheet; unpack it, or save the sheet as CSV"),
+        (b"\x1f\x8b", "compressed with gzip; unpack it with `gunzip`"),
+        (b"\x28\xb5\x2f\xfd", "compressed with zstd; unpack it with `unzstd`"),
+        (b"\x93NUMPY", "a NumPy array; write it as CSV with a header line of column names"),
+    ];
+    KNOWN.iter().find(|(magic, _)| start.starts_with(magic)).map(|&(_, what)| what)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -47,5 +72,11 @@ mod tests {
         assert_eq!(of_bytes(b"t_s,q_m\n"), Format::Csv);
         assert_eq!(of_bytes(b"PAR"), Format::Csv);
         assert_eq!(of_bytes(b""), Format::Csv);
+    }
+
+    #[test]
+    fn well_known_files_are_named() {
+        assert!(foreign(b"MATLAB 5.0 MAT-file, Platform: GLNXA64").is_some_and(|what| what.contains("writetable")));
+        assert!(foreign(b"t_s,q_m\n").is_none() && foreign(b"").is_none());
     }
 }

@@ -10,6 +10,7 @@ mod join;
 mod part;
 
 use super::errors::LogError;
+use super::format;
 use super::plan::Plan;
 use super::table::Table;
 use super::watch::Watch;
@@ -54,6 +55,9 @@ fn dialect(start: &[u8], path: &Path) -> Result<Dialect, LogError> {
     let not_a_table = |why: &str| LogError::NotATable { why: why.to_owned(), path: path.to_path_buf() };
     if start.starts_with(&[0xff, 0xfe]) || start.starts_with(&[0xfe, 0xff]) {
         return Err(not_a_table("UTF-16 text; save it as UTF-8"));
+    }
+    if let Some(what) = format::foreign(start) {
+        return Err(not_a_table(what));
     }
     if start.contains(&0) {
         return Err(not_a_table("binary data"));
