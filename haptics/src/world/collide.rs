@@ -1,4 +1,7 @@
 //! Where surfaces touch, or may touch before the tick is over: found once a tick, in a fixed order.
+//!
+//! They are found where everything will be in the middle of the tick if nothing pushes it: lever arms and directions of that
+//! moment hold for the whole tick to second order, those of its start only to first.
 
 use super::block::{Block, Shape};
 use super::contact::{Material, Touch, meeting};
@@ -31,6 +34,15 @@ impl Memory<'_> {
     }
 }
 
+/// A place where two surfaces are near each other.
+struct Found {
+    pair: (Surface, Surface),
+    feature: u8,
+    point_m: Vec2,
+    normal: Vec2,
+    depth_m: f64,
+}
+
 /// Gathers touches with what the tick before knew of them.
 struct Gather<'a> {
     world: &'a World,
@@ -46,16 +58,16 @@ struct Gather<'a> {
 
 /// Fills the scratch space of `state`: outlines, masses and touches as they are now, with the tips on their way to `input`.
 pub(super) fn collide(world: &World, state: &mut State, input: &Input, dt_s: f64) {
-    let State { scratch: Scratch { touches, solids, arm }, bodies, contacts, time_s, .. } = state;
+    let State { scratch: Scratch { touches, solids, arm }, bodies, contacts, time_s, input: before, .. } = state;
     solids.clear();
     solids.extend(world.blocks.iter().zip(&*bodies).map(|(block, body)| solid(block, body, world.gravity_m_s2, dt_s)));
     touches.clear();
-    let tips = state.input.tip_in_world;
+    let tips = [0, 1].map(|f| 0.5 * (before.tip_in_world[f] + input.tip_in_world[f]));
     let slipped_m = world
         .pad
         .slip
         .map_or_else(Vec2::zeros, |slip| slip.displacement_m(*time_s + dt_s) - slip.displacement_m(*time_s));
-    let tip_sweep_m = [0, 1].map(|f| (input.tip_in_world[f] - tips[f]).norm());
+    let tip_sweep_m = [0, 1].map(|f| (input.tip_in_world[f] - before.tip_in_world[f]).norm());
     let memory = Memory { before: contacts, next: 0 };
     let handle_m = world.crank.as_ref().map(|crank| handle(crank, &state.crank, arm));
     let mut gather = Gather { world, tips, tip_sweep_m, memory, touches, solids, slipped_m };
@@ -65,16 +77,20 @@ pub(super) fn collide(world: &World, state: &mut State, input: &Input, dt_s: f64
     gather.driven(handle_m, state.switch.at_m);
 }
 
-/// A body's outline, how far it may come within the tick, and its mass.
+/// A body's outline in the middle of the tick, how far it may come within the tick, and its mass.
 fn solid(block: &Block, body: &BodyState, gravity_m_s2: f64, dt_s: f64) -> Solid {
-    let (sin, cos) = if block.shape == Shape::Needle { (0.0, 1.0) } else { body.angle_rad.sin_cos() };
+    let (sin, cos) = if block.shape == Shape::Needle {
+        (0.0, 1.0)
+    } else {
+        (body.angle_rad + 0.5 * dt_s * body.rate_rad_s).sin_cos()
+    };
     let half_m = 0.5 * Vec2::new(block.width_m, block.height_m);
     let reach_m = half_m.norm();
     let speed = body.velocity_m_s.norm() + reach_m * body.rate_rad_s.abs() + gravity_m_s2.abs() * dt_s;
     let mass_kg = block.mass_kg - body.leaked_kg;
     let turns = block.shape != Shape::Needle;
     Solid {
-        rect: Rect { center_m: body.center_m, half_m, axis_x: Vec2::new(cos, sin) },
+        rect: Rect { center_m: body.center_m + 0.5 * dt_s * body.velocity_m_s, half_m, axis_x: Vec2::new(cos, sin) },
         reach_m,
         sweep_m: speed * dt_s,
         inverse_mass: 1.0 / mass_kg,
@@ -85,49 +101,61 @@ fn solid(block: &Block, body: &BodyState, gravity_m_s2: f64, dt_s: f64) -> Solid
 }
 
 impl Gather<'_> {
-    /// Adds a touch with the shear that the tick before left.
-    fn add(&mut self, mut contact: Contact, material: Material) {
-        let (pair, feature) = ((contact.on, contact.by), contact.feature);
-        let before = self.memory.find(|c| (c.on, c.by) == pair && c.feature == feature);
-        let met = before.is_some();
-        contact.shear_m = before.map_or(0.0, |c| c.shear_m);
-        if matches!(contact.on, Surface::Finger(_)) {
-            contact.shear_m -= self.slipped_m.dot(&contact.tangent());
-        }
-        let arm = |surface: Surface| match surface {
-            Surface::Block(index) => contact.point_m - self.solids[usize::from(index)].rect.center_m,
-            _ => Vec2::zeros(),
-        };
-        let (arm_on_m, arm_by_m) = (arm(contact.on), arm(contact.by));
+    /// Adds a touch with what the tick before left.
+    fn add(&mut self, found: &Found, material: &Material) {
         // The buffer is sized for the densest packing; should that ever be wrong, the tick goes on without this touch, because
         // growing here would allocate in the servo.
-        if self.touches.len() < self.touches.capacity() {
-            self.touches.push(Touch { contact, arm_on_m, arm_by_m, material, met });
+        if self.touches.len() >= self.touches.capacity() {
+            return;
         }
+        let Found { pair: (on, by), feature, point_m, normal, depth_m } = *found;
+        let before = self.memory.find(|c| (c.on, c.by) == (on, by) && c.feature == feature);
+        let mut contact = meeting((on, by), feature, point_m, normal, depth_m);
+        let met = before.is_some();
+        if let Some(before) = before {
+            (contact.shear_m, contact.normal_force_n, contact.met_m_s) =
+                (before.shear_m, before.normal_force_n, before.met_m_s);
+        }
+        let (arm_on_m, yield_on) = self.lever(on, found);
+        let (arm_by_m, yield_by) = self.lever(by, found);
+        let mut yield_1_kg = yield_on + yield_by;
+        if matches!(on, Surface::Finger(_)) {
+            contact.shear_m -= self.slipped_m.dot(&contact.tangent());
+            yield_1_kg = 0.0;
+        }
+        let closing_m_s = f64::NAN;
+        self.touches.push(Touch { contact, arm_on_m, arm_by_m, material: *material, yield_1_kg, met, closing_m_s });
+    }
+
+    /// From the centre of a body to the point, m, and how fast the body yields to a normal force there, 1/kg.
+    #[inline]
+    fn lever(&self, surface: Surface, found: &Found) -> (Vec2, f64) {
+        let Surface::Block(index) = surface else { return (Vec2::zeros(), 0.0) };
+        let solid = &self.solids[usize::from(index)];
+        let arm_m = found.point_m - solid.rect.center_m;
+        let turning = arm_m.perp(&found.normal);
+        (arm_m, solid.inverse_mass + solid.inverse_inertia * turning * turning)
     }
 
     fn floor(&mut self) {
         let Some(floor) = &self.world.floor else { return };
         let up = Vec2::new(0.0, 1.0);
+        let impact_damping = floor.loss.map_or(0.0, |loss| loss.impact_damping());
         for (index, block) in self.world.blocks.iter().enumerate() {
-            let Solid { rect, reach_m, sweep_m, inverse_mass, .. } = self.solids[index];
+            let Solid { rect, reach_m, sweep_m, .. } = self.solids[index];
             if rect.center_m.y - reach_m - sweep_m > floor.height_m {
                 continue;
             }
             let pair = (Surface::Block(index as u16), Surface::Floor);
             let material = match &floor.loss {
-                // Two corners carry the block: each has half of what stops it.
-                Some(loss) => {
-                    let damping = 0.5 * loss.damping_n_s_m(2.0 * floor.stiffness_n_m, 1.0 / inverse_mass);
-                    Material::hard(floor.stiffness_n_m, damping, loss.mu)
-                }
+                Some(loss) => Material { impact_damping, ..Material::hard(floor.stiffness_n_m, 0.0, loss.mu) },
                 None => Material::hard(floor.stiffness_n_m, floor.damping_n_s_m, floor.friction),
             };
             if block.shape == Shape::Needle {
                 let point_m = rect.center_m - rect.axis_y() * rect.half_m.y;
                 let depth_m = floor.height_m - point_m.y;
                 if depth_m > -sweep_m {
-                    self.add(meeting(pair, 0, point_m, up, depth_m), material);
+                    self.add(&Found { pair, feature: 0, point_m, normal: up, depth_m }, &material);
                 }
                 continue;
             }
@@ -135,7 +163,7 @@ impl Gather<'_> {
                 let point_m = rect.corner(corner);
                 let depth_m = floor.height_m - point_m.y;
                 if depth_m > -sweep_m {
-                    self.add(meeting(pair, corner, point_m, up, depth_m), material);
+                    self.add(&Found { pair, feature: corner, point_m, normal: up, depth_m }, &material);
                 }
             }
         }
@@ -144,7 +172,10 @@ impl Gather<'_> {
             let depth_m = floor.height_m - tip.y;
             if depth_m > -self.tip_sweep_m[usize::from(finger)] {
                 let pair = (Surface::Finger(finger), Surface::Floor);
-                self.add(meeting(pair, 0, tip, up, depth_m), pad_material(self.world, floor.friction));
+                self.add(
+                    &Found { pair, feature: 0, point_m: tip, normal: up, depth_m },
+                    &pad_material(self.world, floor.friction),
+                );
             }
         }
     }
@@ -162,7 +193,7 @@ impl Gather<'_> {
                 let material = block_material(&self.world.blocks[i], &self.world.blocks[j]);
                 let pair = (Surface::Block(i as u16), Surface::Block(j as u16));
                 for (point_m, depth_m, feature) in points.into_iter().flatten() {
-                    self.add(meeting(pair, feature, point_m, normal, depth_m), material);
+                    self.add(&Found { pair, feature, point_m, normal, depth_m }, &material);
                 }
             }
         }
@@ -186,7 +217,7 @@ impl Gather<'_> {
                 material.wall_n_m = block.wall.map_or(0.0, |wall| wall.stiffness_n_m);
                 // Start again at this pair: its contact is the next to be asked for.
                 self.memory.next = self.memory.next.saturating_sub(1);
-                self.add(meeting(pair, face, tip, rect.face(face).0, depth_m), material);
+                self.add(&Found { pair, feature: face, point_m: tip, normal: rect.face(face).0, depth_m }, &material);
             }
         }
         self.sheet();
@@ -208,7 +239,7 @@ impl Gather<'_> {
                 let mut material = pad_material(self.world, self.world.floor.map_or(0.5, |f| f.friction));
                 material.wall_n_m = membrane.law.stiffness_n_m;
                 self.memory.next = self.memory.next.saturating_sub(1);
-                self.add(meeting(pair, 0, tip, Vec2::new(0.0, 1.0), depth_m), material);
+                self.add(&Found { pair, feature: 0, point_m: tip, normal: Vec2::new(0.0, 1.0), depth_m }, &material);
             }
         }
     }
@@ -227,9 +258,9 @@ impl Gather<'_> {
                 let level = (tip.y - handle.y).abs() < PAD_HALF_HEIGHT_M + 0.5 * crank.handle_width_m;
                 if on_own_side && level {
                     let depth_m = facing * (tip.x - handle.x) + 0.5 * crank.handle_width_m;
-                    let contact = meeting(pair, 0, tip, Vec2::new(-facing, 0.0), depth_m);
+                    let found = Found { pair, feature: 0, point_m: tip, normal: Vec2::new(-facing, 0.0), depth_m };
                     self.memory.next = self.memory.next.saturating_sub(1);
-                    self.add(contact, pad_material(self.world, crank.finger_friction));
+                    self.add(&found, &pad_material(self.world, crank.finger_friction));
                 }
             }
         }
@@ -243,8 +274,8 @@ impl Gather<'_> {
                 if distance > 1e-9 && distance < 2.0 * switch.knob_radius_m {
                     let pair = (Surface::Finger(finger), Surface::Knob);
                     let depth_m = switch.knob_radius_m - distance;
-                    let contact = meeting(pair, 0, tip, away / distance, depth_m);
-                    self.add(contact, pad_material(self.world, switch.finger_friction));
+                    let found = Found { pair, feature: 0, point_m: tip, normal: away / distance, depth_m };
+                    self.add(&found, &pad_material(self.world, switch.finger_friction));
                 }
             }
         }
@@ -255,6 +286,7 @@ fn pad_material(world: &World, friction: f64) -> Material {
     Material {
         elastic: world.pad.elastic(),
         damping_n_s_m: world.pad.damping_n_s_m,
+        impact_damping: 0.0,
         shear_stiffness_n_m: world.pad.shear_stiffness_n_m,
         shear_damping_n_s_m: world.pad.shear_damping_n_s_m,
         friction,

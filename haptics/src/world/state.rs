@@ -133,6 +133,8 @@ pub struct Contact {
     pub depth_m: f64,
     /// Elastic tangential displacement of the sticking contact, m, along the normal turned by −90° (clockwise).
     pub shear_m: f64,
+    /// Speed at which the surfaces met, m/s, positive: closing.
+    pub met_m_s: f64,
     /// Normal force on `on`, N, ≥ 0.
     pub normal_force_n: f64,
     /// Tangential force on `on`, N, along the normal turned by −90°.

@@ -177,6 +177,7 @@ fn pressed_foam_is_thinner() {
         normal: Vec2::new(1.0, 0.0),
         depth_m: 0.0012,
         shear_m: 0.0,
+        met_m_s: 0.0,
         normal_force_n: 3.0,
         tangent_force_n: 0.0,
         sliding: false,

@@ -39,28 +39,27 @@ impl VelocityLoss {
         (-self.e * normal_m_s, along_m_s - along_m_s.signum() * most.min(along_m_s.abs()))
     }
 
-    /// Damping of a spring-damper contact that never pulls and loses as much, N s/m, for stiffness k and mass m: with damping
-    /// ratio ζ it leaves e = exp(−2 ζ acos ζ/√(1 − ζ²)) of the speed (Schwager & Pöschel 2007), inverted by Newton's method.
-    /// Below e = exp(−2) the contact is overdamped, e ≈ 1/(2 ζ + 0.72)² (within 0.01), and ζ is held at 5.
-    pub fn damping_n_s_m(&self, stiffness_n_m: f64, mass_kg: f64) -> f64 {
-        let e = self.e.clamp(0.0, 1.0);
-        let ratio = if e > (-2.0_f64).exp() { underdamped(-e.ln()) } else { (0.5 / e.sqrt() - 0.36).min(5.0) };
-        2.0 * ratio * (stiffness_n_m * mass_kg).max(0.0).sqrt()
+    /// Damping number α of a contact that leaves just this restitution, whatever its stiffness and the masses behind it: its force
+    /// is k x (1 + α v/v₀), with the closing speed v and the speed v₀ at which the surfaces met (Hunt & Crossley 1975).
+    ///
+    /// m v dv = −k x (1 + α v/v₀) dx over the whole impact gives (1 + e) α = ln((1 + α)/(1 − e α)), with 1/e as the upper bound
+    /// of α. Below e = 0.02 it is held at that of 0.02.
+    pub fn impact_damping(&self) -> f64 {
+        let e = self.e.clamp(0.02, 1.0);
+        let nearly = 1.5 * (1.0 - e) / e;
+        if e > 0.99 {
+            return nearly;
+        }
+        if e < 0.25 {
+            // Next to its bound: 1 − e α = (1 + α) exp(−(1 + e) α), from the bound itself.
+            return (0..5).fold(1.0 / e, |a, _| (1.0 - (1.0 + a) * (-(1.0 + e) * a).exp()) / e);
+        }
+        // Newton's method from a value that is nearly right.
+        (0..5).fold(nearly.min(0.985 / e), |a, _| {
+            let miss = (1.0 + e) * a - ((1.0 + a) / (1.0 - e * a)).ln();
+            a - miss / (1.0 + e - 1.0 / (1.0 + a) - e / (1.0 - e * a))
+        })
     }
-}
-
-/// The damping ratio ζ < 1 whose loss 2 ζ acos ζ/√(1 − ζ²) is `loss`, which is below 2.
-fn underdamped(loss: f64) -> f64 {
-    // The loss rises with ζ and bends down: from below, Newton's steps never overshoot far.
-    let mut ratio = loss / std::f64::consts::PI;
-    for _ in 0..6 {
-        let rest = 1.0 - ratio * ratio;
-        let angle = ratio.acos();
-        let miss = 2.0 * ratio * angle / rest.sqrt() - loss;
-        let slope = 2.0 * (angle / rest.powf(1.5) - ratio / rest);
-        ratio = (ratio - miss / slope).clamp(0.0, 0.999);
-    }
-    ratio
 }
 
 #[cfg(test)]
@@ -74,10 +73,14 @@ mod tests {
         let (normal, along) = loss.after(-2.0, 1.0);
         assert!((normal - 1.0).abs() < 1e-15 && (along - 0.7).abs() < 1e-15);
         assert_eq!(loss.after(-2.0, 0.2).1, 0.0, "it sticks, it does not turn round");
-        assert_eq!(VelocityLoss { e: 1.0, mu: 0.0 }.damping_n_s_m(8000.0, 0.05), 0.0);
-        // ζ = 0.5: acos = π/3, so e = exp(−(π/3)/(√3/2)) = 0.2984; 2 ζ √(k m) = 20 N s/m.
-        let half = (-std::f64::consts::FRAC_PI_3 / 0.75_f64.sqrt()).exp();
-        assert!((VelocityLoss { e: half, mu: 0.0 }.damping_n_s_m(8000.0, 0.05) - 20.0).abs() < 1e-3);
-        assert!(VelocityLoss { e: 0.0, mu: 0.0 }.damping_n_s_m(8000.0, 0.05).is_finite());
+        assert_eq!(VelocityLoss { e: 1.0, mu: 0.0 }.impact_damping(), 0.0);
+        for e in [0.03, 0.2, 0.249, 0.251, 0.5, 0.8, 0.98] {
+            // α (1 + e) = ln((1 + α)/(1 − e α)), by its exponential: no logarithm that the search itself takes.
+            let a = VelocityLoss { e, mu: 0.0 }.impact_damping();
+            assert!(((1.0 + a) * (-(1.0 + e) * a).exp() - (1.0 - e * a)).abs() < 1e-5, "e = {e}: {a}");
+        }
+        // 1.5 · 1.4328 = 2.1491 and ln(2.4328/0.2836) = 2.1491.
+        assert!((loss.impact_damping() - 1.4328).abs() < 1e-4);
+        assert!(VelocityLoss { e: 0.0, mu: 0.0 }.impact_damping().is_finite());
     }
 }

@@ -38,18 +38,26 @@ impl ToggleCurve {
         force + self.stop_n_m * ((at_m - high.at_m).max(0.0) + (at_m - low.at_m).min(0.0))
     }
 
-    /// Slope of the force at a displacement, N/m, that an integrator must follow: curve, reversal and stop.
-    pub fn stiffness_n_m(&self, at_m: f64, branch: f64) -> f64 {
-        let (low, high, share) = self.place(at_m);
-        if at_m < low.at_m || at_m > high.at_m {
+    /// Whether a displacement is beyond the ends of the curve, in a stop.
+    pub fn is_stopped(&self, at_m: f64) -> bool {
+        let (low, high, _) = self.place(at_m);
+        at_m < low.at_m || at_m > high.at_m
+    }
+
+    /// Slope of the force over the displacement for a motion at `rate_m_s`, N/m; negative where the switch snaps: of the curve,
+    /// of a reversal that goes on, and of the stops.
+    pub fn stiffness_n_m(&self, at_m: f64, branch: f64, rate_m_s: f64) -> f64 {
+        if self.is_stopped(at_m) {
             return self.stop_n_m;
         }
+        let (low, high, share) = self.place(at_m);
         let span = (high.at_m - low.at_m).max(1e-9);
         let slope = (self.force_n(high.at_m, branch) - self.force_n(low.at_m, branch)) / span;
         let gap = |p: &CurvePoint| p.forward_n - p.backward_n;
         let turning = (gap(low) + (gap(high) - gap(low)) * share) / self.reversal_m;
-        // On a branch's end the reversal has no stiffness in the direction of travel; counting it is on the safe side.
-        slope.max(0.0) + turning
+        // At the end of a branch nothing turns in the direction of travel.
+        let turns = if rate_m_s > 0.0 { branch < 1.0 } else { branch > 0.0 };
+        if turns { slope + turning } else { slope }
     }
 
     /// The branch after `way_m` of further travel.

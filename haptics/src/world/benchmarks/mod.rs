@@ -3,10 +3,12 @@
 #![cfg(test)]
 
 mod captured;
+mod convergence;
 mod crank;
 mod details;
 mod grip;
 mod heap;
+mod impact;
 mod rough;
 mod strong;
 
@@ -37,10 +39,9 @@ fn run(world: &World, state: &mut State, seconds: f64) {
 fn free_fall() {
     let (world, mut state) = single(0.02, 0.02, 1.0);
     run(&world, &mut state, 0.3);
-    // Semi-implicit Euler falls g t dt/2 further per part than t²g/2.
-    let part_s = DT / f64::from(substeps(&world, DT));
-    let expected = 1.01 - 0.5 * 9.81 * 0.3 * (0.3 + part_s);
-    assert!((state.bodies[0].center_m.y - expected).abs() < 1e-9);
+    // A constant force is met exactly, whatever the tick.
+    assert!((state.bodies[0].center_m.y - (1.01 - 0.5 * 9.81 * 0.09)).abs() < 1e-12);
+    assert!((state.bodies[0].velocity_m_s.y + 9.81 * 0.3).abs() < 1e-12);
 }
 
 #[test]
@@ -130,27 +131,10 @@ fn energy_never_rises_without_work() {
     for _ in 0..3_000 {
         step(&world, &mut state, &input, DT);
         let now = energy(&state);
-        // Semi-implicit Euler conserves a nearby energy: it may ripple by a small share, never pump.
-        assert!(now <= highest + 0.02 * start, "energy rose from {highest} to {now} at {}", state.time_s);
+        // What is stored is known for the middle of a part, the rest for its end: a ripple, never a pump.
+        assert!(now <= highest + 0.005 * start, "energy rose from {highest} to {now} at {}", state.time_s);
         highest = highest.min(now);
     }
-}
-
-#[test]
-fn finer_ticks_converge() {
-    // A bounce with friction and rotation, at three tick lengths: the error against the finest falls at first order.
-    let land = |dt: f64| {
-        let (world, mut state) = single(0.02, 0.02, 0.01);
-        state.bodies[0].angle_rad = 0.2;
-        let input = state.input;
-        for _ in 0..(0.05 / dt).round() as usize {
-            step(&world, &mut state, &input, dt);
-        }
-        state.bodies[0].center_m
-    };
-    let reference = land(1e-6);
-    let (coarse, fine) = ((land(1e-4) - reference).norm(), (land(1e-5) - reference).norm());
-    assert!(fine < 0.2 * coarse && coarse < 2e-4, "{coarse} then {fine}");
 }
 
 #[test]
@@ -198,9 +182,9 @@ fn a_bounce_leaves_what_the_damping_says() {
     let expected = (-2.0 * zeta * zeta.acos() / (1.0 - zeta * zeta).sqrt()).exp();
     let fine = restitution(floor, 1e-5);
     assert!((fine - expected).abs() < 0.005, "{fine} against {expected}");
-    // At 1 kHz half a contact lasts five ticks: a tenth is lost or won.
+    // At 1 kHz the whole contact lasts five ticks: the damper is half a part late.
     let coarse = restitution(floor, DT);
-    assert!((coarse - expected).abs() < 0.1, "{coarse} against {expected}");
+    assert!((coarse - expected).abs() < 0.02, "{coarse} against {expected}");
 }
 
 #[test]
