@@ -6,9 +6,9 @@
 use super::farewell::Outliving;
 use super::fivebar::FiveBar;
 use super::gate::{Gate, Verdict};
-use super::protocol::{Axis, REPLY_BYTES, Turn, read_reply, setup_frame, torque_frame};
+use super::protocol::{Axis, Turn, setup_frame};
+use super::turns::{Line, Turns};
 use crate::Vec2;
-use std::io::{Read, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::JoinHandle;
@@ -17,10 +17,6 @@ use triple_buffer::{Input, Output, triple_buffer};
 
 /// Without a new command for this long the board gets zero torque.
 pub const GUARD: Duration = Duration::from_millis(20);
-
-/// A serial line with a read time-out: a real port, or one end of a pseudo-terminal.
-pub trait Line: Read + Write + Send {}
-impl<T: Read + Write + Send> Line for T {}
 
 /// What is known of a board.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,7 +128,7 @@ impl Board {
         let stop = Arc::new(AtomicBool::new(false));
         let tally = Tally::default();
         let worker = Worker {
-            line,
+            turns: Turns::new(line, model.id),
             model,
             answers: answers_in,
             orders: orders_out,
@@ -181,7 +177,7 @@ impl Drop for Board {
 }
 
 struct Worker {
-    line: Box<dyn Line>,
+    turns: Turns,
     model: BoardModel,
     answers: Input<Answer>,
     orders: Output<Order>,
@@ -222,35 +218,13 @@ impl Worker {
             self.answers.write(answer);
         }
         // Whatever happened: the last word is zero torque.
-        let _ = self.line.write_all(&torque_frame(self.model.id, [0.0; 2]));
-        let _ = self.line.flush();
+        self.turns.farewell();
     }
 
-    /// Writes torques (actuators 1 and 2), reads the angles, rad; an error for anything but a whole reply of this board.
+    /// Writes torques (actuators 1 and 2), reads the angles, rad; an error for anything but this turn's reply of this board.
     fn exchange(&mut self, [first, second]: [f64; 2]) -> Result<[f64; 2], Fault> {
         // Actuator 1 sits on port 2, actuator 2 on port 1.
-        let frame = torque_frame(self.model.id, [second as f32, first as f32]);
-        self.line.write_all(&frame).map_err(|_| Fault::Late)?;
-        let mut reply = [0; REPLY_BYTES];
-        if self.line.read_exact(&mut reply).is_err() {
-            self.resynchronise();
-            return Err(Fault::Late);
-        }
-        let Some(degrees) = read_reply(self.model.id, &reply) else {
-            self.resynchronise();
-            return Err(Fault::Foreign);
-        };
+        let degrees = self.turns.turn([second as f32, first as f32])?;
         Ok([f64::from(degrees[1]).to_radians(), f64::from(degrees[0]).to_radians()])
-    }
-
-    /// Reads until the line is silent: the next reply then starts at its first byte.
-    fn resynchronise(&mut self) {
-        let mut rest = [0; 64];
-        // A board speaks only when asked; a line that never falls silent is no board, and must not hold this thread.
-        for _ in 0..64 {
-            if !matches!(self.line.read(&mut rest), Ok(n) if n > 0) {
-                return;
-            }
-        }
     }
 }

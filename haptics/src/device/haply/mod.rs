@@ -7,10 +7,12 @@ mod gate;
 mod protocol;
 #[cfg(all(test, unix))]
 mod tests;
+mod turns;
 
-pub use board::{Answer, Board, BoardModel, Fault, GUARD, Line, Tally};
+pub use board::{Answer, Board, BoardModel, Fault, GUARD, Tally};
 pub use fivebar::FiveBar;
 pub use protocol::{Axis, MAX_TORQUE_NM, Turn};
+pub use turns::Line;
 
 use super::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;

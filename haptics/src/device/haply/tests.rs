@@ -1,5 +1,7 @@
 //! The real code against an emulator of the real protocol, on a pseudo-terminal pair.
 
+use super::protocol::setup_frame;
+use super::turns::Turns;
 use super::*;
 use serialport::{SerialPort, TTYPort};
 use std::io::{Read, Write};
@@ -21,6 +23,8 @@ enum Fault {
     Jump,
     /// Answers nothing any more once `Shared::stalled` is set.
     Stall,
+    /// The thirtieth reply comes 35 ms late. The first angle says which question is answered: a tenth of a degree each.
+    Late,
 }
 
 /// Where the encoders stand unless told otherwise, degrees in port order.
@@ -40,7 +44,12 @@ struct Shared {
 impl Shared {
     fn reply(&self, fault: Fault) -> Vec<u8> {
         let number = self.replies.fetch_add(1, Ordering::Relaxed);
-        let pose = *self.pose.lock().expect("not poisoned");
+        let mut pose = *self.pose.lock().expect("not poisoned");
+        if fault == Fault::Late {
+            pose[0] = 0.1 * number as f32;
+            let late_ms = if number == 29 { 35 } else { 0 };
+            std::thread::sleep(Duration::from_millis(late_ms));
+        }
         let tenth = number % 10 == 9;
         let [one, two] = if fault == Fault::Jump && number % 50 == 49 { [30.0, 150.0] } else { pose };
         let mut reply = vec![5_u8];
@@ -197,6 +206,25 @@ fn after_every_broken_reply_the_next_are_right() {
         drop(board);
         emulator.finish();
     }
+}
+
+#[test]
+fn after_a_late_reply_the_positions_are_again_of_the_same_turn() {
+    let (mut host, far) = TTYPort::pair().expect("the system has pseudo-terminals");
+    host.set_timeout(READ_TIMEOUT).expect("time-out");
+    host.write_all(&setup_frame(BoardModel::V3.id, BoardModel::V3.ports)).expect("it takes the set-up");
+    let emulator = Emulator::start(far, Fault::Late);
+    let mut turns = Turns::new(Box::new(host), BoardModel::V3.id);
+    let answers: Vec<Option<u32>> =
+        (0..500).map(|_| turns.turn([0.0; 2]).ok().map(|angles| (10.0 * angles[0]).round() as u32)).collect();
+    assert!(answers[29].is_none(), "the late one is not believed");
+    // Nothing is ever taken for the answer to another question, whatever a busy machine delays besides.
+    for (question, answer) in answers.iter().enumerate() {
+        assert!(answer.is_none_or(|answer| answer == question as u32), "turn {question}: {answer:?} of {answers:?}");
+    }
+    assert!(answers[40..].iter().filter(|answer| answer.is_some()).count() > 400, "and soon they come again");
+    drop(turns);
+    emulator.finish();
 }
 
 #[test]
