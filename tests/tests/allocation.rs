@@ -3,7 +3,7 @@
 use assert_no_alloc::{AllocDisabler, assert_no_alloc};
 use haptics::Vec2;
 use haptics::device::channel::{ChannelConfig, ChannelDevice, Waves};
-use haptics::device::gamepad::{GamepadMode, PadState, gamepad};
+use haptics::device::gamepad::{self, GamepadMode, PadState, gamepad};
 use haptics::device::haply::{Board, BoardModel, HaplyHand, Placement};
 use haptics::device::udp::{Force, Key, Motion, UdpConfig, UdpDevice};
 use haptics::device::{
@@ -101,6 +101,13 @@ fn mouse_and_replay() {
     run(&mut servo(&world, Box::new(replay)), 2_000);
 }
 
+/// A block 5 mm above the table.
+fn falling() -> World {
+    let mut world = presets::stacking();
+    world.blocks[0].start.center_m.y += 0.005;
+    world
+}
+
 #[test]
 fn touch_screen_gamepad_and_keyboard() {
     let world = presets::stacking();
@@ -117,7 +124,17 @@ fn touch_screen_gamepad_and_keyboard() {
         let (mut handle, device) = gamepad(tips, world.hand.workspace, mode);
         let sticks = [Vec2::new(0.5, -1.0); 2];
         handle.set(PadState { sticks, triggers: [0.0, 1.0], connected: true, number: 1 });
-        run(&mut servo(&world, Box::new(device)), 500);
+        let mut servo = servo(&world, Box::new(device));
+        run(&mut servo, 500);
+        // A block that falls onto the other one strikes: the pad knocks.
+        let mut next = Some(Swap::new(falling()));
+        let (mut old, mut struck) = (None, false);
+        assert_no_alloc(|| {
+            old = next.take().map(|next| servo.swap(next));
+            (0..300).for_each(|_| struck |= servo.tick(DT).impact_m_s > 0.0);
+        });
+        assert!(struck && handle.rumble() == gamepad::Rumble::default(), "told, and over");
+        drop(old);
     }
 
     let (mut handle, device) = keyboard(tips, world.hand.workspace);

@@ -1,13 +1,17 @@
-//! A gamepad: sticks move the tips, the rumble is a cue of the force.
+//! A gamepad: sticks move the tips, the rumble is a cue of the force and of impacts.
 //!
 //! This file is the servo's end and knows no hardware. The thread that reads a real pad is in `pad.rs`, behind the feature
 //! `gamepad` (on Linux it needs the headers of libudev to be built).
 
 #[cfg(feature = "gamepad")]
 mod pad;
+mod rumble;
 
 #[cfg(feature = "gamepad")]
 pub use pad::{GamepadError, GamepadThread, open};
+pub use rumble::{Rumble, force_strength, impact_strength};
+
+use rumble::Knock;
 
 use super::pointer::{Pointer, towards};
 use super::steering::{MAX_LEAN_N, Steering};
@@ -24,8 +28,6 @@ const APERTURE_M_S: f64 = 0.04;
 const DEAD: f64 = 0.12;
 /// Without a word from the reading thread for this long the sticks count as let go, s.
 const SILENCE_S: f64 = 0.1;
-/// Force that gives the strongest rumble, N.
-const FULL_RUMBLE_N: f64 = 4.0;
 
 /// What the sticks do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,7 +55,7 @@ pub struct PadState {
 /// The reading thread's end.
 pub struct GamepadHandle {
     pad: Input<PadState>,
-    rumble: Output<f32>,
+    rumble: Output<Rumble>,
 }
 
 impl GamepadHandle {
@@ -62,8 +64,8 @@ impl GamepadHandle {
         self.pad.write(pad);
     }
 
-    /// How strongly the pad should rumble, 0 to 1.
-    pub fn rumble(&mut self) -> f32 {
+    /// How strongly the pad should rumble.
+    pub fn rumble(&mut self) -> Rumble {
         *self.rumble.read()
     }
 }
@@ -72,7 +74,8 @@ impl GamepadHandle {
 pub struct GamepadDevice {
     spec: DeviceSpec,
     pad: Output<PadState>,
-    rumble: Input<f32>,
+    rumble: Input<Rumble>,
+    knock: Knock,
     mode: GamepadMode,
     pointer: Pointer,
     steering: Steering,
@@ -84,11 +87,12 @@ pub struct GamepadDevice {
 /// A gamepad device whose tips start at `start_in_world` (left, right; m) and stay in `workspace`.
 pub fn gamepad(start_in_world: [Vec2; 2], workspace: Workspace, mode: GamepadMode) -> (GamepadHandle, GamepadDevice) {
     let (pad_in, pad) = triple_buffer(&PadState::default());
-    let (rumble, rumble_out) = triple_buffer(&0.0);
+    let (rumble, rumble_out) = triple_buffer(&Rumble::default());
     let device = GamepadDevice {
         spec: Pointer::spec("Gamepad"),
         pad,
         rumble,
+        knock: Knock::default(),
         mode,
         pointer: Pointer::new(start_in_world, workspace),
         steering: Steering::new(start_in_world),
@@ -146,13 +150,20 @@ impl Device for GamepadDevice {
         }
         let goals = self.goals(&pad, dt_s);
         let most = command.force_n.iter().fold(0.0_f64, |most, force| most.max(force.norm()));
-        self.rumble.write((most / FULL_RUMBLE_N).min(1.0) as f32);
+        self.knock.pass(dt_s);
+        let impact = self.knock.strength() as f32;
+        self.rumble.write(Rumble { force: force_strength(most) as f32, impact });
         let sample = self.pointer.advance(goals, command.force_n, dt_s);
         Sample { fresh: present, ..sample }
     }
 
+    fn strike(&mut self, speed_m_s: f64) {
+        self.knock.strike(speed_m_s);
+    }
+
     fn make_safe(&mut self) {
-        self.rumble.write(0.0);
+        self.knock = Knock::default();
+        self.rumble.write(Rumble::default());
     }
 }
 
@@ -223,10 +234,35 @@ mod tests {
     fn force_rumbles_up_to_full_and_not_after_the_end() {
         let (mut handle, mut device, _) = device(GamepadMode::Hand);
         device.exchange(&Command { force_n: [Vec2::new(0.0, 1.0), Vec2::zeros()] }, DT);
-        assert!((handle.rumble() - 0.25).abs() < 1e-6);
+        assert!((handle.rumble().force - 0.25).abs() < 1e-6);
         device.exchange(&Command { force_n: [Vec2::new(0.0, 100.0), Vec2::zeros()] }, DT);
-        assert_eq!(handle.rumble(), 1.0);
+        assert_eq!(handle.rumble(), Rumble { force: 1.0, impact: 0.0 });
+        device.strike(0.5);
+        device.exchange(&Command::default(), DT);
+        assert_eq!(handle.rumble(), Rumble { force: 0.0, impact: 1.0 });
         device.make_safe();
-        assert_eq!(handle.rumble(), 0.0);
+        assert_eq!(handle.rumble(), Rumble::default());
+    }
+
+    #[test]
+    fn a_block_that_lands_knocks_once_by_its_speed() {
+        use crate::servo::{Loop, Swap, safety::Limits};
+        use crate::world::presets;
+        let mut world = presets::stacking();
+        // 5 mm above the table: 0.31 m/s when it lands.
+        world.blocks[0].start.center_m.y += 0.005;
+        let tips = crate::world::State::resting(&world).input.tip_in_world;
+        let (mut handle, device) = gamepad(tips, world.hand.workspace, GamepadMode::Hand);
+        let mut servo = Loop::new(Swap::new(world), Box::new(device), Limits::default());
+        let (mut fastest_m_s, mut strongest, mut last) = (0.0_f64, 0.0_f32, 0.0);
+        for number in 0..400 {
+            handle.set(PadState { connected: true, number, ..PadState::default() });
+            fastest_m_s = fastest_m_s.max(servo.tick(DT).impact_m_s);
+            last = handle.rumble().impact;
+            strongest = strongest.max(last);
+        }
+        assert!((0.2..0.4).contains(&fastest_m_s), "{fastest_m_s} m/s");
+        assert!((f64::from(strongest) - impact_strength(fastest_m_s, 0.0)).abs() < 1e-6, "{strongest}");
+        assert_eq!(last, 0.0, "and it is over");
     }
 }

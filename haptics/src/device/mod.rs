@@ -82,6 +82,10 @@ pub trait Device: Send {
         None
     }
 
+    /// Something struck something in the world at a speed, m/s; told once an impact, after the tick in which it happened. For
+    /// devices that can make it felt beside the force.
+    fn strike(&mut self, _speed_m_s: f64) {}
+
     /// What the operator sees. Only simulated operators look.
     fn see(&mut self, _world: &World, _state: &State) {}
 

@@ -115,6 +115,7 @@ pub struct ChannelDevice {
     config: ChannelConfig,
     down: Line<Down>,
     up: Line<Up>,
+    strikes: Line<f64>,
     now_s: f64,
     /// Forces at the far end, N.
     command: Command,
@@ -143,6 +144,7 @@ impl ChannelDevice {
             config,
             down: Line::new(delay_s, jitter_s, loss, seed),
             up: Line::new(delay_s, jitter_s, loss, seed ^ 0x9e37_79b9_7f4a_7c15),
+            strikes: Line::new(delay_s, jitter_s, loss, seed ^ 0x6a09_e667_f3bc_c908),
             now_s: 0.0,
             command: Command::default(),
             command_age_s: f64::INFINITY,
@@ -249,6 +251,9 @@ impl Device for ChannelDevice {
         self.now_s += dt_s;
         self.command_age_s += dt_s;
         self.sample_age_s += dt_s;
+        if let Some(speed_m_s) = self.strikes.receive(self.now_s) {
+            self.inner.strike(speed_m_s);
+        }
         match self.config.waves {
             Some(waves) if dt_s > 0.0 => self.waves(&waves, command, dt_s),
             Some(_) => {}
@@ -270,6 +275,10 @@ impl Device for ChannelDevice {
         // Not over the line: a device is made safe where it is.
         self.command = Command::default();
         self.inner.make_safe();
+    }
+
+    fn strike(&mut self, speed_m_s: f64) {
+        self.strikes.send(self.now_s, speed_m_s);
     }
 
     fn see(&mut self, world: &World, state: &State) {

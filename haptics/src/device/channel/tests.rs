@@ -157,6 +157,36 @@ fn waves_stay_passive_and_do_not_drift_when_packets_are_late_and_lost() {
 }
 
 #[test]
+fn an_impact_is_told_after_the_delay_one_way() {
+    /// Writes down when it is told of an impact.
+    struct Told(DeviceSpec, usize, Arc<Mutex<Vec<(usize, f64)>>>);
+    impl Device for Told {
+        fn spec(&self) -> &DeviceSpec {
+            &self.0
+        }
+        fn exchange(&mut self, _: &Command, _: f64) -> Sample {
+            self.1 += 1;
+            Sample::default()
+        }
+        fn strike(&mut self, speed_m_s: f64) {
+            self.2.lock().expect("one thread").push((self.1, speed_m_s));
+        }
+        fn make_safe(&mut self) {}
+    }
+    let told = Arc::new(Mutex::new(Vec::new()));
+    let device = Told(operator(|_| 0.0).0.spec, 0, Arc::clone(&told));
+    let config = ChannelConfig { delay_s: 0.02, ..ChannelConfig::default() };
+    let mut channel = ChannelDevice::new(Box::new(device), config).expect("possible");
+    for tick in 0..100 {
+        channel.exchange(&Command::default(), DT);
+        if tick == 9 {
+            channel.strike(0.3);
+        }
+    }
+    assert_eq!(*told.lock().expect("one thread"), [(29, 0.3)], "struck after the tenth tick, told in the thirtieth");
+}
+
+#[test]
 fn a_line_that_breaks_ends_at_rest_without_force() {
     let (device, seen) = operator(|_| 0.004);
     let mut channel = ChannelDevice::new(device, half_a_second(true)).expect("possible");

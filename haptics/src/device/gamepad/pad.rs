@@ -1,6 +1,6 @@
 //! The thread that reads a real gamepad and makes it rumble. Never the servo's: reading waits.
 
-use super::{GamepadDevice, GamepadHandle, GamepadMode, PadState, gamepad};
+use super::{GamepadDevice, GamepadHandle, GamepadMode, PadState, Rumble, gamepad};
 use crate::Vec2;
 use crate::hand::Workspace;
 use gilrs::ff::{BaseEffect, BaseEffectType, Effect, EffectBuilder, Repeat, Replay, Ticks};
@@ -85,8 +85,10 @@ fn start() -> Result<(Gilrs, GamepadId, String), GamepadError> {
 }
 
 fn read(mut gilrs: Gilrs, id: GamepadId, mut handle: GamepadHandle, stop: &AtomicBool) {
-    let effect = rumble(&mut gilrs, id);
-    let (mut strength, mut number) = (0.0_f32, 0);
+    let full = u16::MAX;
+    let mut motors = [BaseEffectType::Weak { magnitude: full }, BaseEffectType::Strong { magnitude: full }]
+        .map(|kind| Motor { effect: rumble(&mut gilrs, id, kind), strength: 0.0 });
+    let mut number = 0;
     while !stop.load(Ordering::Relaxed) {
         // Events update the pad's state; between them the wait is the period.
         if gilrs.next_event_blocking(Some(PERIOD)).is_some() {
@@ -94,18 +96,33 @@ fn read(mut gilrs: Gilrs, id: GamepadId, mut handle: GamepadHandle, stop: &Atomi
         }
         number += 1;
         handle.set(state(&gilrs, id, number));
-        let wanted = handle.rumble();
-        if let Some(effect) = &effect
-            && ((wanted - strength).abs() > RUMBLE_STEP || (wanted == 0.0 && strength != 0.0))
-        {
-            strength = wanted;
-            // A pad that does not take it is a pad without rumble.
-            let _ = effect.set_gain(strength);
+        let Rumble { force, impact } = handle.rumble();
+        for (motor, wanted) in motors.iter_mut().zip([force, impact]) {
+            motor.turn(wanted);
         }
     }
-    if let Some(effect) = &effect {
-        let _ = effect.set_gain(0.0);
-        let _ = effect.stop();
+    for motor in &motors {
+        if let Some(effect) = &motor.effect {
+            let _ = effect.set_gain(0.0);
+            let _ = effect.stop();
+        }
+    }
+}
+
+/// One motor of the pad; a pad without rumble has an effect of none.
+struct Motor {
+    effect: Option<Effect>,
+    strength: f32,
+}
+
+impl Motor {
+    fn turn(&mut self, wanted: f32) {
+        let changed = (wanted - self.strength).abs() > RUMBLE_STEP || (wanted == 0.0 && self.strength != 0.0);
+        if let Some(effect) = self.effect.as_ref().filter(|_| changed) {
+            self.strength = wanted;
+            // A pad that does not take it is a pad without rumble.
+            let _ = effect.set_gain(wanted);
+        }
     }
 }
 
@@ -121,18 +138,14 @@ fn state(gilrs: &Gilrs, id: GamepadId, number: u64) -> PadState {
     }
 }
 
-/// An endless rumble at gain zero, whose gain then follows the force; `None` for a pad without.
-fn rumble(gilrs: &mut Gilrs, id: GamepadId) -> Option<Effect> {
+/// An endless rumble of one motor at gain zero, whose gain then follows force or impact; `None` for a pad without.
+fn rumble(gilrs: &mut Gilrs, id: GamepadId, kind: BaseEffectType) -> Option<Effect> {
     if !gilrs.connected_gamepad(id)?.is_ff_supported() {
         return None;
     }
     let scheduling = Replay { play_for: Ticks::from_ms(1_000), ..Replay::default() };
     let effect = EffectBuilder::new()
-        .add_effect(BaseEffect {
-            kind: BaseEffectType::Weak { magnitude: u16::MAX },
-            scheduling,
-            ..BaseEffect::default()
-        })
+        .add_effect(BaseEffect { kind, scheduling, ..BaseEffect::default() })
         .gamepads(&[id])
         .repeat(Repeat::Infinitely)
         .gain(0.0)
