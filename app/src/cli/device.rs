@@ -95,7 +95,7 @@ impl List {
         for kind in &kinds {
             let _ = writeln!(text, "  {}\n      {}", kind.id, kind.what);
             if let Some(spec) = &kind.spec {
-                let _ = writeln!(text, "      {}", report::limit_sentence(spec, period_s));
+                let _ = writeln!(text, "      {}", report::limit_sentence(spec, period_s, 0.0));
             }
         }
         text.push_str("Serial ports that a Haply board could be behind\n");
@@ -115,7 +115,7 @@ impl List {
                     "id": kind.id,
                     "what": kind.what,
                     "spec": kind.spec.as_ref().map(report::spec_json),
-                    "limits": kind.spec.as_ref().map_or(Value::Null, |spec| report::limits(spec, period_s)),
+                    "limits": kind.spec.as_ref().map_or(Value::Null, |spec| report::limits(spec, period_s, 0.0)),
                 })
             })
             .collect();
@@ -155,6 +155,7 @@ impl Test {
         }
         let measured = report::Measured {
             spec: &spec,
+            delay_s: snapshot.delay_s,
             timing: &snapshot.timing,
             privileges,
             ticks: &ticks,

@@ -4,11 +4,12 @@
 //! al. 1995; Adams & Hannaford 1999; the god object of Zilles & Salisbury 1995 is its limit for a rigid world). Spring and
 //! damper are computed from the device's physical damping b, its Coulomb friction `f_c`, its resolution Δ, the period T and an
 //! extra delay, so that the sampled coupling alone is passive on this device, whatever the world does at the other end:
-//! K (T/2 + `t_d`) + B ≤ b and K ≤ 2 `f_c`/Δ. The operator then feels the pad and the coupling in series.
+//! K (T/2 + `t_d`) + B ≤ b and K/2 + B/T ≤ `f_c`/Δ. The operator then feels the pad and the coupling in series.
 //!
 //! The proxy has no mass: every tick it goes to where coupling and contact balance, with the stiffness and damping of its
 //! present contacts taken implicitly. So it neither rings nor drags, and it is stable for any pad.
 
+use super::passivity::{friction_per_step_n_m, passive_damping, passive_stiffness};
 use crate::Vec2;
 use crate::device::{DeviceSpec, Sample};
 use crate::world::{Contact, Input, State, Surface, World};
@@ -16,7 +17,7 @@ use nalgebra::Matrix2;
 
 /// Share of what is passive that the coupling uses.
 pub const MARGIN: f64 = 0.9;
-/// Share of the device's damping that the coupling's own damper uses up.
+/// Share of what is passive as a damper that the coupling's own damper uses up.
 pub const DAMPER_SHARE: f64 = 0.1;
 /// A device that states neither damping nor friction renders nothing that is provably passive. It gets this spring, N/m, or a
 /// softer one where there is delay: one that [`HAND_DAMPING_N_S_M`] makes passive.
@@ -38,10 +39,11 @@ pub struct Coupling {
 impl Coupling {
     /// The stiffest coupling that is passive on a device at a period (s), with an extra delay (s) in the loop.
     pub fn passive(spec: &DeviceSpec, period_s: f64, delay_s: f64) -> Self {
-        let damping = DAMPER_SHARE * spec.damping_n_s_m;
+        let damping = DAMPER_SHARE * passive_damping(spec, period_s);
         let lag_s = 0.5 * period_s + delay_s;
         let sampled = (MARGIN * spec.damping_n_s_m - damping) / lag_s;
-        let stiffness = sampled.min(MARGIN * quantised_limit(spec));
+        let quantised = 2.0 * (MARGIN * friction_per_step_n_m(spec) - damping / period_s);
+        let stiffness = sampled.min(quantised);
         if stiffness > 0.0 {
             return Self { stiffness_n_m: stiffness, damping_n_s_m: damping };
         }
@@ -56,8 +58,7 @@ impl Coupling {
         // A fingertip may press on one surface and stick to another at a right angle: both act along one line.
         let stiffness = world.pad.elastic().stiffness_n_m(PAD_DEPTH_M) + world.pad.shear_stiffness_n_m;
         let damping = world.pad.damping_n_s_m + world.pad.shear_damping_n_s_m;
-        let direct = stiffness * (0.5 * period_s + delay_s) + damping <= spec.damping_n_s_m
-            && stiffness <= quantised_limit(spec);
+        let direct = stiffness <= passive_stiffness(spec, damping, period_s, delay_s);
         (!direct).then(|| Self::passive(spec, period_s, delay_s))
     }
 
@@ -65,11 +66,6 @@ impl Coupling {
     pub fn felt_n_m(&self, stiffness_n_m: f64) -> f64 {
         self.stiffness_n_m * stiffness_n_m / (self.stiffness_n_m + stiffness_n_m)
     }
-}
-
-/// Abbott & Okamura 2005: 2 `f_c`/Δ, N/m; without bound for a device without steps.
-fn quantised_limit(spec: &DeviceSpec) -> f64 {
-    if spec.resolution_m > 0.0 { 2.0 * spec.coulomb_n / spec.resolution_m } else { f64::INFINITY }
 }
 
 /// The fingertips in the world, on their couplings.

@@ -48,6 +48,8 @@ pub struct Snapshot {
     pub timing: Timing,
     /// The virtual coupling that the device needs in this world at this rate; `None`: it renders the world directly.
     pub coupling: Option<Coupling>,
+    /// Delay that the device states of itself, s ([`Device::delay_s`]): what can be rendered passively counts with it.
+    pub delay_s: f64,
     /// Why the servo stopped, if it did.
     pub fault: Option<&'static str>,
 }
@@ -81,6 +83,7 @@ impl Snapshot {
             tick,
             timing: Timing::starting(rate),
             coupling: None,
+            delay_s: 0.0,
             fault: None,
         }
     }
@@ -177,6 +180,11 @@ impl Loop {
             }
         }
         self.sent_force_n = self.safety.limit(wanted, dt_s, &mut flags);
+        // Cleared with every tick: each impact is told once.
+        let impact_m_s = std::mem::take(&mut state.impact_m_s);
+        if impact_m_s > 0.0 {
+            self.device.strike(impact_m_s);
+        }
         self.observer.add(sample.tip_in_world, self.sent_force_n.map(|f| -f));
         self.last = TickRecord {
             time_s: state.time_s,
@@ -186,8 +194,7 @@ impl Loop {
             sent_force_n: self.sent_force_n,
             flags,
             energy_j: self.observer.energy_j(),
-            // Cleared with every tick: each impact is told once.
-            impact_m_s: std::mem::take(&mut state.impact_m_s),
+            impact_m_s,
             impact_in_world: state.impact_in_world,
             label: crate::world::true_label(world, state),
         };
@@ -241,6 +248,11 @@ impl Loop {
     /// The virtual coupling in use; `None`: the device renders the world directly.
     pub fn coupling(&self) -> Option<Coupling> {
         self.proxy.map(|proxy| proxy.coupling())
+    }
+
+    /// Delay that the device states of itself, s.
+    pub fn delay_s(&self) -> f64 {
+        self.device.delay_s()
     }
 
     /// Zero force on the device.

@@ -128,6 +128,7 @@ impl Runner {
         buffer.tick = tick;
         buffer.timing = self.summary;
         buffer.coupling = self.body.coupling();
+        buffer.delay_s = self.body.delay_s();
         buffer.fault = fault;
         self.snapshot.publish();
     }

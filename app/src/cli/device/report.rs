@@ -18,31 +18,34 @@ const STILL_M: f64 = 0.5e-3;
 /// The watchdog has spoken after this, s.
 const WAIT_S: f64 = 0.1;
 
-/// What a device can render at a period: computed from its figures, never typed in. `null` where no force is felt.
-pub fn limits(spec: &DeviceSpec, period_s: f64) -> Value {
+/// What a device can render at a period and behind the delay that it states, s: computed from its figures, never typed in.
+/// `null` where no force is felt.
+pub fn limits(spec: &DeviceSpec, period_s: f64, delay_s: f64) -> Value {
     if !spec.force_feedback {
         return Value::Null;
     }
     json!({
         "rate_hz": 1.0 / period_s,
-        "passive_stiffness_N_m": passivity::passive_stiffness(spec, 0.0, period_s),
-        "passive_damping_N_s_m": spec.damping_n_s_m,
+        "delay_s": delay_s,
+        "passive_stiffness_N_m": passivity::passive_stiffness(spec, 0.0, period_s, delay_s),
+        "passive_damping_N_s_m": passivity::passive_damping(spec, period_s),
     })
 }
 
 /// The same as one sentence.
-pub fn limit_sentence(spec: &DeviceSpec, period_s: f64) -> String {
+pub fn limit_sentence(spec: &DeviceSpec, period_s: f64, delay_s: f64) -> String {
     if !spec.force_feedback {
         return "the force is shown, not felt: no limit".to_owned();
     }
-    let stiffness = passivity::passive_stiffness(spec, 0.0, period_s);
+    let stiffness = passivity::passive_stiffness(spec, 0.0, period_s, delay_s);
     if stiffness <= 0.0 {
         return "no damping of its own is known, so nothing is surely passive: the world is felt through a soft spring"
             .to_owned();
     }
+    let behind = if delay_s > 0.0 { format!(" behind {} of delay", duration(delay_s)) } else { String::new() };
     format!(
-        "passive up to {stiffness:.0} N/m and {:.2} N s/m at {:.0} Hz; up to {:.1} N a finger",
-        spec.damping_n_s_m,
+        "passive up to {stiffness:.0} N/m and {:.2} N s/m at {:.0} Hz{behind}; up to {:.1} N a finger",
+        passivity::passive_damping(spec, period_s),
         1.0 / period_s,
         spec.max_force_n
     )
@@ -64,6 +67,8 @@ pub fn spec_json(spec: &DeviceSpec) -> Value {
 pub struct Measured<'a> {
     /// What it says of itself.
     pub spec: &'a DeviceSpec,
+    /// Delay that it states of itself, s.
+    pub delay_s: f64,
     /// The servo's punctuality.
     pub timing: &'a Timing,
     /// What the system granted.
@@ -116,7 +121,7 @@ impl Measured<'_> {
             let [p50, p99, p999, max] = [p.p50_s, p.p99_s, p.p999_s, p.max_s].map(short_time);
             let _ = writeln!(text, "  {what:<12} p50 {p50:>9}   p99 {p99:>9}   p99.9 {p999:>9}   max {max:>9}");
         }
-        let _ = writeln!(text, "  {}", limit_sentence(self.spec, period_s));
+        let _ = writeln!(text, "  {}", limit_sentence(self.spec, period_s, self.delay_s));
         for check in &checks {
             let _ = writeln!(text, "  {} {}", if check.ok { "ok  " } else { "look" }, check.text);
         }
@@ -140,7 +145,7 @@ impl Measured<'_> {
         json!({
             "device": self.spec.name,
             "spec": spec_json(self.spec),
-            "limits": limits(self.spec, self.timing.period_s),
+            "limits": limits(self.spec, self.timing.period_s, self.delay_s),
             "coupling_N_m": self.coupling_n_m,
             "ticks": self.ticks.len(),
             "stale_ticks": self.stale(),
@@ -150,7 +155,8 @@ impl Measured<'_> {
             "boards": self.answers.map(|tallies| tallies.each_ref().map(board::json)),
             "timing": self.timing,
             "privileges": self.privileges,
-            "passive_stiffness_N_m": passivity::passive_stiffness(self.spec, 0.0, self.timing.period_s),
+            "passive_stiffness_N_m":
+                passivity::passive_stiffness(self.spec, 0.0, self.timing.period_s, self.delay_s),
             "checks": checks,
             "verdict": verdict,
         })
@@ -289,6 +295,7 @@ pub(super) mod tests {
     pub(super) fn measured<'a>(spec: &'a DeviceSpec, timing: &'a Timing, ticks: &'a [TickRecord]) -> Measured<'a> {
         Measured {
             spec,
+            delay_s: 0.0,
             timing,
             privileges: Privileges::default(),
             ticks,
@@ -333,9 +340,19 @@ pub(super) mod tests {
     #[test]
     fn limits_are_computed_and_absent_where_nothing_is_felt() {
         let boards = HaplyHand::two_boards();
-        assert!((limits(&boards, 1e-3)["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 200.0).abs() < 1e-9);
-        assert!((limits(&boards, 0.25e-3)["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 800.0).abs() < 1e-9);
+        assert!(
+            (limits(&boards, 1e-3, 0.0)["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 200.0).abs() < 1e-9
+        );
+        assert!(
+            (limits(&boards, 0.25e-3, 0.0)["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 800.0).abs() < 1e-9
+        );
+        // b/(T/2 + t_d): 0.1 N s/m over 10 ms.
+        let delayed = limits(&boards, 1e-3, 9.5e-3);
+        assert!((delayed["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 10.0).abs() < 1e-9, "{delayed}");
+        assert!(
+            limit_sentence(&boards, 1e-3, 9.5e-3).contains("10 N/m and 0.10 N s/m at 1000 Hz behind 10 ms of delay")
+        );
         let shown = DeviceSpec { force_feedback: false, ..boards };
-        assert_eq!(limits(&shown, 1e-3), Value::Null);
+        assert_eq!(limits(&shown, 1e-3, 0.0), Value::Null);
     }
 }

@@ -1,7 +1,7 @@
 //! The devices page, right column: what the running device can do, what it does now, and a soft push to try it.
 
 use super::{Panel, trainer_timing};
-use crate::ui::format::number;
+use crate::ui::format::{number, short_time};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::{Direction, HandDevice, Operator, Trainer, spec_sentences};
@@ -117,25 +117,29 @@ fn limit_sentences(spec: &DeviceSpec, snapshot: &Snapshot) -> Vec<Limit> {
     }
     let period_s = snapshot.timing.period_s;
     let hertz = number(snapshot.timing.rate.rate_hz, 0);
-    let stiffness = passivity::passive_stiffness(spec, 0.0, period_s);
+    let delay_s = snapshot.delay_s;
+    let stiffness = passivity::passive_stiffness(spec, 0.0, period_s, delay_s);
+    let formula = if delay_s > 0.0 { "b / (half a period + delay)" } else { "2 b / period" };
+    let behind = if delay_s > 0.0 { format!(" and behind {} of delay", short_time(delay_s)) } else { String::new() };
     let steps = if spec.resolution_m > 0.0 { "; steps of the position allow 2 × friction / step" } else { "" };
-    let damper = spec.damping_n_s_m;
+    let damper = passivity::passive_damping(spec, period_s);
     let felt = snapshot
         .coupling
         .as_ref()
         .map_or_else(|| "It renders this world directly.".to_owned(), trainer_timing::coupling_sentence);
-    if damper <= 0.0 {
+    if spec.damping_n_s_m <= 0.0 {
         let unknown = "The device states no damping of its own, so no wall and no damper is surely passive.";
         return vec![(None, unknown.to_owned()), (None, felt)];
     }
     vec![
         (
             Some(("Stiffest passive wall", format!("{} N/m", number(stiffness, 0)))),
-            format!("At {hertz} Hz nothing can draw energy out of a softer wall: 2 b / period{steps}."),
+            format!("At {hertz} Hz{behind} nothing can draw energy out of a softer wall: {formula}{steps}."),
         ),
         (
             Some(("Strongest passive damper", format!("{} N s/m", number(damper, 2)))),
-            "A virtual damper may take no more than the device's own damping b.".to_owned(),
+            "A virtual damper may take no more than the device's own damping b, nor more than friction × period / step."
+                .to_owned(),
         ),
         (None, felt),
     ]
@@ -157,7 +161,7 @@ fn live(ui: &mut Ui, trainer: &Trainer) {
             pair(ui, "Force on you", tick.sent_force_n, 2, "N");
         });
         ui.add_space(space::XS);
-        fact(ui, "Age of the newest sample", crate::ui::format::short_time(snapshot.timing.sample_age_s));
+        fact(ui, "Age of the newest sample", short_time(snapshot.timing.sample_age_s));
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = space::M;
             light(ui, tick.flags.saturated, p.danger, "Saturated", "A force was clamped to the maximum");

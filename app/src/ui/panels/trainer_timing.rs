@@ -7,7 +7,7 @@ use crate::ui::widgets::{card, fact};
 use egui::{RichText, Ui, vec2};
 use haptics::servo::Snapshot;
 use haptics::servo::coupling::{Coupling, SOFTEST_N_M};
-use haptics::servo::timing::Percentiles;
+use haptics::servo::timing::{Percentiles, RECENT_S};
 
 /// The card beside the trainer's picture.
 pub fn timing(ui: &mut Ui, trainer: &Trainer) {
@@ -21,10 +21,14 @@ pub fn timing(ui: &mut Ui, trainer: &Trainer) {
         |ui| {
             ui.spacing_mut().interact_size.y = 15.0;
             egui::Grid::new("timing").num_columns(5).min_col_width(46.0).spacing(vec2(8.0, 3.0)).show(ui, |ui| {
-                for text in ["", "p50", "p99", "p99.9", "max"] {
-                    ui.label(theme::caption(ui, text));
-                }
-                ui.end_row();
+                // What is now, and what was ever: a stall while the window opened is no news an hour later.
+                let recent = &timing.recent;
+                head(ui, &format!("last {RECENT_S:.0} s"));
+                percentiles(ui, "Period", &recent.period);
+                percentiles(ui, "Lateness", &recent.lateness);
+                percentiles(ui, "Compute", &recent.compute);
+                percentiles(ui, "Force age", &recent.force_age);
+                head(ui, "since start");
                 percentiles(ui, "Period", &timing.period);
                 percentiles(ui, "Lateness", &timing.lateness);
                 percentiles(ui, "Compute", &timing.compute);
@@ -39,7 +43,10 @@ pub fn timing(ui: &mut Ui, trainer: &Trainer) {
 
 fn facts(ui: &mut Ui, snapshot: &Snapshot) {
     let timing = &snapshot.timing;
-    fact(ui, "Missed deadlines", format!("{} of {} ticks", timing.missed, timing.ticks));
+    let recent = &timing.recent;
+    let text =
+        format!("{} of {} ticks; since start {} of {}", recent.missed, recent.ticks, timing.missed, timing.ticks);
+    fact(ui, "Missed deadlines", text);
     fact(ui, "Age of the newest sample", format::short_time(timing.sample_age_s));
 }
 
@@ -73,6 +80,13 @@ pub fn coupling_sentence(coupling: &Coupling) -> String {
         "The device feels the world through a spring of {} N/m: the stiffest that stays passive on it at this rate.",
         format::number(coupling.stiffness_n_m, 0)
     )
+}
+
+fn head(ui: &mut Ui, span: &str) {
+    for text in [span, "p50", "p99", "p99.9", "max"] {
+        ui.label(theme::caption(ui, text));
+    }
+    ui.end_row();
 }
 
 fn percentiles(ui: &mut Ui, label: &str, p: &Percentiles) {

@@ -118,6 +118,7 @@ impl Inline {
         self.snapshot.state.copy_from(self.body.state());
         self.snapshot.generation = self.body.generation();
         self.snapshot.coupling = self.body.coupling();
+        self.snapshot.delay_s = self.body.delay_s();
         self.snapshot.timing.sample_age_s = self.body.sample_age_s();
     }
 }

@@ -140,14 +140,28 @@ fn the_coupling_is_what_the_formulas_allow() {
     // Four times the rate, four times the stiffness; a delay of a period makes a third of it.
     assert!((Coupling::passive(&spec(0.5), T / 4.0, 0.0).stiffness_n_m - 3200.0).abs() < 1e-9);
     assert!((Coupling::passive(&spec(0.5), T, T).stiffness_n_m - 800.0 / 3.0).abs() < 1e-9);
-    // Encoder steps: 2 · 0.05 N / 0.2 mm = 500 N/m.
-    let coarse = DeviceSpec { coulomb_n: 0.05, resolution_m: 0.2e-3, ..spec(0.5) };
-    assert!((Coupling::passive(&coarse, T, 0.0).stiffness_n_m - 450.0).abs() < 1e-9);
+    // Encoder steps: 0.05 N / 0.2 mm = 250 N/m allow a damper of 0.25 N s/m, or a spring of 500 N/m; a tenth of the one and
+    // nine tenths of the whole: K = 2 (0.9 · 250 − 0.025/T).
+    let coarse = Coupling::passive(&DeviceSpec { coulomb_n: 0.05, resolution_m: 0.2e-3, ..spec(0.5) }, T, 0.0);
+    assert!((coarse.damping_n_s_m - 0.025).abs() < 1e-12 && (coarse.stiffness_n_m - 400.0).abs() < 1e-9);
     assert_eq!(Coupling::passive(&spec(0.0), T, 0.0).stiffness_n_m, SOFTEST_N_M);
     // Nothing is known and half a second of delay: what 0.5 N s/m of a hand make passive.
     let slow = Coupling::passive(&spec(0.0), T, 0.5);
     assert!((slow.stiffness_n_m * (0.5 * T + 0.5) - HAND_DAMPING_N_S_M).abs() < 1e-12 && slow.damping_n_s_m == 0.0);
     assert!((coupling.felt_n_m(2500.0) - 800.0 * 2500.0 / 3300.0).abs() < 1e-9);
+}
+
+#[test]
+fn the_coupling_uses_nine_tenths_of_what_is_passive_on_any_device() {
+    for (b, coulomb_n, resolution_m) in [(0.1, 0.05, 1e-4), (2.0, 0.05, 1e-4), (0.5, 0.0, 0.0), (6.0, 0.3, 1e-5)] {
+        for (period_s, delay_s) in [(T, 0.0), (T / 4.0, 0.0), (T, 0.02), (T / 8.0, 0.5)] {
+            let device = DeviceSpec { coulomb_n, resolution_m, ..spec(b) };
+            let coupling = Coupling::passive(&device, period_s, delay_s);
+            let less = DeviceSpec { damping_n_s_m: MARGIN * b, coulomb_n: MARGIN * coulomb_n, ..device };
+            let most = passive_stiffness(&less, coupling.damping_n_s_m, period_s, delay_s);
+            assert!((coupling.stiffness_n_m / most - 1.0).abs() < 1e-9, "{less:?}: {coupling:?} of {most} N/m");
+        }
+    }
 }
 
 #[test]
