@@ -12,6 +12,7 @@ mod scripted;
 mod steering;
 mod touch;
 pub mod udp;
+mod waves;
 
 pub use impedance::HandImpedance;
 pub use keyboard::{KeyboardDevice, KeyboardHandle, KeysHeld, keyboard};

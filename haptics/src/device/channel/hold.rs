@@ -1,6 +1,7 @@
 //! How long the plain channel's far end holds a force when the line falls silent.
 
 use super::*;
+use crate::Vec2;
 use std::sync::{Arc, Mutex};
 
 const DT: f64 = 1e-3;

@@ -8,30 +8,21 @@
 
 #[cfg(test)]
 mod hold;
-mod line;
+pub(super) mod line;
 #[cfg(test)]
 mod tests;
-mod wave;
 
-pub use wave::Waves;
+pub use super::waves::Waves;
 
+use super::waves::{Account, OperatorEnd, SMOOTHING_S, WorldEnd};
 use super::{Command, Device, DeviceSpec, Sample};
-use crate::Vec2;
 use crate::world::{State, World};
 use line::Line;
-use wave::{Account, Receiver, Sender};
 
 /// Without a new force for this long (beside the jitter) the far end puts zero force on the operator, s.
 const HOLD_S: f64 = 0.05;
 /// A sample counts as fresh for this long beside the jitter, s.
 const FRESH_S: f64 = 0.005;
-/// Time constant with which the receiver of waves follows what arrives, beside the jitter, s.
-const SMOOTHING_S: f64 = 0.005;
-/// Time constant of the velocity of a device with a resolution, s.
-const VELOCITY_SMOOTHING_S: f64 = 0.004;
-/// Faster than a hand: a jump of position is spread over time, m/s.
-const FASTEST_M_S: f64 = 2.0;
-
 /// What the network does to each packet, each way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ChannelConfig {
@@ -94,20 +85,6 @@ enum Up {
     Wave([Account; 2]),
 }
 
-/// One finger's ends of the waves.
-#[derive(Clone, Copy, Default)]
-struct Ends {
-    operator_in: Receiver,
-    operator_out: Sender,
-    world_in: Receiver,
-    world_out: Sender,
-    /// The wave that the operator's end feels in this tick.
-    incoming: Vec2,
-    /// Where the operator's finger is known to be, m; velocities come from it.
-    tracked: Vec2,
-    velocity: Vec2,
-}
-
 /// Any device behind a network.
 pub struct ChannelDevice {
     inner: Box<dyn Device>,
@@ -123,8 +100,8 @@ pub struct ChannelDevice {
     /// What the servo has.
     sample: Sample,
     sample_age_s: f64,
-    ends: [Ends; 2],
-    started: bool,
+    operator_end: OperatorEnd,
+    world_end: WorldEnd,
 }
 
 impl ChannelDevice {
@@ -150,8 +127,8 @@ impl ChannelDevice {
             command_age_s: f64::INFINITY,
             sample: Sample::default(),
             sample_age_s: f64::INFINITY,
-            ends: [Ends::default(); 2],
-            started: false,
+            operator_end: OperatorEnd::default(),
+            world_end: WorldEnd::default(),
         })
     }
 
@@ -175,70 +152,36 @@ impl ChannelDevice {
 
     fn waves(&mut self, waves: &Waves, command: &Command, dt_s: f64) {
         let smoothing_s = SMOOTHING_S + self.config.jitter_s;
-        // The servo's end: the force of the tips on the world is the reaction to what the operator is to feel.
-        for (finger, ends) in self.ends.iter_mut().enumerate() {
-            let u = ends.world_in.draw(smoothing_s, dt_s);
-            let force_n = -command.force_n[finger];
-            let (velocity, w) = waves.at_world(u, force_n);
-            // The port takes F v, the damper beside it the rest: the balance is exact here.
-            ends.world_out.send(w, 0.5 * w.norm_squared() * dt_s, dt_s);
-            self.sample.tip_in_world[finger] += velocity * dt_s;
-            self.sample.tip_velocity[finger] = velocity;
+        self.sample.tip_velocity = self.world_end.tick(waves, command.force_n, smoothing_s, dt_s);
+        for (tip, velocity) in self.sample.tip_in_world.iter_mut().zip(self.sample.tip_velocity) {
+            *tip += velocity * dt_s;
         }
-        self.down.send(self.now_s, Down::Wave(self.ends.map(|ends| ends.world_out.account)));
+        self.down.send(self.now_s, Down::Wave(self.world_end.accounts()));
         if let Some(Down::Wave(accounts)) = self.down.receive(self.now_s) {
             self.command_age_s = 0.0;
-            for (ends, account) in self.ends.iter_mut().zip(accounts) {
-                ends.operator_in.arrive(account);
-            }
+            self.operator_end.arrive(accounts);
         }
         self.operate(waves, smoothing_s, dt_s);
         if let Some(Up::Wave(accounts)) = self.up.receive(self.now_s) {
             self.sample_age_s = 0.0;
-            for (ends, account) in self.ends.iter_mut().zip(accounts) {
-                ends.world_in.arrive(account);
-            }
+            self.world_end.arrive(accounts);
         }
     }
 
     /// The operator's end.
     fn operate(&mut self, waves: &Waves, smoothing_s: f64, dt_s: f64) {
-        let most_n = self.inner.spec().max_force_n;
-        for (finger, ends) in self.ends.iter_mut().enumerate() {
-            ends.incoming = ends.operator_in.draw(smoothing_s, dt_s);
-            let force = waves.force_on_operator(ends.velocity, ends.incoming);
-            let size = force.norm();
-            self.command.force_n[finger] = if size > most_n { force * (most_n / size) } else { force };
-        }
+        let DeviceSpec { max_force_n, resolution_m, .. } = *self.inner.spec();
+        self.command.force_n = self.operator_end.forces(waves, smoothing_s, max_force_n, dt_s);
         let sample = self.inner.exchange(&self.command, dt_s);
         if !sample.fresh {
+            self.operator_end.unseen(dt_s);
             return;
         }
-        if !self.started {
+        if self.operator_end.moved(waves, self.command.force_n, sample.tip_in_world, resolution_m, dt_s) {
             // Both ends agree on where the hand begins; waves only tell how it moves.
-            self.started = true;
             self.sample.tip_in_world = sample.tip_in_world;
-            for (ends, tip) in self.ends.iter_mut().zip(sample.tip_in_world) {
-                ends.tracked = tip;
-            }
         }
-        // Positions with steps would make a noisy velocity; the integral of the smoothed one is still the position.
-        let smooth = self.inner.spec().resolution_m > 0.0;
-        let blend = if smooth { 1.0 - (-dt_s / VELOCITY_SMOOTHING_S).exp() } else { 1.0 };
-        for (finger, ends) in self.ends.iter_mut().enumerate() {
-            let moved = super::pointer::towards(
-                Vec2::zeros(),
-                (sample.tip_in_world[finger] - ends.tracked) * blend,
-                FASTEST_M_S * dt_s,
-            );
-            ends.tracked += moved;
-            ends.velocity = moved / dt_s;
-            let w = ends.incoming;
-            let work_j = -self.command.force_n[finger].dot(&moved);
-            let u = waves.outgoing(ends.velocity, w);
-            ends.operator_out.send(u, work_j + 0.5 * w.norm_squared() * dt_s, dt_s);
-        }
-        self.up.send(self.now_s, Up::Wave(self.ends.map(|ends| ends.operator_out.account)));
+        self.up.send(self.now_s, Up::Wave(self.operator_end.accounts()));
     }
 }
 

@@ -1,6 +1,7 @@
 //! Delay makes contact unstable, waves keep it stable, and the energy says so.
 
 use super::*;
+use crate::Vec2;
 use crate::device::{HandImpedance, MouseTarget, ScriptedOperator, Skill, mouse};
 use crate::servo::safety::Limits;
 use crate::servo::{Loop, Swap};
@@ -154,6 +155,36 @@ fn waves_stay_passive_and_do_not_drift_when_packets_are_late_and_lost() {
         let apart = (tips[39_999] - seen.x_m[39_999]).abs();
         assert!(apart < 3e-4, "jitter {jitter_s}, loss {loss}: the ends are {apart} m apart");
     }
+}
+
+/// Two fingers that move to the left at 0.2 m/s for half a second, are not seen any more, and what is put on them meanwhile.
+struct Lost(DeviceSpec, u32, Arc<Mutex<Vec<f64>>>);
+
+impl Device for Lost {
+    fn spec(&self) -> &DeviceSpec {
+        &self.0
+    }
+
+    fn exchange(&mut self, command: &Command, _: f64) -> Sample {
+        self.1 += 1;
+        self.2.lock().expect("one thread").push(command.force_n[0].x);
+        let tip = Vec2::new(-2e-4 * f64::from(self.1.min(500)), 0.0);
+        Sample { tip_in_world: [tip; 2], fresh: self.1 <= 500, ..Sample::default() }
+    }
+
+    fn make_safe(&mut self) {}
+}
+
+#[test]
+fn a_device_that_is_lost_in_the_middle_of_a_motion_is_not_pushed_any_more() {
+    let felt = Arc::new(Mutex::new(Vec::new()));
+    let device = Lost(operator(|_| 0.0).0.spec, 0, Arc::clone(&felt));
+    let mut channel = ChannelDevice::new(Box::new(device), half_a_second(true)).expect("possible");
+    let tips = run(&mut channel, 3.0, false);
+    let felt = felt.lock().expect("one thread");
+    assert!(felt[400].abs() > 0.5, "the line damps a motion: {} N", felt[400]);
+    assert!(felt[2_500..].iter().all(|force| force.abs() < 1e-6), "{} N are left", felt[2_999]);
+    assert!(spread(&tips[2_500..]) < 1e-6 && !channel.sample.fresh);
 }
 
 #[test]

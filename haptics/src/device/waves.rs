@@ -10,6 +10,7 @@
 //! What a delay d costs is felt all the same, as in every line: moving the hand moves a mass of b d, and pressing presses a spring
 //! of b/d in series with the world (9 N s/m over 250 ms one way: 2.2 kg and 36 N/m). Stable is not the same as crisp.
 
+use super::pointer::towards;
 use crate::Vec2;
 use crate::device::DeviceSpec;
 use crate::servo::passivity::required_damping;
@@ -17,6 +18,14 @@ use crate::world::World;
 
 /// Depth at which a hardening pad's stiffness counts, m (the foam's thickness).
 const PAD_DEPTH_M: f64 = 0.002;
+/// Time constant with which the receiver of waves follows what arrives, beside the jitter, s.
+pub(super) const SMOOTHING_S: f64 = 0.005;
+/// Time constant of the velocity of a device with a resolution, s.
+const VELOCITY_SMOOTHING_S: f64 = 0.004;
+/// Faster than a hand: a jump of position is spread over time, m/s.
+const FASTEST_M_S: f64 = 2.0;
+/// Fingers that were not seen for this long count as being at rest, s.
+const UNSEEN_S: f64 = 0.02;
 /// Energy that an end may keep from one tick for another, J per finger: evens the errors of sampling out, no more.
 const PURSE_J: f64 = 1e-4;
 
@@ -55,18 +64,18 @@ impl Waves {
     }
 
     /// Force that the world's side puts on the operator, N, where the finger moves at `velocity` and the wave `w` comes in.
-    pub(super) fn force_on_operator(&self, velocity: Vec2, w: Vec2) -> Vec2 {
+    fn force_on_operator(&self, velocity: Vec2, w: Vec2) -> Vec2 {
         w * self.root() - velocity * self.impedance_n_s_m
     }
 
     /// The wave that leaves the operator's side, √W.
-    pub(super) fn outgoing(&self, velocity: Vec2, w: Vec2) -> Vec2 {
+    fn outgoing(&self, velocity: Vec2, w: Vec2) -> Vec2 {
         velocity * self.root() - w
     }
 
     /// Velocity of the tip in the world, m/s, and the wave that goes back, for the incoming wave `u` and the force of the tip on
     /// the world, N.
-    pub(super) fn at_world(&self, u: Vec2, force_n: Vec2) -> (Vec2, Vec2) {
+    fn at_world(&self, u: Vec2, force_n: Vec2) -> (Vec2, Vec2) {
         let velocity = (u * self.root() - force_n) / (self.impedance_n_s_m + self.damper_n_s_m);
         let total = force_n + velocity * self.damper_n_s_m;
         (velocity, u - total * (2.0 / self.root()))
@@ -75,22 +84,24 @@ impl Waves {
 
 /// What a packet carries for one finger: integral of the wave, √W s, and its energy, J, since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Account {
+pub struct Account {
+    /// Integral, √W s.
     pub integral: Vec2,
+    /// Energy, J.
     pub energy_j: f64,
 }
 
 /// The sending end of one finger's wave.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Sender {
-    pub account: Account,
+struct Sender {
+    account: Account,
     purse_j: f64,
 }
 
 impl Sender {
     /// Sends a wave for `dt_s`. `income_j` is what this end took in meanwhile (from its port and from the wave that arrived): the
     /// wave may not carry more, whatever sampling, filters and limits do.
-    pub fn send(&mut self, wave: Vec2, income_j: f64, dt_s: f64) {
+    fn send(&mut self, wave: Vec2, income_j: f64, dt_s: f64) {
         self.account.integral += wave * dt_s;
         self.purse_j += income_j;
         let spent = (0.5 * wave.norm_squared() * dt_s).min(self.purse_j).max(0.0);
@@ -101,20 +112,20 @@ impl Sender {
 
 /// The receiving end of one finger's wave.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Receiver {
+struct Receiver {
     arrived: Account,
     used: Account,
 }
 
 impl Receiver {
     /// Takes the newest packet's content.
-    pub fn arrive(&mut self, account: Account) {
+    fn arrive(&mut self, account: Account) {
         self.arrived = account;
     }
 
     /// The wave for the next `dt_s`: follows the integral with the time constant `smoothing_s`, within the energy that arrived.
     /// After a last packet it fades out.
-    pub fn draw(&mut self, smoothing_s: f64, dt_s: f64) -> Vec2 {
+    fn draw(&mut self, smoothing_s: f64, dt_s: f64) -> Vec2 {
         let wanted = (self.arrived.integral - self.used.integral) / smoothing_s.max(dt_s);
         let purse_j = (self.arrived.energy_j - self.used.energy_j).max(0.0);
         let most = (2.0 * purse_j / dt_s).sqrt();
@@ -123,6 +134,111 @@ impl Receiver {
         self.used.integral += wave * dt_s;
         self.used.energy_j += 0.5 * wave.norm_squared() * dt_s;
         wave
+    }
+}
+
+/// The end of the line at the world: both fingers.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WorldEnd {
+    arriving: [Receiver; 2],
+    leaving: [Sender; 2],
+}
+
+impl WorldEnd {
+    /// Takes the newest packet from the operator.
+    pub fn arrive(&mut self, accounts: [Account; 2]) {
+        for (receiver, account) in self.arriving.iter_mut().zip(accounts) {
+            receiver.arrive(account);
+        }
+    }
+
+    /// One tick: the velocities of the tips, m/s, for the force that the operator is to feel, N.
+    pub fn tick(&mut self, waves: &Waves, force_on_operator_n: [Vec2; 2], smoothing_s: f64, dt_s: f64) -> [Vec2; 2] {
+        let mut velocities = [Vec2::zeros(); 2];
+        for finger in 0..2 {
+            let u = self.arriving[finger].draw(smoothing_s, dt_s);
+            // The force of the tips on the world is the reaction to what the operator is to feel.
+            let (velocity, w) = waves.at_world(u, -force_on_operator_n[finger]);
+            // The port takes F v, the damper beside it the rest: the balance is exact here.
+            self.leaving[finger].send(w, 0.5 * w.norm_squared() * dt_s, dt_s);
+            velocities[finger] = velocity;
+        }
+        velocities
+    }
+
+    /// What the next packet to the operator carries.
+    pub fn accounts(&self) -> [Account; 2] {
+        self.leaving.map(|sender| sender.account)
+    }
+}
+
+/// The end of the line at the operator: both fingers.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct OperatorEnd {
+    arriving: [Receiver; 2],
+    leaving: [Sender; 2],
+    /// The waves that are felt in this tick.
+    incoming: [Vec2; 2],
+    /// Where the fingers are known to be, m; velocities come from it. `None` before the hand is known.
+    tracked: Option<[Vec2; 2]>,
+    velocity: [Vec2; 2],
+    /// Time since the fingers were last seen, s.
+    unseen_s: f64,
+}
+
+impl OperatorEnd {
+    /// Takes the newest packet from the world.
+    pub fn arrive(&mut self, accounts: [Account; 2]) {
+        for (receiver, account) in self.arriving.iter_mut().zip(accounts) {
+            receiver.arrive(account);
+        }
+    }
+
+    /// One tick begins: the forces to put on the fingers, N, no larger than the device can make.
+    pub fn forces(&mut self, waves: &Waves, smoothing_s: f64, most_n: f64, dt_s: f64) -> [Vec2; 2] {
+        for (incoming, receiver) in self.incoming.iter_mut().zip(&mut self.arriving) {
+            *incoming = receiver.draw(smoothing_s, dt_s);
+        }
+        std::array::from_fn(|finger| {
+            let force = waves.force_on_operator(self.velocity[finger], self.incoming[finger]);
+            let size = force.norm();
+            if size > most_n { force * (most_n / size) } else { force }
+        })
+    }
+
+    /// The tick ends: the fingers, under the forces that were put on them (N), are now at `tips`, m. `resolution_m`: steps of the
+    /// positions. Returns true for the first tips, which are where the hand begins.
+    pub fn moved(&mut self, waves: &Waves, force_n: [Vec2; 2], tips: [Vec2; 2], resolution_m: f64, dt_s: f64) -> bool {
+        self.unseen_s = 0.0;
+        let first = self.tracked.is_none();
+        let tracked = self.tracked.get_or_insert(tips);
+        // Positions with steps would make a noisy velocity; the integral of the smoothed one is still the position.
+        let blend = if resolution_m > 0.0 { 1.0 - (-dt_s / VELOCITY_SMOOTHING_S).exp() } else { 1.0 };
+        for finger in 0..2 {
+            let way = (tips[finger] - tracked[finger]) * blend;
+            let moved = towards(Vec2::zeros(), way, FASTEST_M_S * dt_s);
+            tracked[finger] += moved;
+            self.velocity[finger] = moved / dt_s;
+            let w = self.incoming[finger];
+            let work_j = -force_n[finger].dot(&moved);
+            let u = waves.outgoing(self.velocity[finger], w);
+            self.leaving[finger].send(u, work_j + 0.5 * w.norm_squared() * dt_s, dt_s);
+        }
+        first
+    }
+
+    /// The tick ends without a word from the fingers, as ticks do that are faster than the device. A hand that stays unseen counts
+    /// as a hand at rest: the damping of a motion that is long over must not push it for ever.
+    pub fn unseen(&mut self, dt_s: f64) {
+        self.unseen_s += dt_s;
+        if self.unseen_s > UNSEEN_S {
+            self.velocity = [Vec2::zeros(); 2];
+        }
+    }
+
+    /// What the next packet to the world carries.
+    pub fn accounts(&self) -> [Account; 2] {
+        self.leaving.map(|sender| sender.account)
     }
 }
 
