@@ -64,3 +64,13 @@ setup_window() {
     need "the window under X11" libxkbcommon-x11-0 libxcursor1 libxi6 || true
   fi
 }
+
+# Headers for the features that the default build leaves out; false where they cannot be had. `./test` only checks those features.
+setup_features() {
+  have_headers || need "headers for sound and gamepads, to check these features" pkg-config libasound2-dev libudev-dev || return 1
+  have_headers
+}
+
+have_headers() {
+  command -v pkg-config >/dev/null 2>&1 && pkg-config --exists alsa libudev
+}

@@ -206,3 +206,63 @@ fn the_page_is_drawn_in_both_themes() {
         assert!(picture.pixels().filter(near).count() > 300, "the chosen device is marked, dark {dark}");
     }
 }
+
+#[test]
+fn fields_of_a_remote_device_are_checked_where_they_stand() {
+    let (file, mut session) = remote();
+    std::fs::write(file.path(), "7".repeat(64)).expect("written");
+    session.trainer.settings.remote.damping = "much".to_owned();
+    let mut harness = harness(session);
+    let row = "Remote device over UDP";
+    harness.get_by_role_and_label(egui::Role::RadioButton, row).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().session.trainer.hand, HandDevice::Mouse, "a wrong field opens nothing");
+    assert!(harness.query_by_label_contains("`much` is no damping").is_some());
+    harness.state_mut().session.trainer.settings.remote.damping = "0.5".to_owned();
+    harness.state_mut().session.trainer.settings.remote.round_trip = "20".to_owned();
+    harness.run_steps(3);
+    harness.get_by_role_and_label(egui::Role::RadioButton, row).click();
+    harness.run_steps(3);
+    harness.state_mut().session.trainer.advance(0.02);
+    let trainer = &harness.state().session.trainer;
+    assert!(trainer.spec().is_some_and(|spec| spec.damping_n_s_m == 0.5));
+    assert!(trainer.scene().expect("running").0.coupling.is_some(), "felt through a spring, for the round trip");
+    // The key is one digit over and over: that is said.
+    assert!(harness.query_by_label_contains("anybody can guess").is_some());
+    harness.state_mut().session.trainer.settings.remote.damping = "0.9".to_owned();
+    harness.run_steps(2);
+    harness.get_by_label("Open again with these").click();
+    harness.run_steps(3);
+    assert!(harness.state().session.trainer.spec().is_some_and(|spec| spec.damping_n_s_m == 0.9));
+    assert!(harness.query_by_label("Open again with these").is_none(), "they are in use now");
+    drop(file);
+}
+
+#[test]
+fn the_page_fits_small_windows() {
+    for size in [[1000.0, 620.0], [1600.0, 1000.0]] {
+        let (_file, session) = remote();
+        let mut harness = harness(session);
+        harness.set_size(egui::Vec2::from(size));
+        harness.run_steps(4);
+        for label in ["Now", "Timing", "Passivity", "Over the network"] {
+            // What lies below the edge can be scrolled to; nothing stands beyond the right edge.
+            let rect = harness.get_by_label(label).rect();
+            assert!(rect.left() >= 0.0 && rect.right() <= size[0], "{label} at {rect:?} in {size:?}");
+        }
+        let right = harness.get_by_label("Right finger").rect();
+        assert!(right.right() <= size[0], "{right:?} in {size:?}");
+    }
+}
+
+#[test]
+fn answers_of_boards_are_told_by_reason() {
+    use crate::boards::Answers;
+    let both = [Answers { asked: 3000, faults: [3, 0, 0] }, Answers { asked: 3000, faults: [0, 900, 20] }];
+    let show = move |ui: &mut egui::Ui, (): &mut ()| super::panels::answers::boards(ui, both);
+    let mut harness = Harness::builder().with_context_setup(theme::install).build_ui_state(show, ());
+    harness.run_steps(2);
+    for part in ["Left: 3 of 3000", "900 with the wrong id", "20 where no hand can be", "Check its cable"] {
+        assert!(harness.query_by_label_contains(part).is_some(), "{part}");
+    }
+}

@@ -59,6 +59,8 @@ pub struct PanelInput {
     pub task: Option<Task>,
     /// The world of the trainer; the two blocks when absent.
     pub world: Option<World>,
+    /// A person at the mouse instead of the scripted operator.
+    pub by_hand: bool,
     /// Where the cursor stands, s (in the trainer: how far the scripted operator is); two fifths of the way when absent.
     pub time_s: Option<f64>,
 }
@@ -129,10 +131,10 @@ fn mapping(input: &PanelInput) -> anyhow::Result<Mapping> {
     Ok(mapping)
 }
 
-/// The scripted operator in the middle of its task.
+/// The scripted operator in the middle of its task, or a person before it.
 fn performing(input: &PanelInput) -> Result<Trainer, String> {
     let mut trainer = Trainer::default();
-    (trainer.clock, trainer.operator) = (Clock::Manual, Operator::Scripted);
+    (trainer.clock, trainer.operator) = (Clock::Manual, if input.by_hand { Operator::You } else { Operator::Scripted });
     if let Some(world) = &input.world {
         trainer.file = Some(world.clone());
         trainer.choice = WorldChoice::File;

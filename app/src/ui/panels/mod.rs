@@ -1,6 +1,6 @@
 //! One panel a file, behind one trait.
 
-mod answers;
+pub(super) mod answers;
 pub mod device_detail;
 pub mod devices;
 mod legend;

@@ -8,7 +8,7 @@ use crate::ui::session::{Session, Workspace};
 use crate::ui::theme::{self, palette, role, space};
 use crate::ui::trainer::{HandDevice, History, Operator, Trainer, WorldChoice};
 use crate::ui::widgets::{card, card_with_head, compact, gauge, light, plain_card, primary_button, segmented};
-use egui::{Align, Layout, Pos2, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
+use egui::{Align, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
 use render::ColorRole;
 
 /// Seconds that the running curve shows.
@@ -213,12 +213,18 @@ fn measure(ui: &mut Ui, label: &str, newtons: f64) {
     });
 }
 
-/// Grip and net force of the last seconds.
+/// Grip and net force of the last seconds, and what its lines are.
 fn strip(ui: &mut Ui, history: &History, limit: f64) {
-    let (dark, p) = (ui.visuals().dark_mode, palette(ui));
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 64.0), Sense::hover());
-    ui.painter().rect_filled(rect, 4, p.sunken);
-    let Some(now_s) = history.newest().map(|m| m.time_s) else { return };
+    ui.painter().rect_filled(rect, 4, palette(ui).sunken);
+    if let Some(newest) = history.newest() {
+        curves(ui, rect, history, newest.time_s, limit);
+    }
+    legend::strip(ui, STRIP_S);
+}
+
+fn curves(ui: &Ui, rect: Rect, history: &History, now_s: f64, limit: f64) {
+    let (dark, p) = (ui.visuals().dark_mode, palette(ui));
     let (low, high) = (-0.3 * limit, 1.1 * limit);
     let at = |time_s: f64, newtons: f64| {
         let x = rect.right() - ((now_s - time_s) / STRIP_S) as f32 * rect.width();
@@ -235,5 +241,4 @@ fn strip(ui: &mut Ui, history: &History, limit: f64) {
     for (color, points) in curves {
         ui.painter().with_clip_rect(rect).add(Shape::line(points, Stroke::new(1.6, role(dark, color))));
     }
-    legend::strip(ui, STRIP_S);
 }

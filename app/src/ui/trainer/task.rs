@@ -8,11 +8,11 @@ pub fn task_hint(world: &World) -> &'static str {
     if world.crank.is_some() {
         "Pinch the handle and turn the crank."
     } else if world.membrane.is_some() {
-        "Pinch the needle and push it slowly through the cup: it resists, gives way, and drags when you pull it out."
+        "Pinch the needle, push it slowly through the cup, then pull it out."
     } else if world.switch.is_some() {
         "Push the knob over until it snaps, then back."
     } else if has(Shape::Barrel) {
-        "Pinch the barrel and lift it against its cable; squeezed too hard it breaks and leaks."
+        "Pinch the barrel and lift it against its cable; too hard, and it breaks and leaks."
     } else {
         match world.blocks.len() {
             0 => "Nothing to do here: try the fingers on the table.",
@@ -31,6 +31,6 @@ mod tests {
     fn every_built_in_world_has_a_line_of_its_own() {
         let lines: std::collections::BTreeSet<&str> = presets::all().iter().map(task_hint).collect();
         assert_eq!(lines.len(), presets::all().len());
-        assert!(lines.iter().all(|line| line.ends_with('.') && line.len() < 120));
+        assert!(lines.iter().all(|line| line.ends_with('.') && line.len() < 90));
     }
 }

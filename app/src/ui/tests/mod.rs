@@ -1,0 +1,109 @@
+//! The window without a window: sessions to draw, and what the tests share.
+
+mod panels;
+mod pictures;
+mod train;
+mod window;
+
+use super::prepare::Prepared;
+use super::session::{self, Session, Workspace};
+use super::theme;
+use super::trainer::{Clock, Operator, Trainer, WorldChoice};
+use egui_kittest::Harness;
+use haptics::recording::{Channel, Recording};
+use std::io::Write;
+use std::sync::{Arc, LazyLock};
+
+/// The scripted operator's recording in a preset world.
+fn performed(choice: WorldChoice) -> Recording {
+    let mut trainer = Trainer::default();
+    (trainer.clock, trainer.operator, trainer.choice) = (Clock::Manual, Operator::Scripted, choice);
+    trainer.ensure_running().expect("a loop");
+    trainer.start_recording();
+    while !trainer.performance_over() {
+        trainer.advance(1.0);
+    }
+    trainer.stop_recording().expect("a recording")
+}
+
+/// A cart of 2 kg with friction, pushed to and fro.
+pub fn cart() -> Recording {
+    let time: Vec<f64> = (0..6_000).map(|i| f64::from(i) * 2e-3).collect();
+    let q = |t: f64| 0.1 * (1.3 * t).sin() + 0.04 * (3.1 * t).sin();
+    let v = |t: f64| 0.13 * (1.3 * t).cos() + 0.124 * (3.1 * t).cos();
+    let a = |t: f64| -0.169 * (1.3 * t).sin() - 0.3844 * (3.1 * t).sin();
+    let channel = |name: &str, unit: &str, values: Vec<f64>| Channel { name: name.into(), unit: unit.into(), values };
+    let force = time.iter().map(|t| 2.0 * a(*t) + 5.0 * v(*t) + 0.8 * v(*t).signum()).collect();
+    Recording {
+        name: "cart".to_owned(),
+        channels: vec![channel("q_m", "m", time.iter().map(|t| q(*t)).collect()), channel("f_N", "N", force)],
+        time_s: Some(time),
+        ..Recording::default()
+    }
+}
+
+/// One second of a tool without a clock.
+pub fn clockless_path() -> Recording {
+    let turn = |i: i32| f64::from(i) * 0.01;
+    let channel = |name: &str, values: Vec<f64>| Channel { name: name.into(), unit: "m".into(), values };
+    Recording {
+        name: "path".to_owned(),
+        channels: vec![
+            channel("x_m", (0..300).map(|i| 0.4 * turn(i).cos()).collect()),
+            channel("y_m", (0..300).map(|i| 0.4 * turn(i).sin()).collect()),
+        ],
+        ..Recording::default()
+    }
+}
+
+/// A session with a recording, fitted and replayed as far as that goes.
+pub fn session(recording: Recording) -> Session {
+    let mut session = Session::new();
+    session.trainer.clock = Clock::Manual;
+    session.workspace = Workspace::Calibrate;
+    session.show(vec![Arc::new(Prepared::new(recording))]);
+    match session::analyse(&session.recordings, session.choice) {
+        Ok(analysis) => {
+            session.replays = session::replay_all(&analysis.world, &session.recordings);
+            session.analysis = Some(Arc::new(analysis));
+        }
+        Err(problem) => session.fit_problem = Some(problem),
+    }
+    session
+}
+
+pub static STACK: LazyLock<Recording> = LazyLock::new(|| performed(WorldChoice::Blocks));
+pub static CRANK: LazyLock<Recording> = LazyLock::new(|| performed(WorldChoice::Crank));
+
+pub fn empty() -> Session {
+    let mut session = Session::new();
+    session.trainer.clock = Clock::Manual;
+    session
+}
+
+pub fn harness<'a, S: 'a>(
+    state: S,
+    size: [f32; 2],
+    mut show: impl FnMut(&mut egui::Ui, &mut S) + 'a,
+) -> Harness<'a, S> {
+    let builder = Harness::builder().with_size(size).with_max_steps(8).with_accessibility_check(false);
+    let mut harness =
+        builder.with_context_setup(theme::install).build_ui_state(move |ui, state| show(ui, state), state);
+    harness.run_steps(3);
+    harness
+}
+
+/// True, with a visible word, where pictures cannot be drawn.
+pub fn no_driver() -> bool {
+    let missing = render::Headless::new().err();
+    if let Some(error) = &missing {
+        let _ = writeln!(std::io::stderr(), "skipped: {error}");
+    }
+    missing.is_some()
+}
+
+pub fn count_near(picture: &image::RgbaImage, color: egui::Color32) -> usize {
+    let [r, g, b, _] = color.to_array();
+    let near = |a: u8, b: u8| a.abs_diff(b) <= 3;
+    picture.pixels().filter(|p| near(p.0[0], r) && near(p.0[1], g) && near(p.0[2], b)).count()
+}

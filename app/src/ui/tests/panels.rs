@@ -1,0 +1,161 @@
+//! Every panel on an empty session, on blocks, on a crank, on a mechanism; what is shown and what buttons do.
+
+use super::{CRANK, STACK, cart, clockless_path, count_near, empty, harness, no_driver, session};
+use crate::ui::jobs::JobKind;
+use crate::ui::panels::Panel;
+use crate::ui::panels::log::LogPanel;
+use crate::ui::panels::parameters::ParametersPanel;
+use crate::ui::panels::recording::RecordingPanel;
+use crate::ui::panels::results::ResultsPanel;
+use crate::ui::panels::scene::ScenePanel;
+use crate::ui::panels::segments::SegmentsPanel;
+use crate::ui::panels::trainer_side::TrainerSide;
+use crate::ui::panels::trainer_view::TrainerView;
+use crate::ui::prepare::Prepared;
+use crate::ui::session::Session;
+use crate::ui::{format, screenshot, theme};
+use egui_kittest::kittest::Queryable;
+use estimator::segment::SystemState;
+use haptics::recording::{Channel, Recording};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+fn panels() -> Vec<Box<dyn Panel>> {
+    vec![
+        Box::new(LogPanel::default()),
+        Box::new(SegmentsPanel),
+        Box::new(ParametersPanel),
+        Box::new(ResultsPanel::default()),
+        Box::new(ScenePanel::default()),
+        Box::new(RecordingPanel::default()),
+        Box::new(TrainerView::default()),
+        Box::new(TrainerSide),
+    ]
+}
+
+#[test]
+fn every_panel_draws_every_kind_of_session() {
+    let sessions: [fn() -> Session; 5] =
+        [empty, || session(STACK.clone()), || session(CRANK.clone()), || session(cart()), || session(clockless_path())];
+    for make in sessions {
+        for mut panel in panels() {
+            let title = panel.title();
+            let mut harness = harness(make(), [420.0, 700.0], move |ui, session: &mut Session| panel.ui(ui, session));
+            // Tiny windows too.
+            harness.set_size(egui::vec2(60.0, 40.0));
+            harness.run_steps(2);
+            assert!(harness.state().banners.is_empty(), "{title}: {:?}", harness.state().banners);
+        }
+    }
+}
+
+#[test]
+fn the_table_shows_the_values_and_greys_what_is_unknown() {
+    let session = session(STACK.clone());
+    let fit = session.analysis.as_ref().expect("fitted").fit.clone();
+    let harness = harness(session, [420.0, 800.0], |ui, session| ParametersPanel.ui(ui, session));
+    let weight = fit.parameter("block-1", "weight_N").expect("carried");
+    let (value, error) = format::with_error(weight.value.expect("a value"), weight.std_error);
+    assert!(harness.query_all_by_label(&value).next().is_some(), "{value}");
+    assert!(harness.query_all_by_label(&error.expect("an error")).next().is_some());
+    let unknown = fit.parameters.iter().filter(|p| !p.identified).count();
+    assert_eq!(harness.query_all_by_label("not shown").count(), unknown);
+}
+
+#[test]
+fn refit_starts_a_job_and_brings_a_fit() {
+    let mut session = session(STACK.clone());
+    session.analysis = None;
+    let mut harness = harness(session, [300.0, 800.0], |ui, session| {
+        let ctx = ui.ctx().clone();
+        session.poll(&ctx);
+        RecordingPanel::default().ui(ui, session);
+    });
+    harness.get_by_role_and_label(egui::Role::Button, "Fit").click();
+    harness.run_steps(1);
+    let begun = Instant::now();
+    assert!(harness.state().jobs.is_running(JobKind::Fit) || harness.state().analysis.is_some());
+    while harness.state().analysis.is_none() && begun.elapsed() < Duration::from_mins(1) {
+        std::thread::sleep(Duration::from_millis(5));
+        harness.run_steps(1);
+    }
+    assert!(harness.state().analysis.is_some());
+}
+
+#[test]
+fn the_replay_lifts_the_block_as_it_was_lifted() {
+    let session = session(STACK.clone());
+    let segmentation = session.segmentation().expect("segmented");
+    let carry = segmentation.states.iter().find(|i| i.state == SystemState::HoldAboveGround).expect("carried");
+    let film = session.replay().and_then(|r| r.film.clone()).expect("played");
+    let height = |t: f64| film.body_at(0, t).expect("block 1").y;
+    assert!(height(0.5 * (carry.t0 + carry.t1)) - height(0.0) > 0.005);
+    assert!(!session.replay().expect("played").curves.is_empty(), "simulated forces");
+}
+
+#[test]
+fn doubtful_spans_are_shaded_and_listed() {
+    let mut recording = cart();
+    let spans = [(1_000, 1_200), (4_000, 4_001)].map(|(first, end)| haptics::recording::Span { first, end });
+    recording.warnings.push(haptics::recording::Warning {
+        kind: "stuck-channel".to_owned(),
+        column: Some("f_N".to_owned()),
+        spans: spans.to_vec(),
+        text: "f_N is stuck".to_owned(),
+    });
+    let mut harness =
+        harness(session(recording.clone()), [420.0, 900.0], |ui, session| ResultsPanel::default().ui(ui, session));
+    harness.get_by_label("Go to 2.00 s (1 of 2)").click();
+    harness.run_steps(3);
+    let (from, to) = harness.state().view_s;
+    assert!(harness.state().cursor_s == 2.0 && from < 2.0 && to > 2.4 && to - from < 3.0);
+    harness.get_by_label("Go to 8.00 s (2 of 2)").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().cursor_s, 8.0);
+    if no_driver() {
+        return;
+    }
+    for dark in [false, true] {
+        let marks = |recording: &Recording| {
+            let picture = screenshot::draw(session(recording.clone()), screenshot::Panel::Log, [900, 560], dark);
+            count_near(&picture.expect("drawn"), theme::Palette::of(dark).caution)
+        };
+        let (with, without) = (marks(&recording), marks(&cart()));
+        assert!(with > without + 30, "{with} and {without} pixels, dark {dark}");
+    }
+}
+
+#[test]
+fn a_million_samples_stay_fast() {
+    let n = 1_000_000;
+    let wave = |k: usize| (0..n).map(|i| (f64::from(i) * 1e-4 * k as f64).sin()).collect();
+    let channel = |k: usize| Channel { name: format!("s{k}_V"), unit: "V".to_owned(), values: wave(k) };
+    let recording = Recording {
+        channels: (1..=6)
+            .map(channel)
+            .chain([Channel { name: "q_m".into(), unit: "m".into(), values: wave(7) }])
+            .collect(),
+        time_s: Some((0..n).map(|i| f64::from(i) * 1e-3).collect()),
+        ..Recording::default()
+    };
+    let mut session = Session::new();
+    session.show(vec![Arc::new(Prepared::new(recording))]);
+    let mut panel = LogPanel::default();
+    let mut harness = harness(session, [1400.0, 800.0], move |ui, session: &mut Session| panel.ui(ui, session));
+    let begun = Instant::now();
+    for i in 0..20 {
+        harness.state_mut().cursor_s = f64::from(i);
+        harness.step();
+    }
+    let moving_cursor = begun.elapsed() / 20;
+    let begun = Instant::now();
+    for i in 0..20 {
+        harness.state_mut().view_s = (0.0, 1_000.0 - f64::from(i));
+        harness.step();
+    }
+    let moving_view = begun.elapsed() / 20;
+    println!("cursor {moving_cursor:?}, view {moving_view:?} a picture");
+    // Unoptimised; a picture has 16 ms, these are limits against a relapse to drawing every sample.
+    assert!(moving_cursor < Duration::from_millis(150), "{moving_cursor:?}");
+    assert!(moving_view < Duration::from_millis(300), "{moving_view:?}");
+}

@@ -1,0 +1,91 @@
+//! The trainer's page: hints, legends, the scripted operator's choices, the passivity controller.
+
+use super::{empty, harness};
+use crate::operator;
+use crate::ui::app::App;
+use crate::ui::trainer::{Operator, USUAL_CONTROL_N_S_M, WorldChoice, task_hint};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use haptics::device::Mistake;
+
+fn window<'a>() -> Harness<'a, App> {
+    harness(App::new(empty()), [1200.0, 1100.0], |ui, app: &mut App| app.show(ui))
+}
+
+#[test]
+fn every_world_says_in_the_picture_what_to_do_and_the_gauges_are_explained() {
+    let mut harness = window();
+    for (label, choice) in [
+        ("Two blocks", WorldChoice::Blocks),
+        ("Crank", WorldChoice::Crank),
+        ("Needle", WorldChoice::Needle),
+        ("Barrel", WorldChoice::Barrel),
+        ("Switch", WorldChoice::Switch),
+        ("Empty table", WorldChoice::Table),
+    ] {
+        harness.get_by_role_and_label(egui::Role::RadioButton, label).click();
+        harness.run_steps(3);
+        harness.state_mut().session.trainer.advance(0.05);
+        harness.run_steps(2);
+        let trainer = &harness.state().session.trainer;
+        assert_eq!(trainer.choice, choice);
+        let line = task_hint(trainer.scene().expect("running").1);
+        assert!(harness.query_by_label(line).is_some(), "{label}: {line}");
+    }
+    let limit = harness.state().session.trainer.config().limits.max_force_n;
+    assert!(harness.query_by_label(&format!("largest force that is passed on, {limit:.1} N")).is_some());
+    assert!(harness.query_by_label("limit").is_some(), "the dashes of the curve");
+}
+
+#[test]
+fn skill_and_mistake_are_chosen_and_the_performance_starts_over() {
+    let mut harness = window();
+    harness.get_by_role_and_label(egui::Role::RadioButton, "Scripted").click();
+    harness.run_steps(3);
+    harness.state_mut().session.trainer.advance(2.0);
+    assert!(harness.query_by_label("Watch again").is_some());
+    for (shown, wanted) in [("Steady", "Novice"), ("None", "Crushing pinch")] {
+        harness.get_by_value(shown).click();
+        harness.run_steps(3);
+        harness.get_by_label(wanted).click();
+        harness.run_steps(3);
+    }
+    let trainer = &harness.state().session.trainer;
+    assert_eq!((trainer.script.level, trainer.script.mistake), ("novice", Some(Mistake::Crush)));
+    assert!(trainer.scene().expect("running").0.state.time_s < 1.0, "started over");
+    // A world without occasion for it: nothing is forgotten, nothing goes wrong.
+    harness.state_mut().session.trainer.choose(WorldChoice::Switch).expect("the switch");
+    harness.run_steps(2);
+    let trainer = &harness.state().session.trainer;
+    let (_, world) = trainer.scene().expect("running");
+    assert_eq!((trainer.script.mistake_in(world), operator::mistakes_in(world).len()), (None, 0));
+    assert!(harness.query_by_label("none in this world").is_some());
+}
+
+#[test]
+fn the_passivity_controller_is_switched_and_the_world_goes_on() {
+    let mut harness = window();
+    harness.state_mut().session.trainer.advance(0.3);
+    let before_s = harness.state().session.trainer.scene().expect("running").0.state.time_s;
+    let control = |harness: &Harness<'_, App>| harness.state().session.trainer.config().passivity_control_n_s_m;
+    assert_eq!(control(&harness), None, "off unless wanted");
+    harness.get_by_label("Controller").click();
+    harness.run_steps(3);
+    assert_eq!(control(&harness), Some(USUAL_CONTROL_N_S_M));
+    assert!(harness.state().session.trainer.scene().expect("running").0.state.time_s >= before_s);
+    harness.get_by_label("10").click();
+    harness.run_steps(3);
+    assert_eq!(control(&harness), Some(10.0));
+    // A recording would end with the servo: no switching meanwhile.
+    harness.state_mut().session.trainer.start_recording();
+    harness.run_steps(2);
+    harness.get_by_label("Controller").click();
+    harness.run_steps(2);
+    assert_eq!(control(&harness), Some(10.0));
+    drop(harness.state_mut().session.trainer.stop_recording());
+    harness.run_steps(2);
+    harness.get_by_label("Controller").click();
+    harness.run_steps(3);
+    assert_eq!(control(&harness), None);
+    assert_eq!(harness.state().session.trainer.operator, Operator::You);
+}
