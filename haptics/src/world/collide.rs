@@ -6,6 +6,7 @@
 use super::block::{Block, Shape};
 use super::contact::{Material, Touch, meeting};
 use super::driven::handle;
+use super::fixed::{Fixed, cup_wall, switch_base};
 use super::model::World;
 use super::rect::{Rect, point_in_rect, rect_rect};
 use super::scratch::{Scratch, Solid};
@@ -211,16 +212,15 @@ impl Gather<'_> {
                     continue;
                 }
                 let pair = (Surface::Finger(finger), Surface::Block(index as u16));
-                let kept = self.memory.find(|c| (c.on, c.by) == pair).map(|c| c.feature);
+                let kept = self.kept(pair);
                 let Some((face, depth_m)) = point_in_rect(&rect, tip, kept, margin_m) else { continue };
                 let mut material = pad_material(self.world, block.finger_friction);
                 material.wall_n_m = block.wall.map_or(0.0, |wall| wall.stiffness_n_m);
-                // Start again at this pair: its contact is the next to be asked for.
-                self.memory.next = self.memory.next.saturating_sub(1);
                 self.add(&Found { pair, feature: face, point_m: tip, normal: rect.face(face).0, depth_m }, &material);
             }
         }
         self.sheet();
+        self.fixed();
     }
 
     /// A finger on the membrane: it is blunt and pierces nothing. Whoever came from above stays on the sheet until it is let go
@@ -232,16 +232,51 @@ impl Gather<'_> {
             let pair = (Surface::Finger(finger), Surface::Membrane);
             let depth_m = membrane.center_m.y - tip.y;
             let sweep_m = self.tip_sweep_m[usize::from(finger)];
-            let held = self.memory.find(|c| (c.on, c.by) == pair).is_some();
+            let held = self.kept(pair).is_some();
             let over_it = (tip.x - membrane.center_m.x).abs() < membrane.half_width_m;
             let arrives = over_it && depth_m > -sweep_m && depth_m < sweep_m + ARRIVAL_M;
             if held || arrives {
                 let mut material = pad_material(self.world, self.world.floor.map_or(0.5, |f| f.friction));
                 material.wall_n_m = membrane.law.stiffness_n_m;
-                self.memory.next = self.memory.next.saturating_sub(1);
                 self.add(&Found { pair, feature: 0, point_m: tip, normal: Vec2::new(0.0, 1.0), depth_m }, &material);
             }
         }
+    }
+
+    /// Fingers on what stands fixed. Whoever pushes the sheet down is inside of the cup and does not meet its wall.
+    fn fixed(&mut self) {
+        let (cup, base) = (self.world.membrane.as_ref().zip(self.world.floor.as_ref()), self.world.switch.as_ref());
+        for finger in 0..2_u8 {
+            let tip = self.tips[usize::from(finger)];
+            let sweep_m = self.tip_sweep_m[usize::from(finger)];
+            let on = Surface::Finger(finger);
+            if let Some((membrane, floor)) = cup
+                && self.kept((on, Surface::Membrane)).is_none()
+            {
+                let kept = self.kept((on, Surface::Cup));
+                let wall = cup_wall(membrane, floor.height_m, tip, kept, (sweep_m, sweep_m + ARRIVAL_M));
+                self.stand((on, Surface::Cup), tip, wall.as_ref());
+            }
+            if let Some(switch) = base {
+                let kept = self.kept((on, Surface::Base));
+                let base = switch_base(switch, tip, kept, sweep_m);
+                self.stand((on, Surface::Base), tip, base.as_ref());
+            }
+        }
+    }
+
+    /// The face on which a pair pressed in the tick before.
+    fn kept(&mut self, pair: (Surface, Surface)) -> Option<u8> {
+        let feature = self.memory.find(|c| (c.on, c.by) == pair).map(|c| c.feature)?;
+        // Start again at this pair: its contact is the next to be asked for.
+        self.memory.next = self.memory.next.saturating_sub(1);
+        Some(feature)
+    }
+
+    fn stand(&mut self, pair: (Surface, Surface), point_m: Vec2, found: Option<&Fixed>) {
+        let Some(&Fixed { feature, normal, depth_m }) = found else { return };
+        let material = pad_material(self.world, self.world.floor.map_or(0.5, |f| f.friction));
+        self.add(&Found { pair, feature, point_m, normal, depth_m }, &material);
     }
 
     /// Fingers on what is driven along one coordinate: handle and knob. Depth and normal are found anew in each part of the
@@ -253,13 +288,12 @@ impl Gather<'_> {
                 let pair = (Surface::Finger(finger), Surface::Handle);
                 // The left pad faces right, the right pad faces left.
                 let facing = if finger == 0 { 1.0 } else { -1.0 };
-                let held = self.memory.find(|c| (c.on, c.by) == pair).is_some();
+                let held = self.kept(pair).is_some();
                 let on_own_side = facing * (tip.x - handle.x) < 0.0 || held;
                 let level = (tip.y - handle.y).abs() < PAD_HALF_HEIGHT_M + 0.5 * crank.handle_width_m;
                 if on_own_side && level {
                     let depth_m = facing * (tip.x - handle.x) + 0.5 * crank.handle_width_m;
                     let found = Found { pair, feature: 0, point_m: tip, normal: Vec2::new(-facing, 0.0), depth_m };
-                    self.memory.next = self.memory.next.saturating_sub(1);
                     self.add(&found, &pad_material(self.world, crank.finger_friction));
                 }
             }

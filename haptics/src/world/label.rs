@@ -1,5 +1,6 @@
 //! The true contact state of a simulated world: what a generator writes into the `label` column. Never used to estimate.
 
+use super::block::Shape;
 use super::model::World;
 use super::state::{State, Surface};
 use crate::law::object::MembranePhase;
@@ -13,7 +14,10 @@ pub fn true_label(world: &World, state: &State) -> &'static str {
         let held = [0, 1].iter().all(|f| touches(state, Surface::Finger(*f), Surface::Handle));
         return if held { "turning" } else { "free-motion" };
     }
-    if world.membrane.is_some() {
+    let held = |index: usize| [0, 1].iter().all(|f| touches(state, Surface::Finger(*f), Surface::Block(index as u16)));
+    let mut needles = world.blocks.iter().enumerate().filter(|(_, block)| block.shape == Shape::Needle);
+    // A needle that stands on the sheet or in it by itself is no insertion: nobody does anything.
+    if world.membrane.is_some() && needles.any(|(index, _)| held(index)) {
         return match state.membrane.phase {
             MembranePhase::Free => "free-motion",
             MembranePhase::Insertion => "insertion",
@@ -27,7 +31,7 @@ pub fn true_label(world: &World, state: &State) -> &'static str {
     }
     for index in 0..world.blocks.len() {
         let block = Surface::Block(index as u16);
-        if [0, 1].iter().all(|f| touches(state, Surface::Finger(*f), block)) {
+        if held(index) {
             let supported = state.contacts.iter().any(|c| {
                 (c.on == block || c.by == block) && c.normal_force_n > 0.0 && !matches!(c.on, Surface::Finger(_))
             });

@@ -114,6 +114,10 @@ pub enum Surface {
     Knob,
     /// The sheet that a needle can pierce, under a finger.
     Membrane,
+    /// The wall of the cup that carries that sheet.
+    Cup,
+    /// The base of the toggle switch.
+    Base,
 }
 
 /// One active contact point.

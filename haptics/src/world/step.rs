@@ -159,7 +159,7 @@ fn press_all(
             Surface::Block(index) => velocity_at(&bodies[usize::from(index)], touch.arm_by_m),
             Surface::Handle => state.crank.handle_velocity,
             Surface::Knob => state.switch.knob_velocity,
-            Surface::Finger(_) | Surface::Floor | Surface::Membrane => Vec2::zeros(),
+            _ => Vec2::zeros(),
         };
         // Velocity for the damper, and the way since the part before, as a velocity, for springs.
         let (on, way_on) = match touch.contact.on {

@@ -6,6 +6,7 @@ mod captured;
 mod convergence;
 mod crank;
 mod details;
+mod fixed;
 mod grip;
 mod heap;
 mod impact;

@@ -78,7 +78,7 @@ fn a_finger_on_the_sheet_feels_its_depth_and_nothing_else() {
     let world = presets::needle();
     let sheet = world.membrane.expect("there is one").center_m;
     let mut state = State::resting(&world);
-    let force_at = |state: &mut State, way: &[(f64, f64)]| {
+    let force_at = |world: &World, state: &mut State, way: &[(f64, f64)]| {
         for (x, y) in way {
             let to = sheet + Vec2::new(*x, *y);
             let from = state.input.tip_in_world[0];
@@ -86,17 +86,19 @@ fn a_finger_on_the_sheet_feels_its_depth_and_nothing_else() {
                 let mut input = state.input;
                 input.tip_in_world[0] = from + (to - from) * f64::from(part) / 400.0;
                 input.tip_in_world[1] = Vec2::new(0.05, -0.05);
-                step(&world, state, &input, DT);
+                step(world, state, &input, DT);
             }
         }
         -state.tip_force_n[0].y
     };
-    let pressed = force_at(&mut state, &[(-0.012, 0.005), (-0.012, -0.006)]);
+    let pressed = force_at(&world, &mut state, &[(-0.012, 0.005), (-0.012, -0.006)]);
     assert!(pressed > 0.5, "{pressed} N");
     // Deeper, past the edge and back: at the same depth the same force, without a jump to nothing.
-    let again = force_at(&mut state, &[(-0.012, -0.012), (-0.022, -0.012), (-0.022, -0.006), (-0.012, -0.006)]);
+    let again = force_at(&world, &mut state, &[(-0.012, -0.012), (-0.022, -0.012), (-0.022, -0.006), (-0.012, -0.006)]);
     assert!((again - pressed).abs() < 0.02 * pressed, "{again} against {pressed} N");
-    // From below nothing.
-    let below = force_at(&mut state, &[(-0.012, 0.005), (-0.04, 0.005), (-0.04, -0.012), (-0.012, -0.012)]);
+    // Without the cup's wall in the way: from below nothing.
+    let mut world = world;
+    world.floor = None;
+    let below = force_at(&world, &mut state, &[(-0.012, 0.005), (-0.04, 0.005), (-0.04, -0.012), (-0.012, -0.012)]);
     assert_eq!(below, 0.0);
 }
