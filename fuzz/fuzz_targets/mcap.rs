@@ -1,0 +1,14 @@
+//! Any bytes behind the first ones of an MCAP file: a recording or a sentence. `cargo +nightly fuzz run mcap ../tests/corpus/mcap`.
+
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+
+const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+
+fuzz_target!(|bytes: &[u8]| {
+    let mut whole = MAGIC.to_vec();
+    // Seeds are whole files.
+    whole.extend_from_slice(bytes.strip_prefix(MAGIC).unwrap_or(bytes));
+    fuzz::load(&whole, &fuzz::file("log.mcap"));
+});
