@@ -267,3 +267,34 @@ fn a_stream_that_is_cut_opens_up_to_its_last_block() {
     std::fs::write(&path, broken).expect("writes");
     assert!(load(&path, None).expect_err("damaged").to_string().contains("damaged"));
 }
+
+/// Every reader shows what it has before it is done, and all of it in the end.
+#[test]
+fn a_preview_grows_while_a_log_is_read() {
+    const ROWS: usize = 120_000;
+    let wave: Vec<f64> = (0..ROWS).map(|i| (i as f64 * 1e-4).sin()).collect();
+    let recording = Recording {
+        time_s: Some((0..ROWS).map(|i| i as f64 * 1e-3).collect()),
+        channels: vec![Channel { name: "q_m".to_owned(), unit: "m".to_owned(), values: wave }],
+        ..Recording::default()
+    };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for &name in FORMATS {
+        let path = folder.path().join("log").with_extension(name);
+        write(std::slice::from_ref(&recording), &path, &[]).expect("writes");
+        let (preview, seen) = (preview::Preview::default(), std::sync::Mutex::new(Vec::new()));
+        let cancelled = std::sync::atomic::AtomicBool::new(false);
+        let look =
+            |_: f64| seen.lock().expect("one at a time").push(preview.curves(200).first().map_or(0, |c| c.samples));
+        load_watched(&path, None, &Watch { progress: &look, cancelled: &cancelled, preview: Some(&preview) })
+            .expect("loads");
+        let curves = preview.curves(200);
+        let curve = curves.iter().find(|c| c.name.ends_with("q_m")).expect("the channel");
+        assert!(curve.samples > ROWS - 10_000 && !curve.by_row, "{name}: {}", curve.samples);
+        let (at, band) = curve.points[curve.points.len() / 2];
+        assert!((band.low..=band.high).contains(&(at * 0.1).sin()), "{name}: {at} {band:?}");
+        let seen = seen.into_inner().expect("done");
+        let partial = seen.iter().any(|&n| n > 0 && n < curve.samples);
+        assert!(partial || name == "parquet", "{name}: {seen:?}");
+    }
+}

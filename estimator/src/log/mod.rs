@@ -15,6 +15,7 @@ mod mcap;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod plan;
+pub mod preview;
 pub mod pyramid;
 mod raw;
 mod sidecar;

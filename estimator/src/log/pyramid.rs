@@ -129,6 +129,18 @@ impl Pyramid {
         Some(band)
     }
 
+    /// The smallest piece of at least `samples` samples that [`Pyramid::whole`] can answer for without the samples.
+    pub fn granule(&self, samples: usize) -> usize {
+        samples.max(1).div_ceil(FAN) * FAN
+    }
+
+    /// The band of samples `range`, which starts at a multiple of [`Pyramid::granule`] and ends at one or at the end.
+    pub fn whole(&self, range: Range<usize>) -> Option<Band> {
+        let open = self.open.first().map_or(Band::NONE, |o| o.0);
+        // Only the samples of the open block at the end are in no block.
+        self.band(range, &|_| open)
+    }
+
     /// What a plot `pixels` wide shows of the samples between `from_s` and `to_s`, s: one band a pixel that has a sample in
     /// it. `time_s` and `values` are those the pyramid was made of. Work: O(pixels · log samples).
     pub fn query(&self, time_s: &[f64], values: &[f64], from_s: f64, to_s: f64, pixels: usize) -> Vec<Pixel> {

@@ -1,5 +1,6 @@
 //! Watching and ending a long read.
 
+use super::preview::Preview;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What a caller gives along to see how far a read has come and to end it.
@@ -9,6 +10,8 @@ pub struct Watch<'a> {
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Set by anybody to end the read; it then answers [`LogError::Cancelled`](super::LogError::Cancelled).
     pub cancelled: &'a AtomicBool,
+    /// Shown what has been read so far, where somebody wants to look at it.
+    pub preview: Option<&'a Preview>,
 }
 
 /// Never set.
@@ -17,7 +20,7 @@ static NEVER: AtomicBool = AtomicBool::new(false);
 impl Watch<'_> {
     /// Nobody looks and nobody ends it.
     pub fn none() -> Watch<'static> {
-        Watch { progress: &|_| {}, cancelled: &NEVER }
+        Watch { progress: &|_| {}, cancelled: &NEVER, preview: None }
     }
 
     /// True when somebody has ended it.

@@ -4,6 +4,7 @@ use super::Dialect;
 use super::part::{Fault, Part};
 use crate::log::errors::LogError;
 use crate::log::plan::{Plan, Use};
+use crate::log::preview::Preview;
 use crate::log::table::{Group, Table};
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -22,6 +23,7 @@ pub struct Join<'a> {
     dialect: &'a Dialect,
     path: &'a Path,
     size: u64,
+    preview: Option<&'a Preview>,
     early: BTreeMap<usize, Part>,
     next: usize,
     rows: usize,
@@ -33,7 +35,7 @@ pub struct Join<'a> {
 
 impl<'a> Join<'a> {
     /// Nothing joined yet; `size` of the file in bytes, to reserve room.
-    pub fn new(plan: &'a Plan, dialect: &'a Dialect, path: &'a Path, size: u64) -> Self {
+    pub fn new(plan: &'a Plan, dialect: &'a Dialect, path: &'a Path, size: u64, preview: Option<&'a Preview>) -> Self {
         Self {
             table: Table::default(),
             bytes: 0,
@@ -41,6 +43,7 @@ impl<'a> Join<'a> {
             dialect,
             path,
             size,
+            preview,
             early: BTreeMap::new(),
             next: 0,
             rows: 0,
@@ -91,6 +94,7 @@ impl<'a> Join<'a> {
                 group.labels.extend(labels.by_ref().take(end - run.first));
             }
         }
+        self.show();
         if let Some((row, line, fault)) = part.fault {
             return Err(self.sentence(self.rows + row + 1, self.dialect.line + self.lines + line, fault));
         }
@@ -98,6 +102,16 @@ impl<'a> Join<'a> {
         self.lines += part.lines;
         self.bytes += part.bytes;
         Ok(())
+    }
+
+    /// Shows what has been joined, of tables with one recording.
+    fn show(&self) {
+        let (Some(preview), [(_, group)], None) = (self.preview, self.table.groups.as_slice(), self.plan.trial) else {
+            return;
+        };
+        let time = self.plan.time.and_then(|c| group.columns.get(c)).map_or(&[][..], Vec::as_slice);
+        let shown = self.plan.targets.iter().filter(|t| Some(t.column) != self.plan.time);
+        preview.grow("", 0, time, shown.map(|t| (t.name.as_str(), group.columns[t.column].as_slice())));
     }
 
     fn group(&mut self, trial: Option<&[u8]>, rows: usize, bytes: usize) -> usize {

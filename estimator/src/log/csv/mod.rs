@@ -190,7 +190,7 @@ impl<'a, R: Read + Send> Reading<'a, R> {
         let delimiter = dialect.delimiter;
         Self {
             blocks: Mutex::new(Blocks::new(source, delimiter, split.block_bytes)),
-            join: Mutex::new(Join::new(plan, dialect, path, size)),
+            join: Mutex::new(Join::new(plan, dialect, path, size, watch.preview)),
             joined: Condvar::new(),
             layout: Layout { delimiter, width, plan, uses: plan.uses.clone(), undecided: true, bytes_a_row: 0 },
             path,

@@ -199,7 +199,7 @@ fn progress_rises_to_one_and_a_cancelled_read_leaves_nothing() {
     };
     let told = Mutex::new(Vec::new());
     let cancelled = AtomicBool::new(false);
-    run(Watch { progress: &|share| lock(&told).push(share), cancelled: &cancelled }).expect("reads");
+    run(Watch { progress: &|share| lock(&told).push(share), cancelled: &cancelled, preview: None }).expect("reads");
     let told = told.into_inner().expect("whole");
     assert!(told.len() > 20 && told.is_sorted() && told.last().is_some_and(|&s| s > 0.99 && s <= 1.0), "{told:?}");
 
@@ -209,7 +209,7 @@ fn progress_rises_to_one_and_a_cancelled_read_leaves_nothing() {
             cancelled.store(true, Ordering::Relaxed);
         }
     };
-    let error = run(Watch { progress: &after_three, cancelled: &cancelled }).expect_err("cancelled");
+    let error = run(Watch { progress: &after_three, cancelled: &cancelled, preview: None }).expect_err("cancelled");
     assert!(matches!(error, LogError::Cancelled { .. }) && calls.load(Ordering::Relaxed) < 10, "{error}");
 }
 

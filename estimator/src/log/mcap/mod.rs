@@ -14,7 +14,8 @@ mod topic;
 pub mod write;
 
 use super::errors::LogError;
-use super::raw::Raw;
+use super::preview::Preview;
+use super::raw::{Cells, Raw};
 use super::watch::Watch;
 use ::mcap::records::{Channel, Record};
 use haptics::recording::{Meta, Warning};
@@ -38,6 +39,8 @@ const TABLE_BYTES: u64 = 256 << 20;
 const TABLE_TIMES_FILE: u64 = 32;
 /// The memory is asked for after so many messages.
 const CHECK_EVERY: u64 = 1024;
+/// … and what has been decoded is shown after so many.
+const SHOW_EVERY: u64 = 8192;
 
 /// How the messages of a channel are read.
 enum Decoder {
@@ -57,6 +60,8 @@ struct Source {
     /// Our own column names by field, in files that we wrote.
     own: Option<HashMap<String, String>>,
     clockless: bool,
+    /// Rows handed to the preview.
+    shown: usize,
 }
 
 /// Everything that was read.
@@ -71,7 +76,7 @@ pub struct Log {
 
 /// Reads every message that can be read.
 pub fn read(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Log, LogError> {
-    let mut reading = Reading { path, size, ..Reading::new(path) };
+    let mut reading = Reading { size, preview: watch.preview, ..Reading::new(path) };
     let end = records::walk(path, size, watch, &mut |event| reading.take(event))?;
     let log = Log {
         sources: reading.sources,
@@ -141,6 +146,7 @@ struct Reading<'a> {
     sidecar: Option<String>,
     streamed: bool,
     messages: u64,
+    preview: Option<&'a Preview>,
     /// Scratch for the path of a field.
     field: String,
 }
@@ -156,6 +162,7 @@ impl<'a> Reading<'a> {
             sidecar: None,
             streamed: false,
             messages: 0,
+            preview: None,
             field: String::new(),
         }
     }
@@ -207,6 +214,7 @@ impl<'a> Reading<'a> {
             messages: 0,
             own,
             clockless: channel.metadata.contains_key(CLOCKLESS),
+            shown: 0,
         });
     }
 
@@ -252,7 +260,26 @@ impl<'a> Reading<'a> {
             let (number, name) = (source.messages, source.name.clone());
             return Err(self.damaged(format!("message {number} of {name}: {why}")));
         }
+        if self.messages.is_multiple_of(SHOW_EVERY) {
+            self.show();
+        }
         if self.messages.is_multiple_of(CHECK_EVERY) { self.check_memory() } else { Ok(()) }
+    }
+
+    /// Shows what has been decoded, by the log's own time.
+    fn show(&mut self) {
+        let Some(preview) = self.preview else { return };
+        let start = self.sources.iter().filter_map(|s| s.topic.log_ns.first().copied()).min().unwrap_or(0);
+        for source in &mut self.sources {
+            let (first, topic) = (std::mem::replace(&mut source.shown, source.topic.log_ns.len()), &source.topic);
+            let new = topic.log_ns.get(first..).unwrap_or_default();
+            let time: Vec<f64> = new.iter().map(|&ns| ns.saturating_sub(start) as f64 * 1e-9).collect();
+            let columns = topic.fields.iter().zip(&topic.columns).filter_map(|(field, cells)| match cells {
+                Cells::Numbers(values) => Some((field.as_str(), values.get(first..)?)),
+                Cells::Text(_) => None,
+            });
+            preview.grow(&source.name, first, &time, columns);
+        }
     }
 
     fn check_memory(&self) -> Result<(), LogError> {

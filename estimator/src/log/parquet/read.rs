@@ -100,8 +100,9 @@ fn columns(
         if sum > rows {
             return Err(Some("its blocks have more rows than the file says".to_owned()));
         }
-        for ((&(index, meaning), cells), base) in used.iter().zip(&mut raw.columns).zip(&mut bases) {
+        for (at, (&(index, meaning), base)) in used.iter().zip(&mut bases).enumerate() {
             let column = schema.column(index);
+            let cells = &mut raw.columns[at];
             let done = group
                 .get_column_reader(index)
                 .and_then(|reader| column::append(reader, &column, meaning, count as usize, base, cells));
@@ -109,8 +110,21 @@ fn columns(
             if watch.is_cancelled() {
                 return Err(None);
             }
+            // Many files are one block.
+            show(raw, watch);
         }
         (watch.progress)(sum as f64 / rows.max(1) as f64);
     }
     if sum == rows { Ok(()) } else { Err(Some(format!("it says that it has {rows} rows and has {sum}"))) }
+}
+
+/// Shows what has been read; the first column whose name is that of a time is the clock.
+fn show(raw: &Raw, watch: &Watch<'_>) {
+    let Some(preview) = watch.preview else { return };
+    let numbers = raw.headers.iter().zip(&raw.columns).filter_map(|(name, cells)| match cells {
+        Cells::Numbers(values) => Some((name.as_str(), values.as_slice())),
+        Cells::Text(_) => None,
+    });
+    let clock = numbers.clone().find(|(name, _)| *name == "t_s");
+    preview.grow("", 0, clock.map_or(&[], |c| c.1), numbers.filter(|n| Some(n.0) != clock.map(|c| c.0)));
 }
