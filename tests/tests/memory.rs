@@ -66,7 +66,7 @@ fn loading_takes_at_most_twice_the_files_size() {
     let header = (0..CHANNELS).fold("t_s".to_owned(), |all, k| all + &format!(",a{k}"));
     let mut text = header + "\n";
     for i in 0..ROWS {
-        let _ = writeln!(text, "{i}{}", ",1,2,3,4,5,6,7,8,9,0,1,2");
+        let _ = writeln!(text, "{i},1,2,3,4,5,6,7,8,9,0,1,2");
     }
     std::fs::write(&short, text).expect("writes");
     paths.push(short);
