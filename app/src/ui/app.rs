@@ -11,7 +11,7 @@ use super::panels::results::ResultsPanel;
 use super::panels::scene::ScenePanel;
 use super::panels::trainer_side::TrainerSide;
 use super::panels::trainer_view::TrainerView;
-use super::session::{Session, Tone, Workspace};
+use super::session::{Session, Workspace};
 use super::theme::{self, palette, space};
 use super::trainer::WorldChoice;
 use super::widgets::segmented;
@@ -58,7 +58,7 @@ impl App {
         dropped_files(&ctx, &mut self.session);
         self.session.advance(f64::from(ctx.input(|i| i.stable_dt)));
         self.top_bar(ui);
-        banners(ui, &mut self.session);
+        super::messages::banners(ui, &mut self.session);
         if self.session.workspace != Workspace::Devices {
             // A test force is for the page that shows its button to stop.
             self.session.trainer.trial.abort();
@@ -269,41 +269,6 @@ fn logo(ui: &mut Ui) {
     let gold = Stroke::new(2.6, egui::Color32::from_rgb(0xE3, 0xB3, 0x41));
     ui.painter()
         .line_segment([rect.left_bottom() + egui::vec2(6.0, -7.0), rect.right_top() + egui::vec2(-6.0, 7.0)], gold);
-}
-
-fn banners(ui: &mut Ui, session: &mut Session) {
-    if session.banners.is_empty() {
-        return;
-    }
-    let p = palette(ui);
-    let mut closed = None;
-    let frame = Frame::new().inner_margin(Margin { left: 12, right: 12, top: 10, bottom: 0 });
-    Side::top("messages").frame(frame).show_separator_line(false).show(ui, |ui| {
-        for (index, banner) in session.banners.iter().enumerate() {
-            let color = if banner.tone == Tone::Error { p.danger } else { p.good };
-            let fill = theme::mix(p.card, color, 0.10);
-            Frame::new()
-                .fill(fill)
-                .stroke(Stroke::new(1.0, color))
-                .corner_radius(6)
-                .inner_margin(Margin::symmetric(12, 6))
-                .show(ui, |ui| {
-                    ui.horizontal(|ui| {
-                        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                            if ui.small_button("Dismiss").clicked() {
-                                closed = Some(index);
-                            }
-                            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                                ui.add(egui::Label::new(RichText::new(&banner.text).color(p.text)).wrap());
-                            });
-                        });
-                    });
-                });
-        }
-    });
-    if let Some(index) = closed {
-        session.banners.remove(index);
-    }
 }
 
 fn dropped_files(ctx: &egui::Context, session: &mut Session) {

@@ -13,6 +13,7 @@ pub mod format;
 pub mod jobs;
 mod keys;
 pub mod mapping;
+mod messages;
 mod opening;
 pub mod panels;
 mod playback;

@@ -12,6 +12,7 @@ use haptics::recording::{Recording, Task};
 use haptics::world::World;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// The workspaces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,7 +42,12 @@ pub struct Banner {
     pub tone: Tone,
     /// One sentence.
     pub text: String,
+    /// When it goes by itself; `None`: when it is dismissed.
+    pub until: Option<Instant>,
 }
+
+/// How long one reads that something was done.
+const DONE_LASTS: Duration = Duration::from_secs(10);
 
 /// What the 3-D view of a recording shows beside the hand.
 #[allow(clippy::struct_excessive_bools)] // four independent switches, shown as such
@@ -153,9 +159,10 @@ impl Session {
 
     /// Adds a message; the same one is not shown twice.
     pub fn say(&mut self, tone: Tone, text: String) {
-        let banner = Banner { tone, text };
-        if !self.banners.contains(&banner) {
-            self.banners.push(banner);
+        let until = (tone == Tone::Done).then(|| Instant::now() + DONE_LASTS);
+        match self.banners.iter_mut().find(|banner| banner.tone == tone && banner.text == text) {
+            Some(banner) => banner.until = until,
+            None => self.banners.push(Banner { tone, text, until }),
         }
     }
 

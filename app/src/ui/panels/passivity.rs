@@ -2,14 +2,17 @@
 
 use crate::ui::format::number;
 use crate::ui::session::Session;
-use crate::ui::theme;
+use crate::ui::theme::{self, palette};
 use crate::ui::trainer::USUAL_CONTROL_N_S_M;
 use crate::ui::widgets::{card, fact};
-use egui::{Align, Layout, Ui};
+use egui::{Align, Layout, RichText, Ui};
 
 const WHY: &str = "The observer always counts the energy that the world has taken in. When more was given out than taken in (below \
                    zero) the force on you can start to swing; the controller then brakes your fingers until it is back. It is off \
                    unless you want it: it makes some contacts feel sticky.";
+
+/// Energy below this is worth a word, J: rounding and short moments are not.
+const GIVEN_OUT_J: f64 = -0.5e-3;
 
 /// Strengths to choose from: the most damping, N s/m.
 const STRENGTHS: [(&str, f64); 3] = [("0.5", 0.5), ("2", USUAL_CONTROL_N_S_M), ("10", 10.0)];
@@ -27,6 +30,10 @@ pub fn passivity(ui: &mut Ui, session: &mut Session) {
     };
     card(ui, "Passivity", switch, |ui| {
         fact(ui, "Energy taken in", format!("{} mJ", number(energy_j * 1e3, 1)));
+        if energy_j < GIVEN_OUT_J {
+            let text = "More was given out than taken in: the force on you may swing. The controller brakes it.";
+            ui.label(RichText::new(text).size(11.5).color(palette(ui).caution));
+        }
         if before.is_some() {
             ui.add_enabled_ui(free, |ui| strength(ui, &mut most));
         }

@@ -16,8 +16,9 @@ const LEAST_M: f64 = 0.003;
 const SPEED_M_S: f64 = 0.09;
 /// A grip force that says that both fingers touch, N.
 const TOUCH_N: f64 = 0.04;
-/// Strengths that can be chosen, N.
-const STRENGTH_N: std::ops::RangeInclusive<f64> = 0.3..=3.6;
+/// Strengths that can be chosen, N. The firmest breaks what can be broken (a barrel's wall gives at 5 N): learning to hold softly
+/// needs the other one too.
+const STRENGTH_N: std::ops::RangeInclusive<f64> = 0.3..=6.0;
 
 /// The hand of a person with a mouse: a place, open or closed, and how firmly.
 #[derive(Clone, Copy, Debug)]

@@ -88,6 +88,25 @@ fn the_crank_can_be_turned_with_the_mouse() {
 }
 
 #[test]
+fn a_barrel_that_is_squeezed_too_hard_leaks_and_a_soft_pinch_carries_it() {
+    for (change_n, breaks) in [(0.5, false), (9.0, true)] {
+        let mut trainer = manual();
+        trainer.choose(WorldChoice::Barrel).expect("the barrel");
+        trainer.advance(0.3);
+        let at = body(&trainer, 0);
+        drag(&mut trainer, at + Vec2::new(0.0, 0.03), at, 0.8);
+        trainer.pinch.strengthen(change_n);
+        trainer.pinch.button = true;
+        trainer.advance(1.0);
+        drag(&mut trainer, at, at + Vec2::new(0.0, 0.02), 0.8);
+        let (snapshot, _) = trainer.scene().expect("running");
+        let strong = trainer.pinch.strength_n();
+        assert_eq!(snapshot.state.bodies[0].leaked_kg > 0.0, breaks, "with {strong} N: {:?}", snapshot.state.bodies[0]);
+        assert!(breaks || snapshot.state.bodies[0].center_m.y - at.y > 0.008, "carried with {strong} N");
+    }
+}
+
+#[test]
 fn a_recording_starts_at_zero_and_can_be_fitted() {
     let mut trainer = Trainer { clock: Clock::Manual, operator: Operator::Scripted, ..Trainer::default() };
     trainer.ensure_running().expect("a loop");

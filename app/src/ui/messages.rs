@@ -1,0 +1,79 @@
+//! Messages above the workspace.
+
+use super::session::{Session, Tone};
+use super::theme::{self, palette};
+use egui::{Align, Frame, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
+use std::time::Instant;
+
+/// Draws them above the workspace. What was done fades by itself; what went wrong stays until it is dismissed.
+pub fn banners(ui: &mut Ui, session: &mut Session) {
+    let now = Instant::now();
+    session.banners.retain(|banner| banner.until.is_none_or(|until| now < until));
+    if let Some(first) = session.banners.iter().filter_map(|banner| banner.until).min() {
+        ui.ctx().request_repaint_after(first - now);
+    }
+    if session.banners.is_empty() {
+        return;
+    }
+    let p = palette(ui);
+    let mut closed = None;
+    let frame = Frame::new().inner_margin(Margin { left: 12, right: 12, top: 10, bottom: 0 });
+    Side::top("messages").frame(frame).show_separator_line(false).show(ui, |ui| {
+        for (index, banner) in session.banners.iter().enumerate() {
+            let color = if banner.tone == Tone::Error { p.danger } else { p.good };
+            let fill = theme::mix(p.card, color, 0.10);
+            Frame::new()
+                .fill(fill)
+                .stroke(Stroke::new(1.0, color))
+                .corner_radius(6)
+                .inner_margin(Margin::symmetric(12, 6))
+                .show(ui, |ui| {
+                    ui.horizontal(|ui| {
+                        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                            if ui.small_button("Dismiss").clicked() {
+                                closed = Some(index);
+                            }
+                            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                                ui.add(egui::Label::new(RichText::new(&banner.text).color(p.text)).wrap());
+                            });
+                        });
+                    });
+                });
+        }
+    });
+    if let Some(index) = closed {
+        session.banners.remove(index);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use std::time::Duration;
+
+    #[test]
+    fn what_was_done_goes_by_itself_and_what_went_wrong_stays() {
+        let mut session = Session::new();
+        session.fail("It did not work.");
+        session.say(Tone::Done, "Saved.".to_owned());
+        let builder = Harness::builder().with_context_setup(theme::install);
+        let mut harness = builder.build_ui_state(|ui, session: &mut Session| banners(ui, session), session);
+        harness.run_steps(2);
+        assert_eq!(harness.state().banners.len(), 2);
+        let done = harness.state_mut().banners.iter_mut().find(|b| b.tone == Tone::Done).expect("said");
+        let until = done.until.expect("it ends");
+        assert!(until > Instant::now() + Duration::from_secs(2), "there is time to read it");
+        // Its time is up.
+        done.until = Some(Instant::now());
+        harness.run_steps(2);
+        let left: Vec<Tone> = harness.state().banners.iter().map(|b| b.tone).collect();
+        assert_eq!(left, [Tone::Error]);
+        // Said again it has its time again, and stands there once.
+        for _ in 0..2 {
+            harness.state_mut().say(Tone::Done, "Saved.".to_owned());
+        }
+        harness.run_steps(2);
+        assert_eq!(harness.state().banners.len(), 2);
+    }
+}
