@@ -1,6 +1,8 @@
 /* A remote hand for Touchstone: two fingertips that rest on the table, and what they feel.
  *
- *   cc -std=c99 -O2 -o client client.c -lm && ./client 127.0.0.1 47474 hand.key 5
+ *   cc -std=c99 -O2 -o client client.c -lm && ./client 127.0.0.1 47474 hand.key 5 [waves]
+ *
+ * With `waves` the packets carry wave variables (Touchstone must be told so too).
  *
  * C99 and POSIX sockets only; HMAC-SHA-256 is at the end. The packets are described in README.md beside this file.
  * Little-endian machines only (the packets are little-endian and are copied as they are).
@@ -16,7 +18,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { MOTION_BYTES = 112, FORCE_BYTES = 88, SEAL_BYTES = 16, KEY_BYTES = 32, GREETING = 1, GOODBYE = 1, MOST_ASKED = 32 };
+enum { MOTION_BYTES = 112, FORCE_BYTES = 88, WAVE_UP_BYTES = 128, WAVE_DOWN_BYTES = 112, STOP = 2, SEAL_BYTES = 16, KEY_BYTES = 32, GREETING = 1, GOODBYE = 1, MOST_ASKED = 32 };
 
 typedef struct {
     int socket;
@@ -24,6 +26,9 @@ typedef struct {
     uint64_t session, sequence, newest_force;
     uint64_t asked_us[MOST_ASKED];
     int asked;
+    /* Wave variables: per finger x and y of the integral, energy. */
+    int waves, stopped;
+    double impedance, arrived[6], drawn[6], sent[6], purse[2], w[4];
 } Hand;
 
 static void hmac_sha256(const uint8_t key[KEY_BYTES], const uint8_t *message, size_t size, uint8_t out[32]);
@@ -41,25 +46,76 @@ static void sleep_us(long us)
     nanosleep(&time, NULL);
 }
 
-/* Positions (m) as x1, y1, x2, y2 and velocities (m/s) after them. */
+/* Positions (m) as x1, y1, x2, y2 and velocities (m/s) after them; with waves only the positions where the session began count. */
 static void send_motion(Hand *hand, const double motion[8], uint16_t flags)
 {
-    uint8_t packet[MOTION_BYTES] = {'T', 'S', 'U', 'D', 1, 1};
+    uint8_t packet[WAVE_UP_BYTES] = {'T', 'S', 'U', 'D', 1, 1};
     uint8_t seal[32];
     uint64_t now = clock_us();
+    const size_t size = hand->waves ? WAVE_UP_BYTES : MOTION_BYTES;
     hand->sequence++;
     if (hand->session == 0 && hand->asked < MOST_ASKED) hand->asked_us[hand->asked++] = now;
     memcpy(packet + 6, &flags, 2);
     memcpy(packet + 8, &hand->session, 8);
     memcpy(packet + 16, &hand->sequence, 8);
     memcpy(packet + 24, &now, 8);
-    memcpy(packet + 32, motion, 64);
-    hmac_sha256(hand->key, packet, MOTION_BYTES - SEAL_BYTES, seal);
-    memcpy(packet + MOTION_BYTES - SEAL_BYTES, seal, SEAL_BYTES);
-    (void)!send(hand->socket, packet, MOTION_BYTES, 0);
+    if (hand->waves) {
+        packet[4] = 2;
+        packet[5] = 3;
+        memcpy(packet + 32, motion, 32);
+        memcpy(packet + 64, hand->sent, 48);
+    } else {
+        memcpy(packet + 32, motion, 64);
+    }
+    hmac_sha256(hand->key, packet, size - SEAL_BYTES, seal);
+    memcpy(packet + size - SEAL_BYTES, seal, SEAL_BYTES);
+    (void)!send(hand->socket, packet, size, 0);
 }
 
-/* Takes all packets that have come; returns 1 when there was a new force (fx1, fy1, fx2, fy2 in N). */
+/* A tick of dt seconds begins: the forces (N) to put on the fingers, for their velocities (m/s) of the tick before. */
+static void wave_forces(Hand *hand, const double velocity[4], double dt, double force[4])
+{
+    const double smoothing = 0.02, most_n = hand->stopped ? 0.0 : 4.0, root = sqrt(2.0 * hand->impedance);
+    int finger, axis;
+    for (finger = 0; finger < 2; finger++) {
+        double *arrived = hand->arrived + 3 * finger, *drawn = hand->drawn + 3 * finger, *w = hand->w + 2 * finger;
+        double energy = arrived[2] - drawn[2], most = energy > 0.0 ? sqrt(2.0 * energy / dt) : 0.0, size;
+        for (axis = 0; axis < 2; axis++) w[axis] = (arrived[axis] - drawn[axis]) / smoothing;
+        size = sqrt(w[0] * w[0] + w[1] * w[1]);
+        for (axis = 0; axis < 2; axis++) {
+            if (size > most) w[axis] *= most / size;
+            drawn[axis] += w[axis] * dt;
+            force[2 * finger + axis] = root * w[axis] - hand->impedance * velocity[2 * finger + axis];
+        }
+        drawn[2] += 0.5 * (w[0] * w[0] + w[1] * w[1]) * dt;
+        size = sqrt(force[2 * finger] * force[2 * finger] + force[2 * finger + 1] * force[2 * finger + 1]);
+        for (axis = 0; axis < 2 && size > most_n; axis++) force[2 * finger + axis] *= most_n / size;
+    }
+}
+
+/* The tick ends: under these forces (N) the fingers have moved by so much (m). */
+static void wave_moved(Hand *hand, const double force[4], const double moved[4], double dt)
+{
+    const double root = sqrt(2.0 * hand->impedance);
+    int finger, axis;
+    for (finger = 0; finger < 2; finger++) {
+        double *sent = hand->sent + 3 * finger, *w = hand->w + 2 * finger, energy = 0.0, income = 0.0;
+        for (axis = 0; axis < 2; axis++) {
+            double u = root * moved[2 * finger + axis] / dt - w[axis];
+            sent[axis] += u * dt;
+            energy += 0.5 * u * u * dt;
+            income += 0.5 * w[axis] * w[axis] * dt - force[2 * finger + axis] * moved[2 * finger + axis];
+        }
+        /* The wave may carry no more than this end took in. */
+        hand->purse[finger] += income;
+        if (energy > hand->purse[finger]) energy = hand->purse[finger] > 0.0 ? hand->purse[finger] : 0.0;
+        sent[2] += energy;
+        hand->purse[finger] -= energy;
+        if (hand->purse[finger] > 1e-4) hand->purse[finger] = 1e-4;
+    }
+}
+
+/* Takes all packets that have come; returns 1 when there was a new force (fx1, fy1, fx2, fy2 in N), or new waves. */
 static int receive_force(Hand *hand, double force[4])
 {
     uint8_t packet[256], seal[32];
@@ -69,32 +125,39 @@ static int receive_force(Hand *hand, double force[4])
         uint16_t flags;
         uint64_t session, sequence, echo_us;
         uint8_t difference = 0;
-        double values[4];
+        double values[6] = {0};
+        const ssize_t whole = hand->waves ? WAVE_DOWN_BYTES : FORCE_BYTES;
         int i;
-        if (size != FORCE_BYTES || memcmp(packet, "TSUD\x01\x02", 6) != 0) continue;
-        hmac_sha256(hand->key, packet, FORCE_BYTES - SEAL_BYTES, seal);
-        for (i = 0; i < SEAL_BYTES; i++) difference |= seal[i] ^ packet[FORCE_BYTES - SEAL_BYTES + i];
+        if (size != whole || memcmp(packet, hand->waves ? "TSUD\x02\x04" : "TSUD\x01\x02", 6) != 0) continue;
+        hmac_sha256(hand->key, packet, (size_t)whole - SEAL_BYTES, seal);
+        for (i = 0; i < SEAL_BYTES; i++) difference |= seal[i] ^ packet[whole - SEAL_BYTES + i];
         if (difference) continue;
         memcpy(&flags, packet + 6, 2);
         memcpy(&session, packet + 8, 8);
         memcpy(&sequence, packet + 16, 8);
-        memcpy(values, packet + 32, sizeof values);
-        memcpy(&echo_us, packet + 64, 8);
+        memcpy(values, packet + 32, hand->waves ? 48 : 32);
+        memcpy(&echo_us, packet + whole - SEAL_BYTES - 8, 8);
         if (flags & GREETING) {
             /* Only the answer to a question of this run: a greeting recorded long ago would lead astray. */
             for (i = 0; hand->session == 0 && i < hand->asked; i++) {
                 if (hand->asked_us[i] == echo_us) {
                     hand->session = session;
                     hand->newest_force = sequence;
+                    if (hand->waves) memcpy(&hand->impedance, packet + 80, 8);
                 }
             }
             continue;
         }
         if (session != hand->session || sequence <= hand->newest_force) continue;
-        for (i = 0; i < 4 && isfinite(values[i]); i++) {}
-        if (i < 4) continue;
+        for (i = 0; i < 6 && isfinite(values[i]); i++) {}
+        if (i < 6) continue;
         hand->newest_force = sequence;
-        memcpy(force, values, sizeof values);
+        if (hand->waves) {
+            memcpy(hand->arrived, values, sizeof values);
+            hand->stopped = (flags & STOP) != 0;
+        } else {
+            memcpy(force, values, 4 * sizeof *force);
+        }
         fresh = 1;
     }
     return fresh;
@@ -117,11 +180,13 @@ int main(int count, char **arguments)
     struct sockaddr_in address = {0};
     double motion[8] = {-0.02, -0.11, 0.02, -0.11}, force[4] = {0}, largest = 0.0;
     unsigned long answers = 0;
+    double velocity[4] = {0}, moved[4] = {0}, before, last = 0.0;
     uint64_t start;
     double seconds;
     int i;
-    if (count != 5) {
-        fprintf(stderr, "usage: client ADDRESS PORT KEYFILE SECONDS\n");
+    hand.waves = count == 6 && strcmp(arguments[5], "waves") == 0;
+    if (count != 5 && !hand.waves) {
+        fprintf(stderr, "usage: client ADDRESS PORT KEYFILE SECONDS [waves]\n");
         return 2;
     }
     if (!read_key(arguments[3], hand.key)) {
@@ -149,7 +214,24 @@ int main(int count, char **arguments)
     start = clock_us();
     for (;;) {
         double now = (double)(clock_us() - start) * 1e-6;
+        double dt = now - last > 1e-5 ? now - last : 1e-5;
         if (now >= seconds) break;
+        last = now;
+        if (hand.waves) {
+            /* The same way, by waves; a stiff hand that does not give way to the force. */
+            const double origin[8] = {-0.02, -0.11, 0.02, -0.11};
+            if (receive_force(&hand, force)) answers++;
+            wave_forces(&hand, velocity, dt, force);
+            before = motion[1];
+            motion[1] = motion[3] = now < 0.5 ? -0.11 - 0.017 * now / 0.5 : -0.127;
+            moved[1] = moved[3] = motion[1] - before;
+            for (i = 0; i < 4; i++) velocity[i] = moved[i] / dt;
+            wave_moved(&hand, force, moved, dt);
+            send_motion(&hand, origin, 0);
+            if (force[1] > largest) largest = force[1];
+            sleep_us(2000);
+            continue;
+        }
         /* Down to 2 mm below the table's surface within the first half second, then still. */
         motion[1] = motion[3] = now < 0.5 ? -0.11 - 0.017 * now / 0.5 : -0.127;
         motion[5] = motion[7] = now < 0.5 ? -0.017 / 0.5 : 0.0;

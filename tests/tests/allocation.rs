@@ -5,7 +5,7 @@ use haptics::Vec2;
 use haptics::device::channel::{ChannelConfig, ChannelDevice, Waves};
 use haptics::device::gamepad::{self, GamepadMode, PadState, gamepad};
 use haptics::device::haply::{Board, BoardModel, HaplyHand, Placement};
-use haptics::device::udp::{Force, Key, Motion, UdpConfig, UdpDevice};
+use haptics::device::udp::{Force, Key, Motion, UdpConfig, UdpDevice, WaveDown, WaveUp};
 use haptics::device::{
     Command, Device, DeviceSpec, KeysHeld, Mistake, MouseTarget, ReplayDevice, Sample, ScriptedOperator, Skill,
     keyboard, mouse, touch,
@@ -161,6 +161,33 @@ fn a_remote_device() {
         motion.sequence = sequence;
         client.send_to(&motion.encode(&key), monitor.address()).expect("loopback");
         client.send_to(&[1; 50], monitor.address()).expect("loopback");
+        run(&mut servo, 1);
+    }
+    assert!(monitor.accepted() > 100);
+}
+
+#[test]
+fn a_remote_device_that_speaks_in_waves() {
+    let world = presets::table();
+    let tips = State::resting(&world).input.tip_in_world;
+    let key = Key::new([9; 32]);
+    let listen = (std::net::Ipv4Addr::LOCALHOST, 0).into();
+    let waves = Some(Waves::new(&UdpConfig::unstated(), &world, DT));
+    let config = UdpConfig { listen, waves, ..UdpConfig::loopback(key.clone()) };
+    let device = UdpDevice::open(config, tips).expect("a free port");
+    let (monitor, client) = (device.monitor(), std::net::UdpSocket::bind("127.0.0.1:0").expect("a free port"));
+    let mut servo = servo(&world, Box::new(device));
+    let mut up = WaveUp { origin_in_world: tips, ..WaveUp::default() };
+    let mut buffer = [0; 256];
+    client.send_to(&up.encode(&key), monitor.address()).expect("loopback");
+    run(&mut servo, 5);
+    let size = client.recv(&mut buffer).expect("a greeting");
+    up.session = WaveDown::decode(&buffer[..size], &key).expect("sealed").session;
+    for sequence in 1..200_u32 {
+        up.sequence = u64::from(sequence);
+        up.accounts[0].integral.x = 1e-3 * f64::from(sequence);
+        up.accounts[0].energy_j = 1e-3 * f64::from(sequence);
+        client.send_to(&up.encode(&key), monitor.address()).expect("loopback");
         run(&mut servo, 1);
     }
     assert!(monitor.accepted() > 100);

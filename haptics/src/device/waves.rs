@@ -20,6 +20,12 @@ use crate::world::World;
 const PAD_DEPTH_M: f64 = 0.002;
 /// Time constant with which the receiver of waves follows what arrives, beside the jitter, s.
 pub(super) const SMOOTHING_S: f64 = 0.005;
+/// The receiver's time constant is at least so many times the longest gap between packets.
+const SMOOTH_GAPS: f64 = 4.0;
+/// A longer gap is a break, s: it is not smoothed over.
+const LONGEST_GAP_S: f64 = 0.05;
+/// How long gaps are remembered, s.
+const GAP_MEMORY_S: f64 = 2.0;
 /// Time constant of the velocity of a device with a resolution, s.
 const VELOCITY_SMOOTHING_S: f64 = 0.004;
 /// Faster than a hand: a jump of position is spread over time, m/s.
@@ -115,18 +121,29 @@ impl Sender {
 struct Receiver {
     arrived: Account,
     used: Account,
+    /// Time since the last packet, s; `None` before the first, which is no gap.
+    since_s: Option<f64>,
+    /// Longest time between two packets lately, s.
+    gap_s: f64,
 }
 
 impl Receiver {
     /// Takes the newest packet's content.
     fn arrive(&mut self, account: Account) {
         self.arrived = account;
+        self.gap_s = self.gap_s.max(self.since_s.map_or(0.0, |since_s| since_s.min(LONGEST_GAP_S)));
+        self.since_s = Some(0.0);
     }
 
-    /// The wave for the next `dt_s`: follows the integral with the time constant `smoothing_s`, within the energy that arrived.
-    /// After a last packet it fades out.
+    /// The wave for the next `dt_s`: follows the integral with the time constant `smoothing_s`, or a longer one that covers the
+    /// gaps between packets, within the energy that arrived. After a last packet it fades out.
+    ///
+    /// A wave that jumps with every packet spends more energy than the even one that was sent: what is held would bleed away.
     fn draw(&mut self, smoothing_s: f64, dt_s: f64) -> Vec2 {
-        let wanted = (self.arrived.integral - self.used.integral) / smoothing_s.max(dt_s);
+        self.since_s = self.since_s.map(|since_s| since_s + dt_s);
+        self.gap_s -= self.gap_s * (dt_s / GAP_MEMORY_S).min(1.0);
+        let smoothing_s = smoothing_s.max(SMOOTH_GAPS * self.gap_s).max(dt_s);
+        let wanted = (self.arrived.integral - self.used.integral) / smoothing_s;
         let purse_j = (self.arrived.energy_j - self.used.energy_j).max(0.0);
         let most = (2.0 * purse_j / dt_s).sqrt();
         let size = wanted.norm();

@@ -8,6 +8,7 @@ use haptics::device::channel::{ChannelConfig, ChannelDevice, Waves};
 use haptics::device::haply::{HaplyHand, Tally};
 use haptics::device::udp::{Key, UdpConfig, UdpDevice, UdpMonitor};
 use haptics::device::{Device, DeviceSpec, MouseTarget, ReplayDevice, ScriptedOperator, keyboard, mouse, touch};
+use haptics::servo::rate::SAFE_HZ;
 use haptics::world::{State, World};
 use std::path::Path;
 
@@ -48,7 +49,7 @@ pub fn kinds(world: &World) -> Vec<Kind> {
             spec: Some(HaplyHand::two_boards()),
         },
         Kind {
-            id: "udp:ADDRESS[:PORT],KEYFILE[,DAMPING[,ROUND_TRIP]]",
+            id: "udp:ADDRESS[:PORT],KEYFILE[,DAMPING[,ROUND_TRIP[,waves]]]",
             what: "A device over the network, sealed with a shared key (docs/udp); its damping in N s/m and round trip in ms, if known",
             spec: Some(UdpConfig::unstated()),
         },
@@ -112,7 +113,7 @@ pub fn open(name: &str, world: &World) -> anyhow::Result<Opened> {
             let answers = Some(hand.tallies());
             Ok(Opened { answers, ..opened(Box::new(hand), "Move both handles while it runs.") })
         }
-        ("udp", Some(rest)) => remote(rest, tips),
+        ("udp", Some(rest)) => remote(rest, world, tips),
         ("gamepad", mode) => gamepad(mode, world, tips),
         _ => anyhow::bail!("there is no device `{name}`; `touchstone device list` shows what there is"),
     }
@@ -139,15 +140,22 @@ fn haply_hand(ports: &str, world: &World) -> anyhow::Result<HaplyHand> {
     Ok(HaplyHand::open([left, right], world.hand.workspace.center_m, crate::program().as_deref())?)
 }
 
-/// `ADDRESS[:PORT],KEYFILE[,DAMPING[,ROUND_TRIP]]`
-fn remote(text: &str, tips: [Vec2; 2]) -> anyhow::Result<Opened> {
+/// `ADDRESS[:PORT],KEYFILE[,DAMPING[,ROUND_TRIP[,waves]]]`
+fn remote(text: &str, world: &World, tips: [Vec2; 2]) -> anyhow::Result<Opened> {
     let mut parts = text.split(',');
     let address = parts.next().unwrap_or_default();
     let key_file = parts.next().context("a remote device needs a key: udp:ADDRESS,KEYFILE")?;
     let mut next = || parts.next().unwrap_or_default().to_owned();
     let (damping, round_trip) = (next(), next());
+    let with_waves = match parts.next() {
+        None => false,
+        Some("waves") => true,
+        Some(other) => anyhow::bail!("`{other}` says nothing about a remote device; `waves` asks for wave variables"),
+    };
     let remote = Remote { key: key_file.to_owned(), address: address.to_owned(), damping, round_trip };
-    let config = remote.config().map_err(anyhow::Error::msg)?;
+    let mut config = remote.config().map_err(anyhow::Error::msg)?;
+    // For the slowest rate: a damper that is enough there is enough at every faster one.
+    config.waves = with_waves.then(|| Waves::new(&config.spec, world, 1.0 / SAFE_HZ));
     for doubt in Key::doubts(Path::new(key_file)) {
         eprintln!("{doubt}");
     }
@@ -219,6 +227,7 @@ mod tests {
             ("udp:elsewhere,/nowhere", "no address"),
             ("udp:127.0.0.1,/nowhere,-1", "`-1` is no damping"),
             ("udp:127.0.0.1,/nowhere,1,soon", "`soon` is no round trip"),
+            ("udp:127.0.0.1,/nowhere,1,5,often", "`often` says nothing"),
             ("replay:/nowhere.csv", "/nowhere.csv"),
         ] {
             let error = open(name, &world).err().map(|e| format!("{e:#}")).unwrap_or_default();

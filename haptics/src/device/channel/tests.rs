@@ -188,6 +188,22 @@ fn a_device_that_is_lost_in_the_middle_of_a_motion_is_not_pushed_any_more() {
 }
 
 #[test]
+fn a_force_that_is_held_does_not_bleed_away_when_packets_are_lost() {
+    for loss in [0.3, 0.5] {
+        let (device, seen) = operator(|t| if t > 0.5 { 0.004 } else { 0.0 });
+        let config = ChannelConfig { loss, seed: 3, ..half_a_second(true) };
+        let mut channel = ChannelDevice::new(device, config).expect("possible");
+        run(&mut channel, 60.0, false);
+        let seen = seen.lock().expect("one thread");
+        let felt = |tick: usize| 400.0 * (0.004 - seen.x_m[tick]);
+        // 0.096 N without loss: 36 N/m of line.
+        assert!(felt(59_999) > 0.07, "loss {loss}: {} N are left", felt(59_999));
+        assert!((felt(59_999) / felt(30_000) - 1.0).abs() < 0.05, "{} N, then {} N", felt(30_000), felt(59_999));
+        assert!(seen.least_j > -1e-6, "{} J", seen.least_j);
+    }
+}
+
+#[test]
 fn an_impact_is_told_after_the_delay_one_way() {
     /// Writes down when it is told of an impact.
     struct Told(DeviceSpec, usize, Arc<Mutex<Vec<(usize, f64)>>>);

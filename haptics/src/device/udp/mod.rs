@@ -1,23 +1,35 @@
 //! A device at the other end of a network: positions come in as UDP packets, forces go back.
 //!
-//! Every packet is sealed with a shared key. A device first asks for a session (a number drawn at random when the port is opened);
-//! only motion of this session, with a sequence above all before, moves the fingers and gets forces. So what was recorded on the
-//! wire is worth nothing later, in the same session or in another. The tick reads at most [`PACKETS_A_TICK`] packets from a socket
+//! Every packet is sealed with a shared key. A device first asks for a session (a number drawn at random for each that asks); only
+//! motion of the newest session that was begun, with a sequence above all before, moves the fingers and gets forces. So what was
+//! recorded on the wire is worth nothing later, in the same session or in another; and a device that was started anew is taken at
+//! once. The tick reads at most [`PACKETS_A_TICK`] packets from a socket
 //! that never waits, into a buffer that was there before, and answers with one.
+//!
+//! On choice the packets carry wave variables in place of positions and forces ([`WaveUp`], [`WaveDown`]): a slow network can then
+//! give no energy out.
 
 mod key;
 mod packet;
 #[cfg(test)]
 mod tests;
+mod wave_packet;
+#[cfg(test)]
+mod wave_tests;
 
+pub use super::waves::{Account, Waves};
 pub use key::{Key, KeyError, SEAL_BYTES};
 pub use packet::{
     FLAG_BYE, FLAG_GREETING, FORCE_BYTES, Force, MAGIC, MAX_POSITION_M, MAX_VELOCITY_M_S, MOTION_BYTES, Motion,
     Refused, VERSION,
 };
+pub use wave_packet::{FLAG_STOP, WAVE_DOWN_BYTES, WAVE_UP_BYTES, WAVE_VERSION, WaveDown, WaveUp};
 
+use super::waves::{SMOOTHING_S, WorldEnd};
 use super::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -28,6 +40,8 @@ pub const PACKETS_A_TICK: usize = 16;
 pub const PORT: u16 = 47_474;
 /// A sample counts as fresh for this long: a device that sends at 250 Hz or faster is never stale.
 const FRESH_S: f64 = 0.004;
+/// With waves a gap is harmless: the tip comes to rest by itself. A sample counts as fresh for this long, s.
+const WAVE_FRESH_S: f64 = 0.05;
 /// Nothing from the device for this long: its address is forgotten and gets no more packets.
 const FORGET_S: f64 = 1.0;
 
@@ -40,14 +54,22 @@ pub struct UdpConfig {
     pub key: Key,
     /// What the remote device can do.
     pub spec: DeviceSpec,
-    /// Round trip to it, s: the stiffness that may be rendered is computed with it.
+    /// Round trip to it, s: the stiffness that may be rendered is computed with it. Waves need no allowance for it.
     pub delay_s: f64,
+    /// Wave variables in the packets in place of positions and forces, if they are to be used.
+    pub waves: Option<Waves>,
 }
 
 impl UdpConfig {
     /// On this machine only, at the usual port, for a device that feels up to 4 N and states nothing else of itself.
     pub fn loopback(key: Key) -> Self {
-        Self { listen: SocketAddr::from((Ipv4Addr::LOCALHOST, PORT)), key, spec: Self::unstated(), delay_s: 0.0 }
+        Self {
+            listen: SocketAddr::from((Ipv4Addr::LOCALHOST, PORT)),
+            key,
+            spec: Self::unstated(),
+            delay_s: 0.0,
+            waves: None,
+        }
     }
 
     /// A device of which nothing is known.
@@ -110,15 +132,35 @@ impl UdpMonitor {
     }
 }
 
+/// What a packet from the device says, whatever carries it.
+struct Word {
+    flags: u16,
+    session: u64,
+    sequence: u64,
+    time_us: u64,
+    says: Says,
+}
+
+enum Says {
+    Motion { tip_in_world: [Vec2; 2], tip_velocity: [Vec2; 2] },
+    Waves { origin_in_world: [Vec2; 2], accounts: [Account; 2] },
+}
+
 /// The servo's end of a remote device.
 #[derive(Debug)]
 pub struct UdpDevice {
     spec: DeviceSpec,
     delay_s: f64,
+    waves: Option<Waves>,
+    world_end: WorldEnd,
     socket: UdpSocket,
     key: Key,
     monitor: UdpMonitor,
+    /// Draws the sessions.
+    rng: StdRng,
     session: u64,
+    /// The session that was promised to whoever asked last; it counts from its first motion.
+    promised: u64,
     /// Sequence that the next motion must exceed; `None` before the first.
     newest: Option<u64>,
     sent: u64,
@@ -137,14 +179,23 @@ impl UdpDevice {
         let socket = UdpSocket::bind(listen).map_err(fail)?;
         socket.set_nonblocking(true).map_err(fail)?;
         let address = socket.local_addr().map_err(fail)?;
+        let mut spec = config.spec;
+        if let Some(waves) = config.waves {
+            // What the servo feels at its end is the wave impedance, not the device.
+            (spec.damping_n_s_m, spec.coulomb_n, spec.resolution_m) = (waves.impedance_n_s_m, 0.0, 0.0);
+        }
         Ok(Self {
-            spec: config.spec,
+            spec,
             delay_s: config.delay_s,
+            waves: config.waves,
+            world_end: WorldEnd::default(),
             socket,
             key: config.key,
             monitor: UdpMonitor { counters: Arc::new(Counters::default()), address },
-            // Zero asks for a session, so no session has this number.
-            session: rand::random::<u64>().max(1),
+            rng: StdRng::seed_from_u64(rand::random()),
+            // Nobody has been promised this one, so nobody can use it.
+            session: 0,
+            promised: 0,
             newest: None,
             sent: 0,
             peer: None,
@@ -163,7 +214,7 @@ impl UdpDevice {
     /// Reads what has come, at most [`PACKETS_A_TICK`] packets.
     fn receive(&mut self) {
         // One byte more than the largest packet shows what was too long.
-        let mut buffer = [0; MOTION_BYTES + 1];
+        let mut buffer = [0; WAVE_UP_BYTES + 1];
         for _ in 0..PACKETS_A_TICK {
             let (size, from) = match self.socket.recv_from(&mut buffer) {
                 Ok(received) => received,
@@ -171,46 +222,94 @@ impl UdpDevice {
                 // Some systems report here that an earlier answer found nobody; the next packet is behind it.
                 Err(_) => continue,
             };
-            if let Err(why) = Motion::decode(&buffer[..size], &self.key).and_then(|motion| self.take(&motion, from)) {
+            if let Err(why) = self.decode(&buffer[..size]).and_then(|word| self.take(&word, from)) {
                 self.monitor.counters.refused[why as usize].fetch_add(1, Ordering::Relaxed);
             }
         }
     }
 
-    /// Takes a sealed motion packet in.
-    fn take(&mut self, motion: &Motion, from: SocketAddr) -> Result<(), Refused> {
-        if motion.session == 0 {
+    /// Opens a packet of the kind that is spoken here.
+    fn decode(&self, packet: &[u8]) -> Result<Word, Refused> {
+        let with_waves = packet.get(4) == Some(&WAVE_VERSION);
+        if packet.starts_with(&MAGIC) && with_waves != self.waves.is_some() {
+            // Before its size is looked at: this is what a person needs to know.
+            return Err(Refused::Version);
+        }
+        if self.waves.is_some() {
+            let WaveUp { flags, session, sequence, time_us, origin_in_world, accounts } =
+                WaveUp::decode(packet, &self.key)?;
+            return Ok(Word { flags, session, sequence, time_us, says: Says::Waves { origin_in_world, accounts } });
+        }
+        let Motion { flags, session, sequence, time_us, tip_in_world, tip_velocity } =
+            Motion::decode(packet, &self.key)?;
+        Ok(Word { flags, session, sequence, time_us, says: Says::Motion { tip_in_world, tip_velocity } })
+    }
+
+    /// Takes a sealed packet in.
+    fn take(&mut self, word: &Word, from: SocketAddr) -> Result<(), Refused> {
+        if word.session == 0 {
             self.monitor.counters.greeted.fetch_add(1, Ordering::Relaxed);
-            self.answer(from, FLAG_GREETING, [Vec2::zeros(); 2], motion.time_us);
+            // Zero asks for a session, so no session has this number.
+            self.promised = self.rng.random::<u64>().max(1);
+            self.answer(from, FLAG_GREETING, self.promised, [Vec2::zeros(); 2], word.time_us);
             return Ok(());
         }
-        if motion.session != self.session {
+        if word.session == self.promised {
+            self.begin();
+        }
+        if word.session != self.session {
             return Err(Refused::Session);
         }
-        if self.newest.is_some_and(|newest| motion.sequence <= newest) {
+        if self.newest.is_some_and(|newest| word.sequence <= newest) {
             return Err(Refused::Sequence);
         }
-        self.newest = Some(motion.sequence);
         self.monitor.counters.accepted.fetch_add(1, Ordering::Relaxed);
-        self.sample.tip_in_world = motion.tip_in_world;
-        self.sample.tip_velocity = motion.tip_velocity;
-        self.echo_us = motion.time_us;
-        let leaves = motion.flags & FLAG_BYE != 0;
+        match word.says {
+            Says::Motion { tip_in_world, tip_velocity } => {
+                (self.sample.tip_in_world, self.sample.tip_velocity) = (tip_in_world, tip_velocity);
+            }
+            Says::Waves { origin_in_world, accounts } => {
+                if self.newest.is_none() {
+                    // Both ends agree on where the hand begins; waves only tell how it moves.
+                    self.sample.tip_in_world = origin_in_world;
+                }
+                self.world_end.arrive(accounts);
+            }
+        }
+        self.newest = Some(word.sequence);
+        self.echo_us = word.time_us;
+        let leaves = word.flags & FLAG_BYE != 0;
         self.peer = (!leaves).then_some(from);
         self.age_s = if leaves { f64::INFINITY } else { 0.0 };
         if leaves {
             // The last word to a device that goes is zero force, like that of a session that ends here.
-            self.answer(from, 0, [Vec2::zeros(); 2], motion.time_us);
+            self.answer(from, FLAG_STOP, self.session, [Vec2::zeros(); 2], word.time_us);
         }
         Ok(())
     }
 
-    fn answer(&mut self, to: SocketAddr, flags: u16, force_n: [Vec2; 2], echo_us: u64) {
+    /// The first motion of a session that was promised.
+    fn begin(&mut self) {
+        (self.session, self.promised) = (self.promised, 0);
+        self.newest = None;
+        self.world_end = WorldEnd::default();
+    }
+
+    /// Sends the forces (N), or the waves that stand for them. The flag to stop is for waves: plain packets say zero.
+    fn answer(&mut self, to: SocketAddr, flags: u16, session: u64, force_n: [Vec2; 2], echo_us: u64) {
         self.sent += 1;
-        let time_us = (self.now_s * 1e6) as u64;
-        let force = Force { flags, session: self.session, sequence: self.sent, time_us, force_n, echo_us };
+        let (sequence, time_us) = (self.sent, (self.now_s * 1e6) as u64);
         // A packet that cannot be sent is a packet that is lost: the device goes to zero force by itself.
-        let _ = self.socket.send_to(&force.encode(&self.key), to);
+        let _ = if let Some(waves) = self.waves {
+            let impedance_n_s_m = waves.impedance_n_s_m;
+            // Who only asks has no waves yet.
+            let accounts = if flags & FLAG_GREETING == 0 { self.world_end.accounts() } else { Default::default() };
+            let packet = WaveDown { flags, session, sequence, time_us, accounts, impedance_n_s_m, echo_us };
+            self.socket.send_to(&packet.encode(&self.key), to)
+        } else {
+            let flags = flags & FLAG_GREETING;
+            self.socket.send_to(&Force { flags, session, sequence, time_us, force_n, echo_us }.encode(&self.key), to)
+        };
     }
 }
 
@@ -226,22 +325,30 @@ impl Device for UdpDevice {
         if self.age_s > FORGET_S {
             self.peer = None;
         }
-        if let Some(peer) = self.peer {
-            self.answer(peer, 0, command.force_n, self.echo_us);
+        if let Some(waves) = self.waves.filter(|_| dt_s > 0.0 && self.newest.is_some()) {
+            self.sample.tip_velocity = self.world_end.tick(&waves, command.force_n, SMOOTHING_S, dt_s);
+            for (tip, velocity) in self.sample.tip_in_world.iter_mut().zip(self.sample.tip_velocity) {
+                *tip += velocity * dt_s;
+            }
         }
-        self.sample.fresh = self.age_s < FRESH_S;
+        if let Some(peer) = self.peer {
+            self.answer(peer, 0, self.session, command.force_n, self.echo_us);
+        }
+        let patience_s = if self.waves.is_some() { WAVE_FRESH_S } else { FRESH_S };
+        self.sample.fresh = self.age_s < patience_s;
         self.sample
     }
 
     fn delay_s(&self) -> f64 {
-        self.delay_s
+        // What waves carry needs no allowance for its delay.
+        if self.waves.is_some() { 0.0 } else { self.delay_s }
     }
 
     fn make_safe(&mut self) {
         if let Some(peer) = self.peer {
             // Said three times, because packets are lost.
             for _ in 0..3 {
-                self.answer(peer, 0, [Vec2::zeros(); 2], self.echo_us);
+                self.answer(peer, FLAG_STOP, self.session, [Vec2::zeros(); 2], self.echo_us);
             }
         }
     }

@@ -8,7 +8,7 @@ use crate::Vec2;
 
 /// First four bytes of every packet.
 pub const MAGIC: [u8; 4] = *b"TSUD";
-/// Version of the layout.
+/// Version of the layout of packets with positions and forces; those with waves are another one's.
 pub const VERSION: u8 = 1;
 /// Bytes of a motion packet, device → Touchstone.
 pub const MOTION_BYTES: usize = HEADER_BYTES + 64 + SEAL_BYTES;
@@ -23,7 +23,7 @@ pub const FLAG_BYE: u16 = 1;
 /// Flag of a force packet: the session in it is new to the device, which must send it from now on; the force is zero.
 pub const FLAG_GREETING: u16 = 1;
 
-const HEADER_BYTES: usize = 32;
+pub(super) const HEADER_BYTES: usize = 32;
 const MOTION: u8 = 1;
 const FORCE: u8 = 2;
 
@@ -99,24 +99,24 @@ impl Refused {
     }
 }
 
-struct Writer<'a>(&'a mut [u8], usize);
+pub(super) struct Writer<'a>(pub &'a mut [u8], pub usize);
 
 impl Writer<'_> {
-    fn put(&mut self, bytes: &[u8]) {
+    pub fn put(&mut self, bytes: &[u8]) {
         self.0[self.1..self.1 + bytes.len()].copy_from_slice(bytes);
         self.1 += bytes.len();
     }
 
-    fn header(&mut self, kind: u8, flags: u16, [session, sequence, time_us]: [u64; 3]) {
+    pub fn header(&mut self, version_and_kind: [u8; 2], flags: u16, [session, sequence, time_us]: [u64; 3]) {
         self.put(&MAGIC);
-        self.put(&[VERSION, kind]);
+        self.put(&version_and_kind);
         self.put(&flags.to_le_bytes());
         for number in [session, sequence, time_us] {
             self.put(&number.to_le_bytes());
         }
     }
 
-    fn points(&mut self, points: &[Vec2; 2]) {
+    pub fn points(&mut self, points: &[Vec2]) {
         for point in points {
             self.put(&point.x.to_le_bytes());
             self.put(&point.y.to_le_bytes());
@@ -129,7 +129,7 @@ impl Motion {
     pub fn encode(&self, key: &Key) -> [u8; MOTION_BYTES] {
         let mut packet = [0; MOTION_BYTES];
         let mut writer = Writer(&mut packet, 0);
-        writer.header(MOTION, self.flags, [self.session, self.sequence, self.time_us]);
+        writer.header([VERSION, MOTION], self.flags, [self.session, self.sequence, self.time_us]);
         writer.points(&self.tip_in_world);
         writer.points(&self.tip_velocity);
         seal(&mut packet, key);
@@ -139,7 +139,7 @@ impl Motion {
     /// The content of a packet that is whole, ours, sealed with the key and within bounds. Whether session and sequence are
     /// right is the receiver's business.
     pub fn decode(packet: &[u8], key: &Key) -> Result<Self, Refused> {
-        check::<MOTION_BYTES>(packet, MOTION, key)?;
+        check::<MOTION_BYTES>(packet, [VERSION, MOTION], key)?;
         let tip_in_world = [point(packet, 32), point(packet, 48)];
         let tip_velocity = [point(packet, 64), point(packet, 80)];
         // Not a number compares as false.
@@ -157,7 +157,7 @@ impl Force {
     pub fn encode(&self, key: &Key) -> [u8; FORCE_BYTES] {
         let mut packet = [0; FORCE_BYTES];
         let mut writer = Writer(&mut packet, 0);
-        writer.header(FORCE, self.flags, [self.session, self.sequence, self.time_us]);
+        writer.header([VERSION, FORCE], self.flags, [self.session, self.sequence, self.time_us]);
         writer.points(&self.force_n);
         writer.put(&self.echo_us.to_le_bytes());
         seal(&mut packet, key);
@@ -166,7 +166,7 @@ impl Force {
 
     /// The content of a packet that is whole, ours, sealed with the key and finite.
     pub fn decode(packet: &[u8], key: &Key) -> Result<Self, Refused> {
-        check::<FORCE_BYTES>(packet, FORCE, key)?;
+        check::<FORCE_BYTES>(packet, [VERSION, FORCE], key)?;
         let force_n = [point(packet, 32), point(packet, 48)];
         if !force_n.iter().all(|f| f.x.is_finite() && f.y.is_finite()) {
             return Err(Refused::Value);
@@ -176,20 +176,20 @@ impl Force {
     }
 }
 
-fn seal(packet: &mut [u8], key: &Key) {
+pub(super) fn seal(packet: &mut [u8], key: &Key) {
     let (message, place) = packet.split_at_mut(packet.len() - SEAL_BYTES);
     place.copy_from_slice(&key.seal(message));
 }
 
 /// Cheap tests first; nothing behind the header is looked at before the seal is known to be right.
-fn check<const BYTES: usize>(packet: &[u8], kind: u8, key: &Key) -> Result<(), Refused> {
+pub(super) fn check<const BYTES: usize>(packet: &[u8], version_and_kind: [u8; 2], key: &Key) -> Result<(), Refused> {
     if packet.len() != BYTES {
         return Err(Refused::Size);
     }
     if packet[..4] != MAGIC {
         return Err(Refused::Magic);
     }
-    if packet[4..6] != [VERSION, kind] {
+    if packet[4..6] != version_and_kind {
         return Err(Refused::Version);
     }
     let (message, seal) = packet.split_at(BYTES - SEAL_BYTES);
@@ -198,20 +198,24 @@ fn check<const BYTES: usize>(packet: &[u8], kind: u8, key: &Key) -> Result<(), R
 
 // The readers are called on packets whose size has been checked.
 
-fn flags(packet: &[u8]) -> u16 {
+pub(super) fn flags(packet: &[u8]) -> u16 {
     u16::from_le_bytes([packet[6], packet[7]])
 }
 
-fn numbers(packet: &[u8]) -> [u64; 3] {
+pub(super) fn numbers(packet: &[u8]) -> [u64; 3] {
     [number(packet, 8), number(packet, 16), number(packet, 24)]
 }
 
-fn number(packet: &[u8], at: usize) -> u64 {
+pub(super) fn number(packet: &[u8], at: usize) -> u64 {
     u64::from_le_bytes(std::array::from_fn(|i| packet[at + i]))
 }
 
-fn point(packet: &[u8], at: usize) -> Vec2 {
-    Vec2::new(f64::from_bits(number(packet, at)), f64::from_bits(number(packet, at + 8)))
+pub(super) fn real(packet: &[u8], at: usize) -> f64 {
+    f64::from_bits(number(packet, at))
+}
+
+pub(super) fn point(packet: &[u8], at: usize) -> Vec2 {
+    Vec2::new(real(packet, at), real(packet, at + 8))
 }
 
 #[cfg(test)]

@@ -131,6 +131,39 @@ fn strangers_replays_and_other_sessions_move_nothing() {
 }
 
 #[test]
+fn a_device_that_is_started_anew_is_taken_at_once_and_a_repeated_question_ends_no_session() {
+    let (mut device, mut client) = open();
+    let monitor = device.monitor();
+    client.greet(&mut device);
+    client.sequence = 100_000;
+    let hello = Motion { session: 0, ..client.motion(0.0) };
+    let motion = client.motion(0.0);
+    client.send(&motion.encode(&key()));
+    assert!(device.exchange(&Command::default(), DT).fresh);
+    client.receive();
+    // Somebody sends a recorded question again: it is answered, and changes nothing.
+    client.send(&hello.encode(&key()));
+    client.send(&client_motion_after(&motion).encode(&key()));
+    assert!(device.exchange(&Command::default(), DT).fresh);
+    assert_eq!((monitor.accepted(), monitor.refused(Refused::Session)), (2, 0));
+    // The device's program is started anew and counts from one.
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a free port");
+    socket.connect(monitor.address()).expect("loopback");
+    socket.set_read_timeout(Some(Duration::from_secs(10))).expect("a time-out");
+    let mut anew = Client { socket, session: 0, sequence: 0 };
+    anew.greet(&mut device);
+    assert_ne!(anew.session, client.session);
+    let motion = anew.motion(0.002);
+    anew.send(&motion.encode(&key()));
+    assert_eq!(device.exchange(&Command::default(), DT).tip_in_world, motion.tip_in_world);
+    assert_eq!((monitor.accepted(), monitor.refused(Refused::Sequence)), (3, 0));
+}
+
+fn client_motion_after(motion: &Motion) -> Motion {
+    Motion { sequence: motion.sequence + 1, ..*motion }
+}
+
+#[test]
 fn a_flood_costs_a_tick_no_more_than_its_share() {
     let (mut device, mut client) = open();
     let monitor = device.monitor();
