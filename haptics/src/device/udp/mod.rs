@@ -10,6 +10,7 @@
 //! give no energy out.
 
 mod key;
+mod monitor;
 mod packet;
 #[cfg(test)]
 mod tests;
@@ -19,6 +20,7 @@ mod wave_tests;
 
 pub use super::waves::{Account, Waves};
 pub use key::{Key, KeyError, SEAL_BYTES};
+pub use monitor::UdpMonitor;
 pub use packet::{
     FLAG_BYE, FLAG_GREETING, FORCE_BYTES, Force, MAGIC, MAX_POSITION_M, MAX_VELOCITY_M_S, MOTION_BYTES, Motion,
     Refused, VERSION,
@@ -31,8 +33,7 @@ use crate::Vec2;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 
 /// Packets that one tick reads at the most: a flood costs the tick no more than this, and ends in zero force.
 pub const PACKETS_A_TICK: usize = 16;
@@ -96,42 +97,6 @@ pub struct UdpError {
     reason: String,
 }
 
-#[derive(Debug, Default)]
-struct Counters {
-    accepted: AtomicU64,
-    greeted: AtomicU64,
-    refused: [AtomicU64; Refused::ALL.len()],
-}
-
-/// Packets so far, for panels and tests; read from any thread.
-#[derive(Clone, Debug)]
-pub struct UdpMonitor {
-    counters: Arc<Counters>,
-    address: SocketAddr,
-}
-
-impl UdpMonitor {
-    /// Motion packets that moved the fingers.
-    pub fn accepted(&self) -> u64 {
-        self.counters.accepted.load(Ordering::Relaxed)
-    }
-
-    /// Devices that asked for a session.
-    pub fn greeted(&self) -> u64 {
-        self.counters.greeted.load(Ordering::Relaxed)
-    }
-
-    /// Packets that were refused for a reason.
-    pub fn refused(&self, why: Refused) -> u64 {
-        self.counters.refused[why as usize].load(Ordering::Relaxed)
-    }
-
-    /// Where the device listens.
-    pub fn address(&self) -> SocketAddr {
-        self.address
-    }
-}
-
 /// What a packet from the device says, whatever carries it.
 struct Word {
     flags: u16,
@@ -191,7 +156,7 @@ impl UdpDevice {
             world_end: WorldEnd::default(),
             socket,
             key: config.key,
-            monitor: UdpMonitor { counters: Arc::new(Counters::default()), address },
+            monitor: UdpMonitor::new(address),
             rng: StdRng::seed_from_u64(rand::random()),
             // Nobody has been promised this one, so nobody can use it.
             session: 0,
