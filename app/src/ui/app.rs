@@ -79,9 +79,13 @@ impl App {
     fn take_worlds(&mut self) {
         let session = &mut self.session;
         let choice = if let Some(world) = session.opened_world.take() {
-            session.trainer.file = Some(*world);
             session.workspace = Workspace::Train;
-            WorldChoice::File
+            // `--world crank`, or the file of a built-in world, stands in the list already.
+            let built_in = WorldChoice::of(&world);
+            if built_in.is_none() {
+                session.trainer.file = Some(*world);
+            }
+            built_in.unwrap_or(WorldChoice::File)
         } else if std::mem::take(&mut session.train_calibrated) {
             session.trainer.calibrated = session.analysis.as_ref().map(|a| a.world.clone());
             WorldChoice::Calibrated

@@ -38,6 +38,27 @@ fn every_world_says_in_the_picture_what_to_do_and_the_gauges_are_explained() {
 }
 
 #[test]
+fn a_built_in_world_by_name_is_that_of_the_list_and_another_one_comes_from_its_file() {
+    let mut harness = window();
+    let ctx = harness.ctx.clone();
+    let mut open = |name: &str| {
+        harness.state_mut().session.open_world(&ctx, std::path::Path::new(name));
+        let begun = std::time::Instant::now();
+        while harness.state().session.jobs.is_busy() && begun.elapsed().as_secs() < 20 {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+            harness.run_steps(1);
+        }
+        harness.run_steps(2);
+        (harness.state().session.trainer.choice, harness.state().session.banners.len())
+    };
+    assert_eq!(open("needle"), (WorldChoice::Needle, 0));
+    assert_eq!(open(concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/worlds/barrel.json")), (WorldChoice::Barrel, 0));
+    let other = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/worlds/demo-crank.json");
+    assert_eq!(open(other), (WorldChoice::File, 0));
+    assert_eq!(open("moon"), (WorldChoice::File, 1), "and what there is not is said");
+}
+
+#[test]
 fn skill_and_mistake_are_chosen_and_the_performance_starts_over() {
     let mut harness = window();
     harness.get_by_role_and_label(egui::Role::RadioButton, "Scripted").click();

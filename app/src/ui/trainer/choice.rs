@@ -25,6 +25,15 @@ pub enum WorldChoice {
     File,
 }
 
+impl WorldChoice {
+    /// The built-in world that this one is, if it is one.
+    pub fn of(world: &World) -> Option<Self> {
+        let built_in = [Self::Blocks, Self::Crank, Self::Needle, Self::Barrel, Self::Switch, Self::Table];
+        let nothing_else = Trainer::default();
+        built_in.into_iter().find(|choice| nothing_else.world_of(*choice) == *world)
+    }
+}
+
 impl Trainer {
     /// The world of a choice; the blocks where the choice has none.
     pub(super) fn world_of(&self, choice: WorldChoice) -> World {
