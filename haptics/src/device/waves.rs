@@ -16,8 +16,6 @@ use crate::device::DeviceSpec;
 use crate::servo::passivity::required_damping;
 use crate::world::World;
 
-/// Depth at which a hardening pad's stiffness counts, m (the foam's thickness).
-const PAD_DEPTH_M: f64 = 0.002;
 /// Time constant with which the receiver of waves follows what arrives, beside the jitter, s.
 pub(super) const SMOOTHING_S: f64 = 0.005;
 /// The receiver's time constant is at least so many times the longest gap between packets.
@@ -57,9 +55,9 @@ impl Waves {
 
     /// For a device that touches a world at a period (s): the damper is what makes the sampled pads passive (K T/2 + |B|,
     /// Colgate & Schenkel 1997); b is the device's own damping, which is the impedance that least of a wave is thrown back from,
-    /// and no less than the damper.
+    /// and no less than the damper. The pads count as stiff as they are at the device's largest force: beyond it is held.
     pub fn new(spec: &DeviceSpec, world: &World, period_s: f64) -> Self {
-        let stiffness = world.pad.elastic().stiffness_n_m(PAD_DEPTH_M) + world.pad.shear_stiffness_n_m;
+        let stiffness = world.pad.elastic().stiffness_at_n_m(spec.max_force_n) + world.pad.shear_stiffness_n_m;
         let damping = world.pad.damping_n_s_m + world.pad.shear_damping_n_s_m;
         let damper_n_s_m = required_damping(stiffness, damping, period_s);
         Self { impedance_n_s_m: spec.damping_n_s_m.max(damper_n_s_m), damper_n_s_m }

@@ -24,8 +24,6 @@ pub const DAMPER_SHARE: f64 = 0.1;
 pub const SOFTEST_N_M: f64 = 40.0;
 /// Damping that any hand gives which holds a device, N s/m (a tenth of what a relaxed finger has).
 pub const HAND_DAMPING_N_S_M: f64 = 0.5;
-/// Depth at which a hardening pad's stiffness counts, m (the foam's thickness).
-const PAD_DEPTH_M: f64 = 0.002;
 
 /// The spring and damper between device and proxy.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +54,8 @@ impl Coupling {
             return None;
         }
         // A fingertip may press on one surface and stick to another at a right angle: both act along one line.
-        let stiffness = world.pad.elastic().stiffness_n_m(PAD_DEPTH_M) + world.pad.shear_stiffness_n_m;
+        // A device feels a pad only as stiff as it is at the largest force of the device: beyond, its force is held.
+        let stiffness = world.pad.elastic().stiffness_at_n_m(spec.max_force_n) + world.pad.shear_stiffness_n_m;
         let damping = world.pad.damping_n_s_m + world.pad.shear_damping_n_s_m;
         let direct = stiffness <= passive_stiffness(spec, damping, period_s, delay_s);
         (!direct).then(|| Self::passive(spec, period_s, delay_s))

@@ -16,7 +16,7 @@ use crate::Vec2;
 /// Half the height of a flat finger pad, m: how far off its middle it still touches the crank's handle.
 pub const PAD_HALF_HEIGHT_M: f64 = 0.008;
 
-/// A finger that is no deeper than this has come through the membrane's surface just now, m.
+/// A finger that is no deeper than this has come through a surface just now, m.
 const ARRIVAL_M: f64 = 0.1e-3;
 
 /// Looks up the contacts of the tick before. Touches are found in the same order every tick, so that the search goes on
@@ -52,17 +52,25 @@ struct Gather<'a> {
     tip_sweep_m: [f64; 2],
     memory: Memory<'a>,
     touches: &'a mut Vec<Touch>,
+    /// How deep a fingertip may be pressed within the tick, m.
+    deepest_pad_m: &'a mut f64,
     solids: &'a [Solid],
+    /// The first tick: whatever touches has touched before.
+    begins: bool,
     /// What this tick's slip in the fingers adds, m (see [`crate::law::contact::FingertipSlip`]).
     slipped_m: Vec2,
 }
 
 /// Fills the scratch space of `state`: outlines, masses and touches as they are now, with the tips on their way to `input`.
 pub(super) fn collide(world: &World, state: &mut State, input: &Input, dt_s: f64) {
-    let State { scratch: Scratch { touches, solids, arm }, bodies, contacts, time_s, input: before, .. } = state;
+    let State {
+        scratch: Scratch { touches, solids, arm, deepest_pad_m }, bodies, contacts, time_s, input: before, ..
+    } = state;
     solids.clear();
     solids.extend(world.blocks.iter().zip(&*bodies).map(|(block, body)| solid(block, body, world.gravity_m_s2, dt_s)));
     touches.clear();
+    let begins = state.tick == 0;
+    *deepest_pad_m = 0.0;
     let tips = [0, 1].map(|f| 0.5 * (before.tip_in_world[f] + input.tip_in_world[f]));
     let slipped_m = world
         .pad
@@ -71,11 +79,12 @@ pub(super) fn collide(world: &World, state: &mut State, input: &Input, dt_s: f64
     let tip_sweep_m = [0, 1].map(|f| (input.tip_in_world[f] - before.tip_in_world[f]).norm());
     let memory = Memory { before: contacts, next: 0 };
     let handle_m = world.crank.as_ref().map(|crank| handle(crank, &state.crank, arm));
-    let mut gather = Gather { world, tips, tip_sweep_m, memory, touches, solids, slipped_m };
+    let mut gather = Gather { world, tips, tip_sweep_m, memory, touches, deepest_pad_m, solids, begins, slipped_m };
     gather.floor();
     gather.blocks();
     gather.fingers();
-    gather.driven(handle_m, state.switch.at_m);
+    let handle_sweep_m = state.crank.handle_velocity.norm() * dt_s;
+    gather.driven(handle_m, handle_sweep_m, state.switch.at_m);
 }
 
 /// A body's outline in the middle of the tick, how far it may come within the tick, and its mass.
@@ -120,7 +129,11 @@ impl Gather<'_> {
         let (arm_on_m, yield_on) = self.lever(on, found);
         let (arm_by_m, yield_by) = self.lever(by, found);
         let mut yield_1_kg = yield_on + yield_by;
-        if matches!(on, Surface::Finger(_)) {
+        if let Surface::Finger(finger) = on {
+            // From the middle of the tick to its end.
+            let body_m = if let Surface::Block(index) = by { self.solids[usize::from(index)].sweep_m } else { 0.0 };
+            let reach_m = depth_m + 0.5 * (self.tip_sweep_m[usize::from(finger)] + body_m);
+            *self.deepest_pad_m = self.deepest_pad_m.max(reach_m);
             contact.shear_m -= self.slipped_m.dot(&contact.tangent());
             yield_1_kg = 0.0;
         }
@@ -281,7 +294,7 @@ impl Gather<'_> {
 
     /// Fingers on what is driven along one coordinate: handle and knob. Depth and normal are found anew in each part of the
     /// tick, because these surfaces go on curves.
-    fn driven(&mut self, handle_m: Option<Vec2>, knob_at_m: f64) {
+    fn driven(&mut self, handle_m: Option<Vec2>, handle_sweep_m: f64, knob_at_m: f64) {
         if let (Some(crank), Some(handle)) = (&self.world.crank, handle_m) {
             for finger in 0..2_u8 {
                 let tip = self.tips[usize::from(finger)];
@@ -289,10 +302,11 @@ impl Gather<'_> {
                 // The left pad faces right, the right pad faces left.
                 let facing = if finger == 0 { 1.0 } else { -1.0 };
                 let held = self.kept(pair).is_some();
-                let on_own_side = facing * (tip.x - handle.x) < 0.0 || held;
                 let level = (tip.y - handle.y).abs() < PAD_HALF_HEIGHT_M + 0.5 * crank.handle_width_m;
-                if on_own_side && level {
-                    let depth_m = facing * (tip.x - handle.x) + 0.5 * crank.handle_width_m;
+                let depth_m = facing * (tip.x - handle.x) + 0.5 * crank.handle_width_m;
+                // Whoever comes down on it from above does not press on its side: that would be a blow out of nothing.
+                let arrives = depth_m < self.tip_sweep_m[usize::from(finger)] + handle_sweep_m + ARRIVAL_M;
+                if level && (held || arrives || self.begins) {
                     let found = Found { pair, feature: 0, point_m: tip, normal: Vec2::new(-facing, 0.0), depth_m };
                     self.add(&found, &pad_material(self.world, crank.finger_friction));
                 }

@@ -10,13 +10,13 @@
 
 use super::state::{Contact, Surface};
 use crate::Vec2;
-use crate::law::contact::{PadCompliance, StiffnessHardening};
+use crate::law::contact::{Cushion, PadCompliance};
 
 /// Contact law of a pair of surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Normal elastic force over depth.
-    pub elastic: StiffnessHardening,
+    pub elastic: Cushion,
     /// Normal damping, N s/m.
     pub damping_n_s_m: f64,
     /// Share of the elastic force that the damper adds at the speed of the impact (see [`VelocityLoss::impact_damping`]); zero
@@ -39,7 +39,7 @@ impl Material {
     pub fn hard(stiffness_n_m: f64, damping_n_s_m: f64, friction: f64) -> Self {
         const TANGENTIAL_SHARE: f64 = 2.0 / 3.0;
         Self {
-            elastic: StiffnessHardening { k1: stiffness_n_m, ..StiffnessHardening::default() },
+            elastic: Cushion::linear(stiffness_n_m),
             damping_n_s_m,
             impact_damping: 0.0,
             shear_stiffness_n_m: TANGENTIAL_SHARE * stiffness_n_m,
@@ -58,7 +58,8 @@ impl Material {
     /// The pad's compression p solves pad(p) = wall (depth − p), by Newton's method from where the linear pad would have it:
     /// exact at once for linear pads, and in a few steps for those that harden.
     fn in_series_n(&self, depth_m: f64) -> f64 {
-        let mut pressed_m = depth_m * PadCompliance { k: self.wall_n_m }.behind(self.elastic.k1) / self.elastic.k1;
+        let mut pressed_m =
+            depth_m * PadCompliance { k: self.wall_n_m }.behind(self.elastic.spring.k1) / self.elastic.spring.k1;
         for _ in 0..6 {
             let miss = self.elastic.force_n(pressed_m) - self.wall_n_m * (depth_m - pressed_m);
             pressed_m -= miss / (self.elastic.stiffness_n_m(pressed_m) + self.wall_n_m);
@@ -128,7 +129,7 @@ impl Touch {
         let material = &self.material;
         let elastic = material.elastic_n(self.contact.depth_m);
         let force = elastic + material.damping_n_s_m * closing;
-        let inside = self.contact.depth_m >= half_way_m && force >= material.elastic.k1 * half_way_m;
+        let inside = self.contact.depth_m >= half_way_m && force >= material.elastic.spring.k1 * half_way_m;
         // Most contacts just press.
         if inside && material.impact_damping == 0.0 {
             force
@@ -142,7 +143,7 @@ impl Touch {
     #[inline(never)]
     fn meeting_n(&mut self, elastic: f64, closing: f64, half_way_m: f64, dt_s: f64) -> f64 {
         let (contact, material) = (&self.contact, &self.material);
-        let spread = material.elastic.k1 * half_way_m;
+        let spread = material.elastic.spring.k1 * half_way_m;
         if material.impact_damping > 0.0 {
             let elastic = mean_above_zero(elastic, spread);
             let damping = elastic * material.impact_damping / contact.met_m_s.max(RESTING_M_S);
@@ -217,17 +218,19 @@ pub fn meeting(pair: (Surface, Surface), feature: u8, point_m: Vec2, normal: Vec
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::contact::{Densification, StiffnessHardening};
 
     #[test]
     fn a_wall_behind_a_hardening_pad_shares_the_force() {
         // 2500 N/m and 5e9 N/m³ before 3000 N/m, 2 mm together: p = 0.731 mm gives 2500 p + 5e9 p³ = 3.78 N = 3000 (2 − p) mm.
-        let pad = StiffnessHardening { k1: 2500.0, k3: 5e9, hertz: 0.0 };
+        let spring = StiffnessHardening { k1: 2500.0, k3: 5e9, hertz: 0.0 };
+        let pad = Cushion { spring, end: Densification::NONE };
         let material = Material { elastic: pad, wall_n_m: 3000.0, ..Material::hard(1.0, 0.0, 0.5) };
         let force = material.elastic_n(2e-3);
         let pressed = 2e-3 - force / 3000.0;
         assert!((2500.0 * pressed + 5e9 * pressed.powi(3) - force).abs() < 1e-9, "{force}");
         assert!((force - 3.80).abs() < 0.02, "{force}");
-        let linear = Material { elastic: StiffnessHardening { k3: 0.0, ..pad }, ..material };
+        let linear = Material { elastic: Cushion::linear(2500.0), ..material };
         assert!((linear.elastic_n(2e-3) - 2e-3 / (1.0 / 2500.0 + 1.0 / 3000.0)).abs() < 1e-12);
     }
 

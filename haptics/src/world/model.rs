@@ -5,7 +5,7 @@ use super::check::{self, WorldError, finite, not_negative, positive};
 use super::fixture::{Membrane, Switch};
 use crate::Vec2;
 use crate::hand::Hand;
-use crate::law::contact::{FingertipSlip, StiffnessHardening, VelocityLoss};
+use crate::law::contact::{Cushion, Densification, FingertipSlip, StiffnessHardening, VelocityLoss};
 use crate::law::{Coordinate, Effect, MAX_EFFECTS};
 use serde::{Deserialize, Serialize};
 
@@ -71,6 +71,9 @@ pub struct Pad {
     /// Hertz's part of the normal force, N/m^1.5, ≥ 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub hertz_n_m15: f64,
+    /// Thickness of the foam, m, positive: towards it the pad gets hard, and cannot be pressed through (see [`Densification`]).
+    #[serde(default = "foam_m")]
+    pub thickness_m: f64,
     /// Normal damping, N s/m, ≥ 0.
     pub damping_n_s_m: f64,
     /// Tangential stiffness of the sticking pad, N/m, positive.
@@ -88,6 +91,7 @@ impl Default for Pad {
             stiffness_n_m: 2500.0,
             cubic_n_m3: 0.0,
             hertz_n_m15: 0.0,
+            thickness_m: foam_m(),
             damping_n_s_m: 1.5,
             shear_stiffness_n_m: 1500.0,
             shear_damping_n_s_m: 1.5,
@@ -98,8 +102,11 @@ impl Default for Pad {
 
 impl Pad {
     /// The pad's normal force over its compression.
-    pub fn elastic(&self) -> StiffnessHardening {
-        StiffnessHardening { k1: self.stiffness_n_m, k3: self.cubic_n_m3, hertz: self.hertz_n_m15 }
+    pub fn elastic(&self) -> Cushion {
+        Cushion {
+            spring: StiffnessHardening { k1: self.stiffness_n_m, k3: self.cubic_n_m3, hertz: self.hertz_n_m15 },
+            end: Densification::of(self.thickness_m, self.stiffness_n_m),
+        }
     }
 }
 
@@ -218,6 +225,11 @@ pub enum Source {
     Assumed,
 }
 
+/// The thesis's foam, m.
+fn foam_m() -> f64 {
+    0.002
+}
+
 fn schema() -> u32 {
     SCHEMA
 }
@@ -279,6 +291,7 @@ impl World {
             return Err(WorldError::TooManyBlocks(self.blocks.len()));
         }
         positive("pad", "stiffness_n_m", self.pad.stiffness_n_m)?;
+        positive("pad", "thickness_m", self.pad.thickness_m)?;
         positive("pad", "shear_stiffness_n_m", self.pad.shear_stiffness_n_m)?;
         not_negative("pad", "damping_n_s_m", self.pad.damping_n_s_m)?;
         not_negative("pad", "shear_damping_n_s_m", self.pad.shear_damping_n_s_m)?;

@@ -19,6 +19,8 @@ pub(super) struct Scratch {
     pub solids: Vec<Solid>,
     /// Direction of the crank's arm.
     pub arm: Arm,
+    /// How deep a fingertip may be pressed within the tick, m.
+    pub deepest_pad_m: f64,
 }
 
 /// Direction of an arm at the angle it was last asked for: the same angle is asked for several times a tick.
@@ -68,7 +70,12 @@ pub(super) struct Solid {
 impl Scratch {
     /// Room for the largest world.
     pub fn with_room() -> Self {
-        Self { touches: Vec::with_capacity(MAX_CONTACTS), solids: Vec::with_capacity(MAX_BLOCKS), arm: Arm::default() }
+        Self {
+            touches: Vec::with_capacity(MAX_CONTACTS),
+            solids: Vec::with_capacity(MAX_BLOCKS),
+            arm: Arm::default(),
+            deepest_pad_m: 0.0,
+        }
     }
 }
 

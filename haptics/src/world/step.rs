@@ -17,15 +17,13 @@ use super::state::{BodyState, Contact, Input, State, Surface};
 use crate::Vec2;
 use crate::law::{AddedConstraint, explicit_stiffness};
 
-/// Thickness of the foam on a fingertip, m (thesis): a hardening pad is as stiff as at this depth for the choice of the step.
-const PAD_THICKNESS_M: f64 = 0.002;
-
 /// Advances the world by `dt_s` seconds under the fingers' new `input`.
 ///
 /// The tick is divided into as many equal parts as the stiffest contact needs; the fingers move evenly through them. The tip
 /// forces in the state are those of the tick's last part. The same inputs give the same bits, on any thread.
 pub fn step(world: &World, state: &mut State, input: &Input, dt_s: f64) {
-    let parts = substeps(world, dt_s);
+    collide(world, state, input, dt_s);
+    let parts = parts_of(world, dt_s, state.scratch.deepest_pad_m);
     let part_s = dt_s / f64::from(parts);
     let part = Part {
         dt_s: part_s,
@@ -37,7 +35,6 @@ pub fn step(world: &World, state: &mut State, input: &Input, dt_s: f64) {
         crank_kg: world.crank.as_ref().map_or(0.0, Crank::mass_at_handle_kg),
         tip_chord: [0, 1].map(|f| (input.tip_in_world[f] - state.input.tip_in_world[f]) / dt_s),
     };
-    collide(world, state, input, dt_s);
     for index in 0..parts {
         for (tip, chord) in state.input.tip_in_world.iter_mut().zip(&part.tip_chord) {
             *tip += chord * part.dt_s;
@@ -70,12 +67,19 @@ pub const MAX_PARTS: u32 = 256;
 ///
 /// The scheme is stable up to ω h = 2 without damping; at a quarter of that an undamped, tumbling block loses less than four
 /// thousandths of its energy at a bounce and gains less than one. Handle and knob do not tumble, and their own laws brake them.
+///
+/// A fingertip that is pressed to the end of its foam is much stiffer than usual: a tick in which one is takes more parts.
 pub fn substeps(world: &World, dt_s: f64) -> u32 {
-    ((dt_s * part_rate(world).0).ceil() as u32).clamp(1, MAX_PARTS)
+    parts_of(world, dt_s, 0.0)
 }
 
-/// Parts a second that the world needs, and what needs them.
-pub(super) fn part_rate(world: &World) -> (f64, &str) {
+/// The same with the deepest fingertip at `pad_m`.
+fn parts_of(world: &World, dt_s: f64, pad_m: f64) -> u32 {
+    ((dt_s * part_rate(world, pad_m).0).ceil() as u32).clamp(1, MAX_PARTS)
+}
+
+/// Parts a second that the world needs with the deepest fingertip at `pad_m`, and what needs them.
+pub(super) fn part_rate(world: &World, pad_m: f64) -> (f64, &str) {
     const LIMIT: f64 = 0.5;
     const DAMPING_LIMIT: f64 = 1.0;
     const DRIVEN: f64 = (0.5 / 0.6) * (0.5 / 0.6);
@@ -89,7 +93,9 @@ pub(super) fn part_rate(world: &World) -> (f64, &str) {
             most = (rate, who);
         }
     };
-    let pad_stiffness_n_m = world.pad.elastic().stiffness_n_m(PAD_THICKNESS_M);
+    // A pad that hardens while it is open counts as it is at its full thickness.
+    let pad = world.pad.elastic();
+    let pad_stiffness_n_m = pad.spring.stiffness_n_m(world.pad.thickness_m) + pad.end.stiffness_n_m(pad_m);
     let pads = 2.0 * (pad_stiffness_n_m + world.pad.shear_stiffness_n_m);
     let pad_damping = 2.0 * (world.pad.damping_n_s_m + world.pad.shear_damping_n_s_m);
     let (floor_stiffness, floor_damping) =

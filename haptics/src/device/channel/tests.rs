@@ -58,7 +58,7 @@ fn operator(goal: impl Fn(f64) -> f64 + Send + 'static) -> (Box<Operator>, Arc<M
     let spec = DeviceSpec {
         name: "Passive operator".to_owned(),
         force_feedback: true,
-        max_force_n: 1e6,
+        max_force_n: 4.0,
         damping_n_s_m: HandImpedance::default().damping_n_s_m,
         coulomb_n: 0.0,
         resolution_m: 0.0,

@@ -12,7 +12,7 @@ fn spec(damping_n_s_m: f64) -> DeviceSpec {
     DeviceSpec {
         name: "simulated".to_owned(),
         force_feedback: true,
-        max_force_n: 50.0,
+        max_force_n: 4.0,
         damping_n_s_m,
         coulomb_n: 0.0,
         resolution_m: 0.0,

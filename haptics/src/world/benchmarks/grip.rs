@@ -45,6 +45,52 @@ fn a_hardening_pad_presses_harder() {
     assert_eq!(World::from_json(&world.to_json()).expect("reads back"), world);
 }
 
+#[test]
+fn a_pad_gets_hard_towards_its_thickness_and_stays_calm_there() {
+    // 2 mm of 2500 N/m: at 1.5 mm the foam is as it was, 3.75 N. At 2 mm 5 N and 1.05 N of closing cells; at 2.5 mm 6.25 N and
+    // 7.5 kN/m from 1.86 mm on, 4.8 N.
+    for (pressed_m, force_n) in [(1.5e-3, 3.75), (2.0e-3, 6.05), (2.5e-3, 11.05)] {
+        let (world, state) = pinched(pressed_m, 0.9);
+        assert!((state.tip_force_n[0].x - force_n).abs() < 1e-6, "{pressed_m} m: {:?}", state.tip_force_n);
+        assert!(state.bodies[0].velocity_m_s.norm() < 1e-9, "{pressed_m} m: it rings");
+        assert!((world.pad.elastic().depth_m(force_n) - pressed_m).abs() < 1e-9);
+    }
+    // A finger that has it thicker has the linear pad again; a file from before has the foam of the thesis.
+    let (mut world, _) = pinched(0.5e-3, 0.9);
+    let text = world.to_json().replace("    \"thickness_m\": 0.002,\n", "");
+    assert!(!text.contains("thickness") && World::from_json(&text).expect("an older file") == world);
+    world.pad.thickness_m = 0.004;
+    let mut state = State::new(&world, [Vec2::new(-0.0075, 0.0), Vec2::new(0.0075, 0.0)]);
+    run(&world, &mut state, 3.0);
+    assert!((state.tip_force_n[0].x - 6.25).abs() < 1e-6, "{:?}", state.tip_force_n);
+    world.pad.thickness_m = 0.0;
+    assert!(world.check().expect_err("no pad at all").to_string().contains("thickness_m"));
+}
+
+#[test]
+fn a_light_block_is_stable_between_pads_that_are_pressed_to_their_end() {
+    // 1 g between two closed foams swings at √(2 · 10 kN/m / 1 g) = 4472 rad/s: at 1 kHz it needs the tick divided by what the
+    // pads are there, not by what they are at rest. Without damping nothing else would calm it.
+    let mut world = World::empty("pinch");
+    world.floor = None;
+    (world.pad.damping_n_s_m, world.pad.shear_damping_n_s_m) = (0.0, 0.0);
+    world.blocks = vec![Block::upright("block-1", 1e-3, 0.02, 0.02, 0.0, -0.01)];
+    world.blocks[0].stiffness_n_m = 100.0;
+    (world.pad.shear_stiffness_n_m, world.gravity_m_s2) = (10.0, 0.0);
+    world.check().expect("it can be stepped");
+    let mut state = State::new(&world, [Vec2::new(-0.0075, 0.0), Vec2::new(0.0075, 0.0)]);
+    // 0.1 mm aside: x = 1e-4 cos ω t, for ever.
+    state.bodies[0].center_m.x = 1e-4;
+    let input = state.input;
+    let (mut most_m, mut late_m) = (0.0_f64, 0.0_f64);
+    for tick in 0..20_000 {
+        step(&world, &mut state, &input, 1e-3);
+        most_m = most_m.max(state.bodies[0].center_m.x.abs());
+        late_m = if tick > 19_000 { late_m.max(state.bodies[0].center_m.x.abs()) } else { 0.0 };
+    }
+    assert!((most_m / 1e-4 - 1.0).abs() < 0.05 && (late_m / 1e-4 - 1.0).abs() < 0.05, "{most_m} m, later {late_m} m");
+}
+
 /// How far the platform notes' grip creeps: 0.2 kg, friction 0.9, 2.4 N pinch (margin 2.2), m from 5 s to the end.
 fn creep_m(dt_s: f64, seconds: f64) -> f64 {
     let mut world = World::empty("grip");
