@@ -133,7 +133,7 @@ pub struct Contact {
     pub point_m: Vec2,
     /// Unit vector from `by` into `on`.
     pub normal: Vec2,
-    /// Compression, m, positive.
+    /// Compression in the middle of the tick's last part, m; positive but for the part in which surfaces meet or leave.
     pub depth_m: f64,
     /// Elastic tangential displacement of the sticking contact, m, along the normal turned by −90° (clockwise).
     pub shear_m: f64,

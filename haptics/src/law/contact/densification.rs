@@ -14,52 +14,52 @@ pub const CLOSED: f64 = 4.0;
 
 /// What the end of a foam adds to its force; the law is in the module's head.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(clippy::struct_field_names)] // their units
 pub struct Densification {
-    /// Depth at which it begins, m.
-    onset_m: f64,
-    /// From there to the whole thickness, m.
-    span_m: f64,
-    /// Stiffness that is added when all cells are closed, N/m.
-    closed_n_m: f64,
+    /// Thickness, m.
+    thickness_m: f64,
+    /// Stiffness of the open foam, N/m.
+    open_n_m: f64,
 }
 
 impl Densification {
     /// No end: a surface that is no foam.
-    pub const NONE: Self = Self { onset_m: f64::INFINITY, span_m: 1.0, closed_n_m: 0.0 };
+    pub const NONE: Self = Self { thickness_m: f64::INFINITY, open_n_m: 0.0 };
 
     /// The end of a foam of a thickness, m, and an open stiffness, N/m.
     pub fn of(thickness_m: f64, open_n_m: f64) -> Self {
-        Self {
-            onset_m: ONSET * thickness_m,
-            span_m: (1.0 - ONSET) * thickness_m,
-            closed_n_m: (CLOSED - 1.0) * open_n_m,
-        }
+        Self { thickness_m, open_n_m }
     }
 
     /// Force that it adds at a depth, N.
     #[inline]
     pub fn force_n(&self, depth_m: f64) -> f64 {
-        if depth_m > self.onset_m { self.beyond_n(depth_m - self.onset_m) } else { 0.0 }
+        if depth_m > ONSET * self.thickness_m { self.beyond_n(depth_m) } else { 0.0 }
     }
 
     /// Slope of that force, N/m.
     pub fn stiffness_n_m(&self, depth_m: f64) -> f64 {
-        if depth_m > self.onset_m { self.closed_n_m * ((depth_m - self.onset_m) / self.span_m).min(1.0) } else { 0.0 }
-    }
-
-    /// The same when all cells are closed: its largest, N/m.
-    pub fn closed_n_m(&self) -> f64 {
-        self.closed_n_m
+        if depth_m > ONSET * self.thickness_m {
+            self.closed_n_m() * ((depth_m - ONSET * self.thickness_m) / self.span_m()).min(1.0)
+        } else {
+            0.0
+        }
     }
 
     #[cold]
-    fn beyond_n(&self, way_m: f64) -> f64 {
-        if way_m < self.span_m {
-            0.5 * self.closed_n_m * way_m * way_m / self.span_m
-        } else {
-            self.closed_n_m * (way_m - 0.5 * self.span_m)
-        }
+    fn beyond_n(&self, depth_m: f64) -> f64 {
+        let (way_m, span_m) = (depth_m - ONSET * self.thickness_m, self.span_m());
+        let share = if way_m < span_m { 0.5 * way_m * way_m / span_m } else { way_m - 0.5 * span_m };
+        self.closed_n_m() * share
+    }
+
+    /// From the first closed cell to the last, m.
+    fn span_m(&self) -> f64 {
+        (1.0 - ONSET) * self.thickness_m
+    }
+
+    /// Stiffness that is added when all cells are closed, N/m.
+    fn closed_n_m(&self) -> f64 {
+        (CLOSED - 1.0) * self.open_n_m
     }
 }
 
