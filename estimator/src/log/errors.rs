@@ -6,7 +6,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum LogError {
     /// The operating system refused.
-    #[error("the file cannot be read ({reason}); check the path and its permissions: {path}", path = path.display())]
+    #[error("the file cannot be read ({reason}); check the path and its permissions: {path}", reason = plain(reason), path = path.display())]
     Io {
         /// What the system said.
         reason: String,
@@ -70,7 +70,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Not a table at all.
-    #[error("this is not a table of numbers ({why}); give a CSV file with a header line, an MCAP or a Parquet file: {path}", path = path.display())]
+    #[error("this is not a table of numbers ({why}); give a CSV file with a header line, an MCAP or a Parquet file: {path}", why = plain(why), path = path.display())]
     NotATable {
         /// What it looks like.
         why: String,
@@ -78,7 +78,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Cut off, or with contents that cannot be.
-    #[error("the {format} file is damaged ({why}); copy or export it again: {path}", path = path.display())]
+    #[error("the {format} file is damaged ({why}); copy or export it again: {path}", why = plain(why), path = path.display())]
     Damaged {
         /// `MCAP`, `Parquet`, …
         format: &'static str,
@@ -88,7 +88,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// The recorder still runs or did not end well, and it is not known to write whole blocks.
-    #[error("the {format} file ends in the middle ({why}); wait until the recording has ended, or copy it again: {path}", path = path.display())]
+    #[error("the {format} file ends in the middle ({why}); wait until the recording has ended, or copy it again: {path}", why = plain(why), path = path.display())]
     CutOff {
         /// `MCAP`, `Parquet`, …
         format: &'static str,
@@ -98,7 +98,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A container without anything that can be read as columns of numbers.
-    #[error("nothing in the {format} file can be read as columns of numbers ({why}); export the log with JSON, protobuf or ROS 2 messages, or as CSV: {path}", path = path.display())]
+    #[error("nothing in the {format} file can be read as columns of numbers ({why}); export the log with JSON, protobuf or ROS 2 messages, or as CSV: {path}", why = plain(why), path = path.display())]
     NoColumns {
         /// `MCAP`, `Parquet`, …
         format: &'static str,
@@ -108,7 +108,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Topics that cannot be put on one clock.
-    #[error("the topics cannot be put on one clock ({why}); choose other columns in the sidecar, or record them together: {path}", path = path.display())]
+    #[error("the topics cannot be put on one clock ({why}); choose other columns in the sidecar, or record them together: {path}", why = plain(why), path = path.display())]
     Clocks {
         /// What does not fit.
         why: String,
@@ -116,7 +116,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A recording cannot be kept in this format.
-    #[error("the recording cannot be written ({why}): {path}", path = path.display())]
+    #[error("the recording cannot be written ({why}): {path}", why = plain(why), path = path.display())]
     NotWritable {
         /// What, and what to do.
         why: String,
@@ -133,7 +133,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// The same name twice.
-    #[error("two columns give `{column}` ({first} and {second}); rename one, or choose with \"columns\" in the sidecar: {path}", path = path.display())]
+    #[error("two columns give `{column}` ({first} and {second}); rename one, or choose with \"columns\" in the sidecar: {path}", column = plain(column), first = plain(first), second = plain(second), path = path.display())]
     DuplicateColumn {
         /// The name.
         column: String,
@@ -145,7 +145,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A column that the sidecar or the quantity needs is not there.
-    #[error("the column `{column}` is missing: {why}; the file has {present}: {path}", path = path.display())]
+    #[error("the column `{column}` is missing: {why}; the file has {present}: {path}", why = plain(why), column = plain(column), present = plain(present), path = path.display())]
     MissingColumn {
         /// The program's or file's name of it.
         column: String,
@@ -157,7 +157,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A unit the program cannot convert.
-    #[error("the column `{column}` has the unknown unit `{unit}`; use one of {accepted}, or map it and give its factor with \"scale\" in the sidecar: {path}", path = path.display())]
+    #[error("the column `{column}` has the unknown unit `{unit}`; use one of {accepted}, or map it and give its factor with \"scale\" in the sidecar: {path}", column = plain(column), unit = plain(unit), path = path.display())]
     UnknownUnit {
         /// The column.
         column: String,
@@ -169,7 +169,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A length mapped to a force, or the like.
-    #[error("`{target}` is mapped to `{column}`, whose unit `{unit}` measures something else; map another column, or give its factor with \"scale\" in the sidecar: {path}", path = path.display())]
+    #[error("`{target}` is mapped to `{column}`, whose unit `{unit}` measures something else; map another column, or give its factor with \"scale\" in the sidecar: {path}", column = plain(column), unit = plain(unit), target = plain(target), path = path.display())]
     WrongDimension {
         /// The program's name.
         target: String,
@@ -181,7 +181,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Text where a number belongs.
-    #[error("{at}, column `{column}`: {what}; correct that cell or remove the row: {path}", at = place(*row, *line), path = path.display())]
+    #[error("{at}, column `{column}`: {what}; correct that cell or remove the row: {path}", at = place(*row, *line), column = plain(column), what = plain(what), path = path.display())]
     BadCell {
         /// Row of data, from 1.
         row: usize,
@@ -209,7 +209,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// Time does not increase.
-    #[error("{at}, column `{column}`: time {how} ({previous} s, then {time} s); sort the rows, or split the recordings with a `trial` column: {path}", at = place(*row, *line), path = path.display())]
+    #[error("{at}, column `{column}`: time {how} ({previous} s, then {time} s); sort the rows, or split the recordings with a `trial` column: {path}", at = place(*row, *line), column = plain(column), path = path.display())]
     Time {
         /// Row of data, from 1.
         row: usize,
@@ -227,7 +227,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// `select` leaves nothing.
-    #[error("no row has {column} = {wanted}; the file has {present}: {path}", path = path.display())]
+    #[error("no row has {column} = {wanted}; the file has {present}: {path}", column = plain(column), present = plain(present), wanted = plain(wanted), path = path.display())]
     NothingSelected {
         /// The column.
         column: String,
@@ -239,7 +239,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// The sidecar is not what it should be.
-    #[error("the sidecar is malformed ({why}); correct it or remove it: {path}", path = path.display())]
+    #[error("the sidecar is malformed ({why}); correct it or remove it: {path}", why = plain(why), path = path.display())]
     Sidecar {
         /// What and where.
         why: String,
@@ -247,7 +247,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A file could not be written.
-    #[error("the file cannot be written ({reason}); check the folder and its permissions: {path}", path = path.display())]
+    #[error("the file cannot be written ({reason}); check the folder and its permissions: {path}", reason = plain(reason), path = path.display())]
     Write {
         /// What the system said.
         reason: String,
@@ -259,4 +259,9 @@ pub enum LogError {
 /// `row 3 (line 4)`, or without the line where the format has none.
 fn place(row: usize, line: u64) -> String {
     if line == 0 { format!("row {row}") } else { format!("row {row} (line {line})") }
+}
+
+/// Text out of a file, in one line: a quoted name may hold line ends, and a damaged one anything.
+fn plain(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

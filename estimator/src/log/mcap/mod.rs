@@ -3,6 +3,7 @@
 mod cdr;
 mod clocks;
 mod json;
+mod lengths;
 mod names;
 mod protobuf;
 pub mod records;

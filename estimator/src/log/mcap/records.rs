@@ -3,6 +3,7 @@
 //! The record layouts come from the crate `mcap`; the walk is our own because untrusted lengths are checked here against
 //! what the file can hold, before anything is allocated for them.
 
+use super::lengths;
 use crate::log::errors::LogError;
 use crate::log::watch::Watch;
 use mcap::records::{ChunkHeader, Record, op};
@@ -11,7 +12,7 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 /// Largest block that is unpacked in any case, bytes; beyond it, four times the size of the file.
-const CHUNK_BYTES: u64 = 256 << 20;
+const CHUNK_BYTES: u64 = 32 << 20;
 /// The caller hears of the progress, and may end it, every so many bytes.
 const WATCH_BYTES: u64 = 1 << 20;
 /// Op code and length before every record.
@@ -139,7 +140,7 @@ impl Walk<'_> {
         if opcode == op::MESSAGE {
             return self.message(body, take);
         }
-        match mcap::parse_record(opcode, body).map_err(|e| self.damaged(&one_line(&e)))? {
+        match self.parsed(opcode, body)? {
             Record::Chunk { header, data } => {
                 let mut unpacked = std::mem::take(&mut self.unpacked);
                 let records = self.unpack(&header, &data, &mut unpacked)?;
@@ -149,6 +150,14 @@ impl Walk<'_> {
             }
             record => take(Event::Record(record)),
         }
+    }
+
+    /// A record as the library sees it, once its lengths have been found to lie within it: the library reserves what they claim.
+    fn parsed<'b>(&self, opcode: u8, body: &'b [u8]) -> Result<Record<'b>, LogError> {
+        if !lengths::fit(opcode, body) {
+            return Err(self.damaged("a record with a text or a table longer than itself"));
+        }
+        mcap::parse_record(opcode, body).map_err(|e| self.damaged(&one_line(&e)))
     }
 
     fn message(&self, body: &[u8], take: &mut dyn FnMut(Event<'_>) -> Result<(), LogError>) -> Result<(), LogError> {
@@ -173,8 +182,9 @@ impl Walk<'_> {
             "" => data,
             "zstd" => {
                 into.clear();
-                into.reserve(claimed as usize);
-                zstd::bulk::Decompressor::new().and_then(|mut d| d.decompress_to_buffer(data, into)).map_err(failed)?;
+                // As much as there is, not as much as is claimed.
+                let decoder = zstd::Decoder::with_buffer(data).map_err(failed)?;
+                decoder.take(claimed + 1).read_to_end(into).map_err(failed)?;
                 into
             }
             "lz4" => {
@@ -211,7 +221,7 @@ impl Walk<'_> {
             match opcode {
                 op::MESSAGE => self.message(body, take)?,
                 op::SCHEMA | op::CHANNEL => {
-                    take(Event::Record(mcap::parse_record(opcode, body).map_err(|e| self.damaged(&one_line(&e)))?))?;
+                    take(Event::Record(self.parsed(opcode, body)?))?;
                 }
                 _ => {}
             }
