@@ -8,7 +8,6 @@ use haptics::device::channel::{ChannelConfig, ChannelDevice, Waves};
 use haptics::device::haply::{HaplyHand, Tally};
 use haptics::device::udp::{Key, UdpConfig, UdpDevice, UdpMonitor};
 use haptics::device::{Device, DeviceSpec, MouseTarget, ReplayDevice, ScriptedOperator, keyboard, mouse, touch};
-use haptics::servo::rate::SAFE_HZ;
 use haptics::world::{State, World};
 use std::path::Path;
 
@@ -147,15 +146,13 @@ fn remote(text: &str, world: &World, tips: [Vec2; 2]) -> anyhow::Result<Opened> 
     let key_file = parts.next().context("a remote device needs a key: udp:ADDRESS,KEYFILE")?;
     let mut next = || parts.next().unwrap_or_default().to_owned();
     let (damping, round_trip) = (next(), next());
-    let with_waves = match parts.next() {
+    let waves = match parts.next() {
         None => false,
         Some("waves") => true,
         Some(other) => anyhow::bail!("`{other}` says nothing about a remote device; `waves` asks for wave variables"),
     };
-    let remote = Remote { key: key_file.to_owned(), address: address.to_owned(), damping, round_trip };
-    let mut config = remote.config().map_err(anyhow::Error::msg)?;
-    // For the slowest rate: a damper that is enough there is enough at every faster one.
-    config.waves = with_waves.then(|| Waves::new(&config.spec, world, 1.0 / SAFE_HZ));
+    let remote = Remote { key: key_file.to_owned(), address: address.to_owned(), damping, round_trip, waves };
+    let config = remote.config(world).map_err(anyhow::Error::msg)?;
     for doubt in Key::doubts(Path::new(key_file)) {
         eprintln!("{doubt}");
     }

@@ -28,6 +28,10 @@ impl RemoteCard {
         let mut chosen = None;
         plain_card(ui, "Over the network", |ui| {
             fields(ui, &mut session.trainer.settings.remote);
+            ui.checkbox(&mut session.trainer.settings.remote.waves, "Wave variables").on_hover_text(
+                "For long or jittering lines: contact stays stable, and is felt softer. The device's program must speak them too \
+                 (docs/udp).",
+            );
             let remote = session.trainer.settings.remote.clone();
             self.doubt(&remote.key);
             let p = palette(ui);

@@ -98,7 +98,7 @@ impl HandDevice {
                 made(Box::new(hand), Steering::Haply(tallies))
             }
             Self::Udp => {
-                let config = settings.remote.config()?;
+                let config = settings.remote.config(world)?;
                 let device = UdpDevice::open(config, tips).map_err(|e| said(&e))?;
                 let monitor = device.monitor();
                 made(Box::new(device), Steering::Udp(monitor))

@@ -1,6 +1,9 @@
 //! What has to be known of a remote device before its port is opened: the fields of the Devices page, checked.
 
+use haptics::device::channel::Waves;
 use haptics::device::udp::{Key, PORT, UdpConfig};
+use haptics::servo::rate::SAFE_HZ;
+use haptics::world::World;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::Path;
 
@@ -20,11 +23,13 @@ pub struct Remote {
     pub damping: String,
     /// Time from here to the device and back, ms.
     pub round_trip: String,
+    /// Wave variables in the packets in place of positions and forces.
+    pub waves: bool,
 }
 
 impl Remote {
     /// The device's configuration; the error is one sentence about the field that is wrong.
-    pub fn config(&self) -> Result<UdpConfig, String> {
+    pub fn config(&self, world: &World) -> Result<UdpConfig, String> {
         let path = self.key.trim();
         if path.is_empty() {
             return Err("A remote device needs a key: name a file with 64 hexadecimal digits.".to_owned());
@@ -38,6 +43,8 @@ impl Remote {
         config.listen = listen;
         config.spec.damping_n_s_m = damping_n_s_m;
         config.delay_s = 1e-3 * round_trip_ms;
+        // For the slowest rate: a damper that is enough there is enough at every faster one.
+        config.waves = self.waves.then(|| Waves::new(&config.spec, world, 1.0 / SAFE_HZ));
         Ok(config)
     }
 
@@ -78,7 +85,7 @@ mod tests {
 
     fn remote(address: &str, damping: &str, round_trip: &str) -> Remote {
         let key = "/nowhere/key".to_owned();
-        Remote { key, address: address.into(), damping: damping.into(), round_trip: round_trip.into() }
+        Remote { key, address: address.into(), damping: damping.into(), round_trip: round_trip.into(), waves: false }
     }
 
     #[test]
@@ -86,10 +93,15 @@ mod tests {
         let mut file = tempfile::NamedTempFile::new().expect("a file");
         writeln!(file, "{}", "5a".repeat(32)).expect("written");
         let key = file.path().display().to_string();
-        let config = Remote { key: key.clone(), ..remote(" 127.0.0.1:9 ", "0.4", " 12 ") }.config().expect("all right");
+        let config = Remote { key: key.clone(), ..remote(" 127.0.0.1:9 ", "0.4", " 12 ") }
+            .config(&World::empty("x"))
+            .expect("all right");
         assert_eq!(config.listen.to_string(), "127.0.0.1:9");
         assert_eq!((config.spec.damping_n_s_m, config.delay_s), (0.4, 0.012));
-        let usual = Remote { key, ..Remote::default() }.config().expect("the usual");
+        assert!(config.waves.is_none());
+        let waving = Remote { key: key.clone(), waves: true, ..Remote::default() };
+        assert!(waving.config(&World::empty("x")).is_ok_and(|config| config.waves.is_some()));
+        let usual = Remote { key, ..Remote::default() }.config(&World::empty("x")).expect("the usual");
         assert_eq!((usual.listen.port(), usual.spec.damping_n_s_m, usual.delay_s), (PORT, 0.0, 0.0));
         for (wrong, words) in [
             (remote("elsewhere", "", ""), "`elsewhere` is no address"),
@@ -98,12 +110,12 @@ mod tests {
             (remote("", "", "NaN"), "`NaN` is no round trip"),
             (remote("", "", "6000"), "from 0 to 5000 in ms"),
         ] {
-            let said = wrong.config().expect_err("wrong");
+            let said = wrong.config(&World::empty("x")).expect_err("wrong");
             assert!(said.contains(words) && said.ends_with('.'), "{said}");
             assert_eq!(wrong.problem(), Some(said));
         }
         assert_eq!(remote("", "", "").problem(), None);
-        assert!(remote("", "", "").config().is_err_and(|e| e.contains("/nowhere/key")));
-        assert!(Remote::default().config().is_err_and(|e| e.contains("needs a key")));
+        assert!(remote("", "", "").config(&World::empty("x")).is_err_and(|e| e.contains("/nowhere/key")));
+        assert!(Remote::default().config(&World::empty("x")).is_err_and(|e| e.contains("needs a key")));
     }
 }
