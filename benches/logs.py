@@ -44,7 +44,7 @@ def program():
 
 
 def ours(load_log, path):
-    best, _, _ = subprocess.run(
+    best, *_ = subprocess.run(
         [load_log, "load", path, "3"], check=True, capture_output=True, text=True
     ).stdout.split()
     return float(best)

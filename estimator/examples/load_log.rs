@@ -1,11 +1,15 @@
 //! Loads or makes a log and times it: the Rust side of `benches/logs.py`.
 //!
-//! `load_log load FILE ROUNDS` prints the best and the median seconds of loading; `load_log make FILE ROWS` writes twelve
+//! `load_log load FILE ROUNDS` prints the best and the median seconds of loading, and the seconds until the first curves could be
+//! drawn in the last round; `load_log make FILE ROWS` writes twelve
 //! channels in the format of the file's ending.
 
-use estimator::log;
+use estimator::log::preview::Preview;
+use estimator::log::{self, Watch};
 use haptics::recording::{Channel, Recording};
 use std::path::Path;
+use std::sync::OnceLock;
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -20,15 +24,23 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 fn load(file: &Path, rounds: usize) -> Result<(), Box<dyn std::error::Error>> {
     let mut seconds = Vec::new();
-    let mut samples = 0;
+    let (mut samples, mut first_s) = (0, f64::NAN);
     for _ in 0..rounds.max(1) {
+        let (preview, first, never) = (Preview::default(), OnceLock::new(), AtomicBool::new(false));
         let start = Instant::now();
-        let recordings = log::load(file, None)?;
+        let progress = |_: f64| {
+            if first.get().is_none() && !preview.curves(1000).is_empty() {
+                let _ = first.set(start.elapsed().as_secs_f64());
+            }
+        };
+        let watch = Watch { progress: &progress, cancelled: &never, preview: Some(&preview) };
+        let recordings = log::load_watched(file, None, &watch)?;
+        first_s = first.get().copied().unwrap_or(f64::NAN);
         seconds.push(start.elapsed().as_secs_f64());
         samples = recordings.iter().map(Recording::len).sum();
     }
     seconds.sort_by(f64::total_cmp);
-    println!("{} {} {samples}", seconds[0], seconds[seconds.len() / 2]);
+    println!("{} {} {samples} {first_s}", seconds[0], seconds[seconds.len() / 2]);
     Ok(())
 }
 

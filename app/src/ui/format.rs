@@ -123,6 +123,19 @@ pub fn short_time(seconds: f64) -> String {
     format!("{} {unit}", number(value, decimals))
 }
 
+/// `12345` → `12 345`.
+pub fn grouped(n: usize) -> String {
+    let digits = n.to_string();
+    let mut text = String::new();
+    for (i, c) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push('\u{2009}');
+        }
+        text.push(c);
+    }
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,6 +4,7 @@ use super::mapping::Looked;
 use super::mapping::preview::Seen;
 use super::plots::Levels;
 use super::prepare::Prepared;
+use estimator::log::preview::Preview;
 use estimator::pipeline::Analysis;
 use estimator::simulate::Simulation;
 use haptics::world::World;
@@ -109,6 +110,7 @@ struct Shared {
     /// Share done in ten-thousandths; 0: nothing is known.
     done: AtomicU32,
     cancelled: AtomicBool,
+    preview: Preview,
 }
 
 impl Ticket {
@@ -120,6 +122,11 @@ impl Ticket {
     /// Set when nobody wants the answer any more.
     pub fn cancelled(&self) -> &AtomicBool {
         &self.0.cancelled
+    }
+
+    /// Where a reader shows what it has read.
+    pub fn preview(&self) -> &Preview {
+        &self.0.preview
     }
 
     fn share(&self) -> Option<f64> {
@@ -226,6 +233,14 @@ impl Jobs {
             share: longest.ticket.share(),
             elapsed,
         })
+    }
+
+    /// What a long read of a log has brought so far.
+    pub fn preview(&self) -> Option<(&Preview, Progress)> {
+        let progress = self.progress().filter(|p| p.kind == JobKind::Load)?;
+        let reading = self.running.iter().find(|r| r.kind == JobKind::Load)?;
+        let preview = reading.ticket.preview();
+        (!preview.is_empty()).then_some((preview, progress))
     }
 
     /// What has come back since the last call; never waits.

@@ -63,7 +63,7 @@ impl Session {
         let what = format!("Reading {}", name_of(&path));
         self.jobs.start_watched(ctx, JobKind::Load, what, move |ticket| {
             let progress = |share| ticket.tell(share);
-            let watch = Watch { progress: &progress, cancelled: ticket.cancelled(), preview: None };
+            let watch = Watch { progress: &progress, cancelled: ticket.cancelled(), preview: Some(ticket.preview()) };
             match estimator::log::load_watched(&path, meta.as_deref(), &watch) {
                 Ok(recordings) => {
                     let prepared = recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect();

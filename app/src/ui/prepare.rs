@@ -24,7 +24,7 @@ pub struct Trace {
     pub role: ColorRole,
     /// A lighter shade, to tell y from x of one finger.
     pub second: bool,
-    /// Values in the shown unit, and their extremes in blocks.
+    /// Values and their extremes at every zoom.
     pub levels: Arc<Levels>,
 }
 
@@ -135,10 +135,10 @@ fn kind(name: &str, unit: &str) -> (u8, &'static str, bool) {
 
 fn groups(recording: &Recording, signals: Option<&TaskSignals>) -> Vec<Group> {
     let mut ranked: Vec<(u8, Group)> = Vec::new();
-    for (extra, channel) in recording.channels.iter().enumerate() {
+    for (index, channel) in recording.channels.iter().enumerate() {
         let (rank, title, shown) = kind(&channel.name, &channel.unit);
         let (unit, factor) = format::channel_unit(&channel.unit);
-        let trace = trace(&channel.name, &channel.values, factor, extra);
+        let trace = trace(&channel.name, &channel.values, factor, index);
         match ranked.iter_mut().find(|(r, g)| *r == rank && g.unit == unit) {
             Some((_, group)) => group.traces.push(trace),
             None => ranked.push((
@@ -188,9 +188,9 @@ fn task_group(signals: &TaskSignals) -> Group {
     }
 }
 
-/// A channel's label and colour from its name: `fx1_N` is the left finger's horizontal force. Extra channels are told apart by
-/// their number.
-fn trace(name: &str, values: &[f64], factor: f64, extra: usize) -> Trace {
+/// A channel's label and colour from its name: `fx1_N` is the left finger's horizontal force. Channels without a meaning are told apart
+/// by their `index` in the recording.
+fn trace(name: &str, values: &[f64], factor: f64, index: usize) -> Trace {
     let stem = name.split('_').next().unwrap_or(name);
     let finger = match stem.chars().last() {
         Some('1') => Some(0),
@@ -223,10 +223,10 @@ fn trace(name: &str, values: &[f64], factor: f64, extra: usize) -> Trace {
         (None, "q" | "dq" | "ddq") => ("coordinate".to_owned(), ColorRole::Measured),
         (None, "f") => ("force".to_owned(), ColorRole::Measured),
         (None, "tau") => ("torque".to_owned(), ColorRole::Measured),
-        _ => (name.to_owned(), ColorRole::Block(extra)),
+        _ => (name.to_owned(), ColorRole::Block(index)),
     };
     let second = second && finger.is_some();
-    let levels = Arc::new(Levels::new(values.iter().map(|v| v * factor).collect()));
+    let levels = Arc::new(Levels::of_channel(index, values, factor));
     Trace { name: name.to_owned(), label, role, second, levels }
 }
 
@@ -251,7 +251,7 @@ mod tests {
         assert_eq!(titles, ["Position", "Force", "Other"]);
         let position = &prepared.groups[0];
         assert_eq!((position.unit.as_str(), position.traces[1].label.as_str()), ("mm", "left y"));
-        assert_eq!(position.traces[0].levels.value(1), 2.0);
+        assert_eq!(position.traces[0].levels.samples(&prepared.recording).value(1), 2.0);
         assert_eq!(prepared.sample_at(0.4), 0);
         assert_eq!(prepared.sample_at(0.5), 1);
     }

@@ -22,7 +22,8 @@ impl Band {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    fn of(values: &[f64]) -> Self {
+    /// Of these values; of none, one that joins with anything.
+    pub fn of(values: &[f64]) -> Self {
         values.iter().fold(Self::NONE, |band, &v| Self { low: band.low.min(v), high: band.high.max(v) })
     }
 }

@@ -139,8 +139,11 @@ fn curves(ui: &mut Ui, prepared: &Prepared, group: &Group, height: f32) {
     let dark = ui.visuals().dark_mode;
     let (from, to) = prepared.span();
     let columns = (ui.available_width() * ui.pixels_per_point()) as usize;
-    let points: Vec<Vec<PlotPoint>> =
-        group.traces.iter().map(|t| decimate(&prepared.times, &t.levels, from, to, columns)).collect();
+    let points: Vec<Vec<PlotPoint>> = group
+        .traces
+        .iter()
+        .map(|t| decimate(&prepared.times, t.levels.samples(&prepared.recording), from, to, columns))
+        .collect();
     let color = |at: usize| {
         let trace = &group.traces[at];
         let plain = theme::role(dark, trace.role);

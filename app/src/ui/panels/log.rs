@@ -1,6 +1,7 @@
 //! The log: plots with one time axis, the states under them, the time slider.
 
 use super::Panel;
+use super::incoming::incoming;
 use super::segments::band;
 use super::transport::transport;
 use crate::ui::files;
@@ -35,6 +36,10 @@ impl Panel for LogPanel {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         sheet(ui).inner_margin(space::M).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
+            if let Some((preview, progress)) = session.jobs.preview() {
+                incoming(ui, preview, &progress);
+                return;
+            }
             let Some(prepared) = session.prepared().cloned() else {
                 nothing_loaded(ui, session);
                 return;

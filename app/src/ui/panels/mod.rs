@@ -3,6 +3,7 @@
 pub(super) mod answers;
 pub mod device_detail;
 pub mod devices;
+mod incoming;
 mod legend;
 pub mod log;
 mod marks;

@@ -76,7 +76,7 @@ fn source(ui: &mut Ui, session: &mut Session) {
         fact(ui, "Name", recording.name.clone());
     }
     fact(ui, "Length", recording.duration_s().map_or_else(|| "no clock".to_owned(), |d| format!("{d:.1} s")));
-    fact(ui, "Samples", grouped(recording.len()));
+    fact(ui, "Samples", format::grouped(recording.len()));
     if let Some(rate) = recording.rate_hz() {
         fact(ui, "Rate", format!("{} Hz", format::significant(rate, 3)));
     }
@@ -84,19 +84,6 @@ fn source(ui: &mut Ui, session: &mut Session) {
     if let Some(signals) = &prepared.signals {
         fact(ui, "Velocities", signals.velocity_from.split(' ').next().unwrap_or_default().to_owned());
     }
-}
-
-/// `12345` → `12 345`.
-fn grouped(n: usize) -> String {
-    let digits = n.to_string();
-    let mut text = String::new();
-    for (i, c) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push('\u{2009}');
-        }
-        text.push(c);
-    }
-    text
 }
 
 fn choose_trial(ui: &mut Ui, session: &mut Session) {

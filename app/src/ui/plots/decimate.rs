@@ -1,65 +1,78 @@
 //! Thinning to extremes: every pixel column keeps its smallest and its largest value, so no spike is lost.
 
 use egui_plot::PlotPoint;
+use estimator::log::pyramid::{Band, Pyramid};
+use haptics::recording::Recording;
+use std::ops::Range;
 
-/// Samples in a block whose extremes are known beforehand.
-const BLOCK: usize = 64;
-
-/// Values with the extremes of every block: a column over a million samples looks at thousands of blocks, not at samples.
+/// One curve's values, or where they stand in the recording, with a pyramid of their extremes: a column of pixels over a million
+/// samples looks at tens of blocks, not at samples.
 #[derive(Clone, Debug, Default)]
 pub struct Levels {
-    values: Vec<f64>,
-    blocks: Vec<(f64, f64)>,
+    source: Source,
+    /// Shown value = value × factor; positive.
+    factor: f64,
+    pyramid: Pyramid,
+}
+
+#[derive(Clone, Debug)]
+enum Source {
+    /// A channel of the recording, which holds the values already.
+    Channel(usize),
+    Own(Vec<f64>),
+}
+
+impl Default for Source {
+    fn default() -> Self {
+        Self::Own(Vec::new())
+    }
 }
 
 impl Levels {
-    /// Prepares values.
+    /// Of values that nobody else holds, in the shown unit.
     pub fn new(values: Vec<f64>) -> Self {
-        let blocks = values.chunks(BLOCK).map(extremes).collect();
-        Self { values, blocks }
+        Self { pyramid: Pyramid::of(&values), source: Source::Own(values), factor: 1.0 }
     }
 
-    /// A value; NaN outside.
-    pub fn value(&self, sample: usize) -> f64 {
-        self.values.get(sample).copied().unwrap_or(f64::NAN)
+    /// Of channel `index` of a recording, whose `values` stay there; shown times `factor`.
+    pub fn of_channel(index: usize, values: &[f64], factor: f64) -> Self {
+        Self { pyramid: Pyramid::of(values), source: Source::Channel(index), factor }
     }
 
-    /// Number of samples.
-    pub fn len(&self) -> usize {
-        self.values.len()
-    }
-
-    /// True when there is no sample.
-    pub fn is_empty(&self) -> bool {
-        self.values.is_empty()
-    }
-
-    /// Smallest and largest of `first..end`; (∞, −∞) when there is none.
-    pub fn range(&self, first: usize, end: usize) -> (f64, f64) {
-        let end = end.min(self.values.len());
-        if first >= end {
-            return (f64::INFINITY, f64::NEG_INFINITY);
-        }
-        let (inner_first, inner_end) = (first.div_ceil(BLOCK), end / BLOCK);
-        if inner_first >= inner_end {
-            return extremes(&self.values[first..end]);
-        }
-        let middle = self.blocks[inner_first..inner_end]
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
-        let head = extremes(&self.values[first..inner_first * BLOCK]);
-        let tail = extremes(&self.values[inner_end * BLOCK..end]);
-        (middle.0.min(head.0).min(tail.0), middle.1.max(head.1).max(tail.1))
+    /// The samples, to be drawn.
+    pub fn samples<'a>(&'a self, recording: &'a Recording) -> Samples<'a> {
+        let values = match &self.source {
+            Source::Own(values) => values.as_slice(),
+            Source::Channel(index) => recording.channels.get(*index).map_or(&[][..], |c| c.values.as_slice()),
+        };
+        Samples { values, levels: self }
     }
 }
 
-fn extremes(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
+/// A curve's values with their pyramid.
+#[derive(Clone, Copy, Debug)]
+pub struct Samples<'a> {
+    values: &'a [f64],
+    levels: &'a Levels,
+}
+
+impl Samples<'_> {
+    /// A value in the shown unit; NaN outside.
+    pub fn value(&self, sample: usize) -> f64 {
+        self.values.get(sample).map_or(f64::NAN, |v| v * self.levels.factor)
+    }
+
+    /// Smallest and largest of `first..end` in the shown unit; (∞, −∞) when there is none.
+    fn range(&self, first: usize, end: usize) -> (f64, f64) {
+        let read = |range: Range<usize>| Band::of(self.values.get(range).unwrap_or_default());
+        let band = self.levels.pyramid.band(first..end, &read);
+        band.map_or((f64::INFINITY, f64::NEG_INFINITY), |b| (b.low * self.levels.factor, b.high * self.levels.factor))
+    }
 }
 
 /// The curve between two times in at most two points a column (plus the neighbours outside, so that lines run on).
-pub fn decimate(times: &[f64], levels: &Levels, from: f64, to: f64, columns: usize) -> Vec<PlotPoint> {
-    let n = times.len().min(levels.len());
+pub fn decimate(times: &[f64], levels: Samples<'_>, from: f64, to: f64, columns: usize) -> Vec<PlotPoint> {
+    let n = times.len().min(levels.values.len());
     let first = times[..n].partition_point(|t| *t < from).saturating_sub(1);
     let end = (times[..n].partition_point(|t| *t <= to) + 1).min(n);
     if end <= first {
@@ -94,6 +107,7 @@ pub fn decimate(times: &[f64], levels: &Levels, from: f64, to: f64, columns: usi
 #[cfg(test)]
 mod tests {
     use super::*;
+    use haptics::recording::Channel;
 
     fn wave(n: usize) -> (Vec<f64>, Levels) {
         let times: Vec<f64> = (0..n).map(|i| i as f64 * 1e-3).collect();
@@ -104,8 +118,8 @@ mod tests {
 
     #[test]
     fn no_spike_is_lost_and_no_more_points_than_pixels_need() {
-        let (times, levels) = wave(1_000_000);
-        let points = decimate(&times, &levels, 0.0, 1_000.0, 1_200);
+        let ((times, levels), none) = (wave(1_000_000), Recording::default());
+        let points = decimate(&times, levels.samples(&none), 0.0, 1_000.0, 1_200);
         assert!(points.len() <= 2 * 1_200 + 2);
         let highest = points.iter().map(|p| p.y).fold(f64::MIN, f64::max);
         assert_eq!(highest, 7.0);
@@ -114,27 +128,40 @@ mod tests {
 
     #[test]
     fn close_up_every_sample_is_drawn() {
-        let (times, levels) = wave(10_000);
-        let points = decimate(&times, &levels, 2.0, 2.1, 1_200);
+        let ((times, levels), none) = (wave(10_000), Recording::default());
+        let points = decimate(&times, levels.samples(&none), 2.0, 2.1, 1_200);
         assert_eq!(points.len(), 103, "a hundred and one samples and a neighbour on each side");
     }
 
     #[test]
-    fn block_extremes_agree_with_a_plain_search() {
-        let (_, levels) = wave(1_000);
-        for (first, end) in [(0, 1_000), (3, 5), (63, 65), (64, 128), (100, 900), (999, 1_000), (5, 5)] {
-            assert_eq!(levels.range(first, end), extremes(&levels.values[first..end]), "{first}..{end}");
-        }
+    fn a_channel_is_drawn_from_the_recording_in_its_shown_unit() {
+        let values: Vec<f64> = (0..5_000).map(|i| f64::from(i % 100) * 1e-3).collect();
+        let times: Vec<f64> = (0..5_000).map(f64::from).collect();
+        let levels = Levels::of_channel(1, &values, 1000.0);
+        let channel = |values: Vec<f64>| Channel { name: String::new(), unit: "m".to_owned(), values };
+        let recording = Recording { channels: vec![channel(vec![]), channel(values)], ..Recording::default() };
+        let samples = levels.samples(&recording);
+        assert_eq!((samples.value(42), samples.range(0, 5_000), samples.range(3, 7)), (42.0, (0.0, 99.0), (3.0, 6.0)));
+        assert!(samples.value(5_000).is_nan() && samples.range(7, 7).0.is_infinite());
+        assert!(decimate(&times, samples, 0.0, 5e3, 20).iter().all(|p| (0.0..=99.0).contains(&p.y)));
+        // A recording that is another one by now.
+        assert!(decimate(&times, levels.samples(&Recording::default()), 0.0, 5e3, 20).is_empty());
     }
 
+    /// The pyramid spares work that grows with the samples: a hundred times as many cost less than ten times as much.
     #[test]
-    fn a_million_samples_take_milliseconds() {
-        let (times, levels) = wave(1_000_000);
-        let begun = std::time::Instant::now();
-        for _ in 0..10 {
-            std::hint::black_box(decimate(&times, &levels, 0.0, 1_000.0, 1_500));
-        }
-        // Unoptimised: under 10 ms each, measured 1 to 3; ten times that is a defect, not noise.
-        assert!(begun.elapsed().as_secs_f64() < 1.0, "{:?}", begun.elapsed());
+    fn thinning_hardly_depends_on_the_number_of_samples() {
+        let none = Recording::default();
+        let seconds = |n: usize| {
+            let (times, levels) = wave(n);
+            let once = || {
+                let begun = std::time::Instant::now();
+                std::hint::black_box(decimate(&times, levels.samples(&none), 0.0, n as f64 * 1e-3, 1_500));
+                begun.elapsed().as_secs_f64()
+            };
+            (0..9).map(|_| once()).fold(f64::INFINITY, f64::min)
+        };
+        let (few, many) = (seconds(50_000), seconds(5_000_000));
+        assert!(many < 10.0 * few, "{few} s and {many} s");
     }
 }

@@ -85,7 +85,8 @@ impl PlotCache {
             columns,
         );
         if self.curves.get(&slot).is_none_or(|cached| cached.key != key) {
-            let points = decimate(&input.prepared.times, levels, from, to, columns);
+            let samples = levels.samples(&input.prepared.recording);
+            let points = decimate(&input.prepared.times, samples, from, to, columns);
             self.curves.insert(slot, Cached { key, points });
         }
     }
@@ -165,7 +166,7 @@ fn curve_entry(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, trace: 
             let words = if shown { p.secondary } else { p.faint };
             ui.add(egui::Label::new(RichText::new(&trace.label).size(11.5).color(words)).truncate());
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let value = trace.levels.value(sample);
+                let value = trace.levels.samples(&input.prepared.recording).value(sample);
                 let text = if shown && value.is_finite() {
                     value_text(value, &input.group.unit, narrow)
                 } else {
@@ -297,7 +298,7 @@ fn draw_cursor(ui: &Ui, transform: &PlotTransform, input: &RowInput<'_>, shown: 
     painter.vline(x, area.y_range(), Stroke::new(1.2, p.accent));
     let sample = input.prepared.sample_at(input.cursor_s);
     for (_, trace) in shown {
-        let value = trace.levels.value(sample);
+        let value = trace.levels.samples(&input.prepared.recording).value(sample);
         if value.is_finite() {
             let y = transform.position_from_point(&PlotPoint::new(input.cursor_s, value)).y;
             painter.circle(Pos2::new(x, y), 3.0, curve_color(dark, trace), Stroke::new(1.0, p.card));
