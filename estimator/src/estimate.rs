@@ -195,7 +195,7 @@ pub enum EstimateError {
     },
     /// The task could not be told.
     #[error(
-        "the task of {recording} is not stated and its columns do not tell it; give --task, or \"task\" in the sidecar"
+        "the task of {recording} is not stated and its columns do not tell it; state it (--task, the card Fit in the window, or \"task\" in the sidecar)"
     )]
     UnknownTask {
         /// Which recording.

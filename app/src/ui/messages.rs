@@ -2,7 +2,7 @@
 
 use super::session::{Session, Tone};
 use super::theme::{self, palette};
-use egui::{Align, Frame, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
+use egui::{Align, Frame, Id, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
 use std::time::Instant;
 
 /// Draws them above the workspace. What was done fades by itself; what went wrong stays until it is dismissed.
@@ -17,6 +17,12 @@ pub fn banners(ui: &mut Ui, session: &mut Session) {
     }
     let p = palette(ui);
     let mut closed = None;
+    // The bar takes its height from the picture before: when there is more or less to say, another one is due at once.
+    let count = session.banners.len();
+    let before = ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default(Id::unique("banners")), count));
+    if before != count {
+        ui.ctx().request_repaint();
+    }
     let frame = Frame::new().inner_margin(Margin { left: 12, right: 12, top: 10, bottom: 0 });
     Side::top("messages").frame(frame).show_separator_line(false).show(ui, |ui| {
         for (index, banner) in session.banners.iter().enumerate() {
