@@ -147,21 +147,4 @@ mod tests {
         // A recording that is another one by now.
         assert!(decimate(&times, levels.samples(&Recording::default()), 0.0, 5e3, 20).is_empty());
     }
-
-    /// The pyramid spares work that grows with the samples: a hundred times as many cost less than ten times as much.
-    #[test]
-    fn thinning_hardly_depends_on_the_number_of_samples() {
-        let none = Recording::default();
-        let seconds = |n: usize| {
-            let (times, levels) = wave(n);
-            let once = || {
-                let begun = std::time::Instant::now();
-                std::hint::black_box(decimate(&times, levels.samples(&none), 0.0, n as f64 * 1e-3, 1_500));
-                begun.elapsed().as_secs_f64()
-            };
-            (0..9).map(|_| once()).fold(f64::INFINITY, f64::min)
-        };
-        let (few, many) = (seconds(50_000), seconds(5_000_000));
-        assert!(many < 10.0 * few, "{few} s and {many} s");
-    }
 }
