@@ -2,7 +2,7 @@
 
 use crate::calibrate;
 use crate::estimate::{EstimateError, Fit, Parameter};
-use crate::identify::{block, crank, mechanism};
+use crate::identify::{block, crank, mechanism, needle};
 use crate::segment::{Segmentation, Thresholds, segment, task_of};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
@@ -55,9 +55,13 @@ pub fn analyse(recordings: &[Recording], options: &Options) -> Result<Analysis, 
             let segmentations = recordings.iter().map(|r| segment(r, Some(task), options.thresholds).ok()).collect();
             (fit, segmentations)
         }
-        Task::Needle | Task::Barrel | Task::Switch => {
+        Task::Needle => {
+            let fits = recordings.iter().map(needle::fit).collect::<Result<Vec<_>, _>>()?;
+            (combine(fits), recordings.iter().map(|_| None).collect())
+        }
+        Task::Barrel | Task::Switch => {
             return Err(EstimateError::Other(format!(
-                "recordings of the task {} cannot be fitted yet; block-stack, crank and mechanism can",
+                "recordings of the task {} cannot be fitted yet; block-stack, crank, needle and mechanism can",
                 task.name()
             )));
         }

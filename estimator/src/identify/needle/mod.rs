@@ -1,0 +1,241 @@
+//! A needle pushed through a sheet (thesis, 5.3.2): the sheet's stiffness, where it lies, and the force at which it is pierced.
+//!
+//! Only pushes into an untouched sheet follow the loading curve: a place that was pushed in before keeps a dent, one that was
+//! pierced a hole. Two fingers measure their tips, not the needle between their pads: the pads' give is read from how the grip's
+//! width follows its force, and what is not known of it joins the errors.
+
+mod loading;
+mod signals;
+mod strokes;
+
+use crate::estimate::{Constraint, ConstraintKind, EstimateError, Fit, Parameter};
+use haptics::Vec2;
+use haptics::recording::Recording;
+use loading::{Loading, Point};
+use signals::Along;
+use strokes::{Push, quiet_force};
+
+/// The object's name in the results.
+pub const OBJECT: &str = "needle";
+
+/// What geometry and log leave unknown of a place, m: seats, resolution.
+const PLACE_ERROR_M: f64 = 1e-5;
+/// A sheet is pierced between two samples; the force of so many samples before the fall is uncertain.
+const FALL_SAMPLES: usize = 3;
+/// Fewer samples of loading show no curve.
+const LEAST_LOADING: usize = 20;
+
+/// Fits one recording.
+pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
+    let along = signals::along(recording)?;
+    let pushes = strokes::pushes(&along);
+    let mut result = Fit { task: "needle".to_owned(), ..Fit::default() };
+    let used = pushes.iter().map(|p| p.samples.len()).sum();
+    if used < LEAST_LOADING {
+        let why = "no push into an untouched sheet was seen; push the held needle in from outside";
+        result.parameters = ["stiffness_N_m", "puncture_force_N", "surface_position_m"]
+            .map(|n| Parameter::unidentified(OBJECT, n, used, why))
+            .to_vec();
+        result.warnings.push(why.to_owned());
+        return Ok(result);
+    }
+    let sheet = Sheet::of(&along, &pushes)?;
+    result.parameters = sheet.parameters(&along, &pushes, recording);
+    result.constraints.push(sheet.constraint(&along, recording));
+    if pushes.iter().any(|p| p.hold != pushes[0].hold) && along.two_fingered {
+        let text = "the needle was gripped anew between pushes; the surface is where the first grip met it";
+        result.warnings.push(text.to_owned());
+    }
+    Ok(result)
+}
+
+/// The loading curve with what the pads' unknown give does to it.
+struct Sheet {
+    loading: Loading,
+    /// The same with pads that give one standard error more.
+    softer: Loading,
+    samples: usize,
+    /// Holds with a push, in the order of the offsets.
+    holds: Vec<usize>,
+}
+
+impl Sheet {
+    fn of(along: &Along, pushes: &[Push]) -> Result<Self, EstimateError> {
+        let mut holds: Vec<usize> = pushes.iter().map(|p| p.hold).collect();
+        holds.dedup();
+        let (give, error) = along.give_m_n;
+        let loading = curve(along, pushes, &holds, give)?;
+        let softer = if error > 0.0 { curve(along, pushes, &holds, give + error)? } else { loading.clone() };
+        Ok(Self { samples: pushes.iter().map(|p| p.samples.len()).sum(), loading, softer, holds })
+    }
+
+    /// Error of a value that the pads' give changes, with the fit's own.
+    fn error(&self, own: f64, of: impl Fn(&Loading) -> f64) -> f64 {
+        own.hypot(of(&self.softer) - of(&self.loading))
+    }
+
+    fn parameters(&self, along: &Along, pushes: &[Push], recording: &Recording) -> Vec<Parameter> {
+        let (loading, errors) = (&self.loading, &self.loading.around.std_errors);
+        let stiffness_error = self.error(errors[loading.stiffness_at()], |l| l.stiffness_n_m);
+        let pads = if along.give_m_n.0 > 0.0 { ", less the pads' give" } else { "" };
+        let how = format!("slope of force over depth where the sheet was first met{pads}");
+        let mut found = vec![Parameter::identified(
+            OBJECT,
+            "stiffness_N_m",
+            loading.stiffness_n_m,
+            stiffness_error,
+            self.samples,
+            &how,
+        )];
+        if loading.cubic_n_m3 > 0.0 {
+            let (value, error) = (loading.cubic_n_m3, errors[loading.stiffness_at() + 1]);
+            let error = self.error(error, |l| l.cubic_n_m3);
+            found.push(Parameter::identified(
+                OBJECT,
+                "hardening_N_m3",
+                value,
+                error,
+                self.samples,
+                "bend of the same curve",
+            ));
+        }
+        found.push(self.puncture(along, pushes));
+        found.push(self.surface(along, &pushes[0]));
+        found.extend(self.friction(along, pushes));
+        found.extend(self.weight(along, recording));
+        found
+    }
+
+    fn puncture(&self, along: &Along, pushes: &[Push]) -> Parameter {
+        let give = along.give_m_n.0;
+        let depth = |i: usize| along.depth_m[i] - give * along.force_n[i];
+        let seen: Vec<(f64, f64)> = pushes
+            .iter()
+            .filter_map(|push| {
+                let at = push.puncture?;
+                let value = self.loading.force_n(depth(at));
+                let before = self.loading.force_n(depth(at.saturating_sub(FALL_SAMPLES).max(push.samples.start)));
+                let own = self.loading.force_error_n(depth(at)).hypot((value - before) / 3.0_f64.sqrt());
+                // The curve and the sample itself, which must agree.
+                let measured = along.force_n[at] - self.offset(push.hold);
+                Some((value, own.hypot(0.5 * (measured - value)).hypot(along.noise_n)))
+            })
+            .collect();
+        if seen.is_empty() {
+            let why = "the needle never went through: no force fell while it was pushed on";
+            return Parameter::unidentified(OBJECT, "puncture_force_N", self.samples, why);
+        }
+        let n = seen.len() as f64;
+        let mean = seen.iter().map(|s| s.0).sum::<f64>() / n;
+        let own = (seen.iter().map(|s| s.1 * s.1).sum::<f64>() / n).sqrt();
+        let spread = (seen.iter().map(|s| (s.0 - mean).powi(2)).sum::<f64>() / n).sqrt();
+        let how = format!("force on the loading curve at the last sample before it fell, {} time(s)", seen.len());
+        Parameter::identified(OBJECT, "puncture_force_N", mean, own.hypot(spread / n.sqrt()), seen.len(), &how)
+    }
+
+    fn offset(&self, hold: usize) -> f64 {
+        self.holds.iter().position(|h| *h == hold).map_or(0.0, |k| self.loading.offset_n[k])
+    }
+
+    /// Along the world's axis that the needle moves along, else along the needle.
+    fn surface(&self, along: &Along, first: &Push) -> Parameter {
+        let own = self.loading.around.std_errors[self.loading.surface_at()].hypot(PLACE_ERROR_M);
+        let error = self.error(own, |l| l.surface_m);
+        let (x, y) = (along.direction.x, along.direction.y);
+        let point = if along.two_fingered { "the middle of the fingertips" } else { "the tool" };
+        // Where the needle met it: an axis that is a little askew must not count from far away.
+        let far = |i: &usize| (along.depth_m[*i] - self.loading.surface_m).abs();
+        let met = first.samples.clone().min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(first.samples.start);
+        let place = along.direction * self.loading.surface_m + Vec2::new(-y, x) * along.side_m[met];
+        let (value, axis) = if y.abs() > 0.9 {
+            (place.y, "y")
+        } else if x.abs() > 0.9 {
+            (place.x, "x")
+        } else {
+            (self.loading.surface_m, "the way along the needle")
+        };
+        let how = format!("{axis} of {point} where the force begins to rise");
+        Parameter::identified(OBJECT, "surface_position_m", value, error, self.samples, &how)
+    }
+
+    /// Half the difference between going in and drawing out of a hole.
+    fn friction(&self, along: &Along, pushes: &[Push]) -> Option<Parameter> {
+        let beyond = self.loading.surface_m + 5e-4;
+        let (mut inwards, mut outwards) = (Vec::new(), Vec::new());
+        for push in pushes {
+            let Some(at) = push.puncture else { continue };
+            let hold = along.holds[push.hold].clone();
+            let offset = self.offset(push.hold);
+            // From one twentieth of a second of samples on, the sheet has sprung back.
+            let settled = (at + (push.end - at) / 3).min(push.end);
+            inwards.extend((settled..push.end).map(|i| along.force_n[i] - offset));
+            let out = (push.end..hold.end).take_while(|&i| along.depth_m[i] > beyond);
+            let deepest = along.depth_m[push.end - 1];
+            outwards.extend(out.filter(|&i| along.depth_m[i] < deepest - 1e-3).map(|i| along.force_n[i] - offset));
+        }
+        let median = |values: &mut Vec<f64>| {
+            values.sort_by(f64::total_cmp);
+            values.get(values.len() / 2).copied()
+        };
+        let samples = inwards.len() + outwards.len();
+        let (inwards, outwards) = (median(&mut inwards)?, median(&mut outwards)?);
+        let value = 0.5 * (inwards - outwards);
+        // In and out need not be alike: their mean beside zero is what is not understood.
+        let error = (0.5 * (inwards + outwards).abs()).max(0.1 * value.abs()).hypot(along.noise_n);
+        let how = "half the difference of the forces in the hole on the way in and on the way out";
+        (value > 0.0).then(|| Parameter::identified(OBJECT, "shaft_friction_N", value, error, samples, how))
+    }
+
+    fn weight(&self, along: &Along, recording: &Recording) -> Option<Parameter> {
+        if !along.two_fingered || along.direction.y.abs() < 0.9 || recording.meta.gravity() <= 0.0 {
+            return None;
+        }
+        let outside = quiet_force(along);
+        let value = outside / along.direction.y;
+        let error =
+            (outside - self.loading.offset_n[0]).hypot(self.loading.around.std_errors[0]).hypot(0.1 * along.noise_n);
+        let how = "force that holds the needle outside the sheet";
+        Some(Parameter::identified(OBJECT, "weight_N", value, error, self.samples, how))
+    }
+
+    fn constraint(&self, along: &Along, recording: &Recording) -> Constraint {
+        let errors = &self.loading.around.std_errors;
+        let evidence = format!(
+            "force rises with {:.0} N/m from the surface on, on {} samples of pushes into an untouched sheet",
+            self.loading.stiffness_n_m, self.samples
+        );
+        Constraint {
+            kind: ConstraintKind::Membrane,
+            recording: Some(recording.name.clone()),
+            center_m: None,
+            normals_center_m: None,
+            radius_m: None,
+            radius_interval_m: None,
+            direction: Some(vec![along.direction.x, along.direction.y]),
+            rigid: Some(false),
+            std_error: [("surface_m".to_owned(), errors[self.loading.surface_at()])].into(),
+            coverage_rad: None,
+            coverage_m: None,
+            residual_m: None,
+            constraint_force_n: None,
+            evidence,
+        }
+    }
+}
+
+/// The loading curve with pads that give so much, m/N.
+fn curve(along: &Along, pushes: &[Push], holds: &[usize], give: f64) -> Result<Loading, EstimateError> {
+    let mut points = Vec::new();
+    for push in pushes {
+        let hold = holds.iter().position(|h| *h == push.hold).unwrap_or(0);
+        let first_m = along.depth_m[push.samples.start];
+        for i in push.samples.clone() {
+            let depth = along.depth_m[i];
+            // Below an earlier dent the sheet is another one; well outside it, it is not there at all.
+            if depth > push.untouched_from_m || depth < first_m + 2e-4 {
+                points.push(Point { hold, depth_m: depth - give * along.force_n[i], force_n: along.force_n[i] });
+            }
+        }
+    }
+    loading::fit(&points, holds.len())
+}

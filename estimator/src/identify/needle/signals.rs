@@ -1,0 +1,140 @@
+//! What a needle recording says along the needle's way: depth, force, and where it is held.
+
+use crate::estimate::EstimateError;
+use crate::signal::noise::white_noise;
+use crate::signal::task::{TipSeries, is_two_fingered, tip_series};
+use haptics::Vec2;
+use haptics::recording::Recording;
+use std::ops::Range;
+
+/// A grip counts from this share of the strongest one …
+const GRIP_SHARE: f64 = 0.15;
+/// … and from this many times its noise.
+const GRIP_NOISES: f64 = 8.0;
+/// Share of the largest forces whose mean direction is that of the needle.
+const STRONGEST: f64 = 0.02;
+/// Forces below this many times their noise show nothing.
+const FORCE_NOISES: f64 = 12.0;
+/// Holds of fewer samples are none.
+const LEAST_HOLD: usize = 30;
+/// Shear stiffness of a pad as a share of its normal stiffness, and how well that is known (one standard deviation): an
+/// assumption, for soft pads of foam and rubber.
+const SHEAR_SHARE: (f64, f64) = (0.7, 0.25);
+/// The pads give when width follows grip this clearly (value over its error).
+const PADS_SEEN: f64 = 8.0;
+
+/// The recording along the needle.
+#[derive(Clone, Debug)]
+pub struct Along {
+    /// Way of the held point in the direction of insertion, m.
+    pub depth_m: Vec<f64>,
+    /// Force in that direction, on the environment, N.
+    pub force_n: Vec<f64>,
+    /// Way across, m: another place of the sheet.
+    pub side_m: Vec<f64>,
+    /// Unit vector of insertion in the world.
+    pub direction: Vec2,
+    /// Stretches of samples in which the needle is held.
+    pub holds: Vec<Range<usize>>,
+    /// Give of the pads between the measured tips and the needle, m/N, and its error.
+    pub give_m_n: (f64, f64),
+    /// White noise of the force, N.
+    pub noise_n: f64,
+    /// True when two fingers hold the needle, so that its weight is part of the force.
+    pub two_fingered: bool,
+}
+
+/// Reads the two fingers or the single tool.
+pub fn along(recording: &Recording) -> Result<Along, EstimateError> {
+    let missing = |column: &str| EstimateError::MissingColumn {
+        task: "the task needle".to_owned(),
+        column: column.to_owned(),
+        recording: recording.name.clone(),
+    };
+    let two_fingered = is_two_fingered(recording);
+    let forces = |tip: &TipSeries, column: &str| tip.force.clone().ok_or_else(|| missing(column));
+    let (position, force, grip) = if two_fingered {
+        let tips = [tip_series(recording, "1")?, tip_series(recording, "2")?];
+        let (left, right) = (forces(&tips[0], "fx1_N")?, forces(&tips[1], "fx2_N")?);
+        let pair = || tips[0].position.iter().zip(&tips[1].position);
+        let grip: Vec<f64> = left.iter().zip(&right).map(|(l, r)| l.x.min(-r.x)).collect();
+        let width: Vec<f64> = pair().map(|(l, r)| r.x - l.x).collect();
+        let position: Vec<Vec2> = pair().map(|(l, r)| 0.5 * (l + r)).collect();
+        (position, left.iter().zip(&right).map(|(l, r)| l + r).collect(), Some((grip, width)))
+    } else {
+        let tool = tip_series(recording, "")?;
+        let force = forces(&tool, "fx_N")?;
+        (tool.position, force, None)
+    };
+    let holds = grip.as_ref().map_or_else(|| std::iter::once(0..position.len()).collect(), |(grip, _)| holds(grip));
+    let give_m_n = grip.as_ref().map_or((0.0, 0.0), |(grip, width)| give(grip, width, &holds));
+    let held = |i: usize| holds.iter().any(|h| h.contains(&i));
+    let Some(direction) = direction(&force, &held) else {
+        return Err(EstimateError::Other(format!(
+            "{} shows no force of a sheet on a needle: nothing stands out of the noise while it is held",
+            recording.name
+        )));
+    };
+    let depth_m: Vec<f64> = position.iter().map(|p| p.dot(&direction)).collect();
+    let force_n: Vec<f64> = force.iter().map(|f| f.dot(&direction)).collect();
+    let side_m = position.iter().map(|p| direction.perp(p)).collect();
+    let noise_n = white_noise(&force_n);
+    Ok(Along { depth_m, force_n, side_m, direction, holds, give_m_n, noise_n, two_fingered })
+}
+
+/// Stretches of samples with a grip.
+fn holds(grip: &[f64]) -> Vec<Range<usize>> {
+    let most = grip.iter().fold(0.0_f64, |a, b| a.max(*b));
+    let least = (GRIP_SHARE * most).max(GRIP_NOISES * white_noise(grip));
+    let mut found: Vec<Range<usize>> = Vec::new();
+    for (i, _) in grip.iter().enumerate().filter(|(_, g)| **g > least) {
+        match found.last_mut() {
+            // A few samples of noise do not end a hold.
+            Some(last) if i <= last.end + 5 => last.end = i + 1,
+            _ => found.push(i..i + 1),
+        }
+    }
+    found.retain(|hold| hold.len() >= LEAST_HOLD);
+    found
+}
+
+/// Mean direction of the strongest forces while the needle is held; `None` when they do not stand out of the noise.
+fn direction(force: &[Vec2], held: &dyn Fn(usize) -> bool) -> Option<Vec2> {
+    let mut sizes: Vec<(f64, usize)> =
+        force.iter().enumerate().filter(|(i, _)| held(*i)).map(|(i, f)| (f.norm(), i)).collect();
+    if sizes.len() < LEAST_HOLD {
+        return None;
+    }
+    sizes.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let count = ((STRONGEST * sizes.len() as f64) as usize).max(5);
+    let mean = sizes[..count].iter().map(|&(_, i)| force[i]).sum::<Vec2>() / count as f64;
+    let axis = |pick: fn(&Vec2) -> f64| white_noise(&force.iter().map(pick).collect::<Vec<_>>());
+    let noise = axis(|f| f.x).max(axis(|f| f.y));
+    (mean.norm() > FORCE_NOISES * noise && mean.norm() > 0.0).then(|| mean.normalize())
+}
+
+/// Give of two pads in shear, m/N, out of how the grip's width follows its force: the fingers' tips are measured, not the
+/// needle between the pads.
+fn give(grip: &[f64], width: &[f64], holds: &[Range<usize>]) -> (f64, f64) {
+    let (mut gg, mut gw, mut n, mut rest) = (0.0, 0.0, 0.0, 0.0);
+    for hold in holds {
+        let mean = |values: &[f64]| values[hold.clone()].iter().sum::<f64>() / hold.len() as f64;
+        let (grip_mean, width_mean) = (mean(grip), mean(width));
+        for i in hold.clone() {
+            let (g, w) = (grip[i] - grip_mean, width[i] - width_mean);
+            (gg, gw, n, rest) = (gg + g * g, gw + g * w, n + 1.0, rest + w * w);
+        }
+    }
+    if gg <= 0.0 || n < 3.0 {
+        return (0.0, 0.0);
+    }
+    let slope = gw / gg;
+    let error = ((rest - slope * gw).max(0.0) / n / gg).sqrt();
+    // Both pads give: width falls by 2 grip / stiffness.
+    let normal_n_m = -2.0 / slope;
+    if slope >= 0.0 || -slope < PADS_SEEN * error {
+        return (0.0, 0.0);
+    }
+    let give = 1.0 / (2.0 * SHEAR_SHARE.0 * normal_n_m);
+    (give, give * SHEAR_SHARE.1 / SHEAR_SHARE.0)
+}

@@ -1,0 +1,170 @@
+//! Pushes of the needle into the sheet: which samples follow the first, untouched loading curve, and where the needle goes
+//! through.
+
+use super::signals::Along;
+use std::ops::Range;
+
+/// A turn of the motion counts from this share of its whole range …
+const TURN_SHARE: f64 = 0.05;
+/// … and from this way, m.
+const TURN_M: f64 = 2e-4;
+/// Places closer than this are the same hole, m.
+const SAME_PLACE_M: f64 = 1e-3;
+/// Beyond an earlier dent by this much, the sheet is untouched again, m.
+const BEYOND_DENT_M: f64 = 1e-4;
+/// The needle is through when the force falls below this share of its peak …
+const FALLEN: f64 = 0.6;
+/// … while the needle has not been drawn back by more than this share of its depth.
+const DRAWN_BACK: f64 = 0.1;
+/// Peaks below this share of the strongest force are no push.
+const PUSH_SHARE: f64 = 0.15;
+
+/// One push.
+#[derive(Clone, Debug)]
+pub struct Push {
+    /// Which hold it belongs to.
+    pub hold: usize,
+    /// Samples from the turning point outside up to the puncture or the deepest point.
+    pub samples: Range<usize>,
+    /// Depth from which the sheet is untouched, m: everything for the first push at a place.
+    pub untouched_from_m: f64,
+    /// The last sample before the force falls, when the needle goes through.
+    pub puncture: Option<usize>,
+    /// The end of the whole stroke, one past its last sample.
+    pub end: usize,
+}
+
+struct Place {
+    side_m: f64,
+    deepest_m: f64,
+    punctured: bool,
+}
+
+/// All pushes, first to last; pushes into a hole that is there already are left out.
+pub fn pushes(along: &Along) -> Vec<Push> {
+    let (low, high) = extremes(&along.depth_m, &along.holds);
+    let turn_m = (TURN_SHARE * (high - low)).max(TURN_M);
+    let outside_n = quiet_force(along);
+    let strongest_n =
+        along.holds.iter().flat_map(Clone::clone).map(|i| along.force_n[i] - outside_n).fold(0.0, f64::max);
+    let least_n = (PUSH_SHARE * strongest_n).max(8.0 * along.noise_n);
+    let mut places: Vec<Place> = Vec::new();
+    let mut found = Vec::new();
+    for (hold, range) in along.holds.iter().enumerate() {
+        for stroke in strokes(&along.depth_m, range, turn_m) {
+            let calm = calmed(&along.force_n[stroke.clone()]);
+            let force = |i: usize| calm[i - stroke.start] - outside_n;
+            let Some(peak) = stroke.clone().max_by(|&a, &b| force(a).total_cmp(&force(b))) else { continue };
+            if force(peak) < least_n {
+                continue;
+            }
+            let side_m = along.side_m[peak];
+            let known = places.iter().position(|p| (p.side_m - side_m).abs() < SAME_PLACE_M);
+            if known.is_some_and(|k| places[k].punctured) {
+                continue;
+            }
+            let puncture = puncture(along, &stroke, &force);
+            let end = puncture.unwrap_or(peak) + 1;
+            let untouched_from_m = known.map_or(f64::NEG_INFINITY, |k| places[k].deepest_m + BEYOND_DENT_M);
+            found.push(Push { hold, samples: stroke.start..end, untouched_from_m, puncture, end: stroke.end });
+            let deepest_m = along.depth_m[stroke.start..stroke.end].iter().fold(f64::MIN, |a, b| a.max(*b));
+            match known {
+                Some(k) => {
+                    places[k].deepest_m = places[k].deepest_m.max(deepest_m);
+                    places[k].punctured |= puncture.is_some();
+                }
+                None => places.push(Place { side_m, deepest_m, punctured: puncture.is_some() }),
+            }
+        }
+    }
+    found
+}
+
+/// Force while the needle is held and touches nothing: the median of the outer third of the motion.
+pub fn quiet_force(along: &Along) -> f64 {
+    let (low, high) = extremes(&along.depth_m, &along.holds);
+    let outer = low + (high - low) / 3.0;
+    let mut quiet: Vec<f64> = along
+        .holds
+        .iter()
+        .flat_map(Clone::clone)
+        .filter(|&i| along.depth_m[i] < outer)
+        .map(|i| along.force_n[i])
+        .collect();
+    quiet.sort_by(f64::total_cmp);
+    quiet.get(quiet.len() / 2).copied().unwrap_or(0.0)
+}
+
+fn extremes(depth: &[f64], holds: &[Range<usize>]) -> (f64, f64) {
+    holds
+        .iter()
+        .flat_map(Clone::clone)
+        .map(|i| depth[i])
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), d| (low.min(d), high.max(d)))
+}
+
+/// Strokes inwards: from a turning point outside to the next one inside, turns smaller than `turn_m` aside.
+fn strokes(depth: &[f64], range: &Range<usize>, turn_m: f64) -> Vec<Range<usize>> {
+    let mut found = Vec::new();
+    let (mut low, mut high) = (range.start, range.start);
+    let mut inwards = false;
+    for i in range.clone() {
+        if inwards {
+            if depth[i] > depth[high] {
+                high = i;
+            } else if depth[high] - depth[i] > turn_m {
+                found.push(low..high + 1);
+                (inwards, low) = (false, i);
+            }
+        } else if depth[i] < depth[low] {
+            low = i;
+        } else if depth[i] - depth[low] > turn_m {
+            (inwards, high) = (true, i);
+        }
+    }
+    if inwards {
+        found.push(low..high + 1);
+    }
+    found
+}
+
+/// The last sample before the force falls although the needle goes on.
+fn puncture(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64) -> Option<usize> {
+    let start_m = along.depth_m[stroke.start];
+    let mut peak = stroke.start;
+    for i in stroke.clone() {
+        if force(i) > force(peak) {
+            peak = i;
+        }
+        let drawn_back = along.depth_m[peak] - along.depth_m[i] > DRAWN_BACK * (along.depth_m[peak] - start_m);
+        if force(peak) > 8.0 * along.noise_n && force(i) < FALLEN * force(peak) && !drawn_back {
+            return Some(peak);
+        }
+    }
+    None
+}
+
+/// Medians of five: single wild samples make no peak.
+fn calmed(values: &[f64]) -> Vec<f64> {
+    (0..values.len())
+        .map(|i| {
+            let mut near = values[i.saturating_sub(2)..(i + 3).min(values.len())].to_vec();
+            near.sort_by(f64::total_cmp);
+            near[near.len() / 2]
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strokes_run_from_outside_to_inside() {
+        let depth: Vec<f64> = (0..400).map(|i| (f64::from(i) * 0.05).sin() * 5e-3).collect();
+        let found = strokes(&depth, &(0..400), 1e-3);
+        assert_eq!(found.len(), 4, "{found:?}");
+        assert!(found.iter().all(|s| depth[s.end - 1] > depth[s.start] + 4e-3));
+        assert!(strokes(&[1.0; 50], &(0..50), 1e-3).is_empty());
+    }
+}
