@@ -8,7 +8,7 @@ use super::safety::{Limits, Safety, SafetyFlags};
 use super::timing::Timing;
 use crate::Vec2;
 use crate::device::{Command, Device};
-use crate::world::{Input, State, World, step};
+use crate::world::{Input, State, Stored, World, step};
 
 /// What the recorder keeps of every tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -100,6 +100,7 @@ pub struct Loop {
     last: TickRecord,
     sent_force_n: [Vec2; 2],
     observer: Observer,
+    stored: Stored,
     passivity_control_n_s_m: Option<f64>,
     test: ForceTest,
     generation: u64,
@@ -125,6 +126,7 @@ impl Loop {
             last,
             sent_force_n: [Vec2::zeros(); 2],
             observer: Observer::default(),
+            stored: Stored::default(),
             passivity_control_n_s_m: None,
             test: ForceTest::default(),
             generation: 0,
@@ -185,7 +187,8 @@ impl Loop {
         if impact_m_s > 0.0 {
             self.device.strike(impact_m_s);
         }
-        self.observer.add(sample.tip_in_world, self.sent_force_n.map(|f| -f));
+        let stored_j = self.stored.update(world, state);
+        self.observer.add(sample.tip_in_world, self.sent_force_n.map(|f| -f), stored_j);
         self.last = TickRecord {
             time_s: state.time_s,
             input,
@@ -228,6 +231,9 @@ impl Loop {
         self.generation += 1;
         let old = std::mem::replace(&mut self.current, next);
         self.safety.swapped();
+        // Another environment, another account.
+        self.observer = Observer::default();
+        self.stored = Stored::default();
         if self.coupled_for_s > 0.0 {
             self.couple(self.coupled_for_s);
         }

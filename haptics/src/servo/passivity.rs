@@ -67,26 +67,33 @@ pub fn stable_stiffness(device_damping: f64, damping_n_s_m: f64, period_s: f64, 
 }
 
 /// Time-domain passivity observer (Hannaford & Ryu 2002): the energy that the virtual environment has taken in,
-/// E = Σ F (`x_{k+1}` − `x_k`), summed over both fingers, with F the force of the operator on the environment. A passive
-/// environment never has E < 0. A single finger may: it is pushed when the other one moves what both hold.
+/// Σ F (`x_{k+1}` − `x_k`), summed over both fingers, with F the force of the operator on the environment, less what the
+/// environment holds more than at the start ([`Stored`](crate::world::Stored)). A passive environment never has E < 0: whoever
+/// lowers what stood high gets its energy back, and is not accused. A single finger may have: it is pushed when the other one moves
+/// what both hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Observer {
-    energy_j: f64,
+    taken_j: f64,
+    /// At the start, and now.
+    stored_j: Option<(f64, f64)>,
     last: Option<([Vec2; 2], [Vec2; 2])>,
 }
 
 impl Observer {
-    /// Takes the newest positions (m) and the forces that will be held from now on (N, of the operator on the environment).
-    pub fn add(&mut self, positions: [Vec2; 2], forces_n: [Vec2; 2]) {
+    /// Takes the newest positions (m), the forces that will be held from now on (N, of the operator on the environment), and the
+    /// energy that the environment holds, J.
+    pub fn add(&mut self, positions: [Vec2; 2], forces_n: [Vec2; 2], stored_j: f64) {
         if let Some((before, held)) = self.last {
-            self.energy_j += (0..2).map(|finger| held[finger].dot(&(positions[finger] - before[finger]))).sum::<f64>();
+            self.taken_j += (0..2).map(|finger| held[finger].dot(&(positions[finger] - before[finger]))).sum::<f64>();
         }
         self.last = Some((positions, forces_n));
+        let start_j = self.stored_j.map_or(stored_j, |(start_j, _)| start_j);
+        self.stored_j = Some((start_j, stored_j));
     }
 
-    /// Energy taken in so far, J; negative: the environment has given energy out.
+    /// Energy taken in and not held, J; negative: the environment has given out what it never had.
     pub fn energy_j(&self) -> f64 {
-        self.energy_j
+        self.taken_j - self.stored_j.map_or(0.0, |(start_j, now_j)| now_j - start_j)
     }
 }
 

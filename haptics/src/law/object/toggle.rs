@@ -44,6 +44,26 @@ impl ToggleCurve {
         at_m < low.at_m || at_m > high.at_m
     }
 
+    /// Energy that the curve half way between its branches holds at a displacement, J, from its first place on: what of the
+    /// work on the way there can come back.
+    pub fn held_j(&self, at_m: f64) -> f64 {
+        let middle = |p: &CurvePoint| 0.5 * (p.forward_n + p.backward_n);
+        let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else { return 0.0 };
+        let inside_m = at_m.clamp(first.at_m, last.at_m);
+        let mut held_j = 0.0;
+        for pair in self.points.windows(2) {
+            let way_m = inside_m.min(pair[1].at_m) - pair[0].at_m;
+            if way_m <= 0.0 {
+                break;
+            }
+            let slope = (middle(&pair[1]) - middle(&pair[0])) / (pair[1].at_m - pair[0].at_m);
+            held_j += (middle(&pair[0]) + 0.5 * slope * way_m) * way_m;
+        }
+        let beyond_m = at_m - inside_m;
+        let end_n = middle(if beyond_m < 0.0 { first } else { last });
+        held_j + end_n * beyond_m + 0.5 * self.stop_n_m * beyond_m * beyond_m
+    }
+
     /// Slope of the force over the displacement for a motion at `rate_m_s`, N/m; negative where the switch snaps: of the curve,
     /// of a reversal that goes on, and of the stops.
     pub fn stiffness_n_m(&self, at_m: f64, branch: f64, rate_m_s: f64) -> f64 {
@@ -114,6 +134,19 @@ mod tests {
             ],
             reversal_m: 0.2e-3,
             stop_n_m: 4000.0,
+        }
+    }
+
+    #[test]
+    fn what_the_curve_holds_is_the_integral_of_its_middle() {
+        let curve = curve();
+        let (mut sum_j, step_m) = (curve.held_j(-6e-3), 1e-6);
+        for k in 0..12_000 {
+            let at_m = -6e-3 + f64::from(k) * step_m;
+            sum_j += curve.force_n(at_m + 0.5 * step_m, 0.5) * step_m;
+            if k % 500 == 0 {
+                assert!((sum_j - curve.held_j(at_m + step_m)).abs() < 1e-9, "{at_m}");
+            }
         }
     }
 

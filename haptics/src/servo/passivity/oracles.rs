@@ -39,7 +39,7 @@ fn taken(wall: &Wall, device: &DeviceSpec, period: i32, path: impl Fn(i32) -> f6
     let mut observer = Observer::default();
     let mut lost_j = 0.0;
     for k in 0..=period {
-        observer.add(along(path(k % period)), along(force(k)));
+        observer.add(along(path(k % period)), along(force(k)), 0.0);
         if k > 0 {
             let step = path(k % period) - path(k - 1);
             lost_j += device.damping_n_s_m * step * step / T + device.coulomb_n * step.abs();

@@ -69,8 +69,8 @@ fn the_controller_only_acts_in_the_red_and_is_capped() {
     let still = Vec2::zeros();
     let along = |x: f64| [Vec2::new(x, 0.0), still];
     let mut observer = Observer::default();
-    observer.add([still; 2], along(-1.0));
-    observer.add(along(1e-3), [still; 2]);
+    observer.add([still; 2], along(-1.0), 0.0);
+    observer.add(along(1e-3), [still; 2], 0.0);
     assert!((observer.energy_j() + 1e-3).abs() < 1e-15, "1 N helped along 1 mm: 1 mJ was given out");
     let [force, other] = control(&observer, along(0.5), T, 100.0);
     assert!((force.x + 0.5 * 4.0).abs() < 1e-9, "α = 1 mJ / (1 ms · 0.25 m²/s²) = 4 N s/m: {force}");
@@ -85,7 +85,40 @@ fn what_one_finger_gives_and_the_other_takes_is_no_activity() {
     // A rigid block pinched with 2 N and carried 10 mm: the left finger pushes, the right one is pushed.
     let mut observer = Observer::default();
     let pinch = [Vec2::new(2.0, 0.0), Vec2::new(-2.0, 0.0)];
-    observer.add([Vec2::new(-0.01, 0.0), Vec2::new(0.01, 0.0)], pinch);
-    observer.add([Vec2::new(0.0, 0.0), Vec2::new(0.02, 0.0)], pinch);
+    observer.add([Vec2::new(-0.01, 0.0), Vec2::new(0.01, 0.0)], pinch, 0.0);
+    observer.add([Vec2::new(0.0, 0.0), Vec2::new(0.02, 0.0)], pinch, 0.0);
     assert!(observer.energy_j().abs() < 1e-15);
+}
+
+/// Work that went into lifting comes back when it is lowered: that is no activity. What was never there is.
+#[test]
+fn what_the_world_held_may_come_back() {
+    let mut observer = Observer::default();
+    let along = |y: f64| [Vec2::new(0.0, y); 2];
+    // Half a newton up on each finger holds a newton that sinks a centimetre.
+    observer.add(along(0.01), along(0.5), 0.01);
+    observer.add(along(0.0), along(0.5), 0.0);
+    assert!(observer.energy_j().abs() < 1e-12, "{}", observer.energy_j());
+    observer.add(along(-0.01), along(0.5), 0.0);
+    assert!((observer.energy_j() + 0.01).abs() < 1e-12, "nothing sank, and yet work came out");
+}
+
+/// In every built-in world, whatever the scripted operator does: lifting, lowering, turning, throwing and piercing.
+#[test]
+fn worlds_that_dissipate_are_never_accused() {
+    use crate::device::{ScriptedOperator, Skill};
+    use crate::servo::{Loop, Swap, safety::Limits};
+    use crate::world::{State, presets};
+    for world in presets::all() {
+        let state = State::resting(&world);
+        let device = ScriptedOperator::new(&world, &state, Skill::default(), 7);
+        let ticks = (device.duration_s().min(30.0) / 1e-3) as usize;
+        let mut servo = Loop::new(Box::new(Swap { world: world.clone(), state }), Box::new(device), Limits::default());
+        let least_j = (0..ticks).map(|_| servo.tick(1e-3).energy_j).fold(0.0, f64::min);
+        println!("{}: {:.3} mJ at the least", world.name, 1e3 * least_j);
+        assert!(least_j > -2e-4, "{}: {least_j} J", world.name);
+        // Another world begins a new account.
+        servo.swap(Swap::new(presets::table()));
+        assert!(servo.tick(1e-3).energy_j.abs() < 1e-6, "{}", world.name);
+    }
 }
