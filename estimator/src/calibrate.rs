@@ -5,9 +5,10 @@ use crate::identify::mechanism;
 use crate::segment::Segmentation;
 use crate::signal::task::{is_two_fingered, task_signals};
 use haptics::Vec2;
+use haptics::law::object::MembraneLaw;
 use haptics::law::{CoulombFriction, Effect, Inertia, LoadFriction, ViscousFriction, Weight};
 use haptics::recording::{Recording, Task};
-use haptics::world::{Block, Crank, Floor, Provenance, Source, World};
+use haptics::world::{Block, Crank, Floor, Provenance, Source, World, presets};
 
 /// Most blocks in one fit.
 const MOST_BLOCKS: usize = 64;
@@ -17,6 +18,10 @@ const ASSUMED_HEIGHT_M: f64 = 0.015;
 const ASSUMED_FRICTION: f64 = 0.8;
 /// Spare above a lower bound of friction: the operator kept a margin (Johansson & Westling 1984 find 10 to 40 %).
 const FRICTION_MARGIN: f64 = 1.3;
+/// Where fingers hold a needle, above its point, m: two thirds of the built-in one.
+const NEEDLE_GRIP_M: f64 = 0.023;
+/// Height of the cup that carries the sheet, m.
+const CUP_HEIGHT_M: f64 = 0.022;
 /// Handle mass where the turning was too even to show it, kg.
 const ASSUMED_HANDLE_KG: f64 = 0.03;
 
@@ -32,7 +37,8 @@ pub fn world(task: Task, recordings: &[Recording], fit: &Fit, segmentations: &[O
     match task {
         Task::BlockStack | Task::Barrel => builder.blocks(recording, segmentation),
         Task::Crank => builder.crank(recording, segmentation),
-        _ => {
+        Task::Needle => builder.needle(recording),
+        Task::Mechanism | Task::Switch => {
             builder.world.floor = None;
             builder.world.mechanism = Some(mechanism::world(fit, recording));
             builder.note_all("mechanism");
@@ -172,6 +178,39 @@ impl Builder<'_> {
             effects,
             start_rad: start,
         });
+    }
+
+    /// The sheet as measured, under a needle like the built-in one: how long it is and where it was gripped, no log says.
+    fn needle(&mut self, recording: &Recording) {
+        let usual = presets::needle();
+        let (Some(mut membrane), Some(mut needle)) = (usual.membrane, usual.blocks.into_iter().next()) else { return };
+        let stiffness_n_m = self.take("needle", "stiffness_N_m", membrane.law.stiffness_n_m).max(1.0);
+        let puncture_n = self.take("needle", "puncture_force_N", membrane.law.puncture_n).max(0.05);
+        let friction_n = self.take("needle", "shaft_friction_N", membrane.law.friction_n);
+        membrane.law = MembraneLaw {
+            stiffness_n_m,
+            cubic_n_m3: self.take("needle", "hardening_N_m3", 0.0).max(0.0),
+            puncture_n,
+            friction_n: friction_n.clamp(0.0, 0.9 * puncture_n),
+            ..membrane.law
+        };
+        let weight_n = self.take("needle", "weight_N", needle.mass_kg * self.world.gravity_m_s2);
+        if self.world.gravity_m_s2 > 0.0 {
+            needle.mass_kg = (weight_n / self.world.gravity_m_s2).max(1e-3);
+        }
+        // The log knows where the fingers were when the point met the sheet, or where the tool was.
+        let above_m = if is_two_fingered(recording) { NEEDLE_GRIP_M } else { 0.0 };
+        let met_m = self.take("needle", "surface_position_m", membrane.center_m.y + above_m);
+        let along = self.fit.constraints.iter().find_map(|c| c.direction.clone()).unwrap_or_default();
+        if along.get(1).is_some_and(|y| y.abs() > 0.9) {
+            membrane.center_m.y = met_m - above_m;
+        }
+        let why = format!("gripped {:.0} mm above its point", 1e3 * above_m);
+        self.note("needle", "sheet_y_m", membrane.center_m.y, None, Source::Assumed, &why);
+        needle.start.center_m = membrane.center_m + Vec2::new(0.0, 0.5 * needle.height_m);
+        self.world.blocks = vec![needle];
+        self.world.floor = Some(Floor { height_m: membrane.center_m.y - CUP_HEIGHT_M, ..Floor::default() });
+        self.world.membrane = Some(membrane);
     }
 }
 

@@ -151,3 +151,47 @@ fn a_sheet_that_was_never_pierced_has_no_puncture_force() {
         assert!(score(&fit, "stiffness_N_m", truth.stiffness_n_m).abs() < 4.0, "seed {seed}");
     }
 }
+
+/// The hand of the built-in world, with the sensors' noise: what its sheet is like comes back, and so does a world that can be
+/// felt.
+#[test]
+fn the_hands_needle_gives_a_world_with_the_measured_sheet() {
+    use haptics::device::{ScriptedOperator, Skill};
+    use haptics::servo::recorder::{SensorModel, to_recording};
+    use haptics::servo::safety::Limits;
+    use haptics::servo::{Loop, Swap};
+    use haptics::world::{State, presets};
+    let (mut within, mut all) = (0, 0);
+    for seed in 800..812 {
+        let world = presets::needle();
+        let law = world.membrane.as_ref().expect("a sheet").law;
+        let weight_n = world.blocks[0].mass_kg * world.gravity_m_s2;
+        let state = State::resting(&world);
+        let device = ScriptedOperator::new(&world, &state, Skill::default(), seed);
+        let ticks = (device.duration_s() * 1000.0) as usize;
+        let mut servo = Loop::new(Box::new(Swap { world: world.clone(), state }), Box::new(device), Limits::default());
+        let ticks: Vec<_> = (0..ticks).map(|_| servo.tick(1e-3)).collect();
+        let mut recording = to_recording("needle", &world, &ticks, 1, &SensorModel::TYPICAL, seed);
+        recording.meta.task = Some(Task::Needle);
+        let analysis = analyse(std::slice::from_ref(&recording), &Options::default()).expect("fits");
+        let truth = [
+            ("stiffness_N_m", law.stiffness_n_m),
+            ("hardening_N_m3", law.cubic_n_m3),
+            ("puncture_force_N", law.puncture_n),
+            ("shaft_friction_N", law.friction_n),
+            ("weight_N", weight_n),
+        ];
+        for (name, truth) in truth {
+            let z = score(&analysis.fit, name, truth);
+            all += 1;
+            within += usize::from(z.abs() <= 2.0);
+            assert!(z.abs() < 5.0, "seed {seed}, {name}: {z} errors off");
+        }
+        analysis.world.check().expect("can be run");
+        let found = analysis.world.membrane.expect("a sheet").law;
+        assert!((found.stiffness_n_m / law.stiffness_n_m - 1.0).abs() < 0.1, "{found:?}");
+        assert!((analysis.world.blocks[0].start.center_m.y - world.blocks[0].start.center_m.y).abs() < 2e-3);
+    }
+    println!("{within} of {all} within two errors");
+    assert!(10 * within >= 9 * all, "{within} of {all}");
+}
