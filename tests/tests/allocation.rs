@@ -245,7 +245,7 @@ impl Device for Coupled {
 
     fn exchange(&mut self, _: &Command, _: f64) -> Sample {
         let tip_in_world = [Vec2::new(-0.02, -0.126), Vec2::new(0.02, -0.126)];
-        Sample { tip_in_world, tip_velocity: [Vec2::zeros(); 2], fresh: true }
+        Sample { tip_in_world, tip_velocity: [Vec2::zeros(); 2], fresh: [true; 2] }
     }
 
     fn make_safe(&mut self) {}

@@ -111,12 +111,12 @@ impl Device for FaultyDevice {
         let mut sample = Sample {
             tip_in_world: [Vec2::new(-0.02, -0.1258), Vec2::new(0.02, -0.1258)],
             tip_velocity: [Vec2::zeros(); 2],
-            fresh: true,
+            fresh: [true; 2],
         };
         match fault {
             Fault::None => {}
-            Fault::Stalled => sample.fresh = false,
-            Fault::Loss => sample.fresh = self.rng.random_bool(0.1),
+            Fault::Stalled => sample.fresh = [false; 2],
+            Fault::Loss => sample.fresh = [self.rng.random_bool(0.1); 2],
             Fault::NotANumber => sample.tip_in_world[1].y = f64::NAN,
             Fault::Infinite => sample.tip_velocity[0].x = f64::INFINITY,
             Fault::FarAway => sample.tip_in_world[0].x = 1e300,

@@ -19,7 +19,7 @@ impl Device for Rigid {
     }
 
     fn exchange(&mut self, _: &Command, _: f64) -> Sample {
-        Sample { tip_in_world: self.1, tip_velocity: [Vec2::zeros(); 2], fresh: true }
+        Sample { tip_in_world: self.1, tip_velocity: [Vec2::zeros(); 2], fresh: [true; 2] }
     }
 
     fn make_safe(&mut self) {}

@@ -154,7 +154,7 @@ impl Device for GamepadDevice {
         let impact = self.knock.strength() as f32;
         self.rumble.write(Rumble { force: force_strength(most) as f32, impact });
         let sample = self.pointer.advance(goals, command.force_n, dt_s);
-        Sample { fresh: present, ..sample }
+        Sample { fresh: [present; 2], ..sample }
     }
 
     fn strike(&mut self, speed_m_s: f64) {
@@ -222,10 +222,10 @@ mod tests {
     fn a_pad_that_is_gone_moves_nothing_and_is_stale() {
         let (mut handle, mut device, _) = device(GamepadMode::Hand);
         let up = PadState { sticks: [Vec2::new(0.0, 1.0), Vec2::zeros()], ..PadState::default() };
-        assert!(hold(&mut handle, &mut device, up, 100).fresh);
+        assert!(hold(&mut handle, &mut device, up, 100).is_fresh());
         // The reader hangs with the stick held.
         let samples: Vec<Sample> = (0..1_000).map(|_| device.exchange(&Command::default(), DT)).collect();
-        assert!(samples[..90].iter().all(|s| s.fresh) && samples[110..].iter().all(|s| !s.fresh));
+        assert!(samples[..90].iter().all(Sample::is_fresh) && samples[110..].iter().all(|s| !s.is_fresh()));
         let height = |tick: usize| samples[tick].tip_in_world[0].y;
         assert!((height(999) - height(600)).abs() < 1e-9, "it stops");
     }

@@ -51,12 +51,25 @@ pub struct Command {
 /// What the device answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
-    /// Tip positions in the world, m.
+    /// Tip positions in the world, m; of a finger that is not fresh, the last that is known.
     pub tip_in_world: [Vec2; 2],
     /// Tip velocities, m/s.
     pub tip_velocity: [Vec2; 2],
-    /// False when the device had nothing new: the watchdog counts these.
-    pub fresh: bool,
+    /// False for a finger of which the device had nothing new: the watchdog counts these, each finger by itself. The fingers of
+    /// a hand of two boards answer in different ticks.
+    pub fresh: [bool; 2],
+}
+
+impl Sample {
+    /// Whether there is anything new.
+    pub fn is_any_fresh(&self) -> bool {
+        self.fresh.contains(&true)
+    }
+
+    /// Whether both fingers are new.
+    pub fn is_fresh(&self) -> bool {
+        self.fresh == [true; 2]
+    }
 }
 
 /// A two-fingered input device. Everything but construction is called on the servo thread and must neither allocate, lock,

@@ -58,7 +58,7 @@ impl Pointer {
             self.impedance.advance(position, velocity, wanted, force_n[finger], dt_s);
         }
         // A still pointer is a pointer at rest, not a lost device: it is always fresh.
-        Sample { tip_in_world: self.position, tip_velocity: self.velocity, fresh: true }
+        Sample { tip_in_world: self.position, tip_velocity: self.velocity, fresh: [true; 2] }
     }
 
     /// Where the tips are, m in the world.

@@ -204,7 +204,7 @@ impl Device for ReplayDevice {
         let sample = Sample {
             tip_in_world: [self.at(&self.tips[0]), self.at(&self.tips[1])],
             tip_velocity: [self.at(&self.velocities[0]), self.at(&self.velocities[1])],
-            fresh: true,
+            fresh: [true; 2],
         };
         self.now_s += dt_s;
         sample

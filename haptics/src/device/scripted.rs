@@ -92,7 +92,7 @@ impl Device for ScriptedOperator {
             let (position, velocity) = (&mut self.position[finger], &mut self.velocity[finger]);
             self.impedance.advance(position, velocity, (wanted, wanted_rate), command.force_n[finger], dt_s);
         }
-        Sample { tip_in_world: self.position, tip_velocity: self.velocity, fresh: true }
+        Sample { tip_in_world: self.position, tip_velocity: self.velocity, fresh: [true; 2] }
     }
 
     fn make_safe(&mut self) {}

@@ -287,9 +287,14 @@ impl Loop {
         self.device.finished()
     }
 
-    /// Age of the newest good sample, s.
+    /// Age of the newest good sample of the finger that was not seen for longer, s.
     pub fn sample_age_s(&self) -> f64 {
         self.safety.sample_age_s()
+    }
+
+    /// Whether both fingers were ever seen.
+    pub fn has_met_both(&self) -> bool {
+        self.safety.has_met_both()
     }
 }
 
@@ -313,7 +318,7 @@ mod tests {
             let (sin, cos) = (omega * self.1).sin_cos();
             let tip = |x: f64| Vec2::new(x, -0.1262 + 0.001 * sin);
             let velocity = Vec2::new(0.0, 0.001 * omega * cos);
-            Sample { tip_in_world: [tip(-0.03), tip(0.03)], tip_velocity: [velocity; 2], fresh: true }
+            Sample { tip_in_world: [tip(-0.03), tip(0.03)], tip_velocity: [velocity; 2], fresh: [true; 2] }
         }
 
         fn make_safe(&mut self) {}

@@ -69,7 +69,6 @@ impl Runner {
         let mut watch = Watch::default();
         let mut before: Option<Instant> = None;
         let mut until_summary = 0_u32;
-        let mut met = false;
         self.summary = Timing::starting(self.rate);
         while !self.stop.load(Ordering::Relaxed) {
             let (lateness_s, missed) = deadlines.wait();
@@ -87,9 +86,7 @@ impl Runner {
             let _ = self.ticks.push(tick);
             let compute_s = started.elapsed().as_secs_f64();
             let sample_age_s = self.body.sample_age_s();
-            // Only a fresh sample has no age.
-            met |= sample_age_s == 0.0;
-            let has_force = met && !tick.flags.stale;
+            let has_force = self.body.has_met_both() && !tick.flags.stale;
             collector.add(&TickTiming { lateness_s, interval_s, compute_s, missed, sample_age_s, has_force });
             if let Some(verdict) = watch.add(missed, interval_s.unwrap_or(period_s)) {
                 self.rate = rate::judge(self.config.rate, self.rate, verdict);

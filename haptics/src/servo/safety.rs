@@ -12,7 +12,7 @@ pub struct Limits {
     pub max_slew_n_s: f64,
     /// Time over which the force comes up after a start or a fault, s.
     pub ramp_s: f64,
-    /// Without a fresh sample for this long the force goes to zero, s.
+    /// Without a fresh sample of either finger for this long the force goes to zero, s.
     pub watchdog_s: f64,
 }
 
@@ -26,6 +26,8 @@ impl Default for Limits {
 const FADE_S: f64 = 0.05;
 /// A new world that presses harder than the old one by more than this comes up with the start ramp, N.
 const JUMP_N: f64 = 1.0;
+/// A finger that is not new keeps its velocity for so long, s: a device may answer less often than the servo ticks.
+const COASTING_S: f64 = 0.005;
 /// No hand is farther away than this, m, nor faster, m/s: such a sample is a fault.
 const FARTHEST_M: f64 = 10.0;
 const FASTEST_M_S: f64 = 100.0;
@@ -38,7 +40,7 @@ pub struct SafetyFlags {
     pub saturated: bool,
     /// A force was slowed by the slew limit.
     pub slewing: bool,
-    /// No fresh sample for longer than the watchdog allows, or the servo itself stood still as long: force is zero.
+    /// No fresh sample of a finger for longer than the watchdog allows, or the servo itself stood still as long: force is zero.
     pub stale: bool,
     /// A sample or force was not a possible number and was refused.
     pub not_finite: bool,
@@ -63,7 +65,10 @@ pub struct Safety {
     ramp: f64,
     last_force_n: [Vec2; 2],
     last_good: Sample,
-    sample_age_s: f64,
+    /// Of each finger.
+    sample_age_s: [f64; 2],
+    /// Fingers that were ever seen.
+    met: [bool; 2],
     interrupted: bool,
     swapping: Swapping,
 }
@@ -71,13 +76,14 @@ pub struct Safety {
 impl Safety {
     /// Starts at zero force with the fingers at `start`.
     pub fn new(limits: Limits, start: [Vec2; 2]) -> Self {
-        let last_good = Sample { tip_in_world: start, tip_velocity: [Vec2::zeros(); 2], fresh: true };
+        let last_good = Sample { tip_in_world: start, tip_velocity: [Vec2::zeros(); 2], fresh: [true; 2] };
         Self {
             limits,
             ramp: 0.0,
             last_force_n: [Vec2::zeros(); 2],
             last_good,
-            sample_age_s: 0.0,
+            sample_age_s: [0.0; 2],
+            met: [false; 2],
             interrupted: false,
             swapping: Swapping::Done,
         }
@@ -93,25 +99,31 @@ impl Safety {
         self.interrupted = true;
     }
 
-    /// The sample to simulate with: the given one when it is fresh and finite, else the last good one at rest.
+    /// The sample to simulate with: of each finger the given one when it is fresh, else the last good one, which comes to rest
+    /// after [`COASTING_S`]. A sample with anything impossible in it is refused as a whole, and both fingers rest.
     pub fn admit(&mut self, sample: &Sample, dt_s: f64, flags: &mut SafetyFlags) -> Sample {
         // Written so that what is not a number is impossible too.
         let possible = sample.tip_in_world.iter().all(|v| v.norm() <= FARTHEST_M)
             && sample.tip_velocity.iter().all(|v| v.norm() <= FASTEST_M_S);
         flags.not_finite |= !possible;
-        if possible && sample.fresh {
-            self.last_good = *sample;
-            self.sample_age_s = 0.0;
-        } else {
-            self.sample_age_s += dt_s;
-            self.last_good.tip_velocity = [Vec2::zeros(); 2];
+        for finger in 0..2 {
+            if possible && sample.fresh[finger] {
+                self.last_good.tip_in_world[finger] = sample.tip_in_world[finger];
+                self.last_good.tip_velocity[finger] = sample.tip_velocity[finger];
+                (self.sample_age_s[finger], self.met[finger]) = (0.0, true);
+                continue;
+            }
+            self.sample_age_s[finger] += dt_s;
+            if !possible || self.sample_age_s[finger] > COASTING_S {
+                self.last_good.tip_velocity[finger] = Vec2::zeros();
+            }
         }
         self.last_good
     }
 
     /// The force to send: ramped, clamped, slew-limited; zero at once when the samples are stale.
     pub fn limit(&mut self, wanted_n: [Vec2; 2], dt_s: f64, flags: &mut SafetyFlags) -> [Vec2; 2] {
-        if self.sample_age_s > self.limits.watchdog_s || self.interrupted {
+        if self.sample_age_s() > self.limits.watchdog_s || self.interrupted {
             flags.stale = true;
             self.interrupted = false;
             self.ramp = 0.0;
@@ -162,9 +174,14 @@ impl Safety {
         blended
     }
 
-    /// Age of the newest good sample, s.
+    /// Age of the newest good sample of the finger that was not seen for longer, s.
     pub fn sample_age_s(&self) -> f64 {
-        self.sample_age_s
+        self.sample_age_s[0].max(self.sample_age_s[1])
+    }
+
+    /// Whether both fingers were ever seen.
+    pub fn has_met_both(&self) -> bool {
+        self.met == [true; 2]
     }
 }
 
@@ -179,7 +196,7 @@ mod tests {
     }
 
     fn fresh() -> Sample {
-        Sample { fresh: true, ..Sample::default() }
+        Sample { fresh: [true; 2], ..Sample::default() }
     }
 
     #[test]
@@ -220,6 +237,42 @@ mod tests {
         // And it comes back softly.
         safety.admit(&fresh(), DT, &mut flags);
         assert!(safety.limit(wanted, DT, &mut flags)[0].x < 0.01);
+    }
+
+    #[test]
+    fn each_finger_has_its_own_age_and_the_older_one_counts() {
+        let (mut safety, mut flags) = (safety(), SafetyFlags::default());
+        let seen = |left: bool, right: bool| Sample {
+            tip_in_world: [Vec2::new(0.01, 0.0), Vec2::new(0.02, 0.0)],
+            fresh: [left, right],
+            ..Sample::default()
+        };
+        let admitted = safety.admit(&seen(true, false), DT, &mut flags);
+        assert_eq!(admitted.tip_in_world, [Vec2::new(0.01, 0.0), Vec2::zeros()], "only what is new is taken");
+        assert!(!safety.has_met_both() && (safety.sample_age_s() - DT).abs() < 1e-12);
+        safety.admit(&seen(false, true), DT, &mut flags);
+        assert!(safety.has_met_both() && (safety.sample_age_s() - DT).abs() < 1e-12);
+        for _ in 0..22 {
+            safety.admit(&seen(true, false), DT, &mut flags);
+        }
+        assert!((safety.sample_age_s() - 0.022).abs() < 1e-12, "{}", safety.sample_age_s());
+        assert_eq!(safety.limit([Vec2::new(1.0, 0.0); 2], DT, &mut flags), [Vec2::zeros(); 2]);
+        assert!(flags.stale);
+    }
+
+    #[test]
+    fn a_finger_that_is_not_seen_coasts_for_a_moment_and_then_rests() {
+        let (mut safety, mut flags) = (safety(), SafetyFlags::default());
+        let velocity = Vec2::new(0.1, -0.2);
+        safety.admit(&Sample { tip_velocity: [velocity; 2], ..fresh() }, DT, &mut flags);
+        let lost = Sample { tip_velocity: [velocity; 2], ..Sample::default() };
+        let seen: Vec<Vec2> = (0..10).map(|_| safety.admit(&lost, DT, &mut flags).tip_velocity[1]).collect();
+        assert!(seen[..4].iter().all(|v| *v == velocity), "between two answers it moves on: {seen:?}");
+        assert!(seen[6..].iter().all(|v| *v == Vec2::zeros()), "a damper must not push it for ever: {seen:?}");
+        // What is impossible is no answer that may still come.
+        safety.admit(&Sample { tip_velocity: [velocity; 2], ..fresh() }, DT, &mut flags);
+        let broken = Sample { tip_in_world: [Vec2::repeat(f64::NAN); 2], ..fresh() };
+        assert_eq!(safety.admit(&broken, DT, &mut flags).tip_velocity, [Vec2::zeros(); 2]);
     }
 
     #[test]

@@ -16,7 +16,7 @@ impl Device for Ear {
 
     fn exchange(&mut self, command: &Command, _: f64) -> Sample {
         self.1.lock().expect("one thread").push(command.force_n[0].x);
-        Sample { fresh: true, ..Sample::default() }
+        Sample { fresh: [true; 2], ..Sample::default() }
     }
 
     fn make_safe(&mut self) {}

@@ -81,9 +81,12 @@ enum Down {
 /// What comes back.
 #[derive(Clone, Copy)]
 enum Up {
-    Motion(Sample),
-    Wave([Account; 2]),
+    Motion(Sample, Ages),
+    Wave([Account; 2], Ages),
 }
+
+/// How long ago each finger was seen at the far end when the packet left, s.
+type Ages = [f64; 2];
 
 /// Any device behind a network.
 pub struct ChannelDevice {
@@ -99,7 +102,9 @@ pub struct ChannelDevice {
     command_age_s: f64,
     /// What the servo has.
     sample: Sample,
-    sample_age_s: f64,
+    sample_age_s: Ages,
+    /// What the far end has: without bound before a finger was seen.
+    seen_s: Ages,
     operator_end: OperatorEnd,
     world_end: WorldEnd,
 }
@@ -126,7 +131,8 @@ impl ChannelDevice {
             command: Command::default(),
             command_age_s: f64::INFINITY,
             sample: Sample::default(),
-            sample_age_s: f64::INFINITY,
+            sample_age_s: [f64::INFINITY; 2],
+            seen_s: [f64::INFINITY; 2],
             operator_end: OperatorEnd::default(),
             world_end: WorldEnd::default(),
         })
@@ -141,13 +147,22 @@ impl ChannelDevice {
         if self.command_age_s > HOLD_S + self.config.jitter_s {
             self.command = Command::default();
         }
+        let sample = self.ask(dt_s);
+        if sample.is_any_fresh() {
+            self.up.send(self.now_s, Up::Motion(sample, self.seen_s));
+        }
+        if let Some(Up::Motion(sample, ages_s)) = self.up.receive(self.now_s) {
+            (self.sample, self.sample_age_s) = (sample, ages_s);
+        }
+    }
+
+    /// Asks the device at the far end, and counts since when each finger has not been seen.
+    fn ask(&mut self, dt_s: f64) -> Sample {
         let sample = self.inner.exchange(&self.command, dt_s);
-        if sample.fresh {
-            self.up.send(self.now_s, Up::Motion(sample));
+        for (seen_s, fresh) in self.seen_s.iter_mut().zip(sample.fresh) {
+            *seen_s = if fresh { 0.0 } else { *seen_s + dt_s };
         }
-        if let Some(Up::Motion(sample)) = self.up.receive(self.now_s) {
-            (self.sample, self.sample_age_s) = (sample, 0.0);
-        }
+        sample
     }
 
     fn waves(&mut self, waves: &Waves, command: &Command, dt_s: f64) {
@@ -162,8 +177,8 @@ impl ChannelDevice {
             self.operator_end.arrive(accounts);
         }
         self.operate(waves, smoothing_s, dt_s);
-        if let Some(Up::Wave(accounts)) = self.up.receive(self.now_s) {
-            self.sample_age_s = 0.0;
+        if let Some(Up::Wave(accounts, ages_s)) = self.up.receive(self.now_s) {
+            self.sample_age_s = ages_s;
             self.world_end.arrive(accounts);
         }
     }
@@ -172,8 +187,10 @@ impl ChannelDevice {
     fn operate(&mut self, waves: &Waves, smoothing_s: f64, dt_s: f64) {
         let DeviceSpec { max_force_n, resolution_m, .. } = *self.inner.spec();
         self.command.force_n = self.operator_end.forces(waves, smoothing_s, max_force_n, dt_s);
-        let sample = self.inner.exchange(&self.command, dt_s);
-        if !sample.fresh {
+        let sample = self.ask(dt_s);
+        // The hand begins when both fingers are known.
+        let known = self.seen_s.iter().all(|seen_s| seen_s.is_finite());
+        if !(known && sample.is_any_fresh()) {
             self.operator_end.unseen(dt_s);
             return;
         }
@@ -181,7 +198,7 @@ impl ChannelDevice {
             // Both ends agree on where the hand begins; waves only tell how it moves.
             self.sample.tip_in_world = sample.tip_in_world;
         }
-        self.up.send(self.now_s, Up::Wave(self.operator_end.accounts()));
+        self.up.send(self.now_s, Up::Wave(self.operator_end.accounts(), self.seen_s));
     }
 }
 
@@ -193,7 +210,7 @@ impl Device for ChannelDevice {
     fn exchange(&mut self, command: &Command, dt_s: f64) -> Sample {
         self.now_s += dt_s;
         self.command_age_s += dt_s;
-        self.sample_age_s += dt_s;
+        self.sample_age_s = self.sample_age_s.map(|age_s| age_s + dt_s);
         if let Some(speed_m_s) = self.strikes.receive(self.now_s) {
             self.inner.strike(speed_m_s);
         }
@@ -204,7 +221,7 @@ impl Device for ChannelDevice {
         }
         // With waves a gap is harmless: the tip comes to rest by itself.
         let patience_s = if self.config.waves.is_some() { HOLD_S } else { FRESH_S };
-        self.sample.fresh = self.sample_age_s < patience_s + self.config.jitter_s;
+        self.sample.fresh = self.sample_age_s.map(|age_s| age_s < patience_s + self.config.jitter_s);
         self.sample
     }
 

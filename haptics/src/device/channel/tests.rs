@@ -47,7 +47,7 @@ impl Device for Operator {
         }
         seen.least_j = seen.least_j.min(seen.energy_j);
         seen.x_m.push(self.position[0].x);
-        Sample { tip_in_world: self.position, tip_velocity: self.velocity, fresh: true }
+        Sample { tip_in_world: self.position, tip_velocity: self.velocity, fresh: [true; 2] }
     }
 
     fn make_safe(&mut self) {}
@@ -169,7 +169,7 @@ impl Device for Lost {
         self.1 += 1;
         self.2.lock().expect("one thread").push(command.force_n[0].x);
         let tip = Vec2::new(-2e-4 * f64::from(self.1.min(500)), 0.0);
-        Sample { tip_in_world: [tip; 2], fresh: self.1 <= 500, ..Sample::default() }
+        Sample { tip_in_world: [tip; 2], fresh: [self.1 <= 500; 2], ..Sample::default() }
     }
 
     fn make_safe(&mut self) {}
@@ -184,7 +184,7 @@ fn a_device_that_is_lost_in_the_middle_of_a_motion_is_not_pushed_any_more() {
     let felt = felt.lock().expect("one thread");
     assert!(felt[400].abs() > 0.5, "the line damps a motion: {} N", felt[400]);
     assert!(felt[2_500..].iter().all(|force| force.abs() < 1e-6), "{} N are left", felt[2_999]);
-    assert!(spread(&tips[2_500..]) < 1e-6 && !channel.sample.fresh);
+    assert!(spread(&tips[2_500..]) < 1e-6 && !channel.sample.is_fresh());
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn a_line_that_breaks_ends_at_rest_without_force() {
     channel.down = Line::new(0.25, 0.0, 1.0, 0);
     channel.up = Line::new(0.25, 0.0, 1.0, 0);
     let tips = run(&mut channel, 10.0, false);
-    assert!(!channel.sample.fresh, "and says that it is stale");
+    assert!(!channel.sample.is_fresh(), "and says that it is stale");
     assert!(spread(&tips[5_000..]) < 1e-5, "the tip in the world rests");
     let seen = seen.lock().expect("one thread");
     assert!((seen.x_m[19_999] - 0.004).abs() < 1e-4, "no force is left on the hand");

@@ -4,6 +4,8 @@ mod board;
 pub mod farewell;
 mod fivebar;
 mod gate;
+#[cfg(test)]
+mod phase_tests;
 mod protocol;
 #[cfg(all(test, unix))]
 mod tests;
@@ -166,15 +168,15 @@ impl Device for HaplyHand {
     }
 
     fn exchange(&mut self, command: &Command, dt_s: f64) -> Sample {
-        let mut fresh = true;
+        let mut fresh = [false; 2];
         for (finger, board) in self.boards.iter_mut().enumerate() {
             board.order(command.force_n[finger]);
             let answer = board.answer();
             let place = &self.placements[finger];
             self.since_s[finger] += dt_s;
-            if answer.number == self.seen[finger].number {
-                fresh = false;
-            } else {
+            // Each finger by itself: two boards with clocks of their own hardly ever answer in the same tick.
+            if answer.number != self.seen[finger].number {
+                fresh[finger] = true;
                 let position = place.world_m + (answer.tip_m - place.device_m) * place.scale;
                 if answer.beginnings == self.seen[finger].beginnings {
                     // The servo may tick faster than the board answers.

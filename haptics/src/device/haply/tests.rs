@@ -294,7 +294,7 @@ fn a_hand_that_is_really_elsewhere_is_believed_later_and_starts_at_rest() {
     for emulator in &emulators {
         emulator.turn_to(POSE);
     }
-    assert!(until(|| hand.exchange(&Command::default(), 1e-3).fresh));
+    assert!(until(|| hand.exchange(&Command::default(), 1e-3).is_fresh()));
     let elsewhere = emulators[0].turn_to([30.0, 150.0]);
     let mut sample = Sample::default();
     assert!(until(|| {

@@ -167,7 +167,7 @@ impl UdpDevice {
             echo_us: 0,
             age_s: f64::INFINITY,
             now_s: 0.0,
-            sample: Sample { tip_in_world: start_in_world, tip_velocity: [Vec2::zeros(); 2], fresh: false },
+            sample: Sample { tip_in_world: start_in_world, tip_velocity: [Vec2::zeros(); 2], fresh: [false; 2] },
         })
     }
 
@@ -300,7 +300,7 @@ impl Device for UdpDevice {
             self.answer(peer, 0, self.session, command.force_n, self.echo_us);
         }
         let patience_s = if self.waves.is_some() { WAVE_FRESH_S } else { FRESH_S };
-        self.sample.fresh = self.age_s < patience_s;
+        self.sample.fresh = [self.age_s < patience_s; 2];
         self.sample
     }
 

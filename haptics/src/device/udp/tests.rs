@@ -69,7 +69,7 @@ impl Client {
 fn moves_the_fingers_and_feels_the_table() {
     let (mut device, mut client) = open();
     let monitor = device.monitor();
-    assert!(!device.exchange(&Command::default(), DT).fresh, "nobody there yet");
+    assert!(!device.exchange(&Command::default(), DT).is_fresh(), "nobody there yet");
     client.greet(&mut device);
     let limits = Limits { ramp_s: 0.01, ..Limits::default() };
     let mut servo = Loop::new(Swap::new(presets::table()), Box::new(device), limits);
@@ -105,7 +105,7 @@ fn strangers_replays_and_other_sessions_move_nothing() {
         client.send(packet);
         device.exchange(&Command::default(), DT)
     };
-    assert!(deliver(&first).fresh);
+    assert!(deliver(&first).is_fresh());
     let sample = deliver(&second);
     // Sent again, out of order, changed, cut, sealed by another, of a session long ago.
     let mut changed = second;
@@ -127,7 +127,7 @@ fn strangers_replays_and_other_sessions_move_nothing() {
         assert_eq!(monitor.refused(why), before + 1, "{why:?}");
     }
     assert_eq!(monitor.accepted(), 2);
-    assert!(!deliver(&[]).fresh, "and nothing of it keeps the force alive");
+    assert!(!deliver(&[]).is_fresh(), "and nothing of it keeps the force alive");
 }
 
 #[test]
@@ -139,12 +139,12 @@ fn a_device_that_is_started_anew_is_taken_at_once_and_a_repeated_question_ends_n
     let hello = Motion { session: 0, ..client.motion(0.0) };
     let motion = client.motion(0.0);
     client.send(&motion.encode(&key()));
-    assert!(device.exchange(&Command::default(), DT).fresh);
+    assert!(device.exchange(&Command::default(), DT).is_fresh());
     client.receive();
     // Somebody sends a recorded question again: it is answered, and changes nothing.
     client.send(&hello.encode(&key()));
     client.send(&client_motion_after(&motion).encode(&key()));
-    assert!(device.exchange(&Command::default(), DT).fresh);
+    assert!(device.exchange(&Command::default(), DT).is_fresh());
     assert_eq!((monitor.accepted(), monitor.refused(Refused::Session)), (2, 0));
     // The device's program is started anew and counts from one.
     let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a free port");
@@ -181,7 +181,7 @@ fn a_flood_costs_a_tick_no_more_than_its_share() {
     }
     let motion = client.motion(0.0).encode(&key());
     client.send(&motion);
-    assert!(device.exchange(&Command::default(), DT).fresh, "and the device still works");
+    assert!(device.exchange(&Command::default(), DT).is_fresh(), "and the device still works");
 }
 
 #[test]
@@ -191,12 +191,12 @@ fn goodbye_is_stale_at_once_and_a_taken_port_is_said() {
     let motion = client.motion(0.0);
     client.send(&motion.encode(&key()));
     let pushing = Command { force_n: [Vec2::new(0.0, 1.0); 2] };
-    assert!(device.exchange(&pushing, DT).fresh);
+    assert!(device.exchange(&pushing, DT).is_fresh());
     let pushed = client.receive();
     assert_eq!(pushed.force_n, pushing.force_n);
     let bye = Motion { flags: FLAG_BYE, ..client.motion(0.0) };
     client.send(&bye.encode(&key()));
-    assert!(!device.exchange(&pushing, DT).fresh);
+    assert!(!device.exchange(&pushing, DT).is_fresh());
     // One more packet, with zero force, whatever the world says; then none.
     let last = client.receive();
     assert_eq!((last.force_n, last.echo_us), ([Vec2::zeros(); 2], bye.time_us));

@@ -221,13 +221,13 @@ fn a_new_session_begins_with_new_waves_and_the_end_says_stop() {
     let account = Account { integral: Vec2::new(0.01, 0.0), energy_j: 1.0 };
     let mut up = WaveUp { session: first.session, sequence: 5, accounts: [account; 2], ..WaveUp::default() };
     let (sample, down) = answer(&mut device, &mut first, up);
-    assert!(sample.fresh && sample.tip_velocity[0].x > 0.0 && down.accounts[0].integral.x != 0.0);
+    assert!(sample.is_fresh() && sample.tip_velocity[0].x > 0.0 && down.accounts[0].integral.x != 0.0);
     // Another device, or the same one started anew: it counts from one, and its waves from zero.
     let mut second = Hand::begin(&mut device, 0.0);
     let origin = [Vec2::new(0.02, -0.1); 2];
     up = WaveUp { session: second.session, sequence: 1, origin_in_world: origin, ..WaveUp::default() };
     let (sample, _) = answer(&mut device, &mut second, up);
-    assert!(sample.fresh && (sample.tip_in_world[0] - origin[0]).norm() < 1e-3, "{sample:?}");
+    assert!(sample.is_fresh() && (sample.tip_in_world[0] - origin[0]).norm() < 1e-3, "{sample:?}");
     assert_eq!(device.monitor().accepted(), 2);
     // The session before is over, whatever its sequence.
     first.socket.send(&WaveUp { session: first.session, sequence: 1_000, ..up }.encode(&key())).expect("loopback");

@@ -68,7 +68,7 @@ impl Device for Simulated {
             self.at[finger] += terminal * dt_s + (self.velocity[finger] - terminal) * lag_s;
             self.velocity[finger] = terminal + (self.velocity[finger] - terminal) * decay;
         }
-        Sample { tip_in_world: self.at, tip_velocity: self.velocity, fresh: true }
+        Sample { tip_in_world: self.at, tip_velocity: self.velocity, fresh: [true; 2] }
     }
 
     fn make_safe(&mut self) {}
@@ -260,7 +260,7 @@ impl Device for Carried {
         let (sin, cos) = (2.0 * (self.1 - 1.0).max(0.0)).sin_cos();
         let tip_in_world = [Vec2::new(-0.02 + 0.01 * sin, -0.127), Vec2::new(0.03, -0.127)];
         let moving = if self.1 > 1.0 { 0.02 * cos } else { 0.0 };
-        Sample { tip_in_world, tip_velocity: [Vec2::new(moving, 0.0), Vec2::zeros()], fresh: true }
+        Sample { tip_in_world, tip_velocity: [Vec2::new(moving, 0.0), Vec2::zeros()], fresh: [true; 2] }
     }
 
     fn make_safe(&mut self) {}
