@@ -15,6 +15,7 @@ pub struct Quantity {
 const SUFFIXES: &[(&str, &str, f64)] = &[
     ("_kg_m2", "g·cm²", 1e7),
     ("_N_s_m", "N·s/m", 1.0),
+    ("_N_m3", "N/mm³", 1e-9),
     ("_Nm_s", "N·m·s", 1.0),
     ("_N_m", "N/m", 1.0),
     ("_Nm", "N·m", 1.0),
@@ -155,6 +156,8 @@ mod tests {
         assert_eq!(parameter("mass_kg", Some(0.035)).unit, "g");
         assert_eq!(parameter("mass_kg", Some(95.1)).unit, "kg");
         assert_eq!(parameter("viscous_N_s_m", None).unit, "N·s/m");
+        let hardening = parameter("hardening_N_m3", Some(1.5e6));
+        assert_eq!((hardening.label.as_str(), hardening.unit, hardening.factor * 1.5e6), ("Hardening", "N/mm³", 0.0015));
         assert_eq!(parameter("constraint_stiffness_N_m", None).label, "Constraint stiffness");
         assert_eq!(parameter("friction_mu", Some(0.05)).unit, "");
     }

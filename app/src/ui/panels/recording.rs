@@ -13,7 +13,7 @@ use haptics::recording::Task;
 use std::path::PathBuf;
 
 /// Tasks on offer.
-const TASKS: [Task; 3] = [Task::BlockStack, Task::Crank, Task::Mechanism];
+const TASKS: [Task; 4] = [Task::BlockStack, Task::Crank, Task::Needle, Task::Mechanism];
 
 /// The recording panel.
 #[derive(Default)]
