@@ -193,6 +193,29 @@ fn a_running_servo_with_swaps_pushes_and_stalls_allocates_and_frees_nothing() {
 }
 
 #[test]
+fn a_servo_that_is_recorded_from_allocates_and_frees_nothing_also_when_nobody_reads() {
+    let mut run = start(3, RateChoice::Fixed(2000.0));
+    assert!(run.until(|servo| servo.newest().state.tick > 200));
+    let mut tap = run.servo.tap().open().expect("nobody else records");
+    let mut times = Vec::with_capacity(100_000);
+    assert!(run.until(|_| {
+        times.extend(std::iter::from_fn(|| tap.pop()).map(|tick| tick.time_s));
+        times.len() > 2_000
+    }));
+    assert!(times.windows(2).all(|w| (w[1] - w[0] - 0.5e-3).abs() < 1e-9), "no tick is missing");
+    assert_eq!(tap.dropped(), 0);
+    // Nobody reads any more: full after eight seconds, then ticks are counted and dropped, and the servo goes on.
+    assert!(run.until(|_| tap.dropped() > 100));
+    let before = run.servo.newest().state.tick;
+    assert!(run.until(|servo| servo.newest().state.tick > before + 200));
+    drop(tap);
+    let again = run.servo.tap().open().expect("given back");
+    assert_eq!(again.dropped(), 0);
+    drop(again);
+    assert_eq!(run.end(), (0, 0), "allocated until the end, freed while it ran");
+}
+
+#[test]
 fn a_servo_that_falls_back_to_a_lower_rate_allocates_and_frees_nothing() {
     let mut run = start(1, RateChoice::Auto);
     assert!(run.until(|servo| servo.newest().timing.ticks > 100));

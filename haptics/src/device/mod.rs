@@ -25,7 +25,7 @@ use crate::Vec2;
 use crate::world::{State, World};
 
 /// What a device can do: everything that limits are computed from.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct DeviceSpec {
     /// For people.
     pub name: String,

@@ -5,7 +5,7 @@
 //! * [`rate`] chooses how often, [`timing`] measures, [`safety`] limits, [`recorder`] keeps every tick.
 //! * [`force_test`] tries a device; [`coupling`] keeps a force device passive in worlds that are stiffer than it can render; [`passivity`] has the limits.
 //!
-//! Newest state out by triple buffer, every tick out by ring, commands in by ring. Worlds are built elsewhere, swapped in, and
+//! Newest state out by triple buffer, every tick out by ring (a second one, [`tap`], while somebody records), commands in by ring. Worlds are built elsewhere, swapped in, and
 //! dropped elsewhere. Nothing in the tick allocates, locks, prints, waits or panics.
 
 mod clock;
@@ -19,6 +19,7 @@ mod realtime;
 pub mod recorder;
 mod runner;
 pub mod safety;
+pub mod tap;
 mod thread;
 pub mod timing;
 

@@ -1,4 +1,6 @@
-//! From ticks to a [`Recording`]: every tick is kept, seen through a sensor model, thinned only when asked.
+//! From ticks to rows: every tick is kept, seen through a sensor model, thinned only when asked.
+//!
+//! [`Rows`] turns one tick after the other into a row, for streams to a disk; [`to_recording`] turns many into a [`Recording`].
 
 use super::r#loop::TickRecord;
 use crate::Vec2;
@@ -48,8 +50,40 @@ impl SensorModel {
 }
 
 /// Column names of a two-fingered recording, after the time.
-const COLUMNS: [&str; 12] =
+pub const COLUMNS: [&str; 12] =
     ["x1_m", "y1_m", "x2_m", "y2_m", "vx1_m_s", "vy1_m_s", "vx2_m_s", "vy2_m_s", "fx1_N", "fy1_N", "fx2_N", "fy2_N"];
+
+/// Sees one tick after the other through the sensors.
+pub struct Rows {
+    sensor: SensorModel,
+    rng: StdRng,
+}
+
+impl Rows {
+    /// `seed` draws the sensor noise.
+    pub fn new(sensor: SensorModel, seed: u64) -> Self {
+        Self { sensor, rng: StdRng::seed_from_u64(seed) }
+    }
+
+    /// What the sensors say of the next tick, in the order of [`COLUMNS`], SI units.
+    pub fn row(&mut self, tick: &TickRecord) -> [f64; 12] {
+        let Self { sensor, rng } = self;
+        let mut sense = |v: Vec2, noise: f64, step: f64| {
+            let mut draw = |value: f64| {
+                // A negative or non-finite spread cannot be sampled; it means no noise.
+                let noisy = Normal::new(0.0, noise).map_or(value, |d| value + d.sample(rng));
+                // Divided by a whole number of steps a unit, not multiplied: 0.08126, not 0.081260000000000001, in the file.
+                let per_unit = (1.0 / step).round();
+                if step > 0.0 { (noisy * per_unit).round() / per_unit } else { noisy }
+            };
+            [draw(v.x), draw(v.y)]
+        };
+        let [p1, p2] = tick.input.tip_in_world.map(|v| sense(v, sensor.position_noise_m, sensor.position_step_m));
+        let [v1, v2] = tick.input.tip_velocity.map(|v| sense(v, sensor.velocity_noise_m_s, sensor.velocity_step_m_s));
+        let [f1, f2] = tick.tip_force_n.map(|v| sense(v, sensor.force_noise_n, sensor.force_step_n));
+        [p1[0], p1[1], p2[0], p2[1], v1[0], v1[1], v2[0], v2[1], f1[0], f1[1], f2[0], f2[1]]
+    }
+}
 
 /// Turns ticks into a recording. `every` keeps every n-th tick (1: all); `seed` draws the sensor noise.
 pub fn to_recording(
@@ -60,12 +94,11 @@ pub fn to_recording(
     sensor: &SensorModel,
     seed: u64,
 ) -> Recording {
-    let mut rng = StdRng::seed_from_u64(seed);
+    let mut rows = Rows::new(*sensor, seed);
     let kept: Vec<&TickRecord> = ticks.iter().step_by(every.max(1)).collect();
     let mut columns: [Vec<f64>; 12] = Default::default();
     for tick in &kept {
-        let row = row(tick, sensor, &mut rng);
-        for (column, value) in columns.iter_mut().zip(row) {
+        for (column, value) in columns.iter_mut().zip(rows.row(tick)) {
             column.push(value);
         }
     }
@@ -80,7 +113,7 @@ pub fn to_recording(
         time_s: Some(kept.iter().map(|t| t.time_s).collect()),
         channels,
         labels: Some(kept.iter().map(|t| t.label.to_owned()).collect()),
-        meta: meta(world),
+        meta: facts(world),
         warnings: Vec::new(),
     }
 }
@@ -95,7 +128,8 @@ fn unit(column: &str) -> &'static str {
     }
 }
 
-fn meta(world: &World) -> Meta {
+/// What the sidecar of a recording says about the world that it was made in.
+pub fn facts(world: &World) -> Meta {
     let base = |i: usize| Some([world.hand.fingers[i].base_m.x, world.hand.fingers[i].base_m.y]);
     Meta {
         task: Some(if world.crank.is_some() { Task::Crank } else { Task::BlockStack }),
@@ -109,23 +143,6 @@ fn meta(world: &World) -> Meta {
         }),
         ..Meta::default()
     }
-}
-
-fn row(tick: &TickRecord, sensor: &SensorModel, rng: &mut StdRng) -> [f64; 12] {
-    let mut sense = |v: Vec2, noise: f64, step: f64| {
-        let mut draw = |value: f64| {
-            // A negative or non-finite spread cannot be sampled; it means no noise.
-            let noisy = Normal::new(0.0, noise).map_or(value, |d| value + d.sample(rng));
-            // Divided by a whole number of steps a unit, not multiplied: 0.08126, not 0.081260000000000001, in the file.
-            let per_unit = (1.0 / step).round();
-            if step > 0.0 { (noisy * per_unit).round() / per_unit } else { noisy }
-        };
-        [draw(v.x), draw(v.y)]
-    };
-    let [p1, p2] = tick.input.tip_in_world.map(|v| sense(v, sensor.position_noise_m, sensor.position_step_m));
-    let [v1, v2] = tick.input.tip_velocity.map(|v| sense(v, sensor.velocity_noise_m_s, sensor.velocity_step_m_s));
-    let [f1, f2] = tick.tip_force_n.map(|v| sense(v, sensor.force_noise_n, sensor.force_step_n));
-    [p1[0], p1[1], p2[0], p2[1], v1[0], v1[1], v2[0], v2[1], f1[0], f1[1], f2[0], f2[1]]
 }
 
 #[cfg(test)]

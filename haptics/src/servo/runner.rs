@@ -6,6 +6,7 @@ use super::guard::Beat;
 use super::r#loop::{Loop, Snapshot, Swap, TickRecord};
 use super::rate::{self, RateReport, Watch};
 use super::realtime::acquire;
+use super::tap::TapFiller;
 use super::thread::ServoConfig;
 use super::timing::{TickTiming, Timing, TimingCollector};
 use crate::world::State;
@@ -27,6 +28,7 @@ pub(super) struct Runner {
     pub body: Loop,
     pub snapshot: Input<Snapshot>,
     pub ticks: Producer<TickRecord>,
+    pub tap: TapFiller,
     pub swaps: Consumer<Box<Swap>>,
     pub retired: Producer<Box<Swap>>,
     pub stop: Arc<AtomicBool>,
@@ -82,8 +84,9 @@ impl Runner {
             self.take_swap();
             self.body.test_force(self.test.get());
             let tick = self.body.tick(period_s);
-            // A full ring means that nobody records: the newest ticks are dropped, the servo goes on.
+            // A full ring means that no picture is drawn: the newest ticks are dropped, the servo goes on.
             let _ = self.ticks.push(tick);
+            self.tap.offer(tick);
             let compute_s = started.elapsed().as_secs_f64();
             let sample_age_s = self.body.sample_age_s();
             let has_force = self.body.has_met_both() && !tick.flags.stale;

@@ -7,6 +7,7 @@ use super::rate::{RateChoice, RateReport};
 use super::realtime::Privileges;
 use super::runner::Runner;
 use super::safety::Limits;
+use super::tap::{TapSource, tap};
 use crate::Vec2;
 use crate::device::Device;
 use rtrb::{Consumer, Producer, RingBuffer};
@@ -16,7 +17,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use triple_buffer::{Output, triple_buffer};
 
-/// Seconds of ticks that the ring holds before the reader must have fetched them.
+/// Seconds of ticks that each ring holds before its reader must have fetched them.
 const RING_SECONDS: f64 = 8.0;
 /// A servo that is told to stop gets this long; a device that has not come back by then is left to its guard.
 const FAREWELL: Duration = Duration::from_millis(500);
@@ -66,6 +67,7 @@ pub enum ServoError {
 pub struct Servo {
     newest: Output<Snapshot>,
     ticks: Consumer<TickRecord>,
+    tap: TapSource,
     swaps: Producer<Box<Swap>>,
     retired: Consumer<Box<Swap>>,
     stop: Arc<AtomicBool>,
@@ -87,6 +89,7 @@ impl Servo {
         let first = Snapshot::starting(&swap, nominal);
         let (snapshot_in, newest) = triple_buffer(&first);
         let (tick_in, ticks) = RingBuffer::new((most_hz * RING_SECONDS) as usize);
+        let (tap_in, tap) = tap((most_hz * RING_SECONDS) as usize);
         let (swaps, swap_out) = RingBuffer::new(4);
         let (retired_in, retired) = RingBuffer::new(8);
         let stop = Arc::new(AtomicBool::new(false));
@@ -100,6 +103,7 @@ impl Servo {
             body: Loop::new(swap, device, limits).with_passivity_control(config.passivity_control_n_s_m),
             snapshot: snapshot_in,
             ticks: tick_in,
+            tap: tap_in,
             swaps: swap_out,
             retired: retired_in,
             stop: Arc::clone(&stop),
@@ -121,7 +125,7 @@ impl Servo {
                 |_| beat.finish(),
             )?,
         ];
-        Ok(Self { newest, ticks, swaps, retired, stop, granted, beat, test, config, threads })
+        Ok(Self { newest, ticks, tap, swaps, retired, stop, granted, beat, test, config, threads })
     }
 
     /// The newest snapshot; never waits. It has a fault while the servo stands still.
@@ -133,13 +137,18 @@ impl Servo {
         self.newest.output_buffer()
     }
 
-    /// All ticks since the last call, oldest first, into `into`. Call it at least every few seconds while recording.
+    /// All ticks since the last call, oldest first, into `into`. After more than eight seconds without a call ticks are missing.
     pub fn drain(&mut self, into: &mut Vec<TickRecord>) {
         while let Ok(tick) = self.ticks.pop() {
             into.push(tick);
         }
         // Worlds that were swapped out die here, not on the servo thread.
         while self.retired.pop().is_ok() {}
+    }
+
+    /// Where a recorder on a thread of its own gets every tick, however rarely [`Self::drain`] is called.
+    pub fn tap(&self) -> &TapSource {
+        &self.tap
     }
 
     /// Puts a new world in at the next tick. Returns it when four are already waiting.
