@@ -268,6 +268,33 @@ fn a_stream_that_is_cut_opens_up_to_its_last_block() {
     assert!(load(&path, None).expect_err("damaged").to_string().contains("damaged"));
 }
 
+#[test]
+fn a_stream_with_labels_and_facts_that_come_last_reads_back() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("live.mcap");
+    let early: Meta = serde_json::from_str(r#"{"task": "crank", "servo": {"ticks": 0}}"#).expect("a sidecar");
+    let late: Meta = serde_json::from_str(r#"{"task": "crank", "servo": {"ticks": 3}}"#).expect("a sidecar");
+    let mut stream = McapStream::create_labelled(&path, &["q_m".to_owned()], &early, &[]).expect("creates");
+    assert!(stream.push(0.0, &[1.0]).is_err(), "a label is missing");
+    for (row, label) in ["free-motion", "turning", ""].into_iter().enumerate() {
+        stream.push_labelled(row as f64, &[-0.5], label).expect("pushes");
+    }
+    stream.flush().expect("flushes");
+    assert_eq!(stream.bytes(), std::fs::metadata(&path).expect("there").len());
+    let cut = load(&path, None).expect("loads").remove(0);
+    assert_eq!(cut.meta, early);
+    stream.finish_with(&late).expect("finishes");
+    let whole = load(&path, None).expect("loads").remove(0);
+    assert_eq!(whole.meta, late);
+    assert!(whole.warnings.iter().all(|w| w.kind != "cut-off"));
+    for log in [cut, whole] {
+        assert_eq!(log.labels, Some(["free-motion", "turning", ""].map(str::to_owned).to_vec()));
+        assert_eq!(log.channel("q_m"), Some([-0.5; 3].as_slice()));
+    }
+    let taken = ["label".to_owned()];
+    assert!(McapStream::create_labelled(&path, &taken, &early, &[]).is_err(), "one column too many of that name");
+}
+
 /// Every reader shows what it has before it is done, and all of it in the end.
 #[test]
 fn a_preview_grows_while_a_log_is_read() {

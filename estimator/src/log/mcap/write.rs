@@ -2,7 +2,7 @@
 //! to the same bits.
 
 use super::schema::{self, RowSchema};
-use super::{METADATA, SIDECAR, channel_metadata};
+use super::{METADATA, SIDECAR, STREAMED, channel_metadata};
 use crate::log::errors::LogError;
 use crate::log::write::{Attachment, Value, cell, columns, log_times_ns, not_finite, portable_meta};
 use ::mcap::records::{MessageHeader, Metadata};
@@ -36,7 +36,13 @@ impl Sink {
     ) -> Result<Self, McapError> {
         let file = BufWriter::with_capacity(1 << 18, File::create(path)?);
         let library = concat!("touchstone ", env!("CARGO_PKG_VERSION"));
-        let mut writer = WriteOptions::new().library(library).create(file)?;
+        let mut options = WriteOptions::new().library(library);
+        if metadata.contains_key(STREAMED) {
+            // A block goes to the file in one piece when it is whole, so that no killed process leaves one with an empty head. A
+            // thousand rows a second need no threads beside their own.
+            options = options.disable_seeking(true).compression_threads(0);
+        }
+        let mut writer = options.create(file)?;
         writer.write_metadata(&Metadata { name: METADATA.to_owned(), metadata })?;
         for attachment in attachments {
             writer.attach(&::mcap::Attachment {
@@ -63,6 +69,11 @@ impl Sink {
             MessageHeader { channel_id: self.channel, sequence: self.sequence, log_time, publish_time: log_time };
         self.sequence = self.sequence.wrapping_add(1);
         self.writer.write_to_known_channel(&header, &self.message)
+    }
+
+    /// Writes the facts again: the last ones hold.
+    pub fn metadata(&mut self, metadata: BTreeMap<String, String>) -> Result<(), McapError> {
+        self.writer.write_metadata(&Metadata { name: METADATA.to_owned(), metadata })
     }
 
     /// Ends the block and hands it to the system.
@@ -113,7 +124,7 @@ pub fn write(recordings: &[Recording], path: &Path, attachments: &[Attachment]) 
     let Some(first) = recordings.first() else { return Ok(()) };
     let mut metadata = metadata(&portable_meta(&first.meta));
     // Reserved for streams.
-    metadata.remove(super::STREAMED);
+    metadata.remove(STREAMED);
     let mut sink = Sink::create(path, &columns, first.time_s.is_none(), metadata, attachments).map_err(failed)?;
     for (recording, times) in recordings.iter().zip(log_times_ns(recordings)) {
         for (row, &log_time) in times.iter().enumerate() {
