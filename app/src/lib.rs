@@ -5,6 +5,7 @@
 pub mod boards;
 pub mod cli;
 pub mod operator;
+pub mod recorder;
 pub mod ui;
 pub mod worlds;
 

@@ -58,6 +58,7 @@ impl App {
         dropped_files(&ctx, &mut self.session);
         self.session.advance(f64::from(ctx.input(|i| i.stable_dt)));
         self.top_bar(ui);
+        super::recorder::unfinished(ui, &mut self.session);
         super::messages::banners(ui, &mut self.session);
         if self.session.workspace != Workspace::Devices {
             // A test force is for the page that shows its button to stop.

@@ -35,6 +35,10 @@ pub enum JobKind {
     Look,
     /// Reading a log for the preview of a mapping.
     Preview,
+    /// Waiting for the end of a recording.
+    Record,
+    /// Looking for recordings that a killed program left behind.
+    Recover,
 }
 
 /// Why a file is being chosen.
@@ -65,6 +69,8 @@ pub enum Outcome {
     World(Box<World>),
     /// Where something was written.
     Saved(PathBuf),
+    /// Recordings without their end.
+    Unfinished(Vec<PathBuf>),
     /// A log that cannot be read as it stands, and why: its columns can be mapped.
     Unmapped(PathBuf, String),
     /// A log that was looked at, for the mapping dialog.

@@ -39,7 +39,7 @@ pub fn handle(ui: &Ui, session: &mut Session) {
         Workspace::Devices => {}
         Workspace::Train => {
             if ctx.input(|i| i.key_pressed(Key::R)) && !session.trainer.is_recording() {
-                session.trainer.start_recording();
+                super::recorder::start(session);
             }
         }
     }

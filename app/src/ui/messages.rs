@@ -12,44 +12,51 @@ pub fn banners(ui: &mut Ui, session: &mut Session) {
     if let Some(first) = session.banners.iter().filter_map(|banner| banner.until).min() {
         ui.ctx().request_repaint_after(first - now);
     }
-    if session.banners.is_empty() {
-        return;
-    }
-    let p = palette(ui);
     let mut closed = None;
-    // The bar takes its height from the picture before: when there is more or less to say, another one is due at once.
-    let count = session.banners.len();
-    let before = ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default(Id::unique("banners")), count));
-    if before != count {
-        ui.ctx().request_repaint();
-    }
-    let frame = Frame::new().inner_margin(Margin { left: 12, right: 12, top: 10, bottom: 0 });
-    Side::top("messages").frame(frame).show_separator_line(false).show(ui, |ui| {
+    strip(ui, "messages", session.banners.len(), |ui| {
         for (index, banner) in session.banners.iter().enumerate() {
-            let color = if banner.tone == Tone::Error { p.danger } else { p.good };
-            let fill = theme::mix(p.card, color, 0.10);
-            Frame::new()
-                .fill(fill)
-                .stroke(Stroke::new(1.0, color))
-                .corner_radius(6)
-                .inner_margin(Margin::symmetric(12, 6))
-                .show(ui, |ui| {
-                    ui.horizontal(|ui| {
-                        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                            if ui.small_button("Dismiss").clicked() {
-                                closed = Some(index);
-                            }
-                            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                                ui.add(egui::Label::new(RichText::new(&banner.text).color(p.text)).wrap());
-                            });
-                        });
-                    });
-                });
+            message(ui, banner.tone, &banner.text, |ui| {
+                if ui.small_button("Dismiss").clicked() {
+                    closed = Some(index);
+                }
+            });
         }
     });
     if let Some(index) = closed {
         session.banners.remove(index);
     }
+}
+
+/// Room above the workspace for `count` messages.
+pub fn strip(ui: &mut Ui, name: &str, count: usize, contents: impl FnOnce(&mut Ui)) {
+    // The bar takes its height from the picture before: when there is more or less to say, another one is due at once.
+    let before = ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default(Id::unique(name)), count));
+    if before != count {
+        ui.ctx().request_repaint();
+    }
+    if count == 0 {
+        return;
+    }
+    let frame = Frame::new().inner_margin(Margin { left: 12, right: 12, top: 10, bottom: 0 });
+    Side::top(name.to_owned()).frame(frame).show_separator_line(false).show(ui, contents);
+}
+
+/// One message; `buttons` come from the right.
+pub fn message(ui: &mut Ui, tone: Tone, text: &str, buttons: impl FnOnce(&mut Ui)) {
+    let p = palette(ui);
+    let color = if tone == Tone::Error { p.danger } else { p.good };
+    let fill = theme::mix(p.card, color, 0.10);
+    let frame = Frame::new().fill(fill).stroke(Stroke::new(1.0, color)).corner_radius(6);
+    frame.inner_margin(Margin::symmetric(12, 6)).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                buttons(ui);
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    ui.add(egui::Label::new(RichText::new(text).color(p.text)).wrap());
+                });
+            });
+        });
+    });
 }
 
 #[cfg(test)]

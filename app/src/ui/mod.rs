@@ -19,6 +19,7 @@ pub mod panels;
 mod playback;
 pub mod plots;
 pub mod prepare;
+mod recorder;
 pub mod scene;
 pub mod screenshot;
 pub mod session;
@@ -75,6 +76,7 @@ fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
     let mut session = Session::new();
     session.meta.clone_from(&options.meta);
     session.task_hint = options.task;
+    recorder::look_for_unfinished(&cc.egui_ctx, &mut session);
     if let Some(world) = &options.world {
         session.open_world(&cc.egui_ctx, world);
     }

@@ -1,6 +1,6 @@
 //! Opening files of any kind: logs, worlds, sidecars; told apart by what is in them, not by their names.
 
-use super::jobs::{JobKind, Outcome};
+use super::jobs::{JobKind, Outcome, Ticket};
 use super::mapping::{self, name_of};
 use super::prepare::Prepared;
 use super::session::{Session, sentence};
@@ -55,25 +55,28 @@ pub fn says_nothing(recordings: &[Arc<Prepared>]) -> Option<String> {
     mute.then(|| "No column has a name that the program knows: say what they mean.".to_owned())
 }
 
+/// Reads a log and prepares it; work for a job.
+pub(super) fn read(path: PathBuf, meta: Option<&Path>, ticket: &Ticket) -> Outcome {
+    let progress = |share| ticket.tell(share);
+    let watch = Watch { progress: &progress, cancelled: ticket.cancelled(), preview: Some(ticket.preview()) };
+    match estimator::log::load_watched(&path, meta, &watch) {
+        Ok(recordings) => {
+            let prepared = recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect();
+            Outcome::Loaded(path, prepared)
+        }
+        Err(LogError::Cancelled { .. }) => Outcome::Cancelled,
+        Err(error) if mapping::mends(&error) => Outcome::Unmapped(path, sentence(&error.to_string())),
+        Err(error) => Outcome::Failed(sentence(&error.to_string())),
+    }
+}
+
 impl Session {
     /// Reads a log in the background, with the sidecar named by hand if there is one, then fits it.
     pub fn open(&mut self, ctx: &egui::Context, path: &Path) {
         let (path, meta) = (path.to_path_buf(), self.meta.clone());
         self.path_field = path.display().to_string();
         let what = format!("Reading {}", name_of(&path));
-        self.jobs.start_watched(ctx, JobKind::Load, what, move |ticket| {
-            let progress = |share| ticket.tell(share);
-            let watch = Watch { progress: &progress, cancelled: ticket.cancelled(), preview: Some(ticket.preview()) };
-            match estimator::log::load_watched(&path, meta.as_deref(), &watch) {
-                Ok(recordings) => {
-                    let prepared = recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect();
-                    Outcome::Loaded(path, prepared)
-                }
-                Err(LogError::Cancelled { .. }) => Outcome::Cancelled,
-                Err(error) if mapping::mends(&error) => Outcome::Unmapped(path, sentence(&error.to_string())),
-                Err(error) => Outcome::Failed(sentence(&error.to_string())),
-            }
-        });
+        self.jobs.start_watched(ctx, JobKind::Load, what, move |ticket| read(path, meta.as_deref(), ticket));
     }
 
     /// Reads a log with this sidecar; without one, with the sidecar beside it.

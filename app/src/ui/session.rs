@@ -87,7 +87,7 @@ pub struct Session {
     pub recordings: Vec<Arc<Prepared>>,
     /// The one that is shown.
     pub current: usize,
-    /// Where they came from; absent for a recording made here.
+    /// Where they came from.
     pub path: Option<PathBuf>,
     /// A sidecar named by hand.
     pub meta: Option<PathBuf>,
@@ -127,6 +127,8 @@ pub struct Session {
     pub chosen: Option<(Purpose, PathBuf)>,
     /// Set by a panel: the trainer should take the calibrated world.
     pub train_calibrated: bool,
+    /// Recordings that a killed program left without their end.
+    pub unfinished: Vec<PathBuf>,
     /// The open mapping dialog.
     pub mapping: Option<Box<Mapping>>,
 }
@@ -170,17 +172,8 @@ impl Session {
     pub fn reload(&mut self, ctx: &egui::Context) {
         match self.path.clone() {
             Some(path) => self.open(ctx, &path),
-            None => self.fail("There is no file to reload: open a log first, or save this recording."),
+            None => self.fail("There is no file to reload: open a log first."),
         }
-    }
-
-    /// Takes recordings that are in memory, and fits them.
-    pub fn adopt(&mut self, ctx: &egui::Context, recordings: Vec<Recording>) {
-        let prepared = recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect();
-        self.path = None;
-        self.path_field.clear();
-        self.show(prepared);
-        self.refit(ctx);
     }
 
     /// Shows prepared recordings from the start.
@@ -230,6 +223,7 @@ impl Session {
         for outcome in self.jobs.poll() {
             self.take(ctx, outcome);
         }
+        super::recorder::follow(ctx, self);
     }
 
     fn take(&mut self, ctx: &egui::Context, outcome: Outcome) {
@@ -265,6 +259,7 @@ impl Session {
             Outcome::Chosen(Purpose::OpenLog, Some(path)) => self.open_any(ctx, &path),
             Outcome::Chosen(Purpose::OpenWorld, Some(path)) => self.open_world(ctx, &path),
             Outcome::Chosen(purpose, Some(path)) => self.chosen = Some((purpose, path)),
+            Outcome::Unfinished(found) => self.unfinished = found,
             Outcome::World(world) => self.opened_world = Some(world),
             Outcome::Saved(path) => self.say(Tone::Done, format!("Saved to {}.", path.display())),
             Outcome::Failed(problem) => {

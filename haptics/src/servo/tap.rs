@@ -68,7 +68,7 @@ impl TapSource {
 
     /// Lets no further tick in; what is in the ring stays there for its reader. A world that is swapped in afterwards is never seen.
     pub fn close(&self) {
-        self.shared.open.store(false, Ordering::Relaxed);
+        self.shared.open.store(false, Ordering::Release);
     }
 }
 
@@ -90,9 +90,10 @@ impl Tap {
         self.shared.dropped.load(Ordering::Relaxed)
     }
 
-    /// True when no further tick will come: it was closed or the servo is gone. What is in the ring can still be read.
+    /// True when no further tick will come: it was closed or the servo is gone. What is in the ring can still be read. What was done
+    /// before [`TapSource::close`] is seen from then on.
     pub fn is_over(&self) -> bool {
-        !self.shared.open.load(Ordering::Relaxed) || self.ticks.as_ref().is_none_or(Consumer::is_abandoned)
+        !self.shared.open.load(Ordering::Acquire) || self.ticks.as_ref().is_none_or(Consumer::is_abandoned)
     }
 }
 

@@ -4,10 +4,11 @@ use super::{Panel, legend};
 use crate::ui::files;
 use crate::ui::format;
 use crate::ui::jobs::Purpose;
+use crate::ui::recorder;
 use crate::ui::session::{Session, Workspace};
 use crate::ui::theme::{self, palette, role, space};
 use crate::ui::trainer::{HandDevice, History, Operator, Trainer, WorldChoice};
-use crate::ui::widgets::{card, card_with_head, compact, gauge, light, plain_card, primary_button, segmented};
+use crate::ui::widgets::{card, card_with_head, compact, gauge, light, plain_card, segmented};
 use egui::{Align, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
 use render::ColorRole;
 
@@ -28,7 +29,7 @@ impl Panel for TrainerSide {
             ui.spacing_mut().item_spacing.y = space::S;
             world(ui, session);
             operator(ui, session);
-            plain_card(ui, "Recording", |ui| recording(ui, session));
+            plain_card(ui, "Recording", |ui| recorder::controls(ui, session));
             forces(ui, &session.trainer);
             super::passivity::passivity(ui, session);
             super::trainer_timing::timing(ui, &session.trainer);
@@ -138,38 +139,6 @@ fn operator_state(ui: &mut Ui, session: &mut Session) {
         }
         Operator::Scripted => {
             super::script::script(ui, session);
-        }
-    }
-}
-
-fn recording(ui: &mut Ui, session: &mut Session) {
-    if session.trainer.is_recording() {
-        let p = palette(ui);
-        ui.horizontal(|ui| {
-            let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
-            ui.painter().circle_filled(rect.center(), 5.0, p.danger);
-            ui.label(theme::strong(format::clock(session.trainer.recorded_s())));
-            ui.label(theme::caption(ui, "every tick is kept"));
-        });
-        ui.horizontal(|ui| {
-            if primary_button(ui, true, "Stop and calibrate").clicked() {
-                match session.trainer.stop_recording() {
-                    Some(recording) => {
-                        let ctx = ui.ctx().clone();
-                        session.adopt(&ctx, vec![recording]);
-                        session.workspace = Workspace::Calibrate;
-                    }
-                    None => session.fail("The recording is too short to be calibrated from."),
-                }
-            }
-            if ui.button("Discard").clicked() {
-                drop(session.trainer.stop_recording());
-            }
-        });
-    } else {
-        ui.label(theme::caption(ui, "Keeps every tick, to measure the objects from."));
-        if primary_button(ui, true, "Record").on_hover_text("R").clicked() {
-            session.trainer.start_recording();
         }
     }
 }

@@ -19,11 +19,14 @@ fn performed(choice: WorldChoice) -> Recording {
     let mut trainer = Trainer::default();
     (trainer.clock, trainer.operator, trainer.choice) = (Clock::Manual, Operator::Scripted, choice);
     trainer.ensure_running().expect("a loop");
-    trainer.start_recording();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    trainer.recordings_folder = Some(folder.path().to_path_buf());
+    trainer.start_recording().expect("begins");
     while !trainer.performance_over() {
         trainer.advance(1.0);
     }
-    trainer.stop_recording().expect("a recording")
+    let finished = trainer.stop_recording().expect("it ran").wait().expect("written");
+    estimator::log::load(&finished.path, None).expect("opens").remove(0)
 }
 
 /// A cart of 2 kg with friction, pushed to and fro.

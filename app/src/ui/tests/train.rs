@@ -98,12 +98,14 @@ fn the_passivity_controller_is_switched_and_the_world_goes_on() {
     harness.run_steps(3);
     assert_eq!(control(&harness), Some(10.0));
     // A recording would end with the servo: no switching meanwhile.
-    harness.state_mut().session.trainer.start_recording();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    harness.state_mut().session.trainer.recordings_folder = Some(folder.path().to_path_buf());
+    harness.state_mut().session.trainer.start_recording().expect("begins");
     harness.run_steps(2);
     harness.get_by_label("Controller").click();
     harness.run_steps(2);
     assert_eq!(control(&harness), Some(10.0));
-    drop(harness.state_mut().session.trainer.stop_recording());
+    harness.state_mut().session.trainer.discard_recording();
     harness.run_steps(2);
     harness.get_by_label("Controller").click();
     harness.run_steps(3);

@@ -1,10 +1,13 @@
 //! The whole window: keys, messages, from the trainer to the calibration.
 
 use super::{STACK, empty, harness, session};
+use crate::recorder::folder;
 use crate::ui::app::App;
+use crate::ui::recorder;
 use crate::ui::session::Workspace;
 use crate::ui::trainer::{Clock, Operator};
 use egui_kittest::kittest::Queryable;
+use haptics::recording::Meta;
 use std::time::{Duration, Instant};
 
 #[test]
@@ -32,6 +35,8 @@ fn keys_play_scrub_and_switch() {
 fn a_recording_made_in_the_trainer_is_calibrated_from() {
     let mut app = App::new(empty());
     app.session.trainer.operator = Operator::Scripted;
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    app.session.trainer.recordings_folder = Some(folder.path().to_path_buf());
     let mut harness = harness(app, [1200.0, 1000.0], |ui, app: &mut App| app.show(ui));
     harness.get_by_label("Record").click();
     harness.run_steps(2);
@@ -49,6 +54,52 @@ fn a_recording_made_in_the_trainer_is_calibrated_from() {
     let session = &harness.state().session;
     assert_eq!(session.workspace, Workspace::Calibrate);
     assert!(session.analysis.as_ref().is_some_and(|a| a.fit.value("block-2", "weight_N").is_some()));
+    let path = session.path.as_ref().expect("it is a file");
+    assert!(path.starts_with(folder.path()) && path.is_file(), "{}", path.display());
+}
+
+#[test]
+fn a_recording_that_a_killed_program_left_behind_is_offered_and_opened() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (path, marker) = folder::reserve(folder.path(), "cart").expect("reserves");
+    let columns = ["q_m", "f_N"].map(str::to_owned);
+    let mut stream = estimator::log::McapStream::create(&path, &columns, &Meta::default(), &[]).expect("creates");
+    for i in 0..2_000 {
+        let t = 2e-3 * f64::from(i);
+        stream.push(t, &[0.1 * (1.3 * t).sin(), (3.1 * t).cos()]).expect("pushes");
+    }
+    stream.flush().expect("flushes");
+    let without_end = std::fs::read(&path).expect("reads");
+    stream.finish().expect("ends");
+    drop(marker);
+    let mut app = App::new(empty());
+    app.session.trainer.recordings_folder = Some(folder.path().to_path_buf());
+    let mut harness = harness(app, [1200.0, 800.0], |ui, app: &mut App| app.show(ui));
+    let settle = |harness: &mut egui_kittest::Harness<'_, App>| {
+        let begun = Instant::now();
+        while harness.state().session.jobs.is_busy() && begun.elapsed() < Duration::from_mins(1) {
+            std::thread::sleep(Duration::from_millis(5));
+            harness.run_steps(1);
+        }
+        harness.run_steps(2);
+    };
+    let ctx = harness.ctx.clone();
+    recorder::look_for_unfinished(&ctx, &mut harness.state_mut().session);
+    settle(&mut harness);
+    assert!(harness.query_by_label("Dismiss").is_none(), "it has its end");
+    let (cut, marker) = folder::reserve(folder.path(), "cart").expect("reserves");
+    std::fs::write(&cut, &without_end).expect("writes");
+    drop(marker);
+    recorder::look_for_unfinished(&ctx, &mut harness.state_mut().session);
+    settle(&mut harness);
+    assert_eq!(harness.state().session.unfinished, [cut.clone()]);
+    harness.get_by_label("Open").click();
+    harness.run_steps(2);
+    settle(&mut harness);
+    assert!(harness.state().session.unfinished.is_empty() && folder::unfinished(folder.path()).is_empty(), "said once");
+    let session = &harness.state().session;
+    assert_eq!(session.path.as_ref(), Some(&cut), "{:?}", session.banners);
+    assert_eq!(session.prepared().map(|p| p.recording.len()), Some(2_000));
 }
 
 #[test]

@@ -4,6 +4,7 @@ use haptics::Vec2;
 use haptics::device::Device;
 use haptics::servo::rate::RateReport;
 use haptics::servo::safety::Limits;
+use haptics::servo::tap::{TapFiller, TapSource, tap};
 use haptics::servo::{Loop, Privileges, Servo, ServoConfig, Snapshot, Swap, TickRecord};
 
 /// Where ticks come from.
@@ -14,11 +15,16 @@ pub enum Engine {
     Inline(Box<Inline>),
 }
 
+/// Ticks that wait for a recorder beside a manual loop, which waits for it in turn.
+const TAP_TICKS: usize = 4096;
+
 /// The servo's loop without a thread.
 pub struct Inline {
     body: Loop,
     config: ServoConfig,
     ticks: Vec<TickRecord>,
+    tap_in: TapFiller,
+    tap: TapSource,
     snapshot: Snapshot,
     owed_s: f64,
 }
@@ -37,7 +43,8 @@ impl Engine {
         let rate = RateReport { rate_hz: config.rate.nominal_hz(), ..RateReport::default() };
         let snapshot = Snapshot::starting(&swap, rate);
         let body = Loop::new(swap, device, limits).with_passivity_control(config.passivity_control_n_s_m);
-        Self::Inline(Box::new(Inline { body, config, ticks: Vec::new(), snapshot, owed_s: 0.0 }))
+        let (tap_in, tap) = tap(TAP_TICKS);
+        Self::Inline(Box::new(Inline { body, config, ticks: Vec::new(), tap_in, tap, snapshot, owed_s: 0.0 }))
     }
 
     /// The newest snapshot.
@@ -53,6 +60,14 @@ impl Engine {
         match self {
             Self::Thread(servo) => servo.drain(into),
             Self::Inline(inline) => into.append(&mut inline.ticks),
+        }
+    }
+
+    /// Where a recorder gets every tick.
+    pub fn tap(&self) -> &TapSource {
+        match self {
+            Self::Thread(servo) => servo.tap(),
+            Self::Inline(inline) => &inline.tap,
         }
     }
 
@@ -108,6 +123,11 @@ impl Inline {
             self.owed_s -= period_s;
             let tick = self.body.tick(period_s);
             self.ticks.push(tick);
+            while self.tap_in.must_wait() {
+                // Many times real time, without a device: there is nobody who could feel it.
+                std::thread::sleep(std::time::Duration::from_millis(1));
+            }
+            self.tap_in.offer(tick);
             self.snapshot.tick = tick;
             self.snapshot.timing.ticks += 1;
         }

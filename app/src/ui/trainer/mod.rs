@@ -25,9 +25,11 @@ pub use script::Script;
 pub use task::task_hint;
 pub use trial::{Direction, Trial};
 
+use crate::recorder::{Recorder, Stopping};
 use haptics::device::{Device, DeviceSpec};
 use haptics::servo::{Privileges, ServoConfig, Snapshot, Swap, TickRecord};
 use haptics::world::{State, World};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Who moves the fingers.
@@ -88,7 +90,10 @@ pub struct Trainer {
     /// Worlds by generation of the running engine.
     worlds: Vec<Arc<World>>,
     newest: Option<Snapshot>,
-    recorded: Option<Vec<TickRecord>>,
+    /// Where recordings go; absent: the user's folder for data.
+    pub recordings_folder: Option<PathBuf>,
+    recorder: Option<Recorder>,
+    ended: Vec<Stopping>,
     scratch: Vec<TickRecord>,
     recordings_made: usize,
     performances: u64,
@@ -120,11 +125,11 @@ impl Trainer {
 
     fn start(&mut self, mut swap: Box<Swap>) -> Result<(), String> {
         swap.world.check().map_err(|error| super::session::sentence(&error.to_string()))?;
+        self.end_recording();
         // The old device first: a port can be open only once.
         self.engine = None;
         self.steering = Steering::None;
         self.trial.abort();
-        self.stop_recording();
         let Swap { world, state } = &mut *swap;
         let (device, problem) = match self.device(world, state) {
             Ok(device) => (device, None),
@@ -180,6 +185,7 @@ impl Trainer {
 
     /// Stops the servo; the world is kept for the next start.
     pub fn pause(&mut self) {
+        self.end_recording();
         self.engine = None;
         self.steering = Steering::None;
         self.trial.abort();
@@ -194,7 +200,7 @@ impl Trainer {
             return self.restart();
         }
         swap.world.check().map_err(|error| super::session::sentence(&error.to_string()))?;
-        self.stop_recording();
+        self.end_recording();
         self.pinch.prepare_for(&swap.world, &swap.state);
         let world = Arc::new(swap.world.clone());
         match self.engine.as_mut().map(|engine| engine.swap(swap)) {
@@ -218,9 +224,6 @@ impl Trainer {
         self.scratch.clear();
         engine.drain(&mut self.scratch);
         self.history.extend(&self.scratch);
-        if let Some(recorded) = &mut self.recorded {
-            recorded.extend_from_slice(&self.scratch);
-        }
         let snapshot = engine.newest();
         match &mut self.newest {
             Some(kept) => {
@@ -238,7 +241,7 @@ impl Trainer {
         if let Some(newest) = &self.newest {
             self.steering.follow(&mut self.pinch, &newest.tick, frame_s);
         }
-        self.end_overlong_recording();
+        self.follow_recording();
     }
 
     /// Runs a manual clock on; the mouse's goal follows in steps of a picture.
@@ -282,7 +285,7 @@ impl Trainer {
     pub fn is_moving(&self) -> bool {
         let Some(snapshot) = &self.newest else { return false };
         let fast = |v: &haptics::Vec2| v.norm() > 2e-4;
-        self.recorded.is_some()
+        self.recorder.is_some()
             || self.impacts.any()
             || snapshot.state.input.tip_velocity.iter().any(fast)
             || snapshot.state.bodies.iter().any(|b| fast(&b.velocity_m_s))

@@ -1,60 +1,78 @@
-//! Recording while training: every tick, in memory.
+//! Recording while training: starting it, following it, ending it. The ticks go to the disk past the window.
 
-use super::Trainer;
-use haptics::recording::Recording;
-use haptics::servo::Privileges;
-use haptics::servo::recorder::{SensorModel, to_recording};
-use haptics::servo::timing::Timing;
+use super::{Engine, Trainer};
+use crate::recorder::{Order, Recorder, ServoFacts, Status, Stopping, folder};
 use std::sync::Arc;
 
-/// Longest recording, s.
-const LONGEST_S: f64 = 600.0;
-/// Most ticks of a recording, about 300 MB of them: ten minutes at a kilohertz, five at four.
-const MOST_TICKS: usize = 1_200_000;
-
 impl Trainer {
-    /// Begins to keep every tick.
-    pub fn start_recording(&mut self) {
-        self.recorded = Some(Vec::new());
+    /// Begins to write every tick to a file. Errors are one sentence; those of the disk come later, from
+    /// [`Self::take_ended_recording`].
+    pub fn start_recording(&mut self) -> Result<(), String> {
+        if self.is_recording() {
+            return Ok(());
+        }
+        let tap = self.engine.as_ref().map(Engine::tap).cloned();
+        let (Some(tap), Some((_, world))) = (tap, self.scene()) else {
+            return Err("There is nothing to record yet: open the trainer first.".to_owned());
+        };
+        let world = Arc::clone(world);
+        let folder = self.recordings_folder.clone().or_else(folder::of_user).ok_or(
+            "The system names no folder for recordings; set HOME or XDG_DATA_HOME, then start the program again.",
+        )?;
+        self.recordings_made += 1;
+        let (device, servo, seed) = (self.spec.clone(), self.servo_facts(), self.recordings_made as u64);
+        self.recorder = Some(Recorder::start(&tap, Order { folder, world, device, seed, servo })?);
+        Ok(())
     }
 
     /// True while every tick is kept.
     pub fn is_recording(&self) -> bool {
-        self.recorded.is_some()
+        self.recorder.is_some()
     }
 
-    /// Length of the running recording, s.
-    pub fn recorded_s(&self) -> f64 {
-        let ends = self.recorded.as_ref().and_then(|ticks| Some(ticks.last()?.time_s - ticks.first()?.time_s));
-        ends.unwrap_or(0.0)
+    /// How far the running recording is.
+    pub fn recording_status(&self) -> Option<Status> {
+        self.recorder.as_ref().map(Recorder::status)
     }
 
-    /// Ends the recording and gives it, seen through good sensors; `None` when it is too short for anything.
-    pub fn stop_recording(&mut self) -> Option<Recording> {
-        let mut ticks = self.recorded.take().filter(|ticks| ticks.len() > 1)?;
-        let start_s = ticks[0].time_s;
-        for tick in &mut ticks {
-            tick.time_s -= start_s;
-        }
-        let (snapshot, world) = self.scene()?;
-        let (world, servo) = (Arc::clone(world), servo_facts(&snapshot.timing, self.privileges()));
-        self.recordings_made += 1;
-        let name = format!("{} {}", world.name, self.recordings_made);
-        let seed = self.recordings_made as u64;
-        let mut recording = to_recording(&name, &world, &ticks, 1, &SensorModel::TYPICAL, seed);
-        recording.meta.other.insert("servo".to_owned(), servo);
-        Some(recording)
+    /// Ends the recording; its file gets its end in the background.
+    pub fn stop_recording(&mut self) -> Option<Stopping> {
+        let facts = self.servo_facts();
+        let recorder = self.recorder.take()?;
+        recorder.tell(facts);
+        Some(recorder.stop())
     }
 
-    /// Ends a recording that has become too long.
-    pub(super) fn end_overlong_recording(&mut self) {
-        if self.recorded_s() > LONGEST_S || self.recorded.as_ref().is_some_and(|ticks| ticks.len() > MOST_TICKS) {
-            self.stop_recording();
+    /// Ends the recording and removes its file.
+    pub fn discard_recording(&mut self) {
+        if let Some(recorder) = self.recorder.take() {
+            recorder.discard();
         }
     }
-}
 
-/// How the servo kept its time, for the sidecar of a recording.
-fn servo_facts(timing: &Timing, privileges: Option<Privileges>) -> serde_json::Value {
-    serde_json::json!({ "why": timing.rate.sentence(), "timing": timing, "privileges": privileges })
+    /// A recording that ended without being asked to: with its world or its servo, or because of the disk. It is told once.
+    pub fn take_ended_recording(&mut self) -> Option<Stopping> {
+        self.ended.pop()
+    }
+
+    /// Ends the recording because what is recorded ends.
+    pub(super) fn end_recording(&mut self) {
+        let ended = self.stop_recording();
+        self.ended.extend(ended);
+    }
+
+    /// Once a frame: tells the recording how the servo keeps its time, and sees when it has ended by itself.
+    pub(super) fn follow_recording(&mut self) {
+        let facts = self.servo_facts();
+        match &self.recorder {
+            Some(recorder) if recorder.has_ended() => self.end_recording(),
+            Some(recorder) => recorder.tell(facts),
+            None => {}
+        }
+    }
+
+    fn servo_facts(&self) -> ServoFacts {
+        let timing = self.newest.as_ref().map(|snapshot| snapshot.timing).unwrap_or_default();
+        ServoFacts { timing, privileges: self.privileges() }
+    }
 }

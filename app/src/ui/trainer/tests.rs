@@ -111,11 +111,15 @@ fn a_recording_starts_at_zero_and_can_be_fitted() {
     let mut trainer = Trainer { clock: Clock::Manual, operator: Operator::Scripted, ..Trainer::default() };
     trainer.ensure_running().expect("a loop");
     trainer.advance(0.5);
-    trainer.start_recording();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    trainer.recordings_folder = Some(folder.path().join("not yet there"));
+    trainer.start_recording().expect("begins");
     while !trainer.performance_over() {
         trainer.advance(0.5);
     }
-    let recording = trainer.stop_recording().expect("a recording");
+    let finished = trainer.stop_recording().expect("it ran").wait().expect("written");
+    let recording = estimator::log::load(&finished.path, None).expect("opens").remove(0);
+    assert_eq!((finished.status.dropped, finished.status.ticks), (0, recording.len() as u64));
     assert_eq!(recording.time_s.as_ref().map(|t| t[0]), Some(0.0));
     let servo = recording.meta.other.get("servo").expect("how the servo kept its time");
     assert_eq!(servo["timing"]["rate"]["rate_hz"], 1000.0);
@@ -135,4 +139,56 @@ fn a_pause_keeps_the_world_as_it_was() {
     trainer.ensure_running().expect("again");
     let after = trainer.scene().expect("running").0.state.input.tip_in_world;
     assert!((before[0] - after[0]).norm() < 1e-3 && (before[1] - after[1]).norm() < 1e-3);
+}
+
+#[test]
+fn a_recording_that_loses_its_world_is_kept_and_one_that_is_not_wanted_leaves_nothing() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut trainer = manual();
+    trainer.recordings_folder = Some(folder.path().to_path_buf());
+    trainer.start_recording().expect("begins");
+    trainer.advance(0.5);
+    trainer.choose(WorldChoice::Crank).expect("the crank");
+    assert!(!trainer.is_recording());
+    trainer.advance(0.2);
+    let kept = trainer.take_ended_recording().expect("told").wait().expect("written");
+    assert!(trainer.take_ended_recording().is_none(), "once");
+    let log = estimator::log::load(&kept.path, None).expect("opens").remove(0);
+    let time = log.time_s.as_ref().expect("a clock");
+    assert!((490..=500).contains(&time.len()), "{}: all of this world, nothing of the next", time.len());
+    assert!(time.windows(2).all(|w| (w[1] - w[0] - 1e-3).abs() < 1e-9));
+    std::fs::remove_file(&kept.path).expect("there");
+    trainer.start_recording().expect("begins");
+    trainer.advance(0.5);
+    trainer.discard_recording();
+    let begun = std::time::Instant::now();
+    let left = || std::fs::read_dir(folder.path()).expect("there").count();
+    while left() > 0 && begun.elapsed().as_secs() < 20 {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert_eq!(left(), 0);
+}
+
+#[test]
+fn a_folder_that_takes_no_files_is_one_sentence_and_training_goes_on() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("a-file");
+    std::fs::write(&file, "no folder").expect("writes");
+    let mut trainer = manual();
+    trainer.recordings_folder = Some(file.join("recordings"));
+    trainer.start_recording().expect("begins; the disk answers later");
+    let begun = std::time::Instant::now();
+    let ended = loop {
+        trainer.advance(0.05);
+        match trainer.take_ended_recording() {
+            Some(ended) => break ended,
+            None => assert!(begun.elapsed().as_secs() < 20, "never told"),
+        }
+    };
+    let problem = ended.wait().expect_err("it is a file");
+    assert!(problem.starts_with("The recording cannot be written (") && problem.ends_with('.'), "{problem}");
+    assert!(!trainer.is_recording());
+    let before_s = trainer.scene().expect("running").0.tick.time_s;
+    trainer.advance(0.2);
+    assert!(trainer.scene().expect("running").0.tick.time_s > before_s);
 }

@@ -106,7 +106,9 @@ impl McapStream {
         let refuse = |why: String| LogError::NotWritable { why, path: self.path.clone() };
         if values.len() != self.columns || label.is_some() != self.labelled {
             let (has, wants) = (values.len(), self.columns);
-            return Err(refuse(format!("a row has {has} values and the file {wants} columns, or one of them no label")));
+            return Err(refuse(format!(
+                "a row has {has} values and the file {wants} columns, or one of them no label"
+            )));
         }
         if !t_s.is_finite() || values.iter().any(|v| !v.is_finite()) {
             return Err(refuse(format!("a value at {t_s} s is not a finite number")));

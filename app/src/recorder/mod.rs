@@ -1,0 +1,212 @@
+//! Recording to the disk while somebody trains: a thread of its own takes every tick from the servo and writes it.
+//!
+//! Neither the servo nor the window waits for it, and memory does not grow with the length. A killed program leaves a file that
+//! opens up to its last second; [`folder`] finds it at the next start.
+
+pub mod folder;
+mod work;
+
+use haptics::device::DeviceSpec;
+use haptics::servo::Privileges;
+use haptics::servo::tap::{Tap, TapSource};
+use haptics::servo::timing::Timing;
+use haptics::world::World;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// A window that is closed waits so long for the end of the file.
+const FAREWELL: Duration = Duration::from_secs(3);
+
+/// How the servo keeps its time, for the sidecar.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ServoFacts {
+    /// What it measured.
+    pub timing: Timing,
+    /// What the system granted to it.
+    pub privileges: Option<Privileges>,
+}
+
+impl ServoFacts {
+    fn to_json(self) -> serde_json::Value {
+        let Self { timing, privileges } = self;
+        serde_json::json!({ "why": timing.rate.sentence(), "timing": timing, "privileges": privileges })
+    }
+}
+
+/// What is recorded, and where to.
+#[derive(Clone, Debug)]
+pub struct Order {
+    /// Folder of the file; it is made if it is not there.
+    pub folder: PathBuf,
+    /// The world that is touched.
+    pub world: Arc<World>,
+    /// The device that touches it.
+    pub device: Option<DeviceSpec>,
+    /// Draws the sensors' noise.
+    pub seed: u64,
+    /// How the servo keeps its time until now.
+    pub servo: ServoFacts,
+}
+
+/// How far a recording is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Status {
+    /// The file, once there is one.
+    pub path: Option<PathBuf>,
+    /// Ticks that were written.
+    pub ticks: u64,
+    /// Time that they cover, s.
+    pub length_s: f64,
+    /// Size on the disk, bytes.
+    pub bytes: u64,
+    /// Ticks that were lost because the disk did not keep up.
+    pub dropped: u64,
+    /// Ticks that a file cannot hold: a value is not a number, or time stands still.
+    pub left_out: u64,
+    /// Why the recording ended by itself, in one sentence.
+    pub problem: Option<String>,
+    /// True when nothing more will be written.
+    pub ended: bool,
+}
+
+/// A recording that is complete.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finished {
+    /// The file.
+    pub path: PathBuf,
+    /// What is in it.
+    pub status: Status,
+}
+
+/// What is to become of the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+enum Wish {
+    Record,
+    Keep,
+    Discard,
+}
+
+/// What the window and the recording thread have in common.
+struct Shared {
+    wish: AtomicU8,
+    status: Mutex<Status>,
+    servo: Mutex<ServoFacts>,
+}
+
+impl Shared {
+    fn wish(&self) -> Wish {
+        match self.wish.load(Ordering::Relaxed) {
+            0 => Wish::Record,
+            1 => Wish::Keep,
+            _ => Wish::Discard,
+        }
+    }
+
+    fn status(&self) -> MutexGuard<'_, Status> {
+        // What is in it is whole after every assignment.
+        self.status.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn servo(&self) -> MutexGuard<'_, ServoFacts> {
+        self.servo.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A running recording. Dropping it keeps the file.
+pub struct Recorder {
+    shared: Arc<Shared>,
+    source: TapSource,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Recorder {
+    /// Begins to write every tick. Errors are one sentence; those of the disk come in [`Status::problem`].
+    pub fn start(source: &TapSource, order: Order) -> Result<Self, String> {
+        let tap = source.open().ok_or("The last recording is still being written; try again in a moment.")?;
+        Self::begin(source, tap, order)
+            .map_err(|error| format!("The system gave no thread for the recording ({error}); close other programs."))
+    }
+
+    fn begin(source: &TapSource, tap: Tap, order: Order) -> std::io::Result<Self> {
+        let shared = Arc::new(Shared {
+            wish: AtomicU8::new(Wish::Record as u8),
+            status: Mutex::default(),
+            servo: Mutex::new(order.servo),
+        });
+        let theirs = Arc::clone(&shared);
+        let thread =
+            std::thread::Builder::new().name("recorder".to_owned()).spawn(move || work::run(tap, &order, &theirs))?;
+        Ok(Self { shared, source: source.clone(), thread: Some(thread) })
+    }
+
+    /// How far it is.
+    pub fn status(&self) -> Status {
+        self.shared.status().clone()
+    }
+
+    /// True when nothing more will be written.
+    pub fn has_ended(&self) -> bool {
+        self.shared.status().ended || self.thread.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
+    /// Keeps for the end of the file how the servo keeps its time.
+    pub fn tell(&self, servo: ServoFacts) {
+        *self.shared.servo() = servo;
+    }
+
+    /// Ends it: no further tick is taken, the file gets its end in the background.
+    pub fn stop(mut self) -> Stopping {
+        self.end(Wish::Keep);
+        Stopping { shared: Arc::clone(&self.shared), thread: self.thread.take() }
+    }
+
+    /// Ends it, and its file is removed.
+    pub fn discard(mut self) {
+        self.end(Wish::Discard);
+        self.thread = None; // it does that alone
+    }
+
+    fn end(&self, wish: Wish) {
+        self.shared.wish.store(wish as u8, Ordering::Relaxed);
+        // Here and not on the thread: a world that is swapped in next must not get into the file. After the wish: the thread asks
+        // for it once the tap is closed.
+        self.source.close();
+    }
+}
+
+impl Drop for Recorder {
+    fn drop(&mut self) {
+        let Some(thread) = self.thread.take() else { return };
+        self.end(Wish::Keep);
+        let asked = Instant::now();
+        while !thread.is_finished() && asked.elapsed() < FAREWELL {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+}
+
+/// A recording whose end is being written.
+pub struct Stopping {
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Stopping {
+    /// Waits for the end of the file; a job for a thread in the background. The error is one sentence.
+    pub fn wait(mut self) -> Result<Finished, String> {
+        let ended = self.thread.take().map(JoinHandle::join);
+        let status = self.shared.status().clone();
+        if ended.is_some_and(|joined| joined.is_err()) {
+            return Err("An internal fault ended the recording; what was written until then is kept.".to_owned());
+        }
+        match (&status.problem, &status.path) {
+            (Some(problem), _) => Err(problem.clone()),
+            (None, Some(path)) => Ok(Finished { path: path.clone(), status }),
+            (None, None) => Err("Nothing was recorded.".to_owned()),
+        }
+    }
+}

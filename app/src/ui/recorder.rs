@@ -1,0 +1,135 @@
+//! The window's part of recording: the card beside the trainer, what becomes of a recording that ended, and recordings that a killed
+//! program left behind.
+
+use super::format;
+use super::jobs::{JobKind, Outcome};
+use super::mapping::name_of;
+use super::messages;
+use super::opening;
+use super::session::{Session, Tone};
+use super::theme::{self, palette};
+use super::widgets::primary_button;
+use crate::recorder::{Status, folder};
+use egui::{RichText, Sense, Ui, vec2};
+use std::path::Path;
+
+/// The card beside the trainer's picture.
+pub fn controls(ui: &mut Ui, session: &mut Session) {
+    let Some(status) = session.trainer.recording_status() else {
+        ui.label(theme::caption(ui, "Keeps every tick, to measure the objects from."));
+        if primary_button(ui, true, "Record").on_hover_text(whereto(session)).clicked() {
+            start(session);
+        }
+        return;
+    };
+    let p = palette(ui);
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
+        ui.painter().circle_filled(rect.center(), 5.0, p.danger);
+        ui.label(theme::strong(format::clock(status.length_s)));
+        let size = ui.label(theme::caption(ui, format!("every tick is kept · {}", megabytes(status.bytes))));
+        if let Some(path) = &status.path {
+            size.on_hover_text(path.display().to_string());
+        }
+    });
+    if let Some(text) = losses(&status) {
+        ui.label(RichText::new(text).size(11.5).color(p.caution));
+    }
+    ui.horizontal(|ui| {
+        if primary_button(ui, true, "Stop and calibrate").clicked() {
+            let ctx = ui.ctx().clone();
+            stop_and_open(&ctx, session);
+        }
+        if ui.button("Discard").on_hover_text("Ends the recording and removes its file").clicked() {
+            session.trainer.discard_recording();
+        }
+    });
+}
+
+fn whereto(session: &Session) -> String {
+    let folder = session.trainer.recordings_folder.clone().or_else(folder::of_user);
+    folder.map_or_else(|| "R".to_owned(), |folder| format!("R\nGoes to {}", folder.display()))
+}
+
+/// What the file lacks, in one sentence.
+fn losses(status: &Status) -> Option<String> {
+    match (status.dropped, status.left_out) {
+        (0, 0) => None,
+        (0, n) => Some(format!("{n} ticks were left out: they held no number, or time stood still.")),
+        (n, _) => Some(format!("{n} ticks were lost: the disk did not keep up.")),
+    }
+}
+
+fn megabytes(bytes: u64) -> String {
+    let megabytes = bytes as f64 * 1e-6;
+    if megabytes < 1e3 {
+        format!("{} MB", format::number(megabytes, 1))
+    } else {
+        format!("{} GB", format::number(1e-3 * megabytes, 2))
+    }
+}
+
+/// Begins to record; what is in the way is said.
+pub fn start(session: &mut Session) {
+    if let Err(problem) = session.trainer.start_recording() {
+        session.fail(problem);
+    }
+}
+
+/// Ends the recording and opens it as a log, all in the background.
+pub fn stop_and_open(ctx: &egui::Context, session: &mut Session) {
+    let path = session.trainer.recording_status().and_then(|status| status.path);
+    let Some(stopping) = session.trainer.stop_recording() else { return };
+    // A sidecar that was named for another log is not for this one.
+    session.meta = None;
+    session.path_field = path.map(|path| path.display().to_string()).unwrap_or_default();
+    session.jobs.start_watched(ctx, JobKind::Load, "Reading the recording".to_owned(), move |ticket| {
+        match stopping.wait() {
+            Ok(finished) => opening::read(finished.path, None, ticket),
+            Err(problem) => Outcome::Failed(problem),
+        }
+    });
+}
+
+/// Recordings that ended without being asked to are told; call once a frame.
+pub fn follow(ctx: &egui::Context, session: &mut Session) {
+    while let Some(stopping) = session.trainer.take_ended_recording() {
+        session.jobs.start(ctx, JobKind::Record, move || match stopping.wait() {
+            Ok(finished) => Outcome::Saved(finished.path),
+            Err(problem) => Outcome::Failed(problem),
+        });
+    }
+}
+
+/// Looks for recordings that a killed program left behind, in the background.
+pub fn look_for_unfinished(ctx: &egui::Context, session: &mut Session) {
+    let Some(folder) = session.trainer.recordings_folder.clone().or_else(folder::of_user) else { return };
+    session.jobs.start(ctx, JobKind::Recover, move || Outcome::Unfinished(folder::unfinished(&folder)));
+}
+
+/// Above the workspace: a recording that has no end, with the way to open it.
+pub fn unfinished(ui: &mut Ui, session: &mut Session) {
+    let count = session.unfinished.len();
+    let path = session.unfinished.first().cloned().unwrap_or_default();
+    let (mut open, mut dismiss) = (false, false);
+    messages::strip(ui, "unfinished recordings", count.min(1), |ui| {
+        messages::message(ui, Tone::Error, &said(&path, count), |ui| {
+            dismiss = ui.small_button("Dismiss").on_hover_text("The file stays where it is").clicked();
+            open = ui.small_button("Open").on_hover_text(path.display().to_string()).clicked();
+        });
+    });
+    if open || dismiss {
+        session.unfinished.remove(0);
+        folder::forget(&path);
+    }
+    if open {
+        let ctx = ui.ctx().clone();
+        session.open_with(&ctx, &path, None);
+    }
+}
+
+fn said(path: &Path, count: usize) -> String {
+    let others = if count > 1 { format!(" ({count} such recordings)") } else { String::new() };
+    let name = name_of(path);
+    format!("The program ended while it recorded {name}; the recording opens up to its last second.{others}")
+}
