@@ -183,7 +183,7 @@ mod tests {
         assert_eq!(unfinished(folder.path()), Vec::<PathBuf>::new(), "it is being written");
         // A killed process: the lock is gone, the marker stays.
         drop(marker);
-        assert_eq!(unfinished(folder.path()), [path.clone()]);
+        assert_eq!(unfinished(folder.path()), std::slice::from_ref(&path));
         forget(&path);
         assert_eq!(unfinished(folder.path()), Vec::<PathBuf>::new());
         let (whole, marker) = reserve(folder.path(), "crank").expect("reserves");

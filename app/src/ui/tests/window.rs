@@ -92,7 +92,7 @@ fn a_recording_that_a_killed_program_left_behind_is_offered_and_opened() {
     drop(marker);
     recorder::look_for_unfinished(&ctx, &mut harness.state_mut().session);
     settle(&mut harness);
-    assert_eq!(harness.state().session.unfinished, [cut.clone()]);
+    assert_eq!(harness.state().session.unfinished, std::slice::from_ref(&cut));
     harness.get_by_label("Open").click();
     harness.run_steps(2);
     settle(&mut harness);
