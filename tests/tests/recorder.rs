@@ -1,6 +1,6 @@
 //! The recorder end to end: killed with SIGKILL, on a disk that refuses, with a folder that goes, and as fast as it can.
 
-use app::recorder::{Order, Recorder, ServoFacts, Status, folder};
+use app::recorder::{FILE_BYTES, Order, Recorder, ServoFacts, Status, folder};
 use estimator::log;
 use haptics::device::{Device, ScriptedOperator, Skill};
 use haptics::recording::Recording;
@@ -19,7 +19,7 @@ const FOLDER: &str = "TOUCHSTONE_TEST_RECORDINGS";
 fn order(folder: &Path, world: &World) -> Order {
     let device = ScriptedOperator::new(world, &State::resting(world), Skill::default(), 1).spec().clone();
     let (folder, world) = (folder.to_path_buf(), Arc::new(world.clone()));
-    Order { folder, world, device: Some(device), seed: 1, servo: ServoFacts::default() }
+    Order { folder, world, device: Some(device), seed: 1, file_bytes: FILE_BYTES, servo: ServoFacts::default() }
 }
 
 fn servo(rate_hz: f64) -> Servo {
@@ -93,7 +93,7 @@ fn a_killed_program_leaves_a_recording_up_to_its_last_second_and_it_is_found() {
     child.wait().expect("ends");
     assert!(last_s >= 3.2, "it recorded until {last_s} s");
     let path = only_recording(folder.path());
-    assert_eq!(folder::unfinished(folder.path()), [path.clone()]);
+    assert_eq!(folder::unfinished(folder.path()), std::slice::from_ref(&path));
     let found = open(&path);
     println!("recorded for {last_s:.3} s, read {:.3} s", end_s(&found));
     assert!(end_s(&found) >= last_s - 1.0, "recorded for {last_s} s, read {} s", end_s(&found));
@@ -196,8 +196,36 @@ fn a_recording_carries_its_world_its_device_and_how_the_servo_kept_its_time() {
     assert!(orphan.stop().wait().is_err_and(|problem| problem.contains("too short")));
 }
 
+#[test]
+fn a_recording_that_grows_too_large_for_one_file_goes_on_in_the_next() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (mut filler, source) = tap(4096);
+    let order = Order { file_bytes: 100_000, ..order(folder.path(), &presets::stacking()) };
+    let recorder = Recorder::start(&source, order).expect("begins");
+    let mut offered = 0_u32;
+    while recorder.status().files < 3 {
+        if offered.is_multiple_of(40) || filler.must_wait() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        if !filler.must_wait() {
+            filler.offer(tick(offered));
+            offered += 1;
+        }
+        assert!(offered < 2_000_000);
+    }
+    let finished = recorder.stop().wait().expect("written");
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(folder.path()).expect("there").flatten().map(|e| e.path()).collect();
+    files.sort();
+    assert_eq!(files.last(), Some(&finished.path), "nothing but recordings, the newest is told");
+    let size: u64 = files.iter().map(|path| std::fs::metadata(path).expect("there").len()).sum();
+    assert_eq!((finished.status.bytes, finished.status.ticks), (size, u64::from(offered)));
+    let times: Vec<f64> = files.iter().flat_map(|path| open(path).time_s.expect("a clock")).collect();
+    assert_eq!(times.len(), offered as usize);
+    assert!(times.windows(2).all(|w| (w[1] - w[0] - 1e-3).abs() < 1e-9), "no tick between the files is missing");
+}
+
 /// A tick of a hand that moves and presses.
-#[cfg(unix)]
 fn tick(i: u32) -> TickRecord {
     let time_s = f64::from(i) * 1e-3;
     let mut tick = TickRecord { time_s, label: "free-motion", ..TickRecord::default() };

@@ -1,6 +1,6 @@
 //! A long recording takes no more memory than a short one. One test in a process of its own: it counts every allocation.
 
-use app::recorder::{Order, Recorder, ServoFacts};
+use app::recorder::{FILE_BYTES, Order, Recorder, ServoFacts};
 use haptics::device::{ScriptedOperator, Skill};
 use haptics::servo::safety::Limits;
 use haptics::servo::tap::tap;
@@ -37,6 +37,7 @@ fn memory_stays_flat_however_long_it_records() {
         world: Arc::new(presets::stacking()),
         device: None,
         seed: 1,
+        file_bytes: FILE_BYTES,
         servo: ServoFacts::default(),
     };
     let recorder = Recorder::start(&source, order).expect("begins");

@@ -11,7 +11,7 @@ use haptics::servo::Privileges;
 use haptics::servo::tap::{Tap, TapSource};
 use haptics::servo::timing::Timing;
 use haptics::world::World;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -19,6 +19,9 @@ use std::time::{Duration, Instant};
 
 /// A window that is closed waits so long for the end of the file.
 const FAREWELL: Duration = Duration::from_secs(3);
+/// A file that has become so large is ended and followed by the next one, bytes: about four hours at 1 kHz. It stays well below what
+/// the reader takes at once.
+pub const FILE_BYTES: u64 = 1 << 30;
 
 /// How the servo keeps its time, for the sidecar.
 #[derive(Clone, Copy, Debug, Default)]
@@ -47,6 +50,8 @@ pub struct Order {
     pub device: Option<DeviceSpec>,
     /// Draws the sensors' noise.
     pub seed: u64,
+    /// A file that has become so large is followed by the next one, bytes ([`FILE_BYTES`]).
+    pub file_bytes: u64,
     /// How the servo keeps its time until now.
     pub servo: ServoFacts,
 }
@@ -54,13 +59,15 @@ pub struct Order {
 /// How far a recording is.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Status {
-    /// The file, once there is one.
+    /// The newest file, once there is one.
     pub path: Option<PathBuf>,
-    /// Ticks that were written.
+    /// Number of files.
+    pub files: usize,
+    /// Ticks that were written, to all files.
     pub ticks: u64,
     /// Time that they cover, s.
     pub length_s: f64,
-    /// Size on the disk, bytes.
+    /// Size of all files on the disk, bytes.
     pub bytes: u64,
     /// Ticks that were lost because the disk did not keep up.
     pub dropped: u64,
@@ -70,14 +77,18 @@ pub struct Status {
     pub problem: Option<String>,
     /// True when nothing more will be written.
     pub ended: bool,
+    /// Ticks of the files before this one.
+    earlier_ticks: u64,
+    /// Their size, bytes.
+    earlier_bytes: u64,
 }
 
 /// A recording that is complete.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finished {
-    /// The file.
+    /// The file; the newest one if there are several.
     pub path: PathBuf,
-    /// What is in it.
+    /// What was recorded.
     pub status: Status,
 }
 
@@ -109,6 +120,13 @@ impl Shared {
     fn status(&self) -> MutexGuard<'_, Status> {
         // What is in it is whole after every assignment.
         self.status.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The file that is written now.
+    fn begin(&self, path: &Path, files: usize) {
+        let mut status = self.status();
+        status.path = Some(path.to_path_buf());
+        status.files = files;
     }
 
     fn servo(&self) -> MutexGuard<'_, ServoFacts> {

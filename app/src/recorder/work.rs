@@ -1,6 +1,6 @@
 //! What the recording thread does.
 
-use super::folder;
+use super::folder::{self, Marker};
 use super::{Order, Shared, Wish};
 use crate::ui::session::sentence;
 use estimator::log::{Attachment, LogError, McapStream};
@@ -8,7 +8,7 @@ use haptics::recording::Meta;
 use haptics::servo::TickRecord;
 use haptics::servo::recorder::{COLUMNS, Rows, SensorModel, facts};
 use haptics::servo::tap::Tap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// The ring is emptied this often; it holds seconds.
@@ -17,55 +17,96 @@ const REST: Duration = Duration::from_millis(25);
 const TOLD_EVERY: Duration = Duration::from_millis(100);
 /// It is looked this often whether the file is still there.
 const LOOKED_EVERY: Duration = Duration::from_secs(1);
-/// A recording with fewer ticks is nothing to measure from.
+/// A file with fewer ticks is nothing to measure from.
 const FEWEST_TICKS: u64 = 2;
 
 /// Records until told otherwise, until the servo is gone, or until the disk refuses.
 pub(super) fn run(tap: Tap, order: &Order, shared: &Shared) {
-    let problem = record(tap, order, shared).err();
+    let mut files = Vec::new();
+    let problem = record(tap, order, shared, &mut files).err();
+    if shared.wish() == Wish::Discard {
+        for path in &files {
+            // It may be gone already.
+            let _ = std::fs::remove_file(path);
+        }
+    }
     let mut status = shared.status();
     status.problem = problem;
     status.ended = true;
 }
 
-fn record(tap: Tap, order: &Order, shared: &Shared) -> Result<(), String> {
-    let (path, marker) = folder::reserve(&order.folder, &order.world.name)?;
-    let mut meta = facts(&order.world);
-    meta.other.insert("servo".to_owned(), order.servo.to_json());
-    let columns = COLUMNS.map(str::to_owned);
-    let stream = match McapStream::create_labelled(&path, &columns, &meta, &attachments(order)) {
-        Ok(stream) => stream,
-        Err(error) => {
-            marker.remove();
-            // Nothing is in it.
-            let _ = std::fs::remove_file(&path);
-            return Err(sentence(&error.to_string()));
-        }
-    };
-    shared.status().path = Some(path.clone());
+/// File after file, all of which are in `files`.
+fn record(tap: Tap, order: &Order, shared: &Shared, files: &mut Vec<PathBuf>) -> Result<(), String> {
     let rows = Rows::new(SensorModel::TYPICAL, order.seed);
-    let mut writing =
-        Writing { tap, shared, stream, rows, path: &path, start_s: None, last_s: 0.0, told: Instant::now() };
-    let written = writing.until_over();
-    writing.tell();
-    let ticks = writing.stream.rows();
-    // Closes it: the next recording may begin while this one gets its end.
-    let Writing { stream, tap, .. } = writing;
-    drop(tap);
-    // What went wrong was or will be said: nobody has to look for the file.
-    let ended = written.and_then(|()| finish(stream, &path, meta, shared));
-    marker.remove();
-    if shared.wish() == Wish::Discard {
-        // It may be gone already.
-        let _ = std::fs::remove_file(&path);
-        return Ok(());
+    let mut source = Source { tap, shared, rows, held: None, start_s: None, last_s: None, told: Instant::now() };
+    loop {
+        let mut file = Growing::begin(order, files.len())?;
+        files.push(file.path.clone());
+        shared.begin(&file.path, files.len());
+        let filled = source.fill(&mut file, order.file_bytes);
+        let (path, ticks) = (file.path.clone(), file.stream.rows());
+        let full = file.end(filled, shared)?;
+        if ticks < FEWEST_TICKS && shared.wish() != Wish::Discard {
+            let _ = std::fs::remove_file(&path);
+            files.pop();
+            // What came before it is a recording all the same.
+            let before = files.last().ok_or("The recording is too short to be calibrated from.")?;
+            shared.begin(before, files.len());
+        }
+        if !full {
+            return Ok(());
+        }
     }
-    ended?;
-    if ticks < FEWEST_TICKS {
-        let _ = std::fs::remove_file(&path);
-        return Err("The recording is too short to be calibrated from.".to_owned());
+}
+
+/// One file.
+struct Growing {
+    path: PathBuf,
+    marker: Marker,
+    stream: McapStream,
+    meta: Meta,
+}
+
+impl Growing {
+    fn begin(order: &Order, earlier: usize) -> Result<Self, String> {
+        let (path, marker) = folder::reserve(&order.folder, &order.world.name)?;
+        let mut meta = facts(&order.world);
+        meta.other.insert("servo".to_owned(), order.servo.to_json());
+        if earlier > 0 {
+            meta.other.insert("recording_continued".to_owned(), serde_json::json!({ "earlier_files": earlier }));
+        }
+        let columns = COLUMNS.map(str::to_owned);
+        match McapStream::create_labelled(&path, &columns, &meta, &attachments(order)) {
+            Ok(stream) => Ok(Self { path, marker, stream, meta }),
+            Err(error) => {
+                marker.remove();
+                // Nothing is in it.
+                let _ = std::fs::remove_file(&path);
+                Err(sentence(&error.to_string()))
+            }
+        }
     }
-    Ok(())
+
+    /// Writes what is known only now, and the end of the file. True when another file is to follow.
+    fn end(mut self, filled: Result<bool, String>, shared: &Shared) -> Result<bool, String> {
+        let status = shared.status().clone();
+        let recorder =
+            serde_json::json!({ "ticks": self.stream.rows(), "dropped": status.dropped, "left_out": status.left_out });
+        self.meta.other.insert("servo".to_owned(), shared.servo().to_json());
+        self.meta.other.insert("recorder".to_owned(), recorder);
+        let (stream, meta) = (self.stream, &self.meta);
+        let ended = filled.and_then(|full| {
+            stream.finish_with(meta).map_err(|error| sentence(&error.to_string()))?;
+            Ok(full)
+        });
+        // What went wrong is said: nobody has to look for the file at the next start.
+        self.marker.remove();
+        let mut status = shared.status();
+        status.earlier_ticks = status.ticks;
+        status.earlier_bytes += std::fs::metadata(&self.path).map_or(0, |facts| facts.len());
+        status.bytes = status.earlier_bytes;
+        ended
+    }
 }
 
 fn attachments(order: &Order) -> Vec<Attachment> {
@@ -79,87 +120,82 @@ fn attachments(order: &Order) -> Vec<Attachment> {
     std::iter::once(world).chain(device.map(|text| json("device.json", text))).collect()
 }
 
-struct Writing<'a> {
+/// Where the ticks come from, whichever file they go to.
+struct Source<'a> {
     tap: Tap,
     shared: &'a Shared,
-    stream: McapStream,
     rows: Rows,
-    path: &'a Path,
+    /// A tick that found its file full.
+    held: Option<TickRecord>,
     /// Time of the first tick in the servo's clock, s.
     start_s: Option<f64>,
     /// Time of the last row, s from the first one.
-    last_s: f64,
+    last_s: Option<f64>,
     told: Instant,
 }
 
-impl Writing<'_> {
-    fn until_over(&mut self) -> Result<(), String> {
+impl Source<'_> {
+    /// Fills a file; true when it is full and ticks are left.
+    fn fill(&mut self, file: &mut Growing, most_bytes: u64) -> Result<bool, String> {
         let mut looked = Instant::now();
         loop {
             // Asked before the ring is emptied: what came in until then is in the file.
             let over = self.tap.is_over();
-            while let Some(tick) = self.tap.pop() {
-                self.write(&tick).map_err(|error| self.refused(&error))?;
+            while let Some(tick) = self.held.take().or_else(|| self.tap.pop()) {
+                if file.stream.bytes() >= most_bytes && file.stream.rows() >= FEWEST_TICKS {
+                    self.held = Some(tick);
+                    self.tell(file);
+                    return Ok(true);
+                }
+                self.write(&tick, file).map_err(|error| self.refused(&error, &file.path))?;
                 // A ring that is never empty must not hide the progress.
                 if self.told.elapsed() >= TOLD_EVERY {
-                    self.tell();
+                    self.tell(file);
                 }
                 if self.shared.wish() == Wish::Discard {
-                    return Ok(());
+                    return Ok(false);
                 }
             }
-            self.stream.poll().map_err(|error| self.refused(&error))?;
-            self.tell();
+            file.stream.poll().map_err(|error| self.refused(&error, &file.path))?;
+            self.tell(file);
             if over {
-                return Ok(());
+                return Ok(false);
             }
             if looked.elapsed() >= LOOKED_EVERY {
                 looked = Instant::now();
-                self.look()?;
+                still_there(&file.path)?;
             }
             std::thread::sleep(REST);
         }
     }
 
-    fn write(&mut self, tick: &TickRecord) -> Result<(), LogError> {
+    fn write(&mut self, tick: &TickRecord, file: &mut Growing) -> Result<(), LogError> {
         let time_s = tick.time_s - *self.start_s.get_or_insert(tick.time_s);
         let row = self.rows.row(tick);
-        let stands_still = self.stream.rows() > 0 && time_s <= self.last_s;
+        let stands_still = self.last_s.is_some_and(|last_s| time_s <= last_s);
         if stands_still || !time_s.is_finite() || row.iter().any(|value| !value.is_finite()) {
             self.shared.status().left_out += 1;
             return Ok(());
         }
-        self.last_s = time_s;
-        self.stream.push_labelled(time_s, &row, tick.label)
+        self.last_s = Some(time_s);
+        file.stream.push_labelled(time_s, &row, tick.label)
     }
 
-    /// A file that was removed takes bytes as before; they are nowhere.
-    fn look(&self) -> Result<(), String> {
-        match std::fs::metadata(self.path) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(format!(
-                "The recording ended because its file was moved or removed while it was written: {}.",
-                self.path.display()
-            )),
-            // A folder that cannot be looked at for a moment is no reason to end.
-            _ => Ok(()),
-        }
-    }
-
-    fn tell(&mut self) {
+    fn tell(&mut self, file: &Growing) {
         self.told = Instant::now();
         let mut status = self.shared.status();
-        status.ticks = self.stream.rows();
-        status.length_s = self.last_s;
-        status.bytes = self.stream.bytes();
+        status.ticks = status.earlier_ticks + file.stream.rows();
+        status.bytes = status.earlier_bytes + file.stream.bytes();
+        status.length_s = self.last_s.unwrap_or(0.0);
         status.dropped = self.tap.dropped();
     }
 
-    fn refused(&self, error: &LogError) -> String {
+    fn refused(&self, error: &LogError, path: &Path) -> String {
         let why = match error {
             LogError::Write { reason, .. } => reason.clone(),
             other => other.to_string(),
         };
-        let (length, path) = (crate::ui::format::clock(self.last_s), self.path.display());
+        let (length, path) = (crate::ui::format::clock(self.last_s.unwrap_or(0.0)), path.display());
         format!(
             "The recording ended after {length} because the disk refused it ({why}); what was written until then is kept, \
              training goes on: {path}."
@@ -167,13 +203,14 @@ impl Writing<'_> {
     }
 }
 
-/// Facts that are complete only now, and the end of the file.
-fn finish(stream: McapStream, path: &Path, mut meta: Meta, shared: &Shared) -> Result<(), String> {
-    let status = shared.status().clone();
-    let recorder = serde_json::json!({ "ticks": status.ticks, "dropped": status.dropped, "left_out": status.left_out });
-    meta.other.insert("servo".to_owned(), shared.servo().to_json());
-    meta.other.insert("recorder".to_owned(), recorder);
-    stream.finish_with(&meta).map_err(|error| sentence(&error.to_string()))?;
-    shared.status().bytes = std::fs::metadata(path).map_or(status.bytes, |facts| facts.len());
-    Ok(())
+/// A file that was removed takes bytes as before; they are nowhere.
+fn still_there(path: &Path) -> Result<(), String> {
+    match std::fs::metadata(path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(format!(
+            "The recording ended because its file was moved or removed while it was written: {}.",
+            path.display()
+        )),
+        // A folder that cannot be looked at for a moment is no reason to end.
+        _ => Ok(()),
+    }
 }

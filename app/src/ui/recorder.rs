@@ -27,7 +27,8 @@ pub fn controls(ui: &mut Ui, session: &mut Session) {
         let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
         ui.painter().circle_filled(rect.center(), 5.0, p.danger);
         ui.label(theme::strong(format::clock(status.length_s)));
-        let size = ui.label(theme::caption(ui, format!("every tick is kept · {}", megabytes(status.bytes))));
+        let files = if status.files > 1 { format!(" in {} files", status.files) } else { String::new() };
+        let size = ui.label(theme::caption(ui, format!("every tick is kept · {}{files}", megabytes(status.bytes))));
         if let Some(path) = &status.path {
             size.on_hover_text(path.display().to_string());
         }
@@ -78,11 +79,14 @@ pub fn start(session: &mut Session) {
 
 /// Ends the recording and opens it as a log, all in the background.
 pub fn stop_and_open(ctx: &egui::Context, session: &mut Session) {
-    let path = session.trainer.recording_status().and_then(|status| status.path);
+    let status = session.trainer.recording_status().unwrap_or_default();
     let Some(stopping) = session.trainer.stop_recording() else { return };
+    if status.files > 1 {
+        session.say(Tone::Done, format!("The recording has {} files; the newest one is opened.", status.files));
+    }
     // A sidecar that was named for another log is not for this one.
     session.meta = None;
-    session.path_field = path.map(|path| path.display().to_string()).unwrap_or_default();
+    session.path_field = status.path.map(|path| path.display().to_string()).unwrap_or_default();
     session.jobs.start_watched(ctx, JobKind::Load, "Reading the recording".to_owned(), move |ticket| {
         match stopping.wait() {
             Ok(finished) => opening::read(finished.path, None, ticket),

@@ -1,7 +1,7 @@
 //! Recording while training: starting it, following it, ending it. The ticks go to the disk past the window.
 
 use super::{Engine, Trainer};
-use crate::recorder::{Order, Recorder, ServoFacts, Status, Stopping, folder};
+use crate::recorder::{FILE_BYTES, Order, Recorder, ServoFacts, Status, Stopping, folder};
 use std::sync::Arc;
 
 impl Trainer {
@@ -21,7 +21,8 @@ impl Trainer {
         )?;
         self.recordings_made += 1;
         let (device, servo, seed) = (self.spec.clone(), self.servo_facts(), self.recordings_made as u64);
-        self.recorder = Some(Recorder::start(&tap, Order { folder, world, device, seed, servo })?);
+        self.recorder =
+            Some(Recorder::start(&tap, Order { folder, world, device, seed, servo, file_bytes: FILE_BYTES })?);
         Ok(())
     }
 
