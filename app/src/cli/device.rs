@@ -163,6 +163,7 @@ impl Test {
             packets: opened.packets.as_ref(),
             answers: opened.answers.as_ref(),
             push_n: self.push,
+            line_n_m: snapshot.line_n_m,
             coupling_n_m: snapshot.coupling.map(|coupling| coupling.stiffness_n_m),
         };
         Ok((measured.report(), !measured.has_failed()))

@@ -86,6 +86,12 @@ pub trait Device: Send {
         0.0
     }
 
+    /// Stiffness that a line with wave variables puts in series with the world, N/m: the wave impedance over the delay one way.
+    /// Nothing is felt stiffer, however stiff a passive wall may be at the servo's end. `None` without such a line.
+    fn line_stiffness_n_m(&self) -> Option<f64> {
+        None
+    }
+
     /// Brings the device to zero force. Called when the servo stops, also after a fault; called again on drop by devices that
     /// hold their last force.
     fn make_safe(&mut self);

@@ -50,6 +50,8 @@ pub struct Snapshot {
     pub coupling: Option<Coupling>,
     /// Delay that the device states of itself, s ([`Device::delay_s`]): what can be rendered passively counts with it.
     pub delay_s: f64,
+    /// Stiffness of a line with waves between device and world, N/m ([`Device::line_stiffness_n_m`]); `None` without one.
+    pub line_n_m: Option<f64>,
     /// Why the servo stopped, if it did.
     pub fault: Option<&'static str>,
 }
@@ -84,6 +86,7 @@ impl Snapshot {
             timing: Timing::starting(rate),
             coupling: None,
             delay_s: 0.0,
+            line_n_m: None,
             fault: None,
         }
     }
@@ -259,6 +262,11 @@ impl Loop {
     /// Delay that the device states of itself, s.
     pub fn delay_s(&self) -> f64 {
         self.device.delay_s()
+    }
+
+    /// Stiffness of the line with waves that the device is behind, N/m.
+    pub fn line_stiffness_n_m(&self) -> Option<f64> {
+        self.device.line_stiffness_n_m()
     }
 
     /// Zero force on the device.

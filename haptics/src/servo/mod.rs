@@ -14,6 +14,8 @@ pub mod force_test;
 mod guard;
 mod r#loop;
 pub mod passivity;
+#[cfg(test)]
+mod protections;
 pub mod rate;
 mod realtime;
 pub mod recorder;

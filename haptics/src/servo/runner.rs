@@ -129,6 +129,7 @@ impl Runner {
         buffer.timing = self.summary;
         buffer.coupling = self.body.coupling();
         buffer.delay_s = self.body.delay_s();
+        buffer.line_n_m = self.body.line_stiffness_n_m();
         buffer.fault = fault;
         self.snapshot.publish();
     }

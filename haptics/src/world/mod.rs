@@ -11,6 +11,8 @@ mod fixed;
 mod fixture;
 mod label;
 mod model;
+#[cfg(test)]
+mod parts_tests;
 pub mod presets;
 mod rect;
 mod scratch;

@@ -1,7 +1,10 @@
 //! What a test found, in plain words and as JSON.
 
 mod board;
+mod limits;
 mod push;
+
+pub use limits::{limit_sentence, limits};
 
 use super::super::Output;
 use crate::ui::format::short_time;
@@ -10,6 +13,7 @@ use haptics::device::DeviceSpec;
 use haptics::device::haply::Tally;
 use haptics::device::udp::{Refused, UdpMonitor};
 use haptics::servo::{Privileges, TickRecord, passivity, timing::Timing};
+use limits::line_sentence;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -17,39 +21,6 @@ use std::fmt::Write;
 const STILL_M: f64 = 0.5e-3;
 /// The watchdog has spoken after this, s.
 const WAIT_S: f64 = 0.1;
-
-/// What a device can render at a period and behind the delay that it states, s: computed from its figures, never typed in.
-/// `null` where no force is felt.
-pub fn limits(spec: &DeviceSpec, period_s: f64, delay_s: f64) -> Value {
-    if !spec.force_feedback {
-        return Value::Null;
-    }
-    json!({
-        "rate_hz": 1.0 / period_s,
-        "delay_s": delay_s,
-        "passive_stiffness_N_m": passivity::passive_stiffness(spec, 0.0, period_s, delay_s),
-        "passive_damping_N_s_m": passivity::passive_damping(spec, period_s),
-    })
-}
-
-/// The same as one sentence.
-pub fn limit_sentence(spec: &DeviceSpec, period_s: f64, delay_s: f64) -> String {
-    if !spec.force_feedback {
-        return "the force is shown, not felt: no limit".to_owned();
-    }
-    let stiffness = passivity::passive_stiffness(spec, 0.0, period_s, delay_s);
-    if stiffness <= 0.0 {
-        return "no damping of its own is known, so nothing is surely passive: the world is felt through a soft spring"
-            .to_owned();
-    }
-    let behind = if delay_s > 0.0 { format!(" behind {} of delay", duration(delay_s)) } else { String::new() };
-    format!(
-        "passive up to {stiffness:.0} N/m and {:.2} N s/m at {:.0} Hz{behind}; up to {:.1} N a finger",
-        passivity::passive_damping(spec, period_s),
-        1.0 / period_s,
-        spec.max_force_n
-    )
-}
 
 /// A device's figures as JSON.
 pub fn spec_json(spec: &DeviceSpec) -> Value {
@@ -83,6 +54,8 @@ pub struct Measured<'a> {
     pub answers: Option<&'a [Tally; 2]>,
     /// The soft push that was asked for, N.
     pub push_n: f64,
+    /// Stiffness of the line with waves that it is behind, N/m.
+    pub line_n_m: Option<f64>,
     /// The coupling's stiffness, N/m, when the world is felt through one.
     pub coupling_n_m: Option<f64>,
 }
@@ -121,7 +94,11 @@ impl Measured<'_> {
             let [p50, p99, p999, max] = [p.p50_s, p.p99_s, p.p999_s, p.max_s].map(short_time);
             let _ = writeln!(text, "  {what:<12} p50 {p50:>9}   p99 {p99:>9}   p99.9 {p999:>9}   max {max:>9}");
         }
-        let _ = writeln!(text, "  {}", limit_sentence(self.spec, period_s, self.delay_s));
+        let limit = match self.line_n_m.filter(|_| self.spec.force_feedback) {
+            Some(line_n_m) => line_sentence(self.spec, line_n_m),
+            None => limit_sentence(self.spec, period_s, self.delay_s),
+        };
+        let _ = writeln!(text, "  {limit}");
         for check in &checks {
             let _ = writeln!(text, "  {} {}", if check.ok { "ok  " } else { "look" }, check.text);
         }
@@ -147,6 +124,7 @@ impl Measured<'_> {
             "spec": spec_json(self.spec),
             "limits": limits(self.spec, self.timing.period_s, self.delay_s),
             "coupling_N_m": self.coupling_n_m,
+            "line_N_m": self.line_n_m,
             "ticks": self.ticks.len(),
             "stale_ticks": self.stale(),
             "range_m": self.ranges().map(|range| [range.x, range.y]),
@@ -303,6 +281,7 @@ pub(super) mod tests {
             packets: None,
             answers: None,
             push_n: 0.0,
+            line_n_m: None,
             coupling_n_m: None,
         }
     }
@@ -335,24 +314,5 @@ pub(super) mod tests {
         let (ok, text) = freshness(&[(20, fine), (700, stale)]);
         assert!(!ok && text.contains("No positions came") && text.contains("Plug it in."), "{text}");
         assert!(!freshness(&[]).0);
-    }
-
-    #[test]
-    fn limits_are_computed_and_absent_where_nothing_is_felt() {
-        let boards = HaplyHand::two_boards();
-        assert!(
-            (limits(&boards, 1e-3, 0.0)["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 200.0).abs() < 1e-9
-        );
-        assert!(
-            (limits(&boards, 0.25e-3, 0.0)["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 800.0).abs() < 1e-9
-        );
-        // b/(T/2 + t_d): 0.1 N s/m over 10 ms.
-        let delayed = limits(&boards, 1e-3, 9.5e-3);
-        assert!((delayed["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 10.0).abs() < 1e-9, "{delayed}");
-        assert!(
-            limit_sentence(&boards, 1e-3, 9.5e-3).contains("10 N/m and 0.10 N s/m at 1000 Hz behind 10 ms of delay")
-        );
-        let shown = DeviceSpec { force_feedback: false, ..boards };
-        assert_eq!(limits(&shown, 1e-3, 0.0), Value::Null);
     }
 }

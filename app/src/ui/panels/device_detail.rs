@@ -87,7 +87,8 @@ fn about(ui: &mut Ui, session: &Session, spec: &DeviceSpec) {
         };
         ui.label(theme::caption(ui, what));
         ui.add_space(space::XS);
-        for (label, value) in spec_sentences(spec) {
+        let waves = trainer.scene().is_some_and(|(snapshot, _)| snapshot.line_n_m.is_some());
+        for (label, value) in spec_sentences(spec, waves) {
             fact(ui, label, value);
         }
     });
@@ -123,6 +124,9 @@ fn limit_sentences(spec: &DeviceSpec, snapshot: &Snapshot) -> Vec<Limit> {
     let behind = if delay_s > 0.0 { format!(" and behind {} of delay", short_time(delay_s)) } else { String::new() };
     let steps = if spec.resolution_m > 0.0 { "; steps of the position allow 2 × friction / step" } else { "" };
     let damper = passivity::passive_damping(spec, period_s);
+    if let Some(line_n_m) = snapshot.line_n_m {
+        return line_sentences(line_n_m, snapshot);
+    }
     let felt = snapshot
         .coupling
         .as_ref()
@@ -143,6 +147,15 @@ fn limit_sentences(spec: &DeviceSpec, snapshot: &Snapshot) -> Vec<Limit> {
         ),
         (None, felt),
     ]
+}
+
+/// What is felt over a line with waves: b/d is in series with everything, however stiff the world may be at its end.
+fn line_sentences(line_n_m: f64, snapshot: &Snapshot) -> Vec<Limit> {
+    let text = "Wave variables keep the line stable behind its delay, and make it soft: it lies like a spring of b / delay one way \
+                between your fingers and everything you touch. b is the impedance of the waves, not the device's own damping.";
+    let mut said = vec![(Some(("Stiffest that is felt", format!("{} N/m", number(line_n_m, 0)))), text.to_owned())];
+    said.extend(snapshot.coupling.as_ref().map(|coupling| (None, trainer_timing::coupling_sentence(coupling))));
+    said
 }
 
 fn live(ui: &mut Ui, trainer: &Trainer) {
@@ -233,6 +246,13 @@ mod tests {
             let (_, value) = limits[0].0.clone().expect("a value");
             assert_eq!(value, expected);
         }
+        let snapshot = Snapshot {
+            line_n_m: Some(20.0),
+            ..Snapshot::starting(&swap, RateReport { rate_hz: 1000.0, ..RateReport::default() })
+        };
+        let waved = limit_sentences(&spec, &snapshot);
+        assert_eq!(waved[0].0, Some(("Stiffest that is felt", "20 N/m".to_owned())));
+        assert!(waved.iter().all(|(_, text)| !text.contains("renders this world directly")));
         let shown = DeviceSpec { force_feedback: false, ..spec };
         let snapshot = Snapshot::starting(&swap, RateReport { rate_hz: 1000.0, ..RateReport::default() });
         assert!(limit_sentences(&shown, &snapshot)[0].1.contains("no limit applies"));

@@ -158,8 +158,9 @@ impl Steering {
     }
 }
 
-/// What the page says about a device in plain words.
-pub fn spec_sentences(spec: &DeviceSpec) -> Vec<(&'static str, String)> {
+/// What the page says about a device in plain words; `waves`: it is behind a line with wave variables, and what the servo feels
+/// as its damping is that of the line.
+pub fn spec_sentences(spec: &DeviceSpec, waves: bool) -> Vec<(&'static str, String)> {
     use crate::ui::format::number;
     let unit = |value: f64, decimals: usize, unit: &str, none: &str| {
         if value > 0.0 { format!("{} {unit}", number(value, decimals)) } else { none.to_owned() }
@@ -167,7 +168,7 @@ pub fn spec_sentences(spec: &DeviceSpec) -> Vec<(&'static str, String)> {
     vec![
         ("Force", if spec.force_feedback { "felt by the operator" } else { "shown, not felt" }.to_owned()),
         ("Largest force", format!("{} N a finger", number(spec.max_force_n, 1))),
-        ("Own damping b", unit(spec.damping_n_s_m, 2, "N s/m", "none stated")),
+        (if waves { "Wave impedance b" } else { "Own damping b" }, unit(spec.damping_n_s_m, 2, "N s/m", "none stated")),
         ("Own friction", unit(spec.coulomb_n, 2, "N", "none stated")),
         ("Position step", unit(1e3 * spec.resolution_m, 3, "mm", "none: continuous")),
     ]

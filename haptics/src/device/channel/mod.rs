@@ -7,6 +7,8 @@
 //! The wrapped device is asked every tick, as if it ran at the servo's clock at the far end.
 
 #[cfg(test)]
+mod forwarding;
+#[cfg(test)]
 mod hold;
 pub(super) mod line;
 #[cfg(test)]
@@ -16,6 +18,7 @@ pub use super::waves::Waves;
 
 use super::waves::{Account, OperatorEnd, SMOOTHING_S, WorldEnd};
 use super::{Command, Device, DeviceSpec, Sample};
+use crate::servo::ForceGuard;
 use crate::world::{State, World};
 use line::Line;
 
@@ -231,10 +234,24 @@ impl Device for ChannelDevice {
         self.inner.delay_s() + own
     }
 
+    fn line_stiffness_n_m(&self) -> Option<f64> {
+        let late_s = self.config.delay_s + SMOOTHING_S + self.config.jitter_s;
+        let own = self.config.waves.map(|waves| waves.line_stiffness_n_m(late_s));
+        match (own, self.inner.line_stiffness_n_m()) {
+            (Some(own), Some(behind)) => Some(own * behind / (own + behind)),
+            (own, behind) => own.or(behind),
+        }
+    }
+
     fn make_safe(&mut self) {
         // Not over the line: a device is made safe where it is.
         self.command = Command::default();
         self.inner.make_safe();
+    }
+
+    fn guard(&mut self) -> Option<ForceGuard> {
+        // Not over the line either: the servo's thread and the device's driver are the same with and without it.
+        self.inner.guard()
     }
 
     fn strike(&mut self, speed_m_s: f64) {

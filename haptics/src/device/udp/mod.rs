@@ -309,6 +309,11 @@ impl Device for UdpDevice {
         if self.waves.is_some() { 0.0 } else { self.delay_s }
     }
 
+    fn line_stiffness_n_m(&self) -> Option<f64> {
+        // The round trip is stated; half of it is one way.
+        self.waves.map(|waves| waves.line_stiffness_n_m(0.5 * self.delay_s + SMOOTHING_S))
+    }
+
     fn make_safe(&mut self) {
         if let Some(peer) = self.peer {
             // Said three times, because packets are lost.

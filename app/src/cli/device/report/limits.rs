@@ -1,0 +1,79 @@
+//! What a device can render, in words and as JSON.
+
+use super::duration;
+use haptics::device::DeviceSpec;
+use haptics::servo::passivity;
+use serde_json::{Value, json};
+
+/// What a device can render at a period and behind the delay that it states, s: computed from its figures, never typed in.
+/// `null` where no force is felt.
+pub fn limits(spec: &DeviceSpec, period_s: f64, delay_s: f64) -> Value {
+    if !spec.force_feedback {
+        return Value::Null;
+    }
+    json!({
+        "rate_hz": 1.0 / period_s,
+        "delay_s": delay_s,
+        "passive_stiffness_N_m": passivity::passive_stiffness(spec, 0.0, period_s, delay_s),
+        "passive_damping_N_s_m": passivity::passive_damping(spec, period_s),
+    })
+}
+
+/// The same as one sentence.
+pub fn limit_sentence(spec: &DeviceSpec, period_s: f64, delay_s: f64) -> String {
+    if !spec.force_feedback {
+        return "the force is shown, not felt: no limit".to_owned();
+    }
+    let stiffness = passivity::passive_stiffness(spec, 0.0, period_s, delay_s);
+    if stiffness <= 0.0 {
+        return "no damping of its own is known, so nothing is surely passive: the world is felt through a soft spring"
+            .to_owned();
+    }
+    let behind = if delay_s > 0.0 { format!(" behind {} of delay", duration(delay_s)) } else { String::new() };
+    format!(
+        "passive up to {stiffness:.0} N/m and {:.2} N s/m at {:.0} Hz{behind}; up to {:.1} N a finger",
+        passivity::passive_damping(spec, period_s),
+        1.0 / period_s,
+        spec.max_force_n
+    )
+}
+
+/// What a line with waves lets the hand feel, as one sentence.
+pub(super) fn line_sentence(spec: &DeviceSpec, line_n_m: f64) -> String {
+    format!(
+        "waves with an impedance of {:.1} N s/m: stable behind the delay, and soft; nothing is felt stiffer than the line's own \
+         spring of {line_n_m:.0} N/m, in series with the world; up to {:.1} N a finger",
+        spec.damping_n_s_m, spec.max_force_n
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Measured;
+    use super::super::tests::{kilohertz, measured};
+    use super::*;
+    use haptics::device::haply::HaplyHand;
+
+    #[test]
+    fn limits_are_computed_and_absent_where_nothing_is_felt() {
+        let boards = HaplyHand::two_boards();
+        assert!(
+            (limits(&boards, 1e-3, 0.0)["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 200.0).abs() < 1e-9
+        );
+        assert!(
+            (limits(&boards, 0.25e-3, 0.0)["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 800.0).abs() < 1e-9
+        );
+        // b/(T/2 + t_d): 0.1 N s/m over 10 ms.
+        let delayed = limits(&boards, 1e-3, 9.5e-3);
+        assert!((delayed["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 10.0).abs() < 1e-9, "{delayed}");
+        assert!(
+            limit_sentence(&boards, 1e-3, 9.5e-3).contains("10 N/m and 0.10 N s/m at 1000 Hz behind 10 ms of delay")
+        );
+        let (timing, waved) = (kilohertz(), DeviceSpec { damping_n_s_m: 5.0, ..boards.clone() });
+        let report = Measured { line_n_m: Some(20.0), ..measured(&waved, &timing, &[]) }.report();
+        assert!(report.text.contains("the line's own spring of 20 N/m") && !report.text.contains("passive up to"));
+        assert_eq!(report.json["line_N_m"], 20.0);
+        let shown = DeviceSpec { force_feedback: false, ..boards };
+        assert_eq!(limits(&shown, 1e-3, 0.0), Value::Null);
+    }
+}
