@@ -157,7 +157,10 @@ mod tests {
         assert_eq!(parameter("mass_kg", Some(95.1)).unit, "kg");
         assert_eq!(parameter("viscous_N_s_m", None).unit, "N·s/m");
         let hardening = parameter("hardening_N_m3", Some(1.5e6));
-        assert_eq!((hardening.label.as_str(), hardening.unit, hardening.factor * 1.5e6), ("Hardening", "N/mm³", 0.0015));
+        assert_eq!(
+            (hardening.label.as_str(), hardening.unit, hardening.factor * 1.5e6),
+            ("Hardening", "N/mm³", 0.0015)
+        );
         assert_eq!(parameter("constraint_stiffness_N_m", None).label, "Constraint stiffness");
         assert_eq!(parameter("friction_mu", Some(0.05)).unit, "");
     }
