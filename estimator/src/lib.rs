@@ -6,6 +6,7 @@
 pub mod calibrate;
 pub mod constraint;
 pub mod estimate;
+pub mod hmm;
 pub mod identify;
 pub mod log;
 pub mod pipeline;
