@@ -50,6 +50,27 @@ fn segment_finds_the_thesis_sequence() {
 }
 
 #[test]
+fn segment_by_a_hidden_markov_model_finds_the_same_states_in_words_and_json() {
+    let result = json(&["segment", &asset("stack.csv"), "--method", "hmm"]);
+    assert_eq!(result["method"], "hmm");
+    let states = result["states"].as_array().expect("states");
+    let names: Vec<&str> =
+        states.iter().filter(|s| !s["subtask"].is_null()).filter_map(|s| s["state"].as_str()).collect();
+    let (free, ground, air) = ("free-motion", "hold-on-ground", "hold-above-ground");
+    assert_eq!(names, [free, ground, air, ground, free, ground, air, ground, free]);
+    assert!(states.windows(2).all(|w| w[0]["t1"] == w[1]["t0"]), "intervals follow each other");
+    for state in states {
+        let probability = state["probability"].as_f64().expect("a number");
+        assert!((0.5..=1.0).contains(&probability), "{state}");
+    }
+    let words = run(&["segment", &asset("stack.csv"), "--method", "hmm"]);
+    let words = String::from_utf8_lossy(&words.stdout).into_owned();
+    assert!(words.contains("by a hidden Markov model") && words.contains("sequence: 132313231"), "{words}");
+    let crank = json(&["segment", &asset("crank.csv"), "--method", "hmm"]);
+    assert!(crank["states"].as_array().is_some_and(|s| s.iter().any(|s| s["state"] == "turning")));
+}
+
+#[test]
 fn fit_simulate_and_the_world_in_between() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (world, csv) = (text(&folder.path().join("w.json")), text(&folder.path().join("s.csv")));

@@ -2,7 +2,7 @@
 
 use super::{LogArgs, Output};
 use clap::{Args, ValueEnum};
-use estimator::segment::{Segmentation, Thresholds};
+use estimator::segment::{Segmentation, Thresholds, segment_by};
 use haptics::recording::Recording;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -30,23 +30,28 @@ pub struct Segment {
 enum Method {
     /// Qualitative reasoning: thresholds and rules
     Threshold,
-    /// A hidden Markov model
+    /// A hidden Markov model that starts from the rules and learns from the recording
     Hmm,
+}
+
+impl From<Method> for estimator::segment::Method {
+    fn from(method: Method) -> Self {
+        match method {
+            Method::Threshold => Self::Threshold,
+            Method::Hmm => Self::Hmm,
+        }
+    }
 }
 
 impl Segment {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
-        anyhow::ensure!(
-            self.method == Method::Threshold,
-            "segmentation by a hidden Markov model is not built yet; use --method threshold"
-        );
         let recordings = self.source.load(&self.log)?;
         let given = self.force_threshold.zip(self.velocity_threshold);
         let given = given.map(|(force_n, velocity_m_s)| Thresholds { velocity_m_s, force_n });
         let mut text = String::new();
         let mut all = Vec::new();
         for recording in &recordings {
-            let mut result = estimator::segment::segment(recording, None, given)?;
+            let mut result = segment_by(self.method.into(), recording, None, given)?;
             result.warnings.extend(recording.warnings.iter().map(|w| w.text.clone()));
             describe(&mut text, recording, &result);
             all.push(serde_json::to_value(&result)?);
@@ -57,13 +62,18 @@ impl Segment {
 }
 
 fn describe(text: &mut String, recording: &Recording, result: &Segmentation) {
-    let _ = writeln!(text, "{}: {} by {}", recording.name, result.task, result.method);
+    let (how, last_column) = match &result.posterior {
+        None => ("thresholds and rules", "share of samples that agree"),
+        Some(_) => ("a hidden Markov model", "mean probability"),
+    };
+    let _ = writeln!(text, "{}: {} by {how}", recording.name, result.task);
     let _ = writeln!(
         text,
         "  thresholds: {:.4} N, {:.2} mm/s",
         result.thresholds.force_n,
         result.thresholds.velocity_m_s * 1e3
     );
+    let _ = writeln!(text, "  start … end, s; state; subtask; {last_column}");
     for state in &result.states {
         let _ = writeln!(
             text,

@@ -71,7 +71,9 @@ fn finish_row(row: &mut [f64], backward: &[f64]) {
         *value = (*value - top).exp();
         total += *value;
     }
-    row.iter_mut().for_each(|value| *value /= total);
+    for value in row.iter_mut() {
+        *value /= total;
+    }
 }
 
 /// exp(v − max v); returns the maximum.

@@ -37,7 +37,9 @@ impl Gaussian {
                     .map(|c| variances.get(c).copied().filter(|v| v.is_finite()).unwrap_or(0.0).max(least(c)))
                     .collect(),
             ),
-            Covariance::Full(matrix) if matrix.shape() == (channels, channels) && matrix.iter().all(|v| v.is_finite()) => {
+            Covariance::Full(matrix)
+                if matrix.shape() == (channels, channels) && matrix.iter().all(|v| v.is_finite()) =>
+            {
                 Covariance::Full(raised(&matrix, &least))
             }
             Covariance::Full(_) => Covariance::Diagonal((0..channels).map(least).collect()),
@@ -119,8 +121,7 @@ impl Gaussian {
 fn raised(matrix: &DMatrix<f64>, least: &dyn Fn(usize) -> f64) -> DMatrix<f64> {
     let d = matrix.nrows();
     let unit = |c: usize| least(c).sqrt();
-    let scaled =
-        DMatrix::from_fn(d, d, |a, b| 0.5 * (matrix[(a, b)] + matrix[(b, a)]) / (unit(a) * unit(b)));
+    let scaled = DMatrix::from_fn(d, d, |a, b| 0.5 * (matrix[(a, b)] + matrix[(b, a)]) / (unit(a) * unit(b)));
     let mut eigen = SymmetricEigen::new(scaled);
     if eigen.eigenvalues.iter().all(|v| *v >= 1.0) {
         return DMatrix::from_fn(d, d, |a, b| 0.5 * (matrix[(a, b)] + matrix[(b, a)]));

@@ -50,7 +50,7 @@ fn density(g: &Gaussian, x: &[f64]) -> f64 {
     let apart = DMatrix::from_fn(d, 1, |c, _| x[c] - g.mean()[c]);
     let inverse = sigma.clone().try_inverse().expect("regular");
     let squared = (apart.transpose() * inverse * &apart)[(0, 0)];
-    (-0.5 * squared).exp() / (std::f64::consts::TAU.powi(d as i32) * sigma.determinant()).sqrt()
+    (-0.5 * squared).exp() / (std::f64::consts::TAU.powf(d as f64) * sigma.determinant()).sqrt()
 }
 
 struct Brute {
@@ -134,7 +134,9 @@ fn drawn(rng: &mut StdRng, m: &Model, samples: usize) -> Vec<f64> {
     let mut values = Vec::new();
     for _ in 0..samples {
         let g = &m.emissions[state];
-        values.extend((0..m.channels()).map(|c| g.mean()[c] + g.variance(c).sqrt() * rng.sample::<f64, _>(StandardNormal)));
+        values.extend(
+            (0..m.channels()).map(|c| g.mean()[c] + g.variance(c).sqrt() * rng.sample::<f64, _>(StandardNormal)),
+        );
         state = pick(&m.chain.transition()[state * k..(state + 1) * k], rng.random());
     }
     values
@@ -186,7 +188,9 @@ fn training_finds_the_model_that_made_the_data() {
     let start = Model::new(chain(0.7), vec![gaussian(-1.0, 2.0), gaussian(2.0, 2.0)]).expect("a model");
     let found = baum_welch(start, &values, &training(1, None)).expect("trains").model;
     assert!((found.emissions[0].mean()[0]).abs() < 0.05 && (found.emissions[1].mean()[0] - 3.0).abs() < 0.05);
-    assert!((found.emissions[0].variance(0) - 1.0).abs() < 0.07 && (found.emissions[1].variance(0) - 0.25).abs() < 0.03);
+    assert!(
+        (found.emissions[0].variance(0) - 1.0).abs() < 0.07 && (found.emissions[1].variance(0) - 0.25).abs() < 0.03
+    );
     assert!((found.chain.transition()[0] - 0.98).abs() < 0.006, "{:?}", found.chain);
 }
 

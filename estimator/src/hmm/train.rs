@@ -66,12 +66,7 @@ fn log_prior(model: &Model, prior: &Prior) -> f64 {
     of_emissions + of_links
 }
 
-fn maximised(
-    model: &Model,
-    values: &[f64],
-    expectation: &Expectation,
-    training: &Training,
-) -> Result<Model, HmmError> {
+fn maximised(model: &Model, values: &[f64], expectation: &Expectation, training: &Training) -> Result<Model, HmmError> {
     let k = model.chain.states();
     let prior = training.prior.as_ref();
     let mut transition = Vec::with_capacity(k * k);
@@ -93,28 +88,28 @@ fn maximised(
     let emissions = (0..k)
         .map(|state| {
             let believed = prior.and_then(|p| Some((p.emissions.get(state)?, *p.emission_samples.get(state)?)));
-            let posterior = expectation.posterior.iter().skip(state).step_by(k).copied();
-            emission(&model.emissions[state], believed, values, posterior, training)
+            emission(&model.emissions[state], believed, values, (&expectation.posterior[state..], k), training)
         })
         .collect();
     Model::new(Chain::new(start, transition)?, emissions)
 }
 
-/// Mean and covariance of the samples of one state together with those of the prior.
+/// Mean and covariance of the samples of one state together with those of the prior. `posterior`: the state's probability at every
+/// `step`-th entry.
 fn emission(
     now: &Gaussian,
     believed: Option<(&Gaussian, f64)>,
     values: &[f64],
-    posterior: impl Iterator<Item = f64> + Clone,
+    (posterior, step): (&[f64], usize),
     training: &Training,
 ) -> Gaussian {
     let d = now.channels();
-    if let Some((kept, samples)) = believed.filter(|(_, samples)| samples.is_infinite()) {
-        debug_assert!(samples > 0.0);
+    if let Some((kept, _)) = believed.filter(|(_, samples)| samples.is_infinite()) {
         return kept.clone();
     }
     let shares = || {
-        let known = values.chunks_exact(d).zip(posterior.clone()).filter(|(x, _)| x.iter().all(|v| v.is_finite()));
+        let known =
+            values.chunks_exact(d).zip(posterior.iter().step_by(step)).filter(|(x, _)| x.iter().all(|v| v.is_finite()));
         known.map(|(x, p)| (x, p * training.weight))
     };
     let mut total = 0.0;

@@ -2,7 +2,7 @@
 
 use super::rules::{self, Quality, Sign};
 use super::threshold::{Levels, Thresholds};
-use super::{SystemState, subtasks::Motion};
+use super::{SystemState, motion::Motion};
 use crate::signal::task::TaskSignals;
 use haptics::Vec2;
 

@@ -1,8 +1,12 @@
 //! Segmentation: which state held when, and to which subtask it belongs.
 //!
 //! Stage 1 is [`crate::signal::task`]; [`threshold`] chooses thresholds above the noise, [`rules`] are stage 2 (thesis, table
-//! 5.2), [`subtasks`] is stage 3. The results are plain intervals, the same for every method.
+//! 5.2) and [`markov`] is its refinement, [`subtasks`] is stage 3. The results are plain intervals, the same for every method.
 
+mod align;
+pub mod evidence;
+pub mod markov;
+pub mod motion;
 pub mod rules;
 pub mod subtasks;
 pub mod threshold;
@@ -10,6 +14,7 @@ pub mod threshold;
 use crate::estimate::EstimateError;
 use crate::signal::task::{TaskSignals, calmed, is_two_fingered, task_signals};
 use haptics::recording::{Recording, Task};
+use motion::Motion;
 use serde::{Deserialize, Serialize};
 pub use threshold::Thresholds;
 
@@ -72,7 +77,8 @@ pub struct Interval {
     pub state: SystemState,
     /// The subtask it belongs to, when the expected order gives it one.
     pub subtask: Option<String>,
-    /// Share of the interval's samples that show this state by themselves, before smoothing.
+    /// By thresholds: share of the interval's samples that show this state by themselves, before smoothing. By the hidden Markov
+    /// model: mean probability of the state over the interval, given the whole recording.
     pub probability: f64,
     /// First sample.
     #[serde(skip)]
@@ -85,7 +91,7 @@ pub struct Interval {
 /// The answer of a segmentation; serialises to `segment --json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Segmentation {
-    /// `threshold`.
+    /// `threshold` or `hmm`.
     pub method: String,
     /// The task it was read as.
     pub task: String,
@@ -95,6 +101,32 @@ pub struct Segmentation {
     pub thresholds: Thresholds,
     /// Sentences.
     pub warnings: Vec<String>,
+    /// What is known of every sample; only the hidden Markov model says so.
+    #[serde(skip)]
+    pub posterior: Option<StatePosterior>,
+}
+
+/// Probability of every state that the recording shows, at every sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StatePosterior {
+    /// The states, in the order of the columns.
+    pub states: Vec<SystemState>,
+    /// One row of states a sample.
+    pub values: Vec<f32>,
+}
+
+impl StatePosterior {
+    /// Probability of a state at a sample; 0 for a state that the recording never shows.
+    pub fn at(&self, sample: usize, state: SystemState) -> f64 {
+        let column = self.states.iter().position(|s| *s == state);
+        let value = column.and_then(|c| self.values.get(sample * self.states.len() + c));
+        value.map_or(0.0, |v| f64::from(*v))
+    }
+
+    /// Mean probability of a state over the samples `first..end`.
+    fn mean(&self, state: SystemState, first: usize, end: usize) -> f64 {
+        (first..end).map(|i| self.at(i, state)).sum::<f64>() / (end - first).max(1) as f64
+    }
 }
 
 impl Segmentation {
@@ -147,19 +179,60 @@ pub fn task_of(recording: &Recording, stated: Option<Task>) -> Result<Task, Esti
     Err(EstimateError::UnknownTask { recording: recording.name.clone() })
 }
 
+/// How states are told apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Qualitative reasoning: thresholds and rules.
+    #[default]
+    Threshold,
+    /// A hidden Markov model that starts from the rules' result.
+    Hmm,
+}
+
+impl Method {
+    /// The name used in JSON and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Threshold => "threshold",
+            Self::Hmm => "hmm",
+        }
+    }
+}
+
 /// Segments a recording by qualitative reasoning, all three stages. `given` thresholds replace those chosen from the noise.
 pub fn segment(
     recording: &Recording,
     task: Option<Task>,
     given: Option<Thresholds>,
 ) -> Result<Segmentation, EstimateError> {
+    segment_by(Method::Threshold, recording, task, given)
+}
+
+/// Segments a recording by either method, all three stages. `given` thresholds replace those chosen from the noise; the hidden
+/// Markov model starts from them.
+pub fn segment_by(
+    method: Method,
+    recording: &Recording,
+    task: Option<Task>,
+    given: Option<Thresholds>,
+) -> Result<Segmentation, EstimateError> {
     let task = task_of(recording, task)?;
     match task {
-        Task::BlockStack | Task::Barrel => {
-            let signals = task_signals(recording)?;
-            segment_signals(&signals, task, given)
+        Task::BlockStack | Task::Barrel => segment_signals_by(method, &task_signals(recording)?, task, given),
+        Task::Crank | Task::Mechanism => {
+            let motion = Motion::of(recording, given)?;
+            match method {
+                Method::Threshold => {
+                    let raw = motion.states();
+                    Ok(motion::assemble(motion, &raw, task))
+                }
+                Method::Hmm => {
+                    let decoded = markov::decode(&motion.time_s, &evidence::of_motion(&motion))?;
+                    let by_path = motion::assemble(motion, &decoded.path, task);
+                    Ok(decoded.into_segmentation(by_path))
+                }
+            }
         }
-        Task::Crank | Task::Mechanism => subtasks::segment_motion(recording, task, given),
         Task::Needle | Task::Switch => Err(EstimateError::Other(format!(
             "recordings of the task {} cannot be segmented yet; block-stack, barrel, crank and mechanism can",
             task.name()
@@ -167,8 +240,18 @@ pub fn segment(
     }
 }
 
-/// Stages 2 and 3 on the task signals of blocks.
+/// Stages 2 and 3 on the task signals of blocks, by the rules.
 pub fn segment_signals(
+    signals: &TaskSignals,
+    task: Task,
+    given: Option<Thresholds>,
+) -> Result<Segmentation, EstimateError> {
+    segment_signals_by(Method::Threshold, signals, task, given)
+}
+
+/// Stages 2 and 3 on the task signals of blocks, by either method.
+pub fn segment_signals_by(
+    method: Method,
     signals: &TaskSignals,
     task: Task,
     given: Option<Thresholds>,
@@ -184,7 +267,16 @@ pub fn segment_signals(
     let calm = calmed(signals);
     let levels = threshold::Levels::of(&calm);
     let thresholds = given.unwrap_or_else(|| threshold::choose(&calm, &levels));
-    let quality = rules::qualify(&calm, &levels, &thresholds);
-    let raw = rules::states(&quality);
-    Ok(subtasks::assemble(&signals.time_s, &raw, task, thresholds, levels.warnings()))
+    let (time_s, warnings) = (&signals.time_s, levels.warnings());
+    match method {
+        Method::Threshold => {
+            let raw = rules::states(&rules::qualify(&calm, &levels, &thresholds));
+            Ok(subtasks::assemble(time_s, &raw, task, thresholds, warnings))
+        }
+        Method::Hmm => {
+            let decoded = markov::decode(time_s, &evidence::of_blocks(&calm, &levels, &thresholds))?;
+            let by_path = subtasks::assemble(time_s, &decoded.path, task, thresholds, warnings);
+            Ok(decoded.into_segmentation(by_path))
+        }
+    }
 }

@@ -3,12 +3,10 @@
 //! The expected order is aligned with the observed runs of states by dynamic programming, so that a flicker, a missed sample
 //! or an oscillation at touch-down cannot shift everything after it.
 
-use super::threshold::{Levels, Thresholds, choose, percentile};
-use super::{Interval, Segmentation, SystemState};
-use crate::estimate::EstimateError;
-use crate::signal::task::{TaskSignals, TipSeries, calmed, is_two_fingered, task_signals, times, tip_series};
-use haptics::Vec2;
-use haptics::recording::{Recording, Task};
+use super::align::{align, failed_attempts};
+use super::threshold::Thresholds;
+use super::{Interval, Method, Segmentation, SystemState};
+use haptics::recording::Task;
 
 /// Fewer samples than this are no recording of a task.
 pub const LEAST_SAMPLES: usize = 20;
@@ -16,7 +14,7 @@ pub const LEAST_SAMPLES: usize = 20;
 /// States are smoothed by majority over this time: shorter flicker is an oscillation of the contact.
 const MAJORITY_S: f64 = 0.06;
 /// A run that is shorter enters no estimate.
-const LEAST_RUN_S: f64 = 0.08;
+pub(super) const LEAST_RUN_S: f64 = 0.08;
 /// Most objects carried in one recording.
 pub const MOST_CARRIES: usize = 8;
 /// What one more carry must explain, as a share of the recording's length.
@@ -25,10 +23,8 @@ const CARRY_PENALTY: f64 = 0.015;
 /// The recording may start as late as with the first placing; each step left out costs a little of its length.
 const LATEST_START: usize = 3;
 const START_PENALTY: f64 = 0.005;
-/// Price of a step that was not seen (a block dropped before it was put down), as a share of the recording's length.
-const MISSED_PENALTY: f64 = 0.01;
 /// A gap without a state that is shorter is the transition between its neighbours, s.
-const ISLAND_S: f64 = 0.1;
+pub(super) const ISLAND_S: f64 = 0.1;
 
 /// A step of the task: its name and the state the system is then in.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +33,12 @@ pub struct Subtask {
     pub name: String,
     /// The state that holds.
     pub state: SystemState,
+}
+
+impl Subtask {
+    pub(super) fn is_pick_up(&self) -> bool {
+        self.name.starts_with("pick-up")
+    }
 }
 
 /// The expected order for `carries` objects that are picked up, carried and placed one after the other.
@@ -77,14 +79,20 @@ pub fn assemble(
         Some((_, order, steps)) => (order, steps),
         None => (expected_order(task, 0), vec![0; runs.len()]),
     };
+    let failed = failed_attempts(&steps, &order);
+    let tries = failed.windows(2).filter(|pair| pair[0] && !pair[1]).count();
+    if tries > 0 {
+        warnings.push(format!(
+            "an object was gripped and lost again before it was carried (failed attempts: {tries}); only the last attempt counts"
+        ));
+    }
     let states = runs
         .iter()
-        .zip(&steps)
-        .map(|(run, step)| {
+        .zip(steps.iter().zip(&failed))
+        .map(|(run, (step, failed))| {
             let subtask = &order[*step];
-            let long_enough =
-                run.length >= LEAST_RUN_S.min(3.0 * total / time_s.len() as f64) && run.end - run.first > 1;
-            let belongs = run.state == subtask.state && long_enough;
+            let long_enough = run.length >= LEAST_RUN_S && run.end - run.first > 1;
+            let belongs = run.state == subtask.state && long_enough && !failed;
             interval(time_s, raw, run, belongs.then(|| subtask.name.clone()))
         })
         .collect::<Vec<_>>();
@@ -103,17 +111,24 @@ pub fn assemble(
     if order.len() == 1 {
         warnings.push("no object was picked up in this recording".to_owned());
     }
-    Segmentation { method: "threshold".to_owned(), task: task.name().to_owned(), states, thresholds, warnings }
+    Segmentation {
+        method: Method::Threshold.name().to_owned(),
+        task: task.name().to_owned(),
+        states,
+        thresholds,
+        warnings,
+        posterior: None,
+    }
 }
 
 /// A run of equal states.
 #[derive(Clone, Debug, PartialEq)]
-struct Run {
-    state: SystemState,
-    first: usize,
-    end: usize,
+pub(super) struct Run {
+    pub(super) state: SystemState,
+    pub(super) first: usize,
+    pub(super) end: usize,
     /// s, or samples for a clockless log.
-    length: f64,
+    pub(super) length: f64,
 }
 
 fn end_time(time_s: &[f64], end: usize) -> f64 {
@@ -123,7 +138,7 @@ fn end_time(time_s: &[f64], end: usize) -> f64 {
     }
 }
 
-fn interval(time_s: &[f64], raw: &[SystemState], run: &Run, subtask: Option<String>) -> Interval {
+pub(super) fn interval(time_s: &[f64], raw: &[SystemState], run: &Run, subtask: Option<String>) -> Interval {
     let agreeing = raw[run.first..run.end].iter().filter(|s| **s == run.state).count();
     Interval {
         t0: time_s[run.first],
@@ -136,7 +151,7 @@ fn interval(time_s: &[f64], raw: &[SystemState], run: &Run, subtask: Option<Stri
     }
 }
 
-fn runs_of(time_s: &[f64], states: &[SystemState]) -> Vec<Run> {
+pub(super) fn runs_of(time_s: &[f64], states: &[SystemState]) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (i, state) in states.iter().enumerate() {
         match runs.last_mut() {
@@ -154,7 +169,7 @@ fn runs_of(time_s: &[f64], states: &[SystemState]) -> Vec<Run> {
 const STATES: usize = 7;
 
 /// The most frequent state in a window about every sample; a tie keeps the sample's own.
-fn majority(time_s: &[f64], raw: &[SystemState]) -> Vec<SystemState> {
+pub(super) fn majority(time_s: &[f64], raw: &[SystemState]) -> Vec<SystemState> {
     let n = raw.len();
     let step = (time_s[n - 1] - time_s[0]) / (n - 1).max(1) as f64;
     let half = ((0.5 * MAJORITY_S / step.max(1e-9)).round() as usize).min(n / 20);
@@ -199,131 +214,6 @@ fn without_islands(time_s: &[f64], mut states: Vec<SystemState>) -> Vec<SystemSt
         }
     }
     states
-}
-
-/// Cost per unit of time of being in `seen` while `expected` should hold.
-fn mismatch(seen: SystemState, expected: SystemState) -> f64 {
-    match seen {
-        _ if seen == expected => 0.0,
-        // No rule matched: little is said against any state.
-        SystemState::NoState => 0.4,
-        SystemState::SlidingOnGround if expected == SystemState::HoldOnGround => 0.2,
-        _ => 1.0,
-    }
-}
-
-/// Assigns every run to a step of the order: steps never go back, and a step may be missed at a price. Returns the total
-/// mismatch (time) and the step of every run; `None` when there are too few runs.
-fn align(runs: &[Run], order: &[Subtask]) -> Option<(f64, Vec<usize>)> {
-    let (n, k) = (runs.len(), order.len());
-    if n == 0 {
-        return None;
-    }
-    let total: f64 = runs.iter().map(|run| run.length).sum();
-    // By how many steps the alignment went on, and what that costs.
-    let moves = [(0, 0.0), (1, 0.0), (2, MISSED_PENALTY * total)];
-    let mut cost = vec![f64::INFINITY; k];
-    let mut advanced = vec![0_u8; n * k];
-    cost[0] = mismatch(runs[0].state, order[0].state) * runs[0].length;
-    for (i, run) in runs.iter().enumerate().skip(1) {
-        // From the last step down, so that every step still sees its predecessors' costs of the run before.
-        for step in (0..k).rev() {
-            let here = mismatch(run.state, order[step].state) * run.length;
-            let best = moves
-                .iter()
-                .filter(|(by, _)| *by <= step)
-                .map(|(by, price)| (cost[step - by] + price, *by))
-                .min_by(|a, b| a.0.total_cmp(&b.0))?;
-            advanced[i * k + step] = best.1 as u8;
-            cost[step] = best.0 + here;
-        }
-    }
-    let mut steps = vec![0; n];
-    let mut step = k - 1;
-    for i in (0..n).rev() {
-        steps[i] = step;
-        step -= usize::from(advanced[i * k + step]);
-    }
-    cost[k - 1].is_finite().then_some((cost[k - 1], steps))
-}
-
-/// Segments a crank or mechanism: not touched, held still, moved.
-pub fn segment_motion(
-    recording: &Recording,
-    task: Task,
-    given: Option<Thresholds>,
-) -> Result<Segmentation, EstimateError> {
-    let time_s = times(recording);
-    if time_s.len() < LEAST_SAMPLES {
-        return Err(EstimateError::TooFewSamples {
-            recording: recording.name.clone(),
-            samples: time_s.len(),
-            what: " for a segmentation".to_owned(),
-            needed: LEAST_SAMPLES,
-        });
-    }
-    let (speed, load, thresholds, warnings) = if is_two_fingered(recording) {
-        let signals = calmed(&task_signals(recording)?);
-        let levels = Levels::of(&signals);
-        let thresholds = given.unwrap_or_else(|| choose(&signals, &levels));
-        let grip = grip_without_bias(&signals, &levels);
-        let speed: Vec<f64> = signals.velocity.iter().map(Vec2::norm).collect();
-        (speed, Some(grip), thresholds, levels.warnings())
-    } else {
-        single_tool(recording, given)?
-    };
-    let raw: Vec<SystemState> = (0..time_s.len())
-        .map(|i| match &load {
-            Some(load) if load[i] <= thresholds.force_n => SystemState::FreeMotion,
-            _ if speed[i] > thresholds.velocity_m_s => SystemState::Turning,
-            _ => SystemState::Holding,
-        })
-        .collect();
-    let smooth = majority(&time_s, &raw);
-    let mut turns = 0;
-    let states = runs_of(&time_s, &smooth)
-        .iter()
-        .map(|run| {
-            let moves = run.state == SystemState::Turning && run.length >= LEAST_RUN_S && run.end - run.first > 1;
-            turns += usize::from(moves);
-            interval(&time_s, &raw, run, moves.then(|| format!("turn-{turns}")))
-        })
-        .collect();
-    Ok(Segmentation { method: "threshold".to_owned(), task: task.name().to_owned(), states, thresholds, warnings })
-}
-
-fn grip_without_bias(signals: &TaskSignals, levels: &Levels) -> Vec<f64> {
-    let x =
-        |finger: usize, i: usize| signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x) - levels.bias_n[finger].x;
-    (0..signals.len()).map(|i| x(0, i).min(-x(1, i))).collect()
-}
-
-type MotionSignals = (Vec<f64>, Option<Vec<f64>>, Thresholds, Vec<String>);
-
-/// Speed and load of a single tool, or of a mechanism's coordinate.
-fn single_tool(recording: &Recording, given: Option<Thresholds>) -> Result<MotionSignals, EstimateError> {
-    let coordinate = ["q_m", "q_rad"].into_iter().find_map(|name| recording.channel(name));
-    let clockless =
-        || EstimateError::Clockless { what: "telling rest from motion".to_owned(), recording: recording.name.clone() };
-    let (speed, load) = if let Some(q) = coordinate {
-        let measured = recording.channel("dq_m_s").or_else(|| recording.channel("dq_rad_s"));
-        let rate = if let Some(rate) = measured {
-            rate.to_vec()
-        } else {
-            let time = recording.time_s.as_ref().ok_or_else(clockless)?;
-            crate::signal::task::smooth(time, q).slope
-        };
-        (rate.iter().map(|v| v.abs()).collect::<Vec<_>>(), None)
-    } else {
-        let TipSeries { velocity, force, .. } = tip_series(recording, "")?;
-        let velocity = velocity.ok_or_else(clockless)?;
-        let load = force.map(|f| f.iter().map(Vec2::norm).collect::<Vec<_>>());
-        (velocity.iter().map(Vec2::norm).collect(), load)
-    };
-    let usual = percentile(&mut speed.clone(), 0.95);
-    let usual_load = load.as_ref().map_or(0.0, |l| percentile(&mut l.clone(), 0.95));
-    let thresholds = given.unwrap_or(Thresholds { velocity_m_s: 0.1 * usual, force_n: 0.05 * usual_load });
-    Ok((speed, load, thresholds, Vec::new()))
 }
 
 #[cfg(test)]
@@ -405,5 +295,44 @@ mod tests {
         let result = assemble(&time, &states, Task::BlockStack, THRESHOLDS, Vec::new());
         assert_eq!(result.sequence(), "1");
         assert!(result.warnings.iter().any(|w| w.contains("no object")));
+    }
+
+    #[test]
+    fn a_second_try_at_lifting_keeps_the_number_and_only_the_last_grasp_counts() {
+        // Gripped and let go; then lifted a little and lost; then carried.
+        let (time, states) = trace(&[
+            (FreeMotion, 100),
+            (HoldOnGround, 60),
+            (FreeMotion, 80),
+            (HoldOnGround, 50),
+            (HoldAboveGround, 12),
+            (FreeMotion, 80),
+            (HoldOnGround, 60),
+            (HoldAboveGround, 200),
+            (HoldOnGround, 60),
+            (FreeMotion, 100),
+            (HoldOnGround, 60),
+            (HoldAboveGround, 200),
+            (HoldOnGround, 60),
+            (FreeMotion, 100),
+        ]);
+        let result = assemble(&time, &states, Task::BlockStack, THRESHOLDS, Vec::new());
+        assert_eq!(result.sequence(), "132313231", "{:?}", result.states);
+        let pick_up = result.samples_of("pick-up-block-1");
+        assert_eq!((pick_up[0], pick_up.len()), (382 + 3, 54));
+        assert!(result.warnings.iter().any(|w| w.contains("failed attempts: 2")), "{:?}", result.warnings);
+    }
+
+    #[test]
+    fn a_run_too_short_to_be_a_step_gets_no_subtask() {
+        let (time, states) = trace(&[
+            (FreeMotion, 100),
+            (HoldOnGround, 60),
+            (HoldAboveGround, 200),
+            (HoldOnGround, 7),
+            (FreeMotion, 100),
+        ]);
+        let result = assemble(&time, &states, Task::BlockStack, THRESHOLDS, Vec::new());
+        assert!(result.samples_of("place-block-1").is_empty(), "{:?}", result.states);
     }
 }

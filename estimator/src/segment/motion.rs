@@ -1,0 +1,118 @@
+//! Cranks and mechanisms: not touched, held still, moved.
+
+use super::subtasks::{LEAST_RUN_S, LEAST_SAMPLES, interval, majority, runs_of};
+use super::threshold::{Levels, Thresholds, choose, percentile};
+use super::{Method, Segmentation, SystemState};
+use crate::estimate::EstimateError;
+use crate::signal::task::{TaskSignals, TipSeries, calmed, is_two_fingered, task_signals, times, tip_series};
+use haptics::Vec2;
+use haptics::recording::{Recording, Task};
+
+/// The signals that rest and motion are told from, one entry a sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// Sample times, s (sample numbers when the log is clockless).
+    pub time_s: Vec<f64>,
+    /// Speed without sign, m/s or rad/s.
+    pub speed: Vec<f64>,
+    /// Grip or force of the tool, N; absent for a coordinate without fingers.
+    pub load: Option<Vec<f64>>,
+    /// Thresholds for both.
+    pub thresholds: Thresholds,
+    /// Sentences about the forces at rest.
+    pub warnings: Vec<String>,
+}
+
+impl Motion {
+    /// The signals of a recording.
+    pub fn of(recording: &Recording, given: Option<Thresholds>) -> Result<Self, EstimateError> {
+        let time_s = times(recording);
+        if time_s.len() < LEAST_SAMPLES {
+            return Err(EstimateError::TooFewSamples {
+                recording: recording.name.clone(),
+                samples: time_s.len(),
+                what: " for a segmentation".to_owned(),
+                needed: LEAST_SAMPLES,
+            });
+        }
+        let (speed, load, thresholds, warnings) = if is_two_fingered(recording) {
+            let signals = calmed(&task_signals(recording)?);
+            let levels = Levels::of(&signals);
+            let thresholds = given.unwrap_or_else(|| choose(&signals, &levels));
+            let grip = grip_without_bias(&signals, &levels);
+            let speed: Vec<f64> = signals.velocity.iter().map(Vec2::norm).collect();
+            (speed, Some(grip), thresholds, levels.warnings())
+        } else {
+            single_tool(recording, given)?
+        };
+        Ok(Self { time_s, speed, load, thresholds, warnings })
+    }
+
+    /// The state of every sample by the thresholds alone.
+    pub fn states(&self) -> Vec<SystemState> {
+        (0..self.time_s.len())
+            .map(|i| match &self.load {
+                Some(load) if load[i] <= self.thresholds.force_n => SystemState::FreeMotion,
+                _ if self.speed[i] > self.thresholds.velocity_m_s => SystemState::Turning,
+                _ => SystemState::Holding,
+            })
+            .collect()
+    }
+}
+
+/// Intervals of equal state from the state of every sample; every turn that lasts is a subtask.
+pub fn assemble(motion: Motion, raw: &[SystemState], task: Task) -> Segmentation {
+    let time_s = &motion.time_s;
+    let smooth = majority(time_s, raw);
+    let mut turns = 0;
+    let states = runs_of(time_s, &smooth)
+        .iter()
+        .map(|run| {
+            let moves = run.state == SystemState::Turning && run.length >= LEAST_RUN_S && run.end - run.first > 1;
+            turns += usize::from(moves);
+            interval(time_s, raw, run, moves.then(|| format!("turn-{turns}")))
+        })
+        .collect();
+    Segmentation {
+        method: Method::Threshold.name().to_owned(),
+        task: task.name().to_owned(),
+        states,
+        thresholds: motion.thresholds,
+        warnings: motion.warnings,
+        posterior: None,
+    }
+}
+
+fn grip_without_bias(signals: &TaskSignals, levels: &Levels) -> Vec<f64> {
+    let x =
+        |finger: usize, i: usize| signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x) - levels.bias_n[finger].x;
+    (0..signals.len()).map(|i| x(0, i).min(-x(1, i))).collect()
+}
+
+type MotionSignals = (Vec<f64>, Option<Vec<f64>>, Thresholds, Vec<String>);
+
+/// Speed and load of a single tool, or of a mechanism's coordinate.
+fn single_tool(recording: &Recording, given: Option<Thresholds>) -> Result<MotionSignals, EstimateError> {
+    let coordinate = ["q_m", "q_rad"].into_iter().find_map(|name| recording.channel(name));
+    let clockless =
+        || EstimateError::Clockless { what: "telling rest from motion".to_owned(), recording: recording.name.clone() };
+    let (speed, load) = if let Some(q) = coordinate {
+        let measured = recording.channel("dq_m_s").or_else(|| recording.channel("dq_rad_s"));
+        let rate = if let Some(rate) = measured {
+            rate.to_vec()
+        } else {
+            let time = recording.time_s.as_ref().ok_or_else(clockless)?;
+            crate::signal::task::smooth(time, q).slope
+        };
+        (rate.iter().map(|v| v.abs()).collect::<Vec<_>>(), None)
+    } else {
+        let TipSeries { velocity, force, .. } = tip_series(recording, "")?;
+        let velocity = velocity.ok_or_else(clockless)?;
+        let load = force.map(|f| f.iter().map(Vec2::norm).collect::<Vec<_>>());
+        (velocity.iter().map(Vec2::norm).collect(), load)
+    };
+    let usual = percentile(&mut speed.clone(), 0.95);
+    let usual_load = load.as_ref().map_or(0.0, |l| percentile(&mut l.clone(), 0.95));
+    let thresholds = given.unwrap_or(Thresholds { velocity_m_s: 0.1 * usual, force_n: 0.05 * usual_load });
+    Ok((speed, load, thresholds, Vec::new()))
+}
