@@ -30,7 +30,8 @@ impl Convert {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         self.spare_the_input()?;
         let recordings = self.source.load(&self.log)?;
-        estimator::log::write(&recordings, &self.out, &self.attachments()?)?;
+        let attachments = self.attachments()?;
+        super::progress::during("writing", |_| estimator::log::write(&recordings, &self.out, &attachments))?;
         let samples: usize = recordings.iter().map(haptics::recording::Recording::len).sum();
         let warnings: Vec<&Warning> = recordings.iter().flat_map(|r| &r.warnings).collect();
         let mut text = format!("{}: {} recording(s), {samples} samples", self.out.display(), recordings.len());

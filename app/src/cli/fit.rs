@@ -28,7 +28,7 @@ impl Fit {
         for log in &self.logs {
             recordings.extend(self.source.load(log)?);
         }
-        let mut analysis = analyse(&recordings, &Options::default())?;
+        let mut analysis = super::progress::during("fitting", |_| analyse(&recordings, &Options::default()))?;
         for recording in &recordings {
             for warning in &recording.warnings {
                 if !analysis.fit.warnings.contains(&warning.text) {

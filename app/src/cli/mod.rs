@@ -8,6 +8,7 @@ mod demo;
 mod device;
 mod fit;
 mod info;
+mod progress;
 mod record;
 mod screenshot;
 mod segment;
@@ -16,10 +17,12 @@ pub mod table;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
+use estimator::log::{LogError, Watch};
 use haptics::device::haply::farewell;
 use haptics::recording::{Recording, Task};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
 
 /// Touchstone: a trainer whose virtual objects are measured, not guessed.
 #[derive(Parser)]
@@ -117,9 +120,19 @@ fn task_parser() -> impl TypedValueParser<Value = Task> {
         .try_map(|name| Task::from_name(&name).ok_or_else(|| format!("there is no task `{name}`")))
 }
 
+/// Reads a log, with a word about it when it is long.
+fn read(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError> {
+    let name = path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned());
+    progress::during(&format!("reading {name}"), |share| {
+        let never = AtomicBool::new(false);
+        let watch = Watch { progress: &|done| share.tell(done), cancelled: &never, preview: None };
+        estimator::log::load_watched(path, meta, &watch)
+    })
+}
+
 impl LogArgs {
     fn load(&self, path: &Path) -> anyhow::Result<Vec<Recording>> {
-        let mut recordings = estimator::log::load(path, self.meta.as_deref())?;
+        let mut recordings = read(path, self.meta.as_deref())?;
         if let Some(task) = self.task {
             for recording in &mut recordings {
                 recording.meta.task = Some(task);

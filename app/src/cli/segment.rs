@@ -51,7 +51,8 @@ impl Segment {
         let mut text = String::new();
         let mut all = Vec::new();
         for recording in &recordings {
-            let mut result = segment_by(self.method.into(), recording, None, given)?;
+            let mut result =
+                super::progress::during("segmenting", |_| segment_by(self.method.into(), recording, None, given))?;
             result.warnings.extend(recording.warnings.iter().map(|w| w.text.clone()));
             describe(&mut text, recording, &result);
             all.push(serde_json::to_value(&result)?);

@@ -31,7 +31,7 @@ impl Simulate {
                 self.log.display()
             );
         };
-        let simulation = estimator::simulate::simulate(&world, recording)?;
+        let simulation = super::progress::during("simulating", |_| estimator::simulate::simulate(&world, recording))?;
         estimator::log::write_csv(&simulation.to_recording(recording), &self.out)?;
         let mut text =
             format!("{}: {} samples of {} predicted\n", self.out.display(), simulation.time_s.len(), recording.name);

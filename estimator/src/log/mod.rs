@@ -55,11 +55,15 @@ pub fn load_watched(path: &Path, meta: Option<&Path>, watch: &Watch<'_>) -> Resu
 
 /// Reads a log with a sidecar that is already in memory (the app's mapping dialog).
 pub fn load_with_meta(path: &Path, meta: &Meta) -> Result<Vec<Recording>, LogError> {
-    let size = admissible_size(path)?;
-    load_with(path, meta, size, &Watch::none())
+    load_with(path, meta, &Watch::none())
 }
 
-fn load_with(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
+/// [`load_with_meta`] that tells how far it has come and that can be ended from outside.
+pub fn load_with(path: &Path, meta: &Meta, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
+    load_sized(path, meta, admissible_size(path)?, watch)
+}
+
+fn load_sized(path: &Path, meta: &Meta, size: u64, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
     if let Some(why) = facts::complaint(meta) {
         return Err(LogError::Sidecar { why, path: sidecar::path_for(path) });
     }

@@ -79,7 +79,7 @@ fn a_table_that_grows_while_it_is_read_is_refused() {
     let path = folder.0.path().join("log.csv");
     std::fs::write(&path, "t_s,q_m\n0,1\n1,2\n").expect("writable");
     // The size that was seen before reading: four bytes have come since.
-    let error = load_with(&path, &Meta::default(), 12, &Watch::none()).expect_err("refused").to_string();
+    let error = load_sized(&path, &Meta::default(), 12, &Watch::none()).expect_err("refused").to_string();
     assert!(error.contains("changed from 12 to 16 bytes"), "{error}");
 }
 

@@ -1,10 +1,10 @@
 //! What comes of a mapping: loaded in the background, a moment after the last edit.
 
 use super::draft::Draft;
-use crate::ui::jobs::{JobKind, Jobs, Outcome};
+use crate::ui::jobs::{JobKind, Jobs, Outcome, Ticket};
 use crate::ui::prepare::Prepared;
 use crate::ui::session::sentence;
-use estimator::log::LogError;
+use estimator::log::{LogError, Watch};
 use estimator::segment::task_of;
 use estimator::signal::task::{is_two_fingered, task_signals, tip_series};
 use haptics::recording::{Meta, Recording, Task};
@@ -59,14 +59,14 @@ impl Preview {
         }
         self.asked = Some(meta.clone());
         let path = path.to_path_buf();
-        jobs.start_watched(ctx, JobKind::Preview, "Reading for the preview".to_owned(), move |_| {
-            Outcome::Previewed(Box::new(see(&path, &meta)))
+        jobs.start_watched(ctx, JobKind::Preview, "Reading for the preview".to_owned(), move |ticket| {
+            Outcome::Previewed(Box::new(see(&path, &meta, ticket)))
         });
     }
 
     /// Reads the file here and now: for pictures.
     pub fn read_now(&mut self, path: &Path, meta: Meta) {
-        self.seen = Some(see(path, &meta));
+        self.seen = Some(see(path, &meta, &Ticket::default()));
         self.asked = Some(meta);
     }
 
@@ -76,9 +76,10 @@ impl Preview {
     }
 }
 
-/// Reads the log with this sidecar.
-pub fn see(path: &Path, meta: &Meta) -> Result<Seen, String> {
-    let recordings = estimator::log::load_with_meta(path, meta).map_err(|error| explained(&error))?;
+/// Reads the log with this sidecar; tells how far it is, and ends when nobody wants it any more.
+pub fn see(path: &Path, meta: &Meta, ticket: &Ticket) -> Result<Seen, String> {
+    let watch = Watch { progress: &|share| ticket.tell(share), cancelled: ticket.cancelled(), preview: None };
+    let recordings = estimator::log::load_with(path, meta, &watch).map_err(|error| explained(&error))?;
     let missing = recordings.first().and_then(missing);
     let mut warnings: Vec<String> = Vec::new();
     for warning in recordings.iter().flat_map(|r| &r.warnings) {
