@@ -13,9 +13,10 @@ use haptics::servo::timing::Timing;
 use haptics::world::World;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A window that is closed waits so long for the end of the file.
 const FAREWELL: Duration = Duration::from_secs(3);
@@ -139,6 +140,8 @@ pub struct Recorder {
     shared: Arc<Shared>,
     source: TapSource,
     thread: Option<JoinHandle<()>>,
+    /// Closed by the end of the thread, whatever ends it.
+    over: Receiver<()>,
 }
 
 impl Recorder {
@@ -156,9 +159,12 @@ impl Recorder {
             servo: Mutex::new(order.servo),
         });
         let theirs = Arc::clone(&shared);
-        let thread =
-            std::thread::Builder::new().name("recorder".to_owned()).spawn(move || work::run(tap, &order, &theirs))?;
-        Ok(Self { shared, source: source.clone(), thread: Some(thread) })
+        let (running, over) = channel::<()>();
+        let thread = std::thread::Builder::new().name("recorder".to_owned()).spawn(move || {
+            let _running = running;
+            work::run(tap, &order, &theirs);
+        })?;
+        Ok(Self { shared, source: source.clone(), thread: Some(thread), over })
     }
 
     /// How far it is.
@@ -198,12 +204,12 @@ impl Recorder {
 
 impl Drop for Recorder {
     fn drop(&mut self) {
-        let Some(thread) = self.thread.take() else { return };
-        self.end(Wish::Keep);
-        let asked = Instant::now();
-        while !thread.is_finished() && asked.elapsed() < FAREWELL {
-            std::thread::sleep(Duration::from_millis(2));
+        if self.thread.take().is_none() {
+            return;
         }
+        self.end(Wish::Keep);
+        // Nothing is ever sent: the wait ends with the thread, or when a disk that hangs has been given time enough.
+        let _ = self.over.recv_timeout(FAREWELL);
     }
 }
 

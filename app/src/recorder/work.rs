@@ -11,7 +11,7 @@ use haptics::servo::tap::Tap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// The ring is emptied this often; it holds seconds.
+/// The ring is emptied this often; it holds seconds. Nobody calls: a tick of the servo may not wake a thread.
 const REST: Duration = Duration::from_millis(25);
 /// The window hears of the progress this often.
 const TOLD_EVERY: Duration = Duration::from_millis(100);

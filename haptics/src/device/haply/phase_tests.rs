@@ -1,11 +1,11 @@
 //! Two boards whose answers fall into different ticks of the servo: boards have clocks of their own.
 
+use super::tests::until;
 use super::*;
 use crate::servo::safety::{Limits, Safety, SafetyFlags};
 use std::io::{Error, ErrorKind, Read, Result, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
-use std::time::Instant;
 
 /// What a board and the test share: answers are given when the test lets them go.
 #[derive(Default)]
@@ -17,18 +17,6 @@ struct Bench {
     /// Angle of both cranks, degrees beyond the pose.
     turned: AtomicU32,
     closed: AtomicBool,
-}
-
-/// Polls until the condition holds; the condition decides, the limit only ends a broken test.
-fn until(mut done: impl FnMut() -> bool) -> bool {
-    let begun = Instant::now();
-    while begun.elapsed() < Duration::from_secs(10) {
-        if done() {
-            return true;
-        }
-        std::thread::yield_now();
-    }
-    false
 }
 
 /// A line whose board answers on the bench's word.

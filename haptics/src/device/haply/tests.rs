@@ -135,7 +135,7 @@ fn pose_at(step: u16) -> [f32; 2] {
 }
 
 /// Polls until the condition holds; the condition decides, the limit only ends a broken test.
-fn until(mut done: impl FnMut() -> bool) -> bool {
+pub(super) fn until(mut done: impl FnMut() -> bool) -> bool {
     let begun = Instant::now();
     while begun.elapsed() < Duration::from_secs(10) {
         if done() {
