@@ -1,7 +1,12 @@
 //! What a fit answers: numbers with errors, constraints, warnings. These types *are* the JSON of `touchstone fit --json`.
 
+mod constraint;
+
+pub use constraint::{
+    Constraint, ConstraintKind, Existence, Guide, Leaning, Phase, Screw, Sided, Slip, StrokePhase, Yielding,
+};
+
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
 /// One estimated parameter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,71 +55,6 @@ impl Parameter {
             how: why.to_owned(),
         }
     }
-}
-
-/// The kind of a geometric constraint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ConstraintKind {
-    /// Turning about a fixed axis.
-    Revolute,
-    /// Sliding along a fixed line.
-    Prismatic,
-    /// No constraint.
-    Free,
-    /// A membrane: stiffness depends on the deepest insertion.
-    Membrane,
-    /// Pushes one way only.
-    Unilateral,
-    /// A path that is neither a line nor a circle.
-    Spline,
-    /// The recording cannot tell.
-    Undecided,
-}
-
-/// A constraint found in a recording.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Constraint {
-    /// What it is.
-    pub kind: ConstraintKind,
-    /// Trial or recording it was found in, when there are several.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub recording: Option<String>,
-    /// Centre of rotation, m; two numbers for a planar recording, three otherwise.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub center_m: Option<Vec<f64>>,
-    /// Centre by the thesis's own method, normals over twelve samples, m; for comparison.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub normals_center_m: Option<Vec<f64>>,
-    /// Radius, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub radius_m: Option<f64>,
-    /// 95 % interval of the radius, m; the upper end is absent when the path could as well be straight.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub radius_interval_m: Option<(f64, Option<f64>)>,
-    /// Unit vector: of the axis (revolute), of the motion (prismatic).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub direction: Option<Vec<f64>>,
-    /// Stiffer than the manipulator and its sensors can tell.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rigid: Option<bool>,
-    /// Standard errors by name: `center_m` (one number, the larger axis), `radius_m`, `direction_rad`.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub std_error: BTreeMap<String, f64>,
-    /// Angle turned (revolute), rad.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub coverage_rad: Option<f64>,
-    /// Path length covered, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub coverage_m: Option<f64>,
-    /// Root mean square distance of the path from the constraint, m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub residual_m: Option<f64>,
-    /// Mean constraint force along the outward normal, N, where forces were recorded (thesis, eq. 5.1).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub constraint_force_n: Option<f64>,
-    /// One sentence: what shows it, or what is missing.
-    pub evidence: String,
 }
 
 /// Everything that a fit found.

@@ -4,10 +4,10 @@ use super::circle::{Arc, cost, fit, refine};
 use super::frame::Frame;
 use super::noise::{Direction, PathNoise, sensitivity};
 use super::normals::{THESIS_SAMPLES, normals_center};
-use crate::estimate::{Constraint, ConstraintKind};
+use super::retrace::Retrace;
+use crate::estimate::{Constraint, ConstraintKind, Leaning};
 use crate::identify::linear::least_squares;
 use nalgebra::Vector3;
-use std::collections::BTreeMap;
 
 /// Kept points below which nothing is said.
 const MIN_POINTS: usize = 8;
@@ -15,12 +15,16 @@ const MIN_POINTS: usize = 8;
 const DECISION_P: f64 = 0.01;
 const INTERVAL_P: f64 = 0.05;
 /// Posterior probability from which on a path is called straight.
-const STRAIGHT_PROBABILITY: f64 = 0.95;
+const STRAIGHT_PROBABILITY: f64 = 0.92;
+/// … and below which, or where the interval leaves no doubt, it is called round.
+const ROUND_PROBABILITY: f64 = 0.02;
 /// … provided that it bends by no more than this over its length with 95 % certainty, rad.
 const STRAIGHT_RAD: f64 = 0.5;
-/// Hinges within reach lie this far away, m: their radii are taken as equally likely in logarithm.
+/// Hinges within reach lie this far away, m: their radii are taken as equally likely in logarithm …
 const HINGE_M: (f64, f64) = (0.03, 2.0);
-/// A path that bends by more than this, with certainty, is called round, rad.
+/// … as far as the path turns about them by at least this, rad (5°): who records a hinge moves it.
+const HINGE_TURN_RAD: f64 = 0.087;
+/// A path that bends by more than this, with certainty, is round whatever was thought before, rad.
 const ROUND_RAD: f64 = 0.15;
 /// Distance from line and plane, as a share of the extent, up to which a path is still one.
 const CLOSE_SHARE: f64 = 0.025;
@@ -28,6 +32,17 @@ const CLOSE_SHARE: f64 = 0.025;
 const FAR_SHARE: f64 = 0.04;
 /// Width of a path in its plane as a share of its length from which on it fills a region.
 const REGION_SHARE: f64 = 0.15;
+/// Passes must share this many times what they differ by to be told from noise that remembers …
+const GUIDE_RATIO: f64 = 3.0;
+/// … or this many times to put a circle in doubt, …
+const SYSTEMATIC_RATIO: f64 = 1.5;
+/// … and lie this share of the extent away from the best circle, …
+const GUIDE_SHARE: f64 = 4e-3;
+/// … over this share of the points, or over this share where the path crosses itself as well.
+const GUIDE_ALONG: f64 = 0.3;
+const GUIDE_ALONG_CROSSING: f64 = 0.6;
+/// Passes along one guide lie this close to each other, as a share of the extent.
+const SAME_SHARE: f64 = 0.012;
 /// A constrained grip may leave its path by this much, m: less is no sign of freedom.
 const GRIP_SLIP_M: f64 = 2.5e-3;
 /// Stiffness above which manipulator and sensors cannot tell a constraint from a rigid one, N/m.
@@ -46,6 +61,7 @@ pub struct Context {
 struct Shape {
     frame: Frame,
     arc: Arc,
+    retrace: Retrace,
     rms_m: f64,
     /// Curvature interval at 5 %, 1/m, and lower end at the decision level.
     interval: (f64, f64),
@@ -80,22 +96,7 @@ pub fn detect(points: &[Vector3<f64>], forces: Option<&[Vector3<f64>]>, context:
 }
 
 fn blank(context: &Context, evidence: &str) -> Constraint {
-    Constraint {
-        kind: ConstraintKind::Undecided,
-        recording: context.recording.clone(),
-        center_m: None,
-        normals_center_m: None,
-        radius_m: None,
-        radius_interval_m: None,
-        direction: None,
-        rigid: None,
-        std_error: BTreeMap::new(),
-        coverage_rad: None,
-        coverage_m: None,
-        residual_m: None,
-        constraint_force_n: None,
-        evidence: evidence.to_owned(),
-    }
+    Constraint::blank(context.recording.clone(), evidence)
 }
 
 impl Shape {
@@ -109,9 +110,10 @@ impl Shape {
         Some(Self {
             interval: bounds(INTERVAL_P),
             decision_low: bounds(DECISION_P).0,
-            straight_probability: straight_probability(&noise, arc.curvature, size),
+            straight_probability: straight_probability(&noise, arc.curvature, size, extent),
             curvature_error: noise.quantile(0.317) / size,
             angle_error: turn.quantile(0.317) / sensitivity(&frame.flat, &arc, extent, Direction::Angle),
+            retrace: Retrace::of(&frame, &arc),
             rms_m: (best / frame.flat.len() as f64).sqrt(),
             arc,
             frame,
@@ -135,13 +137,28 @@ impl Shape {
             1e3 * extent
         );
         let real = self.residual_m() > (4.0 * self.frame.noise_m).max(GRIP_SLIP_M);
-        if real && share > FAR_SHARE && self.frame.width_m > REGION_SHARE * extent {
-            return (ConstraintKind::Free, format!("the path fills a region: {sizes} (root mean square)"));
+        let wide = real && share > FAR_SHARE && self.frame.width_m > REGION_SHARE * extent;
+        if let Some(text) = self.guide(&sizes) {
+            return (ConstraintKind::Spline, text);
+        }
+        if wide && self.retrace.crossings > 0 {
+            let text = format!("the path crosses itself {} times: {sizes} (root mean square)", self.retrace.crossings);
+            return (ConstraintKind::Free, text);
         }
         if share > CLOSE_SHARE {
-            return (ConstraintKind::Undecided, format!("neither a line nor a circle fits well: {sizes}"));
+            let text = format!(
+                "neither a line nor a circle fits ({sizes}); a free hand and a guide of another shape look alike: follow the path \
+                 there and back"
+            );
+            return (ConstraintKind::Undecided, text);
         }
-        let round = bend(low) > ROUND_RAD && 1.0 / low < HINGE_M.1 * 1.25 && self.rms_m < 0.5 * self.frame.line_rms_m;
+        let within_reach = 1.0 / self.arc.curvature < HINGE_M.1 * 1.25;
+        let certain = bend(low) > ROUND_RAD && 1.0 / low < HINGE_M.1 * 1.25 && self.rms_m < 0.5 * self.frame.line_rms_m;
+        let round = certain || (self.straight_probability < ROUND_PROBABILITY && within_reach);
+        if round && self.systematic() {
+            let text = format!("the passes stray from the circle at the same places: {sizes}; it may be another curve");
+            return (ConstraintKind::Undecided, text);
+        }
         if round {
             return (
                 ConstraintKind::Revolute,
@@ -160,6 +177,33 @@ impl Shape {
             1.0 / self.interval.1.max(f64::MIN_POSITIVE)
         );
         (ConstraintKind::Undecided, text)
+    }
+
+    /// Says so when the path follows one guide more than once that is neither a line nor a circle: what its passes have in common
+    /// is far from the best circle, and far more than what they differ by.
+    fn guide(&self, sizes: &str) -> Option<String> {
+        let found = &self.retrace;
+        let same = found.apart_m < (SAME_SHARE * self.frame.extent_m).max(4.0 * self.frame.noise_m);
+        // A hand that wanders long enough goes along its own way here and there.
+        let enough = if found.crossings > 0 { GUIDE_ALONG_CROSSING } else { GUIDE_ALONG };
+        let other_shape = found.common_m > GUIDE_RATIO * found.differing_m
+            && found.common_m > GUIDE_SHARE * self.frame.extent_m
+            && found.common_m > 2.0 * self.frame.noise_m / (found.along_share * self.frame.flat.len() as f64).sqrt();
+        (found.along_share > enough && same && other_shape).then(|| {
+            format!(
+                "the path is followed again within {:.2} mm over {:.0} % of its points, and is neither a line nor a circle: {sizes}",
+                1e3 * found.apart_m,
+                100.0 * found.along_share
+            )
+        })
+    }
+
+    /// What the passes have in common is not noise.
+    fn systematic(&self) -> bool {
+        let found = &self.retrace;
+        found.along_share > GUIDE_ALONG
+            && found.common_m > SYSTEMATIC_RATIO * found.differing_m
+            && found.common_m > GUIDE_SHARE * self.frame.extent_m
     }
 
     /// The centre by the thesis's method, as a cross-check.
@@ -198,11 +242,27 @@ impl Shape {
                 found.residual_m = Some(self.frame.line_rms_m);
             }
             ConstraintKind::Undecided => {
+                found.leaning = Some(self.leaning());
                 found.radius_m = (self.arc.curvature * self.frame.extent_m > 1e-3).then(|| 1.0 / self.arc.curvature);
                 found.radius_interval_m = Some(interval);
                 found.residual_m = Some(self.residual_m());
             }
             _ => found.residual_m = Some(self.residual_m()),
+        }
+    }
+
+    /// The likelier kind where none is certain.
+    fn leaning(&self) -> Leaning {
+        if self.residual_m() > CLOSE_SHARE * self.frame.extent_m {
+            let kind =
+                if self.retrace.along_share > GUIDE_ALONG { ConstraintKind::Spline } else { ConstraintKind::Free };
+            return Leaning { kind, probability: None };
+        }
+        let line = self.straight_probability;
+        if line >= 0.5 {
+            Leaning { kind: ConstraintKind::Prismatic, probability: Some(line) }
+        } else {
+            Leaning { kind: ConstraintKind::Revolute, probability: Some(1.0 - line) }
         }
     }
 
@@ -239,13 +299,15 @@ impl Shape {
     }
 }
 
-/// Probability of curvature 0 against curvatures of hinges within reach, bending either way.
-fn straight_probability(noise: &PathNoise, curvature: f64, size: f64) -> f64 {
+/// Probability of curvature 0 against curvatures of hinges within reach, bending either way, even odds before.
+fn straight_probability(noise: &PathNoise, curvature: f64, size: f64, extent_m: f64) -> f64 {
     let likelihood = |k: f64| noise.density((curvature - k) * size);
     let steps = 200;
-    let ratio = HINGE_M.1 / HINGE_M.0;
+    // No circle is shorter across than the path that lies on it.
+    let nearest = HINGE_M.0.max(0.5 * extent_m);
+    let ratio = (HINGE_M.1.min(extent_m / HINGE_TURN_RAD) / nearest).max(1.0);
     let round: f64 = (0..steps)
-        .map(|i| 1.0 / (HINGE_M.0 * ratio.powf((f64::from(i) + 0.5) / f64::from(steps))))
+        .map(|i| 1.0 / (nearest * ratio.powf((f64::from(i) + 0.5) / f64::from(steps))))
         .map(|k| 0.5 * (likelihood(k) + likelihood(-k)))
         .sum::<f64>()
         / f64::from(steps);

@@ -39,7 +39,7 @@ impl Frame {
     pub fn new(points: &[Vector3<f64>], planar: bool) -> Option<Self> {
         let noise_m = noise(points);
         let kept = thin(points, noise_m)?;
-        let chosen: Vec<Vector3<f64>> = kept.iter().map(|&i| points[i]).collect();
+        let chosen = averaged(points, &kept);
         let n = chosen.len() as f64;
         let origin = chosen.iter().sum::<Vector3<f64>>() / n;
         let spread: Matrix3<f64> = chosen.iter().map(|p| (p - origin) * (p - origin).transpose()).sum();
@@ -82,6 +82,22 @@ impl Frame {
 fn upward(axis: Vector3<f64>) -> Vector3<f64> {
     let largest = axis.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(1.0);
     if largest < 0.0 { -axis } else { axis }
+}
+
+/// Mean of the samples about each kept one: those on the way to its neighbours that lie nearer to it. What is left out between
+/// two kept points would be thrown away otherwise, and noise with it that averages out.
+fn averaged(points: &[Vector3<f64>], kept: &[usize]) -> Vec<Vector3<f64>> {
+    let mut sums: Vec<(Vector3<f64>, f64)> = kept.iter().map(|&i| (points[i], 1.0)).collect();
+    for (k, &first) in kept.iter().enumerate() {
+        let next = kept.get(k + 1).copied();
+        for point in &points[first + 1..next.unwrap_or(points.len())] {
+            let nearer = next.is_some_and(|n| (point - points[n]).norm() < (point - points[first]).norm());
+            let sum = &mut sums[if nearer { k + 1 } else { k }];
+            sum.0 += point;
+            sum.1 += 1.0;
+        }
+    }
+    sums.into_iter().map(|(sum, count)| sum / count).collect()
 }
 
 fn in_plane(axis: Vector3<f64>) -> Vector3<f64> {

@@ -5,6 +5,7 @@ mod decide;
 mod frame;
 mod noise;
 mod normals;
+mod retrace;
 
 pub use decide::{Context, detect};
 pub use normals::{THESIS_SAMPLES, normals_center};

@@ -20,11 +20,11 @@ const FEW_MODES: usize = 8;
 const SPREAD_MODES: usize = 80;
 /// A cosine of which the fit leaves less than this share tells nothing.
 const LEAST_SHARE: f64 = 0.3;
-/// Give of a grip, m, one standard deviation: no path is trusted further. A tenth of the millimetre and more that the
+/// Give of a grip, m, one standard deviation: no path is trusted further. A quarter of the millimetre and more that the
 /// thesis measured at its fingers and a hook slips on a handle.
-const GRIP_M: f64 = 2e-4;
+const GRIP_M: f64 = 2.5e-4;
 /// … and for small mechanisms as a share of their extent.
-const GRIP_SHARE: f64 = 3e-3;
+const GRIP_SHARE: f64 = 2.5e-3;
 /// Exponents that are averaged over.
 const EXPONENTS: [f64; 9] = [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0];
 

@@ -60,6 +60,7 @@ fn kind(kind: ConstraintKind) -> &'static str {
         ConstraintKind::Membrane => "Membrane",
         ConstraintKind::Unilateral => "Pushes one way only",
         ConstraintKind::Spline => "Follows a path that is neither line nor circle",
+        ConstraintKind::Screw => "Turns and slides along its axis",
         ConstraintKind::Undecided => "Undecided",
     }
 }

@@ -130,16 +130,13 @@ pub(super) fn constraint(
     let rigid = geometry.stiffness.is_none_or(|(k, _)| k > RIGID_N_M);
     Constraint {
         kind: ConstraintKind::Revolute,
-        recording: Some(recording.name.clone()),
         center_m: Some(vec![geometry.center_m.x, geometry.center_m.y]),
         normals_center_m: by_normals.map(|center| vec![center.x, center.y]),
         radius_m: Some(geometry.radius_m),
         radius_interval_m: Some((geometry.radius_m - 1.96 * er, Some(geometry.radius_m + 1.96 * er))),
-        direction: None,
         rigid: Some(rigid),
         std_error: BTreeMap::from([("center_m".to_owned(), ex.max(ey)), ("radius_m".to_owned(), er)]),
         coverage_rad: Some(high - low),
-        coverage_m: None,
         residual_m: Some(geometry.rms_m),
         constraint_force_n: Some(force),
         evidence: format!(
@@ -148,6 +145,7 @@ pub(super) fn constraint(
             (high - low) / std::f64::consts::TAU,
             normals_sentence(by_normals, geometry.center_m)
         ),
+        ..Constraint::blank(Some(recording.name.clone()), "")
     }
 }
 

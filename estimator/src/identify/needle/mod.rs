@@ -206,19 +206,11 @@ impl Sheet {
         );
         Constraint {
             kind: ConstraintKind::Membrane,
-            recording: Some(recording.name.clone()),
-            center_m: None,
-            normals_center_m: None,
-            radius_m: None,
-            radius_interval_m: None,
             direction: Some(vec![along.direction.x, along.direction.y]),
             rigid: Some(false),
             std_error: [("surface_m".to_owned(), errors[self.loading.surface_at()])].into(),
-            coverage_rad: None,
-            coverage_m: None,
-            residual_m: None,
-            constraint_force_n: None,
             evidence,
+            ..Constraint::blank(Some(recording.name.clone()), "")
         }
     }
 }
