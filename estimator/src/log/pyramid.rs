@@ -24,7 +24,19 @@ impl Band {
 
     /// Of these values; of none, one that joins with anything.
     pub fn of(values: &[f64]) -> Self {
-        values.iter().fold(Self::NONE, |band, &v| Self { low: band.low.min(v), high: band.high.max(v) })
+        const LANES: usize = 4;
+        // In lanes, so that the compiler can use wide registers; what is no number is neither smaller nor larger.
+        let (mut lows, mut highs) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+        let (blocks, rest) = values.as_chunks::<LANES>();
+        for block in blocks {
+            for (k, &v) in block.iter().enumerate() {
+                lows[k] = if v < lows[k] { v } else { lows[k] };
+                highs[k] = if v > highs[k] { v } else { highs[k] };
+            }
+        }
+        let low = lows.iter().chain(rest).fold(f64::INFINITY, |low, &v| low.min(v));
+        let high = highs.iter().chain(rest).fold(f64::NEG_INFINITY, |high, &v| high.max(v));
+        Self { low, high }
     }
 }
 

@@ -21,12 +21,7 @@ pub struct Profile {
 impl Profile {
     /// Looks at every sample once.
     pub fn of(values: &[f64]) -> Self {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for &v in values {
-            low = if v < low { v } else { low };
-            high = if v > high { v } else { high };
-        }
-        let unchanged = values.windows(2).map(|w| usize::from(w[0] == w[1])).sum();
+        let (low, high, unchanged) = extremes(values);
         let mut sorted: Vec<f64> = thinned(values.len()).map(|i| values[i]).collect();
         sorted.sort_unstable_by(f64::total_cmp);
         Self { low, high, unchanged, sorted }
@@ -52,6 +47,29 @@ impl Profile {
     pub fn is_constant(&self) -> bool {
         self.low >= self.high
     }
+}
+
+/// Smallest and largest value, and how many are equal to the one before: in lanes, so that the compiler can use wide registers.
+fn extremes(values: &[f64]) -> (f64, f64, usize) {
+    const LANES: usize = 8;
+    let less = |a: f64, b: f64| if a < b { a } else { b };
+    let more = |a: f64, b: f64| if a > b { a } else { b };
+    let (mut lows, mut highs, mut same) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES], [0_u64; LANES]);
+    let later = values.get(1..).unwrap_or_default();
+    let (blocks, _) = later.as_chunks::<LANES>();
+    for (now, next) in values.as_chunks::<LANES>().0.iter().zip(blocks) {
+        for k in 0..LANES {
+            lows[k] = less(now[k], lows[k]);
+            highs[k] = more(now[k], highs[k]);
+            same[k] += u64::from(now[k] == next[k]);
+        }
+    }
+    let done = blocks.len() * LANES;
+    let rest = &values[done..];
+    let low = lows.iter().chain(rest).fold(f64::INFINITY, |low, &v| less(v, low));
+    let high = highs.iter().chain(rest).fold(f64::NEG_INFINITY, |high, &v| more(v, high));
+    let unchanged = same.iter().sum::<u64>() as usize + rest.windows(2).filter(|w| w[0] == w[1]).count();
+    (low, high, unchanged)
 }
 
 /// Indices of samples that stand for all `n`, increasing: one out of each equal piece, not always at the same place in it,
@@ -122,6 +140,17 @@ mod tests {
             for length in [2, 3, 8, 25] {
                 assert_eq!(holds(&values, length), every_hold(&values, length), "seed {seed}, length {length}");
             }
+        }
+    }
+
+    #[test]
+    fn extremes_are_those_of_the_plain_way() {
+        for n in 0..60 {
+            let values: Vec<f64> = (0..n).map(|i| f64::from((i * i * 7) % 11 / 2) - 2.0).collect();
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let unchanged = values.windows(2).filter(|w| w[0] == w[1]).count();
+            assert_eq!(extremes(&values), (low, high, unchanged), "{n}");
         }
     }
 

@@ -53,22 +53,19 @@ impl<'a> Join<'a> {
         }
     }
 
-    /// Blocks handed in that wait for an earlier one.
-    pub fn waiting(&self) -> usize {
-        self.early.len()
-    }
-
-    /// Takes the part of block `index`, and joins what has its turn; an error for the first row that is wrong.
-    pub fn take(&mut self, index: usize, part: Part) -> Result<(), LogError> {
+    /// Takes the part of block `index`, and joins what has its turn; an error for the first row that is wrong. Gives back the columns
+    /// of what was joined, empty.
+    pub fn take(&mut self, index: usize, part: Part) -> Result<Vec<Vec<Vec<f64>>>, LogError> {
         self.early.insert(index, part);
+        let mut spare = Vec::new();
         while let Some(part) = self.early.remove(&self.next) {
             self.next += 1;
-            self.join(part)?;
+            spare.push(self.join(part)?);
         }
-        Ok(())
+        Ok(spare)
     }
 
-    fn join(&mut self, part: Part) -> Result<(), LogError> {
+    fn join(&mut self, mut part: Part) -> Result<Vec<Vec<f64>>, LogError> {
         self.table.text_columns.extend_from_slice(&part.text_columns);
         self.table.fingerprints.extend(self.plan.watched.len(), &part.marks);
         for (all, seen) in self.seen.iter_mut().zip(&part.seen) {
@@ -78,7 +75,7 @@ impl<'a> Join<'a> {
                 }
             }
         }
-        let mut labels = part.labels.into_iter();
+        let mut labels = std::mem::take(&mut part.labels).into_iter();
         for (i, run) in part.runs.iter().enumerate() {
             let end = part.runs.get(i + 1).map_or(part.kept, |next| next.first);
             let at = self.group(run.trial.as_deref(), part.kept, part.bytes);
@@ -101,7 +98,8 @@ impl<'a> Join<'a> {
         self.rows += part.rows;
         self.lines += part.lines;
         self.bytes += part.bytes;
-        Ok(())
+        part.columns.iter_mut().for_each(Vec::clear);
+        Ok(part.columns)
     }
 
     /// Shows what has been joined, of tables with one recording.

@@ -4,10 +4,15 @@
 //! the parts are put together in the order of the file ([`join`]). Rows, lines, sentences and bits do not depend on the
 //! number of threads.
 
+#[cfg(target_arch = "x86_64")]
+mod batch;
 mod blocks;
 mod cells;
 mod join;
 mod part;
+mod plain;
+#[cfg(target_arch = "x86_64")]
+mod simd;
 
 use super::errors::LogError;
 use super::format;
@@ -17,12 +22,12 @@ use super::watch::Watch;
 use blocks::{BLOCK_BYTES, Blocks, Stop};
 use cells::{Cells, number, record_end};
 use join::Join;
-use part::Layout;
+use part::{Layout, Part};
 use std::fs::File;
 use std::io::{Read, Seek as _, SeekFrom};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
 
 /// How many bytes are looked at to tell a table from something else.
 const SNIFF_BYTES: usize = 1 << 16;
@@ -136,8 +141,10 @@ struct Split {
 /// What the threads share.
 struct Reading<'a, R> {
     blocks: Mutex<Blocks<R>>,
+    /// Whoever has it joins for all: a thread that finds it taken parses on.
     join: Mutex<Join<'a>>,
-    /// Told after every part that was joined, and when the work stops.
+    parts: Mutex<Parts>,
+    /// Told after parts were joined, and when the work stops.
     joined: Condvar,
     layout: Layout<'a>,
     path: &'a Path,
@@ -149,6 +156,16 @@ struct Reading<'a, R> {
     error: Mutex<Option<LogError>>,
     /// Why there are no more blocks.
     refused: Mutex<Option<Stop>>,
+}
+
+/// Parts on their way from the threads to the join, and their memory on its way back.
+#[derive(Debug, Default)]
+struct Parts {
+    parsed: Vec<(usize, Part)>,
+    /// Those handed in that have not been joined.
+    waiting: usize,
+    /// Memory of columns that have been joined.
+    spare: Vec<Vec<Vec<f64>>>,
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -171,7 +188,7 @@ impl<R> Reading<'_, R> {
     fn stop(&self) {
         self.stop.store(true, Ordering::Relaxed);
         // Under the lock, so that no thread has looked at the flag and not yet begun to wait.
-        let _join = lock(&self.join);
+        let _parts = lock(&self.parts);
         self.joined.notify_all();
     }
 }
@@ -191,8 +208,17 @@ impl<'a, R: Read + Send> Reading<'a, R> {
         Self {
             blocks: Mutex::new(Blocks::new(source, delimiter, split.block_bytes)),
             join: Mutex::new(Join::new(plan, dialect, path, size, watch.preview)),
+            parts: Mutex::default(),
             joined: Condvar::new(),
-            layout: Layout { delimiter, width, plan, uses: plan.uses.clone(), undecided: true, bytes_a_row: 0 },
+            layout: Layout {
+                delimiter,
+                width,
+                plan,
+                uses: plan.uses.clone(),
+                undecided: true,
+                bytes_a_row: 0,
+                ends: Vec::new(),
+            },
             path,
             size,
             watch,
@@ -236,11 +262,12 @@ impl<'a, R: Read + Send> Reading<'a, R> {
         if self.watch.is_cancelled() {
             return self.end(LogError::Cancelled { path: self.path.to_path_buf() });
         }
-        let mut join = lock(&self.join);
-        while join.waiting() > MAX_WAITING && !self.stop.load(Ordering::Relaxed) {
-            join = self.joined.wait(join).unwrap_or_else(PoisonError::into_inner);
+        let mut parts = lock(&self.parts);
+        while parts.waiting > MAX_WAITING && !self.stop.load(Ordering::Relaxed) {
+            parts = self.joined.wait(parts).unwrap_or_else(PoisonError::into_inner);
         }
-        drop(join);
+        let columns = parts.spare.pop().unwrap_or_else(|| vec![Vec::new(); layout.width]);
+        drop(parts);
         if self.stop.load(Ordering::Relaxed) {
             return false;
         }
@@ -254,17 +281,38 @@ impl<'a, R: Read + Send> Reading<'a, R> {
                 return false;
             }
         };
-        let part = part::parse(layout, &bytes);
+        let part = part::parse(layout, &bytes, columns);
         lock(&self.blocks).recycle(bytes);
-        let mut join = lock(&self.join);
-        let taken = join.take(index, part);
-        self.joined.notify_all();
-        if let Err(error) = taken {
-            drop(join);
-            return self.end(error);
+        let mut parts = lock(&self.parts);
+        parts.parsed.push((index, part));
+        parts.waiting += 1;
+        drop(parts);
+        match self.join_parsed() {
+            Ok(()) => true,
+            Err(error) => self.end(error),
         }
-        (self.watch.progress)((join.bytes as f64 / self.size.max(1) as f64).min(1.0));
-        true
+    }
+
+    /// Joins what has been parsed, if no other thread is at it.
+    fn join_parsed(&self) -> Result<(), LogError> {
+        // Looked at again after the join is free: a part that comes in between found it taken.
+        while !lock(&self.parts).parsed.is_empty() {
+            let mut join = match self.join.try_lock() {
+                Ok(join) => join,
+                Err(TryLockError::Poisoned(join)) => join.into_inner(),
+                Err(TryLockError::WouldBlock) => return Ok(()),
+            };
+            let parsed = std::mem::take(&mut lock(&self.parts).parsed);
+            for (index, part) in parsed {
+                let spare = join.take(index, part)?;
+                let mut parts = lock(&self.parts);
+                parts.waiting -= spare.len();
+                parts.spare.extend(spare);
+                self.joined.notify_all();
+            }
+            (self.watch.progress)((join.bytes as f64 / self.size.max(1) as f64).min(1.0));
+        }
+        Ok(())
     }
 
     /// The first error counts.

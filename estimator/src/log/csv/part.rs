@@ -1,6 +1,7 @@
 //! One block of a table, parsed by itself: what it says about places counts from its own start.
 
-use super::cells::{Cells, length_ahead, number, number_ahead, record_end};
+use super::cells::{Cells, number, record_end};
+use super::plain::{self, Plain};
 use crate::log::fingerprint::{Marks, SEPARATOR, cell_hash};
 use crate::log::plan::{Plan, Use};
 use memchr::memchr;
@@ -23,6 +24,8 @@ pub struct Layout<'a> {
     pub undecided: bool,
     /// In the block before; 0 before the first.
     pub bytes_a_row: usize,
+    /// Where the cells of the block end, where it is known beforehand.
+    pub ends: Vec<u32>,
 }
 
 /// What is wrong with a record.
@@ -72,10 +75,11 @@ pub struct Part {
     pub fault: Option<(usize, u64, Fault)>,
 }
 
-/// Parses a block.
-pub fn parse(layout: &mut Layout<'_>, bytes: &[u8]) -> Part {
-    let mut reader = Reader::new(layout, bytes.len());
+/// Parses a block into `columns`, which are empty.
+pub fn parse(layout: &mut Layout<'_>, bytes: &[u8], columns: Vec<Vec<f64>>) -> Part {
+    let mut reader = Reader::new(layout, bytes.len(), columns);
     reader.reserve();
+    reader.find_ends(bytes);
     let mut at = 0;
     while at < bytes.len() && reader.part.fault.is_none() {
         at = reader.record(bytes, at);
@@ -95,10 +99,10 @@ struct Reader<'a, 'p> {
 }
 
 impl<'a, 'p> Reader<'a, 'p> {
-    fn new(layout: &'a mut Layout<'p>, bytes: usize) -> Self {
+    fn new(layout: &'a mut Layout<'p>, bytes: usize, columns: Vec<Vec<f64>>) -> Self {
         let plan = layout.plan;
         let part = Part {
-            columns: vec![Vec::new(); layout.width],
+            columns,
             labels: Vec::new(),
             kept: 0,
             rows: 0,
@@ -127,13 +131,14 @@ impl<'a, 'p> Reader<'a, 'p> {
         }
     }
 
-    /// Reads the record at `at`; returns where the next one starts.
+    /// Reads the plain rows at `at`, if any, and the record behind them; returns where the next one starts.
     fn record(&mut self, bytes: &[u8], at: usize) -> usize {
-        if self.plain
-            && !self.layout.undecided
-            && let Some(next) = self.plain_row(bytes, at)
-        {
-            return next;
+        let mut at = at;
+        if self.plain && !self.layout.undecided {
+            at = self.plain_rows(bytes, at);
+            if at >= bytes.len() {
+                return at;
+            }
         }
         let end = record_end(bytes, at, self.layout.delimiter).unwrap_or(bytes.len());
         let mut record = &bytes[at..end];
@@ -150,59 +155,24 @@ impl<'a, 'p> Reader<'a, 'p> {
         end + 1
     }
 
-    /// A row that holds nothing but plain numbers where numbers belong; `None` when it must be looked at more closely.
-    #[inline]
-    fn plain_row(&mut self, bytes: &[u8], at: usize) -> Option<usize> {
-        let end = self.plain_cells(bytes, at).and_then(|at| match bytes.get(at..) {
-            Some([b'\n', ..]) => Some(at),
-            Some([b'\r', b'\n', ..]) => Some(at + 1),
-            _ => None,
-        });
-        let Some(end) = end else {
-            // What was taken of the row goes again.
-            let kept = self.part.kept;
-            self.part.columns.iter_mut().for_each(|c| c.truncate(kept));
-            return None;
-        };
-        self.keep(None);
-        self.part.kept += 1;
-        self.part.rows += 1;
-        self.part.lines += 1;
-        Some(end + 1)
+    fn find_ends(&mut self, bytes: &[u8]) {
+        self.layout.ends.clear();
+        if self.plain {
+            plain::find_ends(bytes, self.layout.delimiter, &mut self.layout.ends);
+        }
     }
 
-    /// The cells of a plain row, straight into their columns; where its line ends.
-    #[inline]
-    fn plain_cells(&mut self, bytes: &[u8], at: usize) -> Option<usize> {
-        let delimiter = self.layout.delimiter;
-        let mut at = at;
-        let last = self.layout.uses.len() - 1;
-        for (column, (wanted, target)) in self.layout.uses.iter().zip(&mut self.part.columns).enumerate() {
-            match *wanted {
-                Use::Number { factor, .. } => {
-                    let (value, end) = number_ahead(bytes, at, delimiter)?;
-                    target.push(value * factor);
-                    at = end;
-                }
-                Use::Ignore => {
-                    let rest = &bytes[at..];
-                    let length = length_ahead(rest, delimiter);
-                    // A quote may hide a delimiter, and a record may start with a comment's sign.
-                    if rest.first().is_none_or(|&b| b == b'#' && column == 0) || memchr(b'"', &rest[..length]).is_some()
-                    {
-                        return None;
-                    }
-                    at += length;
-                }
-            }
-            if column < last {
-                if bytes.get(at) != Some(&delimiter) {
-                    return None;
-                }
-                at += 1;
-            }
+    /// Reads the plain rows from `at` on; returns where the next one starts that is none.
+    fn plain_rows(&mut self, bytes: &[u8], at: usize) -> usize {
+        let (delimiter, uses, ends) = (self.layout.delimiter, &self.layout.uses, &self.layout.ends);
+        let (rows, next) = Plain::new(delimiter, uses, &mut self.part.columns, ends).rows(bytes, at);
+        if rows > 0 {
+            self.keep(None);
+            self.part.kept += rows;
+            self.part.rows += rows;
+            self.part.lines += rows as u64;
         }
-        Some(at)
+        next
     }
 
     /// Starts a run where the row about to be kept does not simply follow the last one.
