@@ -5,8 +5,8 @@ use super::frame::Frame;
 use super::noise::{Direction, PathNoise, sensitivity};
 use super::normals::{THESIS_SAMPLES, normals_center};
 use super::retrace::Retrace;
+use super::yielding::{Manipulator, yielding};
 use crate::estimate::{Constraint, ConstraintKind, Leaning};
-use crate::identify::linear::least_squares;
 use nalgebra::Vector3;
 
 /// Kept points below which nothing is said.
@@ -45,7 +45,7 @@ const GUIDE_ALONG_CROSSING: f64 = 0.6;
 const SAME_SHARE: f64 = 0.012;
 /// A constrained grip may leave its path by this much, m: less is no sign of freedom.
 const GRIP_SLIP_M: f64 = 2.5e-3;
-/// Stiffness above which manipulator and sensors cannot tell a constraint from a rigid one, N/m.
+/// Stiffness of a hand of which nothing is known, N/m: what is as stiff counts as rigid.
 const RIGID_N_M: f64 = 2000.0;
 
 /// What is known about a path beside its points.
@@ -293,9 +293,8 @@ impl Shape {
         let normal: Vec<f64> = self.frame.kept.iter().map(|&i| outward(i).dot(&forces[i])).collect();
         found.constraint_force_n = Some(normal.iter().sum::<f64>() / normal.len() as f64);
         let deviation: Vec<f64> = self.frame.flat.iter().map(|p| self.arc.distance(*p)).collect();
-        let yields = least_squares(&[normal, vec![1.0; deviation.len()]], &deviation, None)
-            .is_ok_and(|f| f.t_value(0) > 3.0 && f.values[0] > 1.0 / RIGID_N_M);
-        found.rigid = Some(!yields);
+        let hand = Manipulator { stiffness_n_m: RIGID_N_M, give_m_n: (0.0, 0.0) };
+        (found.rigid, found.yielding) = yielding(&deviation, &normal, &hand);
     }
 }
 

@@ -1,12 +1,17 @@
 //! Geometric constraints: what kind of joint a tool path shows, with an honest interval for its radius.
 
+mod carried;
 mod circle;
 mod decide;
+pub mod existence;
 mod frame;
 mod noise;
 mod normals;
 mod retrace;
+pub mod slips;
+pub mod yielding;
 
+pub use carried::{Carry, carried};
 pub use decide::{Context, detect};
 pub use normals::{THESIS_SAMPLES, normals_center};
 

@@ -33,6 +33,9 @@ pub struct Constraint {
     /// Trial or recording it was found in, when there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recording: Option<String>,
+    /// What it holds, where a recording has several objects: `block-1`, …
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub object: Option<String>,
     /// Centre of rotation, m; two numbers for a planar recording, three otherwise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub center_m: Option<Vec<f64>>,
@@ -113,6 +116,7 @@ impl Constraint {
         Self {
             kind: ConstraintKind::Undecided,
             recording,
+            object: None,
             center_m: None,
             normals_center_m: None,
             radius_m: None,
@@ -188,9 +192,12 @@ pub struct Yielding {
 /// A sudden shift of the path, as when the grasp slips on a handle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Slip {
-    /// When, s; absent without a clock.
+    /// By when, s; absent without a clock.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_s: Option<f64>,
+    /// Not before, s: a slip while nothing moves only shows in the motion after it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub not_before_s: Option<f64>,
     /// Sample at which it happened.
     pub sample: usize,
     /// Shift of the path (of the centre, for a crank), m.

@@ -5,7 +5,8 @@
 //! width (it grew 7 % too narrow there) and from the height. Where the recording does not show it, the standard error says so.
 
 use super::linear::{LinearFit, least_squares};
-use crate::estimate::{EstimateError, Fit, Parameter};
+use crate::constraint::{Carry, carried};
+use crate::estimate::{Constraint, EstimateError, Fit, Parameter};
 use crate::segment::{Segmentation, Thresholds, segment_signals, subtasks, threshold::Levels};
 use crate::signal::noise::quantum;
 use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signals};
@@ -99,7 +100,7 @@ pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit
     let fit = Fit {
         task: Task::BlockStack.name().to_owned(),
         parameters,
-        constraints: Vec::new(),
+        constraints: (1..=count).filter_map(|number| blocks.constraint(number)).collect(),
         quality: None,
         warnings: blocks.segmentation.warnings.clone(),
     };
@@ -191,6 +192,19 @@ impl Blocks<'_> {
         let sums: Vec<f64> = self.levels.free.iter().map(|i| self.lift(*i)).collect();
         let constant = vec![vec![1.0; sums.len()]];
         least_squares(&constant, &sums, None).map_or(self.levels.force_noise_n, |fit| fit.std_errors[0])
+    }
+
+    /// Whether anything but the hand held a block while it was carried.
+    fn constraint(&self, number: usize) -> Option<Constraint> {
+        carried(&Carry {
+            object: &object(number),
+            recording: &self.recording.name,
+            signals: &self.signals,
+            samples: &self.samples(&[&format!("carry-block-{number}")]),
+            bias_n: self.levels.bias_n[0] + self.levels.bias_n[1],
+            bias_error_n: self.bias_error().hypot(std::f64::consts::SQRT_2 * self.resolution_n),
+            gravity: self.recording.meta.gravity(),
+        })
     }
 
     /// Weight: mean of the summed vertical forces over the carry, accelerations taken out.

@@ -10,12 +10,13 @@ mod held;
 mod laws;
 mod motion;
 mod report;
+mod slipping;
 
-use crate::estimate::{EstimateError, Fit};
+use crate::estimate::{Constraint, EstimateError, Fit};
 use crate::segment::{Segmentation, Thresholds, segment};
 use crate::signal::task::is_two_fingered;
 use friction::{friction, geometry_errors, heldout_quality};
-use geometry::{Geometry, geometry};
+use geometry::Geometry;
 use haptics::Vec2;
 use haptics::law::{Motion, drive_forces};
 use haptics::recording::{Channel, Recording, Task};
@@ -23,6 +24,7 @@ use haptics::world::Crank;
 use held::held;
 use motion::{Rows, motions};
 use report::{constraint, geometry_parameters, grip_parameters, warnings};
+use slipping::{slip_warning, without_slips};
 
 /// A path that misses its best circle by more than this share of the radius is no crank's.
 const LARGEST_RESIDUAL: f64 = 0.08;
@@ -37,7 +39,7 @@ const LEAST_SAMPLES: usize = 40;
 /// the fit.
 pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit, Segmentation), EstimateError> {
     let segmentation = segment(recording, Some(Task::Crank), thresholds)?;
-    let held = held(recording, &segmentation)?;
+    let mut held = held(recording, &segmentation)?;
     if held.turning.len() < LEAST_SAMPLES {
         return Err(EstimateError::TooFewSamples {
             recording: recording.name.clone(),
@@ -46,7 +48,7 @@ pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit
             needed: LEAST_SAMPLES,
         });
     }
-    let geometry = geometry(&held)?;
+    let (geometry, slips) = without_slips(&mut held)?;
     if geometry.rms_m > LARGEST_RESIDUAL * geometry.radius_m {
         return Err(EstimateError::Other(format!(
             "{} does not move on a circle: the best one, of radius {:.1} mm, is missed by {:.1} mm RMS; is it a crank?",
@@ -66,9 +68,10 @@ pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit
         parameters.extend(grip_parameters(recording, &held, &geometry)?);
     }
     let turning: Vec<Motion> = held.turning.iter().map(|i| motions[*i]).collect();
-    let constraint = constraint(recording, &held, &geometry, &turning, &friction);
+    let constraint = Constraint { slips, ..constraint(recording, &held, &geometry, &turning, &friction, &parameters) };
     let quality = heldout_quality(recording, &rows);
     let mut warnings = warnings(&segmentation, &turning, &constraint);
+    warnings.extend(slip_warning(&constraint.slips));
     if held.bias_error_n.is_none() && !warnings.iter().any(|w| w.contains("let go")) {
         warnings.push(
             "the handle was never let go in this recording: a bias of the force sensor would pass for weight; start and \

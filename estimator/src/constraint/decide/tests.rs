@@ -157,7 +157,8 @@ fn dwelling_does_not_move_the_answer() {
 fn a_pull_outward_is_a_positive_constraint_force() {
     let points = arc(0.4, 1.3, 500, 1e-4, 5.0, 1);
     let center = Vector3::new(0.5, -0.2, 0.1);
-    let forces: Vec<Vector3<f64>> = points.iter().map(|p| (p - center).normalize() * 6.0).collect();
+    let forces: Vec<Vector3<f64>> =
+        points.iter().enumerate().map(|(i, p)| (p - center).normalize() * (6.0 + (0.1 * i as f64).sin())).collect();
     let found = detect(&points, Some(&forces), &Context::default());
     assert!((found.constraint_force_n.expect("a force") - 6.0).abs() < 0.05 && found.rigid == Some(true));
 }

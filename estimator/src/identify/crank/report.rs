@@ -5,11 +5,13 @@ use super::friction::Friction;
 use super::geometry::Geometry;
 use super::held::Held;
 use super::laws::WEIGHT;
+use crate::constraint::existence::{Rows, existence, sentence};
+use crate::constraint::yielding::{Manipulator, judge};
 use crate::constraint::{THESIS_SAMPLES, normals_center};
-use crate::estimate::{Constraint, ConstraintKind, EstimateError, Parameter};
+use crate::estimate::{Constraint, ConstraintKind, EstimateError, Parameter, Yielding};
 use crate::identify::linear::least_squares;
 use crate::segment::Segmentation;
-use crate::signal::task::{half_width, smooth, task_signals};
+use crate::signal::task::{CUBIC_HALF, half_width, smooth, task_signals};
 use haptics::Vec2;
 use haptics::law::Motion;
 use haptics::recording::Recording;
@@ -118,6 +120,7 @@ pub(super) fn constraint(
     geometry: &Geometry,
     motions: &[Motion],
     friction: &Friction,
+    parameters: &[Parameter],
 ) -> Constraint {
     let weight = friction.value(WEIGHT);
     // Fc = Fn − (mg)n, the weight's part along the outward normal being mg sin θ (eq. 5.1).
@@ -127,20 +130,26 @@ pub(super) fn constraint(
     let [ex, ey, er] = geometry.errors_m.map(|e| e.hypot(held.resolution_m));
     let points: Vec<Vec2> = held.turning.iter().map(|i| held.position[*i]).collect();
     let by_normals = normals_center(&points, THESIS_SAMPLES);
-    let rigid = geometry.stiffness.is_none_or(|(k, _)| k > RIGID_N_M);
+    let (rigid, yielding) = rigidity(geometry, parameters);
+    let tested = existence(&existence_rows(recording, held));
+    let (existence, sided) = tested.map_or((None, None), |(e, s)| (Some(e), s));
+    let held_by = existence.as_ref().map_or_else(String::new, |e| format!("; {}", sentence(e)));
     Constraint {
         kind: ConstraintKind::Revolute,
+        existence,
+        sided,
         center_m: Some(vec![geometry.center_m.x, geometry.center_m.y]),
         normals_center_m: by_normals.map(|center| vec![center.x, center.y]),
         radius_m: Some(geometry.radius_m),
         radius_interval_m: Some((geometry.radius_m - 1.96 * er, Some(geometry.radius_m + 1.96 * er))),
-        rigid: Some(rigid),
+        rigid,
+        yielding,
         std_error: BTreeMap::from([("center_m".to_owned(), ex.max(ey)), ("radius_m".to_owned(), er)]),
         coverage_rad: Some(high - low),
         residual_m: Some(geometry.rms_m),
         constraint_force_n: Some(force),
         evidence: format!(
-            "the handle stays within {:.3} mm (RMS) of one circle over {:.1} turns; {}",
+            "the handle stays within {:.3} mm (RMS) of one circle over {:.1} turns; {}{held_by}",
             geometry.rms_m * 1e3,
             (high - low) / std::f64::consts::TAU,
             normals_sentence(by_normals, geometry.center_m)
@@ -149,8 +158,50 @@ pub(super) fn constraint(
     }
 }
 
-/// Stiffer than the manipulator's own finger compliance in the thesis (0.11 cm under a few newtons): rigid.
-const RIGID_N_M: f64 = 1000.0;
+/// The handle's motion and force, for the test whether anything guides it.
+fn existence_rows(recording: &Recording, held: &Held) -> Rows {
+    const SLOW_SHARE: f64 = 0.3;
+    let square: f64 = held.turning.iter().map(|i| held.velocity[*i].norm_squared()).sum();
+    let least = SLOW_SHARE * (square / held.turning.len().max(1) as f64).sqrt();
+    let stride = (4 * half_width(&held.time_s)).max(2 * CUBIC_HALF) + 1;
+    let picked: Vec<usize> =
+        held.turning.iter().copied().step_by(stride).filter(|i| held.velocity[*i].norm() > least).collect();
+    let pick = |series: &[Vec2]| picked.iter().map(|i| series[*i]).collect::<Vec<Vec2>>();
+    Rows {
+        velocity: pick(&held.velocity),
+        acceleration: pick(&held.acceleration),
+        force: pick(&held.force),
+        up: match recording.meta.up.as_deref() {
+            Some("-y") => -Vec2::y(),
+            Some("none") => Vec2::zeros(),
+            _ => Vec2::y(),
+        },
+        gravity: None,
+        rubs: true,
+        bias_error_n: held.bias_error_n.unwrap_or(0.0).hypot(held.resolution_n),
+    }
+}
+
+/// Stiffness of a hand whose pads' give the recording does not show, N/m: the thesis's fingers gave 0.11 cm under a few newtons.
+const HAND_N_M: f64 = 1000.0;
+
+/// The give along x, where the pads press and their stiffness is known from grip and width, against the hand's own there: two
+/// pads side by side.
+fn rigidity(geometry: &Geometry, parameters: &[Parameter]) -> (Option<bool>, Option<Yielding>) {
+    let pad = parameters.iter().find(|p| p.object == "pad" && p.name == "stiffness_N_m" && p.how.starts_with("give"));
+    let width = parameters.iter().any(|p| p.name == "handle_width_m" && p.identified);
+    let known = pad.filter(|_| width).and_then(|p| Some((p.value?, p.std_error?)));
+    let (give, error) = (geometry.give_m_per_n.x, geometry.give_errors.x);
+    match known {
+        Some((stiffness, stiffness_error)) => {
+            let pads = 0.5 / stiffness;
+            let hand =
+                Manipulator { stiffness_n_m: 2.0 * stiffness, give_m_n: (pads, pads * stiffness_error / stiffness) };
+            judge(give, error, &hand)
+        }
+        None => judge(give, error, &Manipulator { stiffness_n_m: HAND_N_M, give_m_n: (0.0, 0.0) }),
+    }
+}
 
 /// What the thesis's own method, normals over twelve samples, says of the centre.
 fn normals_sentence(by_normals: Option<Vec2>, center: Vec2) -> String {
