@@ -1,5 +1,9 @@
 //! One recording: a table of samples and the facts that travel with it (`spec/logs.md`).
 
+mod labels;
+
+pub use labels::Labels;
+
 use crate::hand::Hand;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -165,7 +169,7 @@ pub struct Recording {
     /// All numeric columns but the time.
     pub channels: Vec<Channel>,
     /// A person's or a generator's state label a sample: only ever used to score.
-    pub labels: Option<Vec<String>>,
+    pub labels: Option<Labels>,
     /// The sidecar.
     pub meta: Meta,
     /// Found while loading.
@@ -218,7 +222,7 @@ impl Recording {
                 .iter()
                 .map(|c| Channel { values: c.values[range.clone()].to_vec(), ..c.clone() })
                 .collect(),
-            labels: self.labels.as_ref().map(|l| l[range].to_vec()),
+            labels: self.labels.as_ref().map(|l| l.slice(range)),
             meta: self.meta.clone(),
             warnings: Vec::new(),
         }

@@ -28,6 +28,14 @@ fn recording() -> Recording {
     }
 }
 
+/// Makes the label of a sample.
+type Label = fn(usize) -> String;
+
+/// The label of a sample: some hundred samples of each.
+fn states_of(sample: usize) -> &'static str {
+    ["free-motion", "hold-object-above-ground", "turning", "hold-object-on-ground"][sample / 317 % 4]
+}
+
 /// Peak while loading, bytes, against the file's size and what the samples take.
 fn check(path: &Path, table: &mut String) -> bool {
     let size = usize::try_from(std::fs::metadata(path).expect("written").len()).expect("fits");
@@ -35,12 +43,14 @@ fn check(path: &Path, table: &mut String) -> bool {
     let before = MEMORY.current_usage();
     let loaded = estimator::log::load(path, None).expect("loads");
     let used = MEMORY.peak_usage() - before;
+    let labels = loaded[0].labels.as_ref();
+    assert!(labels.is_none_or(|l| l.len() == ROWS && (&l[700] == states_of(700) || &l[700] == "sample 0000700")));
     let samples: usize = loaded.iter().map(|r| 8 * r.len() * (r.channels.len() + 1)).sum();
     assert_eq!(samples, 8 * ROWS * (CHANNELS + 1), "{}", path.display());
     let mb = |bytes: usize| bytes as f64 * 1e-6;
     let _ = writeln!(
         table,
-        "{:<14} file {:6.1} MB, samples {:6.1} MB, peak {:6.1} MB: {:.2} of the larger",
+        "{:<16} file {:6.1} MB, samples {:6.1} MB, peak {:6.1} MB: {:.2} of the larger",
         path.file_name().expect("a name").to_string_lossy(),
         mb(size),
         mb(samples),
@@ -59,6 +69,17 @@ fn loading_takes_at_most_twice_the_files_size() {
         let path = folder.path().join(name);
         estimator::log::write(std::slice::from_ref(&whole), &path, &[]).expect("writes");
         paths.push(path);
+    }
+    // A state for every sample as people name them, and a text of its own for every sample.
+    let labelled: [(&str, Label); 2] =
+        [("states", |i| states_of(i).to_owned()), ("ever-new", |i| format!("sample {i:07}"))];
+    for (name, label) in labelled {
+        let one = Recording { labels: Some((0..ROWS).map(label).collect()), ..whole.clone() };
+        for ending in ["csv", "mcap", "parquet"] {
+            let path = folder.path().join(format!("{name}.{ending}"));
+            estimator::log::write(std::slice::from_ref(&one), &path, &[]).expect("writes");
+            paths.push(path);
+        }
     }
     drop(whole);
     // One digit a cell: the tightest table there is.

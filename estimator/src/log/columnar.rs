@@ -5,6 +5,7 @@ use super::plan::{Plan, Use};
 use super::raw::{Cells, Raw, is_missing};
 use super::table::{Group, Table};
 use csv::ByteRecord;
+use haptics::recording::Labels;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -41,8 +42,13 @@ pub fn table(mut raw: Raw, plan: &Plan, path: &Path) -> Result<Table, LogError> 
 
 /// The one group of a file without trials and selection: columns are moved, not copied.
 fn whole(raw: &mut Raw, plan: &Plan, uses: &[Option<f64>]) -> Group {
-    let rows: Vec<usize> = if plan.label.is_some() { (0..raw.rows()).collect() } else { Vec::new() };
-    let mut group = Group::new(Vec::new(), labels(raw, plan, &rows));
+    let labels = match plan.label.map(|column| (column, &mut raw.columns[column])) {
+        // It is not read as numbers too: the plan gives a column one use.
+        Some((_, Cells::Text(texts))) => std::mem::take(texts),
+        Some((column, Cells::Numbers(_))) => (0..raw.rows()).map(|row| raw.columns[column].text(row)).collect(),
+        None => Labels::default(),
+    };
+    let mut group = Group::new(Vec::new(), labels);
     for (cells, &factor) in raw.columns.iter_mut().zip(uses) {
         let mut values = Vec::new();
         if let Some(factor) = factor {
@@ -61,15 +67,19 @@ fn whole(raw: &mut Raw, plan: &Plan, uses: &[Option<f64>]) -> Group {
     group
 }
 
-fn labels(raw: &Raw, plan: &Plan, rows: &[usize]) -> Vec<String> {
-    plan.label.map_or_else(Vec::new, |column| rows.iter().map(|&r| raw.columns[column].text(r)).collect())
+fn labels(raw: &Raw, plan: &Plan, rows: &[usize]) -> Labels {
+    match plan.label.map(|column| &raw.columns[column]) {
+        Some(Cells::Text(texts)) => texts.gathered(rows.iter().copied()),
+        Some(cells) => rows.iter().map(|&row| cells.text(row)).collect(),
+        None => Labels::default(),
+    }
 }
 
 /// A cell as a number; not a number where it is text that is none.
 fn number(cells: &Cells, row: usize) -> f64 {
     match cells {
         Cells::Numbers(values) => values[row],
-        Cells::Text(texts) => texts.get(row).trim().parse().unwrap_or(f64::NAN),
+        Cells::Text(texts) => texts[row].trim().parse().unwrap_or(f64::NAN),
     }
 }
 

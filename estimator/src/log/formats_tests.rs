@@ -72,7 +72,7 @@ fn trial(rows: usize, clock: bool, labelled: bool) -> impl Strategy<Value = Reco
         Recording {
             time_s: clock.then(|| steps.iter().map(&mut next).collect()),
             channels,
-            labels: labelled.then_some(labels),
+            labels: labelled.then(|| labels.iter().collect()),
             ..Recording::default()
         }
     })
@@ -288,7 +288,7 @@ fn a_stream_with_labels_and_facts_that_come_last_reads_back() {
     assert_eq!(whole.meta, late);
     assert!(whole.warnings.iter().all(|w| w.kind != "cut-off"));
     for log in [cut, whole] {
-        assert_eq!(log.labels, Some(["free-motion", "turning", ""].map(str::to_owned).to_vec()));
+        assert_eq!(log.labels, Some(["free-motion", "turning", ""].iter().collect()));
         assert_eq!(log.channel("q_m"), Some([-0.5; 3].as_slice()));
     }
     let taken = ["label".to_owned()];

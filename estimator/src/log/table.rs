@@ -1,6 +1,7 @@
 //! The common intermediate of every format: rows by trial, column by column, with their places in the file.
 
 use super::fingerprint::Fingerprints;
+use haptics::recording::Labels;
 
 /// Rows of one trial value, column by column.
 #[derive(Debug, Default)]
@@ -8,7 +9,7 @@ pub struct Group {
     /// One vector for every column of the file; empty where the column is not read.
     pub columns: Vec<Vec<f64>>,
     /// Labels, when there is such a column.
-    pub labels: Vec<String>,
+    pub labels: Labels,
     /// Line in the file of every row, run-length coded: (first row index in the group, its line, its row in the file).
     lines: Vec<(usize, u64, usize)>,
 }
@@ -28,7 +29,7 @@ pub struct Table {
 
 impl Group {
     /// Rows whose places are still to be noted.
-    pub fn new(columns: Vec<Vec<f64>>, labels: Vec<String>) -> Self {
+    pub fn new(columns: Vec<Vec<f64>>, labels: Labels) -> Self {
         Self { columns, labels, lines: Vec::new() }
     }
 

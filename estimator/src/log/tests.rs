@@ -138,7 +138,7 @@ fn trials_labels_and_selection_split_the_table() {
     assert_eq!(logs.iter().map(|l| l.trial.clone().expect("a trial")).collect::<Vec<_>>(), ["00", "01"]);
     assert_eq!(logs[1].name, "log.csv, trial 01");
     assert_eq!(logs[1].channel("x_m"), Some(&[5.0][..]));
-    assert_eq!(logs[0].labels.as_deref(), Some(&["free".to_owned(), "free".to_owned()][..]));
+    assert_eq!(logs[0].labels, Some(["free"; 2].iter().collect()));
     let one = r#"{"columns":{"trial":"run"},"select":{"mechanism":"door","trial":1}}"#;
     assert_eq!(folder.load_meta(table, one).expect("loads").len(), 1);
 }
@@ -192,7 +192,7 @@ fn a_recording_is_written_and_reads_back_to_the_same_bits() {
         trial: Some("a, \"b\"".to_owned()),
         time_s: Some((0..6).map(|i| f64::from(i) / 3.0).collect()),
         channels: vec![channel("q_m", "m"), channel("f_N", "N"), channel("oil_degC", "degC")],
-        labels: Some(vec!["free-motion".to_owned(); 6]),
+        labels: Some(["free-motion"; 6].iter().collect()),
         meta: meta.clone(),
         warnings: Vec::new(),
     };

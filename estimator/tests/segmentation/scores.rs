@@ -57,7 +57,7 @@ impl Scores {
     pub fn add(&mut self, recording: &Recording, found: &Segmentation, as_one: fn(SystemState) -> SystemState) {
         let labels = recording.labels.as_ref().expect("a generated recording has labels");
         let time_s = recording.time_s.as_ref().expect("a clock");
-        let truth: Vec<SystemState> = labels.iter().map(|l| state(l)).collect();
+        let truth: Vec<SystemState> = labels.iter().map(state).collect();
         let claims: Vec<SystemState> = found.per_sample(truth.len()).into_iter().map(as_one).collect();
         self.samples += truth.len();
         self.right += truth.iter().zip(&claims).filter(|(a, b)| a == b).count();

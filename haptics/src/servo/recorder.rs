@@ -112,7 +112,7 @@ pub fn to_recording(
         trial: None,
         time_s: Some(kept.iter().map(|t| t.time_s).collect()),
         channels,
-        labels: Some(kept.iter().map(|t| t.label.to_owned()).collect()),
+        labels: Some(kept.iter().map(|t| t.label).collect()),
         meta: facts(world),
         warnings: Vec::new(),
     }

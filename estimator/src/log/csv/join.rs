@@ -75,7 +75,6 @@ impl<'a> Join<'a> {
                 }
             }
         }
-        let mut labels = std::mem::take(&mut part.labels).into_iter();
         for (i, run) in part.runs.iter().enumerate() {
             let end = part.runs.get(i + 1).map_or(part.kept, |next| next.first);
             let at = self.group(run.trial.as_deref(), part.kept, part.bytes);
@@ -88,7 +87,7 @@ impl<'a> Join<'a> {
                 }
             }
             if self.plan.label.is_some() {
-                group.labels.extend(labels.by_ref().take(end - run.first));
+                group.labels.extend_from(&part.labels, run.first..end);
             }
         }
         self.show();
@@ -157,6 +156,7 @@ impl<'a> Join<'a> {
         }
         for (_, group) in &mut self.table.groups {
             group.columns.iter_mut().for_each(Vec::shrink_to_fit);
+            group.labels.shrink_to_fit();
         }
         Ok(self.table)
     }

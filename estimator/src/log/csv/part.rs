@@ -4,6 +4,7 @@ use super::cells::{Cells, number, record_end};
 use super::plain::{self, Plain};
 use crate::log::fingerprint::{Marks, SEPARATOR, cell_hash};
 use crate::log::plan::{Plan, Use};
+use haptics::recording::Labels;
 use memchr::memchr;
 
 /// How many values of a selected column are remembered for the sentence that nothing was selected.
@@ -54,7 +55,7 @@ pub struct Part {
     /// One vector a column of the file; empty where it is not read.
     pub columns: Vec<Vec<f64>>,
     /// Labels of the kept rows.
-    pub labels: Vec<String>,
+    pub labels: Labels,
     /// Kept rows.
     pub kept: usize,
     /// All rows.
@@ -103,7 +104,7 @@ impl<'a, 'p> Reader<'a, 'p> {
         let plan = layout.plan;
         let part = Part {
             columns,
-            labels: Vec::new(),
+            labels: Labels::default(),
             kept: 0,
             rows: 0,
             lines: 0,
@@ -222,7 +223,7 @@ impl<'a, 'p> Reader<'a, 'p> {
             }
         }
         if let Some(label) = self.layout.plan.label {
-            self.part.labels.push(String::from_utf8_lossy(cells.get(record, label)).into_owned());
+            self.part.labels.push(&String::from_utf8_lossy(cells.get(record, label)));
         }
         self.part.kept += 1;
         Ok(())

@@ -1,7 +1,8 @@
 //! Channels of one clock onto another: zero phase, never beyond the first and the last sample.
 
-use crate::log::raw::{Cells, MISSING, Texts, is_missing};
+use crate::log::raw::{Cells, MISSING, is_missing};
 use crate::signal::filter;
+use haptics::recording::Labels;
 
 /// A channel that is this much faster than the clock is low-passed first.
 const FASTER: f64 = 1.2;
@@ -66,9 +67,9 @@ pub fn onto(to: &[f64], from: &[f64], cells: &Cells) -> Cells {
     }
     match cells {
         Cells::Text(texts) => {
-            let mut held = Texts::default();
+            let mut held = Labels::default();
             for &t in to {
-                held.push(texts.get(before(from, t)));
+                held.push(&texts[before(from, t)]);
             }
             Cells::Text(held)
         }
@@ -160,7 +161,7 @@ mod tests {
         );
         let made = numbers(onto(&[0.05, 0.2], &from, &Cells::Numbers(vec![1.0, MISSING, 3.0, 4.0, 5.0])));
         assert!(is_missing(made[0]) && made[1].is_finite());
-        let mut texts = Texts::default();
+        let mut texts = Labels::default();
         for text in ["a", "b", "c", "d", "e"] {
             texts.push(text);
         }

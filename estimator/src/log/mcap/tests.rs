@@ -119,7 +119,7 @@ fn a_flat_json_topic_is_a_table_in_every_compression() {
         assert_eq!((log.len(), names(&log)), (500, vec!["q_m", "f_N"]));
         assert_eq!(log.channel("q_m").map(|q| q[499]), Some(0.499));
         assert_eq!(log.time_s.as_ref().map(|t| t[499]), Some(4.99));
-        assert_eq!(log.labels.as_ref().map(|l| l[3].as_str()), Some("free"));
+        assert_eq!(log.labels.as_ref().map(|l| &l[3]), Some("free"));
     }
 }
 

@@ -1,6 +1,7 @@
 //! The messages of one topic as columns: one row a message, one column a field.
 
-use crate::log::raw::{Cells, MISSING, Texts, is_missing};
+use crate::log::raw::{Cells, MISSING, is_missing};
+use haptics::recording::Labels;
 use std::collections::HashMap;
 
 /// More fields than this in one topic are no recording.
@@ -71,7 +72,7 @@ impl Topic {
         if self.fields.len() == MAX_FIELDS {
             return Err(format!("it has more than {MAX_FIELDS} different fields"));
         }
-        let mut cells = if text { Cells::Text(Texts::default()) } else { Cells::Numbers(Vec::new()) };
+        let mut cells = if text { Cells::Text(Labels::default()) } else { Cells::Numbers(Vec::new()) };
         pad(&mut cells, self.log_ns.len().saturating_sub(1));
         self.cells += self.log_ns.len();
         self.fields.push(field.to_owned());
@@ -96,7 +97,7 @@ impl Topic {
     pub fn text(&mut self, column: usize, value: &str) {
         let rows = self.log_ns.len();
         if let Cells::Numbers(values) = &self.columns[column] {
-            let mut texts = Texts::default();
+            let mut texts = Labels::default();
             for &v in values {
                 texts.push(&if is_missing(v) { String::new() } else { v.to_string() });
             }

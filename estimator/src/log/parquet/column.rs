@@ -1,6 +1,7 @@
 //! One column of a Parquet file as numbers or text.
 
-use crate::log::raw::{Cells, MISSING, Texts};
+use crate::log::raw::{Cells, MISSING};
+use haptics::recording::Labels;
 use parquet::basic::{LogicalType, TimeUnit, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, DataType};
@@ -129,7 +130,7 @@ fn texts<T: DataType<T = ByteArray>>(
     reader: ColumnReaderImpl<T>,
     levels: i16,
     rows: usize,
-    to: &mut Texts,
+    to: &mut Labels,
 ) -> Result<(), ParquetError> {
     each(reader, levels, rows, |value| {
         to.push(value.map_or(Ok(""), |v| v.as_utf8())?);

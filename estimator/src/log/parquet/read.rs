@@ -3,9 +3,10 @@
 use super::column::{self, Meaning};
 use super::{SIDECAR, guard, one_line};
 use crate::log::errors::LogError;
-use crate::log::raw::{Cells, Raw, Texts};
+use crate::log::raw::{Cells, Raw};
 use crate::log::units;
 use crate::log::watch::Watch;
+use haptics::recording::Labels;
 use haptics::recording::Warning;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use std::fs::File;
@@ -48,7 +49,7 @@ fn whole(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Columns, LogError>
                 raw.headers.push(header(&name, meaning));
                 raw.aliases.push(name);
                 let text = meaning == Meaning::Text;
-                raw.columns.push(if text { Cells::Text(Texts::default()) } else { Cells::Numbers(Vec::new()) });
+                raw.columns.push(if text { Cells::Text(Labels::default()) } else { Cells::Numbers(Vec::new()) });
             }
             Err(why) => said.push(Warning {
                 kind: "text-column".to_owned(),
