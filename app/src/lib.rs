@@ -4,10 +4,13 @@
 
 pub mod boards;
 pub mod cli;
+mod constraint_words;
 pub mod operator;
 pub mod recorder;
 pub mod ui;
 pub mod worlds;
+
+pub use constraint_words::constraint_words;
 
 use std::path::PathBuf;
 

@@ -9,12 +9,13 @@ use std::path::Path;
 pub type Make = fn() -> World;
 
 /// The built-in worlds by name. Each lies as `assets/worlds/NAME.json` in the sources, the same as a user would write it.
-pub const BUILT_IN: [(&str, Make); 6] = [
+pub const BUILT_IN: [(&str, Make); 7] = [
     ("stack", presets::stacking),
     ("crank", presets::crank),
     ("needle", presets::needle),
     ("barrel", presets::barrel),
     ("switch", presets::switch),
+    ("guide", presets::guide),
     ("table", presets::table),
 ];
 
@@ -35,7 +36,7 @@ pub fn find(name: &Path) -> anyhow::Result<World> {
 pub fn lacks(world: &World, task: Task) -> Option<&'static str> {
     let has_shape = |shape: Shape| world.blocks.iter().any(|block| block.shape == shape);
     let (there, what) = match task {
-        Task::BlockStack => (has_shape(Shape::Block), "blocks"),
+        Task::BlockStack => (world.blocks.iter().any(|b| b.shape == Shape::Block && b.guide.is_none()), "blocks"),
         Task::Crank => (world.crank.is_some(), "crank"),
         Task::Needle => (world.membrane.is_some() && has_shape(Shape::Needle), "needle with a sheet to pierce"),
         Task::Barrel => (has_shape(Shape::Barrel), "barrel"),

@@ -1,5 +1,6 @@
 //! From a fit to a world: measured numbers go in with their errors, what was not measured is a stated assumption.
 
+use crate::constraint;
 use crate::estimate::{Fit, Parameter};
 use crate::identify::mechanism;
 use crate::segment::Segmentation;
@@ -42,10 +43,14 @@ pub fn world(task: Task, recordings: &[Recording], fit: &Fit, segmentations: &[O
             builder.world.floor = None;
             builder.world.mechanism = Some(mechanism::world(fit, recording));
             builder.note_all("mechanism");
+            builder.slider();
         }
     }
     builder.world
 }
+
+/// Friction of a slider where the recording does not show it, N.
+const ASSUMED_SLIDER_N: f64 = 0.1;
 
 struct Builder<'a> {
     world: World,
@@ -87,6 +92,16 @@ impl Builder<'_> {
                 let from = self.from.clone();
                 self.note(object, &parameter.name, value, parameter.std_error, Source::Measured, &from);
             }
+        }
+    }
+
+    /// A slider on the path of the first constraint that has one, so that it can be felt.
+    fn slider(&mut self) {
+        let friction_n = self.fit.value("mechanism", "coulomb_N").unwrap_or(ASSUMED_SLIDER_N);
+        let felt = self.fit.constraints.iter().find_map(|c| constraint::felt::add(&mut self.world, c, friction_n));
+        if let Some(scale) = felt {
+            let why = "size of the path in the hand's workspace beside the recorded one";
+            self.note("slider", "scale", scale, None, Source::Assumed, why);
         }
     }
 

@@ -85,5 +85,6 @@ fn constraint_line(constraint: &Constraint) -> String {
         format!(", 95 % within {:.3} … {high}", low * 1e3)
     });
     let name = constraint.recording.as_deref().map_or(String::new(), |name| format!("{name}: "));
-    format!("{name}{kind}{radius}{interval}: {}", constraint.evidence)
+    let words: Vec<String> = crate::constraint_words(constraint).into_iter().map(|w| format!("; {w}")).collect();
+    format!("{name}{kind}{radius}{interval}: {}{}", constraint.evidence, words.concat())
 }

@@ -1,12 +1,16 @@
 //! Which kind of constraint a path shows.
 
 use super::circle::{Arc, cost, fit, refine};
+use super::existence::sentence;
 use super::frame::Frame;
+use super::guided;
 use super::noise::{Direction, PathNoise, sensitivity};
 use super::normals::{THESIS_SAMPLES, normals_center};
 use super::retrace::Retrace;
+use super::screw::{self, Helix};
+use super::spline;
 use super::yielding::{Manipulator, yielding};
-use crate::estimate::{Constraint, ConstraintKind, Leaning};
+use crate::estimate::{Constraint, ConstraintKind, Guide, Leaning};
 use nalgebra::Vector3;
 
 /// Kept points below which nothing is said.
@@ -43,6 +47,13 @@ const GUIDE_ALONG: f64 = 0.3;
 const GUIDE_ALONG_CROSSING: f64 = 0.6;
 /// Passes along one guide lie this close to each other, as a share of the extent.
 const SAME_SHARE: f64 = 0.012;
+/// A compact path may miss the recorded one by so many times its noise, or by this share of its extent.
+const COMPACT_NOISES: f64 = 1.2;
+const COMPACT_SHARE: f64 = 2e-3;
+/// A path in space that leaves its plane by more than this share of its extent is not called flat.
+const PLANE_SHARE: f64 = 0.01;
+/// A pitch counts from this many standard errors on.
+const SCREW_ERRORS: f64 = 5.0;
 /// A constrained grip may leave its path by this much, m: less is no sign of freedom.
 const GRIP_SLIP_M: f64 = 2.5e-3;
 /// Stiffness of a hand of which nothing is known, N/m: what is as stiff counts as rigid.
@@ -55,6 +66,10 @@ pub struct Context {
     pub recording: Option<String>,
     /// The path lies in the x-y plane by construction.
     pub planar: bool,
+    /// Sample times, s, one a point: inertia can then be told from constraint forces.
+    pub time_s: Option<Vec<f64>>,
+    /// Unit vector upwards; zero in a level plane.
+    pub up: Vector3<f64>,
 }
 
 /// Everything measured about the path's shape.
@@ -85,11 +100,33 @@ pub fn detect(points: &[Vector3<f64>], forces: Option<&[Vector3<f64>]>, context:
         return blank(context, &text);
     }
     let Some(shape) = Shape::new(frame) else { return blank(context, "the path is too short against its noise") };
-    let (kind, evidence) = shape.kind();
+    let (mut kind, mut evidence) = shape.kind();
+    let forces = forces.filter(|f| f.len() == points.len());
+    let held = forces.and_then(|f| guided::existence_of(&shape.frame, points, f, context));
+    if let (Some((tested, _)), true) = (&held, kind == ConstraintKind::Undecided && shape.is_neither()) {
+        kind = match tested.exists {
+            Some(true) => ConstraintKind::Spline,
+            Some(false) => ConstraintKind::Free,
+            None => kind,
+        };
+        evidence = format!("{}; {evidence}", sentence(tested));
+    }
+    let winding = if context.planar || kind == ConstraintKind::Prismatic { None } else { shape.winds() };
+    if let Some(helix) = &winding {
+        kind = ConstraintKind::Screw;
+        evidence.clone_from(&helix.1);
+    }
     let mut found = blank(context, &evidence);
     found.kind = kind;
     shape.describe(&mut found, context.planar);
-    if let Some(forces) = forces.filter(|f| f.len() == points.len() && kind == ConstraintKind::Revolute) {
+    found.screw = guided::screw_of(&found, winding.as_ref().map(|w| &w.0));
+    if let Some((helix, _)) = &winding {
+        guided::describe(&mut found, helix);
+    }
+    if let Some((existence, sided)) = held {
+        (found.existence, found.sided) = (Some(existence), sided);
+    }
+    if let Some(forces) = forces.filter(|_| kind == ConstraintKind::Revolute) {
         shape.add_forces(&mut found, points, forces);
     }
     found
@@ -198,6 +235,30 @@ impl Shape {
         })
     }
 
+    /// Neither a line nor a circle.
+    fn is_neither(&self) -> bool {
+        self.residual_m() > CLOSE_SHARE * self.frame.extent_m
+    }
+
+    /// Out of the plane by more than noise and grip.
+    fn leaves_plane(&self) -> bool {
+        self.frame.plane_rms_m > (4.0 * self.frame.noise_m).max(PLANE_SHARE * self.frame.extent_m)
+    }
+
+    /// A screw that fits where the plane does not.
+    fn winds(&self) -> Option<(Helix, String)> {
+        let helix = self.leaves_plane().then(|| screw::fit(&self.frame.space))??;
+        let certain = helix.pitch_m_rad.abs() > SCREW_ERRORS * helix.pitch_error;
+        let fits = helix.rms_m < CLOSE_SHARE * self.frame.extent_m && helix.rms_m < 0.4 * self.residual_m();
+        let text = format!(
+            "a screw fits within {:.1} mm (root mean square) over {:.2} turns, the best circle in a plane within {:.1} mm",
+            1e3 * helix.rms_m,
+            helix.turned_rad / std::f64::consts::TAU,
+            1e3 * self.residual_m()
+        );
+        (certain && fits && helix.radius_m < HINGE_M.1).then_some((helix, text))
+    }
+
     /// What the passes have in common is not noise.
     fn systematic(&self) -> bool {
         let found = &self.retrace;
@@ -221,6 +282,14 @@ impl Shape {
         let dimensions = if planar { 2 } else { 3 };
         let numbers = |v: Vector3<f64>| v.iter().take(dimensions).copied().collect::<Vec<f64>>();
         found.coverage_m = Some(self.frame.travelled_m);
+        found.plane_residual_m = (!planar).then_some(self.frame.plane_rms_m);
+        if !planar && self.leaves_plane() {
+            found.evidence = format!(
+                "{}; the path leaves its best plane by {:.1} mm (root mean square), so what is said of it in the plane is rough",
+                found.evidence,
+                1e3 * self.frame.plane_rms_m
+            );
+        }
         let (low, high) = self.interval;
         let interval = (1.0 / high.max(f64::MIN_POSITIVE), (low > 0.0).then(|| 1.0 / low));
         match found.kind {
@@ -247,8 +316,25 @@ impl Shape {
                 found.radius_interval_m = Some(interval);
                 found.residual_m = Some(self.residual_m());
             }
+            ConstraintKind::Spline => {
+                found.residual_m = Some(self.residual_m());
+                found.guide = self.compact(&numbers);
+            }
             _ => found.residual_m = Some(self.residual_m()),
         }
+    }
+
+    /// The path by few control points.
+    fn compact(&self, numbers: &dyn Fn(Vector3<f64>) -> Vec<f64>) -> Option<Guide> {
+        let bound = (COMPACT_NOISES * self.frame.noise_m).max(COMPACT_SHARE * self.frame.extent_m);
+        let found = spline::fit(&self.frame.flat, self.frame.extent_m, bound)?;
+        Some(Guide {
+            points_m: found.curve.points_m.iter().map(|p| numbers(self.frame.lift(*p))).collect(),
+            closed: found.curve.closed,
+            length_m: found.length_m,
+            rms_m: found.rms_m,
+            largest_m: found.largest_m,
+        })
     }
 
     /// The likelier kind where none is certain.

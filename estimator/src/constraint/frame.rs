@@ -18,6 +18,8 @@ pub struct Frame {
     pub axes: [Vector3<f64>; 3],
     /// Kept points in the plane, m.
     pub flat: Vec<Vec2>,
+    /// The same points in space, m.
+    pub space: Vec<Vector3<f64>>,
     /// Index of each kept point in the recording.
     pub kept: Vec<usize>,
     /// Root mean square distance from the plane, m.
@@ -68,6 +70,7 @@ impl Frame {
             origin,
             axes,
             flat,
+            space: chosen,
             kept,
         })
     }

@@ -4,11 +4,15 @@ mod carried;
 mod circle;
 mod decide;
 pub mod existence;
+pub mod felt;
 mod frame;
+mod guided;
 mod noise;
 mod normals;
 mod retrace;
+pub mod screw;
 pub mod slips;
+pub mod spline;
 pub mod yielding;
 
 pub use carried::{Carry, carried};
@@ -23,6 +27,11 @@ use haptics::recording::Recording;
 pub fn detect_in(recording: &Recording) -> Option<Constraint> {
     let points = path::points(recording)?;
     let forces = path::forces(recording);
-    let context = Context { recording: Some(recording.name.clone()), planar: recording.channel("z_m").is_none() };
+    let context = Context {
+        recording: Some(recording.name.clone()),
+        planar: recording.channel("z_m").is_none(),
+        time_s: recording.time_s.clone(),
+        up: path::up(recording).unwrap_or_else(nalgebra::Vector3::zeros),
+    };
     Some(detect(&points, forces.as_deref(), &context))
 }

@@ -221,12 +221,12 @@ pub struct Screw {
     pub pitch_std_error: Option<f64>,
 }
 
-/// A path as a natural cubic spline through few knots, evenly spaced along it.
+/// A path as a uniform cubic B-spline with few control points (as `guide` in a world file; `docs/constraints.md`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Guide {
-    /// Knots, m; two numbers each for a planar path, three otherwise.
-    pub knots_m: Vec<Vec<f64>>,
-    /// The last knot leads back to the first.
+    /// Control points, m; two numbers each for a planar path, three otherwise. An open path ends in its first and last.
+    pub points_m: Vec<Vec<f64>>,
+    /// The last leads back to the first.
     pub closed: bool,
     /// Length, m.
     pub length_m: f64,

@@ -1,6 +1,7 @@
 //! Movable bodies: blocks, barrels, needles.
 
 use super::check::{WorldError, finite, not_negative, positive};
+use super::guide::Guide;
 use crate::Vec2;
 use serde::{Deserialize, Serialize};
 
@@ -38,6 +39,9 @@ pub struct Block {
     /// A cable that holds it; absent: it is free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cable: Option<Cable>,
+    /// A curve that its middle is held to; absent: it goes where it is carried. A guided body keeps upright.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub guide: Option<Guide>,
 }
 
 /// What a movable body is.
@@ -111,6 +115,11 @@ pub struct Pose {
 }
 
 impl Block {
+    /// Needles and sliders keep upright, as the flat pads hold them.
+    pub fn keeps_upright(&self) -> bool {
+        self.shape == Shape::Needle || self.guide.is_some()
+    }
+
     /// A block with usual contact values, standing upright with its base at (`x_m`, `base_y_m`).
     pub fn upright(name: &str, mass_kg: f64, width_m: f64, height_m: f64, x_m: f64, base_y_m: f64) -> Self {
         Self {
@@ -127,6 +136,7 @@ impl Block {
             wall: None,
             content: None,
             cable: None,
+            guide: None,
         }
     }
 
@@ -155,6 +165,9 @@ impl Block {
             finite(&self.name, "content.leaks_from_s", content.leaks_from_s.unwrap_or(0.0))?;
             not_negative(&self.name, "content.mass_kg", content.mass_kg)?;
             positive(&self.name, "mass_kg without its content", self.mass_kg - content.mass_kg)?;
+        }
+        if let Some(guide) = &self.guide {
+            guide.check(&self.name)?;
         }
         if let Some(cable) = &self.cable {
             positive(&self.name, "cable.stiffness_n_m", cable.stiffness_n_m)?;

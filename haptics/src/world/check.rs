@@ -1,6 +1,6 @@
 //! What makes a world impossible to run, in one sentence.
 
-use super::block::{Block, Shape};
+use super::block::Block;
 use super::model::{MAX_BLOCKS, SCHEMA, World};
 use super::rect::{Rect, rect_rect};
 use super::step::{MAX_PARTS, part_rate};
@@ -124,7 +124,7 @@ pub(super) fn can_be_stepped(world: &World) -> Result<(), WorldError> {
 }
 
 fn outline(block: &Block) -> Rect {
-    let (sin, cos) = if block.shape == Shape::Needle { (0.0, 1.0) } else { block.start.angle_rad.sin_cos() };
+    let (sin, cos) = if block.keeps_upright() { (0.0, 1.0) } else { block.start.angle_rad.sin_cos() };
     let half_m = 0.5 * Vec2::new(block.width_m, block.height_m);
     Rect { center_m: block.start.center_m, half_m, axis_x: Vec2::new(cos, sin) }
 }

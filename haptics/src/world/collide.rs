@@ -89,16 +89,13 @@ pub(super) fn collide(world: &World, state: &mut State, input: &Input, dt_s: f64
 
 /// A body's outline in the middle of the tick, how far it may come within the tick, and its mass.
 fn solid(block: &Block, body: &BodyState, gravity_m_s2: f64, dt_s: f64) -> Solid {
-    let (sin, cos) = if block.shape == Shape::Needle {
-        (0.0, 1.0)
-    } else {
-        (body.angle_rad + 0.5 * dt_s * body.rate_rad_s).sin_cos()
-    };
+    let (sin, cos) =
+        if block.keeps_upright() { (0.0, 1.0) } else { (body.angle_rad + 0.5 * dt_s * body.rate_rad_s).sin_cos() };
     let half_m = 0.5 * Vec2::new(block.width_m, block.height_m);
     let reach_m = half_m.norm();
     let speed = body.velocity_m_s.norm() + reach_m * body.rate_rad_s.abs() + gravity_m_s2.abs() * dt_s;
     let mass_kg = block.mass_kg - body.leaked_kg;
-    let turns = block.shape != Shape::Needle;
+    let turns = !block.keeps_upright();
     Solid {
         rect: Rect { center_m: body.center_m + 0.5 * dt_s * body.velocity_m_s, half_m, axis_x: Vec2::new(cos, sin) },
         reach_m,

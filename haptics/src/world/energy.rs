@@ -44,6 +44,10 @@ pub(super) fn bodies_j(world: &World, state: &State) -> f64 {
         0.5 * mass_kg * body.velocity_m_s.norm_squared()
             + 0.5 * block.inertia_kg_m2() * body.rate_rad_s.powi(2)
             + mass_kg * world.gravity_m_s2 * body.center_m.y
+            + block
+                .guide
+                .as_ref()
+                .map_or(0.0, |g| 0.5 * g.stiffness_n_m * (body.center_m - g.point(body.guided.at).0).norm_squared())
             + block.cable.as_ref().map_or(0.0, |c| 0.5 * c.stiffness_n_m * stretch_m(c).powi(2))
     });
     bodies.sum()

@@ -9,6 +9,7 @@ mod driven;
 mod energy;
 mod fixed;
 mod fixture;
+mod guide;
 mod label;
 mod model;
 #[cfg(test)]
@@ -25,6 +26,7 @@ pub use collide::PAD_HALF_HEIGHT_M;
 pub use energy::Stored;
 pub use fixed::{CUP_FLARE, SWITCH_BASE_HALF};
 pub use fixture::{Membrane, Switch};
+pub use guide::{Guide, Guided, MAX_GUIDE_POINTS};
 pub use label::true_label;
 pub use model::*;
 pub use state::*;

@@ -2,6 +2,7 @@
 
 use super::block::{Block, Cable, Content, Shape, Wall};
 use super::fixture::{Membrane, Switch};
+use super::guide::Guide;
 use super::model::{Crank, Floor, World};
 use crate::Vec2;
 use crate::law::object::{CurvePoint, MembraneLaw, ToggleCurve};
@@ -43,8 +44,8 @@ pub fn crank() -> World {
 }
 
 /// Every built-in world.
-pub fn all() -> [World; 6] {
-    [stacking(), crank(), needle(), barrel(), switch(), table()]
+pub fn all() -> [World; 7] {
+    [stacking(), crank(), needle(), barrel(), switch(), guide(), table()]
 }
 
 /// A bare table: somewhere to try the fingers.
@@ -113,6 +114,23 @@ pub fn switch() -> World {
         },
         start_m: -8e-3,
     });
+    world
+}
+
+/// A slider in an S-shaped slot: a path that is neither a line nor a circle.
+pub fn guide() -> World {
+    let mut world = World::empty("Slider in a bent slot");
+    world.floor = None;
+    let middle = world.hand.workspace.center_m;
+    let points_m =
+        [(-0.030, -0.010), (-0.020, 0.004), (-0.008, 0.012), (0.008, -0.012), (0.020, -0.004), (0.030, 0.010)]
+            .map(|(x, y)| middle + Vec2::new(x, y))
+            .to_vec();
+    let guide = Guide { points_m, closed: false, stiffness_n_m: 4000.0, damping_n_s_m: 6.0, friction_n: 0.1 };
+    let start = guide.point(1.0).0;
+    let mut slider = Block::upright("slider", 0.04, 0.012, 0.012, start.x, start.y - 0.006);
+    slider.guide = Some(guide);
+    world.blocks = vec![slider];
     world
 }
 

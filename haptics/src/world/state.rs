@@ -1,5 +1,6 @@
 //! The mutable part of a world: where everything is now. Copied to the pictures without allocation.
 
+use super::guide::Guided;
 use super::model::{MAX_BLOCKS, World};
 use super::scratch::{MAX_CONTACTS, Scratch};
 use crate::Vec2;
@@ -34,6 +35,8 @@ pub struct BodyState {
     pub broken: bool,
     /// Pull of its cable, N.
     pub cable_n: f64,
+    /// Where it is on its guide, and how that holds it.
+    pub guided: Guided,
 }
 
 /// Places of a membrane that are remembered; the oldest is forgotten first.
@@ -195,6 +198,11 @@ impl State {
         bodies.extend(world.blocks.iter().map(|block| BodyState {
             center_m: block.start.center_m,
             angle_rad: block.start.angle_rad,
+            guided:
+                block.guide.as_ref().map_or_else(Guided::default, |g| Guided {
+                    at: g.nearest(block.start.center_m),
+                    ..Guided::default()
+                }),
             ..BodyState::default()
         }));
         Self {

@@ -103,7 +103,7 @@ pub(super) fn part_rate(world: &World, pad_m: f64) -> (f64, &str) {
     for block in &world.blocks {
         // What may run out counts as gone: the step must not change as it leaks.
         let mass_kg = block.mass_kg - block.content.map_or(0.0, |c| c.mass_kg);
-        let turning = if block.shape == Shape::Needle { 1.0 } else { ROTATION };
+        let turning = if block.keeps_upright() { 1.0 } else { ROTATION };
         let (held, held_damping) = held_by(world, block);
         let stiffness = floor_stiffness.max(block.stiffness_n_m) + pads + held;
         let damping = floor_damping.max(block.damping_n_s_m) + pad_damping + held_damping;
@@ -120,9 +120,13 @@ pub(super) fn part_rate(world: &World, pad_m: f64) -> (f64, &str) {
     (most.0.sqrt(), most.1)
 }
 
-/// Stiffness and damping of what holds one body besides contacts: cable and membrane, N/m and N s/m.
+/// Stiffness and damping of what holds one body besides contacts: cable, guide and membrane, N/m and N s/m.
 fn held_by(world: &World, block: &Block) -> (f64, f64) {
     let (mut stiffness, mut damping) = block.cable.map_or((0.0, 0.0), |c| (c.stiffness_n_m, c.damping_n_s_m));
+    if let Some(guide) = &block.guide {
+        stiffness += guide.stiffness_n_m;
+        damping += guide.steepest_n_s_m();
+    }
     if let (Shape::Needle, Some(membrane)) = (block.shape, &world.membrane) {
         stiffness += membrane.law.stiffness_n_m(membrane.law.puncture_depth_m()) + membrane.side_stiffness_n_m;
         damping += membrane.law.drag_n_s_m;
@@ -241,7 +245,7 @@ fn velocity_at(body: &BodyState, arm_m: Vec2) -> Vec2 {
     body.velocity_m_s + Vec2::new(-arm_m.y, arm_m.x) * body.rate_rad_s
 }
 
-/// What holds bodies besides contacts: cables and the membrane; and what runs out of them.
+/// What holds bodies besides contacts: cables, guides and the membrane; and what runs out of them.
 fn hold(world: &World, state: &mut State, dt_s: f64) {
     let State { scratch: Scratch { touches, solids, .. }, bodies, membrane, time_s, .. } = state;
     for (index, block) in world.blocks.iter().enumerate() {
@@ -262,6 +266,11 @@ fn hold(world: &World, state: &mut State, dt_s: f64) {
             let point_m = body.center_m + 0.5 * dt_s * body.velocity_m_s - Vec2::new(0.0, 0.5 * block.height_m);
             let force = pierce(sheet, membrane, point_m, body.velocity_m_s);
             load(solid, Vec2::zeros(), force);
+        }
+        if let Some(guide) = &block.guide {
+            let point_m = body.center_m + 0.5 * dt_s * body.velocity_m_s;
+            body.guided = guide.hold(body.guided.at, point_m, body.velocity_m_s);
+            load(solid, Vec2::zeros(), body.guided.force_n);
         }
         if block.content.is_some() {
             leak(block, body, touches, index, *time_s, dt_s);

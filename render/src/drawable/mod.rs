@@ -7,6 +7,7 @@ mod cable;
 mod contact;
 mod crank;
 mod force_field;
+mod guide;
 mod leak;
 mod link;
 mod marker;
@@ -61,6 +62,7 @@ pub(crate) fn draw_scene(data: &mut DrawData, view: &SceneView<'_>) {
 fn draw_state(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
     block::draw(canvas, view);
     leak::draw(canvas, view);
+    guide::draw(canvas, view);
     cable::draw(canvas, view);
     membrane::draw(canvas, view);
     switch::draw(canvas, view);

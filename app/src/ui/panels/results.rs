@@ -100,6 +100,7 @@ fn facts(constraint: &Constraint) -> Vec<String> {
         Some(false) => facts.push("Gives way measurably".to_owned()),
         None => {}
     }
+    facts.extend(crate::constraint_words(constraint).iter().map(|w| sentence(w)));
     facts
 }
 

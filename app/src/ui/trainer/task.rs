@@ -11,6 +11,8 @@ pub fn task_hint(world: &World) -> &'static str {
         "Pinch the needle, push it slowly through the cup, then pull it out."
     } else if world.switch.is_some() {
         "Push the knob over until it snaps, then back."
+    } else if world.blocks.iter().any(|block| block.guide.is_some()) {
+        "Pinch the slider and follow the slot to its ends."
     } else if has(Shape::Barrel) {
         "Pinch the barrel and lift it against its cable; too hard, and it breaks and leaks."
     } else {

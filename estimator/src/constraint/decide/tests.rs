@@ -74,7 +74,7 @@ fn a_full_turn_in_the_plane_and_many_turns() {
                 Vector3::new(0.01 + 0.02 * a.cos(), -0.1 + 0.02 * a.sin(), 0.0)
             })
             .collect();
-        let found = detect(&points, None, &Context { planar: true, recording: None });
+        let found = detect(&points, None, &Context { planar: true, ..Context::default() });
         assert_eq!(found.kind, ConstraintKind::Revolute, "{found:?}");
         let center = found.center_m.expect("a centre");
         assert!(center.len() == 2 && (center[0] - 0.01).abs() < 1e-5 && (center[1] + 0.1).abs() < 1e-5);
@@ -215,4 +215,62 @@ fn sparse_paths_are_decided_where_their_evidence_suffices_and_never_wrongly() {
     }
     println!("{arcs} of 30 sparse arcs and {lines} of 30 sparse lines decided");
     assert!(arcs > 20 && lines > 10, "{arcs} {lines}");
+}
+
+#[test]
+fn a_winding_path_is_a_screw_and_hinges_and_slides_are_screws_without_and_with_all_pitch() {
+    let mut rng = StdRng::seed_from_u64(5);
+    let points: Vec<Vector3<f64>> = (0..600)
+        .map(|i| 0.02 * f64::from(i))
+        .map(|a| Vector3::new(0.05 * a.cos(), 0.05 * a.sin(), 0.004 * a))
+        .map(|p| p + Vector3::from_fn(|_, _| 2e-4 * rng.sample::<f64, _>(StandardNormal)))
+        .collect();
+    let found = look(&points);
+    assert_eq!(found.kind, ConstraintKind::Screw, "{}", found.evidence);
+    let pitch = found.screw.and_then(|s| s.pitch_m_rad).expect("a pitch");
+    assert!((pitch - 0.004).abs() < 4e-4, "{pitch}");
+    let door = look(&arc(0.4, 1.3, 500, 5e-4, 5.0, 1));
+    assert_eq!(door.screw.and_then(|s| s.pitch_m_rad), Some(0.0));
+    let drawer = look(&line(0.45, 300, 5e-4, 5.0, 2));
+    assert!(drawer.screw.is_some_and(|s| s.pitch_m_rad.is_none()));
+}
+
+/// One pass along a bent way: the path alone does not say whether something guides it, the force does.
+#[test]
+fn force_across_a_bent_path_tells_a_guide_from_a_free_hand() {
+    let (mut guided, mut free) = (0, 0);
+    for seed in 0..20 {
+        let mut rng = StdRng::seed_from_u64(seed);
+        let time: Vec<f64> = (0..1500).map(|i| f64::from(i) * 0.004).collect();
+        let at = |t: f64| Vector3::new(0.05 * t, 0.06 * (1.4 * t).sin(), 0.0);
+        let acceleration = |t: f64| Vector3::new(0.0, -0.06 * 1.96 * (1.4 * t).sin(), 0.0);
+        let mut noise = |sigma: f64| {
+            Vector3::new(
+                sigma * rng.sample::<f64, _>(StandardNormal),
+                sigma * rng.sample::<f64, _>(StandardNormal),
+                0.0,
+            )
+        };
+        let points: Vec<Vector3<f64>> = time.iter().map(|t| at(*t) + noise(1e-4)).collect();
+        let carried: Vec<Vector3<f64>> =
+            time.iter().map(|t| 0.2 * (acceleration(*t) + Vector3::new(0.0, 9.81, 0.0)) + noise(0.02)).collect();
+        let pressed: Vec<Vector3<f64>> = carried
+            .iter()
+            .zip(&time)
+            .map(|(f, t)| {
+                let along = (at(t + 1e-4) - at(*t)).normalize();
+                f + Vector3::new(-along.y, along.x, 0.0) * (0.8 + 0.3 * (2.0 * t).sin())
+            })
+            .collect();
+        let context = Context { planar: true, time_s: Some(time), up: Vector3::y(), ..Context::default() };
+        let with = |forces: &[Vector3<f64>]| detect(&points, Some(forces), &context);
+        assert_eq!(detect(&points, None, &context).kind, ConstraintKind::Undecided);
+        let (a, b) = (with(&pressed), with(&carried));
+        assert_ne!(a.kind, ConstraintKind::Free, "seed {seed}: {}", a.evidence);
+        assert_ne!(b.kind, ConstraintKind::Spline, "seed {seed}: {}", b.evidence);
+        guided += usize::from(a.kind == ConstraintKind::Spline && a.guide.is_some());
+        free += usize::from(b.kind == ConstraintKind::Free);
+    }
+    println!("{guided} of 20 guided, {free} of 20 free");
+    assert!(guided >= 18 && free >= 15, "{guided} {free}");
 }

@@ -8,7 +8,7 @@ use super::laws::WEIGHT;
 use crate::constraint::existence::{Rows, existence, sentence};
 use crate::constraint::yielding::{Manipulator, judge};
 use crate::constraint::{THESIS_SAMPLES, normals_center};
-use crate::estimate::{Constraint, ConstraintKind, EstimateError, Parameter, Yielding};
+use crate::estimate::{Constraint, ConstraintKind, EstimateError, Parameter, Screw, Yielding};
 use crate::identify::linear::least_squares;
 use crate::segment::Segmentation;
 use crate::signal::task::{CUBIC_HALF, half_width, smooth, task_signals};
@@ -148,6 +148,12 @@ pub(super) fn constraint(
         coverage_rad: Some(high - low),
         residual_m: Some(geometry.rms_m),
         constraint_force_n: Some(force),
+        screw: Some(Screw {
+            point_m: [geometry.center_m.x, geometry.center_m.y, 0.0],
+            axis: [0.0, 0.0, 1.0],
+            pitch_m_rad: Some(0.0),
+            pitch_std_error: None,
+        }),
         evidence: format!(
             "the handle stays within {:.3} mm (RMS) of one circle over {:.1} turns; {}{held_by}",
             geometry.rms_m * 1e3,

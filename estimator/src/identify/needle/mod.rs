@@ -5,10 +5,11 @@
 //! width follows its force, and what is not known of it joins the errors.
 
 mod loading;
+mod phases;
 mod signals;
 mod strokes;
 
-use crate::estimate::{Constraint, ConstraintKind, EstimateError, Fit, Parameter};
+use crate::estimate::{Constraint, ConstraintKind, EstimateError, Fit, Parameter, Sided, Yielding};
 use haptics::Vec2;
 use haptics::recording::Recording;
 use loading::{Loading, Point};
@@ -22,6 +23,8 @@ pub const OBJECT: &str = "needle";
 const PLACE_ERROR_M: f64 = 1e-5;
 /// A sheet is pierced between two samples; the force of so many samples before the fall is uncertain.
 const FALL_SAMPLES: usize = 3;
+/// Stiffness of a hand whose pads' give is not seen, N/m.
+const HAND_N_M: f64 = 1000.0;
 /// Fewer samples of loading show no curve.
 const LEAST_LOADING: usize = 20;
 
@@ -41,7 +44,7 @@ pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
     }
     let sheet = Sheet::of(&along, &pushes)?;
     result.parameters = sheet.parameters(&along, &pushes, recording);
-    result.constraints.push(sheet.constraint(&along, recording));
+    result.constraints.push(sheet.constraint(&along, &pushes, recording));
     if pushes.iter().any(|p| p.hold != pushes[0].hold) && along.two_fingered {
         let text = "the needle was gripped anew between pushes; the surface is where the first grip met it";
         result.warnings.push(text.to_owned());
@@ -198,7 +201,16 @@ impl Sheet {
         Some(Parameter::identified(OBJECT, "weight_N", value, error, self.samples, how))
     }
 
-    fn constraint(&self, along: &Along, recording: &Recording) -> Constraint {
+    /// The sheet beside the hand that pressed it.
+    fn yielding(&self, along: &Along) -> Option<Yielding> {
+        let k = self.loading.stiffness_n_m;
+        let error = self.error(self.loading.around.std_errors[self.loading.stiffness_at()], |l| l.stiffness_n_m);
+        let hand = if along.give_m_n.0 > 0.0 { 1.0 / along.give_m_n.0 } else { HAND_N_M };
+        let interval = ((k - 1.96 * error).max(0.0), Some(k + 1.96 * error));
+        (k > 0.0).then_some(Yielding { stiffness_n_m: Some(k), interval_n_m: interval, manipulator_n_m: hand })
+    }
+
+    fn constraint(&self, along: &Along, pushes: &[Push], recording: &Recording) -> Constraint {
         let errors = &self.loading.around.std_errors;
         let evidence = format!(
             "force rises with {:.0} N/m from the surface on, on {} samples of pushes into an untouched sheet",
@@ -210,6 +222,10 @@ impl Sheet {
             rigid: Some(false),
             std_error: [("surface_m".to_owned(), errors[self.loading.surface_at()])].into(),
             evidence,
+            existence: phases::existence(along, pushes, &self.loading),
+            sided: Some(Sided::OneSided),
+            yielding: self.yielding(along),
+            phases: phases::phases(along, pushes, &self.loading, recording),
             ..Constraint::blank(Some(recording.name.clone()), "")
         }
     }
