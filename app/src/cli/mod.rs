@@ -75,7 +75,7 @@ struct AppArgs {
     /// Sidecar of the log, when it does not lie beside it
     #[arg(long)]
     meta: Option<PathBuf>,
-    /// World to open in the trainer: a file, or stack, crank, needle, barrel, switch or table
+    /// World to open in the trainer: a file, or stack, crank, needle, barrel, switch, guide or table
     #[arg(long)]
     world: Option<PathBuf>,
     /// Task of the log

@@ -35,7 +35,7 @@ pub struct Record {
     /// wrong-direction or overshoot; may be given several times
     #[arg(long)]
     mistake: Vec<String>,
-    /// World to act in: a file, or stack, crank, needle, barrel, switch or table; the task's own when not given
+    /// World to act in: a file, or stack, crank, needle, barrel, switch, guide or table; the task's own when not given
     #[arg(long)]
     world: Option<PathBuf>,
     /// Ticks a second, all of them recorded

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Arguments of `screenshot`.
 #[derive(Args)]
 pub struct Screenshot {
-    /// A scene performed by the scripted operator: `stack`, `crank`, `needle`, `barrel`, `switch`, `table`, or a world file
+    /// A scene performed by the scripted operator: `stack`, `crank`, `needle`, `barrel`, `switch`, `guide`, `table`, or a world file
     #[arg(long, conflicts_with = "log", required_unless_present = "log")]
     scene: Option<String>,
     /// A log, drawn in one of the app's panels

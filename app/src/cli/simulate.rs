@@ -9,7 +9,7 @@ use std::path::PathBuf;
 /// Arguments of `simulate`.
 #[derive(Args)]
 pub struct Simulate {
-    /// World file, or a built-in world: stack, crank, needle, barrel, switch, table
+    /// World file, or a built-in world: stack, crank, needle, barrel, switch, guide, table
     world: PathBuf,
     /// Log file with the motion
     log: PathBuf,
