@@ -1,5 +1,6 @@
 //! Recordings of the scripted operator in worlds drawn at random.
 
+use haptics::Vec2;
 use haptics::device::{Command, Device, ScriptedOperator, Skill};
 use haptics::law::{CoulombFriction, Effect, Inertia, LoadFriction, ViscousFriction, Weight};
 use haptics::recording::Recording;
@@ -13,8 +14,17 @@ use std::collections::BTreeMap;
 /// True values by (object, parameter name).
 pub type Truth = BTreeMap<(String, String), f64>;
 
+/// Strain gauges rest within this of zero, N.
+const LARGEST_BIAS_N: f64 = 0.02;
+
 /// Step of the generator, s: a fifth of the usual servo's.
 pub const STEP_S: f64 = 0.2e-3;
+
+/// Within a step, force and velocity belong to instants half a step apart, which looks like c · step / 2 of inertia on a crank
+/// with viscous friction c: cranks are stepped more finely than that shows.
+fn steps_per_step(world: &World) -> u32 {
+    if world.crank.is_some() { 4 } else { 1 }
+}
 
 /// A recording and what only the generator knows about how it went.
 pub struct Performance {
@@ -23,38 +33,76 @@ pub struct Performance {
     /// Mean height of the grasp points above the middle of the crank's handle, m: the circle that the fingers follow is the
     /// handle's, shifted by this. Zero without a crank.
     pub grasp_offset_y_m: f64,
+    /// How well that mean is one, m: the grasp wanders on the handle by a micrometre within a turn.
+    pub grasp_offset_error_m: f64,
 }
 
 /// Performs the task of `world` and records every `every`-th fine step.
 pub fn perform(world: &World, seed: u64, skill: Skill, every: usize, sensor: &SensorModel) -> Performance {
+    perform_at_levels(world, seed, skill, every, std::slice::from_ref(sensor)).remove(0)
+}
+
+/// One and the same performance, seen by several sensors, all with the same bias of their forces.
+pub fn perform_at_levels(
+    world: &World,
+    seed: u64,
+    skill: Skill,
+    every: usize,
+    sensors: &[SensorModel],
+) -> Vec<Performance> {
     let mut state = State::resting(world);
     let mut operator = ScriptedOperator::new(world, &state, skill, seed);
     let mut ticks = Vec::new();
+    let mut rng = StdRng::seed_from_u64(seed ^ 0xb1a5);
+    let bias_n = [(); 2].map(|()| Vec2::from_fn(|_, _| rng.random_range(-LARGEST_BIAS_N..LARGEST_BIAS_N)));
     let mut count = 0_usize;
-    let (mut offset_sum, mut offset_count) = (0.0, 0_usize);
+    let mut offsets = Vec::new();
     while !operator.finished() {
-        let sample = operator.exchange(&Command { force_n: state.tip_force_n.map(|f| -f) }, STEP_S);
-        let input = Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity };
-        step(world, &mut state, &input, STEP_S);
-        if let Some(handle) = state.handle_in_world(world) {
+        let parts = steps_per_step(world);
+        let part_s = STEP_S / f64::from(parts);
+        let mut input = Input::default();
+        for _ in 0..parts {
+            let sample = operator.exchange(&Command { force_n: state.tip_force_n.map(|f| -f) }, part_s);
+            input = Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity };
+            step(world, &mut state, &input, part_s);
+        }
+        if let Some(handle) = state.handle_in_world(world)
+            && state.crank.rate_rad_s.abs() > 0.5
+        {
             for contact in state.contacts.iter().filter(|c| c.by == Surface::Handle) {
-                offset_sum += contact.point_m.y - handle.y - contact.shear_m * contact.tangent().y;
-                offset_count += 1;
+                offsets.push(contact.point_m.y - handle.y - contact.shear_m * contact.tangent().y);
             }
         }
         if count.is_multiple_of(every) {
             ticks.push(TickRecord {
                 time_s: state.time_s,
                 input,
-                tip_force_n: state.tip_force_n,
+                tip_force_n: [state.tip_force_n[0] + bias_n[0], state.tip_force_n[1] + bias_n[1]],
                 label: true_label(world, &state),
                 ..TickRecord::default()
             });
         }
         count += 1;
     }
-    let recording = to_recording(&format!("seed {seed}"), world, &ticks, 1, sensor, seed ^ 0x5eed);
-    Performance { recording, grasp_offset_y_m: offset_sum / offset_count.max(1) as f64 }
+    let (grasp_offset_y_m, grasp_offset_error_m) = mean_of_parts(&offsets);
+    sensors
+        .iter()
+        .map(|sensor| Performance {
+            recording: to_recording(&format!("seed {seed}"), world, &ticks, 1, sensor, seed ^ 0x5eed),
+            grasp_offset_y_m,
+            grasp_offset_error_m,
+        })
+        .collect()
+}
+
+/// Mean of a series, and its standard error from the means of eight parts.
+fn mean_of_parts(series: &[f64]) -> (f64, f64) {
+    const PARTS: usize = 8;
+    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len().max(1) as f64;
+    let total = mean(series);
+    let length = (series.len() / PARTS).max(1);
+    let spread: f64 = series.chunks_exact(length).map(|part| (mean(part) - total).powi(2)).sum();
+    (total, spread.sqrt() / PARTS as f64)
 }
 
 /// Two blocks of random weight, size and friction, block 1 on block 2, with their truth.
@@ -71,10 +119,12 @@ pub fn stacking_world(seed: u64) -> (World, Truth) {
     world.pad.stiffness_n_m = draw(1800.0, 4000.0);
     world.pad.shear_stiffness_n_m = draw(1000.0, 2500.0);
     let mut truth = Truth::new();
+    let contact_n_m = draw(25_000.0, 55_000.0);
     for block in [&mut upper, &mut lower] {
         block.finger_friction = draw(0.7, 1.2);
-        // Wood on wood, hard against the pads: their own give must not be mistaken for height.
-        block.stiffness_n_m = 40_000.0;
+        // Wood on wood, hard against the pads: their own give must not be mistaken for height. Twice as hard as the contact of
+        // two of them, which give in series.
+        block.stiffness_n_m = draw(50_000.0, 110_000.0);
         block.damping_n_s_m = 12.0;
         for (name, value) in [
             ("weight_N", block.mass_kg * world.gravity_m_s2),
@@ -87,7 +137,7 @@ pub fn stacking_world(seed: u64) -> (World, Truth) {
         }
     }
     if let Some(floor) = &mut world.floor {
-        floor.stiffness_n_m = 40_000.0;
+        floor.stiffness_n_m = contact_n_m;
         floor.damping_n_s_m = 12.0;
     }
     world.blocks = vec![upper, lower];

@@ -2,6 +2,9 @@
 
 pub mod block;
 pub mod crank;
+mod influence;
 pub mod linear;
+pub mod long_run;
 pub mod mechanism;
 pub mod needle;
+mod pads;

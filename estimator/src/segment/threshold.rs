@@ -23,7 +23,7 @@ const SIGNAL_SHARE: f64 = 0.06;
 /// Resting values and noise of the forces in free motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Levels {
-    /// Median force of each finger while nothing is touched, N: the sensors' bias.
+    /// Mean force of each finger while nothing is touched, N: the sensors' bias.
     pub bias_n: [Vec2; 2],
     /// Standard deviation of the force channels in free motion, N.
     pub force_noise_n: f64,
@@ -56,10 +56,12 @@ impl Levels {
             };
             free = (0..n).filter(|i| load(*i) <= limit).collect();
             for finger in 0..2 {
-                let median = |pick: fn(&Vec2) -> f64| {
-                    percentile(&mut free.iter().map(|i| pick(&forces[finger][*i])).collect::<Vec<_>>(), 0.5)
+                let middle = |pick: fn(&Vec2) -> f64| {
+                    let mut values: Vec<f64> = free.iter().map(|i| pick(&forces[finger][*i])).collect();
+                    // A median of rounded forces is itself rounded: the last pass, rid of what does not belong, takes the mean.
+                    if pass < 2 { percentile(&mut values, 0.5) } else { mean(&values) }
                 };
-                bias[finger] = Vec2::new(median(|f| f.x), median(|f| f.y));
+                bias[finger] = Vec2::new(middle(|f| f.x), middle(|f| f.y));
             }
         }
         let usual_load =
@@ -163,6 +165,10 @@ fn velocity_noise(signals: &TaskSignals) -> f64 {
     }
     // |N(0, 6σ²)| has its median at 0.6745 √6 σ.
     percentile(&mut bends, 0.5) / (0.6745 * 6.0_f64.sqrt())
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
 /// The value below which a share of the numbers lies; 0 for none. Reorders its argument.

@@ -1,5 +1,7 @@
 //! How noisy a channel is, from its own high-frequency part.
 
+use std::f64::consts::PI;
+
 /// Coefficients of the fourth difference; their squares sum to 70.
 const FOURTH: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
 const FOURTH_POWER: f64 = 70.0;
@@ -87,6 +89,25 @@ pub fn quantum(values: &[f64]) -> f64 {
     if 10 * on_grid >= values.len() { smallest } else { 0.0 }
 }
 
+/// What resolution alone leaves unknown of the mean of a channel at rest, as a standard deviation, in the channel's unit.
+///
+/// The mean of a signal that is rounded to steps of `step` is off by at most half a step, unless noise carries it over several
+/// steps: dither of standard deviation σ leaves the variance Σₖ `step²`/(2π²k²) exp(−4π²k²σ²/`step²`), averaged over where in the
+/// step the signal lies (Widrow & Kollár 2008, ch. 4: the characteristic function at multiples of 2π/`step`). Without noise this
+/// is `step²`/12. `noise`: standard deviation of the channel as [`white_noise`] gives it, rounding included.
+pub fn resolution_error(step: f64, noise: f64) -> f64 {
+    const HARMONICS: u32 = 40;
+    if step <= 0.0 {
+        return 0.0;
+    }
+    let dither = (noise * noise - step * step / 12.0).max(0.0) / (step * step);
+    let harmonic = |k: u32| {
+        let order = (PI * f64::from(k)).powi(2);
+        (-4.0 * order * dither).exp() / (2.0 * order)
+    };
+    step * (1..=HARMONICS).map(harmonic).sum::<f64>().sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -128,6 +149,30 @@ mod tests {
         let noisy: Vec<f64> = moving.iter().map(|v| v + 0.002 * rng.sample::<f64, _>(StandardNormal)).collect();
         let sigma = white_noise_uneven(&time, &noisy);
         assert!((sigma / 0.002 - 1.0).abs() < 0.08, "{sigma}");
+    }
+
+    #[test]
+    fn dither_takes_the_resolution_out_of_a_mean() {
+        let step = 0.01;
+        assert!((resolution_error(step, step / 12.0_f64.sqrt()) / (step / 12.0_f64.sqrt()) - 1.0).abs() < 0.02);
+        let mut rng = StdRng::seed_from_u64(8);
+        for share in [0.1, 0.2, 0.3, 0.45] {
+            // The mean of many rounded noisy samples, at many places within a step.
+            let mut squares = 0.0;
+            for place in 0..50 {
+                let value = step * f64::from(place) / 50.0;
+                let sum: f64 = (0..40_000)
+                    .map(|_| {
+                        ((value + share * step * rng.sample::<f64, _>(StandardNormal)) / step).round() * step - value
+                    })
+                    .sum();
+                squares += (sum / 40_000.0).powi(2);
+            }
+            let seen = (squares / 50.0).sqrt();
+            let expected = resolution_error(step, step * (share * share + 1.0 / 12.0).sqrt());
+            // The mean of so many samples scatters by share · step / 200 itself.
+            assert!((seen - expected).abs() < 0.05 * expected + 0.004 * step, "{share}: {seen} against {expected}");
+        }
     }
 
     #[test]

@@ -47,6 +47,17 @@ impl SensorModel {
         force_noise_n: 0.010,
         force_step_n: 0.002,
     };
+
+    /// The same sensors with `factor` times the noise and the same resolution.
+    #[must_use]
+    pub fn noisier(self, factor: f64) -> Self {
+        Self {
+            position_noise_m: factor * self.position_noise_m,
+            velocity_noise_m_s: factor * self.velocity_noise_m_s,
+            force_noise_n: factor * self.force_noise_n,
+            ..self
+        }
+    }
 }
 
 /// Column names of a two-fingered recording, after the time.

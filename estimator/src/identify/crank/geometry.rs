@@ -4,6 +4,7 @@ use super::SIGNIFICANT;
 use super::held::Held;
 use crate::estimate::EstimateError;
 use crate::identify::linear::{LinearFit, least_squares};
+use crate::signal::task::half_width;
 use haptics::Vec2;
 
 /// Circle and give of the pads.
@@ -23,8 +24,10 @@ pub(super) struct Geometry {
 
 /// Circle through the positions: Kåsa's linear fit as a start, then Gauss–Newton on the radius residual with the pads' give.
 pub(super) fn geometry(held: &Held) -> Result<Geometry, EstimateError> {
-    let points: Vec<Vec2> = held.turning.iter().map(|i| held.position[*i]).collect();
-    let forces: Vec<Vec2> = held.turning.iter().map(|i| held.force[*i]).collect();
+    // Smoothed samples closer than half their window say nothing new.
+    let rows: Vec<usize> = held.turning.iter().copied().step_by(half_width(&held.time_s)).collect();
+    let points: Vec<Vec2> = rows.iter().map(|i| held.position[*i]).collect();
+    let forces: Vec<Vec2> = rows.iter().map(|i| held.force[*i]).collect();
     let mut center = kasa(&points)?;
     let mut give = [true, true];
     let mut solved = None;

@@ -4,7 +4,7 @@ use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use crate::segment::{Segmentation, SystemState};
 use crate::signal::derive::savitzky_golay;
-use crate::signal::noise::{quantum, white_noise};
+use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{
     CUBIC_HALF, TaskSignals, TipSeries, half_width, has_velocity, is_two_fingered, task_signals, times, tip_series,
 };
@@ -93,8 +93,10 @@ pub(super) fn held(recording: &Recording, segmentation: &Segmentation) -> Result
     // What the filter took out, scaled to what it left: a cubic fit over m samples leaves 9/(4 m) of the variance.
     let removed: Vec<f64> = velocity.iter().zip(&velocity_smooth).map(|(a, b)| (a - b).y).collect();
     let velocity_noise = white_noise(&removed) * (2.25 / (2 * half + 1) as f64).min(1.0).sqrt();
-    // 1/√12: the standard deviation of an error that is even over one step (GUM, 4.3.7).
-    let resolution = |series: &[Vec2]| 0.288_675 * quantum(&axis(series, |v| v.x)).max(quantum(&axis(series, |v| v.y)));
+    // While it turns, the handle passes over many steps, and rounding is one more noise. Only the grip, which hardly changes,
+    // and forces that do not either keep an error that no averaging removes.
+    let unresolved = |values: &[f64]| resolution_error(quantum(values), white_noise(values));
+    let resolution = |series: &[Vec2]| unresolved(&axis(series, |v| v.x)).max(unresolved(&axis(series, |v| v.y)));
     Ok(Held {
         velocity_noise,
         bias_error_n,

@@ -9,8 +9,9 @@ use crate::constraint::existence::{Rows, existence, sentence};
 use crate::constraint::yielding::{Manipulator, judge};
 use crate::constraint::{THESIS_SAMPLES, normals_center};
 use crate::estimate::{Constraint, ConstraintKind, EstimateError, Parameter, Screw, Yielding};
-use crate::identify::linear::least_squares;
+use crate::identify::pads::{Grip, width_over_force};
 use crate::segment::Segmentation;
+use crate::segment::threshold::Levels;
 use crate::signal::task::{CUBIC_HALF, half_width, smooth, task_signals};
 use haptics::Vec2;
 use haptics::law::Motion;
@@ -78,22 +79,22 @@ pub(super) fn grip_parameters(
     let signals = task_signals(recording)?;
     let width = smooth(&held.time_s, &signals.grip_width_m);
     // The mean of the two normal forces: their difference moves the handle, not the tips apart.
-    let normal = |finger: usize, i: usize| signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x);
+    let bias = Levels::of(&signals).bias_n;
+    let normal = |finger: usize, i: usize| signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x) - bias[finger].x;
     let grip: Vec<f64> = (0..signals.len()).map(|i| 0.5 * (normal(0, i) - normal(1, i))).collect();
     let grip = smooth(&held.time_s, &grip).value;
     let stride = 2 * half_width(&held.time_s);
     let rows: Vec<usize> = held.turning.iter().copied().step_by(stride).collect();
     let column = |series: &[f64]| rows.iter().map(|i| series[*i]).collect::<Vec<f64>>();
-    let columns = [vec![1.0; rows.len()], column(&grip), column(&width.slope)];
-    let fit = least_squares(&columns, &column(&width.value), None)?;
+    let (widths, forces, rates) = (column(&width.value), column(&grip), column(&width.slope));
+    let pads = width_over_force(&Grip { width: &widths, force: &forces, rate: &rates })?;
     let samples = held.turning.len();
-    let (give, give_error) = (-0.5 * fit.values[1], 0.5 * fit.std_errors[1]);
     let mut parameters = Vec::new();
-    if fit.identified[1] && give > SIGNIFICANT * give_error {
+    if let Some(pads) = pads.filter(|p| p.give_m_per_n > SIGNIFICANT * p.give_error) {
         let how = "distance of the tips while turning, extrapolated to zero grip force";
-        let error = fit.std_errors[0].hypot(held.resolution_m);
-        parameters.push(Parameter::identified("crank", "handle_width_m", fit.values[0], error, samples, how));
-        parameters.push(stiffness("stiffness_N_m", give, give_error, samples));
+        let error = pads.width_error_m.hypot(held.resolution_m);
+        parameters.push(Parameter::identified("crank", "handle_width_m", pads.width_m, error, samples, how));
+        parameters.push(stiffness("stiffness_N_m", pads.give_m_per_n, pads.give_error, samples));
     } else {
         let why = "the grip was too even to tell the handle's width from the pads' give";
         parameters.push(Parameter::unidentified("crank", "handle_width_m", samples, why));

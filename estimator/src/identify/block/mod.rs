@@ -4,25 +4,24 @@
 //! thesis's numbers is taken out where the recording shows it: accelerations from the weight, the give of the pads from the
 //! width (it grew 7 % too narrow there) and from the height. Where the recording does not show it, the standard error says so.
 
+mod heights;
+
 use super::linear::{LinearFit, least_squares};
+use super::pads::{Grip, PadFit, width_over_force};
 use crate::constraint::{Carry, carried};
 use crate::estimate::{Constraint, EstimateError, Fit, Parameter};
 use crate::segment::{Segmentation, Thresholds, segment_signals, subtasks, threshold::Levels};
-use crate::signal::noise::quantum;
+use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signals};
 use haptics::Vec2;
 use haptics::recording::{Channel, Recording, Task};
 use haptics::world::World;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Relative error of a width whose pad compression could not be measured: the thesis's blocks came out 7 % too narrow.
 const UNKNOWN_COMPRESSION: f64 = 0.07;
 /// The grip must vary by this share of its mean for the pads' give to be told from the width.
 const LEAST_GRIP_VARIATION: f64 = 0.05;
-
-/// No two seatings of a block on its base, nor of the pads on a block, agree better than surfaces are flat, m.
-const SEATING_M: f64 = 10e-6;
-/// Standard deviation of an error that is even over one step: 1/√12 (GUM, 4.3.7).
-const RESOLUTION_SHARE: f64 = 0.288_675;
 
 /// Everything that the block fit works on.
 struct Blocks<'a> {
@@ -63,8 +62,8 @@ pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit
     let height: Vec<f64> = signals.position.iter().map(|p| p.y).collect();
     let height = smooth(&signals.time_s, &height).value;
     let blocks = Blocks {
-        resolution_m: RESOLUTION_SHARE * coarsest(&signals, |tip| Some(&tip.position)).max(joint_step_m(recording)),
-        resolution_n: RESOLUTION_SHARE * coarsest(&signals, |tip| tip.force.as_ref()),
+        resolution_m: unresolved(&signals, |tip| Some(&tip.position)).max(unresolved_by_joints_m(recording)),
+        resolution_n: unresolved(&signals, |tip| tip.force.as_ref()),
         levels,
         segmentation,
         recording,
@@ -85,13 +84,15 @@ pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit
         )));
     }
     let mut parameters = Vec::new();
+    let mut weights_n = Vec::new();
     for number in 1..=count {
-        parameters.extend(blocks.weight(number)?);
+        let weight = blocks.weight(number)?;
+        weights_n.push(weight[0].value.unwrap_or(0.0));
+        parameters.extend(weight);
         parameters.push(blocks.width(number)?);
     }
-    parameters.extend(blocks.heights(count)?);
+    parameters.extend(heights::heights(&blocks, &weights_n)?);
     parameters.push(blocks.pad_stiffness(count));
-    parameters.push(blocks.pad_shear_stiffness(count));
     for number in 1..=count {
         parameters.extend(blocks.friction(number));
     }
@@ -107,20 +108,25 @@ pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit
     Ok((fit, blocks.segmentation))
 }
 
-/// Largest quantisation step among the components of a series of both fingers; 0 when none is quantised.
-fn coarsest(signals: &TaskSignals, series: impl Fn(&TipSeries) -> Option<&Vec<Vec2>>) -> f64 {
-    let step = |pick: fn(&Vec2) -> f64| {
-        let of = |tip| series(tip).map_or(0.0, |s: &Vec<Vec2>| quantum(&s.iter().map(pick).collect::<Vec<_>>()));
+/// What the resolution leaves unknown of a mean, the largest among the components of a series of both fingers.
+fn unresolved(signals: &TaskSignals, series: impl Fn(&TipSeries) -> Option<&Vec<Vec2>>) -> f64 {
+    let error = |pick: fn(&Vec2) -> f64| {
+        let of = |tip| {
+            series(tip).map_or(0.0, |s: &Vec<Vec2>| {
+                let values: Vec<f64> = s.iter().map(pick).collect();
+                resolution_error(quantum(&values), white_noise(&values))
+            })
+        };
         of(&signals.tips[0]).max(of(&signals.tips[1]))
     };
-    step(|v| v.x).max(step(|v| v.y))
+    error(|v| v.x).max(error(|v| v.y))
 }
 
-/// What one step of the joint encoders moves a tip by, m; 0 for a log of tip positions.
-fn joint_step_m(recording: &Recording) -> f64 {
+/// What the steps of the joint encoders leave unknown of a tip's mean position, m; 0 for a log of tip positions.
+fn unresolved_by_joints_m(recording: &Recording) -> f64 {
     let finger = recording.meta.hand().fingers[0];
-    let step = |name: &str| recording.channel(name).map_or(0.0, quantum);
-    ["qb1_rad", "qt1_rad", "qb2_rad", "qt2_rad"].into_iter().map(step).fold(0.0, f64::max) * finger.link_m
+    let error = |name: &str| recording.channel(name).map_or(0.0, |q| resolution_error(quantum(q), white_noise(q)));
+    ["qb1_rad", "qt1_rad", "qb2_rad", "qt2_rad"].into_iter().map(error).fold(0.0, f64::max) * finger.link_m
 }
 
 /// The forces that the measured motion of carried blocks needs, channels named as measured.
@@ -237,15 +243,16 @@ impl Blocks<'_> {
         let (mean_grip, spread_grip) = mean_and_spread(&grip);
         let name = object(number);
         let resolution = std::f64::consts::SQRT_2 * self.resolution_m;
-        if spread_grip > LEAST_GRIP_VARIATION * mean_grip {
-            let (fit, hardening, model_error) = self.width_over_grip(&rows)?;
-            let stiffness = -2.0 / fit.values[1];
-            let harder = if hardening { " when hardly pressed, and harden" } else { "" };
+        if spread_grip > LEAST_GRIP_VARIATION * mean_grip
+            && let Some(pads) = self.pads(number)?
+        {
+            let stiffness = 1.0 / pads.give_m_per_n;
+            let harder = if pads.bent > 0.5 { " when hardly pressed, and harden" } else { "" };
             let how = format!(
                 "distance of the tips while held, extrapolated to zero grip force (pads give {stiffness:.0} N/m each{harder})"
             );
-            let error = fit.std_errors[0].hypot(resolution).hypot(model_error);
-            return Ok(Parameter::identified(&name, "width_m", fit.values[0], error, samples.len(), &how));
+            let error = pads.width_error_m.hypot(resolution);
+            return Ok(Parameter::identified(&name, "width_m", pads.width_m, error, samples.len(), &how));
         }
         let fit = intercept(&width, &[])?;
         let error = fit.std_errors[0].hypot(UNKNOWN_COMPRESSION * fit.values[0]);
@@ -254,90 +261,21 @@ impl Blocks<'_> {
         Ok(Parameter::identified(&name, "width_m", fit.values[0], error, samples.len(), how))
     }
 
+    /// The grip on one block from picking it up to letting it go.
+    fn pads(&self, number: usize) -> Result<Option<PadFit>, EstimateError> {
+        let [pick, carry, place] = ["pick-up", "carry", "place"].map(|verb| format!("{verb}-block-{number}"));
+        let rows = self.rows(&self.samples(&[&pick, &carry, &place]));
+        let column = |series: &[f64]| rows.iter().map(|i| series[*i]).collect::<Vec<f64>>();
+        let (width, force, rate) = (column(&self.width), column(&self.grip), column(&self.width_rate));
+        width_over_force(&Grip { width: &width, force: &force, rate: &rate })
+    }
+
     /// Stiffness of one pad: both give under the grip, so the width falls by 2 F / k. Blocks averaged by their errors.
     fn pad_stiffness(&self, count: usize) -> Parameter {
-        let slopes = (1..=count).filter_map(|number| {
-            let [pick, carry, place] = ["pick-up", "carry", "place"].map(|verb| format!("{verb}-block-{number}"));
-            let rows = self.rows(&self.samples(&[&pick, &carry, &place]));
-            let (fit, _, _) = self.width_over_grip(&rows).ok()?;
-            fit.identified[1].then(|| (-0.5 * fit.values[1], 0.5 * fit.std_errors[1], rows.len()))
-        });
-        pad_parameter("stiffness_N_m", slopes, "the grip varied too little to tell the pads' give")
-    }
-
-    /// Tangential stiffness of one pad: both carry the lift, so the grip height rises by F / 2 k over a block that rests.
-    fn pad_shear_stiffness(&self, count: usize) -> Parameter {
-        let slopes = (1..=count).flat_map(|number| ["pick-up", "place"].map(|verb| format!("{verb}-block-{number}")));
-        let slopes = slopes.filter_map(|subtask| {
-            let samples = self.samples(&[&subtask]);
-            let fit = self.unloaded_height(&samples, 0.0).ok()?;
-            fit.identified[1].then(|| (2.0 * fit.values[1], 2.0 * fit.std_errors[1], self.rows(&samples).len()))
-        });
-        pad_parameter("shear_stiffness_N_m", slopes, "the lift varied too little while a block rested")
-    }
-
-    /// Width as a line over the grip force, or as a parabola when the pads clearly harden (foam does): intercept, slope, …
-    /// The answer says whether it was a parabola, and how much the choice between the two leaves open, m.
-    fn width_over_grip(&self, rows: &[usize]) -> Result<(LinearFit, bool, f64), EstimateError> {
-        const CLEARLY: f64 = 3.0;
-        let column = |series: &[f64]| rows.iter().map(|i| series[*i]).collect::<Vec<f64>>();
-        let (width, grip, rate) = (column(&self.width), column(&self.grip), column(&self.width_rate));
-        let line = intercept(&width, &[grip.clone(), rate.clone()])?;
-        let squares = grip.iter().map(|f| f * f).collect();
-        let parabola = intercept(&width, &[grip, rate, squares])?;
-        // Pads that harden give less and less: the width falls ever more slowly, the square's coefficient is positive.
-        let hardening = parabola.identified[3] && parabola.t_value(3) > CLEARLY;
-        // A bend that is too weak to be called one may still be there: half of what it would move the width by.
-        let open = 0.5 * (line.values[0] - parabola.values[0]).abs();
-        Ok(if hardening { (parabola, true, 0.0) } else { (line, false, open) })
-    }
-
-    /// Heights from where the blocks were picked up and put down.
-    ///
-    /// Two blocks, unstacked and restacked: the first carry spans the height of block 2, the second that of block 1.
-    fn heights(&self, count: usize) -> Result<Vec<Parameter>, EstimateError> {
-        if count != 2 {
-            let why = "only an unstack-and-restack of two blocks shows heights";
-            return Ok((1..=count).map(|n| Parameter::unidentified(&object(n), "height_m", 0, why)).collect());
-        }
-        [(2, 1), (1, 2)].into_iter().map(|(carried, other)| self.height_spanned(carried, &object(other))).collect()
-    }
-
-    /// Difference of the grip height between picking up and placing block `carried`, each extrapolated to where the fingers
-    /// just carry its weight: there the contact below is unloaded, and pads and contact have no give left to be mistaken for
-    /// height.
-    fn height_spanned(&self, carried: usize, name: &str) -> Result<Parameter, EstimateError> {
-        let pick = self.samples(&[&format!("pick-up-block-{carried}")]);
-        let place = self.samples(&[&format!("place-block-{carried}")]);
-        if pick.len() < 5 || place.len() < 5 {
-            let why = format!("block {carried} was not held still on the ground both before and after it was carried");
-            return Ok(Parameter::unidentified(name, "height_m", pick.len() + place.len(), &why));
-        }
-        let [weight, _] = self.weight(carried)?;
-        let weight_n = weight.value.unwrap_or(0.0);
-        let (up, down) = (self.unloaded_height(&pick, weight_n)?, self.unloaded_height(&place, weight_n)?);
-        // What lies under the other block gives way too, unseen: as much as the two contacts differ, under one weight.
-        let give = (up.values[1] - down.values[1]).abs() * weight_n;
-        // A block that turned between the pads moved the two fingers differently: that much is unknown about its height.
-        let tilt = self.finger_disagreement(&pick, &place);
-        let fitted = up.std_errors[0].hypot(down.std_errors[0]);
-        let error = fitted.hypot(give).hypot(tilt).hypot(self.resolution_m).hypot(SEATING_M);
-        let how = format!(
-            "grip height between picking block {carried} up and putting it down, extrapolated to an unloaded contact \
-             ({:.3} mm from turning in the grip and {:.3} mm from contact give in the error)",
-            tilt * 1e3,
-            give * 1e3
-        );
-        let height = (up.values[0] - down.values[0]).abs();
-        Ok(Parameter::identified(name, "height_m", height, error, pick.len() + place.len(), &how))
-    }
-
-    /// Grip height where the lift equals the weight: intercept and slope over (lift − weight).
-    fn unloaded_height(&self, samples: &[usize], weight_n: f64) -> Result<LinearFit, EstimateError> {
-        let rows = self.rows(samples);
-        let height: Vec<f64> = rows.iter().map(|i| self.height[*i]).collect();
-        let load: Vec<f64> = rows.iter().map(|i| self.lift[*i] - weight_n).collect();
-        intercept(&height, &[load])
+        let gives = (1..=count)
+            .filter_map(|number| self.pads(number).ok()?)
+            .map(|pads| (pads.give_m_per_n, pads.give_error, pads.rows));
+        pad_parameter("stiffness_N_m", gives, "the grip varied too little to tell the pads' give")
     }
 
     /// Half the difference of the two fingers' height change between two sets of samples, m.
@@ -408,25 +346,30 @@ impl Blocks<'_> {
 }
 
 /// A stiffness from several measurements of a give (value, standard error, rows), averaged by their errors.
+///
+/// When they scatter more than their errors say, the errors are too small by that much (Birge 1932).
 fn pad_parameter(name: &str, gives: impl Iterator<Item = (f64, f64, usize)>, missing: &str) -> Parameter {
     const SIGNIFICANT: f64 = 3.0;
-    let (mut weights, mut sum, mut rows) = (0.0, 0.0, 0);
-    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-    for (give, error, count) in gives.filter(|(_, error, _)| *error > 0.0 && error.is_finite()) {
-        weights += error.powi(-2);
-        sum += give * error.powi(-2);
-        rows += count;
-        (least, most) = (least.min(give), most.max(give));
-    }
-    // What lies under the block gives way as well, differently each time: the spread between the measurements shows how
-    // much, and is a systematic error.
-    let (give, error) = (sum / weights, weights.powf(-0.5).hypot((most - least).max(0.0)));
+    let gives: Vec<(f64, f64, usize)> = gives.filter(|(_, error, _)| *error > 0.0 && error.is_finite()).collect();
+    let weights: f64 = gives.iter().map(|(_, error, _)| error.powi(-2)).sum();
+    let give = gives.iter().map(|(give, error, _)| give * error.powi(-2)).sum::<f64>() / weights;
+    let scatter: f64 = gives.iter().map(|(one, error, _)| ((one - give) / error).powi(2)).sum();
+    let freedom = gives.len().saturating_sub(1) as f64;
+    // A ratio below its own 95 % limit is chance.
+    let birge = if freedom > 0.0 && scatter > chi_square_95(freedom) { (scatter / freedom).sqrt() } else { 1.0 };
+    let error = weights.powf(-0.5) * birge;
+    let rows = gives.iter().map(|(_, _, count)| count).sum();
     if weights > 0.0 && give > SIGNIFICANT * error {
         let how = "give of the pads under load, one pad";
         Parameter::identified("pad", name, 1.0 / give, error / (give * give), rows, how)
     } else {
         Parameter::unidentified("pad", name, rows, missing)
     }
+}
+
+/// 95 % quantile of χ².
+fn chi_square_95(freedom: f64) -> f64 {
+    ChiSquared::new(freedom).map_or(f64::INFINITY, |d| d.inverse_cdf(0.95))
 }
 
 /// Least squares of `rhs` on a constant and `columns` (each centred on nothing: the constant is the value where all are zero).

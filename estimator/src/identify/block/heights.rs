@@ -1,0 +1,188 @@
+//! Heights of blocks and shear of the pads, from where blocks were picked up and put down: one regression over all of it.
+//!
+//! While a carried block rests on a tower, the height of the grip is
+//!
+//! `y = G + Σ heights below + s load + c ((m + 1) load − Σ weights × level)`
+//!
+//! with `G` the height of the grasp over the block's foot (one a carry), the load the lift less the block's weight, `s` the give of
+//! both pads in shear, `c` the give of one contact between blocks or floor and m blocks below: the load presses every contact
+//! under it, and the blocks below press those under them. The thesis took differences of mean heights, whose gives differ.
+
+use super::{Blocks, object};
+use crate::estimate::{EstimateError, Parameter};
+use crate::identify::linear::{LinearFit, least_squares};
+
+/// Fewer samples of a block at rest in the grip show no height.
+const LEAST_SAMPLES: usize = 5;
+/// A block is below another one when its grip was lower by at least this, m.
+const LEAST_STEP_M: f64 = 3e-3;
+/// The contact with the floor gives as one between blocks does, within this share (one standard deviation): they cannot be told
+/// apart, because the floor's give looks like the pads' shear.
+const CONTACTS_DIFFER: f64 = 0.33;
+/// Before anything is measured, a contact gives this much or less (one standard deviation), m/N: 5 kN/m is a soft block.
+const GIVE_BEFORE: f64 = 2e-4;
+/// A shear stiffness is reported when its give is this many standard errors above zero.
+const SIGNIFICANT: f64 = 3.0;
+
+/// One end of a carry: where the block rested in the grip.
+struct Rest {
+    /// Carry, from 0.
+    carry: usize,
+    samples: Vec<usize>,
+    /// Carries of the blocks below, from the floor up.
+    below: Vec<usize>,
+}
+
+/// Where a block is, by the middle of the grip.
+#[derive(Clone, Copy)]
+struct Place {
+    x_m: f64,
+    y_m: f64,
+}
+
+/// The regression's rows and columns.
+struct Rows {
+    columns: Vec<Vec<f64>>,
+    height: Vec<f64>,
+    /// What the height changes by when the floor's contact gives 1 m/N more than the others.
+    floor: Vec<f64>,
+}
+
+/// Heights of all blocks, and the stiffness of one pad in shear.
+pub(super) fn heights(blocks: &Blocks<'_>, weights_n: &[f64]) -> Result<Vec<Parameter>, EstimateError> {
+    let count = weights_n.len();
+    let rests = rests(blocks, count);
+    let rows = rows(blocks, &rests, weights_n);
+    let mut parameters = Vec::new();
+    let shown = |rest: &Rest| rest.samples.len() >= LEAST_SAMPLES;
+    if !rests.iter().any(shown) || rows.height.len() <= rows.columns.len() {
+        let why = "no block was held still on the ground";
+        parameters.extend((1..=count).map(|n| Parameter::unidentified(&object(n), "height_m", 0, why)));
+        parameters.push(Parameter::unidentified("pad", "shear_stiffness_N_m", 0, why));
+        return Ok(parameters);
+    }
+    let fit = with_prior(&rows, 2 * count + 1)?;
+    let give = fit.values[2 * count + 1];
+    // What it would change if the floor gave differently from the blocks.
+    let shift: Vec<f64> = rows.floor.iter().map(|f| f * CONTACTS_DIFFER * give).collect();
+    let floor = least_squares(&rows.columns, &shift, None)?;
+    for number in 1..=count {
+        let column = count + number - 1;
+        let seen = rests.iter().filter(|r| r.below.contains(&(number - 1))).map(|r| r.samples.len()).sum::<usize>();
+        let samples = rests.iter().map(|r| r.samples.len()).sum::<usize>();
+        if seen < LEAST_SAMPLES || !fit.identified[column] {
+            let why =
+                "it was never clearly below a block that was carried to or from a known height; unstack and restack it";
+            parameters.push(Parameter::unidentified(&object(number), "height_m", seen, why));
+            continue;
+        }
+        let tilt = tilt(blocks, &rests, number - 1);
+        let error = fit.std_errors[column].hypot(floor.values[column]).hypot(tilt).hypot(blocks.resolution_m);
+        let how = format!(
+            "grip heights while blocks rest on it and elsewhere, the give of pads and contacts ({:.0} µm/N) taken out; how flat \
+             the faces are is not in the error",
+            give * 1e6
+        );
+        parameters.push(Parameter::identified(&object(number), "height_m", fit.values[column], error, samples, &how));
+    }
+    parameters.push(shear_stiffness(&fit, &floor, 2 * count, rows.height.len()));
+    Ok(parameters)
+}
+
+/// Stiffness of one pad in shear: two side by side carry the load.
+fn shear_stiffness(fit: &LinearFit, floor: &LinearFit, column: usize, samples: usize) -> Parameter {
+    let (give, error) = (2.0 * fit.values[column], 2.0 * fit.std_errors[column].hypot(floor.values[column]));
+    if fit.identified[column] && give > SIGNIFICANT * error {
+        let how = "give of the grip under load over a block at rest, the contacts' own give taken out; one pad";
+        return Parameter::identified("pad", "shear_stiffness_N_m", 1.0 / give, error / (give * give), samples, how);
+    }
+    let why = "the lift varied too little while a block rested";
+    Parameter::unidentified("pad", "shear_stiffness_N_m", samples, why)
+}
+
+/// Both ends of every carry, with the tower that the block stood on.
+fn rests(blocks: &Blocks<'_>, count: usize) -> Vec<Rest> {
+    let samples = |verb: &str, k: usize| blocks.samples(&[&format!("{verb}-block-{}", k + 1)]);
+    let place = |samples: &[usize]| {
+        let n = samples.len() as f64;
+        (!samples.is_empty()).then(|| Place {
+            x_m: samples.iter().map(|i| blocks.signals.position[*i].x).sum::<f64>() / n,
+            y_m: samples.iter().map(|i| blocks.height[*i]).sum::<f64>() / n,
+        })
+    };
+    let width = |k: usize| {
+        let carried = samples("carry", k);
+        carried.iter().map(|i| blocks.width[*i]).sum::<f64>() / carried.len().max(1) as f64
+    };
+    let widths: Vec<f64> = (0..count).map(width).collect();
+    let picks: Vec<Option<Place>> = (0..count).map(|k| place(&samples("pick-up", k))).collect();
+    let places: Vec<Option<Place>> = (0..count).map(|k| place(&samples("place", k))).collect();
+    let below = |k: usize, here: Option<Place>| -> Vec<usize> {
+        let Some(here) = here else { return Vec::new() };
+        // Blocks carried before lie where they were put, the others where they will be taken from.
+        let now = |j: usize| if j < k { places[j] } else { picks[j] };
+        let mut tower: Vec<(f64, usize)> = (0..count)
+            .filter(|j| *j != k)
+            .filter_map(|j| now(j).map(|at| (at, j)))
+            .filter(|(at, j)| (at.x_m - here.x_m).abs() < 0.5 * (widths[*j] + widths[k]))
+            .filter(|(at, _)| at.y_m < here.y_m - LEAST_STEP_M)
+            .map(|(at, j)| (at.y_m, j))
+            .collect();
+        tower.sort_by(|a, b| a.0.total_cmp(&b.0));
+        tower.into_iter().map(|(_, j)| j).collect()
+    };
+    (0..count)
+        .flat_map(|k| {
+            let (pick, put) = (samples("pick-up", k), samples("place", k));
+            let (at_pick, at_place) = (below(k, picks[k]), below(k, places[k]));
+            [Rest { carry: k, samples: pick, below: at_pick }, Rest { carry: k, samples: put, below: at_place }]
+        })
+        .collect()
+}
+
+/// Columns: grasp heights, block heights, shear give, contact give.
+fn rows(blocks: &Blocks<'_>, rests: &[Rest], weights_n: &[f64]) -> Rows {
+    let count = weights_n.len();
+    let mut rows = Rows { columns: vec![Vec::new(); 2 * count + 2], height: Vec::new(), floor: Vec::new() };
+    for rest in rests.iter().filter(|r| r.samples.len() >= LEAST_SAMPLES) {
+        let standing: f64 = rest.below.iter().map(|j| weights_n[*j]).sum();
+        let pressed: f64 = rest.below.iter().enumerate().map(|(level, j)| weights_n[*j] * (level + 1) as f64).sum();
+        for i in blocks.rows(&rest.samples) {
+            let load = blocks.lift[i] - weights_n[rest.carry];
+            for k in 0..count {
+                rows.columns[k].push(f64::from(u8::from(k == rest.carry)));
+                rows.columns[count + k].push(f64::from(u8::from(rest.below.contains(&k))));
+            }
+            rows.columns[2 * count].push(load);
+            rows.columns[2 * count + 1].push((rest.below.len() + 1) as f64 * load - pressed);
+            rows.floor.push(load - standing);
+            rows.height.push(blocks.height[i]);
+        }
+    }
+    rows
+}
+
+/// The regression with what is known of a contact beforehand: one more row that asks the column for zero, as strongly as
+/// [`GIVE_BEFORE`] weighs against the noise of the rows.
+fn with_prior(rows: &Rows, contact: usize) -> Result<LinearFit, EstimateError> {
+    let alone = least_squares(&rows.columns, &rows.height, None)?;
+    let mut columns = rows.columns.clone();
+    for (j, column) in columns.iter_mut().enumerate() {
+        column.push(if j == contact { alone.rms / GIVE_BEFORE } else { 0.0 });
+    }
+    let mut height = rows.height.clone();
+    height.push(0.0);
+    least_squares(&columns, &height, None)
+}
+
+/// Error by blocks that turn between the pads: when one finger slips and the other does not, the grip's middle moves by half of
+/// it, one way or the other; the largest of the carries that show this height, m.
+fn tilt(blocks: &Blocks<'_>, rests: &[Rest], block: usize) -> f64 {
+    let shows = |pair: &[Rest]| pair.iter().any(|r| r.below.contains(&block));
+    let even = 3.0_f64.sqrt();
+    rests
+        .chunks(2)
+        .filter(|pair| shows(pair) && pair.iter().all(|r| !r.samples.is_empty()))
+        .map(|pair| blocks.finger_disagreement(&pair[0].samples, &pair[1].samples) / even)
+        .fold(0.0, f64::max)
+}
