@@ -11,6 +11,15 @@ pub enum Covariance {
     Full(DMatrix<f64>),
 }
 
+/// The inverse of the covariance's lower Cholesky factor.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Whitening<'a> {
+    /// Of independent channels: its diagonal.
+    Channels(&'a [f64]),
+    /// Row after row, zeros above the diagonal.
+    Rows(&'a [f64]),
+}
+
 /// A normal distribution with what its density needs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gaussian {
@@ -70,6 +79,18 @@ impl Gaussian {
             Covariance::Diagonal(variances) => variances[channel],
             Covariance::Full(matrix) => matrix[(channel, channel)],
         }
+    }
+
+    pub(super) fn whitening(&self) -> Whitening<'_> {
+        match &self.covariance {
+            Covariance::Diagonal(_) => Whitening::Channels(&self.whitening),
+            Covariance::Full(_) => Whitening::Rows(&self.whitening),
+        }
+    }
+
+    /// ½ (d log 2π + log |Σ|).
+    pub(super) fn log_scale(&self) -> f64 {
+        self.log_scale
     }
 
     /// Logarithm of the density at a sample of [`Self::channels`] numbers.

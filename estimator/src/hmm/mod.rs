@@ -8,10 +8,14 @@
 //! no evidence for any state.
 
 mod chain;
+mod emissions;
 mod forward;
 mod gaussian;
 mod train;
+mod vector;
 mod viterbi;
+#[cfg(target_arch = "x86_64")]
+mod wide;
 
 #[cfg(test)]
 mod tests;
@@ -60,11 +64,10 @@ impl Model {
     /// A weight below 1 is for samples that come faster than they bring news: of a channel that is correlated over τ and sampled
     /// every Δt, each sample counts as Δt/τ of an independent one.
     pub fn log_emissions(&self, values: &[f64], weight: f64) -> Vec<f64> {
-        let mut rows = Vec::with_capacity(values.len() / self.channels() * self.emissions.len());
-        for sample in values.chunks_exact(self.channels()) {
-            let known = sample.iter().all(|v| v.is_finite());
-            rows.extend(self.emissions.iter().map(|e| if known { weight * e.log_density(sample) } else { 0.0 }));
-        }
+        let (channels, states) = (self.channels(), self.emissions.len());
+        let samples = values.len() / channels;
+        let mut rows = vec![0.0; samples * states];
+        emissions::Job { model: self, weight, stride: states }.fill_together(&values[..samples * channels], &mut rows);
         rows
     }
 }

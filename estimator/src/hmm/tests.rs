@@ -266,3 +266,66 @@ fn what_is_no_model_is_refused_in_a_sentence() {
     let empty = forward_backward(&Chain::sticky(2, 10.0, &[1.0; 4]).expect("a chain"), &[]);
     assert!(empty.posterior.is_empty() && empty.log_likelihood == 0.0);
 }
+
+/// What every processor must agree with: density by density, then the general walk.
+fn by_definition(m: &Model, values: &[f64], weight: f64) -> Vec<f64> {
+    let densities = |x: &[f64]| m.emissions.iter().map(|e| weight * e.log_density(x)).collect::<Vec<_>>();
+    let none = vec![0.0; m.chain.states()];
+    let row = |x: &[f64]| if x.iter().all(|v| v.is_finite()) { densities(x) } else { none.clone() };
+    values.chunks_exact(m.channels()).flat_map(row).collect()
+}
+
+#[test]
+fn decoding_in_one_pass_is_the_definition_step_by_step() {
+    let mut rng = StdRng::seed_from_u64(16);
+    for (case, k) in [1, 2, 3, 4, 5, 6, 7, 8, 9, 12].into_iter().cycle().take(40).enumerate() {
+        let d = rng.random_range(1..14);
+        let mut m = model(&mut rng, k, d, case % 2 == 0, case % 3 == 0);
+        if case % 5 == 0 {
+            // One state of another kind than the rest.
+            let spread = Covariance::Diagonal(vec![0.7; d]);
+            m.emissions[k / 2] = Gaussian::new(vec![0.3; d], spread, &vec![1e-6; d]);
+        }
+        // Lengths about those of blocks and stretches.
+        let samples = [0, 1, 3, 31, 33, 1024, 1027, 8192, 8193, 20_001][case % 10];
+        let mut values = noise(&mut rng, samples * d);
+        if samples > 30 {
+            values[7 * d] = f64::NAN;
+            values[11 * d + d - 1] = f64::INFINITY;
+            values[23 * d] = 1e200;
+        }
+        let weight = if case % 4 == 0 { 0.3 } else { 1.0 };
+        let truth = by_definition(&m, &values, weight);
+        let found = m.log_emissions(&values, weight);
+        assert_eq!(found.len(), truth.len(), "case {case}");
+        for (i, (a, b)) in found.iter().zip(&truth).enumerate() {
+            assert!(a == b || (a - b).abs() <= 1e-11 * b.abs().max(1.0), "case {case}, number {i}: {a} and {b}");
+        }
+        let walked = viterbi::plain(&m.chain, &found);
+        assert_eq!(viterbi(&m.chain, &found), walked, "case {case}");
+        assert_eq!(m.decode(&m.chain, &values, weight).expect("fits"), walked, "case {case}");
+    }
+}
+
+#[test]
+fn every_processor_computes_the_same() {
+    // The way for processors without wide registers, on this one.
+    let mut rng = StdRng::seed_from_u64(17);
+    for full in [true, false] {
+        let m = model(&mut rng, 5, 12, full, false);
+        let mut values = noise(&mut rng, 12 * 1000);
+        values[12 * 40 + 3] = f64::NAN;
+        let truth = by_definition(&m, &values, 1.0);
+        let mut rows = vec![0.0; 5 * 1000];
+        emissions::Job { model: &m, weight: 1.0, stride: 5 }.fill_plain(&values, &mut rows);
+        assert_eq!(rows, truth);
+    }
+}
+
+#[test]
+fn a_chain_of_another_size_is_refused() {
+    let mut rng = StdRng::seed_from_u64(18);
+    let m = model(&mut rng, 3, 2, true, false);
+    let other = Chain::sticky(2, 10.0, &[1.0; 4]).expect("a chain");
+    assert!(m.decode(&other, &[0.0; 8], 1.0).expect_err("two states").to_string().contains("3 emissions"));
+}
