@@ -1,7 +1,7 @@
 //! Recordings of the scripted operator in worlds drawn at random.
 
 use haptics::Vec2;
-use haptics::device::{Command, Device, ScriptedOperator, Skill};
+use haptics::device::{Command, Device, Mistake, ScriptedOperator, Skill};
 use haptics::law::{CoulombFriction, Effect, Inertia, LoadFriction, ViscousFriction, Weight};
 use haptics::recording::Recording;
 use haptics::servo::TickRecord;
@@ -50,8 +50,20 @@ pub fn perform_at_levels(
     every: usize,
     sensors: &[SensorModel],
 ) -> Vec<Performance> {
+    perform_with_mistakes(world, seed, skill, &[], every, sensors)
+}
+
+/// The same by an operator who makes mistakes on purpose.
+pub fn perform_with_mistakes(
+    world: &World,
+    seed: u64,
+    skill: Skill,
+    mistakes: &[Mistake],
+    every: usize,
+    sensors: &[SensorModel],
+) -> Vec<Performance> {
     let mut state = State::resting(world);
-    let mut operator = ScriptedOperator::new(world, &state, skill, seed);
+    let mut operator = ScriptedOperator::with_mistakes(world, &state, skill, mistakes, seed);
     let mut ticks = Vec::new();
     let mut rng = StdRng::seed_from_u64(seed ^ 0xb1a5);
     let bias_n = [(); 2].map(|()| Vec2::from_fn(|_, _| rng.random_range(-LARGEST_BIAS_N..LARGEST_BIAS_N)));

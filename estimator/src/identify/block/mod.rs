@@ -5,12 +5,13 @@
 //! width (it grew 7 % too narrow there) and from the height. Where the recording does not show it, the standard error says so.
 
 mod heights;
+mod slip;
 
 use super::linear::{LinearFit, least_squares};
 use super::pads::{Grip, PadFit, width_over_force};
 use crate::constraint::{Carry, carried};
 use crate::estimate::{Constraint, EstimateError, Fit, Parameter};
-use crate::segment::{Segmentation, Thresholds, segment_signals, subtasks, threshold::Levels};
+use crate::segment::{Segmentation, Thresholds, segment_signals, subtasks, threshold::Levels, threshold::percentile};
 use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signals};
 use haptics::Vec2;
@@ -311,12 +312,22 @@ impl Blocks<'_> {
                 }
             }
         }
-        let slip = Parameter::unidentified(
-            &name,
-            "friction",
-            samples.len(),
-            "no slip was looked for: only a lower bound is given",
-        );
+        let held = best.map_or(0.0, |(ratio, error)| ratio - 2.0 * error);
+        let slip = match self.slip(number, held) {
+            Some(slip) => {
+                let how = format!(
+                    "shear over normal force of both fingers at the onset of a slip, the first at {:.2} s",
+                    slip.at_s
+                );
+                Parameter::identified(&name, "friction", slip.coefficient, slip.error, slip.samples, &how)
+            }
+            None => Parameter::unidentified(
+                &name,
+                "friction",
+                samples.len(),
+                "the fingers never slipped: only a lower bound is given; loosen the pinch until the block slides",
+            ),
+        };
         let bound = match best {
             Some((ratio, error)) => Parameter::identified(
                 &name,
@@ -330,6 +341,22 @@ impl Blocks<'_> {
             None => Parameter::unidentified(&name, "friction_lower_bound", 0, "the grip was never firm enough to tell"),
         };
         [bound, slip]
+    }
+
+    /// Friction where the fingers slipped on a block, from gripping it to shortly after it was put down or lost.
+    fn slip(&self, number: usize, ratio: f64) -> Option<slip::Slip> {
+        const NOISES: f64 = 8.0;
+        const AFTER_S: f64 = 0.3;
+        let carried = self.samples(&[&format!("carry-block-{number}")]);
+        let mut lifts: Vec<f64> = carried.iter().map(|i| self.lift[*i]).collect();
+        // The middle one: a slip at the end of the carry does not count.
+        let weight_n = percentile(&mut lifts, 0.5);
+        let own = ["pick-up", "carry", "place"].map(|verb| format!("{verb}-block-{number}"));
+        let grasp = self.samples(&[&own[0], &own[1], &own[2]]);
+        let time = &self.signals.time_s;
+        let end = time.partition_point(|t| *t < grasp.last().map_or(0.0, |i| time[*i]) + AFTER_S);
+        let least_grip_n = NOISES * self.levels.force_noise_n;
+        slip::slip(self, *grasp.first()?, end, slip::Held { weight_n, least_grip_n, ratio })
     }
 
     /// Tip force averaged over 60 ms about a sample, N: sensor noise falls, friction does not change that fast.

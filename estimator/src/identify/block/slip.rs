@@ -1,0 +1,129 @@
+//! True static friction, where fingers were seen to slip on a block.
+//!
+//! A ratio of forces is only a lower bound of the friction coefficient, unless the fingers slip. They slip where the block is not
+//! carried by them any more (the lift is less than weight and acceleration ask for), where shear and normal force of both fingers
+//! keep one ratio, and where something happens at that ratio: the pinch changes, or the tips move farther than pads give. A block
+//! that is put down has the first without the second, one that is carried steadily has the second without the first. And no ratio
+//! below one that was held without a slip is friction.
+
+use super::Blocks;
+use crate::identify::linear::least_squares;
+
+/// Length of the windows that are looked at, and their distance, s.
+const WINDOW_S: f64 = 0.05;
+const STEP_S: f64 = 0.01;
+/// The lift must miss what the block asks for by this share.
+const MISSING: f64 = 0.06;
+/// The pinch changes by this share within a window, or the tips move by this much beyond what pads of [`SOFTEST_N_M`] give, m.
+const PINCH_CHANGES: f64 = 0.08;
+const SLIDES_M: f64 = 0.3e-3;
+const SOFTEST_N_M: f64 = 500.0;
+/// A slip's ratio is at least this share of the largest ratio that was certainly held.
+const OF_THE_BOUND: f64 = 0.9;
+/// The two fingers' ratios agree within this share: one that only leans has another one.
+const FINGERS_AGREE: f64 = 0.15;
+/// Onset: the first part of a slip, s; later the friction is that of motion.
+const ONSET_S: f64 = 0.1;
+
+/// Friction at the onset of slips.
+pub(super) struct Slip {
+    pub(super) coefficient: f64,
+    pub(super) error: f64,
+    pub(super) samples: usize,
+    /// When the first one began, s.
+    pub(super) at_s: f64,
+}
+
+/// What a slip must be judged against.
+#[derive(Clone, Copy)]
+pub(super) struct Held {
+    /// Weight of the block, N.
+    pub(super) weight_n: f64,
+    /// Below this pinch a ratio is noise, N.
+    pub(super) least_grip_n: f64,
+    /// Ratio that was held for certain.
+    pub(super) ratio: f64,
+}
+
+/// Slips among the samples `first..end` of one block.
+pub(super) fn slip(blocks: &Blocks<'_>, first: usize, end: usize, held: Held) -> Option<Slip> {
+    let time = &blocks.signals.time_s;
+    let mut onsets: Vec<(usize, usize)> = Vec::new();
+    let mut at = first;
+    let mut quiet_until = f64::NEG_INFINITY;
+    while at < end {
+        let stop = time[..end].partition_point(|t| *t < time[at] + WINDOW_S);
+        let window = (at, stop.max(at + 1));
+        if time[at] >= quiet_until && slides(blocks, window, held) {
+            // The first window that slides may still begin before it does.
+            let begin = time[..end].partition_point(|t| *t < time[at] + 0.5 * WINDOW_S);
+            let onset_end = time[..end].partition_point(|t| *t < time[at] + ONSET_S);
+            onsets.push((begin, onset_end.max(begin + 1)));
+            // One slip has one onset.
+            quiet_until = time[at] + 1.0;
+        }
+        at = time[..end].partition_point(|t| *t < time[at] + STEP_S).max(at + 1);
+    }
+    let at_s = time[onsets.first()?.0];
+    let (mut shear, mut normal) = (Vec::new(), Vec::new());
+    for i in onsets.iter().flat_map(|(from, to)| *from..*to) {
+        for finger in 0..2 {
+            let (along, across) = pair(blocks, finger, i);
+            if across > held.least_grip_n {
+                shear.push(along);
+                normal.push(across);
+            }
+        }
+    }
+    let fit = least_squares(std::slice::from_ref(&normal), &shear, None).ok()?;
+    let usual_n = normal.iter().sum::<f64>() / normal.len().max(1) as f64;
+    // A bias that is known to b shifts the ratio by b over the pinch.
+    let bias = blocks.bias_error() * fit.values[0].hypot(1.0) / usual_n;
+    let samples = shear.len();
+    Some(Slip { coefficient: fit.values[0], error: fit.std_errors[0].hypot(bias), samples, at_s })
+}
+
+/// Size of the shear and normal force of a finger, N.
+fn pair(blocks: &Blocks<'_>, finger: usize, i: usize) -> (f64, f64) {
+    let force = blocks.force(finger, i);
+    (force.y.abs(), if finger == 0 { force.x } else { -force.x })
+}
+
+fn slides(blocks: &Blocks<'_>, (from, to): (usize, usize), held: Held) -> bool {
+    let Held { weight_n, least_grip_n, ratio: held } = held;
+    let n = (to - from) as f64;
+    if n < 3.0 {
+        return false;
+    }
+    let mean =
+        |value: &dyn Fn(usize) -> f64, from: usize, to: usize| (from..to).map(value).sum::<f64>() / (to - from) as f64;
+    let noise = blocks.levels.force_noise_n;
+    // Tips that are thrown up at lift-off ask for more than the block, behind its pads, takes: only what falls asks for less.
+    let gravity = blocks.recording.meta.gravity();
+    let asked = mean(&|i| weight_n * (1.0 + blocks.acceleration_y[i].min(0.0) / gravity), from, to);
+    let lift = mean(&|i| blocks.lift(i), from, to);
+    if asked - lift < (MISSING * weight_n).max(5.0 * noise * (2.0 / n).sqrt()) {
+        return false;
+    }
+    let middle = from + (to - from) / 2;
+    let ratios = [0, 1].map(|finger| {
+        let sums = (from..to).map(|i| pair(blocks, finger, i)).fold((0.0, 0.0), |s, (a, b)| (s.0 + a * b, s.1 + b * b));
+        let ratio = sums.0 / sums.1.max(1e-12);
+        let least = (from..to).map(|i| pair(blocks, finger, i).1).fold(f64::INFINITY, f64::min);
+        // Proportional in both halves, within the noise of their means.
+        let off = |a: usize, b: usize| mean(&|i| pair(blocks, finger, i).0 - ratio * pair(blocks, finger, i).1, a, b);
+        let allowed = 4.0 * noise * ratio.hypot(1.0) / (0.5 * n).sqrt();
+        let even = off(from, middle).abs() < allowed && off(middle, to).abs() < allowed;
+        (ratio, even && least > least_grip_n)
+    });
+    let agree = (ratios[0].0 - ratios[1].0).abs() < FINGERS_AGREE * ratios[0].0.max(ratios[1].0);
+    if !(ratios[0].1 && ratios[1].1 && agree && 0.5 * (ratios[0].0 + ratios[1].0) > OF_THE_BOUND * held) {
+        return false;
+    }
+    let grip = |a: usize, b: usize| mean(&|i| blocks.grip[i], a, b);
+    let (before, after) = (grip(from, middle), grip(middle, to));
+    let pinch_changes = (before - after).abs() > PINCH_CHANGES * before.max(after);
+    let way = (blocks.height[to - 1] - blocks.height[from]).abs();
+    let elastic = (blocks.lift[to - 1] - blocks.lift[from]).abs() / SOFTEST_N_M;
+    pinch_changes || way > SLIDES_M + elastic
+}
