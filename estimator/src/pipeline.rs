@@ -49,7 +49,7 @@ pub fn analyse(recordings: &[Recording], options: &Options) -> Result<Analysis, 
     }
     let (fit, segmentations) = match task {
         Task::BlockStack => each(recordings, |r| block::fit(r, options.thresholds))?,
-        Task::Crank => each(recordings, |r| crank::fit(r, options.thresholds))?,
+        Task::Crank => cranks(recordings, options)?,
         Task::Mechanism => {
             let fit = mechanism::fit(recordings)?;
             let segmentations = recordings.iter().map(|r| segment(r, Some(task), options.thresholds).ok()).collect();
@@ -85,6 +85,21 @@ fn each(
         segmentations.push(Some(segmentation));
     }
     Ok((combine(fits), segmentations))
+}
+
+/// One or several recordings of a crank: geometry from each, the laws from all of them at once.
+fn cranks(recordings: &[Recording], options: &Options) -> Result<Fitted, EstimateError> {
+    let together = crank::fit_together(recordings, options.thresholds)?;
+    let mut fit = combine(together.fits);
+    if recordings.len() > 1 {
+        for shared in together.shared {
+            match fit.parameters.iter_mut().find(|p| p.object == shared.object && p.name == shared.name) {
+                Some(average) => *average = shared,
+                None => fit.parameters.push(shared),
+            }
+        }
+    }
+    Ok((fit, together.segmentations.into_iter().map(Some).collect()))
 }
 
 /// Recordings that disagree by more than this many standard errors are said to.

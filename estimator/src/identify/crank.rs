@@ -11,20 +11,22 @@ mod laws;
 mod motion;
 mod report;
 mod slipping;
+mod together;
 
-use crate::estimate::{Constraint, EstimateError, Fit};
+use crate::estimate::{Constraint, EstimateError, Fit, Slip};
 use crate::segment::{Segmentation, Thresholds, segment};
 use crate::signal::task::is_two_fingered;
-use friction::{friction, geometry_errors, heldout_quality};
+use friction::{Friction, Sensed, friction, geometry_errors, heldout_quality};
 use geometry::Geometry;
 use haptics::Vec2;
 use haptics::law::{Motion, drive_forces};
 use haptics::recording::{Channel, Recording, Task};
 use haptics::world::Crank;
-use held::held;
+use held::{Held, held};
 use motion::{Rows, motions};
 use report::{constraint, geometry_parameters, grip_parameters, warnings};
 use slipping::{slip_warning, without_slips};
+pub use together::{Together, fit_together};
 
 /// A path that misses its best circle by more than this share of the radius is no crank's.
 const LARGEST_RESIDUAL: f64 = 0.08;
@@ -38,6 +40,23 @@ const LEAST_SAMPLES: usize = 40;
 /// Fits one recording of a crank, with `thresholds` or those chosen from its noise. The segmentation that was used comes with
 /// the fit.
 pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit, Segmentation), EstimateError> {
+    let seen = see(recording, thresholds)?;
+    let fit = describe(recording, &seen)?;
+    Ok((fit, seen.segmentation))
+}
+
+/// One recording, up to the laws fitted to it alone.
+struct Seen {
+    segmentation: Segmentation,
+    held: Held,
+    geometry: Geometry,
+    slips: Vec<Slip>,
+    motions: Vec<Motion>,
+    rows: Rows,
+    friction: Friction,
+}
+
+fn see(recording: &Recording, thresholds: Option<Thresholds>) -> Result<Seen, EstimateError> {
     let segmentation = segment(recording, Some(Task::Crank), thresholds)?;
     let mut held = held(recording, &segmentation)?;
     if held.turning.len() < LEAST_SAMPLES {
@@ -61,16 +80,22 @@ pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit
     let rows = Rows::new(&held, &motions, &tangential);
     let mut friction = friction(recording, &rows)?;
     friction.geometry_errors = geometry_errors(recording, &held, &geometry, &friction);
+    Ok(Seen { segmentation, held, geometry, slips, motions, rows, friction })
+}
 
-    let mut parameters = geometry_parameters(&held, &geometry);
-    parameters.extend(friction.parameters(&held, &geometry, &rows));
+/// What one recording shows, in the words of a fit.
+fn describe(recording: &Recording, seen: &Seen) -> Result<Fit, EstimateError> {
+    let Seen { segmentation, held, geometry, slips, motions, rows, friction } = seen;
+    let mut parameters = geometry_parameters(held, geometry);
+    parameters.extend(friction.parameters(&Sensed::of(held, geometry), rows));
     if is_two_fingered(recording) {
-        parameters.extend(grip_parameters(recording, &held, &geometry)?);
+        parameters.extend(grip_parameters(recording, held, geometry)?);
     }
     let turning: Vec<Motion> = held.turning.iter().map(|i| motions[*i]).collect();
-    let constraint = Constraint { slips, ..constraint(recording, &held, &geometry, &turning, &friction, &parameters) };
-    let quality = heldout_quality(recording, &rows);
-    let mut warnings = warnings(&segmentation, &turning, &constraint);
+    let constraint = constraint(recording, held, geometry, &turning, friction, &parameters);
+    let constraint = Constraint { slips: slips.clone(), ..constraint };
+    let quality = heldout_quality(recording, rows);
+    let mut warnings = warnings(segmentation, &turning, &constraint);
     warnings.extend(slip_warning(&constraint.slips));
     if held.bias_error_n.is_none() && !warnings.iter().any(|w| w.contains("let go")) {
         warnings.push(
@@ -79,8 +104,7 @@ pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit
                 .to_owned(),
         );
     }
-    let fit = Fit { task: Task::Crank.name().to_owned(), parameters, constraints: vec![constraint], quality, warnings };
-    Ok((fit, segmentation))
+    Ok(Fit { task: Task::Crank.name().to_owned(), parameters, constraints: vec![constraint], quality, warnings })
 }
 
 /// The forces that the measured motion of a crank needs, channels named as measured.

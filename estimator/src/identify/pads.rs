@@ -35,7 +35,7 @@ pub(super) struct PadFit {
 }
 
 /// Before the recording was seen, a linear spring is this many times as likely as either way to bend.
-const SIMPLER: f64 = 4.0;
+const SIMPLER: f64 = 12.0;
 /// Values of a bend that are tried first, and then between the neighbours of the best one.
 const TRIALS: usize = 16;
 

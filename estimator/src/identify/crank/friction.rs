@@ -14,6 +14,28 @@ use std::collections::BTreeMap;
 /// A parameter whose error alone moves the predicted force by more than this share of the measured one is not identified.
 const LARGEST_ERROR: f64 = 0.3;
 
+/// What besides the rows decides how well the laws are known.
+pub(super) struct Sensed {
+    /// Samples that turned.
+    pub(super) samples: usize,
+    /// Error of a force by the resolution of the log, N.
+    pub(super) resolution_n: f64,
+    /// Standard error of the vertical bias that was taken out, N; zero where none could be.
+    pub(super) bias_error_n: f64,
+    pub(super) radius_m: f64,
+}
+
+impl Sensed {
+    pub(super) fn of(held: &Held, geometry: &Geometry) -> Self {
+        Self {
+            samples: held.turning.len(),
+            resolution_n: held.resolution_n,
+            bias_error_n: held.bias_error_n.unwrap_or(0.0),
+            radius_m: geometry.radius_m,
+        }
+    }
+}
+
 /// The fitted friction laws.
 pub(super) struct Friction {
     pub(super) fit: LinearFit,
@@ -55,12 +77,12 @@ impl Friction {
         self.fit.identified[column] && self.fit.std_errors[column] * size <= LARGEST_ERROR * load_n
     }
 
-    pub(super) fn parameters(&self, held: &Held, geometry: &Geometry, rows: &Rows) -> Vec<Parameter> {
-        let samples = held.turning.len();
+    pub(super) fn parameters(&self, seen: &Sensed, rows: &Rows) -> Vec<Parameter> {
+        let samples = seen.samples;
         let load = (rows.tangential.iter().map(|f| f * f).sum::<f64>() / rows.len().max(1) as f64).sqrt();
         let mut parameters = Vec::new();
         for (law, name) in NAMES.into_iter().enumerate() {
-            let scale = if law == INERTIA { geometry.radius_m.powi(2) } else { 1.0 };
+            let scale = if law == INERTIA { seen.radius_m.powi(2) } else { 1.0 };
             if let Some(known) = self.known.get(&law) {
                 parameters.push(Parameter::identified("crank", name, known * scale, 0.0, 0, "stated in the sidecar"));
                 continue;
@@ -69,10 +91,10 @@ impl Friction {
             match column {
                 Some(column) if self.shown(column, rows, load) => {
                     // A force that is off by the log's resolution shifts every parameter by that share of the load.
-                    let resolution = self.fit.values[column].abs() * held.resolution_n / load.max(1e-9);
+                    let resolution = self.fit.values[column].abs() * seen.resolution_n / load.max(1e-9);
                     let fitted = self.fit.std_errors[column].hypot(self.geometry_errors[column]);
                     // A vertical bias acts just as the weight does.
-                    let bias = if law == WEIGHT { held.bias_error_n.unwrap_or(0.0) } else { 0.0 };
+                    let bias = if law == WEIGHT { seen.bias_error_n } else { 0.0 };
                     let error = fitted.hypot(resolution).hypot(bias) * scale;
                     let how = format!("{} in the tangential force (eq. 5.2)", LAWS[law].title());
                     let value = self.fit.values[column] * scale;

@@ -98,6 +98,19 @@ impl Rows {
         self.tangential.len()
     }
 
+    /// The rows of several recordings, one after the other.
+    pub(super) fn join<'a>(all: impl Iterator<Item = &'a Self>) -> Self {
+        let mut joined = Self { columns: Default::default(), tangential: Vec::new(), weights: Vec::new() };
+        for rows in all {
+            for (column, more) in joined.columns.iter_mut().zip(&rows.columns) {
+                column.extend_from_slice(more);
+            }
+            joined.tangential.extend_from_slice(&rows.tangential);
+            joined.weights.extend_from_slice(&rows.weights);
+        }
+        joined
+    }
+
     /// The first rows, as they come in time.
     pub(super) fn head(&self, rows: usize) -> Self {
         Self {

@@ -1,0 +1,63 @@
+//! Several recordings of one crank: the laws are shared, so all recordings' rows go into one regression; where the crank stood and
+//! how it was grasped is each recording's own.
+//!
+//! Averaging the single fits is not the same: two recordings that each show only the sum of two parameters can show both together.
+
+use super::friction::{Friction, Sensed, friction};
+use super::motion::Rows;
+use super::{Seen, describe, see};
+use crate::estimate::{EstimateError, Fit, Parameter};
+use crate::segment::{Segmentation, Thresholds};
+use haptics::recording::Recording;
+
+/// Every recording's own fit and segmentation, and the shared parameters from all of them at once.
+pub struct Together {
+    /// In the order of the recordings.
+    pub fits: Vec<Fit>,
+    /// In the order of the recordings.
+    pub segmentations: Vec<Segmentation>,
+    /// Weight, friction and inertia.
+    pub shared: Vec<Parameter>,
+}
+
+/// Fits several recordings of the same crank. What is stated in the first one's sidecar holds for all.
+pub fn fit_together(recordings: &[Recording], thresholds: Option<Thresholds>) -> Result<Together, EstimateError> {
+    let seen = recordings.iter().map(|r| see(r, thresholds)).collect::<Result<Vec<_>, _>>()?;
+    let fits = recordings.iter().zip(&seen).map(|(r, s)| describe(r, s)).collect::<Result<Vec<_>, _>>()?;
+    let rows = Rows::join(seen.iter().map(|s| &s.rows));
+    let mut joint = friction(&recordings[0], &rows)?;
+    joint.geometry_errors = geometry_errors(&seen, &joint);
+    let mut shared = joint.parameters(&sensed(&seen), &rows);
+    for parameter in shared.iter_mut().filter(|p| p.identified && p.samples > 0) {
+        parameter.how = format!("{}, {} recordings in one regression", parameter.how, recordings.len());
+    }
+    Ok(Together { fits, segmentations: seen.into_iter().map(|s| s.segmentation).collect(), shared })
+}
+
+/// Each recording pulls at the joint fit with its share of the rows; their errors have nothing to do with each other.
+fn pooled(seen: &[Seen], error: impl Fn(&Seen) -> f64) -> f64 {
+    let total: f64 = seen.iter().map(|s| s.rows.len() as f64).sum();
+    seen.iter().map(|s| (s.rows.len() as f64 / total * error(s)).powi(2)).sum::<f64>().sqrt()
+}
+
+fn geometry_errors(seen: &[Seen], joint: &Friction) -> Vec<f64> {
+    let of = |law: usize| {
+        pooled(seen, |s| {
+            let column = s.friction.used.iter().position(|l| *l == law);
+            column.map_or(0.0, |c| s.friction.geometry_errors[c])
+        })
+    };
+    joint.used.iter().map(|law| of(*law)).collect()
+}
+
+fn sensed(seen: &[Seen]) -> Sensed {
+    let total: f64 = seen.iter().map(|s| s.rows.len() as f64).sum();
+    let mean = |value: &dyn Fn(&Seen) -> f64| seen.iter().map(|s| s.rows.len() as f64 * value(s)).sum::<f64>() / total;
+    Sensed {
+        samples: seen.iter().map(|s| s.held.turning.len()).sum(),
+        // The same sensors: their steps do not average out between recordings.
+        resolution_n: mean(&|s| s.held.resolution_n),
+        bias_error_n: pooled(seen, |s| s.held.bias_error_n.unwrap_or(0.0)),
+        radius_m: mean(&|s| s.geometry.radius_m),
+    }
+}
