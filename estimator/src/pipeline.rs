@@ -3,7 +3,7 @@
 use crate::calibrate;
 use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::identify::{block, crank, mechanism, needle};
-use crate::segment::{Segmentation, Thresholds, segment, task_of};
+use crate::segment::{Method, Segmentation, Thresholds, segment, segment_by, task_of};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
 
@@ -14,6 +14,8 @@ pub struct Options {
     pub task: Option<Task>,
     /// Thresholds; chosen from the noise when absent.
     pub thresholds: Option<Thresholds>,
+    /// How states are told apart.
+    pub method: Method,
 }
 
 /// Everything that one or several recordings of the same object show.
@@ -48,16 +50,17 @@ pub fn analyse(recordings: &[Recording], options: &Options) -> Result<Analysis, 
         }
     }
     let (fit, segmentations) = match task {
-        Task::BlockStack => each(recordings, |r| block::fit(r, options.thresholds))?,
+        Task::BlockStack => each(recordings, |r| block::fit_by(options.method, r, options.thresholds))?,
         Task::Crank => cranks(recordings, options)?,
         Task::Mechanism => {
             let fit = mechanism::fit(recordings)?;
-            let segmentations = recordings.iter().map(|r| segment(r, Some(task), options.thresholds).ok()).collect();
+            let segmentations =
+                recordings.iter().map(|r| segment_by(options.method, r, Some(task), options.thresholds).ok()).collect();
             (fit, segmentations)
         }
         Task::Needle => {
             let fits = recordings.iter().map(needle::fit).collect::<Result<Vec<_>, _>>()?;
-            (combine(fits), recordings.iter().map(|_| None).collect())
+            (combine(fits), recordings.iter().map(|r| segment(r, Some(task), options.thresholds).ok()).collect())
         }
         Task::Barrel | Task::Switch => {
             return Err(EstimateError::Other(format!(
@@ -89,7 +92,7 @@ fn each(
 
 /// One or several recordings of a crank: geometry from each, the laws from all of them at once.
 fn cranks(recordings: &[Recording], options: &Options) -> Result<Fitted, EstimateError> {
-    let together = crank::fit_together(recordings, options.thresholds)?;
+    let together = crank::fit_together(options.method, recordings, options.thresholds)?;
     let mut fit = combine(together.fits);
     if recordings.len() > 1 {
         for shared in together.shared {

@@ -14,6 +14,7 @@ mod screenshot;
 mod segment;
 mod simulate;
 pub mod table;
+mod task;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
@@ -89,9 +90,10 @@ struct LogArgs {
     /// Sidecar, when it is not `<stem>.meta.json` beside the log
     #[arg(long)]
     meta: Option<PathBuf>,
-    /// What was done; told from the sidecar and the columns when not given
-    #[arg(long, value_parser = task_parser())]
-    task: Option<Task>,
+    /// What was done: block-stack, crank, needle, mechanism, barrel, switch, a task of yours, or its JSON file (docs/tasks.md);
+    /// told from the sidecar and the columns when not given
+    #[arg(long)]
+    task: Option<String>,
 }
 
 /// The passivity controller, where a command runs a servo.
@@ -133,10 +135,8 @@ fn read(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError> {
 impl LogArgs {
     fn load(&self, path: &Path) -> anyhow::Result<Vec<Recording>> {
         let mut recordings = read(path, self.meta.as_deref())?;
-        if let Some(task) = self.task {
-            for recording in &mut recordings {
-                recording.meta.task = Some(task);
-            }
+        if let Some(task) = self.task.as_deref().map(task::Chosen::find).transpose()? {
+            recordings.iter_mut().for_each(|recording| task.give_to(recording));
         }
         Ok(recordings)
     }

@@ -106,7 +106,7 @@ fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Session> {
         return Ok(session);
     }
     session.show(recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect());
-    session.choice = FitChoice { task: input.task, thresholds: None };
+    session.choice = FitChoice { task: input.task, ..FitChoice::default() };
     match session::analyse(&session.recordings, session.choice) {
         Ok(analysis) => {
             session.replays = session::replay_all(&analysis.world, &session.recordings);

@@ -7,7 +7,7 @@ use super::plots::Levels;
 use super::prepare::Prepared;
 use super::trainer::Trainer;
 use estimator::pipeline::{self, Analysis};
-use estimator::segment::{Segmentation, Thresholds};
+use estimator::segment::{Method, Segmentation, Thresholds};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
 use std::path::PathBuf;
@@ -70,12 +70,14 @@ impl Default for SceneLayers {
 }
 
 /// How the fit is to be made.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FitChoice {
     /// The task; absent: told from the recording.
     pub task: Option<Task>,
     /// Thresholds given by hand; absent: chosen above the noise.
     pub thresholds: Option<Thresholds>,
+    /// How states are told apart.
+    pub method: Method,
 }
 
 /// Everything that is shared between panels.
@@ -183,7 +185,7 @@ impl Session {
         self.analysis = None;
         self.fit_problem = None;
         self.playing = false;
-        self.choice = FitChoice { task: self.task_hint, thresholds: None };
+        self.choice = FitChoice { task: self.task_hint, thresholds: None, method: self.choice.method };
         self.select(0);
     }
 
@@ -285,7 +287,7 @@ impl Session {
 /// Segments and fits; the sentence of an error.
 pub fn analyse(recordings: &[Arc<Prepared>], choice: FitChoice) -> Result<Analysis, String> {
     let plain: Vec<Recording> = recordings.iter().map(|p| p.recording.clone()).collect();
-    let options = pipeline::Options { task: choice.task, thresholds: choice.thresholds };
+    let options = pipeline::Options { task: choice.task, thresholds: choice.thresholds, method: choice.method };
     pipeline::analyse(&plain, &options).map_err(|error| sentence(&error.to_string()))
 }
 

@@ -130,6 +130,9 @@ pub fn state_color(dark: bool, state: SystemState) -> Color32 {
         SystemState::SlidingOnGround => role(dark, ColorRole::Block(1)),
         SystemState::Turning => role(dark, ColorRole::Block(3)),
         SystemState::Holding => role(dark, ColorRole::Block(4)),
+        SystemState::Insertion => role(dark, ColorRole::Block(2)),
+        SystemState::Penetration => role(dark, ColorRole::Block(0)),
+        SystemState::Extraction => role(dark, ColorRole::Block(1)),
         SystemState::NoState if dark => Color32::from_rgb(0x22, 0x29, 0x33),
         SystemState::NoState => Color32::from_rgb(0xE6, 0xEA, 0xEF),
     }
@@ -144,6 +147,9 @@ pub fn state_name(state: SystemState) -> &'static str {
         SystemState::SlidingOnGround => "Sliding on ground",
         SystemState::Turning => "Turning",
         SystemState::Holding => "Holding",
+        SystemState::Insertion => "Insertion",
+        SystemState::Penetration => "Penetration",
+        SystemState::Extraction => "Extraction",
         SystemState::NoState => "No state",
     }
 }
@@ -157,6 +163,9 @@ pub fn state_short(state: SystemState) -> &'static str {
         SystemState::SlidingOnGround => "Slides",
         SystemState::Turning => "Turns",
         SystemState::Holding => "Holds",
+        SystemState::Insertion => "In",
+        SystemState::Penetration => "Through",
+        SystemState::Extraction => "Out",
         SystemState::NoState => "–",
     }
 }

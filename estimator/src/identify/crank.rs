@@ -14,7 +14,7 @@ mod slipping;
 mod together;
 
 use crate::estimate::{Constraint, EstimateError, Fit, Slip};
-use crate::segment::{Segmentation, Thresholds, segment};
+use crate::segment::{Method, Segmentation, Thresholds, segment, segment_by};
 use crate::signal::task::is_two_fingered;
 use friction::{Friction, Sensed, friction, geometry_errors, heldout_quality};
 use geometry::Geometry;
@@ -40,7 +40,16 @@ const LEAST_SAMPLES: usize = 40;
 /// Fits one recording of a crank, with `thresholds` or those chosen from its noise. The segmentation that was used comes with
 /// the fit.
 pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit, Segmentation), EstimateError> {
-    let seen = see(recording, thresholds)?;
+    fit_by(Method::Threshold, recording, thresholds)
+}
+
+/// [`fit`] with the states of either method.
+pub fn fit_by(
+    method: Method,
+    recording: &Recording,
+    thresholds: Option<Thresholds>,
+) -> Result<(Fit, Segmentation), EstimateError> {
+    let seen = see(method, recording, thresholds)?;
     let fit = describe(recording, &seen)?;
     Ok((fit, seen.segmentation))
 }
@@ -56,8 +65,8 @@ struct Seen {
     friction: Friction,
 }
 
-fn see(recording: &Recording, thresholds: Option<Thresholds>) -> Result<Seen, EstimateError> {
-    let segmentation = segment(recording, Some(Task::Crank), thresholds)?;
+fn see(method: Method, recording: &Recording, thresholds: Option<Thresholds>) -> Result<Seen, EstimateError> {
+    let segmentation = segment_by(method, recording, Some(Task::Crank), thresholds)?;
     let mut held = held(recording, &segmentation)?;
     if held.turning.len() < LEAST_SAMPLES {
         return Err(EstimateError::TooFewSamples {

@@ -31,7 +31,7 @@ pub(super) fn align(runs: &[Run], order: &[Subtask]) -> Option<(f64, Vec<usize>)
     let moves = [(0, 0.0), (1, 0.0), (2, MISSED_PENALTY * total), (-1, RETRY_PENALTY * total)];
     let source = |step: usize, by: isize| {
         let from = step.checked_add_signed(-by).filter(|from| *from < k)?;
-        (by >= 0 || order[from].is_pick_up()).then_some(from)
+        (by >= 0 || order[from].retry).then_some(from)
     };
     let mut cost = vec![f64::INFINITY; k];
     let mut came_from = vec![0_usize; n * k];
@@ -64,8 +64,8 @@ pub(super) fn failed_attempts(steps: &[usize], order: &[Subtask]) -> Vec<bool> {
     let mut failed = vec![false; steps.len()];
     for i in (0..steps.len()).rev() {
         let step = steps[i];
-        failed[i] = order[step].is_pick_up() && tried_again[step];
-        if i > 0 && order[steps[i - 1]].is_pick_up() && step + 1 == steps[i - 1] {
+        failed[i] = order[step].retry && tried_again[step];
+        if i > 0 && order[steps[i - 1]].retry && step + 1 == steps[i - 1] {
             tried_again[steps[i - 1]] = true;
         }
     }

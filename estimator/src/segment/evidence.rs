@@ -1,10 +1,14 @@
 //! What the hidden Markov model sees of a recording: a few channels in units of the thresholds, and the rules' own answer.
 
+use super::definition::Definition;
 use super::rules::{self, Quality, Sign};
 use super::threshold::{Levels, Thresholds};
 use super::{SystemState, motion::Motion};
 use crate::signal::task::TaskSignals;
 use haptics::Vec2;
+
+/// See [`Evidence::judge`].
+pub type Judge = Box<dyn Fn(&[f64], f64) -> SystemState>;
 
 /// Channels of a recording for [`super::markov`].
 ///
@@ -19,7 +23,7 @@ pub struct Evidence {
     pub raw: Vec<SystemState>,
     /// The state that the rules name for mean channels; the second argument is the level (1: at the threshold) that counts as
     /// beyond it.
-    pub judge: fn(&[f64], f64) -> SystemState,
+    pub judge: Judge,
 }
 
 /// A threshold of zero (a channel that never moves) must not divide.
@@ -30,8 +34,9 @@ fn scaled(value: f64, threshold: f64) -> f64 {
 }
 
 /// Blocks: grip force, net vertical force, largest force of all, horizontal and vertical speed.
-pub fn of_blocks(calm: &TaskSignals, levels: &Levels, thresholds: &Thresholds) -> Evidence {
-    let raw = rules::states(&rules::qualify(calm, levels, thresholds));
+pub fn of_blocks(calm: &TaskSignals, levels: &Levels, thresholds: &Thresholds, task: &Definition) -> Evidence {
+    let rules = task.rules();
+    let raw = rules::states(&rules::qualify(calm, levels, thresholds, task.thresholds.leave), &rules);
     let force = |finger: usize, i: usize| {
         calm.tips[finger].force.as_ref().map_or_else(Vec2::zeros, |f| f[i]) - levels.bias_n[finger]
     };
@@ -42,46 +47,40 @@ pub fn of_blocks(calm: &TaskSignals, levels: &Levels, thresholds: &Thresholds) -
         values.extend([f1.x.min(-f2.x), (f1 + f2).y, largest].map(|f| scaled(f, thresholds.force_n)));
         values.extend([velocity.x.abs(), velocity.y.abs()].map(|v| scaled(v, thresholds.velocity_m_s)));
     }
-    Evidence { channels: 5, values, raw, judge: judge_block }
+    Evidence { channels: 5, values, raw, judge: Box::new(move |mean, level| rules.state(&block(mean, level).values())) }
 }
 
-fn judge_block(mean: &[f64], level: f64) -> SystemState {
+/// The qualitative values of mean channels.
+fn block(mean: &[f64], level: f64) -> Quality {
     let sign = |channel: usize| match mean.get(channel).copied().unwrap_or(0.0).sinh() {
         v if v > level => Sign::Plus,
         v if v < -level => Sign::Minus,
         _ => Sign::Zero,
     };
-    rules::state(Quality {
+    Quality {
         grip: sign(0),
         net_y: sign(1),
         no_contact: sign(2) != Sign::Plus,
         velocity_x: sign(3),
         velocity_y: sign(4),
-    })
-}
-
-/// Crank or mechanism: speed, and load where one is measured.
-pub fn of_motion(motion: &Motion) -> Evidence {
-    let speeds = motion.speed.iter().map(|v| scaled(*v, motion.thresholds.velocity_m_s));
-    match &motion.load {
-        Some(load) => Evidence {
-            channels: 2,
-            values: speeds
-                .zip(load)
-                .flat_map(|(speed, load)| [speed, scaled(*load, motion.thresholds.force_n)])
-                .collect(),
-            raw: motion.states(),
-            judge: judge_motion,
-        },
-        None => Evidence { channels: 1, values: speeds.collect(), raw: motion.states(), judge: judge_motion },
     }
 }
 
-fn judge_motion(mean: &[f64], level: f64) -> SystemState {
-    let beyond = |channel: usize| mean.get(channel).is_none_or(|v| v.sinh() > level);
-    match (beyond(1), beyond(0)) {
-        (false, _) => SystemState::FreeMotion,
-        (true, true) => SystemState::Turning,
-        (true, false) => SystemState::Holding,
+/// Crank or mechanism: speed, and load where one is measured.
+pub fn of_motion(motion: &Motion, task: &Definition) -> Evidence {
+    let rules = task.rules();
+    let speeds = motion.speed.iter().map(|v| scaled(*v, motion.thresholds.velocity_m_s));
+    let raw = motion.states(task);
+    let judge: Judge = Box::new(move |mean, level| {
+        let beyond = |channel: usize| mean.get(channel).map(|v| if v.sinh() > level { Sign::Plus } else { Sign::Zero });
+        rules.state(&[beyond(1), beyond(0)])
+    });
+    match &motion.load {
+        Some(load) => {
+            let loads = load.iter().map(|load| scaled(*load, motion.thresholds.force_n));
+            let values = speeds.zip(loads).flat_map(|(speed, load)| [speed, load]).collect();
+            Evidence { channels: 2, values, raw, judge }
+        }
+        None => Evidence { channels: 1, values: speeds.collect(), raw, judge },
     }
 }

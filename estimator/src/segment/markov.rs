@@ -80,7 +80,7 @@ pub fn decode(time_s: &[f64], evidence: &Evidence) -> Result<Decoded, EstimateEr
         values: &thinned,
         weight: weight(stride as f64),
         dwell: (DWELL_S / (period_s * stride as f64)).clamp(2.0, (n as f64 / 4.0).max(2.0)),
-        judge: evidence.judge,
+        judge: &evidence.judge,
         channels: evidence.channels,
     };
     let (model, warnings) = trainer.train().map_err(|error| EstimateError::Other(error.to_string()))?;
@@ -188,7 +188,7 @@ struct Trainer<'a> {
     weight: f64,
     /// Usual stay in a state, in training samples.
     dwell: f64,
-    judge: fn(&[f64], f64) -> SystemState,
+    judge: &'a dyn Fn(&[f64], f64) -> SystemState,
     channels: usize,
 }
 
@@ -293,7 +293,7 @@ mod tests {
             raw.extend(std::iter::repeat_n(*state, *samples));
         }
         let time = (0..raw.len()).map(|i| i as f64 * 0.01).collect();
-        (time, Evidence { channels: 1, values, raw, judge: judge_level })
+        (time, Evidence { channels: 1, values, raw, judge: Box::new(judge_level) })
     }
 
     #[test]
@@ -333,7 +333,7 @@ mod tests {
             values: &values,
             weight: 1.0,
             dwell: 50.0,
-            judge: judge_level,
+            judge: &judge_level,
             channels: 1,
         };
         let (model, warnings) = trainer.train().expect("trains");

@@ -1,18 +1,22 @@
 //! Segmentation: which state held when, and to which subtask it belongs.
 //!
-//! Stage 1 is [`crate::signal::task`]; [`threshold`] chooses thresholds above the noise, [`rules`] are stage 2 (thesis, table
-//! 5.2) and [`markov`] is its refinement, [`subtasks`] is stage 3. The results are plain intervals, the same for every method.
+//! Stage 1 is [`crate::signal::task`]; [`threshold`] chooses thresholds above the noise, [`rules`] is stage 2 (the rules
+//! themselves are in the task's [`definition`]) and [`markov`] is its refinement, [`subtasks`] is stage 3. The results are plain intervals, the same for every method.
 
 mod align;
+pub mod definition;
+mod each;
 pub mod evidence;
 pub mod markov;
 pub mod motion;
+mod needle;
 pub mod rules;
 pub mod subtasks;
 pub mod threshold;
 
 use crate::estimate::EstimateError;
-use crate::signal::task::{TaskSignals, calmed, is_two_fingered, task_signals};
+use crate::signal::task::{TaskSignals, calmed, is_two_fingered, task_signals, times};
+use definition::Definition;
 use haptics::recording::{Recording, Task};
 use motion::Motion;
 use serde::{Deserialize, Serialize};
@@ -34,6 +38,12 @@ pub enum SystemState {
     Turning,
     /// A crank or mechanism is held still.
     Holding,
+    /// A needle presses a sheet in.
+    Insertion,
+    /// A needle goes on through the sheet.
+    Penetration,
+    /// A needle is drawn out.
+    Extraction,
     /// None of the known states: these samples enter no estimate.
     NoState,
 }
@@ -48,6 +58,9 @@ impl SystemState {
             Self::SlidingOnGround => "sliding-on-ground",
             Self::Turning => "turning",
             Self::Holding => "holding",
+            Self::Insertion => "insertion",
+            Self::Penetration => "penetration",
+            Self::Extraction => "extraction",
             Self::NoState => "no-state",
         }
     }
@@ -61,6 +74,9 @@ impl SystemState {
             Self::SlidingOnGround => 'x',
             Self::Turning => 't',
             Self::Holding => 'h',
+            Self::Insertion => 'i',
+            Self::Penetration => 'p',
+            Self::Extraction => 'e',
             Self::NoState => '0',
         }
     }
@@ -180,7 +196,8 @@ pub fn task_of(recording: &Recording, stated: Option<Task>) -> Result<Task, Esti
 }
 
 /// How states are told apart.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// Qualitative reasoning: thresholds and rules.
     #[default]
@@ -216,44 +233,59 @@ pub fn segment_by(
     task: Option<Task>,
     given: Option<Thresholds>,
 ) -> Result<Segmentation, EstimateError> {
-    let task = task_of(recording, task)?;
-    match task {
-        Task::BlockStack | Task::Barrel => segment_signals_by(method, &task_signals(recording)?, task, given),
-        Task::Crank | Task::Mechanism => {
-            let motion = Motion::of(recording, given)?;
+    let task = Definition::of(recording, task_of(recording, task)?)?;
+    match task.like {
+        Task::BlockStack | Task::Barrel => segment_signals_by(method, &task_signals(recording)?, &task, given),
+        Task::Crank | Task::Mechanism | Task::Switch => {
+            let mut motion = Motion::of(recording, given, &task)?;
+            let warnings = std::mem::take(&mut motion.warnings);
+            let (time_s, thresholds) = (&motion.time_s, motion.thresholds);
             match method {
-                Method::Threshold => {
-                    let raw = motion.states();
-                    Ok(motion::assemble(motion, &raw, task))
-                }
+                Method::Threshold => Ok(subtasks::assemble(time_s, &motion.states(&task), &task, thresholds, warnings)),
                 Method::Hmm => {
-                    let decoded = markov::decode(&motion.time_s, &evidence::of_motion(&motion))?;
-                    let by_path = motion::assemble(motion, &decoded.path, task);
+                    let decoded = markov::decode(time_s, &evidence::of_motion(&motion, &task))?;
+                    let by_path = subtasks::assemble(time_s, &decoded.path, &task, thresholds, warnings);
                     Ok(decoded.into_segmentation(by_path))
                 }
             }
         }
-        Task::Needle | Task::Switch => Err(EstimateError::Other(format!(
-            "recordings of the task {} cannot be segmented yet; block-stack, barrel, crank and mechanism can",
-            task.name()
-        ))),
+        Task::Needle => needles(method, recording, &task, given),
     }
 }
 
-/// Stages 2 and 3 on the task signals of blocks, by the rules.
+fn needles(
+    method: Method,
+    recording: &Recording,
+    task: &Definition,
+    given: Option<Thresholds>,
+) -> Result<Segmentation, EstimateError> {
+    if method == Method::Hmm {
+        return Err(EstimateError::Other(format!(
+            "{} is a needle recording: its phases come from the strokes, for which there is no hidden Markov model; use the method threshold",
+            recording.name
+        )));
+    }
+    let time_s = times(recording);
+    let raw = needle::states(&time_s, &needle::phases(recording)?, |phase| task.state_of_phase(phase));
+    // Strokes are told from turning points and peaks, not by thresholds.
+    let thresholds = task.thresholds(given, || Thresholds { velocity_m_s: 0.0, force_n: 0.0 });
+    Ok(subtasks::assemble(&time_s, &raw, task, thresholds, Vec::new()))
+}
+
+/// Stages 2 and 3 on the task signals of blocks, by the rules of the built-in task.
 pub fn segment_signals(
     signals: &TaskSignals,
     task: Task,
     given: Option<Thresholds>,
 ) -> Result<Segmentation, EstimateError> {
-    segment_signals_by(Method::Threshold, signals, task, given)
+    segment_signals_by(Method::Threshold, signals, &Definition::built_in(task)?, given)
 }
 
 /// Stages 2 and 3 on the task signals of blocks, by either method.
 pub fn segment_signals_by(
     method: Method,
     signals: &TaskSignals,
-    task: Task,
+    task: &Definition,
     given: Option<Thresholds>,
 ) -> Result<Segmentation, EstimateError> {
     if signals.len() < subtasks::LEAST_SAMPLES {
@@ -266,15 +298,16 @@ pub fn segment_signals_by(
     }
     let calm = calmed(signals);
     let levels = threshold::Levels::of(&calm);
-    let thresholds = given.unwrap_or_else(|| threshold::choose(&calm, &levels));
+    let thresholds = task.thresholds(given, || threshold::choose(&calm, &levels));
     let (time_s, warnings) = (&signals.time_s, levels.warnings());
     match method {
         Method::Threshold => {
-            let raw = rules::states(&rules::qualify(&calm, &levels, &thresholds));
+            let quality = rules::qualify(&calm, &levels, &thresholds, task.thresholds.leave);
+            let raw = rules::states(&quality, &task.rules());
             Ok(subtasks::assemble(time_s, &raw, task, thresholds, warnings))
         }
         Method::Hmm => {
-            let decoded = markov::decode(time_s, &evidence::of_blocks(&calm, &levels, &thresholds))?;
+            let decoded = markov::decode(time_s, &evidence::of_blocks(&calm, &levels, &thresholds, task))?;
             let by_path = subtasks::assemble(time_s, &decoded.path, task, thresholds, warnings);
             Ok(decoded.into_segmentation(by_path))
         }

@@ -1,8 +1,10 @@
-//! Cranks and mechanisms: not touched, held still, moved.
+//! Cranks, mechanisms and switches: speed and load, from which the rules tell not touched, held still and moved.
 
-use super::subtasks::{LEAST_RUN_S, LEAST_SAMPLES, interval, majority, runs_of};
+use super::SystemState;
+use super::definition::Definition;
+use super::rules::Sign;
+use super::subtasks::LEAST_SAMPLES;
 use super::threshold::{Levels, Thresholds, choose, percentile};
-use super::{Method, Segmentation, SystemState};
 use crate::estimate::EstimateError;
 use crate::signal::task::{TaskSignals, TipSeries, calmed, is_two_fingered, task_signals, times, tip_series};
 use haptics::Vec2;
@@ -25,7 +27,7 @@ pub struct Motion {
 
 impl Motion {
     /// The signals of a recording.
-    pub fn of(recording: &Recording, given: Option<Thresholds>) -> Result<Self, EstimateError> {
+    pub fn of(recording: &Recording, given: Option<Thresholds>, task: &Definition) -> Result<Self, EstimateError> {
         let time_s = times(recording);
         if time_s.len() < LEAST_SAMPLES {
             return Err(EstimateError::TooFewSamples {
@@ -38,48 +40,33 @@ impl Motion {
         let (speed, load, thresholds, warnings) = if is_two_fingered(recording) {
             let signals = calmed(&task_signals(recording)?);
             let levels = Levels::of(&signals);
-            let thresholds = given.unwrap_or_else(|| choose(&signals, &levels));
-            let grip = grip_without_bias(&signals, &levels);
+            let thresholds = task.thresholds(given, || choose(&signals, &levels));
+            // A switch is pushed, not gripped.
+            let load = if task.like == Task::Switch { push_without_bias } else { grip_without_bias };
+            let load = load(&signals, &levels);
             let speed: Vec<f64> = signals.velocity.iter().map(Vec2::norm).collect();
-            (speed, Some(grip), thresholds, levels.warnings())
+            (speed, Some(load), thresholds, levels.warnings())
         } else {
-            single_tool(recording, given)?
+            single_tool(recording, given, task)?
         };
         Ok(Self { time_s, speed, load, thresholds, warnings })
     }
 
-    /// The state of every sample by the thresholds alone.
-    pub fn states(&self) -> Vec<SystemState> {
+    /// The state of every sample by the task's rules alone.
+    pub fn states(&self, task: &Definition) -> Vec<SystemState> {
+        let (rules, leave) = (task.rules(), task.thresholds.leave);
+        let beyond = |before: &mut Sign, value: f64, limit: f64| {
+            *before =
+                if value > limit * if *before == Sign::Plus { leave } else { 1.0 } { Sign::Plus } else { Sign::Zero };
+            *before
+        };
+        let (mut load, mut speed) = (Sign::Zero, Sign::Zero);
         (0..self.time_s.len())
-            .map(|i| match &self.load {
-                Some(load) if load[i] <= self.thresholds.force_n => SystemState::FreeMotion,
-                _ if self.speed[i] > self.thresholds.velocity_m_s => SystemState::Turning,
-                _ => SystemState::Holding,
+            .map(|i| {
+                let load = self.load.as_ref().map(|l| beyond(&mut load, l[i], self.thresholds.force_n));
+                rules.state(&[load, Some(beyond(&mut speed, self.speed[i], self.thresholds.velocity_m_s))])
             })
             .collect()
-    }
-}
-
-/// Intervals of equal state from the state of every sample; every turn that lasts is a subtask.
-pub fn assemble(motion: Motion, raw: &[SystemState], task: Task) -> Segmentation {
-    let time_s = &motion.time_s;
-    let smooth = majority(time_s, raw);
-    let mut turns = 0;
-    let states = runs_of(time_s, &smooth)
-        .iter()
-        .map(|run| {
-            let moves = run.state == SystemState::Turning && run.length >= LEAST_RUN_S && run.end - run.first > 1;
-            turns += usize::from(moves);
-            interval(time_s, raw, run, moves.then(|| format!("turn-{turns}")))
-        })
-        .collect();
-    Segmentation {
-        method: Method::Threshold.name().to_owned(),
-        task: task.name().to_owned(),
-        states,
-        thresholds: motion.thresholds,
-        warnings: motion.warnings,
-        posterior: None,
     }
 }
 
@@ -89,10 +76,21 @@ fn grip_without_bias(signals: &TaskSignals, levels: &Levels) -> Vec<f64> {
     (0..signals.len()).map(|i| x(0, i).min(-x(1, i))).collect()
 }
 
+fn push_without_bias(signals: &TaskSignals, levels: &Levels) -> Vec<f64> {
+    let push = |finger: usize, i: usize| {
+        signals.tips[finger].force.as_ref().map_or(0.0, |f| (f[i] - levels.bias_n[finger]).norm())
+    };
+    (0..signals.len()).map(|i| push(0, i).max(push(1, i))).collect()
+}
+
 type MotionSignals = (Vec<f64>, Option<Vec<f64>>, Thresholds, Vec<String>);
 
 /// Speed and load of a single tool, or of a mechanism's coordinate.
-fn single_tool(recording: &Recording, given: Option<Thresholds>) -> Result<MotionSignals, EstimateError> {
+fn single_tool(
+    recording: &Recording,
+    given: Option<Thresholds>,
+    task: &Definition,
+) -> Result<MotionSignals, EstimateError> {
     let coordinate = ["q_m", "q_rad"].into_iter().find_map(|name| recording.channel(name));
     let clockless =
         || EstimateError::Clockless { what: "telling rest from motion".to_owned(), recording: recording.name.clone() };
@@ -113,6 +111,6 @@ fn single_tool(recording: &Recording, given: Option<Thresholds>) -> Result<Motio
     };
     let usual = percentile(&mut speed.clone(), 0.95);
     let usual_load = load.as_ref().map_or(0.0, |l| percentile(&mut l.clone(), 0.95));
-    let thresholds = given.unwrap_or(Thresholds { velocity_m_s: 0.1 * usual, force_n: 0.05 * usual_load });
+    let thresholds = task.thresholds(given, || Thresholds { velocity_m_s: 0.1 * usual, force_n: 0.05 * usual_load });
     Ok((speed, load, thresholds, Vec::new()))
 }

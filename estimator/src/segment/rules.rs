@@ -1,6 +1,7 @@
 //! Stage 2: qualitative values and the rules that name the state (thesis, tables 3.1 and 5.2).
 
 use super::SystemState;
+use super::definition::Rules;
 use super::threshold::{Levels, Thresholds};
 use crate::signal::task::TaskSignals;
 
@@ -30,11 +31,17 @@ pub struct Quality {
     pub no_contact: bool,
 }
 
-/// Share of the threshold that a signal must fall below to count as zero again: a value at the threshold does not chatter.
-const HYSTERESIS: f64 = 0.7;
+impl Quality {
+    /// The values in the order of [`super::definition::signals`].
+    pub fn values(&self) -> [Option<Sign>; 5] {
+        let contact = if self.no_contact { Sign::Zero } else { Sign::Plus };
+        [contact, self.grip, self.net_y, self.velocity_x, self.velocity_y].map(Some)
+    }
+}
 
-/// Thresholds every sample, with hysteresis, after removing the forces' bias.
-pub fn qualify(signals: &TaskSignals, levels: &Levels, thresholds: &Thresholds) -> Vec<Quality> {
+/// Thresholds every sample, with hysteresis, after removing the forces' bias. `leave`: share of the threshold that a signal must fall
+/// below to count as zero again, so that a value at the threshold does not chatter.
+pub fn qualify(signals: &TaskSignals, levels: &Levels, thresholds: &Thresholds, leave: f64) -> Vec<Quality> {
     let force = |finger: usize, i: usize| {
         signals.tips[finger].force.as_ref().map_or_else(haptics::Vec2::zeros, |f| f[i]) - levels.bias_n[finger]
     };
@@ -47,11 +54,11 @@ pub fn qualify(signals: &TaskSignals, levels: &Levels, thresholds: &Thresholds) 
             let velocity = signals.velocity[i];
             let values = [velocity.x / limit_v, velocity.y / limit_v, (f1 + f2).y / limit_f, f1.x.min(-f2.x) / limit_f];
             for (filter, value) in filters.iter_mut().zip(values) {
-                *filter = schmitt(*filter, value);
+                *filter = schmitt(*filter, value, leave);
             }
             for (touch, value) in touching.iter_mut().zip([f1.x, f1.y, f2.x, f2.y]) {
                 let level = value.abs() / limit_f;
-                *touch = level > if *touch { HYSTERESIS } else { 1.0 };
+                *touch = level > if *touch { leave } else { 1.0 };
             }
             Quality {
                 velocity_x: filters[0],
@@ -64,10 +71,10 @@ pub fn qualify(signals: &TaskSignals, levels: &Levels, thresholds: &Thresholds) 
         .collect()
 }
 
-fn schmitt(before: Sign, value: f64) -> Sign {
+fn schmitt(before: Sign, value: f64, leave: f64) -> Sign {
     match before {
-        Sign::Plus if value > HYSTERESIS => Sign::Plus,
-        Sign::Minus if value < -HYSTERESIS => Sign::Minus,
+        Sign::Plus if value > leave => Sign::Plus,
+        Sign::Minus if value < -leave => Sign::Minus,
         _ if value > 1.0 => Sign::Plus,
         _ if value < -1.0 => Sign::Minus,
         _ => Sign::Zero,
@@ -75,24 +82,15 @@ fn schmitt(before: Sign, value: f64) -> Sign {
 }
 
 /// The state of every sample by the rules alone.
-pub fn states(quality: &[Quality]) -> Vec<SystemState> {
-    quality.iter().map(|q| state(*q)).collect()
-}
-
-/// One sample: table 5.2.
-pub fn state(q: Quality) -> SystemState {
-    match q {
-        Quality { no_contact: true, .. } => SystemState::FreeMotion,
-        Quality { grip: Sign::Plus, net_y: Sign::Plus, .. } => SystemState::HoldAboveGround,
-        Quality { grip: Sign::Plus, velocity_y: Sign::Zero, velocity_x: Sign::Zero, .. } => SystemState::HoldOnGround,
-        Quality { grip: Sign::Plus, velocity_y: Sign::Zero, .. } => SystemState::SlidingOnGround,
-        _ => SystemState::NoState,
-    }
+pub fn states(quality: &[Quality], rules: &Rules) -> Vec<SystemState> {
+    quality.iter().map(|q| rules.state(&q.values())).collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::definition::Definition;
     use super::*;
+    use haptics::recording::Task;
 
     const REST: Quality = Quality {
         velocity_x: Sign::Zero,
@@ -104,6 +102,9 @@ mod tests {
 
     #[test]
     fn the_rules_of_table_5_2() {
+        let task = Definition::built_in(Task::BlockStack).expect("the built-in task");
+        let rules = task.rules();
+        let state = |q: Quality| rules.state(&q.values());
         let held = Quality { grip: Sign::Plus, no_contact: false, ..REST };
         assert_eq!(state(REST), SystemState::FreeMotion);
         assert_eq!(state(held), SystemState::HoldOnGround);
@@ -121,7 +122,7 @@ mod tests {
         let seen: Vec<_> = [0.9, 1.1, 0.8, 0.75, 0.6, 0.9, -1.2]
             .into_iter()
             .map(|v| {
-                sign = schmitt(sign, v);
+                sign = schmitt(sign, v, 0.7);
                 sign
             })
             .collect();

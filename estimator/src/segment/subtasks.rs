@@ -4,9 +4,9 @@
 //! or an oscillation at touch-down cannot shift everything after it.
 
 use super::align::{align, failed_attempts};
+use super::definition::{Definition, Subtasks};
 use super::threshold::Thresholds;
-use super::{Interval, Method, Segmentation, SystemState};
-use haptics::recording::Task;
+use super::{Interval, Method, Segmentation, SystemState, each};
 
 /// Fewer samples than this are no recording of a task.
 pub const LEAST_SAMPLES: usize = 20;
@@ -16,7 +16,7 @@ const MAJORITY_S: f64 = 0.06;
 /// A run that is shorter enters no estimate.
 pub(super) const LEAST_RUN_S: f64 = 0.08;
 /// Most objects carried in one recording.
-pub const MOST_CARRIES: usize = 8;
+pub const MOST_CARRIES: usize = 100;
 /// What one more carry must explain, as a share of the recording's length.
 const CARRY_PENALTY: f64 = 0.015;
 
@@ -33,43 +33,31 @@ pub struct Subtask {
     pub name: String,
     /// The state that holds.
     pub state: SystemState,
-}
-
-impl Subtask {
-    pub(super) fn is_pick_up(&self) -> bool {
-        self.name.starts_with("pick-up")
-    }
-}
-
-/// The expected order for `carries` objects that are picked up, carried and placed one after the other.
-pub fn expected_order(task: Task, carries: usize) -> Vec<Subtask> {
-    let object = if task == Task::Barrel { "barrel" } else { "block" };
-    let subtask = |verb: &str, number: usize, state| Subtask { name: format!("{verb}-{object}-{number}"), state };
-    let mut order = vec![subtask("pregrasp", 1, SystemState::FreeMotion)];
-    for number in 1..=carries {
-        order.push(subtask("pick-up", number, SystemState::HoldOnGround));
-        order.push(subtask("carry", number, SystemState::HoldAboveGround));
-        order.push(subtask("place", number, SystemState::HoldOnGround));
-        order.push(subtask("release", number, SystemState::FreeMotion));
-    }
-    order
+    /// One may have to begin it again.
+    pub retry: bool,
 }
 
 /// Intervals of equal state with their subtasks, from the state of every sample.
 pub fn assemble(
     time_s: &[f64],
     raw: &[SystemState],
-    task: Task,
+    task: &Definition,
     thresholds: Thresholds,
     mut warnings: Vec<String>,
 ) -> Segmentation {
+    let ordered = match &task.subtasks {
+        Subtasks::Ordered(ordered) => ordered,
+        Subtasks::Each(steps) => return each::assemble(time_s, raw, &steps.each, task, thresholds, warnings),
+    };
     let smooth = without_islands(time_s, majority(time_s, raw));
     let runs = runs_of(time_s, &smooth);
     let total = runs.iter().map(|r| r.length).sum::<f64>();
-    let best = (0..=MOST_CARRIES)
-        .flat_map(|carries| (0..=LATEST_START.min(4 * carries)).map(move |start| (carries, start)))
+    // Alignment leaves out every second step at most.
+    let most = ordered.most.min((runs.len() + LATEST_START + 1) * 2 / ordered.repeat.len() + 1);
+    let best = (0..=most)
+        .flat_map(|carries| (0..=LATEST_START.min(ordered.repeat.len() * carries)).map(move |start| (carries, start)))
         .filter_map(|(carries, start)| {
-            let order = expected_order(task, carries).split_off(start);
+            let order = task.order(carries).split_off(start);
             let (cost, steps) = align(&runs, &order)?;
             let price = CARRY_PENALTY * carries as f64 + START_PENALTY * start as f64;
             Some((cost + price * total, order, steps))
@@ -77,7 +65,7 @@ pub fn assemble(
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let (order, steps) = match best {
         Some((_, order, steps)) => (order, steps),
-        None => (expected_order(task, 0), vec![0; runs.len()]),
+        None => (task.order(0), vec![0; runs.len()]),
     };
     let failed = failed_attempts(&steps, &order);
     let tries = failed.windows(2).filter(|pair| pair[0] && !pair[1]).count();
@@ -96,7 +84,7 @@ pub fn assemble(
             interval(time_s, raw, run, belongs.then(|| subtask.name.clone()))
         })
         .collect::<Vec<_>>();
-    if order[0].name != expected_order(task, 0)[0].name {
+    if ordered.first.first().is_some_and(|first| first.numbered(1).name != order[0].name) {
         warnings.push(format!(
             "the recording starts in the middle of the task, with {}; what came before is missing from the fit",
             order[0].name
@@ -108,12 +96,12 @@ pub fn assemble(
                 .push(format!("the subtask {} was not seen; what it would show is missing from the fit", subtask.name));
         }
     }
-    if order.len() == 1 {
+    if order.len() == ordered.first.len() {
         warnings.push("no object was picked up in this recording".to_owned());
     }
     Segmentation {
         method: Method::Threshold.name().to_owned(),
-        task: task.name().to_owned(),
+        task: task.name.clone(),
         states,
         thresholds,
         warnings,
@@ -166,7 +154,7 @@ pub(super) fn runs_of(time_s: &[f64], states: &[SystemState]) -> Vec<Run> {
 }
 
 /// Number of states.
-const STATES: usize = 7;
+const STATES: usize = 10;
 
 /// The most frequent state in a window about every sample; a tie keeps the sample's own.
 pub(super) fn majority(time_s: &[f64], raw: &[SystemState]) -> Vec<SystemState> {
@@ -220,6 +208,11 @@ fn without_islands(time_s: &[f64], mut states: Vec<SystemState>) -> Vec<SystemSt
 mod tests {
     use super::*;
     use SystemState::{FreeMotion, HoldAboveGround, HoldOnGround, NoState};
+    use haptics::recording::Task;
+
+    fn blocks() -> Definition {
+        Definition::built_in(Task::BlockStack).expect("the built-in task")
+    }
 
     fn trace(parts: &[(SystemState, usize)]) -> (Vec<f64>, Vec<SystemState>) {
         let states: Vec<SystemState> = parts.iter().flat_map(|(s, n)| std::iter::repeat_n(*s, *n)).collect();
@@ -243,7 +236,7 @@ mod tests {
             (HoldOnGround, 60),
             (FreeMotion, 100),
         ]);
-        let result = assemble(&time, &states, Task::BlockStack, THRESHOLDS, Vec::new());
+        let result = assemble(&time, &states, &blocks(), THRESHOLDS, Vec::new());
         assert_eq!(result.sequence(), "132313231");
         assert!(result.warnings.is_empty(), "{:?}", result.warnings);
         let carry_2 = result.samples_of("carry-block-2");
@@ -258,7 +251,7 @@ mod tests {
         }
         parts.extend([(HoldOnGround, 60), (FreeMotion, 100)]);
         let (time, states) = trace(&parts);
-        let result = assemble(&time, &states, Task::BlockStack, THRESHOLDS, Vec::new());
+        let result = assemble(&time, &states, &blocks(), THRESHOLDS, Vec::new());
         assert_eq!(result.sequence(), "13231");
     }
 
@@ -274,7 +267,7 @@ mod tests {
             (HoldOnGround, 60),
             (FreeMotion, 100),
         ]);
-        let result = assemble(&time, &states, Task::BlockStack, THRESHOLDS, Vec::new());
+        let result = assemble(&time, &states, &blocks(), THRESHOLDS, Vec::new());
         assert_eq!(result.samples_of("carry-block-1").len(), 180);
         assert_eq!(result.samples_of("carry-block-2").len(), 134);
         assert!(result.warnings.iter().any(|w| w.contains("place-block-1")), "{:?}", result.warnings);
@@ -284,7 +277,7 @@ mod tests {
     fn a_recording_that_starts_while_holding_says_so() {
         let (time, states) =
             trace(&[(HoldOnGround, 60), (HoldAboveGround, 200), (HoldOnGround, 60), (FreeMotion, 100)]);
-        let result = assemble(&time, &states, Task::BlockStack, THRESHOLDS, Vec::new());
+        let result = assemble(&time, &states, &blocks(), THRESHOLDS, Vec::new());
         assert_eq!(result.samples_of("carry-block-1").len(), 180);
         assert!(result.warnings.iter().any(|w| w.contains("starts in the middle")), "{:?}", result.warnings);
     }
@@ -292,7 +285,7 @@ mod tests {
     #[test]
     fn nothing_held_is_no_carry() {
         let (time, states) = trace(&[(FreeMotion, 500)]);
-        let result = assemble(&time, &states, Task::BlockStack, THRESHOLDS, Vec::new());
+        let result = assemble(&time, &states, &blocks(), THRESHOLDS, Vec::new());
         assert_eq!(result.sequence(), "1");
         assert!(result.warnings.iter().any(|w| w.contains("no object")));
     }
@@ -316,7 +309,7 @@ mod tests {
             (HoldOnGround, 60),
             (FreeMotion, 100),
         ]);
-        let result = assemble(&time, &states, Task::BlockStack, THRESHOLDS, Vec::new());
+        let result = assemble(&time, &states, &blocks(), THRESHOLDS, Vec::new());
         assert_eq!(result.sequence(), "132313231", "{:?}", result.states);
         let pick_up = result.samples_of("pick-up-block-1");
         assert_eq!((pick_up[0], pick_up.len()), (382 + 3, 54));
@@ -332,7 +325,7 @@ mod tests {
             (HoldOnGround, 7),
             (FreeMotion, 100),
         ]);
-        let result = assemble(&time, &states, Task::BlockStack, THRESHOLDS, Vec::new());
+        let result = assemble(&time, &states, &blocks(), THRESHOLDS, Vec::new());
         assert!(result.samples_of("place-block-1").is_empty(), "{:?}", result.states);
     }
 }

@@ -166,21 +166,56 @@ pub fn calmed(signals: &TaskSignals) -> TaskSignals {
 }
 
 /// Mean with weights (h + ½)² − k² over `half` = h samples on each side, fewer at the ends.
+///
+/// The sums over the window (of values, and of values times k and k²) move along with it, so that a wider window takes no longer. They
+/// are made anew every so many samples: rounding does not gather.
 fn parabolic_mean(values: &[f64], half: usize) -> Vec<f64> {
+    /// Windows that are so short are summed up each.
+    const SHORT: usize = 6;
     let n = values.len();
     let reach = (half as f64 + 0.5).powi(2);
-    (0..n)
-        .map(|i| {
-            let side = half.min(i).min(n - 1 - i);
-            let (mut sum, mut total) = (0.0, 0.0);
-            for (k, value) in (i - side..=i + side).zip(&values[i - side..=i + side]) {
-                let weight = reach - (k as f64 - i as f64).powi(2);
-                sum += weight * value;
-                total += weight;
-            }
-            sum / total
-        })
-        .collect()
+    let by_itself = |i: usize| {
+        let side = half.min(i).min(n - 1 - i);
+        let (mut sum, mut total) = (0.0, 0.0);
+        for (k, value) in (i - side..=i + side).zip(&values[i - side..=i + side]) {
+            let weight = reach - (k as f64 - i as f64).powi(2);
+            sum += weight * value;
+            total += weight;
+        }
+        sum / total
+    };
+    // What is not finite would stay in the sums.
+    if half <= SHORT || n <= 2 * half + 1 || values.iter().any(|v| !v.is_finite()) {
+        return (0..n).map(by_itself).collect();
+    }
+    let h = half as f64;
+    let total: f64 = (2.0 * h + 1.0) * reach - h * (h + 1.0) * (2.0 * h + 1.0) / 3.0;
+    let mut means: Vec<f64> = (0..half).map(by_itself).collect();
+    for first in (half..n - half).step_by(2 * half) {
+        let window = &values[first - half..=first + half];
+        // About a value of the window: what is common to all cancels nothing.
+        let level = values[first];
+        let (mut plain, mut linear, mut square) = (0.0, 0.0, 0.0);
+        for (k, value) in (-(half as isize)..).zip(window) {
+            let (k, value) = (k as f64, value - level);
+            (plain, linear, square) = (plain + value, linear + k * value, square + k * k * value);
+        }
+        for i in first..(first + 2 * half).min(n - half) {
+            means.push(level + (reach * plain - square) / total);
+            let Some(entering) = values.get(i + half + 1) else { break };
+            let (leaving, entering) = (values[i - half] - level, entering - level);
+            // Seen from the next sample every k is one less.
+            plain -= leaving;
+            linear += h * leaving;
+            square -= h * h * leaving;
+            (linear, square) = (linear - plain, square - 2.0 * linear + plain);
+            plain += entering;
+            linear += h * entering;
+            square += h * h * entering;
+        }
+    }
+    means.extend((n - half..n).map(by_itself));
+    means
 }
 
 /// A channel through one filter, and the derivative of exactly that filtered channel.
@@ -301,6 +336,31 @@ mod tests {
         let gain_value = out.value[525] / wave[525];
         let gain_slope = out.slope[500] / (omega * (omega * time[500]).cos());
         assert!((gain_value - gain_slope).abs() < 1e-3 && gain_value < 0.95, "{gain_value} {gain_slope}");
+    }
+
+    #[test]
+    fn the_moving_sums_of_the_parabolic_mean_are_its_definition() {
+        use rand::{RngExt as _, SeedableRng as _};
+        let mut rng = rand::rngs::StdRng::seed_from_u64(31);
+        for (n, half, offset) in
+            [(1, 9, 0.0), (19, 9, 0.0), (20, 9, 1.0), (500, 7, -3.0), (4001, 160, 0.5), (3000, 40, 1e3)]
+        {
+            let values: Vec<f64> =
+                (0..n).map(|i| offset + if i > n / 2 { 2.0 } else { 0.0 } + rng.random_range(-1.0..1.0)).collect();
+            let reach = (half as f64 + 0.5).powi(2);
+            let found = parabolic_mean(&values, half);
+            assert_eq!(found.len(), n);
+            for (i, mean) in found.iter().enumerate() {
+                let side = half.min(i).min(n - 1 - i);
+                let weights = (i - side..=i + side).map(|k| (values[k], reach - (k as f64 - i as f64).powi(2)));
+                let (sum, total) = weights.fold((0.0, 0.0), |(s, t), (v, w)| (s + w * v, t + w));
+                assert!(
+                    (mean - sum / total).abs() <= 1e-12 * (1.0 + offset.abs()),
+                    "{n} {half}: {mean} and {}",
+                    sum / total
+                );
+            }
+        }
     }
 
     #[test]

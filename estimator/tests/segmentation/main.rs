@@ -3,6 +3,7 @@
 
 mod generator;
 mod scores;
+mod tasks;
 
 use estimator::segment::{Method, SystemState, segment_by};
 use generator::{crank, log, perform, stacking};

@@ -8,7 +8,7 @@ use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{fact, plain_card, primary_button};
 use egui::{ComboBox, DragValue, ScrollArea, TextEdit, Ui};
-use estimator::segment::Thresholds;
+use estimator::segment::{Method, Thresholds};
 use haptics::recording::Task;
 use std::path::PathBuf;
 
@@ -104,7 +104,7 @@ fn choose_trial(ui: &mut Ui, session: &mut Session) {
 }
 
 fn fit(ui: &mut Ui, session: &mut Session) {
-    let before = (session.choice.task, session.choice.thresholds);
+    let before = session.choice;
     ui.horizontal(|ui| {
         ui.label(theme::caption(ui, "Task"));
         let told = session.prepared().and_then(|p| p.task).map_or("unknown", Task::name);
@@ -121,8 +121,9 @@ fn fit(ui: &mut Ui, session: &mut Session) {
                 }
             });
     });
+    method(ui, session);
     thresholds(ui, session);
-    session.stale |= before != (session.choice.task, session.choice.thresholds);
+    session.stale |= before != session.choice;
     let running = session.jobs.is_running(JobKind::Fit);
     ui.add_space(space::XS);
     ui.horizontal(|ui| {
@@ -137,6 +138,17 @@ fn fit(ui: &mut Ui, session: &mut Session) {
         } else if session.stale {
             ui.label(egui::RichText::new("settings changed").size(11.5).color(palette(ui).caution));
         }
+    });
+}
+
+fn method(ui: &mut Ui, session: &mut Session) {
+    ui.horizontal(|ui| {
+        ui.label(theme::caption(ui, "States by"));
+        let choice = &mut session.choice.method;
+        ui.selectable_value(choice, Method::Threshold, "Rules")
+            .on_hover_text("Thresholds above the noise, and the rules of the task");
+        ui.selectable_value(choice, Method::Hmm, "Hidden Markov model")
+            .on_hover_text("Starts from the rules and learns from the recording; every sample has a probability");
     });
 }
 

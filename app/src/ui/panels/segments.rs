@@ -127,7 +127,8 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
                 session.view_s.0 + share * (session.view_s.1 - session.view_s.0)
             });
         }
-        response.on_hover_ui(|ui| tooltip(ui, interval, word(segmentation, interval.state)));
+        let by_model = segmentation.posterior.is_some();
+        response.on_hover_ui(|ui| tooltip(ui, interval, word(segmentation, interval.state), by_model));
     }
     if let Some(time) = seek {
         session.seek(time);
@@ -152,7 +153,7 @@ fn caption(ui: &Ui, rect: Rect, text: &str, ink: egui::Color32) -> bool {
     fits
 }
 
-fn tooltip(ui: &mut Ui, interval: &Interval, state: &str) {
+fn tooltip(ui: &mut Ui, interval: &Interval, state: &str, by_model: bool) {
     ui.label(theme::strong(state));
     if let Some(subtask) = &interval.subtask {
         ui.label(format!("Subtask: {}", format::object(subtask).to_lowercase()));
@@ -160,7 +161,8 @@ fn tooltip(ui: &mut Ui, interval: &Interval, state: &str) {
     let (from, to) = (format::number(interval.t0, 2), format::number(interval.t1, 2));
     ui.label(theme::caption(ui, format!("{from} to {to} s · {} s", format::number(interval.t1 - interval.t0, 2))));
     let share = format::number(100.0 * interval.probability, 0);
-    ui.label(theme::caption(ui, format!("{share} % of its samples show this state by themselves")));
+    let text = if by_model { "mean probability" } else { "of its samples show this state by themselves" };
+    ui.label(theme::caption(ui, format!("{share} % {text}")));
 }
 
 /// Neighbouring intervals of one subtask, as one bracket.

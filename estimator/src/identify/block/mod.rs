@@ -11,7 +11,9 @@ use super::linear::{LinearFit, least_squares};
 use super::pads::{Grip, PadFit, width_over_force};
 use crate::constraint::{Carry, carried};
 use crate::estimate::{Constraint, EstimateError, Fit, Parameter};
-use crate::segment::{Segmentation, Thresholds, segment_signals, subtasks, threshold::Levels, threshold::percentile};
+use crate::segment::definition::Definition;
+use crate::segment::threshold::{Levels, percentile};
+use crate::segment::{Method, Segmentation, Thresholds, segment_signals, segment_signals_by, subtasks};
 use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signals};
 use haptics::Vec2;
@@ -47,8 +49,18 @@ struct Blocks<'a> {
 /// Fits the blocks of one recording, with `thresholds` or those chosen from its noise. The segmentation that was used comes
 /// with the fit.
 pub fn fit(recording: &Recording, thresholds: Option<Thresholds>) -> Result<(Fit, Segmentation), EstimateError> {
+    fit_by(Method::Threshold, recording, thresholds)
+}
+
+/// [`fit`] with the states of either method.
+pub fn fit_by(
+    method: Method,
+    recording: &Recording,
+    thresholds: Option<Thresholds>,
+) -> Result<(Fit, Segmentation), EstimateError> {
     let signals = task_signals(recording)?;
-    let segmentation = segment_signals(&signals, Task::BlockStack, thresholds)?;
+    let task = Definition::of(recording, Task::BlockStack)?;
+    let segmentation = segment_signals_by(method, &signals, &task, thresholds)?;
     let levels = Levels::of(&signals);
     let vertical: Vec<f64> = signals.velocity.iter().map(|v| v.y).collect();
     let acceleration_y = smooth(&signals.time_s, &vertical).slope;

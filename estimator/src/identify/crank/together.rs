@@ -7,7 +7,7 @@ use super::friction::{Friction, Sensed, friction};
 use super::motion::Rows;
 use super::{Seen, describe, see};
 use crate::estimate::{EstimateError, Fit, Parameter};
-use crate::segment::{Segmentation, Thresholds};
+use crate::segment::{Method, Segmentation, Thresholds};
 use haptics::recording::Recording;
 
 /// Every recording's own fit and segmentation, and the shared parameters from all of them at once.
@@ -21,8 +21,12 @@ pub struct Together {
 }
 
 /// Fits several recordings of the same crank. What is stated in the first one's sidecar holds for all.
-pub fn fit_together(recordings: &[Recording], thresholds: Option<Thresholds>) -> Result<Together, EstimateError> {
-    let seen = recordings.iter().map(|r| see(r, thresholds)).collect::<Result<Vec<_>, _>>()?;
+pub fn fit_together(
+    method: Method,
+    recordings: &[Recording],
+    thresholds: Option<Thresholds>,
+) -> Result<Together, EstimateError> {
+    let seen = recordings.iter().map(|r| see(method, r, thresholds)).collect::<Result<Vec<_>, _>>()?;
     let fits = recordings.iter().zip(&seen).map(|(r, s)| describe(r, s)).collect::<Result<Vec<_>, _>>()?;
     let rows = Rows::join(seen.iter().map(|s| &s.rows));
     let mut joint = friction(&recordings[0], &rows)?;
