@@ -136,7 +136,9 @@ impl LogArgs {
     fn load(&self, path: &Path) -> anyhow::Result<Vec<Recording>> {
         let mut recordings = read(path, self.meta.as_deref())?;
         if let Some(task) = self.task.as_deref().map(task::Chosen::find).transpose()? {
-            recordings.iter_mut().for_each(|recording| task.give_to(recording));
+            for recording in &mut recordings {
+                task.give_to(recording);
+            }
         }
         Ok(recordings)
     }

@@ -125,14 +125,11 @@ pub fn state_color(dark: bool, state: SystemState) -> Color32 {
     match state {
         SystemState::FreeMotion if dark => Color32::from_rgb(0x4A, 0x56, 0x66),
         SystemState::FreeMotion => Color32::from_rgb(0xC3, 0xCC, 0xD8),
-        SystemState::HoldOnGround => role(dark, ColorRole::Block(2)),
-        SystemState::HoldAboveGround => role(dark, ColorRole::Block(0)),
-        SystemState::SlidingOnGround => role(dark, ColorRole::Block(1)),
+        SystemState::HoldOnGround | SystemState::Insertion => role(dark, ColorRole::Block(2)),
+        SystemState::HoldAboveGround | SystemState::Penetration => role(dark, ColorRole::Block(0)),
+        SystemState::SlidingOnGround | SystemState::Extraction => role(dark, ColorRole::Block(1)),
         SystemState::Turning => role(dark, ColorRole::Block(3)),
         SystemState::Holding => role(dark, ColorRole::Block(4)),
-        SystemState::Insertion => role(dark, ColorRole::Block(2)),
-        SystemState::Penetration => role(dark, ColorRole::Block(0)),
-        SystemState::Extraction => role(dark, ColorRole::Block(1)),
         SystemState::NoState if dark => Color32::from_rgb(0x22, 0x29, 0x33),
         SystemState::NoState => Color32::from_rgb(0xE6, 0xEA, 0xEF),
     }

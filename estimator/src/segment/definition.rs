@@ -295,12 +295,15 @@ impl Definition {
 
 /// Rules of a task: conditions are the number of a signal (in the order of [`signals`]) and which of +, 0, − are allowed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rules(Vec<(SystemState, Vec<(usize, [bool; 3])>)>);
+pub struct Rules(Vec<(SystemState, Vec<Condition>)>);
+
+/// The number of a signal, and whether it may be +, 0, −.
+type Condition = (usize, [bool; 3]);
 
 impl Rules {
     /// The state of the first rule that holds. A signal that is not measured satisfies no condition.
     pub fn state(&self, values: &[Option<Sign>]) -> SystemState {
-        let meets = |(signal, allowed): &(usize, [bool; 3])| {
+        let meets = |(signal, allowed): &Condition| {
             values.get(*signal).copied().flatten().is_some_and(|sign| allowed[sign as usize])
         };
         self.0.iter().find(|(_, when)| when.iter().all(meets)).map_or(SystemState::NoState, |(state, _)| *state)

@@ -116,6 +116,41 @@ mod tests {
     }
 
     #[test]
+    fn the_files_say_what_table_5_2_and_the_crank_say_for_every_combination() {
+        use Sign::{Minus, Plus, Zero};
+        let blocks = Definition::built_in(Task::BlockStack).expect("the built-in task").rules();
+        let barrel = Definition::built_in(Task::Barrel).expect("the built-in task").rules();
+        let signs = [Plus, Zero, Minus];
+        for number in 0..2 * 81 {
+            let sign = |place: usize| signs[number / 2 / 3_usize.pow(place as u32) % 3];
+            let (grip, net_y, x, y) = (sign(0), sign(1), sign(2), sign(3));
+            let no_contact = number % 2 == 0;
+            let expected = match (no_contact, grip, net_y, y, x) {
+                (true, ..) => SystemState::FreeMotion,
+                (_, Plus, Plus, ..) => SystemState::HoldAboveGround,
+                (_, Plus, _, Zero, Zero) => SystemState::HoldOnGround,
+                (_, Plus, _, Zero, _) => SystemState::SlidingOnGround,
+                _ => SystemState::NoState,
+            };
+            let values = Quality { velocity_x: x, velocity_y: y, net_y, grip, no_contact }.values();
+            assert_eq!((blocks.state(&values), barrel.state(&values)), (expected, expected), "{values:?}");
+        }
+        for task in [Task::Crank, Task::Mechanism] {
+            let rules = Definition::built_in(task).expect("the built-in task").rules();
+            for load in [None, Some(Plus), Some(Zero)] {
+                for speed in [Plus, Zero] {
+                    let expected = match (load, speed) {
+                        (Some(Zero), _) => SystemState::FreeMotion,
+                        (_, Plus) => SystemState::Turning,
+                        _ => SystemState::Holding,
+                    };
+                    assert_eq!(rules.state(&[load, Some(speed)]), expected, "{load:?} {speed:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn hysteresis_keeps_a_value_near_the_threshold() {
         use Sign::{Minus, Plus, Zero};
         let mut sign = Zero;

@@ -196,8 +196,8 @@ fn parabolic_mean(values: &[f64], half: usize) -> Vec<f64> {
         // About a value of the window: what is common to all cancels nothing.
         let level = values[first];
         let (mut plain, mut linear, mut square) = (0.0, 0.0, 0.0);
-        for (k, value) in (-(half as isize)..).zip(window) {
-            let (k, value) = (k as f64, value - level);
+        for (k, value) in window.iter().enumerate() {
+            let (k, value) = (k as f64 - h, value - level);
             (plain, linear, square) = (plain + value, linear + k * value, square + k * k * value);
         }
         for i in first..(first + 2 * half).min(n - half) {
