@@ -63,17 +63,21 @@ impl Segment {
 }
 
 fn describe(text: &mut String, recording: &Recording, result: &Segmentation) {
+    let by_strokes = result.thresholds == Thresholds { velocity_m_s: 0.0, force_n: 0.0 };
     let (how, last_column) = match &result.posterior {
+        None if by_strokes => ("its strokes", "share of samples that agree"),
         None => ("thresholds and rules", "share of samples that agree"),
         Some(_) => ("a hidden Markov model", "mean probability"),
     };
     let _ = writeln!(text, "{}: {} by {how}", recording.name, result.task);
-    let _ = writeln!(
-        text,
-        "  thresholds: {:.4} N, {:.2} mm/s",
-        result.thresholds.force_n,
-        result.thresholds.velocity_m_s * 1e3
-    );
+    if !by_strokes {
+        let _ = writeln!(
+            text,
+            "  thresholds: {:.4} N, {:.2} mm/s",
+            result.thresholds.force_n,
+            result.thresholds.velocity_m_s * 1e3
+        );
+    }
     let _ = writeln!(text, "  start … end, s; state; subtask; {last_column}");
     for state in &result.states {
         let _ = writeln!(

@@ -144,11 +144,22 @@ fn fit(ui: &mut Ui, session: &mut Session) {
 fn method(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         ui.label(theme::caption(ui, "States by"));
+        let name = |method: Method| match method {
+            Method::Threshold => "Rules",
+            Method::Hmm => "Hidden Markov model",
+        };
         let choice = &mut session.choice.method;
-        ui.selectable_value(choice, Method::Threshold, "Rules")
-            .on_hover_text("Thresholds above the noise, and the rules of the task");
-        ui.selectable_value(choice, Method::Hmm, "Hidden Markov model")
-            .on_hover_text("Starts from the rules and learns from the recording; every sample has a probability");
+        ComboBox::from_id_salt("method")
+            .width(ui.available_width() - 2.0 * ui.spacing().button_padding.x)
+            .selected_text(name(*choice))
+            .truncate()
+            .show_ui(ui, |ui| {
+                ui.selectable_value(choice, Method::Threshold, name(Method::Threshold))
+                    .on_hover_text("Thresholds above the noise, and the rules of the task");
+                ui.selectable_value(choice, Method::Hmm, name(Method::Hmm)).on_hover_text(
+                    "Starts from the rules and learns from the recording; every sample has a probability",
+                );
+            });
     });
 }
 
@@ -172,7 +183,7 @@ fn thresholds(ui: &mut Ui, session: &mut Session) {
             ui.add(DragValue::new(&mut shown).range(0.1..=5_000.0).speed(0.5).suffix(" mm/s").max_decimals(1));
             thresholds.velocity_m_s = shown * 1e-3;
         });
-    } else if let Some(used) = used {
+    } else if let Some(used) = used.filter(|used| used.velocity_m_s > 0.0) {
         let mut parts = Vec::new();
         if used.force_n > 0.0 {
             parts.push(format!("± {} N", format::number(used.force_n, 3)));
