@@ -1,5 +1,7 @@
 //! From a fit to a world: measured numbers go in with their errors, what was not measured is a stated assumption.
 
+mod switch;
+
 use crate::constraint;
 use crate::estimate::{Fit, Parameter};
 use crate::identify::mechanism;
@@ -39,7 +41,8 @@ pub fn world(task: Task, recordings: &[Recording], fit: &Fit, segmentations: &[O
         Task::BlockStack | Task::Barrel => builder.blocks(recording, segmentation),
         Task::Crank => builder.crank(recording, segmentation),
         Task::Needle => builder.needle(recording),
-        Task::Mechanism | Task::Switch => {
+        Task::Switch => builder.switch(recording),
+        Task::Mechanism => {
             builder.world.floor = None;
             builder.world.mechanism = Some(mechanism::world(fit, recording));
             builder.note_all("mechanism");

@@ -2,7 +2,7 @@
 
 use crate::calibrate;
 use crate::estimate::{EstimateError, Fit, Parameter};
-use crate::identify::{block, crank, mechanism, needle};
+use crate::identify::{block, crank, mechanism, needle, switch};
 use crate::segment::{Method, Segmentation, Thresholds, segment, segment_by, task_of};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
@@ -62,9 +62,13 @@ pub fn analyse(recordings: &[Recording], options: &Options) -> Result<Analysis, 
             let fits = recordings.iter().map(needle::fit).collect::<Result<Vec<_>, _>>()?;
             (combine(fits), recordings.iter().map(|r| segment(r, Some(task), options.thresholds).ok()).collect())
         }
-        Task::Barrel | Task::Switch => {
+        Task::Switch => {
+            let fits = recordings.iter().map(switch::fit).collect::<Result<Vec<_>, _>>()?;
+            (combine(fits), recordings.iter().map(|r| segment(r, Some(task), options.thresholds).ok()).collect())
+        }
+        Task::Barrel => {
             return Err(EstimateError::Other(format!(
-                "recordings of the task {} cannot be fitted yet; block-stack, crank, needle and mechanism can",
+                "recordings of the task {} cannot be fitted yet; block-stack, crank, needle, switch and mechanism can",
                 task.name()
             )));
         }

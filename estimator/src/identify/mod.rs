@@ -8,3 +8,4 @@ pub mod long_run;
 pub mod mechanism;
 pub mod needle;
 mod pads;
+pub mod switch;

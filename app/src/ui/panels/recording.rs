@@ -13,7 +13,7 @@ use haptics::recording::Task;
 use std::path::PathBuf;
 
 /// Tasks on offer.
-const TASKS: [Task; 4] = [Task::BlockStack, Task::Crank, Task::Needle, Task::Mechanism];
+const TASKS: [Task; 5] = [Task::BlockStack, Task::Crank, Task::Needle, Task::Switch, Task::Mechanism];
 
 /// The recording panel.
 #[derive(Default)]

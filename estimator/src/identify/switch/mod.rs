@@ -1,0 +1,146 @@
+//! A toggle switch captured as force against displacement, there and back (future work of the thesis; the way of Mac Lean 1996):
+//! how hard it asks to be pushed, where it snaps, how it falls off, and where its stops are.
+//!
+//! Two fingers measure their tips, not the knob. How wide the knob is shows when one leaves it at rest and the other meets it.
+//! How much the pads give shows at the stops only, where knob and finger stand: a stop is taken as at least two thirds as stiff
+//! as a pad, and what that leaves open joins the errors of all places. The knob's path is taken as an arc about a lever twice as
+//! long as its travel, its axis below; what a straighter path would change joins the errors of the forces.
+
+mod report;
+mod signals;
+mod way;
+
+use crate::estimate::{EstimateError, Fit};
+use haptics::recording::Recording;
+use signals::{Reading, Signals};
+use way::{Stop, Way};
+
+/// The object's name in the results.
+pub const OBJECT: &str = "switch";
+/// Length of the lever that is assumed, in travels of the knob.
+pub const LEVER_TRAVELS: f64 = 1.9;
+/// How well one over that is known, as a share (one standard deviation).
+const LEVER_SPREAD: f64 = 0.5;
+/// The share of the give at the stops that is the pads', and its standard deviation: evenly likely between 0.4 and 1.
+pub const PAD_SHARE: (f64, f64) = (0.7, 0.173);
+/// Where on its round side a knob is touched, m.
+const TOUCHED_M: f64 = 7e-5;
+/// Where a knob that is held by friction stays when it is left, m.
+const RESTING_M: f64 = 1.2e-4;
+/// A finger moves the knob by about this share of the force from which a touch is seen, over the rise, before it is seen.
+const UNSEEN_TOUCH: f64 = 0.4;
+/// A peak counts from this many standard errors of rise and fall.
+const PEAK_SEEN: f64 = 4.0;
+
+/// Fits one recording.
+pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
+    let signals = Signals::of(recording)?;
+    let rough = Curves::of(&signals, &Reading::default())?;
+    let give_m_n = rough.give_m_n();
+    let travel_m = rough.travel_m().map_or(signals.range_m, |(travel_m, _)| travel_m);
+    let bend_1_m = 1.0 / (LEVER_TRAVELS * travel_m);
+    let reading = Reading { give_m_n: PAD_SHARE.0 * give_m_n.map_or(0.0, |g| g.0), bend_1_m };
+    let softer = Reading { give_m_n: reading.give_m_n * (1.0 + PAD_SHARE.1 / PAD_SHARE.0), ..reading };
+    let straighter = Reading { bend_1_m: (1.0 - LEVER_SPREAD) * bend_1_m, ..reading };
+    let of = |reading: &Reading| Curves::of(&signals, reading);
+    let captured = Captured {
+        curves: of(&reading)?,
+        others: [of(&softer)?, of(&straighter)?],
+        give_m_n,
+        zero_error_n: signals.zero_error_n,
+    };
+    Ok(captured.report(recording))
+}
+
+/// Mean height of the tips while they touch the knob, m.
+pub fn height_m(recording: &Recording) -> Option<f64> {
+    Signals::of(recording).ok().map(|s| s.height_m)
+}
+
+/// What is seen in both directions, to the right first, with one reading of the samples.
+struct Curves {
+    ways: [Option<Way>; 2],
+    stops: [Option<Stop>; 2],
+    /// Width of the knob between the tips, m.
+    width_m: Option<f64>,
+    /// How well its place at rest is known, m.
+    resting_m: f64,
+}
+
+/// With what systematic errors do to it.
+struct Captured {
+    curves: Curves,
+    others: [Curves; 2],
+    /// Give of pad and stop together with its error, m/N.
+    give_m_n: Option<(f64, f64)>,
+    zero_error_n: f64,
+}
+
+impl Curves {
+    fn of(signals: &Signals, reading: &Reading) -> Result<Self, EstimateError> {
+        let seen = [signals.seen(0, reading), signals.seen(1, reading)];
+        let peaked = |w: &Way| w.around.t_value(1) > PEAK_SEEN && w.around.t_value(2) < -PEAK_SEEN;
+        let ways = [way::way(&seen[0])?.filter(peaked), way::way(&seen[1])?.filter(peaked)];
+        let rise = ways.iter().flatten().map(|w| w.values[1]).fold(f64::INFINITY, f64::min);
+        Ok(Self {
+            ways,
+            resting_m: RESTING_M.hypot(UNSEEN_TOUCH * signals.touch_n / rise),
+            stops: [way::stop(&seen[0])?, way::stop(&seen[1])?],
+            width_m: signals.width_m(reading.give_m_n),
+        })
+    }
+
+    /// Give of finger and stop together, m/N; both sides weighted by their errors.
+    fn give_m_n(&self) -> Option<(f64, f64)> {
+        let found: Vec<(f64, f64)> = self.stops.iter().flatten().map(|s| s.give_m_n).collect();
+        let weight: f64 = found.iter().map(|g| g.1.powi(-2)).sum();
+        let mean = found.iter().map(|g| g.0 * g.1.powi(-2)).sum::<f64>() / weight;
+        (weight > 0.0 && mean > 0.0 && weight.is_finite()).then(|| (mean, weight.powf(-0.5)))
+    }
+
+    /// A place of the knob's side as one of its middle in the world, m.
+    fn middle_m(&self, side: usize, (at_m, error_m): (f64, f64)) -> Option<(f64, f64)> {
+        let middle = at_m + 0.5 * self.width_m?;
+        Some(([1.0, -1.0][side] * middle, error_m.hypot(0.5 * self.resting_m)))
+    }
+
+    fn snap_m(&self, side: usize) -> Option<(f64, f64)> {
+        let way = self.ways[side].as_ref()?;
+        self.middle_m(side, (way.values[3], way.around.std_errors[3]))
+    }
+
+    /// Where the stop in a direction begins, m in the world.
+    fn end_m(&self, side: usize) -> Option<(f64, f64)> {
+        self.middle_m(side, self.stops[side].as_ref()?.end_m)
+    }
+
+    fn travel_m(&self) -> Option<(f64, f64)> {
+        let (right, left) = (self.end_m(0)?, self.end_m(1)?);
+        Some((right.0 - left.0, right.1.hypot(left.1).hypot(self.resting_m))).filter(|t| t.0 > 0.0)
+    }
+
+    /// Half of what both directions ask for in the middle between the places where their forces vanish: friction, N.
+    fn friction_n(&self) -> Option<(f64, f64)> {
+        let ([Some(there), Some(back)], Some(width_m)) = (&self.ways, self.width_m) else { return None };
+        let gone = |w: &Way| w.values[3] - w.values[0] / w.values[2] + 0.5 * width_m;
+        let middle = 0.5 * (gone(there) - gone(back));
+        let forces = [there.falling_n(middle - 0.5 * width_m), back.falling_n(-middle - 0.5 * width_m)];
+        let slope = 0.5 * (there.values[2] + back.values[2]).abs();
+        let error = 0.5 * forces[0].1.hypot(forces[1].1).hypot(slope * self.resting_m);
+        Some((0.5 * (forces[0].0 + forces[1].0), error))
+    }
+}
+
+impl Captured {
+    /// A value with `own` error, the fit's, and what softer pads and a straighter path would change.
+    fn with_errors(&self, own: f64, of: impl Fn(&Curves) -> Option<(f64, f64)>) -> Option<(f64, f64)> {
+        let (value, fitted) = of(&self.curves)?;
+        let change = |other: &Curves| of(other).map_or(0.0, |(v, _)| v - value);
+        let error = self.others.iter().map(change).fold(own.hypot(fitted), f64::hypot);
+        error.is_finite().then_some((value, error))
+    }
+
+    fn samples(&self) -> usize {
+        self.curves.ways.iter().flatten().map(|w| w.samples).sum()
+    }
+}
