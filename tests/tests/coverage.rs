@@ -39,6 +39,8 @@ type Scores = BTreeMap<(String, String), (f64, f64)>;
 fn score(fit: &Fit, truth: &Truth, center_error_m: f64) -> Scores {
     truth
         .iter()
+        // A slip is an accident of a few recordings: tests/friction.rs judges what is made of it.
+        .filter(|(name, _)| name.1 != "friction")
         .filter_map(|(name, true_value)| {
             let found = fit.parameter(&name.0, &name.1)?;
             let (value, error) = (found.value?, found.std_error?);

@@ -94,13 +94,18 @@ pub fn existence(rows: &Rows) -> Option<(Existence, Option<Sided>)> {
     Some((answer, sides))
 }
 
+/// A p-value in words of a sentence: `= 0.43`, `< 0.001`.
+fn probability(p: f64) -> String {
+    if p < 1e-3 { "< 0.001".to_owned() } else { format!("= {p:.3}") }
+}
+
 /// One sentence about it.
 pub fn sentence(found: &Existence) -> String {
     let force = format!(
-        "{:.3} ± {:.3} N across the motion are not explained by weight and inertia (p = {:.2e}, false alarms {:.0} %)",
+        "{:.3} ± {:.3} N across the motion are not explained by weight and inertia (p {}, false alarms {:.0} %)",
         found.unexplained_n,
         found.std_error_n,
-        found.p_value,
+        probability(found.p_value),
         100.0 * found.false_alarm_rate
     );
     match found.exists {
