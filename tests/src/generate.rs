@@ -89,7 +89,7 @@ pub fn perform_with_mistakes(
             ticks.push(TickRecord {
                 time_s: state.time_s,
                 input,
-                tip_force_n: [state.tip_force_n[0] + bias_n[0], state.tip_force_n[1] + bias_n[1]],
+                tip_force_n: state.tip_force_n,
                 label: true_label(world, &state),
                 ..TickRecord::default()
             });
@@ -97,10 +97,18 @@ pub fn perform_with_mistakes(
         count += 1;
     }
     let (grasp_offset_y_m, grasp_offset_error_m) = mean_of_parts(&offsets);
+    let biased: Vec<TickRecord> = ticks
+        .iter()
+        .map(|tick| TickRecord { tip_force_n: [0, 1].map(|f: usize| tick.tip_force_n[f] + bias_n[f]), ..*tick })
+        .collect();
     sensors
         .iter()
         .map(|sensor| Performance {
-            recording: to_recording(&format!("seed {seed}"), world, &ticks, 1, sensor, seed ^ 0x5eed),
+            recording: {
+                // An ideal sensor has no bias either.
+                let seen = if *sensor == SensorModel::IDEAL { &ticks } else { &biased };
+                to_recording(&format!("seed {seed}"), world, seen, 1, sensor, seed ^ 0x5eed)
+            },
             grasp_offset_y_m,
             grasp_offset_error_m,
         })
