@@ -9,6 +9,7 @@ pub mod estimate;
 pub mod hmm;
 pub mod identify;
 pub mod log;
+pub mod online;
 pub mod pipeline;
 pub mod segment;
 pub mod signal;

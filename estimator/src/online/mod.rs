@@ -1,0 +1,3 @@
+//! Estimates while it happens, and what is still missing for them.
+
+pub mod leak;
