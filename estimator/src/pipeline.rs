@@ -6,6 +6,7 @@ use crate::identify::{block, crank, mechanism, needle, switch};
 use crate::segment::{Method, Segmentation, Thresholds, segment, segment_by, task_of};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
+use std::sync::OnceLock;
 
 /// What may be stated by the user.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,8 +32,24 @@ pub struct Analysis {
     pub world: World,
 }
 
+/// What of recordings does not depend on the options: an analysis that shares it with the one before takes a fraction of the time.
+/// It belongs to its recordings, in their order.
+#[derive(Default)]
+pub struct Prepared {
+    cranks: OnceLock<Vec<crank::Prepared>>,
+}
+
 /// Segments, fits and calibrates. All recordings must be of one task and one object.
 pub fn analyse(recordings: &[Recording], options: &Options) -> Result<Analysis, EstimateError> {
+    analyse_prepared(recordings, &Prepared::default(), options)
+}
+
+/// [`analyse`] for the second time and on: `prepared` keeps what the first one made of the same recordings.
+pub fn analyse_prepared(
+    recordings: &[Recording],
+    prepared: &Prepared,
+    options: &Options,
+) -> Result<Analysis, EstimateError> {
     let first = recordings
         .first()
         .ok_or_else(|| EstimateError::Other("no recording was given; name at least one log".to_owned()))?;
@@ -51,7 +68,7 @@ pub fn analyse(recordings: &[Recording], options: &Options) -> Result<Analysis, 
     }
     let (fit, segmentations) = match task {
         Task::BlockStack => each(recordings, |r| block::fit_by(options.method, r, options.thresholds))?,
-        Task::Crank => cranks(recordings, options)?,
+        Task::Crank => cranks(recordings, prepared, options)?,
         Task::Mechanism => {
             let fit = mechanism::fit(recordings)?;
             let segmentations =
@@ -95,8 +112,15 @@ fn each(
 }
 
 /// One or several recordings of a crank: geometry from each, the laws from all of them at once.
-fn cranks(recordings: &[Recording], options: &Options) -> Result<Fitted, EstimateError> {
-    let together = crank::fit_together(options.method, recordings, options.thresholds)?;
+fn cranks(recordings: &[Recording], prepared: &Prepared, options: &Options) -> Result<Fitted, EstimateError> {
+    let prepared = match prepared.cranks.get() {
+        Some(prepared) => prepared,
+        None => {
+            let made = recordings.iter().map(crank::Prepared::of).collect::<Result<Vec<_>, _>>()?;
+            prepared.cranks.get_or_init(|| made)
+        }
+    };
+    let together = crank::refit_together(options.method, recordings, prepared, options.thresholds)?;
     let mut fit = combine(together.fits);
     if recordings.len() > 1 {
         for shared in together.shared {

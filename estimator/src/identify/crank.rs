@@ -15,18 +15,19 @@ mod together;
 
 use crate::estimate::{Constraint, EstimateError, Fit, Slip};
 use crate::segment::{Method, Segmentation, Thresholds, segment, segment_by};
-use crate::signal::task::is_two_fingered;
+use crate::signal::task::{half_width, is_two_fingered};
 use friction::{Friction, Sensed, friction, geometry_errors, heldout_quality};
 use geometry::Geometry;
 use haptics::Vec2;
-use haptics::law::{Motion, drive_forces};
+use haptics::law::drive_forces;
 use haptics::recording::{Channel, Recording, Task};
 use haptics::world::Crank;
-use held::{Held, held};
-use motion::{Rows, motions};
-use report::{constraint, geometry_parameters, grip_parameters, warnings};
+use held::{Held, Smooth, held, smooth};
+use motion::{Along, Rows, motions, motions_at};
+use report::{GripSignals, constraint, geometry_parameters, grip_parameters, warnings};
 use slipping::{slip_warning, without_slips};
-pub use together::{Together, fit_together};
+use std::sync::{Arc, Mutex, PoisonError};
+pub use together::{Together, fit_together, refit_together};
 
 /// A path that misses its best circle by more than this share of the radius is no crank's.
 const LARGEST_RESIDUAL: f64 = 0.08;
@@ -49,9 +50,45 @@ pub fn fit_by(
     recording: &Recording,
     thresholds: Option<Thresholds>,
 ) -> Result<(Fit, Segmentation), EstimateError> {
-    let seen = see(method, recording, thresholds)?;
-    let fit = describe(recording, &seen)?;
+    let prepared = Prepared::of(recording)?;
+    let seen = see(method, recording, &prepared, thresholds)?;
+    let fit = describe(recording, &prepared, &seen)?;
     Ok((fit, seen.segmentation))
+}
+
+/// What of a recording does not depend on how it is fitted: refits share it.
+pub struct Prepared {
+    smooth: Arc<Smooth>,
+    /// Two fingers squeeze the handle; one tool does not.
+    grip: Option<GripSignals>,
+    segmented: Mutex<Option<(Method, Option<Thresholds>, Segmentation)>>,
+}
+
+impl Prepared {
+    /// Smooths and differentiates every channel.
+    pub fn of(recording: &Recording) -> Result<Self, EstimateError> {
+        let smooth = Arc::new(smooth(recording)?);
+        let grip = if is_two_fingered(recording) { Some(GripSignals::of(recording, &smooth)?) } else { None };
+        Ok(Self { smooth, grip, segmented: Mutex::new(None) })
+    }
+
+    /// Made anew only when the thresholds or the method change.
+    fn segmentation(
+        &self,
+        method: Method,
+        recording: &Recording,
+        thresholds: Option<Thresholds>,
+    ) -> Result<Segmentation, EstimateError> {
+        let mut kept = self.segmented.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((m, t, segmentation)) = kept.as_ref()
+            && (*m, *t) == (method, thresholds)
+        {
+            return Ok(segmentation.clone());
+        }
+        let segmentation = segment_by(method, recording, Some(Task::Crank), thresholds)?;
+        *kept = Some((method, thresholds, segmentation.clone()));
+        Ok(segmentation)
+    }
 }
 
 /// One recording, up to the laws fitted to it alone.
@@ -60,14 +97,18 @@ struct Seen {
     held: Held,
     geometry: Geometry,
     slips: Vec<Slip>,
-    motions: Vec<Motion>,
     rows: Rows,
     friction: Friction,
 }
 
-fn see(method: Method, recording: &Recording, thresholds: Option<Thresholds>) -> Result<Seen, EstimateError> {
-    let segmentation = segment_by(method, recording, Some(Task::Crank), thresholds)?;
-    let mut held = held(recording, &segmentation)?;
+fn see(
+    method: Method,
+    recording: &Recording,
+    prepared: &Prepared,
+    thresholds: Option<Thresholds>,
+) -> Result<Seen, EstimateError> {
+    let segmentation = prepared.segmentation(method, recording, thresholds)?;
+    let mut held = held(&prepared.smooth, &segmentation);
     if held.turning.len() < LEAST_SAMPLES {
         return Err(EstimateError::TooFewSamples {
             recording: recording.name.clone(),
@@ -85,22 +126,23 @@ fn see(method: Method, recording: &Recording, thresholds: Option<Thresholds>) ->
             geometry.rms_m * 1e3
         )));
     }
-    let (motions, tangential) = motions(recording, &held, &geometry);
-    let rows = Rows::new(&held, &motions, &tangential);
+    let rows = Rows::new(&Along::new(recording, &held, &geometry));
     let mut friction = friction(recording, &rows)?;
     friction.geometry_errors = geometry_errors(recording, &held, &geometry, &friction);
-    Ok(Seen { segmentation, held, geometry, slips, motions, rows, friction })
+    Ok(Seen { segmentation, held, geometry, slips, rows, friction })
 }
 
 /// What one recording shows, in the words of a fit.
-fn describe(recording: &Recording, seen: &Seen) -> Result<Fit, EstimateError> {
-    let Seen { segmentation, held, geometry, slips, motions, rows, friction } = seen;
+fn describe(recording: &Recording, prepared: &Prepared, seen: &Seen) -> Result<Fit, EstimateError> {
+    let Seen { segmentation, held, geometry, slips, rows, friction } = seen;
     let mut parameters = geometry_parameters(held, geometry);
     parameters.extend(friction.parameters(&Sensed::of(held, geometry), rows));
-    if is_two_fingered(recording) {
-        parameters.extend(grip_parameters(recording, held, geometry)?);
+    if let Some(grip) = &prepared.grip {
+        parameters.extend(grip_parameters(grip, held, geometry)?);
     }
-    let turning: Vec<Motion> = held.turning.iter().map(|i| motions[*i]).collect();
+    // Smoothed samples closer than half their window say nothing new.
+    let apart = held.turning.iter().copied().step_by(half_width(&held.time_s));
+    let (turning, _) = motions_at(recording, held, geometry, apart);
     let constraint = constraint(recording, held, geometry, &turning, friction, &parameters);
     let constraint = Constraint { slips: slips.clone(), ..constraint };
     let quality = heldout_quality(recording, rows);
@@ -122,7 +164,7 @@ fn describe(recording: &Recording, seen: &Seen) -> Result<Fit, EstimateError> {
 /// measured. Where nothing is held the prediction is the measured (free) force.
 pub fn needed_forces(crank: &Crank, recording: &Recording) -> Result<Vec<Channel>, EstimateError> {
     let segmentation = segment(recording, Some(Task::Crank), None)?;
-    let held = held(recording, &segmentation)?;
+    let held = held(&Arc::new(smooth(recording)?), &segmentation);
     let geometry = Geometry {
         center_m: crank.center_m,
         radius_m: crank.radius_m,

@@ -1,5 +1,6 @@
 //! Derivatives of sampled signals.
 
+use super::correlate::correlate;
 use nalgebra::{DMatrix, DVector};
 
 /// Value and first two derivatives of a signal, one a sample.
@@ -30,14 +31,24 @@ pub fn savitzky_golay(time_s: &[f64], values: &[f64], half_width: usize, order: 
         }
         return out;
     };
-    // Even sampling: the weights depend only on the place within the window.
+    // Even sampling: the weights depend only on the place within the window, and inside they are always the same.
     let grid: Vec<f64> = (0..window).map(|k| k as f64).collect();
-    let mut weights: Vec<Option<[Vec<f64>; 3]>> = vec![None; window.max(1)];
-    for i in 0..n {
+    let whole = if window == 2 * half_width + 1 { n - half_width } else { half_width };
+    let inside = half_width..whole;
+    for i in (0..n).filter(|i| !inside.contains(i)) {
         let first = i.saturating_sub(half_width).min(n - window);
-        let place = i - first;
-        let rows = weights[place].get_or_insert_with(|| local_weights(&grid, place as f64, order));
-        put(&mut out, i, rows, &values[first..first + window], period);
+        let rows = local_weights(&grid, (i - first) as f64, order);
+        put(&mut out, i, &rows, &values[first..first + window], period);
+    }
+    if !inside.is_empty() {
+        let rows = local_weights(&grid, half_width as f64, order);
+        let scales = [1.0, 1.0 / period, 1.0 / (period * period)];
+        let series = [&mut out.value, &mut out.first, &mut out.second];
+        for ((out, row), scale) in series.into_iter().zip(&rows).zip(scales) {
+            for (to, sum) in out[inside.clone()].iter_mut().zip(correlate(&values[..n], row)) {
+                *to = sum * scale;
+            }
+        }
     }
     out
 }

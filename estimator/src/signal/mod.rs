@@ -1,5 +1,6 @@
 //! Signals derived from recordings.
 
+pub mod correlate;
 pub mod derive;
 pub mod filter;
 pub mod noise;

@@ -4,7 +4,7 @@ use super::SIGNIFICANT;
 use super::geometry::Geometry;
 use super::held::Held;
 use super::laws::{COULOMB, FRICTION, INERTIA, LAWS, NAMES, WEIGHT, missing_motion};
-use super::motion::{Rows, motions};
+use super::motion::{Along, Rows};
 use crate::estimate::{EstimateError, Parameter, Quality};
 use crate::identify::linear::{LinearFit, least_squares};
 use haptics::Vec2;
@@ -13,6 +13,8 @@ use std::collections::BTreeMap;
 
 /// A parameter whose error alone moves the predicted force by more than this share of the measured one is not identified.
 const LARGEST_ERROR: f64 = 0.3;
+/// Samples of each low-pass window that a shift of the geometry is followed through.
+const TAPS: usize = 16;
 
 /// What besides the rows decides how well the laws are known.
 pub(super) struct Sensed {
@@ -142,13 +144,18 @@ pub(super) fn geometry_errors(
         (Vec2::zeros(), Vec2::new(give.x, 0.0)),
         (Vec2::zeros(), Vec2::new(0.0, give.y)),
     ];
+    // What a shift changes is seen in a few samples of each window just as well.
+    let of = |geometry: &Geometry| {
+        let rows = Rows::coarse(&Along::new(recording, held, geometry), TAPS);
+        regress(&rows, &friction.used, &friction.known).ok()
+    };
     let mut squares = vec![0.0; friction.used.len()];
+    let Some(here) = of(geometry) else { return squares };
     for (center, give) in shifts {
         let shifted =
             Geometry { center_m: geometry.center_m + center, give_m_per_n: geometry.give_m_per_n + give, ..*geometry };
-        let (motions, tangential) = motions(recording, held, &shifted);
-        if let Ok(fit) = regress(&Rows::new(held, &motions, &tangential), &friction.used, &friction.known) {
-            for (square, (a, b)) in squares.iter_mut().zip(fit.values.iter().zip(&friction.fit.values)) {
+        if let Some(fit) = of(&shifted) {
+            for (square, (a, b)) in squares.iter_mut().zip(fit.values.iter().zip(&here.values)) {
                 *square += (a - b).powi(2);
             }
         }

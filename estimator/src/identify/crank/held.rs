@@ -10,49 +10,57 @@ use crate::signal::task::{
 };
 use haptics::Vec2;
 use haptics::recording::Recording;
+use std::ops::Deref;
+use std::sync::Arc;
 
 /// The force passes through zero in a turn, too: shorter rests are not free motion, s.
 const LEAST_FREE_S: f64 = 0.25;
 
-/// The handle's motion and force while it is held, all channels through the same smoothing filter. One entry a sample.
-pub(super) struct Held {
+/// The handle's motion and force, all channels through the same smoothing filter. One entry a sample. Nothing in here depends on
+/// the segmentation, so that refits of the same recording share it.
+pub(super) struct Smooth {
     pub(super) time_s: Vec<f64>,
     /// Mean of the tips, m.
-    pub(super) position: Vec<Vec2>,
+    position: Vec<Vec2>,
     pub(super) velocity: Vec<Vec2>,
     /// Derivative of the velocity, m/s².
     pub(super) acceleration: Vec<Vec2>,
-    /// Net force on the handle, N, bias taken out, with its first two derivatives, N/s and N/s².
-    pub(super) force: Vec<Vec2>,
+    /// Net force on the handle as measured, not smoothed and smoothed, N, …
+    measured_force: Vec<Vec2>,
+    smooth_force: Vec<Vec2>,
+    /// … and its first two derivatives, N/s and N/s².
     pub(super) force_rate: Vec<Vec2>,
     pub(super) force_bend: Vec<Vec2>,
-    /// Samples that turn (the rest is held still or let go).
-    pub(super) turning: Vec<usize>,
     /// Noise of one velocity component after smoothing, m/s.
     pub(super) velocity_noise: f64,
-    /// Standard error of the vertical force bias that was taken out, N; `None` without a free phase to see it in.
-    pub(super) bias_error_n: Option<f64>,
     /// Error by the resolution of the log, m and N.
     pub(super) resolution_m: f64,
     pub(super) resolution_n: f64,
 }
 
-pub(super) fn held(recording: &Recording, segmentation: &Segmentation) -> Result<Held, EstimateError> {
-    let time_s = times(recording);
-    let (position, velocity, force) = if is_two_fingered(recording) {
-        let TaskSignals { position, velocity, net_force_n, .. } = task_signals(recording)?;
-        (position, velocity, net_force_n)
-    } else {
-        let TipSeries { position, velocity, force } = tip_series(recording, "")?;
-        let clockless =
-            || EstimateError::Clockless { what: "friction in a crank".to_owned(), recording: recording.name.clone() };
-        let missing = || EstimateError::MissingColumn {
-            task: "the crank".to_owned(),
-            column: "fx_N".to_owned(),
-            recording: recording.name.clone(),
-        };
-        (position, velocity.ok_or_else(clockless)?, force.ok_or_else(missing)?)
-    };
+/// The handle's motion and force while it is held.
+pub(super) struct Held {
+    smooth: Arc<Smooth>,
+    /// Mean of the tips, m; slips are taken out of it.
+    pub(super) position: Vec<Vec2>,
+    /// Net force on the handle, N, bias taken out.
+    pub(super) force: Vec<Vec2>,
+    /// Samples that turn (the rest is held still or let go).
+    pub(super) turning: Vec<usize>,
+    /// Standard error of the vertical force bias that was taken out, N; `None` without a free phase to see it in.
+    pub(super) bias_error_n: Option<f64>,
+}
+
+impl Deref for Held {
+    type Target = Smooth;
+
+    fn deref(&self) -> &Smooth {
+        &self.smooth
+    }
+}
+
+pub(super) fn held(smooth: &Arc<Smooth>, segmentation: &Segmentation) -> Held {
+    let force = &smooth.measured_force;
     let free: Vec<usize> = segmentation
         .states
         .iter()
@@ -71,6 +79,31 @@ pub(super) fn held(recording: &Recording, segmentation: &Segmentation) -> Result
         .filter_map(|i| i.subtask.as_deref())
         .flat_map(|subtask| segmentation.samples_of(subtask))
         .collect();
+    Held {
+        position: smooth.position.clone(),
+        force: smooth.smooth_force.iter().map(|f| f - bias).collect(),
+        turning,
+        bias_error_n,
+        smooth: Arc::clone(smooth),
+    }
+}
+
+pub(super) fn smooth(recording: &Recording) -> Result<Smooth, EstimateError> {
+    let time_s = times(recording);
+    let (position, velocity, force) = if is_two_fingered(recording) {
+        let TaskSignals { position, velocity, net_force_n, .. } = task_signals(recording)?;
+        (position, velocity, net_force_n)
+    } else {
+        let TipSeries { position, velocity, force } = tip_series(recording, "")?;
+        let clockless =
+            || EstimateError::Clockless { what: "friction in a crank".to_owned(), recording: recording.name.clone() };
+        let missing = || EstimateError::MissingColumn {
+            task: "the crank".to_owned(),
+            column: "fx_N".to_owned(),
+            recording: recording.name.clone(),
+        };
+        (position, velocity.ok_or_else(clockless)?, force.ok_or_else(missing)?)
+    };
     let axis = |series: &[Vec2], pick: fn(&Vec2) -> f64| series.iter().map(pick).collect::<Vec<f64>>();
     let half = (2 * half_width(&time_s)).max(CUBIC_HALF);
     // Five samples of a slow log span much of a motion: there only their full polynomial does not weaken its bends.
@@ -97,18 +130,17 @@ pub(super) fn held(recording: &Recording, segmentation: &Segmentation) -> Result
     // and forces that do not either keep an error that no averaging removes.
     let unresolved = |values: &[f64]| resolution_error(quantum(values), white_noise(values));
     let resolution = |series: &[Vec2]| unresolved(&axis(series, |v| v.x)).max(unresolved(&axis(series, |v| v.y)));
-    Ok(Held {
+    Ok(Smooth {
         velocity_noise,
-        bias_error_n,
         resolution_m: resolution(&position),
         resolution_n: resolution(&force),
         position: position_smooth,
         velocity: velocity_smooth,
         acceleration,
-        force: force_smooth.iter().map(|f| f - bias).collect(),
+        measured_force: force,
+        smooth_force: force_smooth,
         force_rate,
         force_bend,
-        turning,
         time_s,
     })
 }

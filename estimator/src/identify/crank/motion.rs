@@ -7,37 +7,71 @@ use haptics::Vec2;
 use haptics::law::Motion;
 use haptics::recording::Recording;
 
-/// The handle's motion along the circle and the tangential force, N, at every sample (they mean something while it is held).
-pub(super) fn motions(recording: &Recording, held: &Held, geometry: &Geometry) -> (Vec<Motion>, Vec<f64>) {
-    let up = if recording.meta.up.as_deref() == Some("-y") { -1.0 } else { 1.0 };
-    let frame = |i: usize| {
-        let handle = held.position[i] - held.force[i].component_mul(&geometry.give_m_per_n) - geometry.center_m;
+/// Turns the motion of a held handle into motion along its circle, sample by sample.
+pub(super) struct Along<'a> {
+    held: &'a Held,
+    geometry: &'a Geometry,
+    up: f64,
+    /// The sign of a velocity within its noise is a guess: it is blurred over twice that (and never less than 0.5 mm/s).
+    blur_m_s: f64,
+}
+
+impl<'a> Along<'a> {
+    pub(super) fn new(recording: &Recording, held: &'a Held, geometry: &'a Geometry) -> Self {
+        let up = if recording.meta.up.as_deref() == Some("-y") { -1.0 } else { 1.0 };
+        Self { held, geometry, up, blur_m_s: (2.0 * held.velocity_noise).max(0.5e-3) }
+    }
+
+    /// Outward and forward direction.
+    fn frame(&self, i: usize) -> (Vec2, Vec2) {
+        let give = &self.geometry.give_m_per_n;
+        let handle = self.held.position[i] - self.held.force[i].component_mul(give) - self.geometry.center_m;
         let outward = handle.normalize();
         (outward, Vec2::new(-outward.y, outward.x))
-    };
-    // The sign of a velocity within its noise is a guess: it is blurred over twice that (and never less than 0.5 mm/s).
-    let blur = (2.0 * held.velocity_noise).max(0.5e-3);
+    }
+
+    /// The motion (its position left out) and the tangential force, N, at a sample; they mean something while it is held.
+    fn at(&self, i: usize) -> (Motion, f64) {
+        let (held, give) = (self.held, &self.geometry.give_m_per_n);
+        let (outward, along) = self.frame(i);
+        // The tips move with the handle plus the changing give of the pads.
+        let speed = (held.velocity[i] - held.force_rate[i].component_mul(give)).dot(&along);
+        let motion = Motion {
+            time_s: held.time_s[i],
+            position: 0.0,
+            velocity: speed,
+            acceleration: (held.acceleration[i] - held.force_bend[i].component_mul(give)).dot(&along),
+            direction: (speed / self.blur_m_s).tanh(),
+            normal_force_n: held.force[i].dot(&outward),
+            up_along: self.up * along.y,
+        };
+        (motion, held.force[i].dot(&along))
+    }
+}
+
+/// The handle's motion along the circle and the tangential force, N, at every sample (they mean something while it is held).
+pub(super) fn motions(recording: &Recording, held: &Held, geometry: &Geometry) -> (Vec<Motion>, Vec<f64>) {
+    motions_at(recording, held, geometry, 0..held.time_s.len())
+}
+
+/// [`motions`] at chosen samples, less than half a turn apart.
+pub(super) fn motions_at(
+    recording: &Recording,
+    held: &Held,
+    geometry: &Geometry,
+    samples: impl Iterator<Item = usize>,
+) -> (Vec<Motion>, Vec<f64>) {
+    let along = Along::new(recording, held, geometry);
     let mut angle_before = 0.0;
-    (0..held.time_s.len())
+    samples
         .map(|i| {
-            let (outward, along) = frame(i);
-            // The tips move with the handle plus the changing give of the pads.
-            let give = &geometry.give_m_per_n;
-            let speed = (held.velocity[i] - held.force_rate[i].component_mul(give)).dot(&along);
+            let (outward, _) = along.frame(i);
             let wrapped = outward.y.atan2(outward.x);
             let turns = ((angle_before - wrapped) / std::f64::consts::TAU).round();
             let angle = wrapped + turns * std::f64::consts::TAU;
             angle_before = angle;
-            let motion = Motion {
-                time_s: held.time_s[i],
-                position: geometry.radius_m * angle,
-                velocity: speed,
-                acceleration: (held.acceleration[i] - held.force_bend[i].component_mul(give)).dot(&along),
-                direction: (speed / blur).tanh(),
-                normal_force_n: held.force[i].dot(&outward),
-                up_along: up * along.y,
-            };
-            (motion, held.force[i].dot(&along))
+            let (motion, tangential) = along.at(i);
+            (Motion { position: geometry.radius_m * angle, ..motion }, tangential)
         })
         .unzip()
 }
@@ -56,42 +90,69 @@ pub(super) struct Rows {
 /// Half of the low-pass window, s: what is slower than about 5 Hz stays.
 const LOW_PASS_HALF_S: f64 = 0.06;
 
+fn half(time_s: &[f64]) -> usize {
+    let period_s = (time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64;
+    (LOW_PASS_HALF_S / period_s).round() as usize
+}
+
+/// Samples a window apart whose whole window turns: elsewhere the equation does not hold, and rows closer than the filter's window
+/// share samples (parallel decimation).
+fn inside(held: &Held, half: usize) -> Vec<usize> {
+    let samples = held.time_s.len();
+    let mut turns = vec![0_u32; samples + 1];
+    for i in &held.turning {
+        turns[i + 1] = 1;
+    }
+    for i in 0..samples {
+        turns[i + 1] += turns[i];
+    }
+    let whole = 2 * half as u32 + 1;
+    held.turning
+        .iter()
+        .copied()
+        .filter(|i| i % (2 * half).max(1) == 0 && *i >= half && i + half < samples)
+        .filter(|i| turns[i + half + 1] - turns[i - half] == whole)
+        .collect()
+}
+
 impl Rows {
-    pub(super) fn new(held: &Held, motions: &[Motion], tangential: &[f64]) -> Self {
-        let period_s = (held.time_s[held.time_s.len() - 1] - held.time_s[0]) / (held.time_s.len() - 1) as f64;
-        let half = (LOW_PASS_HALF_S / period_s).round() as usize;
-        // Only where the whole window turns: elsewhere the equation does not hold.
-        let mut turns = vec![0_u32; motions.len() + 1];
-        for i in &held.turning {
-            turns[i + 1] = 1;
-        }
-        for i in 0..motions.len() {
-            turns[i + 1] += turns[i];
-        }
-        let inside: Vec<usize> = held
-            .turning
-            .iter()
-            .copied()
-            .filter(|i| *i >= half && i + half < motions.len())
-            .filter(|i| turns[i + half + 1] - turns[i - half] == 2 * half as u32 + 1)
-            // After the filter, rows closer than its window share samples (parallel decimation).
-            .filter(|i| i % (2 * half).max(1) == 0)
-            .collect();
+    pub(super) fn new(along: &Along<'_>) -> Self {
+        Self::thinned(along, 1)
+    }
+
+    /// The same from about `taps` samples in each window of the low-pass: enough to see what a small change of the geometry does.
+    pub(super) fn coarse(along: &Along<'_>, taps: usize) -> Self {
+        Self::thinned(along, (2 * half(&along.held.time_s) / taps).max(1))
+    }
+
+    fn thinned(along: &Along<'_>, step: usize) -> Self {
+        let held = along.held;
+        let half = half(&held.time_s);
+        let inside = inside(held, half);
         let reach = (half as f64 + 0.5).powi(2);
-        let weight = |k: usize, i: usize| reach - (k as f64 - i as f64).powi(2);
-        let pass = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
-            let total: f64 = (0..=2 * half).map(|k| weight(k, half)).sum();
-            let at = |i: usize| (i - half..=i + half).map(|k| weight(k, i) * value(k)).sum::<f64>() / total;
-            inside.iter().map(|i| at(*i)).collect()
-        };
-        let direction = pass(&|k| motions[k].direction.abs());
-        Self {
-            columns: std::array::from_fn(|law| pass(&|k| column(LAWS[law], &motions[k]))),
-            tangential: pass(&|k| tangential[k]),
+        let taps: Vec<(usize, f64)> =
+            (0..=2 * half).step_by(step).map(|k| (k, reach - (k as f64 - half as f64).powi(2))).collect();
+        let total: f64 = taps.iter().map(|(_, w)| w).sum();
+        let mut rows = Self { columns: Default::default(), tangential: Vec::new(), weights: Vec::new() };
+        for i in inside {
+            let (mut sums, mut tangential, mut direction) = ([0.0; LAWS.len()], 0.0, 0.0);
+            for (k, weight) in &taps {
+                let (motion, force) = along.at(i - half + k);
+                for (sum, law) in sums.iter_mut().zip(LAWS) {
+                    *sum += weight * column(law, &motion);
+                }
+                tangential += weight * force;
+                direction += weight * motion.direction.abs();
+            }
+            for (column, sum) in rows.columns.iter_mut().zip(sums) {
+                column.push(sum / total);
+            }
+            rows.tangential.push(tangential / total);
             // Around a reversal the direction is a guess within the noise: such rows count less, and not at all when the
             // direction is quite unknown.
-            weights: direction.iter().map(|d| d.powi(4)).collect(),
+            rows.weights.push((direction / total).powi(4));
         }
+        rows
     }
 
     pub(super) fn len(&self) -> usize {

@@ -3,7 +3,7 @@
 use super::SIGNIFICANT;
 use super::friction::Friction;
 use super::geometry::Geometry;
-use super::held::Held;
+use super::held::{Held, Smooth};
 use super::laws::WEIGHT;
 use crate::constraint::existence::{Rows, existence, sentence};
 use crate::constraint::yielding::{Manipulator, judge};
@@ -12,7 +12,7 @@ use crate::estimate::{Constraint, ConstraintKind, EstimateError, Parameter, Scre
 use crate::identify::pads::{Grip, width_over_force};
 use crate::segment::Segmentation;
 use crate::segment::threshold::Levels;
-use crate::signal::task::{CUBIC_HALF, half_width, smooth, task_signals};
+use crate::signal::task::{CUBIC_HALF, Smoothed, half_width, smooth, task_signals};
 use haptics::Vec2;
 use haptics::law::Motion;
 use haptics::recording::Recording;
@@ -67,26 +67,40 @@ pub(super) fn geometry_parameters(held: &Held, geometry: &Geometry) -> Vec<Param
     parameters
 }
 
+/// How two fingers squeeze the handle, all channels through one filter. One entry a sample.
+pub(super) struct GripSignals {
+    /// Distance of the tips, m, and its rate.
+    width: Smoothed,
+    /// Mean of the two normal forces, N: their difference moves the handle, not the tips apart.
+    force_n: Vec<f64>,
+}
+
+impl GripSignals {
+    pub(super) fn of(recording: &Recording, smoothed: &Smooth) -> Result<Self, EstimateError> {
+        let signals = task_signals(recording)?;
+        let bias = Levels::of(&signals).bias_n;
+        let normal =
+            |finger: usize, i: usize| signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x) - bias[finger].x;
+        let grip: Vec<f64> = (0..signals.len()).map(|i| 0.5 * (normal(0, i) - normal(1, i))).collect();
+        let width = smooth(&smoothed.time_s, &signals.grip_width_m);
+        Ok(Self { width, force_n: smooth(&smoothed.time_s, &grip).value })
+    }
+}
+
 /// Width of the handle and stiffness of one pad: what a virtual grip needs to feel like the real one.
 ///
 /// The tips' distance is the handle's width less the give of both pads, 2 F / k; along y two pads side by side carry the
 /// handle in shear, as the radius residual shows.
 pub(super) fn grip_parameters(
-    recording: &Recording,
+    signals: &GripSignals,
     held: &Held,
     geometry: &Geometry,
 ) -> Result<Vec<Parameter>, EstimateError> {
-    let signals = task_signals(recording)?;
-    let width = smooth(&held.time_s, &signals.grip_width_m);
-    // The mean of the two normal forces: their difference moves the handle, not the tips apart.
-    let bias = Levels::of(&signals).bias_n;
-    let normal = |finger: usize, i: usize| signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x) - bias[finger].x;
-    let grip: Vec<f64> = (0..signals.len()).map(|i| 0.5 * (normal(0, i) - normal(1, i))).collect();
-    let grip = smooth(&held.time_s, &grip).value;
     let stride = 2 * half_width(&held.time_s);
     let rows: Vec<usize> = held.turning.iter().copied().step_by(stride).collect();
     let column = |series: &[f64]| rows.iter().map(|i| series[*i]).collect::<Vec<f64>>();
-    let (widths, forces, rates) = (column(&width.value), column(&grip), column(&width.slope));
+    let (width, grip) = (&signals.width, &signals.force_n);
+    let (widths, forces, rates) = (column(&width.value), column(grip), column(&width.slope));
     let pads = width_over_force(&Grip { width: &widths, force: &forces, rate: &rates })?;
     let samples = held.turning.len();
     let mut parameters = Vec::new();

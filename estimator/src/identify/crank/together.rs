@@ -5,7 +5,7 @@
 
 use super::friction::{Friction, Sensed, friction};
 use super::motion::Rows;
-use super::{Seen, describe, see};
+use super::{Prepared, Seen, describe, see};
 use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::segment::{Method, Segmentation, Thresholds};
 use haptics::recording::Recording;
@@ -26,8 +26,20 @@ pub fn fit_together(
     recordings: &[Recording],
     thresholds: Option<Thresholds>,
 ) -> Result<Together, EstimateError> {
-    let seen = recordings.iter().map(|r| see(method, r, thresholds)).collect::<Result<Vec<_>, _>>()?;
-    let fits = recordings.iter().zip(&seen).map(|(r, s)| describe(r, s)).collect::<Result<Vec<_>, _>>()?;
+    let prepared = recordings.iter().map(Prepared::of).collect::<Result<Vec<_>, _>>()?;
+    refit_together(method, recordings, &prepared, thresholds)
+}
+
+/// [`fit_together`] of recordings that were prepared before, one a recording.
+pub fn refit_together(
+    method: Method,
+    recordings: &[Recording],
+    prepared: &[Prepared],
+    thresholds: Option<Thresholds>,
+) -> Result<Together, EstimateError> {
+    let all = || recordings.iter().zip(prepared);
+    let seen = all().map(|(r, p)| see(method, r, p, thresholds)).collect::<Result<Vec<_>, _>>()?;
+    let fits = all().zip(&seen).map(|((r, p), s)| describe(r, p, s)).collect::<Result<Vec<_>, _>>()?;
     let rows = Rows::join(seen.iter().map(|s| &s.rows));
     let mut joint = friction(&recordings[0], &rows)?;
     joint.geometry_errors = geometry_errors(&seen, &joint);

@@ -29,14 +29,30 @@ impl Cushion {
         self.spring.stiffness_n_m(depth_m) + self.end.stiffness_n_m(depth_m)
     }
 
-    /// Depth at which it presses with a force, N; by bisection between nothing and where the linear part alone would.
+    /// Depth at which it presses with a force, N.
+    ///
+    /// Newton's steps from where the linear part alone would press that hard; a step that leaves the bracket is replaced by
+    /// halving it (Press et al., `rtsafe`). The law only stiffens with depth, so that the steps do not overshoot as a rule.
     pub fn depth_m(&self, force_n: f64) -> f64 {
-        let (mut low_m, mut high_m) = (0.0, force_n.max(0.0) / self.spring.k1);
-        for _ in 0..50 {
-            let middle_m = 0.5 * (low_m + high_m);
-            if self.force_n(middle_m) < force_n { low_m = middle_m } else { high_m = middle_m }
+        const ENOUGH: usize = 50;
+        let mut high_m = force_n.max(0.0) / self.spring.k1;
+        let (mut low_m, mut depth_m) = (0.0, high_m);
+        for _ in 0..ENOUGH {
+            let excess_n = self.force_n(depth_m) - force_n;
+            if excess_n < 0.0 {
+                low_m = depth_m
+            } else {
+                high_m = depth_m
+            }
+            let newton_m = depth_m - excess_n / self.stiffness_n_m(depth_m);
+            let next_m = if newton_m >= low_m && newton_m <= high_m { newton_m } else { 0.5 * (low_m + high_m) };
+            let moved_m = (next_m - depth_m).abs();
+            depth_m = next_m;
+            if moved_m <= 1e-15 * depth_m {
+                break;
+            }
         }
-        high_m
+        depth_m
     }
 
     /// Slope at a force, N/m: the steepest that a device feels which renders no more than that.
