@@ -9,6 +9,7 @@ use crate::estimate::{EstimateError, Parameter, Quality};
 use crate::identify::linear::{LinearFit, least_squares};
 use haptics::Vec2;
 use haptics::recording::Recording;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// A parameter whose error alone moves the predicted force by more than this share of the measured one is not identified.
@@ -151,13 +152,13 @@ pub(super) fn geometry_errors(
     };
     let mut squares = vec![0.0; friction.used.len()];
     let Some(here) = of(geometry) else { return squares };
-    for (center, give) in shifts {
-        let shifted =
-            Geometry { center_m: geometry.center_m + center, give_m_per_n: geometry.give_m_per_n + give, ..*geometry };
-        if let Some(fit) = of(&shifted) {
-            for (square, (a, b)) in squares.iter_mut().zip(fit.values.iter().zip(&here.values)) {
-                *square += (a - b).powi(2);
-            }
+    let shifted = |(center, give): &(Vec2, Vec2)| {
+        let (center_m, give_m_per_n) = (geometry.center_m + center, geometry.give_m_per_n + give);
+        of(&Geometry { center_m, give_m_per_n, ..*geometry })
+    };
+    for fit in shifts.par_iter().filter_map(shifted).collect::<Vec<_>>() {
+        for (square, (a, b)) in squares.iter_mut().zip(fit.values.iter().zip(&here.values)) {
+            *square += (a - b).powi(2);
         }
     }
     squares.into_iter().map(f64::sqrt).collect()

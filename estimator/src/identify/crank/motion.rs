@@ -6,6 +6,7 @@ use super::laws::{LAWS, column};
 use haptics::Vec2;
 use haptics::law::Motion;
 use haptics::recording::Recording;
+use rayon::prelude::*;
 
 /// Turns the motion of a held handle into motion along its circle, sample by sample.
 pub(super) struct Along<'a> {
@@ -133,8 +134,7 @@ impl Rows {
         let taps: Vec<(usize, f64)> =
             (0..=2 * half).step_by(step).map(|k| (k, reach - (k as f64 - half as f64).powi(2))).collect();
         let total: f64 = taps.iter().map(|(_, w)| w).sum();
-        let mut rows = Self { columns: Default::default(), tangential: Vec::new(), weights: Vec::new() };
-        for i in inside {
+        let row = |i: &usize| {
             let (mut sums, mut tangential, mut direction) = ([0.0; LAWS.len()], 0.0, 0.0);
             for (k, weight) in &taps {
                 let (motion, force) = along.at(i - half + k);
@@ -144,15 +144,16 @@ impl Rows {
                 tangential += weight * force;
                 direction += weight * motion.direction.abs();
             }
-            for (column, sum) in rows.columns.iter_mut().zip(sums) {
-                column.push(sum / total);
-            }
-            rows.tangential.push(tangential / total);
             // Around a reversal the direction is a guess within the noise: such rows count less, and not at all when the
             // direction is quite unknown.
-            rows.weights.push((direction / total).powi(4));
+            (sums.map(|sum| sum / total), tangential / total, (direction / total).powi(4))
+        };
+        let made: Vec<_> = inside.par_iter().map(row).collect();
+        Self {
+            columns: std::array::from_fn(|law| made.iter().map(|(columns, ..)| columns[law]).collect()),
+            tangential: made.iter().map(|(_, tangential, _)| *tangential).collect(),
+            weights: made.iter().map(|(.., weight)| *weight).collect(),
         }
-        rows
     }
 
     pub(super) fn len(&self) -> usize {
