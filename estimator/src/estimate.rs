@@ -21,6 +21,9 @@ pub struct Parameter {
     /// One standard error, in the unit of the value, systematic parts included.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub std_error: Option<f64>,
+    /// The same by a block bootstrap of the recording's rows, where one can be made: a second opinion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bootstrap_error: Option<f64>,
     /// False when the recording cannot show it.
     pub identified: bool,
     /// Samples that took part.
@@ -37,6 +40,7 @@ impl Parameter {
             name: name.to_owned(),
             value: Some(value),
             std_error: Some(std_error),
+            bootstrap_error: None,
             identified: true,
             samples,
             how: how.to_owned(),
@@ -50,11 +54,38 @@ impl Parameter {
             name: name.to_owned(),
             value: None,
             std_error: None,
+            bootstrap_error: None,
             identified: false,
             samples,
             how: why.to_owned(),
         }
     }
+
+    /// With the error that a block bootstrap gives, systematic parts included.
+    #[must_use]
+    pub fn with_bootstrap(mut self, error: Option<f64>) -> Self {
+        self.bootstrap_error = error.filter(|_| self.identified);
+        self
+    }
+
+    /// `object.name`.
+    pub fn full_name(&self) -> String {
+        format!("{}.{}", self.object, self.name)
+    }
+}
+
+/// Parameters that were estimated together, with how their errors go together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Correlated {
+    /// `object.name` of each.
+    pub parameters: Vec<String>,
+    /// Best values, also of those that the recording does not show by themselves.
+    pub values: Vec<f64>,
+    /// Covariance, systematic parts included: one row a parameter.
+    pub covariance: Vec<Vec<f64>>,
+    /// A parameter counts as identified below this standard error.
+    #[serde(skip)]
+    pub shown_below: Vec<f64>,
 }
 
 /// Everything that a fit found.
@@ -69,6 +100,9 @@ pub struct Fit {
     /// How well the model reproduces the force, where it predicts one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quality: Option<Quality>,
+    /// Covariances of what was estimated together.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub correlated: Vec<Correlated>,
     /// Sentences, most important first.
     pub warnings: Vec<String>,
 }

@@ -2,7 +2,7 @@
 
 use crate::calibrate;
 use crate::estimate::{EstimateError, Fit, Parameter};
-use crate::identify::{block, crank, mechanism, needle, switch};
+use crate::identify::{block, crank, mechanism, needle, stated, switch};
 use crate::segment::{Method, Segmentation, Thresholds, segment, segment_by, task_of};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
@@ -66,7 +66,7 @@ pub fn analyse_prepared(
             )));
         }
     }
-    let (fit, segmentations) = match task {
+    let (mut fit, segmentations) = match task {
         Task::BlockStack => each(recordings, |r| block::fit_by(options.method, r, options.thresholds))?,
         Task::Crank => cranks(recordings, prepared, options)?,
         Task::Mechanism => {
@@ -90,8 +90,30 @@ pub fn analyse_prepared(
             )));
         }
     };
+    doubt(&mut fit);
+    stated::apply(&mut fit, &first.meta);
     let world = calibrate::world(task, recordings, &fit, &segmentations);
     Ok(Analysis { task, fit, segmentations, world })
+}
+
+/// Two ways to the same error that differ by more than this factor rest on too few independent stretches for either.
+const DOUBTFUL: f64 = 2.0;
+
+/// Where the bootstrap says much more than the covariance, the larger error stands, with a word.
+fn doubt(fit: &mut Fit) {
+    for parameter in &mut fit.parameters {
+        let (Some(error), Some(resampled)) = (parameter.std_error, parameter.bootstrap_error) else { continue };
+        if resampled > DOUBTFUL * error {
+            parameter.std_error = Some(resampled);
+            fit.warnings.push(format!(
+                "the error of {} {} is {:.1} times as large by resampling as by covariance: the larger one is given; a longer \
+                 recording would settle it",
+                parameter.object,
+                parameter.name,
+                resampled / error
+            ));
+        }
+    }
 }
 
 type Fitted = (Fit, Vec<Option<Segmentation>>);
@@ -129,6 +151,7 @@ fn cranks(recordings: &[Recording], prepared: &Prepared, options: &Options) -> R
                 None => fit.parameters.push(shared),
             }
         }
+        fit.correlated = vec![together.correlated];
     }
     Ok((fit, together.segmentations.into_iter().map(Some).collect()))
 }
@@ -160,8 +183,9 @@ fn combine(fits: Vec<Fit>) -> Fit {
         }
     }
     if several {
-        // It belonged to the first recording only.
+        // They belonged to the first recording only.
         total.quality = None;
+        total.correlated.clear();
     }
     total
 }
@@ -183,7 +207,11 @@ fn merge(mean: &mut Parameter, other: &Parameter) -> Option<String> {
     let (wa, wb) = (ea.max(1e-300).powi(-2), eb.max(1e-300).powi(-2));
     mean.value = Some((a * wa + b * wb) / (wa + wb));
     // When they disagree, the spread between them is the better error.
-    mean.std_error = Some((wa + wb).powf(-0.5) * (apart / std::f64::consts::SQRT_2).max(1.0));
+    let error = (wa + wb).powf(-0.5) * (apart / std::f64::consts::SQRT_2).max(1.0);
+    mean.std_error = Some(error);
+    let parts = mean.bootstrap_error.zip(other.bootstrap_error);
+    mean.bootstrap_error =
+        parts.map(|(a, b)| (1.0 / (a.powi(-2) + b.powi(-2)).sqrt()).max(error * (a / ea).min(b / eb)));
     mean.samples += other.samples;
     (apart > DISAGREEMENT).then(|| {
         format!(

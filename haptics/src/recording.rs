@@ -99,9 +99,25 @@ pub struct Meta {
     /// Parameters that are known and not to be estimated.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub known: BTreeMap<String, f64>,
+    /// What was believed of a parameter before the recording. Names are those of a fit (`weight_N`), or with the object in front
+    /// (`block-2.weight_N`).
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub prior: BTreeMap<String, Prior>,
+    /// Least and largest value that a parameter can have, named as in `prior`; `null` leaves a side open.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub bounds: BTreeMap<String, [Option<f64>; 2]>,
     /// Keys this version does not know: kept, so that saving loses nothing.
     #[serde(flatten)]
     pub other: BTreeMap<String, serde_json::Value>,
+}
+
+/// A normal distribution, in the parameter's unit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Prior {
+    /// Most likely value.
+    pub mean: f64,
+    /// Standard deviation, above zero.
+    pub std: f64,
 }
 
 impl Meta {

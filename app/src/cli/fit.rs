@@ -1,5 +1,6 @@
 //! `touchstone fit`: parameters with their errors, constraints, and a calibrated world.
 
+use super::stated::Stated;
 use super::table::{parameter_line, with_error};
 use super::{LogArgs, Output};
 use anyhow::Context;
@@ -20,6 +21,8 @@ pub struct Fit {
     /// Write the calibrated world here
     #[arg(long)]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    stated: Stated,
 }
 
 impl Fit {
@@ -28,6 +31,7 @@ impl Fit {
         for log in &self.logs {
             recordings.extend(self.source.load(log)?);
         }
+        self.stated.put_into(&mut recordings);
         let mut analysis = super::progress::during("fitting", |_| analyse(&recordings, &Options::default()))?;
         for recording in &recordings {
             for warning in &recording.warnings {

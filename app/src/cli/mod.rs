@@ -13,6 +13,7 @@ mod record;
 mod screenshot;
 mod segment;
 mod simulate;
+mod stated;
 pub mod table;
 mod task;
 

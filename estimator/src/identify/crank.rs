@@ -136,7 +136,8 @@ fn see(
 fn describe(recording: &Recording, prepared: &Prepared, seen: &Seen) -> Result<Fit, EstimateError> {
     let Seen { segmentation, held, geometry, slips, rows, friction } = seen;
     let mut parameters = geometry_parameters(held, geometry);
-    parameters.extend(friction.parameters(&Sensed::of(held, geometry), rows));
+    let sensed = Sensed::of(held, geometry);
+    parameters.extend(friction.parameters(&sensed, rows));
     if let Some(grip) = &prepared.grip {
         parameters.extend(grip_parameters(grip, held, geometry)?);
     }
@@ -155,7 +156,14 @@ fn describe(recording: &Recording, prepared: &Prepared, seen: &Seen) -> Result<F
                 .to_owned(),
         );
     }
-    Ok(Fit { task: Task::Crank.name().to_owned(), parameters, constraints: vec![constraint], quality, warnings })
+    Ok(Fit {
+        task: Task::Crank.name().to_owned(),
+        parameters,
+        constraints: vec![constraint],
+        quality,
+        correlated: vec![friction.correlated(&sensed, rows)],
+        warnings,
+    })
 }
 
 /// The forces that the measured motion of a crank needs, channels named as measured.

@@ -22,10 +22,12 @@ pub(super) struct Solved<'a> {
     pub(super) inverse: &'a DMatrix<f64>,
 }
 
-/// Influences summed over blocks: p series, and how many samples each value hangs on.
+/// Influences summed over blocks (p series) and how many samples each value hangs on.
 struct Influence {
     series: Vec<Vec<f64>>,
     samples: Vec<f64>,
+    /// Sum of the squares of the single samples' influences.
+    power: Vec<f64>,
 }
 
 impl Solved<'_> {
@@ -41,7 +43,9 @@ impl Solved<'_> {
         let grow: Vec<f64> = (0..p)
             .map(|j| {
                 let found = long_run(&influence.series[j]);
-                longest = longest.max(found.correlation_time);
+                // Counted in samples, not in blocks of them.
+                let time = found.variance_of_sum / influence.power[j];
+                longest = longest.max(if time.is_finite() { time } else { 1.0 });
                 let freedom = found.freedom.min(influence.samples[j]);
                 let factor = found.variance_of_sum * inflation(freedom) / covariance[(j, j)];
                 if factor.is_finite() { factor.sqrt() } else { 1.0 }
@@ -57,7 +61,7 @@ impl Solved<'_> {
         let (n, p) = (self.residuals.len(), self.columns.len());
         let block = (n / BLOCKS).max(1);
         let mut series = vec![vec![0.0; n.div_ceil(block)]; p];
-        let (mut squares, mut fourths) = (vec![0.0; p], vec![0.0; p]);
+        let (mut squares, mut fourths, mut power) = (vec![0.0; p], vec![0.0; p], vec![0.0; p]);
         let (mut x, mut a) = (vec![0.0; p], vec![0.0; p]);
         for i in 0..n {
             let weight = self.weights.map_or(1.0, |w| w[i].max(0.0));
@@ -74,11 +78,12 @@ impl Solved<'_> {
             let residual = self.residuals[i] / (1.0 - leverage.clamp(0.0, LARGEST_LEVERAGE)).sqrt();
             for j in 0..p {
                 series[j][i / block] += a[j] * residual;
+                power[j] += (a[j] * residual).powi(2);
                 squares[j] += a[j] * a[j];
                 fourths[j] += a[j].powi(4);
             }
         }
         let count = |j: usize| if fourths[j] > 0.0 { squares[j] * squares[j] / fourths[j] } else { n as f64 };
-        Influence { samples: (0..p).map(count).collect(), series }
+        Influence { samples: (0..p).map(count).collect(), series, power }
     }
 }

@@ -1,6 +1,7 @@
 //! Identification.
 
 pub mod block;
+pub mod bootstrap;
 pub mod crank;
 mod influence;
 pub mod linear;
@@ -8,4 +9,6 @@ pub mod long_run;
 pub mod mechanism;
 pub mod needle;
 mod pads;
+pub mod robust;
+pub mod stated;
 pub mod switch;

@@ -5,8 +5,8 @@ use haptics::recording::{Meta, Recording, Task, Warning};
 use serde_json::Value;
 
 /// Keys with a meaning. Others are kept, with a warning.
-const KEYS: [&str; 10] =
-    ["task", "rate_hz", "gravity_m_s2", "up", "hand", "columns", "scale", "select", "sign", "known"];
+const KEYS: [&str; 12] =
+    ["task", "rate_hz", "gravity_m_s2", "up", "hand", "columns", "scale", "select", "sign", "known", "prior", "bounds"];
 /// Axes that may point up.
 const UP: [&str; 7] = ["x", "y", "z", "-x", "-y", "-z", "none"];
 /// Known parameters that are above zero …
@@ -65,6 +65,15 @@ fn entry(key: &str, value: &Value) -> Option<String> {
         "hand" => members(key, value, &hand_member),
         "columns" => members(key, value, &|k, v| must(k, v, v.is_string(), "a column's name in quotes")),
         "scale" | "sign" | "known" => members(key, value, &|k, v| must(k, v, v.is_number(), "a number")),
+        "prior" => members(key, value, &|k, v| {
+            let number = |part: &str| v.get(part).is_some_and(Value::is_number);
+            must(k, v, number("mean") && number("std"), "an object with two numbers, \"mean\" and \"std\"")
+        }),
+        "bounds" => members(key, value, &|k, v| {
+            let side = |v: &Value| v.is_null() || v.is_number();
+            let pair = v.as_array().is_some_and(|a| a.len() == 2 && a.iter().all(side));
+            must(k, v, pair, "two numbers in brackets, or null for a side that is open")
+        }),
         "select" => {
             let simple = |v: &Value| v.is_string() || v.is_number() || v.is_boolean();
             members(key, value, &|k, v| must(k, v, simple(v), "a text or a number"))
@@ -133,7 +142,24 @@ pub fn complaint(meta: &Meta) -> Option<String> {
     if let Some(link) = meta.hand.as_ref().and_then(|h| h.link_m).filter(|l| !(l.is_finite() && *l > 0.0)) {
         return Some(format!("link_m of hand is {link} and must be positive"));
     }
-    meta.known.iter().find_map(|(name, value)| impossible(name, *value))
+    if let Some((name, prior)) =
+        meta.prior.iter().find(|(_, p)| !(p.mean.is_finite() && p.std.is_finite() && p.std > 0.0))
+    {
+        return Some(format!(
+            "the prior of {name} is {} ± {} and must be a number with a standard deviation above 0; a value that is certain belongs in \"known\"",
+            prior.mean, prior.std
+        ));
+    }
+    if let Some((name, [low, high])) = meta.bounds.iter().find(|(_, b)| matches!(b, [Some(l), Some(h)] if l >= h)) {
+        let (low, high) = (low.unwrap_or_default(), high.unwrap_or_default());
+        return Some(format!("the bounds of {name} are {low} and {high}; the first must be the smaller one"));
+    }
+    meta.known.iter().find_map(|(name, value)| impossible(last_part(name), *value))
+}
+
+/// The parameter's name without the object's.
+fn last_part(name: &str) -> &str {
+    name.rsplit('.').next().unwrap_or(name)
 }
 
 fn impossible(name: &str, value: f64) -> Option<String> {
@@ -173,7 +199,10 @@ pub fn doubts(recording: &Recording) -> Vec<Warning> {
     for key in meta.other.keys().filter(|k| !KEYS.contains(&k.as_str())) {
         found.push(warning(format!("the sidecar's key `{key}` means nothing to the program; it is kept as it is")));
     }
-    let named = |n: &str| POSITIVE.contains(&n) || NOT_NEGATIVE.contains(&n) || SIGNED.contains(&n);
+    let named = |n: &str| {
+        let n = last_part(n);
+        POSITIVE.contains(&n) || NOT_NEGATIVE.contains(&n) || SIGNED.contains(&n)
+    };
     for name in meta.known.keys().filter(|n| !named(n)) {
         found.push(warning(format!(
             "known `{name}` is no parameter of the program and is not used; check its spelling"

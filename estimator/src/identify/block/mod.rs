@@ -7,10 +7,12 @@
 mod heights;
 mod slip;
 
+use super::bootstrap::block_bootstrap;
 use super::linear::{LinearFit, least_squares};
 use super::pads::{Grip, PadFit, width_over_force};
+use super::robust::{RobustFit, robust};
 use crate::constraint::{Carry, carried};
-use crate::estimate::{Constraint, EstimateError, Fit, Parameter};
+use crate::estimate::{Constraint, Correlated, EstimateError, Fit, Parameter};
 use crate::segment::definition::Definition;
 use crate::segment::threshold::{Levels, percentile};
 use crate::segment::{Method, Segmentation, Thresholds, segment_signals, segment_signals_by, subtasks};
@@ -98,8 +100,10 @@ pub fn fit_by(
     }
     let mut parameters = Vec::new();
     let mut weights_n = Vec::new();
+    let mut correlated = Vec::new();
     for number in 1..=count {
         let weight = blocks.weight(number)?;
+        correlated.extend(weight_and_mass(&weight));
         weights_n.push(weight[0].value.unwrap_or(0.0));
         parameters.extend(weight);
         parameters.push(blocks.width(number)?);
@@ -115,8 +119,9 @@ pub fn fit_by(
         task: Task::BlockStack.name().to_owned(),
         parameters,
         constraints: (1..=count).filter_map(|number| blocks.constraint(number)).collect(),
-        quality: None,
+        correlated,
         warnings: blocks.segmentation.warnings.clone(),
+        ..Fit::default()
     };
     Ok((fit, blocks.segmentation))
 }
@@ -171,6 +176,17 @@ pub fn needed_forces(world: &World, recording: &Recording) -> Result<Vec<Channel
         channels.push(Channel { name: name.to_owned(), unit: "N".to_owned(), values });
     }
     Ok(channels)
+}
+
+/// They are one thing: what is stated of either holds for both.
+fn weight_and_mass([weight, mass]: &[Parameter; 2]) -> Option<Correlated> {
+    let (a, b) = (weight.std_error?, mass.std_error?);
+    Some(Correlated {
+        parameters: vec![weight.full_name(), mass.full_name()],
+        values: vec![weight.value?, mass.value?],
+        covariance: vec![vec![a * a, a * b], vec![a * b, b * b]],
+        shown_below: vec![f64::INFINITY; 2],
+    })
 }
 
 fn object(number: usize) -> String {
@@ -232,17 +248,27 @@ impl Blocks<'_> {
         let rows = self.rows(&samples);
         let lift: Vec<f64> = rows.iter().map(|i| self.lift[*i]).collect();
         let acceleration: Vec<f64> = rows.iter().map(|i| self.acceleration_y[*i]).collect();
-        let fit = intercept(&lift, &[acceleration])?;
-        let resolution = std::f64::consts::SQRT_2 * self.resolution_n;
-        let error = fit.std_errors[0].hypot(self.bias_error()).hypot(resolution);
+        let columns = [vec![1.0; rows.len()], acceleration];
+        let RobustFit { fit, weights, left_out } = robust(&columns, &lift, None)?;
+        let systematic = self.bias_error().hypot(std::f64::consts::SQRT_2 * self.resolution_n);
+        let error = fit.std_errors[0].hypot(systematic);
+        let resampled = block_bootstrap(&columns, &lift, weights.as_deref(), &fit).map(|b| b[0].hypot(systematic));
         let gravity = self.recording.meta.gravity();
         let (name, n) = (object(number), samples.len());
-        let how = "mean of the summed vertical tip forces while carried, 5 % at each end left out, accelerations \
-                   and the free-motion bias taken out";
+        let ringing = if left_out > 0.0 {
+            format!("; the contacts rang in {:.1} % of the samples, which do not count", 100.0 * left_out)
+        } else {
+            String::new()
+        };
+        let how = format!(
+            "mean of the summed vertical tip forces while carried, 5 % at each end left out, accelerations and the free-motion bias \
+             taken out{ringing}"
+        );
         let mass = "weight divided by gravity";
         Ok([
-            Parameter::identified(&name, "weight_N", fit.values[0], error, n, how),
-            Parameter::identified(&name, "mass_kg", fit.values[0] / gravity, error / gravity, n, mass),
+            Parameter::identified(&name, "weight_N", fit.values[0], error, n, &how).with_bootstrap(resampled),
+            Parameter::identified(&name, "mass_kg", fit.values[0] / gravity, error / gravity, n, mass)
+                .with_bootstrap(resampled.map(|b| b / gravity)),
         ])
     }
 

@@ -5,8 +5,10 @@ use super::geometry::Geometry;
 use super::held::Held;
 use super::laws::{COULOMB, FRICTION, INERTIA, LAWS, NAMES, WEIGHT, missing_motion};
 use super::motion::{Along, Rows};
-use crate::estimate::{EstimateError, Parameter, Quality};
-use crate::identify::linear::{LinearFit, least_squares};
+use crate::estimate::{Correlated, EstimateError, Parameter, Quality};
+use crate::identify::bootstrap::block_bootstrap;
+use crate::identify::linear::LinearFit;
+use crate::identify::robust::robust;
 use haptics::Vec2;
 use haptics::recording::Recording;
 use rayon::prelude::*;
@@ -36,6 +38,11 @@ impl Sensed {
             bias_error_n: held.bias_error_n.unwrap_or(0.0),
             radius_m: geometry.radius_m,
         }
+    }
+
+    /// From a law's own parameter to the one in the fit: inertia is reported about the axis.
+    fn scale(&self, law: usize) -> f64 {
+        if law == INERTIA { self.radius_m.powi(2) } else { 1.0 }
     }
 }
 
@@ -76,16 +83,25 @@ impl Friction {
 
     fn certain(&self, column: usize, rows: &Rows, load_n: f64) -> bool {
         let regressor = &rows.columns[self.used[column]];
-        let size = (regressor.iter().map(|c| c * c).sum::<f64>() / regressor.len().max(1) as f64).sqrt();
-        self.fit.identified[column] && self.fit.std_errors[column] * size <= LARGEST_ERROR * load_n
+        self.fit.identified[column] && self.fit.std_errors[column] * size(regressor) <= LARGEST_ERROR * load_n
+    }
+
+    /// What joins the scatter of a column's parameter: N (or N s/m …) before it is turned into its own unit.
+    fn systematic(&self, column: usize, seen: &Sensed, load_n: f64) -> f64 {
+        // A force that is off by the log's resolution shifts every parameter by that share of the load.
+        let resolution = self.fit.values[column].abs() * seen.resolution_n / load_n.max(1e-9);
+        // A vertical bias acts just as the weight does.
+        let bias = if self.used[column] == WEIGHT { seen.bias_error_n } else { 0.0 };
+        self.geometry_errors[column].hypot(resolution).hypot(bias)
     }
 
     pub(super) fn parameters(&self, seen: &Sensed, rows: &Rows) -> Vec<Parameter> {
         let samples = seen.samples;
-        let load = (rows.tangential.iter().map(|f| f * f).sum::<f64>() / rows.len().max(1) as f64).sqrt();
+        let load = load_n(rows);
+        let resampled = self.bootstrap(rows);
         let mut parameters = Vec::new();
         for (law, name) in NAMES.into_iter().enumerate() {
-            let scale = if law == INERTIA { seen.radius_m.powi(2) } else { 1.0 };
+            let scale = seen.scale(law);
             if let Some(known) = self.known.get(&law) {
                 parameters.push(Parameter::identified("crank", name, known * scale, 0.0, 0, "stated in the sidecar"));
                 continue;
@@ -93,21 +109,52 @@ impl Friction {
             let column = self.used.iter().position(|l| *l == law);
             match column {
                 Some(column) if self.shown(column, rows, load) => {
-                    // A force that is off by the log's resolution shifts every parameter by that share of the load.
-                    let resolution = self.fit.values[column].abs() * seen.resolution_n / load.max(1e-9);
-                    let fitted = self.fit.std_errors[column].hypot(self.geometry_errors[column]);
-                    // A vertical bias acts just as the weight does.
-                    let bias = if law == WEIGHT { seen.bias_error_n } else { 0.0 };
-                    let error = fitted.hypot(resolution).hypot(bias) * scale;
+                    let systematic = self.systematic(column, seen, load);
+                    let error = self.fit.std_errors[column].hypot(systematic) * scale;
+                    let resampled = resampled.as_ref().map(|b| b[column].hypot(systematic) * scale);
                     let how = format!("{} in the tangential force (eq. 5.2)", LAWS[law].title());
                     let value = self.fit.values[column] * scale;
-                    parameters.push(Parameter::identified("crank", name, value, error, samples, &how));
+                    let found = Parameter::identified("crank", name, value, error, samples, &how);
+                    parameters.push(found.with_bootstrap(resampled));
                 }
                 _ => parameters.push(Parameter::unidentified("crank", name, samples, missing_motion(law))),
             }
         }
         parameters
     }
+
+    /// Errors of the columns' parameters by resampling the rows.
+    fn bootstrap(&self, rows: &Rows) -> Option<Vec<f64>> {
+        let (columns, rest) = system(rows, &self.used, &self.known);
+        block_bootstrap(&columns, &rest, Some(&rows.weights), &self.fit)
+    }
+
+    /// How the errors of the laws' parameters go together.
+    pub(super) fn correlated(&self, seen: &Sensed, rows: &Rows) -> Correlated {
+        let load = load_n(rows);
+        let scale = |column: usize| seen.scale(self.used[column]);
+        let columns = 0..self.used.len();
+        let entry = |i: usize, j: usize| {
+            let extra = if i == j { self.systematic(i, seen, load).powi(2) } else { 0.0 };
+            (self.fit.covariance[(i, j)] + extra) * scale(i) * scale(j)
+        };
+        let limit = |column: usize| LARGEST_ERROR * load / size(&rows.columns[self.used[column]]) * scale(column);
+        Correlated {
+            parameters: self.used.iter().map(|law| format!("crank.{}", NAMES[*law])).collect(),
+            values: columns.clone().map(|c| self.fit.values[c] * scale(c)).collect(),
+            covariance: columns.clone().map(|i| columns.clone().map(|j| entry(i, j)).collect()).collect(),
+            shown_below: columns.map(limit).collect(),
+        }
+    }
+}
+
+fn size(values: &[f64]) -> f64 {
+    (values.iter().map(|c| c * c).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
+/// Tangential force, root mean square.
+fn load_n(rows: &Rows) -> f64 {
+    size(&rows.tangential)
 }
 
 pub(super) fn friction(recording: &Recording, rows: &Rows) -> Result<Friction, EstimateError> {
@@ -164,13 +211,18 @@ pub(super) fn geometry_errors(
     squares.into_iter().map(f64::sqrt).collect()
 }
 
-/// One weighted regression of the tangential force on the laws.
+/// One weighted regression of the tangential force on the laws, robust where contacts ring.
 fn regress(rows: &Rows, used: &[usize], known: &BTreeMap<usize, f64>) -> Result<LinearFit, EstimateError> {
-    let columns: Vec<Vec<f64>> = used.iter().map(|law| rows.columns[*law].clone()).collect();
-    let rest: Vec<f64> = (0..rows.len())
+    let (columns, rest) = system(rows, used, known);
+    Ok(robust(&columns, &rest, Some(&rows.weights))?.fit)
+}
+
+/// The columns of the wanted laws, and the tangential force without what is known of it.
+fn system(rows: &Rows, used: &[usize], known: &BTreeMap<usize, f64>) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let rest = (0..rows.len())
         .map(|i| rows.tangential[i] - known.iter().map(|(law, value)| value * rows.columns[*law][i]).sum::<f64>())
         .collect();
-    least_squares(&columns, &rest, Some(&rows.weights))
+    (used.iter().map(|law| rows.columns[*law].clone()).collect(), rest)
 }
 
 /// Fit on the first 70 %, tested on the rest.

@@ -6,7 +6,7 @@
 use super::friction::{Friction, Sensed, friction};
 use super::motion::Rows;
 use super::{Prepared, Seen, describe, see};
-use crate::estimate::{EstimateError, Fit, Parameter};
+use crate::estimate::{Correlated, EstimateError, Fit, Parameter};
 use crate::segment::{Method, Segmentation, Thresholds};
 use haptics::recording::Recording;
 
@@ -18,6 +18,8 @@ pub struct Together {
     pub segmentations: Vec<Segmentation>,
     /// Weight, friction and inertia.
     pub shared: Vec<Parameter>,
+    /// How their errors go together.
+    pub correlated: Correlated,
 }
 
 /// Fits several recordings of the same crank. What is stated in the first one's sidecar holds for all.
@@ -43,11 +45,13 @@ pub fn refit_together(
     let rows = Rows::join(seen.iter().map(|s| &s.rows));
     let mut joint = friction(&recordings[0], &rows)?;
     joint.geometry_errors = geometry_errors(&seen, &joint);
-    let mut shared = joint.parameters(&sensed(&seen), &rows);
+    let sensed = sensed(&seen);
+    let mut shared = joint.parameters(&sensed, &rows);
     for parameter in shared.iter_mut().filter(|p| p.identified && p.samples > 0) {
         parameter.how = format!("{}, {} recordings in one regression", parameter.how, recordings.len());
     }
-    Ok(Together { fits, segmentations: seen.into_iter().map(|s| s.segmentation).collect(), shared })
+    let correlated = joint.correlated(&sensed, &rows);
+    Ok(Together { fits, segmentations: seen.into_iter().map(|s| s.segmentation).collect(), shared, correlated })
 }
 
 /// Each recording pulls at the joint fit with its share of the rows; their errors have nothing to do with each other.

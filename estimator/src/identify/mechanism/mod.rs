@@ -21,6 +21,7 @@ pub use world::{measured, path_of, predict, world};
 
 use crate::constraint;
 use crate::estimate::{Constraint, EstimateError, Fit, Parameter, Quality};
+use crate::identify::bootstrap::block_bootstrap;
 use gravity::Gravity;
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
@@ -105,8 +106,8 @@ fn without_coordinate(recording: &Recording, constraints: Vec<Constraint>) -> Re
             .map(|name| Parameter::unidentified(OBJECT, name, recording.len(), why))
             .to_vec(),
         constraints,
-        quality: None,
         warnings: vec![why.to_owned()],
+        ..Fit::default()
     })
 }
 
@@ -122,8 +123,8 @@ fn clockless(recordings: &[Recording], constraints: Vec<Constraint>, paths: &[Op
         task: "mechanism".to_owned(),
         parameters: names.map(|name| Parameter::unidentified(OBJECT, name, samples, why)).to_vec(),
         constraints,
-        quality: None,
         warnings: vec![format!("{why}; only constraints and the force along them can be shown")],
+        ..Fit::default()
     };
     for (recording, path) in recordings.iter().zip(paths) {
         let force = path.as_ref().and_then(|p| path::project(recording, p).ok()).and_then(|p| p.force);
@@ -155,6 +156,8 @@ fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> R
     solution.widen(&clock_errors(&system.terms, &solution.values));
     let rms = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt();
     let effect: Vec<f64> = system.columns.iter().map(|c| rms(c)).collect();
+    let weights = system.weights(&solution);
+    let resampled = block_bootstrap(&system.columns, &system.target, weights.as_deref(), &solution);
     let mut result = Fit { task: "mechanism".to_owned(), ..Fit::default() };
     let material = Material {
         coordinate,
@@ -164,9 +167,11 @@ fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> R
         effect: &effect,
         force_rms: rms(&system.target),
         known,
+        resampled: resampled.as_deref(),
         gravity: gravity.as_ref(),
     };
     material.push(&mut result);
+    result.correlated = vec![material.correlated()];
     result.quality = quality(pieces, &system, solution.rms, coordinate, known);
     result.warnings = warnings(pieces, &seen, &solution);
     Ok(result)

@@ -70,17 +70,21 @@ impl System {
     /// out what noise in the columns attenuates.
     pub fn solve(&self) -> Result<LinearFit, EstimateError> {
         let mut fit = least_squares(&self.columns, &self.target, None)?;
-        let Some(dry) = self.terms.iter().position(|t| *t == Term::Coulomb) else {
-            return Ok(fit.without_attenuation(&self.column_noise(None)));
-        };
-        let mut weights = Vec::new();
+        let mut weights = None;
         for _ in 0..2 {
-            let level = fit.values[dry].powi(2);
-            let floor = fit.rms.powi(2).max(1e-12 * level).max(f64::MIN_POSITIVE);
-            weights = self.uncertainty.iter().map(|u| 1.0 / (1.0 + level * u / floor)).collect();
-            fit = least_squares(&self.columns, &self.target, Some(&weights))?;
+            weights = self.weights(&fit);
+            let Some(weights) = weights.as_deref() else { break };
+            fit = least_squares(&self.columns, &self.target, Some(weights))?;
         }
-        Ok(fit.without_attenuation(&self.column_noise(Some(&weights))))
+        Ok(fit.without_attenuation(&self.column_noise(weights.as_deref())))
+    }
+
+    /// What each sample counts after `fit`; `None` where no term depends on the direction.
+    pub fn weights(&self, fit: &LinearFit) -> Option<Vec<f64>> {
+        let dry = self.terms.iter().position(|t| *t == Term::Coulomb)?;
+        let level = fit.values[dry].powi(2);
+        let floor = fit.rms.powi(2).max(1e-12 * level).max(f64::MIN_POSITIVE);
+        Some(self.uncertainty.iter().map(|u| 1.0 / (1.0 + level * u / floor)).collect())
     }
 
     /// Σ wᵢ E[eᵢ eᵢᵀ] of the errors e in the columns that come from noise in the motion.

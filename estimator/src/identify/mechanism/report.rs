@@ -3,7 +3,7 @@
 use super::gravity::Gravity;
 use super::regress::Shown;
 use super::terms::{Known, Term};
-use crate::estimate::{Fit, Parameter};
+use crate::estimate::{Correlated, Fit, Parameter};
 use crate::identify::linear::LinearFit;
 use haptics::law::Coordinate;
 
@@ -31,6 +31,8 @@ pub struct Material<'a> {
     pub force_rms: f64,
     /// What the sidecar states.
     pub known: &'a Known,
+    /// Errors by resampling, in the order of the columns.
+    pub resampled: Option<&'a [f64]>,
     /// What was decided about gravity; `None` where it cannot act.
     pub gravity: Option<&'a Gravity>,
 }
@@ -76,6 +78,21 @@ impl Material<'_> {
             self.fit.effective_samples
         );
         Parameter::identified(OBJECT, name, value, error, self.samples(), &how)
+            .with_bootstrap(self.resampled.map(|errors| errors[i]))
+    }
+
+    /// How the errors of the fitted terms go together.
+    pub fn correlated(&self) -> Correlated {
+        let kept: Vec<usize> = (0..self.terms.len())
+            .filter(|i| !matches!(self.terms[*i], Term::GravitySine | Term::GravityCosine))
+            .filter(|i| !self.shown.hidden.iter().any(|(t, _)| *t == self.terms[*i]))
+            .collect();
+        Correlated {
+            parameters: kept.iter().map(|i| format!("{OBJECT}.{}", self.terms[*i].name(self.coordinate))).collect(),
+            values: kept.iter().map(|i| self.fit.values[*i]).collect(),
+            covariance: kept.iter().map(|i| kept.iter().map(|j| self.fit.covariance[(*i, *j)]).collect()).collect(),
+            shown_below: kept.iter().map(|i| EFFECT_SHARE * self.force_rms / self.effect[*i].max(1e-300)).collect(),
+        }
     }
 
     /// When offset and friction are one, their sum is still worth knowing.
