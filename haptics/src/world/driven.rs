@@ -112,9 +112,6 @@ pub(super) fn move_switch(switch: &Switch, state: &mut SwitchState, force: Vec2,
     state.force_n = held;
 }
 
-/// Speed below which a needle counts as at rest, m/s.
-const STILL_M_S: f64 = 1e-3;
-
 /// Two places of a sheet closer than this are one hole, m: half a millimetre, about a hypodermic needle.
 const HOLE_M: f64 = 0.5e-3;
 
@@ -131,7 +128,7 @@ pub(super) fn pierce(membrane: &Membrane, state: &mut MembraneState, point_m: Ve
     };
     let out_n = membrane.law.force_n(insertion_m, -velocity.y, &mut hole.history);
     state.force_n = out_n;
-    state.phase = MembraneLaw::phase(insertion_m, -velocity.y, STILL_M_S, &hole.history);
+    state.phase = MembraneLaw::phase(insertion_m, &mut hole.history);
     if insertion_m <= 0.0 {
         state.active = None;
         return Vec2::zeros();

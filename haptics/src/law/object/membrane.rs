@@ -38,7 +38,13 @@ pub struct MembraneHistory {
     pub punctured: bool,
     /// Where along the shaft the rim of the hole would be without force, as an insertion, m.
     rim_m: f64,
+    /// Farthest insertion since the way last turned round, m, and whether it goes outwards.
+    turn_m: f64,
+    outwards: bool,
 }
+
+/// The way has turned round when the needle has come back by this, m: more than the tremor of a hand at rest.
+const TURN_M: f64 = 0.3e-3;
 
 /// What the needle is doing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,7 +56,7 @@ pub enum MembranePhase {
     Insertion,
     /// Through it.
     Penetration,
-    /// Through it, and on the way out.
+    /// On the way out.
     Extraction,
 }
 
@@ -103,13 +109,22 @@ impl MembraneLaw {
         x
     }
 
-    /// The phase at an insertion and its rate; `still_m_s` is the speed below which the needle counts as at rest.
-    pub fn phase(insertion_m: f64, rate_m_s: f64, still_m_s: f64, history: &MembraneHistory) -> MembranePhase {
-        match (insertion_m > 0.0, history.punctured) {
-            (false, _) => MembranePhase::Free,
-            (true, false) => MembranePhase::Insertion,
-            (true, true) if rate_m_s < -still_m_s => MembranePhase::Extraction,
-            (true, true) => MembranePhase::Penetration,
+    /// The phase at an insertion, m. At rest the last one goes on: the way has turned round when the needle has come back by more
+    /// than a hand trembles.
+    pub fn phase(insertion_m: f64, history: &mut MembraneHistory) -> MembranePhase {
+        if insertion_m <= 0.0 {
+            (history.turn_m, history.outwards) = (0.0, false);
+            return MembranePhase::Free;
+        }
+        let sign = if history.outwards { -1.0 } else { 1.0 };
+        history.turn_m = sign * (sign * history.turn_m).max(sign * insertion_m);
+        if sign * (history.turn_m - insertion_m) > TURN_M {
+            (history.turn_m, history.outwards) = (insertion_m, !history.outwards);
+        }
+        match (history.outwards, history.punctured) {
+            (true, _) => MembranePhase::Extraction,
+            (false, false) => MembranePhase::Insertion,
+            (false, true) => MembranePhase::Penetration,
         }
     }
 
@@ -187,6 +202,26 @@ mod tests {
             let (_, second) = push(&CUP, &[0.0, 3e-3, 0.0], &mut history);
             assert!(second > -1e-6, "{way:?}: {second}");
         }
+    }
+
+    #[test]
+    fn a_trembling_needle_at_rest_stays_in_its_phase() {
+        let mut history = MembraneHistory::default();
+        let mut phases = Vec::new();
+        // In, at rest with a tremor of 0.1 mm, out, and at rest on the way.
+        let tremble = |at: f64| (0..40).map(move |i| at + 1e-4 * f64::from(i).sin());
+        let inwards = (0..=80).map(|i| f64::from(i) * 1e-4);
+        let outwards = (0..=40).map(|i| 8e-3 - f64::from(i) * 1e-4);
+        let rest_of_it = (0..=45).map(|i| 4e-3 - f64::from(i) * 1e-4);
+        for x in inwards.chain(tremble(8e-3)).chain(outwards).chain(tremble(4e-3)).chain(rest_of_it) {
+            CUP.force_n(x, 0.0, &mut history);
+            let phase = MembraneLaw::phase(x, &mut history);
+            if phases.last() != Some(&phase) {
+                phases.push(phase);
+            }
+        }
+        use MembranePhase::{Extraction, Free, Insertion, Penetration};
+        assert_eq!(phases, [Free, Insertion, Penetration, Extraction, Free]);
     }
 
     #[test]
