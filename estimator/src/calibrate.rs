@@ -240,14 +240,16 @@ struct Spot {
 
 fn picked_and_placed(recording: &Recording, segmentation: &Segmentation, count: usize) -> Option<Vec<Spot>> {
     let signals = task_signals(recording).ok()?;
-    let mean = |subtask: String| {
-        let samples = segmentation.samples_of(&subtask);
+    let mean = |subtasks: &[String]| {
+        let samples: Vec<usize> = subtasks.iter().flat_map(|name| segmentation.samples_of(name)).collect();
         (!samples.is_empty()).then(|| samples.iter().map(|i| signals.position[*i]).sum::<Vec2>() / samples.len() as f64)
     };
+    let task = segmentation.definition.as_ref()?;
     (1..=count)
         .map(|n| {
-            let picked = mean(format!("pick-up-block-{n}"))?;
-            let placed = mean(format!("place-block-{n}")).unwrap_or(picked);
+            let [before, after] = task.showing_around("height_m", "weight_N", n);
+            let picked = mean(&before)?;
+            let placed = mean(&after).unwrap_or(picked);
             Some(Spot { picked, placed })
         })
         .collect()

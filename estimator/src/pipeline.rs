@@ -3,7 +3,8 @@
 use crate::calibrate;
 use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::identify::{block, crank, mechanism, needle, stated, switch};
-use crate::segment::{Method, Segmentation, Thresholds, segment, segment_by, task_of};
+use crate::segment::score::score;
+use crate::segment::{Method, Segmentation, Thresholds, segment_by, task_of};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
 use std::sync::OnceLock;
@@ -66,22 +67,20 @@ pub fn analyse_prepared(
             )));
         }
     }
-    let (mut fit, segmentations) = match task {
+    let (mut fit, mut segmentations) = match task {
         Task::BlockStack => each(recordings, |r| block::fit_by(options.method, r, options.thresholds))?,
         Task::Crank => cranks(recordings, prepared, options)?,
         Task::Mechanism => {
             let fit = mechanism::fit(recordings)?;
-            let segmentations =
-                recordings.iter().map(|r| segment_by(options.method, r, Some(task), options.thresholds).ok()).collect();
-            (fit, segmentations)
+            (fit, states(recordings, task, options))
         }
         Task::Needle => {
             let fits = recordings.iter().map(needle::fit).collect::<Result<Vec<_>, _>>()?;
-            (combine(fits), recordings.iter().map(|r| segment(r, Some(task), options.thresholds).ok()).collect())
+            (combine(fits), states(recordings, task, options))
         }
         Task::Switch => {
             let fits = recordings.iter().map(switch::fit).collect::<Result<Vec<_>, _>>()?;
-            (combine(fits), recordings.iter().map(|r| segment(r, Some(task), options.thresholds).ok()).collect())
+            (combine(fits), states(recordings, task, options))
         }
         Task::Barrel => {
             return Err(EstimateError::Other(format!(
@@ -92,6 +91,11 @@ pub fn analyse_prepared(
     };
     doubt(&mut fit);
     stated::apply(&mut fit, &first.meta);
+    for (recording, found) in recordings.iter().zip(&mut segmentations) {
+        if let Some(found) = found.as_mut().filter(|found| found.score.is_none()) {
+            found.score = score(recording, found);
+        }
+    }
     let world = calibrate::world(task, recordings, &fit, &segmentations);
     Ok(Analysis { task, fit, segmentations, world })
 }
@@ -114,6 +118,11 @@ fn doubt(fit: &mut Fit) {
             ));
         }
     }
+}
+
+/// The states of recordings whose fit does not need them, where they can be told.
+fn states(recordings: &[Recording], task: Task, options: &Options) -> Vec<Option<Segmentation>> {
+    recordings.iter().map(|r| segment_by(options.method, r, Some(task), options.thresholds).ok()).collect()
 }
 
 type Fitted = (Fit, Vec<Option<Segmentation>>);

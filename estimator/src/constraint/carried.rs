@@ -32,8 +32,7 @@ pub fn carried(carry: &Carry<'_>) -> Option<Constraint> {
     let rows = rows(carry);
     let (found, sided) = existence(&rows)?;
     let kind = if found.exists == Some(false) { ConstraintKind::Free } else { ConstraintKind::Undecided };
-    let mut answer =
-        Constraint::blank(Some(carry.recording.to_owned()), &format!("{}: {}", carry.object, sentence(&found)));
+    let mut answer = Constraint::blank(Some(carry.recording.to_owned()), &sentence(&found));
     answer.object = Some(carry.object.to_owned());
     answer.kind = kind;
     answer.constraint_force_n = Some(found.unexplained_n);

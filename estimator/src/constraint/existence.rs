@@ -94,16 +94,36 @@ pub fn existence(rows: &Rows) -> Option<(Existence, Option<Sided>)> {
     Some((answer, sides))
 }
 
-/// A p-value in words of a sentence: `= 0.43`, `< 0.001`.
-fn probability(p: f64) -> String {
-    if p < 1e-3 { "< 0.001".to_owned() } else { format!("= {p:.3}") }
+/// A p-value as people write it: `= 0.43`, `= 2.5 × 10⁻⁸`, `< 10⁻¹⁵`.
+pub fn probability(p: f64) -> String {
+    /// Differences of numbers near 1 say no less.
+    const LEAST: i32 = -15;
+    let power = |exponent: i32| {
+        let digits = exponent.unsigned_abs().to_string();
+        let raised = digits.chars().filter_map(|c| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(c.to_digit(10)? as usize));
+        format!("10⁻{}", raised.collect::<String>())
+    };
+    if p >= 1e-3 || !p.is_finite() {
+        return format!("= {p:.3}");
+    }
+    let exponent = p.max(f64::MIN_POSITIVE).log10().floor() as i32;
+    if exponent < LEAST {
+        return format!("< {}", power(LEAST));
+    }
+    // Rounding must not leave ten of the next power.
+    let leading = format!("{:.1}", p / 10_f64.powi(exponent));
+    if leading == "10.0" {
+        format!("= 1.0 × {}", power(exponent + 1))
+    } else {
+        format!("= {leading} × {}", power(exponent))
+    }
 }
 
 /// One sentence about it.
 pub fn sentence(found: &Existence) -> String {
     let force = format!(
-        "{:.3} ± {:.3} N across the motion are not explained by weight and inertia (p {}, false alarms {:.0} %)",
-        found.unexplained_n,
+        "{} ± {:.3} N across the motion are not explained by weight and inertia (p {}, false alarms {:.0} %)",
+        format!("{:.3}", found.unexplained_n).replace('-', "−"),
         found.std_error_n,
         probability(found.p_value),
         100.0 * found.false_alarm_rate

@@ -84,8 +84,9 @@ fn entry(key: &str, value: &Value) -> Option<String> {
 
 fn task(value: &Value) -> Option<String> {
     let known = serde_json::from_value::<Task>(value.clone()).is_ok();
-    let names = "one of block-stack, crank, needle, mechanism, barrel and switch";
-    must("task", value, known, names)
+    let folder = crate::segment::library::folder();
+    let own = folder.map_or_else(String::new, |folder| format!(", or a task of yours in {}", folder.display()));
+    must("task", value, known, &format!("one of block-stack, crank, needle, mechanism, barrel and switch{own}"))
 }
 
 fn hand_member(key: &str, value: &Value) -> Option<String> {

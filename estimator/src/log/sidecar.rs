@@ -2,7 +2,10 @@
 
 use super::errors::LogError;
 use super::facts;
-use haptics::recording::{Meta, Recording};
+use crate::segment::definition::SIDECAR_KEY;
+use crate::segment::library;
+use haptics::recording::{Meta, Recording, Task};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// Where the sidecar of a log is looked for.
@@ -27,13 +30,36 @@ pub fn load(log: &Path, given: Option<&Path>) -> Result<Meta, LogError> {
 /// Reads the text of a sidecar, which stands in `path`.
 pub fn parse(text: &str, path: &Path) -> Result<Meta, LogError> {
     let malformed = |why: String| LogError::Sidecar { why, path: path.to_path_buf() };
-    let value: serde_json::Value =
+    let mut value: Value =
         serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| malformed(error.to_string()))?;
+    own_task(&mut value, library::folder()).map_err(malformed)?;
     if let Some(why) = facts::wrong_type(&value) {
         return Err(malformed(why));
     }
     let meta: Meta = serde_json::from_value(value).map_err(|error| malformed(error.to_string()))?;
     facts::complaint(&meta).map_or(Ok(meta), |why| Err(malformed(why)))
+}
+
+/// A task of the user's that a sidecar names is read from `folder` and goes along with the recording from then on.
+fn own_task(value: &mut Value, folder: Option<&Path>) -> Result<(), String> {
+    let Some(entries) = value.as_object_mut() else { return Ok(()) };
+    let name = entries.get("task").and_then(Value::as_str).map(str::to_owned);
+    if name.as_ref().is_some_and(|name| Task::from_name(name).is_some()) {
+        return Ok(());
+    }
+    // What travels with the recording comes first: the file may have changed since.
+    let of = |definition: &Value, key: &str| definition.get(key).and_then(Value::as_str).map(str::to_owned);
+    let carried = entries.get(SIDECAR_KEY).filter(|d| name.is_none() || of(d, "name") == name);
+    if let Some(like) = carried.and_then(|definition| of(definition, "like")) {
+        entries.insert("task".to_owned(), like.into());
+        return Ok(());
+    }
+    let read = name.zip(folder).and_then(|(name, folder)| library::read(folder, &name));
+    if let Some(task) = read.transpose().map_err(|error| error.to_string())? {
+        entries.insert("task".to_owned(), task.like.name().into());
+        entries.insert(SIDECAR_KEY.to_owned(), serde_json::to_value(&task).map_err(|error| error.to_string())?);
+    }
+    Ok(())
 }
 
 /// Writes the sidecar of `recording` beside `log` and returns its path.
@@ -56,6 +82,30 @@ pub fn write_as_is(meta: &Meta, path: &Path) -> Result<(), LogError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::segment::definition::Definition;
+
+    #[test]
+    fn a_sidecar_may_name_a_task_of_the_users() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let mut task = Definition::built_in(Task::BlockStack).expect("the built-in task");
+        "my-lifts".clone_into(&mut task.name);
+        library::save(folder.path(), &task).expect("saved");
+        let named = |text: &str, folder: Option<&Path>| {
+            let mut value: Value = serde_json::from_str(text).expect("JSON");
+            own_task(&mut value, folder).map(|()| value)
+        };
+        let found = named(r#"{"task": "my-lifts"}"#, Some(folder.path())).expect("found");
+        assert_eq!((&found["task"], &found[SIDECAR_KEY]["name"]), (&"block-stack".into(), &"my-lifts".into()));
+        // It goes along: the file is not needed any more.
+        let mut again = found.clone();
+        again["task"] = "my-lifts".into();
+        assert_eq!(named(&again.to_string(), None).expect("carried"), found);
+        // What is nowhere stays as it is and is refused by the next step; a broken file is said at once.
+        assert_eq!(named(r#"{"task": "juggling"}"#, Some(folder.path())).expect("unchanged")["task"], "juggling");
+        std::fs::write(folder.path().join("broken.json"), "{").expect("written");
+        let error = named(r#"{"task": "broken"}"#, Some(folder.path())).expect_err("no task");
+        assert!(error.contains("broken.json"), "{error}");
+    }
 
     fn read(text: &str) -> Result<Meta, LogError> {
         let folder = tempfile::tempdir().expect("a temporary folder");

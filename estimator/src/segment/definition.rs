@@ -13,9 +13,6 @@ use std::path::Path;
 /// The key of a sidecar that holds a whole task of its own.
 pub const SIDECAR_KEY: &str = "task_definition";
 
-/// Most objects that one recording may handle.
-const MOST_REPEATS: usize = super::subtasks::MOST_CARRIES;
-
 /// A task.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -109,14 +106,15 @@ pub struct Step {
     pub name: String,
     /// The state that holds.
     pub state: SystemState,
-    /// After this step one may have to begin it again (a failed attempt at lifting).
+    /// From this step or a later one of the same object one may have to begin again (a failed attempt at lifting).
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub retry: bool,
 }
 
 impl Step {
     pub(super) fn numbered(&self, number: usize) -> Subtask {
-        Subtask { name: self.name.replace("{n}", &number.to_string()), state: self.state, retry: self.retry }
+        let name = self.name.replace("{n}", &number.to_string());
+        Subtask { name, state: self.state, retry: self.retry, object: number }
     }
 }
 
@@ -191,75 +189,18 @@ impl Definition {
         }
     }
 
-    fn checked(self, place: &str) -> Result<Self, EstimateError> {
+    /// The task, when it can be used; `place` is named in the sentence that says why not.
+    pub fn checked(self, place: &str) -> Result<Self, EstimateError> {
         match self.fault() {
             Some(fault) => Err(EstimateError::Other(format!("the task {place} cannot be used: {fault}"))),
             None => Ok(self),
         }
     }
 
-    /// What is wrong with it, and what to do.
-    fn fault(&self) -> Option<String> {
-        let known = signals(self.like);
-        if !(self.thresholds.leave > 0.0 && self.thresholds.leave <= 1.0) {
-            return Some("`leave` must be above 0 and at most 1".to_owned());
-        }
-        if [self.thresholds.force_n, self.thresholds.velocity_m_s]
-            .iter()
-            .flatten()
-            .any(|v| !(*v > 0.0 && v.is_finite()))
-        {
-            return Some("a threshold must be a positive number".to_owned());
-        }
-        if self.states.is_empty() {
-            return Some("it has no states; give at least one".to_owned());
-        }
-        for rule in &self.states {
-            let state = rule.state.name();
-            for (signal, values) in &rule.when {
-                let Some((_, allowed)) = known.iter().find(|(name, _)| name == signal) else {
-                    let names: Vec<_> = known.iter().map(|(name, _)| *name).collect();
-                    return Some(format!("the state {state} asks for `{signal}`; use one of {}", names.join(", ")));
-                };
-                let fits = if self.like == Task::Needle {
-                    allowed.contains(&values.as_str())
-                } else {
-                    !values.is_empty() && values.chars().all(|c| allowed.contains(&c.to_string().as_str()))
-                };
-                if !fits {
-                    return Some(format!(
-                        "the state {state} wants {signal} to be `{values}`; use {}",
-                        allowed.join(", ")
-                    ));
-                }
-            }
-        }
-        let steps: Vec<&Step> = match &self.subtasks {
-            Subtasks::Ordered(o) => {
-                if o.first.is_empty() || o.repeat.is_empty() || !(1..=MOST_REPEATS).contains(&o.most) {
-                    return Some(format!(
-                        "ordered subtasks need steps in `first` and `repeat`, and `most` from 1 to {MOST_REPEATS}"
-                    ));
-                }
-                if matches!(self.like, Task::Crank | Task::Mechanism | Task::Switch | Task::Needle) {
-                    return Some(format!("a task like {} has no expected order; use `each`", self.like.name()));
-                }
-                o.first.iter().chain(&o.repeat).collect()
-            }
-            Subtasks::Each(e) => e.each.iter().collect(),
-        };
-        let unseen = steps.iter().find(|step| !self.states.iter().any(|rule| rule.state == step.state))?;
-        Some(format!(
-            "the subtask {} needs the state {}, for which there is no rule; add one",
-            unseen.name,
-            unseen.state.name()
-        ))
-    }
-
     /// The expected order for so many objects; nothing where no order is expected.
     pub fn order(&self, objects: usize) -> Vec<Subtask> {
         let Subtasks::Ordered(ordered) = &self.subtasks else { return Vec::new() };
-        let first = ordered.first.iter().map(|step| step.numbered(1));
+        let first = ordered.first.iter().map(|step| Subtask { object: 0, ..step.numbered(1) });
         first.chain((1..=objects).flat_map(|n| ordered.repeat.iter().map(move |step| step.numbered(n)))).collect()
     }
 

@@ -32,7 +32,10 @@ pub fn assemble(
         task: task.name.clone(),
         states,
         thresholds,
+        shows: task.shown_by_states(),
         warnings,
+        score: None,
         posterior: None,
+        definition: Some(Box::new(task.clone())),
     }
 }

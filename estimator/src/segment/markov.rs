@@ -244,8 +244,10 @@ impl Trainer<'_> {
 
 /// How readily one state follows another: what contact does by itself is likely, the rest must be shown by the data.
 fn affinity(states: &[SystemState]) -> Vec<f64> {
-    use SystemState::{FreeMotion, HoldAboveGround, HoldOnGround, NoState, SlidingOnGround};
+    use SystemState::{FreeMotion, HoldAboveGround, HoldOnGround, NoState, Penetration, SlidingOnGround};
     let likely = |a: SystemState, b: SystemState| match (a, b) {
+        // A needle goes through what it has pressed in, and comes out before it goes in again.
+        (FreeMotion, Penetration) | (Penetration, FreeMotion) => false,
         (FreeMotion, HoldAboveGround | SlidingOnGround) | (HoldAboveGround, SlidingOnGround) => false,
         (FreeMotion, HoldOnGround) | (HoldOnGround, HoldAboveGround | SlidingOnGround) | (NoState, _) => true,
         _ => !matches!(a, HoldOnGround | HoldAboveGround | SlidingOnGround),

@@ -4,83 +4,34 @@
 //! themselves are in the task's [`definition`]) and [`markov`] is its refinement, [`subtasks`] is stage 3. The results are plain intervals, the same for every method.
 
 mod align;
+mod check;
 pub mod definition;
 mod each;
 pub mod evidence;
+mod grasps;
+pub mod library;
 pub mod markov;
 pub mod motion;
 mod needle;
+mod numbers;
 pub mod rules;
+pub mod score;
+pub mod shows;
+mod state;
 pub mod subtasks;
 pub mod threshold;
 
 use crate::estimate::EstimateError;
 use crate::signal::task::{TaskSignals, calmed, is_two_fingered, task_signals, times};
 use definition::Definition;
+use grasps::Hand;
 use haptics::recording::{Recording, Task};
 use motion::Motion;
+use score::Score;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+pub use state::SystemState;
 pub use threshold::Thresholds;
-
-/// Contact configuration of the system.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SystemState {
-    /// Nothing is touched.
-    FreeMotion,
-    /// An object is held and rests on something.
-    HoldOnGround,
-    /// An object is held in the air.
-    HoldAboveGround,
-    /// An object is held and slides over what it rests on.
-    SlidingOnGround,
-    /// A crank or mechanism is moved.
-    Turning,
-    /// A crank or mechanism is held still.
-    Holding,
-    /// A needle presses a sheet in.
-    Insertion,
-    /// A needle goes on through the sheet.
-    Penetration,
-    /// A needle is drawn out.
-    Extraction,
-    /// None of the known states: these samples enter no estimate.
-    NoState,
-}
-
-impl SystemState {
-    /// The name used in JSON and in labels.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::FreeMotion => "free-motion",
-            Self::HoldOnGround => "hold-on-ground",
-            Self::HoldAboveGround => "hold-above-ground",
-            Self::SlidingOnGround => "sliding-on-ground",
-            Self::Turning => "turning",
-            Self::Holding => "holding",
-            Self::Insertion => "insertion",
-            Self::Penetration => "penetration",
-            Self::Extraction => "extraction",
-            Self::NoState => "no-state",
-        }
-    }
-
-    /// The thesis's symbol in figure 5.5: 1 free motion, 2 hold above ground, 3 hold on ground, x sliding, 0 none.
-    pub fn symbol(self) -> char {
-        match self {
-            Self::FreeMotion => '1',
-            Self::HoldAboveGround => '2',
-            Self::HoldOnGround => '3',
-            Self::SlidingOnGround => 'x',
-            Self::Turning => 't',
-            Self::Holding => 'h',
-            Self::Insertion => 'i',
-            Self::Penetration => 'p',
-            Self::Extraction => 'e',
-            Self::NoState => '0',
-        }
-    }
-}
 
 /// One interval in one state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -115,11 +66,20 @@ pub struct Segmentation {
     pub states: Vec<Interval>,
     /// The thresholds that were used.
     pub thresholds: Thresholds,
+    /// The parameters that each state of the task shows.
+    #[serde(default)]
+    pub shows: BTreeMap<String, Vec<String>>,
     /// Sentences.
     pub warnings: Vec<String>,
+    /// How it agrees with the labels of the recording, where it has any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub score: Option<Score>,
     /// What is known of every sample; only the hidden Markov model says so.
     #[serde(skip)]
     pub posterior: Option<StatePosterior>,
+    /// The task itself.
+    #[serde(skip)]
+    pub definition: Option<Box<Definition>>,
 }
 
 /// Probability of every state that the recording shows, at every sample.
@@ -171,6 +131,11 @@ impl Segmentation {
             }
         }
         samples
+    }
+
+    /// The built-in task that it is like.
+    pub fn like(&self) -> Option<Task> {
+        self.definition.as_ref().map(|task| task.like)
     }
 
     /// The state at every sample.
@@ -234,22 +199,35 @@ pub fn segment_by(
     given: Option<Thresholds>,
 ) -> Result<Segmentation, EstimateError> {
     let task = Definition::of(recording, task_of(recording, task)?)?;
+    let mut found = by_definition(method, recording, &task, given)?;
+    found.score = score::score(recording, &found);
+    Ok(found)
+}
+
+fn by_definition(
+    method: Method,
+    recording: &Recording,
+    task: &Definition,
+    given: Option<Thresholds>,
+) -> Result<Segmentation, EstimateError> {
     match task.like {
-        Task::BlockStack | Task::Barrel => segment_signals_by(method, &task_signals(recording)?, &task, given),
+        Task::BlockStack | Task::Barrel => segment_signals_by(method, &task_signals(recording)?, task, given),
         Task::Crank | Task::Mechanism | Task::Switch => {
-            let mut motion = Motion::of(recording, given, &task)?;
+            let mut motion = Motion::of(recording, given, task)?;
             let warnings = std::mem::take(&mut motion.warnings);
             let (time_s, thresholds) = (&motion.time_s, motion.thresholds);
             match method {
-                Method::Threshold => Ok(subtasks::assemble(time_s, &motion.states(&task), &task, thresholds, warnings)),
+                Method::Threshold => {
+                    Ok(subtasks::assemble(time_s, &motion.states(task), task, thresholds, warnings, None))
+                }
                 Method::Hmm => {
-                    let decoded = markov::decode(time_s, &evidence::of_motion(&motion, &task))?;
-                    let by_path = subtasks::assemble(time_s, &decoded.path, &task, thresholds, warnings);
+                    let decoded = markov::decode(time_s, &evidence::of_motion(&motion, task))?;
+                    let by_path = subtasks::assemble(time_s, &decoded.path, task, thresholds, warnings, None);
                     Ok(decoded.into_segmentation(by_path))
                 }
             }
         }
-        Task::Needle => needles(method, recording, &task, given),
+        Task::Needle => needles(method, recording, task, given),
     }
 }
 
@@ -259,17 +237,18 @@ fn needles(
     task: &Definition,
     given: Option<Thresholds>,
 ) -> Result<Segmentation, EstimateError> {
-    if method == Method::Hmm {
-        return Err(EstimateError::Other(format!(
-            "{} is a needle recording: its phases come from the strokes, for which there is no hidden Markov model; use the method threshold",
-            recording.name
-        )));
-    }
     let time_s = times(recording);
+    if method == Method::Hmm
+        && let Some((evidence, thresholds)) = needle::evidence(recording, &time_s, task, given)?
+    {
+        let decoded = markov::decode(&time_s, &evidence)?;
+        let by_path = subtasks::assemble(&time_s, &decoded.path, task, thresholds, Vec::new(), None);
+        return Ok(decoded.into_segmentation(by_path));
+    }
     let raw = needle::states(&time_s, &needle::phases(recording)?, |phase| task.state_of_phase(phase));
     // Strokes are told from turning points and peaks, not by thresholds.
     let thresholds = task.thresholds(given, || Thresholds { velocity_m_s: 0.0, force_n: 0.0 });
-    Ok(subtasks::assemble(&time_s, &raw, task, thresholds, Vec::new()))
+    Ok(subtasks::assemble(&time_s, &raw, task, thresholds, Vec::new(), None))
 }
 
 /// Stages 2 and 3 on the task signals of blocks, by the rules of the built-in task.
@@ -300,15 +279,18 @@ pub fn segment_signals_by(
     let levels = threshold::Levels::of(&calm);
     let thresholds = task.thresholds(given, || threshold::choose(&calm, &levels));
     let (time_s, warnings) = (&signals.time_s, levels.warnings());
+    let bias_n = levels.bias_n[0].y + levels.bias_n[1].y;
+    let lift_n: Vec<f64> = calm.net_force_n.iter().map(|force| force.y - bias_n).collect();
+    let hand = Hand { position: &signals.position, width_m: &signals.grip_width_m, lift_n: &lift_n };
     match method {
         Method::Threshold => {
             let quality = rules::qualify(&calm, &levels, &thresholds, task.thresholds.leave);
             let raw = rules::states(&quality, &task.rules());
-            Ok(subtasks::assemble(time_s, &raw, task, thresholds, warnings))
+            Ok(subtasks::assemble(time_s, &raw, task, thresholds, warnings, Some(&hand)))
         }
         Method::Hmm => {
             let decoded = markov::decode(time_s, &evidence::of_blocks(&calm, &levels, &thresholds, task))?;
-            let by_path = subtasks::assemble(time_s, &decoded.path, task, thresholds, warnings);
+            let by_path = subtasks::assemble(time_s, &decoded.path, task, thresholds, warnings, Some(&hand));
             Ok(decoded.into_segmentation(by_path))
         }
     }

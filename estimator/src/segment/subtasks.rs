@@ -4,9 +4,10 @@
 //! or an oscillation at touch-down cannot shift everything after it.
 
 use super::align::{align, failed_attempts};
-use super::definition::{Definition, Subtasks};
+use super::definition::{Definition, Ordered, Subtasks};
+use super::grasps::{self, Hand};
 use super::threshold::Thresholds;
-use super::{Interval, Method, Segmentation, SystemState, each};
+use super::{Interval, Method, Segmentation, SystemState, each, numbers};
 
 /// Fewer samples than this are no recording of a task.
 pub const LEAST_SAMPLES: usize = 20;
@@ -33,17 +34,21 @@ pub struct Subtask {
     pub name: String,
     /// The state that holds.
     pub state: SystemState,
-    /// One may have to begin it again.
+    /// One may have to begin the object again.
     pub retry: bool,
+    /// The number of its object, from 1; 0: a step before the first object.
+    pub object: usize,
 }
 
-/// Intervals of equal state with their subtasks, from the state of every sample.
+/// Intervals of equal state with their subtasks, from the state of every sample. `hand` tells grasps by where they are; without it
+/// the order alone numbers the objects.
 pub fn assemble(
     time_s: &[f64],
     raw: &[SystemState],
     task: &Definition,
     thresholds: Thresholds,
     mut warnings: Vec<String>,
+    hand: Option<&Hand<'_>>,
 ) -> Segmentation {
     let ordered = match &task.subtasks {
         Subtasks::Ordered(ordered) => ordered,
@@ -51,6 +56,46 @@ pub fn assemble(
     };
     let smooth = without_islands(time_s, majority(time_s, raw));
     let runs = runs_of(time_s, &smooth);
+    let grasps = hand.map(|hand| grasps::grasps(time_s, &runs, hand)).unwrap_or_default();
+    let next = grasps::between(&runs, &grasps);
+    let (order, steps) = best_order(&runs, task, ordered, &next);
+    let (failed, tries) = failed_attempts(&steps, &order);
+    if tries > 0 {
+        warnings.push(format!(
+            "an object was gripped and lost again before it was put down (failed attempts: {tries}); only the last attempt counts"
+        ));
+    }
+    let names = numbers::named(&grasps, &steps, &order, failed, &mut warnings);
+    let states = runs
+        .iter()
+        .zip(steps.iter().zip(names))
+        .map(|(run, (step, name))| {
+            let long_enough = run.length >= LEAST_RUN_S && run.end - run.first > 1;
+            let belongs = run.state == order[*step].state && long_enough;
+            interval(time_s, raw, run, name.filter(|_| belongs))
+        })
+        .collect::<Vec<_>>();
+    missing(ordered, &order, &states, &mut warnings);
+    Segmentation {
+        method: Method::Threshold.name().to_owned(),
+        task: task.name.clone(),
+        states,
+        thresholds,
+        shows: task.shown_by_states(),
+        warnings,
+        score: None,
+        posterior: None,
+        definition: Some(Box::new(task.clone())),
+    }
+}
+
+/// The number of objects and the first step for which the runs agree best with the expected order; the step of every run.
+fn best_order(
+    runs: &[Run],
+    task: &Definition,
+    ordered: &Ordered,
+    next: &[Option<grasps::Next>],
+) -> (Vec<Subtask>, Vec<usize>) {
     let total = runs.iter().map(|r| r.length).sum::<f64>();
     // Alignment leaves out every second step at most.
     let most = ordered.most.min((runs.len() + LATEST_START + 1) * 2 / ordered.repeat.len() + 1);
@@ -58,39 +103,26 @@ pub fn assemble(
         .flat_map(|carries| (0..=LATEST_START.min(ordered.repeat.len() * carries)).map(move |start| (carries, start)))
         .filter_map(|(carries, start)| {
             let order = task.order(carries).split_off(start);
-            let (cost, steps) = align(&runs, &order)?;
+            let (cost, steps) = align(runs, &order, next)?;
             let price = CARRY_PENALTY * carries as f64 + START_PENALTY * start as f64;
             Some((cost + price * total, order, steps))
         })
         .min_by(|a, b| a.0.total_cmp(&b.0));
-    let (order, steps) = match best {
+    match best {
         Some((_, order, steps)) => (order, steps),
         None => (task.order(0), vec![0; runs.len()]),
-    };
-    let failed = failed_attempts(&steps, &order);
-    let tries = failed.windows(2).filter(|pair| pair[0] && !pair[1]).count();
-    if tries > 0 {
-        warnings.push(format!(
-            "an object was gripped and lost again before it was carried (failed attempts: {tries}); only the last attempt counts"
-        ));
     }
-    let states = runs
-        .iter()
-        .zip(steps.iter().zip(&failed))
-        .map(|(run, (step, failed))| {
-            let subtask = &order[*step];
-            let long_enough = run.length >= LEAST_RUN_S && run.end - run.first > 1;
-            let belongs = run.state == subtask.state && long_enough && !failed;
-            interval(time_s, raw, run, belongs.then(|| subtask.name.clone()))
-        })
-        .collect::<Vec<_>>();
+}
+
+/// Says what of the expected order is missing.
+fn missing(ordered: &Ordered, order: &[Subtask], states: &[Interval], warnings: &mut Vec<String>) {
     if ordered.first.first().is_some_and(|first| first.numbered(1).name != order[0].name) {
         warnings.push(format!(
             "the recording starts in the middle of the task, with {}; what came before is missing from the fit",
             order[0].name
         ));
     }
-    for subtask in &order {
+    for subtask in order {
         if !states.iter().any(|i| i.subtask.as_deref() == Some(&subtask.name)) {
             warnings
                 .push(format!("the subtask {} was not seen; what it would show is missing from the fit", subtask.name));
@@ -98,14 +130,6 @@ pub fn assemble(
     }
     if order.len() == ordered.first.len() {
         warnings.push("no object was picked up in this recording".to_owned());
-    }
-    Segmentation {
-        method: Method::Threshold.name().to_owned(),
-        task: task.name.clone(),
-        states,
-        thresholds,
-        warnings,
-        posterior: None,
     }
 }
 
@@ -205,127 +229,4 @@ fn without_islands(time_s: &[f64], mut states: Vec<SystemState>) -> Vec<SystemSt
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use SystemState::{FreeMotion, HoldAboveGround, HoldOnGround, NoState};
-    use haptics::recording::Task;
-
-    fn blocks() -> Definition {
-        Definition::built_in(Task::BlockStack).expect("the built-in task")
-    }
-
-    fn trace(parts: &[(SystemState, usize)]) -> (Vec<f64>, Vec<SystemState>) {
-        let states: Vec<SystemState> = parts.iter().flat_map(|(s, n)| std::iter::repeat_n(*s, *n)).collect();
-        ((0..states.len()).map(|i| i as f64 * 0.01).collect(), states)
-    }
-
-    const THRESHOLDS: Thresholds = Thresholds { velocity_m_s: 0.05, force_n: 0.05 };
-
-    #[test]
-    fn two_carries_are_told_apart_by_the_free_motion_between_them() {
-        let (time, states) = trace(&[
-            (FreeMotion, 100),
-            (HoldOnGround, 60),
-            (NoState, 3),
-            (HoldAboveGround, 200),
-            (HoldOnGround, 60),
-            (NoState, 20),
-            (FreeMotion, 100),
-            (HoldOnGround, 60),
-            (HoldAboveGround, 200),
-            (HoldOnGround, 60),
-            (FreeMotion, 100),
-        ]);
-        let result = assemble(&time, &states, &blocks(), THRESHOLDS, Vec::new());
-        assert_eq!(result.sequence(), "132313231");
-        assert!(result.warnings.is_empty(), "{:?}", result.warnings);
-        let carry_2 = result.samples_of("carry-block-2");
-        assert_eq!((carry_2.len(), carry_2[0]), (180, 543 + 60 + 10));
-    }
-
-    #[test]
-    fn oscillation_at_touch_down_does_not_shift_the_order() {
-        let mut parts = vec![(FreeMotion, 100), (HoldOnGround, 50), (HoldAboveGround, 150)];
-        for _ in 0..4 {
-            parts.extend([(HoldOnGround, 2), (HoldAboveGround, 2)]);
-        }
-        parts.extend([(HoldOnGround, 60), (FreeMotion, 100)]);
-        let (time, states) = trace(&parts);
-        let result = assemble(&time, &states, &blocks(), THRESHOLDS, Vec::new());
-        assert_eq!(result.sequence(), "13231");
-    }
-
-    #[test]
-    fn a_dropped_block_keeps_its_number_and_the_missing_step_is_said() {
-        let (time, states) = trace(&[
-            (FreeMotion, 100),
-            (HoldOnGround, 60),
-            (HoldAboveGround, 200),
-            (FreeMotion, 100),
-            (HoldOnGround, 60),
-            (HoldAboveGround, 150),
-            (HoldOnGround, 60),
-            (FreeMotion, 100),
-        ]);
-        let result = assemble(&time, &states, &blocks(), THRESHOLDS, Vec::new());
-        assert_eq!(result.samples_of("carry-block-1").len(), 180);
-        assert_eq!(result.samples_of("carry-block-2").len(), 134);
-        assert!(result.warnings.iter().any(|w| w.contains("place-block-1")), "{:?}", result.warnings);
-    }
-
-    #[test]
-    fn a_recording_that_starts_while_holding_says_so() {
-        let (time, states) =
-            trace(&[(HoldOnGround, 60), (HoldAboveGround, 200), (HoldOnGround, 60), (FreeMotion, 100)]);
-        let result = assemble(&time, &states, &blocks(), THRESHOLDS, Vec::new());
-        assert_eq!(result.samples_of("carry-block-1").len(), 180);
-        assert!(result.warnings.iter().any(|w| w.contains("starts in the middle")), "{:?}", result.warnings);
-    }
-
-    #[test]
-    fn nothing_held_is_no_carry() {
-        let (time, states) = trace(&[(FreeMotion, 500)]);
-        let result = assemble(&time, &states, &blocks(), THRESHOLDS, Vec::new());
-        assert_eq!(result.sequence(), "1");
-        assert!(result.warnings.iter().any(|w| w.contains("no object")));
-    }
-
-    #[test]
-    fn a_second_try_at_lifting_keeps_the_number_and_only_the_last_grasp_counts() {
-        // Gripped and let go; then lifted a little and lost; then carried.
-        let (time, states) = trace(&[
-            (FreeMotion, 100),
-            (HoldOnGround, 60),
-            (FreeMotion, 80),
-            (HoldOnGround, 50),
-            (HoldAboveGround, 12),
-            (FreeMotion, 80),
-            (HoldOnGround, 60),
-            (HoldAboveGround, 200),
-            (HoldOnGround, 60),
-            (FreeMotion, 100),
-            (HoldOnGround, 60),
-            (HoldAboveGround, 200),
-            (HoldOnGround, 60),
-            (FreeMotion, 100),
-        ]);
-        let result = assemble(&time, &states, &blocks(), THRESHOLDS, Vec::new());
-        assert_eq!(result.sequence(), "132313231", "{:?}", result.states);
-        let pick_up = result.samples_of("pick-up-block-1");
-        assert_eq!((pick_up[0], pick_up.len()), (382 + 3, 54));
-        assert!(result.warnings.iter().any(|w| w.contains("failed attempts: 2")), "{:?}", result.warnings);
-    }
-
-    #[test]
-    fn a_run_too_short_to_be_a_step_gets_no_subtask() {
-        let (time, states) = trace(&[
-            (FreeMotion, 100),
-            (HoldOnGround, 60),
-            (HoldAboveGround, 200),
-            (HoldOnGround, 7),
-            (FreeMotion, 100),
-        ]);
-        let result = assemble(&time, &states, &blocks(), THRESHOLDS, Vec::new());
-        assert!(result.samples_of("place-block-1").is_empty(), "{:?}", result.states);
-    }
-}
+mod tests;

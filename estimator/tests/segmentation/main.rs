@@ -2,6 +2,7 @@
 //! to five times as noisy as typical ones. The methods were tuned on seeds 0 to 29; these they never saw.
 
 mod generator;
+mod needles;
 mod scores;
 mod tasks;
 

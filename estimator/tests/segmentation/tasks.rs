@@ -2,7 +2,9 @@
 
 use super::FIRST_SEED;
 use super::generator::{log, perform, stacking};
-use estimator::segment::definition::Definition;
+use estimator::estimate::Fit;
+use estimator::pipeline::{Analysis, Options, analyse};
+use estimator::segment::definition::{Definition, StateRule};
 use estimator::segment::{Method, Segmentation, SystemState, segment_by};
 use haptics::device::Skill;
 use haptics::recording::{Recording, Task};
@@ -69,13 +71,14 @@ fn every_built_in_task_is_told_from_its_recordings() {
         assert!(subtasks(&found).contains(&"throw-1"), "{method:?}: {:?}", found.states);
     }
     let needle = recording(&presets::needle(), Task::Needle, seed);
-    let found = segment_by(Method::Threshold, &needle, None, None).expect("a needle");
-    for step in ["insertion-1", "penetration-1", "extraction-1"] {
-        assert!(subtasks(&found).contains(&step), "{step}: {:?}", found.states);
+    for method in [Method::Threshold, Method::Hmm] {
+        let found = segment_by(method, &needle, None, None).expect("a needle");
+        for step in ["insertion-1", "penetration-1", "extraction-1"] {
+            assert!(subtasks(&found).contains(&step), "{method:?}, {step}: {:?}", found.states);
+        }
+        assert!(found.states.windows(2).all(|w| w[0].end == w[1].first && w[0].state != w[1].state));
+        assert_eq!(found.posterior.is_some(), method == Method::Hmm);
     }
-    assert!(found.states.windows(2).all(|w| w[0].end == w[1].first && w[0].state != w[1].state));
-    let refused = segment_by(Method::Hmm, &needle, None, None).expect_err("no such model").to_string();
-    assert!(refused.contains("method threshold"), "{refused}");
 }
 
 #[test]
@@ -97,6 +100,10 @@ fn what_is_no_task_is_refused_in_one_sentence() {
         (with("/subtasks/most", 0.into()), "`most` from 1 to"),
         (with("/subtasks/first/0/state", "turning".into()), "needs the state turning"),
         (with("/like", "crank".into()), "`contact`; use one of load, speed"),
+        (with("/name", "../mine".into()), "letters, digits"),
+        (with("/states/1/shows", serde_json::json!(["warmth"])), "shows `warmth`, which no fit"),
+        (with("/subtasks/repeat/1/name", "carry".into()), "put {n} into its name"),
+        (with("/subtasks/repeat/1/name", "pick-up-block-{n}".into()), "two subtasks are called pick-up-block-{n}"),
     ];
     for (text, wanted) in wrong {
         let error = Definition::parse(&text, "my.json").expect_err(wanted).to_string();
@@ -104,4 +111,70 @@ fn what_is_no_task_is_refused_in_one_sentence() {
     }
     let error = Definition::read("no-such.json".as_ref()).expect_err("no file").to_string();
     assert!(error.contains("no-such.json") && error.contains("check its path"), "{error}");
+}
+
+/// A task like blocks whose subtasks have other names, and one step more.
+fn renamed() -> Definition {
+    let text =
+        serde_json::to_string(&Definition::built_in(Task::BlockStack).expect("the built-in task")).expect("JSON");
+    let text = text.replace("pick-up-block", "grab").replace("carry-block", "haul").replace("place-block", "set-down");
+    let text = text
+        .replace("release-block", "leave")
+        .replace("pregrasp-block", "reach")
+        .replace("block-stack\",\"title", "hauls\",\"title");
+    Definition::parse(&text, "hauls.json").expect("a task")
+}
+
+#[test]
+fn fits_take_their_samples_from_what_the_task_says_shows_the_parameter() {
+    let plain = recording(&stacking(FIRST_SEED + 402), Task::BlockStack, FIRST_SEED + 402);
+    let fit = |task: &Definition| {
+        let mut recording = plain.clone();
+        task.give_to(&mut recording);
+        let analysis = analyse(&[recording], &Options::default()).expect("fits");
+        assert!(analysis.world.blocks.len() == 2, "calibrated");
+        analysis
+    };
+    let usual = analyse(std::slice::from_ref(&plain), &Options::default()).expect("fits");
+    // Other names, the same numbers.
+    let own = fit(&renamed());
+    let found = own.segmentations[0].as_ref().expect("segmented");
+    assert_eq!(found.task, "hauls");
+    assert!(subtasks(found).contains(&"haul-2"), "{:?}", found.states);
+    assert_eq!(found.shows["hold-above-ground"][0], "weight_N");
+    let values = |a: &Analysis| a.fit.parameters.iter().map(|p| (p.name.clone(), p.value)).collect::<Vec<_>>();
+    assert_eq!(values(&own), values(&usual));
+    assert_eq!(own.world.blocks, usual.world.blocks);
+    // What no state shows has no value, and the reason is said.
+    let mut blind = renamed();
+    blind.states.iter_mut().for_each(|rule| rule.shows.retain(|name| name == "weight_N" || name == "width_m"));
+    let less = fit(&blind);
+    for (name, there) in [("weight_N", true), ("width_m", true), ("height_m", false), ("friction_lower_bound", false)] {
+        let parameter = less.fit.parameter("block-1", name).expect("listed");
+        assert_eq!(parameter.identified, there, "{name}: {}", parameter.how);
+        assert!(there || parameter.how.contains("no state of the task hauls shows"), "{}", parameter.how);
+    }
+    // Fewer states, fewer samples: the width from the air alone.
+    let ground = |rule: &&mut StateRule| rule.state == SystemState::HoldOnGround;
+    let mut airborne = renamed();
+    airborne.states.iter_mut().filter(ground).for_each(|rule| rule.shows.retain(|name| name != "width_m"));
+    let samples = |a: &Analysis| a.fit.parameter("block-1", "width_m").expect("listed").samples;
+    assert!(samples(&fit(&airborne)) < samples(&usual));
+}
+
+#[test]
+fn a_task_without_an_order_is_fitted_from_the_states_that_it_counts() {
+    let guide = include_str!("../../../docs/tasks.md");
+    let text = guide.split("```json\n").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
+    let mut recording = recording(&stacking(FIRST_SEED + 403), Task::BlockStack, FIRST_SEED + 403);
+    let usual = analyse(std::slice::from_ref(&recording), &Options::default()).expect("fits");
+    Definition::parse(text, "docs/tasks.md").expect("a task").give_to(&mut recording);
+    let fit = analyse(&[recording], &Options::default()).expect("fits").fit;
+    for block in ["block-1", "block-2"] {
+        let weight =
+            |fit: &Fit| fit.parameter(block, "weight_N").and_then(|p| p.value.zip(p.std_error)).expect("a weight");
+        let ((own, error), (known, _)) = (weight(&fit), weight(&usual.fit));
+        assert!((own - known).abs() < 4.0 * error, "{block}: {own} ± {error} N, {known} N");
+        assert!(!fit.parameter(block, "height_m").expect("listed").identified);
+    }
 }

@@ -8,7 +8,7 @@
 //! both pads in shear, `c` the give of one contact between blocks or floor and m blocks below: the load presses every contact
 //! under it, and the blocks below press those under them. The thesis took differences of mean heights, whose gives differ.
 
-use super::{Blocks, object};
+use super::{Blocks, MAIN, object};
 use crate::estimate::{EstimateError, Parameter};
 use crate::identify::linear::{LinearFit, least_squares};
 
@@ -102,7 +102,8 @@ fn shear_stiffness(fit: &LinearFit, floor: &LinearFit, column: usize, samples: u
 
 /// Both ends of every carry, with the tower that the block stood on.
 fn rests(blocks: &Blocks<'_>, count: usize) -> Vec<Rest> {
-    let samples = |verb: &str, k: usize| blocks.samples(&[&format!("{verb}-block-{}", k + 1)]);
+    // Before and after it was carried.
+    let rested = |k: usize| blocks.task.showing_around("height_m", MAIN, k + 1).map(|names| blocks.samples(&names));
     let place = |samples: &[usize]| {
         let n = samples.len() as f64;
         (!samples.is_empty()).then(|| Place {
@@ -111,12 +112,12 @@ fn rests(blocks: &Blocks<'_>, count: usize) -> Vec<Rest> {
         })
     };
     let width = |k: usize| {
-        let carried = samples("carry", k);
+        let carried = blocks.shown(MAIN, k + 1);
         carried.iter().map(|i| blocks.width[*i]).sum::<f64>() / carried.len().max(1) as f64
     };
     let widths: Vec<f64> = (0..count).map(width).collect();
-    let picks: Vec<Option<Place>> = (0..count).map(|k| place(&samples("pick-up", k))).collect();
-    let places: Vec<Option<Place>> = (0..count).map(|k| place(&samples("place", k))).collect();
+    let picks: Vec<Option<Place>> = (0..count).map(|k| place(&rested(k)[0])).collect();
+    let places: Vec<Option<Place>> = (0..count).map(|k| place(&rested(k)[1])).collect();
     let below = |k: usize, here: Option<Place>| -> Vec<usize> {
         let Some(here) = here else { return Vec::new() };
         // Blocks carried before lie where they were put, the others where they will be taken from.
@@ -133,7 +134,7 @@ fn rests(blocks: &Blocks<'_>, count: usize) -> Vec<Rest> {
     };
     (0..count)
         .flat_map(|k| {
-            let (pick, put) = (samples("pick-up", k), samples("place", k));
+            let [pick, put] = rested(k);
             let (at_pick, at_place) = (below(k, picks[k]), below(k, places[k]));
             [Rest { carry: k, samples: pick, below: at_pick }, Rest { carry: k, samples: put, below: at_place }]
         })

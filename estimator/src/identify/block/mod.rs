@@ -15,7 +15,7 @@ use crate::constraint::{Carry, carried};
 use crate::estimate::{Constraint, Correlated, EstimateError, Fit, Parameter};
 use crate::segment::definition::Definition;
 use crate::segment::threshold::{Levels, percentile};
-use crate::segment::{Method, Segmentation, Thresholds, segment_signals, segment_signals_by, subtasks};
+use crate::segment::{Interval, Method, Segmentation, Thresholds, segment_signals_by, subtasks};
 use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signals};
 use haptics::Vec2;
@@ -28,11 +28,15 @@ const UNKNOWN_COMPRESSION: f64 = 0.07;
 /// The grip must vary by this share of its mean for the pads' give to be told from the width.
 const LEAST_GRIP_VARIATION: f64 = 0.05;
 
+/// The states that show this one are those in which a block is carried; they number the blocks.
+const MAIN: &str = "weight_N";
+
 /// Everything that the block fit works on.
 struct Blocks<'a> {
     signals: TaskSignals,
     levels: Levels,
     segmentation: Segmentation,
+    task: Definition,
     recording: &'a Recording,
     /// Error of a single position and of a single force by the resolution of the log, m and N: what no averaging removes.
     resolution_m: f64,
@@ -81,6 +85,7 @@ pub fn fit_by(
         resolution_n: unresolved(&signals, |tip| tip.force.as_ref()),
         levels,
         segmentation,
+        task,
         recording,
         acceleration_y,
         width: width.value,
@@ -94,7 +99,8 @@ pub fn fit_by(
     let count = blocks.count();
     if count == 0 {
         return Err(EstimateError::Other(format!(
-            "no block was carried in {}: there is nothing to fit; check the task and the signs of the forces",
+            "no block was carried in {}: there is nothing to fit; check the task and the signs of the forces, and that a state of the \
+             task with a subtask shows {MAIN}",
             recording.name
         )));
     }
@@ -108,7 +114,10 @@ pub fn fit_by(
         parameters.extend(weight);
         parameters.push(blocks.width(number)?);
     }
-    parameters.extend(heights::heights(&blocks, &weights_n)?);
+    parameters.extend(match blocks.unshown("height_m") {
+        Some(why) => (1..=count).map(|n| Parameter::unidentified(&object(n), "height_m", 0, &why)).collect(),
+        None => heights::heights(&blocks, &weights_n)?,
+    });
     parameters.push(blocks.pad_stiffness(count));
     for number in 1..=count {
         parameters.extend(blocks.friction(number));
@@ -153,7 +162,8 @@ fn unresolved_by_joints_m(recording: &Recording) -> f64 {
 /// as does everything while a block rests.
 pub fn needed_forces(world: &World, recording: &Recording) -> Result<Vec<Channel>, EstimateError> {
     let signals = task_signals(recording)?;
-    let segmentation = segment_signals(&signals, Task::BlockStack, None)?;
+    let task = Definition::of(recording, Task::BlockStack)?;
+    let segmentation = segment_signals_by(Method::Threshold, &signals, &task, None)?;
     let rate = |pick: fn(&Vec2) -> f64| {
         let values: Vec<f64> = signals.velocity.iter().map(pick).collect();
         smooth(&signals.time_s, &values).slope
@@ -161,8 +171,9 @@ pub fn needed_forces(world: &World, recording: &Recording) -> Result<Vec<Channel
     let (ax, ay) = (rate(|v| v.x), rate(|v| v.y));
     let mut correction = vec![Vec2::zeros(); signals.len()];
     for (index, block) in world.blocks.iter().enumerate() {
-        let name = format!("carry-block-{}", index + 1);
-        for interval in segmentation.states.iter().filter(|i| i.subtask.as_deref() == Some(&name)) {
+        let names = task.showing(MAIN, MAIN, index + 1);
+        let carried = |i: &&Interval| i.subtask.as_ref().is_some_and(|name| names.contains(name));
+        for interval in segmentation.states.iter().filter(carried) {
             for i in interval.first..interval.end {
                 let needed = (Vec2::new(ax[i], ay[i]) - world.gravity_vector()) * block.mass_kg;
                 correction[i] = 0.5 * (needed - signals.net_force_n[i]);
@@ -193,14 +204,29 @@ fn object(number: usize) -> String {
     format!("block-{number}")
 }
 
+fn unseen(samples: &[usize]) -> Option<String> {
+    samples.is_empty().then(|| "no sample of a state that shows it belongs to this block".to_owned())
+}
+
 impl Blocks<'_> {
     /// Blocks that were seen carried.
     fn count(&self) -> usize {
-        (1..=subtasks::MOST_CARRIES).take_while(|n| !self.samples(&[&format!("carry-block-{n}")]).is_empty()).count()
+        (1..=subtasks::MOST_CARRIES).take_while(|n| !self.shown(MAIN, *n).is_empty()).count()
     }
 
-    fn samples(&self, subtasks: &[&str]) -> Vec<usize> {
+    fn samples(&self, subtasks: &[String]) -> Vec<usize> {
         subtasks.iter().flat_map(|s| self.segmentation.samples_of(s)).collect()
+    }
+
+    /// Samples of a block in the states that the task says show a parameter.
+    fn shown(&self, parameter: &str, number: usize) -> Vec<usize> {
+        self.samples(&self.task.showing(parameter, MAIN, number))
+    }
+
+    /// Why a parameter cannot be found: no state of the task shows it.
+    fn unshown(&self, parameter: &str) -> Option<String> {
+        let why = || format!("no state of the task {} shows {parameter}; add it to `shows` of one", self.task.name);
+        (!self.task.is_shown(parameter)).then(why)
     }
 
     /// Samples a filter window apart: smoothed channels say nothing new in between, and errors counted from neighbours that
@@ -235,7 +261,7 @@ impl Blocks<'_> {
             object: &object(number),
             recording: &self.recording.name,
             signals: &self.signals,
-            samples: &self.samples(&[&format!("carry-block-{number}")]),
+            samples: &self.shown(MAIN, number),
             bias_n: self.levels.bias_n[0] + self.levels.bias_n[1],
             bias_error_n: self.bias_error().hypot(std::f64::consts::SQRT_2 * self.resolution_n),
             gravity: self.recording.meta.gravity(),
@@ -244,7 +270,7 @@ impl Blocks<'_> {
 
     /// Weight: mean of the summed vertical forces over the carry, accelerations taken out.
     fn weight(&self, number: usize) -> Result<[Parameter; 2], EstimateError> {
-        let samples = self.samples(&[&format!("carry-block-{number}")]);
+        let samples = self.shown(MAIN, number);
         let rows = self.rows(&samples);
         let lift: Vec<f64> = rows.iter().map(|i| self.lift[*i]).collect();
         let acceleration: Vec<f64> = rows.iter().map(|i| self.acceleration_y[*i]).collect();
@@ -274,8 +300,10 @@ impl Blocks<'_> {
 
     /// Width: distance of the tips while held, extrapolated to no grip force.
     fn width(&self, number: usize) -> Result<Parameter, EstimateError> {
-        let [pick, carry, place] = ["pick-up", "carry", "place"].map(|verb| format!("{verb}-block-{number}"));
-        let samples = self.samples(&[&pick, &carry, &place]);
+        let samples = self.shown("width_m", number);
+        if let Some(why) = self.unshown("width_m").or_else(|| unseen(&samples)) {
+            return Ok(Parameter::unidentified(&object(number), "width_m", 0, &why));
+        }
         let rows = self.rows(&samples);
         let width: Vec<f64> = rows.iter().map(|i| self.width[*i]).collect();
         let grip: Vec<f64> = rows.iter().map(|i| self.grip[*i]).collect();
@@ -302,8 +330,10 @@ impl Blocks<'_> {
 
     /// The grip on one block from picking it up to letting it go.
     fn pads(&self, number: usize) -> Result<Option<PadFit>, EstimateError> {
-        let [pick, carry, place] = ["pick-up", "carry", "place"].map(|verb| format!("{verb}-block-{number}"));
-        let rows = self.rows(&self.samples(&[&pick, &carry, &place]));
+        let rows = self.rows(&self.shown("width_m", number));
+        if rows.is_empty() {
+            return Ok(None);
+        }
         let column = |series: &[f64]| rows.iter().map(|i| series[*i]).collect::<Vec<f64>>();
         let (width, force, rate) = (column(&self.width), column(&self.grip), column(&self.width_rate));
         width_over_force(&Grip { width: &width, force: &force, rate: &rate })
@@ -329,8 +359,10 @@ impl Blocks<'_> {
     /// Largest ratio of tangential to normal tip force while grasped: a lower bound of the friction coefficient.
     fn friction(&self, number: usize) -> [Parameter; 2] {
         let name = object(number);
-        let [pick, carry, place] = ["pick-up", "carry", "place"].map(|verb| format!("{verb}-block-{number}"));
-        let samples = self.samples(&[&pick, &carry, &place]);
+        if let Some(why) = self.unshown("friction_lower_bound") {
+            return ["friction_lower_bound", "friction"].map(|f| Parameter::unidentified(&name, f, 0, &why));
+        }
+        let samples = self.shown("friction_lower_bound", number);
         let (mean_grip, _) = mean_and_spread(&samples.iter().map(|i| self.grip[*i]).collect::<Vec<_>>());
         let noise = self.levels.force_noise_n;
         // Below this grip the ratio is noise.
@@ -385,12 +417,11 @@ impl Blocks<'_> {
     fn slip(&self, number: usize, ratio: f64) -> Option<slip::Slip> {
         const NOISES: f64 = 8.0;
         const AFTER_S: f64 = 0.3;
-        let carried = self.samples(&[&format!("carry-block-{number}")]);
+        let carried = self.shown(MAIN, number);
         let mut lifts: Vec<f64> = carried.iter().map(|i| self.lift[*i]).collect();
         // The middle one: a slip at the end of the carry does not count.
         let weight_n = percentile(&mut lifts, 0.5);
-        let own = ["pick-up", "carry", "place"].map(|verb| format!("{verb}-block-{number}"));
-        let grasp = self.samples(&[&own[0], &own[1], &own[2]]);
+        let grasp = self.shown("friction", number);
         let time = &self.signals.time_s;
         let end = time.partition_point(|t| *t < grasp.last().map_or(0.0, |i| time[*i]) + AFTER_S);
         let least_grip_n = NOISES * self.levels.force_noise_n;

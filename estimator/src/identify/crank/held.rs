@@ -76,6 +76,7 @@ pub(super) fn held(smooth: &Arc<Smooth>, segmentation: &Segmentation) -> Held {
     let turning = segmentation
         .states
         .iter()
+        .filter(|i| segmentation.definition.as_ref().is_none_or(|task| task.shows_something(i.state)))
         .filter_map(|i| i.subtask.as_deref())
         .flat_map(|subtask| segmentation.samples_of(subtask))
         .collect();

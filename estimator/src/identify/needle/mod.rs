@@ -4,12 +4,14 @@
 //! pierced a hole. Two fingers measure their tips, not the needle between their pads: the pads' give is read from how the grip's
 //! width follows its force, and what is not known of it joins the errors.
 
+mod channels;
 mod loading;
 mod phases;
 mod signals;
 mod strokes;
 
 use crate::estimate::{Constraint, ConstraintKind, EstimateError, Fit, Parameter, Sided, Yielding};
+pub(crate) use channels::{Channels, channels};
 use haptics::Vec2;
 use haptics::recording::Recording;
 use loading::{Loading, Point};

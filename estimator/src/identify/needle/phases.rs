@@ -8,12 +8,16 @@ use crate::constraint::existence::FALSE_ALARMS;
 use crate::estimate::{Existence, Phase, StrokePhase};
 use crate::identify::linear::least_squares;
 use crate::identify::long_run::student_quantile_975;
+use crate::signal::noise::white_noise;
 use haptics::recording::Recording;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::ops::Range;
 
 /// Depth below which force over depth means nothing, m.
 const LEAST_DEPTH_M: f64 = 2e-4;
+/// The needle is drawn out once it has come back by this, m, and by so many times the noise.
+const BACK_M: f64 = 0.25e-3;
+const NOISES: f64 = 6.0;
 /// Most samples that take part in the test.
 const MOST_ROWS: usize = 4000;
 
@@ -22,7 +26,8 @@ pub fn phases(along: &Along, pushes: &[Push], loading: &Loading, recording: &Rec
     let surface = loading.surface_m;
     let quiet = quiet_force(along);
     let time = |i: usize| recording.time_s.as_ref().map_or(i as f64, |t| t[i.min(t.len() - 1)]);
-    let mut found = Vec::new();
+    let depth_noise_m = white_noise(&along.depth_m);
+    let mut found: Vec<StrokePhase> = Vec::new();
     let mut add = |phase: Phase, samples: Range<usize>| {
         if samples.is_empty() {
             return;
@@ -45,12 +50,15 @@ pub fn phases(along: &Along, pushes: &[Push], loading: &Loading, recording: &Rec
         add(Phase::Free, start..met);
         add(Phase::Insertion, met..push.samples.end);
         let deepest = push.end.max(push.samples.end);
-        if push.puncture.is_some() {
-            add(Phase::Penetration, push.samples.end..deepest);
-        }
         let hold_end = along.holds[push.hold].end;
-        let out = (deepest..hold_end).find(|i| !inside(i)).unwrap_or(hold_end);
-        add(Phase::Extraction, deepest..out);
+        // A hand at rest trembles about the deepest point: it is drawn out once it has come back by more.
+        let back_m = BACK_M.max(NOISES * depth_noise_m);
+        let back = |i: &usize| along.depth_m[*i] < along.depth_m[deepest - 1] - back_m;
+        let turned = (deepest..hold_end).find(back).unwrap_or(hold_end);
+        let pressing = if push.puncture.is_some() { Phase::Penetration } else { Phase::Insertion };
+        add(pressing, push.samples.end..turned);
+        let out = (turned..hold_end).find(|i| !inside(i)).unwrap_or(hold_end);
+        add(Phase::Extraction, turned..out);
     }
     found
 }

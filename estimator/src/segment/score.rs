@@ -1,0 +1,178 @@
+//! How well a segmentation agrees with the labels that a person or a generator gave a recording. Labels are compared here and
+//! nowhere else: nothing is ever estimated from them.
+
+use super::{Segmentation, SystemState};
+use crate::signal::task::times;
+use haptics::recording::{Recording, Task};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A boundary within this of a labelled one was found, s …
+const TOLERANCE_S: f64 = 0.1;
+/// … or within so many samples of a slow log.
+const TOLERANCE_SAMPLES: f64 = 1.5;
+
+/// The agreement of one recording.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Score {
+    /// Labelled samples that were compared.
+    pub samples: usize,
+    /// Share of them that have their label's state.
+    pub accuracy: f64,
+    /// Every state that is labelled or was found.
+    pub states: BTreeMap<String, StateScore>,
+    /// F1 of the boundaries between states: of those that are labelled and those that were found, how many belong together.
+    pub boundary_f1: f64,
+    /// How far they may be apart for that, s. Shorter stays in a state are no event.
+    pub tolerance_s: f64,
+    /// Median distance of the boundaries that belong together, s; absent where none does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub boundary_error_s: Option<f64>,
+    /// Labelled boundaries.
+    pub boundaries: usize,
+    /// States that the labels do not tell apart and that count as one here.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub as_one: Vec<String>,
+    /// Labels that name no state of the program; their samples were left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unknown_labels: Vec<String>,
+}
+
+/// The agreement in one state, by samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StateScore {
+    /// 2 · right / (labelled + found).
+    pub f1: f64,
+    /// Samples that are labelled so.
+    pub labelled: usize,
+    /// Samples that were found so.
+    pub found: usize,
+    /// Samples that are both.
+    pub right: usize,
+}
+
+const STATES: [SystemState; 10] = [
+    SystemState::FreeMotion,
+    SystemState::HoldOnGround,
+    SystemState::HoldAboveGround,
+    SystemState::SlidingOnGround,
+    SystemState::Turning,
+    SystemState::Holding,
+    SystemState::Insertion,
+    SystemState::Penetration,
+    SystemState::Extraction,
+    SystemState::NoState,
+];
+
+/// The state of a label. The generator calls a switch that is touched `pushing`.
+fn state_of(label: &str) -> Option<SystemState> {
+    match label {
+        "pushing" => Some(SystemState::Turning),
+        _ => STATES.into_iter().find(|state| state.name() == label),
+    }
+}
+
+/// Scores a segmentation; nothing for a recording without labels that name states.
+pub fn score(recording: &Recording, found: &Segmentation) -> Option<Score> {
+    let labels = recording.labels.as_ref().filter(|labels| labels.len() == recording.len())?;
+    let mut unknown_labels: Vec<String> = Vec::new();
+    let mut truth: Vec<Option<SystemState>> = Vec::with_capacity(labels.len());
+    for (span, label) in labels.spans() {
+        let state = state_of(label);
+        if state.is_none() && !label.is_empty() && !unknown_labels.iter().any(|known| known == label) {
+            unknown_labels.push(label.to_owned());
+        }
+        truth.extend(std::iter::repeat_n(state, span.len()));
+    }
+    if truth.iter().all(Option::is_none) {
+        return None;
+    }
+    // Who labels only whether a handle is held says nothing of turning and holding it still.
+    let moved = matches!(found.like()?, Task::Crank | Task::Mechanism | Task::Switch);
+    let apart = truth.contains(&Some(SystemState::Holding));
+    let one = |state: SystemState| match state {
+        SystemState::Holding if moved && !apart => SystemState::Turning,
+        state => state,
+    };
+    let claims: Vec<SystemState> = found.per_sample(truth.len()).into_iter().map(one).collect();
+    let (states, samples, right) = by_state(&truth, &claims);
+    let time_s = times(recording);
+    let step = recording.rate_hz().map_or(1.0, |rate| 1.0 / rate);
+    let tolerance_s = TOLERANCE_S.max(TOLERANCE_SAMPLES * step);
+    let known: Vec<SystemState> = truth.iter().map(|state| state.unwrap_or(SystemState::NoState)).collect();
+    let (wanted, got) = (boundaries(&time_s, &known, tolerance_s), boundaries(&time_s, &claims, tolerance_s));
+    let mut errors = paired(&wanted, &got, tolerance_s);
+    errors.sort_by(f64::total_cmp);
+    let both = wanted.len() + got.len();
+    Some(Score {
+        samples,
+        accuracy: right as f64 / samples.max(1) as f64,
+        states,
+        boundary_f1: if both == 0 { 1.0 } else { 2.0 * errors.len() as f64 / both as f64 },
+        tolerance_s,
+        boundary_error_s: errors.get(errors.len() / 2).copied(),
+        boundaries: wanted.len(),
+        as_one: if moved && !apart { vec!["turning".to_owned(), "holding".to_owned()] } else { Vec::new() },
+        unknown_labels,
+    })
+}
+
+/// The agreement of every state, and samples and right ones in all.
+fn by_state(truth: &[Option<SystemState>], claims: &[SystemState]) -> (BTreeMap<String, StateScore>, usize, usize) {
+    let mut scores: BTreeMap<String, StateScore> = BTreeMap::new();
+    let (mut samples, mut all_right) = (0, 0);
+    for state in STATES {
+        let mut score = StateScore::default();
+        for (label, claim) in truth.iter().zip(claims).filter_map(|(label, claim)| Some(((*label)?, *claim))) {
+            score.labelled += usize::from(label == state);
+            score.found += usize::from(claim == state);
+            score.right += usize::from(label == state && claim == state);
+        }
+        samples += score.labelled;
+        all_right += score.right;
+        if score.labelled + score.found > 0 {
+            score.f1 = 2.0 * score.right as f64 / (score.labelled + score.found) as f64;
+            scores.insert(state.name().to_owned(), score);
+        }
+    }
+    (scores, samples, all_right)
+}
+
+/// Where one state gives way to another, s, and to which. Stays that are shorter belong to the state before; samples without a state
+/// are divided between their neighbours.
+fn boundaries(time_s: &[f64], states: &[SystemState], shortest_s: f64) -> Vec<(f64, SystemState)> {
+    let end = |i: usize| time_s.get(i).copied().unwrap_or(time_s[time_s.len() - 1]);
+    let mut stays: Vec<(SystemState, f64, f64)> = Vec::new();
+    for run in states.chunk_by(|a, b| a == b).scan(0, |first, run| {
+        let start = *first;
+        *first += run.len();
+        Some((run[0], start, *first))
+    }) {
+        let (state, from, to) = (run.0, end(run.1), end(run.2));
+        match stays.last_mut() {
+            _ if state == SystemState::NoState => {}
+            Some(last) if last.0 == state => last.2 = to,
+            Some(_) if to - from < shortest_s => {}
+            _ => stays.push((state, from, to)),
+        }
+    }
+    stays.windows(2).map(|pair| (0.5 * (pair[0].2 + pair[1].1), pair[1].0)).collect()
+}
+
+/// Distances of boundaries that belong together: into the same state and within the tolerance, every one used once, s.
+fn paired(wanted: &[(f64, SystemState)], got: &[(f64, SystemState)], tolerance_s: f64) -> Vec<f64> {
+    let mut used = vec![false; got.len()];
+    let mut errors = Vec::new();
+    for (time, state) in wanted {
+        let near = |(_, (t, s)): &(usize, &(f64, SystemState))| s == state && (t - time).abs() <= tolerance_s + 1e-9;
+        let free = got.iter().enumerate().filter(|(at, _)| !used[*at]).filter(near);
+        if let Some((at, (found, _))) = free.min_by(|a, b| (a.1.0 - time).abs().total_cmp(&(b.1.0 - time).abs())) {
+            used[at] = true;
+            errors.push((found - time).abs());
+        }
+    }
+    errors
+}
+
+#[cfg(test)]
+mod tests;
