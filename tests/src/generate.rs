@@ -1,5 +1,6 @@
 //! Recordings of the scripted operator in worlds drawn at random.
 
+use crate::fumble::{Clumsy, Fumble};
 use haptics::Vec2;
 use haptics::device::{Command, Device, Mistake, ScriptedOperator, Skill};
 use haptics::law::{CoulombFriction, Effect, Inertia, LoadFriction, ViscousFriction, Weight};
@@ -62,13 +63,64 @@ pub fn perform_with_mistakes(
     every: usize,
     sensors: &[SensorModel],
 ) -> Vec<Performance> {
+    let done = act(world, seed, skill, &Errors { mistakes, fumbles: Vec::new(), looks: false }, every);
+    let (grasp_offset_y_m, grasp_offset_error_m) = mean_of_parts(&done.offsets);
+    sensors
+        .iter()
+        .map(|sensor| Performance {
+            recording: done.seen_by(sensor, 1, world, seed),
+            grasp_offset_y_m,
+            grasp_offset_error_m,
+        })
+        .collect()
+}
+
+/// What goes wrong in a performance.
+pub struct Errors<'a> {
+    /// What the operator does wrong on purpose.
+    pub mistakes: &'a [Mistake],
+    /// Fingers that open when they should not.
+    pub fumbles: Vec<Fumble>,
+    /// Whether the operator sees that a block was lost, and fetches it.
+    pub looks: bool,
+}
+
+/// What was done in a world, before any sensor looks at it.
+pub struct Act {
+    /// Every so many fine steps.
+    pub ticks: Vec<TickRecord>,
+    /// The block that both fingers hold at each of them; truth for assertions.
+    pub held: Vec<Option<usize>>,
+    /// The world's state at the end; truth for assertions.
+    pub end: State,
+    /// Height of grasp points above the handle's middle, m.
+    offsets: Vec<f64>,
+    bias_n: [Vec2; 2],
+}
+
+impl Act {
+    /// A recording of every `every`-th tick by a sensor.
+    pub fn seen_by(&self, sensor: &SensorModel, every: usize, world: &World, seed: u64) -> Recording {
+        // An ideal sensor has no bias either.
+        let bias_n = if *sensor == SensorModel::IDEAL { [Vec2::zeros(); 2] } else { self.bias_n };
+        let biased = |tick: &TickRecord| TickRecord {
+            tip_force_n: [0, 1].map(|f: usize| tick.tip_force_n[f] + bias_n[f]),
+            ..*tick
+        };
+        let seen: Vec<TickRecord> = self.ticks.iter().step_by(every.max(1)).map(biased).collect();
+        to_recording(&format!("seed {seed}"), world, &seen, 1, sensor, seed ^ 0x5eed)
+    }
+}
+
+/// Performs the task of `world`; every `every`-th fine step is kept.
+pub fn act(world: &World, seed: u64, skill: Skill, errors: &Errors<'_>, every: usize) -> Act {
     let mut state = State::resting(world);
-    let mut operator = ScriptedOperator::with_mistakes(world, &state, skill, mistakes, seed);
-    let mut ticks = Vec::new();
+    let mut operator = ScriptedOperator::with_mistakes(world, &state, skill, errors.mistakes, seed);
+    let mut hand = (!errors.fumbles.is_empty()).then(|| Clumsy::new(errors.fumbles.clone()));
     let mut rng = StdRng::seed_from_u64(seed ^ 0xb1a5);
     let bias_n = [(); 2].map(|()| Vec2::from_fn(|_, _| rng.random_range(-LARGEST_BIAS_N..LARGEST_BIAS_N)));
+    let (mut ticks, mut held, mut offsets) = (Vec::new(), Vec::new(), Vec::new());
     let mut count = 0_usize;
-    let mut offsets = Vec::new();
     while !operator.finished() {
         let parts = steps_per_step(world);
         let part_s = STEP_S / f64::from(parts);
@@ -76,6 +128,12 @@ pub fn perform_with_mistakes(
         for _ in 0..parts {
             let sample = operator.exchange(&Command { force_n: state.tip_force_n.map(|f| -f) }, part_s);
             input = Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity };
+            if let Some(hand) = &mut hand {
+                hand.spoil(&mut input, true_label(world, &state), state.time_s);
+            }
+            if errors.looks {
+                operator.see(world, &state);
+            }
             step(world, &mut state, &input, part_s);
         }
         if let Some(handle) = state.handle_in_world(world)
@@ -93,26 +151,22 @@ pub fn perform_with_mistakes(
                 label: true_label(world, &state),
                 ..TickRecord::default()
             });
+            held.push(held_block(world, &state));
         }
         count += 1;
     }
-    let (grasp_offset_y_m, grasp_offset_error_m) = mean_of_parts(&offsets);
-    let biased: Vec<TickRecord> = ticks
-        .iter()
-        .map(|tick| TickRecord { tip_force_n: [0, 1].map(|f: usize| tick.tip_force_n[f] + bias_n[f]), ..*tick })
-        .collect();
-    sensors
-        .iter()
-        .map(|sensor| Performance {
-            recording: {
-                // An ideal sensor has no bias either.
-                let seen = if *sensor == SensorModel::IDEAL { &ticks } else { &biased };
-                to_recording(&format!("seed {seed}"), world, seen, 1, sensor, seed ^ 0x5eed)
-            },
-            grasp_offset_y_m,
-            grasp_offset_error_m,
-        })
-        .collect()
+    Act { ticks, held, end: state, offsets, bias_n }
+}
+
+/// The block that both fingers press.
+fn held_block(world: &World, state: &State) -> Option<usize> {
+    let pressed = |finger: u8, block: usize| {
+        state
+            .contacts
+            .iter()
+            .any(|c| c.on == Surface::Finger(finger) && c.by == Surface::Block(block as u16) && c.normal_force_n > 0.0)
+    };
+    (0..world.blocks.len()).find(|block| pressed(0, *block) && pressed(1, *block))
 }
 
 /// Mean of a series, and its standard error from the means of eight parts.
