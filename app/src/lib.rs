@@ -7,6 +7,7 @@ pub mod cli;
 mod constraint_words;
 pub mod operator;
 pub mod recorder;
+pub mod tasks;
 pub mod ui;
 pub mod worlds;
 

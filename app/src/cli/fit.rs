@@ -88,7 +88,9 @@ fn constraint_line(constraint: &Constraint) -> String {
         let high = high.map_or("∞ (it could be straight)".to_owned(), |h| format!("{:.3} mm", h * 1e3));
         format!(", 95 % within {:.3} … {high}", low * 1e3)
     });
-    let name = constraint.recording.as_deref().map_or(String::new(), |name| format!("{name}: "));
+    let named: Vec<&str> =
+        [&constraint.recording, &constraint.object].into_iter().filter_map(|n| n.as_deref()).collect();
+    let name = if named.is_empty() { String::new() } else { format!("{}: ", named.join(", ")) };
     let words: Vec<String> = crate::constraint_words(constraint).into_iter().map(|w| format!("; {w}")).collect();
     format!("{name}{kind}{radius}{interval}: {}{}", constraint.evidence, words.concat())
 }

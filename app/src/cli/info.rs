@@ -2,7 +2,8 @@
 
 use super::{LogArgs, Output};
 use clap::Args;
-use haptics::recording::{Recording, Warning};
+use estimator::segment::definition::Definition;
+use haptics::recording::{Recording, Task, Warning};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -44,7 +45,15 @@ fn describe(recording: &Recording) -> String {
     };
     let _ = writeln!(text, "  {} samples, {clock}", recording.len());
     if let Some(task) = recording.meta.task {
-        let _ = writeln!(text, "  task: {}", task.name());
+        let _ = match definition(recording, task) {
+            Some(own) if own.name != task.name() => {
+                writeln!(text, "  task: {} ({}), like {}", own.name, own.title, task.name())
+            }
+            _ => writeln!(text, "  task: {}", task.name()),
+        };
+        for (state, shown) in definition(recording, task).map(|task| task.shown_by_states()).unwrap_or_default() {
+            let _ = writeln!(text, "    {state} shows {}", shown.join(", "));
+        }
     }
     for channel in &recording.channels {
         let (low, high) = range(&channel.values);
@@ -56,7 +65,13 @@ fn describe(recording: &Recording) -> String {
     text
 }
 
+/// The task with its states, where it can be used; a fault of it is told by what uses it.
+fn definition(recording: &Recording, task: Task) -> Option<Definition> {
+    Definition::of(recording, task).ok()
+}
+
 fn to_json(recording: &Recording) -> Value {
+    let task = recording.meta.task.and_then(|task| definition(recording, task));
     let columns: Vec<Value> = recording
         .channels
         .iter()
@@ -69,6 +84,8 @@ fn to_json(recording: &Recording) -> Value {
         "name": recording.name,
         "trial": recording.trial,
         "task": recording.meta.task,
+        "task_definition": task.as_ref().map(|task| &task.name),
+        "shows": task.as_ref().map(Definition::shown_by_states),
         "samples": recording.len(),
         "rate_hz": recording.rate_hz(),
         "duration_s": recording.duration_s(),

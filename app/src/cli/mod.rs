@@ -15,13 +15,12 @@ mod segment;
 mod simulate;
 mod stated;
 pub mod table;
-mod task;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use crate::tasks::Chosen;
 use clap::{Args, Parser, Subcommand};
 use estimator::log::{LogError, Watch};
 use haptics::device::haply::farewell;
-use haptics::recording::{Recording, Task};
+use haptics::recording::Recording;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
@@ -80,9 +79,9 @@ struct AppArgs {
     /// World to open in the trainer: a file, or stack, crank, needle, barrel, switch, guide or table
     #[arg(long)]
     world: Option<PathBuf>,
-    /// Task of the log
-    #[arg(long, value_parser = task_parser())]
-    task: Option<Task>,
+    /// Task of the log: block-stack, crank, needle, mechanism, barrel, switch, a task of yours, or its JSON file
+    #[arg(long, value_parser = find_task)]
+    task: Option<Chosen>,
 }
 
 /// A log on the command line.
@@ -117,10 +116,9 @@ fn parse_control(text: &str) -> Result<f64, String> {
     })
 }
 
-/// Reads a task by the name it has in files, and offers the names in the help.
-fn task_parser() -> impl TypedValueParser<Value = Task> {
-    PossibleValuesParser::new(Task::ALL.map(Task::name))
-        .try_map(|name| Task::from_name(&name).ok_or_else(|| format!("there is no task `{name}`")))
+/// A task on the command line of what needs one: a wrong one is wrong usage.
+fn find_task(text: &str) -> Result<Chosen, String> {
+    Chosen::find(text).map_err(|error| error.to_string())
 }
 
 /// Reads a log, with a word about it when it is long.
@@ -136,7 +134,7 @@ fn read(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError> {
 impl LogArgs {
     fn load(&self, path: &Path) -> anyhow::Result<Vec<Recording>> {
         let mut recordings = read(path, self.meta.as_deref())?;
-        if let Some(task) = self.task.as_deref().map(task::Chosen::find).transpose()? {
+        if let Some(task) = self.task.as_deref().map(Chosen::find).transpose()? {
             for recording in &mut recordings {
                 task.give_to(recording);
             }
@@ -164,6 +162,7 @@ impl Output {
 
 /// Parses the arguments and runs the command.
 pub fn main() -> ExitCode {
+    crate::tasks::use_own_folder();
     let cli = Cli::parse();
     start_log(cli.json);
     let result = match cli.command {

@@ -1,7 +1,8 @@
 //! `touchstone record`: a recording made by the virtual hand.
 
-use super::{ControlArgs, Output, task_parser};
+use super::{ControlArgs, Output, find_task};
 use crate::operator;
+use crate::tasks::Chosen;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use haptics::device::{Device, Mistake, ReplayDevice, ScriptedOperator};
@@ -16,9 +17,10 @@ use std::path::{Path, PathBuf};
 /// Arguments of `record`.
 #[derive(Args)]
 pub struct Record {
-    /// What is done
-    #[arg(long, value_parser = task_parser())]
-    task: Task,
+    /// What is done: block-stack, crank, needle, barrel, switch, mechanism, or a task of yours that is like one of them (it goes
+    /// into the sidecar)
+    #[arg(long, value_parser = find_task)]
+    task: Chosen,
     /// Who does it: `scripted`, `mouse`, or `replay:LOG`
     #[arg(long, default_value = "scripted")]
     operator: String,
@@ -92,7 +94,7 @@ impl Record {
     fn world(&self) -> anyhow::Result<World> {
         if let Some(name) = &self.world {
             let world = crate::worlds::find(name)?;
-            if let Some(what) = crate::worlds::lacks(&world, self.task) {
+            if let Some(what) = crate::worlds::lacks(&world, self.task.like()) {
                 anyhow::bail!(
                     "the world {} has no {what}, so the task {} cannot be done in it; name another world or task",
                     name.display(),
@@ -101,7 +103,7 @@ impl Record {
             }
             return Ok(world);
         }
-        match self.task {
+        match self.task.like() {
             Task::BlockStack => Ok(presets::stacking()),
             Task::Crank => Ok(presets::crank()),
             Task::Needle => Ok(presets::needle()),
@@ -153,7 +155,7 @@ impl Record {
         let sensor = if self.sensors == Sensors::Ideal { SensorModel::IDEAL } else { SensorModel::TYPICAL };
         let name = self.out.file_stem().map_or("recording".into(), |s| s.to_string_lossy().into_owned());
         let mut recording = to_recording(&name, world, &ticks, self.every as usize, &sensor, self.seed);
-        recording.meta.task = Some(self.task);
+        self.task.give_to(&mut recording);
         if let Some(about) = self.about_the_operator() {
             recording.meta.other.insert("operator".to_owned(), about);
         }

@@ -2,6 +2,7 @@
 
 use super::{LogArgs, Output};
 use clap::{Args, ValueEnum};
+use estimator::segment::score::Score;
 use estimator::segment::{Segmentation, Thresholds, segment_by};
 use haptics::recording::Recording;
 use serde_json::{Value, json};
@@ -62,6 +63,27 @@ impl Segment {
     }
 }
 
+/// How it agrees with the labels.
+fn agreement(text: &mut String, score: &Score) {
+    let _ = writeln!(
+        text,
+        "  against the labels: {:.1} % of {} samples; boundaries F1 {:.3} (within {:.3} s, {} labelled)",
+        100.0 * score.accuracy,
+        score.samples,
+        score.boundary_f1,
+        score.tolerance_s,
+        score.boundaries
+    );
+    let states: Vec<String> = score.states.iter().map(|(state, s)| format!("{state} {:.3}", s.f1)).collect();
+    let _ = writeln!(text, "    F1 by samples: {}", states.join(", "));
+    if !score.as_one.is_empty() {
+        let _ = writeln!(text, "    {} count as one: the labels do not tell them apart", score.as_one.join(" and "));
+    }
+    if !score.unknown_labels.is_empty() {
+        let _ = writeln!(text, "    labels that name no state were left out: {}", score.unknown_labels.join(", "));
+    }
+}
+
 fn describe(text: &mut String, recording: &Recording, result: &Segmentation) {
     let by_strokes = result.thresholds == Thresholds { velocity_m_s: 0.0, force_n: 0.0 };
     let (how, last_column) = match &result.posterior {
@@ -91,6 +113,12 @@ fn describe(text: &mut String, recording: &Recording, result: &Segmentation) {
         );
     }
     let _ = writeln!(text, "  sequence: {}", result.sequence());
+    for (state, shown) in &result.shows {
+        let _ = writeln!(text, "  {state} shows {}", shown.join(", "));
+    }
+    if let Some(score) = &result.score {
+        agreement(text, score);
+    }
     for warning in &result.warnings {
         let _ = writeln!(text, "  ! {warning}");
     }

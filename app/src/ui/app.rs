@@ -8,6 +8,7 @@ use super::panels::devices::DeviceList;
 use super::panels::log::LogPanel;
 use super::panels::recording::RecordingPanel;
 use super::panels::results::ResultsPanel;
+use super::panels::rules::RulesPanel;
 use super::panels::scene::ScenePanel;
 use super::panels::trainer_side::TrainerSide;
 use super::panels::trainer_view::TrainerView;
@@ -25,6 +26,7 @@ pub struct App {
     recording: RecordingPanel,
     results: ResultsPanel,
     scene: ScenePanel,
+    rules: RulesPanel,
     trainer_view: TrainerView,
     trainer_side: TrainerSide,
     device_list: DeviceList,
@@ -40,6 +42,7 @@ impl App {
             recording: RecordingPanel::default(),
             results: ResultsPanel::default(),
             scene: ScenePanel::default(),
+            rules: RulesPanel,
             trainer_view: TrainerView::default(),
             trainer_side: TrainerSide,
             device_list: DeviceList::default(),
@@ -238,13 +241,18 @@ impl App {
             });
         let height = ui.available_height();
         let upper = Frame::new().inner_margin(Margin { left: 0, right: 0, top: 12, bottom: 6 });
-        Side::top("scene")
+        // The rules need more room than the picture, and keep their own.
+        let rules = session.rules.is_some();
+        Side::top(if rules { "rules" } else { "scene" })
             .frame(upper)
             .show_separator_line(false)
             .resizable(true)
-            .default_size(0.40 * height)
+            .default_size(if rules { 0.48 } else { 0.40 } * height)
             .size_range(120.0..=0.75 * height)
-            .show(ui, |ui| self.scene.ui(ui, session));
+            .show(ui, |ui| {
+                // The rules take the place of the picture, so that the states below are seen to follow.
+                if session.rules.is_some() { self.rules.ui(ui, session) } else { self.scene.ui(ui, session) }
+            });
         let lower = Frame::new().inner_margin(Margin { left: 0, right: 0, top: 6, bottom: 12 });
         CentralPanel::default().frame(lower).show(ui, |ui| self.log.ui(ui, session));
     }

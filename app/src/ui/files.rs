@@ -39,8 +39,10 @@ fn dialog(purpose: Purpose) -> Option<PathBuf> {
 pub fn save_log(ctx: &egui::Context, session: &mut Session, field: &str) {
     let Some(prepared) = session.prepared().cloned() else { return };
     let path = PathBuf::from(field.trim());
+    let choice = session.choice.clone();
     session.jobs.start(ctx, JobKind::Save, move || {
-        let recording = &prepared.recording;
+        // A task of the user's goes along.
+        let recording = &choice.given_to(&prepared.recording);
         let written = estimator::log::write_csv(recording, &path)
             .and_then(|()| estimator::log::write_meta(recording, &path).map(drop));
         match written {

@@ -6,6 +6,7 @@ use super::plots::Levels;
 use super::prepare::Prepared;
 use estimator::log::preview::Preview;
 use estimator::pipeline::Analysis;
+use estimator::segment::Segmentation;
 use estimator::simulate::Simulation;
 use haptics::world::World;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -25,6 +26,8 @@ pub enum JobKind {
     Load,
     /// Segmenting and fitting.
     Fit,
+    /// Telling states anew while rules are edited.
+    Segment,
     /// Replaying the measured motion through the fitted world.
     Simulate,
     /// Waiting for a file dialog.
@@ -61,6 +64,8 @@ pub enum Outcome {
     Loaded(PathBuf, Vec<Arc<Prepared>>),
     /// A fit of what is loaded.
     Fitted(Box<Analysis>),
+    /// The states of one recording, told anew.
+    Segmented(usize, Box<Segmentation>),
     /// Predicted forces and the course of the world, one a recording that can be replayed.
     Simulated(Vec<Option<Replayed>>),
     /// The answer of a file dialog; `None`: cancelled, or no dialog on this system.

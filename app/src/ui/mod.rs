@@ -9,6 +9,7 @@
 pub mod app;
 mod files;
 pub mod film;
+pub mod fit_choice;
 pub mod format;
 pub mod jobs;
 mod keys;
@@ -20,6 +21,7 @@ mod playback;
 pub mod plots;
 pub mod prepare;
 mod recorder;
+pub mod rules;
 pub mod scene;
 pub mod screenshot;
 pub mod session;
@@ -29,7 +31,7 @@ pub mod theme;
 pub mod trainer;
 pub mod widgets;
 
-use haptics::recording::Task;
+use crate::tasks::Chosen;
 use session::Session;
 use std::path::PathBuf;
 
@@ -43,7 +45,7 @@ pub struct RunOptions {
     /// A world to train in.
     pub world: Option<PathBuf>,
     /// The task of the log.
-    pub task: Option<Task>,
+    pub task: Option<Chosen>,
     /// Light or dark; the system's choice when absent.
     pub dark: Option<bool>,
 }
@@ -75,7 +77,7 @@ fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
     }
     let mut session = Session::new();
     session.meta.clone_from(&options.meta);
-    session.task_hint = options.task;
+    session.task_hint.clone_from(&options.task);
     recorder::look_for_unfinished(&cc.egui_ctx, &mut session);
     if let Some(world) = &options.world {
         session.open_world(&cc.egui_ctx, world);

@@ -28,6 +28,8 @@ pub enum Panel {
     Log,
     /// States and subtasks.
     Segments,
+    /// The rules of the task, open in the Calibrate workspace.
+    Rules,
     /// The parameter table.
     Parameters,
     /// Parameters, constraints and warnings.
@@ -107,7 +109,7 @@ fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Session> {
     }
     session.show(recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect());
     session.choice = FitChoice { task: input.task, ..FitChoice::default() };
-    match session::analyse(&session.recordings, session.choice) {
+    match session::analyse(&session.recordings, &session.choice) {
         Ok(analysis) => {
             session.replays = session::replay_all(&analysis.world, &session.recordings);
             session.analysis = Some(Arc::new(analysis));
@@ -116,6 +118,9 @@ fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Session> {
             session.fit_problem = Some(problem.clone());
             session.fail(problem);
         }
+    }
+    if panel == Panel::Rules {
+        session.rules = super::rules::Rules::open(&mut session);
     }
     let (first, last) = session.view_s;
     session.seek(input.time_s.unwrap_or(first + 0.4 * (last - first)));
@@ -192,6 +197,8 @@ fn contents(panel: Panel) -> Contents {
         Panel::Results => framed(ResultsPanel::default()),
         Panel::Scene => framed(ScenePanel::default()),
         Panel::Trainer => framed(TrainerView::default()),
-        Panel::Workbench | Panel::Train | Panel::Devices | Panel::Mapping => Box::new(|ui, app| app.show(ui)),
+        Panel::Rules | Panel::Workbench | Panel::Train | Panel::Devices | Panel::Mapping => {
+            Box::new(|ui, app| app.show(ui))
+        }
     }
 }

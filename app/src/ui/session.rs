@@ -1,14 +1,17 @@
 //! What the window knows: loaded recordings, their fit, the replay, the time cursor. Panels read and change it; jobs fill it.
 
 use super::film::Film;
+pub use super::fit_choice::FitChoice;
 use super::jobs::{JobKind, Jobs, Outcome, Purpose, Replayed};
 use super::mapping::Mapping;
 use super::plots::Levels;
 use super::prepare::Prepared;
+use super::rules::Rules;
 use super::trainer::Trainer;
+use crate::tasks::Chosen;
 use estimator::pipeline::{self, Analysis};
-use estimator::segment::{Method, Segmentation, Thresholds};
-use haptics::recording::{Recording, Task};
+use estimator::segment::{Segmentation, segment_by};
+use haptics::recording::Recording;
 use haptics::world::World;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -69,17 +72,6 @@ impl Default for SceneLayers {
     }
 }
 
-/// How the fit is to be made.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FitChoice {
-    /// The task; absent: told from the recording.
-    pub task: Option<Task>,
-    /// Thresholds given by hand; absent: chosen above the noise.
-    pub thresholds: Option<Thresholds>,
-    /// How states are told apart.
-    pub method: Method,
-}
-
 /// Everything that is shared between panels.
 #[derive(Default)]
 pub struct Session {
@@ -94,7 +86,7 @@ pub struct Session {
     /// A sidecar named by hand.
     pub meta: Option<PathBuf>,
     /// The task that the user named when opening.
-    pub task_hint: Option<Task>,
+    pub task_hint: Option<Chosen>,
     /// The live world.
     pub trainer: Trainer,
     /// The path field.
@@ -131,6 +123,8 @@ pub struct Session {
     pub train_calibrated: bool,
     /// Recordings that a killed program left without their end.
     pub unfinished: Vec<PathBuf>,
+    /// The open editor of a task's rules.
+    pub rules: Option<Box<Rules>>,
     /// The open mapping dialog.
     pub mapping: Option<Box<Mapping>>,
 }
@@ -185,7 +179,13 @@ impl Session {
         self.analysis = None;
         self.fit_problem = None;
         self.playing = false;
-        self.choice = FitChoice { task: self.task_hint, thresholds: None, method: self.choice.method };
+        self.rules = None;
+        self.choice = FitChoice {
+            task: self.task_hint.as_ref().map(Chosen::like),
+            own: self.task_hint.as_ref().and_then(Chosen::own).cloned().map(Arc::new),
+            thresholds: None,
+            method: self.choice.method,
+        };
         self.select(0);
     }
 
@@ -205,10 +205,12 @@ impl Session {
         }
         self.stale = false;
         self.jobs.cancel(JobKind::Simulate);
-        let (recordings, choice) = (self.recordings.clone(), self.choice);
-        self.jobs.start_watched(ctx, JobKind::Fit, "Fitting".to_owned(), move |_| match analyse(&recordings, choice) {
-            Ok(analysis) => Outcome::Fitted(Box::new(analysis)),
-            Err(problem) => Outcome::Failed(problem),
+        let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
+        self.jobs.start_watched(ctx, JobKind::Fit, "Fitting".to_owned(), move |_| {
+            match analyse(&recordings, &choice) {
+                Ok(analysis) => Outcome::Fitted(Box::new(analysis)),
+                Err(problem) => Outcome::Failed(problem),
+            }
         });
     }
 
@@ -256,6 +258,7 @@ impl Session {
                 self.open_with(ctx, &log, Some(sidecar));
             }
             Outcome::Fitted(analysis) => self.fitted(ctx, *analysis),
+            Outcome::Segmented(index, found) => self.segmented(index, *found),
             Outcome::Simulated(replays) => self.replays = replays,
             Outcome::Cancelled | Outcome::Chosen(_, None) => {}
             Outcome::Chosen(Purpose::OpenLog, Some(path)) => self.open_any(ctx, &path),
@@ -273,6 +276,29 @@ impl Session {
         }
     }
 
+    /// Tells the states of the shown recording anew, in the background; the fit stays as it was.
+    pub fn resegment(&mut self, ctx: &egui::Context) {
+        let Some(prepared) = self.prepared().cloned() else { return };
+        self.stale = true;
+        let (index, choice) = (self.current, self.choice.clone());
+        self.jobs.start(ctx, JobKind::Segment, move || {
+            let recording = choice.given_to(&prepared.recording);
+            match segment_by(choice.method, &recording, choice.task, choice.thresholds) {
+                Ok(found) => Outcome::Segmented(index, Box::new(found)),
+                Err(error) => Outcome::Failed(sentence(&error.to_string())),
+            }
+        });
+    }
+
+    fn segmented(&mut self, index: usize, found: Segmentation) {
+        let Some(analysis) = self.analysis.as_ref() else { return };
+        let mut analysis = (**analysis).clone();
+        if let Some(place) = analysis.segmentations.get_mut(index) {
+            *place = Some(found);
+            self.analysis = Some(Arc::new(analysis));
+        }
+    }
+
     fn fitted(&mut self, ctx: &egui::Context, analysis: Analysis) {
         let analysis = Arc::new(analysis);
         self.analysis = Some(Arc::clone(&analysis));
@@ -285,8 +311,8 @@ impl Session {
 }
 
 /// Segments and fits; the sentence of an error.
-pub fn analyse(recordings: &[Arc<Prepared>], choice: FitChoice) -> Result<Analysis, String> {
-    let plain: Vec<Recording> = recordings.iter().map(|p| p.recording.clone()).collect();
+pub fn analyse(recordings: &[Arc<Prepared>], choice: &FitChoice) -> Result<Analysis, String> {
+    let plain: Vec<Recording> = recordings.iter().map(|p| choice.given_to(&p.recording)).collect();
     let options = pipeline::Options { task: choice.task, thresholds: choice.thresholds, method: choice.method };
     pipeline::analyse(&plain, &options).map_err(|error| sentence(&error.to_string()))
 }

@@ -9,11 +9,7 @@ use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{fact, plain_card, primary_button};
 use egui::{ComboBox, DragValue, ScrollArea, TextEdit, Ui};
 use estimator::segment::{Method, Thresholds};
-use haptics::recording::Task;
 use std::path::PathBuf;
-
-/// Tasks on offer.
-const TASKS: [Task; 5] = [Task::BlockStack, Task::Crank, Task::Needle, Task::Switch, Task::Mechanism];
 
 /// The recording panel.
 #[derive(Default)]
@@ -104,23 +100,8 @@ fn choose_trial(ui: &mut Ui, session: &mut Session) {
 }
 
 fn fit(ui: &mut Ui, session: &mut Session) {
-    let before = session.choice;
-    ui.horizontal(|ui| {
-        ui.label(theme::caption(ui, "Task"));
-        let told = session.prepared().and_then(|p| p.task).map_or("unknown", Task::name);
-        let automatic = format!("Automatic ({})", told.replace('-', " "));
-        let text = session.choice.task.map_or(automatic.clone(), |t| format::object(t.name()));
-        ComboBox::from_id_salt("task")
-            .width(ui.available_width() - 2.0 * ui.spacing().button_padding.x)
-            .selected_text(text)
-            .truncate()
-            .show_ui(ui, |ui| {
-                ui.selectable_value(&mut session.choice.task, None, automatic);
-                for task in TASKS {
-                    ui.selectable_value(&mut session.choice.task, Some(task), format::object(task.name()));
-                }
-            });
-    });
+    let before = session.choice.clone();
+    super::task_choice::task_choice(ui, session);
     method(ui, session);
     thresholds(ui, session);
     session.stale |= before != session.choice;

@@ -41,7 +41,7 @@ fn constraints(ui: &mut Ui, session: &Session) {
             }
             let name = if analysis.fit.constraints.len() > 1 { constraint.recording.as_deref() } else { None };
             ui.horizontal(|ui| {
-                ui.label(theme::strong(kind(constraint.kind)));
+                ui.label(theme::strong(heading(constraint)));
                 ui.label(theme::caption(ui, name.unwrap_or_default()));
             });
             for fact in facts(constraint) {
@@ -50,6 +50,16 @@ fn constraints(ui: &mut Ui, session: &Session) {
             ui.label(theme::caption(ui, sentence(&constraint.evidence)));
         }
     });
+}
+
+/// What it is, and of which object where there are several.
+fn heading(constraint: &Constraint) -> String {
+    let kind = kind(constraint.kind);
+    constraint.object.as_deref().map_or(kind.to_owned(), |object| {
+        let mut letters = kind.chars();
+        let lower: String = letters.next().into_iter().flat_map(char::to_lowercase).chain(letters).collect();
+        format!("{}: {lower}", format::object(object))
+    })
 }
 
 fn kind(kind: ConstraintKind) -> &'static str {

@@ -1,11 +1,13 @@
 //! The segmentation: a coloured band of states, the subtasks under it, a legend.
 
 use super::Panel;
+use super::rules::parameter;
 use crate::ui::format;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space, state_color, state_name};
 use crate::ui::widgets::{card, compact, empty_state, swatch};
-use egui::{Align2, FontId, Pos2, Rangef, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
+use egui::{Align, Align2, FontId, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
+use estimator::segment::score::Score;
 use estimator::segment::{Interval, Segmentation, SystemState};
 use std::ops::Range;
 
@@ -128,7 +130,8 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
             });
         }
         let by_model = segmentation.posterior.is_some();
-        response.on_hover_ui(|ui| tooltip(ui, interval, word(segmentation, interval.state), by_model));
+        let shows = segmentation.shows.get(interval.state.name()).map_or(&[][..], Vec::as_slice);
+        response.on_hover_ui(|ui| tooltip(ui, interval, word(segmentation, interval.state), shows, by_model));
     }
     if let Some(time) = seek {
         session.seek(time);
@@ -153,13 +156,18 @@ fn caption(ui: &Ui, rect: Rect, text: &str, ink: egui::Color32) -> bool {
     fits
 }
 
-fn tooltip(ui: &mut Ui, interval: &Interval, state: &str, by_model: bool) {
+fn tooltip(ui: &mut Ui, interval: &Interval, state: &str, shows: &[String], by_model: bool) {
+    ui.set_max_width(320.0);
     ui.label(theme::strong(state));
     if let Some(subtask) = &interval.subtask {
         ui.label(format!("Subtask: {}", format::object(subtask).to_lowercase()));
     }
     let (from, to) = (format::number(interval.t0, 2), format::number(interval.t1, 2));
     ui.label(theme::caption(ui, format!("{from} to {to} s · {} s", format::number(interval.t1 - interval.t0, 2))));
+    if !shows.is_empty() {
+        let words: Vec<String> = shows.iter().map(|name| parameter(name).to_lowercase()).collect();
+        ui.label(theme::caption(ui, format!("Shows: {}", words.join(", "))));
+    }
     let share = format::number(100.0 * interval.probability, 0);
     let text = if by_model { "mean probability" } else { "of its samples show this state by themselves" };
     ui.label(theme::caption(ui, format!("{share} % {text}")));
@@ -214,6 +222,31 @@ fn legend(ui: &mut Ui, segmentation: &Segmentation, indent: f32) {
                 .on_hover_text(format!("{} s in all", format::number(total, 1)));
             ui.add_space(space::XS);
         }
+        if let Some(score) = &segmentation.score {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| agreement(ui, score));
+        }
+    });
+}
+
+/// How the states agree with the labels of the recording.
+fn agreement(ui: &mut Ui, score: &Score) {
+    let text = format!(
+        "labels: {} % agree, boundaries F1 {}",
+        format::number(100.0 * score.accuracy, 1),
+        format::number(score.boundary_f1, 2)
+    );
+    if ui.available_width() < 190.0 {
+        return;
+    }
+    ui.label(theme::caption(ui, text)).on_hover_ui(|ui| {
+        ui.label(theme::strong("Against the labels of this recording"));
+        let within = format::number(score.tolerance_s, 2);
+        ui.label(theme::caption(ui, format!("{} labelled boundaries, found within {within} s", score.boundaries)));
+        for (state, one) in &score.states {
+            let f1 = format::number(one.f1, 3);
+            ui.label(theme::caption(ui, format!("{}: F1 by samples {f1}", format::object(state))));
+        }
+        ui.label(theme::caption(ui, "Labels are only compared; nothing is estimated from them."));
     });
 }
 

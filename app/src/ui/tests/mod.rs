@@ -2,6 +2,7 @@
 
 mod panels;
 mod pictures;
+mod rules;
 mod train;
 mod window;
 
@@ -65,7 +66,7 @@ pub fn session(recording: Recording) -> Session {
     session.trainer.clock = Clock::Manual;
     session.workspace = Workspace::Calibrate;
     session.show(vec![Arc::new(Prepared::new(recording))]);
-    match session::analyse(&session.recordings, session.choice) {
+    match session::analyse(&session.recordings, &session.choice) {
         Ok(analysis) => {
             session.replays = session::replay_all(&analysis.world, &session.recordings);
             session.analysis = Some(Arc::new(analysis));

@@ -1,0 +1,158 @@
+//! The editor of a task's rules: which states there are, when they hold, what they show, and which subtasks they make up. What is
+//! changed is tried at once on the recording below.
+
+use super::Panel;
+use super::rules_table::{states, subtasks};
+use crate::ui::format;
+use crate::ui::rules::{self, Rules};
+use crate::ui::session::Session;
+use crate::ui::theme::{self, palette, space};
+use crate::ui::widgets::{card_with_head, primary_button};
+use egui::{DragValue, RichText, ScrollArea, TextEdit, Ui};
+use estimator::segment::definition::Definition;
+use haptics::recording::Task;
+
+/// Height of what stands below the tables: thresholds, name, and what is wrong.
+const FOOT: f32 = 78.0;
+
+/// The editor of the rules.
+#[derive(Default)]
+pub struct RulesPanel;
+
+/// What the head's buttons ask for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Asked {
+    Nothing,
+    Close,
+    Reset,
+}
+
+impl Panel for RulesPanel {
+    fn title(&self) -> &'static str {
+        "Rules"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        rules::follow(ui.ctx(), session);
+        let Some(mut open) = session.rules.take() else { return };
+        let (seen, before) = (open.draft.clone(), open.before.clone());
+        let mut asked = Asked::Nothing;
+        let heading = format!("Rules of the task “{}”", open.draft.title);
+        let save = card_with_head(
+            ui,
+            &heading,
+            22.0,
+            |ui| asked = head(ui, &seen, &before),
+            |ui| {
+                let height = (ui.available_height() - FOOT).max(60.0);
+                ScrollArea::vertical().id_salt("rules").max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+                    states(ui, &mut open);
+                    ui.add_space(space::S);
+                    subtasks(ui, &mut open);
+                });
+                ui.separator();
+                thresholds(ui, &mut open, session);
+                foot(ui, &mut open)
+            },
+        );
+        open.untried |= open.draft != seen;
+        session.rules = Some(open);
+        match asked {
+            Asked::Close => session.rules = None,
+            Asked::Reset => reset(session),
+            Asked::Nothing if save => rules::save(ui.ctx(), session),
+            Asked::Nothing => {}
+        }
+    }
+}
+
+fn head(ui: &mut Ui, draft: &Definition, before: &Definition) -> Asked {
+    let mut asked = Asked::Nothing;
+    if ui.button("Close").on_hover_text("The rules stay as they are for this recording").clicked() {
+        asked = Asked::Close;
+    }
+    if ui
+        .add_enabled(draft != before, egui::Button::new("Reset"))
+        .on_hover_text("Back to the rules as they were")
+        .clicked()
+    {
+        asked = Asked::Reset;
+    }
+    let like = draft.like.name();
+    let text = if draft.name == like { "built in".to_owned() } else { format!("{}, like {like}", draft.name) };
+    ui.label(theme::caption(ui, text));
+    asked
+}
+
+fn reset(session: &mut Session) {
+    let Some(open) = session.rules.as_mut() else { return };
+    open.draft = open.before.clone();
+    (open.fault, open.untried) = (None, true);
+}
+
+/// Thresholds with hysteresis. A needle has none.
+fn thresholds(ui: &mut Ui, open: &mut Rules, session: &Session) {
+    if open.draft.like == Task::Needle {
+        ui.label(theme::caption(ui, "A needle's phases are told from its strokes; no threshold is needed."));
+        return;
+    }
+    let used = session.segmentation().map(|s| s.thresholds);
+    let policy = &mut open.draft.thresholds;
+    ui.horizontal(|ui| {
+        let one = |ui: &mut Ui, label: &str, value: &mut Option<f64>, learned: f64, factor: f64, unit: &str| {
+            let mut own = value.is_some();
+            ui.checkbox(&mut own, label)
+                .on_hover_text("Without the tick it is learned above the noise of every recording");
+            let mut shown = factor * value.unwrap_or(learned);
+            let speed = 0.005 * shown.max(1e-3);
+            let drag = DragValue::new(&mut shown).range(1e-3..=1e4).speed(speed).max_decimals(3);
+            ui.add_enabled(own, drag.suffix(format!(" {unit}")));
+            *value = own.then_some(shown / factor);
+        };
+        let force = used.map_or(0.05, |t| t.force_n.max(1e-3));
+        let velocity = used.map_or(0.05, |t| t.velocity_m_s.max(1e-6));
+        one(ui, "Force ±", &mut policy.force_n, force, 1.0, "N");
+        ui.add_space(space::S);
+        one(ui, "Velocity ±", &mut policy.velocity_m_s, velocity, 1e3, "mm/s");
+        ui.add_space(space::S);
+        ui.label("zero again below");
+        let mut percent = 100.0 * policy.leave;
+        let drag = DragValue::new(&mut percent).range(5.0..=100.0).speed(0.5).max_decimals(0).suffix(" %");
+        ui.add(drag).on_hover_text("Hysteresis: a signal counts as 0 again below this share of its threshold");
+        // A value that nobody has touched stays as it is written.
+        if (percent - 100.0 * policy.leave).abs() > 1e-9 {
+            policy.leave = percent / 100.0;
+        }
+    });
+}
+
+/// The name to save under, and what is wrong; true when it is to be saved.
+fn foot(ui: &mut Ui, open: &mut Rules) -> bool {
+    let mut save = false;
+    ui.add_space(space::XS);
+    ui.horizontal(|ui| {
+        let usable = open.fault.is_none() && !open.name.trim().is_empty();
+        ui.add(TextEdit::singleline(&mut open.name).desired_width(150.0).hint_text("Name of your task"));
+        save = primary_button(ui, usable, "Save as my task").clicked();
+        match &open.fault {
+            Some(fault) => {
+                let text = RichText::new(fault).size(12.0).color(palette(ui).danger);
+                ui.add(egui::Label::new(text).wrap());
+            }
+            None => {
+                let text = if open.draft == open.before {
+                    "+ above the threshold, 0 within, − below; none: any. The first that holds counts."
+                } else {
+                    "Changed; the states below follow. Refit for new numbers."
+                };
+                ui.add(egui::Label::new(theme::caption(ui, text)).truncate()).on_hover_text(text);
+            }
+        }
+    });
+    save
+}
+
+/// A parameter for the list of what a state shows.
+pub(super) fn parameter(name: &str) -> String {
+    if name == "force_bias" { "Force bias".to_owned() } else { format::parameter(name, None).label }
+}

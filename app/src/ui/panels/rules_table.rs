@@ -1,0 +1,261 @@
+//! The two tables of the rules: states with their signs, and subtasks with their states.
+
+use super::rules::parameter;
+use crate::ui::rules::Rules;
+use crate::ui::theme::{self, palette, space, state_color, state_name};
+use crate::ui::widgets::swatch;
+use egui::{Align, Button, Color32, ComboBox, Layout, RichText, Stroke, TextEdit, Ui, vec2};
+use egui_extras::{Column, TableBuilder, TableRow};
+use estimator::segment::SystemState;
+use estimator::segment::definition::{Step, Subtasks, signals};
+use estimator::segment::shows;
+use haptics::recording::Task;
+
+/// Height of a line.
+const LINE: f32 = 30.0;
+
+/// What is done with a line.
+enum Done {
+    Up(usize),
+    Gone(usize),
+}
+
+/// A signal in words, and what it is.
+fn signal(name: &str) -> (&str, &str) {
+    match name {
+        "contact" => ("Touch", "Any force of a finger"),
+        "grip" => ("Pinch", "The force that pinches: the smaller of the two opposing ones"),
+        "net_force_y" => ("Lift", "The force that lifts: the sum of the vertical forces"),
+        "velocity_x" => ("Sideways", "Horizontal velocity of the grasp"),
+        "velocity_y" => ("Up, down", "Vertical velocity of the grasp"),
+        "load" => ("Load", "Grip, force of the tool, or push of a finger"),
+        "speed" => ("Speed", "Speed without its sign"),
+        "phase" => ("Phase", "The phase of the stroke"),
+        other => (other, ""),
+    }
+}
+
+/// States, when they hold and what they show.
+pub fn states(ui: &mut Ui, open: &mut Rules) {
+    let known = signals(open.draft.like);
+    let needle = open.draft.like == Task::Needle;
+    let mut done = None;
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let mut table = TableBuilder::new(ui)
+        .id_salt("states")
+        .vscroll(false)
+        .cell_layout(Layout::left_to_right(Align::Center))
+        .column(Column::exact(188.0));
+    for _ in known {
+        table = table.column(Column::exact(if needle { 120.0 } else { 70.0 }));
+    }
+    table
+        .column(Column::remainder().clip(true).at_least(80.0))
+        .column(Column::exact(48.0))
+        .header(18.0, |mut header| {
+            header.col(|ui| drop(ui.label(theme::caption(ui, "State"))));
+            for (name, _) in known {
+                let (label, hint) = signal(name);
+                header.col(|ui| drop(ui.label(theme::caption(ui, label)).on_hover_text(hint)));
+            }
+            header.col(|ui| drop(ui.label(theme::caption(ui, "Shows"))));
+            header.col(|_| {});
+        })
+        .body(|mut body| {
+            for rule in 0..open.draft.states.len() {
+                body.row(LINE, |mut row| {
+                    row.col(|ui| state(ui, open, ("rule", rule), |open| &mut open.draft.states[rule].state));
+                    for (name, values) in known {
+                        row.col(|ui| {
+                            if needle { phase(ui, open, rule, values) } else { signs(ui, open, rule, name, values) }
+                        });
+                    }
+                    row.col(|ui| shown(ui, open, rule));
+                    buttons(&mut row, rule, open.draft.states.len() > 1, &mut done);
+                });
+            }
+        });
+    match done {
+        Some(Done::Up(rule)) => open.draft.states.swap(rule - 1, rule),
+        Some(Done::Gone(rule)) => drop(open.draft.states.remove(rule)),
+        None => {}
+    }
+    ui.add_space(space::XS);
+    if ui.button("Add a state").clicked() {
+        open.add_state();
+    }
+}
+
+/// Up and away.
+fn buttons(row: &mut TableRow<'_, '_>, index: usize, removable: bool, done: &mut Option<Done>) {
+    row.col(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        let small = |text: &str| Button::new(RichText::new(text).size(11.0)).small().frame_when_inactive(false);
+        if ui.add_enabled(index > 0, small("▲")).on_hover_text("Move up: rules are tried from the top").clicked() {
+            *done = Some(Done::Up(index));
+        }
+        if ui.add_enabled(removable, small("×")).on_hover_text("Remove").clicked() {
+            *done = Some(Done::Gone(index));
+        }
+    });
+}
+
+/// A choice among the states that fit the task.
+fn state(ui: &mut Ui, open: &mut Rules, id: (&str, usize), place: impl Fn(&mut Rules) -> &mut SystemState) {
+    let all: Vec<SystemState> = open.states().collect();
+    let chosen = place(open);
+    swatch(ui, state_color(ui.visuals().dark_mode, *chosen));
+    let width = (ui.available_width() - 2.0 * space::S).min(164.0);
+    ComboBox::from_id_salt(id).width(width).selected_text(state_name(*chosen)).truncate().show_ui(ui, |ui| {
+        for state in all {
+            ui.selectable_value(chosen, state, state_name(state));
+        }
+    });
+}
+
+/// The signs that a signal may have: three chips, none of them lit for any.
+fn signs(ui: &mut Ui, open: &mut Rules, rule: usize, name: &str, values: &[&str]) {
+    ui.spacing_mut().item_spacing.x = 2.0;
+    ui.spacing_mut().button_padding = vec2(0.0, 0.0);
+    let p = palette(ui);
+    let lit = open.draft.states[rule].when.get(name).cloned().unwrap_or_default();
+    for value in values.iter().filter_map(|v| v.chars().next()) {
+        let on = lit.contains(value);
+        let text = if value == '-' { "−".to_owned() } else { value.to_string() };
+        let (ink, fill, edge) = if on {
+            (p.on_accent, p.accent, Stroke::NONE)
+        } else {
+            (p.faint, Color32::TRANSPARENT, Stroke::new(1.0, p.border))
+        };
+        let chip = Button::new(RichText::new(text).size(12.0).color(ink)).fill(fill).stroke(edge).corner_radius(4);
+        let response = ui.add(chip.min_size(vec2(20.0, 20.0)));
+        let label = format!("{} {} {value}", state_name(open.draft.states[rule].state), signal(name).0);
+        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, on, label.clone()));
+        if response.clicked() {
+            open.switch(rule, name, value);
+        }
+    }
+}
+
+/// The phase of a needle.
+fn phase(ui: &mut Ui, open: &mut Rules, rule: usize, values: &[&str]) {
+    let when = &mut open.draft.states[rule].when;
+    let mut chosen = when.get("phase").cloned().unwrap_or_default();
+    let text = if chosen.is_empty() { "any" } else { chosen.as_str() };
+    ComboBox::from_id_salt(("phase", rule)).width(104.0).selected_text(text.to_owned()).show_ui(ui, |ui| {
+        ui.selectable_value(&mut chosen, String::new(), "any");
+        for value in values {
+            ui.selectable_value(&mut chosen, (*value).to_owned(), *value);
+        }
+    });
+    if chosen.is_empty() {
+        when.remove("phase");
+    } else {
+        when.insert("phase".to_owned(), chosen);
+    }
+}
+
+/// What a state shows: a menu with ticks.
+fn shown(ui: &mut Ui, open: &mut Rules, rule: usize) {
+    let all = shows::parameters(open.draft.like);
+    let shown = &mut open.draft.states[rule].shows;
+    let words: Vec<String> = shown.iter().map(|name| parameter(name)).collect();
+    let text = if words.is_empty() { "nothing".to_owned() } else { words.join(", ") };
+    let ink = if words.is_empty() { palette(ui).faint } else { palette(ui).text };
+    ComboBox::from_id_salt(("shows", rule))
+        .width(ui.available_width() - space::S)
+        .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside)
+        .selected_text(RichText::new(&text).size(12.0).color(ink))
+        .truncate()
+        .show_ui(ui, |ui| {
+            for name in all {
+                let mut on = shown.iter().any(|s| s == name);
+                if ui.checkbox(&mut on, parameter(name)).changed() {
+                    shown.retain(|s| s != name);
+                    if on {
+                        shown.push((*name).to_owned());
+                    }
+                }
+            }
+        })
+        .response
+        .on_hover_text(format!("Fits take their samples from the states that show a parameter.\n{text}"));
+}
+
+/// Subtasks with their states: in an expected order, or each on its own.
+pub fn subtasks(ui: &mut Ui, open: &mut Rules) {
+    ui.separator();
+    ui.add_space(space::XS);
+    let ordered = matches!(open.draft.subtasks, Subtasks::Ordered(_));
+    let text = if ordered {
+        "Subtasks in their expected order; {n} is the number of the object. “May fail”: one may have to begin the object again."
+    } else {
+        "Subtasks: whenever the state lasts a while; {n} counts them."
+    };
+    ui.label(theme::caption(ui, text));
+    ui.add_space(space::XS);
+    if ordered {
+        group(ui, open, "Once, at first", |open| match &mut open.draft.subtasks {
+            Subtasks::Ordered(ordered) => &mut ordered.first,
+            Subtasks::Each(each) => &mut each.each,
+        });
+        ui.add_space(space::XS);
+    }
+    group(ui, open, if ordered { "For every object" } else { "Each" }, |open| match &mut open.draft.subtasks {
+        Subtasks::Ordered(ordered) => &mut ordered.repeat,
+        Subtasks::Each(each) => &mut each.each,
+    });
+}
+
+/// One list of subtasks.
+fn group(ui: &mut Ui, open: &mut Rules, title: &str, steps: impl Fn(&mut Rules) -> &mut Vec<Step>) {
+    let ordered = matches!(open.draft.subtasks, Subtasks::Ordered(_));
+    let mut done = None;
+    ui.push_id(title, |ui| {
+        TableBuilder::new(ui)
+            .id_salt(title)
+            .vscroll(false)
+            .cell_layout(Layout::left_to_right(Align::Center))
+            .column(Column::exact(190.0))
+            .column(Column::exact(188.0))
+            .column(Column::exact(90.0))
+            .column(Column::exact(48.0))
+            .header(18.0, |mut header| {
+                header.col(|ui| drop(ui.label(theme::caption(ui, title))));
+                header.col(|ui| drop(ui.label(theme::caption(ui, "State"))));
+                header.col(|_| {});
+                header.col(|_| {});
+            })
+            .body(|mut body| {
+                for index in 0..steps(open).len() {
+                    body.row(LINE, |mut row| {
+                        row.col(|ui| {
+                            let name = &mut steps(open)[index].name;
+                            ui.add(TextEdit::singleline(name).desired_width(174.0));
+                        });
+                        row.col(|ui| state(ui, open, ("step", index), |open| &mut steps(open)[index].state));
+                        row.col(|ui| {
+                            if ordered {
+                                ui.checkbox(&mut steps(open)[index].retry, "May fail");
+                            }
+                        });
+                        buttons(&mut row, index, true, &mut done);
+                    });
+                }
+            });
+        match done {
+            Some(Done::Up(index)) => steps(open).swap(index - 1, index),
+            Some(Done::Gone(index)) => drop(steps(open).remove(index)),
+            None => {}
+        }
+        if ui.button("Add a subtask").clicked() {
+            let state = open.draft.states.first().map_or(SystemState::FreeMotion, |rule| rule.state);
+            let list = steps(open);
+            let mut number = list.len() + 1;
+            while list.iter().any(|step| step.name == format!("step-{number}-{{n}}")) {
+                number += 1;
+            }
+            list.push(Step { name: format!("step-{number}-{{n}}"), state, retry: false });
+        }
+    });
+}

@@ -1,0 +1,97 @@
+//! The drop-down of tasks: the built-in ones and those of the user.
+
+use crate::tasks::Chosen;
+use crate::ui::format;
+use crate::ui::rules::Rules;
+use crate::ui::session::{Session, sentence};
+use crate::ui::theme;
+use egui::{ComboBox, Ui};
+use estimator::segment::definition::{Definition, SIDECAR_KEY};
+use estimator::segment::library;
+use haptics::recording::{Recording, Task};
+use std::sync::Arc;
+
+/// Tasks on offer.
+const TASKS: [Task; 5] = [Task::BlockStack, Task::Crank, Task::Needle, Task::Switch, Task::Mechanism];
+
+/// What the user has picked.
+enum Picked {
+    Automatic,
+    BuiltIn(Task),
+    Own(String),
+}
+
+/// The drop-down, and the way to the task's rules.
+pub fn task_choice(ui: &mut Ui, session: &mut Session) {
+    let mut picked = None;
+    ui.horizontal(|ui| {
+        ui.label(theme::caption(ui, "Task"));
+        let prepared = session.prepared().cloned();
+        let told = prepared.as_ref().map_or("unknown".to_owned(), |p| told(&p.recording, p.task));
+        let automatic = format!("Automatic ({told})");
+        let choice = &session.choice;
+        let text = match (&choice.own, choice.task) {
+            (Some(own), _) => own.name.clone(),
+            (None, Some(task)) => format::object(task.name()),
+            (None, None) => automatic.clone(),
+        };
+        ComboBox::from_id_salt("task")
+            .width(ui.available_width() - 2.0 * ui.spacing().button_padding.x)
+            .selected_text(text)
+            .truncate()
+            .show_ui(ui, |ui| {
+                let plain = choice.own.is_none();
+                if ui.selectable_label(plain && choice.task.is_none(), automatic).clicked() {
+                    picked = Some(Picked::Automatic);
+                }
+                for task in TASKS {
+                    if ui.selectable_label(plain && choice.task == Some(task), format::object(task.name())).clicked() {
+                        picked = Some(Picked::BuiltIn(task));
+                    }
+                }
+                let own = library::folder().map(library::names).unwrap_or_default();
+                if !own.is_empty() {
+                    ui.separator();
+                    ui.label(theme::caption(ui, "Yours"));
+                }
+                for name in own {
+                    let on = choice.own.as_ref().is_some_and(|task| task.name == name);
+                    if ui.selectable_label(on, &name).clicked() {
+                        picked = Some(Picked::Own(name));
+                    }
+                }
+            });
+    });
+    match picked {
+        Some(Picked::Automatic) => set(session, None, None),
+        Some(Picked::BuiltIn(task)) => set(session, Some(task), None),
+        Some(Picked::Own(name)) => match Chosen::find(&name) {
+            Ok(task) => set(session, Some(task.like()), task.own().cloned().map(Arc::new)),
+            Err(error) => session.fail(sentence(&error.to_string())),
+        },
+        None => {}
+    }
+    edit(ui, session);
+}
+
+/// The name of the task that a recording is read as.
+fn told(recording: &Recording, task: Option<Task>) -> String {
+    let own = recording.meta.other.get(SIDECAR_KEY).and_then(|own| own.get("name")?.as_str());
+    own.or(task.map(Task::name)).unwrap_or("unknown").replace('-', " ")
+}
+
+fn set(session: &mut Session, task: Option<Task>, own: Option<Arc<Definition>>) {
+    (session.choice.task, session.choice.own) = (task, own);
+    if session.rules.take().is_some() {
+        session.rules = Rules::open(session);
+    }
+}
+
+/// Opens and closes the rules.
+fn edit(ui: &mut Ui, session: &mut Session) {
+    let open = session.rules.is_some();
+    let hint = "States, when they hold, their thresholds and what they show: look at them, change them, save them as a task of yours";
+    if ui.button(if open { "Close rules" } else { "Rules …" }).on_hover_text(hint).clicked() {
+        session.rules = if open { None } else { Rules::open(session) };
+    }
+}

@@ -1,0 +1,184 @@
+//! The rules of a task while they are edited: a draft that is tried at once where it can be used.
+
+use super::jobs::{JobKind, Outcome};
+use super::session::{Session, sentence};
+use estimator::segment::SystemState;
+use estimator::segment::definition::{Definition, StateRule, signals};
+use estimator::segment::library;
+use haptics::recording::Task;
+use std::sync::Arc;
+
+/// States that rules may name, by the task they are like.
+const STATES: [SystemState; 9] = [
+    SystemState::FreeMotion,
+    SystemState::HoldOnGround,
+    SystemState::HoldAboveGround,
+    SystemState::SlidingOnGround,
+    SystemState::Turning,
+    SystemState::Holding,
+    SystemState::Insertion,
+    SystemState::Penetration,
+    SystemState::Extraction,
+];
+
+/// An open editor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rules {
+    /// As it was when the editor was opened.
+    pub before: Definition,
+    /// As it is now.
+    pub draft: Definition,
+    /// The name to save it under.
+    pub name: String,
+    /// Why the draft cannot be used.
+    pub fault: Option<String>,
+    /// Changed since it was last tried.
+    pub untried: bool,
+}
+
+impl Rules {
+    /// Opens the rules of the task that is chosen; says why not where it has none.
+    pub fn open(session: &mut Session) -> Option<Box<Self>> {
+        let found = session.prepared().cloned().and_then(|prepared| session.choice.definition(&prepared));
+        match found {
+            Some(Ok(task)) => Some(Box::new(Self::of(task))),
+            Some(Err(problem)) => {
+                session.fail(problem);
+                None
+            }
+            None => {
+                session.fail("The task of this recording is not known; choose one first.");
+                None
+            }
+        }
+    }
+
+    /// An editor of a task.
+    pub fn of(task: Definition) -> Self {
+        let own = Task::from_name(&task.name).is_none();
+        let name = if own { task.name.clone() } else { format!("my-{}", task.name) };
+        Self { before: task.clone(), draft: task, name, fault: None, untried: false }
+    }
+
+    /// The states that the task's rules may name.
+    pub fn states(&self) -> impl Iterator<Item = SystemState> + use<> {
+        let like = self.draft.like;
+        STATES.into_iter().filter(move |state| match state {
+            SystemState::FreeMotion => true,
+            SystemState::HoldOnGround | SystemState::HoldAboveGround | SystemState::SlidingOnGround => {
+                matches!(like, Task::BlockStack | Task::Barrel)
+            }
+            SystemState::Turning | SystemState::Holding => matches!(like, Task::Crank | Task::Mechanism | Task::Switch),
+            _ => like == Task::Needle,
+        })
+    }
+
+    /// Adds a rule for a state that has none yet, else for the first one. Above a rule that always holds: below it would never.
+    pub fn add_state(&mut self) {
+        let unused = self.states().find(|state| !self.draft.states.iter().any(|rule| rule.state == *state));
+        let state = unused.unwrap_or(SystemState::FreeMotion);
+        let first = signals(self.draft.like).first();
+        let when = first.map(|(name, values)| ((*name).to_owned(), values[0].to_owned())).into_iter().collect();
+        let rule = StateRule { state, when, shows: Vec::new() };
+        let always = self.draft.states.iter().position(|rule| rule.when.is_empty());
+        self.draft.states.insert(always.unwrap_or(self.draft.states.len()), rule);
+    }
+
+    /// Switches one value of a signal in a rule; a signal whose values are all off or all on may be anything.
+    pub fn switch(&mut self, rule: usize, signal: &str, value: char) {
+        let Some(rule) = self.draft.states.get_mut(rule) else { return };
+        let all = signals(self.draft.like).iter().find(|(name, _)| *name == signal).map_or(&[][..], |(_, all)| all);
+        let before = rule.when.get(signal).cloned();
+        let on = |c: char| before.as_ref().is_some_and(|values| values.contains(c)) != (c == value);
+        let now: String = all.iter().filter_map(|v| v.chars().next()).filter(|c| on(*c)).collect();
+        if now.is_empty() || now.chars().count() == all.len() {
+            rule.when.remove(signal);
+        } else {
+            rule.when.insert(signal.to_owned(), now);
+        }
+    }
+}
+
+/// Looks at what was changed, and tells the states anew with it. Call once a frame.
+pub fn follow(ctx: &egui::Context, session: &mut Session) {
+    let running = session.jobs.is_running(JobKind::Segment);
+    let Some(rules) = session.rules.as_mut().filter(|rules| rules.untried) else { return };
+    rules.fault = rules.draft.fault().map(|fault| sentence(&fault));
+    if rules.fault.is_some() {
+        rules.untried = false;
+        return;
+    }
+    if running {
+        // One after the other: the newest draft waits for its turn.
+        return;
+    }
+    rules.untried = false;
+    let same = rules.draft == rules.before;
+    let draft = rules.draft.clone();
+    if !same || session.choice.own.is_some() {
+        session.choice.task = Some(draft.like);
+        session.choice.own = Some(Arc::new(draft));
+    }
+    session.resegment(ctx);
+}
+
+/// Writes the draft under its new name, in the background.
+pub fn save(ctx: &egui::Context, session: &mut Session) {
+    let Some(rules) = session.rules.as_mut() else { return };
+    let mut task = rules.draft.clone();
+    rules.name.trim().clone_into(&mut task.name);
+    if task.title == rules.before.title && task.name != rules.before.name {
+        task.title = task.name.replace(['-', '_'], " ");
+    }
+    let Some(folder) = library::folder() else {
+        session.fail("This system names no folder for a user's data; save the task by hand (docs/tasks.md).");
+        return;
+    };
+    match library::save(folder, &task) {
+        Ok(path) => {
+            (rules.before, rules.draft) = (task.clone(), task.clone());
+            session.choice.task = Some(task.like);
+            session.choice.own = Some(Arc::new(task));
+            session.resegment(ctx);
+            session.jobs.start(ctx, JobKind::Save, move || Outcome::Saved(path));
+        }
+        Err(error) => session.fail(sentence(&error.to_string())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rules() -> Rules {
+        Rules::of(Definition::built_in(Task::BlockStack).expect("the built-in task"))
+    }
+
+    #[test]
+    fn signs_are_switched_one_by_one_and_all_of_them_mean_any() {
+        let mut rules = rules();
+        let lifted = rules.draft.states.iter().position(|r| r.state == SystemState::HoldAboveGround).expect("a rule");
+        rules.switch(lifted, "net_force_y", '0');
+        assert_eq!(rules.draft.states[lifted].when["net_force_y"], "+0");
+        rules.switch(lifted, "net_force_y", '-');
+        assert!(!rules.draft.states[lifted].when.contains_key("net_force_y"));
+        rules.switch(lifted, "net_force_y", '-');
+        assert_eq!(rules.draft.states[lifted].when["net_force_y"], "-");
+        rules.switch(lifted, "net_force_y", '-');
+        assert!(!rules.draft.states[lifted].when.contains_key("net_force_y"));
+        rules.switch(99, "grip", '+');
+        assert_eq!(rules.draft.fault(), None);
+    }
+
+    #[test]
+    fn a_new_rule_is_usable_and_stands_above_the_one_that_always_holds() {
+        let mut rules = Rules::of(Definition::built_in(Task::Crank).expect("the built-in task"));
+        rules.add_state();
+        assert_eq!(rules.draft.fault(), None);
+        assert!(rules.draft.states.last().is_some_and(|rule| rule.when.is_empty()));
+        assert_eq!((rules.draft.states.len(), rules.name.as_str()), (4, "my-crank"));
+        let mut needle = Rules::of(Definition::built_in(Task::Needle).expect("the built-in task"));
+        needle.add_state();
+        assert_eq!(needle.draft.fault(), None);
+    }
+}

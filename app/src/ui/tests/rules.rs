@@ -1,0 +1,91 @@
+//! The editor of a task's rules: chips, faults, live states, saving.
+
+use super::{CRANK, STACK, harness, session};
+use crate::ui::jobs::JobKind;
+use crate::ui::panels::Panel as _;
+use crate::ui::panels::rules::RulesPanel;
+use crate::ui::rules::Rules;
+use crate::ui::session::Session;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use estimator::segment::SystemState;
+use std::time::{Duration, Instant};
+
+fn open(mut session: Session) -> Harness<'static, Session> {
+    session.rules = Rules::open(&mut session);
+    harness(session, [820.0, 620.0], |ui, session: &mut Session| {
+        let ctx = ui.ctx().clone();
+        session.poll(&ctx);
+        RulesPanel.ui(ui, session);
+    })
+}
+
+/// Until nothing is told anew any more.
+fn settle(harness: &mut Harness<'_, Session>) {
+    let begun = Instant::now();
+    harness.run_steps(2);
+    while harness.state().jobs.is_running(JobKind::Segment) && begun.elapsed() < Duration::from_mins(1) {
+        std::thread::sleep(Duration::from_millis(5));
+        harness.run_steps(1);
+    }
+    harness.run_steps(2);
+}
+
+fn carried_s(session: &Session) -> f64 {
+    let states = session.segmentation().map(|s| s.states.as_slice()).unwrap_or_default();
+    states.iter().filter(|i| i.state == SystemState::HoldAboveGround).map(|i| i.t1 - i.t0).sum()
+}
+
+#[test]
+fn a_changed_rule_is_tried_at_once_and_taken_back() {
+    let mut harness = open(session(STACK.clone()));
+    let before = carried_s(harness.state());
+    assert!(before > 1.0 && !harness.state().stale);
+    // Carried only where nothing is lifted: never.
+    for sign in ["Hold above ground Lift +", "Hold above ground Lift -"] {
+        harness.get_by_label(sign).click();
+        settle(&mut harness);
+    }
+    assert_eq!(carried_s(harness.state()), 0.0);
+    let state = harness.state();
+    assert!(state.stale && state.choice.own.is_some() && state.banners.is_empty(), "{:?}", state.banners);
+    harness.get_by_label("Reset").click();
+    settle(&mut harness);
+    assert!((carried_s(harness.state()) - before).abs() < 1e-9);
+}
+
+#[test]
+fn what_cannot_be_used_is_said_in_one_sentence_and_changes_nothing() {
+    let mut harness = open(session(STACK.clone()));
+    let before = carried_s(harness.state());
+    let rules = harness.state_mut().rules.as_mut().expect("open");
+    rules.draft.states.retain(|rule| rule.state != SystemState::HoldAboveGround);
+    rules.untried = true;
+    settle(&mut harness);
+    let fault = harness.state().rules.as_ref().and_then(|rules| rules.fault.clone()).expect("a fault");
+    assert!(fault.contains("carry-block-{n}") && fault.ends_with('.'), "{fault}");
+    assert!(harness.query_by_label(&fault).is_some());
+    assert_eq!(carried_s(harness.state()), before);
+    assert!(harness.state().choice.own.is_none());
+}
+
+#[test]
+fn a_built_in_name_is_not_taken_and_every_kind_of_task_is_drawn() {
+    let mut harness = open(session(CRANK.clone()));
+    harness.state_mut().rules.as_mut().expect("open").name = "crank".to_owned();
+    harness.run_steps(2);
+    harness.get_by_label("Save as my task").click();
+    harness.run_steps(2);
+    let banners = &harness.state().banners;
+    assert!(banners.iter().any(|b| b.text.contains("built-in") || b.text.contains("folder")), "{banners:?}");
+    harness.get_by_label("Close").click();
+    harness.run_steps(2);
+    assert!(harness.state().rules.is_none());
+}
+
+#[test]
+fn a_recording_of_unknown_task_has_no_rules_and_says_so() {
+    let mut session = super::empty();
+    assert!(Rules::open(&mut session).is_none());
+    assert!(session.banners[0].text.contains("choose one"), "{:?}", session.banners);
+}
