@@ -12,7 +12,7 @@ use haptics::recording::Recording;
 /// A threshold of the model's channels is this many times the noise, or this share of what the signal reaches, as for blocks.
 const NOISES: f64 = 5.0;
 const SIGNAL_SHARE: f64 = 0.06;
-const SPEED_SHARE: f64 = 0.15;
+const SPEED_SHARE: f64 = 0.06;
 /// Depth below which the surface is not certainly passed, as a share of the depth that is reached.
 const DEPTH_SHARE: f64 = 0.02;
 

@@ -100,7 +100,10 @@ pub fn score(recording: &Recording, found: &Segmentation) -> Option<Score> {
     let step = recording.rate_hz().map_or(1.0, |rate| 1.0 / rate);
     let tolerance_s = TOLERANCE_S.max(TOLERANCE_SAMPLES * step);
     let known: Vec<SystemState> = truth.iter().map(|state| state.unwrap_or(SystemState::NoState)).collect();
-    let (wanted, got) = (boundaries(&time_s, &known, tolerance_s), boundaries(&time_s, &claims, tolerance_s));
+    // Where nothing is labelled, nothing is compared.
+    let labelled = |(label, claim): (&Option<SystemState>, &SystemState)| label.map_or(SystemState::NoState, |_| *claim);
+    let compared: Vec<SystemState> = truth.iter().zip(&claims).map(labelled).collect();
+    let (wanted, got) = (boundaries(&time_s, &known, tolerance_s), boundaries(&time_s, &compared, tolerance_s));
     let mut errors = paired(&wanted, &got, tolerance_s);
     errors.sort_by(f64::total_cmp);
     let both = wanted.len() + got.len();

@@ -16,7 +16,7 @@ use std::ops::Range;
 /// Depth below which force over depth means nothing, m.
 const LEAST_DEPTH_M: f64 = 2e-4;
 /// The needle is drawn out once it has come back by this, m, and by so many times the noise.
-const BACK_M: f64 = 0.25e-3;
+const BACK_M: f64 = 0.3e-3;
 const NOISES: f64 = 6.0;
 /// Most samples that take part in the test.
 const MOST_ROWS: usize = 4000;
@@ -53,7 +53,9 @@ pub fn phases(along: &Along, pushes: &[Push], loading: &Loading, recording: &Rec
         let hold_end = along.holds[push.hold].end;
         // A hand at rest trembles about the deepest point: it is drawn out once it has come back by more.
         let back_m = BACK_M.max(NOISES * depth_noise_m);
-        let back = |i: &usize| along.depth_m[*i] < along.depth_m[deepest - 1] - back_m;
+        // The needle itself: the pads give when the friction of the hole turns round.
+        let depth_m = |i: usize| along.depth_m[i] - along.give_m_n.0 * along.force_n[i];
+        let back = |i: &usize| depth_m(*i) < depth_m(deepest - 1) - back_m;
         let turned = (deepest..hold_end).find(back).unwrap_or(hold_end);
         let pressing = if push.puncture.is_some() { Phase::Penetration } else { Phase::Insertion };
         add(pressing, push.samples.end..turned);
