@@ -246,9 +246,10 @@ impl Trainer<'_> {
 fn affinity(states: &[SystemState]) -> Vec<f64> {
     use SystemState::{FreeMotion, HoldAboveGround, HoldOnGround, NoState, Penetration, SlidingOnGround};
     let likely = |a: SystemState, b: SystemState| match (a, b) {
-        // A needle goes through what it has pressed in, and comes out before it goes in again.
-        (FreeMotion, Penetration) | (Penetration, FreeMotion) => false,
-        (FreeMotion, HoldAboveGround | SlidingOnGround) | (HoldAboveGround, SlidingOnGround) => false,
+        // A needle goes through what it has pressed in, and is drawn out before it is free.
+        (FreeMotion, Penetration | HoldAboveGround | SlidingOnGround)
+        | (Penetration, FreeMotion)
+        | (HoldAboveGround, SlidingOnGround) => false,
         (FreeMotion, HoldOnGround) | (HoldOnGround, HoldAboveGround | SlidingOnGround) | (NoState, _) => true,
         _ => !matches!(a, HoldOnGround | HoldAboveGround | SlidingOnGround),
     };

@@ -29,8 +29,8 @@ use haptics::recording::{Recording, Task};
 use motion::Motion;
 use score::Score;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 pub use state::SystemState;
+use std::collections::BTreeMap;
 pub use threshold::Thresholds;
 
 /// One interval in one state.

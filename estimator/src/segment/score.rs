@@ -101,7 +101,8 @@ pub fn score(recording: &Recording, found: &Segmentation) -> Option<Score> {
     let tolerance_s = TOLERANCE_S.max(TOLERANCE_SAMPLES * step);
     let known: Vec<SystemState> = truth.iter().map(|state| state.unwrap_or(SystemState::NoState)).collect();
     // Where nothing is labelled, nothing is compared.
-    let labelled = |(label, claim): (&Option<SystemState>, &SystemState)| label.map_or(SystemState::NoState, |_| *claim);
+    let labelled =
+        |(label, claim): (&Option<SystemState>, &SystemState)| label.map_or(SystemState::NoState, |_| *claim);
     let compared: Vec<SystemState> = truth.iter().zip(&claims).map(labelled).collect();
     let (wanted, got) = (boundaries(&time_s, &known, tolerance_s), boundaries(&time_s, &compared, tolerance_s));
     let mut errors = paired(&wanted, &got, tolerance_s);

@@ -22,7 +22,7 @@ fn without_standing(labels: &Labels) -> Labels {
 
 /// A sheet of random stiffness and strength.
 fn scores(seed: u64) -> Vec<[Score; 2]> {
-    let mut rng = StdRng::seed_from_u64(seed ^ 0x4eed_1e);
+    let mut rng = StdRng::seed_from_u64(seed ^ 0x004e_ed1e);
     let mut world = presets::needle();
     if let Some(membrane) = &mut world.membrane {
         membrane.law.stiffness_n_m *= rng.random_range(0.7..1.4);

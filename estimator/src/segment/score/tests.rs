@@ -7,7 +7,9 @@ use haptics::recording::Labels;
 
 fn recording(labels: &[(&str, usize)]) -> Recording {
     let mut all = Labels::default();
-    labels.iter().for_each(|(label, n)| (0..*n).for_each(|_| all.push(label)));
+    for (label, n) in labels {
+        (0..*n).for_each(|_| all.push(label));
+    }
     Recording {
         time_s: Some((0..all.len()).map(|i| i as f64 * 0.01).collect()),
         labels: Some(all),

@@ -140,6 +140,7 @@ impl MembraneLaw {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use MembranePhase::{Extraction, Free, Insertion, Penetration};
 
     const CUP: MembraneLaw = MembraneLaw {
         stiffness_n_m: 300.0,
@@ -220,7 +221,6 @@ mod tests {
                 phases.push(phase);
             }
         }
-        use MembranePhase::{Extraction, Free, Insertion, Penetration};
         assert_eq!(phases, [Free, Insertion, Penetration, Extraction, Free]);
     }
 
