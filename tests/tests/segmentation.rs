@@ -28,7 +28,7 @@ enum Trouble {
 }
 
 fn logs() -> u64 {
-    std::env::var("TOUCHSTONE_SEGMENTATION_LOGS").ok().and_then(|n| n.parse().ok()).unwrap_or(16)
+    std::env::var("TOUCHSTONE_SEGMENTATION_LOGS").ok().and_then(|n| n.parse().ok()).unwrap_or(8)
 }
 
 fn first_seed() -> u64 {

@@ -51,7 +51,7 @@ pub fn states(ui: &mut Ui, open: &mut Rules) {
     }
     table
         .column(Column::remainder().clip(true).at_least(80.0))
-        .column(Column::exact(48.0))
+        .column(Column::exact(60.0))
         .header(18.0, |mut header| {
             header.col(|ui| drop(ui.label(theme::caption(ui, "State"))));
             for (name, _) in known {
@@ -90,11 +90,12 @@ pub fn states(ui: &mut Ui, open: &mut Rules) {
 fn buttons(row: &mut TableRow<'_, '_>, index: usize, removable: bool, done: &mut Option<Done>) {
     row.col(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        let small = |text: &str| Button::new(RichText::new(text).size(11.0)).small().frame_when_inactive(false);
-        if ui.add_enabled(index > 0, small("▲")).on_hover_text("Move up: rules are tried from the top").clicked() {
+        let small = |text: &str, size| Button::new(RichText::new(text).size(size)).small().frame_when_inactive(false);
+        if ui.add_enabled(index > 0, small("▲", 10.0)).on_hover_text("Move up: rules are tried from the top").clicked()
+        {
             *done = Some(Done::Up(index));
         }
-        if ui.add_enabled(removable, small("×")).on_hover_text("Remove").clicked() {
+        if ui.add_enabled(removable, small("×", 17.0)).on_hover_text("Remove").clicked() {
             *done = Some(Done::Gone(index));
         }
     });
@@ -219,7 +220,7 @@ fn group(ui: &mut Ui, open: &mut Rules, title: &str, steps: impl Fn(&mut Rules) 
             .column(Column::exact(190.0))
             .column(Column::exact(188.0))
             .column(Column::exact(90.0))
-            .column(Column::exact(48.0))
+            .column(Column::exact(60.0))
             .header(18.0, |mut header| {
                 header.col(|ui| drop(ui.label(theme::caption(ui, title))));
                 header.col(|ui| drop(ui.label(theme::caption(ui, "State"))));

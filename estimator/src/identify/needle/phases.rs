@@ -8,16 +8,15 @@ use crate::constraint::existence::FALSE_ALARMS;
 use crate::estimate::{Existence, Phase, StrokePhase};
 use crate::identify::linear::least_squares;
 use crate::identify::long_run::student_quantile_975;
-use crate::signal::noise::white_noise;
+use crate::signal::task::{smooth, times};
 use haptics::recording::Recording;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::ops::Range;
 
 /// Depth below which force over depth means nothing, m.
 const LEAST_DEPTH_M: f64 = 2e-4;
-/// The needle is drawn out once it has come back by this, m, and by so many times the noise.
+/// The needle is drawn out once it has come back by this, m.
 const BACK_M: f64 = 0.3e-3;
-const NOISES: f64 = 6.0;
 /// Most samples that take part in the test.
 const MOST_ROWS: usize = 4000;
 
@@ -26,7 +25,9 @@ pub fn phases(along: &Along, pushes: &[Push], loading: &Loading, recording: &Rec
     let surface = loading.surface_m;
     let quiet = quiet_force(along);
     let time = |i: usize| recording.time_s.as_ref().map_or(i as f64, |t| t[i.min(t.len() - 1)]);
-    let depth_noise_m = white_noise(&along.depth_m);
+    // A single noisy sample crosses the surface too early and is the deepest of all.
+    let calm_m = smooth(&times(recording), &along.depth_m).value;
+    let calm_n = smooth(&times(recording), &along.force_n).value;
     let mut found: Vec<StrokePhase> = Vec::new();
     let mut add = |phase: Phase, samples: Range<usize>| {
         if samples.is_empty() {
@@ -44,18 +45,17 @@ pub fn phases(along: &Along, pushes: &[Push], loading: &Loading, recording: &Rec
         });
     };
     for push in pushes {
-        let inside = |i: &usize| along.depth_m[*i] > surface;
+        let inside = |i: &usize| calm_m[*i] > surface;
         let start = push.samples.start;
         let met = (start..push.samples.end).find(inside).unwrap_or(push.samples.end);
         add(Phase::Free, start..met);
         add(Phase::Insertion, met..push.samples.end);
         let deepest = push.end.max(push.samples.end);
         let hold_end = along.holds[push.hold].end;
-        // A hand at rest trembles about the deepest point: it is drawn out once it has come back by more.
-        let back_m = BACK_M.max(NOISES * depth_noise_m);
-        // The needle itself: the pads give when the friction of the hole turns round.
-        let depth_m = |i: usize| along.depth_m[i] - along.give_m_n.0 * along.force_n[i];
-        let back = |i: &usize| depth_m(*i) < depth_m(deepest - 1) - back_m;
+        // A hand at rest trembles about the deepest point: it is drawn out once it has come back by more. That is the needle's own
+        // way: the pads give when the friction of the hole turns round.
+        let depth_m = |i: usize| calm_m[i] - along.give_m_n.0 * calm_n[i];
+        let back = |i: &usize| depth_m(*i) < depth_m(deepest - 1) - BACK_M;
         let turned = (deepest..hold_end).find(back).unwrap_or(hold_end);
         let pressing = if push.puncture.is_some() { Phase::Penetration } else { Phase::Insertion };
         add(pressing, push.samples.end..turned);
