@@ -1,5 +1,6 @@
 //! `touchstone bench servo`: how punctual the servo is on this machine, with and without pictures being drawn beside it.
 
+mod online;
 mod verdict;
 
 use super::{ControlArgs, Output};
@@ -33,6 +34,8 @@ pub struct Bench {
 enum What {
     /// Lateness, compute time, missed deadlines and stalls of the servo thread
     Servo(ServoBench),
+    /// Cost of a sample of the estimator beside the servo, against a tick of the servo
+    Online(online::OnlineBench),
 }
 
 #[derive(Args)]
@@ -64,13 +67,16 @@ impl Bench {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         match &self.what {
             What::Servo(bench) => bench.run(),
+            What::Online(bench) => bench.run(),
         }
     }
 
     #[cfg(test)]
     pub(super) fn passivity_control(&self) -> Option<f64> {
-        let What::Servo(bench) = &self.what;
-        bench.control.passivity_control
+        match &self.what {
+            What::Servo(bench) => bench.control.passivity_control,
+            What::Online(_) => None,
+        }
     }
 }
 

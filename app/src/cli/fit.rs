@@ -2,10 +2,12 @@
 
 use super::stated::Stated;
 use super::table::{parameter_line, with_error};
-use super::{LogArgs, Output};
+use super::{LogArgs, Output, enough};
 use anyhow::Context;
 use clap::Args;
 use estimator::estimate::{Constraint, Fit as Fitted};
+use estimator::online::enough::Wanted;
+use estimator::online::enough_for;
 use estimator::pipeline::{Options, analyse};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -18,6 +20,9 @@ pub struct Fit {
     logs: Vec<PathBuf>,
     #[command(flatten)]
     source: LogArgs,
+    /// Wanted accuracy of a parameter, e.g. `weight_N=1%`; may be given several times
+    #[arg(long = "wanted", value_name = "NAME=SHARE")]
+    wanted: Vec<String>,
     /// Write the calibrated world here
     #[arg(long)]
     out: Option<PathBuf>,
@@ -27,6 +32,10 @@ pub struct Fit {
 
 impl Fit {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
+        let mut wanted = Wanted::default();
+        for text in &self.wanted {
+            wanted.state(text).map_err(anyhow::Error::msg)?;
+        }
         let mut recordings = Vec::new();
         for log in &self.logs {
             recordings.extend(self.source.load(log)?);
@@ -48,7 +57,13 @@ impl Fit {
         if let Some(path) = &self.out {
             let _ = writeln!(text, "world: {}", path.display());
         }
-        Ok(Output { text, json: serde_json::to_value(&analysis.fit)? })
+        let missing = enough_for(&recordings, analysis.task, &analysis.fit, &wanted);
+        text.push_str(&enough::table(&missing));
+        let mut json = serde_json::to_value(&analysis.fit)?;
+        if let Some(answer) = json.as_object_mut() {
+            answer.insert("enough".to_owned(), serde_json::to_value(&missing)?);
+        }
+        Ok(Output { text, json })
     }
 }
 

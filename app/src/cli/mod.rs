@@ -6,6 +6,7 @@ mod bench;
 mod convert;
 mod demo;
 mod device;
+mod enough;
 mod fit;
 mod info;
 mod progress;

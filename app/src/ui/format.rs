@@ -1,5 +1,7 @@
 //! Numbers as people write them: value ± error with sensible units.
 
+use estimator::online::enough::Enough;
+
 /// A quantity on the screen: what it is called, in which unit, and the factor from SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
@@ -91,6 +93,22 @@ pub fn with_error(value: f64, error: Option<f64>) -> (String, Option<String>) {
             (number(value, decimals), Some(number(error, decimals)))
         }
         None => (significant(value, 4), None),
+    }
+}
+
+/// What is missing for a parameter, in words.
+pub fn missing(enough: &Enough) -> String {
+    if enough.share >= 1.0 {
+        return "enough".to_owned();
+    }
+    let seconds = |s: f64| format!("{} s", number(s.max(1.0).ceil(), 0));
+    match (&enough.missing, enough.more_seconds) {
+        (Some(missing), _) => match missing.seconds {
+            Some(s) if s >= 1.0 => format!("{}, about {}", missing.words, seconds(s)),
+            _ => missing.words.clone(),
+        },
+        (None, Some(s)) => format!("go on for about {}", seconds(s)),
+        (None, None) => "more data is needed; which motion is not known".to_owned(),
     }
 }
 

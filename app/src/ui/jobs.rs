@@ -5,6 +5,7 @@ use super::mapping::preview::Seen;
 use super::plots::Levels;
 use super::prepare::Prepared;
 use estimator::log::preview::Preview;
+use estimator::online::enough::Enough;
 use estimator::pipeline::Analysis;
 use estimator::segment::Segmentation;
 use estimator::simulate::Simulation;
@@ -30,6 +31,8 @@ pub enum JobKind {
     Segment,
     /// Replaying the measured motion through the fitted world.
     Simulate,
+    /// Judging whether there is enough data.
+    Judge,
     /// Waiting for a file dialog.
     Dialog,
     /// Writing a file.
@@ -68,6 +71,8 @@ pub enum Outcome {
     Segmented(usize, Box<Segmentation>),
     /// Predicted forces and the course of the world, one a recording that can be replayed.
     Simulated(Vec<Option<Replayed>>),
+    /// What is still missing for the parameters of the fit.
+    Judged(Vec<Enough>),
     /// The answer of a file dialog; `None`: cancelled, or no dialog on this system.
     Chosen(Purpose, Option<PathBuf>),
     /// A world from a file.

@@ -112,6 +112,7 @@ fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Session> {
     match session::analyse(&session.recordings, &session.choice) {
         Ok(analysis) => {
             session.replays = session::replay_all(&analysis.world, &session.recordings);
+            session.enough = session::judge(&analysis, &session.recordings);
             session.analysis = Some(Arc::new(analysis));
         }
         Err(problem) => {

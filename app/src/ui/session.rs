@@ -9,6 +9,7 @@ use super::prepare::Prepared;
 use super::rules::Rules;
 use super::trainer::Trainer;
 use crate::tasks::Chosen;
+use estimator::online::enough::{Enough, Wanted};
 use estimator::pipeline::{self, Analysis};
 use estimator::segment::{Segmentation, segment_by};
 use haptics::recording::Recording;
@@ -101,6 +102,8 @@ pub struct Session {
     pub fit_problem: Option<String>,
     /// The replay through the fitted world, by recording.
     pub replays: Vec<Option<Replayed>>,
+    /// What is still missing for the parameters of the fit.
+    pub enough: Vec<Enough>,
     /// The time that is looked at.
     pub cursor_s: f64,
     /// The part of the recording that plots show.
@@ -176,6 +179,7 @@ impl Session {
     pub fn show(&mut self, recordings: Vec<Arc<Prepared>>) {
         self.recordings = recordings;
         self.replays.clear();
+        self.enough.clear();
         self.analysis = None;
         self.fit_problem = None;
         self.playing = false;
@@ -260,6 +264,7 @@ impl Session {
             Outcome::Fitted(analysis) => self.fitted(ctx, *analysis),
             Outcome::Segmented(index, found) => self.segmented(index, *found),
             Outcome::Simulated(replays) => self.replays = replays,
+            Outcome::Judged(enough) => self.enough = enough,
             Outcome::Cancelled | Outcome::Chosen(_, None) => {}
             Outcome::Chosen(Purpose::OpenLog, Some(path)) => self.open_any(ctx, &path),
             Outcome::Chosen(Purpose::OpenWorld, Some(path)) => self.open_world(ctx, &path),
@@ -303,6 +308,8 @@ impl Session {
         let analysis = Arc::new(analysis);
         self.analysis = Some(Arc::clone(&analysis));
         self.fit_problem = None;
+        let (recordings, fitted) = (self.recordings.clone(), Arc::clone(&analysis));
+        self.jobs.start(ctx, JobKind::Judge, move || Outcome::Judged(judge(&fitted, &recordings)));
         let recordings = self.recordings.clone();
         self.jobs.start_watched(ctx, JobKind::Simulate, "Replaying in the fitted world".to_owned(), move |_| {
             Outcome::Simulated(replay_all(&analysis.world, &recordings))
@@ -315,6 +322,12 @@ pub fn analyse(recordings: &[Arc<Prepared>], choice: &FitChoice) -> Result<Analy
     let plain: Vec<Recording> = recordings.iter().map(|p| choice.given_to(&p.recording)).collect();
     let options = pipeline::Options { task: choice.task, thresholds: choice.thresholds, method: choice.method };
     pipeline::analyse(&plain, &options).map_err(|error| sentence(&error.to_string()))
+}
+
+/// What is still missing for the parameters of a fit.
+pub fn judge(analysis: &Analysis, recordings: &[Arc<Prepared>]) -> Vec<Enough> {
+    let plain: Vec<Recording> = recordings.iter().map(|p| p.recording.clone()).collect();
+    estimator::online::enough_for(&plain, analysis.task, &analysis.fit, &Wanted::default())
 }
 
 /// Plays every recording through the world.

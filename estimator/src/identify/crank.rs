@@ -4,10 +4,11 @@
 //! radius residual shows it (it goes with the force, not with the angle), so it is fitted together with centre and radius, the
 //! handle's position is corrected, and only then are the forces split into normal and tangential parts.
 
+pub mod frame;
 mod friction;
 mod geometry;
 mod held;
-mod laws;
+pub mod laws;
 mod motion;
 mod report;
 mod slipping;

@@ -2,7 +2,7 @@
 
 use super::SystemState;
 use super::definition::Definition;
-use super::rules::Sign;
+use super::rules::{Sign, beyond};
 use super::subtasks::LEAST_SAMPLES;
 use super::threshold::{Levels, Thresholds, choose, percentile};
 use crate::estimate::EstimateError;
@@ -55,16 +55,15 @@ impl Motion {
     /// The state of every sample by the task's rules alone.
     pub fn states(&self, task: &Definition) -> Vec<SystemState> {
         let (rules, leave) = (task.rules(), task.thresholds.leave);
-        let beyond = |before: &mut Sign, value: f64, limit: f64| {
-            *before =
-                if value > limit * if *before == Sign::Plus { leave } else { 1.0 } { Sign::Plus } else { Sign::Zero };
+        let tell = |before: &mut Sign, value: f64, limit: f64| {
+            *before = beyond(*before, value, limit, leave);
             *before
         };
         let (mut load, mut speed) = (Sign::Zero, Sign::Zero);
         (0..self.time_s.len())
             .map(|i| {
-                let load = self.load.as_ref().map(|l| beyond(&mut load, l[i], self.thresholds.force_n));
-                rules.state(&[load, Some(beyond(&mut speed, self.speed[i], self.thresholds.velocity_m_s))])
+                let load = self.load.as_ref().map(|l| tell(&mut load, l[i], self.thresholds.force_n));
+                rules.state(&[load, Some(tell(&mut speed, self.speed[i], self.thresholds.velocity_m_s))])
             })
             .collect()
     }

@@ -4,6 +4,7 @@ use super::SystemState;
 use super::definition::Rules;
 use super::threshold::{Levels, Thresholds};
 use crate::signal::task::TaskSignals;
+use haptics::Vec2;
 
 /// A signal against its threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,32 +44,53 @@ impl Quality {
 /// below to count as zero again, so that a value at the threshold does not chatter.
 pub fn qualify(signals: &TaskSignals, levels: &Levels, thresholds: &Thresholds, leave: f64) -> Vec<Quality> {
     let force = |finger: usize, i: usize| {
-        signals.tips[finger].force.as_ref().map_or_else(haptics::Vec2::zeros, |f| f[i]) - levels.bias_n[finger]
+        signals.tips[finger].force.as_ref().map_or_else(Vec2::zeros, |f| f[i]) - levels.bias_n[finger]
     };
-    let (limit_f, limit_v) = (thresholds.force_n, thresholds.velocity_m_s);
-    let mut filters = [Sign::Zero; 4];
-    let mut touching = [false; 4];
+    let mut qualifier = Qualifier::default();
     (0..signals.len())
-        .map(|i| {
-            let (f1, f2) = (force(0, i), force(1, i));
-            let velocity = signals.velocity[i];
-            let values = [velocity.x / limit_v, velocity.y / limit_v, (f1 + f2).y / limit_f, f1.x.min(-f2.x) / limit_f];
-            for (filter, value) in filters.iter_mut().zip(values) {
-                *filter = schmitt(*filter, value, leave);
-            }
-            for (touch, value) in touching.iter_mut().zip([f1.x, f1.y, f2.x, f2.y]) {
-                let level = value.abs() / limit_f;
-                *touch = level > if *touch { leave } else { 1.0 };
-            }
-            Quality {
-                velocity_x: filters[0],
-                velocity_y: filters[1],
-                net_y: filters[2],
-                grip: filters[3],
-                no_contact: touching.iter().all(|t| !t),
-            }
-        })
+        .map(|i| qualifier.next([force(0, i), force(1, i)], signals.velocity[i], thresholds, leave))
         .collect()
+}
+
+/// Tells the qualitative values of one sample after the other; remembers the ones before for the hysteresis.
+#[derive(Clone, Debug)]
+pub struct Qualifier {
+    filters: [Sign; 4],
+    touching: [bool; 4],
+}
+
+impl Default for Qualifier {
+    fn default() -> Self {
+        Self { filters: [Sign::Zero; 4], touching: [false; 4] }
+    }
+}
+
+impl Qualifier {
+    /// Values of the next sample: forces of both fingers without their bias, N, and the velocity of the grip, m/s. `leave` as in [`qualify`].
+    pub fn next(&mut self, force: [Vec2; 2], velocity: Vec2, thresholds: &Thresholds, leave: f64) -> Quality {
+        let (limit_f, limit_v) = (thresholds.force_n, thresholds.velocity_m_s);
+        let [f1, f2] = force;
+        let values = [velocity.x / limit_v, velocity.y / limit_v, (f1 + f2).y / limit_f, f1.x.min(-f2.x) / limit_f];
+        for (filter, value) in self.filters.iter_mut().zip(values) {
+            *filter = schmitt(*filter, value, leave);
+        }
+        for (touch, value) in self.touching.iter_mut().zip([f1.x, f1.y, f2.x, f2.y]) {
+            let level = value.abs() / limit_f;
+            *touch = level > if *touch { leave } else { 1.0 };
+        }
+        Quality {
+            velocity_x: self.filters[0],
+            velocity_y: self.filters[1],
+            net_y: self.filters[2],
+            grip: self.filters[3],
+            no_contact: self.touching.iter().all(|t| !t),
+        }
+    }
+}
+
+/// Whether a size is beyond its limit, with hysteresis; for signals without a sign.
+pub fn beyond(before: Sign, value: f64, limit: f64, leave: f64) -> Sign {
+    if value > limit * if before == Sign::Plus { leave } else { 1.0 } { Sign::Plus } else { Sign::Zero }
 }
 
 fn schmitt(before: Sign, value: f64, leave: f64) -> Sign {

@@ -144,17 +144,43 @@ pub fn choose(signals: &TaskSignals, levels: &Levels) -> Thresholds {
             .collect::<Vec<_>>(),
         0.9,
     );
-    // Net force is the sum of two channels: its noise is √2 higher.
-    let by_noise = NOISE_MULTIPLE * std::f64::consts::SQRT_2 * levels.force_noise_n;
-    let force_n = by_noise
-        .max(SIGNAL_SHARE * usual_net)
-        .max(SIGNAL_SHARE * 0.5 * levels.usual_grip_n)
-        .min(0.45 * usual_net.max(by_noise));
     let mut speeds: Vec<f64> = signals.velocity.iter().map(Vec2::norm).collect();
-    let usual_speed = percentile(&mut speeds, 0.95);
-    let velocity_noise = velocity_noise(signals);
-    let velocity_m_s = (NOISE_MULTIPLE * velocity_noise).max(0.15 * usual_speed);
-    Thresholds { velocity_m_s, force_n }
+    Usual {
+        force_noise_n: levels.force_noise_n,
+        net_n: usual_net,
+        grip_n: levels.usual_grip_n,
+        velocity_noise_m_s: velocity_noise(signals),
+        speed_m_s: percentile(&mut speeds, 0.95),
+    }
+    .thresholds()
+}
+
+/// What signals usually reach while something happens, and their noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Usual {
+    /// Standard deviation of a force channel in free motion, N.
+    pub force_noise_n: f64,
+    /// 90th percentile of the size of the net vertical force, N.
+    pub net_n: f64,
+    /// 95th percentile of the grip force, N.
+    pub grip_n: f64,
+    /// Standard deviation of a velocity channel, m/s.
+    pub velocity_noise_m_s: f64,
+    /// 95th percentile of the speed, m/s.
+    pub speed_m_s: f64,
+}
+
+impl Usual {
+    /// Thresholds above the noise and above what is not the event.
+    pub fn thresholds(&self) -> Thresholds {
+        // Net force is the sum of two channels: its noise is √2 higher.
+        let by_noise = NOISE_MULTIPLE * std::f64::consts::SQRT_2 * self.force_noise_n;
+        let force_n = by_noise
+            .max(SIGNAL_SHARE * self.net_n)
+            .max(SIGNAL_SHARE * 0.5 * self.grip_n)
+            .min(0.45 * self.net_n.max(by_noise));
+        Thresholds { velocity_m_s: (NOISE_MULTIPLE * self.velocity_noise_m_s).max(0.15 * self.speed_m_s), force_n }
+    }
 }
 
 /// White part of the velocity noise, from second differences (they remove any smooth motion), m/s.

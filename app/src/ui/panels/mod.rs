@@ -7,6 +7,7 @@ mod incoming;
 mod legend;
 pub mod log;
 mod marks;
+pub mod measured;
 pub mod parameters;
 mod passivity;
 pub mod recording;

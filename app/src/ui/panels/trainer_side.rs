@@ -31,6 +31,7 @@ impl Panel for TrainerSide {
             operator(ui, session);
             plain_card(ui, "Recording", |ui| recorder::controls(ui, session));
             forces(ui, &session.trainer);
+            super::measured::beside(ui, &mut session.trainer);
             super::passivity::passivity(ui, session);
             super::trainer_timing::timing(ui, &session.trainer);
         });

@@ -69,6 +69,7 @@ pub fn session(recording: Recording) -> Session {
     match session::analyse(&session.recordings, &session.choice) {
         Ok(analysis) => {
             session.replays = session::replay_all(&analysis.world, &session.recordings);
+            session.enough = session::judge(&analysis, &session.recordings);
             session.analysis = Some(Arc::new(analysis));
         }
         Err(problem) => session.fit_problem = Some(problem),

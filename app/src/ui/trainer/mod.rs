@@ -12,6 +12,7 @@ mod remote;
 mod script;
 mod task;
 mod trial;
+mod watch;
 
 pub use choice::WorldChoice;
 pub use control::{MOST_CONTROL_N_S_M, USUAL_CONTROL_N_S_M};
@@ -24,6 +25,7 @@ pub use remote::Remote;
 pub use script::Script;
 pub use task::task_hint;
 pub use trial::{Direction, Trial};
+pub use watch::{Watch, task_of as watched_task};
 
 use crate::recorder::{Recorder, Stopping};
 use haptics::device::{Device, DeviceSpec};
@@ -79,6 +81,8 @@ pub struct Trainer {
     pub struck_m_s: Option<f64>,
     /// Forces of the last seconds.
     pub history: History,
+    /// What the hand has measured so far.
+    pub watch: Watch,
     /// The calibrated world, when there is one.
     pub calibrated: Option<World>,
     /// The world from a file, when there is one.
@@ -235,6 +239,10 @@ impl Trainer {
                 kept.fault = snapshot.fault;
             }
             None => self.newest = Some(snapshot.clone()),
+        }
+        let generation = self.newest.as_ref().map_or(0, |s| s.generation as usize);
+        if let Some(world) = self.worlds.get(generation).or(self.worlds.last()) {
+            self.watch.take(&self.scratch, world, self.clock == Clock::Manual);
         }
         self.struck_m_s = self.impacts.update(&self.scratch, frame_s);
         engine.test_force(self.trial.advance(frame_s));

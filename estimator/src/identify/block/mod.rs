@@ -5,6 +5,7 @@
 //! width (it grew 7 % too narrow there) and from the height. Where the recording does not show it, the standard error says so.
 
 mod heights;
+mod leak;
 mod slip;
 
 use super::bootstrap::block_bootstrap;
@@ -119,8 +120,10 @@ pub fn fit_by(
         None => heights::heights(&blocks, &weights_n)?,
     });
     parameters.push(blocks.pad_stiffness(count));
+    let masses_kg: Vec<f64> = weights_n.iter().map(|w| w / recording.meta.gravity()).collect();
     for number in 1..=count {
         parameters.extend(blocks.friction(number));
+        parameters.extend(leak::leak(&blocks, number, count, &masses_kg));
     }
     // Read by object: all of block 1, all of block 2, then the pads.
     parameters.sort_by(|a, b| a.object.cmp(&b.object));

@@ -3,23 +3,29 @@
 use haptics::law::{CoulombFriction, Inertia, Law, LoadFriction, MAX_PARAMETERS, Motion, ViscousFriction, Weight};
 
 /// The laws of eq. 5.2, with the two that it left out: each linear in one parameter.
-pub(super) static LAWS: [&dyn Law; 5] = [&Weight, &LoadFriction, &ViscousFriction, &CoulombFriction, &Inertia];
+pub static LAWS: [&dyn Law; 5] = [&Weight, &LoadFriction, &ViscousFriction, &CoulombFriction, &Inertia];
 
-pub(super) const WEIGHT: usize = 0;
-pub(super) const INERTIA: usize = 4;
-pub(super) const COULOMB: usize = 3;
-pub(super) const FRICTION: [usize; 3] = [1, 2, COULOMB];
+/// Place of the weight.
+pub const WEIGHT: usize = 0;
+/// Place of the inertia.
+pub const INERTIA: usize = 4;
+/// Place of the constant friction.
+pub const COULOMB: usize = 3;
+/// Places of what resists the motion.
+pub const FRICTION: [usize; 3] = [1, 2, COULOMB];
 
 /// Names of the laws' parameters in a fit; inertia is reported about the axis.
-pub(super) const NAMES: [&str; 5] = ["weight_N", "friction_mu", "viscous_N_s_m", "coulomb_N", "inertia_kg_m2"];
+pub const NAMES: [&str; 5] = ["weight_N", "friction_mu", "viscous_N_s_m", "coulomb_N", "inertia_kg_m2"];
 
-pub(super) fn column(law: &dyn Law, motion: &Motion) -> f64 {
+/// What the law adds to the force per unit of its parameter.
+pub fn column(law: &dyn Law, motion: &Motion) -> f64 {
     let mut columns = [0.0; MAX_PARAMETERS];
     law.regressor(motion, &mut columns);
     columns[0]
 }
 
-pub(super) fn missing_motion(law: usize) -> &'static str {
+/// Why a recording may not show a law.
+pub fn missing_motion(law: usize) -> &'static str {
     match law {
         WEIGHT => "the handle was not turned far enough round for its weight to be told from friction",
         INERTIA => "the crank was turned too evenly for its inertia to show; accelerate it",

@@ -1,9 +1,9 @@
 //! The handle's motion along the circle, and the rows of the regression of eq. 5.2.
 
+use super::frame::{Frame, Handled, LOW_PASS_HALF_S, blur};
 use super::geometry::Geometry;
 use super::held::Held;
 use super::laws::{LAWS, column};
-use haptics::Vec2;
 use haptics::law::Motion;
 use haptics::recording::Recording;
 use rayon::prelude::*;
@@ -11,42 +11,28 @@ use rayon::prelude::*;
 /// Turns the motion of a held handle into motion along its circle, sample by sample.
 pub(super) struct Along<'a> {
     held: &'a Held,
-    geometry: &'a Geometry,
-    up: f64,
-    /// The sign of a velocity within its noise is a guess: it is blurred over twice that (and never less than 0.5 mm/s).
-    blur_m_s: f64,
+    frame: Frame,
 }
 
 impl<'a> Along<'a> {
     pub(super) fn new(recording: &Recording, held: &'a Held, geometry: &'a Geometry) -> Self {
         let up = if recording.meta.up.as_deref() == Some("-y") { -1.0 } else { 1.0 };
-        Self { held, geometry, up, blur_m_s: (2.0 * held.velocity_noise).max(0.5e-3) }
-    }
-
-    /// Outward and forward direction.
-    fn frame(&self, i: usize) -> (Vec2, Vec2) {
-        let give = &self.geometry.give_m_per_n;
-        let handle = self.held.position[i] - self.held.force[i].component_mul(give) - self.geometry.center_m;
-        let outward = handle.normalize();
-        (outward, Vec2::new(-outward.y, outward.x))
+        let (center_m, give_m_per_n) = (geometry.center_m, geometry.give_m_per_n);
+        Self { held, frame: Frame { center_m, give_m_per_n, up, blur_m_s: blur(held.velocity_noise) } }
     }
 
     /// The motion (its position left out) and the tangential force, N, at a sample; they mean something while it is held.
     fn at(&self, i: usize) -> (Motion, f64) {
-        let (held, give) = (self.held, &self.geometry.give_m_per_n);
-        let (outward, along) = self.frame(i);
-        // The tips move with the handle plus the changing give of the pads.
-        let speed = (held.velocity[i] - held.force_rate[i].component_mul(give)).dot(&along);
-        let motion = Motion {
-            time_s: held.time_s[i],
-            position: 0.0,
-            velocity: speed,
-            acceleration: (held.acceleration[i] - held.force_bend[i].component_mul(give)).dot(&along),
-            direction: (speed / self.blur_m_s).tanh(),
-            normal_force_n: held.force[i].dot(&outward),
-            up_along: self.up * along.y,
+        let held = self.held;
+        let handled = Handled {
+            position: held.position[i],
+            velocity: held.velocity[i],
+            acceleration: held.acceleration[i],
+            force: held.force[i],
+            force_rate: held.force_rate[i],
+            force_bend: held.force_bend[i],
         };
-        (motion, held.force[i].dot(&along))
+        self.frame.at(held.time_s[i], &handled)
     }
 }
 
@@ -66,7 +52,7 @@ pub(super) fn motions_at(
     let mut angle_before = 0.0;
     samples
         .map(|i| {
-            let (outward, _) = along.frame(i);
+            let outward = along.frame.outward(held.position[i], held.force[i]);
             let wrapped = outward.y.atan2(outward.x);
             let turns = ((angle_before - wrapped) / std::f64::consts::TAU).round();
             let angle = wrapped + turns * std::f64::consts::TAU;
@@ -87,9 +73,6 @@ pub(super) struct Rows {
     pub(super) tangential: Vec<f64>,
     pub(super) weights: Vec<f64>,
 }
-
-/// Half of the low-pass window, s: what is slower than about 5 Hz stays.
-const LOW_PASS_HALF_S: f64 = 0.06;
 
 fn half(time_s: &[f64]) -> usize {
     let period_s = (time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64;

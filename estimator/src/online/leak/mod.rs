@@ -24,11 +24,11 @@ pub const CONFIDENT: f64 = 0.95;
 /// A rate below this share of the largest one that is seen is as good as none.
 pub const NEGLIGIBLE: f64 = 0.03;
 /// A drift during the carry may differ by this share from the mean one between the readings before and after.
-const UNEVEN: f64 = 0.15;
+const UNEVEN: f64 = 0.1;
 /// A change within so many standard errors is no change.
-const SIGNIFICANT: f64 = 3.0;
+const SIGNIFICANT: f64 = 4.0;
 /// Before anything is seen: nothing, leak, drift, both.
-const BEFORE: [f64; 4] = [0.25, 0.345, 0.345, 0.06];
+const BEFORE: [f64; 4] = [0.25, 0.36, 0.36, 0.03];
 
 /// Times, s, and forces, N, one each a sample, in the order of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

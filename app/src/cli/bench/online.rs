@@ -1,0 +1,96 @@
+//! `touchstone bench online`: what a sample of the estimator beside the servo costs, against a tick of the servo.
+
+use super::super::Output;
+use anyhow::Context;
+use clap::Args;
+use estimator::online::{Online, Settings};
+use haptics::device::{ScriptedOperator, Skill};
+use haptics::recording::Task;
+use haptics::servo::recorder::{Rows, SensorModel};
+use haptics::servo::safety::Limits;
+use haptics::servo::{Loop, Swap};
+use haptics::world::{State, World, presets};
+use serde_json::json;
+use std::fmt::Write;
+use std::time::Instant;
+
+/// Servo period, s.
+const DT: f64 = 1e-3;
+
+/// Arguments of `bench online`.
+#[derive(Args)]
+pub struct OnlineBench {
+    /// How often each task is performed
+    #[arg(long, default_value_t = 5)]
+    rounds: u32,
+}
+
+/// Costs in one world, s.
+struct Cost {
+    world: &'static str,
+    tick_s: f64,
+    sample_s: f64,
+    report_s: f64,
+    samples: usize,
+}
+
+impl OnlineBench {
+    pub(super) fn run(&self) -> anyhow::Result<Output> {
+        anyhow::ensure!(
+            (1..=10_000).contains(&self.rounds),
+            "{} rounds are not possible; choose 1 to 10000",
+            self.rounds
+        );
+        let costs = [
+            self.cost("two blocks", Task::BlockStack, presets::stacking())?,
+            self.cost("crank", Task::Crank, presets::crank())?,
+        ];
+        let mut text = format!("{:<12} {:>9} {:>10} {:>7} {:>10}\n", "world", "tick", "sample", "ratio", "report");
+        for c in &costs {
+            let _ = writeln!(
+                text,
+                "{:<12} {:>6.2} µs {:>7.2} µs {:>7.2} {:>7.0} µs",
+                c.world,
+                1e6 * c.tick_s,
+                1e6 * c.sample_s,
+                c.sample_s / c.tick_s,
+                1e6 * c.report_s
+            );
+        }
+        let json = costs.iter().map(|c| {
+            json!({ "world": c.world, "tick_s": c.tick_s, "sample_s": c.sample_s, "ratio": c.sample_s / c.tick_s,
+                    "report_s": c.report_s, "samples": c.samples })
+        });
+        Ok(Output { text, json: json!({ "online": json.collect::<Vec<_>>() }) })
+    }
+
+    /// The task by the scripted operator: first the servo's ticks, then the same ticks through the estimator.
+    fn cost(&self, name: &'static str, task: Task, world: World) -> anyhow::Result<Cost> {
+        let operator = ScriptedOperator::new(&world, &State::resting(&world), Skill::default(), 1);
+        let count = (operator.duration_s() / DT) as usize;
+        let mut servo = Loop::new(Swap::new(world), Box::new(operator), Limits::default());
+        let mut ticks = Vec::with_capacity(count);
+        let begun = Instant::now();
+        for _ in 0..count {
+            ticks.push(servo.tick(DT));
+        }
+        let tick_s = begun.elapsed().as_secs_f64() / count as f64;
+        let mut rows = Rows::new(SensorModel::TYPICAL, 1);
+        let samples: Vec<_> = ticks.iter().map(|t| (t.time_s, rows.row(t))).collect();
+        let last_s = samples.last().context("the script is empty")?.0;
+        let mut online = Online::new(task, DT, Settings::default())?;
+        let begun = Instant::now();
+        for round in 0..self.rounds {
+            for (time_s, sample) in &samples {
+                online.push(time_s + f64::from(round) * (last_s + 1.0), sample);
+            }
+        }
+        let pushed = count * self.rounds as usize;
+        let sample_s = begun.elapsed().as_secs_f64() / pushed as f64;
+        let begun = Instant::now();
+        let report = online.report();
+        let report_s = begun.elapsed().as_secs_f64();
+        anyhow::ensure!(!report.parameters.is_empty(), "nothing was measured in the world {name}");
+        Ok(Cost { world: name, tick_s, sample_s, report_s, samples: pushed })
+    }
+}

@@ -1,0 +1,180 @@
+//! What has been measured so far, and what is still missing: beside the servo, and for a loaded recording.
+
+use crate::ui::format;
+use crate::ui::session::{Session, sentence};
+use crate::ui::theme::{self, palette, space};
+use crate::ui::trainer::{Trainer, Watch, watched_task};
+use crate::ui::widgets::{bar, card, compact, plain_card, segmented};
+use egui::{Align, Layout, RichText, Ui};
+use estimator::estimate::Parameter;
+use estimator::online::enough::Enough;
+use estimator::online::leak::Verdict;
+use estimator::online::{Event, Report};
+
+/// Changes are told for so long, s.
+const TOLD_S: f64 = 20.0;
+/// Below this share of free grip it is said in a warning colour.
+const LITTLE: f64 = 0.2;
+
+/// The card beside the trainer's picture.
+pub fn beside(ui: &mut Ui, trainer: &mut Trainer) {
+    let Some(task) = trainer.scene().map(|(_, world)| watched_task(world)) else { return };
+    let watch = &mut trainer.watch;
+    let mut on = watch.on;
+    let switch = |ui: &mut Ui| {
+        ui.checkbox(&mut on, "On").on_hover_text("Measure the object while it is handled");
+    };
+    let mut again = false;
+    card(ui, "What the hand has measured so far", switch, |ui| match (task, watch.report()) {
+        _ if !watch.on => drop(ui.label(theme::caption(ui, "Switched off."))),
+        (None, _) => {
+            drop(ui.label(theme::caption(
+                ui,
+                "Blocks, barrels and cranks are measured while they are handled; this world has none.",
+            )));
+        }
+        (_, None) => drop(ui.label(theme::caption(ui, "Nothing yet: pick something up."))),
+        (_, Some(report)) => again = told(ui, watch, &report),
+    });
+    if again {
+        watch.forget();
+    }
+    watch.on = on;
+}
+
+/// True when it is to begin anew.
+fn told(ui: &mut Ui, watch: &mut Watch, report: &Report) -> bool {
+    if report.enough.is_empty() {
+        ui.label(theme::caption(ui, "Nothing yet: pick it up, carry it, let go; or turn the handle."));
+        return false;
+    }
+    rows(ui, &report.parameters, &report.enough);
+    notices(ui, report);
+    ui.add_space(space::XS);
+    let mut again = false;
+    compact(ui, |ui| {
+        ui.label(theme::caption(ui, "Accuracy"));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            again = ui.link("Forget").on_hover_text("Begins to measure anew").clicked();
+        });
+    });
+    let choices = [
+        (3.0, "Coarse", "Three times the usual standard errors will do"),
+        (1.0, "Usual", "1 % of weights, 0.5 % of widths, 5 % of frictions"),
+        (1.0 / 3.0, "Fine", "A third of the usual standard errors"),
+    ];
+    segmented(ui, &mut watch.coarser, &choices);
+    again
+}
+
+fn notices(ui: &mut Ui, report: &Report) {
+    let p = palette(ui);
+    let say = |ui: &mut Ui, text: String, color| {
+        ui.add_space(space::XS);
+        ui.label(RichText::new(text).size(11.5).color(color));
+    };
+    if let Some(margin) = report.slip_margin {
+        let color = if margin < LITTLE { p.caution } else { p.secondary };
+        let share = format::number(100.0 * margin.max(0.0), 0);
+        say(ui, format!("{share} % of the shear that surely held is still free."), color);
+    }
+    for (object, answer) in &report.leaks {
+        let word = match answer.verdict {
+            Verdict::Leak => "It leaks",
+            Verdict::SensorDrift => "The sensors drift",
+            Verdict::Both => "It leaks, and the sensors drift",
+            Verdict::Steady | Verdict::CannotTell => "Leak or sensor drift: it cannot be told yet",
+        };
+        let advice = answer.motion.as_ref().map_or_else(String::new, |m| format!(" To tell: {m}."));
+        say(ui, format!("{}. {word}: {}.{advice}", format::object(object), answer.why), p.caution);
+    }
+    for event in report.events.iter().rev().filter(|e| report.time_s - e.noticed_s < TOLD_S).take(2) {
+        say(ui, event_words(event), p.caution);
+    }
+}
+
+fn event_words(event: &Event) -> String {
+    let at = format::number(event.began_s, 1);
+    if event.parameter == "center_m" {
+        return format!("At {at} s the circle jumped: the grasp slipped on the handle. It is measured anew.");
+    }
+    let quantity = format::parameter(event.parameter, Some(event.before));
+    let before = format::significant(event.before * quantity.factor, 3);
+    let way = if event.grows { "grew" } else { "fell" };
+    format!(
+        "At {at} s a change was noticed ({} {way}, before {before} {}); it is measured anew.",
+        quantity.label, quantity.unit
+    )
+}
+
+/// One block of lines an object: value ± error, a bar to the wanted accuracy, and the motion that is missing.
+pub fn rows(ui: &mut Ui, parameters: &[Parameter], all: &[Enough]) {
+    let mut object = "";
+    // Mass is weight over gravity: one line is enough.
+    for enough in all.iter().filter(|e| e.name != "mass_kg") {
+        if enough.object != object {
+            object = &enough.object;
+            ui.add_space(space::XS);
+            ui.label(theme::strong(format::object(object)));
+        }
+        let parameter = parameters.iter().find(|p| p.object == enough.object && p.name == enough.name);
+        row(ui, enough, parameter);
+    }
+}
+
+fn row(ui: &mut Ui, enough: &Enough, parameter: Option<&Parameter>) {
+    let p = palette(ui);
+    let value = parameter.filter(|q| q.identified).and_then(|q| q.value);
+    let quantity = format::parameter(&enough.name, value);
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let line = compact(ui, |ui| {
+            ui.label(RichText::new(&quantity.label).size(12.0).color(p.secondary));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| match value {
+                Some(value) => {
+                    let (value, error) =
+                        format::with_error(value * quantity.factor, enough.std_error.map(|e| e * quantity.factor));
+                    let error = error.map_or_else(String::new, |e| format!(" ± {e}"));
+                    ui.label(RichText::new(format!("{value}{error} {}", quantity.unit)).size(12.0))
+                }
+                None => ui.label(RichText::new("not shown yet").size(12.0).italics().color(p.faint)),
+            })
+            .response
+        });
+        let color = if enough.share >= 1.0 { p.good } else { p.accent };
+        bar(ui, enough.share, 1.0, None, color);
+        let hover = parameter.map_or_else(String::new, |q| sentence(&q.how));
+        line.on_hover_text(format!("{hover}\n{}", wish(enough, quantity.factor, quantity.unit)));
+        if enough.share < 1.0 {
+            ui.label(RichText::new(format::capitalised(&format::missing(enough))).size(11.0).color(p.secondary));
+        }
+    });
+    ui.add_space(space::XS);
+}
+
+fn wish(enough: &Enough, factor: f64, unit: &str) -> String {
+    let share = format::number(100.0 * enough.share, 0);
+    match enough.wanted {
+        Some(wanted) => {
+            format!(
+                "Wanted: ± {} {unit} (1 σ); {share} % of the information for it is there.",
+                format::significant(wanted * factor, 2)
+            )
+        }
+        None => "How well it must be known can be said once there is a value.".to_owned(),
+    }
+}
+
+/// The card under the parameters of a loaded recording.
+pub fn of_recording(ui: &mut Ui, session: &Session) {
+    let Some(analysis) = session.analysis.as_ref().filter(|_| !session.enough.is_empty()) else { return };
+    let done = session.enough.iter().filter(|e| e.share >= 1.0).count();
+    plain_card(ui, "Enough data?", |ui| {
+        ui.label(theme::caption(
+            ui,
+            format!("{done} of {} parameters are known as well as wanted.", session.enough.len()),
+        ));
+        let missing: Vec<Enough> = session.enough.iter().filter(|e| e.share < 1.0).cloned().collect();
+        rows(ui, &analysis.fit.parameters, &missing);
+    });
+}

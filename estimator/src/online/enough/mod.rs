@@ -1,0 +1,268 @@
+//! How much is known of every parameter, how much longer the same motion would take, and which motion is missing.
+//!
+//! What was collected is an information matrix (the inverse of the covariance, errors as reported). A candidate motion adds rows of its
+//! own a second, made by the same laws. The seconds that each of them needs for the wanted accuracy follow; the motion that is missing
+//! is the one that gets there clearly sooner than going on as before. Names of parameters decide nothing here.
+
+mod candidates;
+mod wanted;
+
+pub(super) use candidates::{block_problems, crank_problems};
+pub use wanted::Wanted;
+
+use crate::estimate::Parameter;
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+/// Nobody waits longer than this for a number, s.
+const LONGEST_S: f64 = 1800.0;
+/// Going on as before is fine when it takes no longer than this, s …
+const SOON_S: f64 = 8.0;
+/// … or than so many times the best other motion.
+const CLEARLY: f64 = 2.0;
+/// Where nothing gets there alone, a motion counts by what it does in so many seconds.
+const TRIAL_S: f64 = 5.0;
+/// It must shrink the error by this share to be named.
+const HELPS: f64 = 0.1;
+
+/// A motion that shows something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Motion {
+    /// Nothing new.
+    GoOn,
+    /// Fingers off everything for a second.
+    LetGo,
+    /// Held still above the ground.
+    HoldAboveGround,
+    /// Lifted and lowered quickly.
+    LiftAndLower,
+    /// The pinch changes.
+    SqueezeMoreAndLess,
+    /// The pinch is loosened until the object slides.
+    LoosenUntilItSlides,
+    /// All the way round.
+    FullTurn,
+    /// Both directions.
+    Reverse,
+    /// Slowly and fast.
+    OtherSpeeds,
+    /// Changing speed within a turn.
+    Accelerate,
+    /// Pressed towards the centre and drawn from it.
+    PushAndPull,
+}
+
+impl Motion {
+    /// What to do, as an order.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::GoOn => "go on as before",
+            Self::LetGo => "let go for a second, with the fingers off everything",
+            Self::HoldAboveGround => "hold it still above the ground",
+            Self::LiftAndLower => "lift and lower it more quickly",
+            Self::SqueezeMoreAndLess => "squeeze more, then less, while holding it",
+            Self::LoosenUntilItSlides => "loosen the pinch until it begins to slide",
+            Self::FullTurn => "turn it all the way round",
+            Self::Reverse => "reverse the direction a few times",
+            Self::OtherSpeeds => "turn at other speeds, slowly and fast",
+            Self::Accelerate => "speed up and slow down within a turn",
+            Self::PushAndPull => "push towards the centre and pull away from it while turning",
+        }
+    }
+}
+
+/// What is known of one parameter, and what is missing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Enough {
+    /// The object.
+    pub object: String,
+    /// The parameter, with its unit.
+    pub name: String,
+    /// One standard error now, in the unit of the value; absent while it is not known at all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub std_error: Option<f64>,
+    /// Wanted standard error, in the unit of the value; absent where it cannot be said before there is a value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wanted: Option<f64>,
+    /// Share of the information that the wanted accuracy needs, 0 to 1.
+    pub share: f64,
+    /// Further seconds of the same motion, where they would do.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub more_seconds: Option<f64>,
+    /// The motion that is missing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub missing: Option<Missing>,
+}
+
+/// A motion that is missing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Missing {
+    /// Which one.
+    pub motion: Motion,
+    /// In words.
+    pub words: String,
+    /// Seconds of it that would do; absent where it takes more than that motion alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
+}
+
+/// One regression with what other motions would add to it.
+#[derive(Clone, Debug)]
+pub(super) struct Problem {
+    pub(super) object: String,
+    /// Names of parameters with their place among the columns.
+    pub(super) names: Vec<(String, usize)>,
+    /// Inverse covariance of what was collected, columns in their own units.
+    pub(super) information: DMatrix<f64>,
+    /// Standard deviation of every column's value before anything is seen: far beyond any object.
+    pub(super) before: Vec<f64>,
+    /// Information a second of each motion; the first is going on as before.
+    pub(super) motions: Vec<(Motion, DMatrix<f64>)>,
+}
+
+impl Problem {
+    /// Variance of a column's value after so many seconds of a motion.
+    fn variance(&self, column: usize, motion: &DMatrix<f64>, seconds: f64) -> f64 {
+        let n = self.before.len();
+        let prior = DMatrix::from_diagonal(&DVector::from_iterator(n, self.before.iter().map(|s| s.powi(-2))));
+        // Scaled by what is known before: the columns' units differ by orders of magnitude.
+        let scale = DMatrix::from_diagonal(&DVector::from_column_slice(&self.before));
+        let total = &scale * (&self.information + motion * seconds + prior) * &scale;
+        let inverse = total.cholesky().map(|c| c.inverse());
+        inverse.map_or(f64::INFINITY, |i| i[(column, column)] * self.before[column].powi(2))
+    }
+
+    /// Seconds of a motion until a column's variance is `wanted`; `None` when that takes too long.
+    fn seconds(&self, column: usize, motion: &DMatrix<f64>, wanted: f64) -> Option<f64> {
+        if self.variance(column, motion, LONGEST_S) > wanted {
+            return None;
+        }
+        let (mut low, mut high) = (0.0, LONGEST_S);
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if self.variance(column, motion, middle) > wanted { low = middle } else { high = middle }
+        }
+        Some(high)
+    }
+}
+
+/// Judges every parameter that an accuracy is wanted of.
+pub(super) fn judge(parameters: &[Parameter], problems: &[Problem], wanted: &Wanted) -> Vec<Enough> {
+    parameters
+        .iter()
+        .filter(|p| wanted.asks_for(&p.name))
+        .map(|parameter| {
+            let place = problems.iter().filter(|p| p.object == parameter.object).find_map(|problem| {
+                let column = problem.names.iter().find(|(name, _)| *name == parameter.name)?.1;
+                Some((problem, column))
+            });
+            one(parameter, place, wanted)
+        })
+        .collect()
+}
+
+fn one(parameter: &Parameter, place: Option<(&Problem, usize)>, wanted: &Wanted) -> Enough {
+    let std_error = parameter.std_error.filter(|_| parameter.identified);
+    let goal = parameter.value.and_then(|value| wanted.absolute(&parameter.name, value));
+    let share = match (goal, std_error) {
+        (Some(goal), Some(error)) if error > 0.0 => (goal / error).powi(2).min(1.0),
+        (Some(_), Some(_)) => 1.0,
+        _ => 0.0,
+    };
+    let mut enough = Enough {
+        object: parameter.object.clone(),
+        name: parameter.name.clone(),
+        std_error,
+        wanted: goal,
+        share,
+        more_seconds: None,
+        missing: None,
+    };
+    if let (true, Some((problem, column))) = (share < 1.0, place) {
+        (enough.more_seconds, enough.missing) = ahead(problem, column, std_error, goal);
+    }
+    enough
+}
+
+/// Seconds of the same motion, or the motion that is missing.
+fn ahead(problem: &Problem, column: usize, error: Option<f64>, goal: Option<f64>) -> (Option<f64>, Option<Missing>) {
+    let still = DMatrix::zeros(problem.before.len(), problem.before.len());
+    let now = problem.variance(column, &still, 0.0);
+    // What the recursion counts and what is reported may differ by errors that no row shows: predictions keep that ratio.
+    let ratio = error.map_or(1.0, |e| e * e / now);
+    // Before there is a value nobody can say how well it must be known: ten times better than now.
+    let wanted = goal.map_or(0.01 * now, |g| g * g / ratio);
+    let times: Vec<Option<f64>> = problem.motions.iter().map(|(_, m)| problem.seconds(column, m, wanted)).collect();
+    let same = times.first().copied().flatten();
+    let best = times
+        .iter()
+        .enumerate()
+        .skip(1)
+        .filter_map(|(k, t)| t.map(|t| (k, t)))
+        .reduce(|a, b| if b.1 < a.1 { b } else { a });
+    match (same, best) {
+        (Some(same), Some((_, other))) if same <= SOON_S.max(CLEARLY * other) => (Some(same), None),
+        (Some(same), None) => (Some(same), None),
+        (_, Some((k, seconds))) => (same, Some(missing(problem.motions[k].0, Some(seconds)))),
+        (None, None) => {
+            let after = |m: &DMatrix<f64>| problem.variance(column, m, TRIAL_S) / now;
+            let usual = problem.motions.first().map_or(1.0, |(_, m)| after(m));
+            let helps = problem.motions.iter().skip(1).map(|(motion, m)| (*motion, after(m)));
+            let best = helps.reduce(|a, b| if b.1 < a.1 { b } else { a });
+            let named = best.filter(|(_, left)| *left < usual && left.sqrt() < 1.0 - HELPS);
+            (None, named.map(|(motion, _)| missing(motion, None)))
+        }
+    }
+}
+
+fn missing(motion: Motion, seconds: Option<f64>) -> Missing {
+    Missing { motion, words: motion.words().to_owned(), seconds }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A constant and a slope: what was collected shows the constant only.
+    fn problem() -> Problem {
+        let per = |rows: &[[f64; 2]]| {
+            rows.iter().fold(DMatrix::zeros(2, 2), |sum, r| {
+                let x = DVector::from_column_slice(r);
+                sum + &x * x.transpose()
+            })
+        };
+        Problem {
+            object: "thing".to_owned(),
+            names: vec![("weight_N".to_owned(), 0), ("inertia_kg_m2".to_owned(), 1)],
+            information: per(&[[1.0, 0.0]]) * 1e4,
+            before: vec![10.0, 10.0],
+            motions: vec![
+                (Motion::GoOn, per(&[[1.0, 0.0]]) * 1e3),
+                (Motion::Accelerate, per(&[[1.0, 1.0], [1.0, -1.0]]) * 500.0),
+                (Motion::LetGo, per(&[[0.0, 0.0]])),
+            ],
+        }
+    }
+
+    #[test]
+    fn the_motion_that_raises_the_weak_direction_is_named() {
+        let known = Parameter::identified("thing", "weight_N", 1.0, 0.01, 10, "");
+        let unknown = Parameter::unidentified("thing", "inertia_kg_m2", 10, "too even");
+        let all = judge(&[known, unknown], &[problem()], &Wanted::default());
+        assert_eq!(all.len(), 2);
+        assert!(all[0].missing.is_none() && all[0].share > 0.9, "{:?}", all[0]);
+        let missing = all[1].missing.as_ref().expect("nothing but accelerating shows it");
+        assert!(missing.motion == Motion::Accelerate && all[1].share == 0.0 && all[1].more_seconds.is_none());
+    }
+
+    #[test]
+    fn going_on_is_counted_in_seconds() {
+        let half = Parameter::identified("thing", "weight_N", 0.5, 0.01, 10, "");
+        let all = judge(&[half], &[problem()], &Wanted::default());
+        // 1 % of 0.5 N is half the error: four times the information, 3e4 more at 1e3 a second.
+        assert!((all[0].share - 0.25).abs() < 1e-9);
+        let seconds = all[0].more_seconds.expect("it grows");
+        assert!((seconds - 30.0).abs() < 1.0, "{seconds}");
+    }
+}

@@ -1,0 +1,107 @@
+//! Everything that is collected of one object that is carried.
+
+use super::change::ChangeDetector;
+use super::recursive::Recursive;
+use super::store::Store;
+
+/// Rows of a reading that are kept for judging a leak.
+const KEPT: usize = 400;
+/// Columns of the readings: time, vertical sum, vertical and horizontal acceleration, horizontal sum, vertical force of each finger.
+pub(super) const READING: usize = 7;
+
+/// Changes of weight (N) and of the mass by accelerations (kg) that matter.
+const MATTERS: [f64; 2] = [0.004, 0.02];
+
+/// One row: all channels through the same filter, bias in.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Row {
+    pub(super) time_s: f64,
+    /// Sum of the vertical forces, N.
+    pub(super) lift_n: f64,
+    pub(super) acceleration: [f64; 2],
+    /// Sum of the horizontal forces, N.
+    pub(super) across_n: f64,
+    /// Vertical force of each finger, N.
+    pub(super) fingers_n: [f64; 2],
+    /// Mean normal force without bias, N.
+    pub(super) grip_n: f64,
+    pub(super) width_m: f64,
+    pub(super) width_rate_m_s: f64,
+    /// Largest ratio of shear to normal force that is certain, and its error.
+    pub(super) ratio: Option<(f64, f64)>,
+    pub(super) carried: bool,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Grasp {
+    /// Weight with the bias in it, and mass by accelerations.
+    pub(super) weight: Recursive<2>,
+    pub(super) change: ChangeDetector<2>,
+    /// Width at no force, less of it per force, damping of the pads.
+    pub(super) width: Recursive<3>,
+    pub(super) reading: Store<READING>,
+    pub(super) bound: Option<(f64, f64)>,
+    /// Mean and mean square of the grip, N and N².
+    pub(super) grip: [f64; 2],
+    pub(super) held_rows: u64,
+    pub(super) carried_rows: u64,
+    /// True once it is known which object it is.
+    pub(super) told: bool,
+}
+
+impl Grasp {
+    pub(super) fn new(memory_rows: f64, block_rows: u32, false_alarms: f64, row_s: f64) -> Self {
+        Self {
+            weight: Recursive::new([1.0, 0.5], memory_rows, block_rows),
+            change: ChangeDetector::new(false_alarms, row_s, MATTERS),
+            width: Recursive::new([1.0, 1.0, 0.01], memory_rows, block_rows),
+            reading: Store::new(KEPT),
+            bound: None,
+            grip: [0.0; 2],
+            held_rows: 0,
+            carried_rows: 0,
+            told: false,
+        }
+    }
+
+    /// Forgets everything about the object.
+    pub(super) fn clear(&mut self) {
+        self.weight.reset();
+        self.width.reset();
+        self.change.restart(0.0);
+        self.reading.clear();
+        (self.bound, self.grip, self.held_rows, self.carried_rows, self.told) = (None, [0.0; 2], 0, 0, false);
+    }
+
+    /// Takes in a row; says when the weight jumped, with the weight before, bias in.
+    pub(super) fn take(&mut self, row: &Row) -> Option<(super::change::Change, f64)> {
+        self.held_rows += 1;
+        let share = 1.0 / self.held_rows as f64;
+        self.grip[0] += share * (row.grip_n - self.grip[0]);
+        self.grip[1] += share * (row.grip_n * row.grip_n - self.grip[1]);
+        self.width.push(&[1.0, row.grip_n, row.width_rate_m_s], row.width_m, 1.0);
+        if let Some((ratio, error)) = row.ratio
+            && self.bound.is_none_or(|(r, e)| ratio - 2.0 * error > r - 2.0 * e)
+        {
+            self.bound = Some((ratio, error));
+        }
+        if !row.carried {
+            return None;
+        }
+        self.carried_rows += 1;
+        let [ax, ay] = row.acceleration;
+        let [left, right] = row.fingers_n;
+        self.reading.push([row.time_s, row.lift_n, ay, ax, row.across_n, left, right]);
+        let before = self.weight.values()[0];
+        let columns = [1.0, ay];
+        let innovation = self.weight.push(&columns, row.lift_n, 1.0)?;
+        let change = self.change.push(row.time_s, &columns, innovation.residual, innovation.leverage)?;
+        self.weight.reset();
+        Some((change, before))
+    }
+
+    /// Mean grip and its spread, N.
+    pub(super) fn grip_and_spread(&self) -> (f64, f64) {
+        (self.grip[0], (self.grip[1] - self.grip[0] * self.grip[0]).max(0.0).sqrt())
+    }
+}

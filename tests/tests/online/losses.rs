@@ -1,0 +1,36 @@
+//! A block that loses part of its weight at once while it is carried.
+
+use crate::generator::{Fault, perform};
+use crate::online::{Event, Settings, replay};
+use haptics::recording::Task;
+use rayon::prelude::*;
+
+#[test]
+fn a_sudden_loss_is_noticed_soon_and_nothing_else_is() {
+    const EACH: u64 = 40;
+    let events = |seed: u64, loss_kg: f64| -> (Vec<Event>, f64) {
+        let fault = Fault { loss: (loss_kg > 0.0).then_some((loss_kg, 1.5)), ..Fault::default() };
+        let (recording, _) = perform(seed, &fault);
+        let labels = recording.labels.as_ref().expect("generated");
+        let time = recording.time_s.as_ref().expect("generated");
+        let lifted = (0..labels.len()).find(|i| labels.get(*i) == Some("hold-above-ground")).expect("it is carried");
+        let online = replay(std::slice::from_ref(&recording), Task::BlockStack, &Settings::default()).expect("fed");
+        (online.report().events, time[lifted] + 1.5 - time[0])
+    };
+    let quiet: usize = (63_000..63_000 + EACH).into_par_iter().map(|s| events(s, 0.0).0.len()).sum();
+    let found: Vec<(bool, f64)> = (63_000..63_000 + EACH)
+        .into_par_iter()
+        .map(|seed| {
+            let (events, at_s) = events(seed, 0.006);
+            let first = events.iter().find(|e| e.object == 0 && !e.grows && e.noticed_s > at_s);
+            (first.is_some(), first.map_or(f64::INFINITY, |e| e.noticed_s - at_s))
+        })
+        .collect();
+    let mut delays: Vec<f64> = found.iter().filter(|f| f.0).map(|f| f.1).collect();
+    delays.sort_by(f64::total_cmp);
+    println!("{quiet} false alarms in {EACH} recordings; {} of {EACH} losses of 6 g noticed", delays.len());
+    assert!(delays.len() as u64 * 10 >= EACH * 9, "{} of {EACH}", delays.len());
+    println!("delay: median {:.2} s, largest {:.2} s", delays[delays.len() / 2], delays[delays.len() - 1]);
+    assert!(delays[delays.len() * 9 / 10] < 1.5, "{delays:?}");
+    assert!(quiet as u64 * 20 <= EACH, "{quiet} false alarms");
+}
