@@ -202,6 +202,10 @@ impl Blocks {
             report.parameters.extend(self.weight(&name, object, sense));
             report.parameters.push(width(&name, object));
             report.parameters.push(friction(&name, object));
+            if self.task != Task::Barrel {
+                let why = "only a slip shows it; the lower bound is the largest ratio that held";
+                report.parameters.push(Parameter::unidentified(&name, "friction", 0, why));
+            }
             if let Some(answer) = self.leak(index).filter(|a| a.verdict != Verdict::Steady) {
                 report.parameters.push(leak_parameter(&name, &answer, object.carried_rows as usize));
                 report.leaks.push((name, answer));

@@ -14,11 +14,13 @@ const MOST_A_ROW: f64 = 5.0;
 /// Innovations beyond this many standard deviations teach nothing about the noise.
 const CLIP: f64 = 7.0;
 /// Noise and correlation must be known from so many rows before anything is tested.
-const WARM_UP: u32 = 60;
+const WARM_UP: u32 = 24;
 /// Rows over which noise and correlation are remembered.
 const MEMORY: f64 = 1500.0;
-/// The noise is known to a few per cent only; taking it for smaller than it is would break the stated rate.
-const CAUTION: f64 = 1.05;
+/// The noise is known to a share of 1/√(2 n) only; taking it for smaller than it is would break the stated rate.
+fn caution(rows: u32) -> f64 {
+    1.03 + 1.5 / f64::from(rows.max(1)).sqrt()
+}
 
 /// A change of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +81,7 @@ impl<const P: usize> ChangeDetector<P> {
         }
         let (row_before, residual_before) = self.before.replace((row, residual))?;
         let rho = if self.power > 0.0 { (self.lagged / self.power).clamp(-0.5, 0.98) } else { 0.0 };
-        let noise = (self.power / self.weight.max(1e-9) * (1.0 - rho * rho)).sqrt() * CAUTION;
+        let noise = (self.power / self.weight.max(1e-9) * (1.0 - rho * rho)).sqrt() * caution(self.seen);
         let white: [f64; P] = std::array::from_fn(|j| row[j] - rho * row_before[j]);
         let found = if self.seen >= WARM_UP && noise > 0.0 {
             self.test(time_s, &white, (residual - rho * residual_before) / noise, noise)

@@ -1,4 +1,4 @@
-//! A leak told apart from sensor drift, on drawn recordings: sixty of each kind.
+//! A leak told apart from sensor drift, on drawn recordings of each kind.
 
 use crate::generator::{Fault, perform, until};
 use crate::online::leak::Verdict;
@@ -6,8 +6,6 @@ use crate::online::{Settings, replay};
 use haptics::recording::{Recording, Task};
 use rayon::prelude::*;
 
-/// Recordings of each kind.
-const EACH: u64 = 60;
 /// Most confident wrong answers, as a share.
 const WRONG: f64 = 0.02;
 
@@ -35,8 +33,10 @@ fn count(all: &[[Verdict; 2]], which: usize, verdict: Verdict) -> usize {
 
 #[test]
 fn a_leak_is_told_from_a_drift_or_said_not_to_be() {
-    let first: u64 = std::env::var("TOUCHSTONE_SEED").ok().and_then(|s| s.parse().ok()).unwrap_or(41_000);
-    let seeds = || (first..first + EACH).into_par_iter();
+    let first: u64 = std::env::var("TOUCHSTONE_SEED").ok().and_then(|s| s.parse().ok()).unwrap_or(43_000);
+    // Sixty, as in docs/online.md, with TOUCHSTONE_ONLINE=60.
+    let each = crate::each(10);
+    let seeds = || (first..first + each).into_par_iter();
     let whole =
         |fault: fn(u64) -> Fault| -> Vec<[Verdict; 2]> { seeds().map(|s| said(&perform(s, &fault(s)).0)).collect() };
     let cut = |seed: u64| {
@@ -56,10 +56,10 @@ fn a_leak_is_told_from_a_drift_or_said_not_to_be() {
             println!("  {name:<24} {:?}", verdicts.map(|v| count(all, which, v)));
             // Not to see a change, or not to know what it is, is no wrong answer.
             let wrong = verdicts[1..4].iter().filter(|v| *v != truth).map(|v| count(all, which, *v)).sum::<usize>();
-            assert!(wrong as f64 <= WRONG * EACH as f64, "{by}, {name}: {wrong} confident wrong answers");
+            assert!(wrong as f64 <= (WRONG * each as f64).floor(), "{by}, {name}: {wrong} confident wrong answers");
         }
         let right = |kind: usize| count(&kinds[kind].2, which, kinds[kind].1);
-        assert!(right(2) as f64 > 0.9 * EACH as f64, "{by}: steady {}", right(2));
-        assert!(right(0) as f64 > 0.8 * EACH as f64, "{by}: leaks {}", right(0));
+        assert!(right(2) as f64 > 0.9 * each as f64, "{by}: steady {}", right(2));
+        assert!(right(0) as f64 > 0.8 * each as f64, "{by}: leaks {}", right(0));
     }
 }

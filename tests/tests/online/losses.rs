@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 #[test]
 fn a_sudden_loss_is_noticed_soon_and_nothing_else_is() {
-    const EACH: u64 = 40;
+    let each = crate::each(12);
     let events = |seed: u64, loss_kg: f64| -> (Vec<Event>, f64) {
         let fault = Fault { loss: (loss_kg > 0.0).then_some((loss_kg, 1.5)), ..Fault::default() };
         let (recording, _) = perform(seed, &fault);
@@ -17,8 +17,8 @@ fn a_sudden_loss_is_noticed_soon_and_nothing_else_is() {
         let online = replay(std::slice::from_ref(&recording), Task::BlockStack, &Settings::default()).expect("fed");
         (online.report().events, time[lifted] + 1.5 - time[0])
     };
-    let quiet: usize = (63_000..63_000 + EACH).into_par_iter().map(|s| events(s, 0.0).0.len()).sum();
-    let found: Vec<(bool, f64)> = (63_000..63_000 + EACH)
+    let quiet: usize = (63_000..63_000 + each).into_par_iter().map(|s| events(s, 0.0).0.len()).sum();
+    let found: Vec<(bool, f64)> = (63_000..63_000 + each)
         .into_par_iter()
         .map(|seed| {
             let (events, at_s) = events(seed, 0.006);
@@ -28,9 +28,9 @@ fn a_sudden_loss_is_noticed_soon_and_nothing_else_is() {
         .collect();
     let mut delays: Vec<f64> = found.iter().filter(|f| f.0).map(|f| f.1).collect();
     delays.sort_by(f64::total_cmp);
-    println!("{quiet} false alarms in {EACH} recordings; {} of {EACH} losses of 6 g noticed", delays.len());
-    assert!(delays.len() as u64 * 10 >= EACH * 9, "{} of {EACH}", delays.len());
+    println!("{quiet} false alarms in {each} recordings; {} of {each} losses of 6 g noticed", delays.len());
+    assert!(delays.len() as u64 * 10 >= each * 9, "{} of {each}", delays.len());
     println!("delay: median {:.2} s, largest {:.2} s", delays[delays.len() / 2], delays[delays.len() - 1]);
     assert!(delays[delays.len() * 9 / 10] < 1.5, "{delays:?}");
-    assert!(quiet as u64 * 20 <= EACH, "{quiet} false alarms");
+    assert!(quiet as u64 * 20 <= each, "{quiet} false alarms");
 }

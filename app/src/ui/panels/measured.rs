@@ -13,8 +13,6 @@ use estimator::online::{Event, Report};
 
 /// Changes are told for so long, s.
 const TOLD_S: f64 = 20.0;
-/// Below this share of free grip it is said in a warning colour.
-const LITTLE: f64 = 0.2;
 
 /// The card beside the trainer's picture.
 pub fn beside(ui: &mut Ui, trainer: &mut Trainer) {
@@ -74,9 +72,8 @@ fn notices(ui: &mut Ui, report: &Report) {
         ui.label(RichText::new(text).size(11.5).color(color));
     };
     if let Some(margin) = report.slip_margin {
-        let color = if margin < LITTLE { p.caution } else { p.secondary };
         let share = format::number(100.0 * margin.max(0.0), 0);
-        say(ui, format!("{share} % of the shear that surely held is still free."), color);
+        say(ui, format!("{share} % of the shear that surely held is still free."), p.secondary);
     }
     for (object, answer) in &report.leaks {
         let word = match answer.verdict {

@@ -112,3 +112,18 @@ fn the_passivity_controller_is_switched_and_the_world_goes_on() {
     assert_eq!(control(&harness), None);
     assert_eq!(harness.state().session.trainer.operator, Operator::You);
 }
+
+#[test]
+fn what_the_hand_has_measured_so_far_is_shown_and_can_be_switched_off() {
+    let mut harness = window();
+    harness.state_mut().session.trainer.hand_to(Operator::Scripted).expect("two blocks");
+    harness.state_mut().session.trainer.advance(9.0);
+    harness.run_steps(2);
+    let report = harness.state().session.trainer.watch.report().expect("the first block was carried");
+    assert!(report.parameters.iter().any(|p| p.name == "weight_N" && p.identified), "{:?}", report.parameters);
+    assert!(harness.query_by_label("What the hand has measured so far").is_some());
+    assert!(harness.query_by_label("Weight").is_some());
+    harness.get_by_role_and_label(egui::Role::CheckBox, "On").click();
+    harness.run_steps(2);
+    assert!(!harness.state().session.trainer.watch.on && harness.query_by_label("Switched off.").is_some());
+}

@@ -2,7 +2,8 @@
 //!
 //! What was collected is an information matrix (the inverse of the covariance, errors as reported). A candidate motion adds rows of its
 //! own a second, made by the same laws. The seconds that each of them needs for the wanted accuracy follow; the motion that is missing
-//! is the one that gets there clearly sooner than going on as before. Names of parameters decide nothing here.
+//! is the one that gets there clearly sooner than going on as before. Names of parameters decide nothing here. Where several are needed, the one that
+//! all of them together could least do without is named first.
 
 mod candidates;
 mod wanted;
@@ -211,9 +212,22 @@ fn ahead(problem: &Problem, column: usize, error: Option<f64>, goal: Option<f64>
             let helps = problem.motions.iter().skip(1).map(|(motion, m)| (*motion, after(m)));
             let best = helps.reduce(|a, b| if b.1 < a.1 { b } else { a });
             let named = best.filter(|(_, left)| *left < usual && left.sqrt() < 1.0 - HELPS);
-            (None, named.map(|(motion, _)| missing(motion, None)))
+            let named = named.map(|(motion, _)| motion).or_else(|| needed_among_all(problem, column, now));
+            (None, named.map(|motion| missing(motion, None)))
         }
     }
+}
+
+/// Where no motion helps alone: the one that all of them together could least do without.
+fn needed_among_all(problem: &Problem, column: usize, now: f64) -> Option<Motion> {
+    let others = &problem.motions[1.min(problem.motions.len())..];
+    let n = problem.before.len();
+    let all = others.iter().fold(DMatrix::zeros(n, n), |sum, (_, m)| sum + m);
+    if (problem.variance(column, &all, TRIAL_S) / now).sqrt() > 1.0 - HELPS {
+        return None;
+    }
+    let without = others.iter().map(|(motion, m)| (*motion, problem.variance(column, &(&all - m), TRIAL_S)));
+    without.reduce(|a, b| if b.1 > a.1 { b } else { a }).map(|(motion, _)| motion)
 }
 
 fn missing(motion: Motion, seconds: Option<f64>) -> Missing {
