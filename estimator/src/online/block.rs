@@ -141,16 +141,10 @@ impl Blocks {
             if self.events.len() == MOST_EVENTS {
                 self.events.remove(0);
             }
-            // In the first moments the column of the acceleration may explain a change of weight as well: it is one either way.
-            let (noticed_s, began_s) = (change.noticed_s, change.began_s);
-            self.events.push(Event {
-                object: index,
-                parameter: "weight_N",
-                grows: change.grows,
-                noticed_s,
-                began_s,
-                before,
-            });
+            // In the first moments the column of the acceleration may explain a change of weight as well: it is one either way, and the
+            // reading tells which.
+            let (noticed_s, began_s, grows) = (change.noticed_s, change.began_s, row.lift_n > before);
+            self.events.push(Event { object: index, parameter: "weight_N", grows, noticed_s, began_s, before });
         }
         self.tell(index);
     }
