@@ -8,7 +8,7 @@ mod missing;
 
 use estimator::{identify, online};
 
-/// How many recordings of each kind are drawn: a few, or as many as TOUCHSTONE_ONLINE says.
+/// How many recordings of each kind are drawn: a few, or as many as `TOUCHSTONE_ONLINE` says.
 fn each(few: u64) -> u64 {
     std::env::var("TOUCHSTONE_ONLINE").ok().and_then(|s| s.parse().ok()).unwrap_or(few)
 }

@@ -24,7 +24,7 @@ pub(super) fn leak(blocks: &Blocks<'_>, number: usize, count: usize, masses_kg: 
 }
 
 fn carried(blocks: &Blocks<'_>, number: usize) -> Vec<usize> {
-    blocks.rows(&blocks.samples(&[&format!("carry-block-{number}")]))
+    blocks.rows(&blocks.samples(&[format!("carry-block-{number}")]))
 }
 
 fn judge(blocks: &Blocks<'_>, rows: &[usize], number: usize, count: usize, masses_kg: &[f64]) -> Option<LeakAnswer> {
