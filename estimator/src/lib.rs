@@ -5,6 +5,7 @@
 
 pub mod calibrate;
 pub mod constraint;
+pub mod diagnose;
 pub mod estimate;
 pub mod hmm;
 pub mod identify;

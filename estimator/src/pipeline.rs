@@ -144,12 +144,11 @@ fn each(
 
 /// One or several recordings of a crank: geometry from each, the laws from all of them at once.
 fn cranks(recordings: &[Recording], prepared: &Prepared, options: &Options) -> Result<Fitted, EstimateError> {
-    let prepared = match prepared.cranks.get() {
-        Some(prepared) => prepared,
-        None => {
-            let made = recordings.iter().map(crank::Prepared::of).collect::<Result<Vec<_>, _>>()?;
-            prepared.cranks.get_or_init(|| made)
-        }
+    let prepared = if let Some(made) = prepared.cranks.get() {
+        made
+    } else {
+        let made = recordings.iter().map(crank::Prepared::of).collect::<Result<Vec<_>, _>>()?;
+        prepared.cranks.get_or_init(|| made)
     };
     let together = crank::refit_together(options.method, recordings, prepared, options.thresholds)?;
     let mut fit = combine(together.fits);

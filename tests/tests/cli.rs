@@ -216,3 +216,28 @@ fn wrong_usage_is_exit_two() {
         assert_eq!(run(arguments).status.code(), Some(2), "{arguments:?}");
     }
 }
+
+#[test]
+fn diagnose_answers_as_the_contract_says_and_writes_a_world_that_can_be_felt() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("extended.json");
+    let result = json(&["diagnose", &asset("crank.csv"), "--out", out.to_str().expect("a path")]);
+    let verdict = result["verdict"].as_str().expect("a verdict");
+    assert!(["causes", "none", "ambiguous", "unexplained"].contains(&verdict), "{verdict}");
+    for key in ["model", "rms_N", "heldout_rms_N", "whiteness_p"] {
+        assert!(!result["baseline"][key].is_null(), "{key}");
+    }
+    assert!(result["noise_floor_N"].as_f64().is_some_and(|floor| floor > 0.0));
+    for cause in result["causes"].as_array().expect("causes") {
+        for key in ["id", "kind", "parameters", "p_value", "posterior", "gain", "evidence"] {
+            assert!(!cause[key].is_null(), "{key} of {cause}");
+        }
+    }
+    for key in ["alternatives", "not_excited"] {
+        assert!(result[key].is_array(), "{key}");
+    }
+    assert!(result["final"]["heldout_rms_N"].as_f64() <= result["baseline"]["heldout_rms_N"].as_f64());
+    let world = std::fs::read_to_string(out).expect("the world is written");
+    let world = haptics::world::World::from_json(&world).expect("a world");
+    assert!(world.crank.expect("a crank").effects.len() >= 3);
+}

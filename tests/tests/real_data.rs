@@ -211,3 +211,26 @@ fn doors_turn_and_drawers_slide() {
         assert!(2 * decided > trials.len(), "{name}: {decided} of {}", trials.len());
     }
 }
+
+/// The authors of EMPS add friction by direction to inertia, viscous and Coulomb friction, and nothing else.
+#[test]
+fn emps_is_diagnosed_from_its_mass_alone() {
+    let Some(recordings) = load("emps/emps_identification.csv", EMPS) else { return };
+    let options = estimator::diagnose::Options { baseline: Some("mass".to_owned()), ..Default::default() };
+    let found = estimator::diagnose::diagnose(&recordings, &options).expect("a force along a coordinate");
+    let ids: Vec<&str> = found.causes.iter().map(|c| c.id.as_str()).collect();
+    println!("{ids:?}, {:.2} N unexplained of {:.2} N", found.end.heldout_rms_n, found.baseline.heldout_rms_n);
+    assert_eq!(ids[..3], ["viscous-friction", "coulomb-friction", "friction-asymmetry"], "{ids:?}");
+    assert!(!ids.contains(&"position-ripple") && !ids.contains(&"time-delay"), "{ids:?}");
+    for cause in &found.causes[..3] {
+        assert!(
+            cause.gain.share_of_explainable > 0.9 && cause.gain.interval[0] > 0.5,
+            "{}: {:?}",
+            cause.id,
+            cause.gain
+        );
+    }
+    // Half the difference of the published viscous friction by direction: (166.7 − 240.4)/2.
+    let dc = found.causes[2].parameters[0].value;
+    assert!((dc + 36.9).abs() < 5.0, "{dc}");
+}

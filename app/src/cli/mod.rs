@@ -6,6 +6,7 @@ mod bench;
 mod convert;
 mod demo;
 mod device;
+mod diagnose;
 mod enough;
 mod fit;
 mod info;
@@ -47,6 +48,8 @@ enum Command {
     Segment(segment::Segment),
     /// Parameters, constraints, uncertainty; writes a calibrated world
     Fit(fit::Fit),
+    /// What the simulation gets wrong, why, and what mending it gains
+    Diagnose(diagnose::Diagnose),
     /// The measured motion of a log through a world: predicted forces
     Simulate(simulate::Simulate),
     /// Make a recording from the virtual hand
@@ -179,6 +182,7 @@ pub fn main() -> ExitCode {
         Some(Command::Info(args)) => args.run(),
         Some(Command::Segment(args)) => args.run(),
         Some(Command::Fit(args)) => args.run(),
+        Some(Command::Diagnose(args)) => args.run(),
         Some(Command::Simulate(args)) => args.run(),
         Some(Command::Record(args)) => args.run(),
         Some(Command::Screenshot(args)) => args.run(),

@@ -57,7 +57,7 @@ pub fn block_bootstrap(
     Some((0..p).map(error).collect())
 }
 
-/// Normal equations summed up to each row: the upper triangle of XᵀWX and XᵀWy, columns scaled to unit norm.
+/// Normal equations summed up to each row: the upper triangle of `XᵀWX` and `XᵀWy`, columns scaled to unit norm.
 struct RunningSums {
     columns: usize,
     width: usize,

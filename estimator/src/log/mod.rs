@@ -46,6 +46,11 @@ pub fn load(path: &Path, meta: Option<&Path>) -> Result<Vec<Recording>, LogError
     load_watched(path, meta, &Watch::none())
 }
 
+/// What looks wrong in the samples of a recording, and where: what [`load`] puts among its warnings.
+pub fn check(recording: &Recording) -> Vec<Warning> {
+    checks::warnings(recording)
+}
+
 /// [`load`] that tells how far it has come and that can be ended from outside: then nothing is loaded.
 pub fn load_watched(path: &Path, meta: Option<&Path>, watch: &Watch<'_>) -> Result<Vec<Recording>, LogError> {
     let size = admissible_size(path)?;

@@ -3,7 +3,7 @@
 /// Outputs that are summed side by side: independent sums keep the processor's pipelines full, and each is still added up in order.
 const LANES: usize = 16;
 
-/// `sum over k of weights[k] · values[i + k]` for every i that has all of its samples: n − weights.len() + 1 sums.
+/// `sum over k of weights[k] · values[i + k]` for every i that has all of its samples: as many sums as the window fits in places.
 ///
 /// Degenerate: no weights, or more of them than values, give nothing.
 pub fn correlate(values: &[f64], weights: &[f64]) -> Vec<f64> {

@@ -27,7 +27,7 @@ pub(super) struct Smooth {
     pub(super) acceleration: Vec<Vec2>,
     /// Net force on the handle as measured, not smoothed and smoothed, N, …
     measured_force: Vec<Vec2>,
-    smooth_force: Vec<Vec2>,
+    filtered_force: Vec<Vec2>,
     /// … and its first two derivatives, N/s and N/s².
     pub(super) force_rate: Vec<Vec2>,
     pub(super) force_bend: Vec<Vec2>,
@@ -82,7 +82,7 @@ pub(super) fn held(smooth: &Arc<Smooth>, segmentation: &Segmentation) -> Held {
         .collect();
     Held {
         position: smooth.position.clone(),
-        force: smooth.smooth_force.iter().map(|f| f - bias).collect(),
+        force: smooth.filtered_force.iter().map(|f| f - bias).collect(),
         turning,
         bias_error_n,
         smooth: Arc::clone(smooth),
@@ -139,7 +139,7 @@ pub(super) fn smooth(recording: &Recording) -> Result<Smooth, EstimateError> {
         velocity: velocity_smooth,
         acceleration,
         measured_force: force,
-        smooth_force: force_smooth,
+        filtered_force: force_smooth,
         force_rate,
         force_bend,
         time_s,

@@ -40,9 +40,9 @@ impl Cushion {
         for _ in 0..ENOUGH {
             let excess_n = self.force_n(depth_m) - force_n;
             if excess_n < 0.0 {
-                low_m = depth_m
+                low_m = depth_m;
             } else {
-                high_m = depth_m
+                high_m = depth_m;
             }
             let newton_m = depth_m - excess_n / self.stiffness_n_m(depth_m);
             let next_m = if newton_m >= low_m && newton_m <= high_m { newton_m } else { 0.5 * (low_m + high_m) };

@@ -1,0 +1,116 @@
+//! `touchstone diagnose`: what the simulation gets wrong, why, and what the extension gains.
+
+use super::{LogArgs, Output};
+use anyhow::Context;
+use clap::Args;
+use estimator::diagnose::{Cause, Diagnosis, Options, Verdict, diagnose, extended_world};
+use haptics::world::World;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Arguments of `diagnose`.
+#[derive(Args)]
+pub struct Diagnose {
+    /// Log files of one object
+    #[arg(required = true)]
+    logs: Vec<PathBuf>,
+    #[command(flatten)]
+    source: LogArgs,
+    /// Start from this world instead of the task's plain model
+    #[arg(long)]
+    world: Option<PathBuf>,
+    /// Start a mechanism from `mass`, `mass+viscous`, `mass+viscous+coulomb`, or a world file
+    #[arg(long)]
+    baseline: Option<String>,
+    /// Write the world with what was found in it here
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+impl Diagnose {
+    pub(super) fn run(&self) -> anyhow::Result<Output> {
+        let mut recordings = Vec::new();
+        for log in &self.logs {
+            recordings.extend(self.source.load(log)?);
+        }
+        let named_file = self.baseline.as_ref().filter(|b| b.ends_with(".json")).map(PathBuf::from);
+        let world = match self.world.as_ref().or(named_file.as_ref()) {
+            Some(path) => {
+                let text = std::fs::read_to_string(path)
+                    .with_context(|| format!("the world could not be read: {}", path.display()))?;
+                Some(World::from_json(&text).with_context(|| format!("no world: {}", path.display()))?)
+            }
+            None => None,
+        };
+        let baseline = self.baseline.clone().filter(|_| world.is_none());
+        let options = Options { task: None, baseline, world };
+        let diagnosis = super::progress::during("diagnosing", |_| diagnose(&recordings, &options))?;
+        let mut text = describe(&diagnosis);
+        if let Some(path) = &self.out {
+            let world = extended_world(&recordings, &options, &diagnosis)?;
+            std::fs::write(path, world.to_json() + "\n")
+                .with_context(|| format!("the world could not be written: {}", path.display()))?;
+            let _ = writeln!(text, "world: {}", path.display());
+        }
+        Ok(Output { text, json: serde_json::to_value(&diagnosis)? })
+    }
+}
+
+/// A diagnosis in words.
+fn describe(diagnosis: &Diagnosis) -> String {
+    let mut text = String::new();
+    let word = match diagnosis.verdict {
+        Verdict::Causes => "named",
+        Verdict::None => "nothing beyond the noise",
+        Verdict::Ambiguous => "this recording cannot tell which of several",
+        Verdict::Unexplained => "something that no known cause explains",
+    };
+    let _ = writeln!(text, "verdict: {word}");
+    let _ = writeln!(
+        text,
+        "  model {}: {:.4} unexplained on held-out data, noise floor {:.4}, with what was found {:.4}",
+        diagnosis.baseline.model,
+        diagnosis.baseline.heldout_rms_n,
+        diagnosis.noise_floor_n,
+        diagnosis.end.heldout_rms_n
+    );
+    for cause in &diagnosis.causes {
+        let _ = writeln!(text, "  {}", cause_line(cause));
+    }
+    for other in &diagnosis.alternatives {
+        let _ = writeln!(
+            text,
+            "  or {} instead of {} ({:.0} %): {}",
+            other.id,
+            other.instead_of,
+            100.0 * other.posterior,
+            other.why
+        );
+    }
+    if !diagnosis.not_excited.is_empty() {
+        let ids: Vec<&str> = diagnosis.not_excited.iter().map(|n| n.id.as_str()).collect();
+        let _ = writeln!(text, "  could not have been seen here: {}", ids.join(", "));
+    }
+    if let Some(next) = &diagnosis.next_experiment {
+        let _ = writeln!(
+            text,
+            "  next: {} (separates {}, power {:.0} %)",
+            next.motion,
+            next.separates.join(", "),
+            100.0 * next.expected_power
+        );
+    }
+    for warning in &diagnosis.warnings {
+        let _ = writeln!(text, "  ! {warning}");
+    }
+    text
+}
+
+fn cause_line(cause: &Cause) -> String {
+    let parameters: Vec<String> = cause
+        .parameters
+        .iter()
+        .map(|p| format!("{} {} {}", p.name, super::table::with_error(p.value, p.std_error), p.unit))
+        .collect();
+    format!("{}: {}; {}", cause.id, parameters.join(", "), cause.evidence)
+}

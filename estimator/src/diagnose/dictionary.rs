@@ -1,0 +1,348 @@
+//! The causes that act in the force, as columns over the rows of a track: each out of its law in `haptics::law`.
+
+use super::candidate::Candidate;
+use super::track::{Place, Row, Track};
+use haptics::Vec2;
+use haptics::law::{
+    AddedConstraint, Backlash, CoulombFriction, EccentricMass, Effect, ForceBias, ForceDrift, FrictionAsymmetry,
+    FrictionChange, Hysteresis, Inertia, Kind, Law, LoadFriction, LocalResistance, MAX_PARAMETERS, MassChange, Memory,
+    Motion, PositionRipple, QuadraticDrag, ReturnSpring, Stribeck, ViscousFriction, Weight,
+};
+
+/// Ripples a turn that are tried.
+const RIPPLES: std::ops::RangeInclusive<u32> = 2..=12;
+/// Places and widths of a local resistance that are tried, in shares of the range.
+const PLACES: usize = 24;
+const WIDTHS: [f64; 3] = [0.12, 0.2, 0.35];
+/// Speeds at which static friction has fallen off, as shares of the usual speed.
+const STRIBECK: [f64; 7] = [0.06, 0.1, 0.16, 0.26, 0.4, 0.6, 0.9];
+/// Ways of presliding and half gaps, as shares of the range of positions.
+const WAYS: [f64; 7] = [0.003, 0.006, 0.012, 0.024, 0.05, 0.1, 0.2];
+
+/// Shortest way of presliding or gap that is tried, in rows at the usual speed.
+const STEPS: f64 = 0.5;
+/// Directions of a cable's anchor that are tried, how far away it is in arms, and how much of the way round it is slack.
+const CABLES: u32 = 16;
+const CABLE_REACH: f64 = 3.0;
+const CABLE_SLACK: [f64; 3] = [0.35, 0.6, 0.8];
+
+/// Everything that columns are made of.
+pub struct Dictionary<'a> {
+    pub track: &'a Track,
+    /// What the model without any cause predicts, one a row, …
+    pub predicted: &'a [f64],
+    /// … and the dry and viscous part of it.
+    pub resisting: &'a [f64],
+    /// Forces of which everything is known: they tell the gain of the sensor.
+    pub fixed: &'a [Vec<f64>],
+    /// Causes that belong to the model already.
+    pub without: &'a [&'a str],
+}
+
+/// Units of a force, a coordinate and their mixtures.
+struct Units {
+    force: &'static str,
+    length: &'static str,
+    angular: bool,
+}
+
+impl Dictionary<'_> {
+    /// All candidates.
+    pub fn candidates(&self) -> Vec<Candidate> {
+        let mut all = Vec::new();
+        self.friction(&mut all);
+        self.motion(&mut all);
+        self.place(&mut all);
+        self.memory(&mut all);
+        self.time(&mut all);
+        self.instrument(&mut all);
+        all.retain(|c| !self.without.contains(&c.id));
+        all.retain(|c| c.columns.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| *x != 0.0)));
+        all
+    }
+
+    fn units(&self) -> Units {
+        let angular = self.track.coordinate == haptics::law::Coordinate::Angular;
+        Units { force: if angular { "N m" } else { "N" }, length: if angular { "rad" } else { "m" }, angular }
+    }
+
+    /// A column over the rows along the motion; free rows feel nothing of the object.
+    fn column(&self, of: &dyn Fn(&Row) -> f64) -> Vec<f64> {
+        let rows = self.track.rows.iter();
+        rows.map(|r| if r.place == Place::Along { of(r) } else { 0.0 }).collect()
+    }
+
+    /// The force of a law with these values, in the rows along the motion.
+    fn law(&self, law: &'static dyn Law, values: &[f64]) -> Vec<f64> {
+        let effect = Effect::new(law, values);
+        self.column(&|row| effect.force(&row.motion))
+    }
+
+    /// The unit of a parameter as the law's page has it.
+    fn unit(&self, law: &'static dyn Law, index: usize) -> &'static str {
+        let spec = &law.parameters()[index];
+        if self.units().angular { spec.unit_angular } else { spec.unit }
+    }
+
+    /// A cause that is one law with one linear parameter, number `index`, the others at `values`.
+    fn plain(&self, law: &'static dyn Law, values: &[f64], index: usize) -> Candidate {
+        let spec = &law.parameters()[index];
+        Candidate::one(law.id(), law.kind(), spec.name, self.unit(law, index), self.law(law, values))
+    }
+
+    fn friction(&self, all: &mut Vec<Candidate>) {
+        all.push(self.plain(&CoulombFriction, &[1.0], 0).positive());
+        all.push(self.plain(&ViscousFriction, &[1.0], 0).positive());
+        if self.track.planar {
+            all.push(self.plain(&LoadFriction, &[1.0], 0).positive());
+            all.push(self.plain(&FrictionAsymmetry, &[0.0, 0.0, 1.0], 2));
+        }
+        all.push(self.plain(&FrictionAsymmetry, &[1.0, 0.0, 0.0], 0));
+        all.push(self.plain(&FrictionAsymmetry, &[0.0, 1.0, 0.0], 1));
+        let fast = self.track.quantile(0.9, |r| r.motion.velocity.abs());
+        for share in STRIBECK {
+            let vs = share * fast;
+            let unit = self.unit(&Stribeck, 1);
+            all.push(self.plain(&Stribeck, &[1.0, vs], 0).at("vs", vs, unit).positive());
+        }
+        all.push(self.plain(&QuadraticDrag, &[1.0], 0).positive());
+    }
+
+    fn motion(&self, all: &mut Vec<Candidate>) {
+        all.push(self.plain(&Inertia, &[1.0], 0).positive());
+        all.push(Candidate::one("time-delay", Kind::Instrument, "tau", "s", self.late()));
+    }
+
+    /// What a delay of the force by one second adds along the motion: the rate of the predicted force (the measured one's noise would
+    /// explain itself), and the load that turns with the arm meanwhile.
+    fn late(&self) -> Vec<f64> {
+        let (rows, n) = (&self.track.rows, self.track.rows.len());
+        (0..n)
+            .map(|i| {
+                if rows[i].place != Place::Along {
+                    return 0.0;
+                }
+                let before = if self.track.follows(i) { i - 1 } else { i };
+                let after = if i + 1 < n && self.track.follows(i + 1) { i + 1 } else { i };
+                let time_s = rows[after].motion.time_s - rows[before].motion.time_s;
+                if time_s <= 0.0 {
+                    return 0.0;
+                }
+                let turning = if self.track.planar {
+                    rows[i].motion.normal_force_n * rows[i].motion.velocity / self.track.radius_m.unwrap_or(1.0)
+                } else {
+                    0.0
+                };
+                -((self.predicted[after] - self.predicted[before]) / time_s + turning)
+            })
+            .collect()
+    }
+
+    fn place(&self, all: &mut Vec<Candidate>) {
+        let units = self.units();
+        let (low, high) = (self.track.quantile(0.0, position), self.track.quantile(1.0, position));
+        let range = (high - low).max(1e-12);
+        if let Some(radius) = self.track.radius_m {
+            let turn = std::f64::consts::TAU * radius;
+            for n in RIPPLES {
+                self.ripple(all, turn / f64::from(n));
+            }
+            self.gravity(all, radius);
+        } else {
+            for n in RIPPLES {
+                self.ripple(all, range / f64::from(n));
+            }
+        }
+        let spring = |k3: bool| {
+            let column = |values: &[f64]| self.law(&ReturnSpring, values);
+            let middle = 0.5 * (low + high);
+            let mut columns = vec![column(&[1.0, 0.0, 0.0, middle]), column(&[0.0, 1.0])];
+            let mut linear = vec![("k", self.unit(&ReturnSpring, 0)), ("f0", units.force)];
+            if k3 {
+                columns.push(column(&[0.0, 0.0, 1.0, middle]));
+                linear.push(("k3", self.unit(&ReturnSpring, 2)));
+            }
+            Candidate::several("return-spring", Kind::Plant, columns, linear).positive()
+        };
+        all.push(spring(false));
+        all.push(spring(true));
+        self.local(all, low, range);
+        self.walls(all);
+    }
+
+    /// Walls that leave a good part of the motion alone (else a spring explains as much), and cables to a place beside the arm.
+    fn walls(&self, all: &mut Vec<Candidate>) {
+        let units = self.units();
+        for (share, side) in [0.4, 0.5, 0.6, 0.7, 0.8, 0.9].into_iter().flat_map(|s| [(s, 1.0), (1.0 - s, -1.0)]) {
+            let place = self.track.quantile(share, position);
+            let wall = self.plain(&AddedConstraint, &[1.0, place, side], 0).positive();
+            all.push(Candidate { side, ..wall.at("place", place, units.length) });
+        }
+        let (Some(radius), true) = (self.track.radius_m, self.track.planar) else { return };
+        for (k, share) in (0..CABLES).flat_map(|k| CABLE_SLACK.map(|s| (k, s))) {
+            let direction = std::f64::consts::TAU * f64::from(k) / f64::from(CABLES);
+            let anchor = CABLE_REACH * radius * Vec2::new(direction.cos(), direction.sin());
+            let rest = radius * (CABLE_REACH - 1.0 + 2.0 * share);
+            let pull = self.column(&|row| {
+                let arm = radius * Vec2::new(row.along.y, -row.along.x);
+                let away = arm - anchor;
+                let length = away.norm();
+                AddedConstraint::cable_n(1.0, rest, length) * away.dot(&row.along) / length.max(1e-12)
+            });
+            let cable = Candidate::one("added-constraint", Kind::Plant, "k", "N/m", pull).positive();
+            all.push(cable.at("anchor direction", direction, "rad").at("rest length", rest, "m"));
+        }
+    }
+
+    fn ripple(&self, all: &mut Vec<Candidate>, length: f64) {
+        let units = self.units();
+        let column = |phase: f64| self.law(&PositionRipple, &[1.0, length, phase]);
+        let columns = vec![column(0.0), column(-std::f64::consts::FRAC_PI_2)];
+        let linear = vec![("A cos phi", units.force), ("A sin(-phi)", units.force)];
+        let ripple = Candidate::several("position-ripple", Kind::Plant, columns, linear);
+        all.push(ripple.at("lambda", length, units.length));
+    }
+
+    /// Gravity that the model does not have: across the arm's weight; for an angle without any gravity in the model, both parts.
+    fn gravity(&self, all: &mut Vec<Candidate>, radius: f64) {
+        let part = |values: &[f64]| self.law(&EccentricMass, values);
+        if self.track.planar {
+            let column = part(&[1.0, 0.0, radius]);
+            all.push(Candidate::one("eccentric-mass", Kind::Plant, "a", self.units().force, column));
+        } else {
+            let columns = vec![part(&[1.0, 0.0, radius]), part(&[0.0, 1.0, radius])];
+            let linear = vec![("a", self.units().force), ("b", self.units().force)];
+            all.push(Candidate::several("eccentric-mass", Kind::Plant, columns, linear));
+        }
+    }
+
+    fn local(&self, all: &mut Vec<Candidate>, low: f64, range: f64) {
+        let units = self.units();
+        // On a crank a place comes again every turn.
+        let turn = self.track.radius_m.map(|r| std::f64::consts::TAU * r).filter(|t| range > 0.8 * t);
+        let (from, span, period) = turn.map_or((low, range, 0.0), |t| (0.0, t, t));
+        for (k, share) in (0..PLACES).flat_map(|k| WIDTHS.map(|w| (k, w))) {
+            let (place, width) = (from + span * (k as f64 + 0.5) / PLACES as f64, share * span);
+            let resists = self.plain(&LocalResistance, &[1.0, place, width, period], 0).positive();
+            all.push(resists.at("place", place, units.length).at("width", width, units.length));
+        }
+    }
+
+    fn memory(&self, all: &mut Vec<Candidate>) {
+        let units = self.units();
+        let range = self.track.quantile(1.0, position) - self.track.quantile(0.0, position);
+        let scale = self.track.radius_m.map_or(range, |r| range.min(2.0 * r));
+        // What is shorter than the way between two rows cannot be told from a reversal that lies between them.
+        let shortest = STEPS * self.track.period_s * self.track.quantile(0.9, |r| r.motion.velocity.abs());
+        for way in WAYS.map(|share| share * scale).into_iter().filter(|way| *way > shortest) {
+            // Friction of the model that bends by `way` before it slides: what it lacks against sliding at once.
+            let bent =
+                self.remembered(&Hysteresis, &[1.0, 1.0 / way], &|row, memory, _| memory[0] - row.motion.direction);
+            let dry = self.dry_level();
+            let column: Vec<f64> = bent.iter().zip(&dry).map(|(b, d)| b * d).collect();
+            let hysteresis = Candidate::one("hysteresis", Kind::Plant, "share", "1", column).positive();
+            all.push(hysteresis.at("way", way, units.length));
+            let gap = self.remembered(&Backlash, &[way], &|row, memory, values| {
+                1.0 - Backlash.engaged(&row.motion, values, memory)
+            });
+            // Behind the gap lies what resists, or everything.
+            for behind in [self.resisting, self.predicted] {
+                let column: Vec<f64> = gap.iter().zip(behind).map(|(g, f)| -g * f).collect();
+                let backlash = Candidate::one("backlash", Kind::Plant, "share", "1", column).positive();
+                all.push(backlash.at("delta", way, units.length));
+            }
+        }
+    }
+
+    /// The model's friction at each row if it slid in the positive direction.
+    fn dry_level(&self) -> Vec<f64> {
+        let rows = self.track.rows.iter().zip(self.resisting);
+        rows.map(|(r, f)| if r.motion.direction.abs() > 0.05 { f / r.motion.direction } else { f.abs() }).collect()
+    }
+
+    /// A column of a law with memory, which starts anew at every stretch.
+    fn remembered(
+        &self,
+        law: &'static dyn Law,
+        values: &[f64],
+        of: &dyn Fn(&Row, &Memory, &[f64; MAX_PARAMETERS]) -> f64,
+    ) -> Vec<f64> {
+        let mut padded = [0.0; MAX_PARAMETERS];
+        padded[..values.len()].copy_from_slice(values);
+        let mut memory = Memory::default();
+        let rows = &self.track.rows;
+        (0..rows.len())
+            .map(|i| {
+                if rows[i].place != Place::Along {
+                    return 0.0;
+                }
+                if self.track.follows(i) {
+                    // The mean speed between two rows, in fine steps of one row.
+                    let velocity = 0.5 * (rows[i - 1].motion.velocity + rows[i].motion.velocity);
+                    let motion = Motion { velocity, ..rows[i].motion };
+                    law.advance(&motion, &padded, &mut memory, rows[i].motion.time_s - rows[i - 1].motion.time_s);
+                } else {
+                    memory = Memory::default();
+                }
+                of(&rows[i], &memory, &padded)
+            })
+            .collect()
+    }
+
+    fn time(&self, all: &mut Vec<Candidate>) {
+        let units = self.units();
+        if self.track.planar {
+            all.push(self.plain(&MassChange, &[0.0, 1.0], 1));
+            for k in 1..16 {
+                let start = self.track.span_s * f64::from(k) / 16.0;
+                // A weight that is another one from `start` on.
+                let column = self.column(&|r| {
+                    if r.motion.time_s >= start { Weight.force(&r.motion, &[1.0, 0.0, 0.0, 0.0, 0.0]) } else { 0.0 }
+                });
+                all.push(Candidate::one("mass-change", Kind::Plant, "step", units.force, column).at("t0", start, "s"));
+            }
+        }
+        // Friction that grows or falls in proportion to the model's own.
+        for share in [0.1, 0.3, 1.0, 3.0] {
+            let tau = share * self.track.span_s;
+            let warm = Effect::new(&FrictionChange, &[0.0, 1.0, tau, 0.0, 0.0]);
+            let dry = self.dry_level();
+            let column: Vec<f64> =
+                self.column(&|row| warm.force(&row.motion)).iter().zip(&dry).map(|(w, d)| w * d).collect();
+            let change = Candidate::one("friction-change", Kind::Plant, "relative change", "1", column);
+            all.push(change.at("tau", tau, "s"));
+        }
+    }
+
+    fn instrument(&self, all: &mut Vec<Candidate>) {
+        let units = self.units();
+        for known in self.fixed {
+            all.push(Candidate::one("force-gain", Kind::Instrument, "g - 1", "1", known.clone()));
+        }
+        let every = |of: &dyn Fn(&Row) -> f64| self.track.rows.iter().map(of).collect::<Vec<f64>>();
+        if self.track.planar {
+            let bias = |axis: Vec2| every(&|r| r.along.dot(&axis) * Effect::new(&ForceBias, &[1.0]).force(&r.motion));
+            all.push(pair("force-bias", [bias(Vec2::x()), bias(Vec2::y())], [("bx", "N"), ("by", "N")]));
+            let drift = |axis: Vec2| every(&|r| r.along.dot(&axis) * Effect::new(&ForceDrift, &[1.0]).force(&r.motion));
+            let rates = [("rx", "N/s"), ("ry", "N/s")];
+            all.push(pair("force-drift", [drift(Vec2::x()), drift(Vec2::y())], rates));
+            let cross = |to: Vec2, from: Vec2| every(&|r| r.along.dot(&to) * r.force.dot(&from));
+            let id = "force-cross-axis";
+            all.push(Candidate::one(id, Kind::Instrument, "kappa_xy", "1", cross(Vec2::x(), Vec2::y())));
+            all.push(Candidate::one(id, Kind::Instrument, "kappa_yx", "1", cross(Vec2::y(), Vec2::x())));
+        } else {
+            let bias = every(&|r| Effect::new(&ForceBias, &[1.0]).force(&r.motion));
+            all.push(Candidate::one("force-bias", Kind::Instrument, "b", units.force, bias));
+            let drift = every(&|r| Effect::new(&ForceDrift, &[1.0]).force(&r.motion));
+            all.push(Candidate::one("force-drift", Kind::Instrument, "rate", self.unit(&ForceDrift, 0), drift));
+        }
+    }
+}
+
+fn pair(id: &'static str, columns: [Vec<f64>; 2], linear: [(&'static str, &'static str); 2]) -> Candidate {
+    Candidate::several(id, Kind::Instrument, Vec::from(columns), linear.to_vec())
+}
+
+fn position(row: &Row) -> f64 {
+    row.motion.position
+}

@@ -1,0 +1,243 @@
+//! From a comparison to an answer in words.
+
+use super::candidate::Candidate;
+use super::experiment::propose;
+use super::extend::effects;
+use super::force::Model;
+use super::gain::{chi_square_tail, gain, rms, whiteness_p};
+use super::geometry::Study;
+use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, NotExcited, Verdict};
+use super::select::{Chosen, Selection};
+use super::track::{Place, Track};
+use haptics::law::entries;
+
+/// A generic term above this score means that something is left that no known cause explains.
+const UNEXPLAINED: f64 = 20.0;
+/// A rival nearer than this leaves the cause open: its probability is then above a twentieth.
+const OPEN: f64 = 6.0;
+/// A cause of the noise's own size that would score less than this could not have been seen.
+const VISIBLE: f64 = 10.0;
+
+/// Channels of slow recordings are not a whole sample apart by sampling alone, s.
+const LARGEST_SKEW_S: f64 = 2e-3;
+
+/// Two causes that are one and the same regressor, whatever the motion.
+const TWINS: [(&str, &str, &str); 1] = [(
+    "eccentric-mass",
+    "gravity-tilt",
+    "on one crank gravity on a mass off the axis and a tilted plane are the same force",
+)];
+
+/// The answer of one object's recordings.
+pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study], faults: Vec<Cause>) -> Diagnosis {
+    let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
+    let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
+    let picks = study.picks();
+    let (heldout, train) = rms(study, &[], &along);
+    let (end, end_train) = rms(study, &picks, &along);
+    let floor = if track.noise_is_measured { track.force_noise } else { end_train.min(end) };
+    let mut found: Vec<(f64, Cause)> = Vec::new();
+    let mut alternatives = Vec::new();
+    let mut warnings = Vec::new();
+    for (k, chosen) in study.chosen.iter().enumerate() {
+        if let Some(skew_s) = skew(study, k, track.raw_period_s) {
+            warnings.push(format!(
+                "force and motion are {:.2} ms apart, no more than one sample: it is taken out and not called a delay",
+                1e3 * skew_s
+            ));
+            continue;
+        }
+        found.push((chosen.score, cause(study, k, floor, "force")));
+        alternatives.extend(rivals(study, chosen));
+    }
+    for geometry in geometries {
+        for (k, chosen) in geometry.chosen.iter().enumerate() {
+            let id = geometry.candidates[chosen.candidate].id;
+            if found.iter().all(|(_, c)| c.id != id) {
+                found.push((chosen.score, cause(geometry, k, 0.0, "path")));
+                alternatives.extend(rivals(geometry, chosen));
+            }
+        }
+    }
+    let strange = strange(study, &picks);
+    // Causes of the force come in the order in which they were found, those of the path where their score puts them.
+    let mut scores: Vec<f64> = vec![f64::INFINITY; faults.len()];
+    let mut causes: Vec<Cause> = faults;
+    for (score, cause) in found {
+        let place = if cause.evidence.contains("of the path") {
+            scores.iter().position(|s| *s < score).unwrap_or(scores.len())
+        } else {
+            scores.len()
+        };
+        scores.insert(place, score);
+        causes.insert(place, cause);
+    }
+    let least = 1.0 / (1.0 + (0.5 * OPEN).exp());
+    let open_ones: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > least).cloned().collect();
+    let open = !open_ones.is_empty();
+    let verdict = match (causes.is_empty(), strange.is_some()) {
+        (true, true) => Verdict::Unexplained,
+        (true, false) => Verdict::None,
+        (false, _) if open => Verdict::Ambiguous,
+        (false, _) => Verdict::Causes,
+    };
+    if let Some((candidate, score)) = strange {
+        let expression = study.candidates[candidate].expression.clone().unwrap_or_default();
+        warnings.push(format!(
+            "something is left that no known cause explains: it goes with {expression} (score {score:.0})"
+        ));
+        causes.push(unnamed(study, candidate, score, &expression));
+    }
+    Diagnosis {
+        verdict,
+        baseline: Baseline {
+            model: model.iter().map(|e| e.law().id()).collect::<Vec<_>>().join("+"),
+            rms_n: train,
+            heldout_rms_n: heldout,
+            whiteness_p: whiteness_p(study, &[], &stretch),
+        },
+        noise_floor_n: floor,
+        not_excited: not_excited(study, &picks),
+        effects: effects(track, model, study),
+        causes,
+        alternatives,
+        next_experiment: propose(track, model, study, &open_ones),
+        end: Final { heldout_rms_n: end, whiteness_p: whiteness_p(study, &picks, &stretch) },
+        warnings,
+    }
+}
+
+/// The time between force and motion when it is no more than what sampling itself can make of it, s.
+fn skew(study: &Study, k: usize, raw_period_s: f64) -> Option<f64> {
+    if study.candidates[study.chosen[k].candidate].id != "time-delay" {
+        return None;
+    }
+    let delay = parameters(study, k);
+    let found = delay.first()?;
+    (found.value.abs() - 2.0 * found.std_error <= raw_period_s.min(LARGEST_SKEW_S)).then_some(found.value)
+}
+
+/// What no known cause explains: the generic term and its score.
+fn strange(study: &Study, picks: &[usize]) -> Option<(usize, f64)> {
+    let selection =
+        Selection { system: &study.system, candidates: &study.candidates, threshold: UNEXPLAINED, dry: true };
+    selection.unexplained(picks).filter(|(_, score)| *score > UNEXPLAINED)
+}
+
+fn cause(study: &Study, k: usize, floor: f64, channel: &str) -> Cause {
+    let chosen = &study.chosen[k];
+    let candidate = &study.candidates[chosen.candidate];
+    let entry = entries().find(|e| e.id == candidate.id);
+    let gain = gain(study, k, floor);
+    let (title, equation) = entry.map_or((candidate.id, ""), |e| (e.title, e.equation));
+    let unit = if channel == "path" { "m" } else { "N" };
+    let evidence = format!(
+        "{title}: what the model leaves of the {channel} follows {equation}; on data held out it falls from {:.3e} to {:.3e} {unit} \\
+         RMS (score {:.0}, {:.0} would do)",
+        gain.heldout_rms_before, gain.heldout_rms_after, chosen.score, 20.0
+    );
+    Cause {
+        id: candidate.id.to_owned(),
+        kind: candidate.kind,
+        parameters: parameters(study, k),
+        p_value: p_value(study, chosen),
+        posterior: 1.0 / (1.0 + chosen.rivals.iter().map(|(_, behind)| (-0.5 * behind).exp()).sum::<f64>()),
+        gain,
+        evidence,
+    }
+}
+
+/// By chance, among all that were tried.
+fn p_value(study: &Study, chosen: &Chosen) -> f64 {
+    let tried = study.candidates.iter().filter(|c| c.expression.is_none()).count() as f64;
+    (tried * chi_square_tail(chosen.lambda, study.candidates[chosen.candidate].cost)).min(1.0)
+}
+
+fn parameters(study: &Study, k: usize) -> Vec<CauseParameter> {
+    let Some(solved) = &study.solved else { return Vec::new() };
+    let picks: Vec<&Candidate> = study.chosen.iter().map(|c| &study.candidates[c.candidate]).collect();
+    let first = study.system.base + picks[..k].iter().map(|c| c.columns.len()).sum::<usize>();
+    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    let mut found: Vec<CauseParameter> = picks[k]
+        .linear
+        .iter()
+        .enumerate()
+        .map(|(i, (name, unit))| {
+            let (value, error) = (solved.values[first + i], (variance * solved.inverse[(first + i, first + i)]).sqrt());
+            match picks[k].id {
+                // The stiffness is asked for, the give was found.
+                "pad-compliance" => number("k", 1.0 / value.max(1e-12), error / (value * value).max(1e-24), "N/m"),
+                _ => number(name, value, error, unit),
+            }
+        })
+        .collect();
+    found.extend(picks[k].searched.iter().map(|s| number(s.name, s.value, 0.0, s.unit)));
+    found
+}
+
+fn number(name: &str, value: f64, std_error: f64, unit: &str) -> CauseParameter {
+    CauseParameter { name: name.to_owned(), value, std_error, unit: unit.to_owned() }
+}
+
+fn rivals(study: &Study, chosen: &Chosen) -> Vec<Alternative> {
+    let own = study.candidates[chosen.candidate].id;
+    let total = 1.0 + chosen.rivals.iter().map(|(_, behind)| (-0.5 * behind).exp()).sum::<f64>();
+    let mut found: Vec<Alternative> = chosen
+        .rivals
+        .iter()
+        .map(|(candidate, behind)| Alternative {
+            id: study.candidates[*candidate].id.to_owned(),
+            instead_of: own.to_owned(),
+            posterior: (-0.5 * behind).exp() / total,
+            why: format!("it explains this recording nearly as well (score {behind:.1} behind)"),
+        })
+        .collect();
+    for (a, b, why) in TWINS {
+        if own == a && found.iter().all(|f| f.id != b) {
+            found.push(Alternative {
+                id: b.to_owned(),
+                instead_of: own.to_owned(),
+                posterior: 0.5,
+                why: why.to_owned(),
+            });
+        }
+    }
+    found
+}
+
+fn unnamed(study: &Study, candidate: usize, score: f64, expression: &str) -> Cause {
+    Cause {
+        id: format!("other:{expression}"),
+        kind: study.candidates[candidate].kind,
+        parameters: Vec::new(),
+        p_value: chi_square_tail(score, study.candidates[candidate].cost),
+        posterior: 0.0,
+        gain: super::report::Gain::default(),
+        evidence: format!("what is left goes with {expression}; no known cause does so here"),
+    }
+}
+
+/// Causes that, at the size of the noise, this motion would hide.
+fn not_excited(study: &Study, picks: &[usize]) -> Vec<NotExcited> {
+    let mut found = Vec::new();
+    for entry in entries() {
+        let of: Vec<usize> = (0..study.candidates.len()).filter(|c| study.candidates[*c].id == entry.id).collect();
+        if of.is_empty() || picks.iter().any(|p| study.candidates[*p].id == entry.id) {
+            continue;
+        }
+        let best = of.iter().map(|c| study.system.distinct(*c, picks) * study.system.rows).fold(0.0, f64::max);
+        if best < VISIBLE {
+            let why = entry.about.rsplit(". ").next().unwrap_or_default().trim_end_matches('.');
+            found.push(NotExcited {
+                id: entry.id.to_owned(),
+                why: format!("this motion hides it behind the model's own terms; {}", lower(why)),
+            });
+        }
+    }
+    found
+}
+
+fn lower(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |c| c.to_lowercase().chain(letters).collect())
+}

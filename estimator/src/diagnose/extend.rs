@@ -1,0 +1,95 @@
+//! The model with what was found in it: laws with values, as a world runs them.
+
+use super::candidate::Candidate;
+use super::force::Model;
+use super::geometry::Study;
+use super::track::Track;
+use haptics::law::{
+    AddedConstraint, Backlash, CoulombFriction, EccentricMass, Effect, FrictionAsymmetry, FrictionChange, Hysteresis,
+    Inertia, Kind, Law, LoadFriction, LocalResistance, MassChange, PositionRipple, QuadraticDrag, ReturnSpring,
+    Stribeck, ViscousFriction,
+};
+
+/// The model's laws refitted beside the chosen causes, and the plant causes among these as laws of their own. Instruments' faults are
+/// no part of a world.
+pub fn effects(track: &Track, model: &Model, study: &Study) -> Vec<Effect> {
+    let Some(solved) = &study.solved else { return model.clone() };
+    let mut found: Vec<Effect> = model.iter().zip(&solved.values).map(|(e, share)| scaled(e, *share)).collect();
+    let dry = model.iter().zip(&solved.values).filter(|(e, _)| e.law().is_dry()).map(|(e, v)| {
+        let usual = haptics::law::Motion {
+            direction: 1.0,
+            normal_force_n: track.quantile(0.5, |r| r.motion.normal_force_n.abs()),
+            ..haptics::law::Motion::default()
+        };
+        v * e.force(&usual)
+    });
+    let dry_n: f64 = dry.sum::<f64>().abs();
+    let mut at = study.base.len();
+    for chosen in &study.chosen {
+        let candidate = &study.candidates[chosen.candidate];
+        let values = &solved.values[at..at + candidate.columns.len()];
+        found.extend(effect(candidate, values, track, dry_n));
+        at += candidate.columns.len();
+    }
+    found
+}
+
+/// A law whose linear parameters all change by one factor.
+fn scaled(effect: &Effect, share: f64) -> Effect {
+    let mut scaled = *effect;
+    for (value, spec) in scaled.values.iter_mut().zip(effect.law().parameters()) {
+        if spec.enters == haptics::law::Enters::Linear {
+            *value *= share;
+        }
+    }
+    scaled
+}
+
+/// A plant cause of the force as a law. `dry_n`: usual dry friction of the model, N or N m.
+fn effect(candidate: &Candidate, values: &[f64], track: &Track, dry_n: f64) -> Option<Effect> {
+    if candidate.kind != Kind::Plant {
+        return None;
+    }
+    let first = values.first().copied().unwrap_or(0.0);
+    let searched = |k: usize| candidate.searched.get(k).map_or(0.0, |s| s.value);
+    let radius = track.radius_m.unwrap_or(0.0);
+    let named = |name: &str| candidate.linear.first().is_some_and(|(n, _)| *n == name);
+    let of = |law: &'static dyn Law, values: &[f64]| Some(Effect::new(law, values));
+    match candidate.id {
+        "coulomb-friction" => of(&CoulombFriction, &[first]),
+        "load-friction" => of(&LoadFriction, &[first]),
+        "viscous-friction" => of(&ViscousFriction, &[first]),
+        "friction-asymmetry" if named("dFc") => of(&FrictionAsymmetry, &[first, 0.0, 0.0]),
+        "friction-asymmetry" if named("dc") => of(&FrictionAsymmetry, &[0.0, first, 0.0]),
+        "friction-asymmetry" => of(&FrictionAsymmetry, &[0.0, 0.0, first]),
+        "stribeck" => of(&Stribeck, &[first, searched(0)]),
+        "quadratic-drag" => of(&QuadraticDrag, &[first]),
+        "inertia" => of(&Inertia, &[first]),
+        "eccentric-mass" => of(&EccentricMass, &[first, values.get(1).copied().unwrap_or(0.0), radius]),
+        "position-ripple" => {
+            let (cosine, sine) = (first, values.get(1).copied().unwrap_or(0.0));
+            // cos(x − π/2) is the sine's column.
+            of(&PositionRipple, &[cosine.hypot(sine), searched(0), (-sine).atan2(cosine)])
+        }
+        "return-spring" => {
+            let (low, high) = (track.quantile(0.0, |r| r.motion.position), track.quantile(1.0, |r| r.motion.position));
+            let k3 = values.get(2).copied().unwrap_or(0.0);
+            of(&ReturnSpring, &[first, values.get(1).copied().unwrap_or(0.0), k3, 0.5 * (low + high)])
+        }
+        "local-resistance" => {
+            let turn = if radius > 0.0 { std::f64::consts::TAU * radius } else { 0.0 };
+            of(&LocalResistance, &[first, searched(0), searched(1), turn])
+        }
+        "added-constraint" => of(&AddedConstraint, &[first, searched(0), candidate.side]),
+        "hysteresis" => of(&Hysteresis, &[first * dry_n, first * dry_n / searched(0).max(1e-12)]),
+        "backlash" => of(&Backlash, &[searched(0)]),
+        "mass-change" if named("rate") => of(&MassChange, &[0.0, first]),
+        "mass-change" => {
+            // A step: all of it within a sample.
+            let step_s = track.period_s;
+            of(&MassChange, &[0.0, first / step_s, searched(0), step_s])
+        }
+        "friction-change" => of(&FrictionChange, &[0.0, first * dry_n, searched(0)]),
+        _ => None,
+    }
+}

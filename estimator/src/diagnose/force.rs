@@ -1,0 +1,166 @@
+//! The force that the motion needs: what the model leaves of it, and which causes explain that.
+
+use super::candidate::Candidate;
+use super::dictionary::Dictionary;
+use super::generic::generic;
+use super::geometry::{Study, residual};
+use super::select::Selection;
+use super::system::{Rows, System, solve, uses, whitener};
+use super::track::{Place, Track};
+use crate::estimate::EstimateError;
+use crate::identify::linear::least_squares;
+use haptics::law::{CoulombFriction, Effect, Law};
+
+/// The sign of a velocity is blurred over this share of the usual speed at least.
+const BLUR: f64 = 0.02;
+/// A reversal lies anywhere between two rows: standard deviation of its place, in rows, with some room.
+const SKEW: f64 = 0.5;
+/// What whitening is learnt from keeps this much of the generic library's strength out.
+const RIDGE: f64 = 1e-2;
+
+/// The model to start from: laws with their non-linear values.
+pub type Model = Vec<Effect>;
+
+/// Compares all causes on a track. `fixed`: laws of which everything is known. `threshold`: least score of a cause.
+pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) -> Result<Study, EstimateError> {
+    blur(track);
+    let base: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
+    let known: Vec<Vec<f64>> = fixed.iter().map(|effect| column(track, effect)).collect();
+    let y: Vec<f64> =
+        track.rows.iter().enumerate().map(|(i, r)| r.y - known.iter().map(|k| k[i]).sum::<f64>()).collect();
+    let (predicted, resisting, weight) = first_look(track, model, &base, &y)?;
+    let taken: Vec<&str> = model.iter().chain(fixed).map(|e| e.law().id()).collect();
+    let dictionary = Dictionary { track, predicted: &predicted, resisting: &resisting, fixed: &known, without: &taken };
+    let mut candidates = dictionary.candidates();
+    candidates.extend(generic(track));
+    let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
+    let testable: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
+    let rows = Rows { y: &y, stretch: &stretch, testable: &testable, weight: &weight, period_s: track.period_s };
+    let dry = model.iter().any(|e| e.law().is_dry());
+    let coefficients = learn_whitening(&base, &candidates, &rows, threshold)?;
+    let system = System::new(&base, &candidates, &rows, coefficients);
+    let chosen = Selection { system: &system, candidates: &candidates, threshold, dry }.run();
+    let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
+    let solved = system.solve(&picks);
+    Ok(Study { candidates, chosen, system, solved, y, base, weight })
+}
+
+/// What the model with Coulomb friction leaves of the force, root mean square, and whether its friction resists.
+pub fn plain_rms(track: &mut Track, model: &Model) -> Result<(f64, bool), EstimateError> {
+    blur(track);
+    let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
+    columns.push(column(track, &Effect::new(&CoulombFriction, &[1.0])));
+    let along: Vec<f64> =
+        track.rows.iter().map(|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }).collect();
+    let y: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
+    let fit = least_squares(&columns, &y, Some(&along))?;
+    let resisting: f64 = (0..y.len())
+        .map(|i| {
+            let parts =
+                model.iter().enumerate().filter(|(_, e)| is_resisting(e)).map(|(k, _)| fit.values[k] * columns[k][i]);
+            let coulomb = fit.values[model.len()] * columns[model.len()][i];
+            (parts.sum::<f64>() + coulomb) * track.rows[i].motion.direction
+        })
+        .sum();
+    Ok((fit.rms, resisting > 0.0))
+}
+
+/// The direction of motion, as certain as the velocity's noise and the place of a reversal between two rows let it be.
+pub fn blur(track: &mut Track) {
+    let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
+    let (noise, period_s) = (track.velocity_noise, track.period_s);
+    for row in track.rows.iter_mut().filter(|r| r.place == Place::Along) {
+        let skew = SKEW * row.motion.acceleration * period_s;
+        let width = 1.2 * (BLUR * fast).hypot(noise).hypot(skew).max(1e-12);
+        row.motion.direction = (row.motion.velocity / width).tanh();
+    }
+}
+
+/// The force of a law with its linear parameters at one (only the first, where it has several), 0 in free rows.
+pub fn column(track: &Track, effect: &Effect) -> Vec<f64> {
+    let of = |row: &super::track::Row| if row.place == Place::Along { effect.force(&row.motion) } else { 0.0 };
+    track.rows.iter().map(of).collect()
+}
+
+type Look = (Vec<f64>, Vec<f64>, Vec<f64>);
+
+/// A first plain fit: what the model predicts, the resisting part of it, and how much each row can be trusted where the direction is a
+/// guess (effective variance, Orear 1982).
+fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Result<Look, EstimateError> {
+    let mut columns = base.to_vec();
+    let has_dry = model.iter().any(|e| e.law().id() == CoulombFriction.id());
+    if !has_dry {
+        columns.push(column(track, &Effect::new(&CoulombFriction, &[1.0])));
+    }
+    let along: Vec<f64> = track.rows.iter().map(|r| f64::from(u8::from(r.place == Place::Along))).collect();
+    let mut weight = along.clone();
+    let mut fit = least_squares(&columns, y, Some(&weight))?;
+    for _ in 0..2 {
+        let dry = |i: usize| -> f64 {
+            let of_model = model.iter().zip(&fit.values).filter(|(e, _)| e.law().is_dry());
+            let sum: f64 = of_model.map(|(e, v)| v * level(e, track, i)).sum();
+            sum.abs() + if has_dry { 0.0 } else { fit.values[base.len()].abs() }
+        };
+        let noise = if track.noise_is_measured { track.force_noise } else { fit.rms.max(track.force_noise) };
+        weight = (0..y.len())
+            .map(|i| {
+                let row = &track.rows[i];
+                if row.place != Place::Along {
+                    return 1.0;
+                }
+                // A sign that is anybody's guess leaves all of the friction open.
+                let open = dry(i).powi(2) * (1.0 - row.motion.direction.powi(2));
+                (1.0 + open / (noise * noise)).powf(-0.5)
+            })
+            .collect();
+        let squares: Vec<f64> = weight.iter().zip(&along).map(|(w, a)| w * w * a).collect();
+        fit = least_squares(&columns, y, Some(&squares))?;
+    }
+    let sum = |resists: bool| -> Vec<f64> {
+        (0..y.len())
+            .map(|i| {
+                let parts = model.iter().enumerate().filter(|(_, e)| !resists || is_resisting(e));
+                let base_part: f64 = parts.map(|(k, _)| fit.values[k] * base[k][i]).sum();
+                base_part + if has_dry { 0.0 } else { fit.values[base.len()] * columns[base.len()][i] }
+            })
+            .collect()
+    };
+    Ok((sum(false), sum(true), weight))
+}
+
+fn is_resisting(effect: &Effect) -> bool {
+    use haptics::law::Role;
+    matches!(effect.role(), Role::Dry | Role::Presliding | Role::Viscous)
+}
+
+/// Size of a dry law's force at a row if it slid.
+fn level(effect: &Effect, track: &Track, i: usize) -> f64 {
+    let motion = haptics::law::Motion { direction: 1.0, ..track.rows[i].motion };
+    effect.force(&motion)
+}
+
+/// The autoregression of the noise, from what everything together leaves: learnt from the model's residual it would swallow the causes.
+fn learn_whitening(
+    base: &[Vec<f64>],
+    candidates: &[Candidate],
+    rows: &Rows<'_>,
+    threshold: f64,
+) -> Result<Vec<f64>, EstimateError> {
+    let rough = System::new(base, candidates, rows, Vec::new());
+    let picks = Selection { system: &rough, candidates, threshold, dry: true }.greedy();
+    let mut all = rough.columns(&picks);
+    let generic = (0..candidates.len()).filter(|c| candidates[*c].expression.is_some());
+    all.extend(generic.flat_map(|c| rough.places[c].clone()));
+    let target = rough.train.ncols() - 1;
+    let mut ridged = rough.train.clone();
+    for column in &all[rough.base..] {
+        ridged[(*column, *column)] *= 1.0 + RIDGE;
+    }
+    let solved = solve(&ridged, &all, target)
+        .ok_or_else(|| EstimateError::Other("the model could not be fitted to the recording".to_owned()))?;
+    let generic: Vec<usize> = (0..candidates.len()).filter(|c| candidates[*c].expression.is_some()).collect();
+    let everything: Vec<usize> = picks.iter().copied().chain(generic).collect();
+    let left = residual(rows.y, base, candidates, &everything, &solved);
+    let weighted: Vec<f64> = left.iter().zip(rows.weight).map(|(r, w)| r * w).collect();
+    Ok(whitener(&weighted, rows, &uses(rows)))
+}

@@ -1,0 +1,133 @@
+//! What a cause is worth where it was neither chosen nor fitted: on the locked blocks.
+
+use super::geometry::{Study, residual};
+use super::report::Gain;
+use super::system::Use;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+/// Draws of the bootstrap over locked blocks.
+const DRAWS: usize = 400;
+/// Each locked block is cut into so many parts for it.
+const PARTS: usize = 4;
+/// Lags of the test for whiteness.
+const LAGS: usize = 10;
+
+/// Sums of squares over parts of the locked blocks: before, after, and rows.
+struct Parts {
+    before: Vec<f64>,
+    after: Vec<f64>,
+    rows: Vec<f64>,
+}
+
+/// Weighted residuals of a subset of the chosen causes, all rows.
+fn left(study: &Study, picks: &[usize]) -> Vec<f64> {
+    let Some(solved) = study.system.solve(picks) else { return study.y.clone() };
+    let plain = residual(&study.y, &study.base, &study.candidates, picks, &solved);
+    plain.iter().zip(&study.weight).map(|(r, w)| r * w).collect()
+}
+
+/// Root mean square over the locked rows, and over those that train.
+pub fn rms(study: &Study, picks: &[usize], along: &[bool]) -> (f64, f64) {
+    let residual = left(study, picks);
+    let over = |wanted: &dyn Fn(Use) -> bool| {
+        let (sum, n) = (0..residual.len())
+            .filter(|i| along[*i] && wanted(study.system.uses[*i]))
+            .fold((0.0, 0_u32), |(s, n), i| (s + residual[i].powi(2), n + 1));
+        (sum / f64::from(n.max(1))).sqrt()
+    };
+    let train = over(&|u| matches!(u, Use::Fold(_)));
+    let locked = over(&|u| matches!(u, Use::Locked(_)));
+    (if locked > 0.0 { locked } else { train }, train)
+}
+
+/// The gain by the k-th of the chosen causes, all others in.
+pub fn gain(study: &Study, k: usize, floor: f64) -> Gain {
+    let picks = study.picks();
+    let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
+    let (before, after) = (left(study, &rest), left(study, &picks));
+    let parts = parts(study, &before, &after);
+    let all: Vec<usize> = (0..parts.rows.len()).collect();
+    let [b, a] = means(&parts, &all);
+    let weight = mean_square_weight(study);
+    let share = |b: f64, a: f64| ((b - a) / (b - floor * floor * weight).max(1e-3 * b)).min(1.0);
+    let mut shares: Vec<f64> = Vec::with_capacity(DRAWS);
+    let mut state = 0x2545_F491_4F6C_DD1D_u64;
+    for _ in 0..DRAWS {
+        let drawn: Vec<usize> = all
+            .iter()
+            .map(|_| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                ((state >> 33) as usize) % all.len().max(1)
+            })
+            .collect();
+        let [b, a] = means(&parts, &drawn);
+        shares.push(share(b, a));
+    }
+    shares.sort_by(f64::total_cmp);
+    let at = |q: f64| shares.get(((shares.len().saturating_sub(1)) as f64 * q) as usize).copied().unwrap_or(0.0);
+    Gain {
+        heldout_rms_before: b.sqrt(),
+        heldout_rms_after: a.sqrt(),
+        share_of_explainable: share(b, a),
+        interval: [at(0.025), at(0.975)],
+        rollout: None,
+    }
+}
+
+fn mean_square_weight(study: &Study) -> f64 {
+    let locked = (0..study.weight.len()).filter(|i| matches!(study.system.uses[*i], Use::Locked(_)));
+    let (sum, n) = locked.fold((0.0, 0_u32), |(s, n), i| (s + study.weight[i].powi(2), n + 1));
+    if n > 0 { sum / f64::from(n) } else { 1.0 }
+}
+
+fn parts(study: &Study, before: &[f64], after: &[f64]) -> Parts {
+    let locked: Vec<(usize, usize)> = study
+        .system
+        .uses
+        .iter()
+        .enumerate()
+        .filter_map(|(i, u)| if let Use::Locked(block) = u { Some((*block, i)) } else { None })
+        .collect();
+    let mut parts = Parts { before: Vec::new(), after: Vec::new(), rows: Vec::new() };
+    for block in locked.chunk_by(|a, b| a.0 == b.0) {
+        for part in block.chunks(block.len().div_ceil(PARTS).max(1)) {
+            parts.before.push(part.iter().map(|(_, i)| before[*i].powi(2)).sum());
+            parts.after.push(part.iter().map(|(_, i)| after[*i].powi(2)).sum());
+            parts.rows.push(part.len() as f64);
+        }
+    }
+    parts
+}
+
+fn means(parts: &Parts, picked: &[usize]) -> [f64; 2] {
+    let rows: f64 = picked.iter().map(|p| parts.rows[*p]).sum::<f64>().max(1.0);
+    let mean = |values: &[f64]| picked.iter().map(|p| values[*p]).sum::<f64>() / rows;
+    [mean(&parts.before), mean(&parts.after)]
+}
+
+/// Probability that white residuals would be at least as correlated (Ljung & Box 1978), after the noise's own autoregression.
+pub fn whiteness_p(study: &Study, picks: &[usize], stretch: &[usize]) -> f64 {
+    let residual = left(study, picks);
+    let a = &study.system.coefficients;
+    let mut white = Vec::new();
+    let mut since = 0;
+    for i in 0..residual.len() {
+        since = if i > 0 && stretch[i] == stretch[i - 1] { since + 1 } else { 0 };
+        if since >= a.len() {
+            white.push(residual[i] - a.iter().enumerate().map(|(k, c)| c * residual[i - k - 1]).sum::<f64>());
+        }
+    }
+    let n = white.len() as f64;
+    let power: f64 = white.iter().map(|v| v * v).sum();
+    if white.len() < 3 * LAGS || power <= 0.0 {
+        return 1.0;
+    }
+    let correlation = |lag: usize| white.iter().zip(&white[lag..]).map(|(a, b)| a * b).sum::<f64>() / power;
+    let q: f64 = (1..=LAGS).map(|lag| correlation(lag).powi(2) / (n - lag as f64)).sum::<f64>() * n * (n + 2.0);
+    chi_square_tail(q, LAGS as f64)
+}
+
+/// Probability of at least `value` by chance.
+pub fn chi_square_tail(value: f64, freedom: f64) -> f64 {
+    ChiSquared::new(freedom).map_or(1.0, |d| d.sf(value.max(0.0)))
+}

@@ -1,0 +1,68 @@
+//! Terms of no cause in particular: what is left when no law fits, told by what it depends on.
+
+use super::candidate::Candidate;
+use super::track::{Place, Row, Track};
+use haptics::law::Kind;
+
+/// Waves round a turn, or over the range.
+const WAVES: u32 = 6;
+/// Slow waves in time.
+const SLOW: u32 = 6;
+
+/// What a wave is multiplied by, with its name.
+type Factor<'a> = (&'a str, Box<dyn Fn(&Row) -> f64 + 'a>);
+
+/// All of them.
+pub fn generic(track: &Track) -> Vec<Candidate> {
+    let mut all = Vec::new();
+    let fast = track.quantile(0.9, |r| r.motion.velocity.abs()).max(1e-12);
+    let low = track.quantile(0.0, |r| r.angle_rad);
+    let range = (track.quantile(1.0, |r| r.angle_rad) - low).max(1e-12);
+    let phase = |row: &Row| {
+        if track.radius_m.is_some() { row.angle_rad } else { std::f64::consts::TAU * (row.angle_rad - low) / range }
+    };
+    let mut factors: Vec<Factor<'_>> = vec![
+        ("1", Box::new(|_| 1.0)),
+        ("sgn(v)", Box::new(|r: &Row| r.motion.direction)),
+        ("v", Box::new(move |r: &Row| r.motion.velocity / fast)),
+    ];
+    if track.planar {
+        factors.push(("Fn", Box::new(|r: &Row| r.motion.normal_force_n)));
+    }
+    for (name, factor) in &factors {
+        for n in 1..=WAVES {
+            let n = f64::from(n);
+            let columns = vec![
+                column(track, &|r| (n * phase(r)).cos() * factor(r)),
+                column(track, &|r| (n * phase(r)).sin() * factor(r)),
+            ];
+            all.push(term(format!("{name} cos({n} q + phi)"), columns));
+        }
+    }
+    for share in [0.2, 0.5, 0.8] {
+        let bend = share * fast;
+        let hinge = |r: &Row| (r.motion.velocity.abs() - bend).max(0.0) / fast * r.motion.direction;
+        all.push(term(format!("max(abs(v) - {bend:.3}, 0) sgn(v)"), vec![column(track, &hinge)]));
+    }
+    for k in 1..=SLOW {
+        let wave = |r: &Row| (std::f64::consts::PI * f64::from(k) * r.motion.time_s / track.span_s.max(1e-9)).cos();
+        all.push(term(format!("cos({k} pi t/T)"), vec![column(track, &wave)]));
+    }
+    if track.planar {
+        all.push(term(
+            "Fn^2 sgn(v)".to_owned(),
+            vec![column(track, &|r| r.motion.normal_force_n.powi(2) * r.motion.direction)],
+        ));
+        all.push(term("Fn^2".to_owned(), vec![column(track, &|r| r.motion.normal_force_n.powi(2))]));
+    }
+    all
+}
+
+fn column(track: &Track, of: &dyn Fn(&Row) -> f64) -> Vec<f64> {
+    track.rows.iter().map(|r| if r.place == Place::Along { of(r) } else { 0.0 }).collect()
+}
+
+fn term(expression: String, columns: Vec<Vec<f64>>) -> Candidate {
+    let linear = columns.iter().map(|_| ("amplitude", "")).collect();
+    Candidate { expression: Some(expression), ..Candidate::several("other", Kind::Plant, columns, linear) }
+}

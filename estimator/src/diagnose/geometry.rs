@@ -1,0 +1,200 @@
+//! The path before the force: centre and radius of a crank, and the causes that distort the circle.
+
+use super::candidate::Candidate;
+use super::select::{Chosen, Selection};
+use super::system::{Rows, Solved, System, solve, uses, whitener};
+use crate::estimate::EstimateError;
+use crate::identify::linear::least_squares;
+use haptics::Vec2;
+use haptics::law::Kind;
+
+/// Starts of a slip that are tried.
+const SLIP_STARTS: usize = 24;
+/// Rounds of the linearised circle fit.
+const ROUNDS: usize = 8;
+
+/// One held sample.
+pub struct PathPoint {
+    /// Row of the signals.
+    pub index: usize,
+    pub stretch: usize,
+    pub time_s: f64,
+    pub position: Vec2,
+    pub force: Vec2,
+    /// ∂tip/∂(top joint angle) and ∂tip/∂(length of the first link), where joints were recorded.
+    pub joint: Option<[Vec2; 2]>,
+}
+
+/// What the geometry is found from.
+pub struct Path {
+    pub points: Vec<PathPoint>,
+    pub period_s: f64,
+    /// Two pads hold the handle: their give belongs to the model.
+    pub two_fingered: bool,
+}
+
+/// The circle that the handle follows.
+#[derive(Clone, Debug)]
+pub struct Arm {
+    /// m
+    pub center_m: Vec2,
+    pub radius_m: f64,
+    /// What is subtracted from the measured position of a signals' row, m.
+    pub shifts: Vec<Vec2>,
+}
+
+impl Arm {
+    /// From the centre to the handle, m.
+    pub fn arm(&self, row: usize, position: Vec2) -> Vec2 {
+        position - self.shifts.get(row).copied().unwrap_or_else(Vec2::zeros) - self.center_m
+    }
+}
+
+/// The circle, and what was found to distort it.
+pub struct Geometry {
+    pub arm: Arm,
+    pub study: Study,
+}
+
+/// One comparison of causes: everything that words and figures are made of.
+pub struct Study {
+    pub candidates: Vec<Candidate>,
+    pub chosen: Vec<Chosen>,
+    pub system: System,
+    /// All chosen, solved on the rows that train.
+    pub solved: Option<Solved>,
+    /// The target.
+    pub y: Vec<f64>,
+    pub base: Vec<Vec<f64>>,
+    pub weight: Vec<f64>,
+}
+
+impl Study {
+    /// Candidates that were chosen.
+    pub fn picks(&self) -> Vec<usize> {
+        self.chosen.iter().map(|c| c.candidate).collect()
+    }
+}
+
+/// Fits the circle and asks what distorts it. `signals`: number of rows of the signals; `threshold`: least score of a cause.
+pub fn geometry(path: &Path, signals: usize, threshold: f64) -> Result<Geometry, EstimateError> {
+    let positions: Vec<Vec2> = path.points.iter().map(|p| p.position).collect();
+    let mut center_m = circle(&positions)?;
+    let mut shift_m = vec![Vec2::zeros(); signals];
+    let mut radius_m = 0.0;
+    let mut study = None;
+    for round in 0..ROUNDS {
+        let made = compare(path, center_m, threshold)?;
+        let Some(solved) = &made.solved else {
+            return Err(EstimateError::Other("no circle fits the handle's path".to_owned()));
+        };
+        radius_m = solved.values[0];
+        let step = Vec2::new(solved.values[1], solved.values[2]);
+        center_m += step;
+        corrections(path, &made, &mut shift_m, center_m);
+        let settled = step.norm() < 1e-8;
+        study = Some(made);
+        if settled && round > 0 {
+            break;
+        }
+    }
+    let study = study.ok_or_else(|| EstimateError::Other("no circle was fitted".to_owned()))?;
+    Ok(Geometry { arm: Arm { center_m, radius_m, shifts: shift_m }, study })
+}
+
+/// Kåsa's circle (1976).
+fn circle(points: &[Vec2]) -> Result<Vec2, EstimateError> {
+    let mean = points.iter().sum::<Vec2>() / points.len().max(1) as f64;
+    let column = |f: &dyn Fn(Vec2) -> f64| points.iter().map(|p| f(p - mean)).collect::<Vec<f64>>();
+    let columns = [column(&|p| 2.0 * p.x), column(&|p| 2.0 * p.y), vec![1.0; points.len()]];
+    let fit = least_squares(&columns, &column(&|p| p.norm_squared()), None)?;
+    Ok(mean + Vec2::new(fit.values[0], fit.values[1]))
+}
+
+fn compare(path: &Path, center_m: Vec2, threshold: f64) -> Result<Study, EstimateError> {
+    let arms: Vec<Vec2> = path.points.iter().map(|p| p.position - center_m).collect();
+    let outward: Vec<Vec2> = arms.iter().map(Vec2::normalize).collect();
+    let y: Vec<f64> = arms.iter().map(Vec2::norm).collect();
+    let column = |f: &dyn Fn(usize) -> f64| (0..y.len()).map(f).collect::<Vec<f64>>();
+    let mut base = vec![vec![1.0; y.len()], column(&|i| outward[i].x), column(&|i| outward[i].y)];
+    if path.two_fingered {
+        base.push(column(&|i| outward[i].x * path.points[i].force.x));
+        base.push(column(&|i| outward[i].y * path.points[i].force.y));
+    }
+    let candidates = candidates(path, &outward);
+    let stretch: Vec<usize> = path.points.iter().map(|p| p.stretch).collect();
+    let (testable, weight) = (vec![true; y.len()], vec![1.0; y.len()]);
+    let rows = Rows { y: &y, stretch: &stretch, testable: &testable, weight: &weight, period_s: path.period_s };
+    // The whitening must not swallow what it is to leave: it comes from the residual of everything together.
+    let unwhitened = System::new(&base, &candidates, &rows, Vec::new());
+    let picks = Selection { system: &unwhitened, candidates: &candidates, threshold, dry: true }.greedy();
+    let columns = unwhitened.columns(&picks);
+    let solved = solve(&unwhitened.train, &columns, unwhitened.train.ncols() - 1)
+        .ok_or_else(|| EstimateError::Other("no circle fits the handle's path".to_owned()))?;
+    let residual = residual(&y, &base, &candidates, &picks, &solved);
+    let coefficients = whitener(&residual, &rows, &uses(&rows));
+    let system = System::new(&base, &candidates, &rows, coefficients);
+    let chosen = Selection { system: &system, candidates: &candidates, threshold, dry: true }.run();
+    let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
+    let solved = system.solve(&picks);
+    Ok(Study { candidates, chosen, system, solved, y, base, weight })
+}
+
+/// What is left of `y`.
+pub fn residual(y: &[f64], base: &[Vec<f64>], candidates: &[Candidate], picks: &[usize], solved: &Solved) -> Vec<f64> {
+    let columns: Vec<&Vec<f64>> = base.iter().chain(picks.iter().flat_map(|p| &candidates[*p].columns)).collect();
+    (0..y.len()).map(|i| y[i] - columns.iter().zip(&solved.values).map(|(c, v)| c[i] * v).sum::<f64>()).collect()
+}
+
+fn candidates(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
+    let points = &path.points;
+    let column = |f: &dyn Fn(usize) -> f64| (0..points.len()).map(f).collect::<Vec<f64>>();
+    let mut found = Vec::new();
+    if !path.two_fingered {
+        let normal = column(&|i| outward[i].dot(&points[i].force));
+        found.push(Candidate::one("pad-compliance", Kind::Plant, "give", "m/N", normal).positive());
+    }
+    if points.iter().all(|p| p.joint.is_some()) {
+        let of = |k: usize| column(&|i| points[i].joint.map_or(0.0, |j| outward[i].dot(&j[k])));
+        found.push(Candidate::one("joint-offset", Kind::Instrument, "delta", "rad", of(0)));
+        found.push(Candidate::one("length-scale", Kind::Instrument, "link_error", "m", of(1)));
+    }
+    let (first, last) = (points.first().map_or(0.0, |p| p.time_s), points.last().map_or(0.0, |p| p.time_s));
+    for k in 1..SLIP_STARTS {
+        let start = first + (last - first) * k as f64 / SLIP_STARTS as f64;
+        let after = |i: usize| f64::from(u8::from(points[i].time_s >= start));
+        let columns = vec![column(&|i| after(i) * outward[i].x), column(&|i| after(i) * outward[i].y)];
+        let slip = Candidate::several("fingertip-slip", Kind::Plant, columns, vec![("dx", "m"), ("dy", "m")]);
+        found.push(slip.at("time", start, "s"));
+    }
+    found
+}
+
+/// What the found causes displaced the positions by.
+fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2) {
+    shift_m.fill(Vec2::zeros());
+    let Some(solved) = &study.solved else { return };
+    let give = if path.two_fingered { Vec2::new(solved.values[3], solved.values[4]) } else { Vec2::zeros() };
+    for point in &path.points {
+        let outward = (point.position - center_m).normalize();
+        let mut shift = point.force.component_mul(&give);
+        let mut at = study.base.len();
+        for chosen in &study.chosen {
+            let candidate = &study.candidates[chosen.candidate];
+            let value = solved.values[at];
+            shift += match (candidate.id, point.joint) {
+                ("pad-compliance", _) => outward * (value * outward.dot(&point.force)),
+                ("joint-offset", Some(joint)) => joint[0] * value,
+                ("length-scale", Some(joint)) => joint[1] * value,
+                ("fingertip-slip", _) if point.time_s >= candidate.searched[0].value => {
+                    Vec2::new(value, solved.values[at + 1])
+                }
+                _ => Vec2::zeros(),
+            };
+            at += candidate.columns.len();
+        }
+        if let Some(to) = shift_m.get_mut(point.index) {
+            *to = shift;
+        }
+    }
+}

@@ -1,0 +1,295 @@
+//! Rows out of a recording of a crank: positions and forces of whatever holds its handle.
+
+use super::geometry::{Arm, Path, PathPoint};
+use super::track::{Place, Row, Track};
+use crate::estimate::EstimateError;
+use crate::segment::{SystemState, segment};
+use crate::signal::derive::savitzky_golay;
+use crate::signal::noise::white_noise;
+use crate::signal::task::{is_two_fingered, task_signals, times, tip_series};
+use haptics::Vec2;
+use haptics::hand::JointAngles;
+use haptics::law::{Coordinate, Motion};
+use haptics::recording::{Recording, Task};
+
+/// Rows come at about this rate, Hz: nothing that a hand does is faster than half of it.
+const ROW_HZ: f64 = 100.0;
+/// Samples so close to a change between free and held belong to neither, s.
+const MARGIN_S: f64 = 0.06;
+/// Free rests shorter than this may be zero crossings of the force, s.
+const LEAST_FREE_S: f64 = 0.25;
+/// Window of the acceleration, s.
+const ACCELERATION_WINDOW_S: f64 = 0.09;
+/// Fewer rows carry no diagnosis.
+const LEAST_ROWS: usize = 60;
+
+/// Signals at the rate of the rows, each the mean of the same samples.
+pub struct Signals {
+    pub time_s: Vec<f64>,
+    pub position: Vec<Vec2>,
+    pub velocity: Vec<Vec2>,
+    pub force: Vec<Vec2>,
+    /// Joint angles of a single finger, where they were recorded.
+    pub joints: Option<Vec<JointAngles>>,
+    pub held: Vec<bool>,
+    pub free: Vec<bool>,
+    pub period_s: f64,
+    /// Of the recording itself, s.
+    pub raw_period_s: f64,
+}
+
+impl Signals {
+    /// `bad`: samples that no sensor measured.
+    pub fn of(recording: &Recording, bad: &[bool]) -> Result<Self, EstimateError> {
+        let time_s = times(recording);
+        let (position, velocity, force) = raw(recording)?;
+        let n = time_s.len();
+        let (mut held, mut free) = held_and_free(recording, &time_s)?;
+        for (i, bad) in bad.iter().enumerate().filter(|(_, b)| **b) {
+            (held[i], free[i]) = (held[i] && !bad, free[i] && !bad);
+        }
+        let period_s = if n > 1 { (time_s[n - 1] - time_s[0]) / (n - 1) as f64 } else { 1.0 };
+        let every = (1.0 / (ROW_HZ * period_s)).round().max(1.0) as usize;
+        let groups = n / every;
+        let mean = |values: &[Vec2]| -> Vec<Vec2> {
+            (0..groups).map(|g| values[g * every..(g + 1) * every].iter().sum::<Vec2>() / every as f64).collect()
+        };
+        let number = |values: &[f64]| -> Vec<f64> {
+            (0..groups).map(|g| values[g * every..(g + 1) * every].iter().sum::<f64>() / every as f64).collect()
+        };
+        let all = |flags: &[bool]| -> Vec<bool> {
+            (0..groups).map(|g| flags[g * every..(g + 1) * every].iter().all(|f| *f)).collect()
+        };
+        let joints = match (recording.channel("qb_rad"), recording.channel("qt_rad")) {
+            (Some(bottom), Some(top)) => Some(
+                number(bottom)
+                    .into_iter()
+                    .zip(number(top))
+                    .map(|(bottom_rad, top_rad)| JointAngles { bottom_rad, top_rad })
+                    .collect(),
+            ),
+            _ => None,
+        };
+        Ok(Self {
+            time_s: number(&time_s).iter().map(|t| t - time_s[0]).collect(),
+            position: mean(&position),
+            velocity: mean(&velocity),
+            force: mean(&force),
+            joints,
+            held: all(&held),
+            free: all(&free),
+            period_s: period_s * every as f64,
+            raw_period_s: period_s,
+        })
+    }
+
+    /// The path of the handle, for the geometry.
+    pub fn path(&self, recording: &Recording) -> Path {
+        let finger = recording.meta.hand().fingers[0];
+        let stretches = stretches(&self.held);
+        let points = stretches
+            .iter()
+            .enumerate()
+            .flat_map(|(stretch, range)| range.clone().map(move |i| (stretch, i)))
+            .map(|(stretch, i)| {
+                let joint = self.joints.as_ref().map(|q| {
+                    let jacobian = finger.jacobian(q[i]);
+                    let length = Vec2::new(q[i].bottom_rad.cos(), q[i].bottom_rad.sin());
+                    [Vec2::new(jacobian[(0, 1)], jacobian[(1, 1)]), length]
+                });
+                PathPoint {
+                    index: i,
+                    stretch,
+                    time_s: self.time_s[i],
+                    position: self.position[i],
+                    force: self.force[i],
+                    joint,
+                }
+            })
+            .collect();
+        Path { points, period_s: self.period_s, two_fingered: is_two_fingered(recording) }
+    }
+
+    /// The rows along the circle of `arm`, then the free ones.
+    /// `signs`: what the force's axes are multiplied by.
+    pub fn rows(&self, recording: &Recording, arm: &Arm, signs: [f64; 2]) -> Result<Track, EstimateError> {
+        let signs = Vec2::new(signs[0], signs[1]);
+        let up = if recording.meta.up.as_deref() == Some("-y") { -1.0 } else { 1.0 };
+        let mut rows = Vec::new();
+        let mut stretch_number = 0;
+        let mut noise = Vec::new();
+        for range in stretches(&self.held) {
+            let made = self.stretch(range, stretch_number, arm, (up, signs), &mut noise);
+            rows.extend(made);
+            stretch_number += 1;
+        }
+        if rows.len() < LEAST_ROWS {
+            return Err(EstimateError::TooFewSamples {
+                recording: recording.name.clone(),
+                samples: rows.len(),
+                what: " in which the handle is held".to_owned(),
+                needed: LEAST_ROWS,
+            });
+        }
+        let (free, force_noise) = self.free_rows(stretch_number, signs);
+        let noise_is_measured = free.len() > 40;
+        rows.extend(free);
+        let along: Vec<f64> = rows.iter().filter(|r| r.place == Place::Along).map(|r| r.y).collect();
+        Ok(Track {
+            period_s: self.period_s,
+            raw_period_s: self.raw_period_s,
+            coordinate: Coordinate::Linear,
+            radius_m: Some(arm.radius_m),
+            planar: true,
+            velocity_noise: (noise.iter().map(|n| n * n).sum::<f64>() / noise.len().max(1) as f64).sqrt(),
+            force_noise: if noise_is_measured { force_noise } else { white_noise(&along) }.max(1e-9),
+            noise_is_measured,
+            span_s: self.time_s.last().copied().unwrap_or(0.0),
+            rows,
+        })
+    }
+
+    fn stretch(
+        &self,
+        range: std::ops::Range<usize>,
+        stretch: usize,
+        arm: &Arm,
+        (up, signs): (f64, Vec2),
+        noise: &mut Vec<f64>,
+    ) -> Vec<Row> {
+        let time = &self.time_s[range.clone()];
+        let directions: Vec<(Vec2, Vec2)> = range
+            .clone()
+            .map(|i| {
+                let outward = arm.arm(i, self.position[i]).normalize();
+                (outward, Vec2::new(-outward.y, outward.x))
+            })
+            .collect();
+        let speed: Vec<f64> =
+            range.clone().zip(&directions).map(|(i, (_, along))| self.velocity[i].dot(along)).collect();
+        noise.push(white_noise(&speed));
+        let half = ((0.5 * ACCELERATION_WINDOW_S / self.period_s).round() as usize).max(2);
+        let acceleration = savitzky_golay(time, &speed, half, 2).first;
+        let axis = |pick: fn(&Vec2) -> f64| {
+            savitzky_golay(time, &self.force[range.clone()].iter().map(pick).collect::<Vec<_>>(), half.min(3), 2).first
+        };
+        let (rate_x, rate_y) = (axis(|f| f.x), axis(|f| f.y));
+        let mut before = 0.0_f64;
+        range
+            .enumerate()
+            .map(|(k, i)| {
+                let (outward, along) = directions[k];
+                let wrapped = outward.y.atan2(outward.x);
+                let angle = wrapped + ((before - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+                before = angle;
+                let force = self.force[i].component_mul(&signs);
+                Row {
+                    recording: 0,
+                    stretch,
+                    place: Place::Along,
+                    motion: Motion {
+                        time_s: self.time_s[i],
+                        position: arm.radius_m * angle,
+                        velocity: speed[k],
+                        acceleration: acceleration[k],
+                        direction: 0.0,
+                        normal_force_n: force.dot(&outward),
+                        up_along: up * along.y,
+                    },
+                    angle_rad: angle,
+                    along,
+                    force,
+                    force_rate: Vec2::new(rate_x[k], rate_y[k]).component_mul(&signs),
+                    y: force.dot(&along),
+                }
+            })
+            .collect()
+    }
+
+    fn free_rows(&self, first_stretch: usize, signs: Vec2) -> (Vec<Row>, f64) {
+        let mut rows = Vec::new();
+        let (mut square, mut count) = (0.0, 0.0);
+        for (k, range) in stretches(&self.free).into_iter().enumerate() {
+            for (a, place) in [Place::FreeX, Place::FreeY].into_iter().enumerate() {
+                let values: Vec<f64> = range.clone().map(|i| signs[a] * self.force[i][a]).collect();
+                let mean = values.iter().sum::<f64>() / values.len() as f64;
+                square += values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
+                count += values.len() as f64;
+                rows.extend(range.clone().map(|i| Row {
+                    recording: 0,
+                    stretch: first_stretch + 2 * k + a,
+                    place,
+                    motion: Motion { time_s: self.time_s[i], ..Motion::default() },
+                    angle_rad: 0.0,
+                    along: if a == 0 { Vec2::x() } else { Vec2::y() },
+                    force: self.force[i].component_mul(&signs),
+                    force_rate: Vec2::zeros(),
+                    y: signs[a] * self.force[i][a],
+                }));
+            }
+        }
+        (rows, (square / count.max(1.0_f64)).sqrt())
+    }
+}
+
+/// Spans of held rows without a gap, long enough to be differentiated.
+fn stretches(flags: &[bool]) -> Vec<std::ops::Range<usize>> {
+    let mut found = Vec::new();
+    let mut start = None;
+    for i in 0..=flags.len() {
+        let on = i < flags.len() && flags[i];
+        match (on, start) {
+            (true, None) => start = Some(i),
+            (false, Some(first)) => {
+                found.push(first..i);
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    found.retain(|r| r.len() >= 8);
+    found
+}
+
+type Raw = (Vec<Vec2>, Vec<Vec2>, Vec<Vec2>);
+
+fn raw(recording: &Recording) -> Result<Raw, EstimateError> {
+    if is_two_fingered(recording) {
+        let signals = task_signals(recording)?;
+        return Ok((signals.position, signals.velocity, signals.net_force_n));
+    }
+    let tip = tip_series(recording, "")?;
+    let velocity = tip.velocity.ok_or_else(|| EstimateError::Clockless {
+        what: "a diagnosis of a crank".to_owned(),
+        recording: recording.name.clone(),
+    })?;
+    let force = tip.force.ok_or_else(|| EstimateError::MissingColumn {
+        task: "a diagnosis of a crank".to_owned(),
+        column: "fx_N".to_owned(),
+        recording: recording.name.clone(),
+    })?;
+    Ok((tip.position, velocity, force))
+}
+
+/// Which samples are surely held, and which surely free.
+fn held_and_free(recording: &Recording, time_s: &[f64]) -> Result<(Vec<bool>, Vec<bool>), EstimateError> {
+    let segmentation = segment(recording, Some(Task::Crank), None)?;
+    let n = time_s.len();
+    let mut free = vec![false; n];
+    for interval in &segmentation.states {
+        if interval.state == SystemState::FreeMotion && interval.t1 - interval.t0 >= LEAST_FREE_S {
+            free[interval.first..interval.end].fill(true);
+        }
+    }
+    let period_s = if n > 1 { (time_s[n - 1] - time_s[0]) / (n - 1) as f64 } else { 1.0 };
+    let margin = (MARGIN_S / period_s).ceil() as usize;
+    let mut near = vec![false; n];
+    for i in 1..n {
+        if free[i] != free[i - 1] {
+            near[i.saturating_sub(margin)..(i + margin).min(n)].fill(true);
+        }
+    }
+    let held = (0..n).map(|i| !free[i] && !near[i]).collect();
+    let surely_free = (0..n).map(|i| free[i] && !near[i]).collect();
+    Ok((held, surely_free))
+}

@@ -1,0 +1,193 @@
+//! What the simulation gets wrong, the cause, and what mending it gains.
+//!
+//! Measured motion is put through the model; what remains of the force is compared with what every known cause would leave there.
+//! Method: named hypotheses, effective-variance weights, whitening, forward selection with swaps, a locked test part.
+
+mod candidate;
+mod dictionary;
+mod experiment;
+mod explain;
+mod extend;
+mod force;
+mod gain;
+mod generic;
+mod geometry;
+mod held_arm;
+mod quality;
+pub mod report;
+mod select;
+mod sliding;
+mod system;
+mod track;
+
+pub use report::{
+    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, Verdict,
+};
+
+use crate::estimate::EstimateError;
+use crate::pipeline;
+use crate::segment::task_of;
+use force::Model;
+use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, ViscousFriction, Weight};
+use haptics::recording::{Recording, Task};
+use haptics::world::World;
+
+/// What may be stated by the user.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// The task; told from sidecar and columns when absent.
+    pub task: Option<Task>,
+    /// The model of a mechanism to start from: `mass`, `mass+viscous` or `mass+viscous+coulomb`.
+    pub baseline: Option<String>,
+    /// The world to start from.
+    pub world: Option<World>,
+}
+
+/// Least score of a cause, in units of 2 ln(likelihood): keeps false alarms below 1 in 200 (`facts/diagnosis.md`, 3) …
+const THRESHOLD: f64 = 20.0;
+/// … and for few rows a second, where the noise hides less well.
+const THRESHOLD_SLOW: f64 = 25.0;
+/// Slower rows than this count as slow, s.
+const SLOW_PERIOD_S: f64 = 0.019;
+
+/// Diagnoses one or several recordings of the same object.
+pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let first = recordings
+        .first()
+        .ok_or_else(|| EstimateError::Other("no recording was given; name at least one log".to_owned()))?;
+    let task = task_of(first, options.task)?;
+    match task {
+        Task::Crank => crank(recordings, options),
+        Task::Mechanism => mechanism(recordings, options),
+        other => Err(EstimateError::Other(format!(
+            "recordings of the task {} cannot be diagnosed yet; crank and mechanism can",
+            other.name()
+        ))),
+    }
+}
+
+/// The world that runs what the diagnosis found: the one it started from, or one calibrated from the recordings, with the extended laws.
+pub fn extended_world(
+    recordings: &[Recording],
+    options: &Options,
+    diagnosis: &Diagnosis,
+) -> Result<World, EstimateError> {
+    let mut world = if let Some(world) = &options.world {
+        world.clone()
+    } else {
+        let fit = pipeline::Options { task: options.task, ..pipeline::Options::default() };
+        pipeline::analyse(recordings, &fit)?.world
+    };
+    if let Some(crank) = &mut world.crank {
+        crank.effects.clone_from(&diagnosis.effects);
+    }
+    if let Some(mechanism) = &mut world.mechanism {
+        mechanism.effects.clone_from(&diagnosis.effects);
+    }
+    Ok(world)
+}
+
+fn threshold(period_s: f64) -> f64 {
+    if period_s > SLOW_PERIOD_S { THRESHOLD_SLOW } else { THRESHOLD }
+}
+
+fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let mut tracks = Vec::new();
+    let mut geometries = Vec::new();
+    let mut faults = Vec::new();
+    for recording in recordings {
+        let found = quality::faults(recording);
+        let signals = held_arm::Signals::of(recording, &found.bad)?;
+        faults.extend(found.causes);
+        let path = signals.path(recording);
+        let circle = geometry::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
+        let (rows, mirrored) = upright(&signals, recording, &circle.arm)?;
+        faults.extend(mirrored);
+        tracks.push(rows);
+        geometries.push(circle.study);
+    }
+    let mut track = track::join(tracks).ok_or_else(nothing)?;
+    let mut model: Model = match &options.world {
+        Some(world) => world.crank.as_ref().map(|c| c.effects.clone()).unwrap_or_default(),
+        None => plain_crank(),
+    };
+    let fixed = known_weight(&recordings[0], &mut model);
+    let limit = threshold(track.period_s);
+    let study = force::study(&mut track, &model, &fixed, limit)?;
+    Ok(explain::explain(&track, &model, &study, &geometries, faults))
+}
+
+/// The thesis's crank (eq. 5.2).
+fn plain_crank() -> Model {
+    [&Weight as &dyn Law, &LoadFriction, &ViscousFriction].map(|law| Effect::new(law, &[1.0])).to_vec()
+}
+
+/// A weight that the sidecar states is no part of what is fitted.
+fn known_weight(recording: &Recording, model: &mut Model) -> Model {
+    let known = &recording.meta.known;
+    let weight = known.get("weight_N").copied().or_else(|| Some(known.get("mass_kg")? * recording.meta.gravity()));
+    let Some(weight) = weight else { return Model::new() };
+    model.retain(|e| e.law().id() != Weight.id());
+    vec![Effect::new(&Weight, &[weight])]
+}
+
+/// How much better a mirrored axis must explain the force: left, of what the recorded one leaves.
+const MIRRORED_SHARE: f64 = 0.5;
+
+/// The rows, with an axis of the force mirrored back where that alone makes sense of them.
+fn upright(
+    signals: &held_arm::Signals,
+    recording: &Recording,
+    arm: &geometry::Arm,
+) -> Result<(track::Track, Option<Cause>), EstimateError> {
+    let as_recorded = signals.rows(recording, arm, [1.0, 1.0])?;
+    let model = plain_crank();
+    let left = |track: &track::Track| force::plain_rms(&mut track.clone(), &model);
+    let (before, _) = left(&as_recorded)?;
+    let mut best: Option<(f64, track::Track, &str)> = None;
+    for (signs, name) in [([-1.0, 1.0], "fx"), ([1.0, -1.0], "fy"), ([-1.0, -1.0], "fx and fy")] {
+        let track = signals.rows(recording, arm, signs)?;
+        let (after, resists) = left(&track)?;
+        let both = name == "fx and fy";
+        // Both at once change every sign and no size: only friction that drives tells.
+        let better = if both { resists && !left(&as_recorded)?.1 } else { resists && after < MIRRORED_SHARE * before };
+        if better && best.as_ref().is_none_or(|(least, ..)| after < *least) {
+            best = Some((after, track, name));
+        }
+    }
+    Ok(match best {
+        Some((after, track, name)) => (track, Some(quality::mirrored(name, after / before))),
+        None => (as_recorded, None),
+    })
+}
+
+fn nothing() -> EstimateError {
+    EstimateError::Other("no recording was given; name at least one log".to_owned())
+}
+
+fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let faults = recordings.iter().flat_map(|r| quality::faults(r).causes).collect();
+    let tracks = recordings.iter().map(sliding::track).collect::<Result<Vec<_>, _>>()?;
+    let mut track = track::join(tracks).ok_or_else(nothing)?;
+    let model = match (&options.world, options.baseline.as_deref()) {
+        (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),
+        (None, name) => named(name.unwrap_or("mass+viscous+coulomb"))?,
+    };
+    let limit = threshold(track.period_s);
+    let study = force::study(&mut track, &model, &Model::new(), limit)?;
+    Ok(explain::explain(&track, &model, &study, &[], faults))
+}
+
+/// The laws of a baseline's name.
+fn named(name: &str) -> Result<Model, EstimateError> {
+    name.split('+')
+        .map(|part| match part.trim() {
+            "mass" | "inertia" => Ok(Effect::new(&Inertia, &[1.0])),
+            "viscous" => Ok(Effect::new(&ViscousFriction, &[1.0])),
+            "coulomb" => Ok(Effect::new(&CoulombFriction, &[1.0])),
+            other => Err(EstimateError::Other(format!(
+                "`{other}` is no part of a baseline; write mass, mass+viscous or mass+viscous+coulomb, or name a world file"
+            ))),
+        })
+        .collect()
+}

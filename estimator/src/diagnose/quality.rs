@@ -1,0 +1,107 @@
+//! Faults of the recording itself, before anything is asked of the model: plateaus, stuck, coarse and missing samples, mirrored axes.
+
+use super::report::{Cause, CauseParameter, Gain};
+use crate::log;
+use haptics::law::Kind;
+use haptics::recording::{Recording, Warning};
+
+/// What was found in the samples.
+pub struct Faults {
+    pub causes: Vec<Cause>,
+    /// Samples that no sensor measured, one flag a sample.
+    pub bad: Vec<bool>,
+}
+
+/// Kinds of warnings that are a fault of a channel.
+const CHANNEL: [&str; 7] =
+    ["stuck-channel", "copied-channel", "duplicate-samples", "dropped-samples", "gap", "clock-jump", "quantised"];
+/// … of which these are about all samples: nothing can be left out.
+const WHOLE: [&str; 4] = ["dropped-samples", "gap", "clock-jump", "quantised"];
+
+/// Looks at the raw samples.
+pub fn faults(recording: &Recording) -> Faults {
+    let mut found = Faults { causes: Vec::new(), bad: vec![false; recording.len()] };
+    for warning in log::check(recording) {
+        let id = match warning.kind.as_str() {
+            "saturation" => "force-saturation",
+            kind if CHANNEL.contains(&kind) && is_sensed(&warning) => "channel-fault",
+            _ => continue,
+        };
+        if !WHOLE.contains(&warning.kind.as_str()) {
+            for span in &warning.spans {
+                let end = span.end.min(found.bad.len());
+                found.bad[span.first.min(end)..end].fill(true);
+            }
+        }
+        if found.causes.iter().all(|c| c.id != id) {
+            found.causes.push(cause(id, &warning, recording));
+        }
+    }
+    // What is nearly all of the recording cannot be left out.
+    if 2 * found.bad.iter().filter(|b| **b).count() > found.bad.len() {
+        found.bad.fill(false);
+    }
+    found
+}
+
+/// The force and motion channels, and the clock.
+fn is_sensed(warning: &Warning) -> bool {
+    let Some(column) = &warning.column else { return true };
+    ["f", "tau", "q", "dq", "x", "y", "v"].iter().any(|start| column.starts_with(start))
+}
+
+fn cause(id: &str, warning: &Warning, recording: &Recording) -> Cause {
+    let first = warning.spans.first();
+    let time = |sample: usize| {
+        recording
+            .time_s
+            .as_ref()
+            .and_then(|t| t.get(sample.min(t.len().saturating_sub(1))))
+            .copied()
+            .unwrap_or(sample as f64)
+    };
+    let number = |name: &str, value: f64, unit: &str| CauseParameter {
+        name: name.to_owned(),
+        value,
+        std_error: 0.0,
+        unit: unit.to_owned(),
+    };
+    let channel = warning.column.as_deref().and_then(|c| recording.channels.iter().find(|x| x.name == c));
+    let parameters = match (id, first, channel) {
+        ("force-saturation", Some(span), Some(channel)) => {
+            vec![number("F_max", channel.values[span.first].abs(), &channel.unit)]
+        }
+        (_, Some(span), _) => vec![number("from", time(span.first), "s"), number("to", time(span.end), "s")],
+        _ => Vec::new(),
+    };
+    Cause {
+        id: id.to_owned(),
+        kind: Kind::Instrument,
+        parameters,
+        p_value: 0.0,
+        posterior: 1.0,
+        gain: Gain::default(),
+        evidence: warning.text.clone(),
+    }
+}
+
+/// A mirrored axis, as a cause.
+pub fn mirrored(which: &str, better: f64) -> Cause {
+    Cause {
+        id: "axis-sign".to_owned(),
+        kind: Kind::Instrument,
+        parameters: vec![CauseParameter {
+            name: format!("which: {which}"),
+            value: -1.0,
+            std_error: 0.0,
+            unit: "1".to_owned(),
+        }],
+        p_value: 0.0,
+        posterior: 1.0,
+        gain: Gain::default(),
+        evidence: format!(
+            "with {which} mirrored the model leaves {:.0} % of the force that it leaves unexplained as recorded, and friction resists",
+            100.0 * better
+        ),
+    }
+}

@@ -1,0 +1,154 @@
+//! What a diagnosis answers. These types *are* the JSON of `touchstone diagnose --json`.
+
+use haptics::law::{Effect, Kind};
+use serde::{Deserialize, Serialize};
+
+/// The answer in one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Something beyond the model is there, and it has a name.
+    Causes,
+    /// Nothing beyond the noise.
+    None,
+    /// Two or more causes explain the recording equally well.
+    Ambiguous,
+    /// Something is there that no known law explains.
+    Unexplained,
+}
+
+/// The model that was started from.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Baseline {
+    /// Its terms, e.g. `weight+load-friction+viscous-friction`.
+    pub model: String,
+    /// Root mean square of the force that it leaves unexplained where it was fitted, N (N m for angles).
+    #[serde(rename = "rms_N")]
+    pub rms_n: f64,
+    /// The same on the blocks that took part in nothing.
+    #[serde(rename = "heldout_rms_N")]
+    pub heldout_rms_n: f64,
+    /// Probability of residuals at least so correlated if they were white (Ljung & Box 1978).
+    pub whiteness_p: f64,
+}
+
+/// A parameter of a cause.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CauseParameter {
+    /// As in the law's page of the catalogue.
+    pub name: String,
+    /// Estimate.
+    pub value: f64,
+    /// One standard error.
+    pub std_error: f64,
+    /// Unit of both.
+    pub unit: String,
+}
+
+/// What an extension is worth on data that took part in nothing.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Gain {
+    /// Unexplained force without the cause (all others in), N or N m.
+    pub heldout_rms_before: f64,
+    /// … and with it.
+    pub heldout_rms_after: f64,
+    /// Part of what could be explained (the difference to the noise floor, in squares) that it explains.
+    pub share_of_explainable: f64,
+    /// 95 % interval of that share, by a block bootstrap.
+    pub interval: [f64; 2],
+    /// Unexplained force over short stretches that are integrated forward, before and after, where that could be done.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rollout: Option<[f64; 2]>,
+}
+
+/// A cause that was found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cause {
+    /// Out of `spec/causes.md`, or `other:<expression>`.
+    pub id: String,
+    /// Plant or instrument.
+    pub kind: Kind,
+    /// What it comes out at.
+    pub parameters: Vec<CauseParameter>,
+    /// Probability of such a gain by chance, corrected for the number of causes that were tried.
+    pub p_value: f64,
+    /// Probability among the causes that could stand in its place.
+    pub posterior: f64,
+    /// What it is worth.
+    pub gain: Gain,
+    /// One sentence: what in the residual shows it.
+    pub evidence: String,
+}
+
+/// A cause that would explain the recording as well.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Alternative {
+    /// Out of `spec/causes.md`.
+    pub id: String,
+    /// The found cause whose place it could take.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub instead_of: String,
+    /// Probability among the causes that could stand there.
+    pub posterior: f64,
+    /// Why they cannot be told apart here.
+    pub why: String,
+}
+
+/// A cause that this recording could not have shown.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NotExcited {
+    /// Out of `spec/causes.md`.
+    pub id: String,
+    /// What is missing.
+    pub why: String,
+}
+
+/// The recording that would settle what is open.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NextExperiment {
+    /// What to do, in words.
+    pub motion: String,
+    /// What it tells apart.
+    pub separates: Vec<String>,
+    /// Probability that it does.
+    pub expected_power: f64,
+}
+
+/// How well the extended model does in the end.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Final {
+    /// Unexplained force on the blocks that took part in nothing, N or N m.
+    #[serde(rename = "heldout_rms_N")]
+    pub heldout_rms_n: f64,
+    /// As in [`Baseline::whiteness_p`].
+    pub whiteness_p: f64,
+}
+
+/// Everything that a diagnosis found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Diagnosis {
+    /// The answer in one word.
+    pub verdict: Verdict,
+    /// Where it started.
+    pub baseline: Baseline,
+    /// Noise of the force, N or N m, from where nothing touches, or from what is too fast to be mechanical.
+    #[serde(rename = "noise_floor_N")]
+    pub noise_floor_n: f64,
+    /// Strongest first.
+    pub causes: Vec<Cause>,
+    /// What else it could be.
+    pub alternatives: Vec<Alternative>,
+    /// What this recording could not have shown.
+    pub not_excited: Vec<NotExcited>,
+    /// What to record next; nothing when nothing is open.
+    pub next_experiment: Option<NextExperiment>,
+    /// Where it ended.
+    #[serde(rename = "final")]
+    pub end: Final,
+    /// Sentences, most important first.
+    #[serde(default)]
+    pub warnings: Vec<String>,
+    /// The model's laws refitted, and with what was found: what the extended world runs.
+    #[serde(skip)]
+    pub effects: Vec<Effect>,
+}

@@ -1,0 +1,224 @@
+//! Which causes the recording asks for: forward with a look ahead, swaps, pruning.
+
+use super::candidate::Candidate;
+use super::system::System;
+
+/// Most causes at once.
+const MOST_CAUSES: usize = 4;
+/// Rounds of swapping after each addition.
+const SWAP_ROUNDS: usize = 3;
+/// A cause whose t-value is below this must improve nearly every fold.
+const CLEAR_T: f64 = 2.0;
+/// Causes that could stand in each other's place within this score are not told apart.
+pub const AMBIGUOUS: f64 = 10.0;
+
+/// A chosen candidate with what speaks for it.
+#[derive(Clone, Debug)]
+pub struct Chosen {
+    /// Index of the candidate.
+    pub candidate: usize,
+    /// Score that is lost without it, in units of 2 ln(likelihood), penalty included.
+    pub score: f64,
+    /// Likelihood ratio alone.
+    pub lambda: f64,
+    /// Other causes that could stand in its place: candidate, and how much less they score.
+    pub rivals: Vec<(usize, f64)>,
+}
+
+/// Chooses among the candidates. `threshold`: least score of a cause.
+pub struct Selection<'a> {
+    pub system: &'a System,
+    pub candidates: &'a [Candidate],
+    pub threshold: f64,
+    /// Whether the model has dry friction: what bends or lifts it needs it.
+    pub dry: bool,
+}
+
+/// Causes that are a change of dry friction, and mean nothing without it.
+const OF_DRY_FRICTION: [&str; 3] = ["stribeck", "hysteresis", "friction-change"];
+/// Causes that are dry friction.
+const DRY_FRICTION: [&str; 2] = ["coulomb-friction", "load-friction"];
+
+impl Selection<'_> {
+    /// N ln(RSS) plus what its parameters cost; smaller is better. Infinite where a parameter has an impossible sign.
+    fn price(&self, chosen: &[usize]) -> f64 {
+        let is = |all: &[&str]| chosen.iter().any(|c| all.contains(&self.candidates[*c].id));
+        if !self.dry && is(&OF_DRY_FRICTION) && !is(&DRY_FRICTION) {
+            return f64::INFINITY;
+        }
+        let Some(solved) = self.system.solve(chosen) else { return f64::INFINITY };
+        let mut at = self.system.base;
+        for c in chosen {
+            let candidate = &self.candidates[*c];
+            if candidate.sign * solved.values[at] < 0.0 {
+                return f64::INFINITY;
+            }
+            at += candidate.columns.len();
+        }
+        let cost: f64 = chosen.iter().map(|c| self.candidates[*c].cost).sum();
+        self.system.rows * solved.rss.ln() + cost * self.system.rows.ln()
+    }
+
+    /// Candidates that may join the chosen ones: supported, and of another cause.
+    fn open<'b>(&'b self, chosen: &'b [usize]) -> impl Iterator<Item = usize> + 'b {
+        (0..self.candidates.len())
+            .filter(|c| self.candidates[*c].expression.is_none() && self.system.supported(*c))
+            .filter(|c| chosen.iter().all(|o| self.candidates[*o].id != self.candidates[*c].id))
+    }
+
+    /// The best few, whether they earn their place or not: what the whitening must not swallow.
+    pub fn greedy(&self) -> Vec<usize> {
+        let mut chosen: Vec<usize> = Vec::new();
+        for _ in 0..MOST_CAUSES {
+            let price = |c: &usize| self.price(&[chosen.as_slice(), &[*c]].concat());
+            match self.open(&chosen).min_by(|a, b| price(a).total_cmp(&price(b))) {
+                Some(best) if price(&best).is_finite() => chosen.push(best),
+                _ => break,
+            }
+        }
+        chosen
+    }
+
+    /// The strongest generic term beside the chosen causes, and its score after the search for it is paid.
+    pub fn unexplained(&self, chosen: &[usize]) -> Option<(usize, f64)> {
+        let whole = self.price(chosen);
+        let generic: Vec<usize> = (0..self.candidates.len())
+            .filter(|c| self.candidates[*c].expression.is_some() && self.system.supported(*c))
+            .collect();
+        let search = 2.0 * (generic.len().max(1) as f64).ln();
+        let score = |c: usize| whole - self.price(&[chosen, &[c]].concat()) - search;
+        generic.iter().map(|c| (*c, score(*c))).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Everything that stands after forward selection, swaps and pruning; strongest first.
+    pub fn run(&self) -> Vec<Chosen> {
+        let mut chosen: Vec<usize> = Vec::new();
+        for _ in 0..MOST_CAUSES {
+            let price = |c: &usize| self.price(&[chosen.as_slice(), &[*c]].concat());
+            let Some(best) = self.open(&chosen).min_by(|a, b| price(a).total_cmp(&price(b))) else { break };
+            if !price(&best).is_finite() {
+                break;
+            }
+            chosen.push(best);
+            self.swap(&mut chosen);
+        }
+        self.prune(&mut chosen);
+        self.swap(&mut chosen);
+        self.prune(&mut chosen);
+        self.describe(&chosen)
+    }
+
+    fn swap(&self, chosen: &mut [usize]) {
+        for _ in 0..SWAP_ROUNDS {
+            let mut changed = false;
+            for k in 0..chosen.len() {
+                let rest: Vec<usize> = chosen.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, c)| *c).collect();
+                let with = |c: usize| self.price(&[rest.as_slice(), &[c]].concat());
+                let now = with(chosen[k]);
+                if let Some(best) = self.open(&rest).min_by(|a, b| with(*a).total_cmp(&with(*b)))
+                    && with(best) < now - 1e-9
+                {
+                    chosen[k] = best;
+                    changed = true;
+                }
+            }
+            if !changed {
+                break;
+            }
+        }
+    }
+
+    /// Takes out the weakest until every one that is left earns its place.
+    fn prune(&self, chosen: &mut Vec<usize>) {
+        while !chosen.is_empty() {
+            let whole = self.price(chosen);
+            let loss = |k: usize| self.price(&without(chosen, k)) - whole;
+            let Some(weakest) = (0..chosen.len()).min_by(|a, b| loss(*a).total_cmp(&loss(*b))) else { return };
+            let doubtful = (0..chosen.len()).find(|k| !self.validates(chosen, *k));
+            if loss(weakest) < self.threshold {
+                chosen.remove(weakest);
+            } else if let Some(k) = doubtful {
+                chosen.remove(k);
+            } else {
+                return;
+            }
+        }
+    }
+
+    /// Whether held-out folds gain by the k-th cause.
+    fn validates(&self, chosen: &[usize], k: usize) -> bool {
+        let (Some(with), Some(less)) =
+            (self.system.cross_validate(chosen), self.system.cross_validate(&without(chosen, k)))
+        else {
+            return false;
+        };
+        let gain: f64 = less.iter().sum::<f64>() - with.iter().sum::<f64>();
+        let better = less.iter().zip(&with).filter(|(l, w)| w < l).count();
+        gain > 0.0 && (self.clear(chosen, k) || 5 * better >= 4 * with.len())
+    }
+
+    fn clear(&self, chosen: &[usize], k: usize) -> bool {
+        let Some(solved) = self.system.solve(chosen) else { return false };
+        let before: usize = chosen[..k].iter().map(|c| self.candidates[*c].columns.len()).sum();
+        let first = self.system.base + before;
+        let variance = solved.rss / (self.system.rows - solved.columns.len() as f64).max(1.0);
+        (first..first + self.candidates[chosen[k]].columns.len())
+            .any(|i| solved.values[i].abs() > CLEAR_T * (variance * solved.inverse[(i, i)]).sqrt())
+    }
+
+    fn describe(&self, chosen: &[usize]) -> Vec<Chosen> {
+        let whole = self.price(chosen);
+        let mut found: Vec<Chosen> = (0..chosen.len())
+            .map(|k| {
+                let rest = without(chosen, k);
+                let score = self.price(&rest) - whole;
+                let cost = self.candidates[chosen[k]].cost * self.system.rows.ln();
+                Chosen {
+                    candidate: chosen[k],
+                    score,
+                    lambda: score + cost,
+                    rivals: self.rivals(&rest, chosen[k], whole),
+                }
+            })
+            .collect();
+        let order = self.order(chosen);
+        found.sort_by_key(|c| order.iter().position(|o| *o == c.candidate));
+        found
+    }
+
+    /// The chosen ones as they would be found one after the other: the one that alone explains most first.
+    fn order(&self, chosen: &[usize]) -> Vec<usize> {
+        let mut left = chosen.to_vec();
+        let mut order: Vec<usize> = Vec::new();
+        while !left.is_empty() {
+            let price = |c: &usize| self.price(&[order.as_slice(), &[*c]].concat());
+            let Some(next) = (0..left.len()).min_by(|a, b| price(&left[*a]).total_cmp(&price(&left[*b]))) else {
+                break;
+            };
+            order.push(left.remove(next));
+        }
+        order
+    }
+
+    /// The best candidate of every other cause that scores nearly as well in this one's place.
+    fn rivals(&self, rest: &[usize], own: usize, whole: f64) -> Vec<(usize, f64)> {
+        let mut best: Vec<(usize, f64)> = Vec::new();
+        for c in self.open(rest).filter(|c| self.candidates[*c].id != self.candidates[own].id) {
+            let behind = self.price(&[rest, &[c]].concat()) - whole;
+            if behind > AMBIGUOUS {
+                continue;
+            }
+            match best.iter_mut().find(|(o, _)| self.candidates[*o].id == self.candidates[c].id) {
+                Some(held) if held.1 > behind => *held = (c, behind),
+                Some(_) => {}
+                None => best.push((c, behind)),
+            }
+        }
+        best.sort_by(|a, b| a.1.total_cmp(&b.1));
+        best
+    }
+}
+
+fn without(chosen: &[usize], k: usize) -> Vec<usize> {
+    chosen.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, c)| *c).collect()
+}

@@ -1,0 +1,293 @@
+//! Whitened normal equations of all columns, block by block: every fit, comparison and cross-validation is then a small solve.
+
+use super::candidate::Candidate;
+use nalgebra::{DMatrix, DVector};
+
+/// Highest order of the whitening autoregression.
+const LARGEST_ORDER: usize = 6;
+/// Rows of a block are this many at least, and there are this many blocks at most.
+const LEAST_BLOCK: usize = 12;
+const MOST_BLOCKS: usize = 20;
+/// Every so many-th block is locked: it takes part in the gain only.
+const LOCKED_EVERY: usize = 4;
+/// Rows so close to a locked block take no part, s.
+const GUARD_S: f64 = 0.1;
+/// Folds of the cross-validation.
+pub const FOLDS: usize = 5;
+
+/// Rows as the system sees them.
+pub struct Rows<'a> {
+    pub y: &'a [f64],
+    /// Rows of one number follow each other without a gap.
+    pub stretch: &'a [usize],
+    /// Rows that may be held out; the others always train.
+    pub testable: &'a [bool],
+    /// Weight of each row, 0 … 1: what its noise is smaller by.
+    pub weight: &'a [f64],
+    pub period_s: f64,
+}
+
+/// What a row is used for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    /// Trains always.
+    Always,
+    /// Trains, and is tested by the fold of this number.
+    Fold(usize),
+    /// Tests only; the number of its block.
+    Locked(usize),
+    /// Beside a locked block.
+    Guard,
+}
+
+/// Blocks of the rows that may be held out.
+pub fn uses(rows: &Rows<'_>) -> Vec<Use> {
+    let testable: Vec<usize> = (0..rows.y.len()).filter(|i| rows.testable[*i]).collect();
+    let blocks = (testable.len() / LEAST_BLOCK).clamp(1, MOST_BLOCKS);
+    let guard = (GUARD_S / rows.period_s).round().max(1.0) as usize;
+    let block_of = |k: usize| k * blocks / testable.len();
+    let locked = |block: usize| blocks >= LOCKED_EVERY && block % LOCKED_EVERY == LOCKED_EVERY - 1;
+    let mut uses = vec![Use::Always; rows.y.len()];
+    let mut open = 0;
+    let mut fold_of = vec![0; blocks];
+    for (block, fold) in fold_of.iter_mut().enumerate() {
+        if !locked(block) {
+            *fold = open % FOLDS;
+            open += 1;
+        }
+    }
+    for (k, &i) in testable.iter().enumerate() {
+        let block = block_of(k);
+        uses[i] = if locked(block) {
+            Use::Locked(block)
+        } else {
+            let near = |other: Option<usize>| other.is_some_and(|j| j < testable.len() && locked(block_of(j)));
+            if near(k.checked_sub(guard)) || near(Some(k + guard)) { Use::Guard } else { Use::Fold(fold_of[block]) }
+        };
+    }
+    uses
+}
+
+/// Autoregression that whitens a residual: coefficients of the lags from 1 on, chosen by BIC.
+pub fn whitener(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> Vec<f64> {
+    let trains = |i: usize| matches!(used[i], Use::Always | Use::Fold(_));
+    let mut lags = [0.0; LARGEST_ORDER + 1];
+    let mut count = 0.0_f64;
+    for i in 0..residual.len() {
+        if !trains(i) {
+            continue;
+        }
+        count += 1.0;
+        for (lag, sum) in lags.iter_mut().enumerate() {
+            if i >= lag && rows.stretch[i - lag] == rows.stretch[i] && trains(i - lag) {
+                *sum += residual[i] * residual[i - lag];
+            }
+        }
+    }
+    if lags[0] <= 0.0 || count < 40.0 {
+        return Vec::new();
+    }
+    // Levinson's recursion.
+    let (mut coefficients, mut innovation): (Vec<f64>, f64) = (Vec::new(), lags[0]);
+    let mut best = (count * innovation.ln(), Vec::new());
+    for order in 1..lags.len() {
+        let predicted: f64 = coefficients.iter().zip(lags[1..order].iter().rev()).map(|(a, r)| a * r).sum();
+        let reflection = ((lags[order] - predicted) / innovation).clamp(-0.999, 0.999);
+        let before = coefficients.clone();
+        for (a, b) in coefficients.iter_mut().zip(before.iter().rev()) {
+            *a -= reflection * b;
+        }
+        coefficients.push(reflection);
+        innovation *= 1.0 - reflection * reflection;
+        let bic = count * innovation.ln() + order as f64 * count.ln();
+        if bic < best.0 {
+            best = (bic, coefficients.clone());
+        }
+    }
+    best.1
+}
+
+/// A column through weights and whitening. The first rows of a stretch, whose past is unknown, are scaled to the same noise.
+pub fn whiten(values: &[f64], rows: &Rows<'_>, coefficients: &[f64]) -> Vec<f64> {
+    let weighted: Vec<f64> = values.iter().zip(rows.weight).map(|(v, w)| v * w).collect();
+    let mut out = vec![0.0; values.len()];
+    let mut since = 0;
+    for i in 0..values.len() {
+        since = if i > 0 && rows.stretch[i] == rows.stretch[i - 1] { since + 1 } else { 0 };
+        // Without its whole past a row is left out.
+        if since < coefficients.len() {
+            continue;
+        }
+        let past: f64 = coefficients.iter().enumerate().map(|(k, a)| a * weighted[i - k - 1]).sum();
+        out[i] = weighted[i] - past;
+    }
+    out
+}
+
+/// Rows that whitening leaves something of.
+fn whole(rows: &Rows<'_>, order: usize) -> Vec<bool> {
+    let mut since = 0;
+    (0..rows.y.len())
+        .map(|i| {
+            since = if i > 0 && rows.stretch[i] == rows.stretch[i - 1] { since + 1 } else { 0 };
+            since >= order
+        })
+        .collect()
+}
+
+/// Normal equations of all columns and the target, which is the last one.
+pub struct System {
+    /// Of the rows that train.
+    pub train: DMatrix<f64>,
+    pub rows: f64,
+    /// Of each fold, and how many rows it has.
+    pub folds: Vec<(DMatrix<f64>, f64)>,
+    /// Candidates' columns.
+    pub places: Vec<std::ops::Range<usize>>,
+    pub base: usize,
+    pub coefficients: Vec<f64>,
+    pub uses: Vec<Use>,
+    /// Mean square of each column over all rows, for the support guard.
+    energy: Vec<(f64, f64)>,
+}
+
+/// A solved subset of the columns.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    pub columns: Vec<usize>,
+    pub values: Vec<f64>,
+    /// Inverse of the normal matrix.
+    pub inverse: DMatrix<f64>,
+    /// Sum of the squared residuals.
+    pub rss: f64,
+}
+
+impl System {
+    pub fn new(base: &[Vec<f64>], candidates: &[Candidate], rows: &Rows<'_>, coefficients: Vec<f64>) -> Self {
+        let uses = uses(rows);
+        let whole = whole(rows, coefficients.len());
+        let mut columns: Vec<Vec<f64>> = Vec::new();
+        let mut places = Vec::new();
+        let mut push = |values: &[f64]| columns.push(whiten(values, rows, &coefficients));
+        for column in base {
+            push(column);
+        }
+        let mut at = base.len();
+        for candidate in candidates {
+            for column in &candidate.columns {
+                push(column);
+            }
+            places.push(at..at + candidate.columns.len());
+            at += candidate.columns.len();
+        }
+        push(rows.y);
+        let pick = |wanted: &dyn Fn(Use) -> bool| -> Vec<usize> {
+            (0..rows.y.len()).filter(|i| whole[*i] && wanted(uses[*i])).collect()
+        };
+        let gram = |picked: &[usize]| -> DMatrix<f64> {
+            let matrix = DMatrix::from_fn(picked.len(), columns.len(), |r, c| columns[c][picked[r]]);
+            matrix.tr_mul(&matrix)
+        };
+        let always = pick(&|u| u == Use::Always);
+        let mut train = gram(&always);
+        let mut count = always.len();
+        let mut folds = Vec::new();
+        for fold in 0..FOLDS {
+            let picked = pick(&|u| u == Use::Fold(fold));
+            let part = gram(&picked);
+            train += &part;
+            count += picked.len();
+            folds.push((part, picked.len() as f64));
+        }
+        let energy = columns
+            .iter()
+            .enumerate()
+            .map(|(c, values)| {
+                let all = values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64;
+                (train[(c, c)] / (count.max(1) as f64), all)
+            })
+            .collect();
+        Self { train, rows: count as f64, folds, places, base: base.len(), coefficients, uses, energy }
+    }
+
+    fn target(&self) -> usize {
+        self.train.ncols() - 1
+    }
+
+    /// Columns of the base and of the chosen candidates.
+    pub fn columns(&self, chosen: &[usize]) -> Vec<usize> {
+        (0..self.base).chain(chosen.iter().flat_map(|c| self.places[*c].clone())).collect()
+    }
+
+    /// Whether the rows that train see enough of a candidate: otherwise it would explode where it was not fitted.
+    pub fn supported(&self, candidate: usize) -> bool {
+        const LEAST_SHARE: f64 = 0.3;
+        self.places[candidate]
+            .clone()
+            .all(|c| self.energy[c].0 > LEAST_SHARE * self.energy[c].1 && self.energy[c].1 > 0.0)
+    }
+
+    /// Least squares on the rows that train.
+    pub fn solve(&self, chosen: &[usize]) -> Option<Solved> {
+        solve(&self.train, &self.columns(chosen), self.target())
+    }
+
+    /// The sum of squared errors on every fold by a fit to all the others.
+    pub fn cross_validate(&self, chosen: &[usize]) -> Option<Vec<f64>> {
+        let columns = self.columns(chosen);
+        self.folds
+            .iter()
+            .map(|(part, _)| {
+                let rest = &self.train - part;
+                let solved = solve(&rest, &columns, self.target())?;
+                Some(squares(part, &columns, &solved.values, self.target()))
+            })
+            .collect()
+    }
+
+    /// Share of a candidate's (whitened, trained) columns that the chosen ones do not explain: the least of its columns.
+    pub fn distinct(&self, candidate: usize, chosen: &[usize]) -> f64 {
+        let columns = self.columns(chosen);
+        self.places[candidate]
+            .clone()
+            .map(|c| {
+                let own = self.train[(c, c)];
+                match solve(&self.train, &columns, c) {
+                    Some(solved) if own > 0.0 => (solved.rss / own).max(0.0),
+                    _ => 0.0,
+                }
+            })
+            .fold(1.0, f64::min)
+    }
+}
+
+/// Least squares of column `target` on `columns`, out of a matrix of all products. A breath of ridge keeps equal columns apart.
+pub fn solve(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<Solved> {
+    const RIDGE: f64 = 1e-10;
+    let p = columns.len();
+    let scale: Vec<f64> =
+        columns.iter().map(|c| gram[(*c, *c)].sqrt()).map(|s| if s > 0.0 { s } else { 1.0 }).collect();
+    let normal = DMatrix::from_fn(p, p, |i, j| {
+        gram[(columns[i], columns[j])] / (scale[i] * scale[j]) + if i == j { RIDGE } else { 0.0 }
+    });
+    let right = DVector::from_fn(p, |i, _| gram[(columns[i], target)] / scale[i]);
+    let cholesky = normal.cholesky()?;
+    let scaled = cholesky.solve(&right);
+    let inverse = cholesky.inverse();
+    let values: Vec<f64> = (0..p).map(|i| scaled[i] / scale[i]).collect();
+    let rss = squares(gram, columns, &values, target).max(1e-12 * gram[(target, target)]);
+    let inverse = DMatrix::from_fn(p, p, |i, j| inverse[(i, j)] / (scale[i] * scale[j]));
+    Some(Solved { columns: columns.to_vec(), values, inverse, rss })
+}
+
+/// Σ (y − Σ value × column)².
+fn squares(gram: &DMatrix<f64>, columns: &[usize], values: &[f64], target: usize) -> f64 {
+    let mut sum = gram[(target, target)];
+    for (i, a) in columns.iter().zip(values) {
+        sum -= 2.0 * a * gram[(*i, target)];
+        for (j, b) in columns.iter().zip(values) {
+            sum += a * b * gram[(*i, *j)];
+        }
+    }
+    sum.max(0.0)
+}

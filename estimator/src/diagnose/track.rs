@@ -1,0 +1,108 @@
+//! One or several recordings as rows of a regression: measured motion and force at a common, moderate rate.
+
+use haptics::Vec2;
+use haptics::law::{Coordinate, Motion};
+
+/// What a row's force is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Along the motion, while the object is held.
+    Along,
+    /// Horizontal, while nothing is touched.
+    FreeX,
+    /// Vertical, while nothing is touched.
+    FreeY,
+}
+
+/// One force with the motion that belongs to it.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Which recording.
+    pub recording: usize,
+    /// Rows of one number follow each other without a gap.
+    pub stretch: usize,
+    /// Where the force comes from.
+    pub place: Place,
+    /// Motion along the coordinate (its time runs from the start of the recording).
+    pub motion: Motion,
+    /// Angle of the arm, rad, unwrapped; the position itself for a coordinate without an arm.
+    pub angle_rad: f64,
+    /// Unit vector along +coordinate.
+    pub along: Vec2,
+    /// Measured force vector, N; (force, 0) for a coordinate without an arm.
+    pub force: Vec2,
+    /// Its rate, N/s.
+    pub force_rate: Vec2,
+    /// The force to be explained, N or N m.
+    pub y: f64,
+}
+
+/// Rows and what is known of their noise.
+#[derive(Clone, Debug)]
+pub struct Track {
+    /// In time order, recording after recording; free rows after the held ones of each.
+    pub rows: Vec<Row>,
+    /// Sampling period of the rows, s.
+    pub period_s: f64,
+    /// Sampling period of the recording, s.
+    pub raw_period_s: f64,
+    /// Length or angle.
+    pub coordinate: Coordinate,
+    /// Path of one radian of [`Row::angle_rad`], m (1 for angles); `None` where nothing turns.
+    pub radius_m: Option<f64>,
+    /// True when the force across the motion and the free forces were measured, too.
+    pub planar: bool,
+    /// Noise of the velocity, m/s or rad/s.
+    pub velocity_noise: f64,
+    /// Noise of one force row, N or N m.
+    pub force_noise: f64,
+    /// True when that noise was seen where nothing was touched.
+    pub noise_is_measured: bool,
+    /// Longest recording, s.
+    pub span_s: f64,
+}
+
+impl Track {
+    /// Indices of the rows along the motion.
+    pub fn along(&self) -> impl Iterator<Item = usize> + '_ {
+        self.rows.iter().enumerate().filter(|(_, r)| r.place == Place::Along).map(|(i, _)| i)
+    }
+
+    /// A quantile (0 … 1) of a quantity over the rows along the motion.
+    pub fn quantile(&self, share: f64, of: impl Fn(&Row) -> f64) -> f64 {
+        let mut values: Vec<f64> = self.along().map(|i| of(&self.rows[i])).collect();
+        if values.is_empty() {
+            return 0.0;
+        }
+        values.sort_by(f64::total_cmp);
+        values[((values.len() - 1) as f64 * share).round() as usize]
+    }
+
+    /// True when two neighbouring rows follow each other without a gap.
+    pub fn follows(&self, i: usize) -> bool {
+        i > 0 && self.rows[i].stretch == self.rows[i - 1].stretch && self.rows[i].place == self.rows[i - 1].place
+    }
+}
+
+/// Joins the rows of several recordings of one object.
+pub fn join(tracks: Vec<Track>) -> Option<Track> {
+    let mut all = tracks.into_iter();
+    let mut joined = all.next()?;
+    for track in all {
+        let (recordings, stretches) =
+            joined.rows.iter().fold((0, 0), |(r, s), row| (r.max(row.recording + 1), s.max(row.stretch + 1)));
+        let shift = |row: Row| Row { recording: row.recording + recordings, stretch: row.stretch + stretches, ..row };
+        let weight = joined.rows.len() as f64;
+        let more = track.rows.len() as f64;
+        let mean = |a: f64, b: f64| ((weight * a * a + more * b * b) / (weight + more).max(1.0)).sqrt();
+        joined.velocity_noise = mean(joined.velocity_noise, track.velocity_noise);
+        joined.force_noise = mean(joined.force_noise, track.force_noise);
+        joined.noise_is_measured &= track.noise_is_measured;
+        joined.planar &= track.planar;
+        joined.span_s = joined.span_s.max(track.span_s);
+        joined.period_s = joined.period_s.max(track.period_s);
+        joined.raw_period_s = joined.raw_period_s.max(track.raw_period_s);
+        joined.rows.extend(track.rows.into_iter().map(shift));
+    }
+    Some(joined)
+}

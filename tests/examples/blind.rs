@@ -1,0 +1,131 @@
+//! The blind battery from the command line.
+//!
+//! `cargo run --release -p tests --example blind -- --fast [SEED]` (or `--whole`) asks the program and prints how it did.
+//! `cargo run --release -p tests --example blind -- --long [SEED]` times answers for minute-long recordings at 1 kHz.
+//! `cargo run --release -p tests --example blind -- --dump DIR N SEED` writes N cases as files, their truth in a folder apart.
+//! `cargo run --release -p tests --example blind -- --one DIR ID [FORM [RATIO [RATE [SEED]]]]` writes one of a kind.
+//! `cargo run --release -p tests --example blind -- --table [SEED]` makes every effect once and prints how large it came out.
+
+use estimator::diagnose::diagnose;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+use tests::blind::{Bench, Chance, Counts, Effect, Job, Log, Set, Spec, ask, battery, dump, long, make, report, score};
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let number = |text: Option<&&str>, default: u64| text.and_then(|t| t.parse().ok()).unwrap_or(default);
+    match words.as_slice() {
+        ["--long", rest @ ..] => time_long(number(rest.first(), 1)),
+        ["--dump", folder, rest @ ..] => {
+            dump_cases(Path::new(folder), number(rest.first(), 10), number(rest.get(1), 1));
+        }
+        ["--fast", rest @ ..] => ask_all(Counts::FAST, number(rest.first(), 1)),
+        ["--whole", rest @ ..] => ask_all(Counts::WHOLE, number(rest.first(), 1)),
+        ["--one", folder, id, rest @ ..] => one(Path::new(folder), id, rest),
+        ["--table", rest @ ..] => table(number(rest.first(), 7)),
+        _ => {
+            eprintln!(
+                "blind --fast [SEED] | --whole [SEED] | --long [SEED] | --dump DIR [N [SEED]] | --one DIR ID … | --table [SEED]"
+            );
+            return ExitCode::from(2);
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+/// Asks the program and prints how it did.
+fn ask_all(counts: Counts, seed: u64) {
+    let jobs = battery(counts, seed);
+    println!("{} cases, seed {seed}", jobs.len());
+    let start = Instant::now();
+    let rows = ask(&jobs, &|recordings, options| diagnose(recordings, options).map_err(|e| e.to_string()));
+    println!("{}", report(&rows));
+    println!("{:.0} s in all, generator included", start.elapsed().as_secs_f64());
+}
+
+/// Asks for minute-long recordings one after the other and prints how long the answers took.
+fn time_long(seed: u64) {
+    for job in long(4, seed) {
+        let (case, _) = job.make();
+        let start = Instant::now();
+        let answer = diagnose(&case.recordings, &score::options(&case));
+        let took_s = start.elapsed().as_secs_f64();
+        println!("{} {} samples: {took_s:.3} s, {}", case.bench.name(), case.recordings[0].len(), answer.is_ok());
+    }
+}
+
+/// Writes a mixture of the sets.
+fn dump_cases(folder: &Path, count: u64, seed: u64) {
+    let jobs = battery(Counts::WHOLE, seed);
+    let mut chance = Chance::new(seed, 99);
+    let sets = [Set::Null, Set::Single, Set::Single, Set::Single, Set::Pair, Set::Nameless, Set::Hard];
+    for k in 0..count {
+        let set = sets[k as usize % sets.len()];
+        let of_set: Vec<_> = jobs.iter().filter(|job| job.set == set).collect();
+        let job = of_set[chance.whole(0, of_set.len() as u32 - 1) as usize];
+        let (case, truth) = job.make();
+        let name = format!("case-{k:03}");
+        if let Err(error) = dump::write(folder, &name, job, &case, &truth) {
+            eprintln!("{} cannot be written: {error}", folder.display());
+            return;
+        }
+        println!("{name} {} {} {} Hz", case.bench.name(), case.log.name(), case.rate_hz);
+    }
+}
+
+/// Writes one case: an effect by its id, its form, its size beside the noise, the rate, the seed.
+fn one(folder: &Path, id: &str, rest: &[&str]) {
+    let Some(effect) = Effect::from_id(id) else {
+        eprintln!("{id} is none of the effects; `--table` lists them");
+        return;
+    };
+    let number = |k: usize, default: f64| rest.get(k).and_then(|t| t.parse().ok()).unwrap_or(default);
+    let bench = if effect.on_crank() { Bench::OneFinger } else { Bench::Linear };
+    let spec = Spec {
+        effects: vec![(effect, number(0, 0.0) as u32)],
+        ratio: number(1, 1.0),
+        bench,
+        log: Log::Mixed,
+        rate_hz: number(2, 100.0),
+        seconds: 20.0,
+    };
+    let job = Job { set: Set::Single, spec, seed: number(3, 1.0) as u64 };
+    let (case, truth) = job.make();
+    if let Err(error) = dump::write(folder, id, &job, &case, &truth) {
+        eprintln!("{} cannot be written: {error}", folder.display());
+    }
+}
+
+/// Every effect in every form, once.
+fn table(seed: u64) {
+    for bench in [Bench::OneFinger, Bench::TwoFingers, Bench::Linear, Bench::Angular] {
+        for effect in Effect::NAMED.into_iter().chain(Effect::NAMELESS) {
+            let fits = match bench {
+                Bench::OneFinger => effect.on_crank(),
+                Bench::TwoFingers => effect.on_two_fingers(),
+                Bench::Linear | Bench::Angular => effect.on_mechanism(bench == Bench::Angular),
+            };
+            if !fits {
+                continue;
+            }
+            for form in effect.forms_on(bench.is_crank()) {
+                let effects = vec![(effect, form)];
+                let spec = Spec { effects, ratio: 1.0, bench, log: Log::Mixed, rate_hz: 100.0, seconds: 20.0 };
+                let start = Instant::now();
+                let (_, truth) = make(&spec, seed);
+                println!(
+                    "{:8} {:18} {:30} size {:10.3e} ratio {:.3} noise {:.4} {:.2} s",
+                    bench.name(),
+                    effect.id(),
+                    effect.form(form),
+                    truth.hidden[0].size,
+                    truth.ratio[0],
+                    truth.noise_n,
+                    start.elapsed().as_secs_f64()
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Through the instruments into a table with its sidecar.
+
+use super::arm::Arm;
+use super::chance::Chance;
+use super::draw::{self, Bench, LINK_M, Spec};
+use super::effect::Effect;
+use super::measure::Known;
+use super::sensor::{self, Sensor, quantised};
+use super::simulate::{Sample, Setup};
+use haptics::recording::{Channel, HandMeta, Meta, Recording, Task};
+
+/// Half the distance between two fingers on a handle, m.
+const HALF_GRIP_M: f64 = 0.008;
+
+struct Columns {
+    names: Vec<(String, &'static str)>,
+    values: Vec<Vec<f64>>,
+    force_at: usize,
+}
+
+/// Through the instruments into a table.
+pub fn record(
+    spec: &Spec,
+    setup: &Setup,
+    sensor: &Sensor,
+    arm: &Arm,
+    samples: &[Sample],
+    chance: &mut Chance,
+) -> Recording {
+    let mut columns = match spec.bench {
+        Bench::OneFinger => finger(setup, sensor, arm, samples, chance, ("", 1.0), &|_, told| told),
+        Bench::TwoFingers => two_fingers(setup, sensor, arm, samples, chance),
+        Bench::Linear | Bench::Angular => mechanism(spec, setup, sensor, samples, chance),
+    };
+    let kept = sensor::spoil(&setup.hidden, &mut columns.values, columns.force_at, spec.rate_hz);
+    let keep =
+        |values: Vec<f64>| -> Vec<f64> { values.into_iter().zip(&kept).filter(|(_, k)| **k).map(|(v, _)| v).collect() };
+    let time_s = keep((0..samples.len()).map(|i| i as f64 / spec.rate_hz).collect());
+    let channels = columns
+        .names
+        .into_iter()
+        .zip(columns.values)
+        .map(|((name, unit), values)| Channel { name, unit: unit.to_owned(), values: keep(values) })
+        .collect();
+    let name = format!("blind-{}", setup.seed);
+    Recording { name, time_s: Some(time_s), channels, meta: meta(spec, setup, arm), ..Recording::default() }
+}
+
+fn meta(spec: &Spec, setup: &Setup, arm: &Arm) -> Meta {
+    let mut meta = Meta { rate_hz: Some(spec.rate_hz), ..Meta::default() };
+    if spec.bench.is_crank() {
+        let two = spec.bench == Bench::TwoFingers;
+        let beside = |side: f64| Some([arm.base_m[0] + side * HALF_GRIP_M, arm.base_m[1]]);
+        meta.task = Some(Task::Crank);
+        meta.hand = Some(HandMeta {
+            link_m: Some(LINK_M),
+            base_m: (!two).then_some(arm.base_m),
+            base1_m: if two { beside(-1.0) } else { None },
+            base2_m: if two { beside(1.0) } else { None },
+        });
+        if draw::known(spec) == Known::CrankOfKnownWeight {
+            meta.known.insert("weight_N".to_owned(), setup.plant.weight_n);
+        }
+    } else {
+        meta.task = Some(Task::Mechanism);
+    }
+    meta
+}
+
+/// The columns of one finger: its name's ending, its share of the noise, and what its sensor tells of the net force.
+fn finger(
+    setup: &Setup,
+    sensor: &Sensor,
+    arm: &Arm,
+    samples: &[Sample],
+    chance: &mut Chance,
+    (ending, part): (&str, f64),
+    share: &dyn Fn(&Sample, [f64; 2]) -> [f64; 2],
+) -> Columns {
+    let names = [("qb", "rad"), ("qt", "rad"), ("dqb", "rad_s"), ("dqt", "rad_s"), ("fx", "N"), ("fy", "N")]
+        .map(|(quantity, unit)| (format!("{quantity}{ending}_{unit}"), unit));
+    let mut values = vec![Vec::new(); 6];
+    let mut noise = [(); 2].map(|()| sensor.noise(setup.rate_hz, part, chance));
+    for s in samples {
+        let (angles, rates) = sensor::joints(arm, &setup.hidden, s.tip_m, s.tip_speed);
+        let told = share(s, sensor::force(&setup.hidden, None, s, setup.seconds));
+        for k in 0..2 {
+            values[k].push(quantised(angles[k] + sensor.angle_noise * chance.normal(), sensor.angle_step));
+            values[2 + k].push(rates[k] + sensor.rate_noise * chance.normal());
+            let read = quantised(told[k] + noise[k].next(chance), part * sensor.step_n);
+            values[4 + k].push(rail(setup, read));
+        }
+    }
+    Columns { names: names.to_vec(), values, force_at: 4 }
+}
+
+/// What clips, clips the noise too.
+fn rail(setup: &Setup, read: f64) -> f64 {
+    setup.hidden.iter().filter(|h| h.effect == Effect::Saturation).fold(read, |read, h| {
+        let level = h.shape[1] / (1.0 + h.size);
+        read.clamp(-level, level)
+    })
+}
+
+/// Two fingers beside each other on the handle share the load and squeeze; what is wrong with a sensor is in the left one.
+fn two_fingers(setup: &Setup, sensor: &Sensor, arm: &Arm, samples: &[Sample], chance: &mut Chance) -> Columns {
+    let squeeze_n = chance.between(0.8, 1.6);
+    let slow_hz = chance.between(0.1, 0.4);
+    let squeeze = |s: &Sample| {
+        if s.held { squeeze_n * (1.0 + 0.2 * (std::f64::consts::TAU * slow_hz * s.time_s).sin()) } else { 0.0 }
+    };
+    let part = std::f64::consts::FRAC_1_SQRT_2;
+    // The fingers stand as far apart as they grip: each bends like the one in the middle would.
+    let left = finger(setup, sensor, arm, samples, chance, ("1", part), &|s, told| {
+        [told[0] - 0.5 * s.force_n[0] + squeeze(s), told[1] - 0.5 * s.force_n[1]]
+    });
+    let right = finger(setup, sensor, arm, samples, chance, ("2", part), &|s, _| {
+        [0.5 * s.force_n[0] - squeeze(s), 0.5 * s.force_n[1]]
+    });
+    Columns {
+        names: [left.names, right.names].concat(),
+        values: [left.values, right.values].concat(),
+        force_at: left.force_at,
+    }
+}
+
+fn mechanism(spec: &Spec, setup: &Setup, sensor: &Sensor, samples: &[Sample], chance: &mut Chance) -> Columns {
+    let [path, speed, force] = if spec.bench == Bench::Linear {
+        [("q_m", "m"), ("dq_m_s", "m_s"), ("f_N", "N")]
+    } else {
+        [("q_rad", "rad"), ("dq_rad_s", "rad_s"), ("tau_Nm", "Nm")]
+    };
+    let with_speed = chance.happens(0.6);
+    let mut noise = sensor.noise(setup.rate_hz, 1.0, chance);
+    let start = chance.between(-0.5, 0.5) * setup.plant.radius_m;
+    let (mut q, mut dq, mut f) = (Vec::new(), Vec::new(), Vec::new());
+    for s in samples {
+        q.push(quantised(start + s.tip_m[0] + sensor.angle_noise * chance.normal(), sensor.angle_step));
+        dq.push(s.tip_speed[0] + sensor.rate_noise * chance.normal());
+        let told = sensor::force(&setup.hidden, None, s, setup.seconds)[0];
+        f.push(rail(setup, quantised(told + noise.next(chance), sensor.step_n)));
+    }
+    let named = |(name, unit): (&str, &'static str)| (name.to_owned(), unit);
+    if with_speed {
+        Columns { names: vec![named(path), named(speed), named(force)], values: vec![q, dq, f], force_at: 2 }
+    } else {
+        Columns { names: vec![named(path), named(force)], values: vec![q, f], force_at: 1 }
+    }
+}

@@ -1,0 +1,231 @@
+//! The sets of cases that make a battery.
+
+use super::case::{Case, Truth, make};
+use super::chance::Chance;
+use super::draw::{Bench, Spec};
+use super::effect::{Effect, Shows};
+use super::plan::Log;
+
+/// Which question a case asks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Set {
+    /// Nothing is hidden.
+    Null,
+    /// One effect, in a log that can show it, at 100 Hz or more.
+    Single,
+    /// Two effects at once.
+    Pair,
+    /// Something that no table of causes knows.
+    Nameless,
+    /// One effect in a log that is hard: 20 Hz, short, slow, one way, pulled only.
+    Hard,
+}
+
+impl Set {
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Null => "null",
+            Self::Single => "single",
+            Self::Pair => "pair",
+            Self::Nameless => "nameless",
+            Self::Hard => "hard",
+        }
+    }
+}
+
+/// A case that can be made at any time.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// Which question.
+    pub set: Set,
+    /// What is asked for.
+    pub spec: Spec,
+    /// Repeats it.
+    pub seed: u64,
+}
+
+impl Job {
+    /// Makes the case and, apart from it, its truth.
+    pub fn make(&self) -> (Case, Truth) {
+        make(&self.spec, self.seed)
+    }
+}
+
+/// How many of each.
+#[derive(Clone, Copy, Debug)]
+pub struct Counts {
+    /// Cases without anything.
+    pub nulls: usize,
+    /// Cases of every effect at every ratio.
+    pub per_effect: usize,
+    /// Cases with two effects.
+    pub pairs: usize,
+    /// Cases of every nameless effect.
+    pub per_nameless: usize,
+    /// Cases in hard logs.
+    pub hard: usize,
+}
+
+impl Counts {
+    /// What a release is judged by.
+    pub const WHOLE: Self = Self { nulls: 600, per_effect: 3, pairs: 160, per_nameless: 20, hard: 200 };
+    /// What fits into a minute.
+    pub const FAST: Self = Self { nulls: 40, per_effect: 1, pairs: 10, per_nameless: 2, hard: 10 };
+}
+
+/// Effect over noise in the main set.
+pub const RATIOS: [f64; 4] = [0.25, 0.5, 1.0, 2.0];
+const RATES_HZ: [f64; 4] = [100.0, 250.0, 500.0, 1000.0];
+
+/// All cases of a battery, from one seed.
+pub fn battery(counts: Counts, seed: u64) -> Vec<Job> {
+    let mut chance = Chance::new(seed, 11);
+    let mut jobs = nulls(counts.nulls, &mut chance);
+    for _ in 0..counts.per_effect {
+        for effect in Effect::NAMED {
+            for ratio in RATIOS {
+                // A size means nothing there: once is enough.
+                if effect.shows() == Shows::Grossly && ratio != 1.0 {
+                    continue;
+                }
+                jobs.push(single(effect, ratio, &mut chance));
+            }
+        }
+    }
+    jobs.extend((0..counts.pairs).map(|_| pair(&mut chance)));
+    for effect in Effect::NAMELESS {
+        for k in 0..counts.per_nameless {
+            let ratio = if k % 4 == 3 { 0.5 } else { chance.pick(&[1.0, 2.0]) };
+            let mut job = single(effect, ratio, &mut chance);
+            job.set = Set::Nameless;
+            jobs.push(job);
+        }
+    }
+    jobs.extend((0..counts.hard).map(|k| hard(k, &mut chance)));
+    // Each case has a seed of its own, so that one can be looked at alone.
+    for (k, job) in jobs.iter_mut().enumerate() {
+        job.seed = seed.wrapping_mul(1_000_003).wrapping_add(k as u64);
+    }
+    jobs
+}
+
+fn length_s(rate_hz: f64, chance: &mut Chance) -> f64 {
+    // Long and fast together only now and then: they cost most and ask nothing new.
+    if rate_hz > 400.0 && chance.happens(0.8) { chance.between(10.0, 20.0) } else { chance.between(10.0, 40.0) }
+}
+
+fn nulls(count: usize, chance: &mut Chance) -> Vec<Job> {
+    (0..count)
+        .map(|k| {
+            let bench = chance.pick(&[
+                Bench::OneFinger,
+                Bench::OneFinger,
+                Bench::OneFinger,
+                Bench::TwoFingers,
+                Bench::Linear,
+                Bench::Angular,
+            ]);
+            let rate_hz = if k % 5 == 4 { 20.0 } else { chance.pick(&RATES_HZ) };
+            let log = chance.pick(&[Log::Mixed, Log::Mixed, Log::Mixed, Log::OneWay, Log::PullOnly, Log::Slow]);
+            let spec =
+                Spec { effects: Vec::new(), ratio: 0.0, bench, log, rate_hz, seconds: length_s(rate_hz, chance) };
+            Job { set: Set::Null, spec, seed: 0 }
+        })
+        .collect()
+}
+
+/// Where an effect can be hidden, the crank with one finger most often.
+fn bench_for(effect: Effect, chance: &mut Chance) -> Bench {
+    let mut places = Vec::new();
+    if effect.on_crank() {
+        places.extend([Bench::OneFinger; 5]);
+    }
+    if effect.on_two_fingers() {
+        places.push(Bench::TwoFingers);
+    }
+    for (bench, angular) in [(Bench::Linear, false), (Bench::Angular, true)] {
+        if effect.on_mechanism(angular) {
+            places.push(bench);
+        }
+    }
+    chance.pick(&places)
+}
+
+/// The textbook's form in half of the cases, another in the others.
+fn form_for(effect: Effect, bench: Bench, chance: &mut Chance) -> u32 {
+    let forms = effect.forms_on(bench.is_crank());
+    if forms.end - forms.start < 2 || chance.happens(0.5) {
+        forms.start
+    } else {
+        chance.whole(forms.start + 1, forms.end - 1)
+    }
+}
+
+fn single(effect: Effect, ratio: f64, chance: &mut Chance) -> Job {
+    let bench = bench_for(effect, chance);
+    let form = form_for(effect, bench, chance);
+    let rate_hz = chance.pick(&RATES_HZ);
+    let seconds = length_s(rate_hz, chance);
+    let spec = Spec { effects: vec![(effect, form)], ratio, bench, log: Log::Mixed, rate_hz, seconds };
+    Job { set: Set::Single, spec, seed: 0 }
+}
+
+/// Pairs that a good recording can tell apart: no two that act in the same way.
+fn may_go_together(a: Effect, b: Effect) -> bool {
+    use Effect::{Asymmetry, Bias, CrossAxis, Drift, Eccentric, JointOffset, Leak, LengthScale, Tilt};
+    let alike: [&[Effect]; 5] = [
+        &[Eccentric, Tilt, Bias],
+        &[Leak, Drift],
+        &[Asymmetry, CrossAxis],
+        &[JointOffset, LengthScale],
+        // Both take over the whole of the friction: what they do together is no sum.
+        &[Effect::Backlash, Effect::Hysteresis],
+    ];
+    a != b && !alike.iter().any(|group| group.contains(&a) && group.contains(&b))
+}
+
+fn pair(chance: &mut Chance) -> Job {
+    let fits =
+        |e: Effect| e.on_crank() && e.shows() != Shows::Grossly && !matches!(e, Effect::Gain | Effect::Saturation);
+    let (a, b) = loop {
+        let (a, b) = (chance.pick(&Effect::NAMED), chance.pick(&Effect::NAMED));
+        if fits(a) && fits(b) && may_go_together(a, b) {
+            break (a, b);
+        }
+    };
+    let bench = Bench::OneFinger;
+    let effects = [a, b].map(|e| (e, form_for(e, bench, chance))).to_vec();
+    let rate_hz = chance.pick(&RATES_HZ);
+    let seconds = length_s(rate_hz, chance);
+    Job { set: Set::Pair, spec: Spec { effects, ratio: 1.0, bench, log: Log::Mixed, rate_hz, seconds }, seed: 0 }
+}
+
+/// Minute-long recordings at 1 kHz, for the time that an answer takes.
+pub fn long(count: usize, seed: u64) -> Vec<Job> {
+    let mut chance = Chance::new(seed, 12);
+    let mut job = |k: u64| {
+        let effect = chance.pick(&[Effect::Stribeck, Effect::Ripple, Effect::Hysteresis, Effect::Pad]);
+        let mut job = single(effect, 1.0, &mut chance);
+        (job.spec.rate_hz, job.spec.seconds, job.seed) = (1000.0, 60.0, seed.wrapping_add(k));
+        job
+    };
+    (0..count as u64).map(&mut job).collect()
+}
+
+fn hard(k: usize, chance: &mut Chance) -> Job {
+    let effect = chance.pick(&Effect::NAMED);
+    let ratio = chance.pick(&[0.5, 1.0, 2.0]);
+    let mut job = single(effect, ratio, chance);
+    job.set = Set::Hard;
+    let spec = &mut job.spec;
+    match k % 6 {
+        0 => (spec.rate_hz, spec.seconds) = (20.0, 10.0),
+        1 => (spec.rate_hz, spec.seconds) = (20.0, 30.0),
+        2 => spec.seconds = 4.0,
+        3 => spec.log = Log::Slow,
+        4 => spec.log = chance.pick(&[Log::OneWay, Log::Steady]),
+        _ => spec.log = Log::PullOnly,
+    }
+    job
+}
