@@ -33,7 +33,7 @@ impl Diagnose {
         for log in &self.logs {
             recordings.extend(self.source.load(log)?);
         }
-        let named_file = self.baseline.as_ref().filter(|b| b.ends_with(".json")).map(PathBuf::from);
+        let named_file = self.baseline.as_ref().map(PathBuf::from).filter(|b| b.extension().is_some());
         let world = match self.world.as_ref().or(named_file.as_ref()) {
             Some(path) => {
                 let text = std::fs::read_to_string(path)

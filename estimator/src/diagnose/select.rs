@@ -205,7 +205,7 @@ impl Selection<'_> {
         let mut best: Vec<(usize, f64)> = Vec::new();
         for c in self.open(rest).filter(|c| self.candidates[*c].id != self.candidates[own].id) {
             let behind = self.price(&[rest, &[c]].concat()) - whole;
-            if behind > AMBIGUOUS {
+            if !behind.is_finite() || behind > AMBIGUOUS {
                 continue;
             }
             match best.iter_mut().find(|(o, _)| self.candidates[*o].id == self.candidates[c].id) {

@@ -134,21 +134,18 @@ fn foot(ui: &mut Ui, open: &mut Rules) -> bool {
         let usable = open.fault.is_none() && !open.name.trim().is_empty();
         ui.add(TextEdit::singleline(&mut open.name).desired_width(150.0).hint_text("Name of your task"));
         save = primary_button(ui, usable, "Save as my task").clicked();
-        match &open.fault {
-            Some(fault) => {
-                let text = RichText::new(fault).size(12.0).color(palette(ui).danger);
-                ui.add(egui::Label::new(text).wrap());
-            }
-            None => {
-                let text = if open.draft == open.before && open.draft.like == Task::Needle {
-                    "The first rule that holds names the state."
-                } else if open.draft == open.before {
-                    "+ above the threshold, 0 within, − below; none: any. The first that holds counts."
-                } else {
-                    "Changed; the states below follow. Refit for new numbers."
-                };
-                ui.add(egui::Label::new(theme::caption(ui, text)).truncate()).on_hover_text(text);
-            }
+        if let Some(fault) = &open.fault {
+            let text = RichText::new(fault).size(12.0).color(palette(ui).danger);
+            ui.add(egui::Label::new(text).wrap());
+        } else {
+            let text = if open.draft == open.before && open.draft.like == Task::Needle {
+                "The first rule that holds names the state."
+            } else if open.draft == open.before {
+                "+ above the threshold, 0 within, − below; none: any. The first that holds counts."
+            } else {
+                "Changed; the states below follow. Refit for new numbers."
+            };
+            ui.add(egui::Label::new(theme::caption(ui, text)).truncate()).on_hover_text(text);
         }
     });
     save
