@@ -72,6 +72,29 @@ fn the_work_of_the_hand_is_what_friction_takes_and_the_weight_gains() {
 }
 
 #[test]
+fn nothing_is_hidden_in_a_null() {
+    for (bench, log, rate_hz) in [
+        (Bench::OneFinger, Log::Mixed, 20.0),
+        (Bench::TwoFingers, Log::PullOnly, 250.0),
+        (Bench::Linear, Log::OneWay, 1000.0),
+        (Bench::Angular, Log::Slow, 100.0),
+    ] {
+        let spec = Spec { ratio: 0.0, log, rate_hz, seconds: 20.0, ..spec(bench, Vec::new()) };
+        let (_, truth) = make(&spec, 40);
+        let setup = setup(&spec, 40);
+        let samples = setup.run();
+        let moving = super::measure::moving(&samples, setup.hold_s);
+        assert!(moving.iter().filter(|m| **m).count() > samples.len() / 3, "{}", bench.name());
+        let left = samples.iter().zip(&moving).filter(|(_, m)| **m).map(|(s, _)| {
+            let (sin, cos) = if bench.is_crank() { s.angle.sin_cos() } else { (-1.0, 0.0) };
+            (cos * s.force_n[1] - sin * s.force_n[0] - s.base_n).powi(2)
+        });
+        let rms = (left.sum::<f64>() / samples.len() as f64).sqrt();
+        assert!(rms < 0.05 * truth.noise_n, "{}: {rms} beside {}", bench.name(), truth.noise_n);
+    }
+}
+
+#[test]
 fn every_effect_gets_the_size_it_was_asked_for() {
     let mut chance = Chance::new(77, 1);
     let mut missed = Vec::new();

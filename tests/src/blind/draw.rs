@@ -125,15 +125,16 @@ fn plant(spec: &Spec, chance: &mut Chance) -> Plant {
 }
 
 fn habits(spec: &Spec, plant: &Plant, chance: &mut Chance) -> Habits {
-    let (stiffness, damping, size_m) = match spec.bench {
-        Bench::OneFinger | Bench::TwoFingers => (chance.between(150.0, 400.0), chance.between(2.5, 7.0), 1.0),
+    // A lever of some decimetres turns what the hand does into angles.
+    let (stiffness, damping, wander, tremor) = match spec.bench {
+        Bench::OneFinger | Bench::TwoFingers => (chance.between(150.0, 400.0), chance.between(2.5, 7.0), 1.0, 1.0),
         Bench::Linear => {
             let k = chance.between(250.0, 700.0);
-            (k, chance.between(1.0, 1.6) * (k * plant.inertia_kg).sqrt(), 4.0)
+            (k, chance.between(1.0, 1.6) * (k * plant.inertia_kg).sqrt(), 4.0, 2.0)
         }
         Bench::Angular => {
             let k = chance.between(4.0, 12.0);
-            (k, chance.between(1.0, 1.6) * (k * plant.inertia_kg).sqrt(), 30.0)
+            (k, chance.between(1.0, 1.6) * (k * plant.inertia_kg).sqrt(), 30.0, 8.0)
         }
     };
     let one_way = spec.log == Log::PullOnly;
@@ -146,8 +147,8 @@ fn habits(spec: &Spec, plant: &Plant, chance: &mut Chance) -> Habits {
             / stiffness,
         pull_spread_m: if one_way { chance.between(0.6, 1.2) } else { chance.between(4.0, 8.0) } * 1e-3 * 250.0
             / stiffness,
-        wander_m: size_m * chance.between(0.5e-3, 1.5e-3),
-        tremor_m: size_m * chance.of_order(3e-5, 1.2e-4),
+        wander_m: wander * chance.between(0.5e-3, 1.5e-3),
+        tremor_m: tremor * chance.of_order(3e-5, 1.2e-4),
         tremor_hz: chance.between(8.0, 12.0),
         correction: chance.between(0.4, 0.9),
         reaction_ms: chance.whole(140, 220) as usize,

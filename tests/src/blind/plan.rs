@@ -138,14 +138,15 @@ impl Plan {
         self.knot(chance.between(0.05, 0.25), 0.0);
     }
 
-    /// A mechanism moved to and fro within ±`range` of where it starts.
+    /// A mechanism moved to and fro within ±`range` of where it starts, or on and on one way.
     pub fn stroking(log: Log, range: f64, start_s: f64, end_s: f64, chance: &mut Chance) -> Self {
         let mut plan = Self::starting(start_s);
         let pace = if log == Log::Slow { 0.2 } else { 1.0 };
         let way = chance.sign();
         let mut place = 0.0;
         if !log.reverses() {
-            let speed = way * range / (end_s - start_s);
+            // A long slide, or a spindle: it goes on as long as the recording.
+            let speed = way * range / 3.0;
             plan.knot(0.4, speed);
             while plan.end() < end_s - 1.2 {
                 let factor = if log == Log::Steady { 1.0 } else { chance.of_order(0.3, 1.8) };

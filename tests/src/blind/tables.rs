@@ -13,6 +13,7 @@ pub fn report(rows: &[Row]) -> String {
         by_ratio_and_rate(rows),
         by_form(rows),
         confusion(rows),
+        wrong(rows),
         hard_logs(rows),
         wrong_nulls(rows),
         nameless(rows),
@@ -112,6 +113,14 @@ fn confusion(rows: &[Row]) -> String {
     text
 }
 
+fn wrong(rows: &[Row]) -> String {
+    let mut text = String::from("main cases of effect/noise 0.5 and more that were not named\n");
+    for r in main_cases(rows).filter(|r| r.ratio >= 0.5 && !r.first_right_or_equal()) {
+        let _ = writeln!(text, "  {}", line(r));
+    }
+    text
+}
+
 fn hard_logs(rows: &[Row]) -> String {
     let mut text =
         String::from("hard logs: first, in set, wrong name, said none or unexplained, cannot show it, cases\n");
@@ -187,6 +196,7 @@ fn calibration(rows: &[Row]) -> String {
     let edges = [0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.99, 1.0 + 1e-9];
     let beliefs: Vec<(f64, bool)> =
         rows.iter().filter(|r| matches!(r.set, Set::Single | Set::Null)).flat_map(Row::beliefs).collect();
+    let (beliefs, odd): (Vec<_>, Vec<_>) = beliefs.into_iter().partition(|(p, _)| (0.0..=1.0).contains(p));
     let mut text = String::from("calibration: stated probability → how often it was so\n");
     for edge in edges.windows(2) {
         let bin: Vec<&(f64, bool)> = beliefs.iter().filter(|(p, _)| *p >= edge[0] && *p < edge[1]).collect();
@@ -197,7 +207,13 @@ fn calibration(rows: &[Row]) -> String {
         let _ = writeln!(text, "  {mean:.3}  {}", Share::count(bin.iter(), |(_, right)| *right));
     }
     let brier = beliefs.iter().map(|(p, right)| (p - f64::from(u8::from(*right))).powi(2)).sum::<f64>();
-    let _ = writeln!(text, "  Brier score {:.4} of {}", brier / beliefs.len() as f64, beliefs.len());
+    let _ = writeln!(
+        text,
+        "  Brier score {:.4} of {}; no probabilities: {}",
+        brier / beliefs.len() as f64,
+        beliefs.len(),
+        odd.len()
+    );
     text
 }
 
