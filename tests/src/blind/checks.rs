@@ -127,6 +127,15 @@ fn a_seed_repeats_a_case_and_columns_are_what_the_sidecar_says() {
             + finger.link_m * (angle(&format!("qb{base}_rad")).cos() + angle(&format!("qt{base}_rad")).cos());
         assert!(tip.abs() < 0.1, "{tip}");
     }
+    // The fingers are open before they hold, and as far apart as the handle is wide while they do.
+    let apart = |row: usize| {
+        let x = |finger: usize, ending: &str| {
+            let angle = |link: &str| recording.channel(&format!("{link}{ending}_rad")).expect("an angle")[row];
+            hand.fingers[finger].base_m.x + hand.fingers[finger].link_m * (angle("qb").cos() + angle("qt").cos())
+        };
+        x(1, "2") - x(0, "1")
+    };
+    assert!((apart(0) - 0.024).abs() < 3e-4 && (apart(500) - 0.016).abs() < 3e-4, "{} {}", apart(0), apart(500));
     assert_eq!(truth.ids(), ["position-ripple"]);
     assert!(!format!("{recording:?}").contains("ripple"));
 }

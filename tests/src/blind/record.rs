@@ -28,7 +28,7 @@ pub fn record(
     chance: &mut Chance,
 ) -> Recording {
     let mut columns = match spec.bench {
-        Bench::OneFinger => finger(setup, sensor, arm, samples, chance, ("", 1.0), &|_, told| told),
+        Bench::OneFinger => finger(setup, sensor, arm, samples, chance, ("", 1.0, 0.0), &|_, told| told),
         Bench::TwoFingers => two_fingers(setup, sensor, arm, samples, chance),
         Bench::Linear | Bench::Angular => mechanism(spec, setup, sensor, samples, chance),
     };
@@ -67,14 +67,22 @@ fn meta(spec: &Spec, setup: &Setup, arm: &Arm) -> Meta {
     meta
 }
 
-/// The columns of one finger: its name's ending, its share of the noise, and what its sensor tells of the net force.
+/// How far two fingers are open beyond what they hold, m: they close as they arrive, and open to let go.
+fn opening(setup: &Setup, time_s: f64) -> f64 {
+    let [from, until] = setup.hold_s;
+    let away = ((from - 0.02 - time_s) / 0.2).max((time_s - until) / 0.15).clamp(0.0, 1.0);
+    0.004 * away * away * (3.0 - 2.0 * away)
+}
+
+/// The columns of one finger: its name's ending, its share of the noise, the side on which it opens (0: neither), and what its sensor
+/// tells of the net force.
 fn finger(
     setup: &Setup,
     sensor: &Sensor,
     arm: &Arm,
     samples: &[Sample],
     chance: &mut Chance,
-    (ending, part): (&str, f64),
+    (ending, part, side): (&str, f64, f64),
     share: &dyn Fn(&Sample, [f64; 2]) -> [f64; 2],
 ) -> Columns {
     let names = [("qb", "rad"), ("qt", "rad"), ("dqb", "rad_s"), ("dqt", "rad_s"), ("fx", "N"), ("fy", "N")]
@@ -82,7 +90,10 @@ fn finger(
     let mut values = vec![Vec::new(); 6];
     let mut noise = [(); 2].map(|()| sensor.noise(setup.rate_hz, part, chance));
     for s in samples {
-        let (angles, rates) = sensor::joints(arm, &setup.hidden, s.tip_m, s.tip_speed);
+        let wide = |time_s: f64| side * opening(setup, time_s);
+        let tip = [s.tip_m[0] + wide(s.time_s), s.tip_m[1]];
+        let speed = [s.tip_speed[0] + (wide(s.time_s + 1e-5) - wide(s.time_s - 1e-5)) / 2e-5, s.tip_speed[1]];
+        let (angles, rates) = sensor::joints(arm, &setup.hidden, tip, speed);
         let told = share(s, sensor::force(&setup.hidden, None, s, setup.seconds));
         for k in 0..2 {
             values[k].push(quantised(angles[k] + sensor.angle_noise * chance.normal(), sensor.angle_step));
@@ -111,10 +122,10 @@ fn two_fingers(setup: &Setup, sensor: &Sensor, arm: &Arm, samples: &[Sample], ch
     };
     let part = std::f64::consts::FRAC_1_SQRT_2;
     // The fingers stand as far apart as they grip: each bends like the one in the middle would.
-    let left = finger(setup, sensor, arm, samples, chance, ("1", part), &|s, told| {
+    let left = finger(setup, sensor, arm, samples, chance, ("1", part, -1.0), &|s, told| {
         [told[0] - 0.5 * s.force_n[0] + squeeze(s), told[1] - 0.5 * s.force_n[1]]
     });
-    let right = finger(setup, sensor, arm, samples, chance, ("2", part), &|s, _| {
+    let right = finger(setup, sensor, arm, samples, chance, ("2", part, 1.0), &|s, _| {
         [0.5 * s.force_n[0] - squeeze(s), 0.5 * s.force_n[1]]
     });
     Columns {
