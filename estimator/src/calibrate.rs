@@ -1,5 +1,6 @@
 //! From a fit to a world: measured numbers go in with their errors, what was not measured is a stated assumption.
 
+mod barrel;
 mod switch;
 
 use crate::constraint;
@@ -38,7 +39,8 @@ pub fn world(task: Task, recordings: &[Recording], fit: &Fit, segmentations: &[O
     builder.pads();
     let segmentation = segmentations.first().and_then(Option::as_ref);
     match task {
-        Task::BlockStack | Task::Barrel => builder.blocks(recording, segmentation),
+        Task::BlockStack => builder.blocks(recording, segmentation),
+        Task::Barrel => builder.barrel(recording, segmentation),
         Task::Crank => builder.crank(recording, segmentation),
         Task::Needle => builder.needle(recording),
         Task::Switch => builder.switch(recording),

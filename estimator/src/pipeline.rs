@@ -2,7 +2,7 @@
 
 use crate::calibrate;
 use crate::estimate::{EstimateError, Fit, Parameter};
-use crate::identify::{block, crank, mechanism, needle, stated, switch};
+use crate::identify::{barrel, block, crank, mechanism, needle, stated, switch};
 use crate::segment::score::score;
 use crate::segment::{Method, Segmentation, Thresholds, segment_by, task_of};
 use haptics::recording::{Recording, Task};
@@ -82,12 +82,7 @@ pub fn analyse_prepared(
             let fits = recordings.iter().map(switch::fit).collect::<Result<Vec<_>, _>>()?;
             (combine(fits), states(recordings, task, options))
         }
-        Task::Barrel => {
-            return Err(EstimateError::Other(format!(
-                "recordings of the task {} cannot be fitted yet; block-stack, crank, needle, switch and mechanism can",
-                task.name()
-            )));
-        }
+        Task::Barrel => each(recordings, |r| barrel::fit_by(options.method, r, options.thresholds))?,
     };
     doubt(&mut fit);
     stated::apply(&mut fit, &first.meta);

@@ -4,8 +4,10 @@
 //! travels apart from the recording; only an assertion opens it.
 
 pub mod blind;
+pub mod coverage;
 pub mod fumble;
 pub mod generate;
+pub mod handling;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;

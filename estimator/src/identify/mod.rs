@@ -1,5 +1,6 @@
 //! Identification.
 
+pub mod barrel;
 pub mod block;
 pub mod bootstrap;
 pub mod crank;

@@ -10,7 +10,7 @@ const KEYS: [&str; 12] =
 /// Axes that may point up.
 const UP: [&str; 7] = ["x", "y", "z", "-x", "-y", "-z", "none"];
 /// Known parameters that are above zero …
-const POSITIVE: [&str; 9] = [
+const POSITIVE: [&str; 11] = [
     "mass_kg",
     "inertia_kg_m2",
     "com_m",
@@ -20,6 +20,8 @@ const POSITIVE: [&str; 9] = [
     "stiffness_N_m",
     "shear_stiffness_N_m",
     "constraint_stiffness_N_m",
+    "pad_stiffness_N_m",
+    "empty_mass_kg",
 ];
 /// … not below it …
 const NOT_NEGATIVE: [&str; 9] = [

@@ -1,0 +1,91 @@
+//! A barrel of unknown contents, lifted by two fingers: how heavy, how wide, how soft, whether it leaks, and what holds it.
+//!
+//! All lifts of a recording are taken as lifts of one barrel. Fingers feel pad and wall in series: the wall's share shows where the
+//! pads' own stiffness is stated. A leak and a drift of the sensors look alike while it hangs; the free phases before and after
+//! tell them apart. The cable is searched for (`pull.rs`); where its pull turns as the barrel moves, it shows where it is tied.
+
+mod cable;
+mod pull;
+mod report;
+mod signals;
+mod wall;
+mod zero;
+
+use crate::estimate::{EstimateError, Fit};
+use crate::segment::{Method, Segmentation, Thresholds};
+use haptics::Vec2;
+use haptics::recording::Recording;
+use pull::{Pull, Rows};
+use report::Seen;
+use signals::Signals;
+use wall::Grip;
+use zero::Zero;
+
+/// The object's name in the results.
+pub const OBJECT: &str = "barrel";
+/// What holds it.
+pub const CABLE: &str = "cable";
+/// Fewer rows while it hangs tell nothing.
+const LEAST_ROWS: usize = 12;
+
+/// Fits one recording; the segmentation that was used comes with the fit.
+pub fn fit_by(
+    method: Method,
+    recording: &Recording,
+    thresholds: Option<Thresholds>,
+) -> Result<(Fit, Segmentation), EstimateError> {
+    let signals = Signals::of(method, recording, thresholds)?;
+    let hanging: Vec<usize> = signals.hanging().iter().flat_map(|lift| signals.rows(lift)).collect();
+    if hanging.len() < LEAST_ROWS {
+        return Err(EstimateError::Other(format!(
+            "no barrel was lifted off the floor in {}: there is nothing to weigh; check the task and the signs of the forces",
+            recording.name
+        )));
+    }
+    let known = |name: &str| recording.meta.known.get(name).copied().filter(|v| v.is_finite() && *v > 0.0);
+    let grip = Grip::of(&signals)?;
+    let middle_s = hanging.iter().map(|i| signals.time_s[*i]).sum::<f64>() / hanging.len() as f64;
+    let zero = Zero::at(&signals, middle_s)?;
+    let gravity = recording.meta.gravity();
+    let pull_with = |give: Vec2| Pull::of(&rows(&signals, &hanging, give, &zero, gravity));
+    let give = grip.give_m_n();
+    let pull = pull_with(Vec2::new(give[0].0, give[1].0))?;
+    // What else the pads may give changes where the barrel was, and so what the cable looks like.
+    let others = if pull.cable.is_some() {
+        vec![
+            pull_with(Vec2::new(give[0].0 + give[0].1, give[1].0))?,
+            pull_with(Vec2::new(give[0].0, give[1].0 + give[1].1))?,
+        ]
+    } else {
+        Vec::new()
+    };
+    let seen = Seen {
+        recording,
+        signals: &signals,
+        grip,
+        zero,
+        pull,
+        others,
+        rows: hanging.len(),
+        gravity,
+        pad_n_m: known("pad_stiffness_N_m"),
+        height_m: known("height_m"),
+        empty_kg: known("empty_mass_kg"),
+    };
+    let fit = seen.report();
+    Ok((fit, signals.segmentation))
+}
+
+/// The samples while it hangs, seen behind pads that give so much along x and y, m/N for both fingers together.
+fn rows(signals: &Signals, hanging: &[usize], give: Vec2, zero: &Zero, gravity: f64) -> Rows {
+    let force = |i: &usize| signals.net_n[*i] - zero.net_n;
+    Rows {
+        time_s: hanging.iter().map(|i| signals.time_s[*i]).collect(),
+        place_m: hanging.iter().map(|i| signals.position[*i] - force(i).component_mul(&give)).collect(),
+        velocity: hanging.iter().map(|i| signals.velocity[*i] - signals.net_rate[*i].component_mul(&give)).collect(),
+        acceleration: hanging.iter().map(|i| signals.acceleration[*i]).collect(),
+        force_n: hanging.iter().map(force).collect(),
+        gravity,
+        noise_n: signals.net_noise_n(),
+    }
+}
