@@ -60,7 +60,7 @@ fn kind_word(kind: ConstraintKind) -> &'static str {
         ConstraintKind::Prismatic => "a slide",
         ConstraintKind::Free => "free",
         ConstraintKind::Membrane => "a membrane",
-        ConstraintKind::Unilateral => "a surface",
+        ConstraintKind::Unilateral => "a surface or a cable",
         ConstraintKind::Spline => "a guide",
         ConstraintKind::Screw => "a screw",
         ConstraintKind::Undecided => "open",

@@ -18,6 +18,9 @@ pub type Truth = BTreeMap<(String, String), f64>;
 /// Strain gauges rest within this of zero, N.
 const LARGEST_BIAS_N: f64 = 0.02;
 
+/// A grip that holds, N.
+const FIRM_N: f64 = 0.5;
+
 /// Step of the generator, s: a fifth of the usual servo's.
 pub const STEP_S: f64 = 0.2e-3;
 
@@ -36,6 +39,8 @@ pub struct Performance {
     pub grasp_offset_y_m: f64,
     /// How well that mean is one, m: the grasp wanders on the handle by a micrometre within a turn.
     pub grasp_offset_error_m: f64,
+    /// How far above the first body's middle it was held, pads without their give, m; `None` where no body was held.
+    pub held_above_m: Option<f64>,
 }
 
 /// Performs the task of `world` and records every `every`-th fine step.
@@ -71,6 +76,7 @@ pub fn perform_with_mistakes(
             recording: done.seen_by(sensor, 1, world, seed),
             grasp_offset_y_m,
             grasp_offset_error_m,
+            held_above_m: done.held_above_m,
         })
         .collect()
 }
@@ -95,6 +101,8 @@ pub struct Act {
     pub end: State,
     /// Height of grasp points above the handle's middle, m.
     offsets: Vec<f64>,
+    /// How far above the first body's middle it was held, m.
+    held_above_m: Option<f64>,
     bias_n: [Vec2; 2],
 }
 
@@ -120,6 +128,7 @@ pub fn act(world: &World, seed: u64, skill: Skill, errors: &Errors<'_>, every: u
     let mut rng = StdRng::seed_from_u64(seed ^ 0xb1a5);
     let bias_n = [(); 2].map(|()| Vec2::from_fn(|_, _| rng.random_range(-LARGEST_BIAS_N..LARGEST_BIAS_N)));
     let (mut ticks, mut held, mut offsets) = (Vec::new(), Vec::new(), Vec::new());
+    let mut above = Vec::new();
     let mut count = 0_usize;
     while !operator.finished() {
         let parts = steps_per_step(world);
@@ -143,6 +152,12 @@ pub fn act(world: &World, seed: u64, skill: Skill, errors: &Errors<'_>, every: u
                 offsets.push(contact.point_m.y - handle.y - contact.shear_m * contact.tangent().y);
             }
         }
+        if let Some(body) = state.bodies.first()
+            && state.tip_force_n[0].x.min(-state.tip_force_n[1].x) > FIRM_N
+        {
+            let place = |f: usize| input.tip_in_world[f].y - state.tip_force_n[f].y / world.pad.shear_stiffness_n_m;
+            above.push(0.5 * (place(0) + place(1)) - body.center_m.y);
+        }
         if count.is_multiple_of(every) {
             ticks.push(TickRecord {
                 time_s: state.time_s,
@@ -155,7 +170,8 @@ pub fn act(world: &World, seed: u64, skill: Skill, errors: &Errors<'_>, every: u
         }
         count += 1;
     }
-    Act { ticks, held, end: state, offsets, bias_n }
+    let held_above_m = (!above.is_empty()).then(|| mean_of_parts(&above).0);
+    Act { ticks, held, end: state, offsets, held_above_m, bias_n }
 }
 
 /// The block that both fingers press.

@@ -4,10 +4,12 @@
 //! travels apart from the recording; only an assertion opens it.
 
 pub mod blind;
+pub mod captured;
 pub mod coverage;
 pub mod fumble;
 pub mod generate;
 pub mod handling;
+pub mod mechanisms;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;

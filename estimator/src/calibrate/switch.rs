@@ -1,7 +1,7 @@
 //! A captured switch as one that can be felt.
 
 use super::Builder;
-use crate::identify::switch::{LEVER_TRAVELS, OBJECT, height_m};
+use crate::identify::switch::{LEVER_TRAVELS, OBJECT, PADS_IN_GIVE, height_m};
 use haptics::Vec2;
 use haptics::law::object::{CurvePoint, ToggleCurve};
 use haptics::recording::Recording;
@@ -10,7 +10,7 @@ use haptics::world::presets;
 /// Mass of a knob: nothing shows it.
 const KNOB_KG: f64 = 0.01;
 /// Share of the give at the stops that belongs to the stops (see the fit's own assumption).
-const STOP_IN_PADS: f64 = 7.0 / 3.0;
+const STOP_IN_PADS: f64 = 1.0 / (PADS_IN_GIVE.0 - 1.0);
 
 /// Travel of a switch of which one end was not seen, m.
 const USUAL_TRAVEL_M: f64 = 16e-3;

@@ -69,7 +69,7 @@ fn kind(kind: ConstraintKind) -> &'static str {
         ConstraintKind::Prismatic => "Slides along a line",
         ConstraintKind::Free => "Moves freely",
         ConstraintKind::Membrane => "Membrane",
-        ConstraintKind::Unilateral => "Pushes one way only",
+        ConstraintKind::Unilateral => "Holds one way only",
         ConstraintKind::Spline => "Follows a path that is neither line nor circle",
         ConstraintKind::Screw => "Turns and slides along its axis",
         ConstraintKind::Undecided => "Undecided",

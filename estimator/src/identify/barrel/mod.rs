@@ -5,6 +5,7 @@
 //! tell them apart. The cable is searched for (`pull.rs`); where its pull turns as the barrel moves, it shows where it is tied.
 
 mod cable;
+mod holding;
 mod pull;
 mod report;
 mod signals;

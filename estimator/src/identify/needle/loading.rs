@@ -12,8 +12,6 @@ use nalgebra::{DMatrix, DVector};
 const COARSE: usize = 60;
 /// Steps of the golden section after it.
 const FINE: usize = 40;
-/// The cubic part stays when it is this many standard errors from zero.
-const CUBIC_SEEN: f64 = 3.0;
 
 /// One sample of the loading: which offset it has, its depth, m, and its force, N.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +31,7 @@ pub struct Loading {
     pub offset_n: Vec<f64>,
     /// First stiffness, N/m.
     pub stiffness_n_m: f64,
-    /// Hardening, N/m³; 0 where it is not seen.
+    /// Hardening, N/m³; 0 where none is seen.
     pub cubic_n_m3: f64,
     /// Depth of the surface, m.
     pub surface_m: f64,
@@ -78,9 +76,18 @@ impl Loading {
 /// Fits the curve to `points` of `holds` holds.
 pub fn fit(points: &[Point], holds: usize) -> Result<Loading, EstimateError> {
     let whole = fit_with(points, holds, true)?;
-    let cubic = whole.stiffness_at() + 1;
-    let seen = whole.around.identified[cubic] && whole.around.t_value(cubic) > CUBIC_SEEN && whole.stiffness_n_m > 0.0;
-    if seen { Ok(whole) } else { fit_with(points, holds, false) }
+    if whole.around.identified[whole.stiffness_at() + 1] && whole.stiffness_n_m > 0.0 && whole.cubic_n_m3 >= 0.0 {
+        return Ok(whole);
+    }
+    // No sheet gets softer: what a curve that does would have said is noise, and goes into the errors.
+    let mut straight = fit_with(points, holds, false)?;
+    let mut errors = vec![0.0; straight.around.values.len()];
+    errors[straight.stiffness_at()] = 0.5 * (whole.stiffness_n_m - straight.stiffness_n_m);
+    errors[straight.surface_at()] = 0.5 * (whole.surface_m - straight.surface_m);
+    if errors.iter().all(|e| e.is_finite()) {
+        straight.around.widen(&errors);
+    }
+    Ok(straight)
 }
 
 fn fit_with(points: &[Point], holds: usize, cubic: bool) -> Result<Loading, EstimateError> {

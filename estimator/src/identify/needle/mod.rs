@@ -25,6 +25,10 @@ pub const OBJECT: &str = "needle";
 const PLACE_ERROR_M: f64 = 1e-5;
 /// A sheet is pierced between two samples; the force of so many samples before the fall is uncertain.
 const FALL_SAMPLES: usize = 3;
+/// The place of a puncture on the curve is as uncertain as this share of the force's noise.
+const PLACE_NOISE: f64 = 0.5;
+/// Drag, and a hole that is not the same both ways, as a share of the friction.
+const HOLE_SHARE: f64 = 0.05;
 /// Stiffness of a hand whose pads' give is not seen, N/m.
 const HAND_N_M: f64 = 1000.0;
 /// Fewer samples of loading show no curve.
@@ -114,16 +118,17 @@ impl Sheet {
     fn puncture(&self, along: &Along, pushes: &[Push]) -> Parameter {
         let give = along.give_m_n.0;
         let depth = |i: usize| along.depth_m[i] - give * along.force_n[i];
-        let seen: Vec<(f64, f64)> = pushes
+        let seen: Vec<(f64, f64, f64)> = pushes
             .iter()
             .filter_map(|push| {
                 let at = push.puncture?;
                 let value = self.loading.force_n(depth(at));
                 let before = self.loading.force_n(depth(at.saturating_sub(FALL_SAMPLES).max(push.samples.start)));
-                let own = self.loading.force_error_n(depth(at)).hypot((value - before) / 3.0_f64.sqrt());
+                let place = (value - before) / 3.0_f64.sqrt();
                 // The curve and the sample itself, which must agree.
                 let measured = along.force_n[at] - self.offset(push.hold);
-                Some((value, own.hypot(0.5 * (measured - value)).hypot(along.noise_n)))
+                let single = place.hypot(0.5 * (measured - value)).hypot(PLACE_NOISE * along.noise_n);
+                Some((value, self.loading.force_error_n(depth(at)), single))
             })
             .collect();
         if seen.is_empty() {
@@ -132,10 +137,12 @@ impl Sheet {
         }
         let n = seen.len() as f64;
         let mean = seen.iter().map(|s| s.0).sum::<f64>() / n;
-        let own = (seen.iter().map(|s| s.1 * s.1).sum::<f64>() / n).sqrt();
-        let spread = (seen.iter().map(|s| (s.0 - mean).powi(2)).sum::<f64>() / n).sqrt();
+        // The curve is one for all punctures; the rest is each one's own.
+        let root = |of: &dyn Fn(&(f64, f64, f64)) -> f64| (seen.iter().map(|s| of(s).powi(2)).sum::<f64>() / n).sqrt();
+        let (curve, single, spread) = (root(&|s| s.1), root(&|s| s.2), root(&|s| s.0 - mean));
+        let error = curve.hypot(single.max(spread) / n.sqrt());
         let how = format!("force on the loading curve at the last sample before it fell, {} time(s)", seen.len());
-        Parameter::identified(OBJECT, "puncture_force_N", mean, own.hypot(spread / n.sqrt()), seen.len(), &how)
+        Parameter::identified(OBJECT, "puncture_force_N", mean, error, seen.len(), &how)
     }
 
     fn offset(&self, hold: usize) -> f64 {
@@ -186,7 +193,9 @@ impl Sheet {
         let (inwards, outwards) = (median(&mut inwards)?, median(&mut outwards)?);
         let value = 0.5 * (inwards - outwards);
         // In and out need not be alike: their mean beside zero is what is not understood.
-        let error = (0.5 * (inwards + outwards).abs()).max(0.1 * value.abs()).hypot(along.noise_n);
+        let error = (0.25 * (inwards + outwards).abs())
+            .hypot(HOLE_SHARE * value)
+            .hypot(along.noise_n / (samples as f64).sqrt());
         let how = "half the difference of the forces in the hole on the way in and on the way out";
         (value > 0.0).then(|| Parameter::identified(OBJECT, "shaft_friction_N", value, error, samples, how))
     }
@@ -195,11 +204,15 @@ impl Sheet {
         if !along.two_fingered || along.direction.y.abs() < 0.9 || recording.meta.gravity() <= 0.0 {
             return None;
         }
+        let how = "force that holds the needle outside the sheet, less that of empty hands";
+        let Some((zero, zero_error)) = along.free_n else {
+            let why = "the needle was held all the time: a bias of the force sensors would pass for weight; start with free motion";
+            return Some(Parameter::unidentified(OBJECT, "weight_N", self.samples, why));
+        };
         let outside = quiet_force(along);
-        let value = outside / along.direction.y;
-        let error =
-            (outside - self.loading.offset_n[0]).hypot(self.loading.around.std_errors[0]).hypot(0.1 * along.noise_n);
-        let how = "force that holds the needle outside the sheet";
+        let value = (outside - zero) / along.direction.y;
+        let level = (outside - self.loading.offset_n[0]).hypot(0.08 * along.noise_n);
+        let error = level.hypot(self.loading.around.std_errors[0]).hypot(zero_error);
         Some(Parameter::identified(OBJECT, "weight_N", value, error, self.samples, how))
     }
 

@@ -1,7 +1,7 @@
 //! What a needle recording says along the needle's way: depth, force, and where it is held.
 
 use crate::estimate::EstimateError;
-use crate::signal::noise::white_noise;
+use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TipSeries, is_two_fingered, tip_series};
 use haptics::Vec2;
 use haptics::recording::Recording;
@@ -40,6 +40,8 @@ pub struct Along {
     pub give_m_n: (f64, f64),
     /// White noise of the force, N.
     pub noise_n: f64,
+    /// Mean force of empty hands in that direction, N, and its error; `None` where the needle is held all the time.
+    pub free_n: Option<(f64, f64)>,
     /// True when two fingers hold the needle, so that its weight is part of the force.
     pub two_fingered: bool,
 }
@@ -79,7 +81,24 @@ pub fn along(recording: &Recording) -> Result<Along, EstimateError> {
     let force_n: Vec<f64> = force.iter().map(|f| f.dot(&direction)).collect();
     let side_m = position.iter().map(|p| direction.perp(p)).collect();
     let noise_n = white_noise(&force_n);
-    Ok(Along { depth_m, force_n, side_m, direction, holds, give_m_n, noise_n, two_fingered })
+    let free_n = free(&force_n, &holds, noise_n);
+    Ok(Along { depth_m, force_n, side_m, direction, holds, give_m_n, noise_n, free_n, two_fingered })
+}
+
+/// Mean of the force well before the first hold and after the last, and its error.
+fn free(force_n: &[f64], holds: &[Range<usize>], noise_n: f64) -> Option<(f64, f64)> {
+    let (first, last) = (holds.first()?.start, holds.last()?.end);
+    // The fingers close and open slowly: half of what lies outside is near a touch.
+    let before = &force_n[..first / 2];
+    let after = &force_n[last + (force_n.len() - last) / 2..];
+    let n = before.len() + after.len();
+    if n < LEAST_HOLD {
+        return None;
+    }
+    let mean = before.iter().chain(after).sum::<f64>() / n as f64;
+    // A sum of two sensors.
+    let rounding = std::f64::consts::SQRT_2 * resolution_error(quantum(force_n), noise_n);
+    Some((mean, (noise_n / (n as f64).sqrt()).hypot(rounding)))
 }
 
 /// Stretches of samples with a grip.

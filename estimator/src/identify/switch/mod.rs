@@ -19,16 +19,20 @@ use way::{Stop, Way};
 pub const OBJECT: &str = "switch";
 /// Length of the lever that is assumed, in travels of the knob.
 pub const LEVER_TRAVELS: f64 = 1.9;
-/// How well one over that is known, as a share (one standard deviation).
-const LEVER_SPREAD: f64 = 0.5;
-/// The share of the give at the stops that is the pads', and its standard deviation: evenly likely between 0.4 and 1.
-pub const PAD_SHARE: (f64, f64) = (0.7, 0.173);
+/// Half of what holds 95 % of an even distribution, over 1.96: what it counts as beside errors that are normal.
+const EVEN: f64 = 0.95 / 1.96;
+/// One over that is taken as evenly likely within this share.
+const LEVER_SPREAD: f64 = 0.5 * EVEN;
+/// The share of the give at the stops that is the pads', and its error: evenly likely between 0.4 and 1.
+const PAD_SHARE: (f64, f64) = (0.7, 0.3 * EVEN);
+/// Stiffness of a pad in terms of that at the stops, which it has the named share of: middle of what holds 95 %, and its error.
+pub const PADS_IN_GIVE: (f64, f64) = (1.71, 0.36);
 /// Where on its round side a knob is touched, m.
-const TOUCHED_M: f64 = 7e-5;
+const TOUCHED_M: f64 = 3e-5;
 /// Where a knob that is held by friction stays when it is left, m.
-const RESTING_M: f64 = 1.2e-4;
+const RESTING_M: f64 = 5e-5;
 /// A finger moves the knob by about this share of the force from which a touch is seen, over the rise, before it is seen.
-const UNSEEN_TOUCH: f64 = 0.4;
+const UNSEEN_TOUCH: f64 = 0.15;
 /// A peak counts from this many standard errors of rise and fall.
 const PEAK_SEEN: f64 = 4.0;
 

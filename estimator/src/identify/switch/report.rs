@@ -1,12 +1,15 @@
 //! The captured curves as parameters. Forces are those needed along the motion, the knob's own weight in them; places are the
 //! knob's middle in the world. What belongs to the way back (to the left) begins with `return_`.
 
-use super::{Captured, Curves, OBJECT, PAD_SHARE, TOUCHED_M};
+use super::{Captured, Curves, OBJECT, PADS_IN_GIVE, TOUCHED_M};
 use crate::estimate::{Fit, Parameter};
 use haptics::recording::Recording;
 
 /// Speed and mass of a knob on its way down add to the force what is not in the curve, N (one standard deviation).
-const FALLING_N: f64 = 0.015;
+const FALLING_N: f64 = 0.025;
+
+/// Up to the peak it moves slowly, N.
+const MOVING_N: f64 = 0.02;
 
 impl Captured {
     /// All that the recording shows and does not show.
@@ -44,7 +47,7 @@ impl Captured {
         let snap = self.with_errors(TOUCHED_M, |c: &Curves| c.snap_m(side));
         let named = |name: &str, found| self.parameter(&format!("{prefix}{name}"), found, &how, &why);
         vec![
-            named("peak_force_N", value(0, self.zero_error_n)),
+            named("peak_force_N", value(0, self.zero_error_n.hypot(MOVING_N))),
             named("snap_position_m", snap),
             named("rise_N_m", value(1, 0.0)),
             named("fall_N_m", value(2, fall)),
@@ -93,9 +96,9 @@ impl Captured {
 
     fn pad(&self) -> Vec<Parameter> {
         let Some((give, error)) = self.give_m_n else { return Vec::new() };
-        let how = "out of the give at the stops, which are taken as at least two thirds as stiff as a pad";
-        let value = 1.0 / (PAD_SHARE.0 * give);
-        let error = value * (PAD_SHARE.1 / PAD_SHARE.0).hypot(error / give);
+        let how = "out of the give at the stops, of which the pads are taken to have between 0.4 and all";
+        let value = PADS_IN_GIVE.0 / give;
+        let error = value * (PADS_IN_GIVE.1 / PADS_IN_GIVE.0).hypot(error / give);
         let why = format!(
             "finger and stop give {:.3} mm/N together; the share of each is an assumption, no measurement",
             1e3 * give
