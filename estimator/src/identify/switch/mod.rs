@@ -33,6 +33,8 @@ const TOUCHED_M: f64 = 3e-5;
 const RESTING_M: f64 = 5e-5;
 /// A finger moves the knob by about this share of the force from which a touch is seen, over the rise, before it is seen.
 const UNSEEN_TOUCH: f64 = 0.15;
+/// A touch is seen late by up to this share of the way between two samples.
+const STEP_SHARE: f64 = 0.7;
 /// A peak counts from this many standard errors of rise and fall.
 const PEAK_SEEN: f64 = 4.0;
 
@@ -88,7 +90,7 @@ impl Curves {
         let rise = ways.iter().flatten().map(|w| w.values[1]).fold(f64::INFINITY, f64::min);
         Ok(Self {
             ways,
-            resting_m: RESTING_M.hypot(UNSEEN_TOUCH * signals.touch_n / rise),
+            resting_m: RESTING_M.hypot(UNSEEN_TOUCH * signals.touch_n / rise).hypot(STEP_SHARE * signals.step_m),
             stops: [way::stop(&seen[0])?, way::stop(&seen[1])?],
             width_m: signals.width_m(reading.give_m_n),
         })

@@ -4,6 +4,7 @@
 //! is gone; then the knob snaps over by itself, and is met again on its stop.
 
 use crate::estimate::EstimateError;
+use crate::segment::threshold::percentile;
 use crate::signal::noise::white_noise;
 use crate::signal::task::{TipSeries, is_two_fingered, tip_series};
 use haptics::Vec2;
@@ -24,6 +25,8 @@ const STOP_TOUCHES: f64 = 2.0;
 const SETTLED_M: f64 = 0.8e-3;
 /// A turn of the motion counts from this share of its range.
 const TURN_SHARE: f64 = 0.1;
+/// The hand is fast in the samples above this share.
+const FAST_SHARE: f64 = 0.9;
 /// Share of the samples among which a finger at rest is looked for.
 const QUIET_SHARE: f64 = 0.25;
 
@@ -52,6 +55,8 @@ pub struct Signals {
     pub range_m: f64,
     /// Force from which a touch is seen, N.
     pub touch_n: f64,
+    /// Way from one sample to the next where the hand is fast, m: so late may a touch be seen.
+    pub step_m: f64,
 }
 
 /// What is assumed of geometry and pads when the samples are read.
@@ -118,6 +123,7 @@ impl Signals {
             / [left_height_m, right_height_m].iter().flatten().count().max(1) as f64;
         let zero_error_n = left_zero_n.max(right_zero_n);
         let touch_n = fingers[0].touch_n.max(fingers[1].touch_n);
+        let step_m = percentile(&mut mean.windows(2).map(|w| (w[1] - w[0]).abs()).collect::<Vec<_>>(), FAST_SHARE);
         Ok(Self {
             fingers,
             strokes,
@@ -126,6 +132,7 @@ impl Signals {
             middle_m: 0.5 * (low + high),
             range_m: high - low,
             touch_n,
+            step_m,
         })
     }
 
