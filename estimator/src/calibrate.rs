@@ -49,6 +49,7 @@ pub fn world(task: Task, recordings: &[Recording], fit: &Fit, segmentations: &[O
             builder.world.mechanism = Some(mechanism::world(fit, recording));
             builder.note_all("mechanism");
             builder.slider();
+            builder.surface(recording);
         }
     }
     builder.world
@@ -107,6 +108,15 @@ impl Builder<'_> {
         if let Some(scale) = felt {
             let why = "size of the path in the hand's workspace beside the recorded one";
             self.note("slider", "scale", scale, None, Source::Assumed, why);
+        }
+    }
+
+    /// The first surface that was found, so that it can be felt.
+    fn surface(&mut self, recording: &Recording) {
+        let up = mechanism::path::up(recording).unwrap_or_else(nalgebra::Vector3::zeros);
+        let felt = self.fit.constraints.iter().any(|c| constraint::felt::add_surface(&mut self.world, c, up));
+        if felt {
+            self.note_all("surface");
         }
     }
 

@@ -3,7 +3,7 @@
 mod constraint;
 
 pub use constraint::{
-    Constraint, ConstraintKind, Existence, Guide, Leaning, Phase, Screw, Sided, Slip, StrokePhase, Yielding,
+    Constraint, ConstraintKind, Existence, Guide, Leaning, Phase, Screw, Sided, Slip, StrokePhase, Touched, Yielding,
 };
 
 use serde::{Deserialize, Serialize};

@@ -1,5 +1,6 @@
 //! Which kind of constraint a path shows.
 
+mod odds;
 mod report;
 
 use super::circle::{Arc, cost, fit, refine};
@@ -10,6 +11,8 @@ use super::noise::{Direction, PathNoise, sensitivity};
 use super::normals::{THESIS_SAMPLES, normals_center};
 use super::retrace::Retrace;
 use super::screw::{self, Helix};
+use super::surface::{self, Pressed};
+use super::whole::rests_at_both_ends;
 use crate::estimate::{Constraint, ConstraintKind};
 use nalgebra::Vector3;
 
@@ -18,18 +21,8 @@ const MIN_POINTS: usize = 8;
 /// The kinds are decided at this level of error, the interval is given at 5 %.
 const DECISION_P: f64 = 0.01;
 const INTERVAL_P: f64 = 0.05;
-/// Posterior probability from which on a path is called straight.
-const STRAIGHT_PROBABILITY: f64 = 0.92;
-/// … and below which, or where the interval leaves no doubt, it is called round.
-const ROUND_PROBABILITY: f64 = 0.02;
-/// … provided that it bends by no more than this over its length with 95 % certainty, rad.
-const STRAIGHT_RAD: f64 = 0.5;
-/// Hinges within reach lie this far away, m: their radii are taken as equally likely in logarithm …
+/// Hinges within reach lie this far away, m: their radii are taken as equally likely in logarithm.
 const HINGE_M: (f64, f64) = (0.03, 2.0);
-/// … as far as the path turns about them by at least this, rad (5°): who records a hinge moves it.
-const HINGE_TURN_RAD: f64 = 0.087;
-/// A path that bends by more than this, with certainty, is round whatever was thought before, rad.
-const ROUND_RAD: f64 = 0.15;
 /// Distance from line and plane, as a share of the extent, up to which a path is still one.
 const CLOSE_SHARE: f64 = 0.025;
 /// … and from which on it is certainly none.
@@ -83,6 +76,8 @@ struct Shape {
     decision_low: f64,
     /// Probability of a straight line against a circle, even odds before.
     straight_probability: f64,
+    /// The motion begins and ends in this recording, or goes there and back in it.
+    whole: bool,
     curvature_error: f64,
     angle_error: f64,
 }
@@ -92,6 +87,13 @@ struct Shape {
 /// `points`: tool positions in order of time, m (no clock needed); `forces`: force of the tool on the environment, N, same
 /// length. Distances are taken along the path, so dwelling does not count.
 pub fn detect(points: &[Vector3<f64>], forces: Option<&[Vector3<f64>]>, context: &Context) -> Constraint {
+    let pressed = forces.map(|forces| {
+        let time_s = context.time_s.as_deref();
+        surface::find(&Pressed { points, forces, time_s, planar: context.planar }, context.recording.clone())
+    });
+    if let Some(Some(found)) = pressed {
+        return found;
+    }
     let finite = points.iter().all(|p| p.iter().all(|v| v.is_finite()));
     let frame = if finite { Frame::new(points, context.planar) } else { None };
     let Some(frame) = frame else { return blank(context, "the tool does not move, so no constraint can be seen") };
@@ -99,7 +101,9 @@ pub fn detect(points: &[Vector3<f64>], forces: Option<&[Vector3<f64>]>, context:
         let text = format!("only {} distinct points of a path; {MIN_POINTS} are needed", frame.flat.len());
         return blank(context, &text);
     }
-    let Some(shape) = Shape::new(frame) else { return blank(context, "the path is too short against its noise") };
+    let Some(shape) = Shape::new(frame, points) else {
+        return blank(context, "the path is too short against its noise");
+    };
     let (mut kind, mut evidence) = shape.kind();
     let forces = forces.filter(|f| f.len() == points.len());
     let held = forces.and_then(|f| guided::existence_of(&shape.frame, points, f, context));
@@ -137,20 +141,22 @@ fn blank(context: &Context, evidence: &str) -> Constraint {
 }
 
 impl Shape {
-    fn new(frame: Frame) -> Option<Self> {
+    fn new(frame: Frame, points: &[Vector3<f64>]) -> Option<Self> {
         let extent = frame.extent_m;
         let (arc, best) = fit(&frame.flat, extent);
         let noise = PathNoise::new(&frame.flat, &arc, extent, Direction::Curvature)?;
         let turn = PathNoise::new(&frame.flat, &arc, extent, Direction::Angle)?;
         let size = sensitivity(&frame.flat, &arc, extent, Direction::Curvature);
         let bounds = |p: f64| profile(&frame, &arc, best, noise.quantile(p), size);
+        let retrace = Retrace::of(&frame, &arc);
         Some(Self {
+            whole: rests_at_both_ends(points) || retrace.along_share > GUIDE_ALONG,
             interval: bounds(INTERVAL_P),
             decision_low: bounds(DECISION_P).0,
-            straight_probability: straight_probability(&noise, arc.curvature, size, extent),
+            straight_probability: odds::straight_probability(&noise, arc.curvature, size, extent),
             curvature_error: noise.quantile(0.317) / size,
             angle_error: turn.quantile(0.317) / sensitivity(&frame.flat, &arc, extent, Direction::Angle),
-            retrace: Retrace::of(&frame, &arc),
+            retrace,
             rms_m: (best / frame.flat.len() as f64).sqrt(),
             arc,
             frame,
@@ -165,8 +171,6 @@ impl Shape {
     fn kind(&self) -> (ConstraintKind, String) {
         let extent = self.frame.extent_m;
         let share = self.residual_m() / extent;
-        let bend = |curvature: f64| curvature * extent;
-        let low = self.decision_low;
         let sizes = format!(
             "{:.1} mm from a circle, {:.1} mm from a line over {:.0} mm",
             1e3 * self.residual_m(),
@@ -189,9 +193,7 @@ impl Shape {
             );
             return (ConstraintKind::Undecided, text);
         }
-        let within_reach = 1.0 / self.arc.curvature < HINGE_M.1 * 1.25;
-        let certain = bend(low) > ROUND_RAD && 1.0 / low < HINGE_M.1 * 1.25 && self.rms_m < 0.5 * self.frame.line_rms_m;
-        let round = certain || (self.straight_probability < ROUND_PROBABILITY && within_reach);
+        let round = self.is_round();
         if round && self.systematic() {
             let text = format!("the passes stray from the circle at the same places: {sizes}; it may be another curve");
             return (ConstraintKind::Undecided, text);
@@ -199,10 +201,14 @@ impl Shape {
         if round {
             return (
                 ConstraintKind::Revolute,
-                format!("a circle fits and a line does not: {sizes}{}", self.thesis_center()),
+                format!(
+                    "a circle fits and a line does not: {sizes}; the line's probability is {:.3}{}",
+                    self.straight_probability,
+                    self.thesis_center()
+                ),
             );
         }
-        if self.straight_probability > STRAIGHT_PROBABILITY && bend(self.interval.1) < STRAIGHT_RAD {
+        if self.is_straight() {
             let text = format!(
                 "a line fits: {sizes}; against all hinges within {:.0} m its probability is {:.3}",
                 HINGE_M.1, self.straight_probability
@@ -277,22 +283,6 @@ impl Shape {
             1e3 * (found - center).norm()
         )
     }
-}
-
-/// Probability of curvature 0 against curvatures of hinges within reach, bending either way, even odds before.
-fn straight_probability(noise: &PathNoise, curvature: f64, size: f64, extent_m: f64) -> f64 {
-    let likelihood = |k: f64| noise.density((curvature - k) * size);
-    let steps = 200;
-    // No circle is shorter across than the path that lies on it.
-    let nearest = HINGE_M.0.max(0.5 * extent_m);
-    let ratio = (HINGE_M.1.min(extent_m / HINGE_TURN_RAD) / nearest).max(1.0);
-    let round: f64 = (0..steps)
-        .map(|i| 1.0 / (nearest * ratio.powf((f64::from(i) + 0.5) / f64::from(steps))))
-        .map(|k| 0.5 * (likelihood(k) + likelihood(-k)))
-        .sum::<f64>()
-        / f64::from(steps);
-    let line = likelihood(0.0);
-    if line + round > 0.0 { line / (line + round) } else { 0.5 }
 }
 
 /// Curvatures whose best arcs exceed the best fit by less than `amplitude`²: the interval, asymmetric where the geometry is.

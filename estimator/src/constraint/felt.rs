@@ -2,7 +2,7 @@
 
 use crate::estimate::{Constraint, ConstraintKind};
 use haptics::Vec2;
-use haptics::world::{Block, Guide, World};
+use haptics::world::{Block, Guide, Plane, World};
 use nalgebra::Vector3;
 
 /// Control points of an arc, a turn.
@@ -47,6 +47,44 @@ pub fn add(world: &mut World, constraint: &Constraint, friction_n: f64) -> Optio
         world.blocks.pop();
         None
     })
+}
+
+/// Share of the workspace's radius by which a surface lies below its middle, along the normal.
+const SURFACE_SHARE: f64 = 0.4;
+/// Stiffness of a surface that is rigid, N/m, its damping under blocks, N s/m, and friction where nothing slid on it.
+const SURFACE_N_M: f64 = 8000.0;
+const SURFACE_N_S_M: f64 = 6.0;
+const SURFACE_FRICTION: f64 = 0.4;
+
+/// Puts the surface of `constraint` into `world`, slanted as it was found; `up`: upwards in the recording, zero in a level plane. A
+/// surface in space is cut along its steepest line. Returns whether there was one.
+pub fn add_surface(world: &mut World, constraint: &Constraint, up: Vector3<f64>) -> bool {
+    let Some(surface) = constraint.surface.as_ref().filter(|_| constraint.kind == ConstraintKind::Unilateral) else {
+        return false;
+    };
+    let normal = vector(&surface.normal);
+    let flat = if normal.z == 0.0 {
+        Vec2::new(normal.x, normal.y)
+    } else {
+        let rise = up.dot(&normal);
+        Vec2::new((normal - up * rise).norm(), rise)
+    };
+    let Some(normal) = flat.try_normalize(1e-6) else { return false };
+    let softer = constraint.yielding.and_then(|y| y.stiffness_n_m).filter(|_| constraint.rigid == Some(false));
+    let room = &world.hand.workspace;
+    let plane = Plane {
+        point_m: room.center_m - normal * (SURFACE_SHARE * room.radius_m),
+        normal,
+        stiffness_n_m: softer.unwrap_or(SURFACE_N_M).clamp(20.0, SURFACE_N_M),
+        damping_n_s_m: SURFACE_N_S_M,
+        friction: surface.friction.unwrap_or(SURFACE_FRICTION).clamp(0.0, 2.0),
+    };
+    let before = (world.floor.take(), world.plane.replace(plane));
+    let fine = world.check().is_ok();
+    if !fine {
+        (world.floor, world.plane) = before;
+    }
+    fine
 }
 
 /// The path in its own plane, m: x and y as recorded where it is planar.

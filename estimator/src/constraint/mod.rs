@@ -13,6 +13,8 @@ mod retrace;
 pub mod screw;
 pub mod slips;
 pub mod spline;
+pub mod surface;
+mod whole;
 pub mod yielding;
 
 pub use carried::{Carry, carried};

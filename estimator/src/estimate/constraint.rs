@@ -90,6 +90,9 @@ pub struct Constraint {
     /// The path written compactly, where it is neither line nor circle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub guide: Option<Guide>,
+    /// Where the surface is and how it rubs, for one that pushes one way.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surface: Option<Touched>,
     /// What happened when, for a membrane.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub phases: Vec<StrokePhase>,
@@ -135,6 +138,7 @@ impl Constraint {
             plane_residual_m: None,
             screw: None,
             guide: None,
+            surface: None,
             phases: Vec::new(),
             leaning: None,
             evidence: evidence.to_owned(),
@@ -234,6 +238,29 @@ pub struct Guide {
     pub rms_m: f64,
     /// Largest one, m.
     pub largest_m: f64,
+}
+
+/// A surface that pushes one way, where no push presses it in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Touched {
+    /// A point of it in the middle of what was touched, m.
+    pub point_m: Vec<f64>,
+    /// Unit vector out of it.
+    pub normal: Vec<f64>,
+    /// Standard error of the point along the normal, m.
+    pub offset_std_error_m: f64,
+    /// Standard error of the normal's direction, rad.
+    pub tilt_std_error_rad: f64,
+    /// Friction coefficient, where something slid on it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction: Option<f64>,
+    /// Its standard error.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_std_error: Option<f64>,
+    /// One end of what was touched, m.
+    pub touched_from_m: Vec<f64>,
+    /// The other end, m.
+    pub touched_to_m: Vec<f64>,
 }
 
 /// What a needle is doing.

@@ -180,7 +180,9 @@ fn surface_velocity(state: &State, contact: &Contact) -> Vec2 {
         }),
         Surface::Handle => state.crank.handle_velocity,
         Surface::Knob => state.switch.knob_velocity,
-        Surface::Floor | Surface::Membrane | Surface::Cup | Surface::Base | Surface::Finger(_) => Vec2::zeros(),
+        Surface::Floor | Surface::Plane | Surface::Membrane | Surface::Cup | Surface::Base | Surface::Finger(_) => {
+            Vec2::zeros()
+        }
     }
 }
 

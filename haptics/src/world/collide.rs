@@ -3,7 +3,9 @@
 //! They are found where everything will be in the middle of the tick if nothing pushes it: lever arms and directions of that
 //! moment hold for the whole tick to second order, those of its start only to first.
 
-use super::block::{Block, Shape};
+mod ground;
+
+use super::block::Block;
 use super::contact::{Material, Touch, meeting};
 use super::driven::handle;
 use super::fixed::{Fixed, cup_wall, switch_base};
@@ -81,6 +83,7 @@ pub(super) fn collide(world: &World, state: &mut State, input: &Input, dt_s: f64
     let handle_m = world.crank.as_ref().map(|crank| handle(crank, &state.crank, arm));
     let mut gather = Gather { world, tips, tip_sweep_m, memory, touches, deepest_pad_m, solids, begins, slipped_m };
     gather.floor();
+    gather.plane();
     gather.blocks();
     gather.fingers();
     let handle_sweep_m = state.crank.handle_velocity.norm() * dt_s;
@@ -146,49 +149,6 @@ impl Gather<'_> {
         let arm_m = found.point_m - solid.rect.center_m;
         let turning = arm_m.perp(&found.normal);
         (arm_m, solid.inverse_mass + solid.inverse_inertia * turning * turning)
-    }
-
-    fn floor(&mut self) {
-        let Some(floor) = &self.world.floor else { return };
-        let up = Vec2::new(0.0, 1.0);
-        let impact_damping = floor.loss.map_or(0.0, |loss| loss.impact_damping());
-        for (index, block) in self.world.blocks.iter().enumerate() {
-            let Solid { rect, reach_m, sweep_m, .. } = self.solids[index];
-            if rect.center_m.y - reach_m - sweep_m > floor.height_m {
-                continue;
-            }
-            let pair = (Surface::Block(index as u16), Surface::Floor);
-            let material = match &floor.loss {
-                Some(loss) => Material { impact_damping, ..Material::hard(floor.stiffness_n_m, 0.0, loss.mu) },
-                None => Material::hard(floor.stiffness_n_m, floor.damping_n_s_m, floor.friction),
-            };
-            if block.shape == Shape::Needle {
-                let point_m = rect.center_m - rect.axis_y() * rect.half_m.y;
-                let depth_m = floor.height_m - point_m.y;
-                if depth_m > -sweep_m {
-                    self.add(&Found { pair, feature: 0, point_m, normal: up, depth_m }, &material);
-                }
-                continue;
-            }
-            for corner in 0..4_u8 {
-                let point_m = rect.corner(corner);
-                let depth_m = floor.height_m - point_m.y;
-                if depth_m > -sweep_m {
-                    self.add(&Found { pair, feature: corner, point_m, normal: up, depth_m }, &material);
-                }
-            }
-        }
-        for finger in 0..2_u8 {
-            let tip = self.tips[usize::from(finger)];
-            let depth_m = floor.height_m - tip.y;
-            if depth_m > -self.tip_sweep_m[usize::from(finger)] {
-                let pair = (Surface::Finger(finger), Surface::Floor);
-                self.add(
-                    &Found { pair, feature: 0, point_m: tip, normal: up, depth_m },
-                    &pad_material(self.world, floor.friction),
-                );
-            }
-        }
     }
 
     fn blocks(&mut self) {

@@ -14,6 +14,7 @@ mod label;
 mod model;
 #[cfg(test)]
 mod parts_tests;
+mod plane;
 pub mod presets;
 mod rect;
 mod scratch;
@@ -29,5 +30,6 @@ pub use fixture::{Membrane, Switch};
 pub use guide::{Guide, Guided, MAX_GUIDE_POINTS};
 pub use label::true_label;
 pub use model::*;
+pub use plane::Plane;
 pub use state::*;
 pub use step::{finger_contacts, step, substeps};

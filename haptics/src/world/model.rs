@@ -3,6 +3,7 @@
 use super::block::Block;
 use super::check::{self, WorldError, finite, not_negative, positive};
 use super::fixture::{Membrane, Switch};
+use super::plane::Plane;
 use crate::Vec2;
 use crate::hand::Hand;
 use crate::law::contact::{Cushion, Densification, FingertipSlip, StiffnessHardening, VelocityLoss};
@@ -39,6 +40,9 @@ pub struct World {
     /// A table under everything, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub floor: Option<Floor>,
+    /// A fixed plane at any angle, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plane: Option<Plane>,
     /// Movable rectangular blocks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub blocks: Vec<Block>,
@@ -249,6 +253,7 @@ impl World {
             hand: Hand::default(),
             pad: Pad::default(),
             floor: Some(Floor::default()),
+            plane: None,
             blocks: Vec::new(),
             crank: None,
             membrane: None,
@@ -312,6 +317,9 @@ impl World {
                 not_negative("the floor", "1 − loss.e", 1.0 - loss.e)?;
                 not_negative("the floor", "loss.mu", loss.mu)?;
             }
+        }
+        if let Some(plane) = &self.plane {
+            plane.check()?;
         }
         for block in &self.blocks {
             block.check()?;

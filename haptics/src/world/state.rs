@@ -121,6 +121,8 @@ pub enum Surface {
     Cup,
     /// The base of the toggle switch.
     Base,
+    /// A fixed plane.
+    Plane,
 }
 
 /// One active contact point.

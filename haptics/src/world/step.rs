@@ -100,13 +100,16 @@ pub(super) fn part_rate(world: &World, pad_m: f64) -> (f64, &str) {
     let pad_damping = 2.0 * (world.pad.damping_n_s_m + world.pad.shear_damping_n_s_m);
     let (floor_stiffness, floor_damping) =
         world.floor.as_ref().map_or((0.0, 0.0), |f| (2.0 * f.stiffness_n_m, 2.0 * f.damping_n_s_m));
+    let (plane_stiffness, plane_damping) =
+        world.plane.as_ref().map_or((0.0, 0.0), |p| (2.0 * p.stiffness_n_m, 2.0 * p.damping_n_s_m));
+    let ground = (floor_stiffness + plane_stiffness, floor_damping + plane_damping);
     for block in &world.blocks {
         // What may run out counts as gone: the step must not change as it leaks.
         let mass_kg = block.mass_kg - block.content.map_or(0.0, |c| c.mass_kg);
         let turning = if block.keeps_upright() { 1.0 } else { ROTATION };
         let (held, held_damping) = held_by(world, block);
-        let stiffness = floor_stiffness.max(block.stiffness_n_m) + pads + held;
-        let damping = floor_damping.max(block.damping_n_s_m) + pad_damping + held_damping;
+        let stiffness = ground.0.max(block.stiffness_n_m) + pads + held;
+        let damping = ground.1.max(block.damping_n_s_m) + pad_damping + held_damping;
         needs(&block.name, turning * stiffness, turning * damping, mass_kg);
     }
     if let Some(crank) = &world.crank {

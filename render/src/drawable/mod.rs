@@ -15,6 +15,7 @@ mod mechanism;
 mod membrane;
 mod needle;
 mod pad;
+mod plane;
 mod switch;
 pub(crate) mod table;
 mod tool;
@@ -38,6 +39,7 @@ const WHITE: Color = Color::rgb8(0xFF, 0xFF, 0xFF);
 pub(crate) fn draw_scene(data: &mut DrawData, view: &SceneView<'_>) {
     let mut canvas = Canvas::new(data, view, Mode::Real);
     table::draw(&mut canvas, view);
+    plane::draw(&mut canvas, view);
     if view.options.show_workspace {
         workspace::draw(&mut canvas, view);
     }

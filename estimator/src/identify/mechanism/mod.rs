@@ -12,6 +12,7 @@ pub mod path;
 mod regress;
 mod report;
 mod signals;
+mod surface;
 mod swing;
 mod terms;
 mod world;
@@ -50,6 +51,9 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
         .first()
         .ok_or_else(|| EstimateError::Other("no recording was given; name at least one log".to_owned()))?;
     let (constraints, paths) = constraints(recordings);
+    if let Some(pressed) = surface::fit(recordings, &constraints) {
+        return Ok(pressed);
+    }
     if recordings.iter().any(|r| r.time_s.is_none()) {
         return Ok(clockless(recordings, constraints, &paths));
     }
