@@ -16,6 +16,8 @@ use super::whole::rests_at_both_ends;
 use crate::estimate::{Constraint, ConstraintKind};
 use nalgebra::Vector3;
 
+/// Fewer samples show less surely that a motion begins and ends at rest.
+const FEW_SAMPLES: usize = 100;
 /// Kept points below which nothing is said.
 const MIN_POINTS: usize = 8;
 /// The kinds are decided at this level of error, the interval is given at 5 %.
@@ -78,6 +80,8 @@ struct Shape {
     straight_probability: f64,
     /// The motion begins and ends in this recording, or goes there and back in it.
     whole: bool,
+    /// Its rest at the ends would be seen in a few samples only.
+    few: bool,
     curvature_error: f64,
     angle_error: f64,
 }
@@ -151,6 +155,7 @@ impl Shape {
         let retrace = Retrace::of(&frame, &arc);
         Some(Self {
             whole: rests_at_both_ends(points) || retrace.along_share > GUIDE_ALONG,
+            few: points.len() < FEW_SAMPLES,
             interval: bounds(INTERVAL_P),
             decision_low: bounds(DECISION_P).0,
             straight_probability: odds::straight_probability(&noise, arc.curvature, size, extent),

@@ -13,3 +13,4 @@ mod pads;
 pub mod robust;
 pub mod stated;
 pub mod switch;
+pub mod tossed;

@@ -8,6 +8,8 @@ use super::{HINGE_M, Shape};
 
 /// Posterior probability from which on the path of a whole motion is called straight …
 const STRAIGHT_WHOLE: f64 = 0.65;
+/// … that of one whose rest at the ends is seen in a few samples only …
+const STRAIGHT_FEW: f64 = 0.78;
 /// … and that of a piece of one.
 const STRAIGHT_PIECE: f64 = 0.93;
 /// … provided that it bends by no more than this over its length with 95 % certainty, rad: a whole motion, a piece.
@@ -43,8 +45,11 @@ impl Shape {
 
     /// A line and no circle within reach.
     pub(super) fn is_straight(&self) -> bool {
-        let (least, most_rad) =
-            if self.whole { (STRAIGHT_WHOLE, STRAIGHT_WHOLE_RAD) } else { (STRAIGHT_PIECE, STRAIGHT_PIECE_RAD) };
+        let (least, most_rad) = match (self.whole, self.few) {
+            (true, false) => (STRAIGHT_WHOLE, STRAIGHT_WHOLE_RAD),
+            (true, true) => (STRAIGHT_FEW, STRAIGHT_WHOLE_RAD),
+            (false, _) => (STRAIGHT_PIECE, STRAIGHT_PIECE_RAD),
+        };
         self.straight_probability > least && self.bend(self.interval.1) < most_rad
     }
 }

@@ -15,6 +15,7 @@ mod signals;
 mod surface;
 mod swing;
 mod terms;
+mod transmission;
 mod world;
 
 pub use report::{OBJECT, PHASE};
@@ -50,6 +51,9 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
     let first = recordings
         .first()
         .ok_or_else(|| EstimateError::Other("no recording was given; name at least one log".to_owned()))?;
+    if let Some(thrown) = super::tossed::fit(recordings) {
+        return Ok(thrown);
+    }
     let (constraints, paths) = constraints(recordings);
     if let Some(pressed) = surface::fit(recordings, &constraints) {
         return Ok(pressed);
@@ -85,6 +89,7 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
         return Err(EstimateError::Other(text.to_owned()));
     };
     result.constraints = constraints;
+    result.parameters.extend(transmission::parameters(recordings));
     Ok(result)
 }
 

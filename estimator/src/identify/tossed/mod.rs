@@ -1,0 +1,98 @@
+//! A body that is thrown and slides out: free fall measures the scale of the positions, sliding its friction.
+//!
+//! Nothing of the body's shape is needed. While it flies, every point of it that a tracker follows moves on a parabola (plus
+//! the turning of that point about the centre of mass, which is fitted where orientations were recorded); the parabola's
+//! acceleration is g times the scale of the positions. While it slides flat, it slows down by μ g in the same scale, so that
+//! their ratio is free of it.
+
+mod flight;
+mod pose;
+mod slide;
+
+use super::mechanism::path;
+use crate::estimate::{Fit, Parameter};
+use flight::Fall;
+use haptics::recording::Recording;
+use pose::Track;
+
+/// The object's name.
+const BODY: &str = "body";
+/// A throw's acceleration is that of gravity within this share: a scale or a clock that is off by more is an error of another
+/// kind, and what falls more slowly is held by something.
+const LIKE_GRAVITY: f64 = 0.2;
+/// Share of the recordings that must begin with a fall.
+const FALLING_SHARE: f64 = 0.5;
+/// A scale is said to be off from so many standard errors on.
+const OFF: f64 = 3.0;
+
+/// The fit of recordings of one thrown body; `None` when they do not show one.
+pub fn fit(recordings: &[Recording]) -> Option<Fit> {
+    let first = recordings.first()?;
+    if recordings.iter().any(|r| path::forces(r).is_some() || r.time_s.is_none()) {
+        return None;
+    }
+    let up = path::up(first)?;
+    let tracks: Vec<Track> = recordings.iter().filter_map(|r| Track::of(r, up)).collect();
+    let gravity = first.meta.gravity();
+    if tracks.is_empty() || gravity <= 0.0 {
+        return None;
+    }
+    let fall = Fall::of(&tracks)?;
+    let like = (fall.down_m_s2 / gravity - 1.0).abs() < LIKE_GRAVITY && fall.aside_m_s2 < LIKE_GRAVITY * gravity;
+    if !like || (fall.throws as f64) < FALLING_SHARE * recordings.len() as f64 {
+        return None;
+    }
+    let slides = slide::slides(&tracks);
+    let samples: usize = tracks.iter().map(|t| t.time_s.len()).sum();
+    let mut parameters = vec![
+        Parameter::identified(
+            BODY,
+            "free_fall_m_s2",
+            fall.down_m_s2,
+            fall.error_m_s2,
+            fall.samples,
+            &format!("parabolas of {} flights, one acceleration for all, errors by flight", fall.throws),
+        ),
+        Parameter::identified(
+            BODY,
+            "length_scale",
+            fall.down_m_s2 / gravity,
+            fall.error_m_s2 / gravity,
+            fall.samples,
+            &format!("free fall over {gravity} m/s²: recorded length over true length, if the clock is right"),
+        ),
+    ];
+    parameters.push(friction(&slides, &fall, samples));
+    let why = "it needs the places of the corners, which the recording does not have";
+    parameters.push(Parameter::unidentified(BODY, "restitution", samples, why));
+    let mut warnings = Vec::new();
+    if (fall.down_m_s2 - gravity).abs() > OFF * fall.error_m_s2 {
+        warnings.push(format!(
+            "the body falls with {:.3} ± {:.3} m/s² and not {gravity}: lengths are recorded {:+.1} % off, or the clock {:+.1} %",
+            fall.down_m_s2,
+            fall.error_m_s2,
+            100.0 * (fall.down_m_s2 / gravity - 1.0),
+            100.0 * ((gravity / fall.down_m_s2).sqrt() - 1.0)
+        ));
+    }
+    Some(Fit { task: "mechanism".to_owned(), parameters, warnings, ..Fit::default() })
+}
+
+/// Mean over the slides, with the error of their scatter: a table is not alike everywhere.
+fn friction(slides: &[slide::Slide], fall: &Fall, samples: usize) -> Parameter {
+    let n = slides.len() as f64;
+    if slides.len() < 2 {
+        let why = "the body does not slide flat for long enough in two recordings at least; throw it flatter";
+        return Parameter::unidentified(BODY, "friction", samples, why);
+    }
+    let values: Vec<f64> = slides.iter().map(|s| s.slowing_m_s2 / fall.down_m_s2).collect();
+    let mean = values.iter().sum::<f64>() / n;
+    let scatter = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0) / n).sqrt();
+    let error = scatter.hypot(mean * fall.error_m_s2 / fall.down_m_s2);
+    let how = format!(
+        "slowing of {} slides over free fall, which is free of the scale of the positions; single slides scatter by {:.3}",
+        slides.len(),
+        scatter * n.sqrt()
+    );
+    Parameter::identified(BODY, "friction", mean, error, slides.iter().map(|s| s.samples).sum(), &how)
+}
