@@ -110,7 +110,9 @@ mod tests {
 
     #[test]
     fn what_cannot_be_a_plane_is_said() {
-        for change in [|p: &mut Plane| p.normal = Vec2::zeros(), |p| p.stiffness_n_m = 0.0, |p| p.friction = -1.0] {
+        let changes: [fn(&mut Plane); 3] =
+            [|p| p.normal = Vec2::zeros(), |p| p.stiffness_n_m = 0.0, |p| p.friction = -1.0];
+        for change in changes {
             let mut world = slope(0.0, 0.3);
             if let Some(plane) = &mut world.plane {
                 change(plane);
