@@ -15,7 +15,7 @@ type Values = Vec<(&'static str, f64)>;
 
 /// A sheet and a needle, with what the fit should find; the surface is added by what the performance knows.
 fn needle_world(seed: u64) -> (World, Values) {
-    let mut rng = StdRng::seed_from_u64(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x4eed1e);
+    let mut rng = StdRng::seed_from_u64(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x004e_ed1e);
     let mut world = presets::needle();
     let mut draw = |low: f64, high: f64| rng.random_range(low..high);
     world.pad.stiffness_n_m = draw(1800.0, 4000.0);
@@ -47,7 +47,7 @@ fn needle_world(seed: u64) -> (World, Values) {
 
 /// A switch as the built-in one, but with everything about it drawn.
 fn switch_world(seed: u64) -> (World, Values) {
-    let mut rng = StdRng::seed_from_u64(seed.wrapping_mul(0x9fb2_1c65_1e98_df25) ^ 0x5c17c4);
+    let mut rng = StdRng::seed_from_u64(seed.wrapping_mul(0x9fb2_1c65_1e98_df25) ^ 0x005c_17c4);
     let mut world = presets::switch();
     let gravity_m_s2 = world.gravity_m_s2;
     world.pad.stiffness_n_m = rng.random_range(2000.0..3500.0);

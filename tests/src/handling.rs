@@ -33,7 +33,7 @@ pub struct Handling {
 
 /// A barrel drawn at random; about half of them leak, two of three are on a cable.
 pub fn barrel_world(seed: u64) -> World {
-    let mut rng = StdRng::seed_from_u64(seed.wrapping_mul(0xa076_1d64_78bd_642f) ^ 0xba44e1);
+    let mut rng = StdRng::seed_from_u64(seed.wrapping_mul(0xa076_1d64_78bd_642f) ^ 0x00ba_44e1);
     let mut world = presets::barrel();
     let floor_m = world.floor.as_ref().map_or(0.0, |f| f.height_m);
     let mut draw = |low: f64, high: f64| rng.random_range(low..high);

@@ -29,7 +29,7 @@ impl Builder<'_> {
             }
             None => self.take(OBJECT, "height_m", USUAL_SHAPE * width_m),
         };
-        let middle_m = picked(recording, segmentation).unwrap_or_else(|| self.world.hand.workspace.center_m);
+        let middle_m = picked(recording, segmentation).unwrap_or(self.world.hand.workspace.center_m);
         let base_m = middle_m.y - 0.5 * height_m;
         self.world.floor = Some(Floor { height_m: base_m, ..Floor::default() });
         self.note("floor", "height_m", base_m, None, Source::Assumed, "the barrel is taken as gripped at mid-height");

@@ -2,6 +2,7 @@
 
 use crate::estimate::EstimateError;
 use crate::segment::definition::Definition;
+use crate::segment::subtasks::MOST_CARRIES;
 use crate::segment::threshold::{Levels, percentile};
 use crate::segment::{Method, Segmentation, Thresholds, segment_signals_by};
 use crate::signal::noise::{quantum, resolution_error, white_noise};
@@ -104,7 +105,9 @@ impl Signals {
 
     /// Number of the lifts that were seen.
     pub fn lifts(&self) -> usize {
-        (1..).take_while(|n| !self.segmentation.samples_of(&format!("carry-barrel-{n}")).is_empty()).count()
+        (1..=MOST_CARRIES)
+            .take_while(|n| !self.segmentation.samples_of(&format!("carry-barrel-{n}")).is_empty())
+            .count()
     }
 
     /// Samples while held, from the first grip to letting go, in all lifts.
@@ -123,8 +126,8 @@ impl Signals {
             let mut lift: Vec<f64> = samples.iter().map(|i| self.net_n[*i].y).collect();
             let stretched = percentile(&mut lift, 0.5) / (2.0 * SOFTEST_N_M);
             let clear = |i: &usize| self.position[*i].y > low + stretched.min(CLEAR_OF_FLOOR * (high - low));
-            let first = samples.iter().position(|i| clear(i)).unwrap_or(0);
-            let end = samples.iter().rposition(|i| clear(i)).map_or(0, |k| k + 1);
+            let first = samples.iter().position(&clear).unwrap_or(0);
+            let end = samples.iter().rposition(clear).map_or(0, |k| k + 1);
             samples[first.min(end)..end].to_vec()
         };
         (1..=self.lifts()).map(lift).collect()
