@@ -111,7 +111,8 @@ fn end(track: &Track) -> usize {
 fn own_rms(track: &Track, n: usize) -> f64 {
     let square: f64 = (0..3)
         .map(|axis| {
-            let own = DMatrix::from_fn(n, 3, |i, j| (track.time_s[i] - track.time_s[0]).powi(j as i32)).qr().q();
+            let since = |i: usize| track.time_s[i] - track.time_s[0];
+            let own = DMatrix::from_fn(n, 3, |i, j| [1.0, since(i), since(i) * since(i)][j]).qr().q();
             let right = DVector::from_fn(n, |i, _| track.points[i][axis]);
             (&right - &own * own.tr_mul(&right)).norm_squared()
         })
