@@ -221,7 +221,11 @@ fn wrong_usage_is_exit_two() {
 fn diagnose_answers_as_the_contract_says_and_writes_a_world_that_can_be_felt() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("extended.json");
-    let result = json(&["diagnose", &asset("crank.csv"), "--out", out.to_str().expect("a path")]);
+    let other = asset("crank.csv");
+    let result = json(&["diagnose", &asset("crank.csv"), "--out", out.to_str().expect("a path"), "--validate", &other]);
+    let validation = result["validation"].as_array().expect("one a log");
+    assert_eq!(validation.len(), 1);
+    assert!(validation[0]["rms_after"].as_f64() <= validation[0]["rms_before"].as_f64(), "{validation:?}");
     let verdict = result["verdict"].as_str().expect("a verdict");
     assert!(["causes", "none", "ambiguous", "unexplained"].contains(&verdict), "{verdict}");
     for key in ["model", "rms_N", "heldout_rms_N", "whiteness_p"] {

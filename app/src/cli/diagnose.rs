@@ -3,7 +3,7 @@
 use super::{LogArgs, Output};
 use anyhow::Context;
 use clap::Args;
-use estimator::diagnose::{Cause, Diagnosis, Options, Verdict, diagnose, extended_world};
+use estimator::diagnose::{Cause, Diagnosis, Options, Verdict, diagnose, extended_world, validate};
 use haptics::world::World;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -22,6 +22,9 @@ pub struct Diagnose {
     /// Start a mechanism from `mass`, `mass+viscous`, `mass+viscous+coulomb`, or a world file
     #[arg(long)]
     baseline: Option<String>,
+    /// Measure the gain on these logs of the same object, too; nothing is fitted to them
+    #[arg(long, num_args = 1..)]
+    validate: Vec<PathBuf>,
     /// Write the world with what was found in it here
     #[arg(long)]
     out: Option<PathBuf>,
@@ -44,7 +47,10 @@ impl Diagnose {
         };
         let baseline = self.baseline.clone().filter(|_| world.is_none());
         let options = Options { task: None, baseline, world };
-        let diagnosis = super::progress::during("diagnosing", |_| diagnose(&recordings, &options))?;
+        let mut diagnosis = super::progress::during("diagnosing", |_| diagnose(&recordings, &options))?;
+        for log in &self.validate {
+            diagnosis.validation.extend(validate(&self.source.load(log)?, &options, &diagnosis)?);
+        }
         let mut text = describe(&diagnosis);
         if let Some(path) = &self.out {
             let world = extended_world(&recordings, &options, &diagnosis)?;
@@ -99,6 +105,10 @@ fn describe(diagnosis: &Diagnosis) -> String {
             next.separates.join(", "),
             100.0 * next.expected_power
         );
+    }
+    for (k, other) in diagnosis.validation.iter().enumerate() {
+        let (before, after) = (other.rms_before, other.rms_after);
+        let _ = writeln!(text, "  validation {}: {before:.4} unexplained before, {after:.4} after", k + 1);
     }
     for warning in &diagnosis.warnings {
         let _ = writeln!(text, "  ! {warning}");

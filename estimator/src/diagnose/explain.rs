@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::experiment::propose;
-use super::extend::effects;
+use super::extend::{effects, plain};
 use super::force::Model;
 use super::gain::{chi_square_tail, gain, rms, whiteness_p};
 use super::geometry::Study;
@@ -98,6 +98,8 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         },
         noise_floor_n: floor,
         not_excited: not_excited(study, &picks),
+        validation: Vec::new(),
+        plain: plain(model, study),
         effects: effects(track, model, study),
         causes,
         alternatives,

@@ -34,6 +34,12 @@ pub fn effects(track: &Track, model: &Model, study: &Study) -> Vec<Effect> {
     found
 }
 
+/// The model's laws fitted without any cause.
+pub fn plain(model: &Model, study: &Study) -> Vec<Effect> {
+    let Some(solved) = study.system.solve(&[]) else { return model.clone() };
+    model.iter().zip(&solved.values).map(|(e, share)| scaled(e, *share)).collect()
+}
+
 /// A law whose linear parameters all change by one factor.
 fn scaled(effect: &Effect, share: f64) -> Effect {
     let mut scaled = *effect;

@@ -19,9 +19,11 @@ mod select;
 mod sliding;
 mod system;
 mod track;
+mod validate;
 
 pub use report::{
-    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, Verdict,
+    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, Validation,
+    Verdict,
 };
 
 use crate::estimate::EstimateError;
@@ -64,6 +66,28 @@ pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Diagnosis
             other.name()
         ))),
     }
+}
+
+/// What was found, on other recordings of the same object: nothing is chosen or fitted there. Faults of the sensors that were found in the
+/// first recordings are not taken out of these.
+pub fn validate(
+    recordings: &[Recording],
+    options: &Options,
+    diagnosis: &Diagnosis,
+) -> Result<Vec<Validation>, EstimateError> {
+    let of = |recording: &Recording| {
+        let mut track = match task_of(recording, options.task)? {
+            Task::Crank => {
+                let signals = held_arm::Signals::of(recording, &quality::faults(recording).bad)?;
+                let path = signals.path(recording);
+                let circle = geometry::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
+                signals.rows(recording, &circle.arm, [1.0, 1.0])?
+            }
+            _ => sliding::track(recording)?,
+        };
+        Ok(validate::validate(&mut track, &diagnosis.plain, &diagnosis.effects))
+    };
+    recordings.iter().map(of).collect()
 }
 
 /// The world that runs what the diagnosis found: the one it started from, or one calibrated from the recordings, with the extended laws.

@@ -114,6 +114,15 @@ pub struct NextExperiment {
     pub expected_power: f64,
 }
 
+/// What the found laws are worth on a recording that took part in nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Validation {
+    /// Unexplained force by the model alone, as fitted, N or N m.
+    pub rms_before: f64,
+    /// … and with the found laws.
+    pub rms_after: f64,
+}
+
 /// How well the extended model does in the end.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Final {
@@ -148,6 +157,12 @@ pub struct Diagnosis {
     /// Sentences, most important first.
     #[serde(default)]
     pub warnings: Vec<String>,
+    /// One a recording of `--validate`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub validation: Vec<Validation>,
+    /// The model's laws fitted without any cause.
+    #[serde(skip)]
+    pub plain: Vec<Effect>,
     /// The model's laws refitted, and with what was found: what the extended world runs.
     #[serde(skip)]
     pub effects: Vec<Effect>,
