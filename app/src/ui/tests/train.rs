@@ -83,6 +83,13 @@ fn skill_and_mistake_are_chosen_and_the_performance_starts_over() {
     assert!(harness.query_by_label("none in this world").is_some());
 }
 
+/// Scrolls the side to a label before it is clicked: cards above it may need the room.
+fn click_in_view(harness: &mut Harness<'_, App>, label: &str) {
+    harness.get_by_label(label).scroll_to_me();
+    harness.run_steps(4);
+    harness.get_by_label(label).click();
+}
+
 #[test]
 fn the_passivity_controller_is_switched_and_the_world_goes_on() {
     let mut harness = window();
@@ -90,11 +97,11 @@ fn the_passivity_controller_is_switched_and_the_world_goes_on() {
     let before_s = harness.state().session.trainer.scene().expect("running").0.state.time_s;
     let control = |harness: &Harness<'_, App>| harness.state().session.trainer.config().passivity_control_n_s_m;
     assert_eq!(control(&harness), None, "off unless wanted");
-    harness.get_by_label("Controller").click();
+    click_in_view(&mut harness, "Controller");
     harness.run_steps(3);
     assert_eq!(control(&harness), Some(USUAL_CONTROL_N_S_M));
     assert!(harness.state().session.trainer.scene().expect("running").0.state.time_s >= before_s);
-    harness.get_by_label("10").click();
+    click_in_view(&mut harness, "10");
     harness.run_steps(3);
     assert_eq!(control(&harness), Some(10.0));
     // A recording would end with the servo: no switching meanwhile.
@@ -102,12 +109,12 @@ fn the_passivity_controller_is_switched_and_the_world_goes_on() {
     harness.state_mut().session.trainer.recordings_folder = Some(folder.path().to_path_buf());
     harness.state_mut().session.trainer.start_recording().expect("begins");
     harness.run_steps(2);
-    harness.get_by_label("Controller").click();
+    click_in_view(&mut harness, "Controller");
     harness.run_steps(2);
     assert_eq!(control(&harness), Some(10.0));
     harness.state_mut().session.trainer.discard_recording();
     harness.run_steps(2);
-    harness.get_by_label("Controller").click();
+    click_in_view(&mut harness, "Controller");
     harness.run_steps(3);
     assert_eq!(control(&harness), None);
     assert_eq!(harness.state().session.trainer.operator, Operator::You);
