@@ -243,7 +243,8 @@ fn pierces_the_sheet_twice_and_leaves_the_needle_in_it() {
         assert!(through >= 2 && shown.labels.contains(&"extraction"), "seed {seed}: {held:?}");
         // Left in the sheet, and the hand gone: nobody moves the needle any more.
         assert!(shown.labels.ends_with(&[inside, free]), "seed {seed}: {held:?}");
-        assert_eq!(shown.state.membrane.phase, crate::law::object::MembranePhase::Penetration, "seed {seed}");
+        // In the sheet still; let go it springs back by some tenths of a millimetre.
+        assert_ne!(shown.state.membrane.phase, crate::law::object::MembranePhase::Free, "seed {seed}");
         let pierced = shown.state.membrane.holes.iter().filter(|h| h.history.punctured).count();
         assert_eq!(pierced, 2, "seed {seed}");
         let far = perform(&world, Skill::default(), &[Mistake::Overshoot], seed);
