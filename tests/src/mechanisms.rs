@@ -48,8 +48,8 @@ fn drawn(rng: &mut StdRng) -> (Mechanism, Hand) {
     let size = of(draw(0.08, 0.2), draw(0.6, 1.4));
     let mut part = |share: f64, low: f64, high: f64| (share * size, draw(low, high), draw(0.0, std::f64::consts::TAU));
     let parts = vec![part(1.0, 1.2, 2.2), part(0.4, 3.0, 5.0), part(0.12, 7.0, 11.0)];
-    // As stiff as an arm.
-    let hand = Hand { parts, stiffness: 600.0 * mechanism.inertia, damping: 40.0 * mechanism.inertia };
+    // Stiff, as a machine that follows its path: a softer hand lets a slide stick at every reversal (see docs/parameters.md).
+    let hand = Hand { parts, stiffness: 40_000.0 * mechanism.inertia, damping: 300.0 * mechanism.inertia };
     (mechanism, hand)
 }
 

@@ -15,7 +15,7 @@ const REVERSAL_SHARE: f64 = 0.02;
 /// Standard deviation of the place of a reversal between two samples, in samples: that of a uniform distribution.
 const SKEW_SAMPLES: f64 = 0.29;
 /// Slower than about this share of the usual speed a mechanism may stick.
-const SLOW_SHARE: f64 = 0.1;
+const SLOW_SHARE: f64 = 0.015;
 /// The velocity must exceed its noise by this much to be a motion.
 const MOTION_RATIO: f64 = 2.0;
 
@@ -163,15 +163,13 @@ fn direction_uncertainty(piece: &Piece) -> Vec<f64> {
         1.2 * piece.velocity_noise.hypot(SKEW_SAMPLES * m.acceleration * piece.period_s).max(f64::MIN_POSITIVE)
     };
     let slow = SLOW_SHARE * piece.rms(|m| m.velocity);
-    // Around a stop the filter mixes both directions; and a mechanism that sticks resists with anything up to its friction.
-    let filtered = piece.filter(&piece.direction);
-    let doubt = |(m, c): (&haptics::law::Motion, &f64)| {
+    // A mechanism that sticks resists with anything up to its friction.
+    let doubt = |m: &haptics::law::Motion| {
         let by_noise = 1.0 - (m.velocity / blur(m)).tanh().powi(2);
-        let mixed = (1.0 - c.abs()).max(0.0).powi(2);
         let sticking = (1.0 + (m.velocity / slow.max(f64::MIN_POSITIVE)).powi(2)).powi(-2);
-        by_noise.max(mixed).max(sticking)
+        by_noise.max(sticking)
     };
-    piece.motion.iter().zip(&filtered).map(doubt).collect()
+    piece.motion.iter().map(doubt).collect()
 }
 
 /// Which terms this motion can show, and why not the others.
