@@ -11,9 +11,8 @@ use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 #[derive(Default)]
 struct Bench {
     asked: AtomicU64,
-    /// Answers that may have gone out; as many as are asked for while `free`.
+    /// Answers that may have gone out.
     granted: AtomicU64,
-    free: AtomicBool,
     /// Angle of both cranks, degrees beyond the pose.
     turned: AtomicU32,
     closed: AtomicBool,
@@ -40,10 +39,10 @@ impl Write for Bound {
 
 impl Read for Bound {
     fn read(&mut self, buffer: &mut [u8]) -> Result<usize> {
-        let Bench { asked, granted, free, turned, closed } = &*self.bench;
+        let Bench { asked, granted, turned, closed } = &*self.bench;
         if self.coming.is_empty() {
             let waiting = self.answered < asked.load(Ordering::SeqCst);
-            let may = || free.load(Ordering::SeqCst) || granted.load(Ordering::SeqCst) > self.answered;
+            let may = || granted.load(Ordering::SeqCst) > self.answered;
             if !waiting || !until(|| may() || closed.load(Ordering::SeqCst)) || !may() {
                 return Err(Error::from(ErrorKind::TimedOut));
             }
@@ -74,21 +73,18 @@ fn tip(further: f32) -> Vec2 {
 fn hand() -> (HaplyHand, [Arc<Bench>; 2]) {
     let benches = [Arc::new(Bench::default()), Arc::new(Bench::default())];
     let mut boards = benches.each_ref().map(|bench| {
-        bench.free.store(true, Ordering::SeqCst);
         let line = Bound { bench: Arc::clone(bench), answered: 0, coming: Vec::new() };
         Board::start(Box::new(line), BoardModel::V3).expect("a thread")
     });
     for (board, bench) in boards.iter_mut().zip(&benches) {
-        assert!(until(|| board.answer().number > 0), "the board is known");
-        bench.free.store(false, Ordering::SeqCst);
-        // Whatever was let go before the word has come in: the newest question stays open.
-        let mut open = 0;
-        assert!(until(|| {
-            std::thread::sleep(Duration::from_millis(2));
-            let before = std::mem::replace(&mut open, bench.asked.load(Ordering::SeqCst));
-            before == open
-        }));
-        bench.granted.store(open - 1, Ordering::SeqCst);
+        // One answer at a time from the first on: whenever this thread goes on, exactly one question is open.
+        assert!(
+            until(|| {
+                answer(bench, 0.0);
+                board.answer().number > 0
+            }),
+            "the board is known"
+        );
     }
     let place = Placement { device_m: Vec2::zeros(), world_m: Vec2::zeros(), scale: 1.0 };
     (HaplyHand::new(boards, [place; 2]), benches)
