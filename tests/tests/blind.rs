@@ -1,14 +1,14 @@
 //! The blind battery in a minute: what is hidden must be named, and nothing where nothing is.
 //!
 //! A new seed every day, printed for replay: `TOUCHSTONE_SEED=20400 cargo test -p tests --test blind`. The whole battery is
-//! `cargo run --release -p tests --example blind -- --whole`. Demands leave room for the luck of few cases: a test fails when so few hits
+//! `cargo run --release -p blind --example blind -- --whole`. Demands leave room for the luck of few cases: a test fails when so few hits
 //! would come up once in ten thousand days if the program were as good as demanded. What is demanded here is what the program reaches
 //! so far; what it should reach stands in `docs/diagnosis.md`.
 
+use blind::{Counts, Figures, Row, Set, Share, ask, battery, report};
 use estimator::diagnose::diagnose;
 use std::sync::OnceLock;
 use std::time::{SystemTime, UNIX_EPOCH};
-use tests::blind::{Counts, Figures, Row, Set, Share, ask, battery, report};
 
 /// Chance of a false alarm of one assertion, a day.
 const LUCK: f64 = 1e-4;

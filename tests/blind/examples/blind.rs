@@ -1,16 +1,16 @@
 //! The blind battery from the command line.
 //!
-//! `cargo run --release -p tests --example blind -- --fast [SEED]` (or `--whole`) asks the program and prints how it did.
-//! `cargo run --release -p tests --example blind -- --long [SEED]` times answers for minute-long recordings at 1 kHz.
-//! `cargo run --release -p tests --example blind -- --dump DIR N SEED` writes N cases as files, their truth in a folder apart.
-//! `cargo run --release -p tests --example blind -- --one DIR ID [FORM [RATIO [RATE [SEED]]]]` writes one of a kind.
-//! `cargo run --release -p tests --example blind -- --table [SEED]` makes every effect once and prints how large it came out.
+//! `cargo run --release -p blind --example blind -- --fast [SEED]` (or `--whole`) asks the program and prints how it did.
+//! `cargo run --release -p blind --example blind -- --long [SEED]` times answers for minute-long recordings at 1 kHz.
+//! `cargo run --release -p blind --example blind -- --dump DIR N SEED` writes N cases as files, their truth in a folder apart.
+//! `cargo run --release -p blind --example blind -- --one DIR ID [FORM [RATIO [RATE [SEED]]]]` writes one of a kind.
+//! `cargo run --release -p blind --example blind -- --table [SEED]` makes every effect once and prints how large it came out.
 
+use blind::{Bench, Chance, Counts, Effect, Job, Log, Set, Spec, ask, battery, dump, long, make, report, score};
 use estimator::diagnose::diagnose;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
-use tests::blind::{Bench, Chance, Counts, Effect, Job, Log, Set, Spec, ask, battery, dump, long, make, report, score};
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
