@@ -229,7 +229,7 @@ fn not_excited(study: &Study, picks: &[usize]) -> Vec<NotExcited> {
         }
         let best = of.iter().map(|c| study.system.distinct(*c, picks) * study.system.rows).fold(0.0, f64::max);
         if best < VISIBLE {
-            let why = entry.about.rsplit(". ").next().unwrap_or_default().trim_end_matches('.');
+            let why = entry.reveals.trim_end_matches('.');
             found.push(NotExcited {
                 id: entry.id.to_owned(),
                 why: format!("this motion hides it behind the model's own terms; {}", lower(why)),

@@ -14,10 +14,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Added constraint",
     equation: "k max(q − place, 0)",
-    about: "Something that holds the motion back beyond a place: a wall, a stop, a cable that gets taut. It \
-            shows as a force that rises beyond one place and is gone before it, the same in both directions. A \
-            hardening spring mimics it on one side, a local resistance when it is not released slowly. \
-            Approaching it slowly and leaving it again reveals it.",
+    what: "Something that holds the motion back beyond a place: a wall, a stop, a cable that gets taut.",
+    shows: "As a force that rises beyond one place and is gone before it, the same in both directions.",
+    mimics: "A hardening spring mimics it where only one side was visited, a local resistance where the place is not \
+             left slowly.",
+    reveals: "Approaching it slowly and leaving it again reveals it.",
     parameters: &[
         ParameterSpec::linear("k", "N/m", "N m/rad", POSITIVE),
         ParameterSpec::nonlinear("place", "m", "rad", ANY),

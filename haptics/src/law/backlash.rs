@@ -15,10 +15,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Backlash",
     equation: "−(1 − e) F of the friction, e = 0 within 2δ of a reversal",
-    about: "Play between the handle and what it moves. It shows as no resistance over a fixed distance after \
-            each reversal. Presliding hysteresis mimics it (its corner is rounded and grows with the load; a \
-            gap's is sharp and does not), a delay at one speed. Reversals at different speeds and loads reveal \
-            it; without reversals it is not seen at all.",
+    what: "Play between the handle and what it moves.",
+    shows: "As no resistance over a fixed distance after each reversal.",
+    mimics: "Presliding hysteresis mimics it (its corner is rounded and grows with the load; a gap's is sharp and does \
+             not), a delay at one speed. Without reversals it is not seen at all.",
+    reveals: "Reversals at different speeds and loads reveal it.",
     parameters: &[ParameterSpec::nonlinear("delta", "m", "rad", POSITIVE)],
 };
 

@@ -12,9 +12,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Coulomb friction",
     equation: "Fc sgn(v)",
-    about: "Dry friction that does not depend on the load. It shows as a step of 2 Fc at every reversal. At \
-            constant load it cannot be told from load friction, at constant speed not from viscous friction, \
-            without reversals not from a bias. Reversals with changing load and speed reveal it.",
+    what: "Dry friction that does not depend on the load.",
+    shows: "As a step of 2 Fc at every reversal.",
+    mimics: "At constant load it cannot be told from load friction, at constant speed not from viscous friction, \
+             without reversals not from a bias.",
+    reveals: "Reversals with changing load and speed reveal it.",
     parameters: &[ParameterSpec::linear("Fc", "N", "N m", POSITIVE)],
 };
 

@@ -14,10 +14,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Eccentric mass",
     equation: "a sin θ + b cos θ",
-    about: "Gravity on a mass off the axis that is not where the handle is. It shows as a sine of the angle, \
-            once a turn, with a phase of its own. The weight of the handle, a tilt and, over a short arc, a \
-            spring mimic it. A full turn with a free phase for the bias reveals it; in a free swing only its \
-            ratio to the inertia is seen.",
+    what: "Gravity on a mass off the axis that is not where the handle is.",
+    shows: "As a sine of the angle, once a turn, with a phase of its own.",
+    mimics: "The weight of the handle, a tilt and, over a short arc, a spring mimic it. In a free swing only its ratio \
+             to the inertia is seen.",
+    reveals: "A full turn with a free phase for the bias reveals it.",
     parameters: &[
         ParameterSpec::linear("a", "N", "N m", ANY),
         ParameterSpec::linear("b", "N", "N m", ANY),

@@ -1,4 +1,5 @@
-//! What stands in the catalogue about a law or a fault: for files, the app and the pages `docs/causes/<id>.md`.
+//! What stands in the catalogue about a law or a fault: for files, the app and the pages `docs/causes/<id>.md`
+//! ([`super::page`]).
 
 use serde::{Deserialize, Serialize};
 
@@ -96,8 +97,14 @@ pub struct Entry {
     pub title: &'static str,
     /// The added term.
     pub equation: &'static str,
-    /// What it is, how it shows, what mimics it, which motion reveals it.
-    pub about: &'static str,
+    /// What it is.
+    pub what: &'static str,
+    /// How it shows: "As …" or "In …".
+    pub shows: &'static str,
+    /// What mimics it, and when.
+    pub mimics: &'static str,
+    /// Which motion reveals it, as one sentence.
+    pub reveals: &'static str,
     /// The parameters, in the order of the regressor's columns.
     pub parameters: &'static [ParameterSpec],
 }

@@ -12,9 +12,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Instrument,
     title: "Force bias",
     equation: "F + b",
-    about: "The force sensor reads something when nothing is touched. It shows as a constant in free motion. A \
-            weight mimics it while an object is carried, a tilt along a line, friction that differs by direction \
-            where the motion does not reverse. A second of free motion at the start and at the end reveals it.",
+    what: "The force sensor reads something when nothing is touched.",
+    shows: "As a constant, also in free motion.",
+    mimics: "A weight mimics it while an object is carried, a tilt along a line, friction that differs by direction \
+             where the motion does not reverse.",
+    reveals: "A second of free motion at the start and at the end reveals it.",
     parameters: &[ParameterSpec::linear("b", "N", "N m", ANY)],
 };
 

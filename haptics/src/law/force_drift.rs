@@ -12,9 +12,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Instrument,
     title: "Force drift",
     equation: "F + r t",
-    about: "The zero of the force sensor moves, mostly with temperature. It shows as a slope in time, also in \
-            free motion. A leaking weight mimics it while an object is held. Free motion at the start and at the \
-            end reveals it.",
+    what: "The zero of the force sensor moves, mostly with temperature.",
+    shows: "As a slope in time, also in free motion.",
+    mimics: "A leaking weight mimics it while an object is held, friction that changes where the motion does not \
+             reverse.",
+    reveals: "Free motion at the start and at the end reveals it.",
     parameters: &[ParameterSpec::linear("rate", "N/s", "N m/s", ANY)],
 };
 

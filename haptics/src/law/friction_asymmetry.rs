@@ -14,10 +14,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Direction-dependent friction",
     equation: "(dFc + dc abs(v) + dmu abs(Fn)) abs(sgn(v))",
-    about: "Friction that is larger in one direction than in the other (a ratchet, a worn thread, a lip seal). \
-            It shows as a constant offset while moving, in the direction's sense. A force bias and a tilt mimic \
-            it; for dmu an error across the axes of the force sensor is identical unless the load changes its \
-            sign. Reversals, rests at different places and a free phase reveal it.",
+    what: "Friction that is larger in one direction than in the other: a ratchet, a worn thread, a lip seal.",
+    shows: "As a constant offset while the object moves, which is gone at rest.",
+    mimics: "A force bias and a tilt mimic it; for dmu an error across the axes of the force sensor is identical \
+             unless the load changes its sign.",
+    reveals: "Reversals, rests at different places and a free phase reveal it.",
     parameters: &[
         ParameterSpec::linear("dFc", "N", "N m", ANY),
         ParameterSpec::linear("dc", "N s/m", "N m s", ANY),

@@ -14,10 +14,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Changing friction",
     equation: "(from + (to − from) p) sgn(v)",
-    about: "Friction that changes with time or travel: grease that warms, a bearing that runs in, a surface that \
-            wears. It shows as steps at reversals that grow or shrink over the recording. Drift of the force \
-            mimics it only where the motion never reverses; a local resistance when a place is passed once. A \
-            long recording with reversals throughout reveals it.",
+    what: "Friction that changes with time or travel: grease that warms, a bearing that runs in, a surface that wears.",
+    shows: "As steps at reversals that grow or shrink over the recording.",
+    mimics: "Drift of the force mimics it where the motion never reverses, a local resistance where a place is passed \
+             once.",
+    reveals: "A long recording with reversals throughout reveals it.",
     parameters: &[
         ParameterSpec::linear("from", "N", "N m", POSITIVE),
         ParameterSpec::linear("to", "N", "N m", POSITIVE),

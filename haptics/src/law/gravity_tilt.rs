@@ -14,10 +14,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Tilted plane",
     equation: "W (cos(φ − δ) − cos φ)",
-    about: "The set-up stands askew, so that gravity points elsewhere in its plane. It shows as a gravity force \
-            with a shifted phase, in proportion to the weight carried. An eccentric mass is the same along one \
-            circle; a bias of the horizontal force channel mimics it along a line. A free phase, a second weight \
-            or turning the set-up reveals it.",
+    what: "The set-up stands askew, so that gravity points elsewhere in its plane.",
+    shows: "As a gravity force with a shifted phase, in proportion to the weight carried.",
+    mimics: "An eccentric mass is the same along one circle; a bias of the horizontal force channel mimics it along a \
+             line.",
+    reveals: "A free phase, a second weight or turning the set-up reveals it.",
     parameters: &[
         ParameterSpec::linear("W", "N", "N m", POSITIVE),
         ParameterSpec::nonlinear("angle", "rad", "rad", (-1.6, 1.6)),

@@ -15,10 +15,12 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Presliding hysteresis",
     equation: "Fc z, dz/ds = (stiffness/Fc) (1 − z sgn(v))",
-    about: "Friction that behaves like a spring before it slides: asperities bend over microns to tenths of \
-            millimetres. It shows as rounded corners of the force at reversals and as elastic return after small \
-            pushes. Backlash mimics it at one load, a delay or a smoothing filter at one speed. Small strokes, \
-            reversals and a change of load reveal it; long strokes show its Coulomb level only.",
+    what: "Friction that behaves like a spring before it slides: asperities bend over microns to tenths of \
+           millimetres.",
+    shows: "As rounded corners of the force at reversals and as elastic return after small pushes.",
+    mimics: "Backlash mimics it at one load, a delay or a smoothing filter at one speed. Long strokes show its Coulomb \
+             level only.",
+    reveals: "Small strokes, reversals and a change of load reveal it.",
     parameters: &[
         ParameterSpec::nonlinear("Fc", "N", "N m", POSITIVE),
         ParameterSpec::nonlinear("stiffness", "N/m", "N m/rad", POSITIVE),

@@ -12,9 +12,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Inertia",
     equation: "m dv/dt",
-    about: "The effective mass along the motion. It shows in proportion to the acceleration and vanishes at \
-            constant speed. Quadratic drag mimics it when speed and acceleration go together, a delay between \
-            force and motion when the motion is one sine. Bursts and changes of frequency reveal it.",
+    what: "The effective mass along the motion.",
+    shows: "As a force in proportion to the acceleration, which vanishes at constant speed.",
+    mimics: "Quadratic drag mimics it when speed and acceleration go together, a delay between force and motion when \
+             the motion is one sine.",
+    reveals: "Bursts and changes of frequency reveal it.",
     parameters: &[ParameterSpec::linear("m", "kg", "kg m²", POSITIVE)],
 };
 

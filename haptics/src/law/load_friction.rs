@@ -15,9 +15,10 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Load friction",
     equation: "mu abs(Fn) sgn(v)",
-    about: "Dry friction in proportion to the normal force. It shows as a step at reversals that grows with the \
-            pull across the motion. At constant load it is Coulomb friction. Pulling and pushing with different \
-            strength while reversing reveals it.",
+    what: "Dry friction in proportion to the normal force.",
+    shows: "As a step at reversals that grows with the pull across the motion.",
+    mimics: "At constant load it is Coulomb friction.",
+    reveals: "Pulling and pushing with different strength while reversing reveals it.",
     parameters: &[ParameterSpec::linear("mu", "1", "1", (0.0, 10.0))],
 };
 

@@ -14,10 +14,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Local resistance",
     equation: "F hann((q − place)/width) sgn(v)",
-    about: "Extra resistance in one range of the motion: a bind, a catch, something that is brushed. It shows as \
-            a hump of force at one place that changes sign with the direction. Ripple mimics it when less than a \
-            turn is seen, a change of friction with time when the place is passed once. Passing the place \
-            several times, in both directions, reveals it.",
+    what: "Extra resistance in one range of the motion: a bind, a catch, something that is brushed.",
+    shows: "As a hump of force at one place that changes sign with the direction.",
+    mimics: "Ripple mimics it when less than a turn is seen, a change of friction with time when the place is passed \
+             once.",
+    reveals: "Passing the place several times, in both directions, reveals it.",
     parameters: &[
         ParameterSpec::linear("F", "N", "N m", POSITIVE),
         ParameterSpec::nonlinear("place", "m", "rad", ANY),

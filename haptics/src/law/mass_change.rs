@@ -14,9 +14,10 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Changing weight",
     equation: "(W0 + rate (t − t0)) (up · t)",
-    about: "The weight changes while it is carried: a leaking barrel. It shows as a slow change of the vertical \
-            force only while the object is held. Drift of the vertical force channel mimics it. A phase of free \
-            motion at the start and at the end, or a second weight, reveals it.",
+    what: "The weight changes while it is carried: a leaking barrel.",
+    shows: "As a slow change of the vertical force, only while the object is held.",
+    mimics: "Drift of the vertical force channel mimics it.",
+    reveals: "A phase of free motion at the start and at the end, or a second weight, reveals it.",
     parameters: &[
         ParameterSpec::linear("W0", "N", "N m", ANY),
         ParameterSpec::linear("rate", "N/s", "N m/s", ANY),

@@ -29,6 +29,7 @@ mod local_resistance;
 mod mass_change;
 mod memory;
 pub mod object;
+pub mod page;
 mod position_ripple;
 mod quadratic_drag;
 mod return_spring;
@@ -200,6 +201,16 @@ pub fn law(id: &str) -> Option<&'static dyn Law> {
 /// The page of every cause that the catalogue knows: laws of coordinates, then of contacts, then faults of the measurement.
 pub fn entries() -> impl Iterator<Item = &'static Entry> {
     CATALOGUE.iter().map(|law| law.entry()).chain(contact::ENTRIES.iter().copied()).chain(&instrument::ENTRIES)
+}
+
+/// The pages of everything that a diagnosis can name; what only models are made of (the weight) is left out.
+pub fn causes() -> impl Iterator<Item = &'static Entry> {
+    entries().filter(|entry| entry.id != Weight.id())
+}
+
+/// The page of the cause with this id.
+pub fn cause(id: &str) -> Option<&'static Entry> {
+    causes().find(|entry| entry.id == id)
 }
 
 /// A finite force for the servo: no number of a file or a device may leave it with a NaN.

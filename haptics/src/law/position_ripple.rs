@@ -13,10 +13,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Position ripple",
     equation: "A cos(2π q/λ + φ)",
-    about: "A force that repeats along the way: cogging, teeth, a bent guide. It shows as a wave over position \
-            that stays in place whatever the speed and direction. A local obstacle mimics it over a short range, \
-            an eccentric mass when it repeats once a turn, vibration of the drive at one constant speed. Several \
-            full periods at two speeds reveal it.",
+    what: "A force that repeats along the way: cogging, teeth, a bent guide.",
+    shows: "As a wave over position that stays in place whatever the speed and direction.",
+    mimics: "A local obstacle mimics it over a short range, an eccentric mass when it repeats once a turn, vibration \
+             of the drive at one constant speed.",
+    reveals: "Several full periods at two speeds reveal it.",
     parameters: &[
         ParameterSpec::linear("A", "N", "N m", ANY),
         ParameterSpec::nonlinear("lambda", "m", "rad", POSITIVE),

@@ -12,9 +12,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Quadratic drag",
     equation: "k v abs(v)",
-    about: "Resistance of a fluid that is pushed aside. It shows as a force that grows with the square of the \
-            speed. Viscous friction mimics it over a narrow range of speeds, inertia and Stribeck friction at \
-            one-way speeds. A sweep from slow to fast in both directions reveals it.",
+    what: "Resistance of a fluid that is pushed aside.",
+    shows: "As a force that grows with the square of the speed.",
+    mimics: "Viscous friction mimics it over a narrow range of speeds, inertia and Stribeck friction at one-way \
+             speeds.",
+    reveals: "A sweep from slow to fast in both directions reveals it.",
     parameters: &[ParameterSpec::linear("k", "N s²/m²", "N m s²", POSITIVE)],
 };
 

@@ -13,9 +13,12 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Return spring",
     equation: "k (q − q0) + k3 (q − q0)³ + f0",
-    about: "A spring towards a rest place. It shows as a force in proportion to the position, the same in both \
-            directions; when it hardens, as a bend of that line. An eccentric mass mimics it over a short arc \
-            and a hardening spring over a short range. A long range in both directions reveals it.",
+    what: "A spring towards a rest place.",
+    shows: "As a force in proportion to the position, the same in both directions; when it hardens, as a bend of that \
+            line.",
+    mimics: "An eccentric mass mimics it over a short arc, its own hardening over a short range, a wall where only one \
+             side was visited.",
+    reveals: "A long range in both directions reveals it.",
     parameters: &[
         ParameterSpec::linear("k", "N/m", "N m/rad", POSITIVE),
         ParameterSpec::linear("f0", "N", "N m", ANY),

@@ -13,11 +13,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Stribeck friction",
     equation: "(Fs − Fc) exp(−(v/vs)²) sgn(v)",
-    about: "Friction that falls from its static level to the Coulomb level as the motion gets faster. It shows \
-            as a peak of force at every start and as stick-slip of a soft drive. Coulomb friction mimics it in \
-            slow motion, quadratic drag or a falling viscous slope over a narrow range of speeds, presliding \
-            friction at reversals. Very slow and fast motion in one recording reveals it; small fast strokes do \
-            not.",
+    what: "Friction that falls from its static level to the Coulomb level as the motion gets faster.",
+    shows: "As a peak of force at every start and as stick-slip of a soft drive.",
+    mimics: "Coulomb friction mimics it in slow motion and in small fast strokes, quadratic drag or a falling viscous \
+             slope over a narrow range of speeds, presliding friction at reversals.",
+    reveals: "Very slow and fast motion in one recording reveals it.",
     parameters: &[
         ParameterSpec::linear("dFs", "N", "N m", POSITIVE),
         ParameterSpec::nonlinear("vs", "m/s", "rad/s", POSITIVE),

@@ -10,7 +10,10 @@ fn ids_are_unique_and_bounds_are_ordered() {
         assert!(a.parameters.len() <= MAX_PARAMETERS, "{}", a.id);
         assert!(all[i + 1..].iter().all(|b| b.id != a.id), "{}", a.id);
         assert!(a.parameters.iter().all(|p| p.bounds.0 < p.bounds.1), "{}", a.id);
-        assert!(a.about.len() > 100 && a.about.contains("reveal") && !a.about.contains("  "), "{}", a.id);
+        for text in [a.what, a.shows, a.mimics, a.reveals] {
+            assert!(text.len() > 20 && text.ends_with('.') && !text.contains("  "), "{}: {text}", a.id);
+        }
+        assert!(a.reveals.contains("reveal") && (a.shows.starts_with("As ") || a.shows.starts_with("In ")), "{}", a.id);
     }
 }
 

@@ -12,9 +12,11 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Viscous friction",
     equation: "c v",
-    about: "Resistance in proportion to speed. It shows as a slope of force over speed through zero. At constant \
-            speed it is Coulomb friction; over a narrow range of speeds quadratic drag or the falling branch of \
-            Stribeck friction mimic it. Slow and fast motion in both directions reveals it.",
+    what: "Resistance in proportion to speed.",
+    shows: "As a slope of force over speed through zero.",
+    mimics: "At constant speed it is Coulomb friction; over a narrow range of speeds quadratic drag or the falling \
+             branch of Stribeck friction mimic it.",
+    reveals: "Slow and fast motion in both directions reveals it.",
     parameters: &[ParameterSpec::linear("c", "N s/m", "N m s", POSITIVE)],
 };
 

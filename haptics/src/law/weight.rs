@@ -13,10 +13,10 @@ static ENTRY: Entry = Entry {
     kind: Kind::Plant,
     title: "Weight of the handle",
     equation: "mg (up · t)",
-    about: "The weight of what is carried. It shows as a force that follows the height of the path, the same in \
-            both directions and at every speed. A bias of the vertical force channel mimics it over a short arc, \
-            a tilt or an eccentric mass over a turn. A full turn, or a path up and down, with a phase of free \
-            motion for the bias, reveals it.",
+    what: "The weight of what is carried.",
+    shows: "As a force that follows the height of the path, the same in both directions and at every speed.",
+    mimics: "A bias of the vertical force channel mimics it over a short arc, a tilt or an eccentric mass over a turn.",
+    reveals: "A full turn, or a path up and down, with a phase of free motion for the bias, reveals it.",
     parameters: &[ParameterSpec::linear("mg", "N", "N m", POSITIVE)],
 };
 

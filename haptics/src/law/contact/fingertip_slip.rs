@@ -23,9 +23,11 @@ impl FingertipSlip {
         kind: Kind::Plant,
         title: "Slip in the fingers",
         equation: "grasp point + (dx, dy) ramp((t − t0)/duration)",
-        about: "The object moves in the grasp. It shows as a shift of centre, height or angle at one time, mostly where the \
-            shear comes near friction times grip. Drift of a joint sensor or give of the pads mimic it when it is slow. A \
-            second pass over the same path, or gripping harder, reveals it.",
+        what: "The object moves in the grasp.",
+        shows: "As a shift of centre, height or angle at one time, mostly where the shear comes near friction times \
+                grip.",
+        mimics: "Drift of a joint sensor or give of the pads mimic it when it is slow.",
+        reveals: "A second pass over the same path, or gripping harder, reveals it.",
         parameters: &[
             ParameterSpec::linear("dx", "m", "m", ANY),
             ParameterSpec::linear("dy", "m", "m", ANY),

@@ -17,9 +17,11 @@ impl PadCompliance {
         kind: Kind::Plant,
         title: "Give of the pads",
         equation: "x measured = x + F/k",
-        about: "The fingertip or the finger behind it gives way, so that the measured position is not that of the object. \
-            Widths come out too small, radii follow the pull and heights the weight. A length scale mimics it at one grip \
-            force, a shifted centre under a steady load. Changing the grip and the pull while holding still reveals it.",
+        what: "The fingertip or the finger behind it gives way, so that the measured position is not that of the \
+               object.",
+        shows: "As widths that are too small, radii that follow the pull and heights that follow the weight.",
+        mimics: "A length scale mimics it at one grip force, a shifted centre under a steady load.",
+        reveals: "Changing the grip and the pull while holding still reveals it.",
         parameters: &[ParameterSpec::nonlinear("k", "N/m", "N/m", POSITIVE)],
     };
 

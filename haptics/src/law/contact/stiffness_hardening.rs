@@ -21,9 +21,10 @@ impl StiffnessHardening {
         kind: Kind::Plant,
         title: "Hardening contact",
         equation: "k1 x + k3 x³ (or Hertz x^1.5)",
-        about: "A contact that gets stiffer the deeper it is pressed. It shows as a force over compression that bends upwards, \
-            so that the stiffness found depends on the grip. A linear give mimics it over a small range of forces, creep of \
-            the foam when it is pressed once. Pressing slowly from light to hard and back reveals it.",
+        what: "A contact that gets stiffer the deeper it is pressed.",
+        shows: "As a force over compression that bends upwards, so that the stiffness found depends on the grip.",
+        mimics: "A linear give mimics it over a small range of forces, creep of the foam when it is pressed once.",
+        reveals: "Pressing slowly from light to hard and back reveals it.",
         parameters: &[
             ParameterSpec::linear("k1", "N/m", "N/m", POSITIVE),
             ParameterSpec::linear("k3", "N/m³", "N/m³", POSITIVE),

@@ -21,9 +21,11 @@ impl VelocityLoss {
         kind: Kind::Plant,
         title: "Loss at an impact",
         equation: "v' = −e v, loss along the surface ≤ mu (1 + e) abs(v)",
-        about: "An impact takes more or less speed than the model says. It shows in the speeds right after a contact and in how \
-            long an object bounces. Damping of the contact mimics it (it is the model's way to lose speed), the filter of the \
-            velocity hides it. Impacts at different speeds and angles, sampled fast, reveal it.",
+        what: "An impact takes more or less speed than the model says.",
+        shows: "In the speeds right after a contact and in how long an object bounces.",
+        mimics: "Damping of the contact mimics it (it is the model's way to lose speed), the filter of the velocity \
+                 hides it.",
+        reveals: "Impacts at different speeds and angles, sampled fast, reveal it.",
         parameters: &[
             ParameterSpec::linear("e", "1", "1", (0.0, 1.0)),
             ParameterSpec::nonlinear("mu", "1", "1", (0.0, 10.0)),

@@ -1,0 +1,47 @@
+//! The pages in `docs/causes/` are those of the catalogue, and none is missing or left over.
+
+#[path = "../examples/causes/pages.rs"]
+mod pages;
+
+use std::collections::BTreeSet;
+
+/// The vocabulary of the diagnosis; it stands in saved worlds, in JSON and in other people's scripts.
+const IDS: &str = "coulomb-friction load-friction viscous-friction friction-asymmetry stribeck quadratic-drag hysteresis inertia \
+    eccentric-mass gravity-tilt return-spring position-ripple local-resistance backlash pad-compliance stiffness-hardening \
+    mass-change friction-change fingertip-slip added-constraint velocity-loss force-bias force-drift force-gain force-cross-axis \
+    force-saturation time-delay joint-offset length-scale axis-sign channel-fault";
+
+#[test]
+fn the_written_pages_are_those_of_the_catalogue() {
+    for (name, text) in pages::pages() {
+        let written = std::fs::read_to_string(pages::folder().join(&name)).unwrap_or_default();
+        // Windows may have checked the pages out with its own ends of lines.
+        let written = written.replace("\r\n", "\n");
+        assert!(
+            written == text,
+            "docs/causes/{name} is not what the laws say; `cargo run -p haptics --example causes` writes it"
+        );
+    }
+}
+
+#[test]
+fn every_id_of_the_vocabulary_has_its_page_and_no_page_is_left_over() {
+    let wanted: BTreeSet<String> =
+        IDS.split_whitespace().chain(["other", "README"]).map(|id| format!("{id}.md")).collect();
+    let listed = std::fs::read_dir(pages::folder()).expect("the folder is there");
+    let there: BTreeSet<String> =
+        listed.map(|file| file.expect("listed").file_name().to_string_lossy().into_owned()).collect();
+    assert_eq!(there, wanted);
+}
+
+#[test]
+fn every_page_says_all_four_things_and_the_law() {
+    for (name, text) in pages::pages().iter().filter(|(name, _)| name != "README.md" && name != "other.md") {
+        for title in ["What it is", "How it shows", "What mimics it", "Which motion reveals it", "Parameters"] {
+            assert!(text.contains(&format!("## {title}\n\n")), "{name}: {title}");
+        }
+        assert!(!text.contains("//!") && !text.contains("[`"), "{name}: marks of the source");
+    }
+    let friction = pages::pages().into_iter().find(|(name, _)| name == "coulomb-friction.md").expect("it has a page").1;
+    assert!(friction.contains("## The law\n\nCoulomb friction: Fc sgn(v)") && friction.contains("(Coulomb 1785)"));
+}
