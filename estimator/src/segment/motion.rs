@@ -8,7 +8,7 @@ use super::threshold::{Levels, Thresholds, choose, percentile};
 use crate::estimate::EstimateError;
 use crate::signal::task::{TaskSignals, TipSeries, calmed, is_two_fingered, task_signals, times, tip_series};
 use haptics::Vec2;
-use haptics::recording::{Recording, Task};
+use haptics::recording::Recording;
 
 /// The signals that rest and motion are told from, one entry a sample.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,9 +41,7 @@ impl Motion {
             let signals = calmed(&task_signals(recording)?);
             let levels = Levels::of(&signals);
             let thresholds = task.thresholds(given, || choose(&signals, &levels));
-            // A switch is pushed, not gripped.
-            let load = if task.like == Task::Switch { push_without_bias } else { grip_without_bias };
-            let load = load(&signals, &levels);
+            let load = push_without_bias(&signals, &levels);
             let speed: Vec<f64> = signals.velocity.iter().map(Vec2::norm).collect();
             (speed, Some(load), thresholds, levels.warnings())
         } else {
@@ -69,12 +67,7 @@ impl Motion {
     }
 }
 
-fn grip_without_bias(signals: &TaskSignals, levels: &Levels) -> Vec<f64> {
-    let x =
-        |finger: usize, i: usize| signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x) - levels.bias_n[finger].x;
-    (0..signals.len()).map(|i| x(0, i).min(-x(1, i))).collect()
-}
-
+/// The larger of the two fingers' forces: a switch is pushed, and a hand that pulls a crank harder than it squeezes still holds it.
 fn push_without_bias(signals: &TaskSignals, levels: &Levels) -> Vec<f64> {
     let push = |finger: usize, i: usize| {
         signals.tips[finger].force.as_ref().map_or(0.0, |f| (f[i] - levels.bias_n[finger]).norm())
