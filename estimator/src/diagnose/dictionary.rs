@@ -74,8 +74,7 @@ impl Dictionary<'_> {
 
     /// The force of a law with these values, in the rows along the motion.
     fn law(&self, law: &'static dyn Law, values: &[f64]) -> Vec<f64> {
-        let effect = Effect::new(law, values);
-        self.column(&|row| effect.force(&row.motion))
+        super::force::column(self.track, &Effect::new(law, values))
     }
 
     /// The unit of a parameter as the law's page has it.
@@ -237,13 +236,13 @@ impl Dictionary<'_> {
         for way in WAYS.map(|share| share * scale).into_iter().filter(|way| *way > shortest) {
             // Friction of the model that bends by `way` before it slides: what it lacks against sliding at once.
             let bent =
-                self.remembered(&Hysteresis, &[1.0, 1.0 / way], &|row, memory, _| memory[0] - row.motion.direction);
+                self.remembered(&Hysteresis, &[1.0, 1.0 / way], &|motion, memory, _| memory[0] - motion.direction);
             let dry = self.dry_level();
             let column: Vec<f64> = bent.iter().zip(&dry).map(|(b, d)| b * d).collect();
             let hysteresis = Candidate::one("hysteresis", Kind::Plant, "share", "1", column).positive();
             all.push(hysteresis.at("way", way, units.length));
-            let gap = self.remembered(&Backlash, &[way], &|row, memory, values| {
-                1.0 - Backlash.engaged(&row.motion, values, memory)
+            let gap = self.remembered(&Backlash, &[way], &|motion, memory, values| {
+                1.0 - Backlash.engaged(motion, values, memory)
             });
             // Behind the gap lies what resists, or everything.
             for behind in [self.resisting, self.predicted] {
@@ -260,15 +259,48 @@ impl Dictionary<'_> {
         rows.map(|(r, f)| if r.motion.direction.abs() > 0.05 { f / r.motion.direction } else { f.abs() }).collect()
     }
 
-    /// A column of a law with memory, which starts anew at every stretch.
+    /// A column of a law with memory, which starts anew at every stretch and lives between the rows.
     fn remembered(
         &self,
         law: &'static dyn Law,
         values: &[f64],
-        of: &dyn Fn(&Row, &Memory, &[f64; MAX_PARAMETERS]) -> f64,
+        of: &dyn Fn(&Motion, &Memory, &[f64; MAX_PARAMETERS]) -> f64,
     ) -> Vec<f64> {
         let mut padded = [0.0; MAX_PARAMETERS];
         padded[..values.len()].copy_from_slice(values);
+        let track = self.track;
+        if track.fine.is_empty() {
+            return self.remembered_by_rows(law, &padded, of);
+        }
+        let mut memory = Memory::default();
+        let mut felt = Vec::with_capacity(track.fine.len());
+        for (k, point) in track.fine.iter().enumerate() {
+            let motion = |velocity| Motion {
+                time_s: point.time_s,
+                position: point.position,
+                velocity,
+                direction: point.direction,
+                ..Motion::default()
+            };
+            match k.checked_sub(1).map(|before| track.fine[before]).filter(|before| before.stretch == point.stretch) {
+                // The mean speed between two points.
+                Some(before) => {
+                    let mean = motion(0.5 * (before.velocity + point.velocity));
+                    law.advance(&mean, &padded, &mut memory, point.time_s - before.time_s);
+                }
+                None => memory = Memory::default(),
+            }
+            felt.push(of(&motion(point.velocity), &memory, &padded));
+        }
+        self.column(&|row| row.span.weights().map(|(k, weight)| weight * felt[k]).sum())
+    }
+
+    fn remembered_by_rows(
+        &self,
+        law: &'static dyn Law,
+        padded: &[f64; MAX_PARAMETERS],
+        of: &dyn Fn(&Motion, &Memory, &[f64; MAX_PARAMETERS]) -> f64,
+    ) -> Vec<f64> {
         let mut memory = Memory::default();
         let rows = &self.track.rows;
         (0..rows.len())
@@ -277,14 +309,13 @@ impl Dictionary<'_> {
                     return 0.0;
                 }
                 if self.track.follows(i) {
-                    // The mean speed between two rows, in fine steps of one row.
                     let velocity = 0.5 * (rows[i - 1].motion.velocity + rows[i].motion.velocity);
                     let motion = Motion { velocity, ..rows[i].motion };
-                    law.advance(&motion, &padded, &mut memory, rows[i].motion.time_s - rows[i - 1].motion.time_s);
+                    law.advance(&motion, padded, &mut memory, rows[i].motion.time_s - rows[i - 1].motion.time_s);
                 } else {
                     memory = Memory::default();
                 }
-                of(&rows[i], &memory, &padded)
+                of(&rows[i].motion, &memory, padded)
             })
             .collect()
     }

@@ -5,7 +5,7 @@ use super::dictionary::Dictionary;
 use super::force::{Model, column};
 use super::geometry::Study;
 use super::report::{Alternative, NextExperiment};
-use super::track::{Place, Row, Track};
+use super::track::{Place, Row, Span, Track};
 use haptics::Vec2;
 use haptics::law::Motion;
 use nalgebra::{DMatrix, DVector};
@@ -152,11 +152,29 @@ fn imagine(track: &Track, model: &Model, values: &[f64], excitation: &Excitation
                 up_along: if track.planar { along.y } else { 0.0 },
             };
             let (force, force_rate) = (Vec2::zeros(), Vec2::zeros());
-            Row { recording: 0, stretch: 0, place: Place::Along, motion, angle_rad, along, force, force_rate, y: 0.0 }
+            let (span, open) = (Span::default(), 0.0);
+            Row {
+                recording: 0,
+                stretch: 0,
+                place: Place::Along,
+                motion,
+                angle_rad,
+                along,
+                force,
+                force_rate,
+                y: 0.0,
+                span,
+                open,
+            }
         })
         .collect();
-    let mut imagined =
-        Track { rows: Vec::new(), span_s: LENGTH_S + 2.0 * excitation.free_s, period_s: step, ..track.clone() };
+    let mut imagined = Track {
+        rows: Vec::new(),
+        fine: Vec::new(),
+        span_s: LENGTH_S + 2.0 * excitation.free_s,
+        period_s: step,
+        ..track.clone()
+    };
     imagined.rows.append(&mut rows);
     super::force::blur(&mut imagined);
     let base: Vec<Vec<f64>> = model.iter().map(|e| column(&imagined, e)).collect();
@@ -190,6 +208,8 @@ fn add_free(track: &mut Track, free_s: f64) {
                 force: Vec2::zeros(),
                 force_rate: Vec2::zeros(),
                 y: 0.0,
+                span: Span::default(),
+                open: 0.0,
             }));
         }
     }

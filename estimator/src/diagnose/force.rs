@@ -15,6 +15,10 @@ use haptics::law::{CoulombFriction, Effect, Law};
 const BLUR: f64 = 0.02;
 /// A reversal lies anywhere between two rows: standard deviation of its place, in rows, with some room.
 const SKEW: f64 = 0.5;
+/// The clocks of force and motion differ by about this, s.
+const CLOCKS_S: f64 = 1e-3;
+/// Share of the friction's square that stays open in a row with a reversal in it whose place is known.
+const REVERSAL: f64 = 0.05;
 /// What whitening is learnt from keeps this much of the generic library's strength out.
 const RIDGE: f64 = 1e-2;
 
@@ -65,20 +69,41 @@ pub fn plain_rms(track: &mut Track, model: &Model) -> Result<(f64, bool), Estima
     Ok((fit.rms, resisting > 0.0))
 }
 
-/// The direction of motion, as certain as the velocity's noise and the place of a reversal between two rows let it be.
+/// The direction of motion, as certain as the velocity's noise and the clocks of the channels let it be.
 pub fn blur(track: &mut Track) {
     let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
     let (noise, period_s) = (track.velocity_noise, track.period_s);
+    let width = |skew: f64| 1.2 * (BLUR * fast).hypot(noise).hypot(skew).max(1e-12);
+    for k in 0..track.fine.len() {
+        let next =
+            if k + 1 < track.fine.len() && track.fine[k + 1].stretch == track.fine[k].stretch { k + 1 } else { k };
+        let before = if k > 0 && track.fine[k - 1].stretch == track.fine[k].stretch { k - 1 } else { k };
+        let apart_s = (track.fine[next].time_s - track.fine[before].time_s).max(1e-9);
+        let acceleration = (track.fine[next].velocity - track.fine[before].velocity) / apart_s;
+        track.fine[k].direction = (track.fine[k].velocity / width(CLOCKS_S * acceleration)).tanh();
+    }
     for row in track.rows.iter_mut().filter(|r| r.place == Place::Along) {
-        let skew = SKEW * row.motion.acceleration * period_s;
-        let width = 1.2 * (BLUR * fast).hypot(noise).hypot(skew).max(1e-12);
-        row.motion.direction = (row.motion.velocity / width).tanh();
+        if row.span.len == 0 {
+            row.motion.direction = (row.motion.velocity / width(SKEW * row.motion.acceleration * period_s)).tanh();
+            row.open = 1.0 - row.motion.direction.powi(2);
+            continue;
+        }
+        let (mut sum, mut open) = (0.0, 0.0);
+        for (k, weight) in row.span.weights() {
+            let direction = track.fine[k].direction;
+            sum += weight * direction;
+            open += weight * (1.0 - direction * direction);
+        }
+        row.motion.direction = sum;
+        // Where in the row a reversal lies is known up to what the channels' clocks and filters differ by.
+        row.open = open + REVERSAL * (1.0 - sum * sum - open).max(0.0);
     }
 }
 
 /// The force of a law with its linear parameters at one (only the first, where it has several), 0 in free rows.
 pub fn column(track: &Track, effect: &Effect) -> Vec<f64> {
-    let of = |row: &super::track::Row| if row.place == Place::Along { effect.force(&row.motion) } else { 0.0 };
+    let of =
+        |row: &super::track::Row| if row.place == Place::Along { track.mean(row, &|m| effect.force(m)) } else { 0.0 };
     track.rows.iter().map(of).collect()
 }
 
@@ -109,7 +134,7 @@ fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Res
                     return 1.0;
                 }
                 // A sign that is anybody's guess leaves all of the friction open.
-                let open = dry(i).powi(2) * (1.0 - row.motion.direction.powi(2));
+                let open = dry(i).powi(2) * row.open;
                 (1.0 + open / (noise * noise)).powf(-0.5)
             })
             .collect();

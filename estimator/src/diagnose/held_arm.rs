@@ -1,7 +1,8 @@
 //! Rows out of a recording of a crank: positions and forces of whatever holds its handle.
 
+use super::fine::{FINE_HZ, calmed};
 use super::geometry::{Arm, Path, PathPoint};
-use super::track::{Place, Row, Track};
+use super::track::{Fine, Place, Row, Span, Track};
 use crate::estimate::EstimateError;
 use crate::segment::{SystemState, segment};
 use crate::signal::derive::savitzky_golay;
@@ -36,6 +37,21 @@ pub struct Signals {
     pub period_s: f64,
     /// Of the recording itself, s.
     pub raw_period_s: f64,
+    /// Recorded samples a row.
+    every: usize,
+    /// Time, position and velocity of every recorded sample, the latter calmed.
+    raw: RawMotion,
+}
+
+/// What was recorded, at its own rate.
+struct RawMotion {
+    time_s: Vec<f64>,
+    position: Vec<Vec2>,
+    velocity: Vec<Vec2>,
+    /// What is left of the noise of one sample after the calming, as a factor.
+    calmed_to: f64,
+    /// The velocity as recorded: its noise is read from it.
+    as_recorded: Vec<Vec2>,
 }
 
 impl Signals {
@@ -70,7 +86,9 @@ impl Signals {
             ),
             _ => None,
         };
+        let (calm, calmed_to) = calmed(&velocity, period_s);
         Ok(Self {
+            every,
             time_s: number(&time_s).iter().map(|t| t - time_s[0]).collect(),
             position: mean(&position),
             velocity: mean(&velocity),
@@ -80,6 +98,13 @@ impl Signals {
             free: all(&free),
             period_s: period_s * every as f64,
             raw_period_s: period_s,
+            raw: RawMotion {
+                time_s: time_s.iter().map(|t| t - time_s[0]).collect(),
+                position,
+                velocity: calm,
+                calmed_to,
+                as_recorded: velocity,
+            },
         })
     }
 
@@ -116,10 +141,12 @@ impl Signals {
         let signs = Vec2::new(signs[0], signs[1]);
         let up = if recording.meta.up.as_deref() == Some("-y") { -1.0 } else { 1.0 };
         let mut rows = Vec::new();
+        let mut fine = Vec::new();
         let mut stretch_number = 0;
         let mut noise = Vec::new();
         for range in stretches(&self.held) {
-            let made = self.stretch(range, stretch_number, arm, (up, signs), &mut noise);
+            let mut made = self.stretch(range.clone(), stretch_number, arm, (up, signs));
+            noise.push(self.finely(range, arm, &mut made, &mut fine));
             rows.extend(made);
             stretch_number += 1;
         }
@@ -146,17 +173,11 @@ impl Signals {
             noise_is_measured,
             span_s: self.time_s.last().copied().unwrap_or(0.0),
             rows,
+            fine,
         })
     }
 
-    fn stretch(
-        &self,
-        range: std::ops::Range<usize>,
-        stretch: usize,
-        arm: &Arm,
-        (up, signs): (f64, Vec2),
-        noise: &mut Vec<f64>,
-    ) -> Vec<Row> {
+    fn stretch(&self, range: std::ops::Range<usize>, stretch: usize, arm: &Arm, (up, signs): (f64, Vec2)) -> Vec<Row> {
         let time = &self.time_s[range.clone()];
         let directions: Vec<(Vec2, Vec2)> = range
             .clone()
@@ -167,7 +188,6 @@ impl Signals {
             .collect();
         let speed: Vec<f64> =
             range.clone().zip(&directions).map(|(i, (_, along))| self.velocity[i].dot(along)).collect();
-        noise.push(white_noise(&speed));
         let half = ((0.5 * ACCELERATION_WINDOW_S / self.period_s).round() as usize).max(2);
         let acceleration = savitzky_golay(time, &speed, half, 2).first;
         let axis = |pick: fn(&Vec2) -> f64| {
@@ -201,9 +221,51 @@ impl Signals {
                     force,
                     force_rate: Vec2::new(rate_x[k], rate_y[k]).component_mul(&signs),
                     y: force.dot(&along),
+                    span: Span::default(),
+                    open: 0.0,
                 }
             })
             .collect()
+    }
+
+    /// The motion between the rows of a stretch; returns the noise of its velocity, m/s.
+    fn finely(&self, range: std::ops::Range<usize>, arm: &Arm, rows: &mut [Row], fine: &mut Vec<Fine>) -> f64 {
+        let number = fine.last().map_or(0, |f: &Fine| f.stretch + 1);
+        let raw = &self.raw;
+        // Recorded samples are thinned out, or filled in, to about the same rate.
+        let skip = (1.0 / (FINE_HZ * self.raw_period_s)).round().max(1.0) as usize;
+        let fill = (FINE_HZ * self.raw_period_s).round().max(1.0) as usize;
+        let mut recorded = Vec::with_capacity(range.len() * self.every);
+        let mut angle = 0.0_f64;
+        for (row, i) in rows.iter_mut().zip(range) {
+            for k in (i * self.every..(i + 1) * self.every).step_by(skip) {
+                let along_at = |k: usize| {
+                    let outward = arm.arm(i, raw.position[k]).normalize();
+                    (outward, Vec2::new(-outward.y, outward.x))
+                };
+                let (outward, along) = along_at(k);
+                let wrapped = outward.y.atan2(outward.x);
+                let near = if fine.last().is_some_and(|f| f.stretch == number) { angle } else { row.angle_rad };
+                angle = wrapped + ((near - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+                let point = Fine {
+                    stretch: number,
+                    time_s: raw.time_s[k],
+                    position: arm.radius_m * angle,
+                    velocity: raw.velocity[k].dot(&along),
+                    direction: 0.0,
+                };
+                recorded.push(raw.as_recorded[k].dot(&along));
+                if let Some(before) = fine.last().copied().filter(|f| f.stretch == number) {
+                    fine.extend((1..fill).map(|part| super::fine::between(&before, &point, part as f64 / fill as f64)));
+                }
+                if k == i * self.every {
+                    row.span.start = fine.len();
+                }
+                fine.push(point);
+            }
+            row.span.len = fine.len() - row.span.start;
+        }
+        raw.calmed_to * white_noise(&recorded)
     }
 
     fn free_rows(&self, first_stretch: usize, signs: Vec2) -> (Vec<Row>, f64) {
@@ -225,6 +287,8 @@ impl Signals {
                     force: self.force[i].component_mul(&signs),
                     force_rate: Vec2::zeros(),
                     y: signs[a] * self.force[i][a],
+                    span: Span::default(),
+                    open: 0.0,
                 }));
             }
         }

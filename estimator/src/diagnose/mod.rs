@@ -8,6 +8,7 @@ mod dictionary;
 mod experiment;
 mod explain;
 mod extend;
+mod fine;
 mod force;
 mod gain;
 mod generic;
@@ -83,7 +84,7 @@ pub fn validate(
                 let circle = geometry::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
                 signals.rows(recording, &circle.arm, [1.0, 1.0])?
             }
-            _ => sliding::track(recording)?,
+            _ => sliding::track(recording, &quality::faults(recording).bad)?,
         };
         Ok(validate::validate(&mut track, &diagnosis.plain, &diagnosis.effects))
     };
@@ -190,8 +191,13 @@ fn nothing() -> EstimateError {
 }
 
 fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
-    let faults = recordings.iter().flat_map(|r| quality::faults(r).causes).collect();
-    let tracks = recordings.iter().map(sliding::track).collect::<Result<Vec<_>, _>>()?;
+    let mut faults = Vec::new();
+    let mut tracks = Vec::new();
+    for recording in recordings {
+        let found = quality::faults(recording);
+        tracks.push(sliding::track(recording, &found.bad)?);
+        faults.extend(found.causes);
+    }
     let mut track = track::join(tracks).ok_or_else(nothing)?;
     let model = match (&options.world, options.baseline.as_deref()) {
         (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),

@@ -1,66 +1,218 @@
 //! Rows out of a recording of a mechanism: one coordinate and the force along it.
+//!
+//! Where a mass matters, force and acceleration must be seen through one and the same filter: dry friction jumps at a reversal, the
+//! acceleration jumps back, and only their sum is smooth. Every row is therefore a mean with the weights of a hat over two blocks; the
+//! mean acceleration with these weights is exactly the difference of the two blocks' mean velocities.
 
-use super::track::{Place, Row, Track};
+use super::fine::{FINE_HZ, between, calmed_line};
+use super::track::{Fine, Place, Row, Span, Track};
 use crate::estimate::EstimateError;
-use crate::identify::mechanism;
+use crate::identify::mechanism::{self, Raw};
 use crate::signal::noise::white_noise;
 use haptics::Vec2;
 use haptics::law::{Coordinate, Motion};
 use haptics::recording::Recording;
 
-/// Rows come at about this rate, Hz.
-const ROW_HZ: f64 = 100.0;
+/// Length of a block, s.
+const BLOCK_S: f64 = 0.02;
+/// A longer step between two samples ends a stretch, in usual steps.
+const GAP: f64 = 2.5;
+/// Fewer samples are no stretch, in blocks.
+const LEAST_BLOCKS: usize = 8;
 
-/// The rows of one recording; all channels went through one zero-phase filter.
-pub fn track(recording: &Recording) -> Result<Track, EstimateError> {
-    let (coordinate, pieces) = mechanism::filtered(recording)?;
-    let angular = coordinate == Coordinate::Angular;
-    let mut rows = Vec::new();
-    let (mut velocity, mut period_s, mut noise, mut raw_period_s) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
-    for (stretch, piece) in pieces.iter().enumerate() {
-        let force = piece.force.as_ref().ok_or_else(|| {
-            EstimateError::Other(format!(
-                "{} has no force column: a diagnosis explains the force that a motion needs; record it, or map it in the sidecar",
-                recording.name
-            ))
-        })?;
-        let every = (1.0 / (ROW_HZ * piece.period_s)).round().max(1.0) as usize;
-        period_s = period_s.max(every as f64 * piece.period_s);
-        raw_period_s = raw_period_s.max(piece.period_s);
-        velocity = velocity.max(piece.velocity_noise);
-        noise = noise.max(white_noise(&force.iter().copied().step_by(every).collect::<Vec<_>>()));
-        let used = (0..piece.motion.len()).step_by(every).filter(|i| piece.usable[*i]);
-        rows.extend(used.map(|i| {
-            let before = force[i.saturating_sub(1)];
-            let after = force[(i + 1).min(force.len() - 1)];
-            Row {
-                recording: 0,
-                stretch,
-                place: Place::Along,
-                motion: Motion { direction: 0.0, normal_force_n: 0.0, ..piece.motion[i] },
-                angle_rad: piece.motion[i].position,
-                along: Vec2::x(),
-                force: Vec2::new(force[i], 0.0),
-                force_rate: Vec2::new((after - before) / (2.0 * piece.period_s), 0.0),
-                y: force[i],
+/// The rows of one recording. `bad`: samples that no sensor measured.
+pub fn track(recording: &Recording, bad: &[bool]) -> Result<Track, EstimateError> {
+    let raw = mechanism::raw(recording)?;
+    let force = raw.force.as_ref().ok_or_else(|| {
+        EstimateError::Other(format!(
+            "{} has no force column: a diagnosis explains the force that a motion needs; record it, or map it in the sidecar",
+            recording.name
+        ))
+    })?;
+    let mut steps: Vec<f64> = raw.time_s.windows(2).map(|w| w[1] - w[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    let period_s = steps.get(steps.len() / 2).copied().unwrap_or(1.0);
+    let rate = raw.rate.clone().unwrap_or_else(|| slopes(&raw));
+    let block = (BLOCK_S / period_s).round().max(1.0) as usize;
+    let mut made = Made { rows: Vec::new(), fine: Vec::new(), noises: Vec::new(), period_s, block };
+    let usable = |i: usize| !raw.saturated[i] && !bad.get(i).copied().unwrap_or(false);
+    let mut first = 0;
+    for i in 0..=raw.time_s.len() {
+        let ends = i == raw.time_s.len() || !usable(i);
+        if ends || (i > first && raw.time_s[i] - raw.time_s[i - 1] > GAP * period_s) {
+            made.stretch(&raw, &rate, force, first..i);
+            first = if ends { i + 1 } else { i };
+        }
+    }
+    if made.rows.is_empty() {
+        return Err(EstimateError::TooFewSamples {
+            recording: recording.name.clone(),
+            samples: raw.time_s.len(),
+            what: " in one uninterrupted piece".to_owned(),
+            needed: LEAST_BLOCKS * block,
+        });
+    }
+    Ok(made.track(&raw))
+}
+
+/// Rates out of positions: central differences.
+fn slopes(raw: &Raw) -> Vec<f64> {
+    let n = raw.time_s.len();
+    let at = |i: usize| {
+        let (a, b) = (i.saturating_sub(1), (i + 1).min(n - 1));
+        (raw.position[b] - raw.position[a]) / (raw.time_s[b] - raw.time_s[a]).max(1e-9)
+    };
+    (0..n).map(at).collect()
+}
+
+/// Rows in the making.
+struct Made {
+    rows: Vec<Row>,
+    fine: Vec<Fine>,
+    /// Of the velocity and of the force, one pair a stretch.
+    noises: Vec<[f64; 2]>,
+    period_s: f64,
+    /// Samples a block.
+    block: usize,
+}
+
+impl Made {
+    fn stretch(&mut self, raw: &Raw, rate: &[f64], force: &[f64], range: std::ops::Range<usize>) {
+        let block = self.block;
+        if range.len() < LEAST_BLOCKS * block + 1 {
+            return;
+        }
+        let number = self.fine.last().map_or(0, |f| f.stretch + 1);
+        let (calm, left) = calmed_line(&rate[range.clone()], self.period_s);
+        // Rates of differences carry the noise of the positions once more.
+        self.noises.push([left * white_noise(&rate[range.clone()]), white_noise(&force[range.clone()])]);
+        let fill = (FINE_HZ * self.period_s).round().max(1.0) as usize;
+        let skip = (1.0 / (FINE_HZ * self.period_s)).round().max(1.0) as usize;
+        let first_fine = self.fine.len();
+        for (k, i) in range.clone().enumerate().step_by(skip) {
+            let point = Fine {
+                stretch: number,
+                time_s: raw.time_s[i],
+                position: raw.position[i],
+                velocity: calm[k],
+                direction: 0.0,
+            };
+            if let Some(before) = self.fine.last().copied().filter(|f| f.stretch == number) {
+                self.fine.extend((1..fill).map(|part| between(&before, &point, part as f64 / fill as f64)));
             }
-        }));
+            self.fine.push(point);
+        }
+        let mean = |values: &[f64], from: usize| trapezoid(&values[from..=from + block]);
+        let blocks = (range.len() - 1) / block;
+        for b in 1..blocks {
+            let (before, middle) = (range.start + (b - 1) * block, range.start + b * block);
+            let (v0, v1) = (mean(rate, before), mean(rate, middle));
+            let half_s = 0.5 * (raw.time_s[middle + block] - raw.time_s[before]);
+            let hat = |values: &[f64]| hat(&values[before..=middle + block]);
+            // The points that the hat covers.
+            let per = |samples: usize| samples * fill / skip;
+            let start = first_fine + per((b - 1) * block);
+            let end = (first_fine + per((b + 1) * block) + 1).min(self.fine.len());
+            let motion = Motion {
+                time_s: raw.time_s[middle],
+                position: hat(&raw.position),
+                velocity: hat(rate),
+                acceleration: (v1 - v0) / half_s,
+                up_along: raw.up_along.as_ref().map_or(0.0, |u| u[middle]),
+                ..Motion::default()
+            };
+            let y = hat(force);
+            self.rows.push(Row {
+                recording: 0,
+                stretch: number,
+                place: Place::Along,
+                motion,
+                angle_rad: motion.position,
+                along: Vec2::x(),
+                force: Vec2::new(y, 0.0),
+                force_rate: Vec2::new((mean(force, middle) - mean(force, before)) / half_s, 0.0),
+                y,
+                span: Span { start, len: end - start, hat: true },
+                open: 0.0,
+            });
+        }
     }
-    let span_s = rows.last().map_or(0.0, |r| r.motion.time_s) - rows.first().map_or(0.0, |r| r.motion.time_s);
-    let start_s = rows.first().map_or(0.0, |r| r.motion.time_s);
-    for row in &mut rows {
-        row.motion.time_s -= start_s;
+
+    fn track(self, raw: &Raw) -> Track {
+        let mut rows = self.rows;
+        let start_s = raw.time_s[0];
+        for row in &mut rows {
+            row.motion.time_s -= start_s;
+        }
+        let fine = self.fine.into_iter().map(|f| Fine { time_s: f.time_s - start_s, ..f }).collect();
+        let span_s = rows.last().map_or(0.0, |r| r.motion.time_s) - rows.first().map_or(0.0, |r| r.motion.time_s);
+        let worst = |k: usize| self.noises.iter().map(|n| n[k]).fold(0.0, f64::max);
+        // What the hat leaves of white noise.
+        let averaged = (2.0 / (3.0 * self.block as f64)).sqrt();
+        Track {
+            rows,
+            fine,
+            period_s: self.period_s * self.block as f64,
+            raw_period_s: self.period_s,
+            coordinate: raw.coordinate,
+            radius_m: (raw.coordinate == Coordinate::Angular).then_some(1.0),
+            planar: false,
+            velocity_noise: worst(0),
+            force_noise: (averaged * worst(1)).max(1e-12),
+            noise_is_measured: false,
+            span_s,
+        }
     }
-    Ok(Track {
-        rows,
-        period_s,
-        raw_period_s,
-        coordinate,
-        radius_m: angular.then_some(1.0),
-        planar: false,
-        velocity_noise: velocity,
-        force_noise: noise.max(1e-12),
-        noise_is_measured: false,
-        span_s,
-    })
+}
+
+/// Mean of a line through the values.
+fn trapezoid(values: &[f64]) -> f64 {
+    let n = values.len();
+    let ends = 0.5 * (values[0] + values[n - 1]);
+    (ends + values[1..n - 1].iter().sum::<f64>()) / (n - 1) as f64
+}
+
+/// Mean of a line through the values with the weights of a hat over all of them.
+fn hat(values: &[f64]) -> f64 {
+    let half = (values.len() - 1) / 2;
+    // Exact for lines between the samples: a third of what the ends of the hat and its top miss.
+    let weight = |k: usize| match k {
+        0 => 1.0 / 6.0,
+        k if k == 2 * half => 1.0 / 6.0,
+        k if k == half => half as f64 - 1.0 / 3.0,
+        k => half as f64 - k.abs_diff(half) as f64,
+    };
+    values.iter().enumerate().map(|(k, v)| weight(k) * v).sum::<f64>() / (half * half) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_weights_of_a_hat_sum_to_one_and_keep_a_line() {
+        for half in 1..6 {
+            let ones = vec![1.0; 2 * half + 1];
+            assert!((hat(&ones) - 1.0).abs() < 1e-12);
+            let line: Vec<f64> = (0..2 * half + 1).map(|k| k as f64).collect();
+            assert!((hat(&line) - half as f64).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn mean_velocities_of_two_blocks_differ_by_the_hats_acceleration() {
+        // A velocity of straight pieces whose slope jumps in the middle of a block.
+        let slope = |k: usize| if k < 7 { -2.0 } else { 3.0 };
+        let mut velocity = vec![1.0];
+        (0..20).for_each(|k| velocity.push(velocity[k] + 0.1 * slope(k)));
+        let difference = (trapezoid(&velocity[10..=20]) - trapezoid(&velocity[0..=10])) / 1.0;
+        // The acceleration is constant between samples: its mean with the hat's weights, piece by piece.
+        let mean: f64 = (0..20)
+            .map(|k| {
+                let middle = 0.1 * (k as f64 + 0.5);
+                0.1 * (1.0 - (middle - 1.0).abs()) * slope(k)
+            })
+            .sum();
+        assert!((difference - mean).abs() < 1e-12, "{difference} {mean}");
+    }
 }

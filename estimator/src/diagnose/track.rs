@@ -14,6 +14,37 @@ pub enum Place {
     FreeY,
 }
 
+/// The motion between the rows, as finely as it is known: the direction of motion changes within a row.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Fine {
+    /// Points of one number follow each other without a gap.
+    pub stretch: usize,
+    pub time_s: f64,
+    pub position: f64,
+    pub velocity: f64,
+    /// −1 … 1, as certain as the velocity is.
+    pub direction: f64,
+}
+
+/// Which points of [`Track::fine`] a row is the mean of.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Span {
+    pub start: usize,
+    pub len: usize,
+    /// Points in the middle count more, evenly less towards both ends; all the same otherwise.
+    pub hat: bool,
+}
+
+impl Span {
+    /// Indices and weights, which sum to one.
+    pub fn weights(self) -> impl Iterator<Item = (usize, f64)> {
+        let middle = 0.5 * self.len as f64;
+        let raw = move |k: usize| if self.hat { middle - (k as f64 + 0.5 - middle).abs() } else { 1.0 };
+        let sum: f64 = (0..self.len).map(raw).sum();
+        (0..self.len).map(move |k| (self.start + k, raw(k) / sum))
+    }
+}
+
 /// One force with the motion that belongs to it.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
@@ -35,6 +66,10 @@ pub struct Row {
     pub force_rate: Vec2,
     /// The force to be explained, N or N m.
     pub y: f64,
+    /// The finer points that it is the mean of; none where the rows are all that is known.
+    pub span: Span,
+    /// How much of the direction is a guess, 0 … 1 (share of the friction's square).
+    pub open: f64,
 }
 
 /// Rows and what is known of their noise.
@@ -42,6 +77,8 @@ pub struct Row {
 pub struct Track {
     /// In time order, recording after recording; free rows after the held ones of each.
     pub rows: Vec<Row>,
+    /// What lies between the rows.
+    pub fine: Vec<Fine>,
     /// Sampling period of the rows, s.
     pub period_s: f64,
     /// Sampling period of the recording, s.
@@ -78,6 +115,18 @@ impl Track {
         values[((values.len() - 1) as f64 * share).round() as usize]
     }
 
+    /// The mean over a row of what depends on motion.
+    pub fn mean(&self, row: &Row, of: &dyn Fn(&Motion) -> f64) -> f64 {
+        if row.span.len == 0 {
+            return of(&row.motion);
+        }
+        let at = |k: usize| {
+            let Fine { time_s, position, velocity, direction, .. } = self.fine[k];
+            of(&Motion { time_s, position, velocity, direction, ..row.motion })
+        };
+        row.span.weights().map(|(k, weight)| weight * at(k)).sum()
+    }
+
     /// True when two neighbouring rows follow each other without a gap.
     pub fn follows(&self, i: usize) -> bool {
         i > 0 && self.rows[i].stretch == self.rows[i - 1].stretch && self.rows[i].place == self.rows[i - 1].place
@@ -91,7 +140,15 @@ pub fn join(tracks: Vec<Track>) -> Option<Track> {
     for track in all {
         let (recordings, stretches) =
             joined.rows.iter().fold((0, 0), |(r, s), row| (r.max(row.recording + 1), s.max(row.stretch + 1)));
-        let shift = |row: Row| Row { recording: row.recording + recordings, stretch: row.stretch + stretches, ..row };
+        let before = joined.fine.len();
+        let fine_stretches = joined.fine.last().map_or(0, |f| f.stretch + 1);
+        let shift = |row: Row| Row {
+            recording: row.recording + recordings,
+            stretch: row.stretch + stretches,
+            span: Span { start: row.span.start + before, ..row.span },
+            ..row
+        };
+        joined.fine.extend(track.fine.iter().map(|f| Fine { stretch: f.stretch + fine_stretches, ..*f }));
         let weight = joined.rows.len() as f64;
         let more = track.rows.len() as f64;
         let mean = |a: f64, b: f64| ((weight * a * a + more * b * b) / (weight + more).max(1.0)).sqrt();

@@ -31,19 +31,17 @@ use haptics::world::MechanismPath;
 use regress::{Shown, System, shown};
 use report::Material;
 pub use signals::Piece;
-use signals::Raw;
+pub use signals::Raw;
 use terms::{CLOCK_TOLERANCE, Known, Term};
 
 /// Share of each recording's end that the quality figures hold out.
 const HELD_OUT: f64 = 0.3;
 
-/// Coordinate of one recording and its filtered pieces, as the fit sees them.
-pub fn filtered(recording: &Recording) -> Result<(Coordinate, Vec<Piece>), EstimateError> {
+/// Coordinate and force of one recording, as recorded.
+pub fn raw(recording: &Recording) -> Result<Raw, EstimateError> {
     let path =
         if has_coordinate(recording) { None } else { constraints(std::slice::from_ref(recording)).1.pop().flatten() };
-    let raw = signals::raw(recording, path.as_ref())?;
-    let pieces = signals::pieces(&raw, &recording.name)?;
-    Ok((raw.coordinate, pieces))
+    signals::raw(recording, path.as_ref())
 }
 
 /// Fits one mechanism to all `recordings` of it together.
