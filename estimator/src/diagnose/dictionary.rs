@@ -1,30 +1,17 @@
 //! The causes that act in the force, as columns over the rows of a track: each out of its law in `haptics::law`.
 
 use super::candidate::Candidate;
+use super::grid::Grid;
 use super::track::{Place, Row, Track};
 use haptics::Vec2;
 use haptics::law::{
     AddedConstraint, Backlash, CoulombFriction, EccentricMass, Effect, ForceBias, ForceDrift, FrictionAsymmetry,
-    FrictionChange, Hysteresis, Inertia, Kind, Law, LoadFriction, LocalResistance, MAX_PARAMETERS, MassChange, Memory,
-    Motion, PositionRipple, QuadraticDrag, ReturnSpring, Stribeck, ViscousFriction, Weight,
+    FrictionChange, Hysteresis, Inertia, Kind, Law, LoadFriction, LocalPush, LocalResistance, MAX_PARAMETERS,
+    MassChange, Memory, Motion, PositionRipple, QuadraticDrag, ReturnSpring, Stribeck, ViscousFriction, Weight,
 };
 
-/// Ripples a turn that are tried.
-const RIPPLES: std::ops::RangeInclusive<u32> = 2..=12;
-/// Places and widths of a local resistance that are tried, in shares of the range.
-const PLACES: usize = 24;
-const WIDTHS: [f64; 3] = [0.12, 0.2, 0.35];
-/// Speeds at which static friction has fallen off, as shares of the usual speed.
-const STRIBECK: [f64; 7] = [0.06, 0.1, 0.16, 0.26, 0.4, 0.6, 0.9];
-/// Ways of presliding and half gaps, as shares of the range of positions.
-const WAYS: [f64; 7] = [0.003, 0.006, 0.012, 0.024, 0.05, 0.1, 0.2];
-
-/// Shortest way of presliding or gap that is tried, in rows at the usual speed.
-const STEPS: f64 = 0.5;
-/// Directions of a cable's anchor that are tried, how far away it is in arms, and how much of the way round it is slack.
-const CABLES: u32 = 16;
+/// How far away a cable's anchor is, in arms.
 const CABLE_REACH: f64 = 3.0;
-const CABLE_SLACK: [f64; 3] = [0.35, 0.6, 0.8];
 
 /// Everything that columns are made of.
 pub struct Dictionary<'a> {
@@ -37,6 +24,8 @@ pub struct Dictionary<'a> {
     pub fixed: &'a [Vec<f64>],
     /// Causes that belong to the model already.
     pub without: &'a [&'a str],
+    /// The values that are tried.
+    pub grid: &'a Grid,
 }
 
 /// Units of a force, a coordinate and their mixtures.
@@ -98,9 +87,7 @@ impl Dictionary<'_> {
         }
         all.push(self.plain(&FrictionAsymmetry, &[1.0, 0.0, 0.0], 0));
         all.push(self.plain(&FrictionAsymmetry, &[0.0, 1.0, 0.0], 1));
-        let fast = self.track.quantile(0.9, |r| r.motion.velocity.abs());
-        for share in STRIBECK {
-            let vs = share * fast;
+        for vs in self.grid.stribeck.iter().copied() {
             let unit = self.unit(&Stribeck, 1);
             all.push(self.plain(&Stribeck, &[1.0, vs], 0).at("vs", vs, unit).positive());
         }
@@ -138,50 +125,40 @@ impl Dictionary<'_> {
     }
 
     fn place(&self, all: &mut Vec<Candidate>) {
-        let units = self.units();
-        let (low, high) = (self.track.quantile(0.0, position), self.track.quantile(1.0, position));
-        let range = (high - low).max(1e-12);
         if let Some(radius) = self.track.radius_m {
-            let turn = std::f64::consts::TAU * radius;
-            for n in RIPPLES {
-                self.ripple(all, turn / f64::from(n));
-            }
             self.gravity(all, radius);
-        } else {
-            for n in RIPPLES {
-                self.ripple(all, range / f64::from(n));
-            }
         }
-        let spring = |k3: bool| {
-            let column = |values: &[f64]| self.law(&ReturnSpring, values);
-            let middle = 0.5 * (low + high);
-            let mut columns = vec![column(&[1.0, 0.0, 0.0, middle]), column(&[0.0, 1.0])];
-            let mut linear = vec![("k", self.unit(&ReturnSpring, 0)), ("f0", units.force)];
-            if k3 {
-                columns.push(column(&[0.0, 0.0, 1.0, middle]));
-                linear.push(("k3", self.unit(&ReturnSpring, 2)));
-            }
-            Candidate::several("return-spring", Kind::Plant, columns, linear).positive()
-        };
-        all.push(spring(false));
-        all.push(spring(true));
-        self.local(all, low, range);
+        self.grid.ripples.iter().for_each(|length| self.ripple(all, *length));
+        self.springs(all);
+        self.local(all);
         self.walls(all);
+    }
+
+    /// A spring, and one that hardens: a cubic about any place is one about the middle and another beside it.
+    fn springs(&self, all: &mut Vec<Candidate>) {
+        let (low, high) = (self.track.quantile(0.0, position), self.track.quantile(1.0, position));
+        let (middle, aside) = (0.5 * (low + high), 0.5 * (high - low));
+        let column = |values: &[f64]| self.law(&ReturnSpring, values);
+        let line = || vec![column(&[1.0, 0.0, 0.0, middle]), column(&[0.0, 1.0])];
+        let names = || vec![("k", self.unit(&ReturnSpring, 0)), ("f0", self.units().force)];
+        all.push(Candidate::several("return-spring", Kind::Plant, line(), names()).positive());
+        let (mut columns, mut linear) = (line(), names());
+        columns.push(column(&[0.0, 0.0, 1.0, middle]));
+        columns.push(column(&[0.0, 0.0, 1.0, middle + aside]));
+        linear.extend([("k3", self.unit(&ReturnSpring, 2)), ("k3 aside", self.unit(&ReturnSpring, 2))]);
+        all.push(Candidate::several("return-spring", Kind::Plant, columns, linear));
     }
 
     /// Walls that leave a good part of the motion alone (else a spring explains as much), and cables to a place beside the arm.
     fn walls(&self, all: &mut Vec<Candidate>) {
         let units = self.units();
-        for (share, side) in [0.4, 0.5, 0.6, 0.7, 0.8, 0.9].into_iter().flat_map(|s| [(s, 1.0), (1.0 - s, -1.0)]) {
-            let place = self.track.quantile(share, position);
+        for (place, side) in self.grid.walls.iter().copied() {
             let wall = self.plain(&AddedConstraint, &[1.0, place, side], 0).positive();
             all.push(Candidate { side, ..wall.at("place", place, units.length) });
         }
         let (Some(radius), true) = (self.track.radius_m, self.track.planar) else { return };
-        for (k, share) in (0..CABLES).flat_map(|k| CABLE_SLACK.map(|s| (k, s))) {
-            let direction = std::f64::consts::TAU * f64::from(k) / f64::from(CABLES);
+        for (direction, rest) in self.grid.cables.iter().copied() {
             let anchor = CABLE_REACH * radius * Vec2::new(direction.cos(), direction.sin());
-            let rest = radius * (CABLE_REACH - 1.0 + 2.0 * share);
             let pull = self.column(&|row| {
                 let arm = radius * Vec2::new(row.along.y, -row.along.x);
                 let away = arm - anchor;
@@ -215,25 +192,21 @@ impl Dictionary<'_> {
         }
     }
 
-    fn local(&self, all: &mut Vec<Candidate>, low: f64, range: f64) {
+    /// What resists at a place in both directions, and what pushes there.
+    fn local(&self, all: &mut Vec<Candidate>) {
         let units = self.units();
-        // On a crank a place comes again every turn.
-        let turn = self.track.radius_m.map(|r| std::f64::consts::TAU * r).filter(|t| range > 0.8 * t);
-        let (from, span, period) = turn.map_or((low, range, 0.0), |t| (0.0, t, t));
-        for (k, share) in (0..PLACES).flat_map(|k| WIDTHS.map(|w| (k, w))) {
-            let (place, width) = (from + span * (k as f64 + 0.5) / PLACES as f64, share * span);
-            let resists = self.plain(&LocalResistance, &[1.0, place, width, period], 0).positive();
-            all.push(resists.at("place", place, units.length).at("width", width, units.length));
+        for (place, width) in self.grid.places.iter().copied() {
+            let values = [1.0, place, width, self.grid.turn];
+            let found = |c: Candidate| c.at("place", place, units.length).at("width", width, units.length);
+            all.push(found(self.plain(&LocalResistance, &values, 0).positive()));
+            let push = self.plain(&LocalPush, &values, 0);
+            all.push(found(Candidate { id: LocalResistance.id(), ..push }));
         }
     }
 
     fn memory(&self, all: &mut Vec<Candidate>) {
         let units = self.units();
-        let range = self.track.quantile(1.0, position) - self.track.quantile(0.0, position);
-        let scale = self.track.radius_m.map_or(range, |r| range.min(2.0 * r));
-        // What is shorter than the way between two rows cannot be told from a reversal that lies between them.
-        let shortest = STEPS * self.track.period_s * self.track.quantile(0.9, |r| r.motion.velocity.abs());
-        for way in WAYS.map(|share| share * scale).into_iter().filter(|way| *way > shortest) {
+        for way in self.grid.ways.iter().copied() {
             // Friction of the model that bends by `way` before it slides: what it lacks against sliding at once.
             let bent =
                 self.remembered(&Hysteresis, &[1.0, 1.0 / way], &|motion, memory, _| memory[0] - motion.direction);
@@ -324,8 +297,10 @@ impl Dictionary<'_> {
         let units = self.units();
         if self.track.planar {
             all.push(self.plain(&MassChange, &[0.0, 1.0], 1));
-            for k in 1..16 {
-                let start = self.track.span_s * f64::from(k) / 16.0;
+            for tau in self.grid.settling.iter().copied() {
+                all.push(self.plain(&MassChange, &[0.0, 1.0, 0.0, 0.0, tau], 1).at("tau", tau, "s"));
+            }
+            for start in self.grid.starts.iter().copied() {
                 // A weight that is another one from `start` on.
                 let column = self.column(&|r| {
                     if r.motion.time_s >= start { Weight.force(&r.motion, &[1.0, 0.0, 0.0, 0.0, 0.0]) } else { 0.0 }
@@ -333,15 +308,19 @@ impl Dictionary<'_> {
                 all.push(Candidate::one("mass-change", Kind::Plant, "step", units.force, column).at("t0", start, "s"));
             }
         }
-        // Friction that grows or falls in proportion to the model's own.
-        for share in [0.1, 0.3, 1.0, 3.0] {
-            let tau = share * self.track.span_s;
+        // Friction that grows or falls in proportion to the model's own, slowly or at once.
+        let dry = self.dry_level();
+        let of_dry = |effect: &Effect| -> Vec<f64> {
+            super::force::column(self.track, effect).iter().zip(&dry).map(|(w, d)| w * d).collect()
+        };
+        let change = |column| Candidate::one("friction-change", Kind::Plant, "relative change", "1", column);
+        for tau in self.grid.warming.iter().copied() {
             let warm = Effect::new(&FrictionChange, &[0.0, 1.0, tau, 0.0, 0.0]);
-            let dry = self.dry_level();
-            let column: Vec<f64> =
-                self.column(&|row| warm.force(&row.motion)).iter().zip(&dry).map(|(w, d)| w * d).collect();
-            let change = Candidate::one("friction-change", Kind::Plant, "relative change", "1", column);
-            all.push(change.at("tau", tau, "s"));
+            all.push(change(of_dry(&warm)).at("tau", tau, "s"));
+        }
+        for start in self.grid.starts.iter().copied() {
+            let step = Effect::new(&FrictionChange, &[0.0, 1.0, 0.0, start, 0.0]);
+            all.push(change(of_dry(&step)).at("t0", start, "s"));
         }
     }
 
@@ -354,9 +333,13 @@ impl Dictionary<'_> {
         if self.track.planar {
             let bias = |axis: Vec2| every(&|r| r.along.dot(&axis) * Effect::new(&ForceBias, &[1.0]).force(&r.motion));
             all.push(pair("force-bias", [bias(Vec2::x()), bias(Vec2::y())], [("bx", "N"), ("by", "N")]));
-            let drift = |axis: Vec2| every(&|r| r.along.dot(&axis) * Effect::new(&ForceDrift, &[1.0]).force(&r.motion));
-            let rates = [("rx", "N/s"), ("ry", "N/s")];
-            all.push(pair("force-drift", [drift(Vec2::x()), drift(Vec2::y())], rates));
+            for tau in std::iter::once(0.0).chain(self.grid.settling.iter().copied()) {
+                let effect = Effect::new(&ForceDrift, &[1.0, tau]);
+                let drift = |axis: Vec2| every(&|r| r.along.dot(&axis) * effect.force(&r.motion));
+                let rates = [("rx", "N/s"), ("ry", "N/s")];
+                let found = pair("force-drift", [drift(Vec2::x()), drift(Vec2::y())], rates);
+                all.push(if tau > 0.0 { found.at("tau", tau, "s") } else { found });
+            }
             let cross = |to: Vec2, from: Vec2| every(&|r| r.along.dot(&to) * r.force.dot(&from));
             let id = "force-cross-axis";
             all.push(Candidate::one(id, Kind::Instrument, "kappa_xy", "1", cross(Vec2::x(), Vec2::y())));
@@ -364,8 +347,12 @@ impl Dictionary<'_> {
         } else {
             let bias = every(&|r| Effect::new(&ForceBias, &[1.0]).force(&r.motion));
             all.push(Candidate::one("force-bias", Kind::Instrument, "b", units.force, bias));
-            let drift = every(&|r| Effect::new(&ForceDrift, &[1.0]).force(&r.motion));
-            all.push(Candidate::one("force-drift", Kind::Instrument, "rate", self.unit(&ForceDrift, 0), drift));
+            for tau in std::iter::once(0.0).chain(self.grid.settling.iter().copied()) {
+                let effect = Effect::new(&ForceDrift, &[1.0, tau]);
+                let drift = every(&|r| effect.force(&r.motion));
+                let found = Candidate::one("force-drift", Kind::Instrument, "rate", self.unit(&ForceDrift, 0), drift);
+                all.push(if tau > 0.0 { found.at("tau", tau, "s") } else { found });
+            }
         }
     }
 }

@@ -4,6 +4,7 @@ use super::candidate::Candidate;
 use super::dictionary::Dictionary;
 use super::force::{Model, column};
 use super::geometry::Study;
+use super::grid::Grid;
 use super::report::{Alternative, NextExperiment};
 use super::track::{Place, Row, Span, Track};
 use haptics::Vec2;
@@ -220,8 +221,15 @@ fn separation(imagined: &Track, model: &Model, study: &Study, values: &[f64], pa
     let base: Vec<Vec<f64>> = model.iter().map(|e| column(imagined, e)).collect();
     let predicted: Vec<f64> = imagined.rows.iter().map(|r| r.y).collect();
     let taken: Vec<&str> = model.iter().map(|e| e.law().id()).collect();
-    let dictionary =
-        Dictionary { track: imagined, predicted: &predicted, resisting: &predicted, fixed: &[], without: &taken };
+    let grid = Grid::coarse(imagined);
+    let dictionary = Dictionary {
+        track: imagined,
+        predicted: &predicted,
+        resisting: &predicted,
+        fixed: &[],
+        without: &taken,
+        grid: &grid,
+    };
     let candidates = dictionary.candidates();
     let found = study.chosen.iter().position(|c| study.candidates[c.candidate].id == pair.0)?;
     let own = &study.candidates[study.chosen[found].candidate];

@@ -6,8 +6,8 @@ use super::geometry::Study;
 use super::track::Track;
 use haptics::law::{
     AddedConstraint, Backlash, CoulombFriction, EccentricMass, Effect, FrictionAsymmetry, FrictionChange, Hysteresis,
-    Inertia, Kind, Law, LoadFriction, LocalResistance, MassChange, PositionRipple, QuadraticDrag, ReturnSpring,
-    Stribeck, ViscousFriction,
+    Inertia, Kind, Law, LoadFriction, LocalPush, LocalResistance, MassChange, PositionRipple, QuadraticDrag,
+    ReturnSpring, Stribeck, ViscousFriction,
 };
 
 /// The model's laws refitted beside the chosen causes, and the plant causes among these as laws of their own. Instruments' faults are
@@ -77,25 +77,41 @@ fn effect(candidate: &Candidate, values: &[f64], track: &Track, dry_n: f64) -> O
             // cos(x − π/2) is the sine's column.
             of(&PositionRipple, &[cosine.hypot(sine), searched(0), (-sine).atan2(cosine)])
         }
-        "return-spring" => {
-            let (low, high) = (track.quantile(0.0, |r| r.motion.position), track.quantile(1.0, |r| r.motion.position));
-            let k3 = values.get(2).copied().unwrap_or(0.0);
-            of(&ReturnSpring, &[first, values.get(1).copied().unwrap_or(0.0), k3, 0.5 * (low + high)])
-        }
+        "return-spring" => of(&ReturnSpring, &spring(values, track)),
         "local-resistance" => {
             let turn = if radius > 0.0 { std::f64::consts::TAU * radius } else { 0.0 };
-            of(&LocalResistance, &[first, searched(0), searched(1), turn])
+            let values = [first, searched(0), searched(1), turn];
+            if named("P") { of(&LocalPush, &values) } else { of(&LocalResistance, &values) }
         }
         "added-constraint" => of(&AddedConstraint, &[first, searched(0), candidate.side]),
         "hysteresis" => of(&Hysteresis, &[first * dry_n, first * dry_n / searched(0).max(1e-12)]),
         "backlash" => of(&Backlash, &[searched(0)]),
-        "mass-change" if named("rate") => of(&MassChange, &[0.0, first]),
+        "mass-change" if named("rate") => of(&MassChange, &[0.0, first, 0.0, 0.0, searched(0)]),
         "mass-change" => {
             // A step: all of it within a sample.
             let step_s = track.period_s;
             of(&MassChange, &[0.0, first / step_s, searched(0), step_s])
         }
+        "friction-change" if candidate.searched.first().is_some_and(|s| s.name == "t0") => {
+            of(&FrictionChange, &[0.0, first * dry_n, 0.0, searched(0)])
+        }
         "friction-change" => of(&FrictionChange, &[0.0, first * dry_n, searched(0)]),
         _ => None,
     }
+}
+
+/// The spring's parameters: two cubics about different places are one about a third.
+fn spring(values: &[f64], track: &Track) -> [f64; 4] {
+    let (low, high) = (track.quantile(0.0, |r| r.motion.position), track.quantile(1.0, |r| r.motion.position));
+    let (middle, aside) = (0.5 * (low + high), 0.5 * (high - low));
+    let at = |k: usize| values.get(k).copied().unwrap_or(0.0);
+    let (k, f0, here, there) = (at(0), at(1), at(2), at(3));
+    let k3 = here + there;
+    // In u = q − middle: k3 u³ − 3 there aside u² + (k + 3 there aside²) u + f0 − there aside³.
+    let (c2, c1, c0) = (-3.0 * there * aside, k + 3.0 * there * aside * aside, f0 - there * aside.powi(3));
+    if k3.abs() * aside < 1e-9 * c2.abs() || k3 == 0.0 {
+        return [k, f0, 0.0, middle];
+    }
+    let shift = -c2 / (3.0 * k3);
+    [c1 - c2 * c2 / (3.0 * k3), c0 + c1 * shift + c2 * shift * shift + k3 * shift.powi(3), k3, middle + shift]
 }

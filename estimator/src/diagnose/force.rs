@@ -4,12 +4,14 @@ use super::candidate::Candidate;
 use super::dictionary::Dictionary;
 use super::generic::generic;
 use super::geometry::{Study, residual};
+use super::grid::Grid;
 use super::select::Selection;
 use super::system::{Rows, System, solve, uses, whitener};
 use super::track::{Place, Track};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
-use haptics::law::{CoulombFriction, Effect, Law};
+use haptics::Vec2;
+use haptics::law::{CoulombFriction, Effect, ForceDrift, Law};
 
 /// The sign of a velocity is blurred over this share of the usual speed at least.
 const BLUR: f64 = 0.02;
@@ -22,20 +24,81 @@ const REVERSAL: f64 = 0.05;
 /// What whitening is learnt from keeps this much of the generic library's strength out.
 const RIDGE: f64 = 1e-2;
 
+/// Rounds in which searched values and the sensor's faults are settled.
+const REFINEMENTS: usize = 1;
+
 /// The model to start from: laws with their non-linear values.
 pub type Model = Vec<Effect>;
 
 /// Compares all causes on a track. `fixed`: laws of which everything is known. `threshold`: least score of a cause.
 pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) -> Result<Study, EstimateError> {
     blur(track);
+    let coarse = Grid::coarse(track);
+    let mut made = compare(track, model, fixed, threshold, &coarse, &Grid::default())?;
+    for _ in 0..REFINEMENTS {
+        if made.chosen.is_empty() {
+            break;
+        }
+        let found: Vec<&Candidate> = made.chosen.iter().map(|c| &made.candidates[c.candidate]).collect();
+        let fine = Grid::around(&found, track);
+        // The load on the friction is what the sensor told, rid of what is now known of the sensor.
+        correct_load(track, &made);
+        made = compare(track, model, fixed, threshold, &coarse, &fine)?;
+    }
+    Ok(made)
+}
+
+/// The force across the motion without the faults of the sensor that were found.
+fn correct_load(track: &mut Track, study: &Study) {
+    let Some(solved) = study.solved.as_ref().filter(|_| track.planar) else { return };
+    let mut faults: Vec<(&Candidate, Vec<f64>)> = Vec::new();
+    let mut at = study.base.len();
+    for chosen in &study.chosen {
+        let candidate = &study.candidates[chosen.candidate];
+        let end = at + candidate.columns.len();
+        faults.push((candidate, solved.values[at..end].to_vec()));
+        at = end;
+    }
+    for row in track.rows.iter_mut().filter(|r| r.place == Place::Along) {
+        let outward = Vec2::new(row.along.y, -row.along.x);
+        let mut force = row.force;
+        for (candidate, values) in &faults {
+            let tau = candidate.searched.first().map_or(0.0, |s| s.value);
+            let size = |law: &'static dyn Law| Effect::new(law, &[1.0, tau]).force(&row.motion);
+            force -= match (candidate.id, candidate.linear[0].0) {
+                ("force-bias", _) => Vec2::new(values[0], values[1]),
+                ("force-drift", _) => Vec2::new(values[0], values[1]) * size(&ForceDrift),
+                ("force-cross-axis", "kappa_xy") => Vec2::new(values[0] * row.force.y, 0.0),
+                ("force-cross-axis", _) => Vec2::new(0.0, values[0] * row.force.x),
+                ("force-gain", _) => row.force * (values[0] / (1.0 + values[0]).max(0.1)),
+                ("time-delay", _) => row.force_rate * -values[0],
+                _ => Vec2::zeros(),
+            };
+        }
+        row.motion.normal_force_n = force.dot(&outward);
+    }
+}
+
+fn compare(
+    track: &Track,
+    model: &Model,
+    fixed: &Model,
+    threshold: f64,
+    coarse: &Grid,
+    fine: &Grid,
+) -> Result<Study, EstimateError> {
     let base: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
     let known: Vec<Vec<f64>> = fixed.iter().map(|effect| column(track, effect)).collect();
     let y: Vec<f64> =
         track.rows.iter().enumerate().map(|(i, r)| r.y - known.iter().map(|k| k[i]).sum::<f64>()).collect();
     let (predicted, resisting, weight) = first_look(track, model, &base, &y)?;
     let taken: Vec<&str> = model.iter().chain(fixed).map(|e| e.law().id()).collect();
-    let dictionary = Dictionary { track, predicted: &predicted, resisting: &resisting, fixed: &known, without: &taken };
-    let mut candidates = dictionary.candidates();
+    let dictionary = |grid| {
+        let without = &taken;
+        Dictionary { track, predicted: &predicted, resisting: &resisting, fixed: &known, without, grid }.candidates()
+    };
+    let mut candidates = dictionary(coarse);
+    candidates.extend(dictionary(fine).into_iter().filter(|c| !c.searched.is_empty()));
     candidates.extend(generic(track));
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
     let testable: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();

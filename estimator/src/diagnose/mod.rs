@@ -13,6 +13,7 @@ mod force;
 mod gain;
 mod generic;
 mod geometry;
+mod grid;
 mod held_arm;
 mod quality;
 pub mod report;

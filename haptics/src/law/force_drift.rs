@@ -1,6 +1,8 @@
-//! Force drift: F + r t: a slow error of the force channel along the coordinate. r = 0 is none.
+//! Force drift: F + r t, or F + r τ (1 − exp(−t/τ)) where the sensor settles: a slow error of the force channel along the coordinate.
+//! r = 0 is none, τ = 0 goes on for ever.
 
-use super::entry::ANY;
+use super::entry::{ANY, POSITIVE};
+use super::mass_change::settling;
 use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
 
 /// Force drift; equation and sign in the module's head.
@@ -11,13 +13,13 @@ static ENTRY: Entry = Entry {
     id: "force-drift",
     kind: Kind::Instrument,
     title: "Force drift",
-    equation: "F + r t",
+    equation: "F + r t, or F + r τ (1 − exp(−t/τ))",
     what: "The zero of the force sensor moves, mostly with temperature.",
     shows: "As a slope in time, also in free motion.",
     mimics: "A leaking weight mimics it while an object is held, friction that changes where the motion does not \
              reverse.",
     reveals: "Free motion at the start and at the end reveals it.",
-    parameters: &[ParameterSpec::linear("rate", "N/s", "N m/s", ANY)],
+    parameters: &[ParameterSpec::linear("rate", "N/s", "N m/s", ANY), ParameterSpec::fixed("tau", "s", "s", POSITIVE)],
 };
 
 impl Law for ForceDrift {
@@ -31,6 +33,11 @@ impl Law for ForceDrift {
 
     fn regressor(&self, motion: &Motion, columns: &mut [f64; MAX_PARAMETERS]) {
         columns[0] = motion.time_s;
+    }
+
+    fn force(&self, motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> f64 {
+        let [rate, tau_s, ..] = *parameters;
+        rate * settling(motion.time_s, tau_s)
     }
 }
 

@@ -38,16 +38,14 @@ impl Law for LocalResistance {
 
     fn force(&self, motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> f64 {
         let [force, place, width, period, ..] = *parameters;
-        let mut off = motion.position - place;
-        if period > 0.0 {
-            off -= period * (off / period).round();
-        }
-        if off.abs() < 0.5 * width {
-            force * 0.5 * (1.0 + (std::f64::consts::TAU * off / width).cos()) * motion.direction
-        } else {
-            0.0
-        }
+        force * hump(motion.position - place, width, period) * motion.direction
     }
+}
+
+/// A hump of height one and this width around zero, which comes again with a period (0: never).
+pub(super) fn hump(off: f64, width: f64, period: f64) -> f64 {
+    let off = if period > 0.0 { off - period * (off / period).round() } else { off };
+    if off.abs() < 0.5 * width { 0.5 * (1.0 + (std::f64::consts::TAU * off / width).cos()) } else { 0.0 }
 }
 
 #[cfg(test)]

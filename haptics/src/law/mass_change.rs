@@ -1,6 +1,6 @@
 //! Changing weight: W(t) (up · t), W(t) = W0 + rate · (time since t0, at most `duration`): a leak, a filling, a lost part.
 //! It adds to the `weight` beside it (W0 = 0 then). duration = 0 is without end. The inertia that leaves with the weight is
-//! neglected: at g/10 it is a hundredth of the force. rate < 0 loses weight.
+//! neglected: at g/10 it is a hundredth of the force. rate < 0 loses weight; with tau the rate dies away, as a barrel empties.
 
 use super::entry::{ANY, POSITIVE};
 use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
@@ -23,6 +23,7 @@ static ENTRY: Entry = Entry {
         ParameterSpec::linear("rate", "N/s", "N m/s", ANY),
         ParameterSpec::nonlinear("t0", "s", "s", ANY),
         ParameterSpec::nonlinear("duration", "s", "s", POSITIVE),
+        ParameterSpec::fixed("tau", "s", "s", POSITIVE),
     ],
 };
 
@@ -36,11 +37,16 @@ impl Law for MassChange {
     }
 
     fn force(&self, motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> f64 {
-        let [first, rate, start_s, duration_s, ..] = *parameters;
+        let [first, rate, start_s, duration_s, tau_s] = *parameters;
         let since = (motion.time_s - start_s).max(0.0);
         let since = if duration_s > 0.0 { since.min(duration_s) } else { since };
-        (first + rate * since) * motion.up_along
+        (first + rate * settling(since, tau_s)) * motion.up_along
     }
+}
+
+/// What has come after a time at a rate of one that dies away with `tau_s` (0: never), s.
+pub(super) fn settling(since_s: f64, tau_s: f64) -> f64 {
+    if tau_s > 0.0 { -tau_s * (-since_s / tau_s).exp_m1() } else { since_s }
 }
 
 #[cfg(test)]

@@ -25,6 +25,7 @@ mod hysteresis;
 mod inertia;
 mod instrument;
 mod load_friction;
+mod local_push;
 mod local_resistance;
 mod mass_change;
 mod memory;
@@ -57,6 +58,7 @@ pub use gravity_tilt::GravityTilt;
 pub use hysteresis::Hysteresis;
 pub use inertia::Inertia;
 pub use load_friction::LoadFriction;
+pub use local_push::LocalPush;
 pub use local_resistance::LocalResistance;
 pub use mass_change::MassChange;
 pub use memory::{MAX_EFFECTS, Memories, Memory};
@@ -170,7 +172,7 @@ pub trait Law: Sync {
 }
 
 /// Every law of a coordinate, in the order it is shown.
-pub static CATALOGUE: [&dyn Law; 20] = [
+pub static CATALOGUE: [&dyn Law; 21] = [
     &Weight,
     &Inertia,
     &CoulombFriction,
@@ -185,6 +187,7 @@ pub static CATALOGUE: [&dyn Law; 20] = [
     &ReturnSpring,
     &PositionRipple,
     &LocalResistance,
+    &LocalPush,
     &Backlash,
     &MassChange,
     &FrictionChange,
@@ -203,9 +206,10 @@ pub fn entries() -> impl Iterator<Item = &'static Entry> {
     CATALOGUE.iter().map(|law| law.entry()).chain(contact::ENTRIES.iter().copied()).chain(&instrument::ENTRIES)
 }
 
-/// The pages of everything that a diagnosis can name; what only models are made of (the weight) is left out.
+/// The pages of everything that a diagnosis can name; what only models are made of (the weight, and the push that goes by the name of
+/// `local-resistance`) is left out.
 pub fn causes() -> impl Iterator<Item = &'static Entry> {
-    entries().filter(|entry| entry.id != Weight.id())
+    entries().filter(|entry| ![Weight.id(), LocalPush.id()].contains(&entry.id))
 }
 
 /// The page of the cause with this id.

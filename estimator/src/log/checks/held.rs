@@ -3,12 +3,19 @@
 use super::profile::{Profile, holds};
 use super::{about, is_position, limited, place};
 use crate::log::units::{self, Dimension};
+use crate::signal::noise::white_noise;
 use haptics::recording::{Channel, Recording, Span, Warning};
 
 /// Plateau at the extreme value: at least this many samples (`facts/diagnosis.md`, step 0).
 const PLATEAU_SAMPLES: usize = 8;
-/// … and this many times as many as at any of the next values, where quanta are coarse …
-const PLATEAU_EXCESS: usize = 4;
+/// … and this many times as many as at any of the next values: a smooth peak without noise holds 2.4 times as many …
+const PLATEAU_EXCESS: f64 = 4.0;
+/// … or this many times where noise is larger than the steps, so that a peak thins out towards its top …
+const NOISY_EXCESS: f64 = 1.5;
+/// … and then more than the mean of the next values by this many of its standard deviations (counts by chance).
+const EXCESS_SIGMAS: f64 = 4.5;
+/// … which is so where the noise is this many steps.
+const NOISY_STEPS: f64 = 1.0;
 /// … of which so many are looked at: the last quanta of a noisy peak hold few samples each.
 const NEXT_VALUES: usize = 4;
 /// A channel that normally changes from sample to sample and then holds for this many samples is stuck.
@@ -106,12 +113,20 @@ fn rail(values: &[f64], side: f64, top: f64, share: f64) -> Option<Vec<Span>> {
     if top == 0.0 || at_top < PLATEAU_SAMPLES || at_top as f64 > share * values.len() as f64 {
         return None;
     }
-    let mut level = top;
+    let mut levels = vec![top];
     for _ in 0..NEXT_VALUES {
-        level = values.iter().map(|v| side * v).filter(|&v| v < level).fold(f64::NEG_INFINITY, f64::max);
-        if at_top < PLATEAU_EXCESS * count(level) {
-            return None;
-        }
+        let below = levels[levels.len() - 1];
+        levels.push(values.iter().map(|v| side * v).filter(|&v| v < below).fold(f64::NEG_INFINITY, f64::max));
+    }
+    let next: Vec<f64> = levels[1..].iter().map(|level| count(*level) as f64).collect();
+    let most = next.iter().copied().fold(0.0, f64::max);
+    let mean = next.iter().sum::<f64>() / next.len() as f64;
+    let step = (levels[1] - levels[NEXT_VALUES]) / (NEXT_VALUES - 1) as f64;
+    let noisy = white_noise(values) > NOISY_STEPS * step;
+    let many = at_top as f64;
+    let stands_out = noisy && many > NOISY_EXCESS * most && many > mean + EXCESS_SIGMAS * mean.sqrt();
+    if many < PLATEAU_EXCESS * most && !stands_out {
+        return None;
     }
     let mut spans: Vec<Span> = Vec::new();
     for i in (0..values.len()).filter(|&i| side * values[i] == top) {

@@ -1,0 +1,135 @@
+//! The values of what must be searched for: coarsely at first, then around what was found.
+
+use super::candidate::Candidate;
+use super::track::Track;
+use std::f64::consts::TAU;
+
+/// Ripples a turn (over the range, where nothing turns) that are tried.
+const RIPPLES: std::ops::RangeInclusive<u32> = 2..=12;
+/// Places of a local resistance that are tried, and widths in shares of the range.
+const PLACES: usize = 24;
+const WIDTHS: [f64; 3] = [0.12, 0.2, 0.35];
+/// Speeds at which static friction has fallen off, as shares of the usual speed.
+const STRIBECK: [f64; 7] = [0.06, 0.1, 0.16, 0.26, 0.4, 0.6, 0.9];
+/// Ways of presliding and half gaps, as shares of the range of positions.
+const WAYS: [f64; 9] = [0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.065, 0.13, 0.2];
+/// Shortest of these, in points of the motion at the usual speed.
+const STEPS: f64 = 0.1;
+/// Directions of a cable's anchor that are tried, and how much of the way round it is slack.
+const CABLES: u32 = 16;
+const SLACK: [f64; 3] = [0.35, 0.6, 0.8];
+/// Shares of the motion on one side of a wall.
+const WALLS: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+/// Times in which friction changes, in shares of the recording, …
+const WARMING: [f64; 4] = [0.1, 0.3, 1.0, 3.0];
+/// … in which a drift or a leak dies away, …
+const SETTLING: [f64; 2] = [0.2, 0.5];
+/// … and the number of starts of what happens at once.
+const STARTS: u32 = 16;
+
+/// Values to try, in the units of the track.
+#[derive(Clone, Debug, Default)]
+pub struct Grid {
+    pub stribeck: Vec<f64>,
+    pub ways: Vec<f64>,
+    /// Wave lengths.
+    pub ripples: Vec<f64>,
+    /// Place and width.
+    pub places: Vec<(f64, f64)>,
+    /// A place comes again after this; 0 never.
+    pub turn: f64,
+    /// Place and side.
+    pub walls: Vec<(f64, f64)>,
+    /// Direction of the anchor, rad, and length at rest.
+    pub cables: Vec<(f64, f64)>,
+    pub warming: Vec<f64>,
+    pub settling: Vec<f64>,
+    pub starts: Vec<f64>,
+}
+
+impl Grid {
+    /// What is tried first.
+    pub fn coarse(track: &Track) -> Self {
+        let position = |share| track.quantile(share, |r| r.motion.position);
+        let (low, high) = (position(0.0), position(1.0));
+        let range = (high - low).max(1e-12);
+        let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
+        let turn = track.radius_m.map(|r| TAU * r);
+        // What is shorter than the way between two points cannot be told from a reversal that lies between them.
+        let point_s = if track.fine.is_empty() { track.period_s } else { track.raw_period_s.min(track.period_s) };
+        let scale = track.radius_m.map_or(range, |r| range.min(2.0 * r));
+        // On a crank a place comes again every turn.
+        let whole = turn.filter(|t| range > 0.8 * t);
+        let (from, span) = whole.map_or((low, range), |t| (0.0, t));
+        let places = (0..PLACES).map(|k| from + span * (k as f64 + 0.5) / PLACES as f64);
+        let sides = [(1.0, 0.0), (-1.0, 1.0)];
+        let walls = WALLS.iter().flat_map(|w| sides.map(|(side, base)| (position(base + side * w), side)));
+        let reach = |share: f64| track.radius_m.unwrap_or(0.0) * (2.0 + 2.0 * share);
+        Self {
+            stribeck: STRIBECK.map(|share| share * fast).to_vec(),
+            ways: WAYS.map(|share| share * scale).into_iter().filter(|way| *way > STEPS * point_s * fast).collect(),
+            ripples: RIPPLES.map(|n| turn.unwrap_or(range) / f64::from(n)).collect(),
+            places: places.flat_map(|p| WIDTHS.map(|w| (p, w * span))).collect(),
+            turn: whole.unwrap_or(0.0),
+            walls: walls.collect(),
+            cables: (0..CABLES)
+                .flat_map(|k| SLACK.map(|s| (TAU * f64::from(k) / f64::from(CABLES), reach(s))))
+                .collect(),
+            warming: WARMING.map(|share| share * track.span_s).to_vec(),
+            settling: SETTLING.map(|share| share * track.span_s).to_vec(),
+            starts: (1..STARTS).map(|k| track.span_s * f64::from(k) / f64::from(STARTS)).collect(),
+        }
+    }
+
+    /// Values between those of the coarse grid, around the ones that were found.
+    pub fn around(found: &[&Candidate], track: &Track) -> Self {
+        let coarse = Self::coarse(track);
+        let mut grid = Self { turn: coarse.turn, ..Self::default() };
+        let range = track.quantile(1.0, |r| r.motion.position) - track.quantile(0.0, |r| r.motion.position);
+        let span = if grid.turn > 0.0 { grid.turn } else { range };
+        let radius = track.radius_m.unwrap_or(0.0);
+        for candidate in found {
+            let value = |name: &str| candidate.searched.iter().find(|s| s.name == name).map(|s| s.value);
+            let times = |v: f64, factors: &[f64]| factors.iter().map(move |f| f * v).collect::<Vec<f64>>();
+            match candidate.id {
+                "stribeck" => grid.stribeck.extend(times(value("vs").unwrap_or(0.0), &[0.72, 0.85, 1.18, 1.38])),
+                "hysteresis" | "backlash" => {
+                    let way = value("way").or(value("delta")).unwrap_or(0.0);
+                    grid.ways.extend(times(way, &[0.62, 0.79, 1.26, 1.6]));
+                }
+                "position-ripple" if track.radius_m.is_none() => {
+                    grid.ripples.extend(times(value("lambda").unwrap_or(0.0), &[0.93, 0.96, 0.98, 1.02, 1.04, 1.07]));
+                }
+                "local-resistance" => {
+                    let (Some(place), Some(width)) = (value("place"), value("width")) else { continue };
+                    for step in [-0.6, -0.3, 0.0, 0.3, 0.6] {
+                        let place = place + step * span / PLACES as f64;
+                        grid.places.extend(times(width, &[0.65, 0.8, 1.0, 1.25, 1.5]).iter().map(|w| (place, *w)));
+                    }
+                }
+                "added-constraint" => {
+                    if let (Some(direction), Some(rest)) = (value("anchor direction"), value("rest length")) {
+                        for turn in [-0.6, -0.3, 0.0, 0.3, 0.6].map(|s| s * TAU / f64::from(CABLES)) {
+                            let rests = [-0.3, -0.15, 0.0, 0.15, 0.3].map(|s| rest + s * radius);
+                            grid.cables.extend(rests.map(|rest| (direction + turn, rest)));
+                        }
+                    } else if let Some(place) = value("place") {
+                        let places = [-0.06, -0.03, 0.03, 0.06].map(|s| place + s * range);
+                        grid.walls.extend(places.map(|place| (place, candidate.side)));
+                    }
+                }
+                "friction-change" if value("tau").is_some() => {
+                    grid.warming.extend(times(value("tau").unwrap_or(0.0), &[0.58, 0.76, 1.3, 1.7]));
+                }
+                "mass-change" | "force-drift" if value("tau").is_some() => {
+                    grid.settling.extend(times(value("tau").unwrap_or(0.0), &[0.5, 0.7, 1.4, 2.0]));
+                }
+                _ => {}
+            }
+            if let Some(start) = value("t0") {
+                grid.starts.extend([-0.67, -0.33, 0.33, 0.67].map(|s| start + s * track.span_s / f64::from(STARTS)));
+            }
+        }
+        grid
+    }
+}
