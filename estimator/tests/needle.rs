@@ -169,7 +169,7 @@ fn the_hands_needle_gives_a_world_with_the_measured_sheet() {
         let state = State::resting(&world);
         let device = ScriptedOperator::new(&world, &state, Skill::default(), seed);
         let ticks = (device.duration_s() * 1000.0) as usize;
-        let mut servo = Loop::new(Box::new(Swap { world: world.clone(), state }), Box::new(device), Limits::default());
+        let mut servo = Loop::new(Swap::at(world.clone(), state), Box::new(device), Limits::default());
         let ticks: Vec<_> = (0..ticks).map(|_| servo.tick(1e-3)).collect();
         let mut recording = to_recording("needle", &world, &ticks, 1, &SensorModel::TYPICAL, seed);
         recording.meta.task = Some(Task::Needle);

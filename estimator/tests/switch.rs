@@ -49,7 +49,7 @@ fn recorded(world: &World, seed: u64, every: usize, noise: f64, until_s: f64) ->
     let state = State::resting(world);
     let device = ScriptedOperator::new(world, &state, Skill::default(), seed);
     let ticks = (device.duration_s().min(until_s) * 2000.0) as usize;
-    let mut servo = Loop::new(Box::new(Swap { world: world.clone(), state }), Box::new(device), Limits::default());
+    let mut servo = Loop::new(Swap::at(world.clone(), state), Box::new(device), Limits::default());
     let ticks: Vec<_> = (0..ticks).map(|_| servo.tick(5e-4)).collect();
     let sensor = SensorModel::TYPICAL.noisier(noise);
     let mut recording = to_recording(&format!("switch {seed}"), world, &ticks, every, &sensor, seed);

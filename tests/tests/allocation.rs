@@ -27,7 +27,7 @@ const DT: f64 = 1e-3;
 
 fn servo(world: &World, device: Box<dyn Device>) -> Loop {
     let state = State::resting(world);
-    Loop::new(Box::new(Swap { world: world.clone(), state }), device, Limits::default())
+    Loop::new(Swap::at(world.clone(), state), device, Limits::default())
 }
 
 /// Ticks under the guard; an allocation aborts the test.
@@ -232,6 +232,27 @@ fn a_larger_world_is_swapped_in() {
         }
     });
     assert_eq!(servo.state().bodies.len(), 39);
+    drop(old);
+}
+
+#[test]
+fn a_world_that_goes_on_is_swapped_in_while_the_crank_turns() {
+    let before = presets::crank();
+    let mut after = before.clone();
+    after.crank.as_mut().expect("a crank").effects.truncate(3);
+    let operator = ScriptedOperator::new(&before, &State::resting(&before), Skill::default(), 3);
+    let mut servo = servo(&before, Box::new(operator));
+    run(&mut servo, 4_000);
+    let angle_rad = servo.state().crank.angle_rad;
+    let mut next = Some(Swap::going_on(after));
+    let mut old = None;
+    assert_no_alloc(|| {
+        if let Some(next) = next.take() {
+            old = Some(servo.swap(next));
+        }
+        servo.tick(DT);
+    });
+    assert!((servo.state().crank.angle_rad - angle_rad).abs() < 0.02, "it goes on where it was");
     drop(old);
 }
 

@@ -1,7 +1,7 @@
 //! The blind battery in a minute: what is hidden must be named, and nothing where nothing is.
 //!
 //! A new seed every day, printed for replay: `TOUCHSTONE_SEED=20400 cargo test -p tests --test blind`. The whole battery is
-//! `cargo run --release -p blind --example blind -- --whole`. Demands leave room for the luck of few cases: a test fails when so few hits
+//! `touchstone bench blind --whole`. Demands leave room for the luck of few cases: a test fails when so few hits
 //! would come up once in ten thousand days if the program were as good as demanded. What is demanded here is what the program reaches
 //! so far; what it should reach stands in `docs/diagnosis.md`.
 
@@ -93,6 +93,6 @@ fn what_has_no_name_is_not_given_one() {
 
 #[test]
 fn every_recording_is_answered() {
-    let failed: Vec<String> = rows().iter().filter(|r| r.answer.is_err()).map(tests::blind::tables::line).collect();
+    let failed: Vec<String> = rows().iter().filter(|r| r.answer.is_err()).map(blind::tables::line).collect();
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }

@@ -2,7 +2,8 @@
 //! new world presses much harder.
 
 use haptics::Vec2;
-use haptics::device::{Command, Device, DeviceSpec, MouseTarget, Sample, mouse};
+use haptics::device::{Command, Device, DeviceSpec, MouseTarget, Sample, ScriptedOperator, Skill, mouse};
+use haptics::law::{Effect, Hysteresis, PositionRipple};
 use haptics::servo::safety::Limits;
 use haptics::servo::{Loop, Servo, ServoConfig, Swap, TickRecord};
 use haptics::world::{State, World, presets};
@@ -125,7 +126,7 @@ fn no_swap_jumps_above_the_slew_limit_on_the_thread() {
     let (mut handle, device) = mouse(start, world.hand.workspace);
     handle.set(start);
     let config = ServoConfig::at(1000.0);
-    let mut servo = Servo::start(Box::new(Swap { world, state }), Box::new(device), config).expect("a thread");
+    let mut servo = Servo::start(Swap::at(world, state), Box::new(device), config).expect("a thread");
     let mut ticks = Vec::new();
     let mut wait_for_ticks = |servo: &mut Servo, more: usize| {
         let (goal, begun) = (ticks.len() + more, Instant::now());
@@ -147,4 +148,76 @@ fn no_swap_jumps_above_the_slew_limit_on_the_thread() {
     let worst = pairs.iter().map(|w| largest_jump(w)).fold(0.0, f64::max);
     assert!(worst <= config.limits.max_slew_n_s * DT + 1e-12, "a jump of {worst} N");
     assert!(ticks.iter().any(|t| t.sent_force_n[0].norm() > 0.5), "there was a load");
+}
+
+/// A crank, and the same crank with something more in its bearing.
+fn cranks() -> [World; 2] {
+    let before = presets::crank();
+    let mut after = before.clone();
+    let effects = &mut after.crank.as_mut().expect("a crank").effects;
+    effects.push(Effect::new(&PositionRipple, &[0.25, 0.02, 0.0]));
+    effects.push(Effect::new(&Hysteresis, &[0.2, 800.0]));
+    [before, after]
+}
+
+/// Largest change from one tick to the next, N: of what the fingers do to the world, and of what is sent.
+fn changes(last: &TickRecord, now: &TickRecord) -> [f64; 2] {
+    let most = |a: &[Vec2; 2], b: &[Vec2; 2]| a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    [most(&last.tip_force_n, &now.tip_force_n), most(&last.sent_force_n, &now.sent_force_n)]
+}
+
+/// The crank is turned while worlds go on in each other every so many ticks; largest changes a tick, elsewhere and at swaps, and how
+/// many of these fell on a turning crank.
+fn turned(worlds: &[World; 2], every: usize) -> ([f64; 2], [f64; 2], usize) {
+    let operator = ScriptedOperator::new(&worlds[0], &State::resting(&worlds[0]), Skill::default(), 5);
+    let ticks = (operator.duration_s() / DT) as usize;
+    let mut body = Loop::new(Swap::new(worlds[0].clone()), Box::new(operator), Limits::default());
+    let (mut last, mut angle_rad) = (body.tick(DT), body.state().crank.angle_rad);
+    let (mut elsewhere, mut at_swaps, mut turning) = ([0.0_f64; 2], [0.0_f64; 2], 0);
+    for tick in 1..ticks {
+        let swapped = tick % every == 0;
+        if swapped {
+            body.swap(Swap::going_on(worlds[(tick / every) % 2].clone()));
+        }
+        let now = body.tick(DT);
+        let crank = body.state().crank;
+        assert!((crank.angle_rad - angle_rad).abs() < 0.02, "the handle jumps at tick {tick}");
+        let worst = if swapped { &mut at_swaps } else { &mut elsewhere };
+        for (worst, change) in worst.iter_mut().zip(changes(&last, &now)) {
+            *worst = worst.max(change);
+        }
+        turning += usize::from(swapped && crank.rate_rad_s.abs() > 0.5);
+        (last, angle_rad) = (now, crank.angle_rad);
+    }
+    assert!(angle_rad.abs() > 0.1, "it was turned");
+    (elsewhere, at_swaps, turning)
+}
+
+#[test]
+fn a_world_that_goes_on_changes_its_laws_under_a_turning_crank_without_a_bump() {
+    let [before, after] = cranks();
+    let same = |world: &World| turned(&[world.clone(), world.clone()], usize::MAX).0;
+    let quiet = [same(&before), same(&after)];
+    // Every 137 ms, so that swaps fall on every part of the turn.
+    let (elsewhere, at_swaps, turning) = turned(&[before, after], 137);
+    println!("largest change a tick, N: never swapped {quiet:?}, swapped {elsewhere:?}, at swaps {at_swaps:?}");
+    assert!(turning > 20, "{turning} swaps under a turning crank");
+    for k in 0..2 {
+        let usual = quiet[0][k].max(quiet[1][k]);
+        assert!(at_swaps[k] <= 0.3 * usual, "a bump of {} N at a swap, up to {usual} N a tick otherwise", at_swaps[k]);
+        assert!(elsewhere[k] <= 1.3 * usual, "{} N a tick between swaps, {usual} N without", elsewhere[k]);
+    }
+}
+
+#[test]
+fn a_world_with_other_things_in_it_does_not_go_on_from_a_state_that_means_nothing_there() {
+    let mut body = Loop::new(Swap::new(presets::stacking()), rigid(false, leaning()), Limits::default());
+    for _ in 0..50 {
+        body.tick(DT);
+    }
+    body.swap(Swap::going_on(presets::crank()));
+    assert_eq!(body.state().bodies.len(), presets::crank().blocks.len());
+    let start = presets::crank().crank.expect("a crank").start_rad;
+    assert_eq!(body.state().crank.angle_rad, start);
+    assert_eq!(body.state().input.tip_in_world, leaning(), "the fingers stay where they are");
 }

@@ -1,5 +1,6 @@
-//! `touchstone bench servo`: how punctual the servo is on this machine, with and without pictures being drawn beside it.
+//! `touchstone bench`. Here `bench servo`: how punctual the servo is on this machine, with and without pictures being drawn beside it.
 
+mod blind;
 mod online;
 mod verdict;
 
@@ -34,6 +35,8 @@ pub struct Bench {
 enum What {
     /// Lateness, compute time, missed deadlines and stalls of the servo thread
     Servo(ServoBench),
+    /// How often the diagnosis names what is hidden in generated recordings, and how often something where nothing is
+    Blind(blind::BlindBench),
     /// Cost of a sample of the estimator beside the servo, against a tick of the servo
     Online(online::OnlineBench),
 }
@@ -68,6 +71,7 @@ impl Bench {
         match &self.what {
             What::Servo(bench) => bench.run(),
             What::Online(bench) => bench.run(),
+            What::Blind(bench) => bench.run(),
         }
     }
 
@@ -75,7 +79,7 @@ impl Bench {
     pub(super) fn passivity_control(&self) -> Option<f64> {
         match &self.what {
             What::Servo(bench) => bench.control.passivity_control,
-            What::Online(_) => None,
+            What::Online(_) | What::Blind(_) => None,
         }
     }
 }

@@ -145,7 +145,7 @@ impl Test {
         let state = State::new(&world, opened.start_in_world);
         let config =
             ServoConfig { passivity_control_n_s_m: self.control.passivity_control, ..ServoConfig::at(self.rate) };
-        let mut servo = Servo::start(Box::new(Swap { world, state }), opened.device, config)?;
+        let mut servo = Servo::start(Swap::at(world, state), opened.device, config)?;
         eprintln!("{}: watching for {} s. {}", spec.name, self.seconds, opened.hint);
         let ticks = self.watch(&mut servo);
         let privileges = servo.privileges();

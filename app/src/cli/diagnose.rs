@@ -46,7 +46,7 @@ impl Diagnose {
             None => None,
         };
         let baseline = self.baseline.clone().filter(|_| world.is_none());
-        let options = Options { task: None, baseline, world };
+        let options = Options { baseline, world, ..Options::default() };
         let mut diagnosis = super::progress::during("diagnosing", |_| diagnose(&recordings, &options))?;
         for log in &self.validate {
             diagnosis.validation.extend(validate(&self.source.load(log)?, &options, &diagnosis)?);

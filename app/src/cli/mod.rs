@@ -60,7 +60,7 @@ enum Command {
     Convert(convert::Convert),
     /// Devices that drive the hand, and a self-test in words
     Device(device::Device),
-    /// How punctual the servo is on this machine
+    /// How punctual the servo is on this machine, and how good the diagnosis is
     Bench(bench::Bench),
     /// Open the app, optionally on a log or a world
     App(AppArgs),

@@ -165,8 +165,8 @@ impl Record {
     /// Runs the servo's tick in simulated time until the operator is done or the time is up.
     fn run_servo(&self, world: World, state: State, device: Box<dyn Device>) -> Vec<TickRecord> {
         let limits = Limits { max_force_n: device.spec().max_force_n, ..Limits::default() };
-        let mut servo = Loop::new(Box::new(Swap { world, state }), device, limits)
-            .with_passivity_control(self.control.passivity_control);
+        let mut servo =
+            Loop::new(Swap::at(world, state), device, limits).with_passivity_control(self.control.passivity_control);
         let most = (self.seconds.unwrap_or(LONGEST_S) * self.rate).round() as usize;
         let mut ticks = Vec::new();
         while ticks.len() < most && (self.seconds.is_some() || !servo.finished()) {

@@ -90,7 +90,7 @@ pub(super) fn scene_picture(
     let state = State::resting(&world);
     let operator = ScriptedOperator::new(&world, &state, Skill::default(), 1);
     let limits = Limits { max_force_n: operator.spec().max_force_n, ..Limits::default() };
-    let mut servo = Loop::new(Box::new(Swap { world: world.clone(), state }), Box::new(operator), limits);
+    let mut servo = Loop::new(Swap::at(world.clone(), state), Box::new(operator), limits);
     let mut trail = Vec::new();
     for tick in 0..(at.unwrap_or(TELLING_S).clamp(0.0, record::LONGEST_S) * RATE_HZ) as usize {
         let sample = servo.tick(1.0 / RATE_HZ);

@@ -5,6 +5,8 @@ use super::jobs::Purpose;
 use super::panels::Panel as _;
 use super::panels::device_detail::DeviceDetail;
 use super::panels::devices::DeviceList;
+use super::panels::diagnose::DiagnosePanel;
+use super::panels::diagnosis::DiagnosisPanel;
 use super::panels::log::LogPanel;
 use super::panels::recording::RecordingPanel;
 use super::panels::results::ResultsPanel;
@@ -31,6 +33,8 @@ pub struct App {
     trainer_side: TrainerSide,
     device_list: DeviceList,
     device_detail: DeviceDetail,
+    diagnose: DiagnosePanel,
+    diagnosis: DiagnosisPanel,
 }
 
 impl App {
@@ -47,6 +51,8 @@ impl App {
             trainer_side: TrainerSide,
             device_list: DeviceList::default(),
             device_detail: DeviceDetail,
+            diagnose: DiagnosePanel,
+            diagnosis: DiagnosisPanel,
         }
     }
 
@@ -71,6 +77,7 @@ impl App {
             _ if self.session.mapping.is_some() => self.mapping(ui),
             Workspace::Train => self.train(ui),
             Workspace::Calibrate => self.calibrate(ui),
+            Workspace::Diagnose => self.diagnose(ui),
             Workspace::Devices => self.devices(ui),
         }
         if self.session.playing {
@@ -112,7 +119,8 @@ impl App {
                 let choices = [
                     (Workspace::Train, "Train", "Touch a virtual world (Ctrl+1)"),
                     (Workspace::Calibrate, "Calibrate", "Measure a real one from a log (Ctrl+2)"),
-                    (Workspace::Devices, "Devices", "What moves the fingers, and how well (Ctrl+3)"),
+                    (Workspace::Diagnose, "Diagnose", "What the model gets wrong, and why (Ctrl+3)"),
+                    (Workspace::Devices, "Devices", "What moves the fingers, and how well (Ctrl+4)"),
                 ];
                 // A dialog waits for an answer first.
                 let free = self.session.mapping.is_none();
@@ -130,7 +138,9 @@ impl App {
             Workspace::Train | Workspace::Devices => {
                 self.session.trainer.scene().map(|(_, w)| super::format::capitalised(&w.name)).unwrap_or_default()
             }
-            Workspace::Calibrate => self.session.prepared().map(|p| p.recording.name.clone()).unwrap_or_default(),
+            Workspace::Calibrate | Workspace::Diagnose => {
+                self.session.prepared().map(|p| p.recording.name.clone()).unwrap_or_default()
+            }
         }
     }
 
@@ -212,15 +222,27 @@ impl App {
         CentralPanel::default().frame(frame).show(ui, |ui| self.device_detail.ui(ui, session));
     }
 
+    fn diagnose(&mut self, ui: &mut Ui) {
+        let session = &mut self.session;
+        rest(ui, session);
+        if session.diagnosing.answer.is_some() {
+            let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
+            let width = (0.28 * ui.available_width()).clamp(356.0, 420.0);
+            Side::right("diagnosis").frame(plain).show_separator_line(false).resizable(false).exact_size(width).show(
+                ui,
+                |ui| {
+                    self.diagnosis.ui(ui, session);
+                },
+            );
+        }
+        let right = if session.diagnosing.answer.is_some() { 0 } else { 12 };
+        let frame = Frame::new().inner_margin(Margin { left: 12, right, top: 12, bottom: 12 });
+        CentralPanel::default().frame(frame).show(ui, |ui| self.diagnose.ui(ui, session));
+    }
+
     fn calibrate(&mut self, ui: &mut Ui) {
         let session = &mut self.session;
-        if session.trainer.is_recording() {
-            // A running recording goes on while the user looks elsewhere.
-            session.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
-            ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
-        } else {
-            session.trainer.pause();
-        }
+        rest(ui, session);
         let width = ui.available_width();
         let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
         Side::left("recording")
@@ -269,6 +291,16 @@ impl eframe::App for App {
 
     fn persist_egui_memory(&self) -> bool {
         true
+    }
+}
+
+/// The trainer while the user looks elsewhere: a running recording goes on, everything else rests.
+fn rest(ui: &Ui, session: &mut Session) {
+    if session.trainer.is_recording() {
+        session.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
+        ui.ctx().request_repaint_after(std::time::Duration::from_millis(200));
+    } else {
+        session.trainer.pause();
     }
 }
 

@@ -32,6 +32,9 @@ fn dialog(purpose: Purpose) -> Option<PathBuf> {
         Purpose::OpenWorld => dialog.set_title("Open a world").add_filter("Worlds", &["json"]).pick_file(),
         Purpose::SaveLog => dialog.set_title("Save the recording").set_file_name("recording.csv").save_file(),
         Purpose::SaveWorld => dialog.set_title("Save the world").set_file_name("world.json").save_file(),
+        Purpose::SaveExtended => {
+            dialog.set_title("Save the extended world").set_file_name("extended-world.json").save_file()
+        }
     }
 }
 
@@ -49,6 +52,15 @@ pub fn save_log(ctx: &egui::Context, session: &mut Session, field: &str) {
             Ok(()) => Outcome::Saved(path),
             Err(error) => Outcome::Failed(sentence(&error.to_string())),
         }
+    });
+}
+
+/// Writes the world with what a diagnosis found in it.
+pub fn save_extended(ctx: &egui::Context, session: &mut Session, path: PathBuf) {
+    let Some(worlds) = session.diagnosing.worlds.clone() else { return };
+    session.jobs.start(ctx, JobKind::Save, move || match write(&path, &(worlds.after.to_json() + "\n")) {
+        Ok(()) => Outcome::Saved(path),
+        Err(problem) => Outcome::Failed(problem),
     });
 }
 

@@ -1,9 +1,11 @@
 //! Work in the background: nothing here ever makes the window wait.
 
+use super::diagnosing::Answer;
 use super::mapping::Looked;
 use super::mapping::preview::Seen;
 use super::plots::Levels;
 use super::prepare::Prepared;
+use estimator::diagnose::Worlds;
 use estimator::log::preview::Preview;
 use estimator::online::enough::Enough;
 use estimator::pipeline::Analysis;
@@ -45,6 +47,10 @@ pub enum JobKind {
     Record,
     /// Looking for recordings that a killed program left behind.
     Recover,
+    /// Looking for what the model gets wrong.
+    Diagnose,
+    /// Making the worlds without and with what was found.
+    Extend,
 }
 
 /// Why a file is being chosen.
@@ -58,6 +64,8 @@ pub enum Purpose {
     SaveLog,
     /// Where the calibrated world goes.
     SaveWorld,
+    /// Where the extended world goes.
+    SaveExtended,
 }
 
 /// What a job brings back.
@@ -94,6 +102,10 @@ pub enum Outcome {
         /// The sidecar that was written.
         sidecar: PathBuf,
     },
+    /// What the model gets wrong, or why that cannot be told.
+    Diagnosed(Result<Box<Answer>, String>),
+    /// The worlds without and with what was found, or why there are none.
+    Extended(Result<Box<Worlds>, String>),
     /// Nothing: the user has cancelled it.
     Cancelled,
     /// One sentence.

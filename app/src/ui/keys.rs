@@ -22,6 +22,9 @@ pub fn handle(ui: &Ui, session: &mut Session) {
         session.workspace = Workspace::Calibrate;
     }
     if ctx.input_mut(|i| i.consume_shortcut(&command(Key::Num3))) {
+        session.workspace = Workspace::Diagnose;
+    }
+    if ctx.input_mut(|i| i.consume_shortcut(&command(Key::Num4))) {
         session.workspace = Workspace::Devices;
     }
     if ctx.input(|i| i.key_pressed(Key::F5)) {
@@ -36,7 +39,7 @@ pub fn handle(ui: &Ui, session: &mut Session) {
     }
     match session.workspace {
         Workspace::Calibrate => playback(&ctx, session),
-        Workspace::Devices => {}
+        Workspace::Devices | Workspace::Diagnose => {}
         Workspace::Train => {
             if ctx.input(|i| i.key_pressed(Key::R)) && !session.trainer.is_recording() {
                 super::recorder::start(session);

@@ -7,6 +7,7 @@
 //! * [`screenshot`] draws any of it without a window.
 
 pub mod app;
+pub mod diagnosing;
 mod files;
 pub mod film;
 pub mod fit_choice;

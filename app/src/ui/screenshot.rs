@@ -1,6 +1,7 @@
 //! Panels and workspaces drawn without a window: for the command line, reports and tests.
 
 use super::app::App;
+use super::diagnosing;
 use super::mapping::Mapping;
 use super::panels::log::LogPanel;
 use super::panels::parameters::ParametersPanel;
@@ -16,6 +17,7 @@ use super::trainer::{Clock, Operator, Trainer, WorldChoice};
 use anyhow::{Context as _, anyhow};
 use egui::{Frame, Ui, UiBuilder};
 use egui_kittest::wgpu::WgpuTestRenderer;
+use estimator::diagnose::Progress;
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
 use std::path::PathBuf;
@@ -44,6 +46,8 @@ pub enum Panel {
     Train,
     /// The whole Devices page.
     Devices,
+    /// The whole Diagnose workspace, with its answer and the extended model.
+    Diagnose,
     /// The dialog that maps the columns of the log.
     Mapping,
 }
@@ -120,12 +124,31 @@ fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Session> {
             session.fail(problem);
         }
     }
+    if panel == Panel::Diagnose {
+        diagnosed(&mut session);
+    }
     if panel == Panel::Rules {
         session.rules = super::rules::Rules::open(&mut session);
     }
     let (first, last) = session.view_s;
     session.seek(input.time_s.unwrap_or(first + 0.4 * (last - first)));
     Ok(session)
+}
+
+/// What the window's jobs would bring.
+fn diagnosed(session: &mut Session) {
+    session.workspace = Workspace::Diagnose;
+    let from = session.diagnosing.from;
+    match diagnosing::ask(&session.recordings, &session.choice, from, Progress::default()) {
+        Ok(answer) => {
+            match diagnosing::extend(&session.recordings, &session.choice, from, &answer) {
+                Ok(worlds) => session.diagnosing.worlds = Some(Arc::new(worlds)),
+                Err(problem) => session.diagnosing.worlds_problem = Some(problem),
+            }
+            session.diagnosing.answer = Some(Arc::new(answer));
+        }
+        Err(problem) => session.diagnosing.problem = Some(problem),
+    }
 }
 
 /// The dialog over a log, with its preview.
@@ -198,7 +221,7 @@ fn contents(panel: Panel) -> Contents {
         Panel::Results => framed(ResultsPanel::default()),
         Panel::Scene => framed(ScenePanel::default()),
         Panel::Trainer => framed(TrainerView::default()),
-        Panel::Rules | Panel::Workbench | Panel::Train | Panel::Devices | Panel::Mapping => {
+        Panel::Rules | Panel::Workbench | Panel::Train | Panel::Devices | Panel::Diagnose | Panel::Mapping => {
             Box::new(|ui, app| app.show(ui))
         }
     }

@@ -1,5 +1,6 @@
 //! What the window knows: loaded recordings, their fit, the replay, the time cursor. Panels read and change it; jobs fill it.
 
+use super::diagnosing::Diagnosing;
 use super::film::Film;
 pub use super::fit_choice::FitChoice;
 use super::jobs::{JobKind, Jobs, Outcome, Purpose, Replayed};
@@ -26,6 +27,8 @@ pub enum Workspace {
     Train,
     /// Measure a real one.
     Calibrate,
+    /// What the model gets wrong about it.
+    Diagnose,
     /// What moves the fingers, and how well.
     Devices,
 }
@@ -102,6 +105,8 @@ pub struct Session {
     pub fit_problem: Option<String>,
     /// The replay through the fitted world, by recording.
     pub replays: Vec<Option<Replayed>>,
+    /// What the model gets wrong.
+    pub diagnosing: Diagnosing,
     /// What is still missing for the parameters of the fit.
     pub enough: Vec<Enough>,
     /// The time that is looked at.
@@ -182,6 +187,9 @@ impl Session {
         self.enough.clear();
         self.analysis = None;
         self.fit_problem = None;
+        self.diagnosing.forget();
+        self.jobs.cancel(JobKind::Diagnose);
+        self.jobs.cancel(JobKind::Extend);
         self.playing = false;
         self.rules = None;
         self.choice = FitChoice {
@@ -224,6 +232,9 @@ impl Session {
         if kind == JobKind::Fit && self.analysis.is_none() {
             self.fit_problem = Some("The fit was cancelled; press Fit to start it again.".to_owned());
         }
+        if kind == JobKind::Diagnose {
+            self.diagnosing.problem = Some("The diagnosis was cancelled before it came to an answer.".to_owned());
+        }
     }
 
     /// Takes in what the jobs bring; call once a frame.
@@ -265,6 +276,8 @@ impl Session {
             Outcome::Segmented(index, found) => self.segmented(index, *found),
             Outcome::Simulated(replays) => self.replays = replays,
             Outcome::Judged(enough) => self.enough = enough,
+            Outcome::Diagnosed(answer) => self.diagnosed(answer),
+            Outcome::Extended(worlds) => self.extended(worlds),
             Outcome::Cancelled | Outcome::Chosen(_, None) => {}
             Outcome::Chosen(Purpose::OpenLog, Some(path)) => self.open_any(ctx, &path),
             Outcome::Chosen(Purpose::OpenWorld, Some(path)) => self.open_world(ctx, &path),

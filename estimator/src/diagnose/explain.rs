@@ -1,6 +1,7 @@
 //! From a comparison to an answer in words.
 
 use super::candidate::Candidate;
+use super::course::course;
 use super::experiment::propose;
 use super::extend::{effects, plain};
 use super::force::Model;
@@ -101,6 +102,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         validation: Vec::new(),
         plain: plain(model, study),
         effects: effects(track, model, study),
+        course: course(track, study),
         causes,
         alternatives,
         next_experiment: propose(track, model, study, &open_ones),
@@ -134,7 +136,7 @@ fn cause(study: &Study, k: usize, floor: f64, channel: &str) -> Cause {
     let (title, equation) = entry.map_or((candidate.id, ""), |e| (e.title, e.equation));
     let unit = if channel == "path" { "m" } else { "N" };
     let evidence = format!(
-        "{title}: what the model leaves of the {channel} follows {equation}; on data held out it falls from {:.3e} to {:.3e} {unit} \\
+        "{title}: what the model leaves of the {channel} follows {equation}; on data held out it falls from {:.3e} to {:.3e} {unit} \
          RMS (score {:.0}, {:.0} would do)",
         gain.heldout_rms_before, gain.heldout_rms_after, chosen.score, 20.0
     );

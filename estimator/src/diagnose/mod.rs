@@ -4,6 +4,7 @@
 //! Method: named hypotheses, effective-variance weights, whitening, forward selection with swaps, a locked test part.
 
 mod candidate;
+pub mod course;
 mod dictionary;
 mod experiment;
 mod explain;
@@ -15,6 +16,7 @@ mod generic;
 mod geometry;
 mod grid;
 mod held_arm;
+mod progress;
 mod quality;
 pub mod report;
 mod select;
@@ -22,11 +24,16 @@ mod sliding;
 mod system;
 mod track;
 mod validate;
+mod world;
 
 pub use report::{
     Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, Validation,
     Verdict,
 };
+
+pub use course::Course;
+pub use progress::Progress;
+pub use world::{Worlds, extended_world, worlds};
 
 use crate::estimate::EstimateError;
 use crate::pipeline;
@@ -45,6 +52,8 @@ pub struct Options {
     pub baseline: Option<String>,
     /// The world to start from.
     pub world: Option<World>,
+    /// How far it is, and the wish to end it.
+    pub progress: Progress,
 }
 
 /// Least score of a cause, in units of 2 ln(likelihood): keeps false alarms below 1 in 200 (`facts/diagnosis.md`, 3) …
@@ -92,27 +101,6 @@ pub fn validate(
     recordings.iter().map(of).collect()
 }
 
-/// The world that runs what the diagnosis found: the one it started from, or one calibrated from the recordings, with the extended laws.
-pub fn extended_world(
-    recordings: &[Recording],
-    options: &Options,
-    diagnosis: &Diagnosis,
-) -> Result<World, EstimateError> {
-    let mut world = if let Some(world) = &options.world {
-        world.clone()
-    } else {
-        let fit = pipeline::Options { task: options.task, ..pipeline::Options::default() };
-        pipeline::analyse(recordings, &fit)?.world
-    };
-    if let Some(crank) = &mut world.crank {
-        crank.effects.clone_from(&diagnosis.effects);
-    }
-    if let Some(mechanism) = &mut world.mechanism {
-        mechanism.effects.clone_from(&diagnosis.effects);
-    }
-    Ok(world)
-}
-
 fn threshold(period_s: f64) -> f64 {
     if period_s > SLOW_PERIOD_S { THRESHOLD_SLOW } else { THRESHOLD }
 }
@@ -121,7 +109,8 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
     let mut tracks = Vec::new();
     let mut geometries = Vec::new();
     let mut faults = Vec::new();
-    for recording in recordings {
+    for (k, recording) in recordings.iter().enumerate() {
+        options.progress.tell(0.4 * k as f64 / recordings.len() as f64)?;
         let found = quality::faults(recording);
         let signals = held_arm::Signals::of(recording, &found.bad)?;
         faults.extend(found.causes);
@@ -139,7 +128,9 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
     };
     let fixed = known_weight(&recordings[0], &mut model);
     let limit = threshold(track.period_s);
+    options.progress.tell(0.4)?;
     let study = force::study(&mut track, &model, &fixed, limit)?;
+    options.progress.tell(0.8)?;
     Ok(explain::explain(&track, &model, &study, &geometries, faults))
 }
 
@@ -205,7 +196,9 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
         (None, name) => named(name.unwrap_or("mass+viscous+coulomb"))?,
     };
     let limit = threshold(track.period_s);
+    options.progress.tell(0.4)?;
     let study = force::study(&mut track, &model, &Model::new(), limit)?;
+    options.progress.tell(0.8)?;
     Ok(explain::explain(&track, &model, &study, &[], faults))
 }
 

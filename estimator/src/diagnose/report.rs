@@ -1,5 +1,6 @@
 //! What a diagnosis answers. These types *are* the JSON of `touchstone diagnose --json`.
 
+use super::course::Course;
 use haptics::law::{Effect, Kind};
 use serde::{Deserialize, Serialize};
 
@@ -166,4 +167,7 @@ pub struct Diagnosis {
     /// The model's laws refitted, and with what was found: what the extended world runs.
     #[serde(skip)]
     pub effects: Vec<Effect>,
+    /// Measured and modelled forces, row by row.
+    #[serde(skip)]
+    pub course: Course,
 }

@@ -49,7 +49,7 @@ pub fn perform(world: &World, skill: Skill, mistakes: &[Mistake], seed: u64) -> 
     let state = State::resting(world);
     let operator = ScriptedOperator::with_mistakes(world, &state, skill, mistakes, seed);
     let limits = Limits { max_force_n: operator.spec().max_force_n, ..Limits::default() };
-    let mut servo = Loop::new(Box::new(Swap { world: world.clone(), state }), Box::new(operator), limits);
+    let mut servo = Loop::new(Swap::at(world.clone(), state), Box::new(operator), limits);
     let mut ticks = Vec::new();
     while !servo.finished() && (ticks.len() as f64) < LONGEST_S * RATE_HZ {
         ticks.push(servo.tick(1.0 / RATE_HZ));

@@ -174,7 +174,7 @@ mod tests {
         state = State::new(&world, tips(block, 0.024));
         let (mut handle, device) = keyboard(state.input.tip_in_world, world.hand.workspace);
         let limits = Limits { max_force_n: device.spec().max_force_n, ..Limits::default() };
-        let mut servo = Loop::new(Box::new(Swap { world, state }), Box::new(device), limits);
+        let mut servo = Loop::new(Swap::at(world, state), Box::new(device), limits);
         handle.set(KeysHeld { close: true, ..KeysHeld::default() });
         let mut force: f64 = 0.0;
         for _ in 0..4_000 {

@@ -240,7 +240,7 @@ mod tests {
     }
 
     fn ticks(world: &World, state: State, device: Box<dyn Device>, dt_s: f64) -> Vec<TickRecord> {
-        let swap = Box::new(Swap { world: world.clone(), state });
+        let swap = Swap::at(world.clone(), state);
         let mut servo = Loop::new(swap, device, Limits { max_force_n: 12.0, ..Limits::default() });
         let mut ticks = Vec::new();
         while !servo.finished() {

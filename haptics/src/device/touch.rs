@@ -255,7 +255,7 @@ mod tests {
         let state = State::resting(&world);
         let block = state.bodies[0].center_m;
         let (mut handle, device) = touch(state.input.tip_in_world, world.hand.workspace);
-        let mut servo = Loop::new(Box::new(Swap { world, state }), Box::new(device), Limits::default());
+        let mut servo = Loop::new(Swap::at(world, state), Box::new(device), Limits::default());
         let touches = |handle: &mut TouchHandle, center: Vec2, half: f64| {
             handle.move_to(1, center - Vec2::new(half, 0.0));
             handle.move_to(2, center + Vec2::new(half, 0.0));

@@ -5,6 +5,7 @@ use super::force_test::{Change, ForceTest};
 use super::passivity::{Observer, control};
 use super::rate::RateReport;
 use super::safety::{Limits, Safety, SafetyFlags};
+use super::swap::Swap;
 use super::timing::Timing;
 use crate::Vec2;
 use crate::device::{Command, Device};
@@ -54,23 +55,6 @@ pub struct Snapshot {
     pub line_n_m: Option<f64>,
     /// Why the servo stopped, if it did.
     pub fault: Option<&'static str>,
-}
-
-/// A world and its state, built elsewhere, ready to be swapped in.
-#[derive(Debug)]
-pub struct Swap {
-    /// The new world.
-    pub world: World,
-    /// Its state; the fingers are taken over from the running one.
-    pub state: State,
-}
-
-impl Swap {
-    /// A world in its starting state.
-    pub fn new(world: World) -> Box<Self> {
-        let state = State::resting(&world);
-        Box::new(Self { world, state })
-    }
 }
 
 impl Snapshot {
@@ -153,7 +137,7 @@ impl Loop {
         if dt_s != self.coupled_for_s {
             self.couple(dt_s);
         }
-        let Swap { world, state } = &mut *self.current;
+        let Swap { world, state, .. } = &mut *self.current;
         let mut flags = SafetyFlags::default();
         self.device.see(world, state);
         let raw = self.device.exchange(&Command { force_n: self.sent_force_n }, dt_s);
@@ -227,10 +211,10 @@ impl Loop {
         });
     }
 
-    /// Puts a new world in; returns the old one, to be dropped on another thread. The fingers stay where they are; the old
-    /// force fades and a new one that presses much harder comes up with the start ramp.
+    /// Puts a new world in; returns the old one, to be dropped on another thread. The fingers stay where they are, and so does
+    /// everything else in a world that goes on ([`Swap::going_on`]); the old force fades and a new one that presses much harder comes up with the start ramp.
     pub fn swap(&mut self, mut next: Box<Swap>) -> Box<Swap> {
-        next.state.input = self.current.state.input;
+        next.follow(&self.current);
         self.generation += 1;
         let old = std::mem::replace(&mut self.current, next);
         self.safety.swapped();

@@ -21,12 +21,14 @@ mod realtime;
 pub mod recorder;
 mod runner;
 pub mod safety;
+mod swap;
 pub mod tap;
 mod thread;
 pub mod timing;
 
 pub use clock::Deadlines;
 pub use guard::{FAULT_AFTER_S, ForceGuard};
-pub use r#loop::{Loop, Snapshot, Swap, TickRecord};
+pub use r#loop::{Loop, Snapshot, TickRecord};
 pub use realtime::Privileges;
+pub use swap::Swap;
 pub use thread::{Servo, ServoConfig, ServoError};

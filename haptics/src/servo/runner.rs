@@ -3,9 +3,10 @@
 use super::clock::Deadlines;
 use super::force_test::Request;
 use super::guard::Beat;
-use super::r#loop::{Loop, Snapshot, Swap, TickRecord};
+use super::r#loop::{Loop, Snapshot, TickRecord};
 use super::rate::{self, RateReport, Watch};
 use super::realtime::acquire;
+use super::swap::Swap;
 use super::tap::TapFiller;
 use super::thread::ServoConfig;
 use super::timing::{TickTiming, Timing, TimingCollector};

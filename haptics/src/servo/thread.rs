@@ -2,11 +2,12 @@
 
 use super::force_test::Request;
 use super::guard::{Beat, FAULT_AFTER_S, watch};
-use super::r#loop::{Loop, Snapshot, Swap, TickRecord};
+use super::r#loop::{Loop, Snapshot, TickRecord};
 use super::rate::{RateChoice, RateReport};
 use super::realtime::Privileges;
 use super::runner::Runner;
 use super::safety::Limits;
+use super::swap::Swap;
 use super::tap::{TapSource, tap};
 use crate::Vec2;
 use crate::device::Device;

@@ -13,6 +13,7 @@ pub fn report(rows: &[Row]) -> String {
         by_ratio_and_rate(rows),
         by_form(rows),
         confusion(rows),
+        gains(rows),
         wrong(rows),
         hard_logs(rows),
         wrong_nulls(rows),
@@ -34,7 +35,9 @@ fn figures(f: &Figures) -> String {
         ("truth in the ambiguity set", f.in_set.to_string()),
         ("mean size of that set", format!("{:.2}", f.set_size)),
         ("false alarms, >= 100 Hz", f.false_alarms.to_string()),
+        ("… at most, with 95 % confidence", at_most(f.false_alarms)),
         ("false alarms, 20 Hz", f.false_alarms_20_hz.to_string()),
+        ("… at most, with 95 % confidence", at_most(f.false_alarms_20_hz)),
         ("unexplained on nulls", f.null_flags.to_string()),
         ("precision when it names", f.precision.to_string()),
         ("nameless effects: named without a flag", f.nameless_named.to_string()),
@@ -49,6 +52,11 @@ fn figures(f: &Figures) -> String {
         let _ = writeln!(text, "  {what:<50} {value}");
     }
     text
+}
+
+/// One-sided bound.
+fn at_most(share: Share) -> String {
+    if share.of == 0 { "no cases".to_owned() } else { format!("{:.4}", share.at_most(0.05)) }
 }
 
 fn main_cases(rows: &[Row]) -> impl Iterator<Item = &Row> {
@@ -100,15 +108,47 @@ fn by_form(rows: &[Row]) -> String {
     text
 }
 
+/// What was said first where something (or nothing) was hidden, most often first; main cases and nulls.
+pub fn confusion_counts(rows: &[Row]) -> Vec<(String, Vec<(String, usize)>)> {
+    let counted = rows.iter().filter(|r| r.set == Set::Null || (r.set == Set::Single && !r.missed));
+    let hidden = |r: &Row| if r.hidden.is_empty() { "(nothing)".to_owned() } else { r.ids().join(" + ") };
+    let first = |r: &Row| r.named().first().map_or_else(|| r.said(), |first| (*first).to_owned());
+    let said = |rows: Vec<&Row>| {
+        let mut said: Vec<(String, usize)> =
+            grouped(rows.into_iter(), first).into_iter().map(|(name, rows)| (name, rows.len())).collect();
+        said.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+        said
+    };
+    grouped(counted, hidden).into_iter().map(|(id, rows)| (id, said(rows))).collect()
+}
+
 fn confusion(rows: &[Row]) -> String {
-    let mut text = String::from("confusion: hidden → said (first cause; main cases)\n");
-    for (id, rows) in grouped(main_cases(rows), |r| r.ids().join(" + ")) {
-        let said =
-            grouped(rows.iter().copied(), |r| r.named().first().map_or_else(|| r.said(), |first| (*first).to_owned()));
-        let mut said: Vec<_> = said.into_iter().map(|(name, rows)| (rows.len(), name)).collect();
-        said.sort_by(|a, b| b.cmp(a));
-        let words: Vec<String> = said.iter().map(|(count, name)| format!("{name} {count}")).collect();
+    let mut text = String::from("confusion: hidden → said (first cause; main cases and nulls)\n");
+    for (id, said) in confusion_counts(rows) {
+        let words: Vec<String> = said.iter().map(|(name, count)| format!("{name} {count}")).collect();
         let _ = writeln!(text, "  {id:<20} {}", words.join(", "));
+    }
+    text
+}
+
+/// Gain as a share of the oracle's by hidden cause: median and 10th percentile, and of how many cases with a force of their own
+/// (effect over noise 0.5 and more).
+pub fn gains_by_cause(rows: &[Row]) -> Vec<(String, [f64; 2], usize)> {
+    let strong = main_cases(rows).filter(|r| r.ratio >= 0.5 && r.effect_n2.is_finite());
+    grouped(strong, |r| r.ids().join(" + "))
+        .into_iter()
+        .map(|(id, rows)| {
+            let gains: Vec<f64> = rows.iter().map(|r| r.gain_of_oracle()).collect();
+            (id, [0.5, 0.1].map(|part| quantile(&gains, part)), rows.len())
+        })
+        .collect()
+}
+
+fn gains(rows: &[Row]) -> String {
+    let mut text =
+        String::from("gain as a share of the oracle's, effect/noise >= 0.5: median, 10th percentile, cases\n");
+    for (id, [median, low], cases) in gains_by_cause(rows) {
+        let _ = writeln!(text, "  {id:<20} {median:>7.3} {low:>7.3} {cases:>4}");
     }
     text
 }
@@ -192,28 +232,37 @@ fn equals(rows: &[Row]) -> String {
     text
 }
 
-fn calibration(rows: &[Row]) -> String {
+/// Stated probabilities in bins: their mean, and how often it was so.
+pub fn calibration_bins(rows: &[Row]) -> Vec<(f64, Share)> {
     let edges = [0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.99, 1.0 + 1e-9];
-    let beliefs: Vec<(f64, bool)> =
-        rows.iter().filter(|r| matches!(r.set, Set::Single | Set::Null)).flat_map(Row::beliefs).collect();
-    let (beliefs, odd): (Vec<_>, Vec<_>) = beliefs.into_iter().partition(|(p, _)| (0.0..=1.0).contains(p));
-    let mut text = String::from("calibration: stated probability → how often it was so\n");
-    for edge in edges.windows(2) {
+    let beliefs = beliefs(rows);
+    let bin = |edge: &[f64]| {
         let bin: Vec<&(f64, bool)> = beliefs.iter().filter(|(p, _)| *p >= edge[0] && *p < edge[1]).collect();
-        if bin.is_empty() {
-            continue;
-        }
         let mean = bin.iter().map(|(p, _)| p).sum::<f64>() / bin.len() as f64;
-        let _ = writeln!(text, "  {mean:.3}  {}", Share::count(bin.iter(), |(_, right)| *right));
+        (mean, Share::count(bin, |(_, right)| *right))
+    };
+    edges.windows(2).map(bin).filter(|(_, share)| share.of > 0).collect()
+}
+
+/// Mean square error of the stated probabilities (Brier 1950), of how many, and how many were none.
+pub fn brier(rows: &[Row]) -> (f64, usize, usize) {
+    let beliefs = beliefs(rows);
+    let (good, odd): (Vec<_>, Vec<_>) = beliefs.into_iter().partition(|(p, _)| (0.0..=1.0).contains(p));
+    let sum = good.iter().map(|(p, right)| (p - f64::from(u8::from(*right))).powi(2)).sum::<f64>();
+    (sum / good.len() as f64, good.len(), odd.len())
+}
+
+fn beliefs(rows: &[Row]) -> Vec<(f64, bool)> {
+    rows.iter().filter(|r| matches!(r.set, Set::Single | Set::Null)).flat_map(Row::beliefs).collect()
+}
+
+fn calibration(rows: &[Row]) -> String {
+    let mut text = String::from("calibration: stated probability → how often it was so\n");
+    for (mean, right) in calibration_bins(rows) {
+        let _ = writeln!(text, "  {mean:.3}  {right}");
     }
-    let brier = beliefs.iter().map(|(p, right)| (p - f64::from(u8::from(*right))).powi(2)).sum::<f64>();
-    let _ = writeln!(
-        text,
-        "  Brier score {:.4} of {}; no probabilities: {}",
-        brier / beliefs.len() as f64,
-        beliefs.len(),
-        odd.len()
-    );
+    let (score, of, odd) = brier(rows);
+    let _ = writeln!(text, "  Brier score {score:.4} of {of}; no probabilities: {odd}");
     text
 }
 

@@ -1,8 +1,12 @@
 //! One panel a file, behind one trait.
 
 pub(super) mod answers;
+mod causes;
+mod compare;
 pub mod device_detail;
 pub mod devices;
+pub mod diagnose;
+pub mod diagnosis;
 mod incoming;
 mod legend;
 pub mod log;

@@ -27,6 +27,7 @@ impl Panel for TrainerSide {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ScrollArea::vertical().id_salt("trainer side").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
+            super::compare::compare(ui, session);
             world(ui, session);
             operator(ui, session);
             plain_card(ui, "Recording", |ui| recorder::controls(ui, session));
@@ -131,7 +132,7 @@ fn operator_state(ui: &mut Ui, session: &mut Session) {
             compact(ui, |ui| {
                 ui.label(theme::caption(ui, text));
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    if ui.link("Devices …").on_hover_text("Choose and try what moves the fingers (Ctrl+3)").clicked()
+                    if ui.link("Devices …").on_hover_text("Choose and try what moves the fingers (Ctrl+4)").clicked()
                     {
                         session.workspace = Workspace::Devices;
                     }

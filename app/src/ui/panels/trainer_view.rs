@@ -46,6 +46,7 @@ impl Panel for TrainerView {
         if let Err(problem) = session.trainer.ensure_running() {
             session.fail(problem);
         }
+        super::compare::key(ui, session);
         let frame_s = f64::from(ui.input(|i| i.stable_dt));
         session.trainer.update(frame_s);
         #[cfg(feature = "sound")]
@@ -187,7 +188,7 @@ fn hints_of(hand: &HandDevice) -> &'static [(&'static str, &'static str)] {
         #[cfg(feature = "gamepad")]
         HandDevice::Gamepad => &[("Left stick", "moves"), ("Triggers", "close and open")],
         HandDevice::Haply(..) | HandDevice::Udp => {
-            &[("Your device", "moves the fingers"), ("Right drag", "turns the view"), ("Ctrl 3", "device page")]
+            &[("Your device", "moves the fingers"), ("Right drag", "turns the view"), ("Ctrl 4", "device page")]
         }
     }
 }

@@ -3,6 +3,8 @@
 use super::{CRANK, STACK, cart, clockless_path, count_near, empty, harness, no_driver, session};
 use crate::ui::jobs::JobKind;
 use crate::ui::panels::Panel;
+use crate::ui::panels::diagnose::DiagnosePanel;
+use crate::ui::panels::diagnosis::DiagnosisPanel;
 use crate::ui::panels::log::LogPanel;
 use crate::ui::panels::parameters::ParametersPanel;
 use crate::ui::panels::recording::RecordingPanel;
@@ -30,6 +32,8 @@ fn panels() -> Vec<Box<dyn Panel>> {
         Box::new(RecordingPanel::default()),
         Box::new(TrainerView::default()),
         Box::new(TrainerSide),
+        Box::new(DiagnosePanel),
+        Box::new(DiagnosisPanel),
     ]
 }
 

@@ -23,9 +23,32 @@ pub enum WorldChoice {
     Calibrated,
     /// A world from a file.
     File,
+    /// The model that was diagnosed.
+    Before,
+    /// The same with what was found.
+    After,
+}
+
+/// Two worlds that differ in their laws alone, to be felt by turns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compare {
+    /// The model that was diagnosed.
+    pub before: World,
+    /// The same with what was found.
+    pub after: World,
 }
 
 impl WorldChoice {
+    /// One of two worlds that differ in their laws alone.
+    fn is_compared(self) -> bool {
+        matches!(self, Self::Before | Self::After)
+    }
+
+    /// True when everything can stay where it is on the way to another choice.
+    pub(super) fn goes_on_to(self, other: Self) -> bool {
+        self != other && self.is_compared() && other.is_compared()
+    }
+
     /// The built-in world that this one is, if it is one.
     pub fn of(world: &World) -> Option<Self> {
         let built_in = [Self::Blocks, Self::Crank, Self::Needle, Self::Barrel, Self::Switch, Self::Table];
@@ -46,6 +69,8 @@ impl Trainer {
             WorldChoice::Table => presets::table(),
             WorldChoice::Calibrated => self.calibrated.clone().unwrap_or_else(presets::stacking),
             WorldChoice::File => self.file.clone().unwrap_or_else(presets::stacking),
+            WorldChoice::Before => self.compare.as_ref().map_or_else(presets::stacking, |c| c.before.clone()),
+            WorldChoice::After => self.compare.as_ref().map_or_else(presets::stacking, |c| c.after.clone()),
         }
     }
 }

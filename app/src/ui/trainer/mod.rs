@@ -14,7 +14,7 @@ mod task;
 mod trial;
 mod watch;
 
-pub use choice::WorldChoice;
+pub use choice::{Compare, WorldChoice};
 pub use control::{MOST_CONTROL_N_S_M, USUAL_CONTROL_N_S_M};
 pub use engine::{Engine, Inline};
 pub use hand::{HandDevice, HandSettings, Steering, spec_sentences};
@@ -85,6 +85,8 @@ pub struct Trainer {
     pub watch: Watch,
     /// The calibrated world, when there is one.
     pub calibrated: Option<World>,
+    /// The worlds before and after a diagnosis, when they are compared.
+    pub compare: Option<Compare>,
     /// The world from a file, when there is one.
     pub file: Option<World>,
     engine: Option<Engine>,
@@ -113,7 +115,7 @@ impl Trainer {
         let resumed = self.newest.take().zip(self.worlds.last().cloned()).filter(|_| self.operator == Operator::You);
         let swap = match resumed {
             Some((snapshot, world)) if snapshot.state.bodies.len() == world.blocks.len() => {
-                Box::new(Swap { world: (*world).clone(), state: snapshot.state })
+                Swap::at((*world).clone(), snapshot.state)
             }
             _ => Swap::new(self.world_of(self.choice)),
         };
@@ -134,7 +136,7 @@ impl Trainer {
         self.engine = None;
         self.steering = Steering::None;
         self.trial.abort();
-        let Swap { world, state } = &mut *swap;
+        let Swap { world, state, .. } = &mut *swap;
         let (device, problem) = match self.device(world, state) {
             Ok(device) => (device, None),
             // The mouse is always there; what is wrong with the other device is said.
@@ -195,17 +197,22 @@ impl Trainer {
         self.trial.abort();
     }
 
-    /// Takes another world while the servo runs, without a bump; the scripted operator starts over.
+    /// Takes another world while the servo runs, without a bump; the scripted operator starts over. Between two worlds that differ in
+    /// their laws alone everything stays where it is and goes on, also the scripted operator.
     pub fn choose(&mut self, choice: WorldChoice) -> Result<(), String> {
+        let goes_on = self.choice.goes_on_to(choice);
         self.choice = choice;
-        let swap = Swap::new(self.world_of(choice));
-        let running = self.engine.is_some() && self.operator == Operator::You;
+        let world = self.world_of(choice);
+        let swap = if goes_on { Swap::going_on(world) } else { Swap::new(world) };
+        let running = self.engine.is_some() && (goes_on || self.operator == Operator::You);
         if !running {
             return self.restart();
         }
         swap.world.check().map_err(|error| super::session::sentence(&error.to_string()))?;
         self.end_recording();
-        self.pinch.prepare_for(&swap.world, &swap.state);
+        if !goes_on {
+            self.pinch.prepare_for(&swap.world, &swap.state);
+        }
         let world = Arc::new(swap.world.clone());
         match self.engine.as_mut().map(|engine| engine.swap(swap)) {
             Some(true) => {

@@ -274,7 +274,7 @@ fn a_block_is_held_over_half_a_second() {
     let waves = Some(Waves::new(device.spec(), &world, DT));
     let channel =
         ChannelDevice::new(Box::new(device), ChannelConfig { waves, ..half_a_second(false) }).expect("possible");
-    let mut servo = Loop::new(Box::new(Swap { world, state }), Box::new(channel), Limits::default());
+    let mut servo = Loop::new(Swap::at(world, state), Box::new(channel), Limits::default());
     let mut run = |target: MouseTarget, seconds: f64| {
         handle.set(target);
         (0..(seconds / DT) as usize).map(|_| servo.tick(DT)).collect::<Vec<_>>()

@@ -226,7 +226,7 @@ fn a_block_is_pinched_and_lifted_through_the_coupling_and_free_motion_is_free() 
     device.wanted = Some((HandImpedance { damping_n_s_m: 6.0, ..HandImpedance::default() }, pinch_and_lift));
     let state = State::new(&world, start);
     let ground = state.bodies[0].center_m;
-    let mut servo = Loop::new(Box::new(Swap { world, state }), Box::new(device), limits());
+    let mut servo = Loop::new(Swap::at(world, state), Box::new(device), limits());
     let (mut free_n, mut shake_m): (f64, f64) = (0.0, 0.0);
     let mut held = None;
     for tick in 0..4_000 {

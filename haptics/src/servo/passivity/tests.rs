@@ -113,7 +113,7 @@ fn worlds_that_dissipate_are_never_accused() {
         let state = State::resting(&world);
         let device = ScriptedOperator::new(&world, &state, Skill::default(), 7);
         let ticks = (device.duration_s().min(30.0) / 1e-3) as usize;
-        let mut servo = Loop::new(Box::new(Swap { world: world.clone(), state }), Box::new(device), Limits::default());
+        let mut servo = Loop::new(Swap::at(world.clone(), state), Box::new(device), Limits::default());
         let least_j = (0..ticks).map(|_| servo.tick(1e-3).energy_j).fold(0.0, f64::min);
         println!("{}: {:.3} mJ at the least", world.name, 1e3 * least_j);
         assert!(least_j > -2e-4, "{}: {least_j} J", world.name);

@@ -1,0 +1,81 @@
+//! `touchstone bench blind`: generated recordings in which something is hidden, and how often the diagnosis finds it.
+
+use super::super::{Output, progress};
+use clap::Args;
+use estimator::diagnose::diagnose;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
+
+/// Arguments of `bench blind`.
+#[derive(Args)]
+pub struct BlindBench {
+    /// All of it: minutes to hours instead of a minute
+    #[arg(long)]
+    whole: bool,
+    /// Repeats a battery; a new one every day when not given
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Only so many cases, spread over the battery: a first look
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    cases: Option<u64>,
+}
+
+impl BlindBench {
+    pub(super) fn run(&self) -> anyhow::Result<Output> {
+        let seed = self.seed.unwrap_or_else(today);
+        let counts = if self.whole { blind::Counts::WHOLE } else { blind::Counts::FAST };
+        let mut jobs = blind::battery(counts, seed);
+        if let Some(cases) = self.cases {
+            let (all, wanted) = (jobs.len(), usize::try_from(cases)?.min(jobs.len()));
+            // Evenly: the sets follow each other.
+            jobs = (0..wanted).map(|k| jobs[k * all / wanted].clone()).collect();
+        }
+        let (begun, done) = (Instant::now(), AtomicUsize::new(0));
+        let rows = progress::during(&format!("asking {} cases, seed {seed}", jobs.len()), |share| {
+            blind::ask(&jobs, &|recordings, options| {
+                let answer = diagnose(recordings, options).map_err(|e| e.to_string());
+                share.tell((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / jobs.len() as f64);
+                answer
+            })
+        });
+        let took_s = begun.elapsed().as_secs_f64();
+        let mut json = blind::json(&rows);
+        (json["seed"], json["whole"], json["took_s"]) = (seed.into(), self.whole.into(), took_s.into());
+        let text = format!(
+            "{} cases, seed {seed}\n{}\n{took_s:.0} s in all, generator included\n",
+            rows.len(),
+            blind::report(&rows)
+        );
+        Ok(Output { text, json })
+    }
+}
+
+/// Days since 1970.
+fn today() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |time| time.as_secs() / 86_400)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_few_cases_come_out_with_tables_and_intervals_and_can_be_repeated() {
+        let bench = BlindBench { whole: false, seed: Some(3), cases: Some(4) };
+        let output = bench.run().expect("cases are made and asked");
+        assert!(output.text.starts_with("4 cases, seed 3\n"), "{}", output.text);
+        for part in
+            ["confusion: hidden", "calibration: stated", "false alarms, >= 100 Hz", "gain as a share of the oracle's"]
+        {
+            assert!(output.text.contains(part), "{part}: {}", output.text);
+        }
+        assert_eq!((output.json["cases"].as_u64(), output.json["seed"].as_u64()), (Some(4), Some(3)));
+        let nulls = &output.json["figures"]["false_alarms"];
+        assert!(nulls["of"].as_u64().is_some_and(|of| of >= 1), "the first case of a battery hides nothing: {nulls}");
+        let [low, share, high] =
+            [&nulls["interval"][0], &nulls["share"], &nulls["interval"][1]].map(|v| v.as_f64().expect("a number"));
+        assert!(low <= share && share <= high && high - low > 0.9, "one case proves little: {nulls}");
+        let again = bench.run().expect("the same again");
+        assert_eq!(again.json["confusion"], output.json["confusion"]);
+    }
+}

@@ -1,0 +1,168 @@
+//! The diagnosis of what is loaded: what is asked, what came out, and the worlds before and after.
+
+use super::fit_choice::FitChoice;
+use super::jobs::{JobKind, Outcome};
+use super::plots::Residuals;
+use super::prepare::Prepared;
+use super::session::{Session, sentence};
+use super::trainer::Compare;
+use estimator::diagnose::{self, Diagnosis, Options, Progress, Worlds};
+use haptics::recording::{Recording, Task};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+/// The model of a mechanism to start from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StartFrom {
+    /// Inertia alone.
+    Mass,
+    /// … and friction in proportion to speed.
+    Viscous,
+    /// … and dry friction.
+    #[default]
+    Coulomb,
+}
+
+impl StartFrom {
+    /// As the command line has it.
+    fn baseline(self) -> &'static str {
+        match self {
+            Self::Mass => "mass",
+            Self::Viscous => "mass+viscous",
+            Self::Coulomb => "mass+viscous+coulomb",
+        }
+    }
+}
+
+/// A diagnosis, ready to be shown.
+#[derive(Debug)]
+pub struct Answer {
+    /// What was found.
+    pub diagnosis: Diagnosis,
+    /// Its curves, one a recording.
+    pub residuals: Vec<Residuals>,
+}
+
+/// The diagnosis of the loaded recordings, as far as it has come.
+#[derive(Debug, Default)]
+pub struct Diagnosing {
+    /// The model of a mechanism to start from.
+    pub from: StartFrom,
+    /// What came out.
+    pub answer: Option<Arc<Answer>>,
+    /// Why nothing did, in one sentence.
+    pub problem: Option<String>,
+    /// The worlds without and with what was found, once the model was extended.
+    pub worlds: Option<Arc<Worlds>>,
+    /// Why there are none, in one sentence.
+    pub worlds_problem: Option<String>,
+}
+
+impl Diagnosing {
+    /// Forgets everything but the question.
+    pub fn forget(&mut self) {
+        *self = Self { from: self.from, ..Self::default() };
+    }
+}
+
+/// Diagnoses; the sentence of an error.
+pub fn ask(
+    recordings: &[Arc<Prepared>],
+    choice: &FitChoice,
+    from: StartFrom,
+    progress: Progress,
+) -> Result<Answer, String> {
+    let plain = plain(recordings, choice);
+    let diagnosis = diagnose::diagnose(&plain, &options(&plain, choice, from, progress))
+        .map_err(|error| sentence(&error.to_string()))?;
+    let residuals = (0..recordings.len()).map(|k| Residuals::new(&diagnosis, k)).collect();
+    Ok(Answer { diagnosis, residuals })
+}
+
+/// The worlds without and with what was found; the sentence of an error.
+pub fn extend(
+    recordings: &[Arc<Prepared>],
+    choice: &FitChoice,
+    from: StartFrom,
+    answer: &Answer,
+) -> Result<Worlds, String> {
+    let plain = plain(recordings, choice);
+    let options = options(&plain, choice, from, Progress::default());
+    diagnose::worlds(&plain, &options, &answer.diagnosis).map_err(|error| sentence(&error.to_string()))
+}
+
+fn plain(recordings: &[Arc<Prepared>], choice: &FitChoice) -> Vec<Recording> {
+    recordings.iter().map(|p| choice.given_to(&p.recording)).collect()
+}
+
+fn options(recordings: &[Recording], choice: &FitChoice, from: StartFrom, progress: Progress) -> Options {
+    let task = choice.task;
+    let is_mechanism = recordings.first().is_some_and(|r| is_mechanism(r, task));
+    Options { task, baseline: is_mechanism.then(|| from.baseline().to_owned()), progress, ..Options::default() }
+}
+
+/// True when the diagnosis starts from a model that can be chosen.
+pub fn is_mechanism(recording: &Recording, task: Option<Task>) -> bool {
+    estimator::segment::task_of(recording, task).is_ok_and(|task| task == Task::Mechanism)
+}
+
+impl Session {
+    /// Diagnoses in the background.
+    pub fn diagnose(&mut self, ctx: &egui::Context) {
+        if self.recordings.is_empty() {
+            return;
+        }
+        self.diagnosing.forget();
+        self.jobs.cancel(JobKind::Extend);
+        let (recordings, choice, from) = (self.recordings.clone(), self.choice.clone(), self.diagnosing.from);
+        self.jobs.start_watched(ctx, JobKind::Diagnose, "Diagnosing".to_owned(), move |ticket| {
+            let ticket = ticket.clone();
+            let progress = Progress::new(move |share| {
+                ticket.tell(share);
+                !ticket.cancelled().load(Ordering::Relaxed)
+            });
+            Outcome::Diagnosed(ask(&recordings, &choice, from, progress).map(Box::new))
+        });
+    }
+
+    /// Makes the worlds without and with what was found, in the background.
+    pub fn extend_model(&mut self, ctx: &egui::Context) {
+        let Some(answer) = self.diagnosing.answer.clone() else { return };
+        let (recordings, choice, from) = (self.recordings.clone(), self.choice.clone(), self.diagnosing.from);
+        self.jobs.start_watched(ctx, JobKind::Extend, "Extending the model".to_owned(), move |_| {
+            Outcome::Extended(extend(&recordings, &choice, from, &answer).map(Box::new))
+        });
+    }
+
+    /// A diagnosis has ended.
+    pub(super) fn diagnosed(&mut self, answer: Result<Box<Answer>, String>) {
+        match answer {
+            Ok(answer) => self.diagnosing.answer = Some(Arc::new(*answer)),
+            Err(problem) => self.diagnosing.problem = Some(problem),
+        }
+    }
+
+    /// The model was extended.
+    pub(super) fn extended(&mut self, worlds: Result<Box<Worlds>, String>) {
+        match worlds {
+            Ok(worlds) => self.diagnosing.worlds = Some(Arc::new(*worlds)),
+            Err(problem) => self.diagnosing.worlds_problem = Some(problem),
+        }
+    }
+
+    /// What the trainer switches between; an error says why the worlds cannot be felt.
+    pub fn comparison(&self) -> Result<Compare, String> {
+        let worlds = self.diagnosing.worlds.as_ref().ok_or("Extend the model first.")?;
+        let world = &worlds.after;
+        if world.blocks.is_empty() && world.crank.is_none() {
+            return Err(
+                "A mechanism that is driven directly has no handle for the hand; save the extended world instead."
+                    .to_owned(),
+            );
+        }
+        for world in [&worlds.before, &worlds.after] {
+            world.check().map_err(|error| sentence(&error.to_string()))?;
+        }
+        Ok(Compare { before: worlds.before.clone(), after: worlds.after.clone() })
+    }
+}

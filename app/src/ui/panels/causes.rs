@@ -1,0 +1,144 @@
+//! A cause that was found, as a card.
+
+use crate::ui::format;
+use crate::ui::session::sentence;
+use crate::ui::theme::{self, palette, space};
+use crate::ui::widgets::{bar, card, compact};
+use egui::{Align, Color32, Frame, Layout, Margin, Response, RichText, Stroke, Ui};
+use estimator::diagnose::{Alternative, Cause, CauseParameter, Diagnosis};
+use haptics::law::{self, Kind};
+
+/// What a cause is called.
+pub fn title(id: &str) -> String {
+    match law::cause(id) {
+        Some(entry) => entry.title.to_owned(),
+        None if id.starts_with("other:") => "Something without a name".to_owned(),
+        None => id.to_owned(),
+    }
+}
+
+/// True when an extended world differs by it.
+pub fn changes_the_world(cause: &Cause) -> bool {
+    cause.kind == Kind::Plant && law::cause(&cause.id).is_some()
+}
+
+/// Its card; `rank` counts from one.
+pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Diagnosis) {
+    let p = palette(ui);
+    let chance = format!("{} %", format::number(100.0 * cause.posterior, 0));
+    let trailing = |ui: &mut Ui| {
+        ui.label(theme::strong(chance)).on_hover_text("Probability among the causes that could stand in its place");
+    };
+    card(ui, &format!("{rank}  {}", title(&cause.id)), trailing, |ui| {
+        bar(ui, cause.posterior, 1.0, None, p.accent);
+        ui.add_space(space::XS);
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = space::XS;
+            chip(ui, &cause.id, p.secondary).on_hover_ui(|ui| page(ui, &cause.id));
+            match cause.kind {
+                Kind::Plant => chip(ui, "in the world", p.good).on_hover_text("The extended world has it"),
+                Kind::Instrument => chip(ui, "in the measurement", p.caution)
+                    .on_hover_text("A fault of the measurement: it corrects the recording and leaves the world alone"),
+            };
+        });
+        for parameter in &cause.parameters {
+            line(ui, parameter);
+        }
+        gain(ui, cause, diagnosis);
+        ui.add(egui::Label::new(theme::caption(ui, sentence(&cause.evidence))).wrap());
+        for other in diagnosis.alternatives.iter().filter(|a| a.instead_of == cause.id) {
+            alternative(ui, other);
+        }
+    });
+}
+
+/// A parameter with its error.
+fn line(ui: &mut Ui, parameter: &CauseParameter) {
+    compact(ui, |ui| {
+        ui.label(RichText::new(&parameter.name).color(palette(ui).secondary));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let (value, error) = format::with_error(parameter.value, Some(parameter.std_error));
+            let error = error.map_or_else(String::new, |e| format!(" ± {e}"));
+            ui.label(RichText::new(unit(&parameter.unit)).size(12.0).color(palette(ui).secondary));
+            ui.label(RichText::new(error).color(palette(ui).secondary));
+            ui.spacing_mut().item_spacing.x = 0.0;
+            ui.label(theme::strong(value));
+        });
+    });
+}
+
+/// `N s/m` → `N·s/m`; nothing for a pure number.
+fn unit(unit: &str) -> String {
+    if unit == "1" { String::new() } else { unit.replace("Nm", "N·m").replace(' ', "·") }
+}
+
+fn gain(ui: &mut Ui, cause: &Cause, diagnosis: &Diagnosis) {
+    let gain = &cause.gain;
+    if gain.heldout_rms_before <= 0.0 {
+        return;
+    }
+    let percent = |share: f64| format::number(100.0 * share, 0);
+    let [low, high] = gain.interval;
+    let unit = match (cause.evidence.contains("of the path"), diagnosis.course.is_angular) {
+        (true, _) => ("mm", 1e3),
+        (false, true) => ("N·m", 1.0),
+        (false, false) => ("N", 1.0),
+    };
+    compact(ui, |ui| {
+        ui.label(theme::caption(ui, "Explains"));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let rms = |value: f64| format::significant(unit.1 * value, 2);
+            let text = format!("{} → {} {} RMS", rms(gain.heldout_rms_before), rms(gain.heldout_rms_after), unit.0);
+            ui.label(theme::caption(ui, text));
+            let text = format!("{} % [{}, {}]", percent(gain.share_of_explainable), percent(low), percent(high));
+            ui.label(RichText::new(text).size(12.0)).on_hover_text(
+                "Share of what can be explained (down to the noise) on data that took no part, with its 95 % interval",
+            );
+        });
+    });
+}
+
+fn alternative(ui: &mut Ui, other: &Alternative) {
+    ui.add_space(space::XS);
+    compact(ui, |ui| {
+        ui.label(theme::caption(ui, "or"));
+        ui.label(RichText::new(title(&other.id)).size(12.0)).on_hover_ui(|ui| page(ui, &other.id));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.label(RichText::new(format!("{} %", format::number(100.0 * other.posterior, 0))).size(12.0));
+        });
+    });
+    bar(ui, other.posterior, 1.0, None, palette(ui).faint);
+    ui.add(egui::Label::new(theme::caption(ui, sentence(&other.why))).wrap());
+}
+
+/// A small label with a rim.
+pub(super) fn chip(ui: &mut Ui, text: &str, color: Color32) -> Response {
+    let p = palette(ui);
+    Frame::new()
+        .fill(p.sunken)
+        .stroke(Stroke::new(1.0, p.border))
+        .corner_radius(9)
+        .inner_margin(Margin::symmetric(7, 1))
+        .show(ui, |ui| ui.label(RichText::new(text).size(11.0).color(color)))
+        .response
+}
+
+/// What the catalogue says.
+fn page(ui: &mut Ui, id: &str) {
+    ui.set_max_width(320.0);
+    let Some(entry) = law::cause(id) else {
+        ui.label("What is left goes with this, and no known cause does so here.");
+        return;
+    };
+    ui.label(theme::strong(entry.title));
+    ui.label(RichText::new(entry.equation).monospace());
+    ui.label(entry.what);
+    ui.label(theme::caption(ui, format!("It shows: {}", lower(entry.shows))));
+    ui.label(theme::caption(ui, entry.mimics));
+    ui.label(theme::caption(ui, entry.reveals));
+}
+
+fn lower(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+}

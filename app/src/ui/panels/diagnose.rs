@@ -1,0 +1,166 @@
+//! What the model gets wrong, as curves: measured against modelled, and what is left against each suspect variable.
+
+use super::Panel;
+use crate::ui::diagnosing::StartFrom;
+use crate::ui::files;
+use crate::ui::jobs::{JobKind, Purpose};
+use crate::ui::plots::{Cloud, Residuals, cloud_plot, force_plot, has_directions, inks};
+use crate::ui::session::{Session, Workspace};
+use crate::ui::theme::{self, palette, space};
+use crate::ui::widgets::{compact, empty_state, primary_button, segmented, sheet};
+use egui::{Align, Color32, Layout, RichText, Sense, Stroke, Ui, vec2};
+
+/// Share of the height that the curve over time takes.
+const TIME_SHARE: f32 = 0.36;
+/// Height of a plot's heading.
+const HEAD: f32 = 20.0;
+
+/// The curves of the diagnosis.
+#[derive(Default)]
+pub struct DiagnosePanel;
+
+impl Panel for DiagnosePanel {
+    fn title(&self) -> &'static str {
+        "Diagnose"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        sheet(ui).inner_margin(space::M).show(ui, |ui| {
+            ui.set_min_size(ui.available_size());
+            let answer = session.diagnosing.answer.clone();
+            match answer.as_ref().and_then(|a| a.residuals.get(session.current).filter(|r| !r.is_empty())) {
+                Some(curves) => draw(ui, curves),
+                None => nothing(ui, session),
+            }
+        });
+    }
+}
+
+fn nothing(ui: &mut Ui, session: &mut Session) {
+    if session.recordings.is_empty() {
+        let text = "Open a log of a crank or a mechanism. What the simulation gets wrong about it, why, and what mending it gains \
+                    appear here.";
+        empty_state(ui, "Nothing to diagnose yet", text, |ui| {
+            if primary_button(ui, true, "Open a log …").on_hover_text("Ctrl+O").clicked() {
+                files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
+            }
+            if ui.link("or record one in Train").clicked() {
+                session.workspace = Workspace::Train;
+            }
+        });
+    } else if session.jobs.is_running(JobKind::Diagnose) {
+        let text = "The measured motion goes through the model; what is left of the force is compared with what every known \
+                    cause would leave there.";
+        empty_state(ui, "Diagnosing …", text, |ui| {
+            ui.add(egui::Spinner::new().size(20.0));
+            ui.add_space(space::S);
+            if ui.button("Cancel").clicked() {
+                session.give_up(JobKind::Diagnose);
+            }
+        });
+    } else if let Some(problem) = session.diagnosing.problem.clone() {
+        empty_state(ui, "This recording cannot be diagnosed", &problem, |ui| begin(ui, session, "Try again"));
+    } else if session.diagnosing.answer.is_some() {
+        empty_state(
+            ui,
+            "No curves",
+            "This recording had no part in the diagnosis; choose another one of the file.",
+            |_| {},
+        );
+    } else {
+        let text = "The model is compared with what was measured. What it gets wrong is named, with its size, what mending it \
+                    gains on data that took no part, and what else it could be.";
+        empty_state(ui, "What does the simulation get wrong?", text, |ui| begin(ui, session, "Diagnose"));
+    }
+}
+
+/// The button, and the model to start from where there is a choice.
+fn begin(ui: &mut Ui, session: &mut Session, word: &str) {
+    start_from(ui, session);
+    if primary_button(ui, true, word).clicked() {
+        let ctx = ui.ctx().clone();
+        session.diagnose(&ctx);
+    }
+}
+
+/// The model of a mechanism to start from; true when it was changed.
+pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
+    let task = session.choice.task;
+    let mechanism = session.prepared().is_some_and(|p| crate::ui::diagnosing::is_mechanism(&p.recording, task));
+    if !mechanism {
+        return false;
+    }
+    let choices = [
+        (StartFrom::Mass, "Inertia", "Start from inertia alone: even friction must be found"),
+        (StartFrom::Viscous, "+ viscous", "Start from inertia and friction in proportion to speed"),
+        (StartFrom::Coulomb, "+ dry", "Start from inertia, viscous and dry friction"),
+    ];
+    let changed = ui
+        .scope(|ui| {
+            ui.set_max_width(240.0);
+            segmented(ui, &mut session.diagnosing.from, &choices)
+        })
+        .inner;
+    ui.add_space(space::S);
+    changed
+}
+
+fn draw(ui: &mut Ui, curves: &Residuals) {
+    let height = ui.available_height();
+    let gap = space::S;
+    ui.spacing_mut().item_spacing.y = 0.0;
+    head(ui, "Force along the motion", curves.unit, |ui| {
+        let inks = inks(ui);
+        key(ui, inks.noise, 9.0, "± 2 σ of the noise");
+        key(ui, inks.extended, 2.0, "with what was found");
+        key(ui, inks.model, 2.0, "model");
+        key(ui, inks.measured, 2.0, "measured");
+    });
+    let upper = (TIME_SHARE * height).max(90.0);
+    force_plot(ui, upper - HEAD, curves);
+    ui.add_space(gap);
+    let lines = curves.clouds.len().div_ceil(2).max(1);
+    let each = ((height - upper - gap * lines as f32) / lines as f32 - HEAD).max(60.0);
+    for (k, pair) in curves.clouds.chunks(2).enumerate() {
+        if k > 0 {
+            ui.add_space(gap);
+        }
+        ui.spacing_mut().item_spacing.x = space::L;
+        ui.columns(pair.len(), |columns| {
+            for (ui, cloud) in columns.iter_mut().zip(pair) {
+                ui.spacing_mut().item_spacing.y = 0.0;
+                residual(ui, each, cloud, curves);
+            }
+        });
+    }
+}
+
+fn residual(ui: &mut Ui, height: f32, cloud: &Cloud, curves: &Residuals) {
+    let units = format!("{} over {}", curves.unit, cloud.unit);
+    head(ui, &format!("Left over against {}", cloud.title.to_lowercase()), &units, |ui| {
+        if has_directions(cloud.suspect) && ui.available_width() > 90.0 {
+            let note = RichText::new("— forwards  - - back").size(10.5).color(palette(ui).faint);
+            ui.label(note).on_hover_text("Means over small ranges, by the direction of motion; points: before");
+        }
+    });
+    cloud_plot(ui, height, cloud, curves);
+}
+
+/// A heading with its unit, and what stands on the right of it.
+fn head(ui: &mut Ui, title: &str, unit: &str, trailing: impl FnOnce(&mut Ui)) {
+    compact(ui, |ui| {
+        ui.set_min_height(HEAD);
+        ui.label(theme::strong(title));
+        ui.label(theme::caption(ui, unit));
+        ui.with_layout(Layout::right_to_left(Align::Center), trailing);
+    });
+}
+
+/// A line of a colour and what it means.
+fn key(ui: &mut Ui, color: Color32, width: f32, text: &str) {
+    ui.spacing_mut().item_spacing.x = 6.0;
+    ui.label(theme::caption(ui, text));
+    let (rect, _) = ui.allocate_exact_size(vec2(14.0, 12.0), Sense::hover());
+    ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(width, color));
+    ui.add_space(space::S);
+}

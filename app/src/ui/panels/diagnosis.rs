@@ -1,0 +1,287 @@
+//! What a diagnosis answers, beside its curves: the verdict, the causes, the extended model, what to record next.
+
+use super::Panel;
+use super::{causes, diagnose};
+use crate::ui::diagnosing::Answer;
+use crate::ui::files;
+use crate::ui::format;
+use crate::ui::jobs::{JobKind, Purpose};
+use crate::ui::plots::inks;
+use crate::ui::session::{Session, Workspace, sentence};
+use crate::ui::theme::{self, palette, space};
+use crate::ui::trainer::WorldChoice;
+use crate::ui::widgets::{bar, card, compact, plain_card, primary_button};
+use egui::{Align, Color32, Layout, RichText, ScrollArea, Ui, vec2};
+use estimator::diagnose::{Cause, Diagnosis, Verdict};
+
+/// The right column of the diagnosis.
+#[derive(Default)]
+pub struct DiagnosisPanel;
+
+impl Panel for DiagnosisPanel {
+    fn title(&self) -> &'static str {
+        "Diagnosis"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        take_choice(ui, session);
+        let Some(answer) = session.diagnosing.answer.clone() else { return };
+        ScrollArea::vertical().id_salt("diagnosis").auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = space::S;
+            verdict(ui, session, &answer);
+            extension(ui, session, &answer);
+            for (k, cause) in answer.diagnosis.causes.iter().enumerate() {
+                causes::cause(ui, k + 1, cause, &answer.diagnosis);
+            }
+            next(ui, &answer.diagnosis);
+            hidden(ui, &answer.diagnosis);
+            warnings(ui, &answer.diagnosis);
+        });
+    }
+}
+
+/// The answer in one line.
+fn headline(diagnosis: &Diagnosis) -> String {
+    let names: Vec<String> = diagnosis.causes.iter().map(|c| causes::title(&c.id)).collect();
+    match diagnosis.verdict {
+        Verdict::None => "Nothing beyond the noise.".to_owned(),
+        Verdict::Unexplained => "Something is there that no known cause explains.".to_owned(),
+        Verdict::Causes => format!("The model misses {}.", listed(&names)),
+        Verdict::Ambiguous => {
+            let either = |cause: &Cause| {
+                let others = diagnosis.alternatives.iter().filter(|a| a.instead_of == cause.id);
+                let all: Vec<String> = std::iter::once(&cause.id)
+                    .chain(others.map(|a| &a.id))
+                    .map(|id| small(&causes::title(id)))
+                    .collect();
+                all.join(" or ")
+            };
+            let open: Vec<String> = diagnosis.causes.iter().map(either).collect();
+            format!("The model misses {}: this recording cannot tell which.", joined(&open))
+        }
+    }
+}
+
+/// `a, b and c`, with small letters.
+fn listed(names: &[String]) -> String {
+    joined(&names.iter().map(|n| small(n)).collect::<Vec<_>>())
+}
+
+/// With a small letter in front, unless it is a person's name.
+fn small(name: &str) -> String {
+    if ["Coulomb", "Stribeck"].iter().any(|person| name.starts_with(person)) {
+        return name.to_owned();
+    }
+    let mut letters = name.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+}
+
+fn joined(words: &[String]) -> String {
+    match words {
+        [] => "something".to_owned(),
+        [one] => one.clone(),
+        [most @ .., last] => format!("{} and {last}", most.join(", ")),
+    }
+}
+
+fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
+    let d = &answer.diagnosis;
+    let (mut again, mut changed) = (false, false);
+    let busy = session.jobs.is_running(JobKind::Diagnose);
+    card(
+        ui,
+        "Diagnosis",
+        |ui| {
+            if busy {
+                ui.add(egui::Spinner::new().size(14.0));
+            } else {
+                again = ui.link("Again").on_hover_text("Diagnose once more").clicked();
+            }
+        },
+        |ui| {
+            ui.add(egui::Label::new(theme::strong(headline(d))).wrap());
+            ui.add_space(space::XS);
+            changed = diagnose::start_from(ui, session);
+            let (inks, most) = (inks(ui), d.baseline.heldout_rms_n.max(d.noise_floor_n).max(1e-12));
+            let unit = unit(d);
+            level(ui, "Model", d.baseline.heldout_rms_n, most, unit, inks.model);
+            if !d.causes.is_empty() {
+                level(ui, "With what was found", d.end.heldout_rms_n, most, unit, inks.extended);
+            }
+            level(ui, "Noise", d.noise_floor_n, most, unit, palette(ui).faint);
+            ui.label(theme::caption(ui, "Force left over on data that chose and fitted nothing, RMS."));
+        },
+    );
+    if again || changed {
+        let ctx = ui.ctx().clone();
+        session.diagnose(&ctx);
+    }
+}
+
+/// Shown unit of the forces.
+fn unit(diagnosis: &Diagnosis) -> &'static str {
+    if diagnosis.course.is_angular { "N·m" } else { "N" }
+}
+
+/// A name, a bar and a number in one line.
+fn level(ui: &mut Ui, label: &str, value: f64, most: f64, unit: &str, color: Color32) {
+    compact(ui, |ui| {
+        let column = |ui: &mut Ui, width: f32, layout: Layout, text: RichText| {
+            ui.allocate_ui_with_layout(vec2(width, 16.0), layout, |ui| {
+                ui.set_min_width(width);
+                ui.label(text);
+            });
+        };
+        column(ui, 122.0, Layout::left_to_right(Align::Center), theme::caption(ui, label));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let text = RichText::new(format!("{} {unit}", format::significant(value, 3))).size(12.0);
+            column(ui, 76.0, Layout::right_to_left(Align::Center), text);
+            bar(ui, value, most, None, color);
+        });
+    });
+}
+
+fn extension(ui: &mut Ui, session: &mut Session, answer: &Answer) {
+    let plant = answer.diagnosis.causes.iter().any(causes::changes_the_world);
+    if !plant {
+        return;
+    }
+    let busy = session.jobs.is_running(JobKind::Extend);
+    let extended = session.diagnosing.worlds.is_some();
+    plain_card(ui, "Extended model", |ui| {
+        if let Some(problem) = session.diagnosing.worlds_problem.clone() {
+            ui.label(RichText::new(problem).size(12.0).color(palette(ui).caution));
+        }
+        if !extended {
+            ui.label(theme::caption(ui, "A world with the found laws in it, beside one with the model alone."));
+            ui.add_space(space::XS);
+            ui.horizontal(|ui| {
+                if primary_button(ui, !busy, "Extend the model").clicked() {
+                    let ctx = ui.ctx().clone();
+                    session.extend_model(&ctx);
+                }
+                if busy {
+                    ui.add(egui::Spinner::new().size(16.0));
+                }
+            });
+            return;
+        }
+        before_after(ui, &answer.diagnosis);
+        ui.add_space(space::XS);
+        feel(ui, session);
+    });
+}
+
+/// The gain of the whole extension.
+fn before_after(ui: &mut Ui, d: &Diagnosis) {
+    let unit = unit(d);
+    let number = |value: f64| format::significant(value, 3);
+    let (before, after) = (d.baseline.heldout_rms_n, d.end.heldout_rms_n);
+    ui.horizontal(|ui| {
+        let inks = inks(ui);
+        ui.spacing_mut().item_spacing.x = space::S;
+        ui.label(theme::title(format!("{} {unit}", number(before))).color(inks.model));
+        ui.label(RichText::new("→").color(palette(ui).secondary));
+        ui.label(theme::title(format!("{} {unit}", number(after))).color(inks.extended));
+    });
+    let gone = 100.0 * (1.0 - (after / before.max(1e-12)).powi(2)).max(0.0);
+    let text =
+        format!("The world now has what was found: {}\u{a0}% of the left-over power is gone.", format::number(gone, 0));
+    ui.label(theme::caption(ui, text));
+}
+
+fn feel(ui: &mut Ui, session: &mut Session) {
+    let comparison = session.comparison();
+    ui.horizontal(|ui| {
+        if primary_button(ui, comparison.is_ok(), "Feel it in Train")
+            .on_hover_text("Switch between both worlds while you hold the object")
+            .clicked()
+            && let Ok(compare) = &comparison
+        {
+            session.trainer.compare = Some(compare.clone());
+            match session.trainer.choose(WorldChoice::After) {
+                Ok(()) => session.workspace = Workspace::Train,
+                Err(problem) => session.fail(problem),
+            }
+        }
+        if ui.button("Save world …").on_hover_text("Writes the extended world as a file").clicked() {
+            files::ask(ui.ctx(), &mut session.jobs, Purpose::SaveExtended);
+        }
+    });
+    if let Err(problem) = comparison {
+        ui.label(theme::caption(ui, problem));
+    }
+}
+
+/// The file dialog has answered.
+fn take_choice(ui: &Ui, session: &mut Session) {
+    match session.chosen.take() {
+        Some((Purpose::SaveExtended, path)) => files::save_extended(ui.ctx(), session, path),
+        other => session.chosen = other,
+    }
+}
+
+fn next(ui: &mut Ui, diagnosis: &Diagnosis) {
+    let Some(next) = &diagnosis.next_experiment else { return };
+    plain_card(ui, "Record next", |ui| {
+        ui.add(egui::Label::new(sentence(&next.motion)).wrap());
+        let names: Vec<String> = next.separates.iter().map(|id| causes::title(id)).collect();
+        let power = format::number(100.0 * next.expected_power, 0);
+        let text = format!("Tells {} apart with a probability of {power}\u{a0}%.", listed(&names));
+        ui.label(theme::caption(ui, text));
+        ui.add_space(2.0);
+        bar(ui, next.expected_power, 1.0, None, palette(ui).accent);
+    });
+}
+
+/// Causes that the recording could not have shown, each with the reason under the pointer.
+fn hidden(ui: &mut Ui, diagnosis: &Diagnosis) {
+    if diagnosis.not_excited.is_empty() {
+        return;
+    }
+    let count = diagnosis.not_excited.len();
+    card(
+        ui,
+        "Could not have been seen here",
+        |ui| drop(ui.label(theme::caption(ui, count.to_string()))),
+        |ui| {
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
+                for hidden in &diagnosis.not_excited {
+                    causes::chip(ui, &causes::title(&hidden.id), palette(ui).secondary)
+                        .on_hover_text(sentence(&hidden.why));
+                }
+            });
+            ui.label(theme::caption(ui, "They are not excluded: this motion does not show them."));
+        },
+    );
+}
+
+fn warnings(ui: &mut Ui, diagnosis: &Diagnosis) {
+    if diagnosis.warnings.is_empty() {
+        return;
+    }
+    plain_card(ui, "Warnings", |ui| {
+        for warning in &diagnosis.warnings {
+            ui.horizontal_top(|ui| {
+                ui.label(RichText::new("▲").size(9.0).color(palette(ui).caution));
+                ui.add(egui::Label::new(RichText::new(sentence(warning)).size(12.0)).wrap());
+            });
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_listed_as_in_a_sentence() {
+        let list = |names: &[&str]| listed(&names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>());
+        assert_eq!(
+            list(&["Backlash", "Coulomb friction", "Return spring"]),
+            "backlash, Coulomb friction and return spring"
+        );
+        assert_eq!(list(&["Tilted plane"]), "tilted plane");
+    }
+}

@@ -1,0 +1,131 @@
+//! Draws the curves of a diagnosis.
+
+use super::axes::{marks, time_axis, value_axis};
+use super::residuals::{Cloud, Residuals, Suspect};
+use crate::ui::format;
+use crate::ui::theme::{Palette, palette, role};
+use egui::{Color32, FontId, Rangef, Sense, Ui, Vec2};
+use egui_plot::{AxisHints, FilledArea, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Points};
+use render::ColorRole;
+use std::fmt::Debug;
+use std::hash::Hash;
+
+/// The noise band reaches so many standard deviations to either side.
+pub const BAND_SIGMAS: f64 = 2.0;
+
+/// Colours of what is shown.
+#[derive(Clone, Copy, Debug)]
+pub struct Inks {
+    /// What was measured.
+    pub measured: Color32,
+    /// The model.
+    pub model: Color32,
+    /// The model with what was found.
+    pub extended: Color32,
+    /// The band of the noise.
+    pub noise: Color32,
+}
+
+/// The colours of the theme.
+pub fn inks(ui: &Ui) -> Inks {
+    let (dark, p) = (ui.visuals().dark_mode, palette(ui));
+    Inks {
+        measured: role(dark, ColorRole::Measured),
+        model: role(dark, ColorRole::Simulated),
+        extended: p.good,
+        noise: p.faint.gamma_multiply(if dark { 0.30 } else { 0.26 }),
+    }
+}
+
+/// Measured and modelled force over time, the noise as a band around the extended model.
+pub fn force_plot(ui: &mut Ui, height: f32, curves: &Residuals) {
+    let (p, inks) = (palette(ui), inks(ui));
+    let plot = quiet("force over time", p, height).custom_x_axes(vec![time_axis(p, false)]);
+    plot.show(ui, |plot| {
+        let (x, y) = (curves.span_s, curves.force);
+        plot.set_plot_bounds(PlotBounds::from_min_max([x.0, y.0], [x.1, y.1]));
+        for stretch in curves.extended.iter().filter(|s| s.len() > 1) {
+            let xs: Vec<f64> = stretch.iter().map(|p| p.x).collect();
+            let edge =
+                |sign: f64| -> Vec<f64> { stretch.iter().map(|p| p.y + sign * BAND_SIGMAS * curves.noise).collect() };
+            let band = FilledArea::new("", &xs, &edge(-1.0), &edge(1.0));
+            plot.add(band.fill_color(inks.noise).allow_hover(false));
+        }
+        for (stretches, color, width) in [
+            (&curves.modelled, inks.model, 3.0),
+            (&curves.extended, inks.extended, 2.0),
+            (&curves.measured, inks.measured, 1.0),
+        ] {
+            for stretch in stretches {
+                let line = Line::new("", PlotPoints::Borrowed(stretch));
+                plot.line(line.color(color).width(width).allow_hover(false));
+            }
+        }
+    });
+}
+
+/// What is left of the force against one variable: a cloud before, means before and after, the noise as a band.
+pub fn cloud_plot(ui: &mut Ui, height: f32, cloud: &Cloud, curves: &Residuals) {
+    let (p, inks) = (palette(ui), inks(ui));
+    let plot = quiet(("residual", cloud.title), p, height).custom_x_axes(vec![variable_axis(p)]);
+    plot.show(ui, |plot| {
+        let (x, y) = (cloud.range, curves.largest);
+        plot.set_plot_bounds(PlotBounds::from_min_max([x.0, -y], [x.1, y]));
+        let edge = BAND_SIGMAS * curves.noise;
+        let band = FilledArea::new("", &[x.0, x.1], &[-edge; 2], &[edge; 2]);
+        plot.add(band.fill_color(inks.noise).allow_hover(false));
+        let points = Points::new("", PlotPoints::Borrowed(&cloud.before)).radius(1.1).allow_hover(false);
+        plot.points(points.color(inks.model.gamma_multiply(0.32)));
+        for (trends, color) in [(&cloud.trend_before, inks.model), (&cloud.trend_after, inks.extended)] {
+            for (trend, style) in trends.iter().zip([LineStyle::Solid, LineStyle::dashed_loose()]) {
+                for part in trend {
+                    plot.line(line(part, color).style(style));
+                }
+            }
+        }
+    });
+}
+
+fn line(points: &[PlotPoint], color: Color32) -> Line<'_> {
+    Line::new("", PlotPoints::Borrowed(points)).color(color).width(2.0).allow_hover(false)
+}
+
+/// True when the means of a variable are told apart by the direction of motion.
+pub fn has_directions(suspect: Suspect) -> bool {
+    suspect != Suspect::Velocity
+}
+
+/// A plot that only shows.
+fn quiet(id: impl Hash + Debug, p: &Palette, height: f32) -> Plot<'static> {
+    Plot::new(id)
+        .height(height)
+        .show_background(false)
+        .show_x(false)
+        .show_y(false)
+        .show_crosshair(false)
+        .allow_zoom(false)
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_double_click_reset(false)
+        .allow_axis_zoom_drag(false)
+        .grid_color(p.border)
+        .grid_fade(1.2)
+        .grid_spacing(Rangef::new(4.0, 40.0))
+        .x_grid_spacer(|input| marks(input.bounds, 8.0))
+        .y_grid_spacer(move |input| marks(input.bounds, if height > 170.0 { 6.0 } else { 4.0 }))
+        .set_margin_fraction(Vec2::ZERO)
+        .sense(Sense::hover())
+        .custom_y_axes(vec![value_axis(p)])
+}
+
+fn variable_axis(p: &Palette) -> AxisHints<'static> {
+    AxisHints::new_x()
+        .formatter(|mark, _| {
+            let decimals = (-mark.step_size.abs().log10().floor()).clamp(0.0, 6.0) as usize;
+            format::number(mark.value, decimals)
+        })
+        .label_spacing(Rangef::new(24.0, 40.0))
+        .tick_label_color(p.secondary)
+        .tick_label_font(FontId::proportional(11.0))
+}

@@ -1,0 +1,54 @@
+//! How far a diagnosis has come, and the wish to end it.
+
+use crate::estimate::EstimateError;
+use std::fmt;
+use std::sync::Arc;
+
+type Listener = dyn Fn(f64) -> bool + Send + Sync;
+
+/// Whoever waits for a diagnosis: is told how much is done, and says whether the rest is still wanted. Nobody by default.
+#[derive(Clone, Default)]
+pub struct Progress(Option<Arc<Listener>>);
+
+impl Progress {
+    /// `listen` is told the share that is done, 0 … 1; the diagnosis ends with an error when it answers false.
+    pub fn new(listen: impl Fn(f64) -> bool + Send + Sync + 'static) -> Self {
+        Self(Some(Arc::new(listen)))
+    }
+
+    /// Tells how much is done; an error when nobody wants the rest.
+    pub(super) fn tell(&self, share: f64) -> Result<(), EstimateError> {
+        match &self.0 {
+            Some(listen) if !listen(share.clamp(0.0, 1.0)) => {
+                Err(EstimateError::Other("the diagnosis was cancelled".to_owned()))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl fmt::Debug for Progress {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(if self.0.is_some() { "Progress(heard)" } else { "Progress(unheard)" })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    #[test]
+    fn it_is_heard_and_can_end_the_work() {
+        Progress::default().tell(0.5).expect("nobody ends it");
+        let heard = Arc::new(Mutex::new(Vec::new()));
+        let ears = Arc::clone(&heard);
+        let progress = Progress::new(move |share| {
+            ears.lock().expect("one at a time").push(share);
+            share < 0.6
+        });
+        progress.tell(0.4).expect("goes on");
+        assert!(progress.tell(7.0).is_err_and(|e| e.to_string().contains("cancelled")));
+        assert_eq!(*heard.lock().expect("free"), [0.4, 1.0]);
+    }
+}

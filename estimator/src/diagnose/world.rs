@@ -1,0 +1,77 @@
+//! The worlds before and after a diagnosis.
+
+use super::report::Diagnosis;
+use super::{Options, pipeline};
+use crate::estimate::EstimateError;
+use haptics::law::{Effect, Role};
+use haptics::recording::Recording;
+use haptics::world::World;
+
+/// One world with the model's laws as they fit best alone, one with those that were found beside them. All else is equal, so that
+/// one can be put in the other's place while somebody touches it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Worlds {
+    /// With the model alone.
+    pub before: World,
+    /// With what was found.
+    pub after: World,
+}
+
+/// Both worlds of a diagnosis: those of the world that it started from, or of one calibrated from the recordings.
+pub fn worlds(recordings: &[Recording], options: &Options, diagnosis: &Diagnosis) -> Result<Worlds, EstimateError> {
+    let world = if let Some(world) = &options.world {
+        world.clone()
+    } else {
+        let fit = pipeline::Options { task: options.task, ..pipeline::Options::default() };
+        pipeline::analyse(recordings, &fit)?.world
+    };
+    Ok(Worlds { before: with_laws(&world, &diagnosis.plain), after: with_laws(&world, &diagnosis.effects) })
+}
+
+/// The world that runs what the diagnosis found: the one it started from, or one calibrated from the recordings, with the extended laws.
+pub fn extended_world(
+    recordings: &[Recording],
+    options: &Options,
+    diagnosis: &Diagnosis,
+) -> Result<World, EstimateError> {
+    worlds(recordings, options, diagnosis).map(|worlds| worlds.after)
+}
+
+/// The world with other laws along its coordinate.
+fn with_laws(world: &World, laws: &[Effect]) -> World {
+    let mut world = world.clone();
+    if let Some(crank) = &mut world.crank {
+        crank.effects = beside(&crank.effects, laws);
+    }
+    if let Some(mechanism) = &mut world.mechanism {
+        mechanism.effects = beside(&mechanism.effects, laws);
+    }
+    world
+}
+
+/// The laws, and before them what the world had of inertia and weight where the laws have none: nothing moves without inertia, and a
+/// weight that was known beforehand is no part of what is fitted.
+fn beside(had: &[Effect], laws: &[Effect]) -> Vec<Effect> {
+    let missing = |role: Role| !laws.iter().any(|law| law.role() == role);
+    let kept = had.iter().filter(|e| matches!(e.role(), Role::Inertia | Role::Gravity) && missing(e.role()));
+    kept.chain(laws).copied().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::law::{Inertia, ViscousFriction, Weight};
+    use haptics::world::presets;
+
+    #[test]
+    fn a_world_keeps_its_inertia_and_a_known_weight_and_can_still_be_stepped() {
+        let world = presets::crank();
+        let with = with_laws(&world, &[Effect::new(&ViscousFriction, &[2.0])]);
+        let ids: Vec<&str> = with.crank.as_ref().expect("still a crank").effects.iter().map(|e| e.law().id()).collect();
+        assert_eq!(ids, ["weight", "inertia", "viscous-friction"]);
+        with.check().expect("it can be stepped");
+        let laws = [Effect::new(&Inertia, &[0.2]), Effect::new(&Weight, &[0.3])];
+        let replaced = with_laws(&world, &laws).crank.expect("a crank").effects;
+        assert_eq!(replaced, laws, "what was found takes the place of what there was");
+    }
+}
