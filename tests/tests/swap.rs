@@ -166,8 +166,8 @@ fn changes(last: &TickRecord, now: &TickRecord) -> [f64; 2] {
     [most(&last.tip_force_n, &now.tip_force_n), most(&last.sent_force_n, &now.sent_force_n)]
 }
 
-/// The crank is turned while worlds go on in each other every so many ticks; largest changes a tick, elsewhere and at swaps, and how
-/// many of these fell on a turning crank.
+/// The crank is turned while worlds go on in each other every so many ticks. Largest changes a tick while it is held (when fingers meet
+/// the handle they knock, with swaps and without), at swaps and elsewhere, and how many swaps fell on a turning crank.
 fn turned(worlds: &[World; 2], every: usize) -> ([f64; 2], [f64; 2], usize) {
     let operator = ScriptedOperator::new(&worlds[0], &State::resting(&worlds[0]), Skill::default(), 5);
     let ticks = (operator.duration_s() / DT) as usize;
@@ -182,14 +182,15 @@ fn turned(worlds: &[World; 2], every: usize) -> ([f64; 2], [f64; 2], usize) {
         let now = body.tick(DT);
         let crank = body.state().crank;
         assert!((crank.angle_rad - angle_rad).abs() < 0.02, "the handle jumps at tick {tick}");
-        let worst = if swapped { &mut at_swaps } else { &mut elsewhere };
-        for (worst, change) in worst.iter_mut().zip(changes(&last, &now)) {
-            *worst = worst.max(change);
+        if now.tip_force_n.iter().all(|f| f.norm() > 1.0) {
+            let worst = if swapped { &mut at_swaps } else { &mut elsewhere };
+            for (worst, change) in worst.iter_mut().zip(changes(&last, &now)) {
+                *worst = worst.max(change);
+            }
+            turning += usize::from(swapped && crank.rate_rad_s.abs() > 0.5);
         }
-        turning += usize::from(swapped && crank.rate_rad_s.abs() > 0.5);
         (last, angle_rad) = (now, crank.angle_rad);
     }
-    assert!(angle_rad.abs() > 0.1, "it was turned");
     (elsewhere, at_swaps, turning)
 }
 
@@ -202,11 +203,18 @@ fn a_world_that_goes_on_changes_its_laws_under_a_turning_crank_without_a_bump() 
     let (elsewhere, at_swaps, turning) = turned(&[before, after], 137);
     println!("largest change a tick, N: never swapped {quiet:?}, swapped {elsewhere:?}, at swaps {at_swaps:?}");
     assert!(turning > 20, "{turning} swaps under a turning crank");
-    for k in 0..2 {
-        let usual = quiet[0][k].max(quiet[1][k]);
-        assert!(at_swaps[k] <= 0.3 * usual, "a bump of {} N at a swap, up to {usual} N a tick otherwise", at_swaps[k]);
-        assert!(elsewhere[k] <= 1.3 * usual, "{} N a tick between swaps, {usual} N without", elsewhere[k]);
-    }
+    // What the world feels: laws change the handle's acceleration, never its place, so the pads carry nothing over at once.
+    let usual = [0, 1].map(|k| f64::max(quiet[0][k], quiet[1][k]));
+    assert!(at_swaps[0] <= usual[0], "{} N at a swap, up to {} N a tick without any", at_swaps[0], usual[0]);
+    // What the hand feels: nothing at the swap; then the old force fades within 50 ms, a newton of difference at most.
+    assert!(
+        at_swaps[1] <= 0.1 * usual[1],
+        "a bump of {} N at a swap, up to {} N a tick without",
+        at_swaps[1],
+        usual[1]
+    );
+    let fading = 1.0 * DT / 0.05;
+    assert!(elsewhere[1] <= usual[1] + fading, "{} N a tick, {} N without swaps", elsewhere[1], usual[1]);
 }
 
 #[test]
