@@ -111,14 +111,16 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
     }
 }
 
-/// The time between force and motion when it is no more than what sampling itself can make of it, s.
+/// The time between force and motion when it is no more than what sampling itself can make of it, s: a commanded force is recorded when
+/// it is given and acts in the sample after. A force that comes late is late, by however little.
 fn skew(study: &Study, k: usize, raw_period_s: f64) -> Option<f64> {
     if study.candidates[study.chosen[k].candidate].id != "time-delay" {
         return None;
     }
     let delay = parameters(study, k);
     let found = delay.first()?;
-    (found.value.abs() - 2.0 * found.std_error <= raw_period_s.min(LARGEST_SKEW_S)).then_some(found.value)
+    let ahead_s = -found.value;
+    (ahead_s > 0.0 && ahead_s - 2.0 * found.std_error <= raw_period_s.min(LARGEST_SKEW_S)).then_some(found.value)
 }
 
 /// What no known cause explains: the generic term and its score.

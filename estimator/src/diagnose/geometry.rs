@@ -23,6 +23,8 @@ pub struct PathPoint {
     pub force: Vec2,
     /// ∂tip/∂(top joint angle) and ∂tip/∂(length of the first link), where joints were recorded.
     pub joint: Option<[Vec2; 2]>,
+    /// A mean of points on an arc lies inside it by this over the radius, m².
+    pub inside_m2: f64,
 }
 
 /// What the geometry is found from.
@@ -114,7 +116,7 @@ fn circle(points: &[Vec2]) -> Result<Vec2, EstimateError> {
 fn compare(path: &Path, center_m: Vec2, threshold: f64) -> Result<Study, EstimateError> {
     let arms: Vec<Vec2> = path.points.iter().map(|p| p.position - center_m).collect();
     let outward: Vec<Vec2> = arms.iter().map(Vec2::normalize).collect();
-    let y: Vec<f64> = arms.iter().map(Vec2::norm).collect();
+    let y: Vec<f64> = arms.iter().zip(&path.points).map(|(a, p)| a.norm() + p.inside_m2 / a.norm()).collect();
     let column = |f: &dyn Fn(usize) -> f64| (0..y.len()).map(f).collect::<Vec<f64>>();
     let mut base = vec![vec![1.0; y.len()], column(&|i| outward[i].x), column(&|i| outward[i].y)];
     if path.two_fingered {

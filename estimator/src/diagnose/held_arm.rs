@@ -112,6 +112,7 @@ impl Signals {
     pub fn path(&self, recording: &Recording) -> Path {
         let finger = recording.meta.hand().fingers[0];
         let stretches = stretches(&self.held);
+        let spread_s2 = self.raw_period_s.powi(2) * (self.every * self.every - 1) as f64 / 24.0;
         let points = stretches
             .iter()
             .enumerate()
@@ -129,6 +130,8 @@ impl Signals {
                     position: self.position[i],
                     force: self.force[i],
                     joint,
+                    // The radius times half the variance of the angle within the row.
+                    inside_m2: self.velocity[i].norm_squared() * spread_s2,
                 }
             })
             .collect();
