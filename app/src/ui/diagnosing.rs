@@ -1,6 +1,7 @@
 //! The diagnosis of what is loaded: what is asked, what came out, and the worlds before and after.
 
 use super::fit_choice::FitChoice;
+use super::format;
 use super::jobs::{JobKind, Outcome};
 use super::plots::Residuals;
 use super::prepare::Prepared;
@@ -8,6 +9,7 @@ use super::session::{Session, sentence};
 use super::trainer::Compare;
 use estimator::diagnose::{self, Diagnosis, Options, Progress, Worlds};
 use haptics::recording::{Recording, Task};
+use haptics::world::World;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -160,9 +162,48 @@ impl Session {
                     .to_owned(),
             );
         }
-        for world in [&worlds.before, &worlds.after] {
-            world.check().map_err(|error| sentence(&error.to_string()))?;
+        Ok(Compare { before: reachable(&worlds.before)?, after: reachable(&worlds.after)? })
+    }
+}
+
+/// The world with its crank where the hand reaches all of the circle: other people's recordings have their origin elsewhere. What is
+/// felt does not depend on the place.
+fn reachable(world: &World) -> Result<World, String> {
+    world.check().map_err(|error| sentence(&error.to_string()))?;
+    let mut world = world.clone();
+    let reach = world.hand.workspace;
+    if let Some(crank) = &mut world.crank {
+        if crank.radius_m > reach.radius_m {
+            return Err(format!(
+                "The crank's radius of {} mm is larger than the hand's reach of {} mm; save the extended world instead.",
+                format::number(1e3 * crank.radius_m, 0),
+                format::number(1e3 * reach.radius_m, 0)
+            ));
         }
-        Ok(Compare { before: worlds.before.clone(), after: worlds.after.clone() })
+        if (crank.center_m - reach.center_m).norm() + crank.radius_m > reach.radius_m {
+            crank.center_m = reach.center_m;
+        }
+    }
+    Ok(world)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::Vec2;
+    use haptics::world::presets;
+
+    #[test]
+    fn a_crank_out_of_reach_comes_to_the_hand_and_one_that_is_too_large_is_refused() {
+        let near = presets::crank();
+        assert_eq!(reachable(&near).as_ref(), Ok(&near));
+        let mut far = near.clone();
+        far.crank.as_mut().expect("a crank").center_m += Vec2::new(0.4, 0.1);
+        assert_eq!(reachable(&far).as_ref(), Ok(&near));
+        far.crank.as_mut().expect("a crank").radius_m = 0.3;
+        assert!(reachable(&far).is_err_and(|why| why.contains("300 mm") && why.ends_with('.')));
+        let mut still = near;
+        still.crank.as_mut().expect("a crank").effects.clear();
+        assert!(reachable(&still).is_err_and(|why| why.contains("inertia")), "nothing moves without inertia");
     }
 }

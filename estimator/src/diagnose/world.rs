@@ -25,7 +25,9 @@ pub fn worlds(recordings: &[Recording], options: &Options, diagnosis: &Diagnosis
         let fit = pipeline::Options { task: options.task, ..pipeline::Options::default() };
         pipeline::analyse(recordings, &fit)?.world
     };
-    Ok(Worlds { before: with_laws(&world, &diagnosis.plain), after: with_laws(&world, &diagnosis.effects) })
+    let mut after = with_laws(&world, &diagnosis.effects);
+    after.name = format!("{}, extended", world.name);
+    Ok(Worlds { before: with_laws(&world, &diagnosis.plain), after })
 }
 
 /// The world that runs what the diagnosis found: the one it started from, or one calibrated from the recordings, with the extended laws.

@@ -12,6 +12,8 @@ use egui::{Align, Color32, Layout, RichText, Sense, Stroke, Ui, vec2};
 
 /// Share of the height that the curve over time takes.
 const TIME_SHARE: f32 = 0.36;
+/// Width of the three models to start from.
+const CHOICES: f32 = 216.0;
 /// Height of a plot's heading.
 const HEAD: f32 = 20.0;
 
@@ -38,7 +40,7 @@ impl Panel for DiagnosePanel {
 
 fn nothing(ui: &mut Ui, session: &mut Session) {
     if session.recordings.is_empty() {
-        let text = "Open a log of a crank or a mechanism. What the simulation gets wrong about it, why, and what mending it gains \
+        let text = "Open a log, for example of a crank that was turned. What the simulation gets wrong about it, why, and what mending it gains \
                     appear here.";
         empty_state(ui, "Nothing to diagnose yet", text, |ui| {
             if primary_button(ui, true, "Open a log …").on_hover_text("Ctrl+O").clicked() {
@@ -59,7 +61,17 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
             }
         });
     } else if let Some(problem) = session.diagnosing.problem.clone() {
-        empty_state(ui, "This recording cannot be diagnosed", &problem, |ui| begin(ui, session, "Try again"));
+        empty_state(ui, "This recording cannot be diagnosed", &problem, |ui| {
+            if primary_button(ui, true, "Open another log …").on_hover_text("Ctrl+O").clicked() {
+                files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
+            }
+            ui.add_space(space::XS);
+            start_from(ui, session);
+            if ui.link("Try again").clicked() {
+                let ctx = ui.ctx().clone();
+                session.diagnose(&ctx);
+            }
+        });
     } else if session.diagnosing.answer.is_some() {
         empty_state(
             ui,
@@ -70,14 +82,14 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
     } else {
         let text = "The model is compared with what was measured. What it gets wrong is named, with its size, what mending it \
                     gains on data that took no part, and what else it could be.";
-        empty_state(ui, "What does the simulation get wrong?", text, |ui| begin(ui, session, "Diagnose"));
+        empty_state(ui, "What does the simulation get wrong?", text, |ui| begin(ui, session));
     }
 }
 
 /// The button, and the model to start from where there is a choice.
-fn begin(ui: &mut Ui, session: &mut Session, word: &str) {
+fn begin(ui: &mut Ui, session: &mut Session) {
     start_from(ui, session);
-    if primary_button(ui, true, word).clicked() {
+    if primary_button(ui, true, "Diagnose").clicked() {
         let ctx = ui.ctx().clone();
         session.diagnose(&ctx);
     }
@@ -97,7 +109,7 @@ pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
     ];
     let changed = ui
         .scope(|ui| {
-            ui.set_max_width(240.0);
+            ui.set_max_width(CHOICES);
             segmented(ui, &mut session.diagnosing.from, &choices)
         })
         .inner;
