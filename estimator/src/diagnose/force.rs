@@ -34,7 +34,7 @@ pub type Model = Vec<Effect>;
 pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) -> Result<Study, EstimateError> {
     blur(track);
     let coarse = Grid::coarse(track);
-    let mut made = compare(track, model, fixed, threshold, &coarse, &Grid::default())?;
+    let mut made = compare(track, model, fixed, threshold, [&coarse, &Grid::default()], None)?;
     for _ in 0..REFINEMENTS {
         if made.chosen.is_empty() {
             break;
@@ -43,7 +43,8 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
         let fine = Grid::around(&found, track);
         // The load on the friction is what the sensor told, rid of what is now known of the sensor.
         correct_load(track, &made);
-        made = compare(track, model, fixed, threshold, &coarse, &fine)?;
+        let laws = made.solved.as_ref().map(|s| s.values[..made.base.len()].to_vec());
+        made = compare(track, model, fixed, threshold, [&coarse, &fine], laws.as_deref())?;
     }
     Ok(made)
 }
@@ -79,19 +80,23 @@ fn correct_load(track: &mut Track, study: &Study) {
     }
 }
 
+/// One round. `laws`: what the model's laws came out at beside what was found before.
 fn compare(
     track: &Track,
     model: &Model,
     fixed: &Model,
     threshold: f64,
-    coarse: &Grid,
-    fine: &Grid,
+    [coarse, fine]: [&Grid; 2],
+    laws: Option<&[f64]>,
 ) -> Result<Study, EstimateError> {
     let base: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
     let known: Vec<Vec<f64>> = fixed.iter().map(|effect| column(track, effect)).collect();
     let y: Vec<f64> =
         track.rows.iter().enumerate().map(|(i, r)| r.y - known.iter().map(|k| k[i]).sum::<f64>()).collect();
-    let (predicted, resisting, weight) = first_look(track, model, &base, &y)?;
+    let (mut predicted, mut resisting, weight) = first_look(track, model, &base, &y)?;
+    if let Some(laws) = laws.filter(|laws| friction_is_sound(model, laws)) {
+        (predicted, resisting) = (total(model, &base, laws, false), total(model, &base, laws, true));
+    }
     let taken: Vec<&str> = model.iter().chain(fixed).map(|e| e.law().id()).collect();
     let dictionary = |grid| {
         let without = &taken;
@@ -205,15 +210,31 @@ fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Res
         fit = least_squares(&columns, y, Some(&squares))?;
     }
     let sum = |resists: bool| -> Vec<f64> {
-        (0..y.len())
-            .map(|i| {
-                let parts = model.iter().enumerate().filter(|(_, e)| !resists || is_resisting(e));
-                let base_part: f64 = parts.map(|(k, _)| fit.values[k] * base[k][i]).sum();
-                base_part + if has_dry { 0.0 } else { fit.values[base.len()] * columns[base.len()][i] }
-            })
-            .collect()
+        let mut sum = total(model, base, &fit.values, resists);
+        if !has_dry {
+            let dry = fit.values[base.len()];
+            sum.iter_mut().zip(&columns[base.len()]).for_each(|(s, c)| *s += dry * c);
+        }
+        sum
     };
     Ok((sum(false), sum(true), weight))
+}
+
+/// What the model's laws add up to at these values, all of them or those that resist motion.
+fn total(model: &Model, base: &[Vec<f64>], values: &[f64], resists: bool) -> Vec<f64> {
+    let mut sum = vec![0.0; base.first().map_or(0, Vec::len)];
+    for ((effect, column), value) in model.iter().zip(base).zip(values) {
+        if !resists || is_resisting(effect) {
+            sum.iter_mut().zip(column).for_each(|(s, c)| *s += value * c);
+        }
+    }
+    sum
+}
+
+/// Whether there is dry friction and it resists.
+fn friction_is_sound(model: &Model, values: &[f64]) -> bool {
+    let mut dry = model.iter().zip(values).filter(|(e, _)| e.law().is_dry()).map(|(_, v)| *v).peekable();
+    dry.peek().is_some() && dry.all(|v| v > 0.0)
 }
 
 fn is_resisting(effect: &Effect) -> bool {

@@ -15,12 +15,16 @@ use haptics::recording::{Recording, Task};
 
 /// Rows come at about this rate, Hz: nothing that a hand does is faster than half of it.
 const ROW_HZ: f64 = 100.0;
-/// Samples so close to a change between free and held belong to neither, s.
+/// Held samples so close to a change between free and held belong to neither, s …
 const MARGIN_S: f64 = 0.06;
+/// … and free ones.
+const GROWING_S: f64 = 0.25;
 /// Free rests shorter than this may be zero crossings of the force, s.
 const LEAST_FREE_S: f64 = 0.25;
 /// Window of the acceleration, s.
 const ACCELERATION_WINDOW_S: f64 = 0.09;
+/// A rest whose force spreads this many times as much as in the quietest one is none.
+const WANDERS: f64 = 2.5;
 /// Fewer rows carry no diagnosis.
 const LEAST_ROWS: usize = 60;
 
@@ -60,7 +64,7 @@ impl Signals {
         let time_s = times(recording);
         let (position, velocity, force) = raw(recording)?;
         let n = time_s.len();
-        let (mut held, mut free) = held_and_free(recording, &time_s)?;
+        let (mut held, mut free) = held_and_free(recording, &time_s, &force)?;
         for (i, bad) in bad.iter().enumerate().filter(|(_, b)| **b) {
             (held[i], free[i]) = (held[i] && !bad, free[i] && !bad);
         }
@@ -339,24 +343,52 @@ fn raw(recording: &Recording) -> Result<Raw, EstimateError> {
 }
 
 /// Which samples are surely held, and which surely free.
-fn held_and_free(recording: &Recording, time_s: &[f64]) -> Result<(Vec<bool>, Vec<bool>), EstimateError> {
+fn held_and_free(
+    recording: &Recording,
+    time_s: &[f64],
+    force: &[Vec2],
+) -> Result<(Vec<bool>, Vec<bool>), EstimateError> {
     let segmentation = segment(recording, Some(Task::Crank), None)?;
     let n = time_s.len();
     let mut free = vec![false; n];
-    for interval in &segmentation.states {
-        if interval.state == SystemState::FreeMotion && interval.t1 - interval.t0 >= LEAST_FREE_S {
-            free[interval.first..interval.end].fill(true);
+    let rests: Vec<std::ops::Range<usize>> = segmentation
+        .states
+        .iter()
+        .filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= LEAST_FREE_S)
+        .map(|i| i.first..i.end)
+        .collect();
+    let unrest: Vec<f64> = rests.iter().map(|r| spread(&force[r.clone()])).collect();
+    let quietest = unrest.iter().copied().fold(f64::INFINITY, f64::min);
+    for (range, unrest) in rests.iter().zip(&unrest) {
+        // A hand that holds lightly for a while is not away: its force wanders.
+        if *unrest <= WANDERS * quietest {
+            free[range.clone()].fill(true);
         }
     }
     let period_s = if n > 1 { (time_s[n - 1] - time_s[0]) / (n - 1) as f64 } else { 1.0 };
-    let margin = (MARGIN_S / period_s).ceil() as usize;
+    let samples = |s: f64| (s / period_s).ceil() as usize;
+    let margin = samples(MARGIN_S);
     let mut near = vec![false; n];
-    for i in 1..n {
-        if free[i] != free[i - 1] {
-            near[i.saturating_sub(margin)..(i + margin).min(n)].fill(true);
+    let mut surely_free = free.clone();
+    for interval in rests.iter().filter(|i| free[i.start]) {
+        // A grasp grows out of nothing: its beginning is still below every threshold.
+        let growing = samples(GROWING_S).min((interval.end - interval.start) / 3);
+        if interval.start > 0 {
+            near[interval.start.saturating_sub(margin)..interval.start].fill(true);
+            surely_free[interval.start..interval.start + growing].fill(false);
+        }
+        if interval.end < n {
+            near[interval.end..(interval.end + margin).min(n)].fill(true);
+            surely_free[interval.end - growing..interval.end].fill(false);
         }
     }
     let held = (0..n).map(|i| !free[i] && !near[i]).collect();
-    let surely_free = (0..n).map(|i| free[i] && !near[i]).collect();
     Ok((held, surely_free))
+}
+
+/// Spread of the middle of a rest, N: its ends may belong to a grasp.
+fn spread(force: &[Vec2]) -> f64 {
+    let middle = &force[force.len() / 3..(2 * force.len()).div_ceil(3)];
+    let mean = middle.iter().sum::<Vec2>() / middle.len().max(1) as f64;
+    (middle.iter().map(|f| (f - mean).norm_squared()).sum::<f64>() / middle.len().max(1) as f64).sqrt()
 }

@@ -2,6 +2,7 @@
 
 use super::report::{Cause, CauseParameter, Gain};
 use crate::log;
+use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 use haptics::recording::{Recording, Warning};
 
@@ -12,6 +13,8 @@ pub struct Faults {
     pub bad: Vec<bool>,
 }
 
+/// So many standard deviations of the noise below a rail nothing is cut.
+const RAIL_SIGMAS: f64 = 3.5;
 /// Kinds of warnings that are a fault of a channel.
 const CHANNEL: [&str; 7] =
     ["stuck-channel", "copied-channel", "duplicate-samples", "dropped-samples", "gap", "clock-jump", "quantised"];
@@ -33,6 +36,9 @@ pub fn faults(recording: &Recording) -> Faults {
                 found.bad[span.first.min(end)..end].fill(true);
             }
         }
+        if warning.kind == "saturation" {
+            leave_out_near_the_rail(recording, &warning, &mut found.bad);
+        }
         if found.causes.iter().all(|c| c.id != id) {
             found.causes.push(cause(id, &warning, recording));
         }
@@ -42,6 +48,17 @@ pub fn faults(recording: &Recording) -> Faults {
         found.bad.fill(false);
     }
     found
+}
+
+/// Beside a rail the noise is cut on one side: what is left there is no fair sample of the force.
+fn leave_out_near_the_rail(recording: &Recording, warning: &Warning, bad: &mut [bool]) {
+    let channel = warning.column.as_deref().and_then(|c| recording.channels.iter().find(|x| x.name == c));
+    let (Some(channel), Some(span)) = (channel, warning.spans.first()) else { return };
+    let level = channel.values.get(span.first).map_or(0.0, |v| v.abs());
+    let near = level - RAIL_SIGMAS * white_noise(&channel.values);
+    for (bad, value) in bad.iter_mut().zip(&channel.values) {
+        *bad |= value.abs() > near;
+    }
 }
 
 /// The force and motion channels, and the clock.
