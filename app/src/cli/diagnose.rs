@@ -3,7 +3,7 @@
 use super::{LogArgs, Output};
 use anyhow::Context;
 use clap::Args;
-use estimator::diagnose::{Cause, Diagnosis, Options, Verdict, diagnose, extended_world, validate};
+use estimator::diagnose::{Cause, Diagnosis, Options, Progress, Verdict, diagnose, extended_world, validate};
 use haptics::world::World;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -47,7 +47,14 @@ impl Diagnose {
         };
         let baseline = self.baseline.clone().filter(|_| world.is_none());
         let options = Options { baseline, world, ..Options::default() };
-        let mut diagnosis = super::progress::during("diagnosing", |_| diagnose(&recordings, &options))?;
+        let mut diagnosis = super::progress::during("diagnosing", |share| {
+            let share = share.clone();
+            let progress = Progress::new(move |done| {
+                share.tell(done);
+                true
+            });
+            diagnose(&recordings, &Options { progress, ..options.clone() })
+        })?;
         for log in &self.validate {
             diagnosis.validation.extend(validate(&self.source.load(log)?, &options, &diagnosis)?);
         }

@@ -2,15 +2,15 @@
 
 use std::io::Write as _;
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Nothing is said about work that is done sooner, and again after as long.
 const EVERY: Duration = Duration::from_secs(1);
 
 /// How far a work has come, as far as it tells.
-#[derive(Debug, Default)]
-pub struct Share(AtomicU32);
+#[derive(Clone, Debug, Default)]
+pub struct Share(Arc<AtomicU32>);
 
 impl Share {
     /// Tells how much is done, 0 … 1.

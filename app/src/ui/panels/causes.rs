@@ -45,6 +45,12 @@ pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Diagnos
             line(ui, parameter);
         }
         gain(ui, cause, diagnosis);
+        if let Some([before, after]) = cause.gain.rollout {
+            let rms = |value: f64| format::significant(value, 2);
+            let text = format!("Integrated forward: {} → {} RMS", rms(before), rms(after));
+            ui.label(theme::caption(ui, text))
+                .on_hover_text("Short stretches from their start with the measured drive");
+        }
         ui.add(egui::Label::new(theme::caption(ui, sentence(&cause.evidence))).wrap());
         for other in diagnosis.alternatives.iter().filter(|a| a.instead_of == cause.id) {
             alternative(ui, other);

@@ -8,7 +8,7 @@ use crate::ui::plots::{Cloud, Residuals, cloud_plot, force_plot, has_directions,
 use crate::ui::session::{Session, Workspace};
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{compact, empty_state, primary_button, segmented, sheet};
-use egui::{Align, Color32, Layout, RichText, Sense, Stroke, Ui, vec2};
+use egui::{Align, Color32, ComboBox, Layout, RichText, Sense, Stroke, Ui, vec2};
 
 /// Share of the height that the curve over time takes.
 const TIME_SHARE: f32 = 0.36;
@@ -31,7 +31,7 @@ impl Panel for DiagnosePanel {
             ui.set_min_size(ui.available_size());
             let answer = session.diagnosing.answer.clone();
             match answer.as_ref().and_then(|a| a.residuals.get(session.current).filter(|r| !r.is_empty())) {
-                Some(curves) => draw(ui, curves),
+                Some(curves) => draw(ui, session, curves),
                 None => nothing(ui, session),
             }
         });
@@ -73,12 +73,8 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
             }
         });
     } else if session.diagnosing.answer.is_some() {
-        empty_state(
-            ui,
-            "No curves",
-            "This recording had no part in the diagnosis; choose another one of the file.",
-            |_| {},
-        );
+        let text = "This recording has no force along one coordinate to draw. The answer stands beside.";
+        empty_state(ui, "No curves here", text, |_| {});
     } else {
         let text = "The model is compared with what was measured. What it gets wrong is named, with its size, what mending it \
                     gains on data that took no part, and what else it could be.";
@@ -117,7 +113,7 @@ pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
     changed
 }
 
-fn draw(ui: &mut Ui, curves: &Residuals) {
+fn draw(ui: &mut Ui, session: &mut Session, curves: &Residuals) {
     let height = ui.available_height();
     let gap = space::S;
     ui.spacing_mut().item_spacing.y = 0.0;
@@ -127,6 +123,7 @@ fn draw(ui: &mut Ui, curves: &Residuals) {
         key(ui, inks.extended, 2.0, "with what was found");
         key(ui, inks.model, 2.0, "model");
         key(ui, inks.measured, 2.0, "measured");
+        which(ui, session);
     });
     let upper = (TIME_SHARE * height).max(90.0);
     force_plot(ui, upper - HEAD, curves);
@@ -156,6 +153,25 @@ fn residual(ui: &mut Ui, height: f32, cloud: &Cloud, curves: &Residuals) {
         }
     });
     cloud_plot(ui, height, cloud, curves);
+}
+
+/// The recording whose curves are shown, where there are several.
+fn which(ui: &mut Ui, session: &mut Session) {
+    if session.recordings.len() < 2 {
+        return;
+    }
+    // No higher than the words beside it.
+    ui.spacing_mut().button_padding = vec2(space::S, 0.0);
+    let mut chosen = session.current;
+    let name = |k: usize| session.recordings.get(k).map(|p| p.recording.name.clone()).unwrap_or_default();
+    ComboBox::from_id_salt("recording of the curves").selected_text(name(chosen)).width(120.0).show_ui(ui, |ui| {
+        for k in 0..session.recordings.len() {
+            ui.selectable_value(&mut chosen, k, name(k));
+        }
+    });
+    if chosen != session.current {
+        session.select(chosen);
+    }
 }
 
 /// A heading with its unit, and what stands on the right of it.

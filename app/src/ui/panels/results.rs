@@ -29,6 +29,7 @@ impl Panel for ResultsPanel {
             constraints(ui, session);
             warnings(ui, session);
             train_with_it(ui, session);
+            diagnose(ui, session);
         });
     }
 }
@@ -168,6 +169,23 @@ fn go_there(ui: &mut Ui, places: &[(f64, f64)], cursor_s: f64, clockless: bool) 
         n => format!("Go to {at} ({} of {n})", next + 1),
     };
     ui.link(RichText::new(text).size(11.5)).clicked().then_some(*place)
+}
+
+fn diagnose(ui: &mut Ui, session: &mut Session) {
+    if session.analysis.is_none() {
+        return;
+    }
+    plain_card(ui, "What it gets wrong", |ui| {
+        ui.label(theme::caption(ui, "A diagnosis names what the model misses, and measures what mending it gains."));
+        ui.add_space(space::XS);
+        if ui.button("Diagnose …").on_hover_text("Ctrl+3").clicked() {
+            session.workspace = Workspace::Diagnose;
+            if session.diagnosing.answer.is_none() && session.diagnosing.problem.is_none() {
+                let ctx = ui.ctx().clone();
+                session.diagnose(&ctx);
+            }
+        }
+    });
 }
 
 fn train_with_it(ui: &mut Ui, session: &mut Session) {

@@ -146,6 +146,47 @@ fn the_key_switches_the_world_under_the_hand_and_everything_stays_where_it_is() 
 }
 
 #[test]
+fn the_results_of_a_fit_lead_to_the_diagnosis() {
+    let mut session = loaded(RIPPLED.clone());
+    session.workspace = Workspace::Calibrate;
+    let mut harness = harness(session, [420.0, 1400.0], |ui, session: &mut Session| {
+        let ctx = ui.ctx().clone();
+        session.poll(&ctx);
+        crate::ui::panels::Panel::ui(&mut crate::ui::panels::results::ResultsPanel::default(), ui, session);
+    });
+    harness.get_by_label("Diagnose …").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().workspace, Workspace::Diagnose);
+    let begun = Instant::now();
+    while harness.state().diagnosing.answer.is_none() && begun.elapsed() < Duration::from_mins(1) {
+        std::thread::sleep(Duration::from_millis(5));
+        harness.run_steps(1);
+    }
+    assert!(harness.state().diagnosing.answer.is_some());
+}
+
+#[test]
+fn two_recordings_of_one_object_are_diagnosed_together_and_shown_by_turns() {
+    let mut session = Session::new();
+    session.workspace = Workspace::Diagnose;
+    let mut second = RIPPLED.clone();
+    second.name = "again".to_owned();
+    let recordings = [RIPPLED.clone(), second].map(|r| Arc::new(crate::ui::prepare::Prepared::new(r)));
+    session.show(recordings.to_vec());
+    let answer = diagnosing::ask(&session.recordings, &session.choice, session.diagnosing.from, Progress::default());
+    let answer = answer.expect("an answer");
+    assert_eq!(answer.residuals.len(), 2);
+    assert!(answer.residuals.iter().all(|r| !r.is_empty()));
+    session.diagnosing.answer = Some(Arc::new(answer));
+    let mut harness = window(session);
+    harness.get_by_role(egui::Role::ComboBox).click();
+    harness.run_steps(3);
+    harness.get_by_role_and_label(egui::Role::Button, "again").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().session.current, 1);
+}
+
+#[test]
 fn what_cannot_be_told_apart_is_shown_with_the_recording_that_would() {
     let session = diagnosed(ECCENTRIC.clone());
     let diagnosis = session.diagnosing.answer.clone().expect("an answer");
