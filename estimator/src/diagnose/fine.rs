@@ -51,5 +51,6 @@ pub fn between(a: &Fine, b: &Fine, part: f64) -> Fine {
         position: a.position + ease * (b.position - a.position) + bend,
         velocity: q * a.velocity + p * b.velocity,
         direction: 0.0,
+        open: 0.0,
     }
 }

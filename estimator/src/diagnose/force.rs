@@ -19,6 +19,8 @@ const BLUR: f64 = 0.02;
 const SKEW: f64 = 0.5;
 /// The clocks of force and motion differ by about this, s.
 const CLOCKS_S: f64 = 1e-3;
+/// What moves no faster than this many times what the sign is blurred over may as well stick: its friction is anything.
+const STICKS: f64 = 1.0;
 /// Share of the friction's square that stays open in a row with a reversal in it whose place is known.
 const REVERSAL: f64 = 0.05;
 /// What whitening is learnt from keeps this much of the generic library's strength out.
@@ -148,19 +150,21 @@ pub fn blur(track: &mut Track) {
         let before = if k > 0 && track.fine[k - 1].stretch == track.fine[k].stretch { k - 1 } else { k };
         let apart_s = (track.fine[next].time_s - track.fine[before].time_s).max(1e-9);
         let acceleration = (track.fine[next].velocity - track.fine[before].velocity) / apart_s;
-        track.fine[k].direction = (track.fine[k].velocity / width(CLOCKS_S * acceleration)).tanh();
+        let share = track.fine[k].velocity / width(CLOCKS_S * acceleration);
+        track.fine[k].direction = share.tanh();
+        track.fine[k].open = 1.0 - (share / STICKS).tanh().powi(2);
     }
     for row in track.rows.iter_mut().filter(|r| r.place == Place::Along) {
         if row.span.len == 0 {
-            row.motion.direction = (row.motion.velocity / width(SKEW * row.motion.acceleration * period_s)).tanh();
-            row.open = 1.0 - row.motion.direction.powi(2);
+            let share = row.motion.velocity / width(SKEW * row.motion.acceleration * period_s);
+            row.motion.direction = share.tanh();
+            row.open = 1.0 - (share / STICKS).tanh().powi(2);
             continue;
         }
         let (mut sum, mut open) = (0.0, 0.0);
         for (k, weight) in row.span.weights() {
-            let direction = track.fine[k].direction;
-            sum += weight * direction;
-            open += weight * (1.0 - direction * direction);
+            sum += weight * track.fine[k].direction;
+            open += weight * track.fine[k].open;
         }
         row.motion.direction = sum;
         // Where in the row a reversal lies is known up to what the channels' clocks and filters differ by.

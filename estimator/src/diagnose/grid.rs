@@ -14,7 +14,7 @@ const STRIBECK: [f64; 7] = [0.06, 0.1, 0.16, 0.26, 0.4, 0.6, 0.9];
 /// Ways of presliding and half gaps, as shares of the range of positions.
 const WAYS: [f64; 9] = [0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.065, 0.13, 0.2];
 /// Shortest of these, in points of the motion at the usual speed.
-const STEPS: f64 = 0.1;
+const STEPS: f64 = 0.25;
 /// Directions of a cable's anchor that are tried, and how much of the way round it is slack.
 const CABLES: u32 = 16;
 const SLACK: [f64; 3] = [0.35, 0.6, 0.8];

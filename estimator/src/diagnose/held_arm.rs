@@ -260,6 +260,7 @@ impl Signals {
                     position: arm.radius_m * angle,
                     velocity: raw.velocity[k].dot(&along),
                     direction: 0.0,
+                    open: 0.0,
                 };
                 recorded.push(raw.as_recorded[k].dot(&along));
                 if let Some(before) = fine.last().copied().filter(|f| f.stretch == number) {

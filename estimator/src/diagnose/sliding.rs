@@ -7,14 +7,16 @@
 use super::fine::{FINE_HZ, between, calmed_line};
 use super::track::{Fine, Place, Row, Span, Track};
 use crate::estimate::EstimateError;
+use crate::identify::linear::least_squares;
 use crate::identify::mechanism::{self, Raw};
 use crate::signal::noise::white_noise;
 use haptics::Vec2;
 use haptics::law::{Coordinate, Motion};
 use haptics::recording::Recording;
 
-/// Length of a block, s.
-const BLOCK_S: f64 = 0.02;
+/// Shortest and longest block, s: nothing that a hand does is over within the longest.
+const SHORTEST_S: f64 = 0.02;
+const LONGEST_S: f64 = 0.06;
 /// A longer step between two samples ends a stretch, in usual steps.
 const GAP: f64 = 2.5;
 /// Fewer samples are no stretch, in blocks.
@@ -33,17 +35,26 @@ pub fn track(recording: &Recording, bad: &[bool]) -> Result<Track, EstimateError
     steps.sort_by(f64::total_cmp);
     let period_s = steps.get(steps.len() / 2).copied().unwrap_or(1.0);
     let rate = raw.rate.clone().unwrap_or_else(|| slopes(&raw));
-    let block = (BLOCK_S / period_s).round().max(1.0) as usize;
-    let mut made = Made { rows: Vec::new(), fine: Vec::new(), noises: Vec::new(), period_s, block };
     let usable = |i: usize| !raw.saturated[i] && !bad.get(i).copied().unwrap_or(false);
+    let mut stretches = Vec::new();
     let mut first = 0;
     for i in 0..=raw.time_s.len() {
         let ends = i == raw.time_s.len() || !usable(i);
         if ends || (i > first && raw.time_s[i] - raw.time_s[i - 1] > GAP * period_s) {
-            made.stretch(&raw, &rate, force, first..i);
+            stretches.push(first..i);
             first = if ends { i + 1 } else { i };
         }
     }
+    let in_blocks = |block: usize| {
+        let mut made = Made { rows: Vec::new(), fine: Vec::new(), noises: Vec::new(), period_s, block };
+        stretches.iter().for_each(|range| made.stretch(&raw, &rate, force, range.clone()));
+        made
+    };
+    let shortest = (SHORTEST_S / period_s).round().max(1.0) as usize;
+    let longest = ((LONGEST_S / period_s) as usize).max(shortest);
+    let mass = in_blocks(((shortest + longest) / 2).max(1)).mass();
+    let block = (shortest..=longest).find(|block| quiet(&raw, force, period_s, *block, mass)).unwrap_or(longest);
+    let made = in_blocks(block);
     if made.rows.is_empty() {
         return Err(EstimateError::TooFewSamples {
             recording: recording.name.clone(),
@@ -53,6 +64,23 @@ pub fn track(recording: &Recording, bad: &[bool]) -> Result<Track, EstimateError
         });
     }
     Ok(made.track(&raw))
+}
+
+/// Whether the acceleration's noise makes no more of a force than the force's own noise, in blocks of this many samples.
+fn quiet(raw: &Raw, force: &[f64], period_s: f64, block: usize, mass: f64) -> bool {
+    let (samples, length_s) = (block as f64, block as f64 * period_s);
+    // Of a block's mean velocity: of as many rates, or of the two positions at its ends.
+    let velocity = match &raw.rate {
+        Some(rate) => white_noise(rate) / samples.sqrt(),
+        None => std::f64::consts::SQRT_2 * white_noise(&raw.position) / length_s,
+    };
+    let of_mass = mass.abs() * std::f64::consts::SQRT_2 * velocity / length_s;
+    of_mass < white_noise(force) * averaged(block)
+}
+
+/// What a hat over two blocks leaves of white noise.
+fn averaged(block: usize) -> f64 {
+    (2.0 / (3.0 * block as f64)).sqrt()
 }
 
 /// Rates out of positions: central differences.
@@ -96,6 +124,7 @@ impl Made {
                 position: raw.position[i],
                 velocity: calm[k],
                 direction: 0.0,
+                open: 0.0,
             };
             if let Some(before) = self.fine.last().copied().filter(|f| f.stretch == number) {
                 self.fine.extend((1..fill).map(|part| between(&before, &point, part as f64 / fill as f64)));
@@ -138,6 +167,15 @@ impl Made {
         }
     }
 
+    /// The mass or inertia, roughly.
+    fn mass(&self) -> f64 {
+        let column = |of: &dyn Fn(&Motion) -> f64| self.rows.iter().map(|r| of(&r.motion)).collect::<Vec<f64>>();
+        let columns =
+            [column(&|m| m.acceleration), column(&|m| m.velocity), column(&|m| m.velocity.signum()), column(&|_| 1.0)];
+        let y: Vec<f64> = self.rows.iter().map(|r| r.y).collect();
+        least_squares(&columns, &y, None).map_or(0.0, |fit| fit.values[0])
+    }
+
     fn track(self, raw: &Raw) -> Track {
         let mut rows = self.rows;
         let start_s = raw.time_s[0];
@@ -147,8 +185,6 @@ impl Made {
         let fine = self.fine.into_iter().map(|f| Fine { time_s: f.time_s - start_s, ..f }).collect();
         let span_s = rows.last().map_or(0.0, |r| r.motion.time_s) - rows.first().map_or(0.0, |r| r.motion.time_s);
         let worst = |k: usize| self.noises.iter().map(|n| n[k]).fold(0.0, f64::max);
-        // What the hat leaves of white noise.
-        let averaged = (2.0 / (3.0 * self.block as f64)).sqrt();
         Track {
             rows,
             fine,
@@ -158,7 +194,7 @@ impl Made {
             radius_m: (raw.coordinate == Coordinate::Angular).then_some(1.0),
             planar: false,
             velocity_noise: worst(0),
-            force_noise: (averaged * worst(1)).max(1e-12),
+            force_noise: (averaged(self.block) * worst(1)).max(1e-12),
             noise_is_measured: false,
             span_s,
         }

@@ -24,6 +24,8 @@ pub struct Fine {
     pub velocity: f64,
     /// −1 … 1, as certain as the velocity is.
     pub direction: f64,
+    /// How much of the friction's square is a guess, 0 … 1.
+    pub open: f64,
 }
 
 /// Which points of [`Track::fine`] a row is the mean of.
