@@ -41,6 +41,8 @@ pub struct Truth {
     pub ratio: Vec<f64>,
     /// What each leaves after the known model took what it can: root mean square, N (m for effects on the path).
     pub effect_rms: Vec<f64>,
+    /// The first effect's force over time (s, N), after the known model took what it can; empty where it has none.
+    pub effect: Vec<(f64, f64)>,
     /// Noise of the force along the motion, N.
     pub noise_n: f64,
     /// Noise of an angle (of a mechanism's coordinate), rad or m.
@@ -100,6 +102,9 @@ pub fn make_followed(spec: &Spec, then: &[Log], seed: u64) -> (Case, Truth) {
         wanted_ratio: spec.ratio,
         ratio: sizes.iter().map(Size::ratio).collect(),
         effect_rms: sizes.iter().map(Size::rms).collect(),
+        effect: sizes
+            .first()
+            .map_or_else(Vec::new, |s| s.times_s.iter().copied().zip(s.rows.iter().copied()).collect()),
         noise_n: sensor.floor_n(),
         angle_noise: sensor.angle_floor(),
         equals: equals(spec, &setup, &samples),

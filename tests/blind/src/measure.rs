@@ -26,6 +26,8 @@ pub enum Known {
 pub struct Size {
     /// The effect row by row, after the known model took what it could (N or m).
     pub rows: Vec<f64>,
+    /// Times of the first of them, s, where an effect shows in the force: those in which the handle moves.
+    pub times_s: Vec<f64>,
     /// Standard deviation of the noise in those rows.
     pub noise: f64,
 }
@@ -126,7 +128,7 @@ pub fn size(setup: &Setup, sensor: &Sensor, arm: &Arm, known: Known, samples: &[
     match hidden.effect.shows() {
         Shows::Force => force_size(setup, sensor, known, samples, which, hidden),
         Shows::Path => path_size(setup, sensor, arm, samples, which),
-        Shows::Grossly => Size { rows: vec![1.0], noise: f64::NAN },
+        Shows::Grossly => Size { rows: vec![1.0], noise: f64::NAN, ..Size::default() },
     }
 }
 
@@ -162,7 +164,8 @@ fn force_size(setup: &Setup, sensor: &Sensor, known: Known, samples: &[Sample], 
             values.extend(wrong(s));
         }
     }
-    Size { rows: values, noise: sensor.floor_n() }
+    let times_s = samples.iter().zip(&rows).filter(|(_, used)| **used).map(|(s, _)| s.time_s).collect();
+    Size { rows: values, times_s, noise: sensor.floor_n() }
 }
 
 fn path_size(setup: &Setup, sensor: &Sensor, arm: &Arm, samples: &[Sample], which: usize) -> Size {
@@ -198,7 +201,7 @@ fn path_size(setup: &Setup, sensor: &Sensor, arm: &Arm, samples: &[Sample], whic
         }
     }
     let noise = sensor.angle_floor() * (outward / used.len().max(1) as f64).sqrt();
-    Size { rows: values, noise }
+    Size { rows: values, noise, ..Size::default() }
 }
 
 /// How well a sum of squares of the known part's own inertia could be seen: its expected log likelihood ratio, doubled.

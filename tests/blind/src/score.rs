@@ -37,6 +37,8 @@ pub struct Row {
     pub equals: Vec<&'static str>,
     /// Mean square of the effect, N²; not a number for effects without a force.
     pub effect_n2: f64,
+    /// What the answer takes off the unexplained force as a share of what the oracle takes; see [`Row::gain_of_oracle`].
+    pub share_of_oracle: f64,
     /// The answer, or the sentence of the error.
     pub answer: Result<Diagnosis, String>,
     /// How long the answer took, s.
@@ -81,6 +83,11 @@ impl Row {
             ratio: truth.wanted_ratio,
             missed: truth.missed(),
             equals: truth.equals.clone(),
+            share_of_oracle: if force {
+                answer.as_ref().map_or(f64::NAN, |a| share_of_oracle(a, truth))
+            } else {
+                f64::NAN
+            },
             effect_n2: if force { truth.effect_rms[0].powi(2) } else { f64::NAN },
             answer,
             took_s,
@@ -152,8 +159,8 @@ impl Row {
         self.ids().iter().all(|id| named.contains(id))
     }
 
-    /// What the extension takes off the unexplained force, as a share of what the hidden effect put there: 1 is the oracle's.
-    /// Says nothing for effects without a force.
+    /// What the extension takes off the unexplained force on locked rows, as a share of what the oracle takes off there, who knows the
+    /// hidden effect's force at every instant: 1 is the oracle's. Says nothing for effects without a force.
     pub fn gain_of_oracle(&self) -> f64 {
         let Ok(answer) = &self.answer else { return 0.0 };
         if !self.effect_n2.is_finite() {
@@ -161,6 +168,9 @@ impl Row {
         }
         if answer.causes.is_empty() {
             return 0.0;
+        }
+        if !answer.course.instants.is_empty() {
+            return self.share_of_oracle;
         }
         (answer.baseline.heldout_rms_n.powi(2) - answer.end.heldout_rms_n.powi(2)) / self.effect_n2
     }
@@ -194,6 +204,34 @@ impl Row {
             Ok(_) => "none".to_owned(),
         }
     }
+}
+
+/// Rows that the answer itself trusts less than this are left out: there the sign of friction is a guess for everybody.
+const TRUSTED: f64 = 0.5;
+/// An oracle that gains less than this share of the noise's power on the locked rows says nothing.
+const LEAST_GAIN: f64 = 0.02;
+
+/// Powers taken off the locked rows: by the answer's extension, and by taking off the hidden effect itself.
+fn share_of_oracle(answer: &Diagnosis, truth: &Truth) -> f64 {
+    let locked = answer.course.instants.iter().filter(|i| i.is_locked && i.recording == 0 && i.weight >= TRUSTED);
+    let (mut found, mut oracle, mut noise) = (0.0, 0.0, 0.0);
+    for instant in locked {
+        let Some(effect_n) = at(&truth.effect, instant.time_s) else { continue };
+        let (before, after) = (instant.left_before, instant.left_after);
+        found += before * before - after * after;
+        oracle += before * before - (before - effect_n).powi(2);
+        noise += truth.noise_n * truth.noise_n;
+    }
+    if oracle > LEAST_GAIN * noise { found / oracle } else { f64::NAN }
+}
+
+/// A force between its samples; nothing where there are none near.
+fn at(effect: &[(f64, f64)], time_s: f64) -> Option<f64> {
+    /// Samples farther apart have a gap between them, s.
+    const GAP_S: f64 = 0.06;
+    let next = effect.partition_point(|(t, _)| *t < time_s);
+    let ((t0, f0), (t1, f1)) = (*effect.get(next.checked_sub(1)?)?, *effect.get(next)?);
+    (t1 - t0 < GAP_S).then(|| f0 + (f1 - f0) * (time_s - t0) / (t1 - t0).max(1e-12))
 }
 
 /// The figures that a battery is judged by.
@@ -263,5 +301,44 @@ impl Figures {
             gain_claimed: [0.5, 0.1].map(|part| quantile(&claimed, part)),
             errors: Share::count(rows, |r| r.answer.is_err()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use estimator::diagnose::diagnose;
+
+    #[test]
+    fn a_force_is_read_between_its_samples_and_not_in_gaps() {
+        let effect = [(0.0, 1.0), (0.01, 3.0), (0.5, 7.0)];
+        assert_eq!(at(&effect, 0.0025), Some(1.5));
+        assert_eq!((at(&effect, 0.2), at(&effect, -1.0), at(&effect, 9.0)), (None, None, None));
+    }
+
+    #[test]
+    fn who_takes_nothing_off_gains_nothing_and_the_truth_itself_gains_all() {
+        let job = Job {
+            set: Set::Single,
+            spec: super::super::draw::Spec {
+                effects: vec![(Effect::Eccentric, 0)],
+                ratio: 2.0,
+                bench: Bench::OneFinger,
+                log: Log::Mixed,
+                rate_hz: 100.0,
+                seconds: 15.0,
+            },
+            seed: 3,
+        };
+        let (case, truth) = job.make();
+        let mut answer = diagnose(&case.recordings, &options(&case)).expect("it can be diagnosed");
+        for instant in &mut answer.course.instants {
+            instant.left_after = instant.left_before;
+        }
+        assert_eq!(share_of_oracle(&answer, &truth), 0.0);
+        for instant in &mut answer.course.instants {
+            instant.left_after -= at(&truth.effect, instant.time_s).unwrap_or(0.0);
+        }
+        assert!((share_of_oracle(&answer, &truth) - 1.0).abs() < 1e-9);
     }
 }
