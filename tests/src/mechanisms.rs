@@ -48,8 +48,10 @@ fn drawn(rng: &mut StdRng) -> (Mechanism, Hand) {
     let size = of(draw(0.08, 0.2), draw(0.6, 1.4));
     let mut part = |share: f64, low: f64, high: f64| (share * size, draw(low, high), draw(0.0, std::f64::consts::TAU));
     let parts = vec![part(1.0, 1.2, 2.2), part(0.4, 3.0, 5.0), part(0.12, 7.0, 11.0)];
-    // Stiff, as a machine that follows its path: a softer hand lets a slide stick at every reversal (see docs/parameters.md).
-    let hand = Hand { parts, stiffness: 40_000.0 * mechanism.inertia, damping: 300.0 * mechanism.inertia };
+    // From an arm, which lets a slide stick for long at every reversal, to a machine that follows its path, 1/s²; damped by three quarters.
+    let stiffness = 600.0 * (40_000.0_f64 / 600.0).powf(draw(0.0, 1.0));
+    let hand =
+        Hand { parts, stiffness: stiffness * mechanism.inertia, damping: 1.5 * stiffness.sqrt() * mechanism.inertia };
     (mechanism, hand)
 }
 
@@ -83,6 +85,8 @@ fn moved(mechanism: &Mechanism, hand: &Hand, rate_hz: f64) -> Vec<(f64, f64)> {
 fn recorded(mechanism: &Mechanism, motion: &[(f64, f64)], rate_hz: f64, level: f64, rng: &mut StdRng) -> Recording {
     let (names, noises) =
         if mechanism.angular { (["q_rad", "tau_Nm"], [1e-4, 0.004]) } else { (["q_m", "f_N"], [1e-5, 0.05]) };
+    // Of an uncompensated quartz: 100 ppm.
+    let clock = 1.0 + 1e-4 * gauss(rng);
     let mut noisy = |value: f64, noise: f64| value + level * noise * gauss(rng);
     let values: Vec<[f64; 2]> = motion.iter().map(|(q, f)| [noisy(*q, noises[0]), noisy(*f, noises[1])]).collect();
     let channel = |k: usize| Channel {
@@ -92,7 +96,7 @@ fn recorded(mechanism: &Mechanism, motion: &[(f64, f64)], rate_hz: f64, level: f
     };
     let mut recording = Recording {
         name: "mechanism".to_owned(),
-        time_s: Some((0..motion.len()).map(|i| i as f64 / rate_hz).collect()),
+        time_s: Some((0..motion.len()).map(|i| i as f64 / rate_hz * clock).collect()),
         channels: vec![channel(0), channel(1)],
         ..Recording::default()
     };

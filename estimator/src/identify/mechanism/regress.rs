@@ -16,6 +16,10 @@ const REVERSAL_SHARE: f64 = 0.02;
 const SKEW_SAMPLES: f64 = 0.29;
 /// Slower than about this share of the usual speed a mechanism may stick.
 const SLOW_SHARE: f64 = 0.015;
+/// Rounds of weighting.
+const ROUNDS: usize = 3;
+/// Half the longest stop that a filter hides, in periods of its cut-off.
+const UNSEEN_STOP: f64 = 0.4;
 /// The velocity must exceed its noise by this much to be a motion.
 const MOTION_RATIO: f64 = 2.0;
 
@@ -73,7 +77,7 @@ impl System {
     pub fn solve(&self) -> Result<LinearFit, EstimateError> {
         let mut fit = least_squares(&self.columns, &self.target, None)?;
         let mut weights = None;
-        for _ in 0..2 {
+        for _ in 0..ROUNDS {
             weights = self.weights(&fit);
             let Some(weights) = weights.as_deref() else { break };
             fit = least_squares(&self.columns, &self.target, Some(weights))?;
@@ -156,20 +160,24 @@ impl System {
     }
 }
 
-/// 1 where the sign of the motion is anybody's guess, 0 where it is certain: velocity noise and the place
-/// of the reversal between two samples.
+/// 1 where the sign of the motion is anybody's guess, 0 where it is certain: velocity noise, the place of the reversal between
+/// two samples, and friction that holds what stands still.
 fn direction_uncertainty(piece: &Piece) -> Vec<f64> {
     let blur = |m: &haptics::law::Motion| {
         1.2 * piece.velocity_noise.hypot(SKEW_SAMPLES * m.acceleration * piece.period_s).max(f64::MIN_POSITIVE)
     };
     let slow = SLOW_SHARE * piece.rms(|m| m.velocity);
-    // A mechanism that sticks resists with anything up to its friction.
-    let doubt = |m: &haptics::law::Motion| {
-        let by_noise = 1.0 - (m.velocity / blur(m)).tanh().powi(2);
-        let sticking = (1.0 + (m.velocity / slow.max(f64::MIN_POSITIVE)).powi(2)).powi(-2);
-        by_noise.max(sticking)
+    // A mechanism that sticks resists with anything up to its friction, and a stop that is shorter than the filter's own time looks
+    // like a smooth reversal. What the filter makes of such a moment reaches as far as the filter does, and all samples within its
+    // time have the same of it: one error that comes back so often counts so often.
+    let sticking = |m: &haptics::law::Motion| {
+        let slow = slow.hypot(UNSEEN_STOP * m.acceleration / piece.cutoff_hz).max(f64::MIN_POSITIVE);
+        (1.0 + (m.velocity / slow).powi(2)).powi(-2)
     };
-    piece.motion.iter().map(doubt).collect()
+    let stuck = piece.filter(&piece.motion.iter().map(sticking).collect::<Vec<f64>>());
+    let repeats = (1.0 / (piece.cutoff_hz * piece.period_s)).max(1.0);
+    let by_noise = |m: &haptics::law::Motion| 1.0 - (m.velocity / blur(m)).tanh().powi(2);
+    piece.motion.iter().zip(stuck).map(|(m, stuck)| by_noise(m).max(repeats * stuck * stuck)).collect()
 }
 
 /// Which terms this motion can show, and why not the others.
