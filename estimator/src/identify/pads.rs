@@ -34,6 +34,12 @@ pub(super) struct PadFit {
     pub(super) rows: usize,
 }
 
+/// Half of what holds 95 % of an even distribution, over 1.96: what it counts as beside errors that are normal.
+pub(super) const EVEN: f64 = 0.95 / 1.96;
+/// Shear stiffness of a pad over its normal stiffness where nothing shows it, and what that leaves open: evenly likely between 0.3 and
+/// 1.1, for soft pads of foam and rubber.
+pub(super) const SHEAR_OVER_NORMAL: (f64, f64) = (0.7, 0.4 * EVEN);
+
 /// Before the recording was seen, a linear spring is this many times as likely as either way to bend.
 const SIMPLER: f64 = 12.0;
 /// Values of a bend that are tried first, and then between the neighbours of the best one.

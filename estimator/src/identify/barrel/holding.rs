@@ -8,12 +8,10 @@ use crate::constraint::{Carry, carried};
 use crate::estimate::{Constraint, ConstraintKind, Parameter, Sided, Yielding};
 use haptics::Vec2;
 
-/// What that does to the distance of the anchor and to the stiffness, as a share.
-const GEOMETRY_SHARE: f64 = 2e-3;
-const STIFFNESS_SHARE: f64 = 0.01;
-/// Held a little above or below where the cable is tied, the barrel swings by about this way, m, and by this way while the pull grows.
-const SWINGS_M: f64 = 3e-4;
-const SWINGS_AS_PULLED_M: f64 = 7e-5;
+/// Held a little above or below its middle, the barrel turns in the grip while it is pulled: by about this way, m, …
+const SWINGS_M: f64 = 6e-5;
+/// … and by this way while the pull grows.
+const SWINGS_AS_PULLED_M: f64 = 2.8e-5;
 /// Stiffness of a hand whose give was not seen, N/m.
 const HAND_N_M: f64 = 1000.0;
 
@@ -21,18 +19,25 @@ impl Seen<'_> {
     /// A value of the cable with its own error and what softer pads would change.
     fn of_cable(&self, own: f64, of: impl Fn(&Pull, &Cable) -> Option<f64>) -> Option<Value> {
         let value = |pull: &Pull| of(pull, pull.cable.as_ref()?);
-        let best = value(&self.pull)?;
-        let changes = self.others.iter().map(|other| value(other).map_or(0.0, |v| v - best));
+        let best = value(&self.taken.pull)?;
+        let changes = self.taken.others.iter().map(|other| value(other).map_or(0.0, |v| v - best));
         Some((best, changes.fold(own, f64::hypot)))
     }
 
     pub(super) fn cable(&self) -> Vec<Parameter> {
         const GEOMETRIC: [&str; 3] = ["anchor_x_m", "anchor_y_m", "length_m"];
-        let Some(cable) = &self.pull.cable else {
+        if let Some(way_m) = self.taken.slipped_m {
+            let why = format!(
+                "the barrel slid {:.2} mm in the grip while it was pulled: it was not where the fingers were; squeeze harder",
+                1e3 * way_m.abs()
+            );
+            return ["stiffness_N_m"].into_iter().chain(GEOMETRIC).map(|name| self.missing(CABLE, name, &why)).collect();
+        }
+        let Some(cable) = &self.taken.pull.cable else {
             let why = "nothing but its weight pulled at it; move it farther, also upwards";
             return vec![self.missing(CABLE, "stiffness_N_m", why)];
         };
-        let errors = &self.pull.around.std_errors;
+        let errors = &self.taken.pull.around.std_errors;
         let [angle, taut] = [errors[GEOMETRY], errors[GEOMETRY + 1].hypot(self.signals.resolution_m)];
         let mut found = Vec::new();
         let mut push = |name: &str, value: Option<Value>, how: &str| {
@@ -49,7 +54,7 @@ impl Seen<'_> {
             push(name, self.of_cable(error, |_, c| Some((c.about_m + c.away() * c.taut_m)[k])), how);
         }
         let strongest = self.strongest_n();
-        let tension_error = strongest * errors[STIFFNESS] / self.pull.values[STIFFNESS];
+        let tension_error = strongest * errors[STIFFNESS] / self.taken.pull.values[STIFFNESS];
         push(
             "largest_tension_N",
             Some((strongest, tension_error)),
@@ -64,15 +69,15 @@ impl Seen<'_> {
         let [_, _, bend] = [0, 1, 2].map(|k| errors[GEOMETRY + k]);
         let far = 1.0 / cable.bend_1_m;
         // Along the pull the distance is uncertain, across it the direction.
-        let covariance = self.pull.around.covariance[(GEOMETRY, GEOMETRY + 2)];
+        let covariance = self.taken.pull.around.covariance[(GEOMETRY, GEOMETRY + 2)];
         let across = Vec2::new(-u.y, u.x);
-        let model_m = (GEOMETRY_SHARE * far).hypot(SWINGS_M);
+        let model_m = SWINGS_M;
         let anchor_error = |k: usize| {
             let (by_angle, by_bend) = (-across[k] * far, u[k] * far * far);
             let square = (by_angle * angle).powi(2) + (by_bend * bend).powi(2) + 2.0 * by_angle * by_bend * covariance;
             square.max(0.0).sqrt().hypot(self.signals.resolution_m).hypot(model_m)
         };
-        let with = self.pull.around.covariance[(GEOMETRY + 1, GEOMETRY + 2)];
+        let with = self.taken.pull.around.covariance[(GEOMETRY + 1, GEOMETRY + 2)];
         let square = (far * far * bend).powi(2) + taut * taut - 2.0 * far * far * with;
         let length_error = square.max(0.0).sqrt().hypot(model_m);
         let how = "where the directions of its pull meet, for the middle of the grip";
@@ -87,20 +92,20 @@ impl Seen<'_> {
     }
 
     fn stiffness_n_m(&self) -> Option<Value> {
-        let stiffness = self.pull.values.get(STIFFNESS)?;
+        let stiffness = self.taken.pull.values.get(STIFFNESS)?;
         let stretch_m = self.strongest_n() / stiffness;
-        let model = stiffness * STIFFNESS_SHARE.hypot(SWINGS_AS_PULLED_M / stretch_m);
-        let own = self.pull.around.std_errors[STIFFNESS].hypot(model);
+        let model = stiffness * SWINGS_AS_PULLED_M / stretch_m;
+        let own = self.taken.pull.around.std_errors[STIFFNESS].hypot(model);
         self.of_cable(own, |p, _| Some(p.values[STIFFNESS]))
     }
 
     pub(super) fn strongest_n(&self) -> f64 {
-        let Some(cable) = &self.pull.cable else { return 0.0 };
+        let Some(cable) = &self.taken.pull.cable else { return 0.0 };
         let give = self.grip.give_m_n();
         let give = Vec2::new(give[0].0, give[1].0);
         let place = |i: usize| self.signals.position[i] - self.signals.net_n[i].component_mul(&give);
         let stretch = self.signals.hanging().concat().into_iter().map(|i| cable.stretch(place(i)).0);
-        self.pull.values[STIFFNESS] * stretch.fold(0.0, f64::max)
+        self.taken.pull.values[STIFFNESS] * stretch.fold(0.0, f64::max)
     }
 
     /// The cable as a constraint from one side; without one, whether anything else guides the barrel.
@@ -112,11 +117,11 @@ impl Seen<'_> {
             recording: &self.recording.name,
             signals: &self.signals.task,
             samples: &samples,
-            bias_n: bias[0] + bias[1] + self.zero.net_n,
-            bias_error_n: self.zero.error_n,
+            bias_n: bias[0] + bias[1] + self.taken.zero.net_n,
+            bias_error_n: self.taken.zero.error_n,
             gravity: self.gravity,
         });
-        let Some(cable) = &self.pull.cable else { return tested };
+        let Some(cable) = &self.taken.pull.cable else { return tested };
         let blank = Constraint::blank(Some(self.recording.name.clone()), "");
         let (stiffness, error) = self.stiffness_n_m()?;
         let hand = self.grip.sides.as_ref().map_or(HAND_N_M, |s| 2.0 / s.give_m_per_n);
@@ -139,8 +144,8 @@ impl Seen<'_> {
                 "a cable: a pull of up to {:.2} N that sets in beyond one place and grows with {stiffness:.0} N/m, taut in {} of {} \
                  independent samples",
                 self.strongest_n(),
-                self.pull.taut,
-                self.rows
+                self.taken.pull.taut,
+                self.taken.rows
             ),
             ..tested.unwrap_or(blank)
         })

@@ -9,6 +9,7 @@ mod holding;
 mod pull;
 mod report;
 mod signals;
+mod slip;
 mod wall;
 mod zero;
 
@@ -44,30 +45,34 @@ pub fn fit_by(
         )));
     }
     let known = |name: &str| recording.meta.known.get(name).copied().filter(|v| v.is_finite() && *v > 0.0);
-    let grip = Grip::of(&signals)?;
-    let middle_s = hanging.iter().map(|i| signals.time_s[*i]).sum::<f64>() / hanging.len() as f64;
-    let zero = Zero::at(&signals, middle_s)?;
+    let grip = Grip::of(&signals, known("pad_stiffness_N_m"))?;
     let gravity = recording.meta.gravity();
-    let pull_with = |give: Vec2| Pull::of(&rows(&signals, &hanging, give, &zero, gravity));
     let give = grip.give_m_n();
-    let pull = pull_with(Vec2::new(give[0].0, give[1].0))?;
-    // What else the pads may give changes where the barrel was, and so what the cable looks like.
-    let others = if pull.cable.is_some() {
-        vec![
-            pull_with(Vec2::new(give[0].0 + give[0].1, give[1].0))?,
-            pull_with(Vec2::new(give[0].0, give[1].0 + give[1].1))?,
-        ]
-    } else {
-        Vec::new()
-    };
+    let [(give_x, error_x), (give_y, error_y)] = give;
+    let zero = Zero::at(&signals, middle_s(&signals, &hanging))?;
+    let all = rows(&signals, &hanging, Vec2::new(give_x, give_y), &zero, gravity);
+    let mut taken = Taken { pull: Pull::of(&all)?, others: Vec::new(), slipped_m: None, rows: hanging.len(), zero };
+    if let Some(cable) = &taken.pull.cable {
+        if let Some(way_m) = slip::slipped_m(&signals) {
+            // Where the cable pulled, the barrel was not where the fingers were: only what was before counts.
+            let slack = |p: &Vec2| cable.stretch(*p).0 < -way_m.abs();
+            let before = all.place_m.iter().position(|p| !slack(p)).unwrap_or(hanging.len());
+            let hanging = &hanging[..before.clamp(LEAST_ROWS, hanging.len())];
+            let zero = Zero::at(&signals, middle_s(&signals, hanging))?;
+            let rows = rows(&signals, hanging, Vec2::new(give_x, give_y), &zero, gravity);
+            let pull = Pull::without_cable(&rows)?;
+            taken = Taken { pull, others: Vec::new(), slipped_m: Some(way_m), rows: hanging.len(), zero };
+        } else {
+            // What else the pads may give changes where the barrel was, and so what the cable looks like.
+            let pull_with = |x: f64, y: f64| Pull::of(&rows(&signals, &hanging, Vec2::new(x, y), &taken.zero, gravity));
+            taken.others = vec![pull_with(give_x + error_x, give_y)?, pull_with(give_x, give_y + error_y)?];
+        }
+    }
     let seen = Seen {
         recording,
         signals: &signals,
         grip,
-        zero,
-        pull,
-        others,
-        rows: hanging.len(),
+        taken,
         gravity,
         pad_n_m: known("pad_stiffness_N_m"),
         height_m: known("height_m"),
@@ -75,6 +80,21 @@ pub fn fit_by(
     };
     let fit = seen.report();
     Ok((fit, signals.segmentation))
+}
+
+/// What was taken for the answer.
+struct Taken {
+    pull: Pull,
+    /// The same with pads that give one standard error more, along x and along y.
+    others: Vec<Pull>,
+    /// How far the barrel slid down in the grip while a cable pulled, m.
+    slipped_m: Option<f64>,
+    rows: usize,
+    zero: Zero,
+}
+
+fn middle_s(signals: &Signals, samples: &[usize]) -> f64 {
+    samples.iter().map(|i| signals.time_s[*i]).sum::<f64>() / samples.len().max(1) as f64
 }
 
 /// The samples while it hangs, seen behind pads that give so much along x and y, m/N for both fingers together.
@@ -88,5 +108,6 @@ fn rows(signals: &Signals, hanging: &[usize], give: Vec2, zero: &Zero, gravity: 
         force_n: hanging.iter().map(force).collect(),
         gravity,
         noise_n: signals.net_noise_n(),
+        reach_s: signals.reach_s(),
     }
 }

@@ -40,9 +40,26 @@ pub struct Rows {
     pub gravity: f64,
     /// Noise of the net force as it is filtered, N.
     pub noise_n: f64,
+    /// Half of the filter's window, s.
+    pub reach_s: f64,
 }
 
 impl Rows {
+    /// Those for which the filter saw the cable either slack or taut all the time: where it gets taut, the force bends.
+    fn clear_of(&self, cable: &Cable) -> Self {
+        let clear = |i: &usize| cable.stretch(self.place_m[*i]).0.abs() > self.velocity[*i].norm() * self.reach_s;
+        let kept: Vec<usize> = (0..self.time_s.len()).filter(clear).collect();
+        let part = |values: &[Vec2]| kept.iter().map(|&i| values[i]).collect::<Vec<Vec2>>();
+        Self {
+            time_s: kept.iter().map(|&i| self.time_s[i]).collect(),
+            place_m: part(&self.place_m),
+            velocity: part(&self.velocity),
+            acceleration: part(&self.acceleration),
+            force_n: part(&self.force_n),
+            ..*self
+        }
+    }
+
     /// Weight of every component: pads give while the force changes, so that the barrel's acceleration is not quite the fingers'.
     fn weights(&self) -> Vec<f64> {
         let mean_kg = self.force_n.iter().map(|f| f.y).sum::<f64>() / (self.gravity * self.force_n.len() as f64);
@@ -83,6 +100,8 @@ impl Pull {
         let free = Self::linear(rows, None)?;
         let Some(rough) = search(rows) else { return Ok(free) };
         let straight = refine(rows, rough, false);
+        let rows = &rows.clear_of(&straight);
+        let straight = refine(rows, straight, false);
         let held = [refine(rows, straight, true), straight].map(|cable| Self::linear(rows, Some(cable)));
         for (turns, held) in [true, false].into_iter().zip(held) {
             let Ok(held) = held else { continue };
@@ -101,6 +120,11 @@ impl Pull {
             }
         }
         Ok(free)
+    }
+
+    /// Fits the rows as those of a barrel that nothing holds.
+    pub fn without_cable(rows: &Rows) -> Result<Self, EstimateError> {
+        Self::linear(rows, None)
     }
 
     fn bend(&self) -> f64 {
@@ -185,7 +209,7 @@ fn search(rows: &Rows) -> Option<Cable> {
         let (low, high) = (*along.first()?, *along.last()?);
         for place in 0..PLACES {
             let cable = Cable { taut_m: low + (high - low) * place as f64 / PLACES as f64, ..straight };
-            if let Some((values, cost)) = solve(rows, &cable)
+            if let Some((values, cost)) = solve(rows, &cable, STIFFNESS + 1)
                 && values[STIFFNESS] > 0.0
                 && best.as_ref().is_none_or(|(least, _)| cost < *least)
             {
@@ -201,11 +225,11 @@ fn search(rows: &Rows) -> Option<Cable> {
     Some(Cable { about_m, ..cable })
 }
 
-/// Linear values and sum of squares for a given geometry.
-fn solve(rows: &Rows, cable: &Cable) -> Option<(Vec<f64>, f64)> {
+/// Linear values and sum of squares for a given geometry, with the first so many columns: the damping does not help the search, but
+/// without it a cable that is drawn out quickly seems to get taut too early.
+fn solve(rows: &Rows, cable: &Cable, count: usize) -> Option<(Vec<f64>, f64)> {
     let (mut columns, force) = columns(rows, Some(cable));
-    // The damping is small: it does not help the search.
-    columns.truncate(STIFFNESS + 1);
+    columns.truncate(count);
     let p = columns.len();
     let weights = rows.weights();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).zip(&weights).map(|((a, b), w)| a * b * w).sum::<f64>();
@@ -224,21 +248,20 @@ fn solve(rows: &Rows, cable: &Cable) -> Option<(Vec<f64>, f64)> {
 fn refine(rows: &Rows, start: Cable, bent: bool) -> Cable {
     let which = if bent { 3 } else { 2 };
     let mut cable = start;
-    let Some((_, mut cost)) = solve(rows, &cable) else { return start };
+    let Some((_, mut cost)) = solve(rows, &cable, GEOMETRY) else { return start };
     for _ in 0..STEPS {
-        let Some((values, _)) = solve(rows, &cable) else { return cable };
+        let Some((values, _)) = solve(rows, &cable, GEOMETRY) else { return cable };
         let (mut columns, target) = columns(rows, Some(&cable));
-        columns.truncate(STIFFNESS + 1);
         columns.extend((0..which).map(|k| geometry_column(rows, &cable, &values, k)));
         let Ok(fit) = least_squares(&columns, &target, Some(&rows.weights())) else { return cable };
         let mut share = 1.0;
         let better = loop {
             let mut next = cable;
             for k in 0..which {
-                next = next.shifted(k, share * fit.values[STIFFNESS + 1 + k]);
+                next = next.shifted(k, share * fit.values[GEOMETRY + k]);
             }
             next.bend_1_m = next.bend_1_m.max(0.0);
-            match solve(rows, &next) {
+            match solve(rows, &next, GEOMETRY) {
                 Some((values, less)) if less < cost && values[STIFFNESS] > 0.0 => break Some((next, less)),
                 _ if share < 1e-3 => break None,
                 _ => share *= 0.5,

@@ -1,11 +1,10 @@
 //! What the barrel's recording shows, in the words of a fit.
 
-use super::OBJECT;
+use super::{OBJECT, Taken};
 use super::cable::Cable;
 use super::pull::{GROWTH, Pull, STIFFNESS};
 use super::signals::Signals;
 use super::wall::Grip;
-use super::zero::Zero;
 use crate::estimate::{Fit, Parameter};
 use crate::online::leak::{Series, Weighing, leak_or_drift};
 use haptics::Vec2;
@@ -17,18 +16,14 @@ const UNKNOWN_COMPRESSION: f64 = 0.07;
 const SEEN: f64 = 3.0;
 /// What a cable's pull is off by along and across, as a share of it: fingers that move the barrel feel it a little late, and their
 /// sensors' axes are not quite those of their positions.
-const PULL_SHARE: f64 = 1.5e-3;
+const PULL_SHARE: f64 = 2e-4;
 
 /// Everything that was found out.
 pub(super) struct Seen<'a> {
     pub(super) recording: &'a Recording,
     pub(super) signals: &'a Signals,
     pub(super) grip: Grip,
-    pub(super) zero: Zero,
-    pub(super) pull: Pull,
-    /// The same with pads that give one standard error more, along x and along y.
-    pub(super) others: Vec<Pull>,
-    pub(super) rows: usize,
+    pub(super) taken: Taken,
     pub(super) gravity: f64,
     /// What the sidecar states: N/m, m, kg.
     pub(super) pad_n_m: Option<f64>,
@@ -61,25 +56,25 @@ impl Seen<'_> {
     }
 
     pub(super) fn given(&self, object: &str, name: &str, (value, error): Value, how: &str) -> Parameter {
-        Parameter::identified(object, name, value, error, self.rows, how)
+        Parameter::identified(object, name, value, error, self.taken.rows, how)
     }
 
     pub(super) fn missing(&self, object: &str, name: &str, why: &str) -> Parameter {
-        Parameter::unidentified(object, name, self.rows, why)
+        Parameter::unidentified(object, name, self.taken.rows, why)
     }
 
     /// Mass in the middle of the time that it hung, kg.
     fn mass_kg(&self) -> Value {
-        let zero_kg = if self.gravity > 0.0 { self.zero.error_n / self.gravity } else { f64::INFINITY };
-        let change = |other: &Pull| other.values[0] - self.pull.values[0];
+        let zero_kg = if self.gravity > 0.0 { self.taken.zero.error_n / self.gravity } else { f64::INFINITY };
+        let change = |other: &Pull| other.values[0] - self.taken.pull.values[0];
         let pull_kg = if self.gravity > 0.0 { PULL_SHARE * self.strongest_n() / self.gravity } else { 0.0 };
-        let own = self.pull.around.std_errors[0].hypot(zero_kg).hypot(pull_kg);
-        (self.pull.values[0], self.others.iter().map(change).fold(own, f64::hypot))
+        let own = self.taken.pull.around.std_errors[0].hypot(zero_kg).hypot(pull_kg);
+        (self.taken.pull.values[0], self.taken.others.iter().map(change).fold(own, f64::hypot))
     }
 
     fn weight(&self) -> Vec<Parameter> {
         let (mass, error) = self.mass_kg();
-        let when = format!(" while it hung, at {:.2} s in the middle", self.pull.middle_s);
+        let when = format!(" while it hung, at {:.2} s in the middle", self.taken.pull.middle_s);
         let how = format!("force of both fingers{when}, less accelerations, zero and the cable's pull");
         vec![
             self.given(OBJECT, "weight_N", (mass * self.gravity, error * self.gravity), &how),
@@ -173,19 +168,19 @@ impl Seen<'_> {
 
     fn leak(&self) -> Parameter {
         const LEAK: &str = "leak_kg_s";
-        let Some((drift, drift_error)) = self.zero.drift_n_s.filter(|_| self.gravity > 0.0) else {
+        let Some((drift, drift_error)) = self.taken.zero.drift_n_s.filter(|_| self.gravity > 0.0) else {
             let why = "a leak cannot be told from a drift of the force sensors: free motion is needed before the first grip and \
                        after the last";
             return self.missing(OBJECT, LEAK, why);
         };
-        if !self.pull.around.identified[GROWTH] {
+        if !self.taken.pull.around.identified[GROWTH] {
             return self.missing(OBJECT, LEAK, "it did not hang long enough to change its weight");
         }
-        let value = drift / self.gravity - self.pull.values[GROWTH];
+        let value = drift / self.gravity - self.taken.pull.values[GROWTH];
         // From slack to taut and back within the time that it hung.
         let pull_n_s = PULL_SHARE * self.strongest_n() / self.hung_s();
-        let own = self.pull.around.std_errors[GROWTH].hypot(drift_error.hypot(pull_n_s) / self.gravity);
-        let error = self.others.iter().map(|o| o.values[GROWTH] - self.pull.values[GROWTH]).fold(own, f64::hypot);
+        let own = self.taken.pull.around.std_errors[GROWTH].hypot(drift_error.hypot(pull_n_s) / self.gravity);
+        let error = self.taken.others.iter().map(|o| o.values[GROWTH] - self.taken.pull.values[GROWTH]).fold(own, f64::hypot);
         let words = self.verdict().unwrap_or_default();
         let how = format!("how its weight falls while it hangs, less the drift of the sensors' zero; {words}");
         self.given(OBJECT, LEAK, (value, error), &how)
@@ -200,9 +195,9 @@ impl Seen<'_> {
             let place = signals.position[i] - signals.net_n[i].component_mul(&Vec2::new(give[0].0, give[1].0));
             let pull = |c: &Cable| {
                 let (stretch_m, away) = c.stretch(place);
-                self.pull.values[STIFFNESS] * stretch_m.max(0.0) * away.y
+                self.taken.pull.values[STIFFNESS] * stretch_m.max(0.0) * away.y
             };
-            self.pull.values[0] * signals.acceleration[i].y + self.pull.cable.as_ref().map_or(0.0, pull)
+            self.taken.pull.values[0] * signals.acceleration[i].y + self.taken.pull.cable.as_ref().map_or(0.0, pull)
         };
         let times = |samples: &[usize]| samples.iter().map(|i| signals.time_s[*i]).collect::<Vec<f64>>();
         let carried: Vec<f64> = hanging.iter().map(|i| signals.task.net_force_n[*i].y - held_n(*i)).collect();

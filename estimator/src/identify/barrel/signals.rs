@@ -103,6 +103,18 @@ impl Signals {
         std::f64::consts::SQRT_2 * (self.levels.force_noise_n / samples.sqrt()).hypot(self.resolution_n)
     }
 
+    /// Noise of the tips' middle as it is filtered, m.
+    pub fn place_noise_m(&self) -> f64 {
+        let tips = |f: usize| white_noise(&self.task.tips[f].position.iter().map(|p| p.y).collect::<Vec<f64>>());
+        0.5 * tips(0).hypot(tips(1)) / ((self.stride + 1) as f64).sqrt()
+    }
+
+    /// Half of the filter's window, s.
+    pub fn reach_s(&self) -> f64 {
+        let n = self.time_s.len();
+        0.5 * self.stride as f64 * (self.time_s[n - 1] - self.time_s[0]) / (n - 1).max(1) as f64
+    }
+
     /// Number of the lifts that were seen.
     pub fn lifts(&self) -> usize {
         (1..=MOST_CARRIES)

@@ -3,18 +3,22 @@
 use super::signals::Signals;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
-use crate::identify::pads::{self, PadFit, width_over_force};
+use crate::identify::pads::{self, EVEN, PadFit, SHEAR_OVER_NORMAL, width_over_force};
+use crate::segment::threshold::percentile;
 
 /// The grip must vary by this share of its mean for the give to be told from the width.
 const LEAST_GRIP_VARIATION: f64 = 0.05;
 /// Give of a pad that was not measured, m/N, and how well that is known: foam of 2 mm (thesis, 1.1 mm at 2.75 N).
 const USUAL_GIVE_M_N: (f64, f64) = (4e-4, 2e-4);
-/// Share of the give at lift-off that is the pads' shear, and not the floor's, and its standard deviation.
-const SHEAR_SHARE: (f64, f64) = (0.85, 0.12);
-/// Shear stiffness over normal stiffness of a pad where lift-off does not show it, and its standard deviation.
-const SHEAR_OVER_NORMAL: (f64, f64) = (0.7, 0.25);
+/// Share of the give at lift-off that is the pads' shear, and not the floor's: evenly likely between 0.86 and 1 (floors are many times
+/// as stiff as pads).
+const SHEAR_SHARE: (f64, f64) = (0.93, 0.07 * EVEN);
 /// Lift between these shares of the weight: on the floor, and already carried in part.
 const PARTLY: (f64, f64) = (0.1, 0.85);
+/// The weight by itself, among all that the fingers carried while a cable pulled, too: this share of the samples had less.
+const LEAST_CARRIED: f64 = 0.1;
+/// A pull to the side of more than this share of the weight turns the barrel in the grip, so that its width is not seen.
+const SIDEWAYS: f64 = 0.05;
 /// Fewer samples show no give.
 const LEAST_ROWS: usize = 8;
 
@@ -34,8 +38,12 @@ pub struct Grip {
 
 impl Grip {
     /// From all samples in which it was held.
-    pub fn of(signals: &Signals) -> Result<Self, EstimateError> {
-        let held = signals.held();
+    pub fn of(signals: &Signals, pad_n_m: Option<f64>) -> Result<Self, EstimateError> {
+        let weight_n = weight_n(signals).unwrap_or(0.0);
+        let straight = |i: &usize| signals.net_n[*i].x.abs() < SIDEWAYS * weight_n;
+        let all = signals.held();
+        let held: Vec<usize> = all.iter().copied().filter(straight).collect();
+        let held = if 2 * held.len() > all.len() { held } else { all };
         let rows = signals.rows(&held);
         let column = |series: &[f64]| rows.iter().map(|i| series[*i]).collect::<Vec<f64>>();
         let (width, force, rate) = (column(&signals.width_m), column(&signals.grip_n), column(&signals.width_rate));
@@ -47,7 +55,8 @@ impl Grip {
         let sides = if spread > LEAST_GRIP_VARIATION * mean_n { width_over_force(&grip)? } else { None };
         let sides = sides.filter(|s| s.give_m_per_n > 0.0);
         let normal = sides.map_or(USUAL_GIVE_M_N.0, |s| s.give_m_per_n);
-        let usual = 0.5 * normal / SHEAR_OVER_NORMAL.0;
+        // A wall gives under the grip, but not along itself.
+        let usual = 0.5 * pad_n_m.map_or(normal, f64::recip) / SHEAR_OVER_NORMAL.0;
         let shear_m_n = shear(signals)?.unwrap_or((usual, usual * SHEAR_OVER_NORMAL.1 / SHEAR_OVER_NORMAL.0));
         Ok(Self { sides, mean_width_m, mean_n, shear_m_n, samples: held.len() })
     }
@@ -59,11 +68,15 @@ impl Grip {
     }
 }
 
+/// About what the barrel weighs while nothing else pulls, N; `None` where it never hung.
+pub fn weight_n(signals: &Signals) -> Option<f64> {
+    let mut weights: Vec<f64> = signals.hanging().iter().flatten().map(|i| signals.net_n[*i].y).collect();
+    (!weights.is_empty()).then(|| percentile(&mut weights, LEAST_CARRIED))
+}
+
 /// Give of the two fingers in shear: how far they rise while they take the barrel's weight over from the floor.
 fn shear(signals: &Signals) -> Result<Option<(f64, f64)>, EstimateError> {
-    let mut weights: Vec<f64> = signals.hanging().iter().flatten().map(|i| signals.net_n[*i].y).collect();
-    weights.sort_by(f64::total_cmp);
-    let Some(weight_n) = weights.get(weights.len() / 2).copied() else { return Ok(None) };
+    let Some(weight_n) = weight_n(signals) else { return Ok(None) };
     let off = signals.hanging().first().and_then(|lift| lift.first().copied()).unwrap_or(0);
     let held = signals.held();
     let first = held.first().copied().unwrap_or(off);

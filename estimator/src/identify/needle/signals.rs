@@ -1,6 +1,7 @@
 //! What a needle recording says along the needle's way: depth, force, and where it is held.
 
 use crate::estimate::EstimateError;
+use crate::identify::pads::SHEAR_OVER_NORMAL;
 use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TipSeries, is_two_fingered, tip_series};
 use haptics::Vec2;
@@ -17,9 +18,6 @@ const STRONGEST: f64 = 0.02;
 const FORCE_NOISES: f64 = 12.0;
 /// Holds of fewer samples are none.
 const LEAST_HOLD: usize = 30;
-/// Shear stiffness of a pad as a share of its normal stiffness, and how well that is known (one standard deviation): an
-/// assumption, for soft pads of foam and rubber.
-const SHEAR_SHARE: (f64, f64) = (0.7, 0.25);
 /// The pads give when width follows grip this clearly (value over its error).
 const PADS_SEEN: f64 = 8.0;
 
@@ -154,6 +152,6 @@ fn give(grip: &[f64], width: &[f64], holds: &[Range<usize>]) -> (f64, f64) {
     if slope >= 0.0 || -slope < PADS_SEEN * error {
         return (0.0, 0.0);
     }
-    let give = 1.0 / (2.0 * SHEAR_SHARE.0 * normal_n_m);
-    (give, give * SHEAR_SHARE.1 / SHEAR_SHARE.0)
+    let give = 1.0 / (2.0 * SHEAR_OVER_NORMAL.0 * normal_n_m);
+    (give, give * SHEAR_OVER_NORMAL.1 / SHEAR_OVER_NORMAL.0)
 }

@@ -11,6 +11,7 @@ mod signals;
 mod way;
 
 use crate::estimate::{EstimateError, Fit};
+use crate::identify::pads::EVEN;
 use haptics::recording::Recording;
 use signals::{Reading, Signals};
 use way::{Stop, Way};
@@ -19,8 +20,6 @@ use way::{Stop, Way};
 pub const OBJECT: &str = "switch";
 /// Length of the lever that is assumed, in travels of the knob.
 pub const LEVER_TRAVELS: f64 = 1.9;
-/// Half of what holds 95 % of an even distribution, over 1.96: what it counts as beside errors that are normal.
-const EVEN: f64 = 0.95 / 1.96;
 /// One over that is taken as evenly likely within this share.
 const LEVER_SPREAD: f64 = 0.5 * EVEN;
 /// The share of the give at the stops that is the pads', and its error: evenly likely between 0.4 and 1.
