@@ -3,8 +3,9 @@
 //! The regressors are the laws of `haptics::law`; this module only chooses them, stacks them and says what the recording
 //! cannot show. Four forms of recording are understood: a coordinate with its force; a tool path with forces, whose
 //! constraint is found first; a coordinate without a force, which moves freely; and a path without a clock, which shows its
-//! constraint only.
+//! constraint only. Two angles with two torques are a chain of two links (`chain/`).
 
+mod chain;
 mod even;
 mod free;
 mod gravity;
@@ -49,6 +50,9 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
     let first = recordings
         .first()
         .ok_or_else(|| EstimateError::Other("no recording was given; name at least one log".to_owned()))?;
+    if recordings.iter().all(chain::is_chain) {
+        return chain::fit(recordings);
+    }
     if let Some(thrown) = super::tossed::fit(recordings) {
         return Ok(thrown);
     }

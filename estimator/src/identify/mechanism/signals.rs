@@ -135,7 +135,7 @@ pub fn raw(recording: &Recording, path: Option<&MechanismPath>) -> Result<Raw, E
 }
 
 /// Samples at which one of the columns is flagged as saturated.
-fn saturated(recording: &Recording, columns: &[&str]) -> Vec<bool> {
+pub fn saturated(recording: &Recording, columns: &[&str]) -> Vec<bool> {
     let mut flags = vec![false; recording.len()];
     let about = |column: &Option<String>| column.as_deref().is_some_and(|c| columns.contains(&c));
     for warning in recording.warnings.iter().filter(|w| w.kind == "saturation" && about(&w.column)) {
@@ -148,19 +148,25 @@ fn saturated(recording: &Recording, columns: &[&str]) -> Vec<bool> {
 
 /// Cuts at gaps, resamples uneven pieces, filters and derives. Pieces that are too short are left out.
 pub fn pieces(raw: &Raw, name: &str) -> Result<Vec<Piece>, EstimateError> {
-    let n = raw.time_s.len();
-    let mut steps: Vec<f64> = raw.time_s.windows(2).map(|w| w[1] - w[0]).collect();
+    let (spans, median) = uninterrupted(&raw.time_s, name)?;
+    let found: Vec<Piece> = spans.into_iter().map(|(first, end)| piece(raw, first, end, median)).collect();
+    if found.iter().all(|p| !p.usable.contains(&true)) { Err(too_few(name, raw.time_s.len())) } else { Ok(found) }
+}
+
+/// Stretches without a gap that are long enough (first sample, end), and the usual step, s.
+pub fn uninterrupted(time_s: &[f64], name: &str) -> Result<(Vec<(usize, usize)>, f64), EstimateError> {
+    let n = time_s.len();
+    let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
     if steps.len() + 1 < MIN_SAMPLES {
         return Err(too_few(name, n));
     }
     let middle = steps.len() / 2;
     let median = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
     let mut cuts = vec![0];
-    cuts.extend((1..n).filter(|&i| raw.time_s[i] - raw.time_s[i - 1] > GAP_PERIODS * median));
+    cuts.extend((1..n).filter(|&i| time_s[i] - time_s[i - 1] > GAP_PERIODS * median));
     cuts.push(n);
-    let spans = cuts.windows(2).map(|w| (w[0], w[1])).filter(|(a, b)| b - a >= MIN_SAMPLES);
-    let found: Vec<Piece> = spans.map(|(first, end)| piece(raw, first, end, median)).collect();
-    if found.iter().all(|p| !p.usable.contains(&true)) { Err(too_few(name, n)) } else { Ok(found) }
+    let spans: Vec<_> = cuts.windows(2).map(|w| (w[0], w[1])).filter(|(a, b)| b - a >= MIN_SAMPLES).collect();
+    if spans.is_empty() { Err(too_few(name, n)) } else { Ok((spans, median)) }
 }
 
 fn too_few(name: &str, samples: usize) -> EstimateError {

@@ -3,6 +3,8 @@
 
 mod membrane;
 mod toggle;
+mod two_link;
 
 pub use membrane::{MembraneHistory, MembraneLaw, MembranePhase};
 pub use toggle::{CurvePoint, ToggleCurve};
+pub use two_link::{TWO_LINK, TwoLinkMotion, TwoLinkParameter, TwoLinkRows};
