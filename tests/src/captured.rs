@@ -11,7 +11,8 @@ use haptics::world::{Switch, World, presets};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
-type Values = Vec<(&'static str, f64)>;
+/// Names of parameters and what they truly are.
+pub type Values = Vec<(&'static str, f64)>;
 
 /// A sheet and a needle, with what the fit should find; the surface is added by what the performance knows.
 fn needle_world(seed: u64) -> (World, Values) {
@@ -79,7 +80,7 @@ fn switch_world(seed: u64) -> (World, Values) {
 }
 
 /// In the terms of the fit: places of the knob's middle, forces with the knob's weight in them.
-fn switch_truth(switch: &Switch, gravity_m_s2: f64) -> Values {
+pub fn switch_truth(switch: &Switch, gravity_m_s2: f64) -> Values {
     let points = &switch.curve.points;
     let x = |k: usize| switch.knob_in_world(points[k].at_m).x;
     let weight = |k: usize| switch.mass_kg * gravity_m_s2 * (points[k].at_m / switch.lever_m).sin();

@@ -2,7 +2,7 @@
 
 use super::definition::{Definition, Step};
 use super::subtasks::{LEAST_RUN_S, interval, majority, runs_of};
-use super::{Method, Segmentation, SystemState, Thresholds};
+use super::{Segmentation, SystemState, Thresholds};
 
 /// Intervals of equal state from the state of every sample.
 pub fn assemble(
@@ -27,15 +27,5 @@ pub fn assemble(
             interval(time_s, raw, run, name)
         })
         .collect();
-    Segmentation {
-        method: Method::Threshold.name().to_owned(),
-        task: task.name.clone(),
-        states,
-        thresholds,
-        shows: task.shown_by_states(),
-        warnings,
-        score: None,
-        posterior: None,
-        definition: Some(Box::new(task.clone())),
-    }
+    Segmentation::by_rules(task, states, thresholds, warnings)
 }

@@ -106,6 +106,21 @@ impl StatePosterior {
 }
 
 impl Segmentation {
+    /// What the rules made of a recording.
+    fn by_rules(task: &Definition, states: Vec<Interval>, thresholds: Thresholds, warnings: Vec<String>) -> Self {
+        Self {
+            method: Method::Threshold.name().to_owned(),
+            task: task.name.clone(),
+            states,
+            thresholds,
+            shows: task.shown_by_states(),
+            warnings,
+            score: None,
+            posterior: None,
+            definition: Some(Box::new(task.clone())),
+        }
+    }
+
     /// The sequence of states that subtasks were assigned to, without repeats, in the thesis's symbols.
     pub fn sequence(&self) -> String {
         let mut symbols: Vec<char> = Vec::new();

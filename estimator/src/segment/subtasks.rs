@@ -7,7 +7,7 @@ use super::align::{align, failed_attempts};
 use super::definition::{Definition, Ordered, Subtasks};
 use super::grasps::{self, Hand};
 use super::threshold::Thresholds;
-use super::{Interval, Method, Segmentation, SystemState, each, numbers};
+use super::{Interval, Segmentation, SystemState, each, numbers};
 
 /// Fewer samples than this are no recording of a task.
 pub const LEAST_SAMPLES: usize = 20;
@@ -76,17 +76,7 @@ pub fn assemble(
         })
         .collect::<Vec<_>>();
     missing(ordered, &order, &states, &mut warnings);
-    Segmentation {
-        method: Method::Threshold.name().to_owned(),
-        task: task.name.clone(),
-        states,
-        thresholds,
-        shows: task.shown_by_states(),
-        warnings,
-        score: None,
-        posterior: None,
-        definition: Some(Box::new(task.clone())),
-    }
+    Segmentation::by_rules(task, states, thresholds, warnings)
 }
 
 /// The number of objects and the first step for which the runs agree best with the expected order; the step of every run.

@@ -31,7 +31,11 @@ impl Seen<'_> {
                 "the barrel slid {:.2} mm in the grip while it was pulled: it was not where the fingers were; squeeze harder",
                 1e3 * way_m.abs()
             );
-            return ["stiffness_N_m"].into_iter().chain(GEOMETRIC).map(|name| self.missing(CABLE, name, &why)).collect();
+            return ["stiffness_N_m"]
+                .into_iter()
+                .chain(GEOMETRIC)
+                .map(|name| self.missing(CABLE, name, &why))
+                .collect();
         }
         let Some(cable) = &self.taken.pull.cable else {
             let why = "nothing but its weight pulled at it; move it farther, also upwards";

@@ -1,10 +1,10 @@
 //! What the barrel's recording shows, in the words of a fit.
 
-use super::{OBJECT, Taken};
 use super::cable::Cable;
 use super::pull::{GROWTH, Pull, STIFFNESS};
 use super::signals::Signals;
 use super::wall::Grip;
+use super::{OBJECT, Taken};
 use crate::estimate::{Fit, Parameter};
 use crate::online::leak::{Series, Weighing, leak_or_drift};
 use haptics::Vec2;
@@ -180,7 +180,8 @@ impl Seen<'_> {
         // From slack to taut and back within the time that it hung.
         let pull_n_s = PULL_SHARE * self.strongest_n() / self.hung_s();
         let own = self.taken.pull.around.std_errors[GROWTH].hypot(drift_error.hypot(pull_n_s) / self.gravity);
-        let error = self.taken.others.iter().map(|o| o.values[GROWTH] - self.taken.pull.values[GROWTH]).fold(own, f64::hypot);
+        let error =
+            self.taken.others.iter().map(|o| o.values[GROWTH] - self.taken.pull.values[GROWTH]).fold(own, f64::hypot);
         let words = self.verdict().unwrap_or_default();
         let how = format!("how its weight falls while it hangs, less the drift of the sensors' zero; {words}");
         self.given(OBJECT, LEAK, (value, error), &how)

@@ -65,10 +65,7 @@ impl TwoLinkMotion {
         let ([q1, q2], [v1, v2], [d1, d2]) = (self.angle_rad, self.rate_rad_s, self.direction);
         let (first, second) = (gravity_m_s2 * q1.sin(), gravity_m_s2 * (q1 + q2).sin());
         let turned = q2.sin() * v1 * (v1 + v2);
-        [
-            [0.0, 0.0, 0.0, 0.0, first, second, v1, d1, 0.0, 0.0],
-            [0.0, 0.0, turned, 0.0, 0.0, second, 0.0, 0.0, v2, d2],
-        ]
+        [[0.0, 0.0, 0.0, 0.0, first, second, v1, d1, 0.0, 0.0], [0.0, 0.0, turned, 0.0, 0.0, second, 0.0, 0.0, v2, d2]]
     }
 }
 
@@ -104,17 +101,26 @@ mod tests {
             MASS[m] * (acceleration + if k == 1 { GRAVITY } else { 0.0 })
         };
         // Moments about the joint that drives what is beyond it.
-        let moment = |m: usize, about: [f64; 2]| {
-            (now[m][0] - about[0]) * force(m, 1) - (now[m][1] - about[1]) * force(m, 0)
-        };
+        let moment =
+            |m: usize, about: [f64; 2]| (now[m][0] - about[0]) * force(m, 1) - (now[m][1] - about[1]) * force(m, 0);
         [moment(0, [0.0; 2]) + moment(1, [0.0; 2]), moment(1, now[0])]
     }
 
     #[test]
     fn torques_of_two_point_masses_are_those_of_newton() {
         let ([m1, m2], [l1, l2]) = (MASS, LENGTH);
-        let values =
-            [m1 * l1 * l1 + m2 * l1 * l1, m2 * l2 * l2, m2 * l1 * l2, 0.0, m1 * l1 + m2 * l1, m2 * l2, 0.0, 0.0, 0.0, 0.0];
+        let values = [
+            m1 * l1 * l1 + m2 * l1 * l1,
+            m2 * l2 * l2,
+            m2 * l1 * l2,
+            0.0,
+            m1 * l1 + m2 * l1,
+            m2 * l2,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        ];
         let sum = |row: &[f64; 10]| row.iter().zip(&values).map(|(c, v)| c * v).sum::<f64>();
         for t in [0.1, 0.7, 1.3, 2.9] {
             let h = 1e-4;

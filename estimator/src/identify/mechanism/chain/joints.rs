@@ -63,10 +63,7 @@ pub fn joints(recording: &Recording, index: usize) -> Result<Vec<Joints>, Estima
         what: "inertias of a chain of two links".to_owned(),
         recording: recording.name.clone(),
     })?;
-    let (angles, torques) = (
-        [channel(ANGLES[0])?, channel(ANGLES[1])?],
-        [channel(TORQUES[0])?, channel(TORQUES[1])?],
-    );
+    let (angles, torques) = ([channel(ANGLES[0])?, channel(ANGLES[1])?], [channel(TORQUES[0])?, channel(TORQUES[1])?]);
     let flagged = saturated(recording, &TORQUES);
     let (spans, period) = uninterrupted(time, &recording.name)?;
     let total = time.len() as f64;
@@ -109,7 +106,8 @@ fn light(position: &[Vec<f64>; 2], noise: [f64; 2], rate_hz: f64) -> f64 {
     let highest = MAX_CUTOFF_SHARE * rate_hz;
     let lowest = 8.0 * rate_hz / position[0].len() as f64;
     let quiet = |cutoff_hz: &f64| {
-        let loudest = position.iter().map(|p| root_mean_square(&stencil(&low_pass(p, rate_hz, *cutoff_hz), 1.0 / rate_hz).0));
+        let loudest =
+            position.iter().map(|p| root_mean_square(&stencil(&low_pass(p, rate_hz, *cutoff_hz), 1.0 / rate_hz).0));
         let left = noise.iter().map(|n| n * derivative_noise(rate_hz, *cutoff_hz, 1).sqrt());
         // A joint that stands still shows nothing but noise.
         loudest.zip(left).any(|(rate, noise)| noise <= RATE_NOISE * rate)

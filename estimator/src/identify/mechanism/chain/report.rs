@@ -48,7 +48,8 @@ impl Seen<'_> {
         let (fit, name) = (&self.best.fit, TWO_LINK[k].name);
         let samples = self.best.rows.len();
         if !fit.identified[k] {
-            let why = "the motion does not excite it apart from the others; move both joints, together and each by itself";
+            let why =
+                "the motion does not excite it apart from the others; move both joints, together and each by itself";
             return Parameter::unidentified(OBJECT, name, samples, why);
         }
         let error = self.error(fit.std_errors[k], &|s| s.fit.values[k]);
@@ -70,7 +71,12 @@ impl Seen<'_> {
         let (fit, samples) = (&self.best.fit, self.best.rows.len());
         let value = length(self.best);
         if !(fit.identified[COUPLING] && fit.identified[MOMENT] && value.is_finite()) {
-            return Parameter::unidentified(OBJECT, NAME, samples, "coupling and gravity of the second link are not shown");
+            return Parameter::unidentified(
+                OBJECT,
+                NAME,
+                samples,
+                "coupling and gravity of the second link are not shown",
+            );
         }
         let [a, b] = [COUPLING, MOMENT].map(|k| fit.std_errors[k] / fit.values[k]);
         let both = fit.covariance[(COUPLING, MOMENT)] / (fit.values[COUPLING] * fit.values[MOMENT]);
@@ -87,11 +93,7 @@ impl Seen<'_> {
         };
         let most = FIRM.iter().map(change).fold(0.0, f64::max);
         let [low, high] = self.neighbours.map(|s| s.cutoff_hz);
-        let few = if self.left_out.is_empty() {
-            "; the recordings are too few to show how far they agree"
-        } else {
-            ""
-        };
+        let few = if self.left_out.is_empty() { "; the recordings are too few to show how far they agree" } else { "" };
         format!(
             "filtered at {:.1} Hz, where the answers change least: from {low:.1} to {high:.1} Hz inertias and moments change by up to \
              {:.1} %, which is in their errors{few}",

@@ -12,9 +12,10 @@ use haptics::recording::{Recording, Task};
 use haptics::servo::recorder::{SensorModel, to_recording};
 use haptics::servo::safety::Limits;
 use haptics::servo::{Loop, Swap};
-use haptics::world::{State, Switch, World, presets};
+use haptics::world::{State, World, presets};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
+use tests::captured::switch_truth;
 
 /// A switch as the built-in one, but with everything about it drawn.
 fn drawn(seed: u64) -> World {
@@ -72,34 +73,9 @@ fn score(fit: &Fit, name: &str, truth: f64) -> f64 {
     (value - truth) / error
 }
 
-/// The truth in the terms of the fit: places of the knob's middle, forces with the knob's weight in them.
+/// The truth in the terms of the fit.
 fn truth(world: &World) -> Vec<(&'static str, f64)> {
-    let switch: &Switch = world.switch.as_ref().expect("it has one");
-    let points = &switch.curve.points;
-    let x = |k: usize| switch.knob_in_world(points[k].at_m).x;
-    let weight = |k: usize| switch.mass_kg * world.gravity_m_s2 * (points[k].at_m / switch.lever_m).sin();
-    let there = |k: usize| points[k].forward_n - weight(k);
-    let back = |k: usize| -(points[k].backward_n - weight(k));
-    let slope = |f: &dyn Fn(usize) -> f64, a: usize, b: usize| (f(b) - f(a)) / (x(b) - x(a)).abs();
-    // Where the mean of both branches vanishes.
-    let middle_n = |k: usize| 0.5 * (there(k) - back(k));
-    let share = middle_n(1) / (middle_n(1) - middle_n(2));
-    let friction = |k: usize| 0.5 * (there(k) + back(k));
-    vec![
-        ("peak_force_N", there(1)),
-        ("snap_position_m", x(1)),
-        ("rise_N_m", slope(&there, 0, 1)),
-        ("fall_N_m", slope(&there, 1, 2)),
-        ("return_peak_force_N", back(2)),
-        ("return_snap_position_m", x(2)),
-        ("return_rise_N_m", slope(&back, 3, 2)),
-        ("return_fall_N_m", slope(&back, 2, 1)),
-        ("right_end_position_m", x(3)),
-        ("left_end_position_m", x(0)),
-        ("travel_m", x(3) - x(0)),
-        ("friction_N", friction(1) + (friction(2) - friction(1)) * share),
-        ("knob_width_m", 2.0 * switch.knob_radius_m),
-    ]
+    switch_truth(world.switch.as_ref().expect("it has one"), world.gravity_m_s2)
 }
 
 #[test]
