@@ -41,10 +41,18 @@ fn emps_gives_the_published_parameters_from_positions_only() {
     let Some(recordings) = load("emps/emps_identification.csv", EMPS) else { return };
     assert!(recordings[0].warnings.is_empty(), "{:?}", recordings[0].warnings);
     let fit = mechanism::fit(&recordings).expect("fits");
-    near(value(&fit, "mass_kg"), 95.1089, 0.01);
-    near(value(&fit, "viscous_N_s_m"), 203.5034, 0.01);
-    near(value(&fit, "coulomb_N"), 20.3935, 0.01);
-    near(value(&fit, "offset_N"), -3.1648, 0.05);
+    // Published is plain least squares over all samples; here those near reversals hardly count, where friction is not what it is in motion.
+    let published = [
+        ("mass_kg", 95.1089, 0.01),
+        ("viscous_N_s_m", 203.5034, 0.03),
+        ("coulomb_N", 20.3935, 0.03),
+        ("offset_N", -3.1648, 0.05),
+    ];
+    for (name, expected, within) in published {
+        near(value(&fit, name), expected, within);
+        let error = fit.parameter("mechanism", name).and_then(|p| p.std_error).expect("an error");
+        assert!((value(&fit, name) - expected).abs() < 2.0 * error, "{name}: {expected} is published, ± {error}");
+    }
     let quality = fit.quality.expect("a held-out figure");
     println!("{quality:?} {:?}", fit.warnings);
     assert!(quality.heldout_relative < 0.05, "{quality:?}");
@@ -325,7 +333,11 @@ fn the_double_pendulum_shows_the_second_link_as_published_and_the_length_of_the_
     let mut found = std::collections::BTreeMap::new();
     for (name, expected) in published {
         if let Some((value, error)) = printed(&fit, "chain", name) {
-            println!("  published {expected:.5}: {:+.1} %, {:+.1} errors", 100.0 * (value / expected - 1.0), (value - expected) / error);
+            println!(
+                "  published {expected:.5}: {:+.1} %, {:+.1} errors",
+                100.0 * (value / expected - 1.0),
+                (value - expected) / error
+            );
             found.insert(name, (value, error, expected));
         }
     }

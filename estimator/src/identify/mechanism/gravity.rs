@@ -64,9 +64,12 @@ impl Models {
     }
 
     /// How much each base term would move if there were gravity, weighted with the probability that there is (Bayesian model
-    /// averaging, Hoeting et al. 1999; even odds before).
-    fn doubt(&self, base: usize) -> Vec<f64> {
-        let rivals = [(&self.hanging, self.gain(&self.hanging, 1.0)), (&self.any, self.gain(&self.any, 2.0))];
+    /// averaging, Hoeting et al. 1999; even odds before). Where the arc is too short for it to tell the two, `short`, a model is not
+    /// less likely for having a term more: the data could not have spoken for it.
+    fn doubt(&self, base: usize, short: bool) -> Vec<f64> {
+        let count = |parameters: f64| if short { 0.0 } else { parameters };
+        let rivals =
+            [(&self.hanging, self.gain(&self.hanging, count(1.0))), (&self.any, self.gain(&self.any, count(2.0)))];
         let weight = |gain: f64| (0.5 * gain.min(100.0)).exp();
         let total = 1.0 + rivals.iter().map(|(_, gain)| weight(*gain)).sum::<f64>();
         let spread = |fit: &LinearFit, j: usize| {
@@ -82,9 +85,10 @@ impl Models {
 /// Compares the base model with a gravity moment from hanging, with one of any phase, and with a spring.
 pub fn decide(pieces: &[Piece], base: &[Term], known: &Known) -> Result<Gravity, EstimateError> {
     let models = Models::new(pieces, base, known)?;
-    let absent = |why: String| Ok(Gravity::Absent { why, doubt: models.doubt(base.len()) });
     let (low, high) = range(pieces);
-    if high - low < MIN_RANGE_RAD {
+    let short = high - low < MIN_RANGE_RAD;
+    let absent = |why: String| Ok(Gravity::Absent { why, doubt: models.doubt(base.len(), short) });
+    if short {
         return absent(format!(
             "the angle covers only {:.2} rad, too little to tell gravity from an offset",
             high - low

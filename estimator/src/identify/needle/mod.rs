@@ -22,13 +22,13 @@ use strokes::{Push, quiet_force};
 pub const OBJECT: &str = "needle";
 
 /// What geometry and log leave unknown of a place, m: seats, resolution.
-const PLACE_ERROR_M: f64 = 3e-6;
+const PLACE_ERROR_M: f64 = 1e-5;
 /// A sheet is pierced between two samples; the force of so many samples before the fall is uncertain.
-const FALL_SAMPLES: usize = 1;
+const FALL_SAMPLES: usize = 3;
 /// The place of a puncture on the curve is as uncertain as this share of the force's noise.
 const PLACE_NOISE: f64 = 0.5;
 /// Drag, and a hole that is not the same both ways, as a share of the friction.
-const HOLE_SHARE: f64 = 0.03;
+const HOLE_SHARE: f64 = 0.05;
 /// Stiffness of a hand whose pads' give is not seen, N/m.
 const HAND_N_M: f64 = 1000.0;
 /// Fewer samples of loading show no curve.
