@@ -10,6 +10,45 @@ pub struct Searched {
     pub unit: &'static str,
 }
 
+/// A spring is at rest within so many half ranges of the middle.
+const RESTS_WITHIN: f64 = 3.0;
+
+/// What the parameters of a cause must be like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// Anything.
+    Any,
+    /// k, f0 of a spring that is at rest somewhere near: a force that is the same everywhere is none. `half`: half the range.
+    Spring { half: f64 },
+    /// k, f0 and two cubics (about the middle, and half a range beside it) of a spring that hardens.
+    Hardening { half: f64 },
+}
+
+impl Shape {
+    fn admits(self, values: &[f64]) -> bool {
+        match (self, values) {
+            (Self::Spring { half }, [k, f0]) => *k > 0.0 && f0.abs() < RESTS_WITHIN * k * half,
+            (Self::Hardening { half }, [k, f0, here, there]) => {
+                let cube = half.powi(3);
+                let [k, f0, k3, place] = about_its_zero([k * half, *f0, here * cube, there * cube]);
+                k3 > 0.0 && k > -0.5 * k3 && place.abs() < RESTS_WITHIN && f0.abs() < 2.0 * (k.abs() + k3)
+            }
+            _ => true,
+        }
+    }
+}
+
+/// k u + f0 + here u³ + there (u − 1)³ as k (u − place) + f0 + k3 (u − place)³: k, f0, k3 and the place.
+pub fn about_its_zero([k, f0, here, there]: [f64; 4]) -> [f64; 4] {
+    let k3 = here + there;
+    let (c2, c1, c0) = (-3.0 * there, k + 3.0 * there, f0 - there);
+    if k3.abs() < 1e-9 * c2.abs() || k3 == 0.0 {
+        return [k, f0, 0.0, 0.0];
+    }
+    let place = -c2 / (3.0 * k3);
+    [c1 - c2 * c2 / (3.0 * k3), c0 + c1 * place + c2 * place * place + k3 * place.powi(3), k3, place]
+}
+
 /// One cause with its searched values set: columns that are linear in what is left.
 #[derive(Clone, Debug)]
 pub struct Candidate {
@@ -25,6 +64,8 @@ pub struct Candidate {
     pub cost: f64,
     /// The sign that its first parameter must have, or 0.
     pub sign: f64,
+    /// What its parameters must be like beside that: a name for a force must fit it.
+    pub shape: Shape,
     /// Side of a one-sided law: +1, −1, or 0 where there is none.
     pub side: f64,
     /// Of a generic term that is no cause: its expression.
@@ -42,6 +83,7 @@ impl Candidate {
             searched: Vec::new(),
             cost: 1.0,
             sign: 0.0,
+            shape: Shape::Any,
             side: 0.0,
             expression: None,
         }
@@ -55,7 +97,18 @@ impl Candidate {
         linear: Vec<(&'static str, &'static str)>,
     ) -> Self {
         let cost = columns.len() as f64;
-        Self { id, kind, columns, linear, searched: Vec::new(), cost, sign: 0.0, side: 0.0, expression: None }
+        Self {
+            id,
+            kind,
+            columns,
+            linear,
+            searched: Vec::new(),
+            cost,
+            sign: 0.0,
+            shape: Shape::Any,
+            side: 0.0,
+            expression: None,
+        }
     }
 
     /// With one more value that was searched for.
@@ -65,9 +118,44 @@ impl Candidate {
         self
     }
 
+    /// Whose parameters are like that.
+    pub fn shaped(mut self, shape: Shape) -> Self {
+        self.shape = shape;
+        self
+    }
+
+    /// Whether it could be what its name says.
+    pub fn admits(&self, values: &[f64]) -> bool {
+        self.sign * values[0] >= 0.0 && self.shape.admits(values)
+    }
+
     /// Whose first parameter is positive.
     pub fn positive(mut self) -> Self {
         self.sign = 1.0;
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_cubics_are_one_about_another_place() {
+        let given = [0.7, -0.2, 1.1, 0.4];
+        let [k, f0, k3, place] = about_its_zero(given);
+        for u in [-1.0, -0.3, 0.0, 0.4, 1.0_f64] {
+            let two = given[0] * u + given[1] + given[2] * u.powi(3) + given[3] * (u - 1.0).powi(3);
+            let v = u - place;
+            assert!((two - (k * v + f0 + k3 * v.powi(3))).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_constant_force_is_no_spring() {
+        let spring = Shape::Spring { half: 0.5 };
+        assert!(spring.admits(&[2.0, 1.0]) && !spring.admits(&[0.1, 1.0]) && !spring.admits(&[-2.0, 0.0]));
+        let hardening = Shape::Hardening { half: 0.5 };
+        assert!(hardening.admits(&[2.0, 0.1, 3.0, 0.5]) && !hardening.admits(&[2.0, 0.1, -3.0, 0.5]));
     }
 }

@@ -1,6 +1,6 @@
 //! The causes that act in the force, as columns over the rows of a track: each out of its law in `haptics::law`.
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, Searched, Shape};
 use super::grid::Grid;
 use super::track::{Place, Row, Track};
 use haptics::Vec2;
@@ -9,9 +9,6 @@ use haptics::law::{
     FrictionChange, Hysteresis, Inertia, Kind, Law, LoadFriction, LocalPush, LocalResistance, MAX_PARAMETERS,
     MassChange, Memory, Motion, PositionRipple, QuadraticDrag, ReturnSpring, Stribeck, ViscousFriction, Weight,
 };
-
-/// How far away a cable's anchor is, in arms.
-const CABLE_REACH: f64 = 3.0;
 
 /// Everything that columns are made of.
 pub struct Dictionary<'a> {
@@ -137,16 +134,18 @@ impl Dictionary<'_> {
     /// A spring, and one that hardens: a cubic about any place is one about the middle and another beside it.
     fn springs(&self, all: &mut Vec<Candidate>) {
         let (low, high) = (self.track.quantile(0.0, position), self.track.quantile(1.0, position));
-        let (middle, aside) = (0.5 * (low + high), 0.5 * (high - low));
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low).max(1e-12));
         let column = |values: &[f64]| self.law(&ReturnSpring, values);
         let line = || vec![column(&[1.0, 0.0, 0.0, middle]), column(&[0.0, 1.0])];
         let names = || vec![("k", self.unit(&ReturnSpring, 0)), ("f0", self.units().force)];
-        all.push(Candidate::several("return-spring", Kind::Plant, line(), names()).positive());
+        let spring = Candidate::several("return-spring", Kind::Plant, line(), names());
+        all.push(spring.shaped(Shape::Spring { half }));
         let (mut columns, mut linear) = (line(), names());
         columns.push(column(&[0.0, 0.0, 1.0, middle]));
-        columns.push(column(&[0.0, 0.0, 1.0, middle + aside]));
+        columns.push(column(&[0.0, 0.0, 1.0, middle + half]));
         linear.extend([("k3", self.unit(&ReturnSpring, 2)), ("k3 aside", self.unit(&ReturnSpring, 2))]);
-        all.push(Candidate::several("return-spring", Kind::Plant, columns, linear));
+        let hardening = Candidate::several("return-spring", Kind::Plant, columns, linear);
+        all.push(hardening.shaped(Shape::Hardening { half }));
     }
 
     /// Walls that leave a good part of the motion alone (else a spring explains as much), and cables to a place beside the arm.
@@ -157,8 +156,8 @@ impl Dictionary<'_> {
             all.push(Candidate { side, ..wall.at("place", place, units.length) });
         }
         let (Some(radius), true) = (self.track.radius_m, self.track.planar) else { return };
-        for (direction, rest) in self.grid.cables.iter().copied() {
-            let anchor = CABLE_REACH * radius * Vec2::new(direction.cos(), direction.sin());
+        for (direction, rest, reach) in self.grid.cables.iter().copied() {
+            let anchor = reach * radius * Vec2::new(direction.cos(), direction.sin());
             let pull = self.column(&|row| {
                 let arm = radius * Vec2::new(row.along.y, -row.along.x);
                 let away = arm - anchor;
@@ -166,7 +165,10 @@ impl Dictionary<'_> {
                 AddedConstraint::cable_n(1.0, rest, length) * away.dot(&row.along) / length.max(1e-12)
             });
             let cable = Candidate::one("added-constraint", Kind::Plant, "k", "N/m", pull).positive();
-            all.push(cable.at("anchor direction", direction, "rad").at("rest length", rest, "m"));
+            let mut cable = cable.at("anchor direction", direction, "rad").at("rest length", rest, "m");
+            // How far away the anchor is hardly shows.
+            cable.searched.push(Searched { name: "anchor distance", value: reach * radius, unit: "m" });
+            all.push(cable);
         }
     }
 

@@ -3,14 +3,14 @@
 use super::candidate::Candidate;
 use super::course::course;
 use super::experiment::propose;
-use super::extend::{effects, plain};
+use super::extend::{effects, plain, spring};
 use super::force::Model;
 use super::gain::{chi_square_tail, gain, rms, whiteness_p};
 use super::geometry::Study;
 use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, NotExcited, Verdict};
 use super::select::{Chosen, Selection};
 use super::track::{Place, Track};
-use haptics::law::entries;
+use haptics::law::{Coordinate, Law, ReturnSpring, entries};
 
 /// A generic term above this score means that something is left that no known cause explains.
 const UNEXPLAINED: f64 = 20.0;
@@ -48,7 +48,11 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
             ));
             continue;
         }
-        found.push((chosen.score, cause(study, k, floor, "force")));
+        let mut named = cause(study, k, floor, "force");
+        if let Some(parameters) = of_hardening_spring(track, study, k) {
+            named.parameters = parameters;
+        }
+        found.push((chosen.score, named));
         alternatives.extend(rivals(study, chosen));
     }
     for geometry in geometries {
@@ -179,6 +183,38 @@ fn parameters(study: &Study, k: usize) -> Vec<CauseParameter> {
         .collect();
     found.extend(picks[k].searched.iter().map(|s| number(s.name, s.value, 0.0, s.unit)));
     found
+}
+
+/// What a spring that hardens is for people: stiffness, force, hardening and place out of two cubics; errors to first order.
+fn of_hardening_spring(track: &Track, study: &Study, k: usize) -> Option<Vec<CauseParameter>> {
+    let candidate = &study.candidates[study.chosen[k].candidate];
+    if candidate.id != "return-spring" || candidate.columns.len() != 4 {
+        return None;
+    }
+    let solved = study.solved.as_ref()?;
+    let before = study.chosen[..k].iter().map(|c| study.candidates[c.candidate].columns.len()).sum::<usize>();
+    let first = study.system.base + before;
+    let values = &solved.values[first..first + 4];
+    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    let found = spring(values, track);
+    let slopes: Vec<[f64; 4]> = (0..4)
+        .map(|j| {
+            let step =
+                1e-4 * values[j].abs().max((variance * solved.inverse[(first + j, first + j)]).sqrt()).max(1e-12);
+            let mut moved = [values[0], values[1], values[2], values[3]];
+            moved[j] += step;
+            let after = spring(&moved, track);
+            std::array::from_fn(|i| (after[i] - found[i]) / step)
+        })
+        .collect();
+    let error = |i: usize| {
+        let pairs = (0..4).flat_map(|a| (0..4).map(move |b| (a, b)));
+        let sum: f64 = pairs.map(|(a, b)| slopes[a][i] * slopes[b][i] * solved.inverse[(first + a, first + b)]).sum();
+        (variance * sum.max(0.0)).sqrt()
+    };
+    let specs = ReturnSpring.parameters();
+    let unit = |i: usize| if track.coordinate == Coordinate::Angular { specs[i].unit_angular } else { specs[i].unit };
+    Some((0..4).map(|i| number(specs[i].name, found[i], error(i), unit(i))).collect())
 }
 
 fn number(name: &str, value: f64, std_error: f64, unit: &str) -> CauseParameter {

@@ -1,6 +1,6 @@
 //! The model with what was found in it: laws with values, as a world runs them.
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, about_its_zero};
 use super::force::Model;
 use super::geometry::Study;
 use super::track::Track;
@@ -100,18 +100,12 @@ fn effect(candidate: &Candidate, values: &[f64], track: &Track, dry_n: f64) -> O
     }
 }
 
-/// The spring's parameters: two cubics about different places are one about a third.
-fn spring(values: &[f64], track: &Track) -> [f64; 4] {
+/// A spring's k, f0, k3 and place, out of the columns' values.
+pub fn spring(values: &[f64], track: &Track) -> [f64; 4] {
     let (low, high) = (track.quantile(0.0, |r| r.motion.position), track.quantile(1.0, |r| r.motion.position));
-    let (middle, aside) = (0.5 * (low + high), 0.5 * (high - low));
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low).max(1e-12));
+    let cube = half.powi(3);
     let at = |k: usize| values.get(k).copied().unwrap_or(0.0);
-    let (k, f0, here, there) = (at(0), at(1), at(2), at(3));
-    let k3 = here + there;
-    // In u = q − middle: k3 u³ − 3 there aside u² + (k + 3 there aside²) u + f0 − there aside³.
-    let (c2, c1, c0) = (-3.0 * there * aside, k + 3.0 * there * aside * aside, f0 - there * aside.powi(3));
-    if k3.abs() * aside < 1e-9 * c2.abs() || k3 == 0.0 {
-        return [k, f0, 0.0, middle];
-    }
-    let shift = -c2 / (3.0 * k3);
-    [c1 - c2 * c2 / (3.0 * k3), c0 + c1 * shift + c2 * shift * shift + k3 * shift.powi(3), k3, middle + shift]
+    let [k, f0, k3, place] = about_its_zero([at(0) * half, at(1), at(2) * cube, at(3) * cube]);
+    [k / half, f0, k3 / cube, middle + place * half]
 }

@@ -21,6 +21,8 @@ const SKEW: f64 = 0.5;
 const CLOCKS_S: f64 = 1e-3;
 /// What moves no faster than this many times what the sign is blurred over may as well stick: its friction is anything.
 const STICKS: f64 = 1.0;
+/// Rows that stick stick together: so many of them count as one. (The rows of a mechanism overlap, and none of them sticks alone.)
+const TOGETHER: f64 = 3.0;
 /// Share of the friction's square that stays open in a row with a reversal in it whose place is known.
 const REVERSAL: f64 = 0.05;
 /// What whitening is learnt from keeps this much of the generic library's strength out.
@@ -143,6 +145,7 @@ pub fn plain_rms(track: &mut Track, model: &Model) -> Result<(f64, bool), Estima
 pub fn blur(track: &mut Track) {
     let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
     let (noise, period_s) = (track.velocity_noise, track.period_s);
+    let together = if track.planar { TOGETHER } else { 1.0 };
     let width = |skew: f64| 1.2 * (BLUR * fast).hypot(noise).hypot(skew).max(1e-12);
     for k in 0..track.fine.len() {
         let next =
@@ -168,7 +171,7 @@ pub fn blur(track: &mut Track) {
         }
         row.motion.direction = sum;
         // Where in the row a reversal lies is known up to what the channels' clocks and filters differ by.
-        row.open = open + REVERSAL * (1.0 - sum * sum - open).max(0.0);
+        row.open = open + REVERSAL / together * (1.0 - sum * sum - open).max(0.0);
     }
 }
 
@@ -185,6 +188,7 @@ type Look = (Vec<f64>, Vec<f64>, Vec<f64>);
 /// guess (effective variance, Orear 1982).
 fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Result<Look, EstimateError> {
     let mut columns = base.to_vec();
+    let together = if track.planar { TOGETHER } else { 1.0 };
     let has_dry = model.iter().any(|e| e.law().id() == CoulombFriction.id());
     if !has_dry {
         columns.push(column(track, &Effect::new(&CoulombFriction, &[1.0])));
@@ -206,7 +210,7 @@ fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Res
                     return 1.0;
                 }
                 // A sign that is anybody's guess leaves all of the friction open.
-                let open = dry(i).powi(2) * row.open;
+                let open = together * dry(i).powi(2) * row.open;
                 (1.0 + open / (noise * noise)).powf(-0.5)
             })
             .collect();

@@ -18,6 +18,9 @@ const STEPS: f64 = 0.25;
 /// Directions of a cable's anchor that are tried, and how much of the way round it is slack.
 const CABLES: u32 = 16;
 const SLACK: [f64; 3] = [0.35, 0.6, 0.8];
+/// How far away the anchor is, in arms, and how far else it may be.
+const REACH: f64 = 5.0;
+const REACHES: [f64; 2] = [2.5, 20.0];
 /// Shares of the motion on one side of a wall.
 const WALLS: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 /// Times in which friction changes, in shares of the recording, …
@@ -40,8 +43,8 @@ pub struct Grid {
     pub turn: f64,
     /// Place and side.
     pub walls: Vec<(f64, f64)>,
-    /// Direction of the anchor, rad, and length at rest.
-    pub cables: Vec<(f64, f64)>,
+    /// Direction of the anchor, rad, length at rest, m, and distance of the anchor in arms.
+    pub cables: Vec<(f64, f64, f64)>,
     pub warming: Vec<f64>,
     pub settling: Vec<f64>,
     pub starts: Vec<f64>,
@@ -64,7 +67,7 @@ impl Grid {
         let places = (0..PLACES).map(|k| from + span * (k as f64 + 0.5) / PLACES as f64);
         let sides = [(1.0, 0.0), (-1.0, 1.0)];
         let walls = WALLS.iter().flat_map(|w| sides.map(|(side, base)| (position(base + side * w), side)));
-        let reach = |share: f64| track.radius_m.unwrap_or(0.0) * (2.0 + 2.0 * share);
+        let rest = |share: f64| track.radius_m.unwrap_or(0.0) * (REACH - 1.0 + 2.0 * share);
         Self {
             stribeck: STRIBECK.map(|share| share * fast).to_vec(),
             ways: WAYS.map(|share| share * scale).into_iter().filter(|way| *way > STEPS * point_s * fast).collect(),
@@ -73,7 +76,7 @@ impl Grid {
             turn: whole.unwrap_or(0.0),
             walls: walls.collect(),
             cables: (0..CABLES)
-                .flat_map(|k| SLACK.map(|s| (TAU * f64::from(k) / f64::from(CABLES), reach(s))))
+                .flat_map(|k| SLACK.map(|s| (TAU * f64::from(k) / f64::from(CABLES), rest(s), REACH)))
                 .collect(),
             warming: WARMING.map(|share| share * track.span_s).to_vec(),
             settling: SETTLING.map(|share| share * track.span_s).to_vec(),
@@ -111,7 +114,12 @@ impl Grid {
                     if let (Some(direction), Some(rest)) = (value("anchor direction"), value("rest length")) {
                         for turn in [-0.6, -0.3, 0.0, 0.3, 0.6].map(|s| s * TAU / f64::from(CABLES)) {
                             let rests = [-0.3, -0.15, 0.0, 0.15, 0.3].map(|s| rest + s * radius);
-                            grid.cables.extend(rests.map(|rest| (direction + turn, rest)));
+                            grid.cables.extend(rests.map(|rest| (direction + turn, rest, REACH)));
+                            // The same slack from another distance.
+                            for reach in REACHES {
+                                let rests = [-0.2, 0.0, 0.2].map(|s| rest + (s + reach - REACH) * radius);
+                                grid.cables.extend(rests.map(|rest| (direction + turn, rest, reach)));
+                            }
                         }
                     } else if let Some(place) = value("place") {
                         let places = [-0.06, -0.03, 0.03, 0.06].map(|s| place + s * range);

@@ -47,6 +47,23 @@ pub struct Signals {
     raw: RawMotion,
 }
 
+/// How a recorded force becomes the force: some cables are crossed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axes {
+    pub swapped: bool,
+    pub signs: [f64; 2],
+}
+
+impl Axes {
+    /// As recorded.
+    pub const PLAIN: Self = Self { swapped: false, signs: [1.0; 2] };
+
+    fn of(self, force: Vec2) -> Vec2 {
+        let force = if self.swapped { force.yx() } else { force };
+        Vec2::new(self.signs[0] * force.x, self.signs[1] * force.y)
+    }
+}
+
 /// What was recorded, at its own rate.
 struct RawMotion {
     time_s: Vec<f64>,
@@ -143,16 +160,15 @@ impl Signals {
     }
 
     /// The rows along the circle of `arm`, then the free ones.
-    /// `signs`: what the force's axes are multiplied by.
-    pub fn rows(&self, recording: &Recording, arm: &Arm, signs: [f64; 2]) -> Result<Track, EstimateError> {
-        let signs = Vec2::new(signs[0], signs[1]);
+    /// `axes`: how the recorded force is turned into the force.
+    pub fn rows(&self, recording: &Recording, arm: &Arm, axes: Axes) -> Result<Track, EstimateError> {
         let up = if recording.meta.up.as_deref() == Some("-y") { -1.0 } else { 1.0 };
         let mut rows = Vec::new();
         let mut fine = Vec::new();
         let mut stretch_number = 0;
         let mut noise = Vec::new();
         for range in stretches(&self.held) {
-            let mut made = self.stretch(range.clone(), stretch_number, arm, (up, signs));
+            let mut made = self.stretch(range.clone(), stretch_number, arm, (up, axes));
             noise.push(self.finely(range, arm, &mut made, &mut fine));
             rows.extend(made);
             stretch_number += 1;
@@ -165,7 +181,7 @@ impl Signals {
                 needed: LEAST_ROWS,
             });
         }
-        let (free, force_noise) = self.free_rows(stretch_number, signs);
+        let (free, force_noise) = self.free_rows(stretch_number, axes);
         let noise_is_measured = free.len() > 40;
         rows.extend(free);
         let along: Vec<f64> = rows.iter().filter(|r| r.place == Place::Along).map(|r| r.y).collect();
@@ -184,7 +200,7 @@ impl Signals {
         })
     }
 
-    fn stretch(&self, range: std::ops::Range<usize>, stretch: usize, arm: &Arm, (up, signs): (f64, Vec2)) -> Vec<Row> {
+    fn stretch(&self, range: std::ops::Range<usize>, stretch: usize, arm: &Arm, (up, axes): (f64, Axes)) -> Vec<Row> {
         let time = &self.time_s[range.clone()];
         let directions: Vec<(Vec2, Vec2)> = range
             .clone()
@@ -209,7 +225,7 @@ impl Signals {
                 let wrapped = outward.y.atan2(outward.x);
                 let angle = wrapped + ((before - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU;
                 before = angle;
-                let force = self.force[i].component_mul(&signs);
+                let force = axes.of(self.force[i]);
                 Row {
                     recording: 0,
                     stretch,
@@ -226,7 +242,7 @@ impl Signals {
                     angle_rad: angle,
                     along,
                     force,
-                    force_rate: Vec2::new(rate_x[k], rate_y[k]).component_mul(&signs),
+                    force_rate: axes.of(Vec2::new(rate_x[k], rate_y[k])),
                     y: force.dot(&along),
                     span: Span::default(),
                     open: 0.0,
@@ -276,12 +292,12 @@ impl Signals {
         raw.calmed_to * white_noise(&recorded)
     }
 
-    fn free_rows(&self, first_stretch: usize, signs: Vec2) -> (Vec<Row>, f64) {
+    fn free_rows(&self, first_stretch: usize, axes: Axes) -> (Vec<Row>, f64) {
         let mut rows = Vec::new();
         let (mut square, mut count) = (0.0, 0.0);
         for (k, range) in stretches(&self.free).into_iter().enumerate() {
             for (a, place) in [Place::FreeX, Place::FreeY].into_iter().enumerate() {
-                let values: Vec<f64> = range.clone().map(|i| signs[a] * self.force[i][a]).collect();
+                let values: Vec<f64> = range.clone().map(|i| axes.of(self.force[i])[a]).collect();
                 let mean = values.iter().sum::<f64>() / values.len() as f64;
                 square += values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
                 count += values.len() as f64;
@@ -292,9 +308,9 @@ impl Signals {
                     motion: Motion { time_s: self.time_s[i], ..Motion::default() },
                     angle_rad: 0.0,
                     along: if a == 0 { Vec2::x() } else { Vec2::y() },
-                    force: self.force[i].component_mul(&signs),
+                    force: axes.of(self.force[i]),
                     force_rate: Vec2::zeros(),
-                    y: signs[a] * self.force[i][a],
+                    y: axes.of(self.force[i])[a],
                     span: Span::default(),
                     open: 0.0,
                 }));

@@ -42,6 +42,7 @@ use force::Model;
 use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, ViscousFriction, Weight};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
+use held_arm::Axes;
 
 /// What may be stated by the user.
 #[derive(Clone, Debug, Default)]
@@ -92,7 +93,7 @@ pub fn validate(
                 let signals = held_arm::Signals::of(recording, &quality::faults(recording).bad)?;
                 let path = signals.path(recording);
                 let circle = geometry::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
-                signals.rows(recording, &circle.arm, [1.0, 1.0])?
+                signals.rows(recording, &circle.arm, Axes::PLAIN)?
             }
             _ => sliding::track(recording, &quality::faults(recording).bad)?,
         };
@@ -157,13 +158,20 @@ fn upright(
     recording: &Recording,
     arm: &geometry::Arm,
 ) -> Result<(track::Track, Option<Cause>), EstimateError> {
-    let as_recorded = signals.rows(recording, arm, [1.0, 1.0])?;
+    let as_recorded = signals.rows(recording, arm, Axes::PLAIN)?;
     let model = plain_crank();
     let left = |track: &track::Track| force::plain_rms(&mut track.clone(), &model);
     let (before, _) = left(&as_recorded)?;
     let mut best: Option<(f64, track::Track, &str)> = None;
-    for (signs, name) in [([-1.0, 1.0], "fx"), ([1.0, -1.0], "fy"), ([-1.0, -1.0], "fx and fy")] {
-        let track = signals.rows(recording, arm, signs)?;
+    let mirrored = |signs| Axes { swapped: false, signs };
+    let crossed = [
+        (mirrored([-1.0, 1.0]), "fx"),
+        (mirrored([1.0, -1.0]), "fy"),
+        (mirrored([-1.0, -1.0]), "fx and fy"),
+        (Axes { swapped: true, signs: [1.0; 2] }, "fx with fy"),
+    ];
+    for (axes, name) in crossed {
+        let track = signals.rows(recording, arm, axes)?;
         let (after, resists) = left(&track)?;
         let both = name == "fx and fy";
         // Both at once change every sign and no size: only friction that drives tells.

@@ -102,8 +102,9 @@ fn cause(id: &str, warning: &Warning, recording: &Recording) -> Cause {
     }
 }
 
-/// A mirrored axis, as a cause.
+/// A mirrored or swapped axis, as a cause.
 pub fn mirrored(which: &str, better: f64) -> Cause {
+    let how = if which.contains("with") { "swapped" } else { "mirrored" };
     Cause {
         id: "axis-sign".to_owned(),
         kind: Kind::Instrument,
@@ -117,7 +118,7 @@ pub fn mirrored(which: &str, better: f64) -> Cause {
         posterior: 1.0,
         gain: Gain::default(),
         evidence: format!(
-            "with {which} mirrored the model leaves {:.0} % of the force that it leaves unexplained as recorded, and friction resists",
+            "with {which} {how} the model leaves {:.0} % of the force that it leaves unexplained as recorded, and friction resists",
             100.0 * better
         ),
     }

@@ -50,10 +50,11 @@ impl Selection<'_> {
         let mut at = self.system.base;
         for c in chosen {
             let candidate = &self.candidates[*c];
-            if candidate.sign * solved.values[at] < 0.0 {
+            let end = at + candidate.columns.len();
+            if !candidate.admits(&solved.values[at..end]) {
                 return f64::INFINITY;
             }
-            at += candidate.columns.len();
+            at = end;
         }
         let cost: f64 = chosen.iter().map(|c| self.candidates[*c].cost).sum();
         self.system.rows * solved.rss.ln() + cost * self.system.rows.ln()
