@@ -9,6 +9,7 @@ pub mod fumble;
 pub mod generate;
 pub mod handling;
 pub mod mechanisms;
+pub mod tasks;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;

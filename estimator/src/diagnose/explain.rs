@@ -158,12 +158,12 @@ fn cause(study: &Study, k: usize, floor: f64, channel: &str) -> Cause {
 }
 
 /// By chance, among all that were tried.
-fn p_value(study: &Study, chosen: &Chosen) -> f64 {
+pub(super) fn p_value(study: &Study, chosen: &Chosen) -> f64 {
     let tried = study.candidates.iter().filter(|c| c.expression.is_none()).count() as f64;
     (tried * chi_square_tail(chosen.lambda, study.candidates[chosen.candidate].cost)).min(1.0)
 }
 
-fn parameters(study: &Study, k: usize) -> Vec<CauseParameter> {
+pub(super) fn parameters(study: &Study, k: usize) -> Vec<CauseParameter> {
     let Some(solved) = &study.solved else { return Vec::new() };
     let picks: Vec<&Candidate> = study.chosen.iter().map(|c| &study.candidates[c.candidate]).collect();
     let first = study.system.base + picks[..k].iter().map(|c| c.columns.len()).sum::<usize>();
@@ -221,7 +221,7 @@ fn number(name: &str, value: f64, std_error: f64, unit: &str) -> CauseParameter 
     CauseParameter { name: name.to_owned(), value, std_error, unit: unit.to_owned() }
 }
 
-fn rivals(study: &Study, chosen: &Chosen) -> Vec<Alternative> {
+pub(super) fn rivals(study: &Study, chosen: &Chosen) -> Vec<Alternative> {
     let own = study.candidates[chosen.candidate].id;
     let total = 1.0 + chosen.rivals.iter().map(|(_, behind)| (-0.5 * behind).exp()).sum::<f64>();
     let mut found: Vec<Alternative> = chosen

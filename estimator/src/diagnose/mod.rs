@@ -3,10 +3,14 @@
 //! Measured motion is put through the model; what remains of the force is compared with what every known cause would leave there.
 //! Method: named hypotheses, effective-variance weights, whitening, forward selection with swaps, a locked test part.
 
+mod answer;
+mod blocks;
 mod candidate;
+mod compare;
 pub mod course;
 mod dictionary;
 mod experiment;
+mod driven;
 mod explain;
 mod extend;
 mod fine;
@@ -16,7 +20,10 @@ mod generic;
 mod geometry;
 mod grid;
 mod held_arm;
+mod impact;
+mod needle;
 mod progress;
+mod pulled;
 mod quality;
 pub mod report;
 mod select;
@@ -72,12 +79,28 @@ pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Diagnosis
     let task = task_of(first, options.task)?;
     match task {
         Task::Crank => crank(recordings, options),
-        Task::Mechanism => mechanism(recordings, options),
+        Task::Mechanism => one_of_mechanisms(recordings, options),
+        Task::BlockStack => blocks::blocks(recordings, options),
+        Task::Needle => needle::needle(recordings, options),
         other => Err(EstimateError::Other(format!(
             "recordings of the task {} cannot be diagnosed yet; crank and mechanism can",
             other.name()
         ))),
     }
+}
+
+/// Bodies that are thrown, paths without a clock, transmissions, and what moves along one coordinate.
+fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    if let Some(thrown) = impact::impact(recordings, options) {
+        return thrown;
+    }
+    if pulled::is_pulled(recordings) {
+        return pulled::pulled(recordings);
+    }
+    if driven::is_driven(recordings) {
+        return driven::driven(recordings);
+    }
+    mechanism(recordings, options)
 }
 
 /// What was found, on other recordings of the same object: nothing is chosen or fitted there. Faults of the sensors that were found in the

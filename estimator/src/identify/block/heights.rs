@@ -25,12 +25,12 @@ const GIVE_BEFORE: f64 = 2e-4;
 const SIGNIFICANT: f64 = 3.0;
 
 /// One end of a carry: where the block rested in the grip.
-struct Rest {
+pub(crate) struct Rest {
     /// Carry, from 0.
-    carry: usize,
-    samples: Vec<usize>,
+    pub(crate) carry: usize,
+    pub(crate) samples: Vec<usize>,
     /// Carries of the blocks below, from the floor up.
-    below: Vec<usize>,
+    pub(crate) below: Vec<usize>,
 }
 
 /// Where a block is, by the middle of the grip.
@@ -101,7 +101,7 @@ fn shear_stiffness(fit: &LinearFit, floor: &LinearFit, column: usize, samples: u
 }
 
 /// Both ends of every carry, with the tower that the block stood on.
-fn rests(blocks: &Blocks<'_>, count: usize) -> Vec<Rest> {
+pub(crate) fn rests(blocks: &Blocks<'_>, count: usize) -> Vec<Rest> {
     // Before and after it was carried.
     let rested = |k: usize| blocks.task.showing_around("height_m", MAIN, k + 1).map(|names| blocks.samples(&names));
     let place = |samples: &[usize]| {

@@ -4,7 +4,7 @@
 //! thesis's numbers is taken out where the recording shows it: accelerations from the weight, the give of the pads from the
 //! width (it grew 7 % too narrow there) and from the height. Where the recording does not show it, the standard error says so.
 
-mod heights;
+pub(crate) mod heights;
 mod leak;
 mod slip;
 
@@ -30,27 +30,27 @@ const UNKNOWN_COMPRESSION: f64 = 0.07;
 const LEAST_GRIP_VARIATION: f64 = 0.05;
 
 /// The states that show this one are those in which a block is carried; they number the blocks.
-const MAIN: &str = "weight_N";
+pub(crate) const MAIN: &str = "weight_N";
 
-/// Everything that the block fit works on.
-struct Blocks<'a> {
-    signals: TaskSignals,
-    levels: Levels,
-    segmentation: Segmentation,
+/// Everything that the block fit (and the diagnosis of blocks) works on.
+pub(crate) struct Blocks<'a> {
+    pub(crate) signals: TaskSignals,
+    pub(crate) levels: Levels,
+    pub(crate) segmentation: Segmentation,
     task: Definition,
-    recording: &'a Recording,
+    pub(crate) recording: &'a Recording,
     /// Error of a single position and of a single force by the resolution of the log, m and N: what no averaging removes.
     resolution_m: f64,
     resolution_n: f64,
     /// Vertical acceleration of the grip, m/s².
-    acceleration_y: Vec<f64>,
+    pub(crate) acceleration_y: Vec<f64>,
     /// Grip width and height, mean normal and summed vertical force, all through one and the same smoothing filter, and
     /// the rate of the width: m, N, m/s. Noise in a force would otherwise flatten the slope of a position against it.
-    width: Vec<f64>,
-    height: Vec<f64>,
-    grip: Vec<f64>,
-    lift: Vec<f64>,
-    width_rate: Vec<f64>,
+    pub(crate) width: Vec<f64>,
+    pub(crate) height: Vec<f64>,
+    pub(crate) grip: Vec<f64>,
+    pub(crate) lift: Vec<f64>,
+    pub(crate) width_rate: Vec<f64>,
 }
 
 /// Fits the blocks of one recording, with `thresholds` or those chosen from its noise. The segmentation that was used comes
@@ -65,38 +65,7 @@ pub fn fit_by(
     recording: &Recording,
     thresholds: Option<Thresholds>,
 ) -> Result<(Fit, Segmentation), EstimateError> {
-    let signals = task_signals(recording)?;
-    let task = Definition::of(recording, Task::BlockStack)?;
-    let segmentation = segment_signals_by(method, &signals, &task, thresholds)?;
-    let levels = Levels::of(&signals);
-    let vertical: Vec<f64> = signals.velocity.iter().map(|v| v.y).collect();
-    let acceleration_y = smooth(&signals.time_s, &vertical).slope;
-    let width = smooth(&signals.time_s, &signals.grip_width_m);
-    let normal =
-        |finger: usize, i: usize| signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x) - levels.bias_n[finger].x;
-    let grip: Vec<f64> = (0..signals.len()).map(|i| 0.5 * (normal(0, i) - normal(1, i))).collect();
-    let grip = smooth(&signals.time_s, &grip).value;
-    let bias_y = levels.bias_n[0].y + levels.bias_n[1].y;
-    let lift: Vec<f64> = signals.net_force_n.iter().map(|f| f.y - bias_y).collect();
-    let lift = smooth(&signals.time_s, &lift).value;
-    let height: Vec<f64> = signals.position.iter().map(|p| p.y).collect();
-    let height = smooth(&signals.time_s, &height).value;
-    let blocks = Blocks {
-        resolution_m: unresolved(&signals, |tip| Some(&tip.position)).max(unresolved_by_joints_m(recording)),
-        resolution_n: unresolved(&signals, |tip| tip.force.as_ref()),
-        levels,
-        segmentation,
-        task,
-        recording,
-        acceleration_y,
-        width: width.value,
-        height,
-        grip,
-        lift,
-        width_rate: width.slope,
-        signals,
-    };
-
+    let blocks = Blocks::of(method, recording, thresholds)?;
     let count = blocks.count();
     if count == 0 {
         return Err(EstimateError::Other(format!(
@@ -203,7 +172,7 @@ fn weight_and_mass([weight, mass]: &[Parameter; 2]) -> Option<Correlated> {
     })
 }
 
-fn object(number: usize) -> String {
+pub(crate) fn object(number: usize) -> String {
     format!("block-{number}")
 }
 
@@ -211,9 +180,48 @@ fn unseen(samples: &[usize]) -> Option<String> {
     samples.is_empty().then(|| "no sample of a state that shows it belongs to this block".to_owned())
 }
 
-impl Blocks<'_> {
+impl<'a> Blocks<'a> {
+    /// States and calmed signals of one recording.
+    pub(crate) fn of(
+        method: Method,
+        recording: &'a Recording,
+        thresholds: Option<Thresholds>,
+    ) -> Result<Self, EstimateError> {
+        let signals = task_signals(recording)?;
+        let task = Definition::of(recording, Task::BlockStack)?;
+        let segmentation = segment_signals_by(method, &signals, &task, thresholds)?;
+        let levels = Levels::of(&signals);
+        let vertical: Vec<f64> = signals.velocity.iter().map(|v| v.y).collect();
+        let acceleration_y = smooth(&signals.time_s, &vertical).slope;
+        let width = smooth(&signals.time_s, &signals.grip_width_m);
+        let normal =
+            |finger: usize, i: usize| signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x) - levels.bias_n[finger].x;
+        let grip: Vec<f64> = (0..signals.len()).map(|i| 0.5 * (normal(0, i) - normal(1, i))).collect();
+        let grip = smooth(&signals.time_s, &grip).value;
+        let bias_y = levels.bias_n[0].y + levels.bias_n[1].y;
+        let lift: Vec<f64> = signals.net_force_n.iter().map(|f| f.y - bias_y).collect();
+        let lift = smooth(&signals.time_s, &lift).value;
+        let height: Vec<f64> = signals.position.iter().map(|p| p.y).collect();
+        let height = smooth(&signals.time_s, &height).value;
+        Ok(Self {
+            resolution_m: unresolved(&signals, |tip| Some(&tip.position)).max(unresolved_by_joints_m(recording)),
+            resolution_n: unresolved(&signals, |tip| tip.force.as_ref()),
+            levels,
+            segmentation,
+            task,
+            recording,
+            acceleration_y,
+            width: width.value,
+            height,
+            grip,
+            lift,
+            width_rate: width.slope,
+            signals,
+        })
+    }
+
     /// Blocks that were seen carried.
-    fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         (1..=subtasks::MOST_CARRIES).take_while(|n| !self.shown(MAIN, *n).is_empty()).count()
     }
 
@@ -222,7 +230,7 @@ impl Blocks<'_> {
     }
 
     /// Samples of a block in the states that the task says show a parameter.
-    fn shown(&self, parameter: &str, number: usize) -> Vec<usize> {
+    pub(crate) fn shown(&self, parameter: &str, number: usize) -> Vec<usize> {
         self.samples(&self.task.showing(parameter, MAIN, number))
     }
 
@@ -234,7 +242,7 @@ impl Blocks<'_> {
 
     /// Samples a filter window apart: smoothed channels say nothing new in between, and errors counted from neighbours that
     /// share their noise come out too small.
-    fn rows(&self, samples: &[usize]) -> Vec<usize> {
+    pub(crate) fn rows(&self, samples: &[usize]) -> Vec<usize> {
         const LEAST_ROWS: usize = 12;
         let window = 2 * half_width(&self.signals.time_s);
         let stride = window.min(samples.len() / LEAST_ROWS).max(1);
@@ -351,7 +359,7 @@ impl Blocks<'_> {
     }
 
     /// Half the difference of the two fingers' height change between two sets of samples, m.
-    fn finger_disagreement(&self, before: &[usize], after: &[usize]) -> f64 {
+    pub(crate) fn finger_disagreement(&self, before: &[usize], after: &[usize]) -> f64 {
         let mean = |finger: usize, set: &[usize]| {
             set.iter().map(|i| self.signals.tips[finger].position[*i].y).sum::<f64>() / set.len() as f64
         };

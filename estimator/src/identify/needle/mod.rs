@@ -5,10 +5,10 @@
 //! width follows its force, and what is not known of it joins the errors.
 
 mod channels;
-mod loading;
+pub(crate) mod loading;
 mod phases;
-mod signals;
-mod strokes;
+pub(crate) mod signals;
+pub(crate) mod strokes;
 
 use crate::estimate::{Constraint, ConstraintKind, EstimateError, Fit, Parameter, Sided, Yielding};
 pub(crate) use channels::{Channels, channels};
@@ -59,8 +59,8 @@ pub fn fit(recording: &Recording) -> Result<Fit, EstimateError> {
 }
 
 /// The loading curve with what the pads' unknown give does to it.
-struct Sheet {
-    loading: Loading,
+pub(crate) struct Sheet {
+    pub(crate) loading: Loading,
     /// The same with pads that give one standard error more.
     softer: Loading,
     samples: usize,
@@ -69,7 +69,7 @@ struct Sheet {
 }
 
 impl Sheet {
-    fn of(along: &Along, pushes: &[Push]) -> Result<Self, EstimateError> {
+    pub(crate) fn of(along: &Along, pushes: &[Push]) -> Result<Self, EstimateError> {
         let mut holds: Vec<usize> = pushes.iter().map(|p| p.hold).collect();
         holds.dedup();
         let (give, error) = along.give_m_n;

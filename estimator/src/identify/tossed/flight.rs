@@ -16,11 +16,11 @@ const BLOW_M_S: f64 = 0.15;
 /// Samples left out before a blow.
 const GUARD: usize = 1;
 /// A shorter flight tells nothing.
-const LEAST: usize = 8;
+pub(crate) const LEAST: usize = 8;
 
 /// What all flights have in common.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Fall {
+pub(crate) struct Fall {
     pub down_m_s2: f64,
     pub error_m_s2: f64,
     /// Level acceleration, m/s².
@@ -32,7 +32,7 @@ pub(super) struct Fall {
 impl Fall {
     /// One regression over all flights: each has its own place and speed, all have one acceleration and, where orientations
     /// were recorded, one place of the tracked point in the body.
-    pub(super) fn of(tracks: &[Track]) -> Option<Self> {
+    pub(crate) fn of(tracks: &[Track]) -> Option<Self> {
         let flights: Vec<(&Track, usize)> = tracks.iter().map(|t| (t, end(t))).filter(|(_, n)| *n >= LEAST).collect();
         // A blow that was not seen bends a flight far more than the tracker's noise does.
         let rms: Vec<f64> = flights.iter().map(|(t, n)| own_rms(t, *n)).collect();
@@ -91,7 +91,7 @@ fn rows(track: &Track, n: usize, axis: usize, turned: bool) -> (DMatrix<f64>, DV
 }
 
 /// Samples of the flight at the beginning.
-fn end(track: &Track) -> usize {
+pub(crate) fn end(track: &Track) -> usize {
     let (points, time) = (&track.points, &track.time_s);
     if points.len() < FIRST + REACH + 1 {
         return 0;

@@ -5,9 +5,9 @@
 //! acceleration is g times the scale of the positions. While it slides flat, it slows down by μ g in the same scale, so that
 //! their ratio is free of it.
 
-mod flight;
-mod pose;
-mod slide;
+pub(crate) mod flight;
+pub(crate) mod pose;
+pub(crate) mod slide;
 
 use super::mechanism::path;
 use crate::estimate::{Fit, Parameter};
@@ -25,8 +25,16 @@ const FALLING_SHARE: f64 = 0.5;
 /// A scale is said to be off from so many standard errors on.
 const OFF: f64 = 3.0;
 
-/// The fit of recordings of one thrown body; `None` when they do not show one.
-pub fn fit(recordings: &[Recording]) -> Option<Fit> {
+/// What recordings of one thrown body show of it.
+pub(crate) struct Tossed {
+    /// One a recording.
+    pub(crate) tracks: Vec<Track>,
+    pub(crate) fall: Fall,
+    pub(crate) slides: Vec<slide::Slide>,
+}
+
+/// Flights and slides; `None` where the recordings are of no thrown body.
+pub(crate) fn tossed(recordings: &[Recording]) -> Option<Tossed> {
     let first = recordings.first()?;
     if recordings.iter().any(|r| path::forces(r).is_some() || r.time_s.is_none()) {
         return None;
@@ -43,6 +51,13 @@ pub fn fit(recordings: &[Recording]) -> Option<Fit> {
         return None;
     }
     let slides = slide::slides(&tracks);
+    Some(Tossed { tracks, fall, slides })
+}
+
+/// The fit of recordings of one thrown body; `None` when they do not show one.
+pub fn fit(recordings: &[Recording]) -> Option<Fit> {
+    let Tossed { tracks, fall, slides } = tossed(recordings)?;
+    let gravity = recordings.first()?.meta.gravity();
     let samples: usize = tracks.iter().map(|t| t.time_s.len()).sum();
     let mut parameters = vec![
         Parameter::identified(

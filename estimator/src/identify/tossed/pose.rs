@@ -6,7 +6,7 @@ use nalgebra::{Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 /// One recording.
 #[derive(Clone, Debug)]
-pub(super) struct Track {
+pub(crate) struct Track {
     pub time_s: Vec<f64>,
     /// Two level coordinates and the height, m.
     pub points: Vec<Vector3<f64>>,
@@ -16,7 +16,7 @@ pub(super) struct Track {
 
 impl Track {
     /// `None` without finite positions and times.
-    pub(super) fn of(recording: &Recording, up: Vector3<f64>) -> Option<Self> {
+    pub(crate) fn of(recording: &Recording, up: Vector3<f64>) -> Option<Self> {
         let time_s = recording.time_s.clone()?;
         let points = path::points(recording)?;
         let frame = Rotation3::rotation_between(&up, &Vector3::z())
@@ -35,7 +35,7 @@ impl Track {
     }
 
     /// Angle turned between two samples, rad; zero without orientations.
-    pub(super) fn angle(&self, from: usize, to: usize) -> f64 {
+    pub(crate) fn angle(&self, from: usize, to: usize) -> f64 {
         self.turned.as_ref().map_or(0.0, |r| r[from].angle_to(&r[to]))
     }
 }

@@ -18,14 +18,18 @@ const LEAST_S: f64 = 0.05;
 
 /// One slide.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Slide {
+pub(crate) struct Slide {
     pub slowing_m_s2: f64,
     pub samples: usize,
+    /// Which track, and its first sample there.
+    pub track: usize,
+    pub first: usize,
 }
 
 /// The slides of all tracks.
-pub(super) fn slides(tracks: &[Track]) -> Vec<Slide> {
-    tracks.iter().flat_map(of_track).collect()
+pub(crate) fn slides(tracks: &[Track]) -> Vec<Slide> {
+    let all = tracks.iter().enumerate();
+    all.flat_map(|(k, track)| of_track(track).into_iter().map(move |s| Slide { track: k, ..s })).collect()
 }
 
 fn of_track(track: &Track) -> Vec<Slide> {
@@ -68,5 +72,5 @@ fn slide(track: &Track, first: usize, end: usize) -> Option<Slide> {
     let since: Vec<f64> = time.iter().map(|t| t - time[0]).collect();
     let fitted = polynomial(&since, &way, 2);
     let slowing_m_s2 = -2.0 * fitted.get(2)?;
-    (slowing_m_s2 > 0.0).then_some(Slide { slowing_m_s2, samples: points.len() })
+    (slowing_m_s2 > 0.0).then_some(Slide { slowing_m_s2, samples: points.len(), track: 0, first })
 }

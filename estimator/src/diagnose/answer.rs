@@ -1,0 +1,194 @@
+//! From comparisons of several channels to one answer in words.
+
+use super::candidate::Candidate;
+use super::explain::{p_value, parameters, rivals};
+use super::gain::{gain, rms, whiteness_p};
+use super::geometry::Study;
+use super::report::{
+    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, Verdict,
+};
+use super::select::{Chosen, Selection};
+
+/// A generic term above this score means that something is left that no known cause explains.
+const UNEXPLAINED: f64 = 25.0;
+/// Alternatives less probable than this are as good as excluded.
+const OPEN: f64 = 0.047;
+/// A cause of a usual size that would score less than this could not have been seen.
+const VISIBLE: f64 = 25.0;
+
+/// What makes the sentence of a cause.
+pub struct Found<'a> {
+    /// The candidate that was chosen.
+    pub candidate: &'a Candidate,
+    /// Its parameters as they will stand in the answer.
+    pub parameters: &'a [CauseParameter],
+}
+
+/// One channel, compared.
+pub struct Part<'a> {
+    /// The comparison.
+    pub study: &'a Study,
+    /// What the channel is, in words.
+    pub channel: &'a str,
+    /// Its unit.
+    pub unit: &'a str,
+    /// Noise of its rows.
+    pub floor: f64,
+    /// Rows that are held out in turn, and their stretches.
+    pub along: &'a [bool],
+    pub stretch: &'a [usize],
+    /// What in the residual shows a cause, in words.
+    pub shows: &'a dyn Fn(&Found<'_>) -> String,
+    /// Makes the parameters of a cause out of those of its columns.
+    pub states: &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>,
+    /// The size that a cause usually has, for what could not have been seen; nothing where it does not belong to this channel.
+    pub usual: &'a dyn Fn(&Candidate) -> Option<(f64, &'static str)>,
+}
+
+impl Part<'_> {
+    fn cause(&self, k: usize, chosen: &Chosen) -> Cause {
+        let candidate = &self.study.candidates[chosen.candidate];
+        let gain = gain(self.study, k, self.floor);
+        let parameters = (self.states)(candidate, parameters(self.study, k));
+        let shown = (self.shows)(&Found { candidate, parameters: &parameters });
+        let evidence = format!(
+            "{shown}; on data held out the {} that is left falls from {:.3e} to {:.3e} {} RMS (score {:.0})",
+            self.channel, gain.heldout_rms_before, gain.heldout_rms_after, self.unit, chosen.score
+        );
+        Cause {
+            id: candidate.id.to_owned(),
+            kind: candidate.kind,
+            parameters,
+            p_value: p_value(self.study, chosen),
+            posterior: 1.0 / (1.0 + chosen.rivals.iter().map(|(_, behind)| (-0.5 * behind).exp()).sum::<f64>()),
+            gain,
+            evidence,
+        }
+    }
+
+    /// The strongest generic term that is left, with its score.
+    fn strange(&self) -> Option<(usize, f64)> {
+        let Study { system, candidates, .. } = self.study;
+        let selection = Selection { system, candidates, threshold: UNEXPLAINED, dry: true };
+        selection.unexplained(&self.study.picks()).filter(|(_, score)| *score > UNEXPLAINED)
+    }
+
+    /// Causes that, at their usual size, this recording would hide.
+    fn not_excited(&self, found: &mut Vec<NotExcited>) {
+        let Study { system, candidates, solved, .. } = self.study;
+        let picks = self.study.picks();
+        let Some(solved) = solved else { return };
+        let variance = solved.rss / (system.rows - solved.columns.len() as f64).max(1.0);
+        let mut best: Vec<(&str, f64, &str)> = Vec::new();
+        for (k, candidate) in candidates.iter().enumerate() {
+            let Some((size, why)) = (self.usual)(candidate) else { continue };
+            let first = system.places[k].start;
+            let power = system.distinct(k, &picks) * system.train[(first, first)] * size * size / variance;
+            match best.iter_mut().find(|b| b.0 == candidate.id) {
+                Some(held) => held.1 = held.1.max(power),
+                None => best.push((candidate.id, power, why)),
+            }
+        }
+        for (id, power, why) in best {
+            let named = picks.iter().any(|p| candidates[*p].id == id);
+            if power < VISIBLE && !named && found.iter().all(|n| n.id != id) {
+                found.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
+            }
+        }
+    }
+}
+
+/// Everything about an answer that is no comparison.
+#[derive(Default)]
+pub struct Beside {
+    /// Name of the model that was started from.
+    pub model: String,
+    /// Faults of the samples, and causes that were found in another way: they come first.
+    pub causes: Vec<Cause>,
+    pub alternatives: Vec<Alternative>,
+    pub not_excited: Vec<NotExcited>,
+    pub warnings: Vec<String>,
+}
+
+/// The answer of several channels; the first one's figures stand for baseline and end.
+pub fn answer(
+    parts: &[Part<'_>],
+    beside: Beside,
+    next: &dyn Fn(&[Alternative]) -> Option<NextExperiment>,
+) -> Diagnosis {
+    let Beside { model, mut causes, mut alternatives, mut not_excited, mut warnings } = beside;
+    let mut strange = Vec::new();
+    let mut found: Vec<(f64, Cause)> = Vec::new();
+    for part in parts {
+        for (k, chosen) in part.study.chosen.iter().enumerate() {
+            let cause = part.cause(k, chosen);
+            // One cause may show in two channels: what it is called stays, what it comes out at is said of both.
+            if let Some((_, held)) = found.iter_mut().find(|(_, c)| c.id == cause.id) {
+                let named = |p: &CauseParameter| held.parameters.iter().all(|q| q.name != p.name);
+                let more: Vec<CauseParameter> = cause.parameters.into_iter().filter(named).collect();
+                held.parameters.extend(more);
+                held.evidence = format!("{}; and {}", held.evidence, cause.evidence);
+                continue;
+            }
+            found.push((chosen.score, cause));
+            alternatives.extend(rivals(part.study, chosen));
+        }
+        if let Some((candidate, score)) = part.strange() {
+            let expression = part.study.candidates[candidate].expression.clone().unwrap_or_default();
+            strange.push((part.channel, expression, score, part.study.candidates[candidate].kind));
+        }
+        part.not_excited(&mut not_excited);
+    }
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    causes.extend(found.into_iter().map(|(_, cause)| cause));
+    alternatives.retain(|a| causes.iter().all(|c| c.id != a.id));
+    not_excited.retain(|n| causes.iter().all(|c| c.id != n.id) && alternatives.iter().all(|a| a.id != n.id));
+    let open: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > OPEN).cloned().collect();
+    let verdict = match (causes.is_empty(), strange.is_empty()) {
+        (true, true) => Verdict::None,
+        (true, false) => Verdict::Unexplained,
+        _ if open.is_empty() => Verdict::Causes,
+        _ => Verdict::Ambiguous,
+    };
+    for (channel, expression, score, kind) in strange {
+        warnings.push(format!(
+            "something is left of the {channel} that no known cause explains: it goes with {expression} (score {score:.0})"
+        ));
+        causes.push(Cause {
+            id: format!("other:{expression}"),
+            kind,
+            parameters: Vec::new(),
+            p_value: super::gain::chi_square_tail(score, 1.0),
+            posterior: 0.0,
+            gain: Gain::default(),
+            evidence: format!("what is left of the {channel} goes with {expression}; no known cause does so here"),
+        });
+    }
+    let first = parts.first();
+    let figures = |picks: &[usize]| first.map_or((0.0, 0.0, 1.0), |part| {
+        let (heldout, train) = rms(part.study, picks, part.along);
+        (heldout, train, whiteness_p(part.study, picks, part.stretch))
+    });
+    let (heldout, train, white) = figures(&[]);
+    let picks = first.map(|p| p.study.picks()).unwrap_or_default();
+    let (end, _, end_white) = figures(&picks);
+    Diagnosis {
+        verdict,
+        baseline: Baseline { model, rms_n: train, heldout_rms_n: heldout, whiteness_p: white },
+        noise_floor_n: first.map_or(0.0, |p| p.floor),
+        next_experiment: next(&open),
+        causes,
+        alternatives,
+        not_excited,
+        end: Final { heldout_rms_n: end, whiteness_p: end_white },
+        warnings,
+        validation: Vec::new(),
+        plain: Vec::new(),
+        effects: Vec::new(),
+    }
+}
+
+/// A parameter of a cause.
+pub fn parameter(name: &str, value: f64, std_error: f64, unit: &str) -> CauseParameter {
+    CauseParameter { name: name.to_owned(), value, std_error, unit: unit.to_owned() }
+}

@@ -1,0 +1,193 @@
+//! Cables and walls that a carried block may meet: tried all over the place, and refined where they explain most.
+
+use super::carry::{Place, Rows};
+use crate::diagnose::candidate::Candidate;
+use crate::diagnose::geometry::Study;
+use crate::identify::linear::least_squares;
+use haptics::Vec2;
+use haptics::law::{AddedConstraint, Kind};
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::TAU;
+
+/// Directions of the anchor from the middle of the carries, and one over its distance in half ranges; 0 is a wall.
+const DIRECTIONS: u32 = 20;
+const NEARNESS: [f64; 3] = [0.0, 0.25, 0.6];
+/// Share of the carries in which it is slack.
+const SLACK: [f64; 5] = [0.15, 0.4, 0.6, 0.75, 0.88];
+/// So many of them are refined, in so many halvings of the steps.
+const REFINED: usize = 4;
+const HALVINGS: usize = 9;
+/// A wall is a cable from so many half ranges away.
+const FAR: f64 = 200.0;
+
+/// Where a cable is tied, seen from the middle of the carries: direction, rad; one over the distance, in half ranges; and the way
+/// away from it at which it gets taut, in half ranges.
+#[derive(Clone, Copy, Debug)]
+struct Tie([f64; 3]);
+
+/// What the carries look like.
+struct Field {
+    middle: Vec2,
+    range_m: f64,
+}
+
+impl Field {
+    fn anchor_and_length(&self, tie: Tie) -> (Vec2, f64) {
+        let Tie([direction, nearness, taut]) = tie;
+        let away = self.range_m / nearness.clamp(1.0 / FAR, 0.95);
+        let anchor = self.middle + away * Vec2::new(direction.cos(), direction.sin());
+        (anchor, away + taut * self.range_m)
+    }
+}
+
+/// The cables that explain most beside `base`.
+pub fn cables(rows: &Rows<'_>, y: &[f64], base: &[Vec<f64>], weight: &[f64]) -> Vec<Candidate> {
+    let places: Vec<Vec2> = rows
+        .rows
+        .iter()
+        .filter(|r| matches!(r.place, Place::Carried { axis: 1, .. }))
+        .map(|r| Vec2::new(rows.seen[r.recording].place[0][r.i], rows.seen[r.recording].place[1][r.i]))
+        .collect();
+    if places.is_empty() {
+        return Vec::new();
+    }
+    let middle = places.iter().sum::<Vec2>() / places.len() as f64;
+    let range_m = places.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max);
+    if range_m < 1e-3 {
+        return Vec::new();
+    }
+    let field = Field { middle, range_m };
+    let explains = Explains::of(y, base, weight);
+    let worth = |tie: Tie| {
+        let (anchor, length) = field.anchor_and_length(tie);
+        explains.worth(&pull(rows, anchor, length), weight)
+    };
+    let mut tried: Vec<(f64, Tie)> = Vec::new();
+    for (k, nearness) in (0..DIRECTIONS).flat_map(|k| NEARNESS.map(|d| (k, d))) {
+        let direction = TAU * f64::from(k) / f64::from(DIRECTIONS);
+        let (anchor, away) = field.anchor_and_length(Tie([direction, nearness, 0.0]));
+        let mut lengths: Vec<f64> = places.iter().map(|p| ((p - anchor).norm() - away) / range_m).collect();
+        lengths.sort_by(f64::total_cmp);
+        for slack in SLACK {
+            let tie = Tie([direction, nearness, lengths[(slack * (lengths.len() - 1) as f64) as usize]]);
+            tried.push((worth(tie), tie));
+        }
+    }
+    tried.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut found: Vec<Candidate> = Vec::new();
+    for (_, start) in tried.into_iter().take(REFINED) {
+        let (anchor, length) = field.anchor_and_length(refined(start, &worth));
+        found.push(one(rows, anchor, length));
+    }
+    found
+}
+
+/// Pattern search (Hooke & Jeeves 1961).
+fn refined(start: Tie, worth: &dyn Fn(Tie) -> f64) -> Tie {
+    let mut best = (worth(start), start);
+    let mut steps = [0.15, 0.15, 0.15];
+    for _ in 0..HALVINGS {
+        loop {
+            let before = best.0;
+            for k in 0..steps.len() {
+                for sign in [1.0, -1.0] {
+                    let mut tie = best.1;
+                    tie.0[k] += sign * steps[k];
+                    tie.0[1] = tie.0[1].max(0.0);
+                    let now = worth(tie);
+                    if now > best.0 {
+                        best = (now, tie);
+                    }
+                }
+            }
+            if best.0 <= before * (1.0 + 1e-9) {
+                break;
+            }
+        }
+        steps = steps.map(|s| 0.5 * s);
+    }
+    best.1
+}
+
+/// What the model leaves, and what a column would take of it.
+struct Explains {
+    own: DMatrix<f64>,
+    left: DVector<f64>,
+}
+
+impl Explains {
+    fn of(y: &[f64], base: &[Vec<f64>], weight: &[f64]) -> Self {
+        let used: Vec<&Vec<f64>> = base.iter().filter(|c| c.iter().any(|v| *v != 0.0)).collect();
+        let own = DMatrix::from_fn(y.len(), used.len(), |i, j| used[j][i] * weight[i]).qr().q();
+        let y = DVector::from_fn(y.len(), |i, _| y[i] * weight[i]);
+        let left = &y - &own * own.tr_mul(&y);
+        Self { own, left }
+    }
+
+    /// Sum of squares that the column explains with a positive factor.
+    fn worth(&self, column: &[f64], weight: &[f64]) -> f64 {
+        let column = DVector::from_fn(column.len(), |i, _| column[i] * weight[i]);
+        let beside = &column - &self.own * self.own.tr_mul(&column);
+        let (along, size) = (beside.dot(&self.left), beside.norm_squared());
+        if along > 0.0 && size > 1e-6 * column.norm_squared() { along * along / size } else { 0.0 }
+    }
+}
+
+/// What a cable of 1 N/m asks of the hand, N.
+fn pull(rows: &Rows<'_>, anchor: Vec2, length_m: f64) -> Vec<f64> {
+    rows.carried(|seen, row, _, axis| {
+        let away = Vec2::new(seen.place[0][row.i], seen.place[1][row.i]) - anchor;
+        let length = away.norm().max(1e-9);
+        AddedConstraint::cable_n(1.0, length_m, length) * away[axis] / length
+    })
+}
+
+/// Standard errors of stiffness, anchor and length of a found cable: what its searched values leave open counts. `None` where they cannot
+/// be told.
+pub fn errors(rows: &Rows<'_>, study: &Study) -> Option<[f64; 4]> {
+    /// Steps of the differences, m.
+    const STEP_M: f64 = 1e-4;
+    let pick = study.picks().into_iter().find(|p| study.candidates[*p].id == "added-constraint")?;
+    let cable = &study.candidates[pick];
+    let value = |k: usize| cable.searched.get(k).map_or(0.0, |s| s.value);
+    let at = [value(0), value(1), value(2)];
+    let stiffness = study.chosen.iter().scan(study.base.len(), |first, c| {
+        let own = (*first, c.candidate);
+        *first += study.candidates[c.candidate].columns.len();
+        Some(own)
+    });
+    let place = stiffness.into_iter().find(|(_, c)| *c == pick)?.0;
+    let k = study.solved.as_ref()?.values[place];
+    let mut columns: Vec<Vec<f64>> = cable.columns.clone();
+    columns.extend((0..3).map(|p| {
+        let moved = |step: f64| {
+            let mut to = at;
+            to[p] += step;
+            pull(rows, Vec2::new(to[0], to[1]), to[2])
+        };
+        let (after, before) = (moved(STEP_M), moved(-STEP_M));
+        after.iter().zip(&before).map(|(a, b)| k * (a - b) / (2.0 * STEP_M)).collect()
+    }));
+    columns.extend(study.base.iter().filter(|c| c.iter().any(|v| *v != 0.0)).cloned());
+    let others = study.picks().into_iter().filter(|p| *p != pick);
+    columns.extend(others.flat_map(|p| study.candidates[p].columns.clone()));
+    let squares: Vec<f64> = study.weight.iter().map(|w| w * w).collect();
+    let fit = least_squares(&columns, &study.y, Some(&squares)).ok()?;
+    Some([fit.std_errors[0], fit.std_errors[2], fit.std_errors[3], fit.std_errors[4]])
+}
+
+fn one(rows: &Rows<'_>, anchor: Vec2, length_m: f64) -> Candidate {
+    // Cables damp while they are taut.
+    let damping = rows.carried(|seen, row, _, axis| {
+        let away = Vec2::new(seen.place[0][row.i], seen.place[1][row.i]) - anchor;
+        let length = away.norm().max(1e-9);
+        let rate = Vec2::new(seen.velocity[0][row.i], seen.velocity[1][row.i]).dot(&away) / length;
+        if length > length_m { rate * away[axis] / length } else { 0.0 }
+    });
+    let columns = vec![pull(rows, anchor, length_m), damping];
+    Candidate::several("added-constraint", Kind::Plant, columns, vec![("k", "N/m"), ("c", "N s/m")])
+        .positive()
+        .at("anchor x", anchor.x, "m")
+        .at("anchor y", anchor.y, "m")
+        .at("length", length_m, "m")
+}

@@ -1,0 +1,288 @@
+//! Distance of the tips while blocks are gripped, against the grip force: what gives, and how.
+
+use super::seen::Seen;
+use crate::diagnose::answer::{Found, Part, parameter};
+use crate::diagnose::candidate::Candidate;
+use crate::diagnose::compare::{Channel, stretches};
+use crate::diagnose::geometry::Study;
+use crate::diagnose::report::CauseParameter;
+use crate::estimate::EstimateError;
+use crate::identify::block::object;
+use crate::signal::noise::white_noise;
+use haptics::law::Kind;
+use haptics::law::contact::{Cushion, Densification, ONSET, StiffnessHardening};
+use haptics::world::World;
+
+/// Bends of the pads' law that are tried, between hardly any and strong, and ends of the foam.
+const BENDS: usize = 7;
+/// A pad that is not felt: what could just have been seen is measured with it, m/N.
+const USUAL_GIVE: f64 = 1.0 / 8000.0;
+/// A usual error of lengths.
+const USUAL_SCALE: f64 = 0.02;
+
+/// The comparison and what its words need.
+pub struct Grasp {
+    pub study: Study,
+    pub along: Vec<bool>,
+    pub stretch: Vec<usize>,
+    pub floor_m: f64,
+    /// Mean distance and grip of each block, m and N.
+    means: Vec<(f64, f64)>,
+    /// Give of a pad at no force that the model has, m/N.
+    modelled: f64,
+}
+
+/// Rows of all recordings.
+struct Rows {
+    number: Vec<usize>,
+    time_s: Vec<f64>,
+    width_m: Vec<f64>,
+    grip_n: Vec<f64>,
+    rate_m_s: Vec<f64>,
+    stretch: Vec<usize>,
+}
+
+fn rows(seen: &[Seen<'_>]) -> Rows {
+    let mut rows = Rows {
+        number: Vec::new(),
+        time_s: Vec::new(),
+        width_m: Vec::new(),
+        grip_n: Vec::new(),
+        rate_m_s: Vec::new(),
+        stretch: Vec::new(),
+    };
+    let mut owner = Vec::new();
+    for (k, one) in seen.iter().enumerate() {
+        for number in 1..=one.count {
+            for i in one.gripped(number) {
+                rows.number.push(number);
+                rows.time_s.push(one.time_s(i));
+                rows.width_m.push(one.blocks.width[i]);
+                rows.grip_n.push(one.blocks.grip[i]);
+                rows.rate_m_s.push(one.blocks.width_rate[i]);
+                owner.push((k, number));
+            }
+        }
+    }
+    let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
+    rows.stretch = stretches(&rows.time_s, period_s, |i| owner[i] != owner[i - 1]);
+    rows
+}
+
+/// Compares what may change the distance of the tips. `None` where blocks were hardly gripped.
+pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result<Option<Grasp>, EstimateError> {
+    const LEAST_ROWS: usize = 30;
+    let rows = rows(seen);
+    let n = rows.number.len();
+    if n < LEAST_ROWS {
+        return Ok(None);
+    }
+    let blocks = rows.number.iter().copied().max().unwrap_or(0);
+    let known: Vec<Option<f64>> =
+        (1..=blocks).map(|k| seen.iter().find_map(|s| s.known(k, "width_m").filter(|_| s.count >= k))).collect();
+    let of = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();
+    let y = of(&|i| rows.width_m[i] - known[rows.number[i] - 1].unwrap_or(0.0));
+    let mut base: Vec<Vec<f64>> = (1..=blocks)
+        .filter(|k| known[k - 1].is_none())
+        .map(|k| of(&|i| f64::from(u8::from(rows.number[i] == k))))
+        .collect();
+    // Pads damp: no cause of its own.
+    base.push(rows.rate_m_s.clone());
+    let mut modelled = 0.0;
+    if let Some(pad) = world.map(|w| w.pad.elastic()) {
+        modelled = 1.0 / pad.spring.k1;
+        base.push(of(&|i| -2.0 * pad.depth_m(rows.grip_n[i].max(0.0))));
+    }
+    let mut candidates = causes(&rows, modelled > 0.0);
+    if known.iter().any(Option::is_some) {
+        let column = of(&|i| known[rows.number[i] - 1].unwrap_or(0.0));
+        candidates.push(Candidate::one("length-scale", Kind::Instrument, "epsilon", "1", column));
+    }
+    candidates.extend(generic(seen, &rows));
+    let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
+    let means = (1..=blocks)
+        .map(|k| {
+            let own: Vec<usize> = (0..n).filter(|i| rows.number[*i] == k).collect();
+            let mean = |of: &[f64]| own.iter().map(|i| of[*i]).sum::<f64>() / own.len().max(1) as f64;
+            (mean(&rows.width_m), mean(&rows.grip_n))
+        })
+        .collect();
+    let floor_m = white_noise(&y);
+    let channel = Channel {
+        y,
+        base,
+        candidates,
+        stretch: rows.stretch.clone(),
+        testable: vec![true; n],
+        weight: vec![1.0; n],
+        period_s,
+    };
+    let study = channel.compare(threshold)?;
+    Ok(Some(Grasp { study, along: vec![true; n], stretch: rows.stretch, floor_m, means, modelled }))
+}
+
+fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
+    let (least_n, largest_n) =
+        rows.grip_n.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), f| (a.min(f.max(0.0)), b.max(*f)));
+    let mut found = Vec::new();
+    if !has_pads {
+        let column = rows.grip_n.iter().map(|f| -2.0 * f).collect();
+        found.push(Candidate::one("pad-compliance", Kind::Plant, "give", "m/N", column).positive());
+    }
+    if largest_n <= 0.0 {
+        return found;
+    }
+    // What a pad that hardens gives less than a linear one of the same first stiffness.
+    let less = |cushion: &Cushion| -> Vec<f64> {
+        rows.grip_n.iter().map(|f| 2.0 * (f.max(0.0) - cushion.depth_m(f.max(0.0)))).collect()
+    };
+    for k in 0..BENDS {
+        let share = (k as f64 + 0.5) / BENDS as f64;
+        let bend = 0.01 * 300.0_f64.powf(share) / largest_n.powi(2);
+        let linear = Cushion::linear(1.0);
+        let harder = Cushion { spring: StiffnessHardening { k3: bend, ..linear.spring }, ..linear };
+        let cause = Candidate::one("stiffness-hardening", Kind::Plant, "give", "m/N", less(&harder)).positive();
+        found.push(cause.at("bend", bend, "1/N²"));
+        let end_n = least_n + (0.3 + 0.65 * share) * (largest_n - least_n);
+        let ending = Cushion { end: Densification::of(end_n / ONSET, 1.0), ..linear };
+        let cause = Candidate::one("stiffness-hardening", Kind::Plant, "give", "m/N", less(&ending)).positive();
+        found.push(cause.at("end", end_n, "N"));
+    }
+    found
+}
+
+/// What is left may follow time, the grip's square or the place.
+fn generic(seen: &[Seen<'_>], rows: &Rows) -> Vec<Candidate> {
+    let span = rows.time_s.iter().copied().fold(0.0, f64::max).max(1e-9);
+    let term = |expression: String, column: Vec<f64>| Candidate {
+        expression: Some(expression),
+        ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
+    };
+    let mut found: Vec<Candidate> = (1..=4)
+        .map(|k| {
+            let wave = rows.time_s.iter().map(|t| (std::f64::consts::PI * f64::from(k) * t / span).cos()).collect();
+            term(format!("cos({k} pi t/T)"), wave)
+        })
+        .collect();
+    let mut places = [Vec::new(), Vec::new()];
+    for one in seen {
+        for number in 1..=one.count {
+            for i in one.gripped(number) {
+                places[0].push(one.place[0][i]);
+                places[1].push(one.place[1][i]);
+            }
+        }
+    }
+    let [x, y] = places;
+    found.push(term("x".to_owned(), x));
+    found.push(term("y".to_owned(), y));
+    found
+}
+
+impl Grasp {
+    /// True when this cause was found.
+    pub fn has(&self, id: &str) -> bool {
+        self.study.picks().iter().any(|p| self.study.candidates[*p].id == id)
+    }
+
+    /// For the answer.
+    pub fn states(&self, candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        let give = found.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
+        match candidate.id {
+            // The stiffness of one pad; the column was its give. What was fitted says so already.
+            "pad-compliance" => found,
+            "stiffness-hardening" => {
+                let first = self.first_give();
+                let k1 = 1.0 / first.max(1e-12);
+                let mut all = vec![parameter("k1", k1, 0.0, "N/m")];
+                match candidate.searched.first() {
+                    Some(s) if s.name == "bend" => {
+                        // To lowest order the column is bend · F³: what it comes out at is k3 give/(k1⁴ give).
+                        let k3 = |give: f64| give / first.max(1e-12) * s.value * k1.powi(3);
+                        all.push(parameter("k3", k3(give.0), k3(give.1), "N/m³"));
+                    }
+                    Some(s) => all.push(parameter("end", s.value, 0.0, "N")),
+                    None => {}
+                }
+                all
+            }
+            _ => found,
+        }
+    }
+
+    /// Give of one pad at no force, m/N: what was found, or what the model has.
+    fn first_give(&self) -> f64 {
+        let Some(solved) = &self.study.solved else { return self.modelled };
+        let mut at = self.study.base.len();
+        for chosen in &self.study.chosen {
+            let candidate = &self.study.candidates[chosen.candidate];
+            if candidate.id == "pad-compliance" {
+                return solved.values[at];
+            }
+            at += candidate.columns.len();
+        }
+        self.modelled
+    }
+
+    /// What in the residual shows a cause.
+    pub fn shows(&self, found: &Found<'_>) -> String {
+        let value = found.parameters.first().map_or(0.0, |p| p.value);
+        match found.candidate.id {
+            "pad-compliance" => {
+                let short: Vec<String> = self
+                    .means
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, (_, grip))| *grip > 0.0)
+                    .map(|(k, (width, grip))| {
+                        let give = 2.0 * grip / value.max(1e-12);
+                        format!("{} {:.1} %", object(k + 1), 100.0 * give / (width + give))
+                    })
+                    .collect();
+                format!(
+                    "the distance of the tips falls with the grip force, {value:.0} N/m each pad: plain means come out short of the \
+                     width at no force ({})",
+                    short.join(", ")
+                )
+            }
+            "stiffness-hardening" => {
+                "the harder the grip already is, the less the tips come together under more of it".to_owned()
+            }
+            "length-scale" => format!("all distances are {:+.2} % off the widths that are known", 100.0 * value),
+            other => format!("{other} shows in the distance of the tips"),
+        }
+    }
+
+    /// Sizes that could just matter.
+    pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+        match candidate.id {
+            "pad-compliance" => {
+                Some((USUAL_GIVE, "the grip hardly varied while a block was held; squeeze softly and hard while it stands still"))
+            }
+            "stiffness-hardening" => {
+                Some((1.0 / 2500.0, "the grip varied too little to see a bend; squeeze from light to hard and back"))
+            }
+            "length-scale" => Some((USUAL_SCALE, "the widths of the blocks are not known; state one in the sidecar")),
+            _ => None,
+        }
+    }
+
+    /// As a part of the answer.
+    pub fn part<'a>(
+        &'a self,
+        shows: &'a dyn Fn(&Found<'_>) -> String,
+        states: &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>,
+    ) -> Part<'a> {
+        Part {
+            study: &self.study,
+            channel: "distance of the tips",
+            unit: "m",
+            floor: self.floor_m,
+            along: &self.along,
+            stretch: &self.stretch,
+            shows,
+            states,
+            usual: &Self::usual,
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! Height of the grip while a held block stands on something: give of the pads under the load, and slips of the fingers.
+
+use super::seen::Seen;
+use crate::diagnose::answer::{Found, Part, parameter};
+use crate::diagnose::candidate::Candidate;
+use crate::diagnose::compare::{Channel, stretches};
+use crate::diagnose::geometry::Study;
+use crate::diagnose::report::CauseParameter;
+use crate::estimate::EstimateError;
+use crate::identify::block::heights::{Rest, rests};
+use crate::identify::block::object;
+use crate::signal::noise::white_noise;
+use haptics::law::Kind;
+use haptics::world::World;
+
+/// Fewer rows of a rest show nothing.
+const LEAST_ROWS: usize = 8;
+/// Starts of a slip that are tried in every rest, and how long it may take, s.
+const STARTS: usize = 10;
+const LENGTHS_S: [f64; 3] = [0.0, 0.1, 0.3];
+/// Of so many rows one may be held out: every rest is seen while it is fitted, from its beginning to its end.
+const HELD_OUT: usize = 2;
+
+/// One end of a carry.
+pub struct Stand {
+    pub recording: usize,
+    pub number: usize,
+    /// True for the end of the carry.
+    pub placed: bool,
+    /// Numbers of the blocks below.
+    pub below: Vec<usize>,
+    pub first: usize,
+    pub end: usize,
+    /// Samples of it.
+    pub samples: Vec<usize>,
+}
+
+/// The comparison and what its words need.
+pub struct Ground {
+    pub study: Study,
+    pub along: Vec<bool>,
+    pub stretch: Vec<usize>,
+    pub floor_m: f64,
+    pub stands: Vec<Stand>,
+    rows: Rows,
+}
+
+struct Rows {
+    stand: Vec<usize>,
+    time_s: Vec<f64>,
+    height_m: Vec<f64>,
+    lift_n: Vec<f64>,
+    /// Largest shear over normal force of a finger.
+    ratio: Vec<f64>,
+}
+
+/// Compares what may move the grip while a held block stands. `cross`: what each finger's vertical force has of its horizontal one. `None` where no block was held still on anything for long enough.
+pub fn ground(
+    seen: &[Seen<'_>],
+    world: Option<&World>,
+    cross: [f64; 2],
+    threshold: f64,
+) -> Result<Option<Ground>, EstimateError> {
+    let mut rows =
+        Rows { stand: Vec::new(), time_s: Vec::new(), height_m: Vec::new(), lift_n: Vec::new(), ratio: Vec::new() };
+    let mut stands = Vec::new();
+    for (recording, one) in seen.iter().enumerate() {
+        for (k, rest) in rests(&one.blocks, one.count).into_iter().enumerate() {
+            add(&mut rows, &mut stands, one, (recording, k % 2 == 1), (&rest, cross));
+        }
+    }
+    let n = rows.stand.len();
+    if stands.is_empty() || n < 3 * LEAST_ROWS {
+        return Ok(None);
+    }
+    let of = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();
+    let mut base: Vec<Vec<f64>> =
+        (0..stands.len()).map(|s| of(&|i| f64::from(u8::from(rows.stand[i] == s)))).collect();
+    let give = rows.lift_n.clone();
+    let contact = of(&|i| (stands[rows.stand[i]].below.len() + 1) as f64 * rows.lift_n[i]);
+    let mut candidates = Vec::new();
+    if world.is_some() {
+        base.extend([give, contact]);
+    } else {
+        let cause = |columns, linear| Candidate::several("pad-compliance", Kind::Plant, columns, linear).positive();
+        candidates.push(cause(vec![give.clone()], vec![("give", "m/N")]));
+        candidates.push(cause(vec![give, contact], vec![("give", "m/N"), ("give of a contact", "m/N")]));
+    }
+    for (s, stand) in stands.iter().enumerate() {
+        slips(&rows, s, (stand.first, stand.end), &mut candidates);
+    }
+    let span = rows.time_s.iter().copied().fold(0.0, f64::max).max(1e-9);
+    candidates.extend((1..=3).map(|k| {
+        let wave = of(&|i| (std::f64::consts::PI * f64::from(k) * rows.time_s[i] / span).cos());
+        let expression = Some(format!("cos({k} pi t/T)"));
+        Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) }
+    }));
+    let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
+    let stretch = stretches(&rows.time_s, period_s, |i| rows.stand[i] != rows.stand[i - 1]);
+    let along: Vec<bool> = (0..n).map(|i| i % HELD_OUT == 0).collect();
+    let channel = Channel {
+        y: rows.height_m.clone(),
+        base,
+        candidates,
+        stretch: stretch.clone(),
+        testable: along.clone(),
+        weight: vec![1.0; n],
+        period_s,
+    };
+    let floor_m = white_noise(&rows.height_m);
+    let study = channel.compare(threshold)?;
+    Ok(Some(Ground { study, along, stretch, floor_m, stands, rows }))
+}
+
+fn add(rows: &mut Rows, stands: &mut Vec<Stand>, one: &Seen<'_>, (recording, placed): (usize, bool), (rest, cross): (&Rest, [f64; 2])) {
+    let picked = one.every(rest.samples.iter().copied());
+    if picked.len() < LEAST_ROWS {
+        return;
+    }
+    let first = rows.stand.len();
+    for i in &picked {
+        rows.stand.push(stands.len());
+        rows.time_s.push(one.time_s(*i));
+        rows.height_m.push(one.blocks.height[*i]);
+        let side = |f: usize| one.force[f][0][*i] - one.blocks.levels.bias_n[f].x;
+        rows.lift_n.push(one.blocks.lift[*i] - cross[0] * side(0) - cross[1] * side(1));
+        let ratio = |f: usize| {
+            let bias = one.blocks.levels.bias_n[f];
+            (one.force[f][1][*i] - bias.y).abs() / (one.force[f][0][*i] - bias.x).abs().max(0.1)
+        };
+        rows.ratio.push(ratio(0).max(ratio(1)));
+    }
+    let below = rest.below.iter().map(|k| k + 1).collect();
+    stands.push(Stand {
+        recording,
+        number: rest.carry + 1,
+        placed,
+        below,
+        first,
+        end: rows.stand.len(),
+        samples: rest.samples.clone(),
+    });
+}
+
+fn slips(rows: &Rows, stand: usize, (first, end): (usize, usize), found: &mut Vec<Candidate>) {
+    let (from, to) = (rows.time_s[first], rows.time_s[end - 1]);
+    for k in 1..=STARTS {
+        let start = from + (to - from) * k as f64 / (STARTS + 1) as f64;
+        for length in LENGTHS_S {
+            let share = |t: f64| if length > 0.0 { ((t - start) / length).clamp(0.0, 1.0) } else { f64::from(u8::from(t >= start)) };
+            let column = (0..rows.stand.len())
+                .map(|i| if rows.stand[i] == stand { share(rows.time_s[i]) } else { 0.0 })
+                .collect();
+            let slip = Candidate::one("fingertip-slip", Kind::Plant, "dy", "m", column).at("t0", start, "s");
+            found.push(slip.at("duration", length, "s"));
+        }
+    }
+}
+
+impl Ground {
+    /// Which rest a time belongs to.
+    fn stand_at(&self, time_s: f64) -> Option<&Stand> {
+        self.stands.iter().find(|s| (self.rows.time_s[s.first]..=self.rows.time_s[s.end - 1]).contains(&time_s))
+    }
+
+    /// For the answer.
+    pub fn states(candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        match candidate.id {
+            // Two pads side by side; the give of one is twice what the pair's is, so its stiffness half.
+            "pad-compliance" => found
+                .iter()
+                .take(1)
+                .map(|p| parameter("k_shear", 0.5 * p.value, 0.5 * p.std_error, "N/m"))
+                .collect(),
+            _ => found,
+        }
+    }
+
+    /// What in the residual shows a cause.
+    pub fn shows(&self, found: &Found<'_>) -> String {
+        let value = found.parameters.first().map_or(0.0, |p| p.value);
+        if found.candidate.id == "pad-compliance" {
+            return "the grip sinks and rises with the load while a held block stands".to_owned();
+        }
+        let at = found.parameters.iter().find(|p| p.name == "t0").map_or(0.0, |p| p.value);
+        let Some(stand) = self.stand_at(at) else {
+            return format!("the fingers go on by {:.2} mm although the block stands", 1e3 * value);
+        };
+        let near = (stand.first..stand.end).filter(|i| (self.rows.time_s[*i] - at).abs() < 0.15);
+        let ratio = near.map(|i| self.rows.ratio[i]).fold(0.0, f64::max);
+        // A plain mean over the rest has the shift for as long as it lasts.
+        let after = (stand.first..stand.end).filter(|i| self.rows.time_s[*i] >= at).count();
+        let mean_off = value * after as f64 / (stand.end - stand.first) as f64;
+        let wrong: Vec<String> = stand.below.iter().map(|b| object(*b)).collect();
+        let wrong = if wrong.is_empty() { "what it was taken from".to_owned() } else { wrong.join(" and ") };
+        format!(
+            "at {at:.2} s the fingers go on by {:.2} mm although {} stands and the load does not ask for it (shear was {ratio:.2} of the \
+             grip): heights from plain means there (of {wrong}) are {:.2} mm off",
+            1e3 * value,
+            object(stand.number),
+            1e3 * mean_off
+        )
+    }
+
+    /// Sizes that could just matter.
+    pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+        match candidate.id {
+            "fingertip-slip" => Some((2e-4, "blocks were not held on the ground for long enough to see the fingers move on")),
+            "pad-compliance" => {
+                Some((1.0 / 8000.0, "the load hardly varied while a held block stood; press and lift while it stands"))
+            }
+            _ => None,
+        }
+    }
+
+    /// Mean height of a rest without the slip found in it and without the give under its load, m, and its standard error.
+    pub fn level(&self, stand: &Stand) -> (f64, f64) {
+        let picks = self.study.picks();
+        let Some(solved) = &self.study.solved else { return (0.0, f64::INFINITY) };
+        let mut give = vec![0.0; self.rows.stand.len()];
+        // All but the rests' own heights.
+        let columns: Vec<&Vec<f64>> = self
+            .study
+            .base
+            .iter()
+            .skip(self.stands.len())
+            .chain(picks.iter().flat_map(|p| &self.study.candidates[*p].columns))
+            .collect();
+        for (column, value) in columns.iter().zip(&solved.values[self.stands.len()..]) {
+            give.iter_mut().zip(column.iter()).for_each(|(g, c)| *g += value * c);
+        }
+        let n = (stand.end - stand.first) as f64;
+        let mean = (stand.first..stand.end).map(|i| self.rows.height_m[i] - give[i]).sum::<f64>() / n;
+        let scatter = (stand.first..stand.end).map(|i| (self.rows.height_m[i] - give[i] - mean).powi(2)).sum::<f64>();
+        (mean, (scatter / (n - 1.0).max(1.0) / n).sqrt())
+    }
+
+    /// As a part of the answer.
+    pub fn part<'a>(&'a self, shows: &'a dyn Fn(&Found<'_>) -> String) -> Part<'a> {
+        Part {
+            study: &self.study,
+            channel: "height of the grip over the ground",
+            unit: "m",
+            floor: self.floor_m,
+            along: &self.along,
+            stretch: &self.stretch,
+            shows,
+            states: &Self::states,
+            usual: &Self::usual,
+        }
+    }
+}

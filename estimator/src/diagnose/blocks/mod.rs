@@ -1,0 +1,129 @@
+//! Diagnosis of carried blocks: distance of the tips, net force and height over the ground, each with its own causes.
+//!
+//! Without a world the model is the thesis's: rigid widths and plain means of weights and heights. With one its pads, inertia and
+//! cables belong to the model; what a block weighs and how wide it is stays open in both, unless the sidecar says that it is known.
+
+mod cable;
+mod carry;
+mod grasp;
+mod ground;
+mod moved;
+mod seen;
+
+use super::answer::{Beside, Found, Part, answer};
+use super::candidate::Candidate;
+use super::quality;
+use super::report::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
+use super::{Options, threshold};
+use crate::estimate::EstimateError;
+use haptics::recording::Recording;
+use haptics::world::{Cable, Content, World};
+use seen::Seen;
+
+/// Diagnoses recordings of the same blocks.
+pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let seen = recordings.iter().map(Seen::of).collect::<Result<Vec<_>, _>>()?;
+    let world = options.world.as_ref();
+    let limit = threshold(seen.iter().map(|s| s.period_s).fold(0.0, f64::max));
+    let carry = carry::carry(&seen, world, limit)?;
+    let grasp = grasp::grasp(&seen, world, limit)?;
+    // A block that a cable pulls at is held by more than its ground.
+    let ground = if carry.has("added-constraint") { None } else { ground::ground(&seen, world, carry.cross(), limit)? };
+    let mut beside = Beside {
+        model: if world.is_some() { "world: weight+inertia+pads" } else { "weight+rigid widths+plain heights" }.to_owned(),
+        causes: recordings.iter().flat_map(|r| quality::faults(r).causes).collect(),
+        ..Beside::default()
+    };
+    if let (Some(ground), Some(world)) = (&ground, world) {
+        let within = ground.study.picks().iter().any(|p| ground.study.candidates[*p].id == "fingertip-slip");
+        let scaled = grasp.as_ref().is_some_and(|g| g.has("length-scale"));
+        match moved::moved(ground, &seen, world) {
+            Some(cause) if scaled || carry.has("force-cross-axis") => beside.warnings.push(format!(
+                "{}; what is wrong with the sensors would do the same, so no slip is named",
+                cause.evidence
+            )),
+            cause => beside.causes.extend(cause.filter(|_| !within)),
+        }
+    }
+    unseen(&seen, &mut beside.not_excited);
+    let carry_states = |c: &Candidate, found: Vec<CauseParameter>| carry.states(c, found);
+    let carry_shows = |f: &Found<'_>| carry.shows(f);
+    let carry_usual = |c: &Candidate| carry.usual(c);
+    let grasp_shows = |f: &Found<'_>| grasp.as_ref().map(|g| g.shows(f)).unwrap_or_default();
+    let grasp_states =
+        |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &grasp { g.states(c, p) } else { p };
+    let ground_shows = |f: &Found<'_>| ground.as_ref().map(|g| g.shows(f)).unwrap_or_default();
+    let mut parts: Vec<Part<'_>> = vec![carry.part(&carry_shows, &carry_states, &carry_usual)];
+    parts.extend(grasp.as_ref().map(|g| g.part(&grasp_shows, &grasp_states)));
+    parts.extend(ground.as_ref().map(|g| g.part(&ground_shows)));
+    Ok(answer(&parts, beside, &next))
+}
+
+/// What no recording of this kind could show.
+fn unseen(seen: &[Seen<'_>], found: &mut Vec<NotExcited>) {
+    let mut add = |id: &str, why: &str| found.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
+    let knows = |name: &str| seen.iter().any(|s| (1..=s.count).any(|k| s.known(k, name).is_some()));
+    if !knows("weight_N") && !knows("mass_kg") {
+        add("force-gain", "no weight is known; state one in the sidecar");
+    }
+    if !knows("width_m") {
+        add("length-scale", "no width is known; state one in the sidecar");
+    }
+    add("friction-change", "the fingers hold the blocks and do not slide on them");
+}
+
+/// The recording that would settle what is open.
+fn next(open: &[Alternative]) -> Option<NextExperiment> {
+    let first = open.first()?;
+    let pair = [first.instead_of.as_str(), first.id.as_str()];
+    let is = |a: &str, b: &str| pair.contains(&a) && pair.contains(&b);
+    let (motion, power) = if is("mass-change", "force-drift") {
+        ("let go for two seconds before and after the carry: a drift of the sensor stays, a lost weight does not", 0.95)
+    } else if is("mass-change", "force-bias") || is("force-bias", "force-drift") {
+        ("start and end with two seconds of free motion", 0.95)
+    } else if is("pad-compliance", "length-scale") {
+        ("squeeze the standing block softly and hard, several times", 0.95)
+    } else if is("gravity-tilt", "force-cross-axis") {
+        ("turn the hand's base by a quarter turn and carry the same block again", 0.95)
+    } else {
+        ("repeat the carry with softer and harder grips, fast and slow, and let go for two seconds before and after", 0.7)
+    };
+    let mut separates = vec![first.instead_of.clone()];
+    separates.extend(open.iter().filter(|a| a.instead_of == first.instead_of).map(|a| a.id.clone()));
+    Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: power })
+}
+
+/// What was found, put into a world.
+pub fn extend(world: &mut World, diagnosis: &Diagnosis) {
+    for cause in &diagnosis.causes {
+        let value = |name: &str| cause.parameters.iter().find(|p| p.name == name).map(|p| p.value);
+        match cause.id.as_str() {
+            "pad-compliance" => {
+                world.pad.stiffness_n_m = value("k").filter(|k| *k > 0.0).unwrap_or(world.pad.stiffness_n_m);
+                let shear = value("k_shear").filter(|k| *k > 0.0);
+                world.pad.shear_stiffness_n_m = shear.unwrap_or(world.pad.shear_stiffness_n_m);
+            }
+            "stiffness-hardening" => {
+                world.pad.stiffness_n_m = value("k1").filter(|k| *k > 0.0).unwrap_or(world.pad.stiffness_n_m);
+                world.pad.cubic_n_m3 = value("k3").map_or(world.pad.cubic_n_m3, |k| k.max(0.0));
+            }
+            "mass-change" => {
+                let gravity = world.gravity_m_s2.max(1e-9);
+                let number = value("block").map_or(0, |b| (b as usize).saturating_sub(1));
+                if let (Some(rate), Some(block)) = (value("rate").filter(|r| *r < 0.0), world.blocks.get_mut(number)) {
+                    let mass_kg = 0.5 * block.mass_kg;
+                    block.content = Some(Content { mass_kg, leak_kg_s: -rate / gravity, leaks_from_s: value("t0").or(Some(0.0)) });
+                }
+            }
+            "added-constraint" => {
+                if let (Some(k), Some(x), Some(y), Some(length_m), Some(block)) =
+                    (value("k"), value("anchor x"), value("anchor y"), value("length"), world.blocks.first_mut())
+                {
+                    let anchor_m = haptics::Vec2::new(x, y);
+                    block.cable = Some(Cable { anchor_m, length_m, stiffness_n_m: k, damping_n_s_m: 0.0 });
+                }
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! A block that moved in the grasp between where it was picked up and where it was put down: what the heights of a world that is
+//! known say about the two ends of a carry.
+
+use super::ground::{Ground, Stand};
+use super::seen::Seen;
+use crate::diagnose::answer::parameter;
+use crate::diagnose::gain::chi_square_tail;
+use crate::diagnose::report::{Cause, Gain};
+use crate::identify::block::object;
+use haptics::law::Kind;
+use haptics::world::World;
+
+/// Less than this is how blocks turn in the grasp and how flat they are, m.
+const LEAST_M: f64 = 3e-4;
+/// So many standard errors make a slip.
+const ERRORS: f64 = 5.0;
+/// A height of a world that does not say how well it is known, as a share.
+const UNKNOWN: f64 = 0.01;
+
+/// Slips between the two ends of each carry, largest first.
+pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause> {
+    let height = |number: usize| -> Option<(f64, f64)> {
+        let block = world.blocks.get(number - 1)?;
+        let stated = world.provenance.iter().find(|p| p.object == block.name && p.name == "height_m");
+        Some((block.height_m, stated.and_then(|p| p.std_error).unwrap_or(UNKNOWN * block.height_m)))
+    };
+    let pairs = ground.stands.iter().filter(|s| s.placed).filter_map(|placed| {
+        let same = |s: &&Stand| !s.placed && s.number == placed.number && s.recording == placed.recording;
+        let picked = ground.stands.iter().find(same)?;
+        let mut expected = 0.0;
+        let mut variance = 0.0;
+        // What is below at both ends cancels, with its error.
+        for (stand, sign) in [(placed, 1.0), (picked, -1.0)] {
+            let other = if stand.placed { picked } else { placed };
+            for number in stand.below.iter().filter(|n| !other.below.contains(n)) {
+                let (value, error) = height(*number)?;
+                expected += sign * value;
+                variance += error * error;
+            }
+        }
+        let ((after, a), (before, b)) = (ground.level(placed), ground.level(picked));
+        // A block that turns between the pads moves their middle, too.
+        let turns = seen[placed.recording].blocks.finger_disagreement(&picked.samples, &placed.samples);
+        let error = (variance + a * a + b * b).sqrt().hypot(turns / 3.0_f64.sqrt());
+        Some((after - before - expected, error, placed))
+    });
+    let (way, error, stand) = pairs
+        .filter(|(way, error, _)| way.abs() > LEAST_M.max(ERRORS * error))
+        .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))?;
+    let share = 1.0 - (error / way).powi(2);
+    Some(Cause {
+        id: "fingertip-slip".to_owned(),
+        kind: Kind::Plant,
+        parameters: vec![parameter("dy", way, error, "m")],
+        p_value: chi_square_tail((way / error).powi(2), 1.0),
+        posterior: 1.0,
+        gain: Gain {
+            heldout_rms_before: way.abs(),
+            heldout_rms_after: error,
+            share_of_explainable: share,
+            interval: [1.0 - (2.0 * error / way).powi(2), 1.0],
+            rollout: None,
+        },
+        evidence: format!(
+            "{} was put down {:.2} mm ({:.0} standard errors) from where the heights of the world have it: the fingers moved on it while \
+             it was carried",
+            object(stand.number),
+            1e3 * way,
+            (way / error).abs()
+        ),
+    })
+}

@@ -1,0 +1,132 @@
+//! What a diagnosis looks at in a recording of carried blocks: states from the pipeline, all channels through one filter.
+
+use crate::estimate::EstimateError;
+use crate::identify::block::{Blocks, MAIN, object};
+use crate::segment::threshold::percentile;
+use crate::segment::{Method, SystemState};
+use crate::signal::task::{half_width, smooth};
+use haptics::recording::Recording;
+
+/// Shorter rests are not free motion, s.
+const LEAST_FREE_S: f64 = 0.25;
+/// The ends of free motion may touch already, s.
+const ENDS_S: f64 = 0.05;
+/// Less than this share of the usual lift is not all of the weight.
+const WHOLE: f64 = 0.75;
+/// A block that was just lifted swings behind its pads, s.
+const SWINGS_S: f64 = 0.12;
+
+/// One recording.
+pub struct Seen<'a> {
+    pub blocks: Blocks<'a>,
+    /// Blocks that were carried.
+    pub count: usize,
+    /// Recorded force of a finger (first) along an axis (second: x, y), N.
+    pub force: [[Vec<f64>; 2]; 2],
+    /// Velocity of the grip along x and y, m/s, and its rate, m/s².
+    pub velocity: [Vec<f64>; 2],
+    pub acceleration: [Vec<f64>; 2],
+    /// Middle of the tips, x and y, m.
+    pub place: [Vec<f64>; 2],
+    /// Time between rows that say something new, s.
+    pub period_s: f64,
+}
+
+impl<'a> Seen<'a> {
+    /// Reads a recording; an error in words when no block was carried in it.
+    pub fn of(recording: &'a Recording) -> Result<Self, EstimateError> {
+        let blocks = Blocks::of(Method::Threshold, recording, None)?;
+        let count = blocks.count();
+        if count == 0 {
+            return Err(EstimateError::Other(format!(
+                "no block was carried in {}: there is nothing to diagnose; check the task and the signs of the forces",
+                recording.name
+            )));
+        }
+        let time = &blocks.signals.time_s;
+        let force = [0, 1].map(|finger: usize| {
+            let raw = blocks.signals.tips[finger].force.clone().unwrap_or_default();
+            [0, 1].map(|axis| smooth(time, &raw.iter().map(|f| f[axis]).collect::<Vec<f64>>()).value)
+        });
+        let moving =
+            [0, 1].map(|axis| smooth(time, &blocks.signals.velocity.iter().map(|v| v[axis]).collect::<Vec<f64>>()));
+        let place =
+            [0, 1].map(|axis| smooth(time, &blocks.signals.position.iter().map(|p| p[axis]).collect::<Vec<f64>>()).value);
+        let [x, y] = moving;
+        let step_s = match time.as_slice() {
+            [first, .., last] => (last - first) / (time.len() - 1) as f64,
+            _ => 1.0,
+        };
+        let period_s = 2.0 * half_width(time) as f64 * step_s;
+        Ok(Self {
+            velocity: [x.value, y.value],
+            acceleration: [x.slope, y.slope],
+            count,
+            force,
+            place,
+            period_s,
+            blocks,
+        })
+    }
+
+    pub fn time_s(&self, i: usize) -> f64 {
+        self.blocks.signals.time_s[i]
+    }
+
+    /// Rows in which a block is carried, from when it no longer swings.
+    pub fn carried(&self, number: usize) -> Vec<usize> {
+        let samples = self.blocks.shown(MAIN, number);
+        let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return Vec::new() };
+        let (start, end) = (self.time_s(*first) + SWINGS_S, self.time_s(*last));
+        let mut rows = self.every(samples.into_iter().filter(|i| (start..=end).contains(&self.time_s(*i))));
+        let mut lifts: Vec<f64> = rows.iter().map(|i| self.blocks.lift[*i]).collect();
+        // A block that the ground takes over already at either end is no longer carried.
+        let least = WHOLE * percentile(&mut lifts, 0.5);
+        let light = |i: &usize| self.blocks.lift[*i] < least;
+        rows.truncate(rows.iter().rposition(|i| !light(i)).map_or(0, |k| k + 1));
+        rows.drain(..rows.iter().position(|i| !light(i)).unwrap_or(0));
+        rows
+    }
+
+    /// Rows in which a block is gripped.
+    pub fn gripped(&self, number: usize) -> Vec<usize> {
+        self.every(self.blocks.shown("width_m", number).into_iter())
+    }
+
+    /// Rows of free motion.
+    pub fn free(&self) -> Vec<usize> {
+        let states = self.blocks.segmentation.states.iter();
+        let long = states.filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= LEAST_FREE_S);
+        self.every(long.flat_map(|s| {
+            (s.first..s.end).filter(|k| self.time_s(*k) > s.t0 + ENDS_S && self.time_s(*k) < s.t1 - ENDS_S)
+        }))
+    }
+
+    /// Samples a filter window apart: neighbours that share their noise say nothing new.
+    pub fn every(&self, samples: impl Iterator<Item = usize>) -> Vec<usize> {
+        let stride = 2 * half_width(&self.blocks.signals.time_s);
+        let mut last: Option<usize> = None;
+        samples
+            .filter(|i| {
+                let taken = last.is_none_or(|l| *i >= l + stride);
+                if taken {
+                    last = Some(*i);
+                }
+                taken
+            })
+            .collect()
+    }
+
+    /// What the sidecar says is known of a block: `block-1.weight_N`, or `weight_N` where there is one block.
+    pub fn known(&self, number: usize, name: &str) -> Option<f64> {
+        let known = &self.blocks.recording.meta.known;
+        let own = known.get(&format!("{}.{name}", object(number)));
+        own.or_else(|| known.get(name).filter(|_| self.count == 1)).copied()
+    }
+
+    /// Weight that is known of a block, N.
+    pub fn known_weight_n(&self, number: usize) -> Option<f64> {
+        let gravity = self.blocks.recording.meta.gravity();
+        self.known(number, "weight_N").or_else(|| Some(self.known(number, "mass_kg")? * gravity))
+    }
+}

@@ -1,0 +1,88 @@
+//! One channel of a residual that is no force along one coordinate: what the model leaves of it, and which causes explain that.
+
+use super::candidate::Candidate;
+use super::geometry::{Study, residual};
+use super::select::Selection;
+use super::system::{Rows, System, solve, uses, whitener};
+use crate::estimate::EstimateError;
+
+/// What whitening is learnt from keeps this much of the generic terms' strength out.
+const RIDGE: f64 = 1e-2;
+
+/// Rows of one channel with everything that could explain them.
+pub struct Channel {
+    /// The target.
+    pub y: Vec<f64>,
+    /// Columns of the model.
+    pub base: Vec<Vec<f64>>,
+    /// Causes and generic terms.
+    pub candidates: Vec<Candidate>,
+    /// Rows of one number follow each other without a gap.
+    pub stretch: Vec<usize>,
+    /// Rows that may be held out.
+    pub testable: Vec<bool>,
+    /// What each row's noise is smaller by.
+    pub weight: Vec<f64>,
+    /// Time between rows, s.
+    pub period_s: f64,
+}
+
+impl Channel {
+    /// Compares all candidates. `threshold`: least score of a cause.
+    pub fn compare(mut self, threshold: f64) -> Result<Study, EstimateError> {
+        let seen = |c: &Candidate| {
+            c.columns.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| x.abs() > 1e-12))
+        };
+        self.candidates.retain(seen);
+        if self.base.is_empty() {
+            // A model that predicts nothing.
+            self.base.push(vec![0.0; self.y.len()]);
+        }
+        let Self { y, base, candidates, stretch, testable, weight, period_s } = self;
+        let rows = Rows { y: &y, stretch: &stretch, testable: &testable, weight: &weight, period_s };
+        let coefficients = whitening(&base, &candidates, &rows, threshold)?;
+        let system = System::new(&base, &candidates, &rows, coefficients);
+        let chosen = Selection { system: &system, candidates: &candidates, threshold, dry: true }.run();
+        let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
+        let solved = system.solve(&picks);
+        Ok(Study { candidates, chosen, system, solved, y, base, weight })
+    }
+}
+
+/// The autoregression of what everything together leaves: learnt from the model's residual it would swallow the causes.
+fn whitening(
+    base: &[Vec<f64>],
+    candidates: &[Candidate],
+    rows: &Rows<'_>,
+    threshold: f64,
+) -> Result<Vec<f64>, EstimateError> {
+    let rough = System::new(base, candidates, rows, Vec::new());
+    let mut used = Selection { system: &rough, candidates, threshold, dry: true }.greedy();
+    used.extend((0..candidates.len()).filter(|c| candidates[*c].expression.is_some()));
+    let columns = rough.columns(&used);
+    let target = rough.train.ncols() - 1;
+    let mut ridged = rough.train.clone();
+    for column in &columns[rough.base..] {
+        ridged[(*column, *column)] *= 1.0 + RIDGE;
+    }
+    let solved = solve(&ridged, &columns, target)
+        .ok_or_else(|| EstimateError::Other("the model could not be fitted to the recording".to_owned()))?;
+    let left = residual(rows.y, base, candidates, &used, &solved);
+    let weighted: Vec<f64> = left.iter().zip(rows.weight).map(|(r, w)| r * w).collect();
+    Ok(whitener(&weighted, rows, &uses(rows)))
+}
+
+/// Numbers the rows whose place in time follows on that of the row before; `new` begins a stretch in any case.
+pub fn stretches(time_s: &[f64], period_s: f64, new: impl Fn(usize) -> bool) -> Vec<usize> {
+    /// A row is missing from so many periods on.
+    const GAP: f64 = 1.6;
+    let mut number = 0;
+    (0..time_s.len())
+        .map(|i| {
+            if i > 0 && (new(i) || !(0.0..GAP * period_s).contains(&(time_s[i] - time_s[i - 1]))) {
+                number += 1;
+            }
+            number
+        })
+        .collect()
+}

@@ -1,0 +1,82 @@
+//! Diagnosis of a thrown body: what its falls, its impacts and its slides say against a simulation that has the right lengths, loses
+//! nothing at an impact and slides without friction (or has the floor of `--world`).
+
+mod blow;
+mod fall;
+mod sliding;
+
+use super::answer::{Beside, Found, Part, answer};
+use super::candidate::Candidate;
+use super::report::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
+use super::{Options, quality};
+use crate::estimate::EstimateError;
+use crate::identify::tossed::{Tossed, tossed};
+use haptics::recording::Recording;
+
+/// Diagnoses recordings of one thrown body; `None` where they are of none.
+pub fn impact(recordings: &[Recording], options: &Options) -> Option<Result<Diagnosis, EstimateError>> {
+    let seen = tossed(recordings)?;
+    Some(diagnosed(recordings, options, &seen))
+}
+
+fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Result<Diagnosis, EstimateError> {
+    let meta = &recordings[0].meta;
+    let floor = options.world.as_ref().and_then(|w| w.floor.as_ref());
+    let sliding = sliding::sliding(seen, floor.map_or(0.0, |f| f.loss.map_or(f.friction, |l| l.mu)))?;
+    let half_width_m = meta.known.get("half_width_m").copied();
+    let blow = match half_width_m {
+        Some(half) => blow::blow(seen, half, floor.and_then(|f| f.loss).map_or(1.0, |l| l.e))?,
+        None => None,
+    };
+    let mut beside = Beside {
+        model: "free-fall+impact without loss+sliding without friction".to_owned(),
+        causes: recordings.first().map(|r| quality::faults(r).causes).unwrap_or_default(),
+        ..Beside::default()
+    };
+    if floor.is_some() {
+        "free-fall+floor of the world".clone_into(&mut beside.model);
+    }
+    if let Some((cause, alternative)) = fall::scale(seen, meta.gravity()) {
+        beside.causes.push(cause);
+        beside.alternatives.push(alternative);
+    }
+    let mut unseen = |id: &str, why: &str| beside.not_excited.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
+    if half_width_m.is_some() && blow.is_none() {
+        unseen("velocity-loss", "too few impacts on one corner, with free flight before and after, were seen");
+    }
+    if half_width_m.is_none() {
+        unseen("velocity-loss", "the places of the corners are not known; state half_width_m in the sidecar");
+    }
+    if sliding.is_none() {
+        unseen("load-friction", "the body does not slide flat for long enough; throw it flatter");
+    }
+    unseen("coulomb-friction", "the body slides under its own weight only: friction in proportion to the load and a constant one are the same");
+    let mean = mean_friction(seen);
+    let slides = |c: &Candidate, found: Vec<CauseParameter>| sliding::states(c, found, mean);
+    let loses = |c: &Candidate, found: Vec<CauseParameter>| blow::states(c, found);
+    let (slide_shows, blow_shows) = (|f: &Found<'_>| sliding::shows(f), |f: &Found<'_>| blow::shows(f));
+    let mut parts: Vec<Part<'_>> = Vec::new();
+    parts.extend(sliding.as_ref().map(|s| s.part(&slide_shows, &slides)));
+    parts.extend(blow.as_ref().map(|b| b.part(&blow_shows, &loses)));
+    Ok(answer(&parts, beside, &next))
+}
+
+/// Standard error of the friction by the scatter of single slides: a table is not alike everywhere.
+fn mean_friction(seen: &Tossed) -> f64 {
+    let n = seen.slides.len() as f64;
+    let values: Vec<f64> = seen.slides.iter().map(|s| s.slowing_m_s2 / seen.fall.down_m_s2).collect();
+    let mean = values.iter().sum::<f64>() / n.max(1.0);
+    let scatter = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
+    (scatter / (n - 1.0).max(1.0) / n.max(1.0)).sqrt()
+}
+
+fn next(open: &[Alternative]) -> Option<NextExperiment> {
+    let first = open.first()?;
+    let motion = if first.id == "channel-fault" {
+        "drop the body beside a scale of known length, or film a clock: a wrong clock leaves lengths at rest as they are"
+    } else {
+        "let the body slide flat from several speeds, and load it with a known weight"
+    };
+    let separates = vec![first.instead_of.clone(), first.id.clone()];
+    Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: 0.9 })
+}

@@ -1,0 +1,170 @@
+//! What slows a sliding body: dry friction, or something that follows the speed.
+
+use crate::diagnose::answer::{Found, Part};
+use crate::diagnose::candidate::Candidate;
+use crate::diagnose::compare::Channel;
+use crate::diagnose::geometry::Study;
+use crate::diagnose::report::CauseParameter;
+use crate::estimate::EstimateError;
+use crate::identify::tossed::Tossed;
+use crate::signal::derive::polynomial;
+use haptics::law::Kind;
+use nalgebra::{DMatrix, DVector, Vector3};
+
+/// Fewer slides show nothing.
+const LEAST_SLIDES: usize = 4;
+/// Score that makes a cause.
+const THRESHOLD: f64 = 25.0;
+/// Speeds at which static friction falls off that are tried, as shares of the usual one.
+const STRIBECK: [f64; 4] = [0.1, 0.25, 0.5, 0.9];
+
+/// The comparison: ways of all slides, each without its own start and speed.
+pub struct Sliding {
+    study: Study,
+    stretch: Vec<usize>,
+    along: Vec<bool>,
+    floor_m: f64,
+}
+
+/// One slide: times, way along its direction, and speed.
+struct Way {
+    time_s: Vec<f64>,
+    way_m: Vec<f64>,
+    speed_m_s: Vec<f64>,
+}
+
+/// Compares what slows the body. `mu`: friction that the model has.
+pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<Sliding>, EstimateError> {
+    if seen.slides.len() < LEAST_SLIDES {
+        return Ok(None);
+    }
+    let ways: Vec<Way> = seen.slides.iter().filter_map(|s| way(seen, s.track, s.first, s.samples)).collect();
+    let mut speeds: Vec<f64> = ways.iter().flat_map(|w| w.speed_m_s.iter().copied()).collect();
+    speeds.sort_by(f64::total_cmp);
+    let usual = speeds.get(speeds.len() * 9 / 10).copied().unwrap_or(1.0);
+    let fall = seen.fall.down_m_s2;
+    // A slowing, integrated twice, in the place of a force: only differences within a slide count.
+    let all = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
+        ways.iter().flat_map(|w| within(w, &integrated(w, &|i| -of(w.speed_m_s[i])))).collect()
+    };
+    let moved: Vec<f64> = ways.iter().flat_map(|w| within(w, &w.way_m)).collect();
+    let dry = all(&|_| fall);
+    let y: Vec<f64> = moved.iter().zip(&dry).map(|(m, d)| m - mu * d).collect();
+    let mut candidates = vec![
+        Candidate::one("load-friction", Kind::Plant, "mu", "1", dry),
+        Candidate::one("viscous-friction", Kind::Plant, "c/m", "1/s", all(&|v| v)).positive(),
+        Candidate::one("quadratic-drag", Kind::Plant, "k/m", "1/m", all(&|v| v * v)).positive(),
+    ];
+    for share in STRIBECK {
+        let vs = share * usual;
+        let bent = Candidate::one("stribeck", Kind::Plant, "dmu", "1", all(&|v| fall * (-(v / vs).powi(2)).exp()));
+        candidates.push(bent.positive().at("vs", vs, "m/s"));
+    }
+    let stretch: Vec<usize> = ways.iter().enumerate().flat_map(|(k, w)| w.time_s.iter().map(move |_| k)).collect();
+    let n = y.len();
+    let floor_m = floor(&ways);
+    let period_s = ways.first().map_or(0.01, |w| w.time_s[1] - w.time_s[0]);
+    let channel = Channel {
+        y,
+        base: Vec::new(),
+        candidates,
+        stretch: stretch.clone(),
+        testable: vec![true; n],
+        weight: vec![1.0; n],
+        period_s,
+    };
+    let study = channel.compare(THRESHOLD)?;
+    Ok(Some(Sliding { study, stretch, along: vec![true; n], floor_m }))
+}
+
+fn way(seen: &Tossed, track: usize, first: usize, samples: usize) -> Option<Way> {
+    let track = &seen.tracks[track];
+    let (points, time) = (&track.points[first..first + samples], &track.time_s[first..first + samples]);
+    let total = points[points.len() - 1] - points[0];
+    let along = Vector3::new(total.x, total.y, 0.0).try_normalize(1e-9)?;
+    let way_m: Vec<f64> = points.iter().map(|p| along.dot(&(p - points[0]))).collect();
+    let time_s: Vec<f64> = time.iter().map(|t| t - time[0]).collect();
+    let fitted = polynomial(&time_s, &way_m, 3);
+    let speed = |t: f64| fitted.iter().enumerate().skip(1).map(|(k, c)| k as f64 * c * t.powi(k as i32 - 1)).sum();
+    let speed_m_s = time_s.iter().map(|t| speed(*t)).map(|v: f64| v.max(0.0)).collect();
+    Some(Way { time_s, way_m, speed_m_s })
+}
+
+/// Way by an acceleration from rest, m, by trapezia.
+fn integrated(way: &Way, acceleration: &dyn Fn(usize) -> f64) -> Vec<f64> {
+    let (mut speed, mut place) = (0.0, 0.0);
+    (0..way.time_s.len())
+        .map(|i| {
+            if i > 0 {
+                let step = way.time_s[i] - way.time_s[i - 1];
+                let (before, now) = (acceleration(i - 1), acceleration(i));
+                place += speed * step + (2.0 * before + now) * step * step / 6.0;
+                speed += 0.5 * (before + now) * step;
+            }
+            place
+        })
+        .collect()
+}
+
+/// A series without its own start and speed.
+fn within(way: &Way, values: &[f64]) -> Vec<f64> {
+    let n = values.len();
+    let own = DMatrix::from_fn(n, 2, |i, j| way.time_s[i].powi(j as i32)).qr().q();
+    let series = DVector::from_column_slice(values);
+    (&series - &own * own.tr_mul(&series)).iter().copied().collect()
+}
+
+/// What cubics leave of the ways, m.
+fn floor(ways: &[Way]) -> f64 {
+    let (mut sum, mut n) = (0.0, 0.0_f64);
+    for way in ways.iter().filter(|w| w.time_s.len() > 5) {
+        let own = DMatrix::from_fn(way.time_s.len(), 4, |i, j| way.time_s[i].powi(j as i32)).qr().q();
+        let series = DVector::from_column_slice(&way.way_m);
+        sum += (&series - &own * own.tr_mul(&series)).norm_squared();
+        n += way.time_s.len() as f64 - 4.0;
+    }
+    (sum / n.max(1.0)).sqrt()
+}
+
+/// Slides scatter more than their samples do: `scatter` is the standard error by it.
+pub fn states(candidate: &Candidate, mut found: Vec<CauseParameter>, scatter: f64) -> Vec<CauseParameter> {
+    if candidate.id == "load-friction" {
+        found.iter_mut().for_each(|p| p.std_error = p.std_error.hypot(scatter));
+    }
+    found
+}
+
+/// What in the residual shows a cause.
+pub fn shows(found: &Found<'_>) -> String {
+    match found.candidate.id {
+        "load-friction" => {
+            let (value, error) = found.parameters.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
+            format!("the body slows down evenly while it slides, whatever its speed: dry friction, mu = {value:.3} ± {error:.3}")
+        }
+        "viscous-friction" => "the faster the body slides, the more it slows down".to_owned(),
+        "quadratic-drag" => "the body slows down with the square of its speed".to_owned(),
+        "stribeck" => "the body slows down more just before it stops".to_owned(),
+        other => format!("{other} shows in the slides"),
+    }
+}
+
+impl Sliding {
+    /// As a part of the answer.
+    pub fn part<'a>(
+        &'a self,
+        shows: &'a dyn Fn(&Found<'_>) -> String,
+        states: &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>,
+    ) -> Part<'a> {
+        Part {
+            study: &self.study,
+            channel: "way of the slides",
+            unit: "m",
+            floor: self.floor_m,
+            along: &self.along,
+            stretch: &self.stretch,
+            shows,
+            states,
+            usual: &|_| None,
+        }
+    }
+}

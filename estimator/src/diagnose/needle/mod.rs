@@ -1,0 +1,96 @@
+//! Diagnosis of a needle in a sheet: the sheet before it is pierced, the shaft in its hole, and the sensors where nothing is touched.
+//!
+//! Without a world the sheet is a linear spring and the hole holds nothing, as in the thesis's simulation; with one they are its laws.
+
+mod rows;
+mod shaft;
+mod sheet;
+
+use super::answer::{Beside, Found, Part, answer, parameter};
+use super::candidate::Candidate;
+use super::gain::chi_square_tail;
+use super::report::{Alternative, Cause, CauseParameter, Diagnosis, Gain, NextExperiment, NotExcited};
+use super::{Options, quality, threshold};
+use crate::estimate::EstimateError;
+use haptics::law::Kind;
+use haptics::recording::Recording;
+use rows::Needle;
+
+/// Punctures whose forces scatter by more than this (χ², beside what freedom costs) are not of one sheet.
+const UNEVEN: f64 = 25.0;
+/// A puncture force is known within this share: it lies between two samples.
+const PUNCTURE_SHARE: f64 = 0.03;
+
+/// Diagnoses the first recording of a needle; what further ones say comes in where they agree.
+pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let Some(first) = recordings.first() else { return Err(super::nothing()) };
+    let seen = rows::needle(first)?;
+    let law = options.world.as_ref().and_then(|w| w.membrane.as_ref()).map(|m| &m.law);
+    let limit = threshold(seen.period_s);
+    let sheet = sheet::sheet(&seen, law, limit)?;
+    let shaft = shaft::shaft(&seen, law, limit)?;
+    let mut beside = Beside {
+        model: format!(
+            "{}+{}",
+            if law.is_some() { "sheet of the world" } else { "linear sheet" },
+            shaft.as_ref().map_or("no hole", |s| s.model)
+        ),
+        causes: quality::faults(first).causes,
+        ..Beside::default()
+    };
+    if recordings.len() > 1 {
+        beside.warnings.push(format!("only {} was diagnosed: recordings of needles are not joined yet", first.name));
+    }
+    beside.causes.extend(punctures(&seen));
+    if shaft.is_none() {
+        let why = "the needle hardly moved in a hole; push it through and draw it out";
+        let ids = ["coulomb-friction", "friction-change", "viscous-friction"];
+        beside.not_excited.extend(ids.map(|id| NotExcited { id: id.to_owned(), why: why.to_owned() }));
+    }
+    if !seen.two_fingered {
+        let why = "a single tool is held all the time: a bias of its force passes for its weight";
+        beside.not_excited.push(NotExcited { id: "force-bias".to_owned(), why: why.to_owned() });
+    }
+    let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
+    let (on_sheet, on_shaft) = (|f: &Found<'_>| sheet::shows(f), |f: &Found<'_>| shaft::shows(f));
+    let mut parts: Vec<Part<'_>> = vec![sheet.part(&on_sheet, &plain)];
+    parts.extend(shaft.as_ref().map(|s| s.part(&on_shaft, &plain)));
+    Ok(answer(&parts, beside, &next))
+}
+
+/// Puncture forces that differ from one insertion to the next: no law of the catalogue has that.
+fn punctures(seen: &Needle) -> Option<Cause> {
+    let n = seen.punctures.len() as f64;
+    let mean = seen.punctures.iter().map(|p| p.1).sum::<f64>() / n;
+    let error = PUNCTURE_SHARE * mean;
+    let scatter: f64 = seen.punctures.iter().map(|p| ((p.1 - mean) / error).powi(2)).sum();
+    if n < 2.0 || scatter < UNEVEN {
+        return None;
+    }
+    let (first, last) = (seen.punctures.first()?, seen.punctures.last()?);
+    Some(Cause {
+        id: "other:puncture force over time".to_owned(),
+        kind: Kind::Plant,
+        parameters: vec![parameter("from", first.1, error, "N"), parameter("to", last.1, error, "N")],
+        p_value: chi_square_tail(scatter, n - 1.0),
+        posterior: 0.0,
+        gain: Gain::default(),
+        evidence: format!(
+            "the sheet was pierced at {:.2} N at {:.1} s and at {:.2} N at {:.1} s; one sheet has one puncture force",
+            first.1, first.0, last.1, last.0
+        ),
+    })
+}
+
+fn next(open: &[Alternative]) -> Option<NextExperiment> {
+    let first = open.first()?;
+    let mut separates = vec![first.instead_of.clone()];
+    separates.extend(open.iter().filter(|a| a.instead_of == first.instead_of).map(|a| a.id.clone()));
+    Some(NextExperiment {
+        motion: "push in slowly and fast, draw back before the sheet gives way, push through at another place, move to and fro in the \
+                 hole, and end with the needle outside"
+            .to_owned(),
+        separates,
+        expected_power: 0.8,
+    })
+}

@@ -1,0 +1,183 @@
+//! Rows of a needle's recording: nothing held, held outside, pressing an untouched sheet, unloading it, and in the hole.
+
+use crate::diagnose::compare::stretches;
+use crate::estimate::EstimateError;
+use crate::identify::needle::Sheet;
+use crate::identify::needle::signals::{Along, along};
+use crate::identify::needle::strokes::{Push, pushes};
+use crate::signal::task::{half_width, smooth, times};
+use haptics::recording::Recording;
+use std::ops::Range;
+
+/// The needle counts as in the hole from this depth on, m: at the surface the sheet lets go.
+const INSIDE_M: f64 = 5e-4;
+/// … and outside from this far above the surface.
+const OUTSIDE_M: f64 = 3e-4;
+/// Rows so close to the surface, m, or to a puncture, s, are of both sides.
+const EDGE_M: f64 = 1e-4;
+const WINDOW_S: f64 = 0.02;
+/// A sheet that was pierced swings for this time, s.
+const SWINGS_S: f64 = 0.1;
+/// Fingers close and open slowly: this time at either end of a hold is neither held nor free, s.
+const CLOSING_S: f64 = 0.25;
+
+/// What happens in a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Nothing is held.
+    Empty,
+    /// Held, the sheet is not touched.
+    Outside,
+    /// The sheet is pressed farther than ever before.
+    Loading,
+    /// It is pressed less than it was.
+    Unloading,
+    /// The sheet is pierced.
+    Hole,
+}
+
+/// One row.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    pub time_s: f64,
+    /// Beyond the undisturbed surface, m, without the give of the pads.
+    pub depth_m: f64,
+    pub rate_m_s: f64,
+    pub acceleration_m_s2: f64,
+    pub force_n: f64,
+    pub phase: Phase,
+    /// Which hold (grip) and which place of the sheet.
+    pub hold: usize,
+    pub push: usize,
+    /// Deepest so far at this place, m.
+    pub deepest_m: f64,
+    pub stretch: usize,
+}
+
+/// A recording of a needle.
+pub struct Needle {
+    pub rows: Vec<Row>,
+    pub holds: usize,
+    pub period_s: f64,
+    pub two_fingered: bool,
+    /// Stiffness that the sheet begins with, N/m.
+    pub stiffness_n_m: f64,
+    /// Noise of the rate, m/s.
+    pub rate_noise_m_s: f64,
+    /// Force at which the sheet was pierced, over time: s, N.
+    pub punctures: Vec<(f64, f64)>,
+}
+
+/// Reads a recording.
+pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
+    let along = along(recording)?;
+    let pushes = pushes(&along);
+    if pushes.is_empty() {
+        return Err(EstimateError::Other(format!(
+            "no push into an untouched sheet was seen in {}; push the held needle in from outside",
+            recording.name
+        )));
+    }
+    let sheet = Sheet::of(&along, &pushes)?;
+    let time = times(recording);
+    let own: Vec<f64> = along.depth_m.iter().zip(&along.force_n).map(|(d, f)| d - along.give_m_n.0 * f).collect();
+    let (depth, force) = (smooth(&time, &own), smooth(&time, &along.force_n));
+    let acceleration = smooth(&time, &depth.slope).slope;
+    let surface_m = sheet.loading.surface_m;
+    let phases = phases((&along, &pushes), &time, (&depth.value, &depth.slope), surface_m);
+    let stride = 2 * half_width(&time);
+    let step_s = match time.as_slice() {
+        [first, .., last] => (last - first) / (time.len() - 1) as f64,
+        _ => 1.0,
+    };
+    let mut rows: Vec<Row> = Vec::new();
+    for i in (0..time.len()).step_by(stride) {
+        let Some((phase, hold, push, deepest)) = phases[i] else { continue };
+        rows.push(Row {
+            time_s: time[i] - time[0],
+            depth_m: depth.value[i] - surface_m,
+            rate_m_s: depth.slope[i],
+            acceleration_m_s2: acceleration[i],
+            force_n: force.value[i],
+            phase,
+            hold,
+            push,
+            deepest_m: deepest - surface_m,
+            stretch: 0,
+        });
+    }
+    let period_s = stride as f64 * step_s;
+    let at: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
+    let numbers = stretches(&at, period_s, |i| rows[i].phase != rows[i - 1].phase || rows[i].hold != rows[i - 1].hold);
+    rows.iter_mut().zip(numbers).for_each(|(row, number)| row.stretch = number);
+    let rate_noise_m_s = crate::signal::noise::white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>());
+    let punctures = pushes.iter().filter_map(|p| p.puncture).map(|i| (time[i] - time[0], along.force_n[i])).collect();
+    Ok(Needle {
+        rows,
+        holds: along.holds.len(),
+        period_s,
+        two_fingered: along.two_fingered,
+        stiffness_n_m: sheet.loading.stiffness_n_m,
+        rate_noise_m_s,
+        punctures,
+    })
+}
+
+type Of = Option<(Phase, usize, usize, f64)>;
+
+/// The phase of every sample, with hold, push and the deepest place so far.
+fn phases(
+    (along, pushes): (&Along, &[Push]),
+    time: &[f64],
+    (depth_m, rate_m_s): (&[f64], &[f64]),
+    surface_m: f64,
+) -> Vec<Of> {
+    let mut found: Vec<Of> = vec![None; time.len()];
+    let far = |i: usize, to: usize| (time[i] - time[to.min(time.len() - 1)]).abs() > CLOSING_S;
+    let mut empty = |range: Range<usize>| {
+        for i in range.clone() {
+            if (range.start == 0 || far(i, range.start)) && (range.end == time.len() || far(i, range.end)) {
+                found[i] = Some((Phase::Empty, 0, 0, f64::MIN));
+            }
+        }
+    };
+    let mut last = 0;
+    for hold in &along.holds {
+        empty(last..hold.start);
+        last = hold.end;
+    }
+    empty(last..time.len());
+    for (h, hold) in along.holds.iter().enumerate() {
+        let whole = along.holds.len() == 1 && hold.len() == time.len();
+        let of: Vec<(usize, &Push)> = pushes.iter().enumerate().filter(|(_, p)| p.hold == h).collect();
+        for i in hold.clone() {
+            let inner = whole || (far(i, hold.start) && far(i, hold.end));
+            let now = of.iter().rev().find(|(_, p)| p.samples.start <= i);
+            if depth_m[i] < surface_m - OUTSIDE_M {
+                if inner {
+                    found[i] = Some((Phase::Outside, h, now.map_or(0, |n| n.0), f64::MIN));
+                }
+                continue;
+            }
+            let Some((k, push)) = now else { continue };
+            // Filters see the surface, and the fall of the force at a puncture, from either side.
+            let meets = (depth_m[i] - surface_m).abs() < EDGE_M + WINDOW_S * rate_m_s[i].abs();
+            let falls = push.puncture.is_some_and(|at| i <= at && time[at] - time[i] < WINDOW_S);
+            if meets || falls {
+                continue;
+            }
+            let deepest = depth_m[push.samples.start..=i].iter().copied().fold(f64::MIN, f64::max);
+            let phase = match push.puncture {
+                Some(at) if i > at => {
+                    let settled = time[i] - time[at] > SWINGS_S;
+                    (settled && depth_m[i] > surface_m + INSIDE_M).then_some(Phase::Hole)
+                }
+                _ if push.samples.contains(&i) && depth_m[i] > push.untouched_from_m => Some(Phase::Loading),
+                // Pushed in again below the dent, or drawn back.
+                _ => Some(Phase::Unloading),
+            };
+            found[i] = phase.map(|p| (p, h, *k, deepest.max(push.untouched_from_m)));
+        }
+    }
+    found
+}

@@ -1,0 +1,198 @@
+//! The needle in its hole: what holds its shaft.
+
+use super::rows::{Needle, Phase, Row};
+use crate::diagnose::answer::{Found, Part};
+use crate::diagnose::candidate::Candidate;
+use crate::diagnose::compare::Channel;
+use crate::diagnose::dictionary::Dictionary;
+use crate::diagnose::force::blur;
+use crate::diagnose::geometry::Study;
+use crate::diagnose::report::CauseParameter;
+use crate::diagnose::track::{self, Track};
+use crate::estimate::EstimateError;
+use crate::identify::linear::least_squares;
+use crate::signal::noise::white_noise;
+use haptics::Vec2;
+use haptics::law::object::{MembraneHistory, MembraneLaw};
+use haptics::law::{Coordinate, Kind, Motion};
+
+/// Fewer rows in a hole show nothing.
+const LEAST_ROWS: usize = 30;
+/// Half of the filter's window, with some room, s, and how clear a direction must be.
+const WINDOW_S: f64 = 0.018;
+const NOISES: f64 = 3.0;
+/// Causes of the dictionary that a shaft in a hole can have.
+const POSSIBLE: [&str; 10] = [
+    "coulomb-friction",
+    "viscous-friction",
+    "quadratic-drag",
+    "friction-asymmetry",
+    "stribeck",
+    "hysteresis",
+    "friction-change",
+    "force-drift",
+    "return-spring",
+    "local-resistance",
+];
+
+/// The comparison.
+pub struct Shaft {
+    study: Study,
+    along: Vec<bool>,
+    stretch: Vec<usize>,
+    floor_n: f64,
+    /// What the model without a cause has.
+    pub model: &'static str,
+}
+
+/// Compares what may hold the shaft. `None` where the needle hardly moved in a hole.
+pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Option<Shaft>, EstimateError> {
+    // Where the way turns round within a filter's window the force is of both directions.
+    let turns = |r: &Row| r.rate_m_s.abs() < WINDOW_S * r.acceleration_m_s2.abs() + NOISES * needle.rate_noise_m_s;
+    let rows: Vec<Row> =
+        needle.rows.iter().filter(|r| r.phase == Phase::Hole && !turns(r)).copied().collect();
+    if rows.len() < LEAST_ROWS {
+        return Ok(None);
+    }
+    let mut track = track(needle, &rows);
+    blur(&mut track);
+    let of = |f: &dyn Fn(usize) -> f64| (0..rows.len()).map(f).collect::<Vec<f64>>();
+    let y = of(&|i| rows[i].force_n);
+    let mut base: Vec<Vec<f64>> =
+        (0..needle.holds).map(|h| of(&|i| f64::from(u8::from(rows[i].hold == h)))).collect();
+    let offsets = base.len();
+    let direction = of(&|i| track.rows[i].motion.direction);
+    if let Some(law) = law {
+        base.push(held(law, &rows));
+        base.push(of(&|i| rows[i].rate_m_s));
+    }
+    let mut first = base.clone();
+    first.push(direction.clone());
+    let look = least_squares(&first, &y, None)?;
+    let dry = look.values[first.len() - 1].abs() + if law.is_some() { look.values[offsets].abs() } else { 0.0 };
+    let resisting: Vec<f64> = direction.iter().map(|d| dry * d).collect();
+    let dictionary =
+        Dictionary { track: &track, predicted: &resisting, resisting: &resisting, fixed: &[], without: &[] };
+    let mut candidates: Vec<Candidate> =
+        dictionary.candidates().into_iter().filter(|c| POSSIBLE.contains(&c.id)).collect();
+    if law.is_some() {
+        // It bends before it slides already.
+        candidates.retain(|c| !["hysteresis", "coulomb-friction", "viscous-friction"].contains(&c.id));
+    }
+    for push in 1..=rows.iter().map(|r| r.push).max().unwrap_or(0) {
+        let later = of(&|i| if rows[i].push >= push { dry * direction[i] } else { 0.0 });
+        if rows.iter().any(|r| r.push < push) {
+            let change = Candidate::one("friction-change", Kind::Plant, "relative change", "1", later);
+            candidates.push(change.at("from insertion", (push + 1) as f64, "1"));
+        }
+    }
+    let span = track.span_s.max(1e-9);
+    candidates.extend((1..=3).map(|k| {
+        let wave = of(&|i| (std::f64::consts::PI * f64::from(k) * rows[i].time_s / span).cos());
+        let expression = Some(format!("cos({k} pi t/T)"));
+        Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) }
+    }));
+    // Where the direction is a guess all of the friction is open.
+    let floor_n = white_noise(&y);
+    let weight = direction
+        .iter()
+        .map(|d| (1.0 + dry * dry * (1.0 - d * d) / (floor_n * floor_n).max(1e-18)).powf(-0.5))
+        .collect();
+    let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();
+    let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
+    let channel = Channel {
+        y,
+        base,
+        candidates,
+        stretch: stretch.clone(),
+        testable: along.clone(),
+        weight,
+        period_s: needle.period_s,
+    };
+    let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
+    Ok(Some(Shaft { study: channel.compare(threshold)?, along, stretch, floor_n, model }))
+}
+
+/// Friction of a world's hole along the measured way, N, drag left out.
+fn held(law: &MembraneLaw, rows: &[Row]) -> Vec<f64> {
+    let law = MembraneLaw { drag_n_s_m: 0.0, puncture_n: 0.0, ..*law };
+    let mut history = MembraneHistory::default();
+    let mut push = None;
+    rows.iter()
+        .map(|row| {
+            if push != Some(row.push) {
+                push = Some(row.push);
+                history = MembraneHistory::default();
+            }
+            law.force_n(row.depth_m.max(1e-6), row.rate_m_s, &mut history)
+        })
+        .collect()
+}
+
+fn track(needle: &Needle, rows: &[Row]) -> Track {
+    let start_s = rows.first().map_or(0.0, |r| r.time_s);
+    let along = rows
+        .iter()
+        .map(|r| track::Row {
+            recording: 0,
+            stretch: r.stretch,
+            place: track::Place::Along,
+            motion: Motion {
+                time_s: r.time_s - start_s,
+                position: r.depth_m,
+                velocity: r.rate_m_s,
+                acceleration: r.acceleration_m_s2,
+                ..Motion::default()
+            },
+            angle_rad: r.depth_m,
+            along: Vec2::x(),
+            force: Vec2::new(r.force_n, 0.0),
+            force_rate: Vec2::zeros(),
+            y: r.force_n,
+        })
+        .collect();
+    Track {
+        rows: along,
+        period_s: needle.period_s,
+        raw_period_s: needle.period_s,
+        coordinate: Coordinate::Linear,
+        radius_m: None,
+        planar: false,
+        velocity_noise: needle.rate_noise_m_s,
+        force_noise: 1e-12,
+        noise_is_measured: false,
+        span_s: rows.last().map_or(0.0, |r| r.time_s) - start_s,
+    }
+}
+
+/// What in the residual shows a cause.
+pub fn shows(found: &Found<'_>) -> String {
+    match found.candidate.id {
+        "coulomb-friction" => "in the hole the force turns round with the direction, whatever the speed".to_owned(),
+        "viscous-friction" => "in the hole the force follows the speed".to_owned(),
+        "hysteresis" => "at each reversal in the hole the rim gives before the shaft slides".to_owned(),
+        "friction-change" => "the shaft rubs differently from one insertion to the next".to_owned(),
+        other => format!("{other} shows in the force on the shaft"),
+    }
+}
+
+impl Shaft {
+    /// As a part of the answer.
+    pub fn part<'a>(
+        &'a self,
+        shows: &'a dyn Fn(&Found<'_>) -> String,
+        states: &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>,
+    ) -> Part<'a> {
+        Part {
+            study: &self.study,
+            channel: "force on the shaft",
+            unit: "N",
+            floor: self.floor_n,
+            along: &self.along,
+            stretch: &self.stretch,
+            shows,
+            states,
+            usual: &|_| None,
+        }
+    }
+}

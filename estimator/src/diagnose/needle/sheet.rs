@@ -1,0 +1,137 @@
+//! The sheet before it is pierced, and the sensors: force over depth against a spring that is the same at every depth.
+
+use super::rows::{Needle, Phase, Row};
+use crate::diagnose::answer::{Found, Part};
+use crate::diagnose::candidate::Candidate;
+use crate::diagnose::compare::Channel;
+use crate::diagnose::geometry::Study;
+use crate::diagnose::report::CauseParameter;
+use crate::estimate::EstimateError;
+use crate::signal::noise::white_noise;
+use haptics::law::Kind;
+use haptics::law::object::MembraneLaw;
+
+/// Shares of the deepest insertion that may stay as a dent.
+const DENTS: [f64; 7] = [0.05, 0.1, 0.18, 0.27, 0.37, 0.5, 0.65];
+
+/// The comparison.
+pub struct Sheet {
+    study: Study,
+    along: Vec<bool>,
+    stretch: Vec<usize>,
+    floor_n: f64,
+}
+
+/// Compares what the sheet may be beside a linear spring (or the law of a world), and what may be wrong with the force.
+pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Sheet, EstimateError> {
+    let rows: Vec<Row> = needle.rows.iter().filter(|r| r.phase != Phase::Hole).copied().collect();
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let touches = |r: &Row| matches!(r.phase, Phase::Loading | Phase::Unloading) && r.depth_m > 0.0;
+    let pressed = |r: &Row| if touches(r) { r.depth_m } else { 0.0 };
+    let is_held = |r: &Row| r.phase != Phase::Empty;
+    let k = needle.stiffness_n_m;
+    let elastic = |x: f64| law.map_or(k * x, |l| l.loading_n(x));
+    let mut base: Vec<Vec<f64>> =
+        (0..needle.holds).map(|h| of(&|r| f64::from(u8::from(is_held(r) && r.hold == h)))).collect();
+    base.push(match law {
+        Some(law) => of(&|r| if touches(r) { with_dent(law.give, r, &elastic) } else { 0.0 }),
+        None => of(&pressed),
+    });
+    // Where the surface is, to first order.
+    base.push(of(&|r| f64::from(u8::from(touches(r)))));
+    let mut candidates = vec![
+        Candidate::one("stiffness-hardening", Kind::Plant, "k3", "N/m³", of(&|r| pressed(r).powi(3))).positive(),
+        Candidate::one("stiffness-hardening", Kind::Plant, "hertz", "N/m^1.5", of(&|r| pressed(r).powf(1.5))).positive(),
+        Candidate::one("viscous-friction", Kind::Plant, "c", "N s/m", of(&|r| if touches(r) { r.rate_m_s } else { 0.0 }))
+            .positive(),
+        Candidate::one("force-bias", Kind::Instrument, "b", "N", of(&|_| 1.0)),
+        Candidate::one("force-drift", Kind::Instrument, "rate", "N/s", of(&|r| r.time_s)),
+    ];
+    for dent in DENTS {
+        let less = of(&|r| if touches(r) { with_dent(dent, r, &elastic) - elastic(r.depth_m) } else { 0.0 });
+        let cause = Candidate::one("hysteresis", Kind::Plant, "share", "1", less).positive();
+        candidates.push(cause.at("dent", dent, "1"));
+    }
+    if law.is_some_and(|l| l.give > 0.0) {
+        candidates.retain(|c| c.id != "hysteresis");
+    }
+    let span = rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
+    let term = |expression: &str, column: Vec<f64>| Candidate {
+        expression: Some(expression.to_owned()),
+        ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
+    };
+    candidates.push(term("x²", of(&|r| pressed(r).powi(2))));
+    candidates.extend((1..=3).map(|n| {
+        let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * r.time_s / span).cos());
+        term(&format!("cos({n} pi t/T)"), wave)
+    }));
+    let y = of(&|r| r.force_n);
+    let along: Vec<bool> = rows.iter().enumerate().map(|(i, r)| is_held(r) && i % 2 == 0).collect();
+    let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();
+    let floor_n = white_noise(&y);
+    let weight = vec![1.0; y.len()];
+    let channel = Channel {
+        y,
+        base,
+        candidates,
+        stretch: stretch.clone(),
+        testable: along.clone(),
+        weight,
+        period_s: needle.period_s,
+    };
+    Ok(Sheet { study: channel.compare(threshold)?, along, stretch, floor_n })
+}
+
+/// A sheet that keeps a share of its deepest insertion as a dent: below the deepest place it is steeper, and lower.
+fn with_dent(share: f64, row: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
+    let (x, deepest) = (row.depth_m, row.deepest_m);
+    if row.phase == Phase::Loading || x >= deepest {
+        return elastic(x);
+    }
+    let dent = share * deepest;
+    elastic(deepest) * ((x - dent) / (deepest - dent).max(1e-9)).max(0.0)
+}
+
+/// What in the residual shows a cause.
+pub fn shows(found: &Found<'_>) -> String {
+    match found.candidate.id {
+        "stiffness-hardening" => "the deeper the sheet is pressed the steeper its force rises".to_owned(),
+        "hysteresis" => "the sheet presses back less on the way out than on the way in: a dent stays".to_owned(),
+        "viscous-friction" => "the force on the sheet follows the speed".to_owned(),
+        "force-bias" => "empty fingers feel a force along the needle".to_owned(),
+        "force-drift" => "the force of the needle outside the sheet goes with time".to_owned(),
+        other => format!("{other} shows in the force on the sheet"),
+    }
+}
+
+impl Sheet {
+    /// As a part of the answer.
+    pub fn part<'a>(
+        &'a self,
+        shows: &'a dyn Fn(&Found<'_>) -> String,
+        states: &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>,
+    ) -> Part<'a> {
+        Part {
+            study: &self.study,
+            channel: "force outside and on the sheet",
+            unit: "N",
+            floor: self.floor_n,
+            along: &self.along,
+            stretch: &self.stretch,
+            shows,
+            states,
+            usual: &usual,
+        }
+    }
+}
+
+fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+    Some(match candidate.id {
+        "stiffness-hardening" if candidate.linear[0].0 == "k3" => (5e5, "the sheet was hardly pressed in"),
+        "hysteresis" => (1.0, "the needle was never drawn back before it went through; push, draw back and push on"),
+        "viscous-friction" => (2.0, "the sheet was pressed at one speed; push slowly and fast"),
+        "force-bias" => (0.01, "the needle was held all the time: a bias passes for its weight; start with empty fingers"),
+        "force-drift" => (0.01 / 10.0, "the needle was outside the sheet too briefly at one end of the recording"),
+        _ => return None,
+    })
+}

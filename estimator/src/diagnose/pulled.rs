@@ -1,0 +1,277 @@
+//! Diagnosis of a tool path without a clock: a door or drawer that was pulled. Nothing that needs a rate can be told; what depends on
+//! the place can, and so can two estimates of one force that do not agree.
+
+use super::answer::{Beside, Found, Part, answer};
+use super::candidate::Candidate;
+use super::compare::Channel;
+use super::geometry::Study;
+use super::report::{CauseParameter, Diagnosis, NotExcited};
+use super::{THRESHOLD, quality};
+use crate::constraint::detect_in;
+use crate::estimate::{ConstraintKind, EstimateError};
+use crate::identify::mechanism::path::{self, from_constraint, project};
+use crate::signal::noise::white_noise;
+use haptics::law::{Effect, Kind, Law, LocalResistance, Motion, ReturnSpring};
+use haptics::recording::Recording;
+
+/// The way is cut into so many equal parts, with the mean force of each.
+const PARTS: usize = 160;
+/// A part has this many samples at least, on the average.
+const LEAST_SAMPLES: usize = 3;
+/// Places and widths of a local resistance that are tried, in shares of the range.
+const PLACES: usize = 24;
+const WIDTHS: [f64; 6] = [0.08, 0.15, 0.25, 0.4, 0.6, 0.9];
+
+/// Part of the way of one recording.
+#[derive(Clone, Debug)]
+struct Row {
+    recording: usize,
+    /// m or rad from the start.
+    place: f64,
+    direction: f64,
+    /// Along the coordinate, N or N m.
+    force: f64,
+    /// What one estimate of the force says, and the other one beside it, N.
+    measured_n: [f64; 3],
+    second_n: Option<[f64; 3]>,
+}
+
+/// Whether this is what [`pulled`] is for.
+pub fn is_pulled(recordings: &[Recording]) -> bool {
+    recordings.iter().all(|r| r.time_s.is_none() && path::points(r).is_some())
+}
+
+/// Diagnoses paths of one mechanism.
+pub fn pulled(recordings: &[Recording]) -> Result<Diagnosis, EstimateError> {
+    let mut rows = Vec::new();
+    let mut kinds = Vec::new();
+    let mut beside = Beside::default();
+    for (k, recording) in recordings.iter().enumerate() {
+        let Some(found) = detect_in(recording) else { continue };
+        kinds.push(found.kind);
+        match from_constraint(&found, recording) {
+            Some(path) => rows.extend(parts(recording, k, &project(recording, &path)?)),
+            None => beside.warnings.push(format!(
+                "the path of {} is neither a line nor a circle for certain ({})",
+                recording.name, found.evidence
+            )),
+        }
+    }
+    beside.causes = recordings.first().map(|r| quality::faults(r).causes).unwrap_or_default();
+    let count = |kind: ConstraintKind| kinds.iter().filter(|k| **k == kind).count();
+    let (turns, slides) = (count(ConstraintKind::Revolute), count(ConstraintKind::Prismatic));
+    let (kind, unit) = if turns >= slides && turns > 0 { ("a circle", "N m") } else { ("a line", "N") };
+    beside.warnings.push(format!(
+        "the paths follow {kind} ({turns} revolute, {slides} prismatic of {}); without a clock nothing that depends on speed can be told",
+        kinds.len()
+    ));
+    for (id, why) in [
+        ("inertia", "there is no clock"),
+        ("viscous-friction", "there is no clock"),
+        ("time-delay", "there is no clock"),
+    ] {
+        beside.not_excited.push(NotExcited { id: id.to_owned(), why: format!("{why}; give a t_s column or rate_hz") });
+    }
+    let forced = recordings.iter().all(|r| path::forces(r).is_some()) && rows.len() >= 40;
+    beside.model = if forced { format!("{kind}+coulomb-friction") } else { kind.to_owned() };
+    if !forced {
+        let why = "no force was recorded: a path alone shows its shape".to_owned();
+        beside.not_excited.push(NotExcited { id: "coulomb-friction".to_owned(), why });
+        return Ok(answer(&[], beside, &|_| None));
+    }
+    let along = along(&rows)?;
+    let second = second(&rows)?;
+    let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
+    let (of_place, of_second) =
+        (|f: &Found<'_>| shows(f, &along.1), |f: &Found<'_>| differs(f, recordings));
+    let holds = |n: usize| (vec![true; n], vec![0_usize; n]);
+    let (one, other) = (holds(along.0.y.len()), holds(second.as_ref().map_or(0, |s| s.0.y.len())));
+    let stretch: Vec<usize> = rows.iter().map(|r| r.recording).collect();
+    let part = |study, channel, unit, floor, along, stretch, shows| Part {
+        study,
+        channel,
+        unit,
+        floor,
+        along,
+        stretch,
+        shows,
+        states: &plain,
+        usual: &|_| None,
+    };
+    let floor = white_noise(&rows.iter().map(|r| r.force).collect::<Vec<_>>());
+    let mut parts = vec![part(&along.0, "force along the way", unit, floor, &one.0, &stretch, &of_place as &dyn Fn(&Found<'_>) -> String)];
+    if let Some((study, floor)) = &second {
+        parts.push(part(study, "difference of the two forces", "N", *floor, &other.0, &other.1, &of_second));
+    }
+    Ok(answer(&parts, beside, &|_| None))
+}
+
+/// Equal parts of the way that was gone.
+fn parts(recording: &Recording, number: usize, seen: &path::Projected) -> Vec<Row> {
+    let n = seen.position.len();
+    let travelled: Vec<f64> = seen
+        .position
+        .windows(2)
+        .scan(0.0, |sum, pair| {
+            *sum += (pair[1] - pair[0]).abs();
+            Some(*sum)
+        })
+        .collect();
+    let Some(whole) = travelled.last().copied().filter(|w| *w > 0.0) else { return Vec::new() };
+    let count = (n / LEAST_SAMPLES).clamp(1, PARTS);
+    let axes = |names: [&str; 3]| names.map(|name| recording.channel(name).map(<[f64]>::to_vec));
+    let measured = axes(["fx_N", "fy_N", "fz_N"]);
+    let second = second_names(recording).map(|names| names.map(|n| recording.channel(&n).map(<[f64]>::to_vec)));
+    let mut rows = Vec::new();
+    let mut start = 0;
+    for k in 1..=count {
+        let end = 1 + travelled.partition_point(|t| *t < whole * k as f64 / count as f64);
+        let end = end.min(n);
+        if end <= start {
+            continue;
+        }
+        let mean = |values: &[f64]| values[start..end].iter().sum::<f64>() / (end - start) as f64;
+        let three = |of: &[Option<Vec<f64>>; 3]| [0, 1, 2].map(|a: usize| of[a].as_deref().map_or(0.0, mean));
+        let last = end.min(n - 1);
+        rows.push(Row {
+            recording: number,
+            place: mean(&seen.position),
+            direction: (seen.position[last] - seen.position[start]).signum(),
+            force: seen.force.as_deref().map_or(0.0, mean),
+            measured_n: three(&measured),
+            second_n: second.as_ref().map(three),
+        });
+        start = end;
+    }
+    rows
+}
+
+/// Columns of another estimate of the same force: `fx_<words>_N`, `fy_<words>_N` (and z).
+fn second_names(recording: &Recording) -> Option<[String; 3]> {
+    let own = |name: &&str| name.starts_with("fx_") && name.ends_with("_N") && *name != "fx_N";
+    let first = recording.channels.iter().map(|c| c.name.as_str()).find(own)?;
+    let names = ["fx_", "fy_", "fz_"].map(|start| format!("{start}{}", &first[3..]));
+    recording.channel(&names[1]).map(|_| names)
+}
+
+/// Force along the way, against the place; the dry friction of one direction is the model.
+fn along(rows: &[Row]) -> Result<(Study, String), EstimateError> {
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let (low, high) = rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), r| (a.min(r.place), b.max(r.place)));
+    let range = (high - low).max(1e-12);
+    let base = vec![of(&|r| r.direction)];
+    let motion = |r: &Row| Motion { position: r.place, direction: r.direction, ..Motion::default() };
+    let law = |law: &'static dyn Law, values: &[f64]| {
+        let effect = Effect::new(law, values);
+        of(&|r| effect.force(&motion(r)))
+    };
+    let middle = 0.5 * (low + high);
+    let mut candidates = vec![
+        Candidate::several(
+            "return-spring",
+            Kind::Plant,
+            vec![law(&ReturnSpring, &[1.0, 0.0, 0.0, middle]), law(&ReturnSpring, &[0.0, 1.0])],
+            vec![("k", ""), ("f0", "")],
+        ),
+        Candidate::several(
+            "return-spring",
+            Kind::Plant,
+            vec![
+                law(&ReturnSpring, &[1.0, 0.0, 0.0, middle]),
+                law(&ReturnSpring, &[0.0, 1.0]),
+                law(&ReturnSpring, &[0.0, 0.0, 1.0, middle]),
+            ],
+            vec![("k", ""), ("f0", ""), ("k3", "")],
+        ),
+    ];
+    for (k, share) in (0..PLACES).flat_map(|k| WIDTHS.map(|w| (k, w))) {
+        let (place, width) = (low + range * (k as f64 + 0.5) / PLACES as f64, share * range);
+        let column = law(&LocalResistance, &[1.0, place, width, 0.0]);
+        let resists = Candidate::one("local-resistance", Kind::Plant, "F", "", column).positive();
+        candidates.push(resists.at("place", place, "").at("width", width, ""));
+    }
+    candidates.extend((1..=4).map(|n| {
+        let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * (r.place - low) / range).cos());
+        let expression = Some(format!("cos({n} pi s/S)"));
+        Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) }
+    }));
+    let n = rows.len();
+    let y = of(&|r| r.force);
+    let quarter = |from: usize, to: usize| y[from..to].iter().sum::<f64>() / (to - from).max(1) as f64;
+    let largest = (0..n).max_by(|a, b| y[*a].abs().total_cmp(&y[*b].abs())).unwrap_or(0);
+    let falls = format!(
+        "from {:.2} at {:.2} to {:.2} over the last quarter of the way, which ends at {high:.2}",
+        y[largest],
+        rows[largest].place,
+        quarter(n - n / 4, n)
+    );
+    let stretch = rows.iter().map(|r| r.recording).collect();
+    let channel =
+        Channel { y, base, candidates, stretch, testable: vec![true; n], weight: vec![1.0; n], period_s: 1.0 };
+    Ok((channel.compare(THRESHOLD)?, falls))
+}
+
+/// What in the residual shows a cause.
+fn shows(found: &Found<'_>, falls: &str) -> String {
+    match found.candidate.id {
+        "local-resistance" => format!("the force goes with the place: a resistance that is passed ({falls})"),
+        "return-spring" => format!("the force changes evenly with the place ({falls})"),
+        other => format!("{other} shows in the force along the way"),
+    }
+}
+
+/// Two estimates of one force: whether they differ by a constant, a factor or a turn.
+fn second(rows: &[Row]) -> Result<Option<(Study, f64)>, EstimateError> {
+    if rows.iter().any(|r| r.second_n.is_none()) {
+        return Ok(None);
+    }
+    let n = rows.len();
+    let each = |f: &dyn Fn(&Row, usize) -> f64| {
+        (0..3).flat_map(|axis| rows.iter().map(move |r| (r, axis))).map(|(r, axis)| f(r, axis)).collect::<Vec<f64>>()
+    };
+    let y = each(&|r, a| r.second_n.map_or(0.0, |s| s[a]) - r.measured_n[a]);
+    let only = |wanted: usize| each(&|_, a| f64::from(u8::from(a == wanted)));
+    let mut candidates = vec![
+        Candidate::several(
+            "force-bias",
+            Kind::Instrument,
+            vec![only(0), only(1), only(2)],
+            vec![("bx", "N"), ("by", "N"), ("bz", "N")],
+        ),
+        Candidate::one("force-gain", Kind::Instrument, "g - 1", "1", each(&|r, a| r.measured_n[a])),
+        Candidate::one("force-cross-axis", Kind::Instrument, "turn about z", "rad", each(&|r, a| match a {
+            0 => -r.measured_n[1],
+            1 => r.measured_n[0],
+            _ => 0.0,
+        })),
+    ];
+    candidates.retain(|c| c.columns.iter().all(|v| v.iter().any(|x| *x != 0.0)));
+    let floor = white_noise(&y);
+    let stretch: Vec<usize> = (0..3 * n).map(|i| 1000 * (i / n) + rows[i % n].recording).collect();
+    let channel = Channel {
+        y,
+        base: Vec::new(),
+        candidates,
+        stretch,
+        testable: vec![true; 3 * n],
+        weight: vec![1.0; 3 * n],
+        period_s: 1.0,
+    };
+    Ok(Some((channel.compare(THRESHOLD)?, floor)))
+}
+
+fn differs(found: &Found<'_>, recordings: &[Recording]) -> String {
+    let names = recordings.first().and_then(second_names);
+    let which = names.map_or_else(|| "the second estimate".to_owned(), |n| n[0].trim_end_matches("_N").replacen("fx_", "", 1));
+    let value = |k: usize| found.parameters.get(k).map_or(0.0, |p| p.value);
+    match found.candidate.id {
+        "force-bias" => format!(
+            "the force by {which} lies ({:.1}, {:.1}, {:.1}) N beside the measured one, whatever that is",
+            value(0),
+            value(1),
+            value(2)
+        ),
+        "force-gain" => format!("the force by {which} is {:.2} times the measured one", 1.0 + value(0)),
+        other => format!("{other} between the force by {which} and the measured one"),
+    }
+}

@@ -1,0 +1,260 @@
+//! Carried blocks with something hidden: the stepped world and the scripted operator make the motion, instruments of our own look.
+
+use super::sensor::{Instruments, look};
+use super::{Case, Truth};
+use crate::blind::Chance;
+use crate::generate::{Act, Errors, act, stacking_world};
+use estimator::diagnose::Options;
+use estimator::pipeline;
+use haptics::Vec2;
+use haptics::device::Skill;
+use haptics::law::contact::FingertipSlip;
+use haptics::recording::{Recording, Span, Task};
+use haptics::world::{Cable, Content, World};
+
+/// What is hidden.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Nothing, beside a world that was calibrated on another recording.
+    Nothing,
+    /// Pads that give, beside rigid widths: the thesis's widths that were 7 % short.
+    Pads,
+    /// Pads that harden, beside a world whose pads do not.
+    Hardening,
+    /// A slip when the block touches the ground: the thesis's height that was 9 % off.
+    GroundSlip,
+    /// A slip while the block is in the air, beside a world with known heights.
+    AirSlip,
+    /// Motion that is fast enough for inertia, beside plain means.
+    Inertia,
+    /// A block that leaks; the hand lets go before and after.
+    Leak,
+    /// The same, cut off before the hand lets go.
+    LeakCut,
+    /// A drift of the vertical force.
+    Drift,
+    /// The same, cut off before the hand lets go.
+    DriftCut,
+    /// A resting force.
+    Bias,
+    /// A gain of the forces; the weights are known.
+    Gain,
+    /// One vertical channel reads some of the grip.
+    Cross,
+    /// A cable at the first block.
+    Cable,
+    /// Positions are too large or small; the widths are known.
+    Scale,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [(&'static str, Self); 15] = [
+        ("nothing", Self::Nothing),
+        ("pads", Self::Pads),
+        ("hardening", Self::Hardening),
+        ("slip on the ground", Self::GroundSlip),
+        ("slip in the air", Self::AirSlip),
+        ("inertia", Self::Inertia),
+        ("leak", Self::Leak),
+        ("leak, cut off", Self::LeakCut),
+        ("drift", Self::Drift),
+        ("drift, cut off", Self::DriftCut),
+        ("bias", Self::Bias),
+        ("gain", Self::Gain),
+        ("cross-talk", Self::Cross),
+        ("cable", Self::Cable),
+        ("scale", Self::Scale),
+    ];
+
+    /// Whether the thesis's plain model is the one to start from.
+    fn is_plain(self) -> bool {
+        matches!(self, Self::Pads | Self::GroundSlip | Self::Inertia)
+    }
+}
+
+/// Fine steps between two ticks that are kept.
+const KEPT: usize = 5;
+
+fn skill(chance: &mut Chance, kind: Kind) -> Skill {
+    let pace = if kind == Kind::Inertia { chance.between(0.6, 0.85) } else { chance.between(0.8, 1.3) };
+    Skill {
+        pace,
+        pinch_n: chance.between(1.4, 2.4),
+        wander: chance.between(1.0, 2.5),
+        tremor_m: chance.between(0.04e-3, 0.1e-3),
+        ..Skill::default()
+    }
+}
+
+fn perform(world: &World, skill: Skill, seed: u64) -> Act {
+    act(world, seed, skill, &Errors { mistakes: &[], fumbles: Vec::new(), looks: false }, KEPT)
+}
+
+/// Times at which a stretch of one label begins and ends, s, in order.
+fn spans(of: &Act, label: &str) -> Vec<(f64, f64)> {
+    let mut found: Vec<(f64, f64)> = Vec::new();
+    let mut before = "";
+    for tick in &of.ticks {
+        if tick.label == label {
+            match found.last_mut() {
+                Some(last) if before == label => last.1 = tick.time_s,
+                _ => found.push((tick.time_s, tick.time_s)),
+            }
+        }
+        before = tick.label;
+    }
+    found.retain(|(a, b)| b - a > 0.3);
+    found
+}
+
+fn end_at(recording: &Recording, time_s: f64) -> Recording {
+    let end = recording.time_s.as_ref().map_or(0, |t| t.partition_point(|t| *t < time_s));
+    recording.slice(Span { first: 0, end })
+}
+
+/// A case of a kind.
+pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
+    let mut chance = Chance::new(seed, 77);
+    let (mut world, _) = stacking_world(seed ^ 0x51ab_1e57);
+    let skill = skill(&mut chance, kind);
+    let every = chance.pick(&[1, 2, 4]);
+    let mut instruments = Instruments::default();
+    let mut truth = Truth::default();
+    let before = world.clone();
+    if kind.is_plain() {
+        truth.besides = vec!["pad-compliance", "inertia"];
+    }
+    hide(kind, &mut world, &mut instruments, &mut truth, (skill, seed), &mut chance);
+    let done = perform(&world, skill, seed);
+    let mut recording = look(&world, &done.ticks, every, &instruments, Task::BlockStack, &mut chance);
+    if matches!(kind, Kind::LeakCut | Kind::DriftCut) {
+        // The hand has not let go since it gripped the block.
+        let first = spans(&done, "hold-above-ground")[0];
+        recording = end_at(&recording, first.1 - 0.05);
+        if kind == Kind::DriftCut {
+            // Hardly anything is free before, either.
+            let gripped = spans(&done, "hold-on-ground")[0].0;
+            let start = recording.time_s.as_ref().map_or(0, |t| t.partition_point(|t| *t < gripped - 0.6));
+            recording = recording.slice(Span { first: start, end: recording.len() });
+        }
+    }
+    for (block, name) in world.blocks.iter().zip(["block-1", "block-2"]) {
+        let known = &mut recording.meta.known;
+        match kind {
+            Kind::Gain => known.insert(format!("{name}.weight_N"), block.mass_kg * world.gravity_m_s2),
+            Kind::Scale => known.insert(format!("{name}.width_m"), block.width_m),
+            _ => None,
+        };
+    }
+    let world = (!kind.is_plain()).then(|| calibrated(&before, seed, &mut chance));
+    (Case { recordings: vec![recording], options: Options { world, ..Options::default() } }, truth)
+}
+
+/// The world as another recording without anything hidden shows it.
+fn calibrated(world: &World, seed: u64, chance: &mut Chance) -> World {
+    let done = perform(world, Skill { wander: 2.0, ..Skill::default() }, seed ^ 0xca11);
+    let recording = look(world, &done.ticks, 1, &Instruments::default(), Task::BlockStack, chance);
+    pipeline::analyse(&[recording], &pipeline::Options::default()).expect("blocks were carried").world
+}
+
+fn hide(
+    kind: Kind,
+    world: &mut World,
+    instruments: &mut Instruments,
+    truth: &mut Truth,
+    (skill, seed): (Skill, u64),
+    chance: &mut Chance,
+) {
+    let stiffness = world.pad.stiffness_n_m;
+    match kind {
+        Kind::Nothing => {}
+        Kind::Pads => {
+            truth.hidden = vec!["pad-compliance"];
+            truth.value = Some(("k", stiffness));
+        }
+        Kind::Hardening => {
+            let usual_m = skill.pinch_n / stiffness;
+            let k3 = chance.of_order(0.15, 0.8) * stiffness / usual_m.powi(2);
+            world.pad.cubic_n_m3 = k3;
+            truth.hidden = vec!["stiffness-hardening"];
+        }
+        Kind::GroundSlip | Kind::AirSlip => {
+            let done = perform(world, skill, seed);
+            let (label, share) =
+                if kind == Kind::AirSlip { ("hold-above-ground", (0.2, 0.8)) } else { ("hold-on-ground", (0.25, 0.6)) };
+            let spans = spans(&done, label);
+            // On the ground: when the first block has been put down.
+            let (from, to) = if kind == Kind::AirSlip { spans[0] } else { spans[1] };
+            let way = chance.of_order(0.5e-3, 1.6e-3) * chance.sign();
+            world.pad.slip = Some(FingertipSlip {
+                way_m: Vec2::new(0.0, way),
+                t0_s: from + chance.between(share.0, share.1) * (to - from),
+                duration_s: chance.between(0.0, 0.2),
+            });
+            truth.hidden = vec!["fingertip-slip"];
+        }
+        Kind::Inertia => {
+            truth.hidden = vec!["inertia"];
+            truth.value = Some(("m block-1", world.blocks[0].mass_kg));
+        }
+        Kind::Leak | Kind::LeakCut => {
+            let block = &mut world.blocks[0];
+            let leak_kg_s = chance.of_order(0.8e-3, 3e-3);
+            block.content = Some(Content { mass_kg: 0.7 * block.mass_kg, leak_kg_s, leaks_from_s: Some(0.0) });
+            truth.hidden = vec!["mass-change"];
+            truth.value = Some(("rate", -leak_kg_s * world.gravity_m_s2));
+            if kind == Kind::LeakCut {
+                truth.equals = vec!["force-drift"];
+            }
+        }
+        Kind::Drift | Kind::DriftCut => {
+            let rate = chance.of_order(3e-3, 20e-3) * chance.sign();
+            let finger = usize::from(chance.happens(0.5));
+            instruments.drift_n_s[finger].y = rate;
+            truth.hidden = vec!["force-drift"];
+            if kind == Kind::Drift {
+                truth.value = Some((["ry1", "ry2"][finger], rate));
+            } else {
+                truth.equals = vec!["mass-change"];
+            }
+        }
+        Kind::Bias => {
+            for finger in 0..2 {
+                instruments.bias_n[finger] =
+                    Vec2::new(chance.of_order(0.01, 0.05) * chance.sign(), chance.of_order(0.01, 0.05) * chance.sign());
+            }
+            truth.hidden = vec!["force-bias"];
+            truth.value = Some(("by1", instruments.bias_n[0].y));
+        }
+        Kind::Gain => {
+            instruments.gain = 1.0 + chance.of_order(0.03, 0.15) * chance.sign();
+            truth.hidden = vec!["force-gain"];
+            truth.value = Some(("g - 1", instruments.gain - 1.0));
+        }
+        Kind::Cross => {
+            let (finger, kappa) = (usize::from(chance.happens(0.5)), chance.of_order(0.05, 0.2) * chance.sign());
+            instruments.cross[finger] = kappa;
+            truth.hidden = vec!["force-cross-axis"];
+            truth.value = Some((["kappa_yx1", "kappa_yx2"][finger], kappa));
+        }
+        Kind::Cable => cable(world, truth, chance),
+        Kind::Scale => {
+            instruments.scale = 1.0 + chance.of_order(0.005, 0.05) * chance.sign();
+            truth.hidden = vec!["length-scale"];
+            truth.value = Some(("epsilon", instruments.scale - 1.0));
+        }
+    }
+}
+
+/// From where the first block starts it is carried to the right: the cable gets taut on the way.
+fn cable(world: &mut World, truth: &mut Truth, chance: &mut Chance) {
+    let block = &mut world.blocks[0];
+    let start = block.start.center_m;
+    let anchor_m = start + Vec2::new(-chance.between(0.01, 0.04), chance.between(-0.01, 0.02));
+    let stiffness_n_m = chance.of_order(12.0, 40.0);
+    let length_m = (anchor_m - start).norm() + chance.between(0.004, 0.016);
+    block.cable = Some(Cable { anchor_m, length_m, stiffness_n_m, damping_n_s_m: 0.2 });
+    truth.hidden = vec!["added-constraint"];
+    truth.value = Some(("k", stiffness_n_m));
+}

@@ -1,0 +1,248 @@
+//! Needles with something hidden. A tool's way and its sheet are written down here, in steps of 50 µs; the hand's needle is the stepped
+//! world's.
+
+use super::sensor::{Instruments, look};
+use super::{Case, Truth};
+use crate::blind::Chance;
+use crate::generate::{Errors, act};
+use estimator::diagnose::Options;
+use estimator::pipeline;
+use haptics::Vec2;
+use haptics::device::Skill;
+use haptics::recording::{Channel, Meta, Recording, Task};
+use haptics::world::{World, presets};
+
+/// What is hidden.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Nothing: a linear sheet that slides freely off the shaft, and the plain model.
+    Nothing,
+    /// Nothing, in the stepped world, beside the world itself.
+    NothingInWorld,
+    /// A sheet that hardens.
+    Hardening,
+    /// A dent that stays: less force on the way out.
+    Dent,
+    /// Friction of the shaft.
+    Shaft,
+    /// Drag of the shaft.
+    Drag,
+    /// Friction that is another one in the second hole.
+    Change,
+    /// A drift of the force.
+    Drift,
+    /// A resting force, in the stepped world, beside the world itself.
+    Bias,
+    /// A sheet that is pierced at another force the second time.
+    Puncture,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [(&'static str, Self); 10] = [
+        ("needle: nothing", Self::Nothing),
+        ("needle: nothing (hand)", Self::NothingInWorld),
+        ("needle: hardening", Self::Hardening),
+        ("needle: dent", Self::Dent),
+        ("needle: shaft", Self::Shaft),
+        ("needle: drag", Self::Drag),
+        ("needle: change", Self::Change),
+        ("needle: drift", Self::Drift),
+        ("needle: bias (hand)", Self::Bias),
+        ("needle: puncture", Self::Puncture),
+    ];
+}
+
+/// A case of a kind.
+pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
+    let mut chance = Chance::new(seed, 78);
+    match kind {
+        Kind::NothingInWorld | Kind::Bias => hand(kind, seed, &mut chance),
+        _ => tool(kind, &mut chance),
+    }
+}
+
+/// What the tool meets.
+struct Sheet {
+    stiffness_n_m: f64,
+    cubic_n_m3: f64,
+    dent: f64,
+    puncture_n: [f64; 2],
+    dry_n: [f64; 2],
+    drag_n_s_m: f64,
+}
+
+/// A smooth way through turning points (time, place).
+fn way(t: f64, turns: &[(f64, f64)]) -> f64 {
+    let k = turns.partition_point(|(at, _)| *at <= t);
+    let (Some(&(t0, from)), Some(&(t1, to))) = (k.checked_sub(1).and_then(|k| turns.get(k)), turns.get(k)) else {
+        return if k == 0 { turns[0].1 } else { turns[turns.len() - 1].1 };
+    };
+    let s = (t - t0) / (t1 - t0);
+    from + (to - from) * s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s)
+}
+
+fn tool(kind: Kind, chance: &mut Chance) -> (Case, Truth) {
+    let mut truth = Truth::default();
+    let mut sheet = Sheet {
+        stiffness_n_m: chance.between(120.0, 500.0),
+        cubic_n_m3: 0.0,
+        dent: 0.0,
+        puncture_n: [chance.between(0.9, 2.0); 2],
+        dry_n: [0.0; 2],
+        drag_n_s_m: 0.0,
+    };
+    let mut drift_n_s = 0.0;
+    match kind {
+        Kind::Hardening => {
+            let usual_m = sheet.puncture_n[0] / sheet.stiffness_n_m;
+            sheet.cubic_n_m3 = chance.of_order(0.15, 1.0) * sheet.stiffness_n_m / usual_m.powi(2);
+            truth.hidden = vec!["stiffness-hardening"];
+            truth.value = Some(("k3", sheet.cubic_n_m3));
+        }
+        Kind::Dent => {
+            sheet.dent = chance.between(0.12, 0.45);
+            truth.hidden = vec!["hysteresis"];
+        }
+        Kind::Shaft | Kind::Change => {
+            let dry = chance.of_order(0.08, 0.4);
+            sheet.dry_n = [dry; 2];
+            truth.hidden = vec!["coulomb-friction"];
+            if kind == Kind::Change {
+                sheet.dry_n[1] = dry * chance.pick(&[0.4, 0.55, 1.6, 2.2]);
+                truth.besides = vec!["coulomb-friction"];
+                truth.hidden = vec!["friction-change"];
+            } else {
+                truth.value = Some(("Fc", dry));
+            }
+        }
+        Kind::Drag => {
+            sheet.drag_n_s_m = chance.of_order(3.0, 15.0);
+            truth.hidden = vec!["viscous-friction"];
+            truth.value = Some(("c", sheet.drag_n_s_m));
+        }
+        Kind::Drift => {
+            drift_n_s = chance.of_order(3e-3, 20e-3) * chance.sign();
+            truth.hidden = vec!["force-drift"];
+            truth.value = Some(("rate", drift_n_s));
+        }
+        Kind::Puncture => {
+            sheet.puncture_n[1] = sheet.puncture_n[0] * chance.pick(&[0.6, 0.7, 1.4, 1.7]);
+            truth.hidden = vec!["other:puncture force over time"];
+        }
+        _ => {}
+    }
+    (Case { recordings: vec![perform(&sheet, drift_n_s, chance)], options: Options::default() }, truth)
+}
+
+/// In a little, back, through, to and fro in the hole at two speeds, out; the same at another place.
+fn perform(sheet: &Sheet, drift_n_s: f64, chance: &mut Chance) -> Recording {
+    const FINE_S: f64 = 5e-5;
+    let rate_hz = chance.pick(&[250.0, 500.0, 1000.0]);
+    let every = (1.0 / (rate_hz * FINE_S)).round() as usize;
+    let elastic = |x: f64| sheet.stiffness_n_m * x + sheet.cubic_n_m3 * x.powi(3);
+    let through = |force: f64| {
+        let mut x = 0.0;
+        while elastic(x) < force {
+            x += 1e-6;
+        }
+        x
+    };
+    let outside = -chance.between(4e-3, 7e-3);
+    let mut turns = vec![(1.0, outside)];
+    let mut cross = vec![(0.0, 0.0)];
+    for puncture in sheet.puncture_n {
+        let deep = through(puncture);
+        let start = turns[turns.len() - 1].0;
+        let shares = [
+            (1.2, 0.6 * deep),
+            (1.0, -1.5e-3),
+            (1.6, deep + 5e-3),
+            (0.7, deep + 2e-3),
+            (0.25, deep + 5e-3),
+            (0.4, deep + 1.5e-3),
+            (1.2, deep + 4e-3),
+            (1.5, outside),
+            (0.8, outside),
+        ];
+        let mut at = start;
+        for (long, place) in shares {
+            at += long * chance.between(0.8, 1.2);
+            turns.push((at, place));
+        }
+        let side = cross[cross.len() - 1].1;
+        cross.extend([(at, side), (at + 0.8, side + 8e-3)]);
+        turns.push((at + 1.0, outside));
+    }
+    let end_s = turns[turns.len() - 1].0 + 0.5;
+    let surface_m = chance.between(-0.02, 0.02);
+    let bias = 0.03 * chance.normal();
+    let phase = chance.between(0.0, 6.0);
+    let (mut deepest, mut pierced, mut place) = (0.0_f64, false, 0_usize);
+    let (mut time, mut depth, mut side, mut force) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut before = outside;
+    for fine in 0..(end_s / FINE_S) as usize {
+        let t = fine as f64 * FINE_S;
+        let across = way(t, &cross);
+        let here = usize::from(across > 4e-3);
+        if here != place {
+            (place, deepest, pierced) = (here, 0.0, false);
+        }
+        let x = way(t, &turns) + 4e-5 * (50.0 * t + phase).sin();
+        let speed = (x - before) / FINE_S;
+        before = x;
+        let mut f = 0.0;
+        if pierced && x > 0.0 {
+            // Rational in the speed: no kink at rest.
+            f = sheet.dry_n[place] * speed / (speed * speed + 1e-8).sqrt() + sheet.drag_n_s_m * speed;
+        } else if x > 0.0 {
+            let left = sheet.dent * deepest;
+            f = if x >= deepest { elastic(x) } else { elastic(deepest) * ((x - left) / (deepest - left)).max(0.0) };
+            deepest = deepest.max(x);
+            pierced = f >= sheet.puncture_n[place];
+        }
+        if fine % every == 0 {
+            time.push(t);
+            depth.push(((surface_m + x + 1e-5 * chance.normal()) / 5e-6).round() * 5e-6);
+            side.push(across + 1e-5 * chance.normal());
+            force.push(((f + bias + drift_n_s * t + 0.01 * chance.normal()) / 1e-3).round() * 1e-3);
+        }
+    }
+    let still: Vec<f64> = force.iter().map(|_| 0.01 * chance.normal()).collect();
+    let down = |values: Vec<f64>| values.into_iter().map(|v| -v).collect::<Vec<f64>>();
+    let channels = [("x_m", side), ("y_m", down(depth)), ("fx_N", still), ("fy_N", down(force))];
+    let unit = |name: &str| if name.starts_with('f') { "N" } else { "m" }.to_owned();
+    Recording {
+        name: "case".to_owned(),
+        time_s: Some(time),
+        channels: channels
+            .map(|(name, values)| Channel { name: name.to_owned(), unit: unit(name), values })
+            .to_vec(),
+        meta: Meta { task: Some(Task::Needle), ..Meta::default() },
+        ..Recording::default()
+    }
+}
+
+fn hand(kind: Kind, seed: u64, chance: &mut Chance) -> (Case, Truth) {
+    let mut world: World = presets::needle();
+    if let Some(membrane) = &mut world.membrane {
+        membrane.law.stiffness_n_m = chance.between(180.0, 400.0);
+        membrane.law.puncture_n = chance.between(1.1, 1.8);
+        membrane.law.friction_n = chance.between(0.15, 0.35);
+    }
+    let skill = Skill { pace: chance.between(0.9, 1.3), ..Skill::default() };
+    let mut truth = Truth::default();
+    let mut instruments = Instruments::default();
+    if kind == Kind::Bias {
+        instruments.bias_n[0] = Vec2::new(0.0, chance.of_order(0.02, 0.06) * chance.sign());
+        truth.hidden = vec!["force-bias"];
+    }
+    let once = |seed: u64, with: &Instruments, chance: &mut Chance| {
+        let done = act(&world, seed, skill, &Errors { mistakes: &[], fumbles: Vec::new(), looks: false }, 5);
+        look(&world, &done.ticks, 1, with, Task::Needle, chance)
+    };
+    let before = once(seed ^ 0xca11, &Instruments::default(), chance);
+    let known = pipeline::analyse(&[before], &pipeline::Options::default()).expect("it is pushed in").world;
+    let recording = once(seed, &instruments, chance);
+    (Case { recordings: vec![recording], options: Options { world: Some(known), ..Options::default() } }, truth)
+}
