@@ -100,6 +100,10 @@ fn describe(diagnosis: &Diagnosis) -> String {
             other.why
         );
     }
+    for settled in &diagnosis.settled {
+        let _ =
+            writeln!(text, "  settled by {}: {}, not {}; {}", settled.by, settled.kept, settled.excluded, settled.why);
+    }
     if !diagnosis.not_excited.is_empty() {
         let ids: Vec<&str> = diagnosis.not_excited.iter().map(|n| n.id.as_str()).collect();
         let _ = writeln!(text, "  could not have been seen here: {}", ids.join(", "));

@@ -165,10 +165,12 @@ pub fn answer(
         });
     }
     let first = parts.first();
-    let figures = |picks: &[usize]| first.map_or((0.0, 0.0, 1.0), |part| {
-        let (heldout, train) = rms(part.study, picks, part.along);
-        (heldout, train, whiteness_p(part.study, picks, part.stretch))
-    });
+    let figures = |picks: &[usize]| {
+        first.map_or((0.0, 0.0, 1.0), |part| {
+            let (heldout, train) = rms(part.study, picks, part.along);
+            (heldout, train, whiteness_p(part.study, picks, part.stretch))
+        })
+    };
     let (heldout, train, white) = figures(&[]);
     let picks = first.map(|p| p.study.picks()).unwrap_or_default();
     let (end, _, end_white) = figures(&picks);
@@ -183,6 +185,7 @@ pub fn answer(
         end: Final { heldout_rms_n: end, whiteness_p: end_white },
         warnings,
         validation: Vec::new(),
+        settled: Vec::new(),
         plain: Vec::new(),
         effects: Vec::new(),
     }

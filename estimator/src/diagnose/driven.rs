@@ -79,9 +79,18 @@ pub fn driven(recordings: &[Recording]) -> Result<Diagnosis, EstimateError> {
         beside.not_excited.push(NotExcited { id: "coulomb-friction".to_owned(), why });
     }
     if rows.iter().all(|r| r.load.is_none()) {
-        beside.warnings.push("no load at the output was recorded: give is told from the force at the input alone".to_owned());
+        beside
+            .warnings
+            .push("no load at the output was recorded: give is told from the force at the input alone".to_owned());
     }
-    let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
+    let states = |c: &Candidate, mut found: Vec<CauseParameter>| {
+        if c.id == "pad-compliance" {
+            for p in &mut found {
+                p.unit = format!("{}/{}", names.force_unit, names.unit);
+            }
+        }
+        found
+    };
     let shown = |f: &Found<'_>| shows(f);
     let part = |study, channel, unit, floor| Part {
         study,
@@ -91,7 +100,7 @@ pub fn driven(recordings: &[Recording]) -> Result<Diagnosis, EstimateError> {
         along: &along,
         stretch: &stretch,
         shows: &shown,
-        states: &plain,
+        states: &states,
         usual: &|_| None,
     };
     let floor = white_noise(&rows.iter().map(|r| r.output).collect::<Vec<_>>());
@@ -135,10 +144,8 @@ fn rows(recording: &Recording, number: usize, names: &Columns) -> Vec<Row> {
 /// An extra channel of the force's unit that is not the force at the input: the load at the output.
 fn load<'a>(recording: &'a Recording, names: &Columns) -> Option<&'a [f64]> {
     let ending = names.force.rsplit('_').next()?;
-    let other = recording
-        .channels
-        .iter()
-        .find(|c| c.name != names.force && c.name.rsplit('_').next() == Some(ending))?;
+    let other =
+        recording.channels.iter().find(|c| c.name != names.force && c.name.rsplit('_').next() == Some(ending))?;
     Some(&other.values)
 }
 
@@ -153,7 +160,8 @@ fn way(rows: &[Row], names: &'static Columns, stretch: &[usize], period_s: f64) 
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let mut base = constants(rows);
     base.push(of(&|r| r.input));
-    let (low, high) = rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), r| (a.min(r.input), b.max(r.input)));
+    let (low, high) =
+        rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), r| (a.min(r.input), b.max(r.input)));
     let mut candidates = Vec::new();
     for gap in GAPS.map(|share| share * (high - low)) {
         let lost: Vec<f64> = play(rows, stretch, gap).iter().zip(rows).map(|(p, r)| p - r.input).collect();
@@ -166,7 +174,11 @@ fn way(rows: &[Row], names: &'static Columns, stretch: &[usize], period_s: f64) 
     for f in [|r: &Row| r.load, |r: &Row| r.force] {
         if rows.iter().all(|r| f(r).is_some()) {
             // Without its mean over a recording, which the zero of the output has.
-            candidates.push(Candidate::one("pad-compliance", Kind::Plant, "give", names.give, of(&|r| f(r).unwrap_or(0.0))));
+            // A load may be counted either way.
+            for sign in [1.0, -1.0] {
+                let column = of(&|r| sign * f(r).unwrap_or(0.0));
+                candidates.push(Candidate::one("pad-compliance", Kind::Plant, "give", names.give, column).positive());
+            }
         }
     }
     candidates.push(Candidate::one("time-delay", Kind::Instrument, "tau", "s", of(&|r| -r.rate)));
@@ -194,7 +206,8 @@ fn force(
     speeds.sort_by(f64::total_cmp);
     let usual = speeds.get(speeds.len() * 9 / 10).copied().unwrap_or(1.0).max(1e-12);
     let direction = |r: &Row| (r.rate / (BLUR * usual)).tanh();
-    let (low, high) = rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), r| (a.min(r.input), b.max(r.input)));
+    let (low, high) =
+        rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), r| (a.min(r.input), b.max(r.input)));
     let middle = 0.5 * (low + high);
     let mut candidates = vec![
         Candidate::one("coulomb-friction", Kind::Plant, "Fc", names.force_unit, of(&direction)).positive(),
@@ -207,9 +220,12 @@ fn force(
         candidates.push(Candidate::one("load-friction", Kind::Plant, "mu", "1", column).positive());
     }
     for gap in GAPS.map(|share| share * (high - low)) {
-        let bent: Vec<f64> =
-            presliding(rows, stretch, gap).iter().zip(rows).map(|(z, r)| z - direction(r)).collect();
-        candidates.push(Candidate::one("hysteresis", Kind::Plant, "Fc", names.force_unit, bent).positive().at("way", gap, names.unit));
+        let bent: Vec<f64> = presliding(rows, stretch, gap).iter().zip(rows).map(|(z, r)| z - direction(r)).collect();
+        candidates.push(
+            Candidate::one("hysteresis", Kind::Plant, "Fc", names.force_unit, bent)
+                .positive()
+                .at("way", gap, names.unit),
+        );
     }
     candidates.extend(generic(rows, low, high));
     compare(of(&|r| r.force.unwrap_or(0.0)), base, candidates, stretch, period_s).map(Some)
@@ -289,11 +305,17 @@ fn shows(found: &Found<'_>) -> String {
     match found.candidate.id {
         "backlash" => {
             let half = found.candidate.searched.first().map_or(0.0, |s| s.value);
-            format!("after each reversal the output waits until the input has gone {:.4} {}", 2.0 * half, found.candidate.searched[0].unit)
+            format!(
+                "after each reversal the output waits until the input has gone {:.4} {}",
+                2.0 * half,
+                found.candidate.searched[0].unit
+            )
         }
         "hysteresis" => "after each reversal the output follows more and more, not at once".to_owned(),
         "pad-compliance" => "the output gives way under the load".to_owned(),
-        "coulomb-friction" => format!("the force turns round with the direction of motion, whatever the speed ({value:.4})"),
+        "coulomb-friction" => {
+            format!("the force turns round with the direction of motion, whatever the speed ({value:.4})")
+        }
         "load-friction" => "the force turns round with the direction of motion, in proportion to the load".to_owned(),
         other => format!("{other} shows in the transmission"),
     }

@@ -104,6 +104,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         noise_floor_n: floor,
         not_excited: not_excited(study, &picks),
         validation: Vec::new(),
+        settled: Vec::new(),
         plain: plain(model, study),
         effects: effects(track, model, study),
         course: course(track, study),

@@ -9,8 +9,8 @@ mod candidate;
 mod compare;
 pub mod course;
 mod dictionary;
-mod experiment;
 mod driven;
+mod experiment;
 mod explain;
 mod extend;
 mod fine;
@@ -27,6 +27,7 @@ mod pulled;
 mod quality;
 pub mod report;
 mod select;
+mod several;
 mod sliding;
 mod system;
 mod track;
@@ -34,8 +35,8 @@ mod validate;
 mod world;
 
 pub use report::{
-    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, Validation,
-    Verdict,
+    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, Settled,
+    Validation, Verdict,
 };
 
 pub use course::Course;
@@ -77,15 +78,22 @@ pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Diagnosis
         .first()
         .ok_or_else(|| EstimateError::Other("no recording was given; name at least one log".to_owned()))?;
     let task = task_of(first, options.task)?;
+    let mut found = of_task(task, recordings, options)?;
+    several::settle(recordings, &mut found, &|some| of_task(task, some, options));
+    Ok(found)
+}
+
+fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     match task {
         Task::Crank => crank(recordings, options),
         Task::Mechanism => one_of_mechanisms(recordings, options),
-        Task::BlockStack => blocks::blocks(recordings, options),
+        // A barrel is a block that is carried.
+        Task::BlockStack | Task::Barrel => blocks::blocks(recordings, options),
         Task::Needle => needle::needle(recordings, options),
-        other => Err(EstimateError::Other(format!(
-            "recordings of the task {} cannot be diagnosed yet; crank and mechanism can",
-            other.name()
-        ))),
+        Task::Switch => Err(EstimateError::Other(
+            "recordings of the task switch cannot be diagnosed yet; fit captures the switch's force over its way"
+                .to_owned(),
+        )),
     }
 }
 
@@ -118,7 +126,13 @@ pub fn validate(
                 let circle = geometry::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
                 signals.rows(recording, &circle.arm, Axes::PLAIN)?
             }
-            _ => sliding::track(recording, &quality::faults(recording).bad)?,
+            Task::Mechanism => sliding::track(recording, &quality::faults(recording).bad)?,
+            other => {
+                return Err(EstimateError::Other(format!(
+                    "what was found of the task {} cannot be measured on other recordings yet; diagnose them together",
+                    other.name()
+                )));
+            }
         };
         Ok(validate::validate(&mut track, &diagnosis.plain, &diagnosis.effects))
     };

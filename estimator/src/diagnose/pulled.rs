@@ -22,6 +22,17 @@ const LEAST_SAMPLES: usize = 3;
 const PLACES: usize = 24;
 const WIDTHS: [f64; 6] = [0.08, 0.15, 0.25, 0.4, 0.6, 0.9];
 
+/// Units of force and place.
+struct Units {
+    force: &'static str,
+    place: &'static str,
+    per_place: &'static str,
+    per_cube: &'static str,
+}
+
+static ROUND: Units = Units { force: "N m", place: "rad", per_place: "N m/rad", per_cube: "N m/rad³" };
+static STRAIGHT: Units = Units { force: "N", place: "m", per_place: "N/m", per_cube: "N/m³" };
+
 /// Part of the way of one recording.
 #[derive(Clone, Debug)]
 struct Row {
@@ -60,7 +71,8 @@ pub fn pulled(recordings: &[Recording]) -> Result<Diagnosis, EstimateError> {
     beside.causes = recordings.first().map(|r| quality::faults(r).causes).unwrap_or_default();
     let count = |kind: ConstraintKind| kinds.iter().filter(|k| **k == kind).count();
     let (turns, slides) = (count(ConstraintKind::Revolute), count(ConstraintKind::Prismatic));
-    let (kind, unit) = if turns >= slides && turns > 0 { ("a circle", "N m") } else { ("a line", "N") };
+    let (kind, units) = if turns >= slides && turns > 0 { ("a circle", &ROUND) } else { ("a line", &STRAIGHT) };
+    let unit = units.force;
     beside.warnings.push(format!(
         "the paths follow {kind} ({turns} revolute, {slides} prismatic of {}); without a clock nothing that depends on speed can be told",
         kinds.len()
@@ -79,11 +91,18 @@ pub fn pulled(recordings: &[Recording]) -> Result<Diagnosis, EstimateError> {
         beside.not_excited.push(NotExcited { id: "coulomb-friction".to_owned(), why });
         return Ok(answer(&[], beside, &|_| None));
     }
-    let along = along(&rows)?;
+    if drives_backwards(&rows) {
+        for row in &mut rows {
+            row.force = -row.force;
+            row.measured_n = row.measured_n.map(|f| -f);
+            row.second_n = row.second_n.map(|s| s.map(|f| -f));
+        }
+        beside.causes.push(quality::backwards("fx, fy and fz"));
+    }
+    let along = along(&rows, units)?;
     let second = second(&rows)?;
     let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
-    let (of_place, of_second) =
-        (|f: &Found<'_>| shows(f, &along.1), |f: &Found<'_>| differs(f, recordings));
+    let (of_place, of_second) = (|f: &Found<'_>| shows(f, &along.1), |f: &Found<'_>| differs(f, recordings));
     let holds = |n: usize| (vec![true; n], vec![0_usize; n]);
     let (one, other) = (holds(along.0.y.len()), holds(second.as_ref().map_or(0, |s| s.0.y.len())));
     let stretch: Vec<usize> = rows.iter().map(|r| r.recording).collect();
@@ -99,11 +118,26 @@ pub fn pulled(recordings: &[Recording]) -> Result<Diagnosis, EstimateError> {
         usual: &|_| None,
     };
     let floor = white_noise(&rows.iter().map(|r| r.force).collect::<Vec<_>>());
-    let mut parts = vec![part(&along.0, "force along the way", unit, floor, &one.0, &stretch, &of_place as &dyn Fn(&Found<'_>) -> String)];
+    let mut parts = vec![part(
+        &along.0,
+        "force along the way",
+        unit,
+        floor,
+        &one.0,
+        &stretch,
+        &of_place as &dyn Fn(&Found<'_>) -> String,
+    )];
     if let Some((study, floor)) = &second {
         parts.push(part(study, "difference of the two forces", "N", *floor, &other.0, &other.1, &of_second));
     }
     Ok(answer(&parts, beside, &|_| None))
+}
+
+/// A door does not drive whoever opens it: a force that takes work all the way is the one on the hand.
+fn drives_backwards(rows: &[Row]) -> bool {
+    let work: f64 = rows.iter().map(|r| r.force * r.direction).sum();
+    let size: f64 = rows.iter().map(|r| r.force.abs()).sum();
+    work < -0.5 * size
 }
 
 /// Equal parts of the way that was gone.
@@ -155,40 +189,32 @@ fn second_names(recording: &Recording) -> Option<[String; 3]> {
 }
 
 /// Force along the way, against the place; the dry friction of one direction is the model.
-fn along(rows: &[Row]) -> Result<(Study, String), EstimateError> {
+fn along(rows: &[Row], units: &Units) -> Result<(Study, String), EstimateError> {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
-    let (low, high) = rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), r| (a.min(r.place), b.max(r.place)));
+    let (low, high) =
+        rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), r| (a.min(r.place), b.max(r.place)));
     let range = (high - low).max(1e-12);
-    let base = vec![of(&|r| r.direction)];
+    let mut base = vec![of(&|r| r.direction)];
+    if rows.iter().any(|r| r.direction != rows[0].direction) {
+        base.push(vec![1.0; rows.len()]);
+    }
     let motion = |r: &Row| Motion { position: r.place, direction: r.direction, ..Motion::default() };
     let law = |law: &'static dyn Law, values: &[f64]| {
         let effect = Effect::new(law, values);
         of(&|r| effect.force(&motion(r)))
     };
     let middle = 0.5 * (low + high);
+    let (spring, harder) = (law(&ReturnSpring, &[1.0, 0.0, 0.0, middle]), law(&ReturnSpring, &[0.0, 0.0, 1.0, middle]));
+    let id = ReturnSpring.id();
     let mut candidates = vec![
-        Candidate::several(
-            "return-spring",
-            Kind::Plant,
-            vec![law(&ReturnSpring, &[1.0, 0.0, 0.0, middle]), law(&ReturnSpring, &[0.0, 1.0])],
-            vec![("k", ""), ("f0", "")],
-        ),
-        Candidate::several(
-            "return-spring",
-            Kind::Plant,
-            vec![
-                law(&ReturnSpring, &[1.0, 0.0, 0.0, middle]),
-                law(&ReturnSpring, &[0.0, 1.0]),
-                law(&ReturnSpring, &[0.0, 0.0, 1.0, middle]),
-            ],
-            vec![("k", ""), ("f0", ""), ("k3", "")],
-        ),
+        Candidate::one(id, Kind::Plant, "k", units.per_place, spring.clone()),
+        Candidate::several(id, Kind::Plant, vec![spring, harder], vec![("k", units.per_place), ("k3", units.per_cube)]),
     ];
     for (k, share) in (0..PLACES).flat_map(|k| WIDTHS.map(|w| (k, w))) {
         let (place, width) = (low + range * (k as f64 + 0.5) / PLACES as f64, share * range);
         let column = law(&LocalResistance, &[1.0, place, width, 0.0]);
-        let resists = Candidate::one("local-resistance", Kind::Plant, "F", "", column).positive();
-        candidates.push(resists.at("place", place, "").at("width", width, ""));
+        let resists = Candidate::one("local-resistance", Kind::Plant, "F", units.force, column).positive();
+        candidates.push(resists.at("place", place, units.place).at("width", width, units.place));
     }
     candidates.extend((1..=4).map(|n| {
         let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * (r.place - low) / range).cos());
@@ -239,11 +265,17 @@ fn second(rows: &[Row]) -> Result<Option<(Study, f64)>, EstimateError> {
             vec![("bx", "N"), ("by", "N"), ("bz", "N")],
         ),
         Candidate::one("force-gain", Kind::Instrument, "g - 1", "1", each(&|r, a| r.measured_n[a])),
-        Candidate::one("force-cross-axis", Kind::Instrument, "turn about z", "rad", each(&|r, a| match a {
-            0 => -r.measured_n[1],
-            1 => r.measured_n[0],
-            _ => 0.0,
-        })),
+        Candidate::one(
+            "force-cross-axis",
+            Kind::Instrument,
+            "turn about z",
+            "rad",
+            each(&|r, a| match a {
+                0 => -r.measured_n[1],
+                1 => r.measured_n[0],
+                _ => 0.0,
+            }),
+        ),
     ];
     candidates.retain(|c| c.columns.iter().all(|v| v.iter().any(|x| *x != 0.0)));
     let floor = white_noise(&y);
@@ -262,7 +294,8 @@ fn second(rows: &[Row]) -> Result<Option<(Study, f64)>, EstimateError> {
 
 fn differs(found: &Found<'_>, recordings: &[Recording]) -> String {
     let names = recordings.first().and_then(second_names);
-    let which = names.map_or_else(|| "the second estimate".to_owned(), |n| n[0].trim_end_matches("_N").replacen("fx_", "", 1));
+    let which =
+        names.map_or_else(|| "the second estimate".to_owned(), |n| n[0].trim_end_matches("_N").replacen("fx_", "", 1));
     let value = |k: usize| found.parameters.get(k).map_or(0.0, |p| p.value);
     match found.candidate.id {
         "force-bias" => format!(

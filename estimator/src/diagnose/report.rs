@@ -124,6 +124,19 @@ pub struct Validation {
     pub rms_after: f64,
 }
 
+/// A question that an earlier recording left open and a later one answered.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Settled {
+    /// Name of the recording that settled it.
+    pub by: String,
+    /// What it could have been, …
+    pub excluded: String,
+    /// … instead of this, which stays.
+    pub kept: String,
+    /// In one sentence.
+    pub why: String,
+}
+
 /// How well the extended model does in the end.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Final {
@@ -161,6 +174,9 @@ pub struct Diagnosis {
     /// One a recording of `--validate`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub validation: Vec<Validation>,
+    /// Questions of earlier recordings that later ones answered.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub settled: Vec<Settled>,
     /// The model's laws fitted without any cause.
     #[serde(skip)]
     pub plain: Vec<Effect>,

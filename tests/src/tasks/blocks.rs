@@ -2,8 +2,8 @@
 
 use super::sensor::{Instruments, look};
 use super::{Case, Truth};
-use crate::blind::Chance;
 use crate::generate::{Act, Errors, act, stacking_world};
+use blind::Chance;
 use estimator::diagnose::Options;
 use estimator::pipeline;
 use haptics::Vec2;
@@ -235,8 +235,8 @@ fn hide(
         Kind::Cross => {
             let (finger, kappa) = (usize::from(chance.happens(0.5)), chance.of_order(0.05, 0.2) * chance.sign());
             instruments.cross[finger] = kappa;
+            // The fingers press against each other: which of them it is shows hardly.
             truth.hidden = vec!["force-cross-axis"];
-            truth.value = Some((["kappa_yx1", "kappa_yx2"][finger], kappa));
         }
         Kind::Cable => cable(world, truth, chance),
         Kind::Scale => {

@@ -3,8 +3,8 @@
 
 use super::sensor::{Instruments, look};
 use super::{Case, Truth};
-use crate::blind::Chance;
 use crate::generate::{Errors, act};
+use blind::Chance;
 use estimator::diagnose::Options;
 use estimator::pipeline;
 use haptics::Vec2;
@@ -105,7 +105,7 @@ fn tool(kind: Kind, chance: &mut Chance) -> (Case, Truth) {
             truth.hidden = vec!["hysteresis"];
         }
         Kind::Shaft | Kind::Change => {
-            let dry = chance.of_order(0.08, 0.4);
+            let dry = chance.of_order(0.06, 0.25);
             sheet.dry_n = [dry; 2];
             truth.hidden = vec!["coulomb-friction"];
             if kind == Kind::Change {
@@ -215,9 +215,7 @@ fn perform(sheet: &Sheet, drift_n_s: f64, chance: &mut Chance) -> Recording {
     Recording {
         name: "case".to_owned(),
         time_s: Some(time),
-        channels: channels
-            .map(|(name, values)| Channel { name: name.to_owned(), unit: unit(name), values })
-            .to_vec(),
+        channels: channels.map(|(name, values)| Channel { name: name.to_owned(), unit: unit(name), values }).to_vec(),
         meta: Meta { task: Some(Task::Needle), ..Meta::default() },
         ..Recording::default()
     }

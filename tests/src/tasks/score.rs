@@ -1,7 +1,7 @@
 //! Answers beside truths.
 
 use super::{Case, Truth};
-use crate::blind::Share;
+use blind::Share;
 use estimator::diagnose::{Diagnosis, Verdict, diagnose};
 
 /// One case, asked.

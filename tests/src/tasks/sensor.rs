@@ -1,6 +1,6 @@
 //! Instruments between a stepped world and a recording: noise of two colours, resolution, and faults on purpose.
 
-use crate::blind::Chance;
+use blind::Chance;
 use haptics::Vec2;
 use haptics::recording::{Channel, Recording, Task};
 use haptics::servo::TickRecord;

@@ -1,6 +1,6 @@
 //! Cables and walls that a carried block may meet: tried all over the place, and refined where they explain most.
 
-use super::carry::{Place, Rows};
+use super::rows::{Place, Rows};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::geometry::Study;
 use crate::identify::linear::least_squares;
@@ -40,12 +40,17 @@ impl Field {
     }
 }
 
-/// The cables that explain most beside `base`.
+/// The cables that explain most beside `base`, each at one of the blocks.
 pub fn cables(rows: &Rows<'_>, y: &[f64], base: &[Vec<f64>], weight: &[f64]) -> Vec<Candidate> {
+    let explains = Explains::of(y, base, weight);
+    (1..=rows.blocks()).flat_map(|number| at_block(rows, number, &explains, weight)).collect()
+}
+
+fn at_block(rows: &Rows<'_>, number: usize, explains: &Explains, weight: &[f64]) -> Vec<Candidate> {
     let places: Vec<Vec2> = rows
-        .rows
+        .all
         .iter()
-        .filter(|r| matches!(r.place, Place::Carried { axis: 1, .. }))
+        .filter(|r| r.place == (Place::Carried { number, axis: 1 }))
         .map(|r| Vec2::new(rows.seen[r.recording].place[0][r.i], rows.seen[r.recording].place[1][r.i]))
         .collect();
     if places.is_empty() {
@@ -57,10 +62,9 @@ pub fn cables(rows: &Rows<'_>, y: &[f64], base: &[Vec<f64>], weight: &[f64]) -> 
         return Vec::new();
     }
     let field = Field { middle, range_m };
-    let explains = Explains::of(y, base, weight);
     let worth = |tie: Tie| {
         let (anchor, length) = field.anchor_and_length(tie);
-        explains.worth(&pull(rows, anchor, length), weight)
+        explains.worth(&pull(rows, number, anchor, length), weight)
     };
     let mut tried: Vec<(f64, Tie)> = Vec::new();
     for (k, nearness) in (0..DIRECTIONS).flat_map(|k| NEARNESS.map(|d| (k, d))) {
@@ -77,7 +81,7 @@ pub fn cables(rows: &Rows<'_>, y: &[f64], base: &[Vec<f64>], weight: &[f64]) -> 
     let mut found: Vec<Candidate> = Vec::new();
     for (_, start) in tried.into_iter().take(REFINED) {
         let (anchor, length) = field.anchor_and_length(refined(start, &worth));
-        found.push(one(rows, anchor, length));
+        found.push(one(rows, number, anchor, length));
     }
     found
 }
@@ -89,10 +93,10 @@ fn refined(start: Tie, worth: &dyn Fn(Tie) -> f64) -> Tie {
     for _ in 0..HALVINGS {
         loop {
             let before = best.0;
-            for k in 0..steps.len() {
+            for (k, step) in steps.into_iter().enumerate() {
                 for sign in [1.0, -1.0] {
                     let mut tie = best.1;
-                    tie.0[k] += sign * steps[k];
+                    tie.0[k] += sign * step;
                     tie.0[1] = tie.0[1].max(0.0);
                     let now = worth(tie);
                     if now > best.0 {
@@ -134,8 +138,11 @@ impl Explains {
 }
 
 /// What a cable of 1 N/m asks of the hand, N.
-fn pull(rows: &Rows<'_>, anchor: Vec2, length_m: f64) -> Vec<f64> {
-    rows.carried(|seen, row, _, axis| {
+fn pull(rows: &Rows<'_>, tied: usize, anchor: Vec2, length_m: f64) -> Vec<f64> {
+    rows.carried(|seen, row, number, axis| {
+        if number != tied {
+            return 0.0;
+        }
         let away = Vec2::new(seen.place[0][row.i], seen.place[1][row.i]) - anchor;
         let length = away.norm().max(1e-9);
         AddedConstraint::cable_n(1.0, length_m, length) * away[axis] / length
@@ -144,13 +151,14 @@ fn pull(rows: &Rows<'_>, anchor: Vec2, length_m: f64) -> Vec<f64> {
 
 /// Standard errors of stiffness, anchor and length of a found cable: what its searched values leave open counts. `None` where they cannot
 /// be told.
-pub fn errors(rows: &Rows<'_>, study: &Study) -> Option<[f64; 4]> {
+pub fn errors(rows: &Rows<'_>, study: &Study, number_of: &dyn Fn(&[f64]) -> usize) -> Option<[f64; 4]> {
     /// Steps of the differences, m.
     const STEP_M: f64 = 1e-4;
     let pick = study.picks().into_iter().find(|p| study.candidates[*p].id == "added-constraint")?;
     let cable = &study.candidates[pick];
     let value = |k: usize| cable.searched.get(k).map_or(0.0, |s| s.value);
     let at = [value(0), value(1), value(2)];
+    let tied = number_of(&cable.columns[0]);
     let stiffness = study.chosen.iter().scan(study.base.len(), |first, c| {
         let own = (*first, c.candidate);
         *first += study.candidates[c.candidate].columns.len();
@@ -163,7 +171,7 @@ pub fn errors(rows: &Rows<'_>, study: &Study) -> Option<[f64; 4]> {
         let moved = |step: f64| {
             let mut to = at;
             to[p] += step;
-            pull(rows, Vec2::new(to[0], to[1]), to[2])
+            pull(rows, tied, Vec2::new(to[0], to[1]), to[2])
         };
         let (after, before) = (moved(STEP_M), moved(-STEP_M));
         after.iter().zip(&before).map(|(a, b)| k * (a - b) / (2.0 * STEP_M)).collect()
@@ -176,15 +184,18 @@ pub fn errors(rows: &Rows<'_>, study: &Study) -> Option<[f64; 4]> {
     Some([fit.std_errors[0], fit.std_errors[2], fit.std_errors[3], fit.std_errors[4]])
 }
 
-fn one(rows: &Rows<'_>, anchor: Vec2, length_m: f64) -> Candidate {
+fn one(rows: &Rows<'_>, tied: usize, anchor: Vec2, length_m: f64) -> Candidate {
     // Cables damp while they are taut.
-    let damping = rows.carried(|seen, row, _, axis| {
+    let damping = rows.carried(|seen, row, number, axis| {
+        if number != tied {
+            return 0.0;
+        }
         let away = Vec2::new(seen.place[0][row.i], seen.place[1][row.i]) - anchor;
         let length = away.norm().max(1e-9);
         let rate = Vec2::new(seen.velocity[0][row.i], seen.velocity[1][row.i]).dot(&away) / length;
         if length > length_m { rate * away[axis] / length } else { 0.0 }
     });
-    let columns = vec![pull(rows, anchor, length_m), damping];
+    let columns = vec![pull(rows, tied, anchor, length_m), damping];
     Candidate::several("added-constraint", Kind::Plant, columns, vec![("k", "N/m"), ("c", "N s/m")])
         .positive()
         .at("anchor x", anchor.x, "m")

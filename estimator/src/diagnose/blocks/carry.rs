@@ -1,111 +1,17 @@
 //! Forces while blocks are carried, beside those while nothing is touched: weight, inertia, cables, and what is wrong with the sensors.
 
+use super::acts::{generic, instrument, plant};
 use super::cable::{cables, errors};
+use super::rows::{Place, Row, Rows};
 use super::seen::Seen;
 use crate::diagnose::answer::{Found, Part, parameter};
 use crate::diagnose::candidate::Candidate;
-use crate::diagnose::compare::{Channel, stretches};
+use crate::diagnose::compare::Channel;
 use crate::diagnose::geometry::Study;
 use crate::diagnose::report::CauseParameter;
 use crate::estimate::EstimateError;
 use crate::identify::block::object;
-use haptics::law::Kind;
 use haptics::world::World;
-
-/// Starts of a change of weight that are tried in every carry.
-const STARTS: usize = 6;
-
-/// What a row is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
-    /// Sum of both fingers along an axis, a block of this number in the air.
-    Carried { number: usize, axis: usize },
-    /// One finger along an axis, nothing touched.
-    Free { finger: usize, axis: usize },
-}
-
-/// One row.
-#[derive(Clone, Copy, Debug)]
-pub struct Row {
-    pub recording: usize,
-    pub i: usize,
-    pub time_s: f64,
-    pub place: Place,
-}
-
-/// All rows with the recordings that they are from.
-pub struct Rows<'a> {
-    pub seen: &'a [Seen<'a>],
-    pub rows: Vec<Row>,
-    pub stretch: Vec<usize>,
-}
-
-impl<'a> Rows<'a> {
-    fn of(seen: &'a [Seen<'a>]) -> Self {
-        let mut rows = Vec::new();
-        for (recording, one) in seen.iter().enumerate() {
-            let mut add = |place: Place, of: &[usize]| {
-                rows.extend(of.iter().map(|i| Row { recording, i: *i, time_s: one.time_s(*i), place }));
-            };
-            for number in 1..=one.count {
-                let carried = one.carried(number);
-                for axis in [1, 0] {
-                    add(Place::Carried { number, axis }, &carried);
-                }
-            }
-            let free = one.free();
-            for (finger, axis) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                add(Place::Free { finger, axis }, &free);
-            }
-        }
-        let time: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
-        let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
-        let other = |i: usize| rows[i].place != rows[i - 1].place || rows[i].recording != rows[i - 1].recording;
-        let stretch = stretches(&time, period_s, other);
-        Self { seen, rows, stretch }
-    }
-
-    pub fn column(&self, of: impl Fn(&Row) -> f64) -> Vec<f64> {
-        self.rows.iter().map(of).collect()
-    }
-
-    /// A column over the carried rows of one axis, or both.
-    pub fn carried(&self, of: impl Fn(&Seen<'_>, &Row, usize, usize) -> f64) -> Vec<f64> {
-        self.column(|row| match row.place {
-            Place::Carried { number, axis } => of(&self.seen[row.recording], row, number, axis),
-            Place::Free { .. } => 0.0,
-        })
-    }
-
-    /// Recorded force: the sum of both fingers, or one finger's.
-    fn force_n(&self, row: &Row) -> f64 {
-        let force = &self.seen[row.recording].force;
-        match row.place {
-            Place::Carried { axis, .. } => force[0][axis][row.i] + force[1][axis][row.i],
-            Place::Free { finger, axis } => force[finger][axis][row.i],
-        }
-    }
-
-    /// How much a fault of one finger's force along one axis is in a row.
-    fn share(row: &Row, finger: usize, axis: usize) -> f64 {
-        let holds = match row.place {
-            Place::Carried { axis: own, .. } => own == axis,
-            Place::Free { finger: f, axis: own } => f == finger && own == axis,
-        };
-        f64::from(u8::from(holds))
-    }
-
-    fn blocks(&self) -> usize {
-        self.seen.iter().map(|s| s.count).max().unwrap_or(0)
-    }
-
-    /// Mean of the lift of a block, N.
-    fn weight_n(&self, number: usize) -> f64 {
-        let own = Place::Carried { number, axis: 1 };
-        let lifts: Vec<f64> = self.rows.iter().filter(|r| r.place == own).map(|r| self.force_n(r)).collect();
-        lifts.iter().sum::<f64>() / lifts.len().max(1) as f64
-    }
-}
 
 /// The comparison and what its words need.
 pub struct Carry {
@@ -128,8 +34,8 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     let rows = Rows::of(seen);
     let is_carried = |r: &Row| matches!(r.place, Place::Carried { .. });
     // Every other row: what acts in one short stretch of a carry is seen where it is fitted and where it is held out.
-    let testable: Vec<bool> = rows.rows.iter().enumerate().map(|(i, r)| i % 2 == 0 && is_carried(r)).collect();
-    let carried = rows.rows.iter().filter(|r| is_carried(r)).count();
+    let testable: Vec<bool> = (0..rows.all.len()).map(|i| i % 2 == 0).collect();
+    let carried = rows.all.iter().filter(|r| is_carried(r)).count();
     if carried < LEAST_ROWS {
         return Err(EstimateError::TooFewSamples {
             recording: seen.first().map(|s| s.blocks.recording.name.clone()).unwrap_or_default(),
@@ -141,11 +47,13 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     let known: Vec<Option<f64>> =
         (1..=rows.blocks()).map(|k| seen.iter().find_map(|s| s.known_weight_n(k).filter(|_| s.count >= k))).collect();
     let base = base(&rows, world, &known);
-    let given = rows.carried(|one, row, number, axis| known[number - 1].map_or(0.0, |w| needed(one, row, w, axis, world.is_some())));
-    let y: Vec<f64> = rows.rows.iter().zip(&given).map(|(r, g)| rows.force_n(r) - g).collect();
+    let given = rows.carried(|one, row, number, axis| {
+        known[number - 1].map_or(0.0, |w| needed(one, row, w, axis, world.is_some()))
+    });
+    let y: Vec<f64> = rows.all.iter().zip(&given).map(|(r, g)| rows.force_n(r) - g).collect();
     // A row of one finger has the noise of one sensor.
     let weight: Vec<f64> =
-        rows.rows.iter().map(|r| if is_carried(r) { 1.0 } else { std::f64::consts::SQRT_2 }).collect();
+        rows.all.iter().map(|r| if is_carried(r) { 1.0 } else { std::f64::consts::SQRT_2 }).collect();
     let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
     let plant = plant(&rows, world.is_some());
     // Beside weights and inertia: a cable is looked for before it is compared.
@@ -160,9 +68,16 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
         Channel { y, base, candidates, stretch: rows.stretch.clone(), testable: testable.clone(), weight, period_s };
     let study = channel.compare(threshold)?;
     let floor_n = floor(&rows, &study);
-    let numbers = rows.rows.iter().map(|r| if let Place::Carried { number, .. } = r.place { number } else { 0 }).collect();
-    let cable_errors = errors(&rows, &study);
-    Ok(Carry { longest_s: longest_s(&rows), cable_errors, study, along: testable, stretch: rows.stretch, floor_n, numbers })
+    let of = |row: &Row| if let Place::Carried { number, .. } = row.place { number } else { 0 };
+    let numbers: Vec<usize> = rows.all.iter().map(of).collect();
+    let cable_errors = errors(&rows, &study, &|column| touched(&numbers, column));
+    let along = rows.all.iter().map(is_carried).collect();
+    Ok(Carry { longest_s: longest_s(&rows), cable_errors, study, along, stretch: rows.stretch, floor_n, numbers })
+}
+
+/// Which block a column acts at.
+fn touched(numbers: &[usize], column: &[f64]) -> usize {
+    column.iter().position(|v| *v != 0.0).map_or(0, |i| numbers[i])
 }
 
 /// Force that carrying a weight needs along an axis, N.
@@ -177,9 +92,11 @@ fn base(rows: &Rows<'_>, world: Option<&World>, known: &[Option<f64>]) -> Vec<Ve
     let unknown = (1..=rows.blocks()).filter(|k| known[k - 1].is_none());
     let mut base: Vec<Vec<f64>> = unknown
         .map(|k| {
-            rows.carried(|one, row, number, axis| {
-                if number == k { needed(one, row, 1.0, axis, world.is_some()) } else { 0.0 }
-            })
+            rows.carried(
+                |one, row, number, axis| {
+                    if number == k { needed(one, row, 1.0, axis, world.is_some()) } else { 0.0 }
+                },
+            )
         })
         .collect();
     for (k, block) in world.iter().flat_map(|w| &w.blocks).enumerate() {
@@ -192,132 +109,6 @@ fn base(rows: &Rows<'_>, world: Option<&World>, known: &[Option<f64>]) -> Vec<Ve
         }));
     }
     base
-}
-
-fn plant(rows: &Rows<'_>, has_inertia: bool) -> Vec<Candidate> {
-    let mut found = Vec::new();
-    let blocks = rows.blocks();
-    if !has_inertia {
-        let columns: Vec<Vec<f64>> = (1..=blocks)
-            .map(|k| rows.carried(|one, row, number, axis| if number == k { one.acceleration[axis][row.i] } else { 0.0 }))
-            .collect();
-        const NAMES: [&str; 4] = ["m block-1", "m block-2", "m block-3", "m block-4"];
-        if blocks <= NAMES.len() {
-            let linear = NAMES[..blocks].iter().map(|n| (*n, "kg")).collect();
-            found.push(Candidate::several("inertia", Kind::Plant, columns, linear).positive());
-        } else {
-            let column = rows.carried(|one, row, _, axis| one.acceleration[axis][row.i]);
-            found.push(Candidate::one("inertia", Kind::Plant, "m", "kg", column).positive());
-        }
-    }
-    let drag = rows.carried(|one, row, _, axis| one.velocity[axis][row.i]);
-    found.push(Candidate::one("viscous-friction", Kind::Plant, "c", "N s/m", drag).positive());
-    let tilted = rows.carried(|_, _, number, axis| if axis == 0 { rows.weight_n(number) } else { 0.0 });
-    found.push(Candidate::one("gravity-tilt", Kind::Plant, "angle", "rad", tilted));
-    for k in 1..=blocks {
-        leaks(rows, k, &mut found);
-    }
-    found
-}
-
-/// Changes of the weight of one block: evenly from when it is lifted or from later on, or all at once.
-fn leaks(rows: &Rows<'_>, k: usize, found: &mut Vec<Candidate>) {
-    let times: Vec<f64> =
-        rows.rows.iter().filter(|r| r.place == (Place::Carried { number: k, axis: 1 })).map(|r| r.time_s).collect();
-    let (Some(first), Some(last)) = (times.first(), times.last()) else { return };
-    let lift = |of: &dyn Fn(f64) -> f64| {
-        rows.carried(|_, row, number, axis| if number == k && axis == 1 { of(row.time_s) } else { 0.0 })
-    };
-    let rate = |from: f64| lift(&|t| (t - from).max(0.0));
-    found.push(Candidate::one("mass-change", Kind::Plant, "rate", "N/s", rate(*first)));
-    for s in 1..=STARTS {
-        let start = first + (last - first) * s as f64 / (STARTS + 1) as f64;
-        let later = Candidate::one("mass-change", Kind::Plant, "rate", "N/s", rate(start));
-        found.push(later.at("t0", start, "s"));
-        let step = lift(&|t| f64::from(u8::from(t >= start)));
-        found.push(Candidate::one("mass-change", Kind::Plant, "step", "N", step).at("t0", start, "s"));
-    }
-}
-
-const BIAS: [[(&str, &str); 2]; 2] = [[("bx1", "N"), ("by1", "N")], [("bx2", "N"), ("by2", "N")]];
-const DRIFT: [[(&str, &str); 2]; 2] = [[("rx1", "N/s"), ("ry1", "N/s")], [("rx2", "N/s"), ("ry2", "N/s")]];
-
-fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<Candidate> {
-    let mut found = Vec::new();
-    let all = |id: &'static str, names: &[[(&'static str, &'static str); 2]; 2], of: &dyn Fn(&Row) -> f64| {
-        let column = |finger: usize, axis: usize| rows.column(|r| Rows::share(r, finger, axis) * of(r));
-        let mut made = Vec::new();
-        // One channel alone, both of one finger, or everything.
-        for finger in [0, 1] {
-            for axis in [0, 1] {
-                let (name, unit) = names[finger][axis];
-                made.push(Candidate::one(id, Kind::Instrument, name, unit, column(finger, axis)));
-            }
-            let both = vec![column(finger, 0), column(finger, 1)];
-            made.push(Candidate::several(id, Kind::Instrument, both, names[finger].to_vec()));
-        }
-        let columns = vec![column(0, 0), column(0, 1), column(1, 0), column(1, 1)];
-        made.push(Candidate::several(id, Kind::Instrument, columns, names.concat()));
-        made
-    };
-    found.extend(all("force-bias", &BIAS, &|_| 1.0));
-    found.extend(all("force-drift", &DRIFT, &|r| r.time_s));
-    // Sensors may begin to drift when they are loaded: only what is free afterwards tells that from a block that changes.
-    let loaded_s = |r: &Row| {
-        let carried = |o: &&Row| o.recording == r.recording && matches!(o.place, Place::Carried { .. });
-        rows.rows.iter().filter(carried).map(|o| o.time_s).fold(f64::INFINITY, f64::min)
-    };
-    let since: Vec<f64> = (0..rows.seen.len())
-        .map(|k| rows.rows.iter().find(|r| r.recording == k).map_or(0.0, loaded_s))
-        .collect();
-    for (finger, axis) in [(0, 1), (1, 1), (0, 0), (1, 0)] {
-        let (name, unit) = DRIFT[finger][axis];
-        let column =
-            rows.column(|r| Rows::share(r, finger, axis) * (r.time_s - since[r.recording]).max(0.0));
-        found.push(Candidate::one("force-drift", Kind::Instrument, name, unit, column));
-    }
-    // One finger's force along the other axis, where only the sum is compared: what a carried row has of it.
-    let other = |row: &Row, finger: usize, to: usize| {
-        let force = &rows.seen[row.recording].force[finger];
-        Rows::share(row, finger, to) * force[1 - to][row.i]
-    };
-    for (finger, to, name) in
-        [(0, 1, "kappa_yx1"), (1, 1, "kappa_yx2"), (0, 0, "kappa_xy1"), (1, 0, "kappa_xy2")]
-    {
-        let column = rows.column(|r| other(r, finger, to));
-        found.push(Candidate::one("force-cross-axis", Kind::Instrument, name, "1", column));
-    }
-    for (to, name) in [(1, "kappa_yx"), (0, "kappa_xy")] {
-        let column = rows.column(|r| other(r, 0, to) + other(r, 1, to));
-        found.push(Candidate::one("force-cross-axis", Kind::Instrument, name, "1", column));
-    }
-    if known.iter().any(Option::is_some) {
-        found.push(Candidate::one("force-gain", Kind::Instrument, "g - 1", "1", given.to_vec()));
-    }
-    found
-}
-
-fn generic(rows: &Rows<'_>) -> Vec<Candidate> {
-    let span = rows.rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
-    let mut found = Vec::new();
-    for (axis, name) in [(1, "lift"), (0, "side force")] {
-        let mut term = |expression: &str, of: &dyn Fn(&Seen<'_>, &Row) -> f64| {
-            let column = rows.carried(|one, row, _, a| if a == axis { of(one, row) } else { 0.0 });
-            found.push(Candidate {
-                expression: Some(format!("{expression} ({name})")),
-                ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
-            });
-        };
-        for k in 1..=4 {
-            term(&format!("cos({k} pi t/T)"), &|_, r| (std::f64::consts::PI * f64::from(k) * r.time_s / span).cos());
-        }
-        term("x", &|s, r| s.place[0][r.i]);
-        term("y", &|s, r| s.place[1][r.i]);
-        term("grip", &|s, r| s.blocks.grip[r.i]);
-        term("vx abs(vx)", &|s, r| s.velocity[0][r.i] * s.velocity[0][r.i].abs());
-        term("vy abs(vy)", &|s, r| s.velocity[1][r.i] * s.velocity[1][r.i].abs());
-    }
-    found
 }
 
 /// Length of the longest carry, s.
@@ -333,7 +124,7 @@ fn floor(rows: &Rows<'_>, study: &Study) -> f64 {
     let picks = study.picks();
     let left = crate::diagnose::geometry::residual(&study.y, &study.base, &study.candidates, &picks, solved);
     let mean = |free: bool| {
-        let of = (0..left.len()).filter(|i| matches!(rows.rows[*i].place, Place::Free { .. }) == free);
+        let of = (0..left.len()).filter(|i| matches!(rows.all[*i].place, Place::Free { .. }) == free);
         let (sum, n) = of.fold((0.0, 0_u32), |(s, n), i| (s + left[i] * left[i], n + 1));
         (n > 0).then(|| (sum / f64::from(n)).sqrt())
     };
@@ -364,11 +155,10 @@ impl Carry {
         found
     }
 
-    /// For the answer: which block a change of weight is of.
+    /// For the answer: which block a change of weight or a cable is of, and a cable's errors.
     pub fn states(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
-        if candidate.id == "mass-change" {
-            let row = candidate.columns[0].iter().position(|v| *v != 0.0);
-            let number = row.map_or(0, |i| self.numbers[i]);
+        if ["mass-change", "added-constraint"].contains(&candidate.id) {
+            let number = touched(&self.numbers, &candidate.columns[0]);
             found.push(parameter("block", number as f64, 0.0, "1"));
         }
         if let ("added-constraint", Some(errors)) = (candidate.id, self.cable_errors) {
@@ -380,7 +170,7 @@ impl Carry {
     }
 
     /// What in the residual shows a cause.
-    pub fn shows(&self, found: &Found<'_>) -> String {
+    pub fn shows(found: &Found<'_>) -> String {
         let value = |k: usize| found.parameters.get(k).map_or(0.0, |p| p.value);
         match found.candidate.id {
             "inertia" => {
@@ -396,10 +186,16 @@ impl Carry {
                 "the lift changes while a block is carried, and the forces of empty fingers do not".to_owned()
             }
             "force-bias" => "empty fingers feel a force, and the same is missing while blocks are carried".to_owned(),
-            "force-drift" => "the forces of empty fingers go with time, and those of carried blocks with them".to_owned(),
-            "force-gain" => format!("carried blocks weigh {:+.1} % of what is known of them too much", 100.0 * value(0)),
+            "force-drift" => {
+                "the forces of empty fingers go with time, and those of carried blocks with them".to_owned()
+            }
+            "force-gain" => {
+                format!("carried blocks weigh {:+.1} % of what is known of them too much", 100.0 * value(0))
+            }
             "force-cross-axis" => "one axis of a finger's force follows the other".to_owned(),
-            "added-constraint" => "the net force on a carried block pulls towards one place from a distance on".to_owned(),
+            "added-constraint" => {
+                "the net force on a carried block pulls towards one place from a distance on".to_owned()
+            }
             "gravity-tilt" => "a carried block pulls to one side in proportion to its weight".to_owned(),
             "viscous-friction" => "the force follows the speed of the carried block".to_owned(),
             other => format!("{other} shows in the net force"),

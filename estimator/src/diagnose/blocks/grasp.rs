@@ -189,8 +189,6 @@ impl Grasp {
     pub fn states(&self, candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         let give = found.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
         match candidate.id {
-            // The stiffness of one pad; the column was its give. What was fitted says so already.
-            "pad-compliance" => found,
             "stiffness-hardening" => {
                 let first = self.first_give();
                 let k1 = 1.0 / first.max(1e-12);
@@ -256,9 +254,10 @@ impl Grasp {
     /// Sizes that could just matter.
     pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
         match candidate.id {
-            "pad-compliance" => {
-                Some((USUAL_GIVE, "the grip hardly varied while a block was held; squeeze softly and hard while it stands still"))
-            }
+            "pad-compliance" => Some((
+                USUAL_GIVE,
+                "the grip hardly varied while a block was held; squeeze softly and hard while it stands still",
+            )),
             "stiffness-hardening" => {
                 Some((1.0 / 2500.0, "the grip varied too little to see a bend; squeeze from light to hard and back"))
             }

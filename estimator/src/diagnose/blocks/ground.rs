@@ -15,6 +15,8 @@ use haptics::world::World;
 
 /// Fewer rows of a rest show nothing.
 const LEAST_ROWS: usize = 8;
+/// Fewer rows in all cannot be held out in turn.
+const LEAST_IN_ALL: usize = 50;
 /// Starts of a slip that are tried in every rest, and how long it may take, s.
 const STARTS: usize = 10;
 const LENGTHS_S: [f64; 3] = [0.0, 0.1, 0.3];
@@ -70,12 +72,11 @@ pub fn ground(
         }
     }
     let n = rows.stand.len();
-    if stands.is_empty() || n < 3 * LEAST_ROWS {
+    if stands.is_empty() || n < LEAST_IN_ALL {
         return Ok(None);
     }
     let of = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();
-    let mut base: Vec<Vec<f64>> =
-        (0..stands.len()).map(|s| of(&|i| f64::from(u8::from(rows.stand[i] == s)))).collect();
+    let mut base: Vec<Vec<f64>> = (0..stands.len()).map(|s| of(&|i| f64::from(u8::from(rows.stand[i] == s)))).collect();
     let give = rows.lift_n.clone();
     let contact = of(&|i| (stands[rows.stand[i]].below.len() + 1) as f64 * rows.lift_n[i]);
     let mut candidates = Vec::new();
@@ -112,7 +113,13 @@ pub fn ground(
     Ok(Some(Ground { study, along, stretch, floor_m, stands, rows }))
 }
 
-fn add(rows: &mut Rows, stands: &mut Vec<Stand>, one: &Seen<'_>, (recording, placed): (usize, bool), (rest, cross): (&Rest, [f64; 2])) {
+fn add(
+    rows: &mut Rows,
+    stands: &mut Vec<Stand>,
+    one: &Seen<'_>,
+    (recording, placed): (usize, bool),
+    (rest, cross): (&Rest, [f64; 2]),
+) {
     let picked = one.every(rest.samples.iter().copied());
     if picked.len() < LEAST_ROWS {
         return;
@@ -147,7 +154,9 @@ fn slips(rows: &Rows, stand: usize, (first, end): (usize, usize), found: &mut Ve
     for k in 1..=STARTS {
         let start = from + (to - from) * k as f64 / (STARTS + 1) as f64;
         for length in LENGTHS_S {
-            let share = |t: f64| if length > 0.0 { ((t - start) / length).clamp(0.0, 1.0) } else { f64::from(u8::from(t >= start)) };
+            let share = |t: f64| {
+                if length > 0.0 { ((t - start) / length).clamp(0.0, 1.0) } else { f64::from(u8::from(t >= start)) }
+            };
             let column = (0..rows.stand.len())
                 .map(|i| if rows.stand[i] == stand { share(rows.time_s[i]) } else { 0.0 })
                 .collect();
@@ -167,11 +176,9 @@ impl Ground {
     pub fn states(candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         match candidate.id {
             // Two pads side by side; the give of one is twice what the pair's is, so its stiffness half.
-            "pad-compliance" => found
-                .iter()
-                .take(1)
-                .map(|p| parameter("k_shear", 0.5 * p.value, 0.5 * p.std_error, "N/m"))
-                .collect(),
+            "pad-compliance" => {
+                found.iter().take(1).map(|p| parameter("k_shear", 0.5 * p.value, 0.5 * p.std_error, "N/m")).collect()
+            }
             _ => found,
         }
     }
@@ -205,7 +212,9 @@ impl Ground {
     /// Sizes that could just matter.
     pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
         match candidate.id {
-            "fingertip-slip" => Some((2e-4, "blocks were not held on the ground for long enough to see the fingers move on")),
+            "fingertip-slip" => {
+                Some((2e-4, "blocks were not held on the ground for long enough to see the fingers move on"))
+            }
             "pad-compliance" => {
                 Some((1.0 / 8000.0, "the load hardly varied while a held block stood; press and lift while it stands"))
             }

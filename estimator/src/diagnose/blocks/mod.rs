@@ -3,11 +3,13 @@
 //! Without a world the model is the thesis's: rigid widths and plain means of weights and heights. With one its pads, inertia and
 //! cables belong to the model; what a block weighs and how wide it is stays open in both, unless the sidecar says that it is known.
 
+mod acts;
 mod cable;
 mod carry;
 mod grasp;
 mod ground;
 mod moved;
+mod rows;
 mod seen;
 
 use super::answer::{Beside, Found, Part, answer};
@@ -30,7 +32,8 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     // A block that a cable pulls at is held by more than its ground.
     let ground = if carry.has("added-constraint") { None } else { ground::ground(&seen, world, carry.cross(), limit)? };
     let mut beside = Beside {
-        model: if world.is_some() { "world: weight+inertia+pads" } else { "weight+rigid widths+plain heights" }.to_owned(),
+        model: if world.is_some() { "world: weight+inertia+pads" } else { "weight+rigid widths+plain heights" }
+            .to_owned(),
         causes: recordings.iter().flat_map(|r| quality::faults(r).causes).collect(),
         ..Beside::default()
     };
@@ -47,13 +50,11 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     }
     unseen(&seen, &mut beside.not_excited);
     let carry_states = |c: &Candidate, found: Vec<CauseParameter>| carry.states(c, found);
-    let carry_shows = |f: &Found<'_>| carry.shows(f);
     let carry_usual = |c: &Candidate| carry.usual(c);
     let grasp_shows = |f: &Found<'_>| grasp.as_ref().map(|g| g.shows(f)).unwrap_or_default();
-    let grasp_states =
-        |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &grasp { g.states(c, p) } else { p };
+    let grasp_states = |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &grasp { g.states(c, p) } else { p };
     let ground_shows = |f: &Found<'_>| ground.as_ref().map(|g| g.shows(f)).unwrap_or_default();
-    let mut parts: Vec<Part<'_>> = vec![carry.part(&carry_shows, &carry_states, &carry_usual)];
+    let mut parts: Vec<Part<'_>> = vec![carry.part(&carry::Carry::shows, &carry_states, &carry_usual)];
     parts.extend(grasp.as_ref().map(|g| g.part(&grasp_shows, &grasp_states)));
     parts.extend(ground.as_ref().map(|g| g.part(&ground_shows)));
     Ok(answer(&parts, beside, &next))
@@ -86,7 +87,10 @@ fn next(open: &[Alternative]) -> Option<NextExperiment> {
     } else if is("gravity-tilt", "force-cross-axis") {
         ("turn the hand's base by a quarter turn and carry the same block again", 0.95)
     } else {
-        ("repeat the carry with softer and harder grips, fast and slow, and let go for two seconds before and after", 0.7)
+        (
+            "repeat the carry with softer and harder grips, fast and slow, and let go for two seconds before and after",
+            0.7,
+        )
     };
     let mut separates = vec![first.instead_of.clone()];
     separates.extend(open.iter().filter(|a| a.instead_of == first.instead_of).map(|a| a.id.clone()));
@@ -112,12 +116,14 @@ pub fn extend(world: &mut World, diagnosis: &Diagnosis) {
                 let number = value("block").map_or(0, |b| (b as usize).saturating_sub(1));
                 if let (Some(rate), Some(block)) = (value("rate").filter(|r| *r < 0.0), world.blocks.get_mut(number)) {
                     let mass_kg = 0.5 * block.mass_kg;
-                    block.content = Some(Content { mass_kg, leak_kg_s: -rate / gravity, leaks_from_s: value("t0").or(Some(0.0)) });
+                    block.content =
+                        Some(Content { mass_kg, leak_kg_s: -rate / gravity, leaks_from_s: value("t0").or(Some(0.0)) });
                 }
             }
             "added-constraint" => {
+                let number = value("block").map_or(0, |b| (b as usize).saturating_sub(1));
                 if let (Some(k), Some(x), Some(y), Some(length_m), Some(block)) =
-                    (value("k"), value("anchor x"), value("anchor y"), value("length"), world.blocks.first_mut())
+                    (value("k"), value("anchor x"), value("anchor y"), value("length"), world.blocks.get_mut(number))
                 {
                     let anchor_m = haptics::Vec2::new(x, y);
                     block.cable = Some(Cable { anchor_m, length_m, stiffness_n_m: k, damping_n_s_m: 0.0 });

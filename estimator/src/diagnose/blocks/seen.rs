@@ -50,8 +50,8 @@ impl<'a> Seen<'a> {
         });
         let moving =
             [0, 1].map(|axis| smooth(time, &blocks.signals.velocity.iter().map(|v| v[axis]).collect::<Vec<f64>>()));
-        let place =
-            [0, 1].map(|axis| smooth(time, &blocks.signals.position.iter().map(|p| p[axis]).collect::<Vec<f64>>()).value);
+        let place = [0, 1]
+            .map(|axis| smooth(time, &blocks.signals.position.iter().map(|p| p[axis]).collect::<Vec<f64>>()).value);
         let [x, y] = moving;
         let step_s = match time.as_slice() {
             [first, .., last] => (last - first) / (time.len() - 1) as f64,

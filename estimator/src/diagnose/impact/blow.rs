@@ -1,5 +1,6 @@
 //! Speed that an impact takes, at the corner of a cube that hits first: its velocity before, from the flight, and after.
 
+use super::powers;
 use crate::diagnose::answer::{Found, Part, parameter};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
@@ -10,7 +11,7 @@ use crate::identify::tossed::Tossed;
 use crate::identify::tossed::flight::LEAST;
 use crate::identify::tossed::pose::Track;
 use haptics::law::Kind;
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::{DVector, Vector3};
 use std::ops::Range;
 
 /// Samples before and after a blow that are looked at, at most, and those that must be free after it.
@@ -25,7 +26,7 @@ const TOGETHER: f64 = 0.1;
 /// A slower blow tells nothing, m/s.
 const SLOW_M_S: f64 = 0.4;
 /// Fewer blows show nothing.
-const LEAST_BLOWS: usize = 12;
+const LEAST_BLOWS: usize = 30;
 /// Score that makes a cause.
 const THRESHOLD: f64 = 20.0;
 
@@ -39,7 +40,8 @@ pub struct Blow {
 
 /// Compares what impacts leave of the speed. `restitution`: that of the model. `None` where too few blows are clear.
 pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option<Blow>, EstimateError> {
-    let pairs: Vec<(f64, f64)> = seen.tracks.iter().filter_map(|t| corner(t, half_width_m, seen.fall.down_m_s2)).collect();
+    let pairs: Vec<(f64, f64)> =
+        seen.tracks.iter().filter_map(|t| corner(t, half_width_m, seen.fall.down_m_s2)).collect();
     if pairs.len() < LEAST_BLOWS {
         return Ok(None);
     }
@@ -62,7 +64,11 @@ pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option
     // What the model starts from is remembered in the unit of the parameter: see `states`.
     let mut study = study;
     for candidate in &mut study.candidates {
-        candidate.searched.push(crate::diagnose::candidate::Searched { name: "e of the model", value: restitution, unit: "1" });
+        candidate.searched.push(crate::diagnose::candidate::Searched {
+            name: "e of the model",
+            value: restitution,
+            unit: "1",
+        });
     }
     Ok(Some(Blow { study, stretch, along: vec![true; n], floor_m_s }))
 }
@@ -89,10 +95,8 @@ fn corner(track: &Track, half_m: f64, fall_m_s2: f64) -> Option<(f64, f64)> {
     if corners[1].z - arm.z < TOGETHER * half_m {
         return None;
     }
-    let up = |range: Range<usize>, spin: Vector3<f64>| {
-        Some(rise(track, range, at_s, fall_m_s2)? + spin.cross(&arm).z)
-    };
-    let (down, rebound) = (up(before, spin)?, up(after, spin_after)?);
+    let up = |range: &Range<usize>, spin: Vector3<f64>| Some(rise(track, range, at_s, fall_m_s2)? + spin.cross(&arm).z);
+    let (down, rebound) = (up(&before, spin)?, up(&after, spin_after)?);
     (down < -SLOW_M_S).then_some((down, rebound))
 }
 
@@ -108,24 +112,28 @@ fn around(track: &Track, fall_m_s2: f64) -> Option<(usize, Range<usize>)> {
         let change = (track.points[i + 1] - track.points[i]) / b - (track.points[i] - track.points[i - 1]) / a;
         (change + Vector3::new(0.0, 0.0, fall_m_s2 * 0.5 * (a + b))).norm()
     };
-    let hit = (1..n - 1).find(|i| kick(*i) > BLOW_M_S)?;
-    let over = (hit + 1..n - 1).find(|i| kick(*i) < STILL_M_S)?;
-    let free = (over..n - 1).take_while(|i| kick(*i) < FREE_M_S).count();
+    let mut first: Vec<f64> = (1..LEAST).map(kick).collect();
+    first.sort_by(f64::total_cmp);
+    // What the tracker's noise makes of free flight.
+    let noise = first[first.len() / 2];
+    let hit = (1..n - 1).find(|i| kick(*i) > BLOW_M_S.max(4.0 * noise))?;
+    let over = (hit + 1..n - 1).find(|i| kick(*i) < STILL_M_S.max(3.0 * noise))?;
+    let free = (over..n - 1).take_while(|i| kick(*i) < FREE_M_S.max(2.5 * noise)).count();
     (hit >= LEAST && free >= LEAST_AFTER).then(|| (hit, over..(over + free + 1).min(over + BEFORE)))
 }
 
 /// Speed upwards of the middle at a time, from samples that fall freely, m/s.
-fn rise(track: &Track, range: Range<usize>, at_s: f64, fall_m_s2: f64) -> Option<f64> {
+fn rise(track: &Track, range: &Range<usize>, at_s: f64, fall_m_s2: f64) -> Option<f64> {
     let n = range.len();
     let since = |i: usize| track.time_s[range.start + i] - at_s;
-    let own = DMatrix::from_fn(n, 2, |i, j| since(i).powi(j as i32));
+    let own = powers(n, 2, since);
     let place = DVector::from_fn(n, |i, _| track.points[range.start + i].z + 0.5 * fall_m_s2 * since(i).powi(2));
     let solved = own.pseudo_inverse(1e-12).ok()? * place;
     Some(solved[1])
 }
 
 /// The restitution out of its change against the model.
-pub fn states(candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+pub fn states(candidate: &Candidate, found: &[CauseParameter]) -> Vec<CauseParameter> {
     let model = candidate.searched.first().map_or(1.0, |s| s.value);
     found.first().map(|p| parameter("e", model + p.value, p.std_error, "1")).into_iter().collect()
 }

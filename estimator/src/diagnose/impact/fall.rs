@@ -1,5 +1,6 @@
 //! Scale of the lengths, from free fall: everything falls with g.
 
+use super::powers;
 use crate::diagnose::answer::parameter;
 use crate::diagnose::gain::chi_square_tail;
 use crate::diagnose::report::{Alternative, Cause, Gain};
@@ -7,7 +8,7 @@ use crate::identify::tossed::Tossed;
 use crate::identify::tossed::flight::{Fall, LEAST, end};
 use crate::identify::tossed::pose::Track;
 use haptics::law::Kind;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 /// Every so many-th throw is held out.
 const HELD_OUT: usize = 4;
@@ -20,14 +21,14 @@ const LENGTHS: f64 = 2e-2;
 
 /// The scale as a cause, and the clock as what else it could be; `None` where the fall agrees with gravity.
 pub fn scale(seen: &Tossed, gravity_m_s2: f64) -> Option<(Cause, Alternative)> {
-    let (value, error) =
-        (seen.fall.down_m_s2 / gravity_m_s2 - 1.0, seen.fall.error_m_s2 / gravity_m_s2);
+    let (value, error) = (seen.fall.down_m_s2 / gravity_m_s2 - 1.0, seen.fall.error_m_s2 / gravity_m_s2);
     let lambda = (value / error).powi(2);
     if lambda - (seen.fall.throws as f64).ln() < THRESHOLD {
         return None;
     }
     // A clock that is off by δ shows as 2 δ in the acceleration.
-    let likely = |spread: f64, at: f64| (-0.5 * at * at / (spread * spread + error * error)).exp() / spread.hypot(error);
+    let likely =
+        |spread: f64, at: f64| (-0.5 * at * at / (spread * spread + error * error)).exp() / spread.hypot(error);
     let (length, clock) = (likely(LENGTHS, value), likely(CLOCKS, 0.5 * value));
     let posterior = length / (length + clock);
     let cause = Cause {
@@ -104,7 +105,7 @@ fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
 fn left(track: &Track, n: usize, down_m_s2: Option<f64>) -> f64 {
     let since = |i: usize| track.time_s[i] - track.time_s[0];
     let size = if down_m_s2.is_some() { 2 } else { 3 };
-    let own = DMatrix::from_fn(n, size, |i, j| since(i).powi(j as i32)).qr().q();
+    let own = powers(n, size, since).qr().q();
     let fall = down_m_s2.unwrap_or(0.0);
     let height = DVector::from_fn(n, |i, _| track.points[i].z + 0.5 * fall * since(i).powi(2));
     (&height - &own * own.tr_mul(&height)).norm_squared()

@@ -40,7 +40,8 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
         beside.causes.push(cause);
         beside.alternatives.push(alternative);
     }
-    let mut unseen = |id: &str, why: &str| beside.not_excited.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
+    let mut unseen =
+        |id: &str, why: &str| beside.not_excited.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
     if half_width_m.is_some() && blow.is_none() {
         unseen("velocity-loss", "too few impacts on one corner, with free flight before and after, were seen");
     }
@@ -50,15 +51,27 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     if sliding.is_none() {
         unseen("load-friction", "the body does not slide flat for long enough; throw it flatter");
     }
-    unseen("coulomb-friction", "the body slides under its own weight only: friction in proportion to the load and a constant one are the same");
+    unseen(
+        "coulomb-friction",
+        "the body slides under its own weight only: friction in proportion to the load and a constant one are the same",
+    );
     let mean = mean_friction(seen);
     let slides = |c: &Candidate, found: Vec<CauseParameter>| sliding::states(c, found, mean);
-    let loses = |c: &Candidate, found: Vec<CauseParameter>| blow::states(c, found);
+    let loses = |c: &Candidate, found: Vec<CauseParameter>| blow::states(c, &found);
     let (slide_shows, blow_shows) = (|f: &Found<'_>| sliding::shows(f), |f: &Found<'_>| blow::shows(f));
     let mut parts: Vec<Part<'_>> = Vec::new();
     parts.extend(sliding.as_ref().map(|s| s.part(&slide_shows, &slides)));
     parts.extend(blow.as_ref().map(|b| b.part(&blow_shows, &loses)));
     Ok(answer(&parts, beside, &next))
+}
+
+/// Powers 0 … of a number, one row an entry.
+fn powers(rows: usize, size: usize, of: impl Fn(usize) -> f64) -> nalgebra::DMatrix<f64> {
+    let mut matrix = nalgebra::DMatrix::from_element(rows, size, 1.0);
+    for (i, j) in (1..size).flat_map(|j| (0..rows).map(move |i| (i, j))) {
+        matrix[(i, j)] = matrix[(i, j - 1)] * of(i);
+    }
+    matrix
 }
 
 /// Standard error of the friction by the scatter of single slides: a table is not alike everywhere.

@@ -1,5 +1,6 @@
 //! What slows a sliding body: dry friction, or something that follows the speed.
 
+use super::powers;
 use crate::diagnose::answer::{Found, Part};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
@@ -9,7 +10,7 @@ use crate::estimate::EstimateError;
 use crate::identify::tossed::Tossed;
 use crate::signal::derive::polynomial;
 use haptics::law::Kind;
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::{DVector, Vector3};
 
 /// Fewer slides show nothing.
 const LEAST_SLIDES: usize = 4;
@@ -29,7 +30,7 @@ pub struct Sliding {
 /// One slide: times, way along its direction, and speed.
 struct Way {
     time_s: Vec<f64>,
-    way_m: Vec<f64>,
+    place_m: Vec<f64>,
     speed_m_s: Vec<f64>,
 }
 
@@ -47,7 +48,7 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<Sliding>, EstimateError>
     let all = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
         ways.iter().flat_map(|w| within(w, &integrated(w, &|i| -of(w.speed_m_s[i])))).collect()
     };
-    let moved: Vec<f64> = ways.iter().flat_map(|w| within(w, &w.way_m)).collect();
+    let moved: Vec<f64> = ways.iter().flat_map(|w| within(w, &w.place_m)).collect();
     let dry = all(&|_| fall);
     let y: Vec<f64> = moved.iter().zip(&dry).map(|(m, d)| m - mu * d).collect();
     let mut candidates = vec![
@@ -85,9 +86,10 @@ fn way(seen: &Tossed, track: usize, first: usize, samples: usize) -> Option<Way>
     let way_m: Vec<f64> = points.iter().map(|p| along.dot(&(p - points[0]))).collect();
     let time_s: Vec<f64> = time.iter().map(|t| t - time[0]).collect();
     let fitted = polynomial(&time_s, &way_m, 3);
-    let speed = |t: f64| fitted.iter().enumerate().skip(1).map(|(k, c)| k as f64 * c * t.powi(k as i32 - 1)).sum();
-    let speed_m_s = time_s.iter().map(|t| speed(*t)).map(|v: f64| v.max(0.0)).collect();
-    Some(Way { time_s, way_m, speed_m_s })
+    // Horner's rule for the derivative.
+    let speed = |t: f64| fitted.iter().enumerate().skip(1).rev().fold(0.0, |sum, (k, c)| sum * t + k as f64 * c);
+    let speed_m_s = time_s.iter().map(|t| f64::max(speed(*t), 0.0)).collect();
+    Some(Way { time_s, place_m: way_m, speed_m_s })
 }
 
 /// Way by an acceleration from rest, m, by trapezia.
@@ -109,7 +111,7 @@ fn integrated(way: &Way, acceleration: &dyn Fn(usize) -> f64) -> Vec<f64> {
 /// A series without its own start and speed.
 fn within(way: &Way, values: &[f64]) -> Vec<f64> {
     let n = values.len();
-    let own = DMatrix::from_fn(n, 2, |i, j| way.time_s[i].powi(j as i32)).qr().q();
+    let own = powers(n, 2, |i| way.time_s[i]).qr().q();
     let series = DVector::from_column_slice(values);
     (&series - &own * own.tr_mul(&series)).iter().copied().collect()
 }
@@ -118,8 +120,8 @@ fn within(way: &Way, values: &[f64]) -> Vec<f64> {
 fn floor(ways: &[Way]) -> f64 {
     let (mut sum, mut n) = (0.0, 0.0_f64);
     for way in ways.iter().filter(|w| w.time_s.len() > 5) {
-        let own = DMatrix::from_fn(way.time_s.len(), 4, |i, j| way.time_s[i].powi(j as i32)).qr().q();
-        let series = DVector::from_column_slice(&way.way_m);
+        let own = powers(way.time_s.len(), 4, |i| way.time_s[i]).qr().q();
+        let series = DVector::from_column_slice(&way.place_m);
         sum += (&series - &own * own.tr_mul(&series)).norm_squared();
         n += way.time_s.len() as f64 - 4.0;
     }
@@ -129,7 +131,9 @@ fn floor(ways: &[Way]) -> f64 {
 /// Slides scatter more than their samples do: `scatter` is the standard error by it.
 pub fn states(candidate: &Candidate, mut found: Vec<CauseParameter>, scatter: f64) -> Vec<CauseParameter> {
     if candidate.id == "load-friction" {
-        found.iter_mut().for_each(|p| p.std_error = p.std_error.hypot(scatter));
+        for p in &mut found {
+            p.std_error = p.std_error.hypot(scatter);
+        }
     }
     found
 }
@@ -139,7 +143,9 @@ pub fn shows(found: &Found<'_>) -> String {
     match found.candidate.id {
         "load-friction" => {
             let (value, error) = found.parameters.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
-            format!("the body slows down evenly while it slides, whatever its speed: dry friction, mu = {value:.3} ± {error:.3}")
+            format!(
+                "the body slows down evenly while it slides, whatever its speed: dry friction, mu = {value:.3} ± {error:.3}"
+            )
         }
         "viscous-friction" => "the faster the body slides, the more it slows down".to_owned(),
         "quadratic-drag" => "the body slows down with the square of its speed".to_owned(),

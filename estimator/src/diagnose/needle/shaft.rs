@@ -17,23 +17,16 @@ use haptics::law::object::{MembraneHistory, MembraneLaw};
 use haptics::law::{Coordinate, Kind, Motion};
 
 /// Fewer rows in a hole show nothing.
-const LEAST_ROWS: usize = 30;
+const LEAST_ROWS: usize = 60;
 /// Half of the filter's window, with some room, s, and how clear a direction must be.
 const WINDOW_S: f64 = 0.018;
 const NOISES: f64 = 3.0;
-/// Causes of the dictionary that a shaft in a hole can have.
-const POSSIBLE: [&str; 10] = [
-    "coulomb-friction",
-    "viscous-friction",
-    "quadratic-drag",
-    "friction-asymmetry",
-    "stribeck",
-    "hysteresis",
-    "friction-change",
-    "force-drift",
-    "return-spring",
-    "local-resistance",
-];
+/// Causes of the dictionary that are asked for in a hole. Where it rubs more than elsewhere, and what bends its friction with speed, is
+/// not: the place of a needle between two pads is not known well enough for that.
+const POSSIBLE: [&str; 6] =
+    ["coulomb-friction", "viscous-friction", "quadratic-drag", "hysteresis", "friction-change", "force-drift"];
+/// The rim of a world's hole may be softer or stiffer than its sheet by so much, in a first step.
+const RIM_SHARE: f64 = 0.05;
 
 /// The comparison.
 pub struct Shaft {
@@ -49,8 +42,7 @@ pub struct Shaft {
 pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Option<Shaft>, EstimateError> {
     // Where the way turns round within a filter's window the force is of both directions.
     let turns = |r: &Row| r.rate_m_s.abs() < WINDOW_S * r.acceleration_m_s2.abs() + NOISES * needle.rate_noise_m_s;
-    let rows: Vec<Row> =
-        needle.rows.iter().filter(|r| r.phase == Phase::Hole && !turns(r)).copied().collect();
+    let rows: Vec<Row> = needle.rows.iter().filter(|r| r.phase == Phase::Hole && !turns(r)).copied().collect();
     if rows.len() < LEAST_ROWS {
         return Ok(None);
     }
@@ -58,18 +50,24 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
     blur(&mut track);
     let of = |f: &dyn Fn(usize) -> f64| (0..rows.len()).map(f).collect::<Vec<f64>>();
     let y = of(&|i| rows[i].force_n);
-    let mut base: Vec<Vec<f64>> =
-        (0..needle.holds).map(|h| of(&|i| f64::from(u8::from(rows[i].hold == h)))).collect();
+    let mut base: Vec<Vec<f64>> = (0..needle.holds).map(|h| of(&|i| f64::from(u8::from(rows[i].hold == h)))).collect();
+    if needle.two_fingered {
+        // The needle's own mass; a tool's sensor sits behind none.
+        base.push(of(&|i| rows[i].acceleration_m_s2));
+    }
     let offsets = base.len();
     let direction = of(&|i| track.rows[i].motion.direction);
     if let Some(law) = law {
-        base.push(held(law, &rows));
+        let friction = held(law, &rows);
+        let stiffer = MembraneLaw { stiffness_n_m: (1.0 + RIM_SHARE) * law.stiffness_n_m, ..*law };
+        base.push(held(&stiffer, &rows).iter().zip(&friction).map(|(s, f)| s - f).collect());
+        base.push(friction);
         base.push(of(&|i| rows[i].rate_m_s));
     }
     let mut first = base.clone();
     first.push(direction.clone());
     let look = least_squares(&first, &y, None)?;
-    let dry = look.values[first.len() - 1].abs() + if law.is_some() { look.values[offsets].abs() } else { 0.0 };
+    let dry = look.values[first.len() - 1].abs() + if law.is_some() { look.values[offsets + 1].abs() } else { 0.0 };
     let resisting: Vec<f64> = direction.iter().map(|d| dry * d).collect();
     let dictionary =
         Dictionary { track: &track, predicted: &resisting, resisting: &resisting, fixed: &[], without: &[] };

@@ -12,7 +12,7 @@ use haptics::law::Kind;
 use haptics::law::object::MembraneLaw;
 
 /// Shares of the deepest insertion that may stay as a dent.
-const DENTS: [f64; 7] = [0.05, 0.1, 0.18, 0.27, 0.37, 0.5, 0.65];
+const DENTS: [f64; 16] = [0.04, 0.07, 0.1, 0.13, 0.16, 0.19, 0.22, 0.25, 0.28, 0.32, 0.36, 0.4, 0.45, 0.5, 0.58, 0.66];
 
 /// The comparison.
 pub struct Sheet {
@@ -37,13 +37,24 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         Some(law) => of(&|r| if touches(r) { with_dent(law.give, r, &elastic) } else { 0.0 }),
         None => of(&pressed),
     });
+    if needle.two_fingered {
+        // The needle's own mass; a tool's sensor sits behind none.
+        base.push(of(&|r| if is_held(r) { r.acceleration_m_s2 } else { 0.0 }));
+    }
     // Where the surface is, to first order.
     base.push(of(&|r| f64::from(u8::from(touches(r)))));
     let mut candidates = vec![
         Candidate::one("stiffness-hardening", Kind::Plant, "k3", "N/m³", of(&|r| pressed(r).powi(3))).positive(),
-        Candidate::one("stiffness-hardening", Kind::Plant, "hertz", "N/m^1.5", of(&|r| pressed(r).powf(1.5))).positive(),
-        Candidate::one("viscous-friction", Kind::Plant, "c", "N s/m", of(&|r| if touches(r) { r.rate_m_s } else { 0.0 }))
+        Candidate::one("stiffness-hardening", Kind::Plant, "hertz", "N/m^1.5", of(&|r| pressed(r).powf(1.5)))
             .positive(),
+        Candidate::one(
+            "viscous-friction",
+            Kind::Plant,
+            "c",
+            "N s/m",
+            of(&|r| if touches(r) { r.rate_m_s } else { 0.0 }),
+        )
+        .positive(),
         Candidate::one("force-bias", Kind::Instrument, "b", "N", of(&|_| 1.0)),
         Candidate::one("force-drift", Kind::Instrument, "rate", "N/s", of(&|r| r.time_s)),
     ];
@@ -60,13 +71,12 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         expression: Some(expression.to_owned()),
         ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
     };
-    candidates.push(term("x²", of(&|r| pressed(r).powi(2))));
     candidates.extend((1..=3).map(|n| {
         let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * r.time_s / span).cos());
         term(&format!("cos({n} pi t/T)"), wave)
     }));
     let y = of(&|r| r.force_n);
-    let along: Vec<bool> = rows.iter().enumerate().map(|(i, r)| is_held(r) && i % 2 == 0).collect();
+    let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
     let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();
     let floor_n = white_noise(&y);
     let weight = vec![1.0; y.len()];
@@ -130,7 +140,9 @@ fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
         "stiffness-hardening" if candidate.linear[0].0 == "k3" => (5e5, "the sheet was hardly pressed in"),
         "hysteresis" => (1.0, "the needle was never drawn back before it went through; push, draw back and push on"),
         "viscous-friction" => (2.0, "the sheet was pressed at one speed; push slowly and fast"),
-        "force-bias" => (0.01, "the needle was held all the time: a bias passes for its weight; start with empty fingers"),
+        "force-bias" => {
+            (0.01, "the needle was held all the time: a bias passes for its weight; start with empty fingers")
+        }
         "force-drift" => (0.01 / 10.0, "the needle was outside the sheet too briefly at one end of the recording"),
         _ => return None,
     })

@@ -194,8 +194,9 @@ impl<'a> Blocks<'a> {
         let vertical: Vec<f64> = signals.velocity.iter().map(|v| v.y).collect();
         let acceleration_y = smooth(&signals.time_s, &vertical).slope;
         let width = smooth(&signals.time_s, &signals.grip_width_m);
-        let normal =
-            |finger: usize, i: usize| signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x) - levels.bias_n[finger].x;
+        let normal = |finger: usize, i: usize| {
+            signals.tips[finger].force.as_ref().map_or(0.0, |f| f[i].x) - levels.bias_n[finger].x
+        };
         let grip: Vec<f64> = (0..signals.len()).map(|i| 0.5 * (normal(0, i) - normal(1, i))).collect();
         let grip = smooth(&signals.time_s, &grip).value;
         let bias_y = levels.bias_n[0].y + levels.bias_n[1].y;

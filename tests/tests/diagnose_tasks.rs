@@ -1,0 +1,153 @@
+//! Carried blocks, needles and thrown bodies with something hidden: it must be named, and nothing where nothing is.
+//!
+//! A new seed every day, printed for replay: `TOUCHSTONE_SEED=20400 cargo test -p tests --test diagnose_tasks`. More cases of each kind:
+//! `TOUCHSTONE_TASK_CASES=30`. Demands leave room for the luck of few cases; the figures of a large set are in `docs/diagnosis.md`.
+
+use blind::Share;
+use estimator::diagnose::{Options, Verdict, diagnose};
+use haptics::recording::{Recording, Span};
+use rayon::prelude::*;
+use std::sync::OnceLock;
+use std::time::{SystemTime, UNIX_EPOCH};
+use tests::tasks::score::{Row, ask, table};
+use tests::tasks::{blocks, needle, throw};
+
+/// Chance of a false alarm of one assertion, a day.
+const LUCK: f64 = 1e-4;
+
+fn told(name: &str) -> Option<u64> {
+    std::env::var(name).ok().and_then(|text| text.parse().ok())
+}
+
+/// Days since 1970, unless told.
+fn seed() -> u64 {
+    let today = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |time| time.as_secs() / 86_400);
+    told("TOUCHSTONE_SEED").unwrap_or_else(today)
+}
+
+#[derive(Clone, Copy)]
+enum Any {
+    Block(blocks::Kind),
+    Needle(needle::Kind),
+    Throw(throw::Kind),
+}
+
+/// All answers, made once for all tests.
+fn rows() -> &'static [Row] {
+    static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
+    ROWS.get_or_init(|| {
+        let (seed, cases) = (seed(), told("TOUCHSTONE_TASK_CASES").unwrap_or(3));
+        println!("TOUCHSTONE_SEED={seed} repeats it");
+        let mut kinds: Vec<(&'static str, Any)> = Vec::new();
+        kinds.extend(blocks::Kind::ALL.map(|(name, kind)| (name, Any::Block(kind))));
+        kinds.extend(needle::Kind::ALL.map(|(name, kind)| (name, Any::Needle(kind))));
+        kinds.extend(throw::Kind::ALL.map(|(name, kind)| (name, Any::Throw(kind))));
+        let jobs: Vec<(&'static str, Any, u64)> = kinds
+            .into_iter()
+            .flat_map(|(name, kind)| {
+                // Nothing to be found is asked for more often.
+                let count = if name.contains("nothing") { 3 * cases } else { cases };
+                (0..count).map(move |k| (name, kind, seed.wrapping_mul(1009).wrapping_add(k)))
+            })
+            .collect();
+        let rows: Vec<Row> = jobs
+            .par_iter()
+            .with_max_len(1)
+            .map(|&(name, kind, seed)| {
+                let case = match kind {
+                    Any::Block(kind) => blocks::make(kind, seed),
+                    Any::Needle(kind) => needle::make(kind, seed),
+                    Any::Throw(kind) => throw::make(kind, seed),
+                };
+                ask(name, seed, case)
+            })
+            .collect();
+        for row in rows.iter().filter(|r| !r.right() || r.spurious() > 0 || !r.verdict_fits()) {
+            println!("{}", row.line());
+        }
+        println!("{}", table(&rows));
+        rows
+    })
+}
+
+/// Fails when the share is below what luck explains at a true share of `demanded`.
+fn at_least(what: &str, share: Share, demanded: f64) {
+    assert!(share.of > 0, "{what}: no case asks for it");
+    let seed = seed();
+    assert!(share.at_most(LUCK) >= demanded, "{what}: {share}, demanded {demanded}; TOUCHSTONE_SEED={seed} repeats it");
+}
+
+fn of(keep: impl Fn(&Row) -> bool) -> Vec<&'static Row> {
+    rows().iter().filter(|r| keep(r)).collect()
+}
+
+#[test]
+fn nothing_is_found_where_nothing_is() {
+    let nulls = of(|r| r.kind.contains("nothing"));
+    at_least("nulls that are called nothing", Share::count(nulls, Row::verdict_fits), 0.97);
+}
+
+#[test]
+fn what_is_hidden_is_named() {
+    let hidden = |part: fn(&str) -> bool| of(move |r| !r.kind.contains("nothing") && part(r.kind));
+    let blocks = hidden(|kind| !kind.contains(':'));
+    at_least("blocks: named", Share::count(blocks.clone(), Row::right), 0.95);
+    at_least("blocks: in the set", Share::count(blocks, Row::in_set), 0.95);
+    at_least("needles: named", Share::count(hidden(|kind| kind.starts_with("needle")), Row::right), 0.93);
+    at_least("throws: named", Share::count(hidden(|kind| kind.starts_with("throw")), Row::right), 0.97);
+}
+
+#[test]
+fn little_is_named_that_is_not_there() {
+    let hidden = of(|r| !r.kind.contains("nothing"));
+    at_least("answers without anything else", Share::count(hidden, |r| r.spurious() == 0), 0.85);
+}
+
+#[test]
+fn a_change_of_weight_and_a_drift_are_told_apart_only_by_letting_go() {
+    let cut = of(|r| r.kind.ends_with("cut off"));
+    at_least("open, or settled by what little was free", Share::count(cut, Row::verdict_fits), 0.9);
+    let whole = of(|r| r.kind == "leak" || r.kind == "drift");
+    at_least("told apart", Share::count(whole, |r| r.right() && r.spurious() == 0), 0.93);
+    for row in of(|r| r.kind == "leak, cut off") {
+        let Ok(answer) = &row.answer else { continue };
+        if answer.verdict == Verdict::Ambiguous {
+            let next = answer.next_experiment.as_ref().expect("an open question asks for a recording");
+            assert!(next.motion.contains("let go"), "{}", next.motion);
+        }
+    }
+}
+
+/// The first recording ends while the leaking block is in the air; the second one does not.
+#[test]
+fn a_later_recording_settles_what_an_earlier_one_left_open() {
+    let (mut settled, mut open) = (0, 0);
+    for k in 0..4 {
+        let seed = seed().wrapping_mul(31).wrapping_add(k);
+        let (cut, _) = blocks::make(blocks::Kind::LeakCut, seed);
+        let (whole, _) = blocks::make(blocks::Kind::Leak, seed);
+        let alone = diagnose(&cut.recordings, &cut.options).expect("a block was carried");
+        if alone.verdict != Verdict::Ambiguous {
+            continue;
+        }
+        open += 1;
+        let named = |r: &Recording, name: &str| Recording { name: name.to_owned(), ..r.clone() };
+        let both = [named(&cut.recordings[0], "first"), named(&whole.recordings[0], "second")];
+        let answer = diagnose(&both, &cut.options).expect("blocks were carried");
+        println!("{k}: {:?} {:?}", answer.verdict, answer.settled);
+        let said =
+            answer.settled.iter().any(|s| s.by == "second" && s.kept == "mass-change" && s.excluded == "force-drift");
+        settled += usize::from(said);
+    }
+    assert!(open > 0, "no recording was open");
+    at_least("settled", Share { hits: settled, of: open }, 0.9);
+}
+
+/// What cannot be diagnosed is said in one sentence.
+#[test]
+fn recordings_without_what_is_asked_for_end_in_a_sentence() {
+    let (case, _) = blocks::make(blocks::Kind::Nothing, 5);
+    let free = case.recordings[0].slice(Span { first: 0, end: 400 });
+    let error = diagnose(&[free], &Options::default()).expect_err("nothing was carried").to_string();
+    assert!(error.contains("no block was carried"), "{error}");
+}
