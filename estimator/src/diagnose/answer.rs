@@ -1,6 +1,7 @@
 //! From comparisons of several channels to one answer in words.
 
 use super::candidate::Candidate;
+use super::course::Course;
 use super::explain::{p_value, parameters, rivals};
 use super::gain::{gain, rms, whiteness_p};
 use super::geometry::Study;
@@ -186,6 +187,7 @@ pub fn answer(
         warnings,
         validation: Vec::new(),
         settled: Vec::new(),
+        course: Course::default(),
         plain: Vec::new(),
         effects: Vec::new(),
     }

@@ -72,6 +72,12 @@ struct Sheet {
     drag_n_s_m: f64,
 }
 
+impl Sheet {
+    fn elastic_n(&self, x: f64) -> f64 {
+        self.stiffness_n_m * x + self.cubic_n_m3 * x.powi(3)
+    }
+}
+
 /// A smooth way through turning points (time, place).
 fn way(t: f64, turns: &[(f64, f64)]) -> f64 {
     let k = turns.partition_point(|(at, _)| *at <= t);
@@ -135,15 +141,17 @@ fn tool(kind: Kind, chance: &mut Chance) -> (Case, Truth) {
     (Case { recordings: vec![perform(&sheet, drift_n_s, chance)], options: Options::default() }, truth)
 }
 
+/// Where the tool is wanted: along its way in, and across.
+struct Plan {
+    turns: Vec<(f64, f64)>,
+    cross: Vec<(f64, f64)>,
+}
+
 /// In a little, back, through, to and fro in the hole at two speeds, out; the same at another place.
-fn perform(sheet: &Sheet, drift_n_s: f64, chance: &mut Chance) -> Recording {
-    const FINE_S: f64 = 5e-5;
-    let rate_hz = chance.pick(&[250.0, 500.0, 1000.0]);
-    let every = (1.0 / (rate_hz * FINE_S)).round() as usize;
-    let elastic = |x: f64| sheet.stiffness_n_m * x + sheet.cubic_n_m3 * x.powi(3);
+fn plan(sheet: &Sheet, chance: &mut Chance) -> Plan {
     let through = |force: f64| {
         let mut x = 0.0;
-        while elastic(x) < force {
+        while sheet.elastic_n(x) < force {
             x += 1e-6;
         }
         x
@@ -174,13 +182,22 @@ fn perform(sheet: &Sheet, drift_n_s: f64, chance: &mut Chance) -> Recording {
         cross.extend([(at, side), (at + 0.8, side + 8e-3)]);
         turns.push((at + 1.0, outside));
     }
+    Plan { turns, cross }
+}
+
+/// The sheet under the tool, and what its instruments read.
+fn perform(sheet: &Sheet, drift_n_s: f64, chance: &mut Chance) -> Recording {
+    const FINE_S: f64 = 5e-5;
+    let rate_hz = chance.pick(&[250.0, 500.0, 1000.0]);
+    let every = (1.0 / (rate_hz * FINE_S)).round() as usize;
+    let Plan { turns, cross } = plan(sheet, chance);
     let end_s = turns[turns.len() - 1].0 + 0.5;
     let surface_m = chance.between(-0.02, 0.02);
     let bias = 0.03 * chance.normal();
     let phase = chance.between(0.0, 6.0);
     let (mut deepest, mut pierced, mut place) = (0.0_f64, false, 0_usize);
     let (mut time, mut depth, mut side, mut force) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let mut before = outside;
+    let mut before = turns[0].1;
     for fine in 0..(end_s / FINE_S) as usize {
         let t = fine as f64 * FINE_S;
         let across = way(t, &cross);
@@ -197,7 +214,11 @@ fn perform(sheet: &Sheet, drift_n_s: f64, chance: &mut Chance) -> Recording {
             f = sheet.dry_n[place] * speed / (speed * speed + 1e-8).sqrt() + sheet.drag_n_s_m * speed;
         } else if x > 0.0 {
             let left = sheet.dent * deepest;
-            f = if x >= deepest { elastic(x) } else { elastic(deepest) * ((x - left) / (deepest - left)).max(0.0) };
+            f = if x >= deepest {
+                sheet.elastic_n(x)
+            } else {
+                sheet.elastic_n(deepest) * ((x - left) / (deepest - left)).max(0.0)
+            };
             deepest = deepest.max(x);
             pierced = f >= sheet.puncture_n[place];
         }

@@ -3,6 +3,7 @@
 use super::{Case, Truth};
 use blind::Share;
 use estimator::diagnose::{Diagnosis, Verdict, diagnose};
+use std::fmt::Write;
 
 /// One case, asked.
 pub struct Row {
@@ -99,8 +100,9 @@ pub fn table(rows: &[Row]) -> String {
         let mut errors: Vec<f64> = of.iter().filter_map(|r| Some(r.off()?.0.abs())).collect();
         errors.sort_by(f64::total_cmp);
         let held = of.iter().filter_map(|r| r.off()).filter(|(_, s)| s.abs() < 1.96).count();
-        text += &format!(
-            "{kind:22} right {} | in set {} | verdict {} | spurious {spurious} | median error {:.1} %, in interval {held}/{}\n",
+        let _ = writeln!(
+            text,
+            "{kind:22} right {} | in set {} | verdict {} | spurious {spurious} | median error {:.1} %, in interval {held}/{}",
             share(&|r| r.right()),
             share(&|r| r.in_set()),
             share(&|r| r.verdict_fits()),

@@ -72,12 +72,12 @@ pub fn look(
             let seen = speed * with.scale + noise(with.velocity_m_s);
             row.extend([round(seen.x, 1e-5), round(seen.y, 1e-5)]);
         }
-        for f in 0..2 {
+        for (f, slow) in slow.iter_mut().enumerate() {
             let true_n = tick.tip_force_n[f];
-            slow[f] = keep * slow[f] + noise((1.0 - keep * keep).sqrt());
+            *slow = keep * *slow + noise((1.0 - keep * keep).sqrt());
             let mut seen = true_n * with.gain + Vec2::new(0.0, with.cross[f] * true_n.x);
             seen += with.bias_n[f] + with.drift_n_s[f] * tick.time_s;
-            seen += with.force_n * half * (slow[f] + noise(1.0));
+            seen += with.force_n * half * (*slow + noise(1.0));
             row.extend([round(seen.x, 1e-3), round(seen.y, 1e-3)]);
         }
         columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));

@@ -135,7 +135,7 @@ pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
             truth.value = Some(("e", world.restitution));
         }
     }
-    let recordings = (0..90).map(|k| throw(&world, k % 2 == 0, k, &mut chance)).collect();
+    let recordings = (0..130).map(|k| throw(&world, k % 2 == 0, k, &mut chance)).collect();
     (Case { recordings, options: Options::default() }, truth)
 }
 

@@ -17,6 +17,8 @@ const SLACK: [f64; 5] = [0.15, 0.4, 0.6, 0.75, 0.88];
 /// So many of them are refined, in so many halvings of the steps.
 const REFINED: usize = 4;
 const HALVINGS: usize = 9;
+/// Moves with one size of steps, at most: where nothing is tied the search has no end.
+const MOVES: usize = 15;
 /// A wall is a cable from so many half ranges away.
 const FAR: f64 = 200.0;
 
@@ -91,7 +93,7 @@ fn refined(start: Tie, worth: &dyn Fn(Tie) -> f64) -> Tie {
     let mut best = (worth(start), start);
     let mut steps = [0.15, 0.15, 0.15];
     for _ in 0..HALVINGS {
-        loop {
+        for _ in 0..MOVES {
             let before = best.0;
             for (k, step) in steps.into_iter().enumerate() {
                 for sign in [1.0, -1.0] {
@@ -104,7 +106,7 @@ fn refined(start: Tie, worth: &dyn Fn(Tie) -> f64) -> Tie {
                     }
                 }
             }
-            if best.0 <= before * (1.0 + 1e-9) {
+            if best.0 <= before * (1.0 + 1e-4) {
                 break;
             }
         }

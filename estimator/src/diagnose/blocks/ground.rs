@@ -120,7 +120,9 @@ fn add(
     (recording, placed): (usize, bool),
     (rest, cross): (&Rest, [f64; 2]),
 ) {
-    let picked = one.every(rest.samples.iter().copied());
+    let mut samples = if placed { one.standing(rest.carry + 1) } else { Vec::new() };
+    samples.extend(&rest.samples);
+    let picked = one.every(samples.into_iter());
     if picked.len() < LEAST_ROWS {
         return;
     }

@@ -13,6 +13,10 @@ const LEAST_FREE_S: f64 = 0.25;
 const ENDS_S: f64 = 0.05;
 /// Less than this share of the usual lift is not all of the weight.
 const WHOLE: f64 = 0.75;
+/// Slower than this it rests, m/s; rows that are looked at before it does; and a lift that is another one.
+const REST_M_S: f64 = 8e-3;
+const BEFORE: usize = 6;
+const OTHER_LIFT: f64 = 0.05;
 /// A block that was just lifted swings behind its pads, s.
 const SWINGS_S: f64 = 0.12;
 
@@ -73,19 +77,46 @@ impl<'a> Seen<'a> {
         self.blocks.signals.time_s[i]
     }
 
-    /// Rows in which a block is carried, from when it no longer swings.
+    /// Rows in which a block is carried, from when it no longer swings to when something else carries it as well.
     pub fn carried(&self, number: usize) -> Vec<usize> {
+        self.carried_and_standing(number).0
+    }
+
+    /// Rows at the end of a carry in which the block stands already, although the lift is still upwards.
+    pub fn standing(&self, number: usize) -> Vec<usize> {
+        self.carried_and_standing(number).1
+    }
+
+    fn carried_and_standing(&self, number: usize) -> (Vec<usize>, Vec<usize>) {
         let samples = self.blocks.shown(MAIN, number);
-        let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return Vec::new() };
+        let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return (Vec::new(), Vec::new()) };
         let (start, end) = (self.time_s(*first) + SWINGS_S, self.time_s(*last));
         let mut rows = self.every(samples.into_iter().filter(|i| (start..=end).contains(&self.time_s(*i))));
         let mut lifts: Vec<f64> = rows.iter().map(|i| self.blocks.lift[*i]).collect();
         // A block that the ground takes over already at either end is no longer carried.
         let least = WHOLE * percentile(&mut lifts, 0.5);
         let light = |i: &usize| self.blocks.lift[*i] < least;
-        rows.truncate(rows.iter().rposition(|i| !light(i)).map_or(0, |k| k + 1));
+        let mut standing = rows.split_off(rows.iter().rposition(|i| !light(i)).map_or(0, |k| k + 1));
         rows.drain(..rows.iter().position(|i| !light(i)).unwrap_or(0));
-        rows
+        let put = self.put_down(&rows).unwrap_or(rows.len());
+        let mut still = rows.split_off(put);
+        still.append(&mut standing);
+        (rows, still)
+    }
+
+    /// From which row on a block that was lowered rests, with another lift than in the air.
+    fn put_down(&self, rows: &[usize]) -> Option<usize> {
+        let speed = |i: usize| self.velocity[0][i].hypot(self.velocity[1][i]);
+        let moved = rows.iter().rposition(|i| speed(*i) > REST_M_S)?;
+        let from = moved + 1;
+        if from + 2 > rows.len() || from < BEFORE {
+            return None;
+        }
+        let before = &rows[from.saturating_sub(2 * BEFORE)..from - 2];
+        let lowered = before.iter().any(|i| self.velocity[1][*i] < -REST_M_S);
+        let mean = |rows: &[usize]| rows.iter().map(|i| self.blocks.lift[*i]).sum::<f64>() / rows.len() as f64;
+        let (carried, now) = (mean(before), mean(&rows[from..]));
+        (lowered && (now - carried).abs() > OTHER_LIFT * carried.abs()).then_some(from.saturating_sub(2))
     }
 
     /// Rows in which a block is gripped.

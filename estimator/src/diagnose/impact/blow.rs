@@ -26,7 +26,7 @@ const TOGETHER: f64 = 0.1;
 /// A slower blow tells nothing, m/s.
 const SLOW_M_S: f64 = 0.4;
 /// Fewer blows show nothing.
-const LEAST_BLOWS: usize = 30;
+const LEAST_BLOWS: usize = 24;
 /// Score that makes a cause.
 const THRESHOLD: f64 = 20.0;
 

@@ -7,6 +7,7 @@ use crate::diagnose::compare::Channel;
 use crate::diagnose::dictionary::Dictionary;
 use crate::diagnose::force::blur;
 use crate::diagnose::geometry::Study;
+use crate::diagnose::grid::Grid;
 use crate::diagnose::report::CauseParameter;
 use crate::diagnose::track::{self, Track};
 use crate::estimate::EstimateError;
@@ -69,8 +70,15 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
     let look = least_squares(&first, &y, None)?;
     let dry = look.values[first.len() - 1].abs() + if law.is_some() { look.values[offsets + 1].abs() } else { 0.0 };
     let resisting: Vec<f64> = direction.iter().map(|d| dry * d).collect();
-    let dictionary =
-        Dictionary { track: &track, predicted: &resisting, resisting: &resisting, fixed: &[], without: &[] };
+    let grid = Grid::coarse(&track);
+    let dictionary = Dictionary {
+        track: &track,
+        predicted: &resisting,
+        resisting: &resisting,
+        fixed: &[],
+        without: &[],
+        grid: &grid,
+    };
     let mut candidates: Vec<Candidate> =
         dictionary.candidates().into_iter().filter(|c| POSSIBLE.contains(&c.id)).collect();
     if law.is_some() {
@@ -147,10 +155,13 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
             force: Vec2::new(r.force_n, 0.0),
             force_rate: Vec2::zeros(),
             y: r.force_n,
+            span: track::Span::default(),
+            open: 0.0,
         })
         .collect();
     Track {
         rows: along,
+        fine: Vec::new(),
         period_s: needle.period_s,
         raw_period_s: needle.period_s,
         coordinate: Coordinate::Linear,

@@ -71,6 +71,8 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         expression: Some(expression.to_owned()),
         ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
     };
+    // A curve of another form still: it keeps the whitening honest.
+    candidates.push(term("x²", of(&|r| pressed(r).powi(2))));
     candidates.extend((1..=3).map(|n| {
         let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * r.time_s / span).cos());
         term(&format!("cos({n} pi t/T)"), wave)
