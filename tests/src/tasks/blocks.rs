@@ -91,6 +91,13 @@ fn perform(world: &World, skill: Skill, seed: u64) -> Act {
     act(world, seed, skill, &Errors { mistakes: &[], fumbles: Vec::new(), looks: false }, KEPT)
 }
 
+/// Whether a block that stands until `to_s` does not any more: a slip that pulls at it lifts it up again.
+fn lifts_off(world: &World, skill: Skill, seed: u64, to_s: f64) -> bool {
+    let done = perform(world, skill, seed);
+    let mut late = done.ticks.iter().filter(|t| (to_s - 0.2..to_s - 0.05).contains(&t.time_s));
+    late.any(|t| t.label != "hold-on-ground")
+}
+
 /// Times at which a stretch of one label begins and ends, s, in order.
 fn spans(of: &Act, label: &str) -> Vec<(f64, f64)> {
     let mut found: Vec<(f64, f64)> = Vec::new();
@@ -187,11 +194,16 @@ fn hide(
             // On the ground: when the first block has been put down.
             let (from, to) = if kind == Kind::AirSlip { spans[0] } else { spans[1] };
             let way = chance.of_order(0.5e-3, 1.6e-3) * chance.sign();
-            world.pad.slip = Some(FingertipSlip {
+            let slip = FingertipSlip {
                 way_m: Vec2::new(0.0, way),
                 t0_s: from + chance.between(share.0, share.1) * (to - from),
                 duration_s: chance.between(0.0, 0.2),
-            });
+            };
+            world.pad.slip = Some(slip);
+            if kind == Kind::GroundSlip && lifts_off(world, skill, seed, to) {
+                // The other way round the fingers press the block down as they slip.
+                world.pad.slip = Some(FingertipSlip { way_m: -slip.way_m, ..slip });
+            }
             truth.hidden = vec!["fingertip-slip"];
         }
         Kind::Inertia => {

@@ -4,7 +4,7 @@ use crate::diagnose::compare::stretches;
 use crate::estimate::EstimateError;
 use crate::identify::needle::Sheet;
 use crate::identify::needle::signals::{Along, along};
-use crate::identify::needle::strokes::{Push, pushes};
+use crate::identify::needle::strokes::{BEYOND_DENT_M, Push, pushes};
 use crate::signal::task::{half_width, smooth, times};
 use haptics::recording::Recording;
 use std::ops::Range;
@@ -176,7 +176,7 @@ fn phases(
                 // Pushed in again below the dent, or drawn back.
                 _ => Some(Phase::Unloading),
             };
-            found[i] = phase.map(|p| (p, h, *k, deepest.max(push.untouched_from_m)));
+            found[i] = phase.map(|p| (p, h, *k, deepest.max(push.untouched_from_m - BEYOND_DENT_M)));
         }
     }
     found

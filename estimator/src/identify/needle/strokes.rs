@@ -11,7 +11,7 @@ const TURN_M: f64 = 2e-4;
 /// Places closer than this are the same hole, m.
 const SAME_PLACE_M: f64 = 1e-3;
 /// Beyond an earlier dent by this much, the sheet is untouched again, m.
-const BEYOND_DENT_M: f64 = 1e-4;
+pub const BEYOND_DENT_M: f64 = 1e-4;
 /// The needle is through when the force falls below this share of its peak …
 const FALLEN: f64 = 0.6;
 /// … while the needle has not been drawn back by more than this share of its depth.
