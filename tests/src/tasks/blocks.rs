@@ -186,26 +186,7 @@ fn hide(
             world.pad.cubic_n_m3 = k3;
             truth.hidden = vec!["stiffness-hardening"];
         }
-        Kind::GroundSlip | Kind::AirSlip => {
-            let done = perform(world, skill, seed);
-            let (label, share) =
-                if kind == Kind::AirSlip { ("hold-above-ground", (0.2, 0.8)) } else { ("hold-on-ground", (0.25, 0.6)) };
-            let spans = spans(&done, label);
-            // On the ground: when the first block has been put down.
-            let (from, to) = if kind == Kind::AirSlip { spans[0] } else { spans[1] };
-            let way = chance.of_order(0.5e-3, 1.6e-3) * chance.sign();
-            let slip = FingertipSlip {
-                way_m: Vec2::new(0.0, way),
-                t0_s: from + chance.between(share.0, share.1) * (to - from),
-                duration_s: chance.between(0.0, 0.2),
-            };
-            world.pad.slip = Some(slip);
-            if kind == Kind::GroundSlip && lifts_off(world, skill, seed, to) {
-                // The other way round the fingers press the block down as they slip.
-                world.pad.slip = Some(FingertipSlip { way_m: -slip.way_m, ..slip });
-            }
-            truth.hidden = vec!["fingertip-slip"];
-        }
+        Kind::GroundSlip | Kind::AirSlip => slip(kind, world, truth, (skill, seed), chance),
         Kind::Inertia => {
             truth.hidden = vec!["inertia"];
             truth.value = Some(("m block-1", world.blocks[0].mass_kg));
@@ -257,6 +238,28 @@ fn hide(
             truth.value = Some(("epsilon", instruments.scale - 1.0));
         }
     }
+}
+
+/// The grasp point moves on the block, at once or within a fifth of a second.
+fn slip(kind: Kind, world: &mut World, truth: &mut Truth, (skill, seed): (Skill, u64), chance: &mut Chance) {
+    let done = perform(world, skill, seed);
+    let (label, share) =
+        if kind == Kind::AirSlip { ("hold-above-ground", (0.2, 0.8)) } else { ("hold-on-ground", (0.25, 0.6)) };
+    let spans = spans(&done, label);
+    // On the ground: when the first block has been put down.
+    let (from, to) = if kind == Kind::AirSlip { spans[0] } else { spans[1] };
+    let way = chance.of_order(0.5e-3, 1.6e-3) * chance.sign();
+    let slip = FingertipSlip {
+        way_m: Vec2::new(0.0, way),
+        t0_s: from + chance.between(share.0, share.1) * (to - from),
+        duration_s: chance.between(0.0, 0.2),
+    };
+    world.pad.slip = Some(slip);
+    if kind == Kind::GroundSlip && lifts_off(world, skill, seed, to) {
+        // The other way round the fingers press the block down as they slip.
+        world.pad.slip = Some(FingertipSlip { way_m: -slip.way_m, ..slip });
+    }
+    truth.hidden = vec!["fingertip-slip"];
 }
 
 /// From where the first block starts it is carried to the right: the cable gets taut on the way.
