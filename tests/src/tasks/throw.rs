@@ -98,7 +98,7 @@ struct World {
 }
 
 const RATE_HZ: f64 = 150.0;
-const PARTS: usize = 200;
+const PARTS: usize = 80;
 
 /// A case of a kind.
 pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
