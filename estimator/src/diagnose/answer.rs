@@ -52,10 +52,15 @@ impl Part<'_> {
         let gain = gain(self.study, k, self.floor);
         let parameters = (self.states)(candidate, parameters(self.study, k));
         let shown = (self.shows)(&Found { candidate, parameters: &parameters });
-        let evidence = format!(
-            "{shown}; on data held out the {} that is left falls from {:.3e} to {:.3e} {} RMS (score {:.0})",
-            self.channel, gain.heldout_rms_before, gain.heldout_rms_after, self.unit, chosen.score
-        );
+        let held_out = if gain.heldout_rms_before > 0.0 {
+            format!(
+                "on data held out the {} that is left falls from {:.3e} to {:.3e} {} RMS",
+                self.channel, gain.heldout_rms_before, gain.heldout_rms_after, self.unit
+            )
+        } else {
+            "there were too few rows to hold any out".to_owned()
+        };
+        let evidence = format!("{shown}; {held_out} (score {:.0})", chosen.score);
         Cause {
             id: candidate.id.to_owned(),
             kind: candidate.kind,

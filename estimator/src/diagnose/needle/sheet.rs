@@ -24,7 +24,9 @@ pub struct Sheet {
 
 /// Compares what the sheet may be beside a linear spring (or the law of a world), and what may be wrong with the force.
 pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Sheet, EstimateError> {
-    let rows: Vec<Row> = needle.rows.iter().filter(|r| r.phase != Phase::Hole).copied().collect();
+    let mut rows: Vec<Row> = needle.rows.iter().filter(|r| r.phase != Phase::Hole).copied().collect();
+    let floor_n = white_noise(&rows.iter().map(|r| r.force_n).collect::<Vec<f64>>());
+    shuffle(&mut rows);
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let touches = |r: &Row| matches!(r.phase, Phase::Loading | Phase::Unloading) && r.depth_m > 0.0;
     let pressed = |r: &Row| if touches(r) { r.depth_m } else { 0.0 };
@@ -80,7 +82,6 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
     let y = of(&|r| r.force_n);
     let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
     let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();
-    let floor_n = white_noise(&y);
     let weight = vec![1.0; y.len()];
     let channel = Channel {
         y,
@@ -92,6 +93,16 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         period_s: needle.period_s,
     };
     Ok(Sheet { study: channel.compare(threshold)?, along, stretch, floor_n })
+}
+
+/// A push is over within a second: rows that are held out in blocks would take all of one. Rows a filter window apart hardly hang
+/// together, so they are dealt out like cards, each a stretch of its own.
+fn shuffle(rows: &mut Vec<Row>) {
+    /// Hands that the rows are dealt to.
+    const HANDS: usize = 7;
+    let dealt = (0..HANDS).flat_map(|hand| rows.iter().skip(hand).step_by(HANDS).copied()).collect();
+    *rows = dealt;
+    rows.iter_mut().enumerate().for_each(|(k, row)| row.stretch = k);
 }
 
 /// A sheet that keeps a share of its deepest insertion as a dent: below the deepest place it is steeper, and lower.
