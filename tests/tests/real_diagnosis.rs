@@ -38,7 +38,7 @@ fn tossed_cubes_are_diagnosed_as_short_lengths_and_dry_friction() {
             "{scale:?}"
         );
         let dry = cause(&found, "load-friction");
-        assert!((0.15..0.25).contains(&dry.parameters[0].value) && dry.gain.interval[0] > 0.8, "{dry:?}");
+        assert!((0.15..0.25).contains(&dry.parameters[0].value) && dry.gain.share_of_explainable > 0.8, "{dry:?}");
         // On all of them nothing follows the speed; the second half has a little that does, beside the dry friction.
         let dry_only = found.causes.iter().all(|c| !["viscous-friction", "quadratic-drag"].contains(&c.id.as_str()));
         assert!(dry_only || part.len() < recordings.len(), "{:?}", found.causes);
