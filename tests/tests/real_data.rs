@@ -322,7 +322,7 @@ fn the_double_pendulum_shows_the_second_link_as_published_and_the_length_of_the_
         ("link2_inertia_kg_m2", 0.05087),
         ("coupling_kg_m2", 0.6256 * 0.2 * 0.2557),
         ("rotor2_inertia_kg_m2", rotor),
-        ("link1_moment_kg_m", 0.5235 * 0.2 + 0.6256 * 0.2),
+        ("link1_moment_kg_m", 1e-3 * (523.5 + 625.6) * 0.2),
         ("link2_moment_kg_m", 0.6256 * 0.2557),
         ("link1_length_m", 0.2),
         ("coulomb1_Nm", 0.16 * std::f64::consts::FRAC_PI_2),

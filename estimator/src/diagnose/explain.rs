@@ -65,18 +65,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         }
     }
     let strange = strange(study, &picks);
-    // Causes of the force come in the order in which they were found, those of the path where their score puts them.
-    let mut scores: Vec<f64> = vec![f64::INFINITY; faults.len()];
-    let mut causes: Vec<Cause> = faults;
-    for (score, cause) in found {
-        let place = if cause.evidence.contains("of the path") {
-            scores.iter().position(|s| *s < score).unwrap_or(scores.len())
-        } else {
-            scores.len()
-        };
-        scores.insert(place, score);
-        causes.insert(place, cause);
-    }
+    let mut causes = in_order(faults, found);
     let least = 1.0 / (1.0 + (0.5 * OPEN).exp());
     let open_ones: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > least).cloned().collect();
     let open = !open_ones.is_empty();
@@ -116,6 +105,22 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
     }
 }
 
+/// Faults first; causes of the force in the order in which they were found, those of the path where their score puts them.
+fn in_order(faults: Vec<Cause>, found: Vec<(f64, Cause)>) -> Vec<Cause> {
+    let mut scores: Vec<f64> = vec![f64::INFINITY; faults.len()];
+    let mut causes = faults;
+    for (score, cause) in found {
+        let place = if cause.evidence.contains("of the path") {
+            scores.iter().position(|s| *s < score).unwrap_or(scores.len())
+        } else {
+            scores.len()
+        };
+        scores.insert(place, score);
+        causes.insert(place, cause);
+    }
+    causes
+}
+
 /// The time between force and motion when it is no more than what sampling itself can make of it, s: a commanded force is recorded when
 /// it is given and acts in the sample after. A force that comes late is late, by however little.
 fn skew(study: &Study, k: usize, raw_period_s: f64) -> Option<f64> {
@@ -152,10 +157,18 @@ fn cause(study: &Study, k: usize, floor: f64, channel: &str) -> Cause {
         kind: candidate.kind,
         parameters: parameters(study, k),
         p_value: p_value(study, chosen),
-        posterior: 1.0 / (1.0 + chosen.rivals.iter().map(|(_, behind)| (-0.5 * behind).exp()).sum::<f64>()),
+        posterior: 1.0 / total_odds(study, chosen),
         gain,
         evidence,
     }
+}
+
+/// Likelihood of everything that could stand in a cause's place, in units of its own; a twin is as likely as itself.
+fn total_odds(study: &Study, chosen: &Chosen) -> f64 {
+    let own = study.candidates[chosen.candidate].id;
+    let rival = |id: &str| chosen.rivals.iter().any(|(c, _)| study.candidates[*c].id == id);
+    let twins = TWINS.iter().filter(|(a, b, _)| *a == own && !rival(b)).count();
+    1.0 + twins as f64 + chosen.rivals.iter().map(|(_, behind)| (-0.5 * behind).exp()).sum::<f64>()
 }
 
 /// By chance, among all that were tried.
@@ -224,7 +237,7 @@ fn number(name: &str, value: f64, std_error: f64, unit: &str) -> CauseParameter 
 
 pub(super) fn rivals(study: &Study, chosen: &Chosen) -> Vec<Alternative> {
     let own = study.candidates[chosen.candidate].id;
-    let total = 1.0 + chosen.rivals.iter().map(|(_, behind)| (-0.5 * behind).exp()).sum::<f64>();
+    let total = total_odds(study, chosen);
     let mut found: Vec<Alternative> = chosen
         .rivals
         .iter()
@@ -240,7 +253,7 @@ pub(super) fn rivals(study: &Study, chosen: &Chosen) -> Vec<Alternative> {
             found.push(Alternative {
                 id: b.to_owned(),
                 instead_of: own.to_owned(),
-                posterior: 0.5,
+                posterior: 1.0 / total,
                 why: why.to_owned(),
             });
         }

@@ -47,12 +47,14 @@ pub fn track(recording: &Recording, bad: &[bool]) -> Result<Track, EstimateError
     }
     let in_blocks = |block: usize| {
         let mut made = Made { rows: Vec::new(), fine: Vec::new(), noises: Vec::new(), period_s, block };
-        stretches.iter().for_each(|range| made.stretch(&raw, &rate, force, range.clone()));
+        for range in &stretches {
+            made.stretch(&raw, &rate, force, range.clone());
+        }
         made
     };
     let shortest = (SHORTEST_S / period_s).round().max(1.0) as usize;
     let longest = ((LONGEST_S / period_s) as usize).max(shortest);
-    let mass = in_blocks(((shortest + longest) / 2).max(1)).mass();
+    let mass = in_blocks(usize::midpoint(shortest, longest)).mass();
     let block = (shortest..=longest).find(|block| quiet(&raw, force, period_s, *block, mass)).unwrap_or(longest);
     let made = in_blocks(block);
     if made.rows.is_empty() {
@@ -230,7 +232,7 @@ mod tests {
         for half in 1..6 {
             let ones = vec![1.0; 2 * half + 1];
             assert!((hat(&ones) - 1.0).abs() < 1e-12);
-            let line: Vec<f64> = (0..2 * half + 1).map(|k| k as f64).collect();
+            let line: Vec<f64> = (0..=2 * half).map(|k| k as f64).collect();
             assert!((hat(&line) - half as f64).abs() < 1e-12);
         }
     }
