@@ -10,6 +10,10 @@ use haptics::law::{
     MassChange, Memory, Motion, PositionRipple, QuadraticDrag, ReturnSpring, Stribeck, ViscousFriction, Weight,
 };
 
+/// Least share of the friction that bends before it slides, and of the force that lies behind a gap.
+const LEAST_BENT: f64 = 0.65;
+const LEAST_BEHIND: f64 = 0.4;
+
 /// Everything that columns are made of.
 pub struct Dictionary<'a> {
     pub track: &'a Track,
@@ -214,7 +218,8 @@ impl Dictionary<'_> {
                 self.remembered(&Hysteresis, &[1.0, 1.0 / way], &|motion, memory, _| memory[0] - motion.direction);
             let dry = self.dry_level();
             let column: Vec<f64> = bent.iter().zip(&dry).map(|(b, d)| b * d).collect();
-            let hysteresis = Candidate::one("hysteresis", Kind::Plant, "share", "1", column).positive();
+            let hysteresis = Candidate::one("hysteresis", Kind::Plant, "share", "1", column);
+            let hysteresis = hysteresis.shaped(Shape::Share { least: LEAST_BENT });
             all.push(hysteresis.at("way", way, units.length));
             let gap = self.remembered(&Backlash, &[way], &|motion, memory, values| {
                 1.0 - Backlash.engaged(motion, values, memory)
@@ -222,7 +227,8 @@ impl Dictionary<'_> {
             // Behind the gap lies what resists, or everything.
             for behind in [self.resisting, self.predicted] {
                 let column: Vec<f64> = gap.iter().zip(behind).map(|(g, f)| -g * f).collect();
-                let backlash = Candidate::one("backlash", Kind::Plant, "share", "1", column).positive();
+                let backlash = Candidate::one("backlash", Kind::Plant, "share", "1", column);
+                let backlash = backlash.shaped(Shape::Share { least: LEAST_BEHIND });
                 all.push(backlash.at("delta", way, units.length));
             }
         }

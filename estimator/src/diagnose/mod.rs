@@ -134,7 +134,18 @@ pub fn validate(
                 )));
             }
         };
-        Ok(validate::validate(&mut track, &diagnosis.plain, &diagnosis.effects))
+        // A weight that is stated is no part of what was fitted, and acts all the same.
+        let mut fitted = diagnosis.plain.clone();
+        let known = if task_of(recording, options.task)? == Task::Crank {
+            known_weight(recording, &mut fitted)
+        } else {
+            Model::new()
+        };
+        let with_known = |effects: &[Effect]| -> Model {
+            let weighs = effects.iter().any(|e| e.law().id() == Weight.id());
+            effects.iter().chain(known.iter().filter(|_| !weighs)).copied().collect()
+        };
+        Ok(validate::validate(&mut track, &with_known(&diagnosis.plain), &with_known(&diagnosis.effects)))
     };
     recordings.iter().map(of).collect()
 }

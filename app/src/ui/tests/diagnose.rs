@@ -67,7 +67,9 @@ fn without_a_recording_it_says_what_to_do() {
 
 #[test]
 fn a_recording_that_cannot_be_diagnosed_says_why_in_a_sentence() {
-    let harness = window(diagnosed(clockless_path()));
+    let mut recording = clockless_path();
+    recording.meta.task = Some(Task::Switch);
+    let harness = window(diagnosed(recording));
     assert!(harness.query_by_label("This recording cannot be diagnosed").is_some());
     let problem = harness.state().session.diagnosing.problem.clone().expect("why");
     assert!(problem.ends_with('.') && problem.len() > 30, "{problem}");
