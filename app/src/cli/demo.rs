@@ -1,6 +1,6 @@
 //! `touchstone demo`: the whole chain on built-in recordings, without a display.
 
-use super::{Output, fit, screenshot};
+use super::{Output, diagnose, fit, screenshot};
 use anyhow::Context;
 use clap::Args;
 use estimator::pipeline::{Analysis, Options, analyse};
@@ -67,9 +67,9 @@ impl Demo {
         Ok(Output { text, json })
     }
 
-    /// Log → segments → fit → world → simulation of one recording.
+    /// Log → segments → fit → world → simulation → diagnosis → extended world of one recording.
     fn chain(&self, built_in: &BuiltIn, text: &mut String) -> anyhow::Result<Value> {
-        progress(&format!("{}: segment, fit, calibrate, simulate", built_in.title));
+        progress(&format!("{}: segment, fit, calibrate, simulate, diagnose, extend", built_in.title));
         let log = self.file(&format!("{}.csv", built_in.name));
         write(&log, built_in.csv)?;
         write(&self.file(&format!("{}.meta.json", built_in.name)), built_in.meta)?;
@@ -91,13 +91,33 @@ impl Demo {
             let _ = writeln!(text, "  simulated {name}: measured − predicted {rms:.3} N RMS");
         }
         let within = compare(built_in, &analysis, text)?;
+        let (diagnosis, extended) = self.diagnose(built_in, &recordings, text)?;
         Ok(json!({
+            "diagnosis": diagnosis, "extended_world": extended,
             "name": built_in.name,
             "log": log, "world": world_file, "simulation": prediction,
             "fit": analysis.fit,
             "residual_rms": simulation.residual_rms,
             "within_two_errors": within,
         }))
+    }
+
+    /// What the thesis's model leaves of the recording, and the world that has what was found.
+    fn diagnose(
+        &self,
+        built_in: &BuiltIn,
+        recordings: &[Recording],
+        text: &mut String,
+    ) -> anyhow::Result<(Value, PathBuf)> {
+        let options = estimator::diagnose::Options::default();
+        let diagnosis = estimator::diagnose::diagnose(recordings, &options)?;
+        let world = estimator::diagnose::extended_world(recordings, &options, &diagnosis)?;
+        let file = self.file(&format!("{}.extended.json", built_in.name));
+        write(&file, &(world.to_json() + "\n"))?;
+        for line in diagnose::describe(&diagnosis).lines() {
+            let _ = writeln!(text, "  {line}");
+        }
+        Ok((serde_json::to_value(&diagnosis)?, file))
     }
 
     /// The pictures; without any Vulkan driver the demo goes on and says so.

@@ -70,7 +70,7 @@ impl Diagnose {
 }
 
 /// A diagnosis in words.
-fn describe(diagnosis: &Diagnosis) -> String {
+pub(super) fn describe(diagnosis: &Diagnosis) -> String {
     let mut text = String::new();
     let word = match diagnosis.verdict {
         Verdict::Causes => "named",
