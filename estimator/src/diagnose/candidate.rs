@@ -19,7 +19,7 @@ pub enum Shape {
     /// Anything.
     Any,
     /// The share of the friction that a law takes over: the law is about all of it; what sticks and slips looks like a part.
-    Share { least: f64 },
+    Share { least: f64, most: f64 },
     /// k, f0 of a spring that is at rest somewhere near: a force that is the same everywhere is none. `half`: half the range.
     Spring { half: f64 },
     /// k, f0 and two cubics (about the middle, and half a range beside it) of a spring that hardens.
@@ -29,7 +29,7 @@ pub enum Shape {
 impl Shape {
     fn admits(self, values: &[f64]) -> bool {
         match (self, values) {
-            (Self::Share { least }, [share, ..]) => *share > least,
+            (Self::Share { least, most }, [share, ..]) => *share > least && *share < most,
             (Self::Spring { half }, [k, f0]) => *k > 0.0 && f0.abs() < RESTS_WITHIN * k * half,
             (Self::Hardening { half }, [k, f0, here, there]) => {
                 let cube = half.powi(3);

@@ -3,7 +3,7 @@
 use super::candidate::Candidate;
 use super::geometry::{Study, residual};
 use super::select::Selection;
-use super::system::{Rows, System, solve, uses, whitener};
+use super::system::{Held, Rows, System, solve, uses, whitener};
 use crate::estimate::EstimateError;
 
 /// What whitening is learnt from keeps this much of the generic terms' strength out.
@@ -39,7 +39,10 @@ impl Channel {
             self.base.push(vec![0.0; self.y.len()]);
         }
         let Self { y, base, candidates, stretch, testable, weight, period_s } = self;
-        let rows = Rows { y: &y, stretch: &stretch, testable: &testable, weight: &weight, period_s };
+        let testable: Vec<Held> = testable.iter().map(|t| if *t { Held::Fully } else { Held::Never }).collect();
+        // The rows are in the order of their times already.
+        let order: Vec<f64> = (0..y.len()).map(|i| i as f64).collect();
+        let rows = Rows { y: &y, stretch: &stretch, testable: &testable, time_s: &order, weight: &weight, period_s };
         let coefficients = whitening(&base, &candidates, &rows, threshold)?;
         let system = System::new(&base, &candidates, &rows, coefficients);
         let chosen = Selection { system: &system, candidates: &candidates, threshold, dry: true }.run();

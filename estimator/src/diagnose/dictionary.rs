@@ -13,6 +13,8 @@ use haptics::law::{
 /// Least share of the friction that bends before it slides, and of the force that lies behind a gap.
 const LEAST_BENT: f64 = 0.65;
 const LEAST_BEHIND: f64 = 0.4;
+/// More than all of it is none of the two: another way or gap would be nearer.
+const MOST: f64 = 1.7;
 
 /// Everything that columns are made of.
 pub struct Dictionary<'a> {
@@ -67,6 +69,11 @@ impl Dictionary<'_> {
         super::force::column(self.track, &Effect::new(law, values))
     }
 
+    /// The same of a law of the place, and of the direction at most in proportion.
+    fn law_of_place(&self, law: &'static dyn Law, values: &[f64]) -> Vec<f64> {
+        super::force::column_of_place(self.track, &Effect::new(law, values))
+    }
+
     /// The unit of a parameter as the law's page has it.
     fn unit(&self, law: &'static dyn Law, index: usize) -> &'static str {
         let spec = &law.parameters()[index];
@@ -88,9 +95,10 @@ impl Dictionary<'_> {
         }
         all.push(self.plain(&FrictionAsymmetry, &[1.0, 0.0, 0.0], 0));
         all.push(self.plain(&FrictionAsymmetry, &[0.0, 1.0, 0.0], 1));
-        for vs in self.grid.stribeck.iter().copied() {
-            let unit = self.unit(&Stribeck, 1);
-            all.push(self.plain(&Stribeck, &[1.0, vs], 0).at("vs", vs, unit).positive());
+        for (vs, alpha) in self.grid.stribeck.iter().copied() {
+            let falls = self.plain(&Stribeck, &[1.0, vs, alpha], 0).at("vs", vs, self.unit(&Stribeck, 1)).positive();
+            // The Gaussian is the form that is meant where none is said.
+            all.push(if alpha > 0.0 { falls.at("alpha", alpha, "1") } else { falls });
         }
         all.push(self.plain(&QuadraticDrag, &[1.0], 0).positive());
     }
@@ -139,7 +147,7 @@ impl Dictionary<'_> {
     fn springs(&self, all: &mut Vec<Candidate>) {
         let (low, high) = (self.track.quantile(0.0, position), self.track.quantile(1.0, position));
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low).max(1e-12));
-        let column = |values: &[f64]| self.law(&ReturnSpring, values);
+        let column = |values: &[f64]| self.law_of_place(&ReturnSpring, values);
         let line = || vec![column(&[1.0, 0.0, 0.0, middle]), column(&[0.0, 1.0])];
         let names = || vec![("k", self.unit(&ReturnSpring, 0)), ("f0", self.units().force)];
         let spring = Candidate::several("return-spring", Kind::Plant, line(), names());
@@ -178,7 +186,7 @@ impl Dictionary<'_> {
 
     fn ripple(&self, all: &mut Vec<Candidate>, length: f64) {
         let units = self.units();
-        let column = |phase: f64| self.law(&PositionRipple, &[1.0, length, phase]);
+        let column = |phase: f64| self.law_of_place(&PositionRipple, &[1.0, length, phase]);
         let columns = vec![column(0.0), column(-std::f64::consts::FRAC_PI_2)];
         let linear = vec![("A cos phi", units.force), ("A sin(-phi)", units.force)];
         let ripple = Candidate::several("position-ripple", Kind::Plant, columns, linear);
@@ -187,7 +195,7 @@ impl Dictionary<'_> {
 
     /// Gravity that the model does not have: across the arm's weight; for an angle without any gravity in the model, both parts.
     fn gravity(&self, all: &mut Vec<Candidate>, radius: f64) {
-        let part = |values: &[f64]| self.law(&EccentricMass, values);
+        let part = |values: &[f64]| self.law_of_place(&EccentricMass, values);
         if self.track.planar {
             let column = part(&[1.0, 0.0, radius]);
             all.push(Candidate::one("eccentric-mass", Kind::Plant, "a", self.units().force, column));
@@ -204,9 +212,12 @@ impl Dictionary<'_> {
         for (place, width) in self.grid.places.iter().copied() {
             let values = [1.0, place, width, self.grid.turn];
             let found = |c: Candidate| c.at("place", place, units.length).at("width", width, units.length);
-            all.push(found(self.plain(&LocalResistance, &values, 0).positive()));
-            let push = self.plain(&LocalPush, &values, 0);
-            all.push(found(Candidate { id: LocalResistance.id(), ..push }));
+            let named = |law: &'static dyn Law| {
+                let column = self.law_of_place(law, &values);
+                Candidate::one(LocalResistance.id(), Kind::Plant, law.parameters()[0].name, units.force, column)
+            };
+            all.push(found(named(&LocalResistance).positive()));
+            all.push(found(named(&LocalPush)));
         }
     }
 
@@ -217,18 +228,21 @@ impl Dictionary<'_> {
             let bent =
                 self.remembered(&Hysteresis, &[1.0, 1.0 / way], &|motion, memory, _| memory[0] - motion.direction);
             let dry = self.dry_level();
-            let column: Vec<f64> = bent.iter().zip(&dry).map(|(b, d)| b * d).collect();
+            let felt = f64::from(u8::from(way > self.grid.felt));
+            let mut column: Vec<f64> = bent.iter().zip(&dry).map(|(b, d)| felt * b * d).collect();
+            super::stuck::bends(&self.track.rows, way, &mut column);
             let hysteresis = Candidate::one("hysteresis", Kind::Plant, "share", "1", column);
-            let hysteresis = hysteresis.shaped(Shape::Share { least: LEAST_BENT });
+            let hysteresis = hysteresis.shaped(Shape::Share { least: LEAST_BENT, most: MOST });
             all.push(hysteresis.at("way", way, units.length));
             let gap = self.remembered(&Backlash, &[way], &|motion, memory, values| {
                 1.0 - Backlash.engaged(motion, values, memory)
             });
             // Behind the gap lies what resists, or everything.
-            for behind in [self.resisting, self.predicted] {
-                let column: Vec<f64> = gap.iter().zip(behind).map(|(g, f)| -g * f).collect();
+            for (behind, whole) in [(self.resisting, false), (self.predicted, true)] {
+                let mut column: Vec<f64> = gap.iter().zip(behind).map(|(g, f)| -felt * g * f).collect();
+                super::stuck::plays(&self.track.rows, way, whole, &mut column);
                 let backlash = Candidate::one("backlash", Kind::Plant, "share", "1", column);
-                let backlash = backlash.shaped(Shape::Share { least: LEAST_BEHIND });
+                let backlash = backlash.shaped(Shape::Share { least: LEAST_BEHIND, most: MOST });
                 all.push(backlash.at("delta", way, units.length));
             }
         }
@@ -353,11 +367,12 @@ impl Dictionary<'_> {
             all.push(Candidate::one(id, Kind::Instrument, "kappa_xy", "1", cross(Vec2::x(), Vec2::y())));
             all.push(Candidate::one(id, Kind::Instrument, "kappa_yx", "1", cross(Vec2::y(), Vec2::x())));
         } else {
-            let bias = every(&|r| Effect::new(&ForceBias, &[1.0]).force(&r.motion));
+            let held = |r: &Row, force: f64| if r.place == Place::Along { force } else { 0.0 };
+            let bias = every(&|r| held(r, Effect::new(&ForceBias, &[1.0]).force(&r.motion)));
             all.push(Candidate::one("force-bias", Kind::Instrument, "b", units.force, bias));
             for tau in std::iter::once(0.0).chain(self.grid.settling.iter().copied()) {
                 let effect = Effect::new(&ForceDrift, &[1.0, tau]);
-                let drift = every(&|r| effect.force(&r.motion));
+                let drift = every(&|r| held(r, effect.force(&r.motion)));
                 let found = Candidate::one("force-drift", Kind::Instrument, "rate", self.unit(&ForceDrift, 0), drift);
                 all.push(if tau > 0.0 { found.at("tau", tau, "s") } else { found });
             }

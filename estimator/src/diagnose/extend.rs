@@ -68,7 +68,7 @@ fn effect(candidate: &Candidate, values: &[f64], track: &Track, dry_n: f64) -> O
         "friction-asymmetry" if named("dFc") => of(&FrictionAsymmetry, &[first, 0.0, 0.0]),
         "friction-asymmetry" if named("dc") => of(&FrictionAsymmetry, &[0.0, first, 0.0]),
         "friction-asymmetry" => of(&FrictionAsymmetry, &[0.0, 0.0, first]),
-        "stribeck" => of(&Stribeck, &[first, searched(0)]),
+        "stribeck" => of(&Stribeck, &[first, searched(0), searched(1)]),
         "quadratic-drag" => of(&QuadraticDrag, &[first]),
         "inertia" => of(&Inertia, &[first]),
         "eccentric-mass" => of(&EccentricMass, &[first, values.get(1).copied().unwrap_or(0.0), radius]),

@@ -6,17 +6,20 @@ use super::generic::generic;
 use super::geometry::{Study, residual};
 use super::grid::Grid;
 use super::select::Selection;
-use super::system::{Rows, System, solve, uses, whitener};
-use super::track::{Place, Track};
+use super::stuck::{self, Load};
+use super::system::{Held, Rows, System, solve, uses, whitener};
+use super::track::{Place, Row, Track};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, ForceDrift, Law};
 
 /// The sign of a velocity is blurred over this share of the usual speed at least.
-const BLUR: f64 = 0.02;
+const BLUR: f64 = 0.008;
 /// A reversal lies anywhere between two rows: standard deviation of its place, in rows, with some room.
 const SKEW: f64 = 0.5;
+/// Rows no longer than this are short for what depends on the place, s.
+const SHORT_S: f64 = 0.015;
 /// The clocks of force and motion differ by about this, s.
 const CLOCKS_S: f64 = 1e-3;
 /// What moves no faster than this many times what the sign is blurred over may as well stick: its friction is anything.
@@ -37,8 +40,10 @@ pub type Model = Vec<Effect>;
 /// Compares all causes on a track. `fixed`: laws of which everything is known. `threshold`: least score of a cause.
 pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) -> Result<Study, EstimateError> {
     blur(track);
+    let loads = loads(track, model, fixed)?;
+    stuck::add(track, &loads);
     let coarse = Grid::coarse(track);
-    let mut made = compare(track, model, fixed, threshold, [&coarse, &Grid::default()], None)?;
+    let mut made = compare(track, model, fixed, threshold, [&coarse, &Grid::default()], (None, None))?;
     for _ in 0..REFINEMENTS {
         if made.chosen.is_empty() {
             break;
@@ -48,7 +53,8 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
         // The load on the friction is what the sensor told, rid of what is now known of the sensor.
         correct_load(track, &made);
         let laws = made.solved.as_ref().map(|s| s.values[..made.base.len()].to_vec());
-        made = compare(track, model, fixed, threshold, [&coarse, &fine], laws.as_deref())?;
+        let whitening = made.system.coefficients;
+        made = compare(track, model, fixed, threshold, [&coarse, &fine], (laws.as_deref(), Some(whitening)))?;
     }
     Ok(made)
 }
@@ -84,20 +90,21 @@ fn correct_load(track: &mut Track, study: &Study) {
     }
 }
 
-/// One round. `laws`: what the model's laws came out at beside what was found before.
+/// One round. `laws`: what the model's laws came out at beside what was found before; `whitening`: what was learnt then, when the same
+/// things together left the same.
 fn compare(
     track: &Track,
     model: &Model,
     fixed: &Model,
     threshold: f64,
     [coarse, fine]: [&Grid; 2],
-    laws: Option<&[f64]>,
+    (laws, whitening): (Option<&[f64]>, Option<Vec<f64>>),
 ) -> Result<Study, EstimateError> {
     let base: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
     let known: Vec<Vec<f64>> = fixed.iter().map(|effect| column(track, effect)).collect();
     let y: Vec<f64> =
         track.rows.iter().enumerate().map(|(i, r)| r.y - known.iter().map(|k| k[i]).sum::<f64>()).collect();
-    let (mut predicted, mut resisting, weight) = first_look(track, model, &base, &y)?;
+    let (mut predicted, mut resisting, weight, _) = first_look(track, model, &base, &y)?;
     if let Some(laws) = laws.filter(|laws| friction_is_sound(model, laws)) {
         (predicted, resisting) = (total(model, &base, laws, false), total(model, &base, laws, true));
     }
@@ -110,10 +117,28 @@ fn compare(
     candidates.extend(dictionary(fine).into_iter().filter(|c| !c.searched.is_empty()));
     candidates.extend(generic(track));
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
-    let testable: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
-    let rows = Rows { y: &y, stretch: &stretch, testable: &testable, weight: &weight, period_s: track.period_s };
+    let held = |row: &Row| match row.place {
+        Place::Along => Held::Fully,
+        Place::Stuck { .. } => Held::ByFolds,
+        Place::FreeX | Place::FreeY => Held::Never,
+    };
+    let testable: Vec<Held> = track.rows.iter().map(held).collect();
+    // One recording after the other.
+    let time_s: Vec<f64> =
+        track.rows.iter().map(|r| r.recording as f64 * (track.span_s + 1.0) + r.motion.time_s).collect();
+    let rows = Rows {
+        y: &y,
+        stretch: &stretch,
+        testable: &testable,
+        time_s: &time_s,
+        weight: &weight,
+        period_s: track.period_s,
+    };
     let dry = model.iter().any(|e| e.law().is_dry());
-    let coefficients = learn_whitening(&base, &candidates, &rows, threshold)?;
+    let coefficients = match whitening {
+        Some(known) => known,
+        None => learn_whitening(&base, &candidates, &rows, threshold)?,
+    };
     let system = System::new(&base, &candidates, &rows, coefficients);
     let chosen = Selection { system: &system, candidates: &candidates, threshold, dry }.run();
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
@@ -175,17 +200,25 @@ pub fn blur(track: &mut Track) {
     }
 }
 
-/// The force of a law with its linear parameters at one (only the first, where it has several), 0 in free rows.
-pub fn column(track: &Track, effect: &Effect) -> Vec<f64> {
-    let of =
-        |row: &super::track::Row| if row.place == Place::Along { track.mean(row, &|m| effect.force(m)) } else { 0.0 };
+/// The force of a law of the place, and of the direction at most in proportion, like [`column`]: within a short row it is as good as straight.
+pub fn column_of_place(track: &Track, effect: &Effect) -> Vec<f64> {
+    if track.period_s > SHORT_S {
+        return column(track, effect);
+    }
+    let of = |row: &Row| if row.place == Place::Along { effect.force(&row.motion) } else { 0.0 };
     track.rows.iter().map(of).collect()
 }
 
-type Look = (Vec<f64>, Vec<f64>, Vec<f64>);
+/// The force of a law with its linear parameters at one (only the first, where it has several), 0 in free rows.
+pub fn column(track: &Track, effect: &Effect) -> Vec<f64> {
+    let of = |row: &Row| if row.place == Place::Along { track.mean(row, &|m| effect.force(m)) } else { 0.0 };
+    track.rows.iter().map(of).collect()
+}
 
-/// A first plain fit: what the model predicts, the resisting part of it, and how much each row can be trusted where the direction is a
-/// guess (effective variance, Orear 1982).
+type Look = (Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>);
+
+/// A first plain fit: what the model predicts, the resisting part of it, how much each row can be trusted where the direction is a
+/// guess (effective variance, Orear 1982), and the dry friction of each row if it slid.
 fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Result<Look, EstimateError> {
     let mut columns = base.to_vec();
     let together = if track.planar { TOGETHER } else { 1.0 };
@@ -196,12 +229,12 @@ fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Res
     let along: Vec<f64> = track.rows.iter().map(|r| f64::from(u8::from(r.place == Place::Along))).collect();
     let mut weight = along.clone();
     let mut fit = least_squares(&columns, y, Some(&weight))?;
+    let dry = |values: &[f64], i: usize| -> f64 {
+        let of_model = model.iter().zip(values).filter(|(e, _)| e.law().is_dry());
+        let sum: f64 = of_model.map(|(e, v)| v * level(e, track, i)).sum();
+        sum.abs() + if has_dry { 0.0 } else { values[base.len()].abs() }
+    };
     for _ in 0..2 {
-        let dry = |i: usize| -> f64 {
-            let of_model = model.iter().zip(&fit.values).filter(|(e, _)| e.law().is_dry());
-            let sum: f64 = of_model.map(|(e, v)| v * level(e, track, i)).sum();
-            sum.abs() + if has_dry { 0.0 } else { fit.values[base.len()].abs() }
-        };
         let noise = if track.noise_is_measured { track.force_noise } else { fit.rms.max(track.force_noise) };
         weight = (0..y.len())
             .map(|i| {
@@ -210,7 +243,7 @@ fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Res
                     return 1.0;
                 }
                 // A sign that is anybody's guess leaves all of the friction open.
-                let open = together * dry(i).powi(2) * row.open;
+                let open = together * dry(&fit.values, i).powi(2) * row.open;
                 (1.0 + open / (noise * noise)).powf(-0.5)
             })
             .collect();
@@ -225,7 +258,23 @@ fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Res
         }
         sum
     };
-    Ok((sum(false), sum(true), weight))
+    let slides = (0..y.len()).map(|i| dry(&fit.values, i)).collect();
+    Ok((sum(false), sum(true), weight, slides))
+}
+
+/// What the friction holds in each row along the motion, as far as a plain fit tells.
+fn loads(track: &Track, model: &Model, fixed: &Model) -> Result<Vec<Option<Load>>, EstimateError> {
+    let base: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
+    let known: Vec<Vec<f64>> = fixed.iter().map(|effect| column(track, effect)).collect();
+    let rest = |i: usize| track.rows[i].y - known.iter().map(|k| k[i]).sum::<f64>();
+    let y: Vec<f64> = (0..track.rows.len()).map(rest).collect();
+    let (predicted, resisting, _, slides) = first_look(track, model, &base, &y)?;
+    let load = |i: usize| {
+        let friction = slides[i];
+        let held = y[i] - (predicted[i] - resisting[i]);
+        (friction > 0.0).then(|| Load { share: held / friction, whole: y[i] / friction, friction })
+    };
+    Ok((0..y.len()).map(load).collect())
 }
 
 /// What the model's laws add up to at these values, all of them or those that resist motion.

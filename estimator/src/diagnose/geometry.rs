@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::select::{Chosen, Selection};
-use super::system::{Rows, Solved, System, solve, uses, whitener};
+use super::system::{Held, Rows, Solved, System, solve, uses, whitener};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::Vec2;
@@ -43,12 +43,15 @@ pub struct Arm {
     pub radius_m: f64,
     /// What is subtracted from the measured position of a signals' row, m.
     pub shifts: Vec<Vec2>,
+    /// What the whole arm stands wrongly turned by, rad: a circle does not show it, the directions of the forces do.
+    pub turn_rad: f64,
 }
 
 impl Arm {
     /// From the centre to the handle, m.
     pub fn arm(&self, row: usize, position: Vec2) -> Vec2 {
-        position - self.shifts.get(row).copied().unwrap_or_else(Vec2::zeros) - self.center_m
+        let arm = position - self.shifts.get(row).copied().unwrap_or_else(Vec2::zeros) - self.center_m;
+        if self.turn_rad == 0.0 { arm } else { nalgebra::Rotation2::new(self.turn_rad) * arm }
     }
 }
 
@@ -101,7 +104,7 @@ pub fn geometry(path: &Path, signals: usize, threshold: f64) -> Result<Geometry,
         }
     }
     let study = study.ok_or_else(|| EstimateError::Other("no circle was fitted".to_owned()))?;
-    Ok(Geometry { arm: Arm { center_m, radius_m, shifts: shift_m }, study })
+    Ok(Geometry { arm: Arm { center_m, radius_m, shifts: shift_m, turn_rad: 0.0 }, study })
 }
 
 /// Kåsa's circle (1976).
@@ -125,8 +128,16 @@ fn compare(path: &Path, center_m: Vec2, threshold: f64) -> Result<Study, Estimat
     }
     let candidates = candidates(path, &outward);
     let stretch: Vec<usize> = path.points.iter().map(|p| p.stretch).collect();
-    let (testable, weight) = (vec![true; y.len()], vec![1.0; y.len()]);
-    let rows = Rows { y: &y, stretch: &stretch, testable: &testable, weight: &weight, period_s: path.period_s };
+    let (testable, weight) = (vec![Held::Fully; y.len()], vec![1.0; y.len()]);
+    let time_s: Vec<f64> = path.points.iter().map(|p| p.time_s).collect();
+    let rows = Rows {
+        y: &y,
+        stretch: &stretch,
+        testable: &testable,
+        time_s: &time_s,
+        weight: &weight,
+        period_s: path.period_s,
+    };
     // The whitening must not swallow what it is to leave: it comes from the residual of everything together.
     let unwhitened = System::new(&base, &candidates, &rows, Vec::new());
     let picks = Selection { system: &unwhitened, candidates: &candidates, threshold, dry: true }.greedy();

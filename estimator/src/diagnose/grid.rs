@@ -1,7 +1,7 @@
 //! The values of what must be searched for: coarsely at first, then around what was found.
 
 use super::candidate::Candidate;
-use super::track::Track;
+use super::track::{Place, Track};
 use std::f64::consts::TAU;
 
 /// Ripples a turn (over the range, where nothing turns) that are tried.
@@ -11,10 +11,15 @@ const PLACES: usize = 24;
 const WIDTHS: [f64; 3] = [0.12, 0.2, 0.35];
 /// Speeds at which static friction has fallen off, as shares of the usual speed.
 const STRIBECK: [f64; 7] = [0.06, 0.1, 0.16, 0.26, 0.4, 0.6, 0.9];
+/// Exponents with which it falls; 0 is the Gaussian.
+const FALLING: [f64; 2] = [0.0, 1.0];
 /// Ways of presliding and half gaps, as shares of the range of positions.
-const WAYS: [f64; 9] = [0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.065, 0.13, 0.2];
+const WAYS: [f64; 14] =
+    [0.00003, 0.00006, 0.00012, 0.00024, 0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.065, 0.13, 0.2];
 /// Shortest of these, in points of the motion at the usual speed.
 const STEPS: f64 = 0.25;
+/// Where the object was seen to stand, they are this many times the noise of its place at least.
+const SEEN: f64 = 0.5;
 /// Directions of a cable's anchor that are tried, and how much of the way round it is slack.
 const CABLES: u32 = 16;
 const SLACK: [f64; 3] = [0.35, 0.6, 0.8];
@@ -33,8 +38,11 @@ const STARTS: u32 = 16;
 /// Values to try, in the units of the track.
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
-    pub stribeck: Vec<f64>,
+    /// Speed and exponent.
+    pub stribeck: Vec<(f64, f64)>,
     pub ways: Vec<f64>,
+    /// Shorter ones than this do not show in the force, only in the way that a standing object gives.
+    pub felt: f64,
     /// Wave lengths.
     pub ripples: Vec<f64>,
     /// Place and width.
@@ -60,6 +68,9 @@ impl Grid {
         let turn = track.radius_m.map(|r| TAU * r);
         // What is shorter than the way between two points cannot be told from a reversal that lies between them.
         let point_s = if track.fine.is_empty() { track.period_s } else { track.raw_period_s.min(track.period_s) };
+        let stands = track.rows.iter().any(|r| matches!(r.place, Place::Stuck { .. }));
+        let felt = STEPS * point_s * fast;
+        let least = if stands { (SEEN * track.position_noise).min(felt) } else { felt };
         let scale = track.radius_m.map_or(range, |r| range.min(2.0 * r));
         // On a crank a place comes again every turn.
         let whole = turn.filter(|t| range > 0.8 * t);
@@ -69,8 +80,9 @@ impl Grid {
         let walls = WALLS.iter().flat_map(|w| sides.map(|(side, base)| (position(base + side * w), side)));
         let rest = |share: f64| track.radius_m.unwrap_or(0.0) * (REACH - 1.0 + 2.0 * share);
         Self {
-            stribeck: STRIBECK.map(|share| share * fast).to_vec(),
-            ways: WAYS.map(|share| share * scale).into_iter().filter(|way| *way > STEPS * point_s * fast).collect(),
+            stribeck: FALLING.iter().flat_map(|alpha| STRIBECK.map(|share| (share * fast, *alpha))).collect(),
+            felt,
+            ways: WAYS.map(|share| share * scale).into_iter().filter(|way| *way > least).collect(),
             ripples: RIPPLES.map(|n| turn.unwrap_or(range) / f64::from(n)).collect(),
             places: places.flat_map(|p| WIDTHS.map(|w| (p, w * span))).collect(),
             turn: whole.unwrap_or(0.0),
@@ -87,7 +99,7 @@ impl Grid {
     /// Values between those of the coarse grid, around the ones that were found.
     pub fn around(found: &[&Candidate], track: &Track) -> Self {
         let coarse = Self::coarse(track);
-        let mut grid = Self { turn: coarse.turn, ..Self::default() };
+        let mut grid = Self { turn: coarse.turn, felt: coarse.felt, ..Self::default() };
         let range = track.quantile(1.0, |r| r.motion.position) - track.quantile(0.0, |r| r.motion.position);
         let span = if grid.turn > 0.0 { grid.turn } else { range };
         let radius = track.radius_m.unwrap_or(0.0);
@@ -95,7 +107,11 @@ impl Grid {
             let value = |name: &str| candidate.searched.iter().find(|s| s.name == name).map(|s| s.value);
             let times = |v: f64, factors: &[f64]| factors.iter().map(move |f| f * v).collect::<Vec<f64>>();
             match candidate.id {
-                "stribeck" => grid.stribeck.extend(times(value("vs").unwrap_or(0.0), &[0.72, 0.85, 1.18, 1.38])),
+                "stribeck" => {
+                    let alpha = value("alpha").unwrap_or(0.0);
+                    let speeds = times(value("vs").unwrap_or(0.0), &[0.72, 0.85, 1.18, 1.38]);
+                    grid.stribeck.extend(speeds.into_iter().map(|vs| (vs, alpha)));
+                }
                 "hysteresis" | "backlash" => {
                     let way = value("way").or(value("delta")).unwrap_or(0.0);
                     grid.ways.extend(times(way, &[0.62, 0.79, 1.26, 1.6]));

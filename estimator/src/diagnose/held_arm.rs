@@ -6,7 +6,7 @@ use super::track::{Fine, Place, Row, Span, Track};
 use crate::estimate::EstimateError;
 use crate::segment::{SystemState, segment};
 use crate::signal::derive::savitzky_golay;
-use crate::signal::noise::white_noise;
+use crate::signal::noise::{white_noise, white_noise_under_fast_motion};
 use crate::signal::task::{is_two_fingered, task_signals, times, tip_series};
 use haptics::Vec2;
 use haptics::hand::JointAngles;
@@ -191,7 +191,8 @@ impl Signals {
             coordinate: Coordinate::Linear,
             radius_m: Some(arm.radius_m),
             planar: true,
-            velocity_noise: (noise.iter().map(|n| n * n).sum::<f64>() / noise.len().max(1) as f64).sqrt(),
+            velocity_noise: mean_square(&noise, 0),
+            position_noise: mean_square(&noise, 1) / (self.every as f64).sqrt(),
             force_noise: if noise_is_measured { force_noise } else { white_noise(&along) }.max(1e-9),
             noise_is_measured,
             span_s: self.time_s.last().copied().unwrap_or(0.0),
@@ -251,14 +252,15 @@ impl Signals {
             .collect()
     }
 
-    /// The motion between the rows of a stretch; returns the noise of its velocity, m/s.
-    fn finely(&self, range: std::ops::Range<usize>, arm: &Arm, rows: &mut [Row], fine: &mut Vec<Fine>) -> f64 {
+    /// The motion between the rows of a stretch; returns the noise of its velocity, m/s, and of one recorded place, m.
+    fn finely(&self, range: std::ops::Range<usize>, arm: &Arm, rows: &mut [Row], fine: &mut Vec<Fine>) -> [f64; 2] {
         let number = fine.last().map_or(0, |f: &Fine| f.stretch + 1);
         let raw = &self.raw;
         // Recorded samples are thinned out, or filled in, to about the same rate.
         let skip = (1.0 / (FINE_HZ * self.raw_period_s)).round().max(1.0) as usize;
         let fill = (FINE_HZ * self.raw_period_s).round().max(1.0) as usize;
         let mut recorded = Vec::with_capacity(range.len() * self.every);
+        let mut places = Vec::with_capacity(range.len() * self.every);
         let mut angle = 0.0_f64;
         for (row, i) in rows.iter_mut().zip(range) {
             for k in (i * self.every..(i + 1) * self.every).step_by(skip) {
@@ -278,6 +280,7 @@ impl Signals {
                     direction: 0.0,
                     open: 0.0,
                 };
+                places.push(point.position);
                 recorded.push(raw.as_recorded[k].dot(&along));
                 if let Some(before) = fine.last().copied().filter(|f| f.stretch == number) {
                     fine.extend((1..fill).map(|part| super::fine::between(&before, &point, part as f64 / fill as f64)));
@@ -289,7 +292,7 @@ impl Signals {
             }
             row.span.len = fine.len() - row.span.start;
         }
-        raw.calmed_to * white_noise(&recorded)
+        [raw.calmed_to * white_noise(&recorded), white_noise_under_fast_motion(&places)]
     }
 
     fn free_rows(&self, first_stretch: usize, axes: Axes) -> (Vec<Row>, f64) {
@@ -318,6 +321,11 @@ impl Signals {
         }
         (rows, (square / count.max(1.0_f64)).sqrt())
     }
+}
+
+/// Root mean square of one of the noises.
+fn mean_square(noises: &[[f64; 2]], k: usize) -> f64 {
+    (noises.iter().map(|n| n[k] * n[k]).sum::<f64>() / noises.len().max(1) as f64).sqrt()
 }
 
 /// Spans of held rows without a gap, long enough to be differentiated.

@@ -29,6 +29,7 @@ pub mod report;
 mod select;
 mod several;
 mod sliding;
+mod stuck;
 mod system;
 mod track;
 mod validate;
@@ -158,6 +159,7 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
     let mut tracks = Vec::new();
     let mut geometries = Vec::new();
     let mut faults = Vec::new();
+    let mut first_link = false;
     for (k, recording) in recordings.iter().enumerate() {
         options.progress.tell(0.4 * k as f64 / recordings.len() as f64)?;
         let found = quality::faults(recording);
@@ -167,6 +169,8 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
         let circle = geometry::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
         let (rows, mirrored) = upright(&signals, recording, &circle.arm)?;
         faults.extend(mirrored);
+        let (rows, bottom) = turned(&signals, recording, &circle, rows)?;
+        first_link |= bottom;
         tracks.push(rows);
         geometries.push(circle.study);
     }
@@ -180,7 +184,50 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
     options.progress.tell(0.4)?;
     let study = force::study(&mut track, &model, &fixed, limit)?;
     options.progress.tell(0.8)?;
-    Ok(explain::explain(&track, &model, &study, &geometries, faults))
+    let mut found = explain::explain(&track, &model, &study, &geometries, faults);
+    name_joint(&mut found, first_link);
+    Ok(found)
+}
+
+/// How much more likely the force must be when the first link's angle is wrong, not the second's (2 ln likelihood).
+const TURNED: f64 = 10.0;
+
+/// An offset of the first link's angle bends the path as the opposite offset of the second one does, and turns all of it: the circle is
+/// the same, the force then has another direction beside it. True when that is so.
+fn turned(
+    signals: &held_arm::Signals,
+    recording: &Recording,
+    circle: &geometry::Geometry,
+    rows: track::Track,
+) -> Result<(track::Track, bool), EstimateError> {
+    let study = &circle.study;
+    let mut at = study.base.len();
+    let mut offset = None;
+    for chosen in &study.chosen {
+        let candidate = &study.candidates[chosen.candidate];
+        if candidate.id == "joint-offset" {
+            offset = study.solved.as_ref().map(|s| s.values[at]);
+        }
+        at += candidate.columns.len();
+    }
+    let Some(turn_rad) = offset else { return Ok((rows, false)) };
+    let arm = geometry::Arm { turn_rad, ..circle.arm.clone() };
+    let other = signals.rows(recording, &arm, Axes::PLAIN)?;
+    let model = plain_crank();
+    let (before, _) = force::plain_rms(&mut rows.clone(), &model)?;
+    let (after, _) = force::plain_rms(&mut other.clone(), &model)?;
+    let likelier = 2.0 * rows.along().count() as f64 * (before / after.max(1e-300)).ln();
+    Ok(if likelier > TURNED { (other, true) } else { (rows, false) })
+}
+
+/// Says whose angle is wrong.
+fn name_joint(found: &mut Diagnosis, first_link: bool) {
+    let Some(cause) = found.causes.iter_mut().find(|c| c.id == "joint-offset") else { return };
+    let link = if first_link { "first" } else { "second" };
+    cause.evidence.push_str(&format!("; it is the {link} link's angle"));
+    if first_link {
+        cause.parameters.iter_mut().for_each(|p| p.value = -p.value);
+    }
 }
 
 /// The thesis's crank (eq. 5.2).
@@ -200,6 +247,9 @@ fn known_weight(recording: &Recording, model: &mut Model) -> Model {
 /// How much better a mirrored axis must explain the force: left, of what the recorded one leaves.
 const MIRRORED_SHARE: f64 = 0.5;
 
+/// What leaves less than this many times the noise makes sense as it is.
+const PLAUSIBLE: f64 = 1.8;
+
 /// The rows, with an axis of the force mirrored back where that alone makes sense of them.
 fn upright(
     signals: &held_arm::Signals,
@@ -209,7 +259,10 @@ fn upright(
     let as_recorded = signals.rows(recording, arm, Axes::PLAIN)?;
     let model = plain_crank();
     let left = |track: &track::Track| force::plain_rms(&mut track.clone(), &model);
-    let (before, _) = left(&as_recorded)?;
+    let (before, resists) = left(&as_recorded)?;
+    if resists && before < PLAUSIBLE * as_recorded.force_noise {
+        return Ok((as_recorded, None));
+    }
     let mut best: Option<(f64, track::Track, &str)> = None;
     let mirrored = |signs| Axes { swapped: false, signs };
     let crossed = [

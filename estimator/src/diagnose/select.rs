@@ -34,6 +34,46 @@ pub struct Selection<'a> {
     pub dry: bool,
 }
 
+/// Causes whose form is somebody's choice of a curve, by what the curve is over: a real one of another form leaves a remainder that
+/// looks like a weak cause over the same.
+const CURVES: [(&str, Over); 9] = [
+    ("stribeck", Over::Motion),
+    ("quadratic-drag", Over::Motion),
+    ("hysteresis", Over::Motion),
+    ("backlash", Over::Motion),
+    ("friction-change", Over::Motion),
+    ("local-resistance", Over::Place),
+    ("added-constraint", Over::Place),
+    ("return-spring", Over::Place),
+    ("position-ripple", Over::Place),
+];
+/// Causes over the same that have a form of their own.
+const LINES: [(&str, Over); 6] = [
+    ("coulomb-friction", Over::Motion),
+    ("load-friction", Over::Motion),
+    ("viscous-friction", Over::Motion),
+    ("friction-asymmetry", Over::Motion),
+    ("eccentric-mass", Over::Place),
+    ("mass-change", Over::Motion),
+];
+/// What is weaker than this share of such a cause's score may be that remainder.
+const REMAINDER: f64 = 0.12;
+
+/// What a curve is over.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Over {
+    Motion,
+    Place,
+}
+
+/// Two that a recording tells apart at best: what is lost at a reversal is not shared out between them.
+const LOST_MOTION: [&str; 2] = ["hysteresis", "backlash"];
+
+/// Whether two causes cannot stand side by side.
+fn excludes(a: &str, b: &str) -> bool {
+    a == b || (LOST_MOTION.contains(&a) && LOST_MOTION.contains(&b))
+}
+
 /// Causes that are a change of dry friction, and mean nothing without it.
 const OF_DRY_FRICTION: [&str; 3] = ["stribeck", "hysteresis", "friction-change"];
 /// Causes that are dry friction.
@@ -56,15 +96,35 @@ impl Selection<'_> {
             }
             at = end;
         }
+        self.paid(chosen, solved.rss)
+    }
+
+    fn paid(&self, chosen: &[usize], rss: f64) -> f64 {
         let cost: f64 = chosen.iter().map(|c| self.candidates[*c].cost).sum();
-        self.system.rows * solved.rss.ln() + cost * self.system.rows.ln()
+        self.system.rows * rss.ln() + cost * self.system.rows.ln()
+    }
+
+    /// The same whatever the signs.
+    fn plain_price(&self, chosen: &[usize]) -> Option<f64> {
+        Some(self.paid(chosen, self.system.solve(chosen)?.rss))
+    }
+
+    /// Whether a generic term in the k-th cause's place explains more, its own search paid: its name is then a guess.
+    fn outdone(&self, chosen: &[usize], k: usize) -> bool {
+        let rest = without(chosen, k);
+        let generic: Vec<usize> = (0..self.candidates.len())
+            .filter(|c| self.candidates[*c].expression.is_some() && self.system.supported(*c))
+            .collect();
+        let search = 2.0 * (generic.len().max(1) as f64).ln();
+        let whole = self.price(chosen);
+        generic.iter().any(|c| self.price(&[rest.as_slice(), &[*c]].concat()) + search < whole - AMBIGUOUS)
     }
 
     /// Candidates that may join the chosen ones: supported, and of another cause.
     fn open<'b>(&'b self, chosen: &'b [usize]) -> impl Iterator<Item = usize> + 'b {
         (0..self.candidates.len())
             .filter(|c| self.candidates[*c].expression.is_none() && self.system.supported(*c))
-            .filter(|c| chosen.iter().all(|o| self.candidates[*o].id != self.candidates[*c].id))
+            .filter(|c| chosen.iter().all(|o| !excludes(self.candidates[*o].id, self.candidates[*c].id)))
     }
 
     /// The best few, whether they earn their place or not: what the whitening must not swallow.
@@ -106,6 +166,10 @@ impl Selection<'_> {
         self.prune(&mut chosen);
         self.swap(&mut chosen);
         self.prune(&mut chosen);
+        while let Some(k) = (0..chosen.len()).find(|k| self.outdone(&chosen, *k)) {
+            chosen.remove(k);
+            self.prune(&mut chosen);
+        }
         self.describe(&chosen)
     }
 
@@ -135,7 +199,7 @@ impl Selection<'_> {
             let whole = self.price(chosen);
             let loss = |k: usize| self.price(&without(chosen, k)) - whole;
             let Some(weakest) = (0..chosen.len()).min_by(|a, b| loss(*a).total_cmp(&loss(*b))) else { return };
-            let doubtful = (0..chosen.len()).find(|k| !self.validates(chosen, *k));
+            let doubtful = (0..chosen.len()).find(|k| !self.validates(chosen, *k) || self.remains(chosen, *k));
             if loss(weakest) < self.threshold {
                 chosen.remove(weakest);
             } else if let Some(k) = doubtful {
@@ -144,6 +208,20 @@ impl Selection<'_> {
                 return;
             }
         }
+    }
+
+    /// Whether the k-th cause may be what the curve of a stronger one misses.
+    fn remains(&self, chosen: &[usize], k: usize) -> bool {
+        // Whatever the signs of the others come out at.
+        let loss = |k: usize| Some(self.plain_price(&without(chosen, k))? - self.plain_price(chosen)?);
+        let over = |c: usize, all: &[(&str, Over)]| {
+            all.iter().find(|(id, _)| *id == self.candidates[c].id).map(|(_, over)| *over)
+        };
+        let own = over(chosen[k], &CURVES).or_else(|| over(chosen[k], &LINES));
+        own.is_some()
+            && (0..chosen.len())
+                .filter(|o| *o != k && over(chosen[*o], &CURVES) == own)
+                .any(|o| loss(k).zip(loss(o)).is_some_and(|(weak, strong)| weak < REMAINDER * strong))
     }
 
     /// Whether held-out folds gain by the k-th cause.
@@ -172,7 +250,8 @@ impl Selection<'_> {
         let mut found: Vec<Chosen> = (0..chosen.len())
             .map(|k| {
                 let rest = without(chosen, k);
-                let score = self.price(&rest) - whole;
+                // What is left may have an impossible sign: it is a worse explanation all the same.
+                let score = self.plain_price(&rest).unwrap_or(whole) - whole;
                 let cost = self.candidates[chosen[k]].cost * self.system.rows.ln();
                 Chosen {
                     candidate: chosen[k],

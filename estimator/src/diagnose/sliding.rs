@@ -9,7 +9,7 @@ use super::track::{Fine, Place, Row, Span, Track};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use crate::identify::mechanism::{self, Raw};
-use crate::signal::noise::white_noise;
+use crate::signal::noise::{white_noise, white_noise_under_fast_motion};
 use haptics::Vec2;
 use haptics::law::{Coordinate, Motion};
 use haptics::recording::Recording;
@@ -99,8 +99,8 @@ fn slopes(raw: &Raw) -> Vec<f64> {
 struct Made {
     rows: Vec<Row>,
     fine: Vec<Fine>,
-    /// Of the velocity and of the force, one pair a stretch.
-    noises: Vec<[f64; 2]>,
+    /// Of the velocity, the force and the position, one triple a stretch.
+    noises: Vec<[f64; 3]>,
     period_s: f64,
     /// Samples a block.
     block: usize,
@@ -115,7 +115,8 @@ impl Made {
         let number = self.fine.last().map_or(0, |f| f.stretch + 1);
         let (calm, left) = calmed_line(&rate[range.clone()], self.period_s);
         // Rates of differences carry the noise of the positions once more.
-        self.noises.push([left * white_noise(&rate[range.clone()]), white_noise(&force[range.clone()])]);
+        let position = white_noise_under_fast_motion(&raw.position[range.clone()]);
+        self.noises.push([left * white_noise(&rate[range.clone()]), white_noise(&force[range.clone()]), position]);
         let fill = (FINE_HZ * self.period_s).round().max(1.0) as usize;
         let skip = (1.0 / (FINE_HZ * self.period_s)).round().max(1.0) as usize;
         let first_fine = self.fine.len();
@@ -196,6 +197,7 @@ impl Made {
             radius_m: (raw.coordinate == Coordinate::Angular).then_some(1.0),
             planar: false,
             velocity_noise: worst(0),
+            position_noise: averaged(self.block) * worst(2),
             force_noise: (averaged(self.block) * worst(1)).max(1e-12),
             noise_is_measured: false,
             span_s,

@@ -4,7 +4,7 @@ use haptics::Vec2;
 use haptics::law::{Coordinate, Motion};
 
 /// What a row's force is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     /// Along the motion, while the object is held.
     Along,
@@ -12,6 +12,17 @@ pub enum Place {
     FreeX,
     /// Vertical, while nothing is touched.
     FreeY,
+    /// No force, but the way that the object gives while it stands (`stuck.rs`), times `scale`.
+    Stuck {
+        /// What the friction holds, as a share of it.
+        share: f64,
+        /// Side of the whole load: −1, 1, or 0 where it is a guess.
+        side: f64,
+        /// The load's noise as a share of the friction.
+        noise: f64,
+        /// N/m, N m/rad
+        scale: f64,
+    },
 }
 
 /// The motion between the rows, as finely as it is known: the direction of motion changes within a row.
@@ -74,6 +85,26 @@ pub struct Row {
     pub open: f64,
 }
 
+#[cfg(test)]
+impl Row {
+    /// Nothing moves and nothing pushes.
+    pub fn at_rest() -> Self {
+        Self {
+            recording: 0,
+            stretch: 0,
+            place: Place::Along,
+            motion: Motion::default(),
+            angle_rad: 0.0,
+            along: Vec2::zeros(),
+            force: Vec2::zeros(),
+            force_rate: Vec2::zeros(),
+            y: 0.0,
+            span: Span::default(),
+            open: 0.0,
+        }
+    }
+}
+
 /// Rows and what is known of their noise.
 #[derive(Clone, Debug)]
 pub struct Track {
@@ -93,6 +124,8 @@ pub struct Track {
     pub planar: bool,
     /// Noise of the velocity, m/s or rad/s.
     pub velocity_noise: f64,
+    /// Noise of the position of a row, m or rad; 0 where it is unknown.
+    pub position_noise: f64,
     /// Noise of one force row, N or N m.
     pub force_noise: f64,
     /// True when that noise was seen where nothing was touched.
@@ -155,6 +188,7 @@ pub fn join(tracks: Vec<Track>) -> Option<Track> {
         let more = track.rows.len() as f64;
         let mean = |a: f64, b: f64| ((weight * a * a + more * b * b) / (weight + more).max(1.0)).sqrt();
         joined.velocity_noise = mean(joined.velocity_noise, track.velocity_noise);
+        joined.position_noise = mean(joined.position_noise, track.position_noise);
         joined.force_noise = mean(joined.force_noise, track.force_noise);
         joined.noise_is_measured &= track.noise_is_measured;
         joined.planar &= track.planar;

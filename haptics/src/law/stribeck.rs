@@ -1,5 +1,7 @@
-//! Stribeck friction: (Fs − Fc) exp(−(v/vs)²) sgn(v) (Stribeck 1902, in the form of Bo & Pavelescu 1982). dFs = Fs − Fc ≥ 0 is
-//! what the static level is above the Coulomb level of the effect beside it. vs = 0: friction of rest alone. Holds at rest.
+//! Stribeck friction: (Fs − Fc) exp(−(|v|/vs)^α) sgn(v) (Stribeck 1902, in the form of Bo & Pavelescu 1982). dFs = Fs − Fc ≥ 0 is
+//! what the static level is above the Coulomb level of the effect beside it. α = 2 (or 0, unset) is the Gaussian, α = 1 Tustin's
+//! exponential (1947); measured ones lie between 0.5 and 2 (Armstrong-Hélouvry et al. 1994). vs = 0: friction of rest alone.
+//! Holds at rest.
 
 use super::entry::POSITIVE;
 use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
@@ -12,7 +14,7 @@ static ENTRY: Entry = Entry {
     id: "stribeck",
     kind: Kind::Plant,
     title: "Stribeck friction",
-    equation: "(Fs − Fc) exp(−(v/vs)²) sgn(v)",
+    equation: "(Fs − Fc) exp(−(|v|/vs)^α) sgn(v)",
     what: "Friction that falls from its static level to the Coulomb level as the motion gets faster.",
     shows: "As a peak of force at every start and as stick-slip of a soft drive.",
     mimics: "Coulomb friction mimics it in slow motion and in small fast strokes, quadratic drag or a falling viscous \
@@ -21,14 +23,21 @@ static ENTRY: Entry = Entry {
     parameters: &[
         ParameterSpec::linear("dFs", "N", "N m", POSITIVE),
         ParameterSpec::nonlinear("vs", "m/s", "rad/s", POSITIVE),
+        ParameterSpec::nonlinear("alpha", "1", "1", POSITIVE),
     ],
 };
 
 /// exp(−(v/vs)²); for vs = 0 one at rest and zero in motion.
 pub(super) fn falling(velocity: f64, vs: f64) -> f64 {
+    falling_by(velocity, vs, 0.0)
+}
+
+/// exp(−(|v|/vs)^α); α = 0 stands for 2.
+fn falling_by(velocity: f64, vs: f64, alpha: f64) -> f64 {
     if vs > 0.0 {
-        let ratio = velocity / vs;
-        (-ratio * ratio).exp()
+        let ratio = velocity.abs() / vs;
+        let power = if alpha > 0.0 { ratio.powf(alpha) } else { ratio * ratio };
+        (-power).exp()
     } else {
         f64::from(velocity == 0.0)
     }
@@ -44,7 +53,7 @@ impl Law for Stribeck {
     }
 
     fn force(&self, motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> f64 {
-        parameters[0] * falling(motion.velocity, parameters[1]) * motion.direction
+        parameters[0] * falling_by(motion.velocity, parameters[1], parameters[2]) * motion.direction
     }
 }
 
@@ -62,5 +71,11 @@ mod tests {
         assert!((Stribeck.force(&motion, &values) - expected).abs() < 1e-12);
         let rest = Motion { velocity: 0.0, ..motion };
         assert_eq!(Stribeck.force(&rest, &values), 0.5);
+        // With α = 1 it falls by e again at twice the speed, where the Gaussian has fallen by e³.
+        let twice = Motion { velocity: -0.04, direction: -1.0, ..motion };
+        values[2] = 1.0;
+        assert!((Stribeck.force(&twice, &values) + 0.5 * (-2.0_f64).exp()).abs() < 1e-12);
+        values[2] = 2.0;
+        assert!((Stribeck.force(&twice, &values) + 0.5 * (-4.0_f64).exp()).abs() < 1e-12);
     }
 }

@@ -205,11 +205,10 @@ impl Effect {
     pub fn forms(self) -> u32 {
         match self {
             Self::ChannelFault | Self::Local => 4,
-            Self::Asymmetry | Self::Stribeck | Self::FrictionChange | Self::Slip | Self::AxisSign => 3,
+            Self::Asymmetry | Self::Stribeck | Self::FrictionChange | Self::Slip | Self::AxisSign | Self::Backlash => 3,
             Self::Drag
             | Self::Ripple
             | Self::Spring
-            | Self::Backlash
             | Self::Hysteresis
             | Self::Leak
             | Self::Pad
@@ -232,6 +231,7 @@ impl Effect {
             (Self::Drag, 1) => "power 2.5",
             (Self::Ripple, 1) => "triangular",
             (Self::Backlash, 1) => "soft edges",
+            (Self::Backlash, 2) => "behind what sticks",
             (Self::Hysteresis, 0) => "Dahl",
             (Self::Hysteresis, _) => "Bouc-Wen, exponent 2",
             (Self::Stribeck, _) | (Self::Leak | Self::Drift, 1) => "exponential",

@@ -150,6 +150,19 @@ impl Hidden {
             Effect::FrictionChange => Loads::dry(base.forward_n * size * self.change(now.share)),
             Effect::Local => self.local(plant, now),
             Effect::Cable => Loads::smooth(size * self.cable(now.angle)),
+            // A gap lies open as soon as the hand turns round, …
+            Effect::Backlash if self.form < 2 => {
+                let away = plant.radius_m * now.turned - memory.state;
+                let gate = self.gate(plant.radius_m * now.turned, memory.state) - 1.0;
+                let on = |side: bool| if side { gate } else { -1.0 };
+                Loads {
+                    forward_n: on(away >= 0.0) * base.forward_n,
+                    backward_n: on(away <= 0.0) * base.backward_n,
+                    smooth_n: 0.0,
+                    viscous: gate * base.viscous,
+                }
+            }
+            // … or once what sticks at its side has broken loose.
             Effect::Backlash => {
                 let gate = self.gate(plant.radius_m * now.turned, memory.state) - 1.0;
                 Loads {
@@ -251,7 +264,7 @@ impl Hidden {
     /// Share of the load that is felt: none inside the gap.
     fn gate(&self, path_m: f64, side_m: f64) -> f64 {
         let depth = (path_m - side_m).abs() / self.size;
-        if self.form == 0 { f64::from(u8::from(depth > 0.999)) } else { ((depth - 0.7) / 0.3).clamp(0.0, 1.0) }
+        if self.form != 1 { f64::from(u8::from(depth > 0.999)) } else { ((depth - 0.7) / 0.3).clamp(0.0, 1.0) }
     }
 
     fn shaking(&self, time_s: f64) -> f64 {

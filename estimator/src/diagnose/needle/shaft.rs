@@ -168,6 +168,7 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
         radius_m: None,
         planar: false,
         velocity_noise: needle.rate_noise_m_s,
+        position_noise: 0.0,
         force_noise: 1e-12,
         noise_is_measured: false,
         span_s: rows.last().map_or(0.0, |r| r.time_s) - start_s,

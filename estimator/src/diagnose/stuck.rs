@@ -1,0 +1,250 @@
+//! Where the object stands although it is pushed: how far it gives way there tells what bends before it slides, and what has play,
+//! much more finely than the force does, whose direction is a guess at a reversal.
+//!
+//! Rows of a track in which the force is below the friction and nothing moves become rows of their own: their target is the way since
+//! the middle of the standstill, measured in the noise of the force, so that both kinds of rows count in one comparison. Dry friction
+//! alone gives nothing there.
+
+use super::track::{Place, Row, Track};
+use haptics::Vec2;
+use haptics::law::{Hysteresis, Law, MAX_PARAMETERS, Memory, Motion};
+
+/// Share of the friction up to which nothing slides, also where the friction is known badly.
+const HOLDS: f64 = 0.7;
+/// What goes further than this share of the range (of the diameter, on a circle) does not stand; a gap so wide shows in the force.
+const LARGEST: f64 = 0.006;
+/// A bend is followed up to this share of the friction.
+const BENT: f64 = 0.95;
+/// A standstill whose give differs from what is usual by this share of it, and by so many times its noise, was a slow slide.
+const UNLIKE: f64 = 0.7;
+const UNLIKE_SURE: f64 = 4.0;
+/// Rows slower than this share the time of a standstill with a slide, s.
+const SLOWEST_S: f64 = 0.03;
+/// Fewer rows are no standstill.
+const LEAST_ROWS: usize = 3;
+/// A load that is no further from zero than this many times its noise has no side.
+const SURE: f64 = 2.0;
+/// Steps in which a change of the load is followed.
+const PARTS: usize = 6;
+
+/// The load of one row, as a share of the friction, and the size of the friction in N or N m.
+pub struct Load {
+    /// What the friction holds, and all of the force.
+    pub share: f64,
+    pub whole: f64,
+    pub friction: f64,
+}
+
+/// Adds the rows of the standstills. `loads`: one a row, `None` where the friction is unknown.
+pub fn add(track: &mut Track, loads: &[Option<Load>]) {
+    let noise = track.position_noise;
+    if noise <= 0.0 || noise.is_nan() || track.raw_period_s > SLOWEST_S {
+        return;
+    }
+    let range = track.quantile(1.0, |r| r.motion.position) - track.quantile(0.0, |r| r.motion.position);
+    let largest = LARGEST * track.radius_m.map_or(range, |r| range.min(2.0 * r)) + 4.0 * noise;
+    let stands = |i: usize| {
+        let below = |l: &&Load| l.share.abs() < HOLDS && l.friction > SURE * track.force_noise;
+        track.rows[i].place == Place::Along && loads[i].as_ref().filter(below).is_some()
+    };
+    let stays = |range: std::ops::Range<usize>| {
+        let places = track.rows[range].iter().map(|r| r.motion.position);
+        places.clone().fold(f64::MIN, f64::max) - places.fold(f64::MAX, f64::min) < largest
+    };
+    let mut number = track.rows.iter().map(|r| r.stretch + 1).max().unwrap_or(0);
+    let mut made: Vec<Vec<Row>> = Vec::new();
+    let mut first = 0;
+    for i in 0..=track.rows.len() {
+        if i < track.rows.len() && stands(i) && (first == i || track.follows(i)) {
+            continue;
+        }
+        // A row at either end may have moved already.
+        let still = first + 1..i.saturating_sub(1);
+        if still.len() >= LEAST_ROWS && stays(still.clone()) {
+            made.push(standstill(track, &loads[still.clone()], still, number));
+            number += 1;
+        }
+        first = if i < track.rows.len() && stands(i) { i } else { i + 1 };
+    }
+    let made: Vec<Row> = alike(made, noise).concat();
+    track.rows.extend(made);
+}
+
+/// Only those standstills that give as the others do. A slide so slow that its force passes for a standstill's gives anything.
+fn alike(made: Vec<Vec<Row>>, noise: f64) -> Vec<Vec<Row>> {
+    let slope = |rows: &[Row]| {
+        let (mut across, mut square) = (0.0, 0.0);
+        let share = |r: &Row| if let Place::Stuck { share, .. } = r.place { share } else { 0.0 };
+        let mean = rows.iter().map(share).sum::<f64>() / rows.len() as f64;
+        for row in rows {
+            let Place::Stuck { scale, .. } = row.place else { continue };
+            across += (share(row) - mean) * row.y / scale;
+            square += (share(row) - mean).powi(2);
+        }
+        (across / square.max(1e-12), noise / square.max(1e-12).sqrt())
+    };
+    let slopes: Vec<(f64, f64)> = made.iter().map(|rows| slope(rows)).collect();
+    let usual = usual(&slopes);
+    let keeps = |(slope, error): &(f64, f64)| (slope - usual).abs() < UNLIKE * usual.abs() + UNLIKE_SURE * error;
+    made.into_iter().zip(slopes).filter(|(_, s)| keeps(s)).map(|(rows, _)| rows).collect()
+}
+
+/// Median of values with errors, each counting as much as it is certain.
+fn usual(slopes: &[(f64, f64)]) -> f64 {
+    let mut sorted: Vec<(f64, f64)> = slopes.iter().map(|(s, e)| (*s, 1.0 / e.max(1e-300))).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = 0.5 * sorted.iter().map(|s| s.1).sum::<f64>();
+    let mut sum = 0.0;
+    for (slope, weight) in sorted {
+        sum += weight;
+        if sum >= half {
+            return slope;
+        }
+    }
+    0.0
+}
+
+fn standstill(track: &Track, loads: &[Option<Load>], range: std::ops::Range<usize>, number: usize) -> Vec<Row> {
+    let rows = &track.rows[range];
+    let scale = track.force_noise / track.position_noise;
+    let mean = rows.iter().map(|r| r.motion.position).sum::<f64>() / rows.len() as f64;
+    let of = |(row, load): (&Row, &Option<Load>)| {
+        let load = load.as_ref()?;
+        let sure = |share: f64| if share.abs() * load.friction > SURE * track.force_noise { share } else { 0.0 };
+        let noise = SURE * track.force_noise / load.friction;
+        let place = Place::Stuck {
+            share: load.share,
+            side: sure(load.whole).signum() * f64::from(sure(load.whole) != 0.0),
+            noise,
+            scale,
+        };
+        Some(Row {
+            stretch: number,
+            place,
+            along: Vec2::zeros(),
+            force: Vec2::zeros(),
+            force_rate: Vec2::zeros(),
+            y: scale * (row.motion.position - mean),
+            open: 0.0,
+            ..*row
+        })
+    };
+    rows.iter().zip(loads).filter_map(of).collect()
+}
+
+/// Puts what `way` says of the rows of each standstill, less its mean, into a column.
+fn fill(rows: &[Row], column: &mut [f64], way: &dyn Fn(&[Row]) -> Vec<f64>) {
+    let mut first = 0;
+    for stretch in rows.chunk_by(|a, b| a.stretch == b.stretch) {
+        let here = first..first + stretch.len();
+        first = here.end;
+        let Place::Stuck { scale, .. } = stretch[0].place else { continue };
+        let ways = way(stretch);
+        let mean = ways.iter().sum::<f64>() / ways.len() as f64;
+        column[here].iter_mut().zip(&ways).for_each(|(c, w)| *c = scale * (w - mean));
+    }
+}
+
+/// What bends by `way` before it slides gives this much under the loads.
+pub fn bends(rows: &[Row], way: f64, column: &mut [f64]) {
+    let mut values = [0.0; MAX_PARAMETERS];
+    (values[0], values[1]) = (1.0, 1.0 / way);
+    fill(rows, column, &|stretch| {
+        let mut memory: Memory = Memory::default();
+        let mut at = 0.0;
+        stretch
+            .iter()
+            .enumerate()
+            .map(|(k, row)| {
+                let Place::Stuck { share, noise, .. } = row.place else { return at };
+                let share = share.clamp(-BENT, BENT);
+                if k == 0 {
+                    memory[0] = share;
+                } else if (share - memory[0]).abs() > noise {
+                    // The noise alone bends nothing: what is followed stays this far behind.
+                    let aim = share - noise * (share - memory[0]).signum();
+                    at += follow(&values, &mut memory, aim);
+                }
+                at
+            })
+            .collect()
+    });
+}
+
+/// The way on which the law's friction goes to `aim`; the memory follows.
+fn follow(values: &[f64; MAX_PARAMETERS], memory: &mut Memory, aim: f64) -> f64 {
+    let side = (aim - memory[0]).signum();
+    let mut gone = 0.0;
+    for part in 0..PARTS {
+        let motion = Motion { velocity: side, direction: side, ..Motion::default() };
+        let step = (aim - memory[0]) / (PARTS - part) as f64;
+        let stiffness = Hysteresis.stiffness(&motion, values, memory);
+        if stiffness <= 0.0 {
+            break;
+        }
+        let way = step / stiffness;
+        Hysteresis.advance(&Motion { velocity: way, ..motion }, values, memory, 1.0);
+        gone += way;
+    }
+    gone
+}
+
+/// What has a gap of twice `half` lies on the side of the load.
+pub fn plays(rows: &[Row], half: f64, all: bool, column: &mut [f64]) {
+    fill(rows, column, &|stretch| {
+        stretch
+            .iter()
+            .map(|row| {
+                let Place::Stuck { share, side, noise, .. } = row.place else { return 0.0 };
+                // Where the load's sign is a guess, anything between the two sides.
+                let side = if all { side } else { (share / noise.max(1e-12)).clamp(-1.0, 1.0) };
+                half * side
+            })
+            .collect()
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(stretch: usize, share: f64, way_um: f64) -> Row {
+        let place = Place::Stuck { share, side: share.signum(), noise: 0.02, scale: 1e3 };
+        Row { stretch, place, y: 1e-3 * way_um, ..Row::at_rest() }
+    }
+
+    #[test]
+    fn a_slow_slide_is_no_standstill() {
+        // Three standstills that give 20 µm a friction, and a slide of 300 µm while the load falls.
+        let still = |k: usize| (0..6).map(|i| row(k, 0.1 * f64::from(i), 2.0 * f64::from(i) - 5.0)).collect::<Vec<_>>();
+        let slides: Vec<Row> = (0..6).map(|i| row(9, -0.1 * f64::from(i), 60.0 * f64::from(i) - 150.0)).collect();
+        let kept = alike(vec![still(1), slides, still(2), still(3)], 1e-6);
+        assert_eq!(kept.iter().map(|rows| rows[0].stretch).collect::<Vec<_>>(), [1, 2, 3]);
+    }
+
+    #[test]
+    fn a_gap_jumps_where_the_load_changes_sides_and_a_bend_follows_it() {
+        let shares = [0.5, 0.3, 0.1, -0.1, -0.3, -0.5];
+        let rows: Vec<Row> = shares.iter().map(|s| row(1, *s, 0.0)).collect();
+        let (mut gap, mut bend) = (vec![0.0; 6], vec![0.0; 6]);
+        plays(&rows, 1e-4, false, &mut gap);
+        assert!(
+            (gap[0] - 0.1).abs() < 1e-12 && (gap[2] - gap[0]).abs() < 1e-12 && (gap[3] + 0.1).abs() < 1e-12,
+            "{gap:?}"
+        );
+        bends(&rows, 1e-4, &mut bend);
+        let steps: Vec<f64> = bend.windows(2).map(|w| w[0] - w[1]).collect();
+        assert!(steps.iter().all(|s| *s > 0.005) && steps[2] < 2.0 * steps[3], "{bend:?}");
+    }
+
+    #[test]
+    fn the_way_to_a_load_brings_the_friction_there() {
+        let values = [1.0, 1e4, 0.0, 0.0, 0.0];
+        let mut memory = [0.9, 0.0];
+        let way = follow(&values, &mut memory, -0.5);
+        // Dahl backwards from 0.9: (1 + z) falls by exp(−s/l), l = 0.1 mm.
+        let expected = 1e-4 * (0.5_f64 / 1.9).ln();
+        assert!((way - expected).abs() < 0.06 * expected.abs(), "{way} {expected}");
+        assert!((memory[0] + 0.5).abs() < 0.1, "{}", memory[0]);
+    }
+}
