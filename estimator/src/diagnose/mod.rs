@@ -224,7 +224,9 @@ fn turned(
 fn name_joint(found: &mut Diagnosis, first_link: bool) {
     let Some(cause) = found.causes.iter_mut().find(|c| c.id == "joint-offset") else { return };
     let link = if first_link { "first" } else { "second" };
-    cause.evidence.push_str(&format!("; it is the {link} link's angle"));
+    cause.evidence += "; it is the angle of the ";
+    cause.evidence += link;
+    cause.evidence += " link";
     if first_link {
         cause.parameters.iter_mut().for_each(|p| p.value = -p.value);
     }
