@@ -5,7 +5,7 @@
 //! would come up once in ten thousand days if the program were as good as demanded. What is demanded here is what the program reaches
 //! so far; what it should reach stands in `docs/diagnosis.md`.
 
-use blind::{Counts, Figures, Row, Set, Share, ask, battery, report};
+use blind::{Counts, Experiments, Figures, Row, Set, Share, ask, battery, report};
 use estimator::diagnose::diagnose;
 use std::sync::OnceLock;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -78,6 +78,14 @@ fn what_cannot_be_told_apart_is_listed() {
     let figures = Figures::of(rows());
     at_least("truth in the ambiguity set", figures.in_set, 0.98);
     assert!(figures.set_size <= 1.4, "ambiguity sets hold {:.2} causes; TOUCHSTONE_SEED={}", figures.set_size, seed());
+}
+
+#[test]
+fn proposed_experiments_settle_what_was_open() {
+    let experiments = Experiments::of(rows());
+    at_least("open cases in which only what is hidden is left", experiments.settled, 0.85);
+    let unsaid = rows().iter().filter_map(Row::proposed).find(|f| !(0.0..=1.0).contains(&f.expected_power));
+    assert!(unsaid.is_none(), "{unsaid:?}");
 }
 
 #[test]

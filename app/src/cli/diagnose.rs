@@ -3,7 +3,9 @@
 use super::{LogArgs, Output};
 use anyhow::Context;
 use clap::Args;
-use estimator::diagnose::{Cause, Diagnosis, Options, Progress, Verdict, diagnose, extended_world, validate};
+use estimator::diagnose::{
+    Cause, Diagnosis, Options, Progress, RolloutOf, Verdict, diagnose, extended_world, validate,
+};
 use haptics::world::World;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -133,5 +135,12 @@ fn cause_line(cause: &Cause) -> String {
         .iter()
         .map(|p| format!("{} {} {}", p.name, super::table::with_error(p.value, p.std_error), p.unit))
         .collect();
-    format!("{}: {}; {}", cause.id, parameters.join(", "), cause.evidence)
+    let forward = cause.gain.rollout.as_ref().map_or_else(String::new, |r| {
+        let what = if r.of == RolloutOf::Position { "position" } else { "force" };
+        format!(
+            "; run forward over {} windows of {} s the {what} is off by {:.2e} {} RMS instead of {:.2e}",
+            r.windows, r.window_s, r.rms_after, r.unit, r.rms_before
+        )
+    });
+    format!("{}: {}; {}{forward}", cause.id, parameters.join(", "), cause.evidence)
 }

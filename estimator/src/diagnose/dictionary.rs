@@ -136,6 +136,7 @@ impl Dictionary<'_> {
     fn place(&self, all: &mut Vec<Candidate>) {
         if let Some(radius) = self.track.radius_m {
             self.gravity(all, radius);
+            all.extend(super::hung::tilt(self.track));
         }
         self.grid.ripples.iter().for_each(|length| self.ripple(all, *length));
         self.springs(all);

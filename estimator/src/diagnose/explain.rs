@@ -8,6 +8,7 @@ use super::force::Model;
 use super::gain::{chi_square_tail, gain, rms, whiteness_p};
 use super::geometry::Study;
 use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, NotExcited, Verdict};
+use super::rollout::rollout;
 use super::select::{Chosen, Selection};
 use super::track::{Place, Track};
 use haptics::law::{Coordinate, Law, ReturnSpring, entries};
@@ -49,6 +50,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
             continue;
         }
         let mut named = cause(study, k, floor, "force");
+        named.gain.rollout = rollout(track, model, study, k);
         if let Some(parameters) = of_hardening_spring(track, study, k) {
             named.parameters = parameters;
         }
@@ -167,7 +169,8 @@ fn cause(study: &Study, k: usize, floor: f64, channel: &str) -> Cause {
 fn total_odds(study: &Study, chosen: &Chosen) -> f64 {
     let own = study.candidates[chosen.candidate].id;
     let rival = |id: &str| chosen.rivals.iter().any(|(c, _)| study.candidates[*c].id == id);
-    let twins = TWINS.iter().filter(|(a, b, _)| *a == own && !rival(b)).count();
+    let tested = |id: &str| study.candidates.iter().any(|c| c.id == id);
+    let twins = TWINS.iter().filter(|(a, b, _)| *a == own && !rival(b) && !tested(b)).count();
     1.0 + twins as f64 + chosen.rivals.iter().map(|(_, behind)| (-0.5 * behind).exp()).sum::<f64>()
 }
 
@@ -249,7 +252,8 @@ pub(super) fn rivals(study: &Study, chosen: &Chosen) -> Vec<Alternative> {
         })
         .collect();
     for (a, b, why) in TWINS {
-        if own == a && found.iter().all(|f| f.id != b) {
+        // What has columns of its own here is no twin here.
+        if own == a && study.candidates.iter().all(|c| c.id != b) {
             found.push(Alternative {
                 id: b.to_owned(),
                 instead_of: own.to_owned(),

@@ -3,35 +3,57 @@
 use super::candidate::{Candidate, about_its_zero};
 use super::force::Model;
 use super::geometry::Study;
+use super::system::Solved;
 use super::track::Track;
 use haptics::law::{
-    AddedConstraint, Backlash, CoulombFriction, EccentricMass, Effect, FrictionAsymmetry, FrictionChange, Hysteresis,
-    Inertia, Kind, Law, LoadFriction, LocalPush, LocalResistance, MassChange, PositionRipple, QuadraticDrag,
-    ReturnSpring, Stribeck, ViscousFriction,
+    AddedConstraint, Backlash, CoulombFriction, EccentricMass, Effect, FrictionAsymmetry, FrictionChange, GravityTilt,
+    Hysteresis, Inertia, Kind, Law, LoadFriction, LocalPush, LocalResistance, MassChange, Motion, PositionRipple,
+    QuadraticDrag, ReturnSpring, Role, Stribeck, ViscousFriction,
 };
 
 /// The model's laws refitted beside the chosen causes, and the plant causes among these as laws of their own. Instruments' faults are
 /// no part of a world.
 pub fn effects(track: &Track, model: &Model, study: &Study) -> Vec<Effect> {
     let Some(solved) = &study.solved else { return model.clone() };
+    made(track, model, study, &study.picks(), solved).0
+}
+
+/// The same for some of the candidates; nothing where a plant cause among them has no law that a world runs.
+pub fn effects_of(
+    track: &Track,
+    model: &Model,
+    study: &Study,
+    picks: &[usize],
+    solved: &Solved,
+) -> Option<Vec<Effect>> {
+    let (found, is_whole) = made(track, model, study, picks, solved);
+    is_whole.then_some(found)
+}
+
+/// The laws, and whether every plant cause is among them.
+fn made(track: &Track, model: &Model, study: &Study, picks: &[usize], solved: &Solved) -> (Vec<Effect>, bool) {
     let mut found: Vec<Effect> = model.iter().zip(&solved.values).map(|(e, share)| scaled(e, *share)).collect();
-    let dry = model.iter().zip(&solved.values).filter(|(e, _)| e.law().is_dry()).map(|(e, v)| {
-        let usual = haptics::law::Motion {
-            direction: 1.0,
-            normal_force_n: track.quantile(0.5, |r| r.motion.normal_force_n.abs()),
-            ..haptics::law::Motion::default()
-        };
-        v * e.force(&usual)
-    });
-    let dry_n: f64 = dry.sum::<f64>().abs();
-    let mut at = study.base.len();
-    for chosen in &study.chosen {
-        let candidate = &study.candidates[chosen.candidate];
+    let usual = Motion {
+        direction: 1.0,
+        normal_force_n: track.quantile(0.5, |r| r.motion.normal_force_n.abs()),
+        ..Motion::default()
+    };
+    let level = |laws: &[Effect]| laws.iter().filter(|e| e.law().is_dry()).map(|e| e.force(&usual)).sum::<f64>().abs();
+    let dry_n = level(&found);
+    let weight_n = found.iter().filter(|e| e.role() == Role::Gravity).map(|e| e.values[0]).sum::<f64>();
+    let (mut at, mut is_whole) = (study.base.len(), true);
+    for candidate in picks.iter().map(|p| &study.candidates[*p]) {
         let values = &solved.values[at..at + candidate.columns.len()];
-        found.extend(effect(candidate, values, track, dry_n));
+        if candidate.id == Hysteresis.id() {
+            // What bends before it slides is taken from what slides at once.
+            found.iter_mut().filter(|e| e.law().is_dry()).for_each(|e| *e = scaled(e, (1.0 - values[0]).max(0.0)));
+        }
+        let law = effect(candidate, values, track, [dry_n, weight_n]);
+        is_whole &= law.is_some() || candidate.kind == Kind::Instrument;
+        found.extend(law);
         at += candidate.columns.len();
     }
-    found
+    (found, is_whole)
 }
 
 /// The model's laws fitted without any cause.
@@ -51,8 +73,8 @@ fn scaled(effect: &Effect, share: f64) -> Effect {
     scaled
 }
 
-/// A plant cause of the force as a law. `dry_n`: usual dry friction of the model, N or N m.
-fn effect(candidate: &Candidate, values: &[f64], track: &Track, dry_n: f64) -> Option<Effect> {
+/// A plant cause of the force as a law. `dry_n`, `weight_n`: usual dry friction and weight of the model, N or N m.
+fn effect(candidate: &Candidate, values: &[f64], track: &Track, [dry_n, weight_n]: [f64; 2]) -> Option<Effect> {
     if candidate.kind != Kind::Plant {
         return None;
     }
@@ -72,6 +94,7 @@ fn effect(candidate: &Candidate, values: &[f64], track: &Track, dry_n: f64) -> O
         "quadratic-drag" => of(&QuadraticDrag, &[first]),
         "inertia" => of(&Inertia, &[first]),
         "eccentric-mass" => of(&EccentricMass, &[first, values.get(1).copied().unwrap_or(0.0), radius]),
+        "gravity-tilt" if track.planar && weight_n > 0.0 => of(&GravityTilt, &[weight_n, first, radius]),
         "position-ripple" => {
             let (cosine, sine) = (first, values.get(1).copied().unwrap_or(0.0));
             // cos(x − π/2) is the sine's column.

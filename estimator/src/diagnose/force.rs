@@ -5,6 +5,7 @@ use super::dictionary::Dictionary;
 use super::generic::generic;
 use super::geometry::{Study, residual};
 use super::grid::Grid;
+use super::hung;
 use super::select::Selection;
 use super::stuck::{self, Load};
 use super::system::{Held, Rows, System, solve, uses, whitener};
@@ -101,7 +102,7 @@ fn compare(
     (laws, whitening): (Option<&[f64]>, Option<Vec<f64>>),
 ) -> Result<Study, EstimateError> {
     let base: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
-    let known: Vec<Vec<f64>> = fixed.iter().map(|effect| column(track, effect)).collect();
+    let known: Vec<Vec<f64>> = fixed.iter().map(|e| column(track, e)).chain(hung::column(track)).collect();
     let y: Vec<f64> =
         track.rows.iter().enumerate().map(|(i, r)| r.y - known.iter().map(|k| k[i]).sum::<f64>()).collect();
     let (mut predicted, mut resisting, weight, _) = first_look(track, model, &base, &y)?;

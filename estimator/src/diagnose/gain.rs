@@ -50,28 +50,36 @@ pub fn gain(study: &Study, k: usize, floor: f64) -> Gain {
     let [b, a] = means(&parts, &all);
     let weight = mean_square_weight(study);
     let share = |b: f64, a: f64| ((b - a) / (b - floor * floor * weight).max(1e-3 * b)).min(1.0);
-    let mut shares: Vec<f64> = Vec::with_capacity(DRAWS);
-    let mut state = 0x2545_F491_4F6C_DD1D_u64;
-    for _ in 0..DRAWS {
-        let drawn: Vec<usize> = all
-            .iter()
-            .map(|_| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                ((state >> 33) as usize) % all.len().max(1)
-            })
-            .collect();
-        let [b, a] = means(&parts, &drawn);
-        shares.push(share(b, a));
-    }
-    shares.sort_by(f64::total_cmp);
-    let at = |q: f64| shares.get(((shares.len().saturating_sub(1)) as f64 * q) as usize).copied().unwrap_or(0.0);
+    let shares = |drawn: &[usize]| {
+        let [b, a] = means(&parts, drawn);
+        share(b, a)
+    };
+    let interval = bootstrap(all.len(), DRAWS, &shares);
     Gain {
         heldout_rms_before: b.sqrt(),
         heldout_rms_after: a.sqrt(),
         share_of_explainable: share(b, a),
-        interval: [at(0.025), at(0.975)],
+        interval,
         rollout: None,
     }
+}
+
+/// 95 % interval of a figure by drawing pieces with replacement; the draws are the same every time.
+pub fn bootstrap(pieces: usize, draws: usize, figure: &dyn Fn(&[usize]) -> f64) -> [f64; 2] {
+    let mut state = 0x2545_F491_4F6C_DD1D_u64;
+    let mut figures: Vec<f64> = (0..draws)
+        .map(|_| {
+            let drawn: Vec<usize> = (0..pieces)
+                .map(|_| {
+                    state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                    ((state >> 33) as usize) % pieces.max(1)
+                })
+                .collect();
+            figure(&drawn)
+        })
+        .collect();
+    figures.sort_by(f64::total_cmp);
+    [0.025, 0.975].map(|q| figures.get(((figures.len().saturating_sub(1)) as f64 * q) as usize).copied().unwrap_or(0.0))
 }
 
 fn mean_square_weight(study: &Study) -> f64 {

@@ -2,6 +2,7 @@
 
 use super::fine::{FINE_HZ, calmed};
 use super::geometry::{Arm, Path, PathPoint};
+use super::hung::Hung;
 use super::track::{Fine, Place, Row, Span, Track};
 use crate::estimate::EstimateError;
 use crate::segment::{SystemState, segment};
@@ -196,6 +197,7 @@ impl Signals {
             force_noise: if noise_is_measured { force_noise } else { white_noise(&along) }.max(1e-9),
             noise_is_measured,
             span_s: self.time_s.last().copied().unwrap_or(0.0),
+            hung: vec![Hung::on_crank(recording)],
             rows,
             fine,
         })

@@ -20,12 +20,14 @@ mod generic;
 mod geometry;
 mod grid;
 mod held_arm;
+mod hung;
 mod impact;
 mod needle;
 mod progress;
 mod pulled;
 mod quality;
 pub mod report;
+mod rollout;
 mod select;
 mod several;
 mod sliding;
@@ -36,8 +38,8 @@ mod validate;
 mod world;
 
 pub use report::{
-    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, Settled,
-    Validation, Verdict,
+    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Experiment, Final, Gain, NextExperiment, NotExcited,
+    Rollout, RolloutOf, Settled, Validation, Verdict,
 };
 
 pub use course::Course;
@@ -298,7 +300,9 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     let mut tracks = Vec::new();
     for recording in recordings {
         let found = quality::faults(recording);
-        tracks.push(sliding::track(recording, &found.bad)?);
+        let mut rows = sliding::track(recording, &found.bad)?;
+        rows.hung = vec![hung::Hung::on_mechanism(recording, rows.coordinate)];
+        tracks.push(rows);
         faults.extend(found.causes);
     }
     let mut track = track::join(tracks).ok_or_else(nothing)?;

@@ -57,9 +57,40 @@ pub struct Gain {
     pub share_of_explainable: f64,
     /// 95 % interval of that share, by a block bootstrap.
     pub interval: [f64; 2],
-    /// Unexplained force over short stretches that are integrated forward, before and after, where that could be done.
+    /// What it is worth when the model runs on its own over short windows, where that could be done.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rollout: Option<[f64; 2]>,
+    pub rollout: Option<Rollout>,
+}
+
+/// What a rollout is compared by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RolloutOf {
+    /// The position, under the measured force.
+    Position,
+    /// The force of a hand that holds on, beside the measured one.
+    Force,
+}
+
+/// Error of a model that runs forward in time from the measured state, over windows of data that took part in nothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rollout {
+    /// What is compared.
+    pub of: RolloutOf,
+    /// m or rad of a position, N or N m of a force.
+    pub unit: String,
+    /// Longest window, s; the state is the measured one at the start of each.
+    pub window_s: f64,
+    /// How many there were.
+    pub windows: usize,
+    /// Root mean square error without the cause (all others in) …
+    pub rms_before: f64,
+    /// … and with it.
+    pub rms_after: f64,
+    /// Part of the error's power that it takes off.
+    pub share: f64,
+    /// 95 % interval of that share, by a bootstrap over windows.
+    pub interval: [f64; 2],
 }
 
 /// A cause that was found.
@@ -113,6 +144,35 @@ pub struct NextExperiment {
     pub separates: Vec<String>,
     /// Probability that it does.
     pub expected_power: f64,
+    /// The same for an operator that is a program; nothing where the library has words only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub experiment: Option<Experiment>,
+}
+
+/// A motion of the library, for an operator that is a program. Lengths are m, angles rad: as the coordinate is (a crank's is its angle).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Experiment {
+    /// Which motion: `sweep-across`, `sweep-let-go`, `short-strokes`, `bursts`, `one-way`, `rests-and-squeezes`, `long-mixed` or
+    /// `hang-weight`; `docs/diagnosis.md` says what each is.
+    pub id: String,
+    /// How long the object is held, s.
+    pub seconds: f64,
+    /// How long nothing is touched before and after, s.
+    pub free_s: f64,
+    /// The coordinate in the middle of the motion.
+    pub middle: f64,
+    /// How far it goes to either side.
+    pub half_range: f64,
+    /// Its fastest speed, a second.
+    pub fast: f64,
+    /// Size of the push and pull across the motion, N; 0 where there is none.
+    #[serde(rename = "across_N")]
+    pub across_n: f64,
+    /// Weight to hang on, N; 0 where none is.
+    #[serde(rename = "added_weight_N")]
+    pub added_weight_n: f64,
+    /// Distance from the axis at which it is hung on, m: the radius of a crank.
+    pub added_lever_m: f64,
 }
 
 /// What the found laws are worth on a recording that took part in nothing.

@@ -201,6 +201,7 @@ impl Made {
             force_noise: (averaged(self.block) * worst(1)).max(1e-12),
             noise_is_measured: false,
             span_s,
+            hung: Vec::new(),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! One or several recordings as rows of a regression: measured motion and force at a common, moderate rate.
 
+use super::hung::Hung;
 use haptics::Vec2;
 use haptics::law::{Coordinate, Motion};
 
@@ -132,6 +133,8 @@ pub struct Track {
     pub noise_is_measured: bool,
     /// Longest recording, s.
     pub span_s: f64,
+    /// What was hung on the object, recording by recording.
+    pub hung: Vec<Option<Hung>>,
 }
 
 impl Track {
@@ -193,6 +196,8 @@ pub fn join(tracks: Vec<Track>) -> Option<Track> {
         joined.noise_is_measured &= track.noise_is_measured;
         joined.planar &= track.planar;
         joined.span_s = joined.span_s.max(track.span_s);
+        joined.hung.resize(recordings, None);
+        joined.hung.extend(track.hung);
         joined.period_s = joined.period_s.max(track.period_s);
         joined.raw_period_s = joined.raw_period_s.max(track.raw_period_s);
         joined.rows.extend(track.rows.into_iter().map(shift));

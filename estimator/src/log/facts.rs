@@ -10,7 +10,7 @@ const KEYS: [&str; 12] =
 /// Axes that may point up.
 const UP: [&str; 7] = ["x", "y", "z", "-x", "-y", "-z", "none"];
 /// Known parameters that are above zero …
-const POSITIVE: [&str; 11] = [
+const POSITIVE: [&str; 13] = [
     "mass_kg",
     "inertia_kg_m2",
     "com_m",
@@ -22,6 +22,8 @@ const POSITIVE: [&str; 11] = [
     "constraint_stiffness_N_m",
     "pad_stiffness_N_m",
     "empty_mass_kg",
+    "added_weight_N",
+    "added_lever_m",
 ];
 /// … not below it …
 const NOT_NEGATIVE: [&str; 9] = [
@@ -36,7 +38,7 @@ const NOT_NEGATIVE: [&str; 9] = [
     "puncture_force_N",
 ];
 /// … or of either sign.
-const SIGNED: [&str; 7] = [
+const SIGNED: [&str; 8] = [
     "offset_N",
     "offset_Nm",
     "gravity_moment_Nm",
@@ -44,6 +46,7 @@ const SIGNED: [&str; 7] = [
     "center_x_m",
     "center_y_m",
     "surface_position_m",
+    "added_level_rad",
 ];
 /// `rate_hz` and the time column may differ by this share.
 const RATE_TOLERANCE: f64 = 0.05;

@@ -3,6 +3,7 @@
 //! `cargo run --release -p blind --example blind -- --fast [SEED]` (or `--whole`) asks the program and prints how it did.
 //! `cargo run --release -p blind --example blind -- --long [SEED]` times answers for minute-long recordings at 1 kHz.
 //! `cargo run --release -p blind --example blind -- --dump DIR N SEED` writes N cases as files, their truth in a folder apart.
+//! `cargo run --release -p blind --example blind -- --experiments [SEED [N]]` performs what answers ask for: N cases of every effect.
 //! `cargo run --release -p blind --example blind -- --one DIR ID [FORM [RATIO [RATE [SEED]]]]` writes one of a kind.
 //! `cargo run --release -p blind --example blind -- --table [SEED]` makes every effect once and prints how large it came out.
 
@@ -23,6 +24,7 @@ fn main() -> ExitCode {
         }
         ["--fast", rest @ ..] => ask_all(Counts::FAST, number(rest.first(), 1)),
         ["--whole", rest @ ..] => ask_all(Counts::WHOLE, number(rest.first(), 1)),
+        ["--experiments", rest @ ..] => experiments(number(rest.first(), 1), number(rest.get(1), 2)),
         ["--one", folder, id, rest @ ..] => one(Path::new(folder), id, rest),
         ["--table", rest @ ..] => table(number(rest.first(), 7)),
         _ => {
@@ -43,6 +45,15 @@ fn ask_all(counts: Counts, seed: u64) {
     let rows = ask(&jobs, &|recordings, options| diagnose(recordings, options).map_err(|e| e.to_string()));
     println!("{}", report(&rows));
     println!("{:.0} s in all, generator included", start.elapsed().as_secs_f64());
+}
+
+/// Asks, performs what the answers ask for, and prints what came of it.
+fn experiments(seed: u64, per_effect: u64) {
+    let counts =
+        Counts { nulls: 0, per_effect: per_effect as usize, pairs: 0, per_nameless: 0, hard: 30 * per_effect as usize };
+    let jobs = battery(counts, seed);
+    let rows = ask(&jobs, &|recordings, options| diagnose(recordings, options).map_err(|e| e.to_string()));
+    println!("{} cases, seed {seed}\n{}", rows.len(), blind::tables::experiments(&rows));
 }
 
 /// Asks for minute-long recordings one after the other and prints how long the answers took.

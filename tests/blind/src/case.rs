@@ -6,11 +6,13 @@ use super::draw::{self, Bench, Spec};
 use super::effect::{Effect, Shows};
 use super::interval::Share;
 use super::measure::{self, Known, Size};
+use super::perform::perform;
 use super::plan::Log;
 use super::plant::Hidden;
 use super::record::record;
 use super::sensor::{self, Sensor};
 use super::simulate::{Sample, Setup};
+use estimator::diagnose::Experiment;
 use haptics::recording::Recording;
 
 /// What may be looked at.
@@ -79,6 +81,34 @@ pub fn make(spec: &Spec, seed: u64) -> (Case, Truth) {
 /// The same, with further recordings of the same object by the same hand, moved in other ways: what settles an ambiguity. Sizes are
 /// beside the noise of the first recording, and the truth's samples are those of the first.
 pub fn make_followed(spec: &Spec, then: &[Log], seed: u64) -> (Case, Truth) {
+    let (case, truth, _) = make_with_object(spec, then, seed);
+    (case, truth)
+}
+
+/// What was recorded: who asks for another motion of it gets the same object, hand and instruments.
+#[derive(Clone, Debug)]
+pub struct Object {
+    spec: Spec,
+    setup: Setup,
+    sensor: Sensor,
+    arm: Arm,
+    zero_m: Option<f64>,
+}
+
+impl Object {
+    /// The answered experiment on the same object, with fresh noise; nothing where nobody knows how it is done.
+    pub fn perform(&self, asked: &Experiment, seed: u64) -> Option<Recording> {
+        let mut chance = Chance::new(seed, 5);
+        let setup = perform(&self.spec, &self.setup, asked, self.zero_m.unwrap_or(0.0), seed)?;
+        let spec = Spec { seconds: setup.seconds, ..self.spec.clone() };
+        let samples = setup.run();
+        let mut zero_m = self.zero_m;
+        Some(record(&spec, &setup, &self.sensor, &self.arm, &samples, &mut chance, &mut zero_m))
+    }
+}
+
+/// The same, and the object.
+pub fn make_with_object(spec: &Spec, then: &[Log], seed: u64) -> (Case, Truth, Object) {
     let mut chance = Chance::new(seed, 3);
     let arm = draw::arm(&mut chance);
     let mut sensor = draw::sensor(spec, &mut chance);
@@ -89,14 +119,15 @@ pub fn make_followed(spec: &Spec, then: &[Log], seed: u64) -> (Case, Truth) {
     tune_noise(&setup, &mut sensor, &arm, known, spec.ratio, &samples);
     let sizes: Vec<Size> =
         (0..setup.hidden.len()).map(|k| measure::size(&setup, &sensor, &arm, known, &samples, k)).collect();
-    let mut recordings = vec![record(spec, &setup, &sensor, &arm, &samples, &mut chance)];
+    let mut zero_m = None;
+    let mut recordings = vec![record(spec, &setup, &sensor, &arm, &samples, &mut chance, &mut zero_m)];
     for (k, log) in then.iter().enumerate() {
         let again = Spec { log: *log, ..spec.clone() };
         let mut next = draw::setup(&again, &sensor, &arm, seed.wrapping_add(7_777_777 * (k as u64 + 1)));
         (next.plant, next.center_m) = (setup.plant, setup.center_m);
         next.hidden.clone_from(&setup.hidden);
         let samples = next.run();
-        recordings.push(record(&again, &next, &sensor, &arm, &samples, &mut chance));
+        recordings.push(record(&again, &next, &sensor, &arm, &samples, &mut chance, &mut zero_m));
     }
     let truth = Truth {
         wanted_ratio: spec.ratio,
@@ -114,9 +145,9 @@ pub fn make_followed(spec: &Spec, then: &[Log], seed: u64) -> (Case, Truth) {
             0.0
         },
         correlation: if sizes.len() > 1 { sizes[0].correlation(&sizes[1]) } else { 0.0 },
-        noise_free_n: samples.iter().map(|s| sensor::force(&setup.hidden, None, s, setup.seconds)).collect(),
+        noise_free_n: samples.iter().map(|s| sensor::force(&setup.hidden, None, s, setup.effects_s)).collect(),
         held: samples.iter().map(|s| s.held).collect(),
-        hidden: setup.hidden,
+        hidden: setup.hidden.clone(),
     };
     let baseline = match known {
         Known::Crank | Known::CrankOfKnownWeight => None,
@@ -125,7 +156,7 @@ pub fn make_followed(spec: &Spec, then: &[Log], seed: u64) -> (Case, Truth) {
         Known::MassViscousDry => Some("mass+viscous+coulomb"),
     };
     let case = Case { recordings, baseline, seed, bench: spec.bench, log: spec.log, rate_hz: spec.rate_hz };
-    (case, truth)
+    (case, truth, Object { spec: spec.clone(), setup, sensor, arm, zero_m })
 }
 
 /// The first run, with the crank's own inertia so small that nobody could see it in this noise.

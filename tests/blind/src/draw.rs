@@ -6,7 +6,7 @@ use super::effect::Effect;
 use super::hand::Habits;
 use super::measure::Known;
 use super::plan::{Log, Plan};
-use super::plant::{Hidden, Plant};
+use super::plant::{Hidden, Hung, Plant};
 use super::sensor::Sensor;
 use super::simulate::Setup;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -98,6 +98,7 @@ fn plant(spec: &Spec, chance: &mut Chance) -> Plant {
             dry_n: 0.0,
             viscous: chance.between(0.4, 2.0),
             inertia_kg: 3e-5,
+            hung: Hung::default(),
         },
         Bench::Linear => Plant {
             radius_m: chance.between(0.03, 0.08),
@@ -106,6 +107,7 @@ fn plant(spec: &Spec, chance: &mut Chance) -> Plant {
             dry_n: chance.between(0.5, 2.0),
             viscous: chance.between(2.0, 9.0),
             inertia_kg: chance.between(0.5, 3.0),
+            hung: Hung::default(),
         },
         Bench::Angular => Plant {
             radius_m: 1.0,
@@ -114,6 +116,7 @@ fn plant(spec: &Spec, chance: &mut Chance) -> Plant {
             dry_n: chance.between(0.05, 0.2),
             viscous: chance.between(0.02, 0.08),
             inertia_kg: chance.between(0.02, 0.08),
+            hung: Hung::default(),
         },
     };
     match known(spec) {
@@ -215,6 +218,7 @@ pub fn setup(spec: &Spec, sensor: &Sensor, arm: &Arm, seed: u64) -> Setup {
         habits,
         plan,
         seconds: spec.seconds,
+        effects_s: spec.seconds,
         hold_s,
         rate_hz: spec.rate_hz,
         filter_hz,

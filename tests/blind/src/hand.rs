@@ -99,7 +99,10 @@ impl Hand {
         let seen = std::mem::replace(&mut self.seen[count], self.planned - turned);
         self.correction += THOUGHT_S / 0.4 * (self.habits.correction * seen.clamp(-0.5, 0.5) - self.correction);
         let h = self.habits;
-        let spread = [h.pull_spread_m, h.wander_m, h.wander_m, h.wander_m];
+        // Who means to pull so hard does not let it wander as much.
+        let meant = self.plan.pull_n(time_s).map(|n| n / h.stiffness);
+        let pull_spread_m = if meant.is_some() { 0.3 * h.pull_spread_m } else { h.pull_spread_m };
+        let spread = [pull_spread_m, h.wander_m, h.wander_m, h.wander_m];
         self.from = self.to;
         for (k, spread) in spread.into_iter().enumerate() {
             // Twice smoothed: muscles do not jump. The second smoothing halves the variance, about.
@@ -107,7 +110,7 @@ impl Hand {
             self.smooth[k] += THOUGHT_S / 0.12 * (raw - self.smooth[k]);
             self.to[k] = 1.1 * spread * self.smooth[k];
         }
-        self.to[0] += h.pull_m + h.tremor_m * self.shaking[0].next(&mut self.chance);
+        self.to[0] += meant.unwrap_or(h.pull_m) + h.tremor_m * self.shaking[0].next(&mut self.chance);
         self.to[1] += h.tremor_m * self.shaking[1].next(&mut self.chance);
     }
 

@@ -1,5 +1,6 @@
 //! What a battery comes out at, for programs: the same counts as the tables.
 
+use super::follow::Experiments;
 use super::interval::Share;
 use super::score::{Figures, Row};
 use super::sets::Set;
@@ -9,6 +10,7 @@ use serde_json::{Map, Value, json};
 /// Everything; shares come with their exact 95 % intervals.
 pub fn json(rows: &[Row]) -> Value {
     let f = Figures::of(rows);
+    let e = Experiments::of(rows);
     json!({
         "cases": rows.len(),
         "figures": {
@@ -28,15 +30,22 @@ pub fn json(rows: &[Row]) -> Value {
             "gain_of_oracle": { "median": number(f.gain[0]), "p10": number(f.gain[1]) },
             "gain_claimed": { "median": number(f.gain_claimed[0]), "p10": number(f.gain_claimed[1]) },
             "errors": share(f.errors),
+            "experiments_settled": share(e.settled),
+            "experiments_answered": share(e.answered),
+            "experiments_expected_power": number(e.expected_power),
         },
         "confusion": confusion(rows),
         "calibration": {
-            "bins": calibration_bins(rows).iter().map(|(mean, right)| {
-                let mut bin = share(*right);
-                bin["stated"] = number(*mean);
-                bin
-            }).collect::<Vec<_>>(),
+            "bins": bins(&calibration_bins(rows)),
             "brier": number(brier(rows).0),
+        },
+        "experiments": {
+            "calibration": bins(&e.calibration),
+            "by_motion": e.by_motion.iter().map(|(id, settled)| {
+                let mut motion = share(*settled);
+                motion["id"] = json!(id);
+                motion
+            }).collect::<Vec<_>>(),
         },
         "gain_of_oracle_by_cause": gains_by_cause(rows).into_iter()
             .map(|(id, [median, p10], cases)| json!({ "id": id, "median": number(median), "p10": number(p10), "cases": cases }))
@@ -51,6 +60,16 @@ fn confusion(rows: &[Row]) -> Value {
         said.into_iter().map(|(name, count)| (name, json!(count))).collect()
     };
     Value::Object(confusion_counts(rows).into_iter().map(|(hidden, said)| (hidden, Value::Object(of(said)))).collect())
+}
+
+/// What was stated, and how often it was so.
+fn bins(bins: &[(f64, Share)]) -> Vec<Value> {
+    let bin = |(mean, right): &(f64, Share)| {
+        let mut bin = share(*right);
+        bin["stated"] = number(*mean);
+        bin
+    };
+    bins.iter().map(bin).collect()
 }
 
 fn share(share: Share) -> Value {

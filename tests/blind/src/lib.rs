@@ -19,10 +19,12 @@ pub mod chance;
 pub mod draw;
 pub mod dump;
 pub mod effect;
+pub mod follow;
 pub mod hand;
 pub mod interval;
 pub mod json;
 pub mod measure;
+pub mod perform;
 pub mod plan;
 pub mod plant;
 pub mod record;
@@ -36,6 +38,7 @@ pub use case::{Case, Truth, make, make_followed};
 pub use chance::Chance;
 pub use draw::{Bench, Spec};
 pub use effect::Effect;
+pub use follow::Experiments;
 pub use interval::Share;
 pub use json::json;
 pub use plan::Log;
@@ -43,5 +46,7 @@ pub use score::{Figures, Row, ask};
 pub use sets::{Counts, Job, Set, battery, long};
 pub use tables::report;
 
+#[cfg(test)]
+mod answers;
 #[cfg(test)]
 mod checks;

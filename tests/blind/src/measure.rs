@@ -139,8 +139,8 @@ fn force_size(setup: &Setup, sensor: &Sensor, known: Known, samples: &[Sample], 
         Effect::Delay | Effect::Bias | Effect::Drift | Effect::CrossAxis | Effect::Gain | Effect::Saturation
     );
     let wrong = |s: &Sample| {
-        let with = sensor::force(&setup.hidden, None, s, setup.seconds);
-        let without = sensor::force(&setup.hidden, Some(which), s, setup.seconds);
+        let with = sensor::force(&setup.hidden, None, s, setup.effects_s);
+        let without = sensor::force(&setup.hidden, Some(which), s, setup.effects_s);
         [with[0] - without[0], with[1] - without[1]]
     };
     let mut values: Vec<f64> = samples

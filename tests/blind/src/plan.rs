@@ -43,24 +43,42 @@ impl Log {
 pub struct Plan {
     knots: Vec<(f64, f64)>,
     at: usize,
+    /// Pull across the motion that is meant, N over time; nothing where none is.
+    pulls: Vec<(f64, f64)>,
 }
 
 impl Plan {
-    fn starting(start_s: f64) -> Self {
-        Self { knots: vec![(0.0, 0.0), (start_s, 0.0)], at: 0 }
+    pub(super) fn starting(start_s: f64) -> Self {
+        Self { knots: vec![(0.0, 0.0), (start_s, 0.0)], at: 0, pulls: Vec::new() }
     }
 
-    fn end(&self) -> f64 {
+    pub(super) fn end(&self) -> f64 {
         self.knots.last().map_or(0.0, |k| k.0)
     }
 
-    fn knot(&mut self, after_s: f64, speed: f64) {
+    pub(super) fn knot(&mut self, after_s: f64, speed: f64) {
         let time = self.end() + after_s.max(0.02);
         self.knots.push((time, speed));
     }
 
+    /// Means to pull `force_n` across the motion from now on.
+    pub(super) fn pull(&mut self, force_n: f64) {
+        self.pulls.push((self.end(), force_n));
+    }
+
+    /// The pull across the motion that is meant, N, outward.
+    pub fn pull_n(&self, time_s: f64) -> Option<f64> {
+        let last = *self.pulls.last()?;
+        let next = self.pulls.partition_point(|p| p.0 <= time_s);
+        let (Some((t0, p0)), Some((t1, p1))) = (next.checked_sub(1).map(|k| self.pulls[k]), self.pulls.get(next))
+        else {
+            return Some(if next == 0 { self.pulls[0].1 } else { last.1 });
+        };
+        Some(p0 + (p1 - p0) * (time_s - t0) / (t1 - t0).max(1e-9))
+    }
+
     /// From one rest to the next by `angle` within `duration_s`.
-    fn stroke(&mut self, angle: f64, duration_s: f64) {
+    pub(super) fn stroke(&mut self, angle: f64, duration_s: f64) {
         // A smooth rise and fall of the speed: the area is half of peak times duration.
         self.knot(0.5 * duration_s, 2.0 * angle / duration_s);
         self.knot(0.5 * duration_s, 0.0);

@@ -18,6 +18,19 @@ pub struct Plant {
     pub viscous: f64,
     /// Inertia, kg.
     pub inertia_kg: f64,
+    /// What somebody hung on it.
+    pub hung: Hung,
+}
+
+/// A weight on the handle, or on a lever of a mechanism that turns; nothing by default.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Hung {
+    /// Its weight, N (moment, N m).
+    pub force: f64,
+    /// Its inertia, kg (kg m²).
+    pub inertia: f64,
+    /// The turn at which its lever is level, rad: a crank's angle is one from the horizontal.
+    pub level: f64,
 }
 
 /// The instant at which the resistance is asked for.
@@ -90,7 +103,9 @@ impl Plant {
     /// What the known part resists with.
     pub fn loads(&self, now: &Instant) -> Loads {
         let dry = self.load_friction * now.across_n.abs() + self.dry_n;
-        Loads { forward_n: dry, backward_n: dry, smooth_n: self.weight_n * now.angle.cos(), viscous: self.viscous }
+        let hung_n = self.hung.force * (now.angle - self.hung.level).cos();
+        let smooth_n = self.weight_n * now.angle.cos() + hung_n;
+        Loads { forward_n: dry, backward_n: dry, smooth_n, viscous: self.viscous }
     }
 }
 
@@ -141,7 +156,10 @@ impl Hidden {
             Effect::Drag => Loads::viscous(size * now.speed.abs().powf(1.5)),
             Effect::Ripple => Loads::smooth(size * self.ripple(now.turned)),
             Effect::Eccentric => Loads::smooth(size * (now.angle - shape[0]).sin()),
-            Effect::Tilt => Loads::smooth(plant.weight_n * ((now.angle - size).cos() - now.angle.cos())),
+            Effect::Tilt => {
+                let hangs_n = plant.weight_n + plant.hung.force;
+                Loads::smooth(hangs_n * ((now.angle - size).cos() - now.angle.cos()))
+            }
             Effect::Spring => Loads::smooth(size * self.spring(now.turned - shape[0])),
             Effect::Leak => {
                 let lost = if self.form == 0 { now.share } else { 1.0 - (-3.0 * now.share).exp() };

@@ -9,6 +9,8 @@ use super::sensor::{self, Sensor, quantised};
 use super::simulate::{Sample, Setup};
 use haptics::recording::{Channel, HandMeta, Meta, Recording, Task};
 
+/// m/s²
+pub const GRAVITY: f64 = 9.81;
 /// Half the distance between two fingers on a handle, m.
 const HALF_GRIP_M: f64 = 0.008;
 
@@ -18,7 +20,7 @@ struct Columns {
     force_at: usize,
 }
 
-/// Through the instruments into a table.
+/// Through the instruments into a table. `zero_m`: where a mechanism's coordinate begins; drawn by its first recording.
 pub fn record(
     spec: &Spec,
     setup: &Setup,
@@ -26,11 +28,12 @@ pub fn record(
     arm: &Arm,
     samples: &[Sample],
     chance: &mut Chance,
+    zero_m: &mut Option<f64>,
 ) -> Recording {
     let mut columns = match spec.bench {
         Bench::OneFinger => finger(setup, sensor, arm, samples, chance, ("", 1.0, 0.0), &|_, told| told),
         Bench::TwoFingers => two_fingers(setup, sensor, arm, samples, chance),
-        Bench::Linear | Bench::Angular => mechanism(spec, setup, sensor, samples, chance),
+        Bench::Linear | Bench::Angular => mechanism(spec, setup, sensor, samples, chance, zero_m),
     };
     let kept = sensor::spoil(&setup.hidden, &mut columns.values, columns.force_at, spec.rate_hz);
     let keep =
@@ -43,10 +46,10 @@ pub fn record(
         .map(|((name, unit), values)| Channel { name, unit: unit.to_owned(), values: keep(values) })
         .collect();
     let name = format!("blind-{}", setup.seed);
-    Recording { name, time_s: Some(time_s), channels, meta: meta(spec, setup, arm), ..Recording::default() }
+    Recording { name, time_s: Some(time_s), channels, meta: meta(spec, setup, arm, *zero_m), ..Recording::default() }
 }
 
-fn meta(spec: &Spec, setup: &Setup, arm: &Arm) -> Meta {
+fn meta(spec: &Spec, setup: &Setup, arm: &Arm, zero_m: Option<f64>) -> Meta {
     let mut meta = Meta { rate_hz: Some(spec.rate_hz), ..Meta::default() };
     if spec.bench.is_crank() {
         let two = spec.bench == Bench::TwoFingers;
@@ -64,7 +67,28 @@ fn meta(spec: &Spec, setup: &Setup, arm: &Arm) -> Meta {
     } else {
         meta.task = Some(Task::Mechanism);
     }
+    state_hung(&mut meta, setup, zero_m);
     meta
+}
+
+/// Who hangs a weight on writes it down.
+fn state_hung(meta: &mut Meta, setup: &Setup, zero_m: Option<f64>) {
+    let hung = setup.plant.hung;
+    if hung.force <= 0.0 {
+        return;
+    }
+    let mut state = |name: &str, value: f64| {
+        meta.known.insert(name.to_owned(), value);
+    };
+    if setup.center_m.is_some() {
+        state("added_weight_N", hung.force);
+    } else {
+        // Force and inertia tell the lever: F = W l, J = W l² / g.
+        let lever_m = GRAVITY * hung.inertia / hung.force;
+        state("added_weight_N", hung.force / lever_m);
+        state("added_lever_m", lever_m);
+        state("added_level_rad", hung.level + zero_m.unwrap_or(0.0));
+    }
 }
 
 /// How far two fingers are open beyond what they hold, m: they close as they arrive, and open to let go.
@@ -94,7 +118,7 @@ fn finger(
         let tip = [s.tip_m[0] + wide(s.time_s), s.tip_m[1]];
         let speed = [s.tip_speed[0] + (wide(s.time_s + 1e-5) - wide(s.time_s - 1e-5)) / 2e-5, s.tip_speed[1]];
         let (angles, rates) = sensor::joints(arm, &setup.hidden, tip, speed);
-        let told = share(s, sensor::force(&setup.hidden, None, s, setup.seconds));
+        let told = share(s, sensor::force(&setup.hidden, None, s, setup.effects_s));
         for k in 0..2 {
             values[k].push(quantised(angles[k] + sensor.angle_noise * chance.normal(), sensor.angle_step));
             values[2 + k].push(rates[k] + sensor.rate_noise * chance.normal());
@@ -135,7 +159,14 @@ fn two_fingers(setup: &Setup, sensor: &Sensor, arm: &Arm, samples: &[Sample], ch
     }
 }
 
-fn mechanism(spec: &Spec, setup: &Setup, sensor: &Sensor, samples: &[Sample], chance: &mut Chance) -> Columns {
+fn mechanism(
+    spec: &Spec,
+    setup: &Setup,
+    sensor: &Sensor,
+    samples: &[Sample],
+    chance: &mut Chance,
+    zero_m: &mut Option<f64>,
+) -> Columns {
     let [path, speed, force] = if spec.bench == Bench::Linear {
         [("q_m", "m"), ("dq_m_s", "m_s"), ("f_N", "N")]
     } else {
@@ -143,12 +174,13 @@ fn mechanism(spec: &Spec, setup: &Setup, sensor: &Sensor, samples: &[Sample], ch
     };
     let with_speed = chance.happens(0.6);
     let mut noise = sensor.noise(setup.rate_hz, 1.0, chance);
-    let start = chance.between(-0.5, 0.5) * setup.plant.radius_m;
+    let drawn = chance.between(-0.5, 0.5) * setup.plant.radius_m;
+    let start = *zero_m.get_or_insert(drawn);
     let (mut q, mut dq, mut f) = (Vec::new(), Vec::new(), Vec::new());
     for s in samples {
         q.push(quantised(start + s.tip_m[0] + sensor.angle_noise * chance.normal(), sensor.angle_step));
         dq.push(s.tip_speed[0] + sensor.rate_noise * chance.normal());
-        let told = sensor::force(&setup.hidden, None, s, setup.seconds)[0];
+        let told = sensor::force(&setup.hidden, None, s, setup.effects_s)[0];
         f.push(rail(setup, quantised(told + noise.next(chance), sensor.step_n)));
     }
     let named = |(name, unit): (&str, &'static str)| (name.to_owned(), unit);

@@ -3,6 +3,7 @@
 use super::case::{Case, Truth};
 use super::draw::Bench;
 use super::effect::{Effect, Shows};
+use super::follow::{Followed, follow};
 use super::interval::{Share, quantile};
 use super::plan::Log;
 use super::sets::{Job, Set};
@@ -43,6 +44,8 @@ pub struct Row {
     pub answer: Result<Diagnosis, String>,
     /// How long the answer took, s.
     pub took_s: f64,
+    /// What came of the experiment that the answer asks for.
+    pub followed: Option<Followed>,
 }
 
 /// Whoever looks for what is hidden.
@@ -59,11 +62,16 @@ pub fn ask(jobs: &[Job], engine: &Engine<'_>) -> Vec<Row> {
     jobs.par_iter()
         .with_max_len(1)
         .map(|job| {
-            let (case, truth) = job.make();
+            let (case, truth, object) = job.make_with_object();
             let start = Instant::now();
             let answer = catch_unwind(AssertUnwindSafe(|| engine(&case.recordings, &options(&case))))
                 .unwrap_or_else(|_| Err("it panicked".to_owned()));
-            Row::new(job, &case, &truth, answer, start.elapsed().as_secs_f64())
+            let took_s = start.elapsed().as_secs_f64();
+            let followed = answer
+                .as_ref()
+                .ok()
+                .and_then(|answer| follow(&object, &case.recordings, answer, &options(&case), engine, job.seed));
+            Row { followed, ..Row::new(job, &case, &truth, answer, took_s) }
         })
         .collect()
 }
@@ -91,6 +99,7 @@ impl Row {
             effect_n2: if force { truth.effect_rms[0].powi(2) } else { f64::NAN },
             answer,
             took_s,
+            followed: None,
         }
     }
 

@@ -1,6 +1,6 @@
 //! The sets of cases that make a battery.
 
-use super::case::{Case, Truth, make};
+use super::case::{Case, Object, Truth, make, make_with_object};
 use super::chance::Chance;
 use super::draw::{Bench, Spec};
 use super::effect::{Effect, Shows};
@@ -49,6 +49,11 @@ impl Job {
     /// Makes the case and, apart from it, its truth.
     pub fn make(&self) -> (Case, Truth) {
         make(&self.spec, self.seed)
+    }
+
+    /// The same, and what was recorded.
+    pub fn make_with_object(&self) -> (Case, Truth, Object) {
+        make_with_object(&self.spec, &[], self.seed)
     }
 }
 

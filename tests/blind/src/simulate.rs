@@ -32,6 +32,8 @@ pub struct Setup {
     pub plan: Plan,
     /// Length, s.
     pub seconds: f64,
+    /// What changes in the course of a recording has run its course in this time, s: the length of the first recording.
+    pub effects_s: f64,
     /// When the hand takes hold and when it lets go, s.
     pub hold_s: [f64; 2],
     /// Samples a second.
@@ -132,12 +134,12 @@ impl Setup {
             speed: course.speed,
             across_n,
             time_s,
-            share: time_s / self.seconds,
+            share: time_s / self.effects_s,
         };
         let base = plant.loads(&now);
         let mut extra = [Loads::default(); 2];
         let mut all = base;
-        let mut inertia_kg = plant.inertia_kg;
+        let mut inertia_kg = plant.inertia_kg + plant.hung.inertia;
         for (k, hidden) in self.hidden.iter().enumerate().take(2) {
             extra[k] = hidden.loads(plant, &base, &now, &course.memory[k]);
             all = all.with(extra[k]);
@@ -163,7 +165,7 @@ impl Setup {
         Outcome {
             along_n: pull.along_n - pull.per_speed * speed,
             across_n,
-            base_n: base.at(speed) + plant.inertia_kg * acceleration,
+            base_n: base.at(speed) + (plant.inertia_kg + plant.hung.inertia) * acceleration,
             extra_n: [taken(0), taken(1)],
             acceleration,
             dry_n: base.forward_n,
@@ -204,8 +206,8 @@ impl Setup {
     }
 
     fn slipped(&self, hidden: &Hidden, time_s: f64) -> f64 {
-        let share = time_s / self.seconds;
-        let at = |when: f64| ramp((share - when) * self.seconds / 0.06);
+        let share = time_s / self.effects_s;
+        let at = |when: f64| ramp((share - when) * self.effects_s / 0.06);
         match hidden.form {
             0 => at(hidden.shape[1]),
             1 => 0.5 * at(0.6 * hidden.shape[1]) + 0.5 * at(hidden.shape[1] + 0.15),

@@ -1,5 +1,6 @@
 //! What a battery comes out at, in words and tables.
 
+use super::follow::Experiments;
 use super::interval::{Share, quantile};
 use super::score::{Figures, Row};
 use super::sets::{RATIOS, Set};
@@ -20,6 +21,7 @@ pub fn report(rows: &[Row]) -> String {
         nameless(rows),
         pairs(rows),
         equals(rows),
+        experiments(rows),
         calibration(rows),
         times(rows),
     ];
@@ -228,6 +230,40 @@ fn equals(rows: &[Row]) -> String {
             r.set_right() && r.equals.iter().all(|e| set.contains(e))
         });
         let _ = writeln!(text, "  {group:<48} {:>3} {:>3}", rows.len(), both.count());
+    }
+    text
+}
+
+/// What came of the experiments that answers asked for.
+pub fn experiments(rows: &[Row]) -> String {
+    let e = Experiments::of(rows);
+    let mut text =
+        String::from("experiments that answers asked for, performed and diagnosed together with the first recording\n");
+    let _ = writeln!(text, "  only what is hidden is left          {}", e.settled);
+    let _ = writeln!(text, "  the question itself is answered      {}", e.answered);
+    let _ = writeln!(text, "  stated probability, mean             {:.3}", e.expected_power);
+    for (mean, settled) in &e.calibration {
+        let _ = writeln!(text, "  stated {mean:.3}                         {settled}");
+    }
+    for (id, settled) in &e.by_motion {
+        let _ = writeln!(text, "  {id:<36} {settled}");
+    }
+    for (r, f) in rows.iter().filter_map(|r| Some((r, r.proposed()?))).filter(|(r, _)| !r.missed && !r.settled()) {
+        let now = match &f.answer {
+            Ok(a) => a.causes.iter().map(|c| c.id.as_str()).collect::<Vec<_>>().join(" + "),
+            Err(error) => error.clone(),
+        };
+        let or: Vec<String> =
+            f.answer.iter().flat_map(|a| &a.alternatives).map(|a| format!("{} {:.2}", a.id, a.posterior)).collect();
+        let asked = f.separates.join("/");
+        let _ = writeln!(
+            text,
+            "  open: {} [{} for {asked}, {:.2}] → {now} (or {})",
+            line(r),
+            f.id,
+            f.expected_power,
+            or.join(", ")
+        );
     }
     text
 }

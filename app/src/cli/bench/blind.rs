@@ -34,7 +34,8 @@ impl BlindBench {
         let rows = progress::during(&format!("asking {} cases, seed {seed}", jobs.len()), |share| {
             blind::ask(&jobs, &|recordings, options| {
                 let answer = diagnose(recordings, options).map_err(|e| e.to_string());
-                share.tell((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / jobs.len() as f64);
+                // Answers that ask for an experiment are asked for again.
+                share.tell(((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / jobs.len() as f64).min(1.0));
                 answer
             })
         });

@@ -5,7 +5,7 @@ use crate::ui::session::sentence;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, card, compact};
 use egui::{Align, Color32, Frame, Layout, Margin, Response, RichText, Stroke, Ui};
-use estimator::diagnose::{Alternative, Cause, CauseParameter, Diagnosis};
+use estimator::diagnose::{Alternative, Cause, CauseParameter, Diagnosis, Rollout, RolloutOf};
 use haptics::law::{self, Kind};
 
 /// What a cause is called.
@@ -45,17 +45,36 @@ pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Diagnos
             line(ui, parameter);
         }
         gain(ui, cause, diagnosis);
-        if let Some([before, after]) = cause.gain.rollout {
-            let rms = |value: f64| format::significant(value, 2);
-            let text = format!("Integrated forward: {} → {} RMS", rms(before), rms(after));
-            ui.label(theme::caption(ui, text))
-                .on_hover_text("Short stretches from their start with the measured drive");
+        if let Some(rollout) = &cause.gain.rollout {
+            forward(ui, rollout);
         }
         ui.add(egui::Label::new(theme::caption(ui, sentence(&cause.evidence))).wrap());
         for other in diagnosis.alternatives.iter().filter(|a| a.instead_of == cause.id) {
             alternative(ui, other);
         }
     });
+}
+
+/// What the cause is worth when the model runs on its own.
+fn forward(ui: &mut Ui, rollout: &Rollout) {
+    let rms = |value: f64| format::significant(value, 2);
+    let (what, how) = match rollout.of {
+        RolloutOf::Position => ("position", "the measured force drives it"),
+        RolloutOf::Force => ("force", "a hand holds on that wants to be where the handle was measured"),
+    };
+    let text = format!(
+        "Run forward {} s, {what} is off by {} → {} {}",
+        format::number(rollout.window_s, 1),
+        rms(rollout.rms_before),
+        rms(rollout.rms_after),
+        unit(&rollout.unit)
+    );
+    let [low, high] = rollout.interval.map(|share| format::number(100.0 * share, 0));
+    ui.label(theme::caption(ui, text)).on_hover_text(format!(
+        "Root mean square over {} windows that took part in nothing, each from its measured start; {how}. {low} to {high}\u{a0}% of the \
+         error's power go with this cause.",
+        rollout.windows
+    ));
 }
 
 /// A parameter with its error.

@@ -94,7 +94,7 @@ fn next(open: &[Alternative]) -> Option<NextExperiment> {
     };
     let mut separates = vec![first.instead_of.clone()];
     separates.extend(open.iter().filter(|a| a.instead_of == first.instead_of).map(|a| a.id.clone()));
-    Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: power })
+    Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: power, experiment: None })
 }
 
 /// What was found, put into a world.

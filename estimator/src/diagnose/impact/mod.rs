@@ -91,5 +91,5 @@ fn next(open: &[Alternative]) -> Option<NextExperiment> {
         "let the body slide flat from several speeds, and load it with a known weight"
     };
     let separates = vec![first.instead_of.clone(), first.id.clone()];
-    Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: 0.9 })
+    Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: 0.9, experiment: None })
 }

@@ -92,5 +92,6 @@ fn next(open: &[Alternative]) -> Option<NextExperiment> {
             .to_owned(),
         separates,
         expected_power: 0.8,
+        experiment: None,
     })
 }

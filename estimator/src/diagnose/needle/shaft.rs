@@ -172,6 +172,7 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
         force_noise: 1e-12,
         noise_is_measured: false,
         span_s: rows.last().map_or(0.0, |r| r.time_s) - start_s,
+        hung: Vec::new(),
     }
 }
 

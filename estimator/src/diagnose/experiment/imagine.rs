@@ -1,0 +1,145 @@
+//! Rows of a motion that was not made yet: the model's own forces on it.
+
+use super::super::force::{Model, blur, column};
+use super::super::track::{Place, Row, Span, Track};
+use super::library::Excitation;
+use crate::diagnose::report::Experiment;
+use haptics::Vec2;
+use haptics::law::Motion;
+
+/// Peak over mean speed of a movement from rest to rest.
+const PEAK: f64 = 1.875;
+/// Nobody moves to and fro faster than this, s a movement.
+const SHORTEST_S: f64 = 0.25;
+
+/// Position and push across, in units of the experiment, at a time.
+struct Course {
+    knots: Vec<(f64, f64, f64)>,
+}
+
+impl Course {
+    /// `speed`: half ranges a second at pace 1.
+    fn of(excitation: &Excitation, speed: f64, until_s: f64) -> Self {
+        let mut knots = vec![(0.0, 0.0, 0.0)];
+        let mut k = 0;
+        while let Some((time_s, place, _)) = knots.last().copied().filter(|k| k.0 < until_s) {
+            let step = (excitation.step)(k);
+            let takes_s = (PEAK * (step.to - place).abs() / (step.pace * speed).max(1e-9)).max(SHORTEST_S);
+            knots.push((time_s + takes_s, step.to, step.across));
+            if step.rest_s > 0.0 {
+                knots.push((time_s + takes_s + step.rest_s, step.to, step.across));
+            }
+            k += 1;
+        }
+        Self { knots }
+    }
+
+    /// Smooth between the knots (minimum jerk).
+    fn at(&self, time_s: f64) -> (f64, f64) {
+        let next = self.knots.partition_point(|k| k.0 <= time_s).clamp(1, self.knots.len() - 1);
+        let ((t0, p0, a0), (t1, p1, a1)) = (self.knots[next - 1], self.knots[next]);
+        let x = ((time_s - t0) / (t1 - t0)).clamp(0.0, 1.0);
+        let smooth = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
+        (p0 + (p1 - p0) * smooth, a0 + (a1 - a0) * smooth)
+    }
+}
+
+/// The rows of an experiment on the object of `track`. `values`: what the model's laws come out at.
+pub fn imagine(track: &Track, model: &Model, values: &[f64], excitation: &Excitation, asked: &Experiment) -> Track {
+    let scale = if track.planar { track.radius_m.unwrap_or(1.0) } else { 1.0 };
+    let step = track.period_s;
+    let course = Course::of(excitation, asked.fast / asked.half_range.max(1e-12), asked.seconds);
+    let place = |t: f64| scale * (asked.middle + asked.half_range * course.at(t.max(0.0)).0);
+    let count = (asked.seconds / step) as usize;
+    let rows = (0..count).map(|i| {
+        let t = i as f64 * step;
+        let position = place(t);
+        let angle_rad = track.radius_m.map_or(position, |r| position / r);
+        let along = if track.planar { Vec2::new(-angle_rad.sin(), angle_rad.cos()) } else { Vec2::x() };
+        let motion = Motion {
+            time_s: t + asked.free_s,
+            position,
+            velocity: (place(t + step) - place(t - step)) / (2.0 * step),
+            acceleration: (place(t + step) - 2.0 * position + place(t - step)) / (step * step),
+            direction: 0.0,
+            normal_force_n: if track.planar { asked.across_n * course.at(t).1 } else { 0.0 },
+            up_along: if track.planar { along.y } else { 0.0 },
+        };
+        row(motion, angle_rad, along)
+    });
+    let mut imagined = Track {
+        rows: rows.collect(),
+        fine: Vec::new(),
+        span_s: asked.seconds + 2.0 * asked.free_s,
+        hung: Vec::new(),
+        ..track.clone()
+    };
+    blur(&mut imagined);
+    let base: Vec<Vec<f64>> = model.iter().map(|e| column(&imagined, e)).collect();
+    for i in 0..imagined.rows.len() {
+        let y: f64 = base.iter().zip(values).map(|(c, v)| c[i] * v).sum();
+        let row = &mut imagined.rows[i];
+        let outward = Vec2::new(row.along.y, -row.along.x);
+        row.y = y;
+        row.force = if track.planar { row.along * y + outward * row.motion.normal_force_n } else { Vec2::new(y, 0.0) };
+    }
+    for i in 1..imagined.rows.len().saturating_sub(1) {
+        let rate = (imagined.rows[i + 1].force - imagined.rows[i - 1].force) / (2.0 * step);
+        imagined.rows[i].force_rate = rate;
+    }
+    if track.planar {
+        add_free(&mut imagined, asked.free_s);
+    }
+    imagined
+}
+
+fn row(motion: Motion, angle_rad: f64, along: Vec2) -> Row {
+    Row {
+        recording: 0,
+        stretch: 0,
+        place: Place::Along,
+        motion,
+        angle_rad,
+        along,
+        force: Vec2::zeros(),
+        force_rate: Vec2::zeros(),
+        y: 0.0,
+        span: Span::default(),
+        open: 0.0,
+    }
+}
+
+fn add_free(track: &mut Track, free_s: f64) {
+    let count = (free_s / track.period_s) as usize;
+    for (k, (axis, place)) in [(Vec2::x(), Place::FreeX), (Vec2::y(), Place::FreeY)].into_iter().enumerate() {
+        for end in 0..2 {
+            let start_s = if end == 0 { 0.0 } else { track.span_s - free_s };
+            let period_s = track.period_s;
+            track.rows.extend((0..count).map(|i| {
+                let motion = Motion { time_s: start_s + i as f64 * period_s, ..Motion::default() };
+                Row { stretch: 1 + 2 * k + end, place, ..row(motion, 0.0, axis) }
+            }));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::library::LIBRARY;
+    use super::*;
+
+    #[test]
+    fn no_motion_is_faster_or_wider_than_what_is_asked() {
+        for excitation in &LIBRARY {
+            let course = Course::of(excitation, 2.0, 20.0);
+            let mut fastest = 0.0_f64;
+            for i in 1..4000 {
+                let t = f64::from(i) * 0.005;
+                let (now, before) = (course.at(t).0, course.at(t - 0.005).0);
+                fastest = fastest.max((now - before).abs() / 0.005);
+                assert!(now.abs() <= 1.0 + 1e-9, "{}", excitation.id);
+            }
+            assert!(fastest > 0.4 && fastest < 2.0 * 1.25, "{}: {fastest}", excitation.id);
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! How well a motion would tell two causes apart.
+
+use super::super::candidate::Candidate;
+use super::super::dictionary::Dictionary;
+use super::super::force::{Model, column};
+use super::super::geometry::Study;
+use super::super::grid::Grid;
+use super::super::system::{Rows, whiten};
+use super::super::track::Track;
+use nalgebra::{DMatrix, DVector};
+
+/// λ of the worse case: either the found cause is there or its rival, and the model and the other one imitate what they can of it on this
+/// motion. Over the noise as it is coloured.
+pub fn separation(imagined: &Track, model: &Model, study: &Study, pair: (&str, &str)) -> Option<f64> {
+    let found = study.chosen.iter().position(|c| study.candidates[c.candidate].id == pair.0)?;
+    let mut picks = study.picks();
+    let eye = Eye::new(imagined, model, study)?;
+    let forward = eye.lambda(study, &picks, found, pair.1)?;
+    let rival = study.chosen[found].rivals.iter().find(|(c, _)| study.candidates[*c].id == pair.1);
+    let Some((rival, _)) = rival else { return Some(forward) };
+    picks[found] = *rival;
+    let backward = eye.lambda(study, &picks, found, pair.0);
+    Some(backward.map_or(forward, |backward| forward.min(backward)))
+}
+
+/// What would be seen of causes on a motion.
+struct Eye<'a> {
+    candidates: Vec<Candidate>,
+    /// The model's own columns, whitened.
+    base: Vec<Vec<f64>>,
+    weight: Vec<f64>,
+    stretch: Vec<usize>,
+    track: &'a Track,
+    coefficients: &'a [f64],
+    variance: f64,
+}
+
+impl<'a> Eye<'a> {
+    fn new(track: &'a Track, model: &Model, study: &'a Study) -> Option<Self> {
+        let solved = study.solved.as_ref()?;
+        let base: Vec<Vec<f64>> = model.iter().map(|e| column(track, e)).collect();
+        let predicted: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
+        let taken: Vec<&str> = model.iter().map(|e| e.law().id()).collect();
+        let grid = Grid::coarse(track);
+        let candidates = Dictionary {
+            track,
+            predicted: &predicted,
+            resisting: &predicted,
+            fixed: &[],
+            without: &taken,
+            grid: &grid,
+        }
+        .candidates();
+        let variance = (solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0)).max(1e-24);
+        let mut eye = Self {
+            candidates,
+            base: Vec::new(),
+            // Where the direction is a guess, so is all of the friction.
+            weight: track.rows.iter().map(|r| (1.0 + r.y * r.y * r.open / variance).powf(-0.5)).collect(),
+            stretch: track.rows.iter().map(|r| r.stretch).collect(),
+            track,
+            coefficients: &study.system.coefficients,
+            variance,
+        };
+        eye.base = base.iter().map(|column| eye.white(column)).collect();
+        Some(eye)
+    }
+
+    fn white(&self, column: &[f64]) -> Vec<f64> {
+        let testable = vec![true; column.len()];
+        let rows = Rows {
+            y: column,
+            stretch: &self.stretch,
+            testable: &testable,
+            weight: &self.weight,
+            period_s: self.track.period_s,
+        };
+        whiten(column, &rows, self.coefficients)
+    }
+
+    /// What of the k-th of `picks`, as large as it came out, model and `other` could not imitate.
+    fn lambda(&self, study: &Study, picks: &[usize], k: usize, other: &str) -> Option<f64> {
+        let solved = study.system.solve(picks)?;
+        let own = &study.candidates[picks[k]];
+        let at = study.base.len() + picks[..k].iter().map(|c| study.candidates[*c].columns.len()).sum::<usize>();
+        let like = nearest(&self.candidates, own)?;
+        let parts = like.columns.iter().zip(&solved.values[at..at + own.columns.len()]);
+        let effect = parts.fold(vec![0.0; self.weight.len()], |mut sum, (c, v)| {
+            sum.iter_mut().zip(c).for_each(|(s, x)| *s += v * x);
+            sum
+        });
+        let effect = self.white(&effect);
+        let rivals = self.candidates.iter().filter(|c| c.id == other);
+        let left = rivals.map(|rival| {
+            let rival: Vec<Vec<f64>> = rival.columns.iter().map(|c| self.white(c)).collect();
+            unexplained(&effect, self.base.iter().chain(&rival)) / self.variance
+        });
+        left.min_by(f64::total_cmp)
+    }
+}
+
+/// The instance of the same cause whose searched values are nearest.
+fn nearest<'a>(candidates: &'a [Candidate], own: &Candidate) -> Option<&'a Candidate> {
+    let apart = |c: &Candidate| -> f64 {
+        c.searched.iter().zip(&own.searched).map(|(a, b)| ((a.value - b.value) / b.value.abs().max(1e-9)).powi(2)).sum()
+    };
+    let same = |c: &&Candidate| c.id == own.id && c.linear == own.linear && c.searched.len() == own.searched.len();
+    candidates.iter().filter(same).min_by(|a, b| apart(a).total_cmp(&apart(b)))
+}
+
+/// Sum of squares of what the columns leave of a series.
+fn unexplained<'a>(series: &[f64], columns: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
+    let columns: Vec<&Vec<f64>> = columns.filter(|c| c.iter().any(|v| *v != 0.0)).collect();
+    let matrix = DMatrix::from_fn(series.len(), columns.len(), |i, j| columns[j][i]);
+    let target = DVector::from_column_slice(series);
+    let gram = matrix.tr_mul(&matrix);
+    let scale: Vec<f64> = (0..gram.ncols()).map(|j| gram[(j, j)].sqrt().max(1e-300)).collect();
+    let scaled = DMatrix::from_fn(gram.nrows(), gram.ncols(), |i, j| {
+        gram[(i, j)] / (scale[i] * scale[j]) + if i == j { 1e-10 } else { 0.0 }
+    });
+    let right = matrix.tr_mul(&target).component_div(&DVector::from_column_slice(&scale));
+    let Some(cholesky) = scaled.cholesky() else { return 0.0 };
+    let solved = cholesky.solve(&right).component_div(&DVector::from_column_slice(&scale));
+    (target - matrix * solved).norm_squared()
+}

@@ -1,0 +1,165 @@
+//! A known weight on the object: what it adds to the force, and the tilt of the plane that it tells from an eccentric mass.
+//!
+//! The weight of what is hung on is known and its direction is gravity's: a tilted plane turns its force as it turns that of the object, an
+//! eccentric mass leaves it alone.
+
+use super::candidate::Candidate;
+use super::track::{Place, Row, Track};
+use crate::identify::linear::least_squares;
+use haptics::law::{Coordinate, Kind};
+use haptics::recording::Recording;
+
+/// Tilts that are tried, rad: more than this is no oversight.
+const LARGEST_TILT: f64 = 1.4;
+const STEPS: i32 = 12;
+/// A plane that was thought to be level is not this steep, as the sine of its tilt.
+const STEEPEST: f64 = 0.6;
+
+/// A known weight on the object, `known` in the sidecar: `added_weight_N`, on a mechanism that turns also `added_lever_m` and
+/// `added_level_rad`, the coordinate at which its lever is level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hung {
+    /// Its largest force along the coordinate, N (N m for angles).
+    pub force: f64,
+    /// What it adds to the inertia, kg (kg m²).
+    pub inertia: f64,
+    /// Coordinate at which its lever is level, rad; a crank's comes out of its position.
+    pub level_rad: f64,
+}
+
+impl Hung {
+    /// On the handle of a crank.
+    pub fn on_crank(recording: &Recording) -> Option<Self> {
+        let weight = stated(recording, "added_weight_N")?;
+        Some(Self { force: weight, inertia: weight / recording.meta.gravity(), level_rad: 0.0 })
+    }
+
+    /// On a mechanism that turns.
+    pub fn on_mechanism(recording: &Recording, coordinate: Coordinate) -> Option<Self> {
+        if coordinate == Coordinate::Linear {
+            return None;
+        }
+        let [weight, lever] = [stated(recording, "added_weight_N")?, stated(recording, "added_lever_m")?];
+        let level_rad = recording.meta.known.get("added_level_rad").copied().filter(|v| v.is_finite())?;
+        Some(Self { force: weight * lever, inertia: weight * lever * lever / recording.meta.gravity(), level_rad })
+    }
+}
+
+fn stated(recording: &Recording, name: &str) -> Option<f64> {
+    recording.meta.known.get(name).copied().filter(|v| v.is_finite() && *v > 0.0)
+}
+
+/// What was hung on in a row's recording.
+fn of(track: &Track, row: &Row) -> Option<Hung> {
+    track.hung.get(row.recording).copied().flatten().filter(|_| row.place == Place::Along)
+}
+
+/// Share of the hung weight that acts along the coordinate.
+fn level(track: &Track, row: &Row, hung: Hung) -> f64 {
+    if track.planar { row.motion.up_along } else { (row.motion.position - hung.level_rad).cos() }
+}
+
+/// The force that the hung weight needs, one a row, where there is one.
+pub fn column(track: &Track) -> Option<Vec<f64>> {
+    track.hung.iter().any(Option::is_some).then(|| {
+        let force = |row: &Row| {
+            of(track, row).map_or(0.0, |h| h.force * level(track, row, h) + h.inertia * row.motion.acceleration)
+        };
+        track.rows.iter().map(force).collect()
+    })
+}
+
+/// The tilt of the plane as a cause, where a hung weight tells it from an eccentric mass.
+pub fn tilt(track: &Track) -> Option<Candidate> {
+    let known = column(track)?;
+    if track.planar { tilted_crank(track, &known) } else { tilted_axis(track, &known) }
+}
+
+/// Columns of a plain fit, their rows and what the hung weight leaves of the force.
+struct Plain {
+    columns: Vec<Vec<f64>>,
+    y: Vec<f64>,
+    used: Vec<f64>,
+}
+
+impl Plain {
+    fn of(track: &Track, known: &[f64]) -> Self {
+        let column = |of: &dyn Fn(&Row) -> f64| track.rows.iter().map(of).collect::<Vec<f64>>();
+        let load = |r: &Row| if track.planar { r.motion.normal_force_n.abs() } else { 1.0 };
+        let mut columns = vec![column(&|r| r.motion.velocity), column(&|r| load(r) * r.motion.direction)];
+        if !track.planar {
+            columns.push(column(&|r| r.motion.acceleration));
+        }
+        Self {
+            columns,
+            y: track.rows.iter().zip(known).map(|(r, k)| r.y - k).collect(),
+            // Where the direction is a guess, friction is, too.
+            used: column(&|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }),
+        }
+    }
+
+    /// What is left beside the columns and more of them, after `taken` is off; and what the additional ones come out at.
+    fn left(&self, more: Vec<Vec<f64>>, taken: &[f64]) -> Option<(f64, Vec<f64>)> {
+        let first = self.columns.len();
+        let columns: Vec<Vec<f64>> = self.columns.iter().cloned().chain(more).collect();
+        let y: Vec<f64> = self.y.iter().zip(taken).map(|(y, t)| y - t).collect();
+        let fit = least_squares(&columns, &y, Some(&self.used)).ok()?;
+        Some((fit.rms, fit.values[first..].to_vec()))
+    }
+}
+
+/// Crank: all that hangs is turned by the tilt, the object's own weight and what was hung on.
+fn tilted_crank(track: &Track, known: &[f64]) -> Option<Candidate> {
+    let plain = Plain::of(track, known);
+    let turned = |tilt: f64| -> Vec<f64> {
+        let along = |r: &Row| {
+            // Up may be recorded as down.
+            let up = (r.motion.up_along * r.along.y).signum();
+            if r.place == Place::Along { up * (r.angle_rad - tilt).cos() } else { 0.0 }
+        };
+        track.rows.iter().map(along).collect()
+    };
+    let upright = turned(0.0);
+    let hung_on = |tilted: &[f64]| -> Vec<f64> {
+        let force = track.rows.iter().map(|r| of(track, r).map_or(0.0, |h| h.force));
+        force.zip(tilted.iter().zip(&upright)).map(|(w, (t, u))| w * (t - u)).collect()
+    };
+    // Around a tilt, in steps: the one that leaves least, and the weight that goes with it.
+    let best = |around: f64, step: f64| {
+        let tried = (-STEPS..=STEPS).filter_map(|k| {
+            // Never exactly none: the column is what one radian of it does.
+            let tilt = around + step * (f64::from(k) + 0.05);
+            let tilted = turned(tilt);
+            let (left, values) = plain.left(vec![tilted.clone()], &hung_on(&tilted))?;
+            (values[0] > 0.0).then_some((left, tilt, values[0]))
+        });
+        tried.min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let rough = best(0.0, LARGEST_TILT / f64::from(STEPS))?;
+    let (_, tilt, weight) = best(rough.1, 0.1 * LARGEST_TILT / f64::from(STEPS))?;
+    let tilted = turned(tilt);
+    // The model's own weight takes what is upright of the object's.
+    let own = tilted.iter().zip(&upright).map(|(t, u)| weight * (t - tilt.cos() * u));
+    let column = own.zip(hung_on(&tilted)).map(|(own, hung)| (own + hung) / tilt).collect();
+    let found = Candidate::one("gravity-tilt", Kind::Plant, "angle", "rad", column);
+    Some(found)
+}
+
+/// A mechanism whose axis was thought to be upright: what was hung on acts with the sine of the tilt only.
+fn tilted_axis(track: &Track, known: &[f64]) -> Option<Candidate> {
+    let plain = Plain::of(track, known);
+    let column = |of: &dyn Fn(&Row) -> f64| track.rows.iter().map(of).collect::<Vec<f64>>();
+    let waves = vec![column(&|r| r.motion.position.cos()), column(&|r| r.motion.position.sin())];
+    let missing = |sine: f64| column(&|r| of(track, r).map_or(0.0, |h| (sine - 1.0) * h.force * level(track, r, h)));
+    let tried = (0..=30).filter_map(|k| {
+        let sine = STEEPEST * f64::from(k) / 30.0;
+        let (left, values) = plain.left(waves.clone(), &missing(sine))?;
+        Some((left, sine, values))
+    });
+    let (_, sine, values) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let own = waves[0].iter().zip(&waves[1]).map(|(c, s)| values[0] * c + values[1] * s);
+    let along = track.rows.iter().map(|r| f64::from(u8::from(r.place == Place::Along)));
+    let whole = own.zip(missing(sine)).zip(along).map(|((own, hung), along)| along * (own + hung)).collect();
+    let found = Candidate::one("gravity-tilt", Kind::Plant, "share", "1", whole).positive();
+    Some(found.at("sine of the tilt", sine, "1"))
+}
