@@ -9,7 +9,7 @@ use super::measure::{self, Known, Size};
 use super::perform::perform;
 use super::plan::Log;
 use super::plant::Hidden;
-use super::record::record;
+use super::record::{clock, record};
 use super::sensor::{self, Sensor};
 use super::simulate::{Sample, Setup};
 use estimator::diagnose::Experiment;
@@ -145,7 +145,11 @@ pub fn make_with_object(spec: &Spec, then: &[Log], seed: u64) -> (Case, Truth, O
             0.0
         },
         correlation: if sizes.len() > 1 { sizes[0].correlation(&sizes[1]) } else { 0.0 },
-        noise_free_n: samples.iter().map(|s| sensor::force(&setup.hidden, None, s, setup.effects_s)).collect(),
+        noise_free_n: clock(&setup)
+            .read(&samples)
+            .iter()
+            .map(|s| sensor::force(&setup.hidden, None, s, setup.effects_s))
+            .collect(),
         held: samples.iter().map(|s| s.held).collect(),
         hidden: setup.hidden.clone(),
     };

@@ -16,6 +16,7 @@
 pub mod arm;
 pub mod case;
 pub mod chance;
+pub mod clock;
 pub mod draw;
 pub mod dump;
 pub mod effect;

@@ -2,6 +2,7 @@
 
 use super::arm::Arm;
 use super::chance::Chance;
+use super::clock::Clock;
 use super::draw::{self, Bench, LINK_M, Spec};
 use super::effect::Effect;
 use super::measure::Known;
@@ -30,6 +31,8 @@ pub fn record(
     chance: &mut Chance,
     zero_m: &mut Option<f64>,
 ) -> Recording {
+    let clock = clock(setup);
+    let samples = &clock.read(samples);
     let mut columns = match spec.bench {
         Bench::OneFinger => finger(setup, sensor, arm, samples, chance, ("", 1.0, 0.0), &|_, told| told),
         Bench::TwoFingers => two_fingers(setup, sensor, arm, samples, chance),
@@ -38,7 +41,8 @@ pub fn record(
     let kept = sensor::spoil(&setup.hidden, &mut columns.values, columns.force_at, spec.rate_hz);
     let keep =
         |values: Vec<f64>| -> Vec<f64> { values.into_iter().zip(&kept).filter(|(_, k)| **k).map(|(v, _)| v).collect() };
-    let time_s = keep((0..samples.len()).map(|i| i as f64 / spec.rate_hz).collect());
+    let mut stamps = Chance::new(setup.seed, 10);
+    let time_s = keep((0..samples.len()).map(|i| clock.stamp(i as f64 / spec.rate_hz, &mut stamps)).collect());
     let channels = columns
         .names
         .into_iter()
@@ -47,6 +51,12 @@ pub fn record(
         .collect();
     let name = format!("blind-{}", setup.seed);
     Recording { name, time_s: Some(time_s), channels, meta: meta(spec, setup, arm, *zero_m), ..Recording::default() }
+}
+
+/// The clocks of a recording; a hidden delay is a case of its own.
+pub fn clock(setup: &Setup) -> Clock {
+    let late = setup.hidden.iter().any(|h| h.effect == Effect::Delay);
+    if late { Clock::default() } else { Clock::draw(setup.rate_hz, setup.seed) }
 }
 
 fn meta(spec: &Spec, setup: &Setup, arm: &Arm, zero_m: Option<f64>) -> Meta {
