@@ -5,7 +5,7 @@ use super::super::dictionary::Dictionary;
 use super::super::force::{Model, column};
 use super::super::geometry::Study;
 use super::super::grid::Grid;
-use super::super::system::{Rows, whiten};
+use super::super::system::{Held, Rows, whiten};
 use super::super::track::Track;
 use nalgebra::{DMatrix, DVector};
 
@@ -67,11 +67,12 @@ impl<'a> Eye<'a> {
     }
 
     fn white(&self, column: &[f64]) -> Vec<f64> {
-        let testable = vec![true; column.len()];
+        let (testable, time_s) = (vec![Held::Never; column.len()], vec![0.0; column.len()]);
         let rows = Rows {
             y: column,
             stretch: &self.stretch,
             testable: &testable,
+            time_s: &time_s,
             weight: &self.weight,
             period_s: self.track.period_s,
         };
