@@ -282,7 +282,7 @@ impl Hidden {
     /// Share of the load that is felt: none inside the gap.
     fn gate(&self, path_m: f64, side_m: f64) -> f64 {
         let depth = (path_m - side_m).abs() / self.size;
-        if self.form != 1 { f64::from(u8::from(depth > 0.999)) } else { ((depth - 0.7) / 0.3).clamp(0.0, 1.0) }
+        if self.form == 1 { ((depth - 0.7) / 0.3).clamp(0.0, 1.0) } else { f64::from(u8::from(depth > 0.999)) }
     }
 
     fn shaking(&self, time_s: f64) -> f64 {
