@@ -46,13 +46,8 @@ fn needle_world(seed: u64) -> (World, Values) {
     (world, truth)
 }
 
-/// A switch as the built-in one, but with everything about it drawn.
-fn switch_world(seed: u64) -> (World, Values) {
-    let mut rng = StdRng::seed_from_u64(seed.wrapping_mul(0x9fb2_1c65_1e98_df25) ^ 0x005c_17c4);
-    let mut world = presets::switch();
-    let gravity_m_s2 = world.gravity_m_s2;
-    world.pad.stiffness_n_m = rng.random_range(2000.0..3500.0);
-    let Some(switch) = &mut world.switch else { return (world, Vec::new()) };
+/// Gives a switch a curve of straight pieces out of the left end, which it starts from; half its travel, m.
+pub fn draw_curve(switch: &mut Switch, rng: &mut StdRng) -> f64 {
     let half = rng.random_range(6e-3..9e-3);
     let (peak, gap) = (rng.random_range(0.8..1.6), rng.random_range(0.1..0.3));
     let (snap, caught) = (-half * rng.random_range(0.35..0.55), half * rng.random_range(0.35..0.55));
@@ -68,12 +63,23 @@ fn switch_world(seed: u64) -> (World, Values) {
         point(caught, trough, gap),
         point(half, 0.0, gap),
     ];
+    switch.start_m = -half;
+    half
+}
+
+/// A switch as the built-in one, but with everything about it drawn.
+fn switch_world(seed: u64) -> (World, Values) {
+    let mut rng = StdRng::seed_from_u64(seed.wrapping_mul(0x9fb2_1c65_1e98_df25) ^ 0x005c_17c4);
+    let mut world = presets::switch();
+    let gravity_m_s2 = world.gravity_m_s2;
+    world.pad.stiffness_n_m = rng.random_range(2000.0..3500.0);
+    let Some(switch) = &mut world.switch else { return (world, Vec::new()) };
+    let half = draw_curve(switch, &mut rng);
     // As the fit says it takes them: the pads' share of the give at the stops, and the travel over the lever, are evenly likely.
     let share = rng.random_range(0.4..0.98);
     switch.curve.stop_n_m = world.pad.stiffness_n_m * share / (1.0 - share);
     switch.lever_m = 2.0 * half / rng.random_range(0.27..0.78);
     switch.knob_radius_m = rng.random_range(0.005..0.007);
-    switch.start_m = -half;
     let truth = switch_truth(switch, gravity_m_s2);
     let pad_n_m = world.pad.stiffness_n_m;
     (world, truth.into_iter().chain([("pad", pad_n_m)]).collect())

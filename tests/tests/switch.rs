@@ -7,7 +7,6 @@ use estimator::estimate::Fit;
 use estimator::pipeline::{Analysis, Options, analyse};
 use estimator::simulate::simulate;
 use haptics::device::{ScriptedOperator, Skill};
-use haptics::law::object::CurvePoint;
 use haptics::recording::{Recording, Task};
 use haptics::servo::recorder::{SensorModel, to_recording};
 use haptics::servo::safety::Limits;
@@ -15,32 +14,17 @@ use haptics::servo::{Loop, Swap};
 use haptics::world::{State, World, presets};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
-use tests::captured::switch_truth;
+use tests::captured::{draw_curve, switch_truth};
 
 /// A switch as the built-in one, but with everything about it drawn.
 fn drawn(seed: u64) -> World {
     let mut rng = StdRng::seed_from_u64(seed);
     let mut world = presets::switch();
     let switch = world.switch.as_mut().expect("it has one");
-    let half = rng.random_range(6e-3..9e-3);
-    let (peak, gap) = (rng.random_range(0.8..1.6), rng.random_range(0.1..0.3));
-    let (snap, caught) = (-half * rng.random_range(0.35..0.55), half * rng.random_range(0.35..0.55));
-    let trough = -peak * rng.random_range(0.6..0.9);
-    let point = |at_m: f64, middle: f64, gap: f64| CurvePoint {
-        at_m,
-        forward_n: middle + 0.5 * gap,
-        backward_n: middle - 0.5 * gap,
-    };
-    switch.curve.points = vec![
-        point(-half, 0.0, gap),
-        point(snap, peak - 0.5 * gap, gap * rng.random_range(1.0..1.5)),
-        point(caught, trough, gap),
-        point(half, 0.0, gap),
-    ];
+    draw_curve(switch, &mut rng);
     switch.curve.stop_n_m = rng.random_range(2500.0..15_000.0);
     switch.lever_m = rng.random_range(0.024..0.045);
     switch.knob_radius_m = rng.random_range(0.005..0.007);
-    switch.start_m = -half;
     world.pad.stiffness_n_m = rng.random_range(2000.0..3500.0);
     world
 }

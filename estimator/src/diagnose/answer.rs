@@ -25,6 +25,36 @@ pub struct Found<'a> {
     pub parameters: &'a [CauseParameter],
 }
 
+/// What in the residual shows a cause, in words.
+pub type Shows<'a> = &'a dyn Fn(&Found<'_>) -> String;
+/// Makes the parameters of a cause out of those of its columns.
+pub type States<'a> = &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>;
+/// The size that a cause usually has, for what could not have been seen; nothing where it does not belong to the channel.
+pub type Usual<'a> = &'a dyn Fn(&Candidate) -> Option<(f64, &'static str)>;
+
+/// A channel that was compared, with all that an answer needs of it but words.
+pub struct Compared {
+    /// The comparison.
+    pub study: Study,
+    /// What the channel is, in words.
+    pub channel: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Noise of its rows.
+    pub floor: f64,
+    /// Rows that are held out in turn, and their stretches.
+    pub along: Vec<bool>,
+    pub stretch: Vec<usize>,
+}
+
+impl Compared {
+    /// As a part of the answer.
+    pub fn part<'a>(&'a self, shows: Shows<'a>, states: States<'a>, usual: Usual<'a>) -> Part<'a> {
+        let Self { study, channel, unit, floor, along, stretch } = self;
+        Part { study, channel, unit, floor: *floor, along, stretch, shows, states, usual }
+    }
+}
+
 /// One channel, compared.
 pub struct Part<'a> {
     /// The comparison.
@@ -38,12 +68,9 @@ pub struct Part<'a> {
     /// Rows that are held out in turn, and their stretches.
     pub along: &'a [bool],
     pub stretch: &'a [usize],
-    /// What in the residual shows a cause, in words.
-    pub shows: &'a dyn Fn(&Found<'_>) -> String,
-    /// Makes the parameters of a cause out of those of its columns.
-    pub states: &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>,
-    /// The size that a cause usually has, for what could not have been seen; nothing where it does not belong to this channel.
-    pub usual: &'a dyn Fn(&Candidate) -> Option<(f64, &'static str)>,
+    pub shows: Shows<'a>,
+    pub states: States<'a>,
+    pub usual: Usual<'a>,
 }
 
 impl Part<'_> {

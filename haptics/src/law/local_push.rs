@@ -2,9 +2,9 @@
 //! climbed and left again. P > 0 pushes towards −q (the drive must supply +P). The `local-resistance` of worlds that does not depend on the
 //! direction; a period makes it come again (2π R on a crank's path).
 
-use super::entry::{ANY, POSITIVE};
-use super::local_resistance::hump;
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::entry::ANY;
+use super::local_resistance::{hump, parameters};
+use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, Role};
 
 /// Local push; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]
@@ -19,12 +19,7 @@ static ENTRY: Entry = Entry {
     shows: "As a hump of force at one place that does not change its sign with the direction.",
     mimics: "Ripple and springs mimic it when only a part of the way round is seen.",
     reveals: "Passing the place several times, in both directions, reveals it.",
-    parameters: &[
-        ParameterSpec::linear("P", "N", "N m", ANY),
-        ParameterSpec::nonlinear("place", "m", "rad", ANY),
-        ParameterSpec::nonlinear("width", "m", "rad", POSITIVE),
-        ParameterSpec::fixed("period", "m", "rad", POSITIVE),
-    ],
+    parameters: &parameters("P", ANY),
 };
 
 impl Law for LocalPush {

@@ -19,12 +19,7 @@ static ENTRY: Entry = Entry {
     mimics: "Ripple mimics it when less than a turn is seen, a change of friction with time when the place is passed \
              once.",
     reveals: "Passing the place several times, in both directions, reveals it.",
-    parameters: &[
-        ParameterSpec::linear("F", "N", "N m", POSITIVE),
-        ParameterSpec::nonlinear("place", "m", "rad", ANY),
-        ParameterSpec::nonlinear("width", "m", "rad", POSITIVE),
-        ParameterSpec::fixed("period", "m", "rad", POSITIVE),
-    ],
+    parameters: &parameters("F", POSITIVE),
 };
 
 impl Law for LocalResistance {
@@ -40,6 +35,17 @@ impl Law for LocalResistance {
         let [force, place, width, period, ..] = *parameters;
         force * hump(motion.position - place, width, period) * motion.direction
     }
+}
+
+/// Parameters of a hump of force at one place: its height, under the name and within the bounds given, where it is, how wide, and how
+/// often it comes.
+pub(super) const fn parameters(name: &'static str, bounds: (f64, f64)) -> [ParameterSpec; 4] {
+    [
+        ParameterSpec::linear(name, "N", "N m", bounds),
+        ParameterSpec::nonlinear("place", "m", "rad", ANY),
+        ParameterSpec::nonlinear("width", "m", "rad", POSITIVE),
+        ParameterSpec::fixed("period", "m", "rad", POSITIVE),
+    ]
 }
 
 /// A hump of height one and this width around zero, which comes again with a period (0: never).

@@ -4,7 +4,7 @@ use super::acts::{generic, instrument, plant};
 use super::cable::{cables, errors};
 use super::rows::{Place, Row, Rows};
 use super::seen::Seen;
-use crate::diagnose::answer::{Found, Part, parameter};
+use crate::diagnose::answer::{Compared, Found, parameter};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::geometry::Study;
@@ -15,11 +15,8 @@ use haptics::world::World;
 
 /// The comparison and what its words need.
 pub struct Carry {
-    pub study: Study,
-    pub along: Vec<bool>,
-    pub stretch: Vec<usize>,
-    /// Noise of a sum of two fingers, N.
-    pub floor_n: f64,
+    /// Its floor is the noise of a sum of two fingers.
+    pub compared: Compared,
     /// Longest carry, s.
     longest_s: f64,
     /// Of a cable's stiffness, anchor and length.
@@ -67,12 +64,15 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     let channel =
         Channel { y, base, candidates, stretch: rows.stretch.clone(), testable: testable.clone(), weight, period_s };
     let study = channel.compare(threshold)?;
-    let floor_n = floor(&rows, &study);
+    let floor = floor(&rows, &study);
     let of = |row: &Row| if let Place::Carried { number, .. } = row.place { number } else { 0 };
     let numbers: Vec<usize> = rows.all.iter().map(of).collect();
     let cable_errors = errors(&rows, &study, &|column| touched(&numbers, column));
     let along = rows.all.iter().map(is_carried).collect();
-    Ok(Carry { longest_s: longest_s(&rows), cable_errors, study, along, stretch: rows.stretch, floor_n, numbers })
+    let longest_s = longest_s(&rows);
+    let channel = "net force on carried blocks";
+    let compared = Compared { study, channel, unit: "N", floor, along, stretch: rows.stretch };
+    Ok(Carry { compared, longest_s, cable_errors, numbers })
 }
 
 /// Which block a column acts at.
@@ -134,16 +134,16 @@ fn floor(rows: &Rows<'_>, study: &Study) -> f64 {
 impl Carry {
     /// True when this cause was found.
     pub fn has(&self, id: &str) -> bool {
-        self.study.picks().iter().any(|p| self.study.candidates[*p].id == id)
+        self.compared.study.picks().iter().any(|p| self.compared.study.candidates[*p].id == id)
     }
 
     /// What is read of the horizontal force of each finger in its vertical channel, as found.
     pub fn cross(&self) -> [f64; 2] {
-        let Some(solved) = &self.study.solved else { return [0.0; 2] };
+        let Some(solved) = &self.compared.study.solved else { return [0.0; 2] };
         let mut found = [0.0; 2];
-        let mut at = self.study.base.len();
-        for pick in self.study.picks() {
-            let candidate = &self.study.candidates[pick];
+        let mut at = self.compared.study.base.len();
+        for pick in self.compared.study.picks() {
+            let candidate = &self.compared.study.candidates[pick];
             match candidate.linear[0].0 {
                 "kappa_yx1" => found[0] += solved.values[at],
                 "kappa_yx2" => found[1] += solved.values[at],
@@ -217,25 +217,5 @@ impl Carry {
             "viscous-friction" => (0.3, "blocks were carried too slowly"),
             _ => return None,
         })
-    }
-
-    /// As a part of the answer.
-    pub fn part<'a>(
-        &'a self,
-        shows: &'a dyn Fn(&Found<'_>) -> String,
-        states: &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>,
-        usual: &'a dyn Fn(&Candidate) -> Option<(f64, &'static str)>,
-    ) -> Part<'a> {
-        Part {
-            study: &self.study,
-            channel: "net force on carried blocks",
-            unit: "N",
-            floor: self.floor_n,
-            along: &self.along,
-            stretch: &self.stretch,
-            shows,
-            states,
-            usual,
-        }
     }
 }

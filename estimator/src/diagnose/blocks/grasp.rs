@@ -1,10 +1,9 @@
 //! Distance of the tips while blocks are gripped, against the grip force: what gives, and how.
 
 use super::seen::Seen;
-use crate::diagnose::answer::{Found, Part, parameter};
+use crate::diagnose::answer::{Compared, Found, parameter};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::{Channel, stretches};
-use crate::diagnose::geometry::Study;
 use crate::diagnose::report::CauseParameter;
 use crate::estimate::EstimateError;
 use crate::identify::block::object;
@@ -22,10 +21,7 @@ const USUAL_SCALE: f64 = 0.02;
 
 /// The comparison and what its words need.
 pub struct Grasp {
-    pub study: Study,
-    pub along: Vec<bool>,
-    pub stretch: Vec<usize>,
-    pub floor_m: f64,
+    pub compared: Compared,
     /// Mean distance and grip of each block, m and N.
     means: Vec<(f64, f64)>,
     /// Give of a pad at no force that the model has, m/N.
@@ -118,7 +114,10 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
         period_s,
     };
     let study = channel.compare(threshold)?;
-    Ok(Some(Grasp { study, along: vec![true; n], stretch: rows.stretch, floor_m, means, modelled }))
+    let along = vec![true; n];
+    let compared =
+        Compared { study, channel: "distance of the tips", unit: "m", floor: floor_m, along, stretch: rows.stretch };
+    Ok(Some(Grasp { compared, means, modelled }))
 }
 
 fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
@@ -182,7 +181,7 @@ fn generic(seen: &[Seen<'_>], rows: &Rows) -> Vec<Candidate> {
 impl Grasp {
     /// True when this cause was found.
     pub fn has(&self, id: &str) -> bool {
-        self.study.picks().iter().any(|p| self.study.candidates[*p].id == id)
+        self.compared.study.picks().iter().any(|p| self.compared.study.candidates[*p].id == id)
     }
 
     /// For the answer.
@@ -210,10 +209,10 @@ impl Grasp {
 
     /// Give of one pad at no force, m/N: what was found, or what the model has.
     fn first_give(&self) -> f64 {
-        let Some(solved) = &self.study.solved else { return self.modelled };
-        let mut at = self.study.base.len();
-        for chosen in &self.study.chosen {
-            let candidate = &self.study.candidates[chosen.candidate];
+        let Some(solved) = &self.compared.study.solved else { return self.modelled };
+        let mut at = self.compared.study.base.len();
+        for chosen in &self.compared.study.chosen {
+            let candidate = &self.compared.study.candidates[chosen.candidate];
             if candidate.id == "pad-compliance" {
                 return solved.values[at];
             }
@@ -263,25 +262,6 @@ impl Grasp {
             }
             "length-scale" => Some((USUAL_SCALE, "the widths of the blocks are not known; state one in the sidecar")),
             _ => None,
-        }
-    }
-
-    /// As a part of the answer.
-    pub fn part<'a>(
-        &'a self,
-        shows: &'a dyn Fn(&Found<'_>) -> String,
-        states: &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>,
-    ) -> Part<'a> {
-        Part {
-            study: &self.study,
-            channel: "distance of the tips",
-            unit: "m",
-            floor: self.floor_m,
-            along: &self.along,
-            stretch: &self.stretch,
-            shows,
-            states,
-            usual: &Self::usual,
         }
     }
 }

@@ -1,10 +1,9 @@
 //! Height of the grip while a held block stands on something: give of the pads under the load, and slips of the fingers.
 
 use super::seen::Seen;
-use crate::diagnose::answer::{Found, Part, parameter};
+use crate::diagnose::answer::{Compared, Found, parameter};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::{Channel, stretches};
-use crate::diagnose::geometry::Study;
 use crate::diagnose::report::CauseParameter;
 use crate::estimate::EstimateError;
 use crate::identify::block::heights::{Rest, rests};
@@ -39,10 +38,7 @@ pub struct Stand {
 
 /// The comparison and what its words need.
 pub struct Ground {
-    pub study: Study,
-    pub along: Vec<bool>,
-    pub stretch: Vec<usize>,
-    pub floor_m: f64,
+    pub compared: Compared,
     pub stands: Vec<Stand>,
     rows: Rows,
 }
@@ -110,7 +106,9 @@ pub fn ground(
     };
     let floor_m = white_noise(&rows.height_m);
     let study = channel.compare(threshold)?;
-    Ok(Some(Ground { study, along, stretch, floor_m, stands, rows }))
+    let channel = "height of the grip over the ground";
+    let compared = Compared { study, channel, unit: "m", floor: floor_m, along, stretch };
+    Ok(Some(Ground { compared, stands, rows }))
 }
 
 fn add(
@@ -226,16 +224,17 @@ impl Ground {
 
     /// Mean height of a rest without the slip found in it and without the give under its load, m, and its standard error.
     pub fn level(&self, stand: &Stand) -> (f64, f64) {
-        let picks = self.study.picks();
-        let Some(solved) = &self.study.solved else { return (0.0, f64::INFINITY) };
+        let picks = self.compared.study.picks();
+        let Some(solved) = &self.compared.study.solved else { return (0.0, f64::INFINITY) };
         let mut give = vec![0.0; self.rows.stand.len()];
         // All but the rests' own heights.
         let columns: Vec<&Vec<f64>> = self
+            .compared
             .study
             .base
             .iter()
             .skip(self.stands.len())
-            .chain(picks.iter().flat_map(|p| &self.study.candidates[*p].columns))
+            .chain(picks.iter().flat_map(|p| &self.compared.study.candidates[*p].columns))
             .collect();
         for (column, value) in columns.iter().zip(&solved.values[self.stands.len()..]) {
             give.iter_mut().zip(column.iter()).for_each(|(g, c)| *g += value * c);
@@ -244,20 +243,5 @@ impl Ground {
         let mean = (stand.first..stand.end).map(|i| self.rows.height_m[i] - give[i]).sum::<f64>() / n;
         let scatter = (stand.first..stand.end).map(|i| (self.rows.height_m[i] - give[i] - mean).powi(2)).sum::<f64>();
         (mean, (scatter / (n - 1.0).max(1.0) / n).sqrt())
-    }
-
-    /// As a part of the answer.
-    pub fn part<'a>(&'a self, shows: &'a dyn Fn(&Found<'_>) -> String) -> Part<'a> {
-        Part {
-            study: &self.study,
-            channel: "height of the grip over the ground",
-            unit: "m",
-            floor: self.floor_m,
-            along: &self.along,
-            stretch: &self.stretch,
-            shows,
-            states: &Self::states,
-            usual: &Self::usual,
-        }
     }
 }

@@ -38,7 +38,8 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         ..Beside::default()
     };
     if let (Some(ground), Some(world)) = (&ground, world) {
-        let within = ground.study.picks().iter().any(|p| ground.study.candidates[*p].id == "fingertip-slip");
+        let within =
+            ground.compared.study.picks().iter().any(|p| ground.compared.study.candidates[*p].id == "fingertip-slip");
         let scaled = grasp.as_ref().is_some_and(|g| g.has("length-scale"));
         match moved::moved(ground, &seen, world) {
             Some(cause) if scaled || carry.has("force-cross-axis") => beside.warnings.push(format!(
@@ -54,9 +55,11 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let grasp_shows = |f: &Found<'_>| grasp.as_ref().map(|g| g.shows(f)).unwrap_or_default();
     let grasp_states = |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &grasp { g.states(c, p) } else { p };
     let ground_shows = |f: &Found<'_>| ground.as_ref().map(|g| g.shows(f)).unwrap_or_default();
-    let mut parts: Vec<Part<'_>> = vec![carry.part(&carry::Carry::shows, &carry_states, &carry_usual)];
-    parts.extend(grasp.as_ref().map(|g| g.part(&grasp_shows, &grasp_states)));
-    parts.extend(ground.as_ref().map(|g| g.part(&ground_shows)));
+    let mut parts: Vec<Part<'_>> = vec![carry.compared.part(&carry::Carry::shows, &carry_states, &carry_usual)];
+    parts.extend(grasp.as_ref().map(|g| g.compared.part(&grasp_shows, &grasp_states, &grasp::Grasp::usual)));
+    parts.extend(
+        ground.as_ref().map(|g| g.compared.part(&ground_shows, &ground::Ground::states, &ground::Ground::usual)),
+    );
     Ok(answer(&parts, beside, &next))
 }
 

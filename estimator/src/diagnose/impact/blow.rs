@@ -1,10 +1,9 @@
 //! Speed that an impact takes, at the corner of a cube that hits first: its velocity before, from the flight, and after.
 
 use super::powers;
-use crate::diagnose::answer::{Found, Part, parameter};
+use crate::diagnose::answer::{Compared, Found, parameter};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
-use crate::diagnose::geometry::Study;
 use crate::diagnose::report::CauseParameter;
 use crate::estimate::EstimateError;
 use crate::identify::tossed::Tossed;
@@ -30,16 +29,8 @@ const LEAST_BLOWS: usize = 24;
 /// Score that makes a cause.
 const THRESHOLD: f64 = 20.0;
 
-/// The comparison: speed after each blow.
-pub struct Blow {
-    study: Study,
-    stretch: Vec<usize>,
-    along: Vec<bool>,
-    floor_m_s: f64,
-}
-
 /// Compares what impacts leave of the speed. `restitution`: that of the model. `None` where too few blows are clear.
-pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option<Blow>, EstimateError> {
+pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option<Compared>, EstimateError> {
     let pairs: Vec<(f64, f64)> =
         seen.tracks.iter().filter_map(|t| corner(t, half_width_m, seen.fall.down_m_s2)).collect();
     if pairs.len() < LEAST_BLOWS {
@@ -60,7 +51,7 @@ pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option
         period_s: 1.0,
     };
     let study = channel.compare(THRESHOLD)?;
-    let floor_m_s = study.solved.as_ref().map_or(0.0, |s| (s.rss / study.system.rows.max(1.0)).sqrt());
+    let floor = study.solved.as_ref().map_or(0.0, |s| (s.rss / study.system.rows.max(1.0)).sqrt());
     // What the model starts from is remembered in the unit of the parameter: see `states`.
     let mut study = study;
     for candidate in &mut study.candidates {
@@ -70,7 +61,8 @@ pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option
             unit: "1",
         });
     }
-    Ok(Some(Blow { study, stretch, along: vec![true; n], floor_m_s }))
+    let along = vec![true; n];
+    Ok(Some(Compared { study, channel: "speed after impacts", unit: "m/s", floor, along, stretch }))
 }
 
 /// Velocity upwards of the corner that hits first, before and after, m/s.
@@ -142,25 +134,4 @@ pub fn states(candidate: &Candidate, found: &[CauseParameter]) -> Vec<CauseParam
 pub fn shows(found: &Found<'_>) -> String {
     let (value, error) = found.parameters.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
     format!("the corner that hits first leaves with {value:.3} ± {error:.3} of the speed it came with")
-}
-
-impl Blow {
-    /// As a part of the answer.
-    pub fn part<'a>(
-        &'a self,
-        shows: &'a dyn Fn(&Found<'_>) -> String,
-        states: &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>,
-    ) -> Part<'a> {
-        Part {
-            study: &self.study,
-            channel: "speed after impacts",
-            unit: "m/s",
-            floor: self.floor_m_s,
-            along: &self.along,
-            stretch: &self.stretch,
-            shows,
-            states,
-            usual: &|_| None,
-        }
-    }
 }

@@ -60,8 +60,8 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     let loses = |c: &Candidate, found: Vec<CauseParameter>| blow::states(c, &found);
     let (slide_shows, blow_shows) = (|f: &Found<'_>| sliding::shows(f), |f: &Found<'_>| blow::shows(f));
     let mut parts: Vec<Part<'_>> = Vec::new();
-    parts.extend(sliding.as_ref().map(|s| s.part(&slide_shows, &slides)));
-    parts.extend(blow.as_ref().map(|b| b.part(&blow_shows, &loses)));
+    parts.extend(sliding.as_ref().map(|s| s.part(&slide_shows, &slides, &|_| None)));
+    parts.extend(blow.as_ref().map(|b| b.part(&blow_shows, &loses, &|_| None)));
     Ok(answer(&parts, beside, &next))
 }
 

@@ -1,10 +1,9 @@
 //! What slows a sliding body: dry friction, or something that follows the speed.
 
 use super::powers;
-use crate::diagnose::answer::{Found, Part};
+use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
-use crate::diagnose::geometry::Study;
 use crate::diagnose::report::CauseParameter;
 use crate::estimate::EstimateError;
 use crate::identify::tossed::Tossed;
@@ -19,14 +18,6 @@ const THRESHOLD: f64 = 25.0;
 /// Speeds at which static friction falls off that are tried, as shares of the usual one.
 const STRIBECK: [f64; 4] = [0.1, 0.25, 0.5, 0.9];
 
-/// The comparison: ways of all slides, each without its own start and speed.
-pub struct Sliding {
-    study: Study,
-    stretch: Vec<usize>,
-    along: Vec<bool>,
-    floor_m: f64,
-}
-
 /// One slide: times, way along its direction, and speed.
 struct Way {
     time_s: Vec<f64>,
@@ -35,7 +26,7 @@ struct Way {
 }
 
 /// Compares what slows the body. `mu`: friction that the model has.
-pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<Sliding>, EstimateError> {
+pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<Compared>, EstimateError> {
     if seen.slides.len() < LEAST_SLIDES {
         return Ok(None);
     }
@@ -63,7 +54,7 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<Sliding>, EstimateError>
     }
     let stretch: Vec<usize> = ways.iter().enumerate().flat_map(|(k, w)| w.time_s.iter().map(move |_| k)).collect();
     let n = y.len();
-    let floor_m = floor(&ways);
+    let floor = floor(&ways);
     let period_s = ways.first().map_or(0.01, |w| w.time_s[1] - w.time_s[0]);
     let channel = Channel {
         y,
@@ -75,7 +66,8 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<Sliding>, EstimateError>
         period_s,
     };
     let study = channel.compare(THRESHOLD)?;
-    Ok(Some(Sliding { study, stretch, along: vec![true; n], floor_m }))
+    let along = vec![true; n];
+    Ok(Some(Compared { study, channel: "way of the slides", unit: "m", floor, along, stretch }))
 }
 
 fn way(seen: &Tossed, track: usize, first: usize, samples: usize) -> Option<Way> {
@@ -151,26 +143,5 @@ pub fn shows(found: &Found<'_>) -> String {
         "quadratic-drag" => "the body slows down with the square of its speed".to_owned(),
         "stribeck" => "the body slows down more just before it stops".to_owned(),
         other => format!("{other} shows in the slides"),
-    }
-}
-
-impl Sliding {
-    /// As a part of the answer.
-    pub fn part<'a>(
-        &'a self,
-        shows: &'a dyn Fn(&Found<'_>) -> String,
-        states: &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>,
-    ) -> Part<'a> {
-        Part {
-            study: &self.study,
-            channel: "way of the slides",
-            unit: "m",
-            floor: self.floor_m,
-            along: &self.along,
-            stretch: &self.stretch,
-            shows,
-            states,
-            usual: &|_| None,
-        }
     }
 }

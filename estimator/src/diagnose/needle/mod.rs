@@ -53,8 +53,8 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     }
     let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
     let (on_sheet, on_shaft) = (|f: &Found<'_>| sheet::shows(f), |f: &Found<'_>| shaft::shows(f));
-    let mut parts: Vec<Part<'_>> = vec![sheet.part(&on_sheet, &plain)];
-    parts.extend(shaft.as_ref().map(|s| s.part(&on_shaft, &plain)));
+    let mut parts: Vec<Part<'_>> = vec![sheet.part(&on_sheet, &plain, &sheet::usual)];
+    parts.extend(shaft.as_ref().map(|s| s.compared.part(&on_shaft, &plain, &|_| None)));
     Ok(answer(&parts, beside, &next))
 }
 

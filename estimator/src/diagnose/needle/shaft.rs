@@ -1,14 +1,12 @@
 //! The needle in its hole: what holds its shaft.
 
 use super::rows::{Needle, Phase, Row};
-use crate::diagnose::answer::{Found, Part};
+use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::dictionary::Dictionary;
 use crate::diagnose::force::blur;
-use crate::diagnose::geometry::Study;
 use crate::diagnose::grid::Grid;
-use crate::diagnose::report::CauseParameter;
 use crate::diagnose::track::{self, Track};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
@@ -31,10 +29,7 @@ const RIM_SHARE: f64 = 0.05;
 
 /// The comparison.
 pub struct Shaft {
-    study: Study,
-    along: Vec<bool>,
-    stretch: Vec<usize>,
-    floor_n: f64,
+    pub compared: Compared,
     /// What the model without a cause has.
     pub model: &'static str,
 }
@@ -116,7 +111,9 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         period_s: needle.period_s,
     };
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
-    Ok(Some(Shaft { study: channel.compare(threshold)?, along, stretch, floor_n, model }))
+    let study = channel.compare(threshold)?;
+    let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, stretch };
+    Ok(Some(Shaft { compared, model }))
 }
 
 /// Friction of a world's hole along the measured way, N, drag left out.
@@ -184,26 +181,5 @@ pub fn shows(found: &Found<'_>) -> String {
         "hysteresis" => "at each reversal in the hole the rim gives before the shaft slides".to_owned(),
         "friction-change" => "the shaft rubs differently from one insertion to the next".to_owned(),
         other => format!("{other} shows in the force on the shaft"),
-    }
-}
-
-impl Shaft {
-    /// As a part of the answer.
-    pub fn part<'a>(
-        &'a self,
-        shows: &'a dyn Fn(&Found<'_>) -> String,
-        states: &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>,
-    ) -> Part<'a> {
-        Part {
-            study: &self.study,
-            channel: "force on the shaft",
-            unit: "N",
-            floor: self.floor_n,
-            along: &self.along,
-            stretch: &self.stretch,
-            shows,
-            states,
-            usual: &|_| None,
-        }
     }
 }

@@ -1,11 +1,9 @@
 //! The sheet before it is pierced, and the sensors: force over depth against a spring that is the same at every depth.
 
 use super::rows::{Needle, Phase, Row};
-use crate::diagnose::answer::{Found, Part};
+use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
-use crate::diagnose::geometry::Study;
-use crate::diagnose::report::CauseParameter;
 use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
@@ -14,16 +12,8 @@ use haptics::law::object::MembraneLaw;
 /// Shares of the deepest insertion that may stay as a dent.
 const DENTS: [f64; 16] = [0.04, 0.07, 0.1, 0.13, 0.16, 0.19, 0.22, 0.25, 0.28, 0.32, 0.36, 0.4, 0.45, 0.5, 0.58, 0.66];
 
-/// The comparison.
-pub struct Sheet {
-    study: Study,
-    along: Vec<bool>,
-    stretch: Vec<usize>,
-    floor_n: f64,
-}
-
 /// Compares what the sheet may be beside a linear spring (or the law of a world), and what may be wrong with the force.
-pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Sheet, EstimateError> {
+pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Compared, EstimateError> {
     let mut rows: Vec<Row> = needle.rows.iter().filter(|r| r.phase != Phase::Hole).copied().collect();
     let floor_n = white_noise(&rows.iter().map(|r| r.force_n).collect::<Vec<f64>>());
     shuffle(&mut rows);
@@ -92,7 +82,8 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         weight,
         period_s: needle.period_s,
     };
-    Ok(Sheet { study: channel.compare(threshold)?, along, stretch, floor_n })
+    let study = channel.compare(threshold)?;
+    Ok(Compared { study, channel: "force outside and on the sheet", unit: "N", floor: floor_n, along, stretch })
 }
 
 /// A push is over within a second: rows that are held out in blocks would take all of one. Rows a filter window apart hardly hang
@@ -127,28 +118,8 @@ pub fn shows(found: &Found<'_>) -> String {
     }
 }
 
-impl Sheet {
-    /// As a part of the answer.
-    pub fn part<'a>(
-        &'a self,
-        shows: &'a dyn Fn(&Found<'_>) -> String,
-        states: &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>,
-    ) -> Part<'a> {
-        Part {
-            study: &self.study,
-            channel: "force outside and on the sheet",
-            unit: "N",
-            floor: self.floor_n,
-            along: &self.along,
-            stretch: &self.stretch,
-            shows,
-            states,
-            usual: &usual,
-        }
-    }
-}
-
-fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+/// Sizes that could just matter, and what would show them.
+pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
     Some(match candidate.id {
         "stiffness-hardening" if candidate.linear[0].0 == "k3" => (5e5, "the sheet was hardly pressed in"),
         "hysteresis" => (1.0, "the needle was never drawn back before it went through; push, draw back and push on"),
