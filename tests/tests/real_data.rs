@@ -6,56 +6,11 @@ use estimator::estimate::{ConstraintKind, Fit};
 use estimator::identify::mechanism;
 use estimator::log;
 use haptics::recording::{Meta, Recording, Span, Warning};
-use std::path::PathBuf;
-
-/// The file, or `None` with a visible word.
-fn data(path: &str) -> Option<PathBuf> {
-    let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data").join(path);
-    if file.is_file() {
-        return Some(file);
-    }
-    println!("skipped: {path} is not beside the workspace");
-    None
-}
+use tests::shared_data;
 
 fn load(path: &str, meta: &str) -> Option<Vec<Recording>> {
     let meta: Meta = serde_json::from_str(meta).expect("a sidecar");
-    Some(log::load_with_meta(&data(path)?, &meta).expect("real data load"))
-}
-
-fn value(fit: &Fit, name: &str) -> f64 {
-    let parameter = fit.parameter("mechanism", name).expect("listed");
-    println!("{name}: {:?} ± {:?}", parameter.value, parameter.std_error);
-    parameter.value.expect("identified")
-}
-
-fn near(got: f64, published: f64, relative: f64) {
-    assert!((got / published - 1.0).abs() < relative, "{got} against the published {published}");
-}
-
-const EMPS: &str = r#"{"columns":{"t_s":"time_s","q_m":"position_m","f_N":"force_N"}}"#;
-
-/// Janot, Gautier, Brunot 2019: M 95.1089 kg, Fv 203.5034 N s/m, Fc 20.3935 N, offset −3.1648 N, relative error 4.08 %.
-#[test]
-fn emps_gives_the_published_parameters_from_positions_only() {
-    let Some(recordings) = load("emps/emps_identification.csv", EMPS) else { return };
-    assert!(recordings[0].warnings.is_empty(), "{:?}", recordings[0].warnings);
-    let fit = mechanism::fit(&recordings).expect("fits");
-    // Published is plain least squares over all samples; here those near reversals hardly count, where friction is not what it is in motion.
-    let published = [
-        ("mass_kg", 95.1089, 0.01),
-        ("viscous_N_s_m", 203.5034, 0.03),
-        ("coulomb_N", 20.3935, 0.03),
-        ("offset_N", -3.1648, 0.05),
-    ];
-    for (name, expected, within) in published {
-        near(value(&fit, name), expected, within);
-        let error = fit.parameter("mechanism", name).and_then(|p| p.std_error).expect("an error");
-        assert!((value(&fit, name) - expected).abs() < 2.0 * error, "{name}: {expected} is published, ± {error}");
-    }
-    let quality = fit.quality.expect("a held-out figure");
-    println!("{quality:?} {:?}", fit.warnings);
-    assert!(quality.heldout_relative < 0.05, "{quality:?}");
+    Some(log::load_with_meta(&shared_data(path)?, &meta).expect("real data load"))
 }
 
 #[test]
@@ -189,7 +144,7 @@ fn doors_turn_and_drawers_slide() {
     for (name, kind) in known {
         let meta = format!(r#"{{"select":{{"mechanism":"{name}"}}}}"#);
         let meta: Meta = serde_json::from_str(&meta).expect("a sidecar");
-        let Some(path) = data("articulated_paths/paths.csv") else { return };
+        let Some(path) = shared_data("articulated_paths/paths.csv") else { return };
         let Ok(trials) = log::load_with_meta(&path, &meta) else {
             println!("skipped: {name} is not in this copy of the data");
             continue;
@@ -218,31 +173,6 @@ fn doors_turn_and_drawers_slide() {
         println!("{name}: {decided} of {} decided", trials.len());
         assert!(2 * decided > trials.len(), "{name}: {decided} of {}", trials.len());
     }
-}
-
-/// The authors of EMPS add friction by direction to inertia, viscous and Coulomb friction, and nothing else.
-#[test]
-fn emps_is_diagnosed_from_its_mass_alone() {
-    let Some(recordings) = load("emps/emps_identification.csv", EMPS) else { return };
-    let options = estimator::diagnose::Options { baseline: Some("mass".to_owned()), ..Default::default() };
-    let found = estimator::diagnose::diagnose(&recordings, &options).expect("a force along a coordinate");
-    let ids: Vec<&str> = found.causes.iter().map(|c| c.id.as_str()).collect();
-    println!("{ids:?}, {:.2} N unexplained of {:.2} N", found.end.heldout_rms_n, found.baseline.heldout_rms_n);
-    // Coulomb friction explains a little more by itself than viscous friction does; what depends on the direction comes last.
-    assert!(ids[..2].contains(&"viscous-friction") && ids[..2].contains(&"coulomb-friction"), "{ids:?}");
-    assert_eq!(ids[2], "friction-asymmetry", "{ids:?}");
-    assert!(!ids.contains(&"position-ripple") && !ids.contains(&"time-delay"), "{ids:?}");
-    for cause in &found.causes[..3] {
-        assert!(
-            cause.gain.share_of_explainable > 0.9 && cause.gain.interval[0] > 0.5,
-            "{}: {:?}",
-            cause.id,
-            cause.gain
-        );
-    }
-    // Half the difference of the published viscous friction by direction: (166.7 − 240.4)/2.
-    let dc = found.causes[2].parameters[0].value;
-    assert!((dc + 36.9).abs() < 5.0, "{dc}");
 }
 
 /// A parameter of any object, printed.
