@@ -5,8 +5,10 @@
 pub mod boards;
 pub mod cli;
 mod constraint_words;
+pub mod diagnosis_words;
 pub mod operator;
 pub mod recorder;
+pub mod report;
 pub mod tasks;
 pub mod ui;
 pub mod worlds;

@@ -134,7 +134,8 @@ fn demo_runs_the_whole_chain() {
         let missed = if recording["name"] == "stack" { "pad-compliance" } else { "coulomb-friction" };
         assert_eq!(recording["diagnosis"]["causes"][0]["id"], missed, "{}", recording["name"]);
     }
-    for file in ["stack.world.json", "crank.simulated.csv", "stack.extended.json", "crank.extended.json"] {
+    for file in ["stack.world.json", "crank.simulated.csv", "stack.extended.json", "crank.extended.json", "report.html"]
+    {
         assert!(folder.path().join(file).is_file(), "{file}");
     }
     if result["pictures"].as_array().is_none_or(Vec::is_empty) {

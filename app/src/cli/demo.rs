@@ -1,6 +1,8 @@
 //! `touchstone demo`: the whole chain on built-in recordings, without a display.
 
-use super::{Output, diagnose, fit, screenshot};
+use super::{Output, diagnose, fit, report, screenshot};
+use crate::report::Sheet;
+use crate::report::source::Source;
 use anyhow::Context;
 use clap::Args;
 use estimator::pipeline::{Analysis, Options, analyse};
@@ -14,7 +16,7 @@ use std::time::Instant;
 /// Arguments of `demo`.
 #[derive(Args)]
 pub struct Demo {
-    /// Folder for recordings, worlds, predictions and pictures
+    /// Folder for recordings, worlds, predictions, pictures and the report
     #[arg(long, default_value = "demo-out")]
     out: PathBuf,
 }
@@ -61,9 +63,10 @@ impl Demo {
             results.push(result);
         }
         let pictures = self.pictures(&mut text);
+        let report = self.report(&mut text)?;
         let seconds = started.elapsed().as_secs_f64();
         let _ = writeln!(text, "\nDone in {seconds:.1} s; everything is in {}", self.out.display());
-        let json = json!({ "out": self.out, "seconds": seconds, "recordings": results, "pictures": pictures });
+        let json = json!({ "out": self.out, "seconds": seconds, "recordings": results, "pictures": pictures, "report": report });
         Ok(Output { text, json })
     }
 
@@ -135,6 +138,18 @@ impl Demo {
             self.keep(&format!("{name}-workbench.png"), panel, &mut made, text);
         }
         made
+    }
+
+    /// One page about both recordings.
+    fn report(&self, text: &mut String) -> anyhow::Result<PathBuf> {
+        progress("report");
+        let logs: Vec<PathBuf> = RECORDINGS.iter().map(|r| self.file(&format!("{}.csv", r.name))).collect();
+        let read = |log: &PathBuf| estimator::log::load(log, None).map_err(|error| error.to_string());
+        let sheets: Vec<Sheet> = logs.iter().map(|log| Sheet::new(Source::of(log, None), read(log))).collect();
+        let out = self.file("report.html");
+        report::write("Touchstone demo", &sheets, &out, &logs)?;
+        let _ = writeln!(text, "\nReport\n  {}", out.display());
+        Ok(out)
     }
 
     fn keep(&self, name: &str, picture: anyhow::Result<image::RgbaImage>, made: &mut Vec<PathBuf>, text: &mut String) {

@@ -12,6 +12,7 @@ mod fit;
 mod info;
 mod progress;
 mod record;
+mod report;
 mod screenshot;
 mod segment;
 mod simulate;
@@ -40,7 +41,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// The whole chain on built-in recordings: segment, fit, calibrate, simulate, pictures
+    /// The whole chain on built-in recordings: segment, fit, calibrate, simulate, diagnose, extend, pictures, report
     Demo(demo::Demo),
     /// Columns, units, rate, length, warnings of a log
     Info(info::Info),
@@ -52,6 +53,8 @@ enum Command {
     Diagnose(diagnose::Diagnose),
     /// The measured motion of a log through a world: predicted forces
     Simulate(simulate::Simulate),
+    /// Everything about one or several logs on one HTML page that needs nothing else
+    Report(report::Report),
     /// Make a recording from the virtual hand
     Record(record::Record),
     /// A picture without a window
@@ -184,6 +187,16 @@ pub fn main() -> ExitCode {
         Some(Command::Fit(args)) => args.run(),
         Some(Command::Diagnose(args)) => args.run(),
         Some(Command::Simulate(args)) => args.run(),
+        Some(Command::Report(args)) => {
+            return match args.run() {
+                Ok((output, problem)) => {
+                    output.say(cli.json);
+                    // The page is there, but a log is missing in it.
+                    problem.map_or(ExitCode::SUCCESS, |problem| fail(&anyhow::Error::msg(problem)))
+                }
+                Err(error) => fail(&error),
+            };
+        }
         Some(Command::Record(args)) => args.run(),
         Some(Command::Screenshot(args)) => args.run(),
         Some(Command::Convert(args)) => args.run(),

@@ -21,6 +21,7 @@ const SUFFIXES: &[(&str, &str, f64)] = &[
     ("_Nm_s", "N·m·s", 1.0),
     ("_N_m", "N/m", 1.0),
     ("_Nm", "N·m", 1.0),
+    ("_m_s2", "m/s²", 1.0),
     ("_m_s", "mm/s", 1e3),
     ("_kg", "g", 1e3),
     ("_rad", "°", 180.0 / std::f64::consts::PI),

@@ -120,6 +120,18 @@ pub fn role(dark: bool, role: ColorRole) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
+/// The role's colour for a curve; the second curve of a finger is a lighter or darker shade of it.
+pub fn curve(dark: bool, of: ColorRole, second: bool) -> Color32 {
+    let color = role(dark, of);
+    if !second {
+        color
+    } else if dark {
+        mix(color, Color32::WHITE, 0.45)
+    } else {
+        mix(color, Color32::BLACK, 0.38)
+    }
+}
+
 /// The colour of a contact state, in band, legend and plots.
 pub fn state_color(dark: bool, state: SystemState) -> Color32 {
     match state {

@@ -10,7 +10,7 @@ const KEYS: [&str; 12] =
 /// Axes that may point up.
 const UP: [&str; 7] = ["x", "y", "z", "-x", "-y", "-z", "none"];
 /// Known parameters that are above zero …
-const POSITIVE: [&str; 13] = [
+const POSITIVE: [&str; 14] = [
     "mass_kg",
     "inertia_kg_m2",
     "com_m",
@@ -24,6 +24,7 @@ const POSITIVE: [&str; 13] = [
     "empty_mass_kg",
     "added_weight_N",
     "added_lever_m",
+    "half_width_m",
 ];
 /// … not below it …
 const NOT_NEGATIVE: [&str; 9] = [

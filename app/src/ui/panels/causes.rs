@@ -1,5 +1,6 @@
 //! A cause that was found, as a card.
 
+use crate::diagnosis_words::{gain_unit, shown_unit, small, title};
 use crate::ui::format;
 use crate::ui::session::sentence;
 use crate::ui::theme::{self, palette, space};
@@ -7,15 +8,6 @@ use crate::ui::widgets::{bar, card, compact};
 use egui::{Align, Color32, Frame, Layout, Margin, Response, RichText, Stroke, Ui};
 use estimator::diagnose::{Alternative, Cause, CauseParameter, Diagnosis, Rollout, RolloutOf};
 use haptics::law::{self, Kind};
-
-/// What a cause is called.
-pub fn title(id: &str) -> String {
-    match law::cause(id) {
-        Some(entry) => entry.title.to_owned(),
-        None if id.starts_with("other:") => "Something without a name".to_owned(),
-        None => id.to_owned(),
-    }
-}
 
 /// True when an extended world differs by it.
 pub fn changes_the_world(cause: &Cause) -> bool {
@@ -84,17 +76,12 @@ fn line(ui: &mut Ui, parameter: &CauseParameter) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let (value, error) = format::with_error(parameter.value, Some(parameter.std_error));
             let error = error.map_or_else(String::new, |e| format!(" ± {e}"));
-            ui.label(RichText::new(unit(&parameter.unit)).size(12.0).color(palette(ui).secondary));
+            ui.label(RichText::new(shown_unit(&parameter.unit)).size(12.0).color(palette(ui).secondary));
             ui.label(RichText::new(error).color(palette(ui).secondary));
             ui.spacing_mut().item_spacing.x = 0.0;
             ui.label(theme::strong(value));
         });
     });
-}
-
-/// `N s/m` → `N·s/m`; nothing for a pure number.
-fn unit(unit: &str) -> String {
-    if unit == "1" { String::new() } else { unit.replace("Nm", "N·m").replace(' ', "·") }
 }
 
 fn gain(ui: &mut Ui, cause: &Cause, diagnosis: &Diagnosis) {
@@ -104,11 +91,7 @@ fn gain(ui: &mut Ui, cause: &Cause, diagnosis: &Diagnosis) {
     }
     let percent = |share: f64| format::number(100.0 * share, 0);
     let [low, high] = gain.interval;
-    let unit = match (cause.evidence.contains("of the path"), diagnosis.course.is_angular) {
-        (true, _) => ("mm", 1e3),
-        (false, true) => ("N·m", 1.0),
-        (false, false) => ("N", 1.0),
-    };
+    let unit = gain_unit(cause, diagnosis);
     compact(ui, |ui| {
         ui.label(theme::caption(ui, "Explains"));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -158,12 +141,7 @@ fn page(ui: &mut Ui, id: &str) {
     ui.label(theme::strong(entry.title));
     ui.label(RichText::new(entry.equation).monospace());
     ui.label(entry.what);
-    ui.label(theme::caption(ui, format!("It shows: {}", lower(entry.shows))));
+    ui.label(theme::caption(ui, format!("It shows: {}", small(entry.shows))));
     ui.label(theme::caption(ui, entry.mimics));
     ui.label(theme::caption(ui, entry.reveals));
-}
-
-fn lower(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }

@@ -2,6 +2,7 @@
 
 use super::Panel;
 use super::{causes, diagnose};
+use crate::diagnosis_words::{force_unit, headline, listed, title};
 use crate::ui::diagnosing::Answer;
 use crate::ui::files;
 use crate::ui::format;
@@ -12,7 +13,7 @@ use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::WorldChoice;
 use crate::ui::widgets::{bar, card, compact, plain_card, primary_button};
 use egui::{Align, Color32, Layout, RichText, ScrollArea, Ui, vec2};
-use estimator::diagnose::{Cause, Diagnosis, Verdict};
+use estimator::diagnose::Diagnosis;
 
 /// The right column of the diagnosis.
 #[derive(Default)]
@@ -40,50 +41,6 @@ impl Panel for DiagnosisPanel {
     }
 }
 
-/// The answer in one line.
-fn headline(diagnosis: &Diagnosis) -> String {
-    let names: Vec<String> = diagnosis.causes.iter().map(|c| causes::title(&c.id)).collect();
-    match diagnosis.verdict {
-        Verdict::None => "Nothing beyond the noise.".to_owned(),
-        Verdict::Unexplained => "Something is there that no known cause explains.".to_owned(),
-        Verdict::Causes => format!("The model misses {}.", listed(&names)),
-        Verdict::Ambiguous => {
-            let either = |cause: &Cause| {
-                let others = diagnosis.alternatives.iter().filter(|a| a.instead_of == cause.id);
-                let all: Vec<String> = std::iter::once(&cause.id)
-                    .chain(others.map(|a| &a.id))
-                    .map(|id| small(&causes::title(id)))
-                    .collect();
-                all.join(" or ")
-            };
-            let open: Vec<String> = diagnosis.causes.iter().map(either).collect();
-            format!("The model misses {}: this recording cannot tell which.", joined(&open))
-        }
-    }
-}
-
-/// `a, b and c`, with small letters.
-fn listed(names: &[String]) -> String {
-    joined(&names.iter().map(|n| small(n)).collect::<Vec<_>>())
-}
-
-/// With a small letter in front, unless it is a person's name.
-fn small(name: &str) -> String {
-    if ["Coulomb", "Stribeck"].iter().any(|person| name.starts_with(person)) {
-        return name.to_owned();
-    }
-    let mut letters = name.chars();
-    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
-}
-
-fn joined(words: &[String]) -> String {
-    match words {
-        [] => "something".to_owned(),
-        [one] => one.clone(),
-        [most @ .., last] => format!("{} and {last}", most.join(", ")),
-    }
-}
-
 fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
     let d = &answer.diagnosis;
     let (mut again, mut changed) = (false, false);
@@ -103,7 +60,7 @@ fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
             ui.add_space(space::XS);
             changed = diagnose::start_from(ui, session);
             let (inks, most) = (inks(ui), d.baseline.heldout_rms_n.max(d.noise_floor_n).max(1e-12));
-            let unit = unit(d);
+            let unit = force_unit(d);
             level(ui, "Model", d.baseline.heldout_rms_n, most, unit, inks.model);
             if !d.causes.is_empty() {
                 level(ui, "With what was found", d.end.heldout_rms_n, most, unit, inks.extended);
@@ -116,11 +73,6 @@ fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
         let ctx = ui.ctx().clone();
         session.diagnose(&ctx);
     }
-}
-
-/// Shown unit of the forces.
-fn unit(diagnosis: &Diagnosis) -> &'static str {
-    if diagnosis.course.is_angular { "N·m" } else { "N" }
 }
 
 /// A name, a bar and a number in one line.
@@ -174,7 +126,7 @@ fn extension(ui: &mut Ui, session: &mut Session, answer: &Answer) {
 
 /// The gain of the whole extension.
 fn before_after(ui: &mut Ui, d: &Diagnosis) {
-    let unit = unit(d);
+    let unit = force_unit(d);
     let number = |value: f64| format::significant(value, 3);
     let (before, after) = (d.baseline.heldout_rms_n, d.end.heldout_rms_n);
     ui.horizontal(|ui| {
@@ -225,7 +177,7 @@ fn next(ui: &mut Ui, diagnosis: &Diagnosis) {
     let Some(next) = &diagnosis.next_experiment else { return };
     plain_card(ui, "Record next", |ui| {
         ui.add(egui::Label::new(sentence(&next.motion)).wrap());
-        let names: Vec<String> = next.separates.iter().map(|id| causes::title(id)).collect();
+        let names: Vec<String> = next.separates.iter().map(|id| title(id)).collect();
         let power = format::number(100.0 * next.expected_power, 0);
         let text = format!("Tells {} apart with a probability of {power}\u{a0}%.", listed(&names));
         ui.label(theme::caption(ui, text));
@@ -248,8 +200,7 @@ fn hidden(ui: &mut Ui, diagnosis: &Diagnosis) {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
                 for hidden in &diagnosis.not_excited {
-                    causes::chip(ui, &causes::title(&hidden.id), palette(ui).secondary)
-                        .on_hover_text(sentence(&hidden.why));
+                    causes::chip(ui, &title(&hidden.id), palette(ui).secondary).on_hover_text(sentence(&hidden.why));
                 }
             });
             ui.label(theme::caption(ui, "They are not excluded: this motion does not show them."));
@@ -269,19 +220,4 @@ fn warnings(ui: &mut Ui, diagnosis: &Diagnosis) {
             });
         }
     });
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_listed_as_in_a_sentence() {
-        let list = |names: &[&str]| listed(&names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>());
-        assert_eq!(
-            list(&["Backlash", "Coulomb friction", "Return spring"]),
-            "backlash, Coulomb friction and return spring"
-        );
-        assert_eq!(list(&["Tilted plane"]), "tilted plane");
-    }
 }

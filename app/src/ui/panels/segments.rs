@@ -141,7 +141,8 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
 }
 
 /// The state in words; what turns or slides is not known of every mechanism.
-fn word(segmentation: &Segmentation, state: SystemState) -> &'static str {
+/// What a state is called in a recording of this task.
+pub fn word(segmentation: &Segmentation, state: SystemState) -> &'static str {
     if state == SystemState::Turning && segmentation.task != "crank" { "Moving" } else { state_name(state) }
 }
 

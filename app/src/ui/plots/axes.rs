@@ -2,18 +2,48 @@
 
 use crate::ui::format;
 use crate::ui::theme::Palette;
-use egui::{FontId, Rangef};
-use egui_plot::{AxisHints, GridMark};
+use egui::{FontId, Rangef, Vec2};
+use egui_plot::{AxisHints, GridMark, Plot};
+use std::fmt::Debug;
+use std::hash::Hash;
 
 /// Width of the labels of the vertical axis.
 pub const AXIS_WIDTH: f32 = 44.0;
 
+/// A plot that nobody pushes about by accident: a quiet grid of about `across` lines to the right, more lines upwards where it is at
+/// least `tall`, values at the left.
+pub fn still_plot(id: impl Hash + Debug, p: &Palette, height: f32, across: f64, tall: f32) -> Plot<'static> {
+    Plot::new(id)
+        .height(height)
+        .show_background(false)
+        .show_x(false)
+        .show_y(false)
+        .show_crosshair(false)
+        .allow_zoom(false)
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_double_click_reset(false)
+        .allow_axis_zoom_drag(false)
+        .grid_color(p.border)
+        .grid_fade(1.2)
+        .grid_spacing(Rangef::new(4.0, 40.0))
+        .x_grid_spacer(move |input| marks(input.bounds, across))
+        .y_grid_spacer(move |input| marks(input.bounds, if height > tall { 6.0 } else { 4.0 }))
+        .set_margin_fraction(Vec2::ZERO)
+        .custom_y_axes(vec![value_axis(p)])
+}
+
 /// Seconds, or sample numbers.
 pub fn time_axis(p: &Palette, clockless: bool) -> AxisHints<'static> {
-    let unit = if clockless { "" } else { " s" };
+    variable_axis(p, if clockless { "" } else { " s" }).label_spacing(Rangef::new(20.0, 30.0))
+}
+
+/// Any variable, with its unit behind every number.
+pub fn variable_axis(p: &Palette, unit: &'static str) -> AxisHints<'static> {
     AxisHints::new_x()
         .formatter(move |mark, _| format!("{}{unit}", format::number(mark.value, decimals(mark.step_size))))
-        .label_spacing(Rangef::new(20.0, 30.0))
+        .label_spacing(Rangef::new(24.0, 40.0))
         .tick_label_color(p.secondary)
         .tick_label_font(FontId::proportional(11.0))
 }
@@ -42,7 +72,8 @@ pub fn marks((low, high): (f64, f64), wanted: f64) -> Vec<GridMark> {
         .collect()
 }
 
-fn decimals(step: f64) -> usize {
+/// Decimals that marks at this step need.
+pub fn decimals(step: f64) -> usize {
     (-step.abs().log10().floor()).clamp(0.0, 6.0) as usize
 }
 

@@ -7,7 +7,7 @@ mod residual_plot;
 mod residuals;
 mod row;
 
-pub use axes::{marks, time_axis, value_axis};
+pub use axes::{decimals, marks, time_axis, value_axis};
 pub use decimate::{Levels, decimate};
 pub use doubts::places;
 pub use residual_plot::{BAND_SIGMAS, cloud_plot, force_plot, has_directions, inks};

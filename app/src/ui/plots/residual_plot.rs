@@ -1,11 +1,10 @@
 //! Draws the curves of a diagnosis.
 
-use super::axes::{marks, time_axis, value_axis};
+use super::axes::{still_plot, time_axis, variable_axis};
 use super::residuals::{Cloud, Residuals, Suspect};
-use crate::ui::format;
 use crate::ui::theme::{Palette, palette, role};
-use egui::{Color32, FontId, Rangef, Sense, Ui, Vec2};
-use egui_plot::{AxisHints, FilledArea, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Points};
+use egui::{Color32, Sense, Ui};
+use egui_plot::{FilledArea, Line, LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, Points};
 use render::ColorRole;
 use std::fmt::Debug;
 use std::hash::Hash;
@@ -67,7 +66,7 @@ pub fn force_plot(ui: &mut Ui, height: f32, curves: &Residuals) {
 /// What is left of the force against one variable: a cloud before, means before and after, the noise as a band.
 pub fn cloud_plot(ui: &mut Ui, height: f32, cloud: &Cloud, curves: &Residuals) {
     let (p, inks) = (palette(ui), inks(ui));
-    let plot = quiet(("residual", cloud.title), p, height).custom_x_axes(vec![variable_axis(p)]);
+    let plot = quiet(("residual", cloud.title), p, height).custom_x_axes(vec![variable_axis(p, "")]);
     plot.show(ui, |plot| {
         let (x, y) = (cloud.range, curves.largest);
         plot.set_plot_bounds(PlotBounds::from_min_max([x.0, -y], [x.1, y]));
@@ -97,35 +96,5 @@ pub fn has_directions(suspect: Suspect) -> bool {
 
 /// A plot that only shows.
 fn quiet(id: impl Hash + Debug, p: &Palette, height: f32) -> Plot<'static> {
-    Plot::new(id)
-        .height(height)
-        .show_background(false)
-        .show_x(false)
-        .show_y(false)
-        .show_crosshair(false)
-        .allow_zoom(false)
-        .allow_drag(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_double_click_reset(false)
-        .allow_axis_zoom_drag(false)
-        .grid_color(p.border)
-        .grid_fade(1.2)
-        .grid_spacing(Rangef::new(4.0, 40.0))
-        .x_grid_spacer(|input| marks(input.bounds, 8.0))
-        .y_grid_spacer(move |input| marks(input.bounds, if height > 170.0 { 6.0 } else { 4.0 }))
-        .set_margin_fraction(Vec2::ZERO)
-        .sense(Sense::hover())
-        .custom_y_axes(vec![value_axis(p)])
-}
-
-fn variable_axis(p: &Palette) -> AxisHints<'static> {
-    AxisHints::new_x()
-        .formatter(|mark, _| {
-            let decimals = (-mark.step_size.abs().log10().floor()).clamp(0.0, 6.0) as usize;
-            format::number(mark.value, decimals)
-        })
-        .label_spacing(Rangef::new(24.0, 40.0))
-        .tick_label_color(p.secondary)
-        .tick_label_font(FontId::proportional(11.0))
+    still_plot(id, p, height, 8.0, 170.0).sense(Sense::hover())
 }

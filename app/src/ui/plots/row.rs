@@ -1,13 +1,13 @@
 //! One plot with its gutter: title, unit, curves with their values at the cursor.
 
-use super::axes::{AXIS_WIDTH, marks, time_axis, value_axis};
+use super::axes::{AXIS_WIDTH, still_plot, time_axis};
 use super::doubts::shade;
 use super::{Levels, decimate};
 use crate::ui::format;
 use crate::ui::prepare::{Group, Prepared, Trace};
-use crate::ui::theme::{self, mix, palette, space};
+use crate::ui::theme::{self, palette, space};
 use egui::{Align, Color32, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
-use egui_plot::{Line, Plot, PlotBounds, PlotPoint, PlotPoints, PlotTransform, Span};
+use egui_plot::{Line, PlotBounds, PlotPoint, PlotPoints, PlotTransform, Span};
 use estimator::segment::Segmentation;
 use render::ColorRole;
 use std::collections::{HashMap, HashSet};
@@ -159,7 +159,7 @@ fn draw_gutter(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) {
 fn curve_entry(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, trace: &Trace, sample: usize, narrow: bool) {
     let shown = cache.is_shown(input.group, trace);
     let p = palette(ui);
-    let color = if shown { curve_color(ui.visuals().dark_mode, trace) } else { p.faint };
+    let color = if shown { theme::curve(ui.visuals().dark_mode, trace.role, trace.second) } else { p.faint };
     let entry = ui.scope_builder(UiBuilder::new().sense(Sense::click()).id_salt(&trace.name), |ui| {
         ui.horizontal(|ui| {
             dash(ui, if shown { color } else { p.border }, 2.5);
@@ -201,48 +201,17 @@ fn dash(ui: &mut Ui, color: Color32, width: f32) {
     ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(width, color));
 }
 
-/// The role's colour; the second curve of a finger is a lighter or darker shade of it.
-fn curve_color(dark: bool, trace: &Trace) -> Color32 {
-    let color = theme::role(dark, trace.role);
-    if !trace.second {
-        color
-    } else if dark {
-        mix(color, Color32::WHITE, 0.45)
-    } else {
-        mix(color, Color32::BLACK, 0.38)
-    }
-}
-
 fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) -> RowOutcome {
     cache.update(input, ((ui.available_width() - AXIS_WIDTH) * ui.pixels_per_point()) as usize);
     let (p, dark) = (palette(ui), ui.visuals().dark_mode);
     let shown: Vec<(usize, &Trace)> =
         input.group.traces.iter().enumerate().filter(|(_, t)| cache.is_shown(input.group, t)).collect();
     let y_range = y_range(cache, input, &shown);
-    let (clockless, height) = (input.prepared.clockless(), input.height);
-    let plot = Plot::new(("row", input.index))
+    let plot = still_plot(("row", input.index), p, input.height, 10.0, 130.0)
         .width(ui.available_width())
-        .height(input.height)
         .show_axes([input.time_axis, true])
-        .show_background(false)
-        .show_x(false)
-        .show_y(false)
-        .show_crosshair(false)
-        .allow_zoom(false)
-        .allow_drag(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_double_click_reset(false)
-        .allow_axis_zoom_drag(false)
-        .grid_color(p.border)
-        .grid_fade(1.2)
-        .grid_spacing(Rangef::new(4.0, 40.0))
-        .x_grid_spacer(|input| marks(input.bounds, 10.0))
-        .y_grid_spacer(move |input| marks(input.bounds, if height > 130.0 { 6.0 } else { 4.0 }))
-        .set_margin_fraction(egui::Vec2::ZERO)
         .sense(Sense::click_and_drag())
-        .custom_x_axes(vec![time_axis(p, clockless)])
-        .custom_y_axes(vec![value_axis(p)]);
+        .custom_x_axes(vec![time_axis(p, input.prepared.clockless())]);
     let response = plot.show(ui, |plot| {
         let bounds = PlotBounds::from_min_max([input.view_s.0, y_range.0], [input.view_s.1, y_range.1]);
         plot.set_plot_bounds(bounds);
@@ -261,7 +230,7 @@ fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) -> RowOut
         for (t, trace) in &shown {
             if let Some(cached) = cache.curves.get(&(input.index, *t, false)) {
                 let line = Line::new("", PlotPoints::Borrowed(&cached.points));
-                plot.line(line.color(curve_color(dark, trace)).width(1.4).allow_hover(false));
+                plot.line(line.color(theme::curve(dark, trace.role, trace.second)).width(1.4).allow_hover(false));
             }
         }
     });
@@ -301,7 +270,12 @@ fn draw_cursor(ui: &Ui, transform: &PlotTransform, input: &RowInput<'_>, shown: 
         let value = trace.levels.samples(&input.prepared.recording).value(sample);
         if value.is_finite() {
             let y = transform.position_from_point(&PlotPoint::new(input.cursor_s, value)).y;
-            painter.circle(Pos2::new(x, y), 3.0, curve_color(dark, trace), Stroke::new(1.0, p.card));
+            painter.circle(
+                Pos2::new(x, y),
+                3.0,
+                theme::curve(dark, trace.role, trace.second),
+                Stroke::new(1.0, p.card),
+            );
         }
     }
 }

@@ -1,0 +1,96 @@
+//! Which state held when, and to which subtask it belongs.
+
+use super::{LEFT, RIGHT, WIDE, key, short};
+use crate::report::style::state_variable;
+use crate::ui::format;
+use crate::ui::panels::segments::word;
+use crate::ui::theme::state_short;
+use estimator::segment::{Interval, Segmentation, SystemState};
+use maud::{Markup, html};
+
+/// Heights of the band and of the subtasks under it.
+const BAND: f64 = 24.0;
+const SUBTASKS: f64 = 18.0;
+/// Width of a letter of a label, about.
+const LETTER: f64 = 6.4;
+/// A piece narrower than this is not drawn by itself.
+const LEAST: f64 = 0.3;
+
+/// The band over the same time as the curves below it.
+pub fn band(segmentation: &Segmentation, span_s: (f64, f64)) -> Markup {
+    let width = WIDE - LEFT - RIGHT;
+    let x = |t: f64| LEFT + (t - span_s.0) / (span_s.1 - span_s.0) * width;
+    let says = format!("States over time: {} intervals", segmentation.states.len());
+    html! {
+        svg class="chart" viewBox=(format!("0 0 {WIDE} {}", BAND + SUBTASKS + 4.0)) role="img" aria-label=(says) {
+            @for interval in &segmentation.states {
+                @let (from, to) = (x(interval.t0).max(LEFT), x(interval.t1).min(LEFT + width));
+                @if to - from > LEAST { (piece(segmentation, interval, (from, to))) }
+            }
+            @for (name, t0, t1) in subtasks(segmentation) {
+                @let (from, to) = (x(t0) + 1.0, x(t1) - 1.0);
+                @if to - from > 3.0 {
+                    path class="line zero" d=(format!("M{} {}V{}H{}V{}", short(from), BAND + 1.0, BAND + 4.0, short(to), BAND + 1.0)) {}
+                    @if to - from > LETTER * 0.9 * name.chars().count() as f64 {
+                        text class="tick" x=(short(0.5 * (from + to))) y=(BAND + 16.0) text-anchor="middle" { (name) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn piece(segmentation: &Segmentation, interval: &Interval, (from, to): (f64, f64)) -> Markup {
+    let variable = state_variable(interval.state);
+    let (name, width) = (word(segmentation, interval.state), to - from);
+    let fits = |text: &str| width > LETTER * text.chars().count() as f64 + 6.0;
+    let label = [name, state_short(interval.state)].into_iter().find(|text| fits(text));
+    html! {
+        g {
+            title {
+                (name) ", " (format::number(interval.t0, 2)) " … " (format::number(interval.t1, 2)) " s"
+                @if let Some(subtask) = &interval.subtask { ", " (subtask) }
+            }
+            rect x=(short(from)) y="0" width=(format!("{:.2}", (width - 0.6).max(LEAST))) height=(BAND)
+                rx=[(width > 8.0).then_some("3")] style=(format!("fill:var(--{variable})")) {}
+            @if let Some(label) = label {
+                text class="label" x=(short(from + 0.5 * width)) y=(0.5 * BAND + 4.0) text-anchor="middle"
+                    style=(format!("fill:var(--{variable}-ink)")) { (label) }
+            }
+        }
+    }
+}
+
+/// Runs of intervals of one subtask.
+fn subtasks(segmentation: &Segmentation) -> Vec<(String, f64, f64)> {
+    let mut runs: Vec<(String, f64, f64)> = Vec::new();
+    for interval in &segmentation.states {
+        let Some(subtask) = &interval.subtask else { continue };
+        match runs.last_mut() {
+            Some((name, _, end)) if name == subtask => *end = interval.t1,
+            _ => runs.push((subtask.clone(), interval.t0, interval.t1)),
+        }
+    }
+    runs
+}
+
+/// What the states' colours mean, with the share of time of each.
+pub fn legend(segmentation: &Segmentation) -> Markup {
+    let whole: f64 = segmentation.states.iter().map(|i| i.t1 - i.t0).sum();
+    let mut shares: Vec<(SystemState, f64)> = Vec::new();
+    for interval in &segmentation.states {
+        let length = interval.t1 - interval.t0;
+        match shares.iter_mut().find(|(state, _)| *state == interval.state) {
+            Some((_, share)) => *share += length,
+            None => shares.push((interval.state, length)),
+        }
+    }
+    html! {
+        span class="keys block" {
+            @for (state, time) in &shares {
+                @let share = format::number(100.0 * time / whole.max(1e-12), 0);
+                (key(&state_variable(*state), &format!("{} {share} %", word(segmentation, *state))))
+            }
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! What could not be known, and what would show it.
+
+use crate::diagnosis_words::{listed, title};
+use crate::report::collect::Content;
+use crate::ui::format;
+use crate::ui::session::sentence;
+use estimator::diagnose::NotExcited;
+use estimator::estimate::{ConstraintKind, Parameter};
+use maud::{Markup, html};
+
+/// The section.
+pub fn unknown(content: &Content) -> Markup {
+    let all = content.analysis.as_ref().map_or(&[][..], |a| &a.fit.parameters);
+    let hidden: Vec<&Parameter> = all.iter().filter(|p| !p.identified).collect();
+    let constraints = content.analysis.as_ref().map_or(&[][..], |a| &a.fit.constraints);
+    let open = constraints.iter().filter(|c| c.kind == ConstraintKind::Undecided);
+    let not_excited = content.diagnosis.as_ref().map_or(&[][..], |d| &d.not_excited);
+    html! {
+        section class="card" {
+            h3 { "What could not be known" }
+            @if !hidden.is_empty() {
+                h4 { "Parameters that this motion does not show" }
+                ul { @for parameter in hidden {
+                    li {
+                        b { (format::object(&parameter.object)) ", " (format::parameter(&parameter.name, None).label.to_lowercase()) } ": "
+                        (sentence(&parameter.how))
+                        @if let Some(words) = missing(content, parameter) { " What would show it: " (words) "." }
+                    }
+                } }
+            }
+            @for constraint in open { p { b { "A constraint stays open: " } (sentence(&constraint.evidence)) } }
+            @if !not_excited.is_empty() {
+                h4 { "Effects that could be there and would not have been seen" }
+                ul { @for (why, ids) in by_reason(not_excited) {
+                    @let names: Vec<String> = ids.iter().map(|id| title(id)).collect();
+                    li { b { (format::capitalised(&listed(&names))) } ": " (sentence(why)) }
+                } }
+            }
+            @if let Err(why) = &content.analysis { p { "No parameters and no constraints, because the fit did not succeed: " (sentence(why)) } }
+            @if let Err(why) = &content.diagnosis { p { "Whether the model misses anything: " (sentence(why)) } }
+            @if content.analysis.is_ok() && content.diagnosis.is_ok() && all.iter().all(|p| p.identified) && not_excited.is_empty() {
+                p { "Everything that was looked for could be seen." }
+            }
+        }
+    }
+}
+
+/// The motion that would show a parameter.
+fn missing(content: &Content, parameter: &Parameter) -> Option<String> {
+    let enough = content.enough.iter().find(|e| e.object == parameter.object && e.name == parameter.name)?;
+    let words = &enough.missing.as_ref()?.words;
+    // Where the reason names the motion already, it is not told twice.
+    (!parameter.how.contains(words.as_str())).then(|| words.trim_end_matches('.').to_owned())
+}
+
+/// Effects that one and the same thing hides.
+fn by_reason(all: &[NotExcited]) -> Vec<(&str, Vec<&str>)> {
+    let mut found: Vec<(&str, Vec<&str>)> = Vec::new();
+    for hidden in all {
+        match found.iter_mut().find(|(why, _)| *why == hidden.why) {
+            Some((_, ids)) => ids.push(&hidden.id),
+            None => found.push((&hidden.why, vec![&hidden.id])),
+        }
+    }
+    found
+}

@@ -1,0 +1,70 @@
+//! What made a report: the program, its arguments, when.
+
+use jiff::Timestamp;
+
+/// Versions and circumstances of one run.
+#[derive(Clone, Debug)]
+pub struct Provenance {
+    /// The program's version.
+    pub version: &'static str,
+    /// Revision of the sources, where the build knew it (`TOUCHSTONE_REVISION`).
+    pub revision: Option<&'static str>,
+    /// System and processor that it was built for.
+    pub platform: String,
+    /// The command line.
+    pub command: String,
+    /// When, in UTC. `SOURCE_DATE_EPOCH` fixes it, for reports that must come out the same.
+    pub date: String,
+}
+
+impl Provenance {
+    /// Of this run.
+    pub fn now() -> Self {
+        let arguments: Vec<String> = std::env::args_os().map(|a| quoted(&a.to_string_lossy())).collect();
+        let program = std::env::args_os().next().map(std::path::PathBuf::from);
+        let program = program.and_then(|p| p.file_name().map(|n| n.to_string_lossy().into_owned()));
+        let command = std::iter::once(program.unwrap_or_else(|| "touchstone".to_owned()))
+            .chain(arguments.into_iter().skip(1))
+            .collect::<Vec<_>>()
+            .join(" ");
+        let fixed = std::env::var("SOURCE_DATE_EPOCH").ok().and_then(|s| s.parse().ok());
+        let at = fixed.and_then(|s| Timestamp::from_second(s).ok()).unwrap_or_else(Timestamp::now);
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            revision: option_env!("TOUCHSTONE_REVISION").filter(|r| !r.is_empty()),
+            platform: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            command,
+            date: date(at),
+        }
+    }
+}
+
+fn date(at: Timestamp) -> String {
+    at.strftime("%Y-%m-%d %H:%M UTC").to_string()
+}
+
+/// An argument as a shell takes it back.
+fn quoted(argument: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=+:,@%".contains(c);
+    if !argument.is_empty() && argument.chars().all(plain) {
+        return argument.to_owned();
+    }
+    format!("'{}'", argument.replace('\'', r"'\''"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arguments_can_be_pasted() {
+        assert_eq!(quoted("a/b.csv"), "a/b.csv");
+        assert_eq!(quoted("it's <a>.csv"), r"'it'\''s <a>.csv'");
+        assert_eq!(quoted(""), "''");
+    }
+
+    #[test]
+    fn a_date_is_that_of_its_second() {
+        assert_eq!(date(Timestamp::from_second(86_400 * 365).expect("a time")), "1971-01-01 00:00 UTC");
+    }
+}
