@@ -16,6 +16,8 @@ pub struct Quantity {
 /// Unit suffixes of parameter names, the longest first, with the shown unit and its factor.
 const SUFFIXES: &[(&str, &str, f64)] = &[
     ("_kg_m2", "g·cm²", 1e7),
+    ("_kg_m3", "kg/m³", 1.0),
+    ("_kg_s", "g/s", 1e3),
     ("_N_s_m", "N·s/m", 1.0),
     ("_N_m3", "N/mm³", 1e-9),
     ("_Nm_s", "N·m·s", 1.0),
@@ -182,6 +184,7 @@ mod tests {
         );
         assert_eq!(parameter("constraint_stiffness_N_m", None).label, "Constraint stiffness");
         assert_eq!(parameter("friction_mu", Some(0.05)).unit, "");
+        assert_eq!((parameter("leak_kg_s", None).unit, parameter("free_fall_m_s2", None).unit), ("g/s", "m/s²"));
     }
 
     #[test]

@@ -66,7 +66,7 @@ fn row(parameter: &Parameter) -> Markup {
                     @let error = parameter.std_error.map(|e| e * quantity.factor);
                     @let (value, error) = format::with_error(value * quantity.factor, error);
                     td class="number" { b { (value) } @if let Some(error) = error { " ± " (error) } }
-                    td { (quantity.unit) }
+                    td class="unit" { (quantity.unit) }
                 }
                 None => td class="number" colspan="2" { "not identified" },
             }
