@@ -14,17 +14,16 @@ use super::{Options, quality, threshold};
 use crate::estimate::EstimateError;
 use haptics::law::Kind;
 use haptics::recording::Recording;
-use rows::Needle;
+use rows::{Needle, Puncture};
 
 /// Punctures whose forces scatter by more than this (χ², beside what freedom costs) are not of one sheet.
 const UNEVEN: f64 = 25.0;
 /// A puncture force is known within this share: it lies between two samples.
 const PUNCTURE_SHARE: f64 = 0.03;
 
-/// Diagnoses the first recording of a needle; what further ones say comes in where they agree.
+/// Diagnoses recordings of one needle and one sheet, all together.
 pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
-    let Some(first) = recordings.first() else { return Err(super::nothing()) };
-    let seen = rows::needle(first)?;
+    let (seen, names, left_out) = joined(recordings)?;
     let law = options.world.as_ref().and_then(|w| w.membrane.as_ref()).map(|m| &m.law);
     let limit = threshold(seen.period_s);
     let sheet = sheet::sheet(&seen, law, limit)?;
@@ -35,13 +34,11 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
             if law.is_some() { "sheet of the world" } else { "linear sheet" },
             shaft.as_ref().map_or("no hole", |s| s.model)
         ),
-        causes: quality::faults(first).causes,
+        causes: recordings.iter().flat_map(|r| quality::faults(r).causes).collect(),
+        warnings: left_out,
         ..Beside::default()
     };
-    if recordings.len() > 1 {
-        beside.warnings.push(format!("only {} was diagnosed: recordings of needles are not joined yet", first.name));
-    }
-    beside.causes.extend(punctures(&seen));
+    beside.causes.extend(punctures(&seen, &names));
     if shaft.is_none() {
         let why = "the needle hardly moved in a hole; push it through and draw it out";
         let ids = ["coulomb-friction", "friction-change", "viscous-friction"];
@@ -58,26 +55,56 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     Ok(answer(&parts, beside, &next))
 }
 
-/// Puncture forces that differ from one insertion to the next: no law of the catalogue has that.
-fn punctures(seen: &Needle) -> Option<Cause> {
+/// All recordings as one, the names of those that take part, and a sentence for each that does not.
+fn joined(recordings: &[Recording]) -> Result<(Needle, Vec<&str>, Vec<String>), EstimateError> {
+    let (mut whole, mut names, mut left_out): (Option<Needle>, Vec<&str>, Vec<String>) = (None, Vec::new(), Vec::new());
+    let mut first_error = None;
+    for recording in recordings {
+        let seen = match rows::needle(recording) {
+            Ok(seen) => seen,
+            Err(error) => {
+                left_out.push(format!("{} takes no part: {error}", recording.name));
+                first_error.get_or_insert(error);
+                continue;
+            }
+        };
+        names.push(&recording.name);
+        match &mut whole {
+            Some(whole) => whole.then(seen),
+            None => whole = Some(seen),
+        }
+    }
+    match whole {
+        Some(whole) => Ok((whole, names, left_out)),
+        None => Err(first_error.unwrap_or_else(super::nothing)),
+    }
+}
+
+/// Puncture forces that differ from one insertion to the next: no law of the catalogue has that. `names`: of the recordings.
+fn punctures(seen: &Needle, names: &[&str]) -> Option<Cause> {
     let n = seen.punctures.len() as f64;
-    let mean = seen.punctures.iter().map(|p| p.1).sum::<f64>() / n;
+    let mean = seen.punctures.iter().map(|p| p.force_n).sum::<f64>() / n;
     let error = PUNCTURE_SHARE * mean;
-    let scatter: f64 = seen.punctures.iter().map(|p| ((p.1 - mean) / error).powi(2)).sum();
+    let scatter: f64 = seen.punctures.iter().map(|p| ((p.force_n - mean) / error).powi(2)).sum();
     if n < 2.0 || scatter < UNEVEN {
         return None;
     }
     let (first, last) = (seen.punctures.first()?, seen.punctures.last()?);
+    let told = |p: &Puncture| {
+        let within = names.get(p.recording).filter(|_| names.len() > 1).map_or(String::new(), |n| format!(" of {n}"));
+        format!("{:.2} N at {:.1} s{within}", p.force_n, p.time_s)
+    };
     Some(Cause {
         id: "other:puncture force over time".to_owned(),
         kind: Kind::Plant,
-        parameters: vec![parameter("from", first.1, error, "N"), parameter("to", last.1, error, "N")],
+        parameters: vec![parameter("from", first.force_n, error, "N"), parameter("to", last.force_n, error, "N")],
         p_value: chi_square_tail(scatter, n - 1.0),
         posterior: 0.0,
         gain: Gain::default(),
         evidence: format!(
-            "the sheet was pierced at {:.2} N at {:.1} s and at {:.2} N at {:.1} s; one sheet has one puncture force",
-            first.1, first.0, last.1, last.0
+            "the sheet was pierced at {} and at {}; one sheet has one puncture force",
+            told(first),
+            told(last)
         ),
     })
 }

@@ -21,6 +21,9 @@ const SWINGS_S: f64 = 0.1;
 /// Fingers close and open slowly: this time at either end of a hold is neither held nor free, s.
 const CLOSING_S: f64 = 0.25;
 
+/// What passes between recordings that are taken as one, s: no row follows across it.
+const BETWEEN_S: f64 = 1.0;
+
 /// What happens in a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
@@ -39,6 +42,9 @@ pub enum Phase {
 /// One row.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
+    /// Which recording, and its start on the clock of all of them.
+    pub recording: usize,
+    pub start_s: f64,
     pub time_s: f64,
     /// Beyond the undisturbed surface, m, without the give of the pads.
     pub depth_m: f64,
@@ -54,9 +60,20 @@ pub struct Row {
     pub stretch: usize,
 }
 
-/// A recording of a needle.
+/// Where a sheet gave way.
+#[derive(Clone, Copy, Debug)]
+pub struct Puncture {
+    /// Which recording, and the time in it, s.
+    pub recording: usize,
+    pub time_s: f64,
+    pub force_n: f64,
+}
+
+/// A recording of a needle, or several of the same needle and sheet.
 pub struct Needle {
     pub rows: Vec<Row>,
+    /// How many recordings take part.
+    pub recordings: usize,
     pub holds: usize,
     pub period_s: f64,
     pub two_fingered: bool,
@@ -64,8 +81,34 @@ pub struct Needle {
     pub stiffness_n_m: f64,
     /// Noise of the rate, m/s.
     pub rate_noise_m_s: f64,
-    /// Force at which the sheet was pierced, over time: s, N.
-    pub punctures: Vec<(f64, f64)>,
+    /// In order.
+    pub punctures: Vec<Puncture>,
+}
+
+impl Needle {
+    /// Goes on with a recording that was made later: its holds and its places of the sheet are others, and so is its own surface.
+    pub fn then(&mut self, later: Self) {
+        let of = |pick: fn(&Row) -> usize| self.rows.iter().map(pick).max().map_or(0, |last| last + 1);
+        let (push, stretch, recording) = (of(|r| r.push), of(|r| r.stretch), self.recordings);
+        let end_s = self.rows.last().map_or(0.0, |r| r.time_s) + BETWEEN_S;
+        self.rows.extend(later.rows.into_iter().map(|row| Row {
+            recording,
+            start_s: end_s,
+            time_s: end_s + row.time_s,
+            hold: self.holds + row.hold,
+            push: push + row.push,
+            stretch: stretch + row.stretch,
+            ..row
+        }));
+        self.punctures.extend(later.punctures.into_iter().map(|p| Puncture { recording, ..p }));
+        let weight = self.recordings as f64;
+        self.stiffness_n_m = (weight * self.stiffness_n_m + later.stiffness_n_m) / (weight + 1.0);
+        self.recordings += 1;
+        self.holds += later.holds;
+        self.period_s = self.period_s.max(later.period_s);
+        self.rate_noise_m_s = self.rate_noise_m_s.max(later.rate_noise_m_s);
+        self.two_fingered &= later.two_fingered;
+    }
 }
 
 /// Reads a recording.
@@ -94,6 +137,8 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     for i in (0..time.len()).step_by(stride) {
         let Some((phase, hold, push, deepest)) = phases[i] else { continue };
         rows.push(Row {
+            recording: 0,
+            start_s: 0.0,
             time_s: time[i] - time[0],
             depth_m: depth.value[i] - surface_m,
             rate_m_s: depth.slope[i],
@@ -111,9 +156,11 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     let numbers = stretches(&at, period_s, |i| rows[i].phase != rows[i - 1].phase || rows[i].hold != rows[i - 1].hold);
     rows.iter_mut().zip(numbers).for_each(|(row, number)| row.stretch = number);
     let rate_noise_m_s = crate::signal::noise::white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>());
-    let punctures = pushes.iter().filter_map(|p| p.puncture).map(|i| (time[i] - time[0], along.force_n[i])).collect();
+    let puncture = |i: usize| Puncture { recording: 0, time_s: time[i] - time[0], force_n: along.force_n[i] };
+    let punctures = pushes.iter().filter_map(|p| p.puncture).map(puncture).collect();
     Ok(Needle {
         rows,
+        recordings: 1,
         holds: along.holds.len(),
         period_s,
         two_fingered: along.two_fingered,

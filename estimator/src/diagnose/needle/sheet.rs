@@ -33,8 +33,9 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         // The needle's own mass; a tool's sensor sits behind none.
         base.push(of(&|r| if is_held(r) { r.acceleration_m_s2 } else { 0.0 }));
     }
-    // Where the surface is, to first order.
-    base.push(of(&|r| f64::from(u8::from(touches(r)))));
+    // Where the surface is, to first order: each recording found it by itself.
+    let owned = |k: usize, r: &Row| f64::from(u8::from(r.recording == k));
+    base.extend((0..needle.recordings).map(|k| of(&|r| if touches(r) { owned(k, r) } else { 0.0 })));
     let mut candidates = vec![
         Candidate::one("stiffness-hardening", Kind::Plant, "k3", "N/m³", of(&|r| pressed(r).powi(3))).positive(),
         Candidate::one("stiffness-hardening", Kind::Plant, "hertz", "N/m^1.5", of(&|r| pressed(r).powf(1.5)))
@@ -48,8 +49,13 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         )
         .positive(),
         Candidate::one("force-bias", Kind::Instrument, "b", "N", of(&|_| 1.0)),
-        Candidate::one("force-drift", Kind::Instrument, "rate", "N/s", of(&|r| r.time_s)),
     ];
+    // A sensor is set to zero before each recording.
+    candidates.extend((0..needle.recordings).map(|k| {
+        let since = of(&|r| owned(k, r) * (r.time_s - r.start_s));
+        let drift = Candidate::one("force-drift", Kind::Instrument, "rate", "N/s", since);
+        if needle.recordings > 1 { drift.at("recording", (k + 1) as f64, "1") } else { drift }
+    }));
     for dent in DENTS {
         let less = of(&|r| if touches(r) { with_dent(dent, r, &elastic) - elastic(r.depth_m) } else { 0.0 });
         let cause = Candidate::one("hysteresis", Kind::Plant, "share", "1", less).positive();
