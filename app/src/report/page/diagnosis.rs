@@ -6,7 +6,7 @@ use crate::report::chart;
 use crate::report::collect::Content;
 use crate::ui::format;
 use crate::ui::session::sentence;
-use estimator::diagnose::{Cause, CauseParameter, Diagnosis};
+use estimator::diagnose::{Cause, CauseParameter, Diagnosis, RolloutOf};
 use haptics::law::{self, Kind};
 use maud::{Markup, html};
 
@@ -184,7 +184,11 @@ fn gain(cause: &Cause, diagnosis: &Diagnosis) -> Markup {
                     ": " (rms(factor * gain.heldout_rms_before)) " → " (rms(factor * gain.heldout_rms_after)) " " (unit) " RMS"
                 }
                 "."
-                @if let Some([before, after]) = gain.rollout { " Integrated forward: " (rms(before)) " → " (rms(after)) " RMS." }
+                @if let Some(forward) = &gain.rollout {
+                    @let what = match forward.of { RolloutOf::Position => "position", RolloutOf::Force => "force" };
+                    " Run forward " (format::number(forward.window_s, 1)) " s, the " (what) " is off by " (rms(forward.rms_before)) " → "
+                    (rms(forward.rms_after)) " " (shown_unit(&forward.unit)) "."
+                }
             }
         }
     }

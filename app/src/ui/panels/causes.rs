@@ -59,7 +59,7 @@ fn forward(ui: &mut Ui, rollout: &Rollout) {
         format::number(rollout.window_s, 1),
         rms(rollout.rms_before),
         rms(rollout.rms_after),
-        unit(&rollout.unit)
+        shown_unit(&rollout.unit)
     );
     let [low, high] = rollout.interval.map(|share| format::number(100.0 * share, 0));
     ui.label(theme::caption(ui, text)).on_hover_text(format!(
