@@ -45,7 +45,8 @@ impl Channel {
         let rows = Rows { y: &y, stretch: &stretch, testable: &testable, time_s: &order, weight: &weight, period_s };
         let coefficients = whitening(&base, &candidates, &rows, threshold)?;
         let system = System::new(&base, &candidates, &rows, coefficients);
-        let chosen = Selection { system: &system, candidates: &candidates, threshold, dry: true }.run();
+        let chosen =
+            Selection { system: &system, candidates: &candidates, threshold, dry: true, one_loss: false }.run();
         let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
         let solved = system.solve(&picks);
         Ok(Study { candidates, chosen, system, solved, y, base, weight })
@@ -60,7 +61,7 @@ fn whitening(
     threshold: f64,
 ) -> Result<Vec<f64>, EstimateError> {
     let rough = System::new(base, candidates, rows, Vec::new());
-    let mut used = Selection { system: &rough, candidates, threshold, dry: true }.greedy();
+    let mut used = Selection { system: &rough, candidates, threshold, dry: true, one_loss: false }.greedy();
     used.extend((0..candidates.len()).filter(|c| candidates[*c].expression.is_some()));
     let columns = rough.columns(&used);
     let target = rough.train.ncols() - 1;

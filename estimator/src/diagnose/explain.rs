@@ -137,8 +137,13 @@ fn skew(study: &Study, k: usize, raw_period_s: f64) -> Option<f64> {
 
 /// What no known cause explains: the generic term and its score.
 fn strange(study: &Study, picks: &[usize]) -> Option<(usize, f64)> {
-    let selection =
-        Selection { system: &study.system, candidates: &study.candidates, threshold: UNEXPLAINED, dry: true };
+    let selection = Selection {
+        system: &study.system,
+        candidates: &study.candidates,
+        threshold: UNEXPLAINED,
+        dry: true,
+        one_loss: false,
+    };
     selection.unexplained(picks).filter(|(_, score)| *score > UNEXPLAINED)
 }
 

@@ -17,6 +17,8 @@ use haptics::law::{CoulombFriction, Effect, ForceDrift, Law};
 
 /// The sign of a velocity is blurred over this share of the usual speed at least.
 const BLUR: f64 = 0.008;
+/// … over this one where a mass takes part, whose force jumps with the friction's.
+const BLUR_OF_MASS: f64 = 0.02;
 /// A reversal lies anywhere between two rows: standard deviation of its place, in rows, with some room.
 const SKEW: f64 = 0.5;
 /// Rows no longer than this are short for what depends on the place, s.
@@ -27,6 +29,8 @@ const CLOCKS_S: f64 = 1e-3;
 const STICKS: f64 = 1.0;
 /// Rows that stick stick together: so many of them count as one. (The rows of a mechanism overlap, and none of them sticks alone.)
 const TOGETHER: f64 = 3.0;
+/// A row whose friction is open by more than this stands.
+const STANDS: f64 = 0.4;
 /// Share of the friction's square that stays open in a row with a reversal in it whose place is known.
 const REVERSAL: f64 = 0.05;
 /// What whitening is learnt from keeps this much of the generic library's strength out.
@@ -141,7 +145,7 @@ fn compare(
         None => learn_whitening(&base, &candidates, &rows, threshold)?,
     };
     let system = System::new(&base, &candidates, &rows, coefficients);
-    let chosen = Selection { system: &system, candidates: &candidates, threshold, dry }.run();
+    let chosen = Selection { system: &system, candidates: &candidates, threshold, dry, one_loss: true }.run();
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
     let solved = system.solve(&picks);
     Ok(Study { candidates, chosen, system, solved, y, base, weight })
@@ -172,7 +176,8 @@ pub fn blur(track: &mut Track) {
     let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
     let (noise, period_s) = (track.velocity_noise, track.period_s);
     let together = if track.planar { TOGETHER } else { 1.0 };
-    let width = |skew: f64| 1.2 * (BLUR * fast).hypot(noise).hypot(skew).max(1e-12);
+    let share = if track.planar { BLUR } else { BLUR_OF_MASS };
+    let width = |skew: f64| 1.2 * (share * fast).hypot(noise).hypot(skew).max(1e-12);
     for k in 0..track.fine.len() {
         let next =
             if k + 1 < track.fine.len() && track.fine[k + 1].stretch == track.fine[k].stretch { k + 1 } else { k };
@@ -198,6 +203,23 @@ pub fn blur(track: &mut Track) {
         row.motion.direction = sum;
         // Where in the row a reversal lies is known up to what the channels' clocks and filters differ by.
         row.open = open + REVERSAL / together * (1.0 - sum * sum - open).max(0.0);
+    }
+    stand_together(track, together);
+}
+
+/// Rows that stand one after the other are one observation: a hand holds on to the same load meanwhile. `together`: how many of them are
+/// taken for one already.
+fn stand_together(track: &mut Track, together: f64) {
+    let stands = |row: &Row| row.place == Place::Along && row.open > STANDS;
+    let mut first = 0;
+    while first < track.rows.len() {
+        let mut end = first + 1;
+        while end < track.rows.len() && stands(&track.rows[first]) && stands(&track.rows[end]) && track.follows(end) {
+            end += 1;
+        }
+        let more = ((end - first) as f64 / together).max(1.0);
+        track.rows[first..end].iter_mut().filter(|r| r.open > STANDS).for_each(|r| r.open *= more);
+        first = end;
     }
 }
 
@@ -314,7 +336,7 @@ fn learn_whitening(
     threshold: f64,
 ) -> Result<Vec<f64>, EstimateError> {
     let rough = System::new(base, candidates, rows, Vec::new());
-    let picks = Selection { system: &rough, candidates, threshold, dry: true }.greedy();
+    let picks = Selection { system: &rough, candidates, threshold, dry: true, one_loss: false }.greedy();
     let mut all = rough.columns(&picks);
     let generic = (0..candidates.len()).filter(|c| candidates[*c].expression.is_some());
     all.extend(generic.flat_map(|c| rough.places[c].clone()));

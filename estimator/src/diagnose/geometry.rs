@@ -140,14 +140,15 @@ fn compare(path: &Path, center_m: Vec2, threshold: f64) -> Result<Study, Estimat
     };
     // The whitening must not swallow what it is to leave: it comes from the residual of everything together.
     let unwhitened = System::new(&base, &candidates, &rows, Vec::new());
-    let picks = Selection { system: &unwhitened, candidates: &candidates, threshold, dry: true }.greedy();
+    let picks =
+        Selection { system: &unwhitened, candidates: &candidates, threshold, dry: true, one_loss: false }.greedy();
     let columns = unwhitened.columns(&picks);
     let solved = solve(&unwhitened.train, &columns, unwhitened.train.ncols() - 1)
         .ok_or_else(|| EstimateError::Other("no circle fits the handle's path".to_owned()))?;
     let residual = residual(&y, &base, &candidates, &picks, &solved);
     let coefficients = whitener(&residual, &rows, &uses(&rows));
     let system = System::new(&base, &candidates, &rows, coefficients);
-    let chosen = Selection { system: &system, candidates: &candidates, threshold, dry: true }.run();
+    let chosen = Selection { system: &system, candidates: &candidates, threshold, dry: true, one_loss: false }.run();
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
     let solved = system.solve(&picks);
     Ok(Study { candidates, chosen, system, solved, y, base, weight })

@@ -32,6 +32,8 @@ pub struct Selection<'a> {
     pub threshold: f64,
     /// Whether the model has dry friction: what bends or lifts it needs it.
     pub dry: bool,
+    /// Whether what is lost at a reversal is seen once only, so that bending and play cannot share it out.
+    pub one_loss: bool,
 }
 
 /// Causes whose form is somebody's choice of a curve, by what the curve is over: a real one of another form leaves a remainder that
@@ -66,13 +68,8 @@ enum Over {
     Place,
 }
 
-/// Two that a recording tells apart at best: what is lost at a reversal is not shared out between them.
+/// What is lost at a reversal.
 const LOST_MOTION: [&str; 2] = ["hysteresis", "backlash"];
-
-/// Whether two causes cannot stand side by side.
-fn excludes(a: &str, b: &str) -> bool {
-    a == b || (LOST_MOTION.contains(&a) && LOST_MOTION.contains(&b))
-}
 
 /// Causes that are a change of dry friction, and mean nothing without it.
 const OF_DRY_FRICTION: [&str; 3] = ["stribeck", "hysteresis", "friction-change"];
@@ -120,11 +117,16 @@ impl Selection<'_> {
         generic.iter().any(|c| self.price(&[rest.as_slice(), &[*c]].concat()) + search < whole - AMBIGUOUS)
     }
 
+    /// Whether two causes cannot stand side by side.
+    fn excludes(&self, a: &str, b: &str) -> bool {
+        a == b || (self.one_loss && LOST_MOTION.contains(&a) && LOST_MOTION.contains(&b))
+    }
+
     /// Candidates that may join the chosen ones: supported, and of another cause.
     fn open<'b>(&'b self, chosen: &'b [usize]) -> impl Iterator<Item = usize> + 'b {
         (0..self.candidates.len())
             .filter(|c| self.candidates[*c].expression.is_none() && self.system.supported(*c))
-            .filter(|c| chosen.iter().all(|o| !excludes(self.candidates[*o].id, self.candidates[*c].id)))
+            .filter(|c| chosen.iter().all(|o| !self.excludes(self.candidates[*o].id, self.candidates[*c].id)))
     }
 
     /// The best few, whether they earn their place or not: what the whitening must not swallow.
