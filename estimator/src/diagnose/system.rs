@@ -203,28 +203,31 @@ impl System {
             // As a product of two matrices, not column by column: several times as fast.
             matrix.transpose() * &matrix
         };
+        // A row of little weight is less than one observation: it leaves as little as it says.
+        let counted = |picked: &[usize]| picked.iter().map(|i| rows.weight[*i].powi(2)).sum::<f64>();
         let always = pick(&|u| u == Use::Always);
         let mut train = gram(&always);
-        let mut count = always.len();
+        let mut count = counted(&always);
         let mut folds = Vec::new();
         for fold in 0..FOLDS {
             let picked = pick(&|u| u == Use::Fold(fold));
             let part = gram(&picked);
             train += &part;
-            count += picked.len();
-            folds.push((part, picked.len() as f64));
+            count += counted(&picked);
+            folds.push((part, counted(&picked)));
         }
         // What is neither fitted nor tested needs no support.
-        let counted = pick(&|u| u != Use::Guard);
+        let looked_at = pick(&|u| u != Use::Guard);
+        let trained = looked_at.iter().filter(|i| !matches!(uses[**i], Use::Locked(_))).count();
         let energy = columns
             .iter()
             .enumerate()
             .map(|(c, values)| {
-                let all = counted.iter().map(|i| values[*i].powi(2)).sum::<f64>() / counted.len().max(1) as f64;
-                (train[(c, c)] / (count.max(1) as f64), all)
+                let all = looked_at.iter().map(|i| values[*i].powi(2)).sum::<f64>() / looked_at.len().max(1) as f64;
+                (train[(c, c)] / (trained.max(1) as f64), all)
             })
             .collect();
-        Self { train, rows: count as f64, folds, places, base: base.len(), coefficients, uses, energy }
+        Self { train, rows: count, folds, places, base: base.len(), coefficients, uses, energy }
     }
 
     fn target(&self) -> usize {
