@@ -15,3 +15,4 @@ pub mod pipeline;
 pub mod segment;
 pub mod signal;
 pub mod simulate;
+pub mod words;

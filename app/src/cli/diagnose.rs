@@ -6,6 +6,7 @@ use clap::Args;
 use estimator::diagnose::{
     Cause, Diagnosis, Options, Progress, RolloutOf, Verdict, diagnose, extended_world, validate,
 };
+use estimator::words::amount;
 use haptics::world::World;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -138,8 +139,11 @@ fn cause_line(cause: &Cause) -> String {
     let forward = cause.gain.rollout.as_ref().map_or_else(String::new, |r| {
         let what = if r.of == RolloutOf::Position { "position" } else { "force" };
         format!(
-            "; run forward over {} windows of {} s the {what} is off by {:.2e} {} RMS instead of {:.2e}",
-            r.windows, r.window_s, r.rms_after, r.unit, r.rms_before
+            "; run forward over {} windows of {} s the {what} is off by {} RMS instead of {}",
+            r.windows,
+            r.window_s,
+            amount(r.rms_after, &r.unit),
+            amount(r.rms_before, &r.unit)
         )
     });
     format!("{}: {}; {}{forward}", cause.id, parameters.join(", "), cause.evidence)

@@ -9,6 +9,7 @@ use super::report::{
     Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, Verdict,
 };
 use super::select::{Chosen, Selection};
+use crate::words::amount;
 
 /// A generic term above this score means that something is left that no known cause explains.
 const UNEXPLAINED: f64 = 25.0;
@@ -81,8 +82,10 @@ impl Part<'_> {
         let shown = (self.shows)(&Found { candidate, parameters: &parameters });
         let held_out = if gain.heldout_rms_before > 0.0 {
             format!(
-                "on data held out the {} that is left falls from {:.3e} to {:.3e} {} RMS",
-                self.channel, gain.heldout_rms_before, gain.heldout_rms_after, self.unit
+                "on data held out the {} that is left goes from {} to {} RMS",
+                self.channel,
+                amount(gain.heldout_rms_before, self.unit),
+                amount(gain.heldout_rms_after, self.unit)
             )
         } else {
             "there were too few rows to hold any out".to_owned()

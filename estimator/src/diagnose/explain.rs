@@ -11,6 +11,7 @@ use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Fin
 use super::rollout::rollout;
 use super::select::{Chosen, Selection};
 use super::track::{Place, Track};
+use crate::words::amount;
 use haptics::law::{Coordinate, Law, ReturnSpring, entries};
 
 /// A generic term above this score means that something is left that no known cause explains.
@@ -155,9 +156,12 @@ fn cause(study: &Study, k: usize, floor: f64, channel: &str) -> Cause {
     let (title, equation) = entry.map_or((candidate.id, ""), |e| (e.title, e.equation));
     let unit = if channel == "path" { "m" } else { "N" };
     let evidence = format!(
-        "{title}: what the model leaves of the {channel} follows {equation}; on data held out it falls from {:.3e} to {:.3e} {unit} \
-         RMS (score {:.0}, {:.0} would do)",
-        gain.heldout_rms_before, gain.heldout_rms_after, chosen.score, 20.0
+        "{title}: what the model leaves of the {channel} follows {equation}; on data held out it goes from {} to {} RMS (score \
+         {:.0}, {:.0} would do)",
+        amount(gain.heldout_rms_before, unit),
+        amount(gain.heldout_rms_after, unit),
+        chosen.score,
+        20.0
     );
     Cause {
         id: candidate.id.to_owned(),
