@@ -274,7 +274,9 @@ mod tests {
         let device = Broken(probe.spec().clone(), Arc::clone(&safe));
         let mut servo = Servo::start(Swap::new(world), Box::new(device), ServoConfig::default()).expect("a thread");
         assert!(wait_for(&mut servo, |s| s.fault.is_some()));
-        assert!(safe.load(Ordering::Relaxed), "the device was told to be safe");
+        // While the panic is still being printed the watch has already said that the servo stands still.
+        assert!(wait_for(&mut servo, |_| safe.load(Ordering::Relaxed)), "the device was told to be safe");
+        assert!(wait_for(&mut servo, |s| s.fault.is_some()), "the fault is still said");
     }
 
     #[test]
