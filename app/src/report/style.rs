@@ -25,20 +25,6 @@ const ROLES: [ColorRole; 13] = [
     ColorRole::Neutral,
 ];
 
-/// States that a band can show.
-const STATES: [SystemState; 10] = [
-    SystemState::FreeMotion,
-    SystemState::HoldOnGround,
-    SystemState::HoldAboveGround,
-    SystemState::SlidingOnGround,
-    SystemState::Turning,
-    SystemState::Holding,
-    SystemState::Insertion,
-    SystemState::Penetration,
-    SystemState::Extraction,
-    SystemState::NoState,
-];
-
 /// The variable of a role's colour, without its dashes; `second` is the other curve of a finger.
 pub fn role_name(role: ColorRole, second: bool) -> String {
     let name = match role {
@@ -94,7 +80,7 @@ fn variables(dark: bool) -> String {
             set(&role_name(role, second), curve(dark, role, second));
         }
     }
-    for state in STATES {
+    for state in SystemState::ALL {
         let color = state_color(dark, state);
         set(&state_variable(state), color);
         set(&format!("{}-ink", state_variable(state)), ink_on(color));

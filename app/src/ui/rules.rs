@@ -8,19 +8,6 @@ use estimator::segment::library;
 use haptics::recording::Task;
 use std::sync::Arc;
 
-/// States that rules may name, by the task they are like.
-const STATES: [SystemState; 9] = [
-    SystemState::FreeMotion,
-    SystemState::HoldOnGround,
-    SystemState::HoldAboveGround,
-    SystemState::SlidingOnGround,
-    SystemState::Turning,
-    SystemState::Holding,
-    SystemState::Insertion,
-    SystemState::Penetration,
-    SystemState::Extraction,
-];
-
 /// An open editor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rules {
@@ -63,8 +50,10 @@ impl Rules {
     /// The states that the task's rules may name.
     pub fn states(&self) -> impl Iterator<Item = SystemState> + use<> {
         let like = self.draft.like;
-        STATES.into_iter().filter(move |state| match state {
+        SystemState::ALL.into_iter().filter(move |state| match state {
             SystemState::FreeMotion => true,
+            // What is in no state needs no rule.
+            SystemState::NoState => false,
             SystemState::HoldOnGround | SystemState::HoldAboveGround | SystemState::SlidingOnGround => {
                 matches!(like, Task::BlockStack | Task::Barrel)
             }

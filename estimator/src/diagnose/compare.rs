@@ -54,7 +54,7 @@ impl Channel {
 }
 
 /// The autoregression of what everything together leaves: learnt from the model's residual it would swallow the causes.
-fn whitening(
+pub fn whitening(
     base: &[Vec<f64>],
     candidates: &[Candidate],
     rows: &Rows<'_>,

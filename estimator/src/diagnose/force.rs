@@ -1,14 +1,15 @@
 //! The force that the motion needs: what the model leaves of it, and which causes explain that.
 
 use super::candidate::Candidate;
+use super::compare::whitening as whitening_of;
 use super::dictionary::Dictionary;
 use super::generic::generic;
-use super::geometry::{Study, residual};
+use super::geometry::Study;
 use super::grid::Grid;
 use super::hung;
 use super::select::Selection;
 use super::stuck::{self, Load};
-use super::system::{Held, Rows, System, solve, uses, whitener};
+use super::system::{Held, Rows, System};
 use super::track::{Place, Row, Track};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
@@ -33,8 +34,6 @@ const TOGETHER: f64 = 3.0;
 const STANDS: f64 = 0.4;
 /// Share of the friction's square that stays open in a row with a reversal in it whose place is known.
 const REVERSAL: f64 = 0.05;
-/// What whitening is learnt from keeps this much of the generic library's strength out.
-const RIDGE: f64 = 1e-2;
 
 /// Rounds in which searched values and the sensor's faults are settled.
 const REFINEMENTS: usize = 1;
@@ -105,11 +104,8 @@ fn compare(
     [coarse, fine]: [&Grid; 2],
     (laws, whitening): (Option<&[f64]>, Option<Vec<f64>>),
 ) -> Result<Study, EstimateError> {
-    let base: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
-    let known: Vec<Vec<f64>> = fixed.iter().map(|e| column(track, e)).chain(hung::column(track)).collect();
-    let y: Vec<f64> =
-        track.rows.iter().enumerate().map(|(i, r)| r.y - known.iter().map(|k| k[i]).sum::<f64>()).collect();
-    let (mut predicted, mut resisting, weight, _) = first_look(track, model, &base, &y)?;
+    let Asked { base, known, y } = asked(track, model, fixed);
+    let Look { mut predicted, mut resisting, weight, .. } = first_look(track, model, &base, &y)?;
     if let Some(laws) = laws.filter(|laws| friction_is_sound(model, laws)) {
         (predicted, resisting) = (total(model, &base, laws, false), total(model, &base, laws, true));
     }
@@ -142,7 +138,7 @@ fn compare(
     let dry = model.iter().any(|e| e.law().is_dry());
     let coefficients = match whitening {
         Some(known) => known,
-        None => learn_whitening(&base, &candidates, &rows, threshold)?,
+        None => whitening_of(&base, &candidates, &rows, threshold)?,
     };
     let system = System::new(&base, &candidates, &rows, coefficients);
     let chosen = Selection { system: &system, candidates: &candidates, threshold, dry, one_loss: true }.run();
@@ -238,7 +234,34 @@ pub fn column(track: &Track, effect: &Effect) -> Vec<f64> {
     track.rows.iter().map(of).collect()
 }
 
-type Look = (Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>);
+/// What a fit is asked for.
+struct Asked {
+    /// Columns of the model's laws, …
+    base: Vec<Vec<f64>>,
+    /// … and of the forces of which everything is known, a hung weight's among them.
+    known: Vec<Vec<f64>>,
+    /// The force that the known ones leave.
+    y: Vec<f64>,
+}
+
+fn asked(track: &Track, model: &Model, fixed: &Model) -> Asked {
+    let base = model.iter().map(|effect| column(track, effect)).collect();
+    let known: Vec<Vec<f64>> = fixed.iter().map(|effect| column(track, effect)).chain(hung::column(track)).collect();
+    let left = |(i, row): (usize, &Row)| row.y - known.iter().map(|k| k[i]).sum::<f64>();
+    let y = track.rows.iter().enumerate().map(left).collect();
+    Asked { base, known, y }
+}
+
+/// What a first plain fit tells of every row.
+struct Look {
+    /// What the model predicts, and the part of it that resists motion.
+    predicted: Vec<f64>,
+    resisting: Vec<f64>,
+    /// How much the row can be trusted.
+    weight: Vec<f64>,
+    /// The dry friction if it slid.
+    slides: Vec<f64>,
+}
 
 /// A first plain fit: what the model predicts, the resisting part of it, how much each row can be trusted where the direction is a
 /// guess (effective variance, Orear 1982), and the dry friction of each row if it slid.
@@ -282,16 +305,13 @@ fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Res
         sum
     };
     let slides = (0..y.len()).map(|i| dry(&fit.values, i)).collect();
-    Ok((sum(false), sum(true), weight, slides))
+    Ok(Look { predicted: sum(false), resisting: sum(true), weight, slides })
 }
 
 /// What the friction holds in each row along the motion, as far as a plain fit tells.
 fn loads(track: &Track, model: &Model, fixed: &Model) -> Result<Vec<Option<Load>>, EstimateError> {
-    let base: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
-    let known: Vec<Vec<f64>> = fixed.iter().map(|effect| column(track, effect)).collect();
-    let rest = |i: usize| track.rows[i].y - known.iter().map(|k| k[i]).sum::<f64>();
-    let y: Vec<f64> = (0..track.rows.len()).map(rest).collect();
-    let (predicted, resisting, _, slides) = first_look(track, model, &base, &y)?;
+    let Asked { base, y, .. } = asked(track, model, fixed);
+    let Look { predicted, resisting, slides, .. } = first_look(track, model, &base, &y)?;
     let load = |i: usize| {
         let friction = slides[i];
         let held = y[i] - (predicted[i] - resisting[i]);
@@ -326,30 +346,4 @@ fn is_resisting(effect: &Effect) -> bool {
 fn level(effect: &Effect, track: &Track, i: usize) -> f64 {
     let motion = haptics::law::Motion { direction: 1.0, ..track.rows[i].motion };
     effect.force(&motion)
-}
-
-/// The autoregression of the noise, from what everything together leaves: learnt from the model's residual it would swallow the causes.
-fn learn_whitening(
-    base: &[Vec<f64>],
-    candidates: &[Candidate],
-    rows: &Rows<'_>,
-    threshold: f64,
-) -> Result<Vec<f64>, EstimateError> {
-    let rough = System::new(base, candidates, rows, Vec::new());
-    let picks = Selection { system: &rough, candidates, threshold, dry: true, one_loss: false }.greedy();
-    let mut all = rough.columns(&picks);
-    let generic = (0..candidates.len()).filter(|c| candidates[*c].expression.is_some());
-    all.extend(generic.flat_map(|c| rough.places[c].clone()));
-    let target = rough.train.ncols() - 1;
-    let mut ridged = rough.train.clone();
-    for column in &all[rough.base..] {
-        ridged[(*column, *column)] *= 1.0 + RIDGE;
-    }
-    let solved = solve(&ridged, &all, target)
-        .ok_or_else(|| EstimateError::Other("the model could not be fitted to the recording".to_owned()))?;
-    let generic: Vec<usize> = (0..candidates.len()).filter(|c| candidates[*c].expression.is_some()).collect();
-    let everything: Vec<usize> = picks.iter().copied().chain(generic).collect();
-    let left = residual(rows.y, base, candidates, &everything, &solved);
-    let weighted: Vec<f64> = left.iter().zip(rows.weight).map(|(r, w)| r * w).collect();
-    Ok(whitener(&weighted, rows, &uses(rows)))
 }

@@ -51,24 +51,11 @@ pub struct StateScore {
     pub right: usize,
 }
 
-const STATES: [SystemState; 10] = [
-    SystemState::FreeMotion,
-    SystemState::HoldOnGround,
-    SystemState::HoldAboveGround,
-    SystemState::SlidingOnGround,
-    SystemState::Turning,
-    SystemState::Holding,
-    SystemState::Insertion,
-    SystemState::Penetration,
-    SystemState::Extraction,
-    SystemState::NoState,
-];
-
 /// The state of a label. The generator calls a switch that is touched `pushing`.
 fn state_of(label: &str) -> Option<SystemState> {
     match label {
         "pushing" => Some(SystemState::Turning),
-        _ => STATES.into_iter().find(|state| state.name() == label),
+        _ => SystemState::ALL.into_iter().find(|state| state.name() == label),
     }
 }
 
@@ -125,7 +112,7 @@ pub fn score(recording: &Recording, found: &Segmentation) -> Option<Score> {
 fn by_state(truth: &[Option<SystemState>], claims: &[SystemState]) -> (BTreeMap<String, StateScore>, usize, usize) {
     let mut scores: BTreeMap<String, StateScore> = BTreeMap::new();
     let (mut samples, mut all_right) = (0, 0);
-    for state in STATES {
+    for state in SystemState::ALL {
         let mut score = StateScore::default();
         for (label, claim) in truth.iter().zip(claims).filter_map(|(label, claim)| Some(((*label)?, *claim))) {
             score.labelled += usize::from(label == state);

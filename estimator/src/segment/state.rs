@@ -29,6 +29,20 @@ pub enum SystemState {
 }
 
 impl SystemState {
+    /// Every one of them.
+    pub const ALL: [Self; 10] = [
+        Self::FreeMotion,
+        Self::HoldOnGround,
+        Self::HoldAboveGround,
+        Self::SlidingOnGround,
+        Self::Turning,
+        Self::Holding,
+        Self::Insertion,
+        Self::Penetration,
+        Self::Extraction,
+        Self::NoState,
+    ];
+
     /// The name used in JSON and in labels.
     pub fn name(self) -> &'static str {
         match self {
