@@ -1,4 +1,4 @@
-//! Carried blocks, needles and thrown bodies with something hidden: it must be named, and nothing where nothing is.
+//! Carried and slid blocks, barrels, needles, switches and thrown bodies with something hidden: it must be named, and nothing where nothing is.
 //!
 //! A new seed every day, printed for replay: `TOUCHSTONE_SEED=20400 cargo test -p tests --test diagnose_tasks`. More cases of each kind:
 //! `TOUCHSTONE_TASK_CASES=30`. Demands leave room for the luck of few cases; the figures of a large set are in `docs/diagnosis.md`.
@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use std::sync::OnceLock;
 use std::time::{SystemTime, UNIX_EPOCH};
 use tests::tasks::score::{Row, ask, table};
-use tests::tasks::{blocks, needle, throw};
+use tests::tasks::{barrel, blocks, needle, slide, switch, throw};
 
 /// Chance of a false alarm of one assertion, a day.
 const LUCK: f64 = 1e-4;
@@ -30,6 +30,9 @@ enum Any {
     Block(blocks::Kind),
     Needle(needle::Kind),
     Throw(throw::Kind),
+    Switch(switch::Kind),
+    Slide(slide::Kind),
+    Barrel(barrel::Kind),
 }
 
 /// All answers, made once for all tests.
@@ -42,6 +45,9 @@ fn rows() -> &'static [Row] {
         kinds.extend(blocks::Kind::ALL.map(|(name, kind)| (name, Any::Block(kind))));
         kinds.extend(needle::Kind::ALL.map(|(name, kind)| (name, Any::Needle(kind))));
         kinds.extend(throw::Kind::ALL.map(|(name, kind)| (name, Any::Throw(kind))));
+        kinds.extend(switch::Kind::ALL.map(|(name, kind)| (name, Any::Switch(kind))));
+        kinds.extend(slide::Kind::ALL.map(|(name, kind)| (name, Any::Slide(kind))));
+        kinds.extend(barrel::Kind::ALL.map(|(name, kind)| (name, Any::Barrel(kind))));
         let jobs: Vec<(&'static str, Any, u64)> = kinds
             .into_iter()
             .flat_map(|(name, kind)| {
@@ -58,6 +64,9 @@ fn rows() -> &'static [Row] {
                     Any::Block(kind) => blocks::make(kind, seed),
                     Any::Needle(kind) => needle::make(kind, seed),
                     Any::Throw(kind) => throw::make(kind, seed),
+                    Any::Switch(kind) => switch::make(kind, seed),
+                    Any::Slide(kind) => slide::make(kind, seed),
+                    Any::Barrel(kind) => barrel::make(kind, seed),
                 };
                 ask(name, seed, case)
             })
@@ -95,6 +104,9 @@ fn what_is_hidden_is_named() {
     at_least("blocks: in the set", Share::count(blocks, Row::in_set), 0.95);
     at_least("needles: named", Share::count(hidden(|kind| kind.starts_with("needle")), Row::right), 0.93);
     at_least("throws: named", Share::count(hidden(|kind| kind.starts_with("throw")), Row::right), 0.97);
+    at_least("switches: named", Share::count(hidden(|kind| kind.starts_with("switch")), Row::right), 0.9);
+    at_least("slid blocks: named", Share::count(hidden(|kind| kind.starts_with("slide")), Row::right), 0.93);
+    at_least("barrels: named", Share::count(hidden(|kind| kind.starts_with("barrel")), Row::right), 0.93);
 }
 
 #[test]

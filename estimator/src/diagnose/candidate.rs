@@ -69,6 +69,8 @@ pub struct Candidate {
     pub sign: f64,
     /// What its parameters must be like beside that: a name for a force must fit it.
     pub shape: Shape,
+    /// The least size of its first parameter: what is smaller is within what the model itself is known by.
+    pub least: f64,
     /// Side of a one-sided law: +1, −1, or 0 where there is none.
     pub side: f64,
     /// Of a generic term that is no cause: its expression.
@@ -87,6 +89,7 @@ impl Candidate {
             cost: 1.0,
             sign: 0.0,
             shape: Shape::Any,
+            least: 0.0,
             side: 0.0,
             expression: None,
         }
@@ -109,6 +112,7 @@ impl Candidate {
             cost,
             sign: 0.0,
             shape: Shape::Any,
+            least: 0.0,
             side: 0.0,
             expression: None,
         }
@@ -127,9 +131,15 @@ impl Candidate {
         self
     }
 
+    /// Whose first parameter is so large at least.
+    pub fn at_least(mut self, least: f64) -> Self {
+        self.least = least;
+        self
+    }
+
     /// Whether it could be what its name says.
     pub fn admits(&self, values: &[f64]) -> bool {
-        self.sign * values[0] >= 0.0 && self.shape.admits(values)
+        self.sign * values[0] >= 0.0 && values[0].abs() >= self.least && self.shape.admits(values)
     }
 
     /// Whose first parameter is positive.

@@ -30,8 +30,10 @@ pub mod report;
 mod rollout;
 mod select;
 mod several;
+mod slide;
 mod sliding;
 mod stuck;
+mod switch;
 mod system;
 mod track;
 mod validate;
@@ -90,13 +92,11 @@ fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
     match task {
         Task::Crank => crank(recordings, options),
         Task::Mechanism => one_of_mechanisms(recordings, options),
+        Task::BlockStack | Task::Barrel if slide::is_slid(recordings) => slide::slid(recordings, options),
         // A barrel is a block that is carried.
         Task::BlockStack | Task::Barrel => blocks::blocks(recordings, options),
         Task::Needle => needle::needle(recordings, options),
-        Task::Switch => Err(EstimateError::Other(
-            "recordings of the task switch cannot be diagnosed yet; fit captures the switch's force over its way"
-                .to_owned(),
-        )),
+        Task::Switch => switch::switch(recordings, options),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The worlds before and after a diagnosis.
 
 use super::report::Diagnosis;
-use super::{Options, blocks, pipeline};
+use super::{Options, blocks, pipeline, switch};
 use crate::estimate::EstimateError;
 use haptics::law::{Effect, Role};
 use haptics::recording::Recording;
@@ -29,6 +29,7 @@ pub fn worlds(recordings: &[Recording], options: &Options, diagnosis: &Diagnosis
     after.name = format!("{}, extended", world.name);
     if world.crank.is_none() && world.mechanism.is_none() {
         blocks::extend(&mut after, diagnosis);
+        switch::extend(&mut after, diagnosis);
     }
     Ok(Worlds { before: with_laws(&world, &diagnosis.plain), after })
 }

@@ -1,12 +1,15 @@
-//! Blind cases for the diagnosis of tasks other than cranks and mechanisms: carried blocks, needles, thrown bodies.
+//! Blind cases for the diagnosis of tasks other than cranks and mechanisms: carried and slid blocks, barrels, needles, switches, thrown bodies.
 //!
 //! As in the crate `blind` nothing here shares a formula with the estimator: the stepped world or an integrator of its own moves
 //! things, instruments written down here look at them, and truth is opened by the scorer alone.
 
+pub mod barrel;
 pub mod blocks;
 pub mod needle;
 pub mod score;
 pub mod sensor;
+pub mod slide;
+pub mod switch;
 pub mod throw;
 
 use estimator::diagnose::Options;

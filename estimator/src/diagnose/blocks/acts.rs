@@ -57,6 +57,8 @@ fn leaks(rows: &Rows<'_>, k: usize, found: &mut Vec<Candidate>) {
     }
 }
 
+/// A block that moves less than this along an axis, m, is not moved along it.
+const MOVED_M: f64 = 1e-3;
 const BIAS: [[(&str, &str); 2]; 2] = [[("bx1", "N"), ("by1", "N")], [("bx2", "N"), ("by2", "N")]];
 const DRIFT: [[(&str, &str); 2]; 2] = [[("rx1", "N/s"), ("ry1", "N/s")], [("rx2", "N/s"), ("ry2", "N/s")]];
 
@@ -112,6 +114,15 @@ pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<
     found
 }
 
+/// Mean place of carried blocks along an axis and its standard deviation, m.
+fn along(rows: &Rows, axis: usize) -> (f64, f64) {
+    let carried = rows.all.iter().filter(|r| matches!(r.place, Place::Carried { axis: 1, .. }));
+    let places: Vec<f64> = carried.map(|r| rows.seen[r.recording].place[axis][r.i]).collect();
+    let n = places.len().max(1) as f64;
+    let mean = places.iter().sum::<f64>() / n;
+    (mean, (places.iter().map(|p| (p - mean).powi(2)).sum::<f64>() / n).sqrt())
+}
+
 /// Terms of no cause in particular.
 pub fn generic(rows: &Rows<'_>) -> Vec<Candidate> {
     let span = rows.all.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
@@ -127,8 +138,13 @@ pub fn generic(rows: &Rows<'_>) -> Vec<Candidate> {
         for k in 1..=4 {
             term(&format!("cos({k} pi t/T)"), &|_, r| (std::f64::consts::PI * f64::from(k) * r.time_s / span).cos());
         }
-        term("x", &|s, r| s.place[0][r.i]);
-        term("y", &|s, r| s.place[1][r.i]);
+        for (axis, name) in [(0, "x"), (1, "y")] {
+            let (middle, spread) = along(rows, axis);
+            // What was not moved along an axis has no dependence on it.
+            if spread > MOVED_M {
+                term(name, &|s, r| s.place[axis][r.i] - middle);
+            }
+        }
         term("grip", &|s, r| s.blocks.grip[r.i]);
         term("vx abs(vx)", &|s, r| s.velocity[0][r.i] * s.velocity[0][r.i].abs());
         term("vy abs(vy)", &|s, r| s.velocity[1][r.i] * s.velocity[1][r.i].abs());

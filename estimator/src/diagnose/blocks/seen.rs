@@ -19,6 +19,10 @@ const BEFORE: usize = 6;
 const OTHER_LIFT: f64 = 0.05;
 /// A block that was just lifted swings behind its pads, s.
 const SWINGS_S: f64 = 0.12;
+/// The ground takes over a block within the first of these rows at either end of a carry; the lift of those up to the second is the
+/// carried one, and what is off it by this share is not all of it.
+const END_ROWS: (usize, usize) = (4, 10);
+const END_SHARE: f64 = 0.025;
 
 /// One recording.
 pub struct Seen<'a> {
@@ -98,10 +102,26 @@ impl<'a> Seen<'a> {
         let light = |i: &usize| self.blocks.lift[*i] < least;
         let mut standing = rows.split_off(rows.iter().rposition(|i| !light(i)).map_or(0, |k| k + 1));
         rows.drain(..rows.iter().position(|i| !light(i)).unwrap_or(0));
+        self.without_ends(&mut rows);
         let put = self.put_down(&rows).unwrap_or(rows.len());
         let mut still = rows.split_off(put);
         still.append(&mut standing);
         (rows, still)
+    }
+
+    /// What is heavy is lifted, and put down, in longer than a row: at both ends of a carry the ground may have a part of it.
+    fn without_ends(&self, rows: &mut Vec<usize>) {
+        for _ in 0..2 {
+            rows.reverse();
+            if rows.len() < 2 * END_ROWS.1 {
+                continue;
+            }
+            let inner: Vec<f64> = rows[END_ROWS.0..END_ROWS.1].iter().map(|i| self.blocks.lift[*i]).collect();
+            let usual = inner.iter().sum::<f64>() / inner.len() as f64;
+            let partly = |i: usize| (self.blocks.lift[i] - usual).abs() > END_SHARE * usual.abs();
+            let taken = (0..END_ROWS.0).rev().find(|k| partly(rows[*k])).map_or(0, |k| k + 1);
+            rows.drain(..taken);
+        }
     }
 
     /// From which row on a block that was lowered rests, with another lift than in the air.

@@ -1,0 +1,345 @@
+//! Diagnosis of a block that is slid over the table, held between two fingers or pushed by one: the force along the table against the
+//! motion, with the engine of everything that moves along one coordinate.
+//!
+//! The model is a mass with dry friction: in proportion to the load on the ground where the block's weight is known (what the fingers
+//! lift is off the ground), a constant otherwise. A table that is tilted pulls at the block alone, a bias of the sensor is felt by
+//! empty fingers as well.
+
+use super::force::{self, Model};
+use super::geometry::Study;
+use super::report::{Alternative, Cause, CauseParameter, Diagnosis, Gain, NextExperiment, NotExcited, Verdict};
+use super::track::{self, Place, Track};
+use super::{Options, explain, named, nothing, quality, sliding, threshold};
+use crate::estimate::EstimateError;
+use crate::segment::threshold::{Levels, percentile};
+use crate::signal::task::{TaskSignals, smooth, task_signals};
+use haptics::law::{Backlash, CoulombFriction, Effect, Hysteresis, Inertia, Kind, LoadFriction};
+use haptics::recording::{Channel, Meta, Recording};
+use haptics::world::World;
+
+/// A finger touches from this share of its usual force on, and from so many times the noise.
+const TOUCH_SHARE: f64 = 0.1;
+const TOUCH_NOISES: f64 = 6.0;
+/// Fingers close and open slowly, s.
+const CLOSING_S: f64 = 0.15;
+/// Tips so far above the lowest ones have lifted the block, m.
+const LIFTED_M: f64 = 2e-3;
+/// What is lifted for longer is carried, s.
+const LIFTED_S: f64 = 0.3;
+/// Faster than this it slides, m/s; and so long at least in all, s.
+const SLIDES_M_S: f64 = 5e-3;
+const LEAST_S: f64 = 2.0;
+/// Empty fingers tell a bias when they were free for so long, s, in parts of this length.
+const FREE_S: f64 = 1.0;
+const PART_S: f64 = 0.25;
+/// A constant force is of the sensor, or of the table, by so many standard errors.
+const ERRORS: f64 = 4.0;
+/// A mass that is known may come out wrong by this share before a scale is called wrong.
+const MASS_SHARE: f64 = 0.08;
+
+/// One recording as a coordinate with a force along it.
+struct Slid {
+    along: Recording,
+    bad: Vec<bool>,
+    lift_n: Vec<f64>,
+    /// Sum of the horizontal forces of empty fingers and its error, N.
+    free_n: Option<(f64, f64)>,
+    weight_n: Option<f64>,
+    slides_s: f64,
+    lifted_s: f64,
+}
+
+/// Whether this is what [`slid`] is for: a block was moved on the ground and never carried.
+pub fn is_slid(recordings: &[Recording]) -> bool {
+    let slides = |r: &Recording| read(r, None).is_ok_and(|s| s.slides_s > LEAST_S && s.lifted_s < LIFTED_S);
+    !recordings.is_empty() && recordings.iter().all(|r| r.time_s.is_some() && slides(r))
+}
+
+/// Diagnoses recordings of one block that is slid.
+pub fn slid(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let (mut track, faults, read) = track_of(recordings, options.world.as_ref())?;
+    let weight_n = read.iter().find_map(|s| s.weight_n);
+    let model = model(options, weight_n.is_some())?;
+    let limit = threshold(track.period_s);
+    options.progress.tell(0.4)?;
+    let study = force::study(&mut track, &model, &given_by_pads(), limit)?;
+    options.progress.tell(0.8)?;
+    let mut found = explain::explain(&track, &model, &study, &[], faults);
+    // Motions of the library are for what is driven along its coordinate by a program.
+    if let Some(next) = &mut found.next_experiment {
+        next.experiment = None;
+    }
+    constants(&mut found, &read, weight_n);
+    scales(&mut found, &study, &model, weight_n.map(|w| w / recordings[0].meta.gravity()));
+    if weight_n.is_none() {
+        let why = "the block's weight is not known; state `weight_N` in the sidecar, or name a world";
+        let ids = ["load-friction", "force-gain", "length-scale"];
+        found.not_excited.extend(ids.map(|id| NotExcited { id: id.to_owned(), why: why.to_owned() }));
+    }
+    Ok(found)
+}
+
+/// The pads give before the block slides, by hundredths of a millimetre, as presliding friction and play do: neither is asked for.
+fn given_by_pads() -> Model {
+    vec![Effect::new(&Hysteresis, &[0.0, 1.0]), Effect::new(&Backlash, &[0.0])]
+}
+
+/// The laws to start from.
+fn model(options: &Options, weighs: bool) -> Result<Model, EstimateError> {
+    match options.baseline.as_deref() {
+        Some(name) => named(name),
+        None if weighs => Ok(vec![Effect::new(&Inertia, &[1.0]), Effect::new(&LoadFriction, &[1.0])]),
+        None => Ok(vec![Effect::new(&Inertia, &[1.0]), Effect::new(&CoulombFriction, &[1.0])]),
+    }
+}
+
+/// Rows of all recordings, faults of their samples, and the recordings as they were read.
+fn track_of(recordings: &[Recording], world: Option<&World>) -> Result<(Track, Vec<Cause>, Vec<Slid>), EstimateError> {
+    let (mut tracks, mut faults, mut all) = (Vec::new(), Vec::new(), Vec::new());
+    for recording in recordings {
+        let sensed = quality::faults(recording);
+        let mut slid = read(recording, world)?;
+        slid.bad.iter_mut().zip(&sensed.bad).for_each(|(bad, sensed)| *bad |= sensed);
+        let mut rows = sliding::track(&slid.along, &slid.bad)?;
+        load(&mut rows, &slid);
+        tracks.push(rows);
+        faults.extend(sensed.causes);
+        all.push(slid);
+    }
+    Ok((track::join(tracks).ok_or_else(nothing)?, faults, all))
+}
+
+/// What presses the block on the ground, row by row.
+fn load(rows: &mut Track, slid: &Slid) {
+    let (Some(weight_n), Some(time_s)) = (slid.weight_n, &slid.along.time_s) else { return };
+    let start_s = time_s.first().copied().unwrap_or(0.0);
+    for row in rows.rows.iter_mut().filter(|r| r.place == Place::Along) {
+        let i = time_s.partition_point(|t| *t < start_s + row.motion.time_s).min(time_s.len() - 1);
+        row.motion.normal_force_n = (weight_n - slid.lift_n[i]).max(0.0);
+    }
+}
+
+fn known_weight_n(recording: &Recording, world: Option<&World>) -> Option<f64> {
+    let known = |name: &str| {
+        let known = &recording.meta.known;
+        known.get(name).or_else(|| known.get(&format!("block-1.{name}"))).copied()
+    };
+    let gravity = recording.meta.gravity();
+    let stated = known("weight_N").or_else(|| Some(known("mass_kg")? * gravity));
+    stated.or_else(|| Some(world?.blocks.first()?.mass_kg * gravity))
+}
+
+fn read(recording: &Recording, world: Option<&World>) -> Result<Slid, EstimateError> {
+    let signals = task_signals(recording)?;
+    let n = signals.len();
+    let time = &signals.time_s;
+    let levels = Levels::of(&signals);
+    let touches = [0, 1].map(|f| touching(&signals, &levels, f));
+    let any = |i: usize| touches[0][i] || touches[1][i];
+    let height = |i: usize| {
+        let of: Vec<f64> = (0..2).filter(|f| touches[*f][i]).map(|f| signals.tips[f].position[i].y).collect();
+        of.iter().sum::<f64>() / of.len().max(1) as f64
+    };
+    let mut heights: Vec<f64> = (0..n).filter(|i| any(*i)).map(height).collect();
+    if heights.is_empty() {
+        return Err(EstimateError::Other(format!("{} touches nothing: there is nothing to diagnose", recording.name)));
+    }
+    let ground_m = percentile(&mut heights, 0.05);
+    let lifted = (0..n).filter(|i| any(*i) && height(*i) > ground_m + LIFTED_M).count();
+    let mut bad: Vec<bool> = (0..n).map(|i| !any(i) || height(i) > ground_m + LIFTED_M).collect();
+    widen(&mut bad, time);
+    let of_touching = |pick: &dyn Fn(usize, usize) -> f64, mean: bool| -> Vec<f64> {
+        let at = |i: usize| {
+            let both = touches[0][i] == touches[1][i];
+            let of: Vec<f64> = (0..2).filter(|f| both || touches[*f][i]).map(|f| pick(f, i)).collect();
+            of.iter().sum::<f64>() / if mean { of.len() as f64 } else { 1.0 }
+        };
+        (0..n).map(at).collect()
+    };
+    let force = |f: usize, i: usize| signals.tips[f].force.as_ref().map_or(0.0, |v| v[i].x);
+    let place = of_touching(&|f, i| signals.tips[f].position[i].x, true);
+    let rate = of_touching(&|f, i| signals.tips[f].velocity.as_ref().map_or(0.0, |v| v[i].x), true);
+    let along_n = of_touching(&force, false);
+    let net: Vec<f64> = signals.net_force_n.iter().map(|f| f.y).collect();
+    let bias_y = levels.bias_n[0].y + levels.bias_n[1].y;
+    let lift_n = smooth(time, &net).value.iter().map(|f| f - bias_y).collect();
+    let step_s = if n > 1 { (time[n - 1] - time[0]) / (n - 1) as f64 } else { 1.0 };
+    let calm = smooth(time, &rate).value;
+    let slides_s = (0..n).filter(|i| !bad[*i] && calm[*i].abs() > SLIDES_M_S).count() as f64 * step_s;
+    let channel = |name: &str, unit: &str, values| Channel { name: name.to_owned(), unit: unit.to_owned(), values };
+    let along = Recording {
+        name: recording.name.clone(),
+        time_s: Some(time.clone()),
+        channels: vec![channel("q_m", "m", place), channel("dq_m_s", "m_s", rate), channel("f_N", "N", along_n)],
+        meta: Meta { gravity_m_s2: recording.meta.gravity_m_s2, ..Meta::default() },
+        ..Recording::default()
+    };
+    let free_n = free(&signals, &levels, step_s);
+    Ok(Slid {
+        along,
+        bad,
+        lift_n,
+        free_n,
+        weight_n: known_weight_n(recording, world),
+        slides_s,
+        lifted_s: lifted as f64 * step_s,
+    })
+}
+
+/// Where a finger presses.
+fn touching(signals: &TaskSignals, levels: &Levels, finger: usize) -> Vec<bool> {
+    let Some(force) = &signals.tips[finger].force else { return vec![false; signals.len()] };
+    let x: Vec<f64> = force.iter().map(|f| f.x - levels.bias_n[finger].x).collect();
+    let pressed: Vec<f64> = smooth(&signals.time_s, &x).value.iter().map(|f| f.abs()).collect();
+    let usual = percentile(&mut pressed.clone(), 0.95);
+    let least = (TOUCH_SHARE * usual).max(TOUCH_NOISES * levels.force_noise_n);
+    pressed.iter().map(|f| *f > least).collect()
+}
+
+/// Flags also what is near to what is flagged.
+fn widen(bad: &mut [bool], time_s: &[f64]) {
+    let flagged: Vec<usize> = (0..bad.len()).filter(|i| bad[*i]).collect();
+    let edge = |i: usize| i == 0 || i + 1 == bad.len() || !bad[i - 1] || !bad[i + 1];
+    let edges: Vec<usize> = flagged.into_iter().filter(|i| edge(*i)).collect();
+    for i in edges {
+        let from = time_s.partition_point(|t| *t < time_s[i] - CLOSING_S);
+        let to = time_s.partition_point(|t| *t <= time_s[i] + CLOSING_S);
+        bad[from..to].fill(true);
+    }
+}
+
+/// What empty fingers feel along the table together, and how well that is known, N.
+fn free(signals: &TaskSignals, levels: &Levels, step_s: f64) -> Option<(f64, f64)> {
+    if (levels.free.len() as f64) * step_s < FREE_S {
+        return None;
+    }
+    let part = (PART_S / step_s).round().max(1.0) as usize;
+    let means: Vec<f64> = levels
+        .free
+        .chunks_exact(part)
+        .map(|c| c.iter().map(|i| signals.net_force_n[*i].x).sum::<f64>() / part as f64)
+        .collect();
+    let n = means.len() as f64;
+    let mean = means.iter().sum::<f64>() / n;
+    let spread = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+    (n >= 3.0).then(|| (mean, (spread / n).sqrt()))
+}
+
+/// Names of a force that is the same wherever the block slides: on the move all are one and the same.
+const CONSTANT: [&str; 2] = ["force-bias", "friction-asymmetry"];
+
+/// A constant force along the table: of the sensor where empty fingers feel it; of a tilted table, or of friction by direction, where
+/// they do not; open where they were never empty.
+fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
+    let named = |c: &&mut Cause| CONSTANT.contains(&c.id.as_str()) && c.parameters.iter().any(|p| p.unit == "N");
+    let Some(cause) = found.causes.iter_mut().find(named) else { return };
+    let Some(b) = cause.parameters.first().cloned() else { return };
+    found.alternatives.retain(|a| !CONSTANT.contains(&a.id.as_str()) && a.instead_of != cause.id);
+    let free: Vec<(f64, f64)> = read.iter().filter_map(|s| s.free_n).collect();
+    let mean = free.iter().map(|f| f.0).sum::<f64>() / free.len().max(1) as f64;
+    let error = free.iter().map(|f| f.1 * f.1).sum::<f64>().sqrt() / free.len().max(1) as f64;
+    let all_free = free.len() == read.len();
+    let felt = mean.abs() > ERRORS * error && (b.value - mean).abs() < ERRORS * error.hypot(b.std_error);
+    let number = |name: &str, value: f64, std_error: f64, unit: &str| CauseParameter {
+        name: name.to_owned(),
+        value,
+        std_error,
+        unit: unit.to_owned(),
+    };
+    let of_sensor = |cause: &mut Cause| {
+        "force-bias".clone_into(&mut cause.id);
+        cause.kind = Kind::Instrument;
+        cause.parameters = vec![number("b", b.value, b.std_error, "N")];
+    };
+    let (others, motion): (&[&str], &str) = if all_free && felt {
+        of_sensor(cause);
+        cause.evidence += "; empty fingers feel it as well";
+        (&[], "")
+    } else if all_free {
+        // The table's part is what empty fingers do not feel.
+        let (tilt_n, error) = (mean - b.value, error.hypot(b.std_error));
+        "gravity-tilt".clone_into(&mut cause.id);
+        cause.kind = Kind::Plant;
+        cause.parameters = vec![number("force", tilt_n, error, "N")];
+        if let Some(weight_n) = weight_n.filter(|w| *w > tilt_n.abs()) {
+            cause.parameters.push(number("angle", (tilt_n / weight_n).asin(), error / weight_n, "rad"));
+        }
+        cause.evidence = format!(
+            "the sliding block is drawn to one side by {:.3} N, and empty fingers feel none of it",
+            tilt_n.abs()
+        );
+        (
+            &["friction-asymmetry"],
+            "turn the table by half a turn, with the block on it, and slide it again: what a tilt pulls changes its sign",
+        )
+    } else {
+        of_sensor(cause);
+        (
+            &["gravity-tilt", "friction-asymmetry"],
+            "let go for two seconds before and after the sliding: a bias of the sensor stays, a tilt does not",
+        )
+    };
+    cause.posterior = 1.0 / (1.0 + others.len() as f64);
+    let (own, posterior) = (cause.id.clone(), cause.posterior);
+    found.alternatives.extend(others.iter().map(|id| Alternative {
+        id: (*id).to_owned(),
+        instead_of: own.clone(),
+        posterior,
+        why: "on the move both are one and the same constant force".to_owned(),
+    }));
+    if others.is_empty() {
+        if found.alternatives.is_empty() && found.verdict == Verdict::Ambiguous {
+            (found.verdict, found.next_experiment) = (Verdict::Causes, None);
+        }
+        return;
+    }
+    found.verdict = Verdict::Ambiguous;
+    let separates = std::iter::once(own).chain(others.iter().map(|id| (*id).to_owned())).collect();
+    found.next_experiment =
+        Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: 0.9, experiment: None });
+}
+
+/// A mass that is known and comes out wrong: forces or lengths are told in a wrong scale.
+fn scales(found: &mut Diagnosis, study: &Study, model: &Model, mass_kg: Option<f64>) {
+    use haptics::law::Law;
+    let (Some(known), Some(solved)) = (mass_kg, &study.solved) else { return };
+    let Some(k) = model.iter().position(|e| e.law().id() == Inertia.id()) else { return };
+    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    let (ratio, error) = (solved.values[k] / known, (variance * solved.inverse[(k, k)]).sqrt() / known);
+    let off = (ratio - 1.0).abs();
+    if off < MASS_SHARE.max((ERRORS + 1.0) * error) {
+        return;
+    }
+    let why = "a mass that comes out wrong is a wrong scale of the forces, or the opposite one of the lengths";
+    found.causes.push(Cause {
+        id: "force-gain".to_owned(),
+        kind: Kind::Instrument,
+        parameters: vec![CauseParameter {
+            name: "g - 1".to_owned(),
+            value: ratio - 1.0,
+            std_error: error,
+            unit: "1".to_owned(),
+        }],
+        p_value: super::gain::chi_square_tail((off / error).powi(2), 1.0),
+        posterior: 0.5,
+        gain: Gain::default(),
+        evidence: format!(
+            "the block needs {:+.1} % of force for its accelerations beyond what its known weight asks for",
+            100.0 * (ratio - 1.0)
+        ),
+    });
+    found.alternatives.push(Alternative {
+        id: "length-scale".to_owned(),
+        instead_of: "force-gain".to_owned(),
+        posterior: 0.5,
+        why: why.to_owned(),
+    });
+    found.verdict = Verdict::Ambiguous;
+    found.next_experiment.get_or_insert_with(|| NextExperiment {
+        motion: "lift the block and hold it still for two seconds: its weight shows the scale of the forces alone"
+            .to_owned(),
+        separates: vec!["force-gain".to_owned(), "length-scale".to_owned()],
+        expected_power: 0.95,
+        experiment: None,
+    });
+}

@@ -1,0 +1,153 @@
+//! The curve that was measured beside that of a world: friction, springs and binds that the world does not have, and scales of sensors.
+//!
+//! A world is known only so well: what is smaller than its own stated errors is no cause.
+
+use super::model::Known;
+use super::push::Push;
+use super::rows::direction;
+use crate::diagnose::answer::{Compared, Found};
+use crate::diagnose::candidate::{Candidate, Shape};
+use crate::diagnose::compare::{Channel, stretches};
+use crate::estimate::EstimateError;
+use haptics::law::{Effect, Kind, LocalResistance, Motion};
+
+/// Least size of what is named, in errors of the world.
+const ERRORS: f64 = 3.0;
+/// Rows so near to a bend of the world's curve are left out, m.
+const CORNER_M: f64 = 0.8e-3;
+/// Places and widths of a local resistance that are tried, in shares of the way.
+const PLACES: usize = 24;
+const WIDTHS: [f64; 4] = [0.08, 0.13, 0.2, 0.3];
+const LEAST_ROWS: usize = 40;
+/// A bind must be seen in so many rows.
+const LEAST_ON: usize = 20;
+/// What no cause explains must be larger still, in times of what a cause must be.
+const STRANGE: f64 = 2.0;
+
+/// One row on the way of a throw.
+struct Point {
+    side: usize,
+    at_m: f64,
+    speed_m_s: f64,
+    /// Measured and asked for along the travel, N, and the slope of the latter, N/m.
+    left_n: f64,
+    asked_n: f64,
+    slope_n_m: f64,
+}
+
+/// Compares the measured curve with the world's. Nothing where too little of it was seen.
+pub fn curve(push: &Push, known: &Known<'_>, period_s: f64, threshold: f64) -> Result<Option<Compared>, EstimateError> {
+    let viscous =
+        push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == "viscous-friction");
+    let mut times = Vec::new();
+    let mut points = Vec::new();
+    for (row, found_n) in &push.rows {
+        let Some(side) = row.side() else { continue };
+        let at_m = known.at_m(row, side);
+        if known.bends_near(at_m, CORNER_M) || known.switch.curve.is_stopped(at_m) {
+            continue;
+        }
+        let (asked_n, slope_n_m) = known.asked_n(at_m, side);
+        let damped_n = if viscous { 0.0 } else { known.damping_n_s_m * row.speed_m_s() };
+        let left_n = known.driving_n(row.force, at_m, side) - found_n - asked_n - damped_n;
+        times.push((row.recording, row.time_s));
+        points.push(Point { side, at_m, speed_m_s: row.speed_m_s(), left_n, asked_n, slope_n_m });
+    }
+    if points.len() < LEAST_ROWS {
+        return Ok(None);
+    }
+    let time: Vec<f64> = times.iter().map(|t| t.1).collect();
+    let stretch = stretches(&time, period_s, |i| times[i].0 != times[i - 1].0 || points[i].side != points[i - 1].side);
+    let of = |f: &dyn Fn(&Point) -> f64| points.iter().map(f).collect::<Vec<f64>>();
+    // Where the switch stands is open: it may have been moved.
+    let base = vec![of(&|p| direction(p.side) * p.slope_n_m)];
+    let candidates = candidates(&points, known, viscous);
+    let along: Vec<bool> = (0..points.len()).map(|i| i % 2 == 0).collect();
+    let channel = Channel {
+        y: of(&|p| p.left_n),
+        base,
+        candidates,
+        stretch: stretch.clone(),
+        testable: along.clone(),
+        weight: vec![1.0; points.len()],
+        period_s,
+    };
+    let study = channel.compare(threshold)?;
+    let (channel, unit, floor) = ("force over the knob's way beside the world's curve", "N", push.compared.floor);
+    Ok(Some(Compared { study, channel, unit, floor, along, stretch }))
+}
+
+fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candidate> {
+    let of = |f: &dyn Fn(&Point) -> f64| points.iter().map(f).collect::<Vec<f64>>();
+    let one = |id, name, unit, column| Candidate::one(id, Kind::Plant, name, unit, column);
+    let half = known.half_way_m();
+    let on = |side: usize| move |p: &Point| f64::from(u8::from(p.side == side));
+    let mut found = vec![
+        one("coulomb-friction", "Fc", "N", vec![1.0; points.len()]).positive(),
+        one("friction-asymmetry", "dFc to the right", "N", of(&on(0))),
+        one("friction-asymmetry", "dFc to the left", "N", of(&on(1))),
+    ];
+    if !viscous {
+        found.push(one("viscous-friction", "c", "N s/m", of(&|p| p.speed_m_s)).positive());
+    }
+    let spring = vec![of(&|p| direction(p.side) * p.at_m), of(&|p| direction(p.side))];
+    let names = vec![("k", "N/m"), ("f0", "N")];
+    found.push(Candidate::several("return-spring", Kind::Plant, spring, names).shaped(Shape::Spring { half }));
+    for k in 1..PLACES {
+        let place = half * (2.0 * k as f64 / PLACES as f64 - 1.0);
+        for width in WIDTHS.map(|share| 2.0 * half * share) {
+            let law = Effect::new(&LocalResistance, &[1.0, place, width, 0.0]);
+            let bind =
+                |p: &Point| law.force(&Motion { position: p.at_m, direction: 1.0, velocity: 1.0, ..Motion::default() });
+            let bind = one("local-resistance", "F", "N", of(&bind)).positive();
+            if bind.columns[0].iter().filter(|v| **v > 0.3).count() >= LEAST_ON {
+                found.push(bind.at("place", place, "m").at("width", width, "m"));
+            }
+        }
+    }
+    found.push(Candidate::one("force-gain", Kind::Instrument, "g - 1", "1", of(&|p| p.asked_n)));
+    let scaled = of(&|p| -direction(p.side) * p.slope_n_m * p.at_m);
+    found.push(Candidate::one("length-scale", Kind::Instrument, "epsilon", "1", scaled));
+    for k in 1..=3 {
+        let wave = |p: &Point| (std::f64::consts::PI * f64::from(k) * (p.at_m + half) / (2.0 * half)).cos();
+        for (words, column) in [("both ways", of(&wave)), ("towards one side", of(&|p| direction(p.side) * wave(p)))] {
+            let expression = Some(format!("cos({k} pi x/X) {words}"));
+            found.push(Candidate { expression, ..one("other", "amplitude", "N", column) });
+        }
+    }
+    found.into_iter().map(|c| seen(c, ERRORS * known.error_n)).collect()
+}
+
+/// A cause that must come to some force, N, where it acts.
+fn seen(candidate: Candidate, least_n: f64) -> Candidate {
+    let column = &candidate.columns[0];
+    let most = column.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let acts: Vec<f64> = column.iter().filter(|v| v.abs() > 0.1 * most).map(|v| v * v).collect();
+    let size = (acts.iter().sum::<f64>() / acts.len().max(1) as f64).sqrt();
+    let strange = if candidate.expression.is_some() { STRANGE } else { 1.0 };
+    candidate.at_least(strange * least_n / size.max(1e-12))
+}
+
+/// What in the residual shows a cause.
+pub fn shows(found: &Found<'_>) -> String {
+    let value = found.parameters.first().map_or(0.0, |p| p.value);
+    let at = |name: &str| found.parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
+    match found.candidate.id {
+        "coulomb-friction" => format!("the knob asks for {value:.2} N more than the world's in both directions"),
+        "friction-asymmetry" => format!("the knob asks for {value:+.2} N more than the world's in one direction alone"),
+        "viscous-friction" => "what the knob asks for beyond the world's goes with its speed".to_owned(),
+        "return-spring" => "the knob is drawn to one place, the same in both directions".to_owned(),
+        "local-resistance" => {
+            format!(
+                "the knob binds at {:.1} mm of its way: it asks for {value:.2} N more there in both directions",
+                1e3 * at("place")
+            )
+        }
+        "force-gain" => format!(
+            "all forces are {:+.1} % of the world's too large; a switch that is harder by as much would look the same",
+            100.0 * value
+        ),
+        "length-scale" => format!("the curve is {:+.1} % longer than the world's", 100.0 * value),
+        other => format!("{other} shows beside the world's curve"),
+    }
+}

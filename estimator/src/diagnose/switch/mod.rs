@@ -1,0 +1,123 @@
+//! Diagnosis of a toggle switch that is thrown to and fro by two fingers.
+//!
+//! A switch is captured, not derived: without a world its curve over the place is open in both directions, and only what depends on
+//! speed, on time or on the sensors can be told. With a world its curve is the model, and what it lacks is asked for as well.
+
+mod curve;
+mod model;
+mod push;
+mod rows;
+mod stop;
+
+use super::answer::{Beside, Found, Part, answer};
+use super::candidate::Candidate;
+use super::report::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
+use super::{Options, quality, threshold};
+use crate::estimate::EstimateError;
+use haptics::recording::Recording;
+use haptics::world::World;
+use model::Known;
+use push::Push;
+
+/// Diagnoses recordings of one switch.
+pub fn switch(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let faults: Vec<quality::Faults> = recordings.iter().map(quality::faults).collect();
+    let bad: Vec<Vec<bool>> = faults.iter().map(|f| f.bad.clone()).collect();
+    let seen = rows::seen(recordings, &bad)?;
+    let known = options.world.as_ref().and_then(Known::of);
+    let limit = threshold(seen.period_s);
+    let push = push::push(&seen, limit)?;
+    options.progress.tell(0.5)?;
+    let curve = match &known {
+        Some(known) => curve::curve(&push, known, seen.period_s, limit)?,
+        None => None,
+    };
+    // A knob that asks for other forces, or a sensor that tells others, lies elsewhere in its stops.
+    let has = |id: &str| push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == id);
+    let other = curve.as_ref().is_some_and(|c| !c.study.chosen.is_empty()) || has("friction-change");
+    let stop = if other { None } else { stop::stop(&seen, known.as_ref(), limit)? };
+    let mut beside = Beside {
+        model: if known.is_some() {
+            "curve and stops of the world"
+        } else {
+            "any curve there and back, pads that give"
+        }
+        .to_owned(),
+        causes: faults.into_iter().flat_map(|f| f.causes).collect(),
+        ..Beside::default()
+    };
+    unseen(&seen, known.is_some(), &mut beside);
+    let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
+    let (on_way, on_curve, on_stop) =
+        (|f: &Found<'_>| Push::shows(f), |f: &Found<'_>| curve::shows(f), |f: &Found<'_>| stop::shows(f));
+    let mut parts: Vec<Part<'_>> = vec![push.compared.part(&on_way, &plain, &Push::usual)];
+    parts.extend(curve.as_ref().map(|c| c.part(&on_curve, &plain, &|_| None)));
+    parts.extend(stop.as_ref().map(|s| s.part(&on_stop, &plain, &|_| None)));
+    Ok(answer(&parts, beside, &next))
+}
+
+/// What a recording of this kind could not show.
+fn unseen(seen: &rows::Seen, has_world: bool, beside: &mut Beside) {
+    let mut add = |ids: &[&str], why: &str| {
+        beside.not_excited.extend(ids.iter().map(|id| NotExcited { id: (*id).to_owned(), why: why.to_owned() }));
+    };
+    if !has_world {
+        let why = "the curve is the recording's own; name a world that was captured before to compare it with";
+        let ids = ["coulomb-friction", "friction-asymmetry", "return-spring", "local-resistance", "force-gain"];
+        add(&ids, why);
+        add(&["length-scale", "added-constraint"], why);
+    }
+    add(
+        &["hysteresis", "backlash"],
+        "the motion turned at the stops only; turn round in the middle of the way, in touch",
+    );
+    for (side, way) in [(0, "right"), (1, "left")] {
+        if seen.throws[side] == 0 {
+            beside
+                .warnings
+                .push(format!("no throw to the {way} was seen: what the knob asks for that way is not looked at"));
+        }
+    }
+}
+
+/// The recording that would settle what is open.
+fn next(open: &[Alternative]) -> Option<NextExperiment> {
+    let first = open.first()?;
+    let mut separates = vec![first.instead_of.clone()];
+    separates.extend(open.iter().filter(|a| a.instead_of == first.instead_of).map(|a| a.id.clone()));
+    Some(NextExperiment {
+        motion: "throw the switch over to both sides, three times slowly and three times fast, press on at each stop, and let go for \
+                 two seconds before and after"
+            .to_owned(),
+        separates,
+        expected_power: 0.8,
+        experiment: None,
+    })
+}
+
+/// What was found, put into a world.
+pub fn extend(world: &mut World, diagnosis: &Diagnosis) {
+    let Some(switch) = &mut world.switch else { return };
+    for cause in &diagnosis.causes {
+        let value = |name: &str| cause.parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
+        let points = &mut switch.curve.points;
+        match cause.id.as_str() {
+            "viscous-friction" => switch.damping_n_s_m += value("c").max(0.0),
+            "coulomb-friction" => points.iter_mut().for_each(|p| {
+                p.forward_n += value("Fc").max(0.0);
+                p.backward_n -= value("Fc").max(0.0);
+            }),
+            "friction-asymmetry" => points.iter_mut().for_each(|p| {
+                // Never below the other branch: a cycle gives no energy.
+                p.forward_n = (p.forward_n + value("dFc to the right")).max(p.backward_n);
+                p.backward_n = (p.backward_n - value("dFc to the left")).min(p.forward_n);
+            }),
+            "return-spring" => points.iter_mut().for_each(|p| {
+                let more = value("k") * p.at_m + value("f0");
+                p.forward_n += more;
+                p.backward_n += more;
+            }),
+            _ => {}
+        }
+    }
+}

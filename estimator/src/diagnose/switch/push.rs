@@ -1,0 +1,263 @@
+//! The force on the way of a throw beside the curve of the same place and direction: what depends on speed and time, and what fingers
+//! feel that touch nothing. The curve itself is open here, one for each direction; whether it is the world's is another question.
+
+use super::rows::{Place, Row, Seen, direction};
+use crate::diagnose::answer::{Compared, Found};
+use crate::diagnose::candidate::Candidate;
+use crate::diagnose::compare::Channel;
+use crate::diagnose::geometry::Study;
+use crate::estimate::EstimateError;
+use crate::identify::linear::least_squares;
+use haptics::law::Kind;
+
+/// Places of the open curve, m apart, and how many at most.
+const APART_M: f64 = 0.7e-3;
+const MOST_PLACES: usize = 24;
+/// Fewest rows on the way of throws.
+const LEAST_ROWS: usize = 30;
+/// Rows so near to the top of the curve are left out, m: a corner is not seen as sharp in a fast throw as in a slow one.
+const CORNER_M: f64 = 0.6e-3;
+/// Slower than this a finger stands with the knob, m/s.
+const REST_M_S: f64 = 2e-3;
+/// Times at which friction may have changed at once.
+const CHANGES: usize = 20;
+/// Pads that damp, and corners that a fast throw rounds, look like nearly half of this, N s/m.
+const LEAST_VISCOUS_N_S_M: f64 = 0.8;
+
+/// The comparison.
+pub struct Push {
+    pub compared: Compared,
+    /// Rows of throws that took part, and what the found causes add to the force along the travel there, N.
+    pub rows: Vec<(Row, f64)>,
+}
+
+/// The place of the open curve, along the travel: rising in both directions.
+fn along_m(row: &Row) -> f64 {
+    row.side().map_or(0.0, |side| direction(side) * row.tip.x)
+}
+
+/// Force that the knob asks for along the travel, or that of a free finger, N.
+fn force_n(row: &Row) -> f64 {
+    match row.place {
+        Place::Push(side) => direction(side) * row.force.x,
+        Place::Stop(_) => 0.0,
+        Place::Free(_, axis) => row.force[axis],
+    }
+}
+
+/// A curve of straight pieces in one direction.
+struct Curve {
+    side: usize,
+    places: Vec<f64>,
+}
+
+impl Curve {
+    fn of(rows: &[Row], side: usize) -> Option<Self> {
+        let own: Vec<f64> = rows.iter().filter(|r| r.place == Place::Push(side)).map(along_m).collect();
+        let (low, high) = own.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+        if own.len() < 2 || high - low < APART_M {
+            return None;
+        }
+        let pieces = (((high - low) / APART_M).ceil() as usize).clamp(1, MOST_PLACES).min(own.len() / 4).max(1);
+        let places = (0..=pieces).map(|k| low + (high - low) * k as f64 / pieces as f64).collect();
+        Some(Self { side, places })
+    }
+
+    /// Share of the k-th place in a row.
+    fn share(&self, row: &Row, k: usize) -> f64 {
+        if row.place != Place::Push(self.side) {
+            return 0.0;
+        }
+        let step = (self.places[self.places.len() - 1] - self.places[0]) / (self.places.len() - 1) as f64;
+        (1.0 - (along_m(row) - self.places[k]).abs() / step).max(0.0)
+    }
+
+    fn columns(&self, rows: &[Row]) -> Vec<Vec<f64>> {
+        (0..self.places.len()).map(|k| rows.iter().map(|r| self.share(r, k)).collect()).collect()
+    }
+
+    /// Slope at a row, N/m along the travel, of a curve with these forces.
+    fn slope(&self, row: &Row, force_n: &[f64]) -> f64 {
+        if row.place != Place::Push(self.side) {
+            return 0.0;
+        }
+        let k = self.places.partition_point(|p| *p <= along_m(row)).clamp(1, self.places.len() - 1);
+        (force_n[k] - force_n[k - 1]) / (self.places[k] - self.places[k - 1])
+    }
+
+    fn top_m(&self, force_n: &[f64]) -> f64 {
+        let most = (0..self.places.len()).max_by(|a, b| force_n[*a].total_cmp(&force_n[*b])).unwrap_or(0);
+        self.places[most]
+    }
+}
+
+/// Curves of both directions, as far as they are seen.
+fn curves(rows: &[Row]) -> Vec<Curve> {
+    [0, 1].into_iter().filter_map(|side| Curve::of(rows, side)).collect()
+}
+
+/// Forces at the places of all curves, of a plain fit.
+fn first_look(rows: &[Row], curves: &[Curve]) -> Result<Vec<Vec<f64>>, EstimateError> {
+    curves
+        .iter()
+        .map(|curve| {
+            let own: Vec<Row> = rows.iter().filter(|r| r.place == Place::Push(curve.side)).copied().collect();
+            let y: Vec<f64> = own.iter().map(force_n).collect();
+            Ok(least_squares(&curve.columns(&own), &y, None)?.values.clone())
+        })
+        .collect()
+}
+
+/// Compares what depends on speed and time.
+pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
+    let moves = |r: &Row| !matches!(r.place, Place::Push(_)) || r.speed_m_s() > REST_M_S;
+    let on = |r: &&Row| !matches!(r.place, Place::Stop(_)) && moves(r);
+    let all: Vec<Row> = seen.rows.iter().filter(on).copied().collect();
+    let rough = curves(&all);
+    let forces = first_look(&all, &rough)?;
+    let tops: Vec<(usize, f64)> = rough.iter().zip(&forces).map(|(c, f)| (c.side, c.top_m(f))).collect();
+    let corner =
+        |r: &Row| tops.iter().any(|(side, top)| r.place == Place::Push(*side) && (along_m(r) - top).abs() < CORNER_M);
+    let kept = |i: usize| {
+        let r = &seen.rows[i];
+        !matches!(r.place, Place::Stop(_)) && moves(r) && !corner(r)
+    };
+    let indices: Vec<usize> = (0..seen.rows.len()).filter(|i| kept(*i)).collect();
+    let rows: Vec<Row> = indices.iter().map(|i| seen.rows[*i]).collect();
+    // What was left out in between ends a stretch.
+    let mut number = 0;
+    let stretch: Vec<usize> = (0..rows.len())
+        .map(|k| {
+            let follows =
+                k > 0 && seen.stretch[indices[k]] == seen.stretch[indices[k - 1]] && indices[k] == indices[k - 1] + 1;
+            number += usize::from(k > 0 && !follows);
+            number
+        })
+        .collect();
+    let pushed = rows.iter().filter(|r| matches!(r.place, Place::Push(_))).count();
+    if pushed < LEAST_ROWS {
+        return Err(EstimateError::Other(format!(
+            "only {pushed} hundredths of a second of pushing a moving knob were seen, {LEAST_ROWS} are needed: throw the switch over more often"
+        )));
+    }
+    let curves = curves(&rows);
+    let forces = first_look(&rows, &curves)?;
+    let mut base: Vec<Vec<f64>> = curves.iter().flat_map(|c| c.columns(&rows)).collect();
+    // The knob's mass is open, too: it falls over faster than the hand.
+    let of_mass = |r: &Row| if let Place::Push(side) = r.place { direction(side) * r.acceleration_m_s2 } else { 0.0 };
+    base.push(rows.iter().map(of_mass).collect());
+    let y: Vec<f64> = rows.iter().map(force_n).collect();
+    let candidates = candidates(seen, &rows, &curves, &forces);
+    let testable: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
+    let weight = vec![1.0; rows.len()];
+    let channel = Channel { y, base, candidates, stretch: stretch.clone(), testable, weight, period_s: seen.period_s };
+    let study = channel.compare(threshold)?;
+    let found = of_found(&study, rows.len());
+    let along = rows.iter().map(|r| matches!(r.place, Place::Push(_))).collect();
+    let is_push = |(r, _): &(Row, f64)| matches!(r.place, Place::Push(_));
+    let kept = rows.into_iter().zip(found).filter(is_push).collect();
+    let (channel, unit, floor) = ("force on the knob", "N", seen.noise_n);
+    Ok(Push { compared: Compared { study, channel, unit, floor, along, stretch }, rows: kept })
+}
+
+/// What the chosen causes add to the rows.
+fn of_found(study: &Study, rows: usize) -> Vec<f64> {
+    let mut sum = vec![0.0; rows];
+    let Some(solved) = &study.solved else { return sum };
+    let columns = study.chosen.iter().flat_map(|c| &study.candidates[c.candidate].columns);
+    for (column, value) in columns.zip(&solved.values[study.base.len()..]) {
+        sum.iter_mut().zip(column).for_each(|(s, c)| *s += value * c);
+    }
+    sum
+}
+
+fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) -> Vec<Candidate> {
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let pushed = |f: &dyn Fn(&Row) -> f64| of(&|r| if matches!(r.place, Place::Push(_)) { f(r) } else { 0.0 });
+    let mut found = vec![
+        Candidate::one("viscous-friction", Kind::Plant, "c", "N s/m", pushed(&|r| r.speed_m_s()))
+            .positive()
+            .at_least(LEAST_VISCOUS_N_S_M),
+    ];
+    let late = |r: &Row| {
+        let slope: f64 = curves.iter().zip(forces).map(|(c, f)| c.slope(r, f)).sum();
+        -slope * r.speed_m_s()
+    };
+    // Pads that damp put the force a little ahead: that is no fault of the clocks.
+    found.push(Candidate::one("time-delay", Kind::Instrument, "tau", "s", pushed(&late)).positive());
+    let span_s = rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
+    if seen.recordings == 1 {
+        found.push(Candidate::one("friction-change", Kind::Plant, "rate", "N/s", pushed(&|r| r.time_s)));
+        for k in 1..CHANGES {
+            let t0 = span_s * k as f64 / CHANGES as f64;
+            let column = pushed(&|r| f64::from(u8::from(r.time_s >= t0)));
+            found.push(Candidate::one("friction-change", Kind::Plant, "change", "N", column).at("t0", t0, "s"));
+        }
+    }
+    for recording in 1..seen.recordings {
+        let column = pushed(&|r| f64::from(u8::from(r.recording >= recording)));
+        let change = Candidate::one("friction-change", Kind::Plant, "change", "N", column);
+        found.push(change.at("from recording", (recording + 1) as f64, "1"));
+    }
+    sensors(rows, &mut found);
+    for k in 1..=3 {
+        let wave = |r: &Row| (std::f64::consts::PI * f64::from(k) * r.time_s / span_s).cos();
+        let column = pushed(&|r| r.side().map_or(0.0, direction) * wave(r));
+        let expression = Some(format!("cos({k} pi t/T), the same way in both directions"));
+        found.push(Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "N", column) });
+    }
+    found
+}
+
+/// A bias or a drift of single channels, of a finger, or of all.
+fn sensors(rows: &[Row], found: &mut Vec<Candidate>) {
+    const BIAS: [[(&str, &str); 2]; 2] = [[("bx1", "N"), ("by1", "N")], [("bx2", "N"), ("by2", "N")]];
+    const DRIFT: [[(&str, &str); 2]; 2] = [[("rx1", "N/s"), ("ry1", "N/s")], [("rx2", "N/s"), ("ry2", "N/s")]];
+    let mut all = |id: &'static str, names: &[[(&'static str, &'static str); 2]; 2], size: &dyn Fn(&Row) -> f64| {
+        let column = |f: usize, axis: usize| rows.iter().map(|r| r.share(f, axis) * size(r)).collect::<Vec<f64>>();
+        for (finger, names) in names.iter().enumerate() {
+            for (axis, (name, unit)) in names.iter().enumerate() {
+                found.push(Candidate::one(id, Kind::Instrument, name, unit, column(finger, axis)));
+            }
+            let both = vec![column(finger, 0), column(finger, 1)];
+            found.push(Candidate::several(id, Kind::Instrument, both, names.to_vec()));
+        }
+        let columns = vec![column(0, 0), column(0, 1), column(1, 0), column(1, 1)];
+        found.push(Candidate::several(id, Kind::Instrument, columns, names.concat()));
+    };
+    all("force-bias", &BIAS, &|_| 1.0);
+    all("force-drift", &DRIFT, &|r| r.time_s);
+}
+
+impl Push {
+    /// What in the residual shows a cause.
+    pub fn shows(found: &Found<'_>) -> String {
+        let value = found.parameters.first().map_or(0.0, |p| p.value);
+        match found.candidate.id {
+            "viscous-friction" => {
+                format!("fast throws ask for more force than slow ones at the same place ({value:.2} N s/m)")
+            }
+            "friction-change" => {
+                "at the same place the knob asks for another force, the same way in both directions, as time goes on"
+                    .to_owned()
+            }
+            "time-delay" => {
+                format!("the force comes {:.1} ms after the motion: fast throws have their peak elsewhere", 1e3 * value)
+            }
+            "force-bias" => "fingers that touch nothing feel a force".to_owned(),
+            "force-drift" => "the forces of fingers that touch nothing go with time".to_owned(),
+            other => format!("{other} shows on the way of the throws"),
+        }
+    }
+
+    /// Sizes that could just matter, and what would show them.
+    pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+        Some(match (candidate.id, candidate.linear[0].0) {
+            ("viscous-friction", _) => (2.0, "the throws were all of one speed; throw it slowly and fast"),
+            ("friction-change", "change") => (0.05, "there were few throws; go on for longer"),
+            ("time-delay", _) => (5e-3, "the throws were all of one speed; throw it slowly and fast"),
+            ("force-bias", _) => (0.01, "no finger was ever free; start and end with a second of free motion"),
+            _ => return None,
+        })
+    }
+}

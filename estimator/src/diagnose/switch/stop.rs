@@ -1,0 +1,89 @@
+//! A finger that presses the knob against its stops: what gives there, and whether the stop is where the world has it.
+
+use super::model::Known;
+use super::rows::{Place, Row, Seen, direction};
+use crate::diagnose::answer::{Compared, Found};
+use crate::diagnose::candidate::Candidate;
+use crate::diagnose::compare::Channel;
+use crate::estimate::EstimateError;
+use crate::signal::noise::white_noise;
+use haptics::law::Kind;
+
+const LEAST_ROWS: usize = 40;
+/// Least size of what is named, in errors of the world.
+const ERRORS: f64 = 3.0;
+/// What no cause explains is at least so much, m: a knob lies a little differently each time.
+const STRANGE_M: f64 = 6e-5;
+
+/// Compares what may move the tip while it presses the knob against a stop. Nothing where that was hardly done.
+pub fn stop(seen: &Seen, known: Option<&Known<'_>>, threshold: f64) -> Result<Option<Compared>, EstimateError> {
+    let indices: Vec<usize> = (0..seen.rows.len()).filter(|i| matches!(seen.rows[*i].place, Place::Stop(_))).collect();
+    if indices.len() < LEAST_ROWS {
+        return Ok(None);
+    }
+    let rows: Vec<Row> = indices.iter().map(|i| seen.rows[*i]).collect();
+    let stretch: Vec<usize> = indices.iter().map(|i| seen.stretch[*i]).collect();
+    let side = |r: &Row| r.side().unwrap_or(0);
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let pressed = |r: &Row| direction(side(r)) * r.above_zero.x;
+    let expected = |r: &Row| known.map_or(0.0, |k| k.stopped_m(side(r), pressed(r), r.tip.y));
+    let y = of(&|r| direction(side(r)) * r.tip.x - expected(r));
+    // Pads damp: no cause of its own.
+    let mut base = vec![of(&|r| direction(side(r)) * r.velocity.x)];
+    let usual = rows.iter().map(pressed).fold(0.0, f64::max).max(1e-9);
+    let bend = of(&|r| -usual * (pressed(r) / usual).powi(3));
+    let force = of(&pressed);
+    let on = |wanted: usize| rows.iter().map(|r| f64::from(u8::from(side(r) == wanted))).collect::<Vec<f64>>();
+    let mut candidates = Vec::new();
+    let plant = |id, name, unit, column| Candidate::one(id, Kind::Plant, name, unit, column);
+    if let Some(known) = known {
+        // Where the switch stands is open: it may have been moved.
+        base.push(of(&|r| direction(side(r))));
+        let least = ERRORS * known.give_error_m_n;
+        candidates.push(plant("pad-compliance", "give", "m/N", force).at_least(least));
+        for (wanted, name) in [(0, "right stop is nearer by"), (1, "left stop is nearer by")] {
+            let nearer = on(wanted).iter().map(|v| -v).collect();
+            let wall = plant("added-constraint", name, "m", nearer).positive();
+            candidates.push(wall.at_least(ERRORS * known.end_error_m));
+            let expression = Some(["the right stop, farther away", "the left stop, farther away"][wanted].to_owned());
+            let farther = Candidate { expression, ..plant("other", "way", "m", on(wanted)).positive() };
+            candidates.push(farther.at_least(ERRORS * known.end_error_m));
+        }
+    } else {
+        base.extend([0, 1].map(on).into_iter().filter(|c| c.iter().any(|v| *v != 0.0)));
+        base.push(force);
+        candidates.push(plant("stiffness-hardening", "bend", "m/N", bend).positive());
+    }
+    let span_s = rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
+    for k in 1..=3 {
+        let wave = of(&|r| (std::f64::consts::PI * f64::from(k) * r.time_s / span_s).cos());
+        let expression = Some(format!("cos({k} pi t/T)"));
+        candidates.push(Candidate { expression, ..plant("other", "amplitude", "m", wave) }.at_least(STRANGE_M));
+    }
+    let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
+    let floor = white_noise(&y);
+    let channel = Channel {
+        y,
+        base,
+        candidates,
+        stretch: stretch.clone(),
+        testable: along.clone(),
+        weight: vec![1.0; rows.len()],
+        period_s: seen.period_s,
+    };
+    let study = channel.compare(threshold)?;
+    Ok(Some(Compared { study, channel: "place of the tip on the stop", unit: "m", floor, along, stretch }))
+}
+
+/// What in the residual shows a cause.
+pub fn shows(found: &Found<'_>) -> String {
+    let value = found.parameters.first().map_or(0.0, |p| p.value);
+    match found.candidate.id {
+        "pad-compliance" => {
+            format!("pressed against a stop, the tip goes {:+.3} mm/N farther than the world's pads give", 1e3 * value)
+        }
+        "stiffness-hardening" => "pressed harder against a stop, the pads give less and less".to_owned(),
+        "added-constraint" => format!("a stop comes {:.2} mm before the world's", 1e3 * value),
+        other => format!("{other} shows on the stops"),
+    }
+}
