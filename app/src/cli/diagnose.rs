@@ -122,7 +122,16 @@ pub(super) fn describe(diagnosis: &Diagnosis) -> String {
     }
     for (k, other) in diagnosis.validation.iter().enumerate() {
         let (before, after) = (other.rms_before, other.rms_after);
-        let _ = writeln!(text, "  validation {}: {before:.4} unexplained before, {after:.4} after", k + 1);
+        let of = other.of.as_ref().map_or(String::new(), |of| format!(" of the {of}"));
+        let unit = other.unit.as_deref();
+        let said = |value: f64| unit.map_or_else(|| format!("{value:.4}"), |unit| amount(value, unit));
+        let _ = write!(text, "  validation {}{of}: {} unexplained before, {} after", k + 1, said(before), said(after));
+        let left_out = if other.left_out.is_empty() { String::new() } else { other.left_out.join(", ") };
+        let _ = if left_out.is_empty() {
+            writeln!(text)
+        } else {
+            writeln!(text, "; {left_out} belongs to the first recordings alone, or cannot be shown here")
+        };
     }
     for warning in &diagnosis.warnings {
         let _ = writeln!(text, "  ! {warning}");

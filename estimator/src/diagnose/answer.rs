@@ -5,6 +5,7 @@ use super::course::Course;
 use super::explain::{p_value, parameters, rivals};
 use super::gain::{gain, rms, whiteness_p};
 use super::geometry::Study;
+use super::kept::of_study;
 use super::report::{
     Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, Verdict,
 };
@@ -61,7 +62,7 @@ pub struct Part<'a> {
     /// The comparison.
     pub study: &'a Study,
     /// What the channel is, in words.
-    pub channel: &'a str,
+    pub channel: &'static str,
     /// Its unit.
     pub unit: &'a str,
     /// Noise of its rows.
@@ -223,6 +224,7 @@ pub fn answer(
         validation: Vec::new(),
         settled: Vec::new(),
         course: Course::default(),
+        kept: parts.iter().flat_map(|p| of_study(p.channel, p.study)).collect(),
         plain: Vec::new(),
         effects: Vec::new(),
     }

@@ -7,6 +7,7 @@ use super::extend::{effects, plain, spring};
 use super::force::Model;
 use super::gain::{chi_square_tail, gain, rms, whiteness_p};
 use super::geometry::Study;
+use super::kept::of_study;
 use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, NotExcited, Verdict};
 use super::rollout::rollout;
 use super::select::{Chosen, Selection};
@@ -23,6 +24,9 @@ const VISIBLE: f64 = 10.0;
 
 /// Channels of slow recordings are not a whole sample apart by sampling alone, s.
 const LARGEST_SKEW_S: f64 = 2e-3;
+
+/// The channel of what moves along one coordinate.
+pub(super) const FORCE: &str = "force";
 
 /// Two causes that are one and the same regressor, whatever the motion.
 const TWINS: [(&str, &str, &str); 1] = [(
@@ -100,6 +104,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         plain: plain(model, study),
         effects: effects(track, model, study),
         course: course(track, study),
+        kept: of_study(FORCE, study),
         causes,
         alternatives,
         next_experiment: propose(track, model, study, &open_ones),

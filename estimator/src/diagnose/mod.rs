@@ -22,6 +22,7 @@ mod grid;
 mod held_arm;
 mod hung;
 mod impact;
+mod kept;
 mod needle;
 mod progress;
 mod pulled;
@@ -114,43 +115,47 @@ fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<Diag
     mechanism(recordings, options)
 }
 
-/// What was found, on other recordings of the same object: nothing is chosen or fitted there. Faults of the sensors that were found in the
-/// first recordings are not taken out of these.
+/// What was found, on other recordings of the same object: nothing is chosen there, and no cause is fitted. Faults of the sensors that
+/// were found in the first recordings are taken out of these as well; the path of a crank, and mirrored axes, are looked at in each.
 pub fn validate(
     recordings: &[Recording],
     options: &Options,
     diagnosis: &Diagnosis,
 ) -> Result<Vec<Validation>, EstimateError> {
     let of = |recording: &Recording| {
-        let mut track = match task_of(recording, options.task)? {
-            Task::Crank => {
-                let signals = held_arm::Signals::of(recording, &quality::faults(recording).bad)?;
-                let path = signals.path(recording);
-                let circle = geometry::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
-                signals.rows(recording, &circle.arm, Axes::PLAIN)?
+        let one = std::slice::from_ref(recording);
+        let channels = match task_of(recording, options.task)? {
+            Task::Crank => return along_a_crank(recording, diagnosis),
+            Task::Mechanism => {
+                let mut track = sliding::track(recording, &quality::faults(recording).bad)?;
+                let Diagnosis { plain, effects, kept, .. } = diagnosis;
+                return Ok(validate::validate(&mut track, plain, effects, &[], kept));
             }
-            Task::Mechanism => sliding::track(recording, &quality::faults(recording).bad)?,
-            other => {
-                return Err(EstimateError::Other(format!(
-                    "what was found of the task {} cannot be measured on other recordings yet; diagnose them together",
-                    other.name()
-                )));
-            }
+            Task::BlockStack | Task::Barrel if slide::is_slid(one) => return slide::validate(one, options, diagnosis),
+            Task::BlockStack | Task::Barrel => blocks::channels(one, options)?,
+            Task::Needle => needle::channels(one, options)?,
+            Task::Switch => switch::channels(one, options)?,
         };
-        // A weight that is stated is no part of what was fitted, and acts all the same.
-        let mut fitted = diagnosis.plain.clone();
-        let known = if task_of(recording, options.task)? == Task::Crank {
-            known_weight(recording, &mut fitted)
-        } else {
-            Model::new()
-        };
-        let with_known = |effects: &[Effect]| -> Model {
-            let weighs = effects.iter().any(|e| e.law().id() == Weight.id());
-            effects.iter().chain(known.iter().filter(|_| !weighs)).copied().collect()
-        };
-        Ok(validate::validate(&mut track, &with_known(&diagnosis.plain), &with_known(&diagnosis.effects)))
+        let order: Vec<&str> = diagnosis.causes.iter().map(|c| c.id.as_str()).collect();
+        kept::measure(&diagnosis.kept, &order, &channels)
     };
     recordings.iter().map(of).collect()
+}
+
+fn along_a_crank(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
+    let signals = held_arm::Signals::of(recording, &quality::faults(recording).bad)?;
+    let path = signals.path(recording);
+    let circle = geometry::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
+    let (rows, _) = upright(&signals, recording, &circle.arm)?;
+    let (mut track, _) = turned(&signals, recording, &circle, rows)?;
+    // A weight that is stated is no part of what was fitted, and acts all the same.
+    let known = known_weight(recording, &mut diagnosis.plain.clone());
+    let with_known = |effects: &[Effect]| -> Model {
+        let weighs = effects.iter().any(|e| e.law().id() == Weight.id());
+        effects.iter().chain(known.iter().filter(|_| !weighs)).copied().collect()
+    };
+    let (before, after) = (with_known(&diagnosis.plain), with_known(&diagnosis.effects));
+    Ok(validate::validate(&mut track, &before, &after, &known, &diagnosis.kept))
 }
 
 fn threshold(period_s: f64) -> f64 {

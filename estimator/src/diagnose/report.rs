@@ -1,6 +1,7 @@
 //! What a diagnosis answers. These types *are* the JSON of `touchstone diagnose --json`.
 
 use super::course::Course;
+use super::kept::Kept;
 use haptics::law::{Effect, Kind};
 use serde::{Deserialize, Serialize};
 
@@ -176,12 +177,21 @@ pub struct Experiment {
 }
 
 /// What the found laws are worth on a recording that took part in nothing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Validation {
-    /// Unexplained force by the model alone, as fitted, N or N m.
+    /// Unexplained force by the model alone, as fitted, N or N m; of tasks without one coordinate what is left of a channel.
     pub rms_before: f64,
-    /// … and with the found laws.
+    /// … and with what was found.
     pub rms_after: f64,
+    /// Which channel, where there are several, …
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of: Option<String>,
+    /// … and its unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// Causes that belong to the first recordings alone (a time, an insertion), or that this one cannot show.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<String>,
 }
 
 /// A question that an earlier recording left open and a later one answered.
@@ -246,4 +256,7 @@ pub struct Diagnosis {
     /// Measured and modelled forces, row by row.
     #[serde(skip)]
     pub course: Course,
+    /// What was found, as values of columns: for other recordings.
+    #[serde(skip)]
+    pub(super) kept: Vec<Kept>,
 }

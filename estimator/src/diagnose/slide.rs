@@ -7,7 +7,9 @@
 
 use super::force::{self, Model};
 use super::geometry::Study;
-use super::report::{Alternative, Cause, CauseParameter, Diagnosis, Gain, NextExperiment, NotExcited, Verdict};
+use super::report::{
+    Alternative, Cause, CauseParameter, Diagnosis, Gain, NextExperiment, NotExcited, Validation, Verdict,
+};
 use super::track::{self, Place, Track};
 use super::{Options, explain, named, nothing, quality, sliding, threshold};
 use crate::estimate::EstimateError;
@@ -77,6 +79,12 @@ pub fn slid(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Es
         found.not_excited.extend(ids.map(|id| NotExcited { id: id.to_owned(), why: why.to_owned() }));
     }
     Ok(found)
+}
+
+/// What was found, on another recording.
+pub fn validate(recordings: &[Recording], options: &Options, found: &Diagnosis) -> Result<Validation, EstimateError> {
+    let (mut track, ..) = track_of(recordings, options.world.as_ref())?;
+    Ok(super::validate::validate(&mut track, &found.plain, &found.effects, &[], &found.kept))
 }
 
 /// The pads give before the block slides, by hundredths of a millimetre, as presliding friction and play do: neither is asked for.

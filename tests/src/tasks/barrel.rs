@@ -49,6 +49,17 @@ impl Kind {
 
 /// A case of a kind.
 pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
+    let (case, truth, _) = made(kind, seed, false);
+    (case, truth)
+}
+
+/// The same with another recording of the same barrel by the same instruments.
+pub fn twice(kind: Kind, seed: u64) -> (Case, Truth, Recording) {
+    let (case, truth, again) = made(kind, seed, true);
+    (case, truth, again.expect("it was asked for"))
+}
+
+fn made(kind: Kind, seed: u64, twice: bool) -> (Case, Truth, Option<Recording>) {
     let mut chance = Chance::new(seed, 97);
     let mut world = barrel_world(seed ^ 0x0ba4_4e15);
     let free = |world: &mut World| {
@@ -61,11 +72,14 @@ pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
     hide(kind, &mut world, &mut instruments, &mut truth, &mut chance);
     let mut recording = perform(&world, seed, &instruments, &mut chance);
     let (weight_n, width_m) = (world.blocks[0].mass_kg * world.gravity_m_s2, world.blocks[0].width_m);
-    match kind {
-        Kind::Gain => recording.meta.known.insert("weight_N".to_owned(), weight_n),
-        Kind::Scale => recording.meta.known.insert("width_m".to_owned(), width_m),
-        _ => None,
-    };
+    let mut again = twice.then(|| perform(&world, seed ^ 0xa6a1, &instruments, &mut chance));
+    for one in std::iter::once(&mut recording).chain(&mut again) {
+        match kind {
+            Kind::Gain => one.meta.known.insert("weight_N".to_owned(), weight_n),
+            Kind::Scale => one.meta.known.insert("width_m".to_owned(), width_m),
+            _ => None,
+        };
+    }
     let known = (kind != Kind::Wall).then(|| {
         let captured = perform(&before, seed ^ 0xca11, &Instruments::default(), &mut chance);
         let mut known =
@@ -73,7 +87,7 @@ pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
         free(&mut known);
         known
     });
-    (Case { recordings: vec![recording], options: Options { world: known, ..Options::default() } }, truth)
+    (Case { recordings: vec![recording], options: Options { world: known, ..Options::default() } }, truth, again)
 }
 
 fn perform(world: &World, seed: u64, instruments: &Instruments, chance: &mut Chance) -> Recording {

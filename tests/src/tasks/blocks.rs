@@ -122,6 +122,17 @@ fn end_at(recording: &Recording, time_s: f64) -> Recording {
 
 /// A case of a kind.
 pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
+    let (case, truth, _) = made(kind, seed, false);
+    (case, truth)
+}
+
+/// The same with another recording of the same blocks by the same instruments.
+pub fn twice(kind: Kind, seed: u64) -> (Case, Truth, Recording) {
+    let (case, truth, again) = made(kind, seed, true);
+    (case, truth, again.expect("it was asked for"))
+}
+
+fn made(kind: Kind, seed: u64, twice: bool) -> (Case, Truth, Option<Recording>) {
     let mut chance = Chance::new(seed, 77);
     let (mut world, _) = stacking_world(seed ^ 0x51ab_1e57);
     let skill = skill(&mut chance, kind);
@@ -146,16 +157,25 @@ pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
             recording = recording.slice(Span { first: start, end: recording.len() });
         }
     }
-    for (block, name) in world.blocks.iter().zip(["block-1", "block-2"]) {
-        let known = &mut recording.meta.known;
-        match kind {
-            Kind::Gain => known.insert(format!("{name}.weight_N"), block.mass_kg * world.gravity_m_s2),
-            Kind::Scale => known.insert(format!("{name}.width_m"), block.width_m),
-            _ => None,
-        };
-    }
-    let world = (!kind.is_plain()).then(|| calibrated(&before, seed, &mut chance));
-    (Case { recordings: vec![recording], options: Options { world, ..Options::default() } }, truth)
+    let state = |recording: &mut Recording| {
+        for (block, name) in world.blocks.iter().zip(["block-1", "block-2"]) {
+            let known = &mut recording.meta.known;
+            match kind {
+                Kind::Gain => known.insert(format!("{name}.weight_N"), block.mass_kg * world.gravity_m_s2),
+                Kind::Scale => known.insert(format!("{name}.width_m"), block.width_m),
+                _ => None,
+            };
+        }
+    };
+    state(&mut recording);
+    let known = (!kind.is_plain()).then(|| calibrated(&before, seed, &mut chance));
+    let again = twice.then(|| {
+        let done = perform(&world, skill, seed ^ 0xa6a1);
+        let mut again = look(&world, &done.ticks, every, &instruments, Task::BlockStack, &mut chance);
+        state(&mut again);
+        again
+    });
+    (Case { recordings: vec![recording], options: Options { world: known, ..Options::default() } }, truth, again)
 }
 
 /// The world as another recording without anything hidden shows it.

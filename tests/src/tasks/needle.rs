@@ -58,8 +58,19 @@ pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
     let mut chance = Chance::new(seed, 78);
     match kind {
         Kind::NothingInWorld | Kind::Bias => hand(kind, seed, &mut chance),
-        _ => tool(kind, &mut chance),
+        _ => {
+            let (case, truth, _) = tool(kind, &mut chance);
+            (case, truth)
+        }
     }
+}
+
+/// A case of a tool with another recording of the same sheet.
+pub fn twice(kind: Kind, seed: u64) -> (Case, Truth, Recording) {
+    let mut chance = Chance::new(seed, 78);
+    let (case, truth, (sheet, drift_n_s)) = tool(kind, &mut chance);
+    let again = perform(&sheet, drift_n_s, &mut chance);
+    (case, truth, again)
 }
 
 /// What the tool meets.
@@ -88,7 +99,8 @@ fn way(t: f64, turns: &[(f64, f64)]) -> f64 {
     from + (to - from) * s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s)
 }
 
-fn tool(kind: Kind, chance: &mut Chance) -> (Case, Truth) {
+/// With the sheet and the drift.
+fn tool(kind: Kind, chance: &mut Chance) -> (Case, Truth, (Sheet, f64)) {
     let mut truth = Truth::default();
     let mut sheet = Sheet {
         stiffness_n_m: chance.between(120.0, 500.0),
@@ -138,7 +150,8 @@ fn tool(kind: Kind, chance: &mut Chance) -> (Case, Truth) {
         }
         _ => {}
     }
-    (Case { recordings: vec![perform(&sheet, drift_n_s, chance)], options: Options::default() }, truth)
+    let recordings = vec![perform(&sheet, drift_n_s, chance)];
+    (Case { recordings, options: Options::default() }, truth, (sheet, drift_n_s))
 }
 
 /// Where the tool is wanted: along its way in, and across.

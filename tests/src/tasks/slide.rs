@@ -114,6 +114,17 @@ impl Table {
 
 /// A case of a kind.
 pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
+    let (case, truth, _) = made(kind, seed, false);
+    (case, truth)
+}
+
+/// The same with another recording of the same block by the same instruments, in which the fingers let go.
+pub fn twice(kind: Kind, seed: u64) -> (Case, Truth, Recording) {
+    let (case, truth, again) = made(kind, seed, true);
+    (case, truth, again.expect("it was asked for"))
+}
+
+fn made(kind: Kind, seed: u64, twice: bool) -> (Case, Truth, Option<Recording>) {
     let mut chance = Chance::new(seed, 89);
     let mut table = Table::drawn(&mut chance);
     let (mut instruments, mut truth, mut late) = (Instruments::default(), Truth::default(), 0);
@@ -178,11 +189,16 @@ pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
             truth.besides = vec!["coulomb-friction"];
         }
     }
-    let mut recording = record(&table, &instruments, late, kind != Kind::TiltCut, &mut chance);
-    if kind != Kind::NothingKnown {
-        recording.meta.known.insert("weight_N".to_owned(), table.weight_n());
-    }
-    (Case { recordings: vec![recording], options: Options::default() }, truth)
+    let recorded = |lets_go: bool, chance: &mut Chance| {
+        let mut recording = record(&table, &instruments, late, lets_go, chance);
+        if kind != Kind::NothingKnown {
+            recording.meta.known.insert("weight_N".to_owned(), table.weight_n());
+        }
+        recording
+    };
+    let recording = recorded(kind != Kind::TiltCut, &mut chance);
+    let again = twice.then(|| Recording { name: "again".to_owned(), ..recorded(true, &mut chance) });
+    (Case { recordings: vec![recording], options: Options::default() }, truth, again)
 }
 
 /// Where the hand is wanted: times, s, places, m, and openings beside the pinch, m.

@@ -92,6 +92,17 @@ struct Throw {
 
 /// A case of a kind.
 pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
+    let (case, truth, _) = made(kind, seed, false);
+    (case, truth)
+}
+
+/// The same with another recording of the same switch by the same instruments.
+pub fn twice(kind: Kind, seed: u64) -> (Case, Truth, Recording) {
+    let (case, truth, again) = made(kind, seed, true);
+    (case, truth, again.expect("it was asked for"))
+}
+
+fn made(kind: Kind, seed: u64, twice: bool) -> (Case, Truth, Option<Recording>) {
     let mut chance = Chance::new(seed, 83);
     let before = drawn(seed, &mut chance);
     let mut world = before.clone();
@@ -102,7 +113,8 @@ pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
         let captured = record(&before, &Instruments::default(), Beside::default(), &mut chance);
         pipeline::analyse(&[captured], &pipeline::Options::default()).expect("it was thrown both ways").world
     });
-    (Case { recordings: vec![recording], options: Options { world: known, ..Options::default() } }, truth)
+    let again = twice.then(|| record(&world, &instruments, beside, &mut chance));
+    (Case { recordings: vec![recording], options: Options { world: known, ..Options::default() } }, truth, again)
 }
 
 /// A switch with everything about it drawn; its knob hardly damps.
@@ -182,19 +194,7 @@ fn hide(
             truth.hidden = vec!["coulomb-friction"];
             truth.value = Some(("Fc", by_n));
         }
-        Kind::OneWay => {
-            let by_n = chance.of_order(0.25, 0.6);
-            let right = chance.happens(0.5);
-            for point in points(world) {
-                if right {
-                    point.forward_n += by_n;
-                } else {
-                    point.backward_n -= by_n;
-                }
-            }
-            truth.hidden = vec!["friction-asymmetry"];
-            truth.value = Some((if right { "dFc to the right" } else { "dFc to the left" }, by_n));
-        }
+        Kind::OneWay => one_way(world, truth, chance),
         Kind::Spring => {
             let k = chance.of_order(80.0, 120.0);
             for point in points(world) {
@@ -213,16 +213,33 @@ fn hide(
             truth.hidden = vec!["force-gain"];
             truth.value = Some(("g - 1", instruments.gain - 1.0));
         }
-        Kind::Stop => {
-            let nearer = chance.of_order(1.0e-3, 2.0e-3);
-            let curve = &mut world.switch.as_mut().expect("a switch").curve;
-            let end = curve.points.last().expect("an end").at_m - nearer;
-            let (forward_n, backward_n) = (curve.force_n(end, 1.0), curve.force_n(end, 0.0));
-            *curve.points.last_mut().expect("an end") = CurvePoint { at_m: end, forward_n, backward_n };
-            truth.hidden = vec!["added-constraint"];
-            truth.value = Some(("right stop is nearer by", nearer));
+        Kind::Stop => stop(world, truth, chance),
+    }
+}
+
+/// The right stop is nearer than it was.
+fn stop(world: &mut World, truth: &mut Truth, chance: &mut Chance) {
+    let nearer = chance.of_order(1.0e-3, 2.0e-3);
+    let curve = &mut world.switch.as_mut().expect("a switch").curve;
+    let end = curve.points.last().expect("an end").at_m - nearer;
+    let (forward_n, backward_n) = (curve.force_n(end, 1.0), curve.force_n(end, 0.0));
+    *curve.points.last_mut().expect("an end") = CurvePoint { at_m: end, forward_n, backward_n };
+    truth.hidden = vec!["added-constraint"];
+    truth.value = Some(("right stop is nearer by", nearer));
+}
+
+/// More friction in one direction.
+fn one_way(world: &mut World, truth: &mut Truth, chance: &mut Chance) {
+    let (by_n, right) = (chance.of_order(0.25, 0.6), chance.happens(0.5));
+    for point in points(world) {
+        if right {
+            point.forward_n += by_n;
+        } else {
+            point.backward_n -= by_n;
         }
     }
+    truth.hidden = vec!["friction-asymmetry"];
+    truth.value = Some((if right { "dFc to the right" } else { "dFc to the left" }, by_n));
 }
 
 /// A triangle of resistance between a stop and the top of the curve, on the way that fingers push in both directions.

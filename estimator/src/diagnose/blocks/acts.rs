@@ -115,7 +115,7 @@ pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<
 }
 
 /// Mean place of carried blocks along an axis and its standard deviation, m.
-fn along(rows: &Rows, axis: usize) -> (f64, f64) {
+fn along(rows: &Rows<'_>, axis: usize) -> (f64, f64) {
     let carried = rows.all.iter().filter(|r| matches!(r.place, Place::Carried { axis: 1, .. }));
     let places: Vec<f64> = carried.map(|r| rows.seen[r.recording].place[axis][r.i]).collect();
     let n = places.len().max(1) as f64;

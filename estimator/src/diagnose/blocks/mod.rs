@@ -12,7 +12,7 @@ mod moved;
 mod rows;
 mod seen;
 
-use super::answer::{Beside, Found, Part, answer};
+use super::answer::{Beside, Compared, Found, Part, answer};
 use super::candidate::Candidate;
 use super::quality;
 use super::report::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
@@ -26,11 +26,7 @@ use seen::Seen;
 pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     let seen = recordings.iter().map(Seen::of).collect::<Result<Vec<_>, _>>()?;
     let world = options.world.as_ref();
-    let limit = threshold(seen.iter().map(|s| s.period_s).fold(0.0, f64::max));
-    let carry = carry::carry(&seen, world, limit)?;
-    let grasp = grasp::grasp(&seen, world, limit)?;
-    // A block that a cable pulls at is held by more than its ground.
-    let ground = if carry.has("added-constraint") { None } else { ground::ground(&seen, world, carry.cross(), limit)? };
+    let (carry, grasp, ground) = look(&seen, world)?;
     let mut beside = Beside {
         model: if world.is_some() { "world: weight+inertia+pads" } else { "weight+rigid widths+plain heights" }
             .to_owned(),
@@ -61,6 +57,27 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         ground.as_ref().map(|g| g.compared.part(&ground_shows, &ground::Ground::states, &ground::Ground::usual)),
     );
     Ok(answer(&parts, beside, &next))
+}
+
+/// Net force, distance of the tips and height of the grip, compared.
+fn look(
+    seen: &[Seen<'_>],
+    world: Option<&World>,
+) -> Result<(carry::Carry, Option<grasp::Grasp>, Option<ground::Ground>), EstimateError> {
+    let limit = threshold(seen.iter().map(|s| s.period_s).fold(0.0, f64::max));
+    let carry = carry::carry(seen, world, limit)?;
+    let grasp = grasp::grasp(seen, world, limit)?;
+    // A block that a cable pulls at is held by more than its ground.
+    let ground = if carry.has("added-constraint") { None } else { ground::ground(seen, world, carry.cross(), limit)? };
+    Ok((carry, grasp, ground))
+}
+
+/// The channels of other recordings of the same blocks.
+pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compared>, EstimateError> {
+    let seen = recordings.iter().map(Seen::of).collect::<Result<Vec<_>, _>>()?;
+    let (carry, grasp, ground) = look(&seen, options.world.as_ref())?;
+    let rest = grasp.map(|g| g.compared).into_iter().chain(ground.map(|g| g.compared));
+    Ok(std::iter::once(carry.compared).chain(rest).collect())
 }
 
 /// What no recording of this kind could show.

@@ -6,7 +6,7 @@ mod rows;
 mod shaft;
 mod sheet;
 
-use super::answer::{Beside, Found, Part, answer, parameter};
+use super::answer::{Beside, Compared, Found, Part, answer, parameter};
 use super::candidate::Candidate;
 use super::gain::chi_square_tail;
 use super::report::{Alternative, Cause, CauseParameter, Diagnosis, Gain, NextExperiment, NotExcited};
@@ -53,6 +53,16 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let mut parts: Vec<Part<'_>> = vec![sheet.part(&on_sheet, &plain, &sheet::usual)];
     parts.extend(shaft.as_ref().map(|s| s.compared.part(&on_shaft, &plain, &|_| None)));
     Ok(answer(&parts, beside, &next))
+}
+
+/// The channels of other recordings of the same needle and sheet.
+pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compared>, EstimateError> {
+    let (seen, ..) = joined(recordings)?;
+    let law = options.world.as_ref().and_then(|w| w.membrane.as_ref()).map(|m| &m.law);
+    let limit = threshold(seen.period_s);
+    let mut found = vec![sheet::sheet(&seen, law, limit)?];
+    found.extend(shaft::shaft(&seen, law, limit)?.map(|s| s.compared));
+    Ok(found)
 }
 
 /// All recordings as one, the names of those that take part, and a sentence for each that does not.

@@ -9,7 +9,7 @@ mod push;
 mod rows;
 mod stop;
 
-use super::answer::{Beside, Found, Part, answer};
+use super::answer::{Beside, Compared, Found, Part, answer};
 use super::candidate::Candidate;
 use super::report::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
 use super::{Options, quality, threshold};
@@ -19,11 +19,16 @@ use haptics::world::World;
 use model::Known;
 use push::Push;
 
-/// Diagnoses recordings of one switch.
-pub fn switch(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
-    let faults: Vec<quality::Faults> = recordings.iter().map(quality::faults).collect();
-    let bad: Vec<Vec<bool>> = faults.iter().map(|f| f.bad.clone()).collect();
-    let seen = rows::seen(recordings, &bad)?;
+/// Everything about the recordings of one switch that was compared.
+struct Look {
+    seen: rows::Seen,
+    push: Push,
+    curve: Option<Compared>,
+    stop: Option<Compared>,
+}
+
+fn look(recordings: &[Recording], bad: &[Vec<bool>], options: &Options) -> Result<Look, EstimateError> {
+    let seen = rows::seen(recordings, bad)?;
     let known = options.world.as_ref().and_then(Known::of);
     let limit = threshold(seen.period_s);
     let push = push::push(&seen, limit)?;
@@ -36,17 +41,29 @@ pub fn switch(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let has = |id: &str| push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == id);
     let other = curve.as_ref().is_some_and(|c| !c.study.chosen.is_empty()) || has("friction-change");
     let stop = if other { None } else { stop::stop(&seen, known.as_ref(), limit)? };
+    Ok(Look { seen, push, curve, stop })
+}
+
+/// The channels of other recordings of the same switch.
+pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compared>, EstimateError> {
+    let bad: Vec<Vec<bool>> = recordings.iter().map(|r| quality::faults(r).bad).collect();
+    let Look { push, curve, stop, .. } = look(recordings, &bad, options)?;
+    Ok(std::iter::once(push.compared).chain(curve).chain(stop).collect())
+}
+
+/// Diagnoses recordings of one switch.
+pub fn switch(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let faults: Vec<quality::Faults> = recordings.iter().map(quality::faults).collect();
+    let bad: Vec<Vec<bool>> = faults.iter().map(|f| f.bad.clone()).collect();
+    let has_world = options.world.as_ref().and_then(Known::of).is_some();
+    let Look { seen, push, curve, stop } = look(recordings, &bad, options)?;
     let mut beside = Beside {
-        model: if known.is_some() {
-            "curve and stops of the world"
-        } else {
-            "any curve there and back, pads that give"
-        }
-        .to_owned(),
+        model: if has_world { "curve and stops of the world" } else { "any curve there and back, pads that give" }
+            .to_owned(),
         causes: faults.into_iter().flat_map(|f| f.causes).collect(),
         ..Beside::default()
     };
-    unseen(&seen, known.is_some(), &mut beside);
+    unseen(&seen, has_world, &mut beside);
     let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
     let (on_way, on_curve, on_stop) =
         (|f: &Found<'_>| Push::shows(f), |f: &Found<'_>| curve::shows(f), |f: &Found<'_>| stop::shows(f));

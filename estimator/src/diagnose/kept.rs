@@ -1,0 +1,137 @@
+//! What was found, kept as values of columns, so that it can be put on other recordings of the same object.
+
+use super::answer::Compared;
+use super::candidate::{Candidate, Searched};
+use super::geometry::Study;
+use super::report::Validation;
+use crate::estimate::EstimateError;
+use crate::identify::linear::least_squares;
+use haptics::law::Kind;
+
+/// Values that say when or in which recording something happened: nothing of another recording.
+const OF_ONE_RECORDING: [&str; 4] = ["t0", "from insertion", "from recording", "duration"];
+/// Searched values of another recording's grid that are as near as this count as the same.
+const SAME: f64 = 0.35;
+
+/// One cause of one channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kept {
+    /// Of which channel.
+    pub channel: &'static str,
+    /// The cause.
+    pub id: &'static str,
+    /// Plant or instrument.
+    pub kind: Kind,
+    linear: Vec<&'static str>,
+    searched: Vec<Searched>,
+    values: Vec<f64>,
+}
+
+/// All that was chosen in a comparison.
+pub fn of_study(channel: &'static str, study: &Study) -> Vec<Kept> {
+    let Some(solved) = &study.solved else { return Vec::new() };
+    let mut at = study.base.len();
+    let of = |chosen: &super::select::Chosen| {
+        let candidate = &study.candidates[chosen.candidate];
+        let end = at + candidate.columns.len();
+        let values = solved.values[at..end].to_vec();
+        at = end;
+        Kept {
+            channel,
+            id: candidate.id,
+            kind: candidate.kind,
+            linear: candidate.linear.iter().map(|l| l.0).collect(),
+            searched: candidate.searched.clone(),
+            values,
+        }
+    };
+    study.chosen.iter().map(of).collect()
+}
+
+impl Kept {
+    /// What it adds to the rows of another recording, out of the candidates there; nothing where it is not to be had there.
+    pub fn column(&self, candidates: &[Candidate]) -> Option<Vec<f64>> {
+        if self.searched.iter().any(|s| OF_ONE_RECORDING.contains(&s.name)) {
+            return None;
+        }
+        let apart = |c: &Candidate| -> f64 {
+            let pairs = c.searched.iter().zip(&self.searched);
+            pairs.map(|(a, b)| ((a.value - b.value) / b.value.abs().max(1e-9)).abs()).fold(0.0, f64::max)
+        };
+        let same = |c: &&Candidate| {
+            let names = |c: &Candidate| c.linear.iter().map(|l| l.0).collect::<Vec<_>>();
+            c.id == self.id && names(c) == self.linear && c.searched.len() == self.searched.len()
+        };
+        let nearest = candidates.iter().filter(same).min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
+        if apart(nearest) > SAME {
+            return None;
+        }
+        let mut sum = vec![0.0; nearest.columns.first()?.len()];
+        for (column, value) in nearest.columns.iter().zip(&self.values) {
+            sum.iter_mut().zip(column).for_each(|(s, c)| *s += value * c);
+        }
+        Some(sum)
+    }
+}
+
+/// What the kept causes are worth on the channels of another recording. What each recording leaves open there (weights, places, zeros) is
+/// fitted, with and without them; the causes and their sizes are not. `order`: the causes, strongest first; the figures are of the channel
+/// of the first of them that can be had.
+pub fn measure(kept: &[Kept], order: &[&str], channels: &[Compared]) -> Result<Validation, EstimateError> {
+    let mut left_out: Vec<String> = Vec::new();
+    let mut found: Option<Validation> = None;
+    let place = |channel: &Compared| {
+        let own = kept.iter().filter(|k| k.channel == channel.channel);
+        own.filter_map(|k| order.iter().position(|id| *id == k.id)).min().unwrap_or(order.len())
+    };
+    let mut sorted: Vec<&Compared> = channels.iter().collect();
+    sorted.sort_by_key(|c| place(c));
+    for channel in sorted {
+        let study = &channel.study;
+        let mut sum = vec![0.0; study.y.len()];
+        let mut is_any = false;
+        for cause in kept.iter().filter(|k| k.channel == channel.channel) {
+            match cause.column(&study.candidates) {
+                Some(column) => {
+                    sum.iter_mut().zip(column).for_each(|(s, c)| *s += c);
+                    is_any = true;
+                }
+                None => left_out.push(cause.id.to_owned()),
+            }
+        }
+        // The first channel stands for all where nothing was found.
+        if found.as_ref().is_some_and(|v| v.of.is_some()) || (found.is_some() && !is_any) {
+            continue;
+        }
+        let after: Vec<f64> = study.y.iter().zip(&sum).map(|(y, s)| y - s).collect();
+        found = Some(Validation {
+            rms_before: open(channel, &study.y)?,
+            rms_after: open(channel, &after)?,
+            of: is_any.then(|| channel.channel.to_owned()),
+            unit: is_any.then(|| channel.unit.to_owned()),
+            left_out: Vec::new(),
+        });
+    }
+    let missing = kept.iter().filter(|k| channels.iter().all(|c| c.channel != k.channel));
+    left_out.extend(missing.map(|k| k.id.to_owned()));
+    let mut found = found.ok_or_else(super::nothing)?;
+    found.left_out = left_out;
+    Ok(found)
+}
+
+/// Root mean square that the open part of the model leaves of a target.
+fn open(channel: &Compared, y: &[f64]) -> Result<f64, EstimateError> {
+    let study = &channel.study;
+    let base: Vec<Vec<f64>> = study.base.iter().filter(|c| c.iter().any(|v| *v != 0.0)).cloned().collect();
+    let squares: Vec<f64> = study.weight.iter().map(|w| w * w).collect();
+    let mut left = y.to_vec();
+    if !base.is_empty() {
+        let fit = least_squares(&base, y, Some(&squares))?;
+        for (column, value) in base.iter().zip(&fit.values) {
+            left.iter_mut().zip(column).for_each(|(l, c)| *l -= value * c);
+        }
+    }
+    // Rows that are held out in turn stand for their neighbours; other places of the channel (empty fingers) count with them.
+    let (sum, weight) = left.iter().zip(&squares).fold((0.0, 0.0), |(s, n), (l, w)| (s + w * l * l, n + w));
+    Ok((sum / f64::max(weight, 1e-12)).sqrt())
+}
