@@ -153,8 +153,8 @@ pub struct NextExperiment {
 /// A motion of the library, for an operator that is a program. Lengths are m, angles rad: as the coordinate is (a crank's is its angle).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Experiment {
-    /// Which motion: `sweep-across`, `sweep-let-go`, `short-strokes`, `bursts`, `one-way`, `rests-and-squeezes`, `long-mixed` or
-    /// `hang-weight`; `docs/diagnosis.md` says what each is.
+    /// Which motion: `sweep-across`, `sweep-let-go`, `short-strokes`, `bursts`, `one-way`, `rests-and-squeezes`, `long-mixed`,
+    /// `hang-weight`, `carry-let-go`, `carry-still` or `slide-let-go`; `docs/diagnosis.md` says what each is.
     pub id: String,
     /// How long the object is held, s.
     pub seconds: f64,

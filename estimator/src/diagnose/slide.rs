@@ -8,7 +8,7 @@
 use super::force::{self, Model};
 use super::geometry::Study;
 use super::report::{
-    Alternative, Cause, CauseParameter, Diagnosis, Gain, NextExperiment, NotExcited, Validation, Verdict,
+    Alternative, Cause, CauseParameter, Diagnosis, Experiment, Gain, NextExperiment, NotExcited, Validation, Verdict,
 };
 use super::track::{self, Place, Track};
 use super::{Options, explain, named, nothing, quality, sliding, threshold};
@@ -67,11 +67,12 @@ pub fn slid(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Es
     let study = force::study(&mut track, &model, &given_by_pads(), limit)?;
     options.progress.tell(0.8)?;
     let mut found = explain::explain(&track, &model, &study, &[], faults);
-    // Motions of the library are for what is driven along its coordinate by a program.
+    // Motions of that library are for what is driven along its coordinate by a program.
     if let Some(next) = &mut found.next_experiment {
         next.experiment = None;
     }
     constants(&mut found, &read, weight_n);
+    let_go(&mut found, &track);
     scales(&mut found, &study, &model, weight_n.map(|w| w / recordings[0].meta.gravity()));
     if weight_n.is_none() {
         let why = "the block's weight is not known; state `weight_N` in the sidecar, or name a world";
@@ -246,7 +247,8 @@ fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
     let free: Vec<(f64, f64)> = read.iter().filter_map(|s| s.free_n).collect();
     let mean = free.iter().map(|f| f.0).sum::<f64>() / free.len().max(1) as f64;
     let error = free.iter().map(|f| f.1 * f.1).sum::<f64>().sqrt() / free.len().max(1) as f64;
-    let all_free = free.len() == read.len();
+    // One sensor, one bias: a single recording in which the fingers were empty tells it for all.
+    let all_free = !free.is_empty();
     let felt = mean.abs() > ERRORS * error && (b.value - mean).abs() < ERRORS * error.hypot(b.std_error);
     let number = |name: &str, value: f64, std_error: f64, unit: &str| CauseParameter {
         name: name.to_owned(),
@@ -305,6 +307,32 @@ fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
     let separates = std::iter::once(own).chain(others.iter().map(|id| (*id).to_owned())).collect();
     found.next_experiment =
         Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: 0.9, experiment: None });
+}
+
+/// Where the answer asks to let go: the same for an operator that is a program, with the probability that it tells.
+fn let_go(found: &mut Diagnosis, track: &Track) {
+    const FREE_BEFORE_S: f64 = 2.0;
+    let size = found.causes.iter().find(|c| c.id == "force-bias").and_then(|c| c.parameters.first()).map(|b| b.value);
+    let (Some(next), Some(size)) = (&mut found.next_experiment, size) else { return };
+    if !next.separates.iter().any(|s| s == "gravity-tilt") {
+        return;
+    }
+    let at = |share: f64| track.quantile(share, |r| r.motion.position);
+    // Rows of empty fingers, before and after, with a row's noise each.
+    let rows = 2.0 * FREE_BEFORE_S / track.period_s;
+    let lambda = rows * (size / track.force_noise.max(1e-9)).powi(2);
+    next.expected_power = super::experiment::SURE_HUNG * super::experiment::power(lambda);
+    next.experiment = Some(Experiment {
+        id: "slide-let-go".to_owned(),
+        seconds: 10.0,
+        free_s: FREE_BEFORE_S,
+        middle: 0.5 * (at(0.02) + at(0.98)),
+        half_range: 0.5 * (at(0.98) - at(0.02)),
+        fast: track.quantile(0.95, |r| r.motion.velocity.abs()),
+        across_n: 0.0,
+        added_weight_n: 0.0,
+        added_lever_m: 0.0,
+    });
 }
 
 /// A mass that is known and comes out wrong: forces or lengths are told in a wrong scale.

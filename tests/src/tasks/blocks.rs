@@ -4,7 +4,7 @@ use super::sensor::{Instruments, look};
 use super::{Case, Truth};
 use crate::generate::{Act, Errors, act, stacking_world};
 use blind::Chance;
-use estimator::diagnose::Options;
+use estimator::diagnose::{Experiment, Options};
 use estimator::pipeline;
 use haptics::Vec2;
 use haptics::device::Skill;
@@ -132,18 +132,37 @@ pub fn twice(kind: Kind, seed: u64) -> (Case, Truth, Recording) {
     (case, truth, again.expect("it was asked for"))
 }
 
-fn made(kind: Kind, seed: u64, twice: bool) -> (Case, Truth, Option<Recording>) {
-    let mut chance = Chance::new(seed, 77);
-    let (mut world, _) = stacking_world(seed ^ 0x51ab_1e57);
-    let skill = skill(&mut chance, kind);
+/// The blocks of a case, and who holds them.
+struct Object {
+    before: World,
+    world: World,
+    instruments: Instruments,
+    truth: Truth,
+    skill: Skill,
+    every: usize,
+}
+
+fn drawn(kind: Kind, seed: u64, chance: &mut Chance) -> Object {
+    let (before, _) = stacking_world(seed ^ 0x51ab_1e57);
+    let skill = skill(chance, kind);
     let every = chance.pick(&[1, 2, 4]);
-    let mut instruments = Instruments::default();
-    let mut truth = Truth::default();
-    let before = world.clone();
+    let (mut world, mut instruments, mut truth) = (before.clone(), Instruments::default(), Truth::default());
     if kind.is_plain() {
         truth.besides = vec!["pad-compliance", "inertia"];
     }
-    hide(kind, &mut world, &mut instruments, &mut truth, (skill, seed), &mut chance);
+    hide(kind, &mut world, &mut instruments, &mut truth, (skill, seed), chance);
+    Object { before, world, instruments, truth, skill, every }
+}
+
+/// The blocks of a case, in the motion that an answer asked for; nothing for one that nobody knows.
+pub fn as_asked(kind: Kind, seed: u64, asked: &Experiment, hand: u64) -> Option<Recording> {
+    let object = drawn(kind, seed, &mut Chance::new(seed, 77));
+    super::perform::carry(&object.world, asked, &object.instruments, object.every, &mut Chance::new(hand, 101))
+}
+
+fn made(kind: Kind, seed: u64, twice: bool) -> (Case, Truth, Option<Recording>) {
+    let mut chance = Chance::new(seed, 77);
+    let Object { before, world, instruments, truth, skill, every } = drawn(kind, seed, &mut chance);
     let done = perform(&world, skill, seed);
     let mut recording = look(&world, &done.ticks, every, &instruments, Task::BlockStack, &mut chance);
     if matches!(kind, Kind::LeakCut | Kind::DriftCut) {

@@ -6,6 +6,7 @@
 pub mod barrel;
 pub mod blocks;
 pub mod needle;
+pub mod perform;
 pub mod score;
 pub mod sensor;
 pub mod slide;

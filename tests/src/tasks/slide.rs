@@ -3,7 +3,7 @@
 use super::sensor::{Instruments, look};
 use super::{Case, Truth};
 use blind::Chance;
-use estimator::diagnose::Options;
+use estimator::diagnose::{Experiment, Options};
 use haptics::Vec2;
 use haptics::device::HandImpedance;
 use haptics::recording::{Recording, Task};
@@ -124,9 +124,9 @@ pub fn twice(kind: Kind, seed: u64) -> (Case, Truth, Recording) {
     (case, truth, again.expect("it was asked for"))
 }
 
-fn made(kind: Kind, seed: u64, twice: bool) -> (Case, Truth, Option<Recording>) {
-    let mut chance = Chance::new(seed, 89);
-    let mut table = Table::drawn(&mut chance);
+/// The block, its table and its sensors; forces come so many milliseconds late.
+fn drawn(kind: Kind, chance: &mut Chance) -> (Table, Instruments, Truth, usize) {
+    let mut table = Table::drawn(chance);
     let (mut instruments, mut truth, mut late) = (Instruments::default(), Truth::default(), 0);
     match kind {
         Kind::Nothing => {}
@@ -189,6 +189,44 @@ fn made(kind: Kind, seed: u64, twice: bool) -> (Case, Truth, Option<Recording>) 
             truth.besides = vec!["coulomb-friction"];
         }
     }
+    (table, instruments, truth, late)
+}
+
+/// The block of a case, slid as an answer asked; nothing for a motion that nobody knows.
+pub fn as_asked(kind: Kind, seed: u64, asked: &Experiment, hand: u64) -> Option<Recording> {
+    if asked.id != "slide-let-go" || !(asked.fast > 0.0 && asked.half_range > 0.0) {
+        return None;
+    }
+    let (table, instruments, _, late) = drawn(kind, &mut Chance::new(seed, 89));
+    let mut chance = Chance::new(hand, 102);
+    let way = asked_way(&table, asked, &mut chance);
+    let mut recording = seen(&table, &instruments, late, &way, &mut chance);
+    if kind != Kind::NothingKnown {
+        recording.meta.known.insert("weight_N".to_owned(), table.weight_n());
+    }
+    Some(Recording { name: "asked".to_owned(), ..recording })
+}
+
+fn asked_way(table: &Table, asked: &Experiment, chance: &mut Chance) -> Vec<(f64, f64, f64)> {
+    let open = table.width_m + 8e-3;
+    let pinched = table.width_m - 4.0 / HandImpedance::default().stiffness_n_m;
+    let mut way = vec![(0.0, 0.0, open), (asked.free_s, 0.0, open), (asked.free_s + 0.5, 0.0, pinched)];
+    let mut side = 1.0;
+    while way[way.len() - 1].0 < asked.free_s + 0.5 + asked.seconds {
+        let (now, x, _) = way[way.len() - 1];
+        let to = asked.middle + side * asked.half_range * chance.between(0.6, 1.0);
+        let takes_s = 1.875 * (to - x).abs() / (asked.fast * chance.between(0.3, 1.0));
+        way.push((now + takes_s.max(0.15), to, pinched));
+        side = -side;
+    }
+    let (now, x, _) = way[way.len() - 1];
+    way.extend([(now + 0.4, x, pinched), (now + 0.9, x, open), (now + 0.9 + asked.free_s, x, open)]);
+    way
+}
+
+fn made(kind: Kind, seed: u64, twice: bool) -> (Case, Truth, Option<Recording>) {
+    let mut chance = Chance::new(seed, 89);
+    let (table, instruments, truth, late) = drawn(kind, &mut chance);
     let recorded = |lets_go: bool, chance: &mut Chance| {
         let mut recording = record(&table, &instruments, late, lets_go, chance);
         if kind != Kind::NothingKnown {
@@ -232,11 +270,15 @@ fn plan(table: &Table, lets_go: bool, chance: &mut Chance) -> Vec<(f64, f64, f64
 
 fn record(table: &Table, instruments: &Instruments, late: usize, lets_go: bool, chance: &mut Chance) -> Recording {
     let way = plan(table, lets_go, chance);
-    let mut ticks = slide(table, &way, chance);
+    seen(table, instruments, late, &way, chance)
+}
+
+fn seen(table: &Table, with: &Instruments, late: usize, way: &[(f64, f64, f64)], chance: &mut Chance) -> Recording {
+    let mut ticks = slide(table, way, chance);
     let forces: Vec<[Vec2; 2]> = (0..ticks.len()).map(|k| ticks[k.saturating_sub(late)].tip_force_n).collect();
     ticks.iter_mut().zip(forces).for_each(|(tick, force)| tick.tip_force_n = force);
     let every = chance.pick(&[1, 2, 4]);
-    look(&presets::stacking(), &ticks, every, instruments, Task::BlockStack, chance)
+    look(&presets::stacking(), &ticks, every, with, Task::BlockStack, chance)
 }
 
 /// One tick a millisecond.

@@ -6,6 +6,7 @@
 mod acts;
 mod cable;
 mod carry;
+mod experiment;
 mod grasp;
 mod ground;
 mod moved;
@@ -56,7 +57,7 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     parts.extend(
         ground.as_ref().map(|g| g.compared.part(&ground_shows, &ground::Ground::states, &ground::Ground::usual)),
     );
-    Ok(answer(&parts, beside, &next))
+    Ok(answer(&parts, beside, &|open| experiment::propose(open, &carry, &seen).or_else(|| next(open))))
 }
 
 /// Net force, distance of the tips and height of the grip, compared.

@@ -15,13 +15,13 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Lengths of a proposed recording, s: the shortest that is likely to do.
 const LENGTHS_S: [f64; 3] = [20.0, 40.0, 80.0];
-const LIKELY: f64 = 0.8;
+pub(super) const LIKELY: f64 = 0.8;
 /// Evidence that settles a question, as a log likelihood ratio.
 const SETTLED: f64 = 5.0;
 /// How often a question is settled whose evidence is certain to suffice, by a motion and by a hung weight: the truth may be neither answer
 /// (measured, `docs/diagnosis.md`).
-const SURE: f64 = 0.85;
-const SURE_HUNG: f64 = 0.95;
+pub(super) const SURE: f64 = 0.85;
+pub(super) const SURE_HUNG: f64 = 0.95;
 /// More evidence than this is as good as certain.
 const MOST: f64 = 1e6;
 /// A crank is turned no farther than this to either side, rad.
@@ -138,7 +138,7 @@ fn hung_proposal(asked: &Experiment, pairs: &[(&str, &str)], power: f64, on: &st
 }
 
 /// Probability that a log likelihood ratio of mean λ/2 and variance λ settles it.
-fn power(lambda: f64) -> f64 {
+pub(super) fn power(lambda: f64) -> f64 {
     let lambda = lambda.clamp(0.0, MOST);
     let sure = (0.5 * lambda - SETTLED) / lambda.max(1e-9).sqrt();
     Normal::new(0.0, 1.0).map_or(0.0, |n| n.cdf(sure))
