@@ -29,6 +29,8 @@ pub struct Handling {
     pub truth: Truth,
     /// Mass at the start, kg, and what it loses, kg/s.
     pub mass_kg: (f64, f64),
+    /// How far the barrel turned in the grip while its cable pulled, rad.
+    pub turned_rad: f64,
 }
 
 /// A barrel drawn at random; about half of them leak, two of three are on a cable.
@@ -69,7 +71,7 @@ pub fn barrel_world(seed: u64) -> World {
 pub fn handle(world: &World, seed: u64, sensors: &[SensorModel]) -> Handling {
     let mut rng = StdRng::seed_from_u64(seed ^ 0x9a1d);
     let plan = plan(world, &mut rng);
-    let (ticks, off_m) = perform(world, &plan);
+    let (ticks, off_m, turned_rad) = perform(world, &plan);
     let zeros = [(); 2].map(|()| Vec2::from_fn(|_, _| rng.random_range(-0.02..0.02)));
     let drifts = [(); 2].map(|()| Vec2::new(0.0, rng.random_range(-1e-3..1e-3)));
     let seen: Vec<TickRecord> = ticks
@@ -91,6 +93,7 @@ pub fn handle(world: &World, seed: u64, sensors: &[SensorModel]) -> Handling {
         recordings: recordings.collect(),
         truth: truth(world, off_m),
         mass_kg: (world.blocks[0].mass_kg, content.leak_kg_s),
+        turned_rad,
     }
 }
 
@@ -154,15 +157,15 @@ fn plan(world: &World, rng: &mut StdRng) -> Vec<(f64, Wanted)> {
     plan
 }
 
-/// Steps the world; returns every fifth step, and how far above the barrel's middle it was held on the mean.
-fn perform(world: &World, plan: &[(f64, Wanted)]) -> (Vec<TickRecord>, f64) {
+/// Steps the world; returns every fifth step, how far above the barrel's middle it was held on the mean, and how far it turned.
+fn perform(world: &World, plan: &[(f64, Wanted)]) -> (Vec<TickRecord>, f64, f64) {
     let arm = HandImpedance::default();
     let mut state = State::resting(world);
     let tips = |w: &Wanted| {
         let half = Vec2::new(0.5 * w.apart_m - w.pinch_n / arm.stiffness_n_m, 0.0);
         [w.middle - half, w.middle + half]
     };
-    let (mut ticks, mut offsets) = (Vec::new(), Vec::new());
+    let (mut ticks, mut offsets, mut turned_rad) = (Vec::new(), Vec::new(), 0.0_f64);
     let mut from = plan[0].1;
     let (mut place, mut velocity) = (tips(&from), [Vec2::zeros(); 2]);
     let mut count = 0_usize;
@@ -184,6 +187,7 @@ fn perform(world: &World, plan: &[(f64, Wanted)]) -> (Vec<TickRecord>, f64) {
                     let lift = tip_force_n.map(|f| f.y / world.pad.shear_stiffness_n_m);
                     let middle = 0.5 * (place[0].y - lift[0] + place[1].y - lift[1]);
                     offsets.push(middle - state.bodies[0].center_m.y);
+                    turned_rad = turned_rad.max(state.bodies[0].angle_rad.abs());
                 }
             }
             count += 1;
@@ -191,7 +195,7 @@ fn perform(world: &World, plan: &[(f64, Wanted)]) -> (Vec<TickRecord>, f64) {
         from = *to;
     }
     let off_m = offsets.iter().sum::<f64>() / offsets.len().max(1) as f64;
-    (ticks, off_m)
+    (ticks, off_m, turned_rad)
 }
 
 /// Scores of one seed, a level of noise each.

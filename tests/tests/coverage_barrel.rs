@@ -54,3 +54,20 @@ fn what_a_recording_cannot_show_has_no_number_and_the_fitted_barrel_can_be_felt(
     }
     assert!(cables >= 2, "{cables} of 6 barrels were on a cable");
 }
+
+/// Fingers above or below its middle let a barrel turn when its cable pulls: the cable is tied where it is all the same.
+#[test]
+fn a_barrel_that_turns_in_the_grip_shows_where_its_cable_is_tied() {
+    for seed in [900_001, 900_011, 900_014] {
+        let world = barrel_world(seed);
+        let turned_rad = handle(&world, seed, &[]).turned_rad;
+        assert!(turned_rad > 0.015, "seed {seed} turned by {turned_rad} rad only");
+        let levels = scores(seed);
+        for (level, found) in levels.iter().enumerate() {
+            for name in ["stiffness_N_m", "anchor_x_m", "anchor_y_m", "length_m"] {
+                let (z, relative) = found[&("cable".to_owned(), name.to_owned())];
+                assert!(z.abs() < 3.0 && relative < 0.05, "seed {seed} level {level} {name}: {z} errors of {relative}");
+            }
+        }
+    }
+}

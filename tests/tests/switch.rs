@@ -86,6 +86,30 @@ fn intervals_of_95_percent_hold_the_truth() {
     }
 }
 
+/// A knob that resists the faster it moves has no more friction for that, and no higher peaks.
+#[test]
+fn damping_and_mass_of_the_knob_are_not_taken_for_friction() {
+    let (mut held, mut count) = (0, 0);
+    for seed in 0..6_u64 {
+        for (damping_n_s_m, mass_kg) in [(0.0, 0.004), (1.0, 0.012)] {
+            let mut world = drawn(75_000 + seed);
+            let switch = world.switch.as_mut().expect("it has one");
+            (switch.damping_n_s_m, switch.mass_kg) = (damping_n_s_m, mass_kg);
+            let fit = analysed(&recorded(&world, 75_000 + seed, 2, 1.0, 60.0)).fit;
+            let truth = truth(&world);
+            for name in ["friction_N", "peak_force_N", "return_peak_force_N"] {
+                let wanted = truth.iter().find(|(n, _)| *n == name).expect("drawn").1;
+                let (z, error) = (score(&fit, name, wanted), fit.parameter("switch", name).and_then(|p| p.std_error));
+                println!("seed {seed} damping {damping_n_s_m}: {name} {z:.1} errors of {error:?} N");
+                assert!(error.is_some_and(|e| e < 0.04), "seed {seed} {name}: {error:?}");
+                count += 1;
+                held += usize::from(z.abs() < 1.96);
+            }
+        }
+    }
+    assert!(held * 100 >= 86 * count, "{held} of {count}");
+}
+
 #[test]
 fn a_throw_only_one_way_shows_half_of_the_curve() {
     for seed in 0..4_u64 {

@@ -6,6 +6,7 @@
 
 use super::linear::LinearFit;
 use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 
 /// Draws; the error of a standard error is then 4 %.
 const DRAWS: usize = 300;
@@ -25,21 +26,39 @@ pub fn block_bootstrap(
     weights: Option<&[f64]>,
     fit: &LinearFit,
 ) -> Option<Vec<f64>> {
+    // One stretch, all of it.
+    let whole = 0..rhs.len();
+    block_bootstrap_within(columns, rhs, weights, fit, std::slice::from_ref(&whole))
+}
+
+/// The same for rows of several events (rests, lifts): blocks are drawn within each event, bent to a circle of its own, so that every
+/// event stays in every draw and what only one of them shows stays shown. A stretch of one row is kept as it is.
+///
+/// `stretches`: ranges of rows that follow each other and together hold all of them.
+pub fn block_bootstrap_within(
+    columns: &[Vec<f64>],
+    rhs: &[f64],
+    weights: Option<&[f64]>,
+    fit: &LinearFit,
+    stretches: &[Range<usize>],
+) -> Option<Vec<f64>> {
     let (n, p) = (rhs.len(), columns.len());
     if n < 2 * LEAST_BLOCKS || p == 0 || !fit.identified.iter().all(|i| *i) {
         return None;
     }
     let apart = (n as f64 / fit.effective_samples.max(1.0)).max(1.0);
     let length = ((TIMES * apart).ceil() as usize).min(n / LEAST_BLOCKS).max(1);
+    let length_in = |s: &Range<usize>| length.min(s.len().div_ceil(2)).max(1);
     let sums = RunningSums::new(columns, rhs, weights);
-    let blocks = n.div_ceil(length);
     let mut draw = Draws(0x9E37_79B9_7F4A_7C15);
     let mut values: Vec<DVector<f64>> = Vec::with_capacity(DRAWS);
     let mut total = vec![0.0; sums.width];
     for _ in 0..DRAWS {
         total.fill(0.0);
-        for _ in 0..blocks {
-            sums.add(draw.below(n), length, &mut total);
+        for stretch in stretches.iter().filter(|s| !s.is_empty()) {
+            for _ in 0..stretch.len().div_ceil(length_in(stretch)) {
+                sums.add(stretch.start + draw.below(stretch.len()), length_in(stretch), stretch, &mut total);
+            }
         }
         values.extend(sums.solve(&total));
     }
@@ -47,8 +66,10 @@ pub fn block_bootstrap(
         return None;
     }
     let count = values.len() as f64;
-    // As the variance of a mean of few blocks, which is too small by one in their number.
-    let few = (blocks as f64 / (blocks as f64 - 1.0)).sqrt();
+    // As the variance of a mean of few blocks, which is too small by one in their number in each stretch.
+    let drawn = stretches.iter().filter(|s| s.len() > 1);
+    let (blocks, parts) = drawn.fold((0.0, 0.0), |(b, k), s| (b + s.len().div_ceil(length_in(s)) as f64, k + 1.0));
+    let few = (blocks / (blocks - parts).max(1.0)).sqrt();
     let error = |j: usize| {
         let mean = values.iter().map(|v| v[j]).sum::<f64>() / count;
         let variance = values.iter().map(|v| (v[j] - mean).powi(2)).sum::<f64>() / (count - 1.0);
@@ -90,22 +111,18 @@ impl RunningSums {
         Self { columns: p, width, scales, sums }
     }
 
-    fn rows(&self) -> usize {
-        self.sums.len() / self.width - 1
-    }
-
-    /// Adds the block of `length` rows from `first` on, round the end.
-    fn add(&self, first: usize, length: usize, total: &mut [f64]) {
+    /// Adds the block of `length` rows from `first` on, round the end of `stretch`.
+    fn add(&self, first: usize, length: usize, stretch: &Range<usize>, total: &mut [f64]) {
         let at = |row: usize| &self.sums[row * self.width..(row + 1) * self.width];
-        let n = self.rows();
         let mut part = |from: usize, to: usize| {
             for ((t, a), b) in total.iter_mut().zip(at(from)).zip(at(to)) {
                 *t += b - a;
             }
         };
-        part(first, (first + length).min(n));
-        if first + length > n {
-            part(0, first + length - n);
+        let end = stretch.end;
+        part(first, (first + length).min(end));
+        if first + length > end {
+            part(stretch.start, stretch.start + (first + length - end));
         }
     }
 
@@ -179,9 +196,34 @@ mod tests {
         let sums = RunningSums::new(&[vec![1.0; 30]], &column, None);
         let scale = 30.0_f64.sqrt();
         let mut total = vec![0.0; 2];
-        sums.add(28, 4, &mut total);
+        sums.add(28, 4, &(0..30), &mut total);
         assert!((total[0] - 4.0 / 30.0).abs() < 1e-12);
         assert!((total[1] - (28.0 + 29.0 + 0.0 + 1.0) / scale).abs() < 1e-9);
+    }
+
+    #[test]
+    fn events_that_alone_show_a_value_stay_in_every_draw() {
+        // Four rests of 40 rows, each with a level of its own, and a slope that all share.
+        let mut rng = StdRng::seed_from_u64(41);
+        let stretches: Vec<Range<usize>> = (0..4).map(|k| 40 * k..40 * (k + 1)).collect();
+        let mut columns: Vec<Vec<f64>> =
+            stretches.iter().map(|s| (0..160).map(|i| f64::from(u8::from(s.contains(&i)))).collect()).collect();
+        columns.push((0..160).map(|i| (0.37 * f64::from(i)).sin()).collect());
+        let truth = [1.0, -2.0, 0.5, 3.0, 0.7];
+        let (trials, mut held) = (200, [0; 5]);
+        for _ in 0..trials {
+            let rhs: Vec<f64> = (0..160)
+                .map(|i| {
+                    let noise: f64 = rng.sample(StandardNormal);
+                    columns.iter().zip(truth).map(|(c, v)| c[i] * v).sum::<f64>() + noise
+                })
+                .collect();
+            let fit = least_squares(&columns, &rhs, None).expect("solves");
+            let errors = block_bootstrap_within(&columns, &rhs, None, &fit, &stretches).expect("enough rows");
+            (0..5).for_each(|k| held[k] += usize::from((fit.values[k] - truth[k]).abs() < 1.96 * errors[k]));
+        }
+        println!("{held:?} of {trials}");
+        assert!(held.iter().all(|h| (174..=198).contains(h)), "{held:?}");
     }
 
     #[test]

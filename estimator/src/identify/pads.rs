@@ -5,9 +5,12 @@
 //! end. Which of them holds, and how strongly, is rarely certain from one recording, so they are averaged by how well each explains
 //! it (Bayesian model averaging, Hoeting et al. 1999), and what they disagree about is part of the error.
 
+use super::bootstrap::block_bootstrap_within;
 use super::linear::{LinearFit, least_squares};
 use crate::estimate::EstimateError;
+use crate::segment::threshold::percentile;
 use haptics::law::contact::{Cushion, Densification, ONSET, StiffnessHardening};
+use std::ops::Range;
 
 /// Distance of the tips, grip force and rate of the distance at independent samples of one grasp.
 pub(super) struct Grip<'a> {
@@ -28,6 +31,8 @@ pub(super) struct PadFit {
     /// Give of one pad at no force, m/N, and its standard error.
     pub(super) give_m_per_n: f64,
     pub(super) give_error: f64,
+    /// Both errors by a block bootstrap of the rows; `None` where they are too few.
+    pub(super) resampled: Option<(f64, f64)>,
     /// Probability that the give is not the same at every force.
     pub(super) bent: f64,
     /// Samples.
@@ -42,6 +47,10 @@ pub(super) const SHEAR_OVER_NORMAL: (f64, f64) = (0.7, 0.4 * EVEN);
 
 /// Before the recording was seen, a linear spring is this many times as likely as either way to bend.
 const SIMPLER: f64 = 12.0;
+/// A grip that differs from the usual one by more than this share of the largest difference is a squeeze.
+const SQUEEZED: f64 = 0.5;
+/// With more stretches than this the grip goes up and down all the time, and any part of the recording is like the others.
+const MOST_SQUEEZES: usize = 6;
 /// Values of a bend that are tried first, and then between the neighbours of the best one.
 const TRIALS: usize = 16;
 
@@ -98,7 +107,25 @@ pub(super) fn width_over_force(grip: &Grip<'_>) -> Result<Option<PadFit>, Estima
             models.extend(bent_models(grip, bend, bend.range(least_n, largest_n), independent)?);
         }
     }
-    Ok(Some(average(&models, grip.width.len())))
+    let columns = [vec![1.0; grip.width.len()], grip.force.to_vec(), grip.rate.to_vec()];
+    let resampled = block_bootstrap_within(&columns, grip.width, None, &models[0].fit, &squeezes(grip.force));
+    Ok(Some(average(&models, grip.width.len(), resampled.as_deref())))
+}
+
+/// Stretches of about the usual grip and of squeezes beside it: where few squeezes show all of the give, every draw must have them.
+fn squeezes(force: &[f64]) -> Vec<Range<usize>> {
+    let mut sorted = force.to_vec();
+    let usual = percentile(&mut sorted, 0.5);
+    let most = force.iter().fold(0.0_f64, |most, f| most.max((f - usual).abs()));
+    let squeezed = |f: f64| (f - usual).abs() > SQUEEZED * most;
+    let mut stretches: Vec<Range<usize>> = Vec::new();
+    for (i, f) in force.iter().enumerate() {
+        match stretches.last_mut() {
+            Some(last) if squeezed(*f) == squeezed(force[last.start]) => last.end = i + 1,
+            _ => stretches.push(i..i + 1),
+        }
+    }
+    if stretches.len() > MOST_SQUEEZES { std::iter::once(0..force.len()).collect() } else { stretches }
 }
 
 /// The models of one way to bend: a coarse row of values, then a fine one about the best. Each value's share of the probability
@@ -129,7 +156,8 @@ fn bent_models(
     Ok(outside.chain(row(from, to)?).map(|(_, model)| model).collect())
 }
 
-fn average(models: &[Model], rows: usize) -> PadFit {
+/// `resampled`: errors of the linear spring's columns by resampling. What bent pads have more of scatter, they have there, too.
+fn average(models: &[Model], rows: usize, resampled: Option<&[f64]>) -> PadFit {
     let score = |m: &Model| m.before - 0.5 * m.bic;
     let most = models.iter().map(score).fold(f64::NEG_INFINITY, f64::max);
     let weights: Vec<f64> = models.iter().map(|m| (score(m) - most).exp()).collect();
@@ -138,14 +166,18 @@ fn average(models: &[Model], rows: usize) -> PadFit {
     let of = |column: usize| {
         let mean = part(&|m| m.fit.values[column]);
         let variance = part(&|m| m.fit.std_errors[column].powi(2) + (m.fit.values[column] - mean).powi(2));
-        (mean, variance.sqrt())
+        let apart = part(&|m| (m.fit.values[column] - mean).powi(2));
+        let scatter = part(&|m| m.fit.std_errors[column].powi(2)).sqrt();
+        let drawn = resampled.map(|r| (r[column] * scatter / models[0].fit.std_errors[column]).hypot(apart.sqrt()));
+        (mean, variance.sqrt(), drawn)
     };
-    let ((width_m, width_error_m), (slope, slope_error)) = (of(0), of(1));
+    let ((width_m, width_error_m, width_drawn), (slope, slope_error, slope_drawn)) = (of(0), of(1));
     PadFit {
         width_m,
         width_error_m,
         give_m_per_n: -0.5 * slope,
         give_error: 0.5 * slope_error,
+        resampled: width_drawn.zip(slope_drawn).map(|(width, slope)| (width, 0.5 * slope)),
         bent: part(&|m| f64::from(u8::from(m.bent))),
         rows,
     }

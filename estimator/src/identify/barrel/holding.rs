@@ -8,10 +8,12 @@ use crate::constraint::{Carry, carried};
 use crate::estimate::{Constraint, ConstraintKind, Parameter, Sided, Yielding};
 use haptics::Vec2;
 
-/// Held a little above or below its middle, the barrel turns in the grip while it is pulled: by about this way, m, …
-const SWINGS_M: f64 = 6e-5;
-/// … and by this way while the pull grows.
-const SWINGS_AS_PULLED_M: f64 = 2.8e-5;
+/// Held above or below its middle, the barrel turns in the grip while it is pulled. Where that takes its middle is known to this share …
+const TURN_SHARE: f64 = 0.25;
+/// … and to this way, m, …
+const SWINGS_M: f64 = 4e-5;
+/// … and to this way while the pull grows.
+const SWINGS_AS_PULLED_M: f64 = 1.4e-5;
 /// Stiffness of a hand whose give was not seen, N/m.
 const HAND_N_M: f64 = 1000.0;
 
@@ -75,7 +77,7 @@ impl Seen<'_> {
         // Along the pull the distance is uncertain, across it the direction.
         let covariance = self.taken.pull.around.covariance[(GEOMETRY, GEOMETRY + 2)];
         let across = Vec2::new(-u.y, u.x);
-        let model_m = SWINGS_M;
+        let model_m = SWINGS_M.hypot(TURN_SHARE * self.taken.turned_m);
         let anchor_error = |k: usize| {
             let (by_angle, by_bend) = (-across[k] * far, u[k] * far * far);
             let square = (by_angle * angle).powi(2) + (by_bend * bend).powi(2) + 2.0 * by_angle * by_bend * covariance;
@@ -98,7 +100,7 @@ impl Seen<'_> {
     fn stiffness_n_m(&self) -> Option<Value> {
         let stiffness = self.taken.pull.values.get(STIFFNESS)?;
         let stretch_m = self.strongest_n() / stiffness;
-        let model = stiffness * SWINGS_AS_PULLED_M / stretch_m;
+        let model = stiffness * SWINGS_AS_PULLED_M.hypot(TURN_SHARE * self.taken.turned_m) / stretch_m;
         let own = self.taken.pull.around.std_errors[STIFFNESS].hypot(model);
         self.of_cable(own, |p, _| Some(p.values[STIFFNESS]))
     }

@@ -10,6 +10,7 @@ mod pull;
 mod report;
 mod signals;
 mod slip;
+mod swing;
 mod wall;
 mod zero;
 
@@ -20,6 +21,7 @@ use haptics::recording::Recording;
 use pull::{Pull, Rows};
 use report::Seen;
 use signals::Signals;
+use swing::Swing;
 use wall::Grip;
 use zero::Zero;
 
@@ -50,8 +52,12 @@ pub fn fit_by(
     let give = grip.give_m_n();
     let [(give_x, error_x), (give_y, error_y)] = give;
     let zero = Zero::at(&signals, middle_s(&signals, &hanging))?;
-    let all = rows(&signals, &hanging, Vec2::new(give_x, give_y), &zero, gravity);
-    let mut taken = Taken { pull: Pull::of(&all)?, others: Vec::new(), slipped_m: None, rows: hanging.len(), zero };
+    let usual = Vec2::new(give_x, give_y);
+    let swing = Swing::of(&signals, &hanging, usual)?;
+    let all = rows(&signals, &hanging, usual, &swing, &zero, gravity);
+    let turned_m = hanging.iter().map(|i| swing.shift(*i).norm()).fold(0.0, f64::max);
+    let pull = Pull::of(&all)?;
+    let mut taken = Taken { pull, others: Vec::new(), turned_m, slipped_m: None, rows: hanging.len(), zero };
     if let Some(cable) = &taken.pull.cable {
         if let Some(way_m) = slip::slipped_m(&signals) {
             // Where the cable pulled, the barrel was not where the fingers were: only what was before counts.
@@ -59,13 +65,18 @@ pub fn fit_by(
             let before = all.place_m.iter().position(|p| !slack(p)).unwrap_or(hanging.len());
             let hanging = &hanging[..before.clamp(LEAST_ROWS, hanging.len())];
             let zero = Zero::at(&signals, middle_s(&signals, hanging))?;
-            let rows = rows(&signals, hanging, Vec2::new(give_x, give_y), &zero, gravity);
+            let rows = rows(&signals, hanging, usual, &swing, &zero, gravity);
             let pull = Pull::without_cable(&rows)?;
-            taken = Taken { pull, others: Vec::new(), slipped_m: Some(way_m), rows: hanging.len(), zero };
+            taken = Taken { pull, others: Vec::new(), turned_m, slipped_m: Some(way_m), rows: hanging.len(), zero };
         } else {
             // What else the pads may give changes where the barrel was, and so what the cable looks like.
-            let pull_with = |x: f64, y: f64| Pull::of(&rows(&signals, &hanging, Vec2::new(x, y), &taken.zero, gravity));
-            taken.others = vec![pull_with(give_x + error_x, give_y)?, pull_with(give_x, give_y + error_y)?];
+            let pull_with =
+                |give: Vec2, swing: &Swing| Pull::of(&rows(&signals, &hanging, give, swing, &taken.zero, gravity));
+            taken.others = vec![
+                pull_with(Vec2::new(give_x + error_x, give_y), &swing)?,
+                pull_with(Vec2::new(give_x, give_y + error_y), &swing)?,
+                pull_with(usual, &swing.higher())?,
+            ];
         }
     }
     let seen = Seen {
@@ -85,8 +96,10 @@ pub fn fit_by(
 /// What was taken for the answer.
 struct Taken {
     pull: Pull,
-    /// The same with pads that give one standard error more, along x and along y.
+    /// The same with pads that give one standard error more, along x and along y, and with the grip one higher.
     others: Vec<Pull>,
+    /// How far its middle went from that of the fingers by turning in the grip, m.
+    turned_m: f64,
     /// How far the barrel slid down in the grip while a cable pulled, m.
     slipped_m: Option<f64>,
     rows: usize,
@@ -98,11 +111,14 @@ fn middle_s(signals: &Signals, samples: &[usize]) -> f64 {
 }
 
 /// The samples while it hangs, seen behind pads that give so much along x and y, m/N for both fingers together.
-fn rows(signals: &Signals, hanging: &[usize], give: Vec2, zero: &Zero, gravity: f64) -> Rows {
+fn rows(signals: &Signals, hanging: &[usize], give: Vec2, swing: &Swing, zero: &Zero, gravity: f64) -> Rows {
     let force = |i: &usize| signals.net_n[*i] - zero.net_n;
     Rows {
         time_s: hanging.iter().map(|i| signals.time_s[*i]).collect(),
-        place_m: hanging.iter().map(|i| signals.position[*i] - force(i).component_mul(&give)).collect(),
+        place_m: hanging
+            .iter()
+            .map(|i| signals.position[*i] - force(i).component_mul(&give) + swing.shift(*i))
+            .collect(),
         velocity: hanging.iter().map(|i| signals.velocity[*i] - signals.net_rate[*i].component_mul(&give)).collect(),
         acceleration: hanging.iter().map(|i| signals.acceleration[*i]).collect(),
         force_n: hanging.iter().map(force).collect(),

@@ -96,7 +96,9 @@ impl Seen<'_> {
             None => "mean distance of the tips; the grip was too even to tell the give, so 7 % is added to the error",
         };
         let (value, error) = self.width_m();
-        Parameter::identified(OBJECT, "width_m", value, error, self.grip.samples, how)
+        let resolution = std::f64::consts::SQRT_2 * self.signals.resolution_m;
+        let resampled = self.grip.sides.and_then(|s| s.resampled).map(|(width, _)| width.hypot(resolution));
+        Parameter::identified(OBJECT, "width_m", value, error, self.grip.samples, how).with_bootstrap(resampled)
     }
 
     /// Pad and wall together, and the wall by itself where the pads are known.
@@ -109,7 +111,10 @@ impl Seen<'_> {
         };
         let (give, error) = (sides.give_m_per_n, sides.give_error);
         let stiffness = |give: f64| (1.0 / give, error / (give * give));
-        let series = self.given(OBJECT, SERIES, stiffness(give), "give of one pad and the wall behind it together");
+        let resampled = sides.resampled.map(|(_, drawn)| drawn / (give * give));
+        let series = self
+            .given(OBJECT, SERIES, stiffness(give), "give of one pad and the wall behind it together")
+            .with_bootstrap(resampled);
         let wall = match self.pad_n_m {
             None => {
                 let why = "pad and wall give together, and this recording does not tell whose share is whose; state the pads' \

@@ -31,6 +31,10 @@ pub struct Signals {
     pub net_n: Vec<Vec2>,
     /// N/s.
     pub net_rate: Vec<Vec2>,
+    /// How much higher the right tip is than the left one, m.
+    pub rise_m: Vec<f64>,
+    /// Forces of the left and of the right finger without their bias, N.
+    pub finger_n: [Vec<Vec2>; 2],
     /// Distance of the tips, m, and its rate, m/s.
     pub width_m: Vec<f64>,
     /// m/s.
@@ -85,6 +89,12 @@ impl Signals {
             net_n: (0..time_s.len()).map(|i| force(0, i) + force(1, i)).collect(),
             grip_n: every(&|i| 0.5 * (force(0, i).x - force(1, i).x)),
             ratio: every(&ratio),
+            rise_m: value(zip_with(
+                &axis(&signals.tips[1].position, 1),
+                &axis(&signals.tips[0].position, 1),
+                |r, l| r - l,
+            )),
+            finger_n: [0, 1].map(|f| (0..time_s.len()).map(|i| force(f, i)).collect()),
             width_m: width.value,
             width_rate: width.slope,
             resolution_m: unresolved(&signals, |s, f, k| axis(&s.tips[f].position, k)),
@@ -151,6 +161,10 @@ impl Signals {
         let stride = self.stride.min(samples.len() / LEAST_ROWS).max(1);
         samples.iter().copied().step_by(stride).collect()
     }
+}
+
+fn zip_with(a: &[f64], b: &[f64], of: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| of(*a, *b)).collect()
 }
 
 fn zip(x: &[f64], y: &[f64]) -> Vec<Vec2> {

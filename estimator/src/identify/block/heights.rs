@@ -10,7 +10,9 @@
 
 use super::{Blocks, MAIN, object};
 use crate::estimate::{EstimateError, Parameter};
+use crate::identify::bootstrap::block_bootstrap_within;
 use crate::identify::linear::{LinearFit, least_squares};
+use std::ops::Range;
 
 /// Fewer samples of a block at rest in the grip show no height.
 const LEAST_SAMPLES: usize = 5;
@@ -46,6 +48,8 @@ struct Rows {
     height: Vec<f64>,
     /// What the height changes by when the floor's contact gives 1 m/N more than the others.
     floor: Vec<f64>,
+    /// Rows of each rest.
+    stretches: Vec<Range<usize>>,
 }
 
 /// Heights of all blocks, and the stiffness of one pad in shear.
@@ -61,7 +65,8 @@ pub(super) fn heights(blocks: &Blocks<'_>, weights_n: &[f64]) -> Result<Vec<Para
         parameters.push(Parameter::unidentified("pad", "shear_stiffness_N_m", 0, why));
         return Ok(parameters);
     }
-    let fit = with_prior(&rows, 2 * count + 1)?;
+    let (fit, resampled) = with_prior(&rows, 2 * count + 1)?;
+    let resampled = |column: usize| resampled.as_ref().map(|r| r[column]);
     let give = fit.values[2 * count + 1];
     // What it would change if the floor gave differently from the blocks.
     let shift: Vec<f64> = rows.floor.iter().map(|f| f * CONTACTS_DIFFER * give).collect();
@@ -77,24 +82,35 @@ pub(super) fn heights(blocks: &Blocks<'_>, weights_n: &[f64]) -> Result<Vec<Para
             continue;
         }
         let tilt = tilt(blocks, &rests, number - 1);
-        let error = fit.std_errors[column].hypot(floor.values[column]).hypot(tilt).hypot(blocks.resolution_m);
+        let systematic = floor.values[column].hypot(tilt).hypot(blocks.resolution_m);
+        let error = fit.std_errors[column].hypot(systematic);
+        let drawn = resampled(column).map(|r| r.hypot(systematic));
         let how = format!(
             "grip heights while blocks rest on it and elsewhere, the give of pads and contacts ({:.0} µm/N) taken out; how flat \
              the faces are is not in the error",
             give * 1e6
         );
-        parameters.push(Parameter::identified(&object(number), "height_m", fit.values[column], error, samples, &how));
+        let found = Parameter::identified(&object(number), "height_m", fit.values[column], error, samples, &how);
+        parameters.push(found.with_bootstrap(drawn));
     }
-    parameters.push(shear_stiffness(&fit, &floor, 2 * count, rows.height.len()));
+    parameters.push(shear_stiffness(&fit, &floor, 2 * count, rows.height.len(), resampled(2 * count)));
     Ok(parameters)
 }
 
 /// Stiffness of one pad in shear: two side by side carry the load.
-fn shear_stiffness(fit: &LinearFit, floor: &LinearFit, column: usize, samples: usize) -> Parameter {
+fn shear_stiffness(
+    fit: &LinearFit,
+    floor: &LinearFit,
+    column: usize,
+    samples: usize,
+    resampled: Option<f64>,
+) -> Parameter {
     let (give, error) = (2.0 * fit.values[column], 2.0 * fit.std_errors[column].hypot(floor.values[column]));
     if fit.identified[column] && give > SIGNIFICANT * error {
         let how = "give of the grip under load over a block at rest, the contacts' own give taken out; one pad";
-        return Parameter::identified("pad", "shear_stiffness_N_m", 1.0 / give, error / (give * give), samples, how);
+        let drawn = resampled.map(|r| 2.0 * r.hypot(floor.values[column]) / (give * give));
+        return Parameter::identified("pad", "shear_stiffness_N_m", 1.0 / give, error / (give * give), samples, how)
+            .with_bootstrap(drawn);
     }
     let why = "the lift varied too little while a block rested";
     Parameter::unidentified("pad", "shear_stiffness_N_m", samples, why)
@@ -144,10 +160,12 @@ pub(crate) fn rests(blocks: &Blocks<'_>, count: usize) -> Vec<Rest> {
 /// Columns: grasp heights, block heights, shear give, contact give.
 fn rows(blocks: &Blocks<'_>, rests: &[Rest], weights_n: &[f64]) -> Rows {
     let count = weights_n.len();
-    let mut rows = Rows { columns: vec![Vec::new(); 2 * count + 2], height: Vec::new(), floor: Vec::new() };
+    let mut rows =
+        Rows { columns: vec![Vec::new(); 2 * count + 2], height: Vec::new(), floor: Vec::new(), stretches: Vec::new() };
     for rest in rests.iter().filter(|r| r.samples.len() >= LEAST_SAMPLES) {
         let standing: f64 = rest.below.iter().map(|j| weights_n[*j]).sum();
         let pressed: f64 = rest.below.iter().enumerate().map(|(level, j)| weights_n[*j] * (level + 1) as f64).sum();
+        let first = rows.height.len();
         for i in blocks.rows(&rest.samples) {
             let load = blocks.lift[i] - weights_n[rest.carry];
             for k in 0..count {
@@ -159,13 +177,14 @@ fn rows(blocks: &Blocks<'_>, rests: &[Rest], weights_n: &[f64]) -> Rows {
             rows.floor.push(load - standing);
             rows.height.push(blocks.height[i]);
         }
+        rows.stretches.push(first..rows.height.len());
     }
     rows
 }
 
 /// The regression with what is known of a contact beforehand: one more row that asks the column for zero, as strongly as
-/// [`GIVE_BEFORE`] weighs against the noise of the rows.
-fn with_prior(rows: &Rows, contact: usize) -> Result<LinearFit, EstimateError> {
+/// [`GIVE_BEFORE`] weighs against the noise of the rows. Its errors by resampling within each rest come with it.
+fn with_prior(rows: &Rows, contact: usize) -> Result<(LinearFit, Option<Vec<f64>>), EstimateError> {
     let alone = least_squares(&rows.columns, &rows.height, None)?;
     let mut columns = rows.columns.clone();
     for (j, column) in columns.iter_mut().enumerate() {
@@ -173,7 +192,11 @@ fn with_prior(rows: &Rows, contact: usize) -> Result<LinearFit, EstimateError> {
     }
     let mut height = rows.height.clone();
     height.push(0.0);
-    least_squares(&columns, &height, None)
+    let fit = least_squares(&columns, &height, None)?;
+    let mut stretches = rows.stretches.clone();
+    stretches.push(rows.height.len()..height.len());
+    let resampled = block_bootstrap_within(&columns, &height, None, &fit, &stretches);
+    Ok((fit, resampled))
 }
 
 /// Error by blocks that turn between the pads: when one finger slips and the other does not, the grip's middle moves by half of

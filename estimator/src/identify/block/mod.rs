@@ -331,7 +331,9 @@ impl<'a> Blocks<'a> {
                 "distance of the tips while held, extrapolated to zero grip force (pads give {stiffness:.0} N/m each{harder})"
             );
             let error = pads.width_error_m.hypot(resolution);
-            return Ok(Parameter::identified(&name, "width_m", pads.width_m, error, samples.len(), &how));
+            let resampled = pads.resampled.map(|(width, _)| width.hypot(resolution));
+            let found = Parameter::identified(&name, "width_m", pads.width_m, error, samples.len(), &how);
+            return Ok(found.with_bootstrap(resampled));
         }
         let fit = intercept(&width, &[])?;
         let error = fit.std_errors[0].hypot(UNKNOWN_COMPRESSION * fit.values[0]);
@@ -353,9 +355,12 @@ impl<'a> Blocks<'a> {
 
     /// Stiffness of one pad: both give under the grip, so the width falls by 2 F / k. Blocks averaged by their errors.
     fn pad_stiffness(&self, count: usize) -> Parameter {
-        let gives = (1..=count)
-            .filter_map(|number| self.pads(number).ok()?)
-            .map(|pads| (pads.give_m_per_n, pads.give_error, pads.rows));
+        let gives = (1..=count).filter_map(|number| self.pads(number).ok()?).map(|pads| Give {
+            m_per_n: pads.give_m_per_n,
+            error: pads.give_error,
+            resampled: pads.resampled.map(|(_, give)| give),
+            rows: pads.rows,
+        });
         pad_parameter("stiffness_N_m", gives, "the grip varied too little to tell the pads' give")
     }
 
@@ -453,23 +458,35 @@ impl<'a> Blocks<'a> {
     }
 }
 
-/// A stiffness from several measurements of a give (value, standard error, rows), averaged by their errors.
+/// A measured give of a pad, m/N, with its standard error by covariance and by resampling.
+struct Give {
+    m_per_n: f64,
+    error: f64,
+    resampled: Option<f64>,
+    rows: usize,
+}
+
+/// A stiffness from several measurements of a give, averaged by their errors.
 ///
 /// When they scatter more than their errors say, the errors are too small by that much (Birge 1932).
-fn pad_parameter(name: &str, gives: impl Iterator<Item = (f64, f64, usize)>, missing: &str) -> Parameter {
+fn pad_parameter(name: &str, gives: impl Iterator<Item = Give>, missing: &str) -> Parameter {
     const SIGNIFICANT: f64 = 3.0;
-    let gives: Vec<(f64, f64, usize)> = gives.filter(|(_, error, _)| *error > 0.0 && error.is_finite()).collect();
-    let weights: f64 = gives.iter().map(|(_, error, _)| error.powi(-2)).sum();
-    let give = gives.iter().map(|(give, error, _)| give * error.powi(-2)).sum::<f64>() / weights;
-    let scatter: f64 = gives.iter().map(|(one, error, _)| ((one - give) / error).powi(2)).sum();
+    let gives: Vec<Give> = gives.filter(|g| g.error > 0.0 && g.error.is_finite()).collect();
+    let weights: f64 = gives.iter().map(|g| g.error.powi(-2)).sum();
+    let give = gives.iter().map(|g| g.m_per_n * g.error.powi(-2)).sum::<f64>() / weights;
+    let scatter: f64 = gives.iter().map(|g| ((g.m_per_n - give) / g.error).powi(2)).sum();
     let freedom = gives.len().saturating_sub(1) as f64;
     // A ratio below its own 95 % limit is chance.
     let birge = if freedom > 0.0 && scatter > chi_square_95(freedom) { (scatter / freedom).sqrt() } else { 1.0 };
     let error = weights.powf(-0.5) * birge;
-    let rows = gives.iter().map(|(_, _, count)| count).sum();
+    // The same weighted mean with each one's own resampled error.
+    let resampled: Option<f64> = gives.iter().map(|g| Some((g.resampled? * g.error.powi(-2)).powi(2))).sum();
+    let resampled = resampled.map(|sum| sum.sqrt() / weights * birge);
+    let rows = gives.iter().map(|g| g.rows).sum();
     if weights > 0.0 && give > SIGNIFICANT * error {
         let how = "give of the pads under load, one pad";
         Parameter::identified("pad", name, 1.0 / give, error / (give * give), rows, how)
+            .with_bootstrap(resampled.map(|r| r / (give * give)))
     } else {
         Parameter::unidentified("pad", name, rows, missing)
     }

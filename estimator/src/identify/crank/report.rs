@@ -107,8 +107,12 @@ pub(super) fn grip_parameters(
     if let Some(pads) = pads.filter(|p| p.give_m_per_n > SIGNIFICANT * p.give_error) {
         let how = "distance of the tips while turning, extrapolated to zero grip force";
         let error = pads.width_error_m.hypot(held.resolution_m);
-        parameters.push(Parameter::identified("crank", "handle_width_m", pads.width_m, error, samples, how));
-        parameters.push(stiffness("stiffness_N_m", pads.give_m_per_n, pads.give_error, samples));
+        let resampled = pads.resampled.map(|(width, _)| width.hypot(held.resolution_m));
+        let width = Parameter::identified("crank", "handle_width_m", pads.width_m, error, samples, how);
+        parameters.push(width.with_bootstrap(resampled));
+        let resampled = pads.resampled.map(|(_, give)| give / pads.give_m_per_n.powi(2));
+        let pad = stiffness("stiffness_N_m", pads.give_m_per_n, pads.give_error, samples);
+        parameters.push(pad.with_bootstrap(resampled));
     } else {
         let why = "the grip was too even to tell the handle's width from the pads' give";
         parameters.push(Parameter::unidentified("crank", "handle_width_m", samples, why));

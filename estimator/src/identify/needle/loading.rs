@@ -4,6 +4,7 @@
 //! [`MembraneLaw::loading_n`](haptics::law::object::MembraneLaw::loading_n).
 
 use crate::estimate::EstimateError;
+use crate::identify::bootstrap::block_bootstrap;
 use crate::identify::linear::{LinearFit, least_squares};
 use haptics::law::object::MembraneLaw;
 use nalgebra::{DMatrix, DVector};
@@ -37,6 +38,8 @@ pub struct Loading {
     pub surface_m: f64,
     /// Linearised fit around the answer: offsets, stiffness, (hardening,) surface.
     pub around: LinearFit,
+    /// The errors of these by a block bootstrap of the samples; `None` where they are too few.
+    pub resampled: Option<Vec<f64>>,
 }
 
 impl Loading {
@@ -86,6 +89,7 @@ pub fn fit(points: &[Point], holds: usize) -> Result<Loading, EstimateError> {
     errors[straight.surface_at()] = 0.5 * (whole.surface_m - straight.surface_m);
     if errors.iter().all(|e| e.is_finite()) {
         straight.around.widen(&errors);
+        straight.resampled.iter_mut().flatten().zip(&errors).for_each(|(drawn, error)| *drawn = drawn.hypot(*error));
     }
     Ok(straight)
 }
@@ -111,8 +115,9 @@ fn fit_with(points: &[Point], holds: usize, cubic: bool) -> Result<Loading, Esti
     let force: Vec<f64> = points.iter().map(|p| p.force_n).collect();
     // Around the answer the surface's own column asks for no change: what is left are the errors.
     let around = least_squares(&columns, &force, None)?;
+    let resampled = block_bootstrap(&columns, &force, None, &around);
     let offset_n = values.iter().take(holds).copied().collect();
-    Ok(Loading { offset_n, stiffness_n_m, cubic_n_m3, surface_m, around })
+    Ok(Loading { offset_n, stiffness_n_m, cubic_n_m3, surface_m, around, resampled })
 }
 
 fn columns(points: &[Point], holds: usize, cubic: bool, surface_m: f64) -> Vec<Vec<f64>> {

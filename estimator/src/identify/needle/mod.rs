@@ -31,6 +31,8 @@ const PLACE_NOISE: f64 = 0.5;
 const HOLE_SHARE: f64 = 0.05;
 /// Stiffness of a hand whose pads' give is not seen, N/m.
 const HAND_N_M: f64 = 1000.0;
+/// Samples are averaged to points where that leaves at least so many.
+const LEAST_POINTS: usize = 60;
 /// Fewer samples of loading show no curve.
 const LEAST_LOADING: usize = 20;
 
@@ -83,30 +85,26 @@ impl Sheet {
         own.hypot(of(&self.softer) - of(&self.loading))
     }
 
+    /// The same with the fit's own error by resampling, and what else is unknown of the value.
+    fn resampled(&self, column: usize, other: f64, of: impl Fn(&Loading) -> f64) -> Option<f64> {
+        self.loading.resampled.as_ref().map(|r| self.error(r[column].hypot(other), of))
+    }
+
     fn parameters(&self, along: &Along, pushes: &[Push], recording: &Recording) -> Vec<Parameter> {
         let (loading, errors) = (&self.loading, &self.loading.around.std_errors);
         let stiffness_error = self.error(errors[loading.stiffness_at()], |l| l.stiffness_n_m);
         let pads = if along.give_m_n.0 > 0.0 { ", less the pads' give" } else { "" };
         let how = format!("slope of force over depth where the sheet was first met{pads}");
-        let mut found = vec![Parameter::identified(
-            OBJECT,
-            "stiffness_N_m",
-            loading.stiffness_n_m,
-            stiffness_error,
-            self.samples,
-            &how,
-        )];
+        let mut found = vec![
+            Parameter::identified(OBJECT, "stiffness_N_m", loading.stiffness_n_m, stiffness_error, self.samples, &how)
+                .with_bootstrap(self.resampled(loading.stiffness_at(), 0.0, |l| l.stiffness_n_m)),
+        ];
         if loading.cubic_n_m3 > 0.0 {
-            let (value, error) = (loading.cubic_n_m3, errors[loading.stiffness_at() + 1]);
-            let error = self.error(error, |l| l.cubic_n_m3);
-            found.push(Parameter::identified(
-                OBJECT,
-                "hardening_N_m3",
-                value,
-                error,
-                self.samples,
-                "bend of the same curve",
-            ));
+            let (value, column) = (loading.cubic_n_m3, loading.stiffness_at() + 1);
+            let error = self.error(errors[column], |l| l.cubic_n_m3);
+            let how = "bend of the same curve";
+            let found_bend = Parameter::identified(OBJECT, "hardening_N_m3", value, error, self.samples, how);
+            found.push(found_bend.with_bootstrap(self.resampled(column, 0.0, |l| l.cubic_n_m3)));
         }
         found.push(self.puncture(along, pushes));
         found.push(self.surface(along, &pushes[0]));
@@ -167,7 +165,8 @@ impl Sheet {
             (self.loading.surface_m, "the way along the needle")
         };
         let how = format!("{axis} of {point} where the force begins to rise");
-        Parameter::identified(OBJECT, "surface_position_m", value, error, self.samples, &how)
+        let resampled = self.resampled(self.loading.surface_at(), PLACE_ERROR_M, |l| l.surface_m);
+        Parameter::identified(OBJECT, "surface_position_m", value, error, self.samples, &how).with_bootstrap(resampled)
     }
 
     /// Half the difference between going in and drawing out of a hole.
@@ -249,15 +248,21 @@ impl Sheet {
 /// The loading curve with pads that give so much, m/N.
 fn curve(along: &Along, pushes: &[Push], holds: &[usize], give: f64) -> Result<Loading, EstimateError> {
     let mut points = Vec::new();
+    let count: usize = pushes.iter().map(|p| p.samples.len()).sum();
+    let calm = if count < LEAST_POINTS * along.calm { 1 } else { along.calm };
     for push in pushes {
         let hold = holds.iter().position(|h| *h == push.hold).unwrap_or(0);
         let first_m = along.depth_m[push.samples.start];
-        for i in push.samples.clone() {
-            let depth = along.depth_m[i];
-            // Below an earlier dent the sheet is another one; well outside it, it is not there at all.
-            if depth > push.untouched_from_m || depth < first_m + 2e-4 {
-                points.push(Point { hold, depth_m: depth - give * along.force_n[i], force_n: along.force_n[i] });
-            }
+        // Below an earlier dent the sheet is another one; well outside it, it is not there at all.
+        let counts = |i: &usize| {
+            let depth = along.depth_m[*i];
+            depth > push.untouched_from_m || depth < first_m + 2e-4
+        };
+        let samples: Vec<usize> = push.samples.clone().filter(counts).collect();
+        for near in samples.chunk_by(|a, b| b - a == 1).flat_map(|run| run.chunks(calm)) {
+            let mean = |values: &[f64]| near.iter().map(|i| values[*i]).sum::<f64>() / near.len() as f64;
+            let (depth, force_n) = (mean(&along.depth_m), mean(&along.force_n));
+            points.push(Point { hold, depth_m: depth - give * force_n, force_n });
         }
     }
     loading::fit(&points, holds.len())

@@ -3,7 +3,7 @@
 use crate::estimate::EstimateError;
 use crate::identify::pads::SHEAR_OVER_NORMAL;
 use crate::signal::noise::{quantum, resolution_error, white_noise};
-use crate::signal::task::{TipSeries, is_two_fingered, tip_series};
+use crate::signal::task::{TipSeries, is_two_fingered, times, tip_series};
 use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
@@ -16,6 +16,8 @@ const GRIP_NOISES: f64 = 8.0;
 const STRONGEST: f64 = 0.02;
 /// Forces below this many times their noise show nothing.
 const FORCE_NOISES: f64 = 12.0;
+/// Points of the loading curve are means over this time, s: a hand moves on by a tenth of a millimetre meanwhile.
+const CALM_S: f64 = 0.005;
 /// Holds of fewer samples are none.
 const LEAST_HOLD: usize = 30;
 /// The pads give when width follows grip this clearly (value over its error).
@@ -36,6 +38,8 @@ pub struct Along {
     pub holds: Vec<Range<usize>>,
     /// Give of the pads between the measured tips and the needle, m/N, and its error.
     pub give_m_n: (f64, f64),
+    /// So many samples are averaged to one point of the loading curve: noise in the depth would flatten the bend of the curve.
+    pub calm: usize,
     /// White noise of the force, N.
     pub noise_n: f64,
     /// Mean force of empty hands in that direction, N, and its error; `None` where the needle is held all the time.
@@ -80,7 +84,11 @@ pub fn along(recording: &Recording) -> Result<Along, EstimateError> {
     let side_m = position.iter().map(|p| direction.perp(p)).collect();
     let noise_n = white_noise(&force_n);
     let free_n = free(&force_n, &holds, noise_n);
-    Ok(Along { depth_m, force_n, side_m, direction, holds, give_m_n, noise_n, free_n, two_fingered })
+    let time_s = times(recording);
+    let spans_s = time_s.last().zip(time_s.first()).map_or(0.0, |(last, first)| last - first);
+    let period_s = spans_s / time_s.len().saturating_sub(1).max(1) as f64;
+    let calm = if period_s > 0.0 { ((CALM_S / period_s).round() as usize).max(1) } else { 1 };
+    Ok(Along { calm, depth_m, force_n, side_m, direction, holds, give_m_n, noise_n, free_n, two_fingered })
 }
 
 /// Mean of the force well before the first hold and after the last, and its error.

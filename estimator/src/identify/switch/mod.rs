@@ -6,14 +6,16 @@
 //! as a pad, and what that leaves open joins the errors of all places. The knob's path is taken as an arc about a lever twice as
 //! long as its travel, its axis below; what a straighter path would change joins the errors of the forces.
 
+mod reading;
 mod report;
 mod signals;
 mod way;
 
-use crate::estimate::{EstimateError, Fit};
+use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::identify::pads::EVEN;
 use haptics::recording::Recording;
-use signals::{Reading, Signals};
+use reading::Reading;
+use signals::Signals;
 use way::{Stop, Way};
 
 /// The object's name in the results.
@@ -64,6 +66,9 @@ pub fn height_m(recording: &Recording) -> Option<f64> {
 
 /// What is seen in both directions, to the right first, with one reading of the samples.
 struct Curves {
+    reading: Reading,
+    /// Middle of what was seen, m in the world.
+    top_m: f64,
     ways: [Option<Way>; 2],
     stops: [Option<Stop>; 2],
     /// Width of the knob between the tips, m.
@@ -88,6 +93,8 @@ impl Curves {
         let ways = [way::way(&seen[0])?.filter(peaked), way::way(&seen[1])?.filter(peaked)];
         let rise = ways.iter().flatten().map(|w| w.values[1]).fold(f64::INFINITY, f64::min);
         Ok(Self {
+            reading: *reading,
+            top_m: signals.middle_m,
             ways,
             resting_m: RESTING_M.hypot(UNSEEN_TOUCH * signals.touch_n / rise).hypot(STEP_SHARE * signals.step_m),
             stops: [way::stop(&seen[0])?, way::stop(&seen[1])?],
@@ -103,10 +110,11 @@ impl Curves {
         (weight > 0.0 && mean > 0.0 && weight.is_finite()).then(|| (mean, weight.powf(-0.5)))
     }
 
-    /// A place of the knob's side as one of its middle in the world, m.
+    /// A place of the knob along its arc as one of its middle in the world, m.
     fn middle_m(&self, side: usize, (at_m, error_m): (f64, f64)) -> Option<(f64, f64)> {
-        let middle = at_m + 0.5 * self.width_m?;
-        Some(([1.0, -1.0][side] * middle, error_m.hypot(0.5 * self.resting_m)))
+        self.width_m?;
+        let across_m = [1.0, -1.0][side] * self.reading.across_m(at_m);
+        Some((self.top_m + across_m, error_m.hypot(0.5 * self.resting_m)))
     }
 
     fn snap_m(&self, side: usize) -> Option<(f64, f64)> {
@@ -119,6 +127,18 @@ impl Curves {
         self.middle_m(side, self.stops[side].as_ref()?.end_m)
     }
 
+    /// Slope of the rise or of the fall in a direction over the way across, N/m: along the arc over the same stretch, which the rise
+    /// begins at the stop behind and the fall ends as far beyond the top.
+    fn slope_n_m(&self, side: usize, falling: bool) -> Option<(f64, f64)> {
+        let way = self.ways[side].as_ref()?;
+        let snap = way.values[3];
+        let far = if falling { -snap } else { self.stops[1 - side].as_ref().map_or(2.0 * snap, |s| -s.end_m.0) };
+        let across = self.reading.across_m(far) - self.reading.across_m(snap);
+        let stretched = if across.abs() > 0.0 { (far - snap) / across } else { 1.0 };
+        let k = if falling { 2 } else { 1 };
+        Some((way.values[k] * stretched, way.around.std_errors[k] * stretched))
+    }
+
     fn travel_m(&self) -> Option<(f64, f64)> {
         let (right, left) = (self.end_m(0)?, self.end_m(1)?);
         Some((right.0 - left.0, right.1.hypot(left.1).hypot(self.resting_m))).filter(|t| t.0 > 0.0)
@@ -126,10 +146,10 @@ impl Curves {
 
     /// Half of what both directions ask for in the middle between the places where their forces vanish: friction, N.
     fn friction_n(&self) -> Option<(f64, f64)> {
-        let ([Some(there), Some(back)], Some(width_m)) = (&self.ways, self.width_m) else { return None };
-        let gone = |w: &Way| w.values[3] - w.values[0] / w.values[2] + 0.5 * width_m;
+        let ([Some(there), Some(back)], Some(_)) = (&self.ways, self.width_m) else { return None };
+        let gone = |w: &Way| w.values[3] - w.values[0] / w.values[2];
         let middle = 0.5 * (gone(there) - gone(back));
-        let forces = [there.falling_n(middle - 0.5 * width_m), back.falling_n(-middle - 0.5 * width_m)];
+        let forces = [there.falling_n(middle), back.falling_n(-middle)];
         let slope = 0.5 * (there.values[2] + back.values[2]).abs();
         let error = 0.5 * forces[0].1.hypot(forces[1].1).hypot(slope * self.resting_m);
         Some((0.5 * (forces[0].0 + forces[1].0), error))
@@ -143,6 +163,19 @@ impl Captured {
         let change = |other: &Curves| of(other).map_or(0.0, |(v, _)| v - value);
         let error = self.others.iter().map(change).fold(own.hypot(fitted), f64::hypot);
         error.is_finite().then_some((value, error))
+    }
+
+    /// The same with the fit's own errors by resampling: `of` gives a value of some curves, and the fit's own error of it.
+    fn with_bootstrap(
+        &self,
+        parameter: Parameter,
+        own: f64,
+        of: impl Fn(&Curves) -> Option<(f64, f64)>,
+        resampled: impl Fn(&Curves) -> Option<f64>,
+    ) -> Parameter {
+        let Some(drawn) = resampled(&self.curves) else { return parameter };
+        let found = self.with_errors(own, |c| Some((of(c)?.0, drawn)));
+        parameter.with_bootstrap(found.map(|(_, error)| error))
     }
 
     fn samples(&self) -> usize {

@@ -5,12 +5,6 @@ use super::{Captured, Curves, OBJECT, PADS_IN_GIVE, TOUCHED_M};
 use crate::estimate::{Fit, Parameter};
 use haptics::recording::Recording;
 
-/// Speed and mass of a knob on its way down add to the force what is not in the curve, N (one standard deviation).
-const FALLING_N: f64 = 0.025;
-
-/// Up to the peak it moves slowly, N.
-const MOVING_N: f64 = 0.02;
-
 impl Captured {
     /// All that the recording shows and does not show.
     pub(super) fn report(&self, recording: &Recording) -> Fit {
@@ -37,34 +31,46 @@ impl Captured {
         let (prefix, way) = [("", "to the right"), ("return_", "to the left")][side];
         let why = format!("no throw {way} was seen: push the knob over to that side, past its snap");
         let how = format!("force over displacement {way}, one line up to the peak and one down from it");
-        let value = |k: usize, own: f64| {
-            self.with_errors(own, |c| {
-                let way = c.ways[side].as_ref()?;
-                Some((way.values[k], way.around.std_errors[k]))
-            })
+        let unmodelled_n = self.curves.ways[side].as_ref().map_or([0.0; 2], |w| w.unmodelled_n);
+        let fall = self.curves.ways[side].as_ref().map_or(0.0, |w| w.unmodelled_n[1] * w.values[2].abs() / w.values[0]);
+        let peak = |c: &Curves| c.ways[side].as_ref().map(|way| (way.values[0], way.around.std_errors[0]));
+        // Each with the columns' own errors by resampling beside it.
+        let named = |name: &str, column: usize, own: f64, of: &dyn Fn(&Curves) -> Option<(f64, f64)>| {
+            let found = self.parameter(&format!("{prefix}{name}"), self.with_errors(own, of), &how, &why);
+            let drawn = |c: &Curves| {
+                let drawn = c.ways[side].as_ref()?.resampled.as_ref()?[column];
+                Some(if column == 3 { drawn.hypot(0.5 * c.resting_m) } else { drawn })
+            };
+            self.with_bootstrap(found, own, of, drawn)
         };
-        let fall = self.curves.ways[side].as_ref().map_or(0.0, |w| FALLING_N * w.values[2].abs() / w.values[0]);
-        let snap = self.with_errors(TOUCHED_M, |c: &Curves| c.snap_m(side));
-        let named = |name: &str, found| self.parameter(&format!("{prefix}{name}"), found, &how, &why);
         vec![
-            named("peak_force_N", value(0, self.zero_error_n.hypot(MOVING_N))),
-            named("snap_position_m", snap),
-            named("rise_N_m", value(1, 0.0)),
-            named("fall_N_m", value(2, fall)),
+            named("peak_force_N", 0, self.zero_error_n.hypot(unmodelled_n[0]), &peak),
+            named("snap_position_m", 3, TOUCHED_M, &|c| c.snap_m(side)),
+            named("rise_N_m", 1, 0.0, &|c| c.slope_n_m(side, false)),
+            named("fall_N_m", 2, fall, &|c| c.slope_n_m(side, true)),
         ]
     }
 
     fn ends(&self) -> Vec<Parameter> {
         let why = "the knob was not pressed against this stop; push on for a moment when it has arrived";
         let how = "where the fingertip is without force, out of its place over force on the stop";
-        let end = |side: usize| self.with_errors(TOUCHED_M, |c| c.end_m(side));
+        let end = |side: usize, name: &str| {
+            let found = self.parameter(name, self.with_errors(TOUCHED_M, |c| c.end_m(side)), how, why);
+            let drawn = |c: &Curves| Some(c.stops[side].as_ref()?.end_resampled_m?.hypot(0.5 * c.resting_m));
+            self.with_bootstrap(found, TOUCHED_M, |c| c.end_m(side), drawn)
+        };
         let travel = self.with_errors(TOUCHED_M, Curves::travel_m);
-        let friction = self.with_errors(FALLING_N, Curves::friction_n);
+        let travel =
+            self.parameter("travel_m", travel, "between the stops on both sides", "both stops must be reached");
+        let drawn = |c: &Curves, side: usize| c.stops[side].as_ref()?.end_resampled_m;
+        let travel_drawn = |c: &Curves| Some(drawn(c, 0)?.hypot(drawn(c, 1)?).hypot(1.5_f64.sqrt() * c.resting_m));
+        let falling_n = self.curves.ways.iter().flatten().map(|w| w.unmodelled_n[1]).fold(0.0, f64::max);
+        let friction = self.with_errors(falling_n.hypot(self.zero_error_n), Curves::friction_n);
         let width = self.with_errors(TOUCHED_M, |c| Some((c.width_m?, c.resting_m)));
         vec![
-            self.parameter("right_end_position_m", end(0), how, why),
-            self.parameter("left_end_position_m", end(1), how, why),
-            self.parameter("travel_m", travel, "between the stops on both sides", "both stops must be reached"),
+            end(0, "right_end_position_m"),
+            end(1, "left_end_position_m"),
+            self.with_bootstrap(travel, TOUCHED_M, Curves::travel_m, travel_drawn),
             self.parameter(
                 "friction_N",
                 friction,

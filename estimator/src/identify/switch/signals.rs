@@ -3,16 +3,22 @@
 //! Fingers push and cannot pull. The one behind the knob presses it up to the top of the curve and follows it down until the force
 //! is gone; then the knob snaps over by itself, and is met again on its stop.
 
+use super::reading::Reading;
 use crate::estimate::EstimateError;
 use crate::segment::threshold::percentile;
+use crate::signal::derive::savitzky_golay;
 use crate::signal::noise::white_noise;
-use crate::signal::task::{TipSeries, is_two_fingered, tip_series};
+use crate::signal::task::{TipSeries, is_two_fingered, times, tip_series};
 use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
 /// Samples are averaged over this half window, s.
 const CALM_HALF_S: f64 = 0.004;
+/// Speed and acceleration come from parabolas over this half window, s: a knob that falls over runs away within some 20 ms.
+const MOVING_HALF_S: f64 = 0.010;
+/// A knob is taken to move across with at least this share of its speed along the arc.
+const LEAST_COSINE: f64 = 0.31;
 /// A finger touches from this share of its strongest force on …
 const TOUCH_SHARE: f64 = 0.03;
 /// … and from this many times the noise of the averaged force.
@@ -35,6 +41,12 @@ const QUIET_SHARE: f64 = 0.25;
 struct Finger {
     x_m: Vec<f64>,
     force: Vec<Vec2>,
+    /// Rate and its own rate, of the place and of the force along x: m/s, m/s², N/s, N/s².
+    rates: [[Vec<f64>; 2]; 2],
+    /// Samples on each side that these rates look at.
+    reach: usize,
+    /// Noise of rate, m/s, and acceleration, m/s².
+    rate_noise: [f64; 2],
     touches: Vec<bool>,
     /// Force from which it touches, N.
     touch_n: f64,
@@ -59,27 +71,24 @@ pub struct Signals {
     pub step_m: f64,
 }
 
-/// What is assumed of geometry and pads when the samples are read.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Reading {
-    /// Give of the pad between a tip and the knob, m/N.
-    pub give_m_n: f64,
-    /// One over the lever's length, 1/m.
-    pub bend_1_m: f64,
-}
-
 /// One sample of a direction of travel, turned so that the knob moves towards larger places.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// Place of the knob's side behind, m.
+    /// Place of the knob along its arc, m from the middle of what was seen.
     pub at_m: f64,
     /// Force that moves the knob on, N.
     pub force_n: f64,
+    /// Speed of that place, m/s, and its acceleration, m/s².
+    pub rate_m_s: f64,
+    /// m/s².
+    pub acceleration: f64,
 }
 
 /// What the finger behind the knob sees in one direction, in order of time.
 #[derive(Clone, Debug, Default)]
 pub struct Seen {
+    /// Noise of the samples' rate, m/s, and acceleration, m/s² (one standard deviation).
+    pub rate_noise: [f64; 2],
     /// From the settled push up to where the knob leaves the finger.
     pub way: Vec<Sample>,
     /// Pressed against the stop at the end.
@@ -139,21 +148,30 @@ impl Signals {
     /// All strokes in a direction: 0 to the right, 1 to the left.
     pub fn seen(&self, side: usize, reading: &Reading) -> Seen {
         let (finger, direction) = (&self.fingers[side], [1.0, -1.0][side]);
-        let half_m = 0.5 * self.width_m(0.0).unwrap_or(0.0);
+        let half_m = 0.5 * self.width_m(reading.give_m_n).unwrap_or(0.0);
         let sample = |i: usize| {
             let force = finger.force[i];
-            let angle = reading.bend_1_m * (finger.x_m[i] + direction * half_m - self.middle_m);
+            // Along the arc on which the knob's middle moves.
+            let knob_m = reading.arc_m(finger.x_m[i] - reading.give_m_n * force.x + direction * half_m - self.middle_m);
+            let angle = reading.bend_1_m * knob_m;
+            let [place, push] = &finger.rates;
+            let rate = |k: usize| direction * (place[k][i] - reading.give_m_n * push[k][i]);
+            let turned = angle.cos().max(LEAST_COSINE);
             Sample {
-                at_m: direction * (finger.x_m[i] - reading.give_m_n * force.x),
+                at_m: direction * knob_m,
                 force_n: direction * (force.x * angle.cos() - force.y * angle.sin()),
+                rate_m_s: rate(0) / turned,
+                acceleration: rate(1) / turned,
             }
         };
-        let mut seen = Seen::default();
+        let mut seen = Seen { rate_noise: finger.rate_noise, ..Seen::default() };
         for (_, stroke) in self.strokes.iter().filter(|(d, _)| *d == direction) {
             let Some(push) = self.push(side, stroke) else { continue };
             let settled_m = sample(push.start).at_m + SETTLED_M;
             seen.throws += 1;
-            seen.way.extend(push.clone().map(sample).filter(|s| s.at_m > settled_m));
+            // What a rate's window sees beyond the moment in which the knob leaves the finger is not the knob's.
+            let in_touch = push.start..push.end.saturating_sub(finger.reach).max(push.start);
+            seen.way.extend(in_touch.map(sample).filter(|s| s.at_m > settled_m));
             let touches = |i: &usize| finger.touches[*i] && direction * finger.force[*i].x > 0.0;
             let pressed: Vec<Sample> = (push.end..stroke.end).filter(touches).map(sample).collect();
             let most_n = pressed.iter().fold(0.0_f64, |m, s| m.max(s.force_n));
@@ -216,10 +234,10 @@ impl Finger {
                 recording: recording.name.clone(),
             });
         };
-        Ok(Self::of(&tip, force, period_s))
+        Ok(Self::of(&tip, force, &times(recording), period_s))
     }
 
-    fn of(tip: &TipSeries, force: &[Vec2], period_s: f64) -> (Self, f64, Option<f64>) {
+    fn of(tip: &TipSeries, force: &[Vec2], time_s: &[f64], period_s: f64) -> (Self, f64, Option<f64>) {
         let half = (CALM_HALF_S / period_s).round() as usize;
         let axis = |pick: fn(&Vec2) -> f64| force.iter().map(pick).collect::<Vec<_>>();
         let (fx, fy) = (axis(|f| f.x), axis(|f| f.y));
@@ -227,6 +245,7 @@ impl Finger {
         let quiet = quiet(&mean(&fx, half.max(2)), noise_n);
         let zero = |values: &[f64]| quiet.iter().map(|&i| values[i]).sum::<f64>() / quiet.len().max(1) as f64;
         let (zero_x, zero_y) = (zero(&fx), zero(&fy));
+        let raw_fx = fx.clone();
         let (fx, fy) = (mean(&fx, half), mean(&fy, half));
         let force: Vec<Vec2> = fx.iter().zip(&fy).map(|(x, y)| Vec2::new(x - zero_x, y - zero_y)).collect();
         let x: Vec<f64> = tip.position.iter().map(|p| p.x).collect();
@@ -236,7 +255,17 @@ impl Finger {
         let zero_error_n = 2.0 * noise_n / (quiet.len().max(1) as f64).sqrt();
         let heights: Vec<f64> = tip.position.iter().zip(&touches).filter(|(_, t)| **t).map(|(p, _)| p.y).collect();
         let height_m = (!heights.is_empty()).then(|| heights.iter().sum::<f64>() / heights.len() as f64);
-        (Self { x_m: mean(&x, half), force, touches, touch_n: least_n }, zero_error_n, height_m)
+        let x_m = mean(&x, half);
+        let reach = ((MOVING_HALF_S / period_s).round() as usize).max(2);
+        // Of slope and curvature of a parabola through 2 · reach + 1 samples of white noise.
+        let (n, noise_m) = ((2 * reach + 1) as f64, white_noise(&x));
+        let rate_noise = [12.0 / n.powi(3), 720.0 / n.powi(5)].map(f64::sqrt);
+        let rate_noise = [noise_m * rate_noise[0] / period_s, noise_m * rate_noise[1] / period_s.powi(2)];
+        let rates = [&x, &raw_fx].map(|values: &Vec<f64>| {
+            let local = savitzky_golay(time_s, values, reach, 2);
+            [local.first, local.second]
+        });
+        (Self { x_m, force, rates, reach, rate_noise, touches, touch_n: least_n }, zero_error_n, height_m)
     }
 }
 
