@@ -68,6 +68,7 @@ pub fn analyse_prepared(
         }
     }
     let (mut fit, mut segmentations) = match task {
+        Task::BlockStack if recordings.len() > 1 => blocks(recordings, options)?,
         Task::BlockStack => each(recordings, |r| block::fit_by(options.method, r, options.thresholds))?,
         Task::Crank => cranks(recordings, prepared, options)?,
         Task::Mechanism => {
@@ -159,6 +160,28 @@ fn cranks(recordings: &[Recording], prepared: &Prepared, options: &Options) -> R
     Ok((fit, together.segmentations.into_iter().map(Some).collect()))
 }
 
+/// Several recordings of the same blocks: heights and friction from each, weights, widths and pads from all of them at once.
+fn blocks(recordings: &[Recording], options: &Options) -> Result<Fitted, EstimateError> {
+    let together = block::fit_together(options.method, recordings, options.thresholds)?;
+    let mut fit = combine(together.fits);
+    for shared in together.shared {
+        // Blocks that are not the same have no common value; the average says how far they lie apart.
+        let said = disagreement_about(&shared.full_name());
+        if fit.warnings.iter().any(|w| w.starts_with(&said)) {
+            continue;
+        }
+        match fit.parameters.iter_mut().find(|p| p.object == shared.object && p.name == shared.name) {
+            Some(average) => *average = shared,
+            None => fit.parameters.push(shared),
+        }
+    }
+    fit.correlated = together.correlated;
+    let warnings = &fit.warnings;
+    let alike = |name: &String| !warnings.iter().any(|w| w.starts_with(&disagreement_about(name)));
+    fit.correlated.retain(|c| c.parameters.iter().all(alike));
+    Ok((fit, together.segmentations.into_iter().map(Some).collect()))
+}
+
 /// Recordings that disagree by more than this many standard errors are said to.
 const DISAGREEMENT: f64 = 3.0;
 
@@ -193,6 +216,11 @@ fn combine(fits: Vec<Fit>) -> Fit {
     total
 }
 
+/// How the warning about a parameter on which recordings disagree begins.
+fn disagreement_about(full_name: &str) -> String {
+    format!("the recordings disagree about {}:", full_name.replacen('.', " ", 1))
+}
+
 /// Takes a second measurement into a first one. A lower bound is not averaged: the larger one holds for both.
 fn merge(mean: &mut Parameter, other: &Parameter) -> Option<String> {
     let (Some(b), Some(eb)) = (other.value, other.std_error) else { return None };
@@ -218,8 +246,8 @@ fn merge(mean: &mut Parameter, other: &Parameter) -> Option<String> {
     mean.samples += other.samples;
     (apart > DISAGREEMENT).then(|| {
         format!(
-            "the recordings disagree about {} {}: {a:.4} and {b:.4}, {apart:.1} standard errors apart; were they of the same object?",
-            mean.object, mean.name
+            "{} {a:.4} and {b:.4}, {apart:.1} standard errors apart; were they of the same object?",
+            disagreement_about(&mean.full_name())
         )
     })
 }

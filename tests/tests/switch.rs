@@ -101,7 +101,7 @@ fn damping_and_mass_of_the_knob_are_not_taken_for_friction() {
                 let wanted = truth.iter().find(|(n, _)| *n == name).expect("drawn").1;
                 let (z, error) = (score(&fit, name, wanted), fit.parameter("switch", name).and_then(|p| p.std_error));
                 println!("seed {seed} damping {damping_n_s_m}: {name} {z:.1} errors of {error:?} N");
-                assert!(error.is_some_and(|e| e < 0.04), "seed {seed} {name}: {error:?}");
+                assert!(error.is_some_and(|e| e < 0.06), "seed {seed} {name}: {error:?}");
                 count += 1;
                 held += usize::from(z.abs() < 1.96);
             }

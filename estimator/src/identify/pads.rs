@@ -22,6 +22,63 @@ pub(super) struct Grip<'a> {
     pub(super) rate: &'a [f64],
 }
 
+/// Rows of several holds of several objects, all by the same pads.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Grips {
+    width: Vec<f64>,
+    force: Vec<f64>,
+    rate: Vec<f64>,
+    /// Which object was held, 0 …
+    held: Vec<usize>,
+    /// Stretches of rows of which every draw of a bootstrap must have a part.
+    stretches: Vec<Range<usize>>,
+}
+
+impl Grips {
+    /// Adds a hold of the object with this number; objects are numbered without gaps.
+    pub(super) fn add(&mut self, object: usize, grip: &Grip<'_>) {
+        let first = self.width.len();
+        self.width.extend_from_slice(grip.width);
+        self.force.extend_from_slice(grip.force);
+        self.rate.extend_from_slice(grip.rate);
+        self.held.extend(std::iter::repeat_n(object, grip.width.len()));
+        self.stretches.extend(squeezes(grip.force).into_iter().map(|s| first + s.start..first + s.end));
+    }
+
+    fn objects(&self) -> usize {
+        self.held.iter().max().map_or(0, |most| most + 1)
+    }
+
+    /// Columns: width of each object at no force, depth of a pad of 1 N/m, damping.
+    fn columns(&self, depth: Vec<f64>) -> Vec<Vec<f64>> {
+        let held = |object: usize| self.held.iter().map(|h| f64::from(u8::from(*h == object))).collect();
+        (0..self.objects()).map(held).chain([depth, self.rate.clone()]).collect()
+    }
+
+    fn regress(&self, depth: Vec<f64>) -> Result<LinearFit, EstimateError> {
+        least_squares(&self.columns(depth), &self.width, None)
+    }
+}
+
+/// A value with its standard error by covariance and by resampling.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Estimate {
+    pub(super) value: f64,
+    pub(super) error: f64,
+    pub(super) resampled: Option<f64>,
+    pub(super) rows: usize,
+}
+
+/// What several holds show together.
+#[derive(Clone, Debug)]
+pub(super) struct Widths {
+    /// Width of each object at no force, m.
+    pub(super) widths: Vec<Estimate>,
+    /// Give of one pad at no force, m/N.
+    pub(super) give: Estimate,
+    bent: f64,
+}
+
 /// What one grasp shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PadFit {
@@ -41,9 +98,10 @@ pub(super) struct PadFit {
 
 /// Half of what holds 95 % of an even distribution, over 1.96: what it counts as beside errors that are normal.
 pub(super) const EVEN: f64 = 0.95 / 1.96;
-/// Shear stiffness of a pad over its normal stiffness where nothing shows it, and what that leaves open: evenly likely between 0.3 and
-/// 1.1, for soft pads of foam and rubber.
-pub(super) const SHEAR_OVER_NORMAL: (f64, f64) = (0.7, 0.4 * EVEN);
+/// Give of a pad in shear over that under pressure where nothing shows it: its shear stiffness is evenly likely between 0.3 and 1.1 of its
+/// normal one, for soft pads of foam and rubber. The mean of one over that, and the error that holds 95 % (the far side is the soft one:
+/// half the width of the even distribution itself would leave the softest pads five errors away).
+pub(super) const SHEAR_GIVE: (f64, f64) = (1.62, 0.67);
 
 /// Before the recording was seen, a linear spring is this many times as likely as either way to bend.
 const SIMPLER: f64 = 12.0;
@@ -92,24 +150,43 @@ struct Model {
     bent: bool,
 }
 
-/// The weighted answer of all models; `None` when the force does not tell the give from the width.
+/// Width and give of one hold; `None` when the force does not tell the give from the width.
 pub(super) fn width_over_force(grip: &Grip<'_>) -> Result<Option<PadFit>, EstimateError> {
-    let line = regress(grip, grip.force.to_vec())?;
-    if !line.identified[1] {
+    let mut grips = Grips::default();
+    grips.add(0, grip);
+    let one = |found: Widths| {
+        let (width, give) = (*found.widths.first()?, found.give);
+        Some(PadFit {
+            width_m: width.value,
+            width_error_m: width.error,
+            give_m_per_n: give.value,
+            give_error: give.error,
+            resampled: width.resampled.zip(give.resampled),
+            bent: found.bent,
+            rows: give.rows,
+        })
+    };
+    Ok(widths_over_force(&grips)?.and_then(one))
+}
+
+/// The weighted answer of all models, with one give for all holds; `None` when the force does not tell the give from the widths.
+pub(super) fn widths_over_force(grips: &Grips) -> Result<Option<Widths>, EstimateError> {
+    let line = grips.regress(grips.force.clone())?;
+    if !line.identified.iter().take(grips.objects() + 1).all(|i| *i) {
         return Ok(None);
     }
     let independent = line.effective_samples.max(2.0);
     let mut models = vec![Model { bic: bic(&line, independent), fit: line, before: SIMPLER.ln(), bent: false }];
     let (least_n, largest_n) =
-        grip.force.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), f| (low.min(f.max(0.0)), high.max(*f)));
+        grips.force.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), f| (low.min(f.max(0.0)), high.max(*f)));
     if largest_n > 0.0 {
         for bend in [Bend::Hardening, Bend::End] {
-            models.extend(bent_models(grip, bend, bend.range(least_n, largest_n), independent)?);
+            models.extend(bent_models(grips, bend, bend.range(least_n, largest_n), independent)?);
         }
     }
-    let columns = [vec![1.0; grip.width.len()], grip.force.to_vec(), grip.rate.to_vec()];
-    let resampled = block_bootstrap_within(&columns, grip.width, None, &models[0].fit, &squeezes(grip.force));
-    Ok(Some(average(&models, grip.width.len(), resampled.as_deref())))
+    let columns = grips.columns(grips.force.clone());
+    let resampled = block_bootstrap_within(&columns, &grips.width, None, &models[0].fit, &grips.stretches);
+    Ok(Some(average(&models, grips, resampled.as_deref())))
 }
 
 /// Stretches of about the usual grip and of squeezes beside it: where few squeezes show all of the give, every draw must have them.
@@ -131,7 +208,7 @@ fn squeezes(force: &[f64]) -> Vec<Range<usize>> {
 /// The models of one way to bend: a coarse row of values, then a fine one about the best. Each value's share of the probability
 /// is the part of the range that it stands for, so that what remains open about the bend is averaged over.
 fn bent_models(
-    grip: &Grip<'_>,
+    grips: &Grips,
     bend: Bend,
     (low, high): (f64, f64),
     independent: f64,
@@ -143,7 +220,7 @@ fn bent_models(
         let trial = |k: usize| {
             let number = place(from, to, k);
             let cushion = bend.cushion(number);
-            let fit = regress(grip, grip.force.iter().map(|f| cushion.depth_m(*f)).collect())?;
+            let fit = grips.regress(grips.force.iter().map(|f| cushion.depth_m(*f)).collect())?;
             Ok((number, Model { bic: bic(&fit, independent), fit, before: share, bent: true }))
         };
         (0..TRIALS).map(trial).collect()
@@ -157,7 +234,7 @@ fn bent_models(
 }
 
 /// `resampled`: errors of the linear spring's columns by resampling. What bent pads have more of scatter, they have there, too.
-fn average(models: &[Model], rows: usize, resampled: Option<&[f64]>) -> PadFit {
+fn average(models: &[Model], grips: &Grips, resampled: Option<&[f64]>) -> Widths {
     let score = |m: &Model| m.before - 0.5 * m.bic;
     let most = models.iter().map(score).fold(f64::NEG_INFINITY, f64::max);
     let weights: Vec<f64> = models.iter().map(|m| (score(m) - most).exp()).collect();
@@ -171,21 +248,20 @@ fn average(models: &[Model], rows: usize, resampled: Option<&[f64]>) -> PadFit {
         let drawn = resampled.map(|r| (r[column] * scatter / models[0].fit.std_errors[column]).hypot(apart.sqrt()));
         (mean, variance.sqrt(), drawn)
     };
-    let ((width_m, width_error_m, width_drawn), (slope, slope_error, slope_drawn)) = (of(0), of(1));
-    PadFit {
-        width_m,
-        width_error_m,
-        give_m_per_n: -0.5 * slope,
-        give_error: 0.5 * slope_error,
-        resampled: width_drawn.zip(slope_drawn).map(|(width, slope)| (width, 0.5 * slope)),
-        bent: part(&|m| f64::from(u8::from(m.bent))),
-        rows,
-    }
-}
-
-/// Columns: width at no force, depth of a pad of 1 N/m, damping.
-fn regress(grip: &Grip<'_>, depth: Vec<f64>) -> Result<LinearFit, EstimateError> {
-    least_squares(&[vec![1.0; grip.width.len()], depth, grip.rate.to_vec()], grip.width, None)
+    let rows = |object: usize| grips.held.iter().filter(|h| **h == object).count();
+    let width = |object: usize| {
+        let (value, error, resampled) = of(object);
+        Estimate { value, error, resampled, rows: rows(object) }
+    };
+    let (slope, error, resampled) = of(grips.objects());
+    // Both pads give.
+    let give = Estimate {
+        value: -0.5 * slope,
+        error: 0.5 * error,
+        resampled: resampled.map(|r| 0.5 * r),
+        rows: grips.width.len(),
+    };
+    Widths { widths: (0..grips.objects()).map(width).collect(), give, bent: part(&|m| f64::from(u8::from(m.bent))) }
 }
 
 /// BIC counted in independent samples: neighbours that repeat each other are no new evidence. The bend itself is averaged over,
@@ -227,6 +303,35 @@ mod tests {
             assert!(width >= 180 && error < least, "{name}: {width} of 200, {error}");
             assert!(if name == "linear" { bent < 0.3 } else { bent > 0.9 }, "{name}: {bent}");
         }
+    }
+
+    #[test]
+    fn an_even_grip_of_one_object_is_understood_beside_a_squeeze_of_another() {
+        let (mut rng, noise_m) = (StdRng::seed_from_u64(8), 3e-6);
+        let (truth, stiffness) = ([0.016, 0.023], 2400.0);
+        let mut grips = Grips::default();
+        for (object, width_m) in truth.into_iter().enumerate() {
+            let squeeze = if object == 0 { 0.0 } else { 1.0 };
+            let force: Vec<f64> = (0..120).map(|i| 2.5 + squeeze * (0.13 * f64::from(i)).sin()).collect();
+            let mut seen = |f: &f64| width_m - 2.0 * f / stiffness + noise_m * rng.sample::<f64, _>(StandardNormal);
+            let width: Vec<f64> = force.iter().map(&mut seen).collect();
+            let rate: Vec<f64> = (0..120).map(|i| 1e-3 * (0.29 * f64::from(i)).cos()).collect();
+            grips.add(object, &Grip { width: &width, force: &force, rate: &rate });
+        }
+        let found = widths_over_force(&grips).expect("solves").expect("one of them varies");
+        for (width, truth) in found.widths.iter().zip(truth) {
+            assert!((width.value - truth).abs() < 3.0 * width.error && width.error < 2e-5, "{width:?} of {truth}");
+        }
+        assert!((found.give.value * stiffness - 1.0).abs() < 3.0 * found.give.error * stiffness, "{:?}", found.give);
+    }
+
+    #[test]
+    fn the_give_in_shear_holds_95_percent_of_what_is_assumed() {
+        let shares = (0..10_000).map(|i| 1.0 / (0.3 + 0.8 * (f64::from(i) + 0.5) / 10_000.0));
+        let gives: Vec<f64> = shares.collect();
+        let mean = gives.iter().sum::<f64>() / 10_000.0;
+        let held = gives.iter().filter(|g| (*g - SHEAR_GIVE.0).abs() < 1.96 * SHEAR_GIVE.1).count();
+        assert!((mean - SHEAR_GIVE.0).abs() < 0.01 && (9_450..=9_550).contains(&held), "{mean} {held}");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::signals::Signals;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
-use crate::identify::pads::{self, EVEN, PadFit, SHEAR_OVER_NORMAL, width_over_force};
+use crate::identify::pads::{self, EVEN, PadFit, SHEAR_GIVE, width_over_force};
 use crate::segment::threshold::percentile;
 
 /// The grip must vary by this share of its mean for the give to be told from the width.
@@ -56,8 +56,8 @@ impl Grip {
         let sides = sides.filter(|s| s.give_m_per_n > 0.0);
         let normal = sides.map_or(USUAL_GIVE_M_N.0, |s| s.give_m_per_n);
         // A wall gives under the grip, but not along itself.
-        let usual = 0.5 * pad_n_m.map_or(normal, f64::recip) / SHEAR_OVER_NORMAL.0;
-        let shear_m_n = shear(signals)?.unwrap_or((usual, usual * SHEAR_OVER_NORMAL.1 / SHEAR_OVER_NORMAL.0));
+        let one = 0.5 * pad_n_m.map_or(normal, f64::recip);
+        let shear_m_n = shear(signals)?.unwrap_or((one * SHEAR_GIVE.0, one * SHEAR_GIVE.1));
         Ok(Self { sides, mean_width_m, mean_n, shear_m_n, samples: held.len() })
     }
 

@@ -7,6 +7,7 @@
 pub(crate) mod heights;
 mod leak;
 mod slip;
+mod together;
 
 use super::bootstrap::block_bootstrap;
 use super::linear::{LinearFit, least_squares};
@@ -23,6 +24,7 @@ use haptics::Vec2;
 use haptics::recording::{Channel, Recording, Task};
 use haptics::world::World;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
+pub use together::{Together, fit_together};
 
 /// Relative error of a width whose pad compression could not be measured: the thesis's blocks came out 7 % too narrow.
 const UNKNOWN_COMPRESSION: f64 = 0.07;
@@ -66,7 +68,13 @@ pub fn fit_by(
     thresholds: Option<Thresholds>,
 ) -> Result<(Fit, Segmentation), EstimateError> {
     let blocks = Blocks::of(method, recording, thresholds)?;
-    let count = blocks.count();
+    let fit = describe(&blocks)?;
+    Ok((fit, blocks.segmentation))
+}
+
+/// All that one recording shows.
+fn describe(blocks: &Blocks<'_>) -> Result<Fit, EstimateError> {
+    let (count, recording) = (blocks.count(), blocks.recording);
     if count == 0 {
         return Err(EstimateError::Other(format!(
             "no block was carried in {}: there is nothing to fit; check the task and the signs of the forces, and that a state of the \
@@ -79,32 +87,31 @@ pub fn fit_by(
     let mut correlated = Vec::new();
     for number in 1..=count {
         let weight = blocks.weight(number)?;
-        correlated.extend(weight_and_mass(&weight));
+        correlated.extend(weight_and_mass(&weight[0], &weight[1]));
         weights_n.push(weight[0].value.unwrap_or(0.0));
         parameters.extend(weight);
         parameters.push(blocks.width(number)?);
     }
     parameters.extend(match blocks.unshown("height_m") {
         Some(why) => (1..=count).map(|n| Parameter::unidentified(&object(n), "height_m", 0, &why)).collect(),
-        None => heights::heights(&blocks, &weights_n)?,
+        None => heights::heights(blocks, &weights_n)?,
     });
     parameters.push(blocks.pad_stiffness(count));
     let masses_kg: Vec<f64> = weights_n.iter().map(|w| w / recording.meta.gravity()).collect();
     for number in 1..=count {
         parameters.extend(blocks.friction(number));
-        parameters.extend(leak::leak(&blocks, number, count, &masses_kg));
+        parameters.extend(leak::leak(blocks, number, count, &masses_kg));
     }
     // Read by object: all of block 1, all of block 2, then the pads.
     parameters.sort_by(|a, b| a.object.cmp(&b.object));
-    let fit = Fit {
+    Ok(Fit {
         task: Task::BlockStack.name().to_owned(),
         parameters,
         constraints: (1..=count).filter_map(|number| blocks.constraint(number)).collect(),
         correlated,
         warnings: blocks.segmentation.warnings.clone(),
         ..Fit::default()
-    };
-    Ok((fit, blocks.segmentation))
+    })
 }
 
 /// What the resolution leaves unknown of a mean, the largest among the components of a series of both fingers.
@@ -162,7 +169,7 @@ pub fn needed_forces(world: &World, recording: &Recording) -> Result<Vec<Channel
 }
 
 /// They are one thing: what is stated of either holds for both.
-fn weight_and_mass([weight, mass]: &[Parameter; 2]) -> Option<Correlated> {
+fn weight_and_mass(weight: &Parameter, mass: &Parameter) -> Option<Correlated> {
     let (a, b) = (weight.std_error?, mass.std_error?);
     Some(Correlated {
         parameters: vec![weight.full_name(), mass.full_name()],

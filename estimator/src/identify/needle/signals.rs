@@ -1,7 +1,7 @@
 //! What a needle recording says along the needle's way: depth, force, and where it is held.
 
 use crate::estimate::EstimateError;
-use crate::identify::pads::SHEAR_OVER_NORMAL;
+use crate::identify::pads::SHEAR_GIVE;
 use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TipSeries, is_two_fingered, times, tip_series};
 use haptics::Vec2;
@@ -160,6 +160,6 @@ fn give(grip: &[f64], width: &[f64], holds: &[Range<usize>]) -> (f64, f64) {
     if slope >= 0.0 || -slope < PADS_SEEN * error {
         return (0.0, 0.0);
     }
-    let give = 1.0 / (2.0 * SHEAR_OVER_NORMAL.0 * normal_n_m);
-    (give, give * SHEAR_OVER_NORMAL.1 / SHEAR_OVER_NORMAL.0)
+    let one = 0.5 / normal_n_m;
+    (one * SHEAR_GIVE.0, one * SHEAR_GIVE.1)
 }
