@@ -71,7 +71,7 @@ pub(super) struct Estimate {
 
 /// What several holds show together.
 #[derive(Clone, Debug)]
-pub(super) struct Widths {
+pub(super) struct Pressed {
     /// Width of each object at no force, m.
     pub(super) widths: Vec<Estimate>,
     /// Give of one pad at no force, m/N.
@@ -154,7 +154,7 @@ struct Model {
 pub(super) fn width_over_force(grip: &Grip<'_>) -> Result<Option<PadFit>, EstimateError> {
     let mut grips = Grips::default();
     grips.add(0, grip);
-    let one = |found: Widths| {
+    let one = |found: Pressed| {
         let (width, give) = (*found.widths.first()?, found.give);
         Some(PadFit {
             width_m: width.value,
@@ -170,7 +170,7 @@ pub(super) fn width_over_force(grip: &Grip<'_>) -> Result<Option<PadFit>, Estima
 }
 
 /// The weighted answer of all models, with one give for all holds; `None` when the force does not tell the give from the widths.
-pub(super) fn widths_over_force(grips: &Grips) -> Result<Option<Widths>, EstimateError> {
+pub(super) fn widths_over_force(grips: &Grips) -> Result<Option<Pressed>, EstimateError> {
     let line = grips.regress(grips.force.clone())?;
     if !line.identified.iter().take(grips.objects() + 1).all(|i| *i) {
         return Ok(None);
@@ -234,7 +234,7 @@ fn bent_models(
 }
 
 /// `resampled`: errors of the linear spring's columns by resampling. What bent pads have more of scatter, they have there, too.
-fn average(models: &[Model], grips: &Grips, resampled: Option<&[f64]>) -> Widths {
+fn average(models: &[Model], grips: &Grips, resampled: Option<&[f64]>) -> Pressed {
     let score = |m: &Model| m.before - 0.5 * m.bic;
     let most = models.iter().map(score).fold(f64::NEG_INFINITY, f64::max);
     let weights: Vec<f64> = models.iter().map(|m| (score(m) - most).exp()).collect();
@@ -261,7 +261,7 @@ fn average(models: &[Model], grips: &Grips, resampled: Option<&[f64]>) -> Widths
         resampled: resampled.map(|r| 0.5 * r),
         rows: grips.width.len(),
     };
-    Widths { widths: (0..grips.objects()).map(width).collect(), give, bent: part(&|m| f64::from(u8::from(m.bent))) }
+    Pressed { widths: (0..grips.objects()).map(width).collect(), give, bent: part(&|m| f64::from(u8::from(m.bent))) }
 }
 
 /// BIC counted in independent samples: neighbours that repeat each other are no new evidence. The bend itself is averaged over,

@@ -88,7 +88,7 @@ pub fn along(recording: &Recording) -> Result<Along, EstimateError> {
     let spans_s = time_s.last().zip(time_s.first()).map_or(0.0, |(last, first)| last - first);
     let period_s = spans_s / time_s.len().saturating_sub(1).max(1) as f64;
     let calm = if period_s > 0.0 { ((CALM_S / period_s).round() as usize).max(1) } else { 1 };
-    Ok(Along { calm, depth_m, force_n, side_m, direction, holds, give_m_n, noise_n, free_n, two_fingered })
+    Ok(Along { depth_m, force_n, side_m, direction, holds, give_m_n, calm, noise_n, free_n, two_fingered })
 }
 
 /// Mean of the force well before the first hold and after the last, and its error.
