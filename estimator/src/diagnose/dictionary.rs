@@ -159,6 +159,11 @@ impl Dictionary<'_> {
         linear.extend([("k3", self.unit(&ReturnSpring, 2)), ("k3 aside", self.unit(&ReturnSpring, 2))]);
         let hardening = Candidate::several("return-spring", Kind::Plant, columns, linear);
         all.push(hardening.shaped(Shape::Hardening { half }));
+        // Far from its place of rest all that shows is the cubic.
+        for rest in self.grid.rests.iter().copied() {
+            let cubic = self.plain(&ReturnSpring, &[0.0, 0.0, 1.0, rest], 2).positive();
+            all.push(cubic.at("q0", rest, self.unit(&ReturnSpring, 3)));
+        }
     }
 
     /// Walls that leave a good part of the motion alone (else a spring explains as much), and cables to a place beside the arm.

@@ -100,6 +100,7 @@ fn effect(candidate: &Candidate, values: &[f64], track: &Track, [dry_n, weight_n
             // cos(x − π/2) is the sine's column.
             of(&PositionRipple, &[cosine.hypot(sine), searched(0), (-sine).atan2(cosine)])
         }
+        "return-spring" if named("k3") => of(&ReturnSpring, &[0.0, 0.0, first, searched(0)]),
         "return-spring" => of(&ReturnSpring, &spring(values, track)),
         "local-resistance" => {
             let turn = if radius > 0.0 { std::f64::consts::TAU * radius } else { 0.0 };

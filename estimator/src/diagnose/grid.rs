@@ -28,6 +28,9 @@ const REACH: f64 = 5.0;
 const REACHES: [f64; 2] = [2.5, 20.0];
 /// Shares of the motion on one side of a wall.
 const WALLS: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+/// Places of rest of a spring that hardens: so many, up to so many half ranges from the middle.
+const RESTS: u32 = 13;
+const RESTS_WITHIN: f64 = 1.5;
 /// Times in which friction changes, in shares of the recording, …
 const WARMING: [f64; 4] = [0.1, 0.3, 1.0, 3.0];
 /// … in which a drift or a leak dies away, …
@@ -53,6 +56,8 @@ pub struct Grid {
     pub walls: Vec<(f64, f64)>,
     /// Direction of the anchor, rad, length at rest, m, and distance of the anchor in arms.
     pub cables: Vec<(f64, f64, f64)>,
+    /// Places of rest.
+    pub rests: Vec<f64>,
     pub warming: Vec<f64>,
     pub settling: Vec<f64>,
     pub starts: Vec<f64>,
@@ -89,6 +94,9 @@ impl Grid {
             walls: walls.collect(),
             cables: (0..CABLES)
                 .flat_map(|k| SLACK.map(|s| (TAU * f64::from(k) / f64::from(CABLES), rest(s), REACH)))
+                .collect(),
+            rests: (0..RESTS)
+                .map(|k| 0.5 * (low + high + RESTS_WITHIN * range * (2.0 * f64::from(k) / f64::from(RESTS - 1) - 1.0)))
                 .collect(),
             warming: WARMING.map(|share| share * track.span_s).to_vec(),
             settling: SETTLING.map(|share| share * track.span_s).to_vec(),
@@ -141,6 +149,11 @@ impl Grid {
                         let places = [-0.06, -0.03, 0.03, 0.06].map(|s| place + s * range);
                         grid.walls.extend(places.map(|place| (place, candidate.side)));
                     }
+                }
+                "return-spring" => {
+                    let step = RESTS_WITHIN * range / f64::from(RESTS - 1);
+                    let rest = value("q0").into_iter();
+                    grid.rests.extend(rest.flat_map(|q0| [-0.67, -0.33, 0.33, 0.67].map(|s| q0 + s * step)));
                 }
                 "friction-change" if value("tau").is_some() => {
                     grid.warming.extend(times(value("tau").unwrap_or(0.0), &[0.58, 0.76, 1.3, 1.7]));
