@@ -246,7 +246,7 @@ impl Dictionary<'_> {
             // Behind the gap lies what resists, or everything.
             for (behind, whole) in [(self.resisting, false), (self.predicted, true)] {
                 let mut column: Vec<f64> = gap.iter().zip(behind).map(|(g, f)| -felt * g * f).collect();
-                super::stuck::plays(&self.track.rows, way, whole, &mut column);
+                super::stuck::plays(self.track, way, whole, &mut column);
                 let backlash = Candidate::one("backlash", Kind::Plant, "share", "1", column);
                 let backlash = backlash.shaped(Shape::Share { least: LEAST_BEHIND, most: MOST });
                 all.push(backlash.at("delta", way, units.length));

@@ -61,6 +61,14 @@ pub struct Geometry {
     pub study: Study,
 }
 
+/// How far the causes of the last round displaced a point, m.
+#[derive(Clone, Copy, Debug, Default)]
+struct Displaced {
+    exact: Vec2,
+    /// In proportion to the parameters.
+    linear: Vec2,
+}
+
 /// One comparison of causes: everything that words and figures are made of.
 pub struct Study {
     pub candidates: Vec<Candidate>,
@@ -86,20 +94,21 @@ pub fn geometry(path: &Path, signals: usize, threshold: f64) -> Result<Geometry,
     let positions: Vec<Vec2> = path.points.iter().map(|p| p.position).collect();
     let mut center_m = circle(&positions)?;
     let mut shift_m = vec![Vec2::zeros(); signals];
+    let mut bent = vec![Displaced::default(); path.points.len()];
     let mut radius_m = 0.0;
     let mut study = None;
     for round in 0..ROUNDS {
-        let made = compare(path, center_m, threshold)?;
+        let made = compare(path, center_m, &bent, threshold)?;
         let Some(solved) = &made.solved else {
             return Err(EstimateError::Other("no circle fits the handle's path".to_owned()));
         };
         radius_m = solved.values[0];
         let step = Vec2::new(solved.values[1], solved.values[2]);
         center_m += step;
-        corrections(path, &made, &mut shift_m, center_m);
+        bent = corrections(path, &made, &mut shift_m, center_m);
         let settled = step.norm() < 1e-8;
         study = Some(made);
-        if settled && round > 0 {
+        if settled && round > 1 {
             break;
         }
     }
@@ -116,10 +125,12 @@ fn circle(points: &[Vec2]) -> Result<Vec2, EstimateError> {
     Ok(mean + Vec2::new(fit.values[0], fit.values[1]))
 }
 
-fn compare(path: &Path, center_m: Vec2, threshold: f64) -> Result<Study, EstimateError> {
+fn compare(path: &Path, center_m: Vec2, bent: &[Displaced], threshold: f64) -> Result<Study, EstimateError> {
     let arms: Vec<Vec2> = path.points.iter().map(|p| p.position - center_m).collect();
     let outward: Vec<Vec2> = arms.iter().map(Vec2::normalize).collect();
-    let y: Vec<f64> = arms.iter().zip(&path.points).map(|(a, p)| a.norm() + p.inside_m2 / a.norm()).collect();
+    // What is known of the displacement enters as it is, and stays in the target as its columns can take it.
+    let distance = |i: usize| (arms[i] - bent[i].exact).norm() + outward[i].dot(&bent[i].linear);
+    let y: Vec<f64> = (0..arms.len()).map(|i| distance(i) + path.points[i].inside_m2 / arms[i].norm()).collect();
     let column = |f: &dyn Fn(usize) -> f64| (0..y.len()).map(f).collect::<Vec<f64>>();
     let mut base = vec![vec![1.0; y.len()], column(&|i| outward[i].x), column(&|i| outward[i].y)];
     if path.two_fingered {
@@ -185,20 +196,25 @@ fn candidates(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
 }
 
 /// What the found causes displaced the positions by.
-fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2) {
+fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2) -> Vec<Displaced> {
     shift_m.fill(Vec2::zeros());
-    let Some(solved) = &study.solved else { return };
+    let Some(solved) = &study.solved else { return vec![Displaced::default(); path.points.len()] };
     let give = if path.two_fingered { Vec2::new(solved.values[3], solved.values[4]) } else { Vec2::zeros() };
-    for point in &path.points {
+    let of = |point: &PathPoint| {
         let outward = (point.position - center_m).normalize();
         let mut shift = point.force.component_mul(&give);
+        let mut bow = Vec2::zeros();
         let mut at = study.base.len();
         for chosen in &study.chosen {
             let candidate = &study.candidates[chosen.candidate];
             let value = solved.values[at];
             shift += match (candidate.id, point.joint) {
                 ("pad-compliance", _) => outward * (value * outward.dot(&point.force)),
-                ("joint-offset", Some(joint)) => joint[0] * value,
+                ("joint-offset", Some(joint)) => {
+                    // The second link turns about its joint: on an arc, not along its tangent.
+                    bow += Vec2::new(joint[0].y, -joint[0].x) * (value.cos() - 1.0) + joint[0] * (value.sin() - value);
+                    joint[0] * value
+                }
                 ("length-scale", Some(joint)) => joint[1] * value,
                 ("fingertip-slip", _) if point.time_s >= candidate.searched[0].value => {
                     Vec2::new(value, solved.values[at + 1])
@@ -207,8 +223,13 @@ fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2)
             };
             at += candidate.columns.len();
         }
+        Displaced { exact: shift + bow, linear: shift }
+    };
+    let all: Vec<Displaced> = path.points.iter().map(of).collect();
+    for (point, displaced) in path.points.iter().zip(&all) {
         if let Some(to) = shift_m.get_mut(point.index) {
-            *to = shift;
+            *to = displaced.exact;
         }
     }
+    all
 }

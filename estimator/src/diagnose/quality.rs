@@ -21,6 +21,9 @@ const CHANNEL: [&str; 7] =
 /// … of which these are about all samples: nothing can be left out.
 const WHOLE: [&str; 4] = ["dropped-samples", "gap", "clock-jump", "quantised"];
 
+/// Samples lost in fewer places spoil nothing.
+const MANY: usize = 3;
+
 /// Looks at the raw samples.
 pub fn faults(recording: &Recording) -> Faults {
     let mut found = Faults { causes: Vec::new(), bad: vec![false; recording.len()] };
@@ -64,7 +67,9 @@ fn leave_out_near_the_rail(recording: &Recording, warning: &Warning, bad: &mut [
 /// The force and motion channels, and the clock.
 fn is_sensed(warning: &Warning) -> bool {
     let Some(column) = &warning.column else { return true };
-    ["f", "tau", "q", "dq", "x", "y", "v"].iter().any(|start| column.starts_with(start))
+    // A sample lost here and there is how recorders are.
+    let clock = column == "t_s" && (warning.kind != "dropped-samples" || warning.spans.len() >= MANY);
+    clock || ["f", "tau", "q", "dq", "x", "y", "v"].iter().any(|start| column.starts_with(start))
 }
 
 fn cause(id: &str, warning: &Warning, recording: &Recording) -> Cause {

@@ -24,6 +24,10 @@ const SLOWEST_S: f64 = 0.03;
 const LEAST_ROWS: usize = 3;
 /// A load that is no further from zero than this many times its noise has no side.
 const SURE: f64 = 2.0;
+/// … and presses to one side of a gap for certain beyond this many.
+const PRESSED: f64 = 3.5;
+/// Where something floats is the mean of so many rows before and after.
+const NEAR: usize = 2;
 /// Steps in which a change of the load is followed.
 const PARTS: usize = 16;
 
@@ -43,8 +47,7 @@ pub fn add(track: &mut Track, loads: &[Option<Load>]) {
     if noise <= 0.0 || noise.is_nan() || track.raw_period_s > SLOWEST_S {
         return;
     }
-    let range = track.quantile(1.0, |r| r.motion.position) - track.quantile(0.0, |r| r.motion.position);
-    let largest = LARGEST * track.radius_m.map_or(range, |r| range.min(2.0 * r)) + 4.0 * noise;
+    let largest = largest(track);
     let stands = |i: usize| {
         let below = |l: &Load| l.share.abs() < HOLDS && l.friction > SURE * track.force_noise;
         track.rows[i].place == Place::Along && loads[i].as_ref().is_some_and(below)
@@ -70,6 +73,12 @@ pub fn add(track: &mut Track, loads: &[Option<Load>]) {
     }
     let made: Vec<Row> = alike(made, noise).concat();
     track.rows.extend(made);
+}
+
+/// The furthest that what stands may go, m or rad.
+fn largest(track: &Track) -> f64 {
+    let range = track.quantile(1.0, |r| r.motion.position) - track.quantile(0.0, |r| r.motion.position);
+    LARGEST * track.radius_m.map_or(range, |r| range.min(2.0 * r)) + 4.0 * track.position_noise
 }
 
 /// Only those standstills that give as the others do. A slide so slow that its force passes for a standstill's gives anything.
@@ -112,14 +121,11 @@ fn standstill(track: &Track, loads: &[Option<Load>], range: std::ops::Range<usiz
     let mean = rows.iter().map(|r| r.motion.position).sum::<f64>() / rows.len() as f64;
     let of = |(row, load): (&Row, &Option<Load>)| {
         let load = load.as_ref()?;
-        let sure = |share: f64| if share.abs() * load.friction > SURE * track.force_noise { share } else { 0.0 };
-        let noise = SURE * track.force_noise / load.friction;
-        let place = Place::Stuck {
-            share: load.share,
-            side: sure(load.whole).signum() * f64::from(sure(load.whole) != 0.0),
-            noise,
-            scale,
+        let pressed = |share: f64| {
+            if share.abs() * load.friction > PRESSED * track.force_noise { share.signum() } else { 0.0 }
         };
+        let noise = SURE * track.force_noise / load.friction;
+        let place = Place::Stuck { share: load.share, side: pressed(load.whole), noise, scale };
         Some(Row {
             stretch: number,
             place,
@@ -191,19 +197,51 @@ fn follow(values: &[f64; MAX_PARAMETERS], memory: &mut Memory, aim: f64) -> f64 
     gone
 }
 
-/// What has a gap of twice `half` lies on the side of the load.
-pub fn plays(rows: &[Row], half: f64, all: bool, column: &mut [f64]) {
+/// What has a gap of twice `half` lies on the side of the load. A gap that is wider than what counts as a standstill is not crossed in one.
+pub fn plays(track: &Track, half: f64, all: bool, column: &mut [f64]) {
+    if 2.0 * half < largest(track) {
+        lies(&track.rows, half, all, column);
+    }
+}
+
+fn lies(rows: &[Row], half: f64, all: bool, column: &mut [f64]) {
     fill(rows, column, &|stretch| {
-        stretch
-            .iter()
-            .map(|row| {
-                let Place::Stuck { share, side, noise, .. } = row.place else { return 0.0 };
-                // Where the load's sign is a guess, anything between the two sides.
-                let side = if all { side } else { (share / noise.max(1e-12)).clamp(-1.0, 1.0) };
-                half * side
-            })
-            .collect()
+        let sides: Vec<f64> = stretch.iter().map(|row| side(row, all)).collect();
+        let places: Vec<f64> = stretch.iter().map(place_m).collect();
+        let pressed = || (0..stretch.len()).filter(|k| sides[*k] != 0.0);
+        let count = pressed().count();
+        let middle = if count > 0 {
+            pressed().map(|k| places[k] - half * sides[k]).sum::<f64>() / count as f64
+        } else {
+            let floats = (0..stretch.len()).map(|k| around(&places, k));
+            0.5 * (floats.clone().fold(f64::MAX, f64::min) + floats.fold(f64::MIN, f64::max))
+        };
+        // Without a load it floats: wherever it was seen a moment before and after, within the gap.
+        let floats = |k: usize| (around(&places, k) - middle).clamp(-half, half);
+        (0..stretch.len()).map(|k| middle + if sides[k] == 0.0 { floats(k) } else { half * sides[k] }).collect()
     });
+}
+
+/// The side on which the load holds what has play; 0 where the load may be none.
+fn side(row: &Row, all: bool) -> f64 {
+    let Place::Stuck { share, side, noise, .. } = row.place else { return 0.0 };
+    match all {
+        true => side,
+        false if share.abs() > noise * PRESSED / SURE => share.signum(),
+        false => 0.0,
+    }
+}
+
+/// Way of a row since the middle of its standstill.
+fn place_m(row: &Row) -> f64 {
+    if let Place::Stuck { scale, .. } = row.place { row.y / scale } else { 0.0 }
+}
+
+/// Mean of the neighbours of a place, without its own noise.
+fn around(places: &[f64], k: usize) -> f64 {
+    let near = k.saturating_sub(NEAR)..(k + NEAR + 1).min(places.len());
+    let count = near.len() - 1;
+    near.filter(|i| *i != k).map(|i| places[i]).sum::<f64>() / count.max(1) as f64
 }
 
 #[cfg(test)]
@@ -229,7 +267,7 @@ mod tests {
         let shares = [0.5, 0.3, 0.1, -0.1, -0.3, -0.5];
         let rows: Vec<Row> = shares.iter().map(|s| row(1, *s, 0.0)).collect();
         let (mut gap, mut bend) = (vec![0.0; 6], vec![0.0; 6]);
-        plays(&rows, 1e-4, false, &mut gap);
+        lies(&rows, 1e-4, false, &mut gap);
         assert!(
             (gap[0] - 0.1).abs() < 1e-12 && (gap[2] - gap[0]).abs() < 1e-12 && (gap[3] + 0.1).abs() < 1e-12,
             "{gap:?}"
