@@ -14,7 +14,7 @@ use super::track::{Place, Row, Track};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::Vec2;
-use haptics::law::{CoulombFriction, Effect, ForceDrift, Law};
+use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, ViscousFriction};
 
 /// The sign of a velocity is blurred over this share of the usual speed at least.
 const BLUR: f64 = 0.008;
@@ -268,9 +268,13 @@ struct Look {
 fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Result<Look, EstimateError> {
     let mut columns = base.to_vec();
     let together = if track.planar { TOGETHER } else { 1.0 };
-    let has_dry = model.iter().any(|e| e.law().id() == CoulombFriction.id());
-    if !has_dry {
-        columns.push(column(track, &Effect::new(&CoulombFriction, &[1.0])));
+    let has = |law: &dyn Law| model.iter().any(|e| e.law().id() == law.id());
+    let has_dry = has(&CoulombFriction);
+    // What resists without being in the model: with dry friction alone a viscous one would pass for it.
+    let missing: [(&'static dyn Law, bool); 2] =
+        [(&CoulombFriction, has_dry), (&ViscousFriction, has_dry || has(&ViscousFriction))];
+    for (law, _) in missing.iter().filter(|(_, there)| !there) {
+        columns.push(column(track, &Effect::new(*law, &[1.0])));
     }
     let along: Vec<f64> = track.rows.iter().map(|r| f64::from(u8::from(r.place == Place::Along))).collect();
     let mut weight = along.clone();
@@ -298,9 +302,8 @@ fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Res
     }
     let sum = |resists: bool| -> Vec<f64> {
         let mut sum = total(model, base, &fit.values, resists);
-        if !has_dry {
-            let dry = fit.values[base.len()];
-            sum.iter_mut().zip(&columns[base.len()]).for_each(|(s, c)| *s += dry * c);
+        for (column, value) in columns.iter().zip(&fit.values).skip(base.len()) {
+            sum.iter_mut().zip(column).for_each(|(s, c)| *s += value * c);
         }
         sum
     };

@@ -61,6 +61,9 @@ const LINES: [(&str, Over); 6] = [
 /// What is weaker than this share of such a cause's score may be that remainder.
 const REMAINDER: f64 = 0.12;
 
+/// Squared correlation of two causes' estimates from which on they are one.
+const AS_ONE: f64 = 0.99;
+
 /// What a curve is over.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Over {
@@ -201,7 +204,8 @@ impl Selection<'_> {
             let whole = self.price(chosen);
             let loss = |k: usize| self.price(&without(chosen, k)) - whole;
             let Some(weakest) = (0..chosen.len()).min_by(|a, b| loss(*a).total_cmp(&loss(*b))) else { return };
-            let doubtful = (0..chosen.len()).find(|k| !self.validates(chosen, *k) || self.remains(chosen, *k));
+            let doubtful = (0..chosen.len())
+                .find(|k| !self.validates(chosen, *k) || self.remains(chosen, *k) || self.pulls_against(chosen, *k));
             if loss(weakest) < self.threshold {
                 chosen.remove(weakest);
             } else if let Some(k) = doubtful {
@@ -224,6 +228,17 @@ impl Selection<'_> {
             && (0..chosen.len())
                 .filter(|o| *o != k && over(chosen[*o], &CURVES) == own)
                 .any(|o| loss(k).zip(loss(o)).is_some_and(|(weak, strong)| weak < REMAINDER * strong))
+    }
+
+    /// Whether a cause and an earlier one are nearly the same in this recording: what they say is then in their difference alone, each as large
+    /// as one likes and taken back by the other.
+    fn pulls_against(&self, chosen: &[usize], k: usize) -> bool {
+        let single = |k: usize| self.candidates[chosen[k]].columns.len() == 1;
+        let Some(solved) = self.system.solve(chosen).filter(|_| single(k)) else { return false };
+        let at =
+            |k: usize| self.system.base + chosen[..k].iter().map(|c| self.candidates[*c].columns.len()).sum::<usize>();
+        let covariance = |a: usize, b: usize| solved.inverse[(at(a), at(b))];
+        (0..k).filter(|o| single(*o)).any(|o| covariance(k, o).powi(2) > AS_ONE * covariance(k, k) * covariance(o, o))
     }
 
     /// Whether held-out folds gain by the k-th cause.
