@@ -16,6 +16,9 @@ const LEAST_BEHIND: f64 = 0.4;
 /// More than all of it is none of the two: another way or gap would be nearer.
 const MOST: f64 = 1.7;
 
+/// Shape of presliding that gives back along a straight line.
+const STRAIGHT: f64 = 0.5;
+
 /// Everything that columns are made of.
 pub struct Dictionary<'a> {
     pub track: &'a Track,
@@ -23,6 +26,8 @@ pub struct Dictionary<'a> {
     pub predicted: &'a [f64],
     /// … and the dry and viscous part of it.
     pub resisting: &'a [f64],
+    /// The dry friction at each row if it slid in the positive direction.
+    pub dry: &'a [f64],
     /// Forces of which everything is known: they tell the gain of the sensor.
     pub fixed: &'a [Vec<f64>],
     /// Causes that belong to the model already.
@@ -229,20 +234,13 @@ impl Dictionary<'_> {
 
     fn memory(&self, all: &mut Vec<Candidate>) {
         let units = self.units();
+        all.extend(self.grid.ways.iter().map(|way| self.bent(*way, 0.0)));
+        all.extend(self.grid.straight.iter().map(|way| self.bent(*way, STRAIGHT).at("shape", STRAIGHT, "1")));
         for way in self.grid.ways.iter().copied() {
-            // Friction of the model that bends by `way` before it slides: what it lacks against sliding at once.
-            let bent =
-                self.remembered(&Hysteresis, &[1.0, 1.0 / way], &|motion, memory, _| memory[0] - motion.direction);
-            let dry = self.dry_level();
-            let felt = f64::from(u8::from(way > self.grid.felt));
-            let mut column: Vec<f64> = bent.iter().zip(&dry).map(|(b, d)| felt * b * d).collect();
-            super::stuck::bends(&self.track.rows, way, &mut column);
-            let hysteresis = Candidate::one("hysteresis", Kind::Plant, "share", "1", column);
-            let hysteresis = hysteresis.shaped(Shape::Share { least: LEAST_BENT, most: MOST });
-            all.push(hysteresis.at("way", way, units.length));
             let gap = self.remembered(&Backlash, &[way], &|motion, memory, values| {
                 1.0 - Backlash.engaged(motion, values, memory)
             });
+            let felt = f64::from(u8::from(way > self.grid.felt));
             // Behind the gap lies what resists, or everything.
             for (behind, whole) in [(self.resisting, false), (self.predicted, true)] {
                 let mut column: Vec<f64> = gap.iter().zip(behind).map(|(g, f)| -felt * g * f).collect();
@@ -254,10 +252,15 @@ impl Dictionary<'_> {
         }
     }
 
-    /// The model's friction at each row if it slid in the positive direction.
-    fn dry_level(&self) -> Vec<f64> {
-        let rows = self.track.rows.iter().zip(self.resisting);
-        rows.map(|(r, f)| if r.motion.direction.abs() > 0.05 { f / r.motion.direction } else { f.abs() }).collect()
+    /// Friction of the model that bends by `way` before it slides: what it lacks against sliding at once.
+    fn bent(&self, way: f64, shape: f64) -> Candidate {
+        let values = [1.0, 1.0 / way, shape];
+        let bent = self.remembered(&Hysteresis, &values, &|motion, memory, _| memory[0] - motion.direction);
+        let felt = f64::from(u8::from(way > self.grid.felt));
+        let mut column: Vec<f64> = bent.iter().zip(self.dry).map(|(b, d)| felt * b * d).collect();
+        super::stuck::bends(&self.track.rows, &values, &mut column);
+        let hysteresis = Candidate::one("hysteresis", Kind::Plant, "share", "1", column);
+        hysteresis.shaped(Shape::Share { least: LEAST_BENT, most: MOST }).at("way", way, self.units().length)
     }
 
     /// A column of a law with memory, which starts anew at every stretch and lives between the rows.
@@ -337,9 +340,8 @@ impl Dictionary<'_> {
             }
         }
         // Friction that grows or falls in proportion to the model's own, slowly or at once.
-        let dry = self.dry_level();
         let of_dry = |effect: &Effect| -> Vec<f64> {
-            super::force::column(self.track, effect).iter().zip(&dry).map(|(w, d)| w * d).collect()
+            super::force::column(self.track, effect).iter().zip(self.dry).map(|(w, d)| w * d).collect()
         };
         let change = |column| Candidate::one("friction-change", Kind::Plant, "relative change", "1", column);
         for tau in self.grid.warming.iter().copied() {

@@ -108,7 +108,7 @@ fn effect(candidate: &Candidate, values: &[f64], track: &Track, [dry_n, weight_n
             if named("P") { of(&LocalPush, &values) } else { of(&LocalResistance, &values) }
         }
         "added-constraint" => of(&AddedConstraint, &[first, searched(0), candidate.side]),
-        "hysteresis" => of(&Hysteresis, &[first * dry_n, first * dry_n / searched(0).max(1e-12)]),
+        "hysteresis" => of(&Hysteresis, &[first * dry_n, first * dry_n / searched(0).max(1e-12), searched(1)]),
         "backlash" => of(&Backlash, &[searched(0)]),
         "mass-change" if named("rate") => of(&MassChange, &[0.0, first, 0.0, 0.0, searched(0)]),
         "mass-change" => {

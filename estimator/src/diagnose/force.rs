@@ -35,8 +35,8 @@ const STANDS: f64 = 0.4;
 /// Share of the friction's square that stays open in a row with a reversal in it whose place is known.
 const REVERSAL: f64 = 0.05;
 
-/// Rounds in which searched values and the sensor's faults are settled.
-const REFINEMENTS: usize = 1;
+/// Most rounds in which searched values and the sensor's faults are settled.
+const REFINEMENTS: usize = 2;
 
 /// The model to start from: laws with their non-linear values.
 pub type Model = Vec<Effect>;
@@ -48,12 +48,13 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
     stuck::add(track, &loads);
     let coarse = Grid::coarse(track);
     let mut made = compare(track, model, fixed, threshold, [&coarse, &Grid::default()], (None, None))?;
-    for _ in 0..REFINEMENTS {
-        if made.chosen.is_empty() {
+    for round in 0..REFINEMENTS {
+        // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of them.
+        if made.chosen.len() <= round {
             break;
         }
         let found: Vec<&Candidate> = made.chosen.iter().map(|c| &made.candidates[c.candidate]).collect();
-        let fine = Grid::around(&found, track);
+        let fine = Grid::around(&found, track, 0.5_f64.powi(round as i32));
         // The load on the friction is what the sensor told, rid of what is now known of the sensor.
         correct_load(track, &made);
         let laws = made.solved.as_ref().map(|s| s.values[..made.base.len()].to_vec());
@@ -105,14 +106,16 @@ fn compare(
     (laws, whitening): (Option<&[f64]>, Option<Vec<f64>>),
 ) -> Result<Study, EstimateError> {
     let Asked { base, known, y } = asked(track, model, fixed);
-    let Look { mut predicted, mut resisting, weight, .. } = first_look(track, model, &base, &y)?;
+    let Look { mut predicted, mut resisting, weight, slides: mut dry } = first_look(track, model, &base, &y)?;
     if let Some(laws) = laws.filter(|laws| friction_is_sound(model, laws)) {
         (predicted, resisting) = (total(model, &base, laws, false), total(model, &base, laws, true));
+        dry = (0..y.len()).map(|i| dry_level(track, model, laws, i)).collect();
     }
     let taken: Vec<&str> = model.iter().chain(fixed).map(|e| e.law().id()).collect();
     let dictionary = |grid| {
         let without = &taken;
-        Dictionary { track, predicted: &predicted, resisting: &resisting, fixed: &known, without, grid }.candidates()
+        let (predicted, resisting, dry) = (&predicted, &resisting, &dry);
+        Dictionary { track, predicted, resisting, dry, fixed: &known, without, grid }.candidates()
     };
     let mut candidates = dictionary(coarse);
     candidates.extend(dictionary(fine).into_iter().filter(|c| !c.searched.is_empty()));
@@ -135,13 +138,13 @@ fn compare(
         weight: &weight,
         period_s: track.period_s,
     };
-    let dry = model.iter().any(|e| e.law().is_dry());
+    let has_dry = model.iter().any(|e| e.law().is_dry());
     let coefficients = match whitening {
         Some(known) => known,
         None => whitening_of(&base, &candidates, &rows, threshold)?,
     };
     let system = System::new(&base, &candidates, &rows, coefficients);
-    let chosen = Selection { system: &system, candidates: &candidates, threshold, dry, one_loss: true }.run();
+    let chosen = Selection { system: &system, candidates: &candidates, threshold, dry: has_dry, one_loss: true }.run();
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
     let solved = system.solve(&picks);
     Ok(Study { candidates, chosen, system, solved, y, base, weight })
@@ -280,9 +283,7 @@ fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Res
     let mut weight = along.clone();
     let mut fit = least_squares(&columns, y, Some(&weight))?;
     let dry = |values: &[f64], i: usize| -> f64 {
-        let of_model = model.iter().zip(values).filter(|(e, _)| e.law().is_dry());
-        let sum: f64 = of_model.map(|(e, v)| v * level(e, track, i)).sum();
-        sum.abs() + if has_dry { 0.0 } else { values[base.len()].abs() }
+        dry_level(track, model, values, i) + if has_dry { 0.0 } else { values[base.len()].abs() }
     };
     for _ in 0..2 {
         let noise = if track.noise_is_measured { track.force_noise } else { fit.rms.max(track.force_noise) };
@@ -343,6 +344,12 @@ fn friction_is_sound(model: &Model, values: &[f64]) -> bool {
 fn is_resisting(effect: &Effect) -> bool {
     use haptics::law::Role;
     matches!(effect.role(), Role::Dry | Role::Presliding | Role::Viscous)
+}
+
+/// Size of the model's dry friction at a row if it slid.
+fn dry_level(track: &Track, model: &Model, values: &[f64], i: usize) -> f64 {
+    let dry = model.iter().zip(values).filter(|(e, _)| e.law().is_dry());
+    dry.map(|(e, v)| v * level(e, track, i)).sum::<f64>().abs()
 }
 
 /// Size of a dry law's force at a row if it slid.

@@ -23,9 +23,9 @@ const SEEN: f64 = 0.5;
 /// Directions of a cable's anchor that are tried, and how much of the way round it is slack.
 const CABLES: u32 = 16;
 const SLACK: [f64; 3] = [0.35, 0.6, 0.8];
-/// How far away the anchor is, in arms, and how far else it may be.
+/// How far away the anchor is at first, in arms, and how far it may be.
 const REACH: f64 = 5.0;
-const REACHES: [f64; 2] = [2.5, 20.0];
+const REACHES: [f64; 3] = [2.5, REACH, 20.0];
 /// Shares of the motion on one side of a wall.
 const WALLS: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 /// Places of rest of a spring that hardens: so many, up to so many half ranges from the middle.
@@ -44,6 +44,8 @@ pub struct Grid {
     /// Speed and exponent.
     pub stribeck: Vec<(f64, f64)>,
     pub ways: Vec<f64>,
+    /// Ways of what gives back along a straight line (Bouc and Wen).
+    pub straight: Vec<f64>,
     /// Shorter ones than this do not show in the force, only in the way that a standing object gives.
     pub felt: f64,
     /// Wave lengths.
@@ -87,6 +89,7 @@ impl Grid {
         Self {
             stribeck: FALLING.iter().flat_map(|alpha| STRIBECK.map(|share| (share * fast, *alpha))).collect(),
             felt,
+            straight: Vec::new(),
             ways: WAYS.map(|share| share * scale).into_iter().filter(|way| *way > least).collect(),
             ripples: RIPPLES.map(|n| turn.unwrap_or(range) / f64::from(n)).collect(),
             places: places.flat_map(|p| WIDTHS.map(|w| (p, w * span))).collect(),
@@ -104,8 +107,8 @@ impl Grid {
         }
     }
 
-    /// Values between those of the coarse grid, around the ones that were found.
-    pub fn around(found: &[&Candidate], track: &Track) -> Self {
+    /// Values between those of the coarse grid, around the ones that were found; `step`: how far from them, 1 at first.
+    pub fn around(found: &[&Candidate], track: &Track, step: f64) -> Self {
         let coarse = Self::coarse(track);
         let mut grid = Self { turn: coarse.turn, felt: coarse.felt, ..Self::default() };
         let range = track.quantile(1.0, |r| r.motion.position) - track.quantile(0.0, |r| r.motion.position);
@@ -113,58 +116,66 @@ impl Grid {
         let radius = track.radius_m.unwrap_or(0.0);
         for candidate in found {
             let value = |name: &str| candidate.searched.iter().find(|s| s.name == name).map(|s| s.value);
-            let times = |v: f64, factors: &[f64]| factors.iter().map(move |f| f * v).collect::<Vec<f64>>();
+            let times = |v: f64, factors: &[f64]| factors.iter().map(|f| f.powf(step) * v).collect::<Vec<f64>>();
             match candidate.id {
                 "stribeck" => {
                     let alpha = value("alpha").unwrap_or(0.0);
-                    let speeds = times(value("vs").unwrap_or(0.0), &[0.72, 0.85, 1.18, 1.38]);
+                    let speeds = times(value("vs").unwrap_or(0.0), &[0.72, 0.85, 1.0, 1.18, 1.38]);
                     grid.stribeck.extend(speeds.into_iter().map(|vs| (vs, alpha)));
                 }
                 "hysteresis" | "backlash" => {
                     let way = value("way").or(value("delta")).unwrap_or(0.0);
-                    grid.ways.extend(times(way, &[0.62, 0.79, 1.26, 1.6]));
+                    if value("shape").is_none() {
+                        grid.ways.extend(times(way, &[0.62, 0.79, 1.0, 1.26, 1.6]));
+                    }
+                    if candidate.id == "hysteresis" {
+                        grid.straight.extend(times(way, &[0.62, 0.79, 1.0, 1.26, 1.6]));
+                    }
                 }
                 "position-ripple" if track.radius_m.is_none() => {
-                    grid.ripples.extend(times(value("lambda").unwrap_or(0.0), &[0.93, 0.96, 0.98, 1.02, 1.04, 1.07]));
+                    grid.ripples
+                        .extend(times(value("lambda").unwrap_or(0.0), &[0.93, 0.96, 0.98, 1.0, 1.02, 1.04, 1.07]));
                 }
                 "local-resistance" => {
                     let (Some(place), Some(width)) = (value("place"), value("width")) else { continue };
-                    for step in [-0.6, -0.3, 0.0, 0.3, 0.6] {
-                        let place = place + step * span / PLACES as f64;
+                    for aside in [-0.6, -0.3, 0.0, 0.3, 0.6] {
+                        let place = place + step * aside * span / PLACES as f64;
                         grid.places.extend(times(width, &[0.65, 0.8, 1.0, 1.25, 1.5]).iter().map(|w| (place, *w)));
                     }
                 }
                 "added-constraint" => {
                     if let (Some(direction), Some(rest)) = (value("anchor direction"), value("rest length")) {
-                        for turn in [-0.6, -0.3, 0.0, 0.3, 0.6].map(|s| s * TAU / f64::from(CABLES)) {
-                            let rests = [-0.3, -0.15, 0.0, 0.15, 0.3].map(|s| rest + s * radius);
-                            grid.cables.extend(rests.map(|rest| (direction + turn, rest, REACH)));
+                        let found = value("anchor distance").map_or(REACH, |d| d / radius.max(1e-12));
+                        for turn in [-0.6, -0.3, 0.0, 0.3, 0.6].map(|s| s * step * TAU / f64::from(CABLES)) {
+                            let rests = [-0.3, -0.15, 0.0, 0.15, 0.3].map(|s| rest + s * step * radius);
+                            grid.cables.extend(rests.map(|rest| (direction + turn, rest, found)));
                             // The same slack from another distance.
-                            for reach in REACHES {
-                                let rests = [-0.2, 0.0, 0.2].map(|s| rest + (s + reach - REACH) * radius);
+                            for reach in REACHES.into_iter().filter(|reach| (reach - found).abs() > 1e-6) {
+                                let rests = [-0.2, 0.0, 0.2].map(|s| rest + (s * step + reach - found) * radius);
                                 grid.cables.extend(rests.map(|rest| (direction + turn, rest, reach)));
                             }
                         }
                     } else if let Some(place) = value("place") {
-                        let places = [-0.06, -0.03, 0.03, 0.06].map(|s| place + s * range);
+                        let places = [-0.06, -0.03, 0.03, 0.06].map(|s| place + s * step * range);
                         grid.walls.extend(places.map(|place| (place, candidate.side)));
                     }
                 }
                 "return-spring" => {
-                    let step = RESTS_WITHIN * range / f64::from(RESTS - 1);
+                    let apart = step * RESTS_WITHIN * range / f64::from(RESTS - 1);
                     let rest = value("q0").into_iter();
-                    grid.rests.extend(rest.flat_map(|q0| [-0.67, -0.33, 0.33, 0.67].map(|s| q0 + s * step)));
+                    grid.rests.extend(rest.flat_map(|q0| [-0.67, -0.33, 0.0, 0.33, 0.67].map(|s| q0 + s * apart)));
                 }
                 "friction-change" if value("tau").is_some() => {
-                    grid.warming.extend(times(value("tau").unwrap_or(0.0), &[0.58, 0.76, 1.3, 1.7]));
+                    grid.warming.extend(times(value("tau").unwrap_or(0.0), &[0.58, 0.69, 0.83, 1.0, 1.2, 1.44, 1.7]));
                 }
                 "mass-change" | "force-drift" if value("tau").is_some() => {
-                    grid.settling.extend(times(value("tau").unwrap_or(0.0), &[0.5, 0.7, 1.4, 2.0]));
+                    grid.settling.extend(times(value("tau").unwrap_or(0.0), &[0.5, 0.7, 1.0, 1.4, 2.0]));
                 }
                 _ => {}
             }
             if let Some(start) = value("t0") {
-                grid.starts.extend([-0.67, -0.33, 0.33, 0.67].map(|s| start + s * track.span_s / f64::from(STARTS)));
+                let apart = step * track.span_s / f64::from(STARTS);
+                grid.starts.extend([-0.67, -0.33, 0.0, 0.33, 0.67].map(|s| start + s * apart));
             }
         }
         grid

@@ -230,15 +230,17 @@ impl Selection<'_> {
                 .any(|o| loss(k).zip(loss(o)).is_some_and(|(weak, strong)| weak < REMAINDER * strong))
     }
 
-    /// Whether a cause and an earlier one are nearly the same in this recording: what they say is then in their difference alone, each as large
-    /// as one likes and taken back by the other.
+    /// Whether a cause and a better one are nearly the same in this recording: what they say is then in their difference alone, each as
+    /// large as one likes and taken back by the other.
     fn pulls_against(&self, chosen: &[usize], k: usize) -> bool {
         let single = |k: usize| self.candidates[chosen[k]].columns.len() == 1;
         let Some(solved) = self.system.solve(chosen).filter(|_| single(k)) else { return false };
         let at =
             |k: usize| self.system.base + chosen[..k].iter().map(|c| self.candidates[*c].columns.len()).sum::<usize>();
         let covariance = |a: usize, b: usize| solved.inverse[(at(a), at(b))];
-        (0..k).filter(|o| single(*o)).any(|o| covariance(k, o).powi(2) > AS_ONE * covariance(k, k) * covariance(o, o))
+        let as_one = |o: usize| covariance(k, o).powi(2) > AS_ONE * covariance(k, k) * covariance(o, o);
+        let left = |k: usize| self.plain_price(&without(chosen, k)).unwrap_or(f64::INFINITY);
+        (0..chosen.len()).filter(|o| *o != k && single(*o)).any(|o| as_one(o) && left(k) < left(o))
     }
 
     /// Whether held-out folds gain by the k-th cause.

@@ -97,7 +97,22 @@ fn alike(made: Vec<Vec<Row>>, noise: f64) -> Vec<Vec<Row>> {
     let slopes: Vec<(f64, f64)> = made.iter().map(|rows| slope(rows)).collect();
     let usual = usual(&slopes);
     let keeps = |(slope, error): &(f64, f64)| (slope - usual).abs() < UNLIKE * usual.abs() + UNLIKE_SURE * error;
-    made.into_iter().zip(slopes).filter(|(_, s)| keeps(s)).map(|(rows, _)| rows).collect()
+    let like = made.into_iter().zip(slopes).filter(|(_, s)| keeps(s));
+    like.map(|(rows, _)| trusted(rows, usual, noise)).collect()
+}
+
+/// What gives far under little load tells its way no better than the noise of the load lets it (effective variance, Orear 1982).
+fn trusted(mut rows: Vec<Row>, slope: f64, noise_m: f64) -> Vec<Row> {
+    let of_load = |row: &Row| if let Place::Stuck { noise, .. } = row.place { noise / SURE } else { 0.0 };
+    let load = rows.iter().map(of_load).sum::<f64>() / rows.len().max(1) as f64;
+    let share = noise_m / noise_m.hypot(slope * load);
+    for row in &mut rows {
+        row.y *= share;
+        if let Place::Stuck { scale, .. } = &mut row.place {
+            *scale *= share;
+        }
+    }
+    rows
 }
 
 /// Median of values with errors, each counting as much as it is certain.
@@ -153,10 +168,10 @@ fn fill(rows: &[Row], column: &mut [f64], way: &dyn Fn(&[Row]) -> Vec<f64>) {
     }
 }
 
-/// What bends by `way` before it slides gives this much under the loads.
-pub fn bends(rows: &[Row], way: f64, column: &mut [f64]) {
+/// What bends before it slides gives this much under the loads. `law`: friction, stiffness and shape of the law of presliding.
+pub fn bends(rows: &[Row], law: &[f64; 3], column: &mut [f64]) {
     let mut values = [0.0; MAX_PARAMETERS];
-    (values[0], values[1]) = (1.0, 1.0 / way);
+    values[..3].copy_from_slice(law);
     fill(rows, column, &|stretch| {
         let mut memory: Memory = Memory::default();
         let mut at = 0.0;
@@ -272,7 +287,7 @@ mod tests {
             (gap[0] - 0.1).abs() < 1e-12 && (gap[2] - gap[0]).abs() < 1e-12 && (gap[3] + 0.1).abs() < 1e-12,
             "{gap:?}"
         );
-        bends(&rows, 1e-4, &mut bend);
+        bends(&rows, &[1.0, 1e4, 0.0], &mut bend);
         let steps: Vec<f64> = bend.windows(2).map(|w| w[0] - w[1]).collect();
         assert!(steps.iter().all(|s| *s > 0.005) && steps[2] < 2.0 * steps[3], "{bend:?}");
     }

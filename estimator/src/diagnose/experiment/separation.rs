@@ -6,7 +6,7 @@ use super::super::force::{Model, column};
 use super::super::geometry::Study;
 use super::super::grid::Grid;
 use super::super::system::{Held, Rows, whiten};
-use super::super::track::Track;
+use super::super::track::{Row, Track};
 use nalgebra::{DMatrix, DVector};
 
 /// λ of the worse case: either the found cause is there or its rival, and the model and the other one imitate what they can of it on this
@@ -40,12 +40,15 @@ impl<'a> Eye<'a> {
         let solved = study.solved.as_ref()?;
         let base: Vec<Vec<f64>> = model.iter().map(|e| column(track, e)).collect();
         let predicted: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
+        let level = |r: &Row| if r.motion.direction.abs() > 0.05 { r.y / r.motion.direction } else { r.y.abs() };
+        let dry: Vec<f64> = track.rows.iter().map(level).collect();
         let taken: Vec<&str> = model.iter().map(|e| e.law().id()).collect();
         let grid = Grid::coarse(track);
         let candidates = Dictionary {
             track,
             predicted: &predicted,
             resisting: &predicted,
+            dry: &dry,
             fixed: &[],
             without: &taken,
             grid: &grid,

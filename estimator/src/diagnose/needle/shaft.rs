@@ -70,6 +70,7 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         track: &track,
         predicted: &resisting,
         resisting: &resisting,
+        dry: &vec![dry; direction.len()],
         fixed: &[],
         without: &[],
         grid: &grid,
