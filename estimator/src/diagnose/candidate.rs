@@ -125,6 +125,13 @@ impl Candidate {
         self
     }
 
+    /// Whether it was searched for at these values.
+    pub fn is_near(&self, values: &[Searched]) -> bool {
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs());
+        self.searched.len() == values.len()
+            && self.searched.iter().zip(values).all(|(s, v)| s.name == v.name && near(s.value, v.value))
+    }
+
     /// Whose parameters are like that.
     pub fn shaped(mut self, shape: Shape) -> Self {
         self.shape = shape;

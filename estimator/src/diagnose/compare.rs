@@ -46,7 +46,7 @@ impl Channel {
         let coefficients = whitening(&base, &candidates, &rows, threshold)?;
         let system = System::new(&base, &candidates, &rows, coefficients);
         let chosen =
-            Selection { system: &system, candidates: &candidates, threshold, dry: true, one_loss: false }.run();
+            Selection { system: &system, candidates: &candidates, threshold, dry: true, one_loss: false }.run(&[]);
         let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
         let solved = system.solve(&picks);
         Ok(Study { candidates, chosen, system, solved, y, base, weight })

@@ -1,6 +1,6 @@
 //! The force that the motion needs: what the model leaves of it, and which causes explain that.
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, Searched};
 use super::compare::whitening as whitening_of;
 use super::dictionary::Dictionary;
 use super::generic::generic;
@@ -47,7 +47,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
     let loads = loads(track, model, fixed)?;
     stuck::add(track, &loads);
     let coarse = Grid::coarse(track);
-    let mut made = compare(track, model, fixed, threshold, [&coarse, &Grid::default()], (None, None))?;
+    let mut made = compare(track, model, fixed, threshold, [&coarse, &Grid::default()], None)?;
     for round in 0..REFINEMENTS {
         // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of them.
         if made.chosen.len() <= round {
@@ -57,9 +57,12 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
         let fine = Grid::around(&found, track, 0.5_f64.powi(round as i32));
         // The load on the friction is what the sensor told, rid of what is now known of the sensor.
         correct_load(track, &made);
-        let laws = made.solved.as_ref().map(|s| s.values[..made.base.len()].to_vec());
-        let whitening = made.system.coefficients;
-        made = compare(track, model, fixed, threshold, [&coarse, &fine], (laws.as_deref(), Some(whitening)))?;
+        let before = Before {
+            laws: made.solved.as_ref().map(|s| s.values[..made.base.len()].to_vec()),
+            found: found.into_iter().map(|c| (c.id, c.searched.clone())).collect(),
+            whitening: made.system.coefficients,
+        };
+        made = compare(track, model, fixed, threshold, [&coarse, &fine], Some(before))?;
     }
     Ok(made)
 }
@@ -95,18 +98,28 @@ fn correct_load(track: &mut Track, study: &Study) {
     }
 }
 
-/// One round. `laws`: what the model's laws came out at beside what was found before; `whitening`: what was learnt then, when the same
-/// things together left the same.
+/// What a round knows of the one before.
+struct Before {
+    /// What the model's laws came out at beside what was found.
+    laws: Option<Vec<f64>>,
+    /// What was found: causes and their searched values.
+    found: Vec<(&'static str, Vec<Searched>)>,
+    /// Learnt then, when the same things together left the same.
+    whitening: Vec<f64>,
+}
+
+/// One round.
 fn compare(
     track: &Track,
     model: &Model,
     fixed: &Model,
     threshold: f64,
     [coarse, fine]: [&Grid; 2],
-    (laws, whitening): (Option<&[f64]>, Option<Vec<f64>>),
+    before: Option<Before>,
 ) -> Result<Study, EstimateError> {
     let Asked { base, known, y } = asked(track, model, fixed);
     let Look { mut predicted, mut resisting, weight, slides: mut dry } = first_look(track, model, &base, &y)?;
+    let laws = before.as_ref().and_then(|b| b.laws.as_deref());
     if let Some(laws) = laws.filter(|laws| friction_is_sound(model, laws)) {
         (predicted, resisting) = (total(model, &base, laws, false), total(model, &base, laws, true));
         dry = (0..y.len()).map(|i| dry_level(track, model, laws, i)).collect();
@@ -139,12 +152,16 @@ fn compare(
         period_s: track.period_s,
     };
     let has_dry = model.iter().any(|e| e.law().is_dry());
-    let coefficients = match whitening {
-        Some(known) => known,
-        None => whitening_of(&base, &candidates, &rows, threshold)?,
+    let place = |(id, searched): &(&'static str, Vec<Searched>)| {
+        candidates.iter().position(|c| c.id == *id && c.is_near(searched))
+    };
+    let (start, coefficients) = match before {
+        Some(before) => (before.found.iter().filter_map(place).collect(), before.whitening),
+        None => (Vec::new(), whitening_of(&base, &candidates, &rows, threshold)?),
     };
     let system = System::new(&base, &candidates, &rows, coefficients);
-    let chosen = Selection { system: &system, candidates: &candidates, threshold, dry: has_dry, one_loss: true }.run();
+    let chosen =
+        Selection { system: &system, candidates: &candidates, threshold, dry: has_dry, one_loss: true }.run(&start);
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
     let solved = system.solve(&picks);
     Ok(Study { candidates, chosen, system, solved, y, base, weight })

@@ -159,7 +159,7 @@ fn compare(path: &Path, center_m: Vec2, bent: &[Displaced], threshold: f64) -> R
     let residual = residual(&y, &base, &candidates, &picks, &solved);
     let coefficients = whitener(&residual, &rows, &uses(&rows));
     let system = System::new(&base, &candidates, &rows, coefficients);
-    let chosen = Selection { system: &system, candidates: &candidates, threshold, dry: true, one_loss: false }.run();
+    let chosen = Selection { system: &system, candidates: &candidates, threshold, dry: true, one_loss: false }.run(&[]);
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
     let solved = system.solve(&picks);
     Ok(Study { candidates, chosen, system, solved, y, base, weight })

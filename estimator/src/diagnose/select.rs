@@ -37,26 +37,27 @@ pub struct Selection<'a> {
 }
 
 /// Causes whose form is somebody's choice of a curve, by what the curve is over: a real one of another form leaves a remainder that
-/// looks like a weak cause over the same.
-const CURVES: [(&str, Over); 9] = [
-    ("stribeck", Over::Motion),
-    ("quadratic-drag", Over::Motion),
-    ("hysteresis", Over::Motion),
-    ("backlash", Over::Motion),
-    ("friction-change", Over::Motion),
-    ("local-resistance", Over::Place),
-    ("added-constraint", Over::Place),
-    ("return-spring", Over::Place),
-    ("position-ripple", Over::Place),
+/// looks like a weak cause over the same. What is lost at reversals is lost where they are.
+const CURVES: [(&str, &[Over]); 9] = [
+    ("stribeck", &[Over::Motion]),
+    ("quadratic-drag", &[Over::Motion]),
+    ("hysteresis", &[Over::Motion, Over::Place]),
+    ("backlash", &[Over::Motion, Over::Place]),
+    ("friction-change", &[Over::Motion, Over::Time]),
+    ("local-resistance", &[Over::Place]),
+    ("added-constraint", &[Over::Place]),
+    ("return-spring", &[Over::Place]),
+    ("position-ripple", &[Over::Place]),
 ];
 /// Causes over the same that have a form of their own.
-const LINES: [(&str, Over); 6] = [
-    ("coulomb-friction", Over::Motion),
-    ("load-friction", Over::Motion),
-    ("viscous-friction", Over::Motion),
-    ("friction-asymmetry", Over::Motion),
-    ("eccentric-mass", Over::Place),
-    ("mass-change", Over::Motion),
+const LINES: [(&str, &[Over]); 7] = [
+    ("coulomb-friction", &[Over::Motion]),
+    ("load-friction", &[Over::Motion]),
+    ("viscous-friction", &[Over::Motion]),
+    ("friction-asymmetry", &[Over::Motion]),
+    ("eccentric-mass", &[Over::Place]),
+    ("mass-change", &[Over::Time]),
+    ("force-drift", &[Over::Time]),
 ];
 /// What is weaker than this share of such a cause's score may be that remainder.
 const REMAINDER: f64 = 0.12;
@@ -69,6 +70,7 @@ const AS_ONE: f64 = 0.99;
 enum Over {
     Motion,
     Place,
+    Time,
 }
 
 /// What is lost at a reversal.
@@ -156,10 +158,22 @@ impl Selection<'_> {
         generic.iter().map(|c| (*c, score(*c))).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Everything that stands after forward selection, swaps and pruning; strongest first.
-    pub fn run(&self) -> Vec<Chosen> {
-        let mut chosen: Vec<usize> = Vec::new();
-        for _ in 0..MOST_CAUSES {
+    /// Everything that stands after forward selection, swaps and pruning; strongest first. `before`: what an earlier round chose; it is
+    /// searched from there, too, and from nothing.
+    pub fn run(&self, before: &[usize]) -> Vec<Chosen> {
+        let mut chosen = self.settled(Vec::new());
+        if !before.is_empty() {
+            let going_on = self.settled(before.to_vec());
+            if self.price(&going_on) < self.price(&chosen) {
+                chosen = going_on;
+            }
+        }
+        self.describe(&chosen)
+    }
+
+    /// What stands of a search that starts with `chosen`.
+    fn settled(&self, mut chosen: Vec<usize>) -> Vec<usize> {
+        while chosen.len() < MOST_CAUSES {
             let price = |c: &usize| self.price(&[chosen.as_slice(), &[*c]].concat());
             let Some(best) = self.open(&chosen).min_by(|a, b| price(a).total_cmp(&price(b))) else { break };
             if !price(&best).is_finite() {
@@ -175,7 +189,7 @@ impl Selection<'_> {
             chosen.remove(k);
             self.prune(&mut chosen);
         }
-        self.describe(&chosen)
+        chosen
     }
 
     fn swap(&self, chosen: &mut [usize]) {
@@ -220,14 +234,13 @@ impl Selection<'_> {
     fn remains(&self, chosen: &[usize], k: usize) -> bool {
         // Whatever the signs of the others come out at.
         let loss = |k: usize| Some(self.plain_price(&without(chosen, k))? - self.plain_price(chosen)?);
-        let over = |c: usize, all: &[(&str, Over)]| {
-            all.iter().find(|(id, _)| *id == self.candidates[c].id).map(|(_, over)| *over)
+        let over = |c: usize, all: &[(&str, &'static [Over])]| -> &'static [Over] {
+            all.iter().find(|(id, _)| *id == self.candidates[c].id).map_or(&[], |(_, over)| over)
         };
-        let own = over(chosen[k], &CURVES).or_else(|| over(chosen[k], &LINES));
-        own.is_some()
-            && (0..chosen.len())
-                .filter(|o| *o != k && over(chosen[*o], &CURVES) == own)
-                .any(|o| loss(k).zip(loss(o)).is_some_and(|(weak, strong)| weak < REMAINDER * strong))
+        let own = [over(chosen[k], &CURVES), over(chosen[k], &LINES)].concat();
+        (0..chosen.len())
+            .filter(|o| *o != k && over(chosen[*o], &CURVES).iter().any(|over| own.contains(over)))
+            .any(|o| loss(k).zip(loss(o)).is_some_and(|(weak, strong)| weak < REMAINDER * strong))
     }
 
     /// Whether a cause and a better one are nearly the same in this recording: what they say is then in their difference alone, each as

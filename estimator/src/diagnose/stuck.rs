@@ -26,8 +26,10 @@ const LEAST_ROWS: usize = 3;
 const SURE: f64 = 2.0;
 /// … and presses to one side of a gap for certain beyond this many.
 const PRESSED: f64 = 3.5;
-/// Where something floats is the mean of so many rows before and after.
+/// Where something floats, and under what load, is the mean of so many rows before and after.
 const NEAR: usize = 2;
+/// Rows whose noise is one and the same.
+const ALIKE: f64 = 2.0;
 /// Steps in which a change of the load is followed.
 const PARTS: usize = 16;
 
@@ -133,26 +135,29 @@ fn usual(slopes: &[(f64, f64)]) -> f64 {
 fn standstill(track: &Track, loads: &[Option<Load>], range: std::ops::Range<usize>, number: usize) -> Vec<Row> {
     let rows = &track.rows[range];
     let scale = track.force_noise / track.position_noise;
-    let mean = rows.iter().map(|r| r.motion.position).sum::<f64>() / rows.len() as f64;
-    let of = |(row, load): (&Row, &Option<Load>)| {
-        let load = load.as_ref()?;
-        let pressed = |share: f64| {
-            if share.abs() * load.friction > PRESSED * track.force_noise { share.signum() } else { 0.0 }
-        };
-        let noise = SURE * track.force_noise / load.friction;
-        let place = Place::Stuck { share: load.share, side: pressed(load.whole), noise, scale };
+    let middle = rows.iter().map(|r| r.motion.position).sum::<f64>() / rows.len() as f64;
+    let of = |k: usize| {
+        let load = loads[k].as_ref()?;
+        // The hand's load changes slowly: its neighbours tell it, too.
+        let near = k.saturating_sub(NEAR)..(k + NEAR + 1).min(loads.len());
+        let count = near.len() as f64;
+        let mean =
+            |of: &dyn Fn(&Load) -> f64| near.clone().filter_map(|i| loads[i].as_ref()).map(of).sum::<f64>() / count;
+        let noise = (ALIKE / count).sqrt() * track.force_noise / load.friction;
+        let whole = mean(&|l| l.whole);
+        let side = if whole.abs() > PRESSED * noise { whole.signum() } else { 0.0 };
         Some(Row {
             stretch: number,
-            place,
+            place: Place::Stuck { share: mean(&|l| l.share), side, noise: SURE * noise, scale },
             along: Vec2::zeros(),
             force: Vec2::zeros(),
             force_rate: Vec2::zeros(),
-            y: scale * (row.motion.position - mean),
+            y: scale * (rows[k].motion.position - middle),
             open: 0.0,
-            ..*row
+            ..rows[k]
         })
     };
-    rows.iter().zip(loads).filter_map(of).collect()
+    (0..rows.len()).filter_map(of).collect()
 }
 
 /// Puts what `way` says of the rows of each standstill, less its mean, into a column.

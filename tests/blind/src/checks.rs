@@ -222,7 +222,14 @@ fn the_scorer_tells_right_from_nearly_right_and_from_wrong() {
     assert!((right.gain_of_oracle() - 1.0).abs() < 1e-9);
     let equal = row(&["gravity-tilt"], &[]);
     assert!(!equal.first_right() && equal.first_right_or_equal() && !equal.set_right());
+    assert!(
+        !equal.all_right()
+            && equal.all_right_or_equal()
+            && equal.spurious() == 1
+            && equal.spurious_beside_equals() == 0
+    );
     let wrong = row(&["backlash", "stribeck"], &[("eccentric-mass", "stribeck")]);
+    assert!(!wrong.all_right_or_equal() && wrong.spurious_beside_equals() == 2);
     assert!(!wrong.set_right() && wrong.spurious() == 2 && !wrong.first_right_or_equal());
     let silent = row(&[], &[]);
     assert!(!silent.alarmed() && silent.gain_of_oracle() == 0.0);

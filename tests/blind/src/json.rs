@@ -15,6 +15,7 @@ pub fn json(rows: &[Row]) -> Value {
         "cases": rows.len(),
         "figures": {
             "right_first_from_ratio_0.5": share(f.first_from_half),
+            "right_or_equal_first_from_ratio_0.5": share(f.first_or_equal_from_half),
             "right_first": share(f.first_all),
             "right_or_equal_first": share(f.first_or_equal),
             "truth_in_ambiguity_set": share(f.in_set),
@@ -26,7 +27,9 @@ pub fn json(rows: &[Row]) -> Value {
             "nameless_named": share(f.nameless_named),
             "nameless_flagged": share(f.nameless_flagged),
             "pairs_both": share(f.both),
+            "pairs_both_or_equal": share(f.both_or_equal),
             "pairs_spurious_a_case": number(f.spurious),
+            "pairs_spurious_beside_equals": number(f.spurious_beside_equals),
             "gain_of_oracle": { "median": number(f.gain[0]), "p10": number(f.gain[1]) },
             "gain_claimed": { "median": number(f.gain_claimed[0]), "p10": number(f.gain_claimed[1]) },
             "errors": share(f.errors),

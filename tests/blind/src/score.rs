@@ -162,6 +162,19 @@ impl Row {
         self.named().iter().filter(|id| !ids.contains(id)).count()
     }
 
+    /// Named, not hidden, and not exactly equal to what is.
+    pub fn spurious_beside_equals(&self) -> usize {
+        let ids = self.ids();
+        self.named().iter().filter(|id| !ids.contains(id) && !self.equals.contains(id)).count()
+    }
+
+    /// Everything that was hidden was named, or as many exact equals in its place.
+    pub fn all_right_or_equal(&self) -> bool {
+        let (named, ids) = (self.named(), self.ids());
+        let missing = ids.iter().filter(|id| !named.contains(id)).count();
+        missing <= named.iter().filter(|id| !ids.contains(id) && self.equals.contains(id)).count()
+    }
+
     /// Everything that was hidden was named.
     pub fn all_right(&self) -> bool {
         let named = self.named();
@@ -248,6 +261,8 @@ fn at(effect: &[(f64, f64)], time_s: f64) -> Option<f64> {
 pub struct Figures {
     /// Right cause first in main cases that show it, effect over noise 0.5 and more.
     pub first_from_half: Share,
+    /// … where an exact equal counts as right.
+    pub first_or_equal_from_half: Share,
     /// … in all main cases.
     pub first_all: Share,
     /// … where an exact equal counts as right.
@@ -270,8 +285,12 @@ pub struct Figures {
     pub nameless_flagged: Share,
     /// Both causes of a pair.
     pub both: Share,
-    /// Causes too many, a pair.
+    /// … where an exact equal counts as right.
+    pub both_or_equal: Share,
+    /// Causes too many, a pair, …
     pub spurious: f64,
+    /// … exact equals not counted.
+    pub spurious_beside_equals: f64,
     /// Median and 10th percentile of the gain as a share of the oracle's, effect over noise 0.5 and more.
     pub gain: [f64; 2],
     /// The same as the answers state it, where they are right.
@@ -292,8 +311,10 @@ impl Figures {
         let gains: Vec<f64> = strong().map(Row::gain_of_oracle).collect();
         let claimed: Vec<f64> = strong().map(Row::gain_claimed).collect();
         let pairs: Vec<&Row> = set(Set::Pair).filter(|r| !r.missed).collect();
+        let mean = |of: &dyn Fn(&Row) -> usize| pairs.iter().map(|r| of(r) as f64).sum::<f64>() / pairs.len() as f64;
         Self {
             first_from_half: Share::count(strong(), Row::first_right),
+            first_or_equal_from_half: Share::count(strong(), Row::first_right_or_equal),
             first_all: Share::count(single(), Row::first_right),
             first_or_equal: Share::count(single(), Row::first_right_or_equal),
             in_set: Share::count(named.iter(), |r| r.set_right()),
@@ -305,7 +326,9 @@ impl Figures {
             nameless_named: Share::count(set(Set::Nameless), |r| r.alarmed() && !r.flagged()),
             nameless_flagged: Share::count(set(Set::Nameless).filter(|r| r.ratio >= 1.0), Row::flagged),
             both: Share::count(pairs.iter(), |r| r.all_right()),
-            spurious: pairs.iter().map(|r| r.spurious() as f64).sum::<f64>() / pairs.len() as f64,
+            both_or_equal: Share::count(pairs.iter(), |r| r.all_right_or_equal()),
+            spurious: mean(&|r| r.spurious()),
+            spurious_beside_equals: mean(&|r| r.spurious_beside_equals()),
             gain: [0.5, 0.1].map(|part| quantile(&gains, part)),
             gain_claimed: [0.5, 0.1].map(|part| quantile(&claimed, part)),
             errors: Share::count(rows, |r| r.answer.is_err()),

@@ -32,6 +32,7 @@ fn figures(f: &Figures) -> String {
     let mut text = String::from("share [95 % interval] hits/cases\n");
     let lines = [
         ("right cause first, effect/noise >= 0.5", f.first_from_half.to_string()),
+        ("… or one exactly equal to it there", f.first_or_equal_from_half.to_string()),
         ("right cause first, all main cases", f.first_all.to_string()),
         ("… or one exactly equal to it there", f.first_or_equal.to_string()),
         ("truth in the ambiguity set", f.in_set.to_string()),
@@ -45,7 +46,9 @@ fn figures(f: &Figures) -> String {
         ("nameless effects: named without a flag", f.nameless_named.to_string()),
         ("nameless effects: flagged, >= 1", f.nameless_flagged.to_string()),
         ("pairs: both", f.both.to_string()),
+        ("… or exact equals", f.both_or_equal.to_string()),
         ("pairs: spurious a case", format!("{:.3}", f.spurious)),
+        ("… exact equals not counted", format!("{:.3}", f.spurious_beside_equals)),
         ("gain of the oracle's, median and 10th percentile", format!("{:.3} {:.3}", f.gain[0], f.gain[1])),
         ("… as right answers state it", format!("{:.3} {:.3}", f.gain_claimed[0], f.gain_claimed[1])),
         ("errors", f.errors.to_string()),
