@@ -388,6 +388,12 @@ impl Dictionary<'_> {
     }
 }
 
+/// The dry friction at each row if it slid in the positive direction, where all that is known is what resists.
+pub fn dry_of(track: &Track, resisting: &[f64]) -> Vec<f64> {
+    let rows = track.rows.iter().zip(resisting);
+    rows.map(|(r, f)| if r.motion.direction.abs() > 0.05 { f / r.motion.direction } else { f.abs() }).collect()
+}
+
 fn pair(id: &'static str, columns: [Vec<f64>; 2], linear: [(&'static str, &'static str); 2]) -> Candidate {
     Candidate::several(id, Kind::Instrument, Vec::from(columns), linear.to_vec())
 }

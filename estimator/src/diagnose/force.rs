@@ -54,7 +54,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
             break;
         }
         let found: Vec<&Candidate> = made.chosen.iter().map(|c| &made.candidates[c.candidate]).collect();
-        let fine = Grid::around(&found, track, 0.5_f64.powi(round as i32));
+        let fine = Grid::around(&found, track, 1.0 / (1 + round) as f64);
         // The load on the friction is what the sensor told, rid of what is now known of the sensor.
         correct_load(track, &made);
         let before = Before {

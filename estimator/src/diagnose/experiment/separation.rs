@@ -1,12 +1,12 @@
 //! How well a motion would tell two causes apart.
 
 use super::super::candidate::Candidate;
-use super::super::dictionary::Dictionary;
+use super::super::dictionary::{Dictionary, dry_of};
 use super::super::force::{Model, column};
 use super::super::geometry::Study;
 use super::super::grid::Grid;
 use super::super::system::{Held, Rows, whiten};
-use super::super::track::{Row, Track};
+use super::super::track::Track;
 use nalgebra::{DMatrix, DVector};
 
 /// λ of the worse case: either the found cause is there or its rival, and the model and the other one imitate what they can of it on this
@@ -40,8 +40,7 @@ impl<'a> Eye<'a> {
         let solved = study.solved.as_ref()?;
         let base: Vec<Vec<f64>> = model.iter().map(|e| column(track, e)).collect();
         let predicted: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
-        let level = |r: &Row| if r.motion.direction.abs() > 0.05 { r.y / r.motion.direction } else { r.y.abs() };
-        let dry: Vec<f64> = track.rows.iter().map(level).collect();
+        let dry = dry_of(track, &predicted);
         let taken: Vec<&str> = model.iter().map(|e| e.law().id()).collect();
         let grid = Grid::coarse(track);
         let candidates = Dictionary {
