@@ -26,6 +26,8 @@ const LEAST_FREE_S: f64 = 0.25;
 const ACCELERATION_WINDOW_S: f64 = 0.09;
 /// A rest whose force spreads this many times as much as in the quietest one is none.
 const WANDERS: f64 = 2.5;
+/// Samples of a rest whose unrest says how quiet nothing is.
+const TELLING: usize = 24;
 /// Fewer rows carry no diagnosis.
 const LEAST_ROWS: usize = 60;
 
@@ -385,7 +387,12 @@ fn held_and_free(
         .map(|i| i.first..i.end)
         .collect();
     let unrest: Vec<f64> = rests.iter().map(|r| spread(&force[r.clone()])).collect();
-    let quietest = unrest.iter().copied().fold(f64::INFINITY, f64::min);
+    // A few samples may be quiet by luck.
+    let quietest = |least: usize| {
+        let long = rests.iter().zip(&unrest).filter(|(r, _)| r.len() >= least);
+        long.map(|(_, unrest)| *unrest).fold(f64::INFINITY, f64::min)
+    };
+    let quietest = Some(quietest(TELLING)).filter(|q| q.is_finite()).unwrap_or_else(|| quietest(0));
     for (range, unrest) in rests.iter().zip(&unrest) {
         // A hand that holds lightly for a while is not away: its force wanders.
         if *unrest <= WANDERS * quietest {

@@ -38,7 +38,7 @@ pub struct Selection<'a> {
 
 /// Causes whose form is somebody's choice of a curve, by what the curve is over: a real one of another form leaves a remainder that
 /// looks like a weak cause over the same. What is lost at reversals is lost where they are.
-const CURVES: [(&str, &[Over]); 9] = [
+const CURVES: [(&str, &[Over]); 10] = [
     ("stribeck", &[Over::Motion]),
     ("quadratic-drag", &[Over::Motion]),
     ("hysteresis", &[Over::Motion, Over::Place]),
@@ -48,9 +48,10 @@ const CURVES: [(&str, &[Over]); 9] = [
     ("added-constraint", &[Over::Place]),
     ("return-spring", &[Over::Place]),
     ("position-ripple", &[Over::Place]),
+    ("fingertip-slip", &[Over::Path]),
 ];
 /// Causes over the same that have a form of their own.
-const LINES: [(&str, &[Over]); 7] = [
+const LINES: [(&str, &[Over]); 10] = [
     ("coulomb-friction", &[Over::Motion]),
     ("load-friction", &[Over::Motion]),
     ("viscous-friction", &[Over::Motion]),
@@ -58,6 +59,9 @@ const LINES: [(&str, &[Over]); 7] = [
     ("eccentric-mass", &[Over::Place]),
     ("mass-change", &[Over::Time]),
     ("force-drift", &[Over::Time]),
+    ("joint-offset", &[Over::Path]),
+    ("length-scale", &[Over::Path]),
+    ("pad-compliance", &[Over::Path]),
 ];
 /// What is weaker than this share of such a cause's score may be that remainder.
 const REMAINDER: f64 = 0.12;
@@ -71,6 +75,8 @@ enum Over {
     Motion,
     Place,
     Time,
+    /// The way of the tip.
+    Path,
 }
 
 /// What is lost at a reversal.
@@ -161,9 +167,11 @@ impl Selection<'_> {
     /// Everything that stands after forward selection, swaps and pruning; strongest first. `before`: what an earlier round chose; it is
     /// searched from there, too, and from nothing.
     pub fn run(&self, before: &[usize]) -> Vec<Chosen> {
-        let mut chosen = self.settled(Vec::new());
-        if !before.is_empty() {
-            let going_on = self.settled(before.to_vec());
+        // What was only searched for coarsely may take two to say what one does, but not which one.
+        let is_fine = !before.is_empty();
+        let mut chosen = self.settled(Vec::new(), is_fine);
+        if is_fine {
+            let going_on = self.settled(before.to_vec(), true);
             if self.price(&going_on) < self.price(&chosen) {
                 chosen = going_on;
             }
@@ -171,8 +179,8 @@ impl Selection<'_> {
         self.describe(&chosen)
     }
 
-    /// What stands of a search that starts with `chosen`.
-    fn settled(&self, mut chosen: Vec<usize>) -> Vec<usize> {
+    /// What stands of a search that starts with `chosen`; `merges`: one is put in the place of two.
+    fn settled(&self, mut chosen: Vec<usize>, merges: bool) -> Vec<usize> {
         while chosen.len() < MOST_CAUSES {
             let price = |c: &usize| self.price(&[chosen.as_slice(), &[*c]].concat());
             let Some(best) = self.open(&chosen).min_by(|a, b| price(a).total_cmp(&price(b))) else { break };
@@ -184,12 +192,31 @@ impl Selection<'_> {
         }
         self.prune(&mut chosen);
         self.swap(&mut chosen);
+        if merges {
+            self.merge(&mut chosen);
+        }
         self.prune(&mut chosen);
         while let Some(k) = (0..chosen.len()).find(|k| self.outdone(&chosen, *k)) {
             chosen.remove(k);
             self.prune(&mut chosen);
         }
         chosen
+    }
+
+    /// Puts one cause in the place of two where it does as well: two that are not told apart from one are one.
+    fn merge(&self, chosen: &mut Vec<usize>) {
+        let pair = |chosen: &[usize]| {
+            let all = (1..chosen.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+            let merged = all.filter_map(|(a, b)| {
+                let rest = without(&without(chosen, b), a);
+                let with = |c: usize| [rest.as_slice(), &[c]].concat();
+                self.open(&rest).map(with).min_by(|a, b| self.price(a).total_cmp(&self.price(b)))
+            });
+            merged.min_by(|a, b| self.price(a).total_cmp(&self.price(b)))
+        };
+        while let Some(better) = pair(chosen).filter(|merged| self.price(merged) < self.price(chosen) + AMBIGUOUS) {
+            *chosen = better;
+        }
     }
 
     fn swap(&self, chosen: &mut [usize]) {
