@@ -11,6 +11,8 @@ pub mod handling;
 pub mod mechanisms;
 pub mod tasks;
 
+use estimator::log;
+use haptics::recording::{Meta, Recording};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -47,4 +49,10 @@ pub fn shared_data(file: &str) -> Option<PathBuf> {
     }
     println!("skipped: {file} is not here (../shared/data)");
     None
+}
+
+/// Measured recordings beside the checkout, with a sidecar written as JSON; `None` as in [`shared_data`].
+pub fn shared_recordings(file: &str, sidecar: &str) -> Option<Vec<Recording>> {
+    let meta: Meta = serde_json::from_str(sidecar).expect("a sidecar");
+    Some(log::load_with_meta(&shared_data(file)?, &meta).expect("real data load"))
 }

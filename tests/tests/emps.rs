@@ -7,9 +7,8 @@
 
 use estimator::estimate::Fit;
 use estimator::identify::mechanism;
-use estimator::log;
-use haptics::recording::{Meta, Recording};
-use tests::shared_data;
+use haptics::recording::Recording;
+use tests::shared_recordings;
 
 const NAMES: [&str; 4] = ["mass_kg", "viscous_N_s_m", "coulomb_N", "offset_N"];
 /// Janot, Gautier, Brunot 2019, in the order of the names; relative error of the force 4.08 %.
@@ -17,8 +16,7 @@ const PUBLISHED: [f64; 4] = [95.1089, 203.5034, 20.3935, -3.1648];
 
 fn emps() -> Option<Vec<Recording>> {
     let columns = r#"{"columns":{"t_s":"time_s","q_m":"position_m","f_N":"force_N"}}"#;
-    let meta: Meta = serde_json::from_str(columns).expect("a sidecar");
-    Some(log::load_with_meta(&shared_data("emps/emps_identification.csv")?, &meta).expect("real data load"))
+    shared_recordings("emps/emps_identification.csv", columns)
 }
 
 /// Value and standard error of a parameter.

@@ -6,12 +6,7 @@ use estimator::estimate::{ConstraintKind, Fit};
 use estimator::identify::mechanism;
 use estimator::log;
 use haptics::recording::{Meta, Recording, Span, Warning};
-use tests::shared_data;
-
-fn load(path: &str, meta: &str) -> Option<Vec<Recording>> {
-    let meta: Meta = serde_json::from_str(meta).expect("a sidecar");
-    Some(log::load_with_meta(&shared_data(path)?, &meta).expect("real data load"))
-}
+use tests::{shared_data, shared_recordings as load};
 
 #[test]
 fn real_recordings_raise_no_false_warnings() {

@@ -2,14 +2,8 @@
 //! and each test says so when they are absent.
 
 use estimator::diagnose::{Cause, Diagnosis, Options, diagnose};
-use estimator::log;
-use haptics::recording::{Meta, Recording, Span};
-use tests::shared_data;
-
-fn load(path: &str, meta: &str) -> Option<Vec<Recording>> {
-    let meta: Meta = serde_json::from_str(meta).expect("a sidecar");
-    Some(log::load_with_meta(&shared_data(path)?, &meta).expect("real data load"))
-}
+use haptics::recording::{Recording, Span};
+use tests::shared_recordings as load;
 
 fn diagnosed(recordings: &[Recording]) -> Diagnosis {
     let found = diagnose(recordings, &Options::default()).expect("it can be diagnosed");
