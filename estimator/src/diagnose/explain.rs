@@ -24,6 +24,8 @@ const VISIBLE: f64 = 10.0;
 
 /// Channels of slow recordings are not a whole sample apart by sampling alone, s.
 const LARGEST_SKEW_S: f64 = 2e-3;
+/// Clocks of two instruments differ by this, and what filters them: a force that is no later is no late force, s.
+const CLOCKS_DIFFER_S: f64 = 3e-4;
 
 /// The channel of what moves along one coordinate.
 pub(super) const FORCE: &str = "force";
@@ -49,7 +51,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
     for (k, chosen) in study.chosen.iter().enumerate() {
         if let Some(skew_s) = skew(study, k, track.raw_period_s) {
             warnings.push(format!(
-                "force and motion are {:.2} ms apart, no more than one sample: it is taken out and not called a delay",
+                "force and motion are {:.2} ms apart, no more than sampling and clocks make of it: it is taken out and not called a delay",
                 1e3 * skew_s
             ));
             continue;
@@ -130,15 +132,15 @@ fn in_order(faults: Vec<Cause>, found: Vec<(f64, Cause)>) -> Vec<Cause> {
 }
 
 /// The time between force and motion when it is no more than what sampling itself can make of it, s: a commanded force is recorded when
-/// it is given and acts in the sample after. A force that comes late is late, by however little.
+/// it is given and acts in the sample after. A force that comes late is late as soon as clocks do not differ by as much.
 fn skew(study: &Study, k: usize, raw_period_s: f64) -> Option<f64> {
     if study.candidates[study.chosen[k].candidate].id != "time-delay" {
         return None;
     }
     let delay = parameters(study, k);
     let found = delay.first()?;
-    let ahead_s = -found.value;
-    (ahead_s > 0.0 && ahead_s - 2.0 * found.std_error <= raw_period_s.min(LARGEST_SKEW_S)).then_some(found.value)
+    let most_s = if found.value < 0.0 { raw_period_s.min(LARGEST_SKEW_S) } else { CLOCKS_DIFFER_S };
+    (found.value.abs() - 2.0 * found.std_error <= most_s).then_some(found.value)
 }
 
 /// What no known cause explains: the generic term and its score.
