@@ -4,8 +4,10 @@
 //! thesis's numbers is taken out where the recording shows it: accelerations from the weight, the give of the pads from the
 //! width (it grew 7 % too narrow there) and from the height. Where the recording does not show it, the standard error says so.
 
+mod give;
 pub(crate) mod heights;
 mod leak;
+mod needed;
 mod slip;
 mod together;
 
@@ -17,13 +19,13 @@ use crate::constraint::{Carry, carried};
 use crate::estimate::{Constraint, Correlated, EstimateError, Fit, Parameter};
 use crate::segment::definition::Definition;
 use crate::segment::threshold::{Levels, percentile};
-use crate::segment::{Interval, Method, Segmentation, Thresholds, segment_signals_by, subtasks};
+use crate::segment::{Method, Segmentation, Thresholds, segment_signals_by, subtasks};
 use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signals};
+use give::{Give, pad_parameter};
 use haptics::Vec2;
-use haptics::recording::{Channel, Recording, Task};
-use haptics::world::World;
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use haptics::recording::{Recording, Task};
+pub use needed::needed_forces;
 pub use together::{Together, fit_together};
 
 /// Relative error of a width whose pad compression could not be measured: the thesis's blocks came out 7 % too narrow.
@@ -133,39 +135,6 @@ fn unresolved_by_joints_m(recording: &Recording) -> f64 {
     let finger = recording.meta.hand().fingers[0];
     let error = |name: &str| recording.channel(name).map_or(0.0, |q| resolution_error(quantum(q), white_noise(q)));
     ["qb1_rad", "qt1_rad", "qb2_rad", "qt2_rad"].into_iter().map(error).fold(0.0, f64::max) * finger.link_m
-}
-
-/// The forces that the measured motion of carried blocks needs, channels named as measured.
-///
-/// In the air the net force is m (g + a), shared by both fingers; grip and leaning are the operator's own and stay as measured,
-/// as does everything while a block rests.
-pub fn needed_forces(world: &World, recording: &Recording) -> Result<Vec<Channel>, EstimateError> {
-    let signals = task_signals(recording)?;
-    let task = Definition::of(recording, Task::BlockStack)?;
-    let segmentation = segment_signals_by(Method::Threshold, &signals, &task, None)?;
-    let rate = |pick: fn(&Vec2) -> f64| {
-        let values: Vec<f64> = signals.velocity.iter().map(pick).collect();
-        smooth(&signals.time_s, &values).slope
-    };
-    let (ax, ay) = (rate(|v| v.x), rate(|v| v.y));
-    let mut correction = vec![Vec2::zeros(); signals.len()];
-    for (index, block) in world.blocks.iter().enumerate() {
-        let names = task.showing(MAIN, MAIN, index + 1);
-        let carried = |i: &&Interval| i.subtask.as_ref().is_some_and(|name| names.contains(name));
-        for interval in segmentation.states.iter().filter(carried) {
-            for i in interval.first..interval.end {
-                let needed = (Vec2::new(ax[i], ay[i]) - world.gravity_vector()) * block.mass_kg;
-                correction[i] = 0.5 * (needed - signals.net_force_n[i]);
-            }
-        }
-    }
-    let mut channels = Vec::new();
-    for (name, axis) in [("fx1_N", 0), ("fy1_N", 1), ("fx2_N", 0), ("fy2_N", 1)] {
-        let Some(measured) = recording.channel(name) else { continue };
-        let values = measured.iter().zip(&correction).map(|(force, c)| force + c[axis]).collect();
-        channels.push(Channel { name: name.to_owned(), unit: "N".to_owned(), values });
-    }
-    Ok(channels)
 }
 
 /// They are one thing: what is stated of either holds for both.
@@ -463,45 +432,6 @@ impl<'a> Blocks<'a> {
         }
         (first..end).map(|j| self.force(finger, j)).sum::<Vec2>() / (end - first) as f64
     }
-}
-
-/// A measured give of a pad, m/N, with its standard error by covariance and by resampling.
-struct Give {
-    m_per_n: f64,
-    error: f64,
-    resampled: Option<f64>,
-    rows: usize,
-}
-
-/// A stiffness from several measurements of a give, averaged by their errors.
-///
-/// When they scatter more than their errors say, the errors are too small by that much (Birge 1932).
-fn pad_parameter(name: &str, gives: impl Iterator<Item = Give>, missing: &str) -> Parameter {
-    const SIGNIFICANT: f64 = 3.0;
-    let gives: Vec<Give> = gives.filter(|g| g.error > 0.0 && g.error.is_finite()).collect();
-    let weights: f64 = gives.iter().map(|g| g.error.powi(-2)).sum();
-    let give = gives.iter().map(|g| g.m_per_n * g.error.powi(-2)).sum::<f64>() / weights;
-    let scatter: f64 = gives.iter().map(|g| ((g.m_per_n - give) / g.error).powi(2)).sum();
-    let freedom = gives.len().saturating_sub(1) as f64;
-    // A ratio below its own 95 % limit is chance.
-    let birge = if freedom > 0.0 && scatter > chi_square_95(freedom) { (scatter / freedom).sqrt() } else { 1.0 };
-    let error = weights.powf(-0.5) * birge;
-    // The same weighted mean with each one's own resampled error.
-    let resampled: Option<f64> = gives.iter().map(|g| Some((g.resampled? * g.error.powi(-2)).powi(2))).sum();
-    let resampled = resampled.map(|sum| sum.sqrt() / weights * birge);
-    let rows = gives.iter().map(|g| g.rows).sum();
-    if weights > 0.0 && give > SIGNIFICANT * error {
-        let how = "give of the pads under load, one pad";
-        Parameter::identified("pad", name, 1.0 / give, error / (give * give), rows, how)
-            .with_bootstrap(resampled.map(|r| r / (give * give)))
-    } else {
-        Parameter::unidentified("pad", name, rows, missing)
-    }
-}
-
-/// 95 % quantile of χ².
-fn chi_square_95(freedom: f64) -> f64 {
-    ChiSquared::new(freedom).map_or(f64::INFINITY, |d| d.inverse_cdf(0.95))
 }
 
 /// Least squares of `rhs` on a constant and `columns` (each centred on nothing: the constant is the value where all are zero).

@@ -1,0 +1,43 @@
+//! How far pads give: one stiffness out of several measurements.
+
+use crate::estimate::Parameter;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+/// A measured give of a pad, m/N, with its standard error by covariance and by resampling.
+pub(super) struct Give {
+    pub m_per_n: f64,
+    pub error: f64,
+    pub resampled: Option<f64>,
+    pub rows: usize,
+}
+
+/// A stiffness from several measurements of a give, averaged by their errors.
+///
+/// When they scatter more than their errors say, the errors are too small by that much (Birge 1932).
+pub(super) fn pad_parameter(name: &str, gives: impl Iterator<Item = Give>, missing: &str) -> Parameter {
+    const SIGNIFICANT: f64 = 3.0;
+    let gives: Vec<Give> = gives.filter(|g| g.error > 0.0 && g.error.is_finite()).collect();
+    let weights: f64 = gives.iter().map(|g| g.error.powi(-2)).sum();
+    let give = gives.iter().map(|g| g.m_per_n * g.error.powi(-2)).sum::<f64>() / weights;
+    let scatter: f64 = gives.iter().map(|g| ((g.m_per_n - give) / g.error).powi(2)).sum();
+    let freedom = gives.len().saturating_sub(1) as f64;
+    // A ratio below its own 95 % limit is chance.
+    let birge = if freedom > 0.0 && scatter > chi_square_95(freedom) { (scatter / freedom).sqrt() } else { 1.0 };
+    let error = weights.powf(-0.5) * birge;
+    // The same weighted mean with each one's own resampled error.
+    let resampled: Option<f64> = gives.iter().map(|g| Some((g.resampled? * g.error.powi(-2)).powi(2))).sum();
+    let resampled = resampled.map(|sum| sum.sqrt() / weights * birge);
+    let rows = gives.iter().map(|g| g.rows).sum();
+    if weights > 0.0 && give > SIGNIFICANT * error {
+        let how = "give of the pads under load, one pad";
+        Parameter::identified("pad", name, 1.0 / give, error / (give * give), rows, how)
+            .with_bootstrap(resampled.map(|r| r / (give * give)))
+    } else {
+        Parameter::unidentified("pad", name, rows, missing)
+    }
+}
+
+/// 95 % quantile of χ².
+fn chi_square_95(freedom: f64) -> f64 {
+    ChiSquared::new(freedom).map_or(f64::INFINITY, |d| d.inverse_cdf(0.95))
+}
