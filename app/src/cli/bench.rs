@@ -1,6 +1,7 @@
 //! `touchstone bench`. Here `bench servo`: how punctual the servo is on this machine, with and without pictures being drawn beside it.
 
 mod blind;
+mod frames;
 mod online;
 mod verdict;
 
@@ -37,6 +38,8 @@ enum What {
     Servo(ServoBench),
     /// How often the diagnosis names what is hidden in generated recordings, and how often something where nothing is
     Blind(blind::BlindBench),
+    /// What a picture of each panel costs the processor, with a long log
+    Frames(frames::FramesBench),
     /// Cost of a sample of the estimator beside the servo, against a tick of the servo
     Online(online::OnlineBench),
 }
@@ -72,6 +75,7 @@ impl Bench {
             What::Servo(bench) => bench.run(),
             What::Online(bench) => bench.run(),
             What::Blind(bench) => bench.run(),
+            What::Frames(bench) => bench.run(),
         }
     }
 
@@ -79,7 +83,7 @@ impl Bench {
     pub(super) fn passivity_control(&self) -> Option<f64> {
         match &self.what {
             What::Servo(bench) => bench.control.passivity_control,
-            What::Online(_) | What::Blind(_) => None,
+            What::Online(_) | What::Blind(_) | What::Frames(_) => None,
         }
     }
 }

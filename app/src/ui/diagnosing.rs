@@ -2,10 +2,10 @@
 
 use super::fit_choice::FitChoice;
 use super::format;
-use super::jobs::{JobKind, Outcome};
+use super::jobs::{JobKind, Outcome, Replayed};
 use super::plots::Residuals;
 use super::prepare::Prepared;
-use super::session::{Session, sentence};
+use super::session::{Session, replay_forces, sentence};
 use super::trainer::Compare;
 use estimator::diagnose::{self, Diagnosis, Options, Progress, Worlds};
 use haptics::recording::{Recording, Task};
@@ -58,6 +58,8 @@ pub struct Diagnosing {
     pub worlds: Option<Arc<Worlds>>,
     /// Why there are none, in one sentence.
     pub worlds_problem: Option<String>,
+    /// The recordings' motion through the extended world, once that is there.
+    pub replays: Vec<Option<Replayed>>,
 }
 
 impl Diagnosing {
@@ -116,6 +118,7 @@ impl Session {
         }
         self.diagnosing.forget();
         self.jobs.cancel(JobKind::Extend);
+        self.jobs.cancel(JobKind::SimulateExtended);
         let (recordings, choice, from) = (self.recordings.clone(), self.choice.clone(), self.diagnosing.from);
         self.jobs.start_watched(ctx, JobKind::Diagnose, "Diagnosing".to_owned(), move |ticket| {
             let ticket = ticket.clone();
@@ -145,9 +148,17 @@ impl Session {
     }
 
     /// The model was extended.
-    pub(super) fn extended(&mut self, worlds: Result<Box<Worlds>, String>) {
+    pub(super) fn extended(&mut self, ctx: &egui::Context, worlds: Result<Box<Worlds>, String>) {
         match worlds {
-            Ok(worlds) => self.diagnosing.worlds = Some(Arc::new(*worlds)),
+            Ok(worlds) => {
+                let worlds = Arc::new(*worlds);
+                self.diagnosing.worlds = Some(Arc::clone(&worlds));
+                let recordings = self.recordings.clone();
+                let what = "Replaying in the extended world".to_owned();
+                self.jobs.start_watched(ctx, JobKind::SimulateExtended, what, move |_| {
+                    Outcome::SimulatedExtended(replay_forces(&worlds.after, &recordings))
+                });
+            }
             Err(problem) => self.diagnosing.worlds_problem = Some(problem),
         }
     }

@@ -3,7 +3,7 @@
 use super::diagnosing::Answer;
 use super::mapping::Looked;
 use super::mapping::preview::Seen;
-use super::plots::Levels;
+use super::plots::{Levels, Recipe};
 use super::prepare::Prepared;
 use estimator::diagnose::Worlds;
 use estimator::log::preview::Preview;
@@ -51,6 +51,12 @@ pub enum JobKind {
     Diagnose,
     /// Making the worlds without and with what was found.
     Extend,
+    /// Replaying the measured motion through the extended world.
+    SimulateExtended,
+    /// Computing curves for plots.
+    Curves,
+    /// Finding where a recording lies on another one.
+    Align,
 }
 
 /// Why a file is being chosen.
@@ -106,6 +112,12 @@ pub enum Outcome {
     Diagnosed(Result<Box<Answer>, String>),
     /// The worlds without and with what was found, or why there are none.
     Extended(Result<Box<Worlds>, String>),
+    /// Forces in the extended world, one a recording that can be replayed.
+    SimulatedExtended(Vec<Option<Replayed>>),
+    /// Computed curves, and what they were computed from.
+    Curves(Vec<(Recipe, Arc<Levels>)>),
+    /// What to add to the times of a recording so that it lies on the shown one, s; or why that cannot be told.
+    Aligned(usize, Result<f64, String>),
     /// Nothing: the user has cancelled it.
     Cancelled,
     /// One sentence.
@@ -118,7 +130,7 @@ pub struct Replayed {
     /// Predicted forces.
     pub simulation: Option<Arc<Simulation>>,
     /// Their curves in shown units, by channel name.
-    pub curves: Vec<(String, Levels)>,
+    pub curves: Vec<(String, Arc<Levels>)>,
     /// Where everything was when.
     pub film: Option<Arc<super::film::Film>>,
 }

@@ -43,6 +43,13 @@ pub struct Group {
     pub shown: bool,
 }
 
+impl Group {
+    /// What tells it from the recording's other groups, and is the same in every recording.
+    pub fn key(&self) -> String {
+        format!("{}/{}", self.title, self.unit)
+    }
+}
+
 /// A recording and everything that is drawn of it.
 #[derive(Debug)]
 pub struct Prepared {

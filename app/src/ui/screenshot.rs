@@ -142,7 +142,10 @@ fn diagnosed(session: &mut Session) {
     match diagnosing::ask(&session.recordings, &session.choice, from, Progress::default()) {
         Ok(answer) => {
             match diagnosing::extend(&session.recordings, &session.choice, from, &answer) {
-                Ok(worlds) => session.diagnosing.worlds = Some(Arc::new(worlds)),
+                Ok(worlds) => {
+                    session.diagnosing.replays = session::replay_forces(&worlds.after, &session.recordings);
+                    session.diagnosing.worlds = Some(Arc::new(worlds));
+                }
                 Err(problem) => session.diagnosing.worlds_problem = Some(problem),
             }
             session.diagnosing.answer = Some(Arc::new(answer));
@@ -206,9 +209,11 @@ pub fn draw(session: Session, panel: Panel, size: [u32; 2], dark: bool) -> anyho
     harness.render().map_err(|error| anyhow!(error)).context("the panel could not be drawn")
 }
 
-type Contents = Box<dyn FnMut(&mut Ui, &mut App)>;
+/// Draws a panel of the window.
+pub(super) type Contents = Box<dyn FnMut(&mut Ui, &mut App)>;
 
-fn contents(panel: Panel) -> Contents {
+/// What draws a panel.
+pub(super) fn contents(panel: Panel) -> Contents {
     fn framed(mut panel: impl super::panels::Panel + 'static) -> Contents {
         Box::new(move |ui, app| {
             Frame::new().inner_margin(space::M).show(ui, |ui| panel.ui(ui, &mut app.session));

@@ -5,7 +5,7 @@ use super::film::Film;
 pub use super::fit_choice::FitChoice;
 use super::jobs::{JobKind, Jobs, Outcome, Purpose, Replayed};
 use super::mapping::Mapping;
-use super::plots::Levels;
+use super::plots::{Levels, PlotChoices};
 use super::prepare::Prepared;
 use super::rules::Rules;
 use super::trainer::Trainer;
@@ -13,6 +13,7 @@ use crate::tasks::Chosen;
 use estimator::online::enough::{Enough, Wanted};
 use estimator::pipeline::{self, Analysis};
 use estimator::segment::{Segmentation, segment_by};
+use estimator::simulate::Simulation;
 use haptics::recording::Recording;
 use haptics::world::World;
 use std::path::PathBuf;
@@ -117,6 +118,8 @@ pub struct Session {
     pub playing: bool,
     /// Playback speed, times real time.
     pub speed: f64,
+    /// What the plots show.
+    pub plots: PlotChoices,
     /// What the 3-D view shows.
     pub layers: SceneLayers,
     /// Messages.
@@ -151,6 +154,11 @@ impl Session {
     /// Its segmentation.
     pub fn segmentation(&self) -> Option<&Segmentation> {
         self.analysis.as_ref()?.segmentations.get(self.current)?.as_ref()
+    }
+
+    /// Its replay through the world with what the diagnosis found.
+    pub fn extended_replay(&self) -> Option<&Replayed> {
+        self.diagnosing.replays.get(self.current)?.as_ref()
     }
 
     /// Its replay through the fitted world.
@@ -190,6 +198,8 @@ impl Session {
         self.diagnosing.forget();
         self.jobs.cancel(JobKind::Diagnose);
         self.jobs.cancel(JobKind::Extend);
+        self.jobs.cancel(JobKind::SimulateExtended);
+        self.plots.forget_recordings();
         self.playing = false;
         self.rules = None;
         self.choice = FitChoice {
@@ -231,6 +241,9 @@ impl Session {
         self.jobs.cancel(kind);
         if kind == JobKind::Fit && self.analysis.is_none() {
             self.fit_problem = Some("The fit was cancelled; press Fit to start it again.".to_owned());
+        }
+        if kind == JobKind::Curves {
+            self.plots.give_up();
         }
         if kind == JobKind::Diagnose {
             self.diagnosing.problem = Some("The diagnosis was cancelled before it came to an answer.".to_owned());
@@ -277,7 +290,10 @@ impl Session {
             Outcome::Simulated(replays) => self.replays = replays,
             Outcome::Judged(enough) => self.enough = enough,
             Outcome::Diagnosed(answer) => self.diagnosed(answer),
-            Outcome::Extended(worlds) => self.extended(worlds),
+            Outcome::Extended(worlds) => self.extended(ctx, worlds),
+            Outcome::SimulatedExtended(replays) => self.diagnosing.replays = replays,
+            Outcome::Curves(made) => self.plots.derived.take(made),
+            Outcome::Aligned(recording, found) => self.aligned(recording, found),
             Outcome::Cancelled | Outcome::Chosen(_, None) => {}
             Outcome::Chosen(Purpose::OpenLog, Some(path)) => self.open_any(ctx, &path),
             Outcome::Chosen(Purpose::OpenWorld, Some(path)) => self.open_world(ctx, &path),
@@ -350,18 +366,28 @@ pub fn replay_all(world: &World, recordings: &[Arc<Prepared>]) -> Vec<Option<Rep
         .map(|prepared| {
             let simulation = estimator::simulate::simulate(world, &prepared.recording).ok().map(Arc::new);
             let film = Film::shoot(world, prepared).map(Arc::new);
-            let curves = simulation.as_deref().map(curves).unwrap_or_default();
+            let curves = simulation.as_ref().map(curves).unwrap_or_default();
             (simulation.is_some() || film.is_some()).then_some(Replayed { simulation, curves, film })
         })
         .collect()
 }
 
-fn curves(simulation: &estimator::simulate::Simulation) -> Vec<(String, Levels)> {
-    let shown = |channel: &haptics::recording::Channel| {
-        let (_, factor) = super::format::channel_unit(&channel.unit);
-        (channel.name.clone(), Levels::new(channel.values.iter().map(|v| v * factor).collect()))
+/// The forces of every recording in a world, without the course of the world itself.
+pub fn replay_forces(world: &World, recordings: &[Arc<Prepared>]) -> Vec<Option<Replayed>> {
+    let replayed = |prepared: &Arc<Prepared>| {
+        let simulation = Arc::new(estimator::simulate::simulate(world, &prepared.recording).ok()?);
+        Some(Replayed { curves: curves(&simulation), simulation: Some(simulation), film: None })
     };
-    simulation.predicted.iter().map(shown).collect()
+    recordings.iter().map(replayed).collect()
+}
+
+/// Predicted forces in shown units; their samples stay in the simulation.
+fn curves(simulation: &Arc<Simulation>) -> Vec<(String, Arc<Levels>)> {
+    let shown = |(index, channel): (usize, &haptics::recording::Channel)| {
+        let (_, factor) = super::format::channel_unit(&channel.unit);
+        (channel.name.clone(), Arc::new(Levels::of_simulation(simulation, index, factor)))
+    };
+    simulation.predicted.iter().enumerate().map(shown).collect()
 }
 
 /// Capital first, full stop last. A column's name in front stays as it is: `f_N` is no `F_N`.

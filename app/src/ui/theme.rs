@@ -132,6 +132,29 @@ pub fn curve(dark: bool, of: ColorRole, second: bool) -> Color32 {
     }
 }
 
+/// The colour of another recording that lies over the shown one, by its place among them: none of those is a finger's.
+pub fn recording(dark: bool, place: usize) -> Color32 {
+    role(dark, ColorRole::Block([4, 1, 2, 5, 3][place % 5]))
+}
+
+/// Where in the course of time something is, 0 … 1: from dark to bright without red beside green (after viridis, van der Walt and
+/// Smith 2015), less the end that would be lost on the background.
+pub fn time_color(dark: bool, share: f32) -> Color32 {
+    const STOPS: [[u8; 3]; 6] = [
+        [0x44, 0x01, 0x54],
+        [0x41, 0x44, 0x87],
+        [0x2A, 0x78, 0x8E],
+        [0x22, 0xA8, 0x84],
+        [0x7A, 0xD1, 0x51],
+        [0xFD, 0xE7, 0x25],
+    ];
+    let (from, to) = if dark { (0.24, 1.0) } else { (0.0, 0.80) };
+    let at = (from + (to - from) * share.clamp(0.0, 1.0)) * (STOPS.len() - 1) as f32;
+    let low = (at as usize).min(STOPS.len() - 2);
+    let stop = |k: usize| Color32::from_rgb(STOPS[k][0], STOPS[k][1], STOPS[k][2]);
+    mix(stop(low), stop(low + 1), at - low as f32)
+}
+
 /// The colour of a contact state, in band, legend and plots.
 pub fn state_color(dark: bool, state: SystemState) -> Color32 {
     match state {
@@ -144,6 +167,14 @@ pub fn state_color(dark: bool, state: SystemState) -> Color32 {
         SystemState::Holding => role(dark, ColorRole::Block(4)),
         SystemState::NoState if dark => Color32::from_rgb(0x22, 0x29, 0x33),
         SystemState::NoState => Color32::from_rgb(0xE6, 0xEA, 0xEF),
+    }
+}
+
+/// The colour of a state for lines: free motion is seen against the background, too.
+pub fn state_ink(dark: bool, state: SystemState) -> Color32 {
+    match state {
+        SystemState::FreeMotion | SystemState::NoState => role(dark, ColorRole::Neutral),
+        other => state_color(dark, other),
     }
 }
 

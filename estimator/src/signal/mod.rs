@@ -3,5 +3,7 @@
 pub mod correlate;
 pub mod derive;
 pub mod filter;
+pub mod lag;
 pub mod noise;
 pub mod task;
+pub mod transform;

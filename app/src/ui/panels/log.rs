@@ -2,21 +2,29 @@
 
 use super::Panel;
 use super::incoming::incoming;
+use super::overlay::{overlay_legend, overlay_menu};
 use super::segments::band;
 use super::transport::transport;
+use super::xy::xy_view;
 use crate::ui::files;
 use crate::ui::jobs::Purpose;
-use crate::ui::plots::{GUTTER, PlotCache, RowInput, axis_height, row};
+use crate::ui::plots::{
+    Drawn, GUTTER, LogView, PlotCache, PlotChoices, RowInput, RowKind, Sources, XyCache, axis_height, can_compare,
+    curves, row,
+};
 use crate::ui::prepare::Prepared;
 use crate::ui::session::{Session, Workspace};
 use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{empty_state, primary_button, sheet};
-use egui::{Rangef, RichText, Stroke, Ui};
-use std::collections::BTreeMap;
+use crate::ui::widgets::{empty_state, primary_button, segmented, sheet};
+use egui::{Rangef, RichText, ScrollArea, Stroke, Ui};
 use std::sync::Arc;
 
 /// Least height of a plot, points.
 const LEAST_HEIGHT: f32 = 56.0;
+/// Height of the line with the name and the views.
+const HEADER: f32 = 32.0;
+/// A plot of what is left over is so high, of a quantity's plot.
+const LEFT_OVER_HEIGHT: f32 = 0.62;
 /// Height of band, subtasks, legend and slider together.
 const FOOT: f32 = 102.0;
 
@@ -24,8 +32,7 @@ const FOOT: f32 = 102.0;
 #[derive(Default)]
 pub struct LogPanel {
     cache: PlotCache,
-    /// Groups that the user has switched, by title.
-    switched: BTreeMap<String, bool>,
+    xy: XyCache,
 }
 
 impl Panel for LogPanel {
@@ -44,11 +51,32 @@ impl Panel for LogPanel {
                 nothing_loaded(ui, session);
                 return;
             };
-            self.header(ui, &prepared);
-            let area = self.plots(ui, session, &prepared);
+            header(ui, session, &prepared);
+            overlay_legend(ui, session);
+            // Apart from the session for as long as both are read.
+            let mut plots = std::mem::take(&mut session.plots);
+            let area = match plots.view {
+                LogView::Time => self.rows(ui, session, &mut plots, &prepared),
+                LogView::Xy => self.xy(ui, session, &mut plots, &prepared),
+            };
+            plots.derived.settle(ui.ctx(), &mut session.jobs);
+            session.plots = plots;
             band(ui, session, area);
             transport(ui, session, area);
         });
+    }
+}
+
+/// A plot to draw: which group, what of it, its share of the height.
+struct Place {
+    group: usize,
+    kind: RowKind,
+    drawn: Drawn,
+}
+
+impl Place {
+    fn share(&self) -> f32 {
+        if self.kind == RowKind::LeftOver { LEFT_OVER_HEIGHT } else { 1.0 }
     }
 }
 
@@ -65,73 +93,132 @@ fn nothing_loaded(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-impl LogPanel {
-    fn is_shown(&self, prepared: &Prepared, index: usize) -> bool {
-        let group = &prepared.groups[index];
-        self.switched.get(&group.title).copied().unwrap_or(group.shown)
-    }
-
-    fn header(&mut self, ui: &mut Ui, prepared: &Arc<Prepared>) {
-        let p = palette(ui);
-        ui.horizontal(|ui| {
-            ui.label(theme::heading("Log"));
-            ui.add_space(space::S);
-            for (index, group) in prepared.groups.iter().enumerate() {
-                let on = self.is_shown(prepared, index);
-                let text = RichText::new(&group.title).size(11.5).color(if on { p.text } else { p.faint });
-                let button = egui::Button::new(text).corner_radius(12).small().fill(if on { p.raised } else { p.card });
-                let response = ui.add(button.stroke(Stroke::new(1.0, p.border)));
-                if response.on_hover_text(if on { "Hide this plot" } else { "Show this plot" }).clicked() {
-                    self.switched.insert(group.title.clone(), !on);
-                }
+fn header(ui: &mut Ui, session: &mut Session, prepared: &Arc<Prepared>) {
+    ui.horizontal(|ui| {
+        // The tallest first, so that the rest stands in its middle.
+        ui.set_min_height(HEADER);
+        ui.label(theme::heading("Log"));
+        ui.add_space(space::S);
+        let choices = [(LogView::Time, "Time", "Curves over time"), (LogView::Xy, "XY", "One signal against another")];
+        segmented(ui, &mut session.plots.view, &choices);
+        if session.plots.view == LogView::Time {
+            chips(ui, &mut session.plots, prepared);
+            overlay_menu(ui, session);
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if ui.available_width() > 280.0 && session.plots.view == LogView::Time {
+                ui.label(theme::caption(ui, "wheel zooms · right drag moves · double click shows all"));
             }
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if ui.available_width() > 280.0 {
-                    ui.label(theme::caption(ui, "wheel zooms · right drag moves · double click shows all"));
-                }
-            });
         });
-        ui.add_space(space::XS);
+    });
+    ui.add_space(space::XS);
+}
+
+/// Which quantities have a plot.
+fn chips(ui: &mut Ui, plots: &mut PlotChoices, prepared: &Prepared) {
+    let p = palette(ui);
+    for group in &prepared.groups {
+        let on = plots.is_shown(group);
+        let text = RichText::new(&group.title).size(11.5).color(if on { p.text } else { p.faint });
+        let button = egui::Button::new(text).corner_radius(12).small().fill(if on { p.raised } else { p.card });
+        let response = ui.add(button.stroke(Stroke::new(1.0, p.border)));
+        if response.on_hover_text(if on { "Hide this plot" } else { "Show this plot" }).clicked() {
+            plots.of(group).shown = Some(!on);
+        }
+    }
+}
+
+/// Where the shown recording's curves come from.
+fn sources<'a>(session: &'a Session, prepared: &'a Arc<Prepared>) -> Sources<'a> {
+    let analysis = session.analysis.as_ref();
+    Sources {
+        recordings: &session.recordings,
+        prepared,
+        simulated: session.replay(),
+        extended: session.extended_replay(),
+        analysis: analysis.and_then(|a| Some((a, a.segmentations.get(session.current)?.as_ref()?))),
+    }
+}
+
+fn places(sources: &Sources<'_>, plots: &mut PlotChoices, prepared: &Prepared) -> Vec<Place> {
+    let mut places = Vec::new();
+    for (index, group) in prepared.groups.iter().enumerate() {
+        if !plots.is_shown(group) {
+            continue;
+        }
+        let (main, left) = curves(sources, plots, group);
+        places.push(Place { group: index, kind: RowKind::Curves, drawn: main });
+        places.extend(left.map(|drawn| Place { group: index, kind: RowKind::LeftOver, drawn }));
+    }
+    places
+}
+
+impl LogPanel {
+    /// One signal against another; where the slider below lies horizontally.
+    fn xy(&mut self, ui: &mut Ui, session: &mut Session, plots: &mut PlotChoices, prepared: &Arc<Prepared>) -> Rangef {
+        let height = (ui.available_height() - FOOT).max(LEAST_HEIGHT);
+        let times = (session.view_s, session.cursor_s);
+        let (area, seek) = xy_view(ui, &mut self.xy, plots, &sources(session, prepared), times, height);
+        if let Some(time) = seek {
+            session.playing = false;
+            session.seek(time);
+        }
+        area
     }
 
     /// Draws the plots; where their area lies horizontally.
-    fn plots(&mut self, ui: &mut Ui, session: &mut Session, prepared: &Arc<Prepared>) -> Rangef {
-        let shown: Vec<usize> = (0..prepared.groups.len()).filter(|i| self.is_shown(prepared, *i)).collect();
+    fn rows(
+        &mut self,
+        ui: &mut Ui,
+        session: &mut Session,
+        plots: &mut PlotChoices,
+        prepared: &Arc<Prepared>,
+    ) -> Rangef {
         let left = ui.max_rect().left() + GUTTER;
         let mut area = Rangef::new(left, ui.max_rect().right());
-        if shown.is_empty() {
+        let places = places(&sources(session, prepared), plots, prepared);
+        if places.is_empty() {
             return area;
         }
         ui.spacing_mut().item_spacing.y = 4.0;
-        let n = shown.len() as f32;
-        let room = ui.available_height() - FOOT - axis_height() - 4.0 * n;
-        let height = (room / n).max(LEAST_HEIGHT);
-        let replay = session.replay().cloned();
-        let analysis = session.analysis.clone();
-        let segmentation = analysis.as_ref().and_then(|a| a.segmentations.get(session.current)?.as_ref());
-        for (place, index) in shown.iter().enumerate() {
-            let last = place + 1 == shown.len();
-            let input = RowInput {
-                index: *index,
-                group: &prepared.groups[*index],
-                prepared,
-                predicted: replay.as_ref().map_or(&[], |r| r.curves.as_slice()),
-                segmentation,
-                view_s: session.view_s,
-                cursor_s: session.cursor_s,
-                time_axis: last,
-                height: if last { height + axis_height() } else { height },
-            };
-            let outcome = row(ui, &mut self.cache, &input);
-            area = outcome.area;
-            if let Some(view) = outcome.view_s {
+        let shares: f32 = places.iter().map(Place::share).sum();
+        let room = ui.available_height() - FOOT;
+        let each = ((room - axis_height() - 4.0 * places.len() as f32) / shares).max(LEAST_HEIGHT);
+        // The wheel zooms; only the bar scrolls, where there are more plots than room.
+        let scroll =
+            ScrollArea::vertical().id_salt("plots").max_height(room.max(LEAST_HEIGHT)).auto_shrink([false, true]);
+        scroll.scroll_source(egui::scroll_area::ScrollSource::SCROLL_BAR).show(ui, |ui| {
+            let (mut seek, mut view_s) = (None, None);
+            for (index, place) in places.iter().enumerate() {
+                let group = &prepared.groups[place.group];
+                let sources = sources(session, prepared);
+                let last = index + 1 == places.len();
+                let input = RowInput {
+                    index,
+                    kind: place.kind,
+                    group,
+                    prepared,
+                    drawn: &place.drawn,
+                    has_simulated: can_compare(sources.simulated, group),
+                    has_extended: can_compare(sources.extended, group),
+                    segmentation: sources.analysis.map(|(_, segmentation)| segmentation),
+                    view_s: session.view_s,
+                    cursor_s: session.cursor_s,
+                    time_axis: last,
+                    height: each * place.share() + if last { axis_height() } else { 0.0 },
+                };
+                let outcome = row(ui, &mut self.cache, plots.of(group), &input);
+                area = outcome.area;
+                (seek, view_s) = (outcome.seek.or(seek), outcome.view_s.or(view_s));
+            }
+            if let Some(view) = view_s {
                 session.view_s = view;
             }
-            if let Some(time) = outcome.seek {
+            if let Some(time) = seek {
                 session.playing = false;
                 session.seek(time);
             }
-        }
+        });
         area
     }
 }

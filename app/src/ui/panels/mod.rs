@@ -12,6 +12,7 @@ mod legend;
 pub mod log;
 mod marks;
 pub mod measured;
+mod overlay;
 pub mod parameters;
 mod passivity;
 pub mod recording;
@@ -28,6 +29,7 @@ pub mod trainer_side;
 pub mod trainer_timing;
 pub mod trainer_view;
 pub mod transport;
+mod xy;
 
 use super::session::Session;
 

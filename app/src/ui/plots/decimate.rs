@@ -1,78 +1,11 @@
 //! Thinning to extremes: every pixel column keeps its smallest and its largest value, so no spike is lost.
 
+use super::levels::Samples;
 use egui_plot::PlotPoint;
-use estimator::log::pyramid::{Band, Pyramid};
-use haptics::recording::Recording;
-use std::ops::Range;
-
-/// One curve's values, or where they stand in the recording, with a pyramid of their extremes: a column of pixels over a million
-/// samples looks at tens of blocks, not at samples.
-#[derive(Clone, Debug, Default)]
-pub struct Levels {
-    source: Source,
-    /// Shown value = value × factor; positive.
-    factor: f64,
-    pyramid: Pyramid,
-}
-
-#[derive(Clone, Debug)]
-enum Source {
-    /// A channel of the recording, which holds the values already.
-    Channel(usize),
-    Own(Vec<f64>),
-}
-
-impl Default for Source {
-    fn default() -> Self {
-        Self::Own(Vec::new())
-    }
-}
-
-impl Levels {
-    /// Of values that nobody else holds, in the shown unit.
-    pub fn new(values: Vec<f64>) -> Self {
-        Self { pyramid: Pyramid::of(&values), source: Source::Own(values), factor: 1.0 }
-    }
-
-    /// Of channel `index` of a recording, whose `values` stay there; shown times `factor`.
-    pub fn of_channel(index: usize, values: &[f64], factor: f64) -> Self {
-        Self { pyramid: Pyramid::of(values), source: Source::Channel(index), factor }
-    }
-
-    /// The samples, to be drawn.
-    pub fn samples<'a>(&'a self, recording: &'a Recording) -> Samples<'a> {
-        let values = match &self.source {
-            Source::Own(values) => values.as_slice(),
-            Source::Channel(index) => recording.channels.get(*index).map_or(&[][..], |c| c.values.as_slice()),
-        };
-        Samples { values, levels: self }
-    }
-}
-
-/// A curve's values with their pyramid.
-#[derive(Clone, Copy, Debug)]
-pub struct Samples<'a> {
-    values: &'a [f64],
-    levels: &'a Levels,
-}
-
-impl Samples<'_> {
-    /// A value in the shown unit; NaN outside.
-    pub fn value(&self, sample: usize) -> f64 {
-        self.values.get(sample).map_or(f64::NAN, |v| v * self.levels.factor)
-    }
-
-    /// Smallest and largest of `first..end` in the shown unit; (∞, −∞) when there is none.
-    fn range(&self, first: usize, end: usize) -> (f64, f64) {
-        let read = |range: Range<usize>| Band::of(self.values.get(range).unwrap_or_default());
-        let band = self.levels.pyramid.band(first..end, &read);
-        band.map_or((f64::INFINITY, f64::NEG_INFINITY), |b| (b.low * self.levels.factor, b.high * self.levels.factor))
-    }
-}
 
 /// The curve between two times in at most two points a column (plus the neighbours outside, so that lines run on).
 pub fn decimate(times: &[f64], levels: Samples<'_>, from: f64, to: f64, columns: usize) -> Vec<PlotPoint> {
-    let n = times.len().min(levels.values.len());
+    let n = times.len().min(levels.len());
     let first = times[..n].partition_point(|t| *t < from).saturating_sub(1);
     let end = (times[..n].partition_point(|t| *t <= to) + 1).min(n);
     if end <= first {
@@ -91,6 +24,11 @@ pub fn decimate(times: &[f64], levels: Samples<'_>, from: f64, to: f64, columns:
         let next = if column == columns { end } else { at + times[at..end].partition_point(|t| *t < limit) };
         if next > at {
             let (low, high) = levels.range(at, next);
+            if low > high {
+                // Nothing in this column is a number.
+                at = next;
+                continue;
+            }
             let middle = 0.5 * (times[at] + times[next - 1]);
             // The order follows the curve, so that slopes stay slopes.
             let rising = levels.value(at) <= levels.value(next - 1);
@@ -106,8 +44,9 @@ pub fn decimate(times: &[f64], levels: Samples<'_>, from: f64, to: f64, columns:
 
 #[cfg(test)]
 mod tests {
+    use super::super::levels::Levels;
     use super::*;
-    use haptics::recording::Channel;
+    use haptics::recording::{Channel, Recording};
 
     fn wave(n: usize) -> (Vec<f64>, Levels) {
         let times: Vec<f64> = (0..n).map(|i| i as f64 * 1e-3).collect();

@@ -1,15 +1,28 @@
 //! Plots that stay fast: thinned to what a pixel can show, kept until the view changes.
 
 mod axes;
+pub mod choices;
+mod curves;
 mod decimate;
+mod derived;
 mod doubts;
+mod gutter;
+mod levels;
+mod noise;
 mod residual_plot;
 mod residuals;
 mod row;
+mod title_menu;
+mod xy;
 
-pub use axes::{decimals, marks, time_axis, value_axis};
-pub use decimate::{Levels, decimate};
+pub use axes::{AXIS_WIDTH, decimals, marks, time_axis, value_axis};
+pub use choices::{LogView, PlotChoices};
+pub use curves::{Drawn, Layer, Sources, can_compare, curves};
+pub use decimate::decimate;
+pub use derived::Recipe;
 pub use doubts::places;
+pub use levels::Levels;
 pub use residual_plot::{BAND_SIGMAS, cloud_plot, force_plot, has_directions, inks};
 pub use residuals::{Cloud, Residuals, Suspect};
-pub use row::{GUTTER, PlotCache, RowInput, axis_height, row};
+pub use row::{GUTTER, PlotCache, RowInput, RowKind, axis_height, row};
+pub use xy::{XyCache, XyInput, xy_plot};

@@ -1,33 +1,52 @@
-//! One plot with its gutter: title, unit, curves with their values at the cursor.
+//! One plot over time: its curves with the models' and the noise's band, the states behind them, the cursor.
 
 use super::axes::{AXIS_WIDTH, still_plot, time_axis};
+use super::choices::GroupChoice;
+use super::curves::{Curve, Drawn, Layer, NOISE_SWITCH};
+use super::decimate;
 use super::doubts::shade;
-use super::{Levels, decimate};
-use crate::ui::format;
-use crate::ui::prepare::{Group, Prepared, Trace};
-use crate::ui::theme::{self, palette, space};
-use egui::{Align, Color32, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
-use egui_plot::{Line, PlotBounds, PlotPoint, PlotPoints, PlotTransform, Span};
+use super::gutter::gutter;
+use super::residual_plot::{BAND_SIGMAS, inks};
+use crate::ui::prepare::{Group, Prepared};
+use crate::ui::theme::{self, Palette, palette};
+use egui::{Color32, Pos2, Rangef, Rect, Sense, Stroke, Ui, UiBuilder, vec2};
+use egui_plot::{FilledArea, Line, PlotBounds, PlotPoint, PlotPoints, PlotTransform, PlotUi, Span};
 use estimator::segment::Segmentation;
-use render::ColorRole;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Width of the column left of the plots.
 pub const GUTTER: f32 = 196.0;
 /// Height of the labels of the time axis.
 const AXIS_HEIGHT: f32 = 20.0;
+/// How much of their colour other recordings keep.
+const DIMMED: f32 = 0.75;
+
+/// What a row is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum RowKind {
+    /// A quantity's curves.
+    Curves,
+    /// What the models leave of them.
+    LeftOver,
+}
 
 /// What a row shows.
 pub struct RowInput<'a> {
-    /// Which plot it is.
+    /// Which row it is.
     pub index: usize,
-    /// The curves.
+    /// What it is for.
+    pub kind: RowKind,
+    /// The quantity.
     pub group: &'a Group,
-    /// Their recording.
+    /// The shown recording.
     pub prepared: &'a Arc<Prepared>,
-    /// Predicted curves by channel name.
-    pub predicted: &'a [(String, Levels)],
+    /// The curves.
+    pub drawn: &'a Drawn,
+    /// The fitted world says something about them, shown or hidden.
+    pub has_simulated: bool,
+    /// The extended world does.
+    pub has_extended: bool,
     /// States, as a faint tint.
     pub segmentation: Option<&'a Segmentation>,
     /// Visible time.
@@ -50,207 +69,185 @@ pub struct RowOutcome {
     pub area: Rangef,
 }
 
-/// Thinned curves, kept while the view stays, and the curves that the user has hidden.
+/// Thinned curves, kept while the view stays.
 #[derive(Default)]
 pub struct PlotCache {
-    curves: HashMap<(usize, usize, bool), Cached>,
-    hidden: HashSet<String>,
+    curves: HashMap<(usize, usize), Cached>,
 }
 
 struct Cached {
-    /// Recording, curve, visible time and columns that the points were made for.
-    key: (usize, usize, u64, u64, usize),
+    key: CacheKey,
+    /// Keeps alive what the key points at.
+    _curve: Curve,
     points: Vec<PlotPoint>,
+    band: Option<Band>,
+}
+
+/// What the points were made for: recording, curve, visible time, offset, columns.
+type CacheKey = (usize, usize, [u64; 3], usize, Option<u64>);
+
+/// The noise's band: times, lower and upper edge.
+struct Band {
+    times: Vec<f64>,
+    low: Vec<f64>,
+    high: Vec<f64>,
 }
 
 impl PlotCache {
     fn update(&mut self, input: &RowInput<'_>, columns: usize) {
-        for (t, trace) in input.group.traces.iter().enumerate() {
-            self.thin((input.index, t, false), input, &trace.levels, columns);
-            match predicted(input, trace) {
-                Some(levels) => self.thin((input.index, t, true), input, levels, columns),
-                None => drop(self.curves.remove(&(input.index, t, true))),
-            }
+        for (place, curve) in input.drawn.curves.iter().enumerate() {
+            self.thin((input.index, place), curve, input.view_s, columns);
         }
+        let count = input.drawn.curves.len();
+        self.curves.retain(|(row, place), _| *row != input.index || *place < count);
     }
 
-    fn thin(&mut self, slot: (usize, usize, bool), input: &RowInput<'_>, levels: &Levels, columns: usize) {
-        let (from, to) = input.view_s;
-        let at = |p: *const u8| p as usize;
+    fn thin(&mut self, slot: (usize, usize), curve: &Curve, (from, to): (f64, f64), columns: usize) {
         let key = (
-            at(Arc::as_ptr(input.prepared).cast()),
-            at(std::ptr::from_ref(levels).cast()),
-            from.to_bits(),
-            to.to_bits(),
+            Arc::as_ptr(&curve.prepared) as usize,
+            Arc::as_ptr(&curve.levels) as usize,
+            [from, to, curve.offset_s].map(f64::to_bits),
             columns,
+            curve.sigma.map(f64::to_bits),
         );
-        if self.curves.get(&slot).is_none_or(|cached| cached.key != key) {
-            let samples = levels.samples(&input.prepared.recording);
-            let points = decimate(&input.prepared.times, samples, from, to, columns);
-            self.curves.insert(slot, Cached { key, points });
+        if self.curves.get(&slot).is_some_and(|cached| cached.key == key) {
+            return;
         }
+        let (samples, offset) = (curve.levels.samples(&curve.prepared.recording), curve.offset_s);
+        let mut points = decimate(&curve.prepared.times, samples, from - offset, to - offset, columns);
+        for point in &mut points {
+            point.x += offset;
+        }
+        let is_model = matches!(curve.layer, Layer::Simulated | Layer::Extended);
+        let band = curve.sigma.filter(|_| is_model).map(|sigma| Band::around(&points, BAND_SIGMAS * sigma));
+        self.curves.insert(slot, Cached { key, _curve: curve.clone(), points, band });
     }
 
-    fn is_shown(&self, group: &Group, trace: &Trace) -> bool {
-        !self.hidden.contains(&key_of(group, trace))
+    fn points(&self, input: &RowInput<'_>, place: usize) -> &[PlotPoint] {
+        self.curves.get(&(input.index, place)).map_or(&[], |cached| &cached.points)
     }
 }
 
-fn key_of(group: &Group, trace: &Trace) -> String {
-    format!("{}/{}", group.title, trace.name)
-}
-
-fn predicted<'a>(input: &RowInput<'a>, trace: &Trace) -> Option<&'a Levels> {
-    input.predicted.iter().find(|(name, _)| *name == trace.name).map(|(_, levels)| levels)
+impl Band {
+    /// `reach` to either side of a curve that has one or two points at a time.
+    fn around(points: &[PlotPoint], reach: f64) -> Self {
+        let mut band = Self { times: Vec::new(), low: Vec::new(), high: Vec::new() };
+        for at in points.chunk_by(|a, b| a.x == b.x) {
+            let (low, high) = at.iter().fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p.y), high.max(p.y)));
+            band.times.push(at[0].x);
+            band.low.push(low - reach);
+            band.high.push(high + reach);
+        }
+        band
+    }
 }
 
 /// Draws the row.
-pub fn row(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) -> RowOutcome {
+pub fn row(ui: &mut Ui, cache: &mut PlotCache, choice: &mut GroupChoice, input: &RowInput<'_>) -> RowOutcome {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), input.height), Sense::hover());
-    let (gutter, plot) = rect.split_left_right_at_x(rect.left() + GUTTER);
-    ui.scope_builder(UiBuilder::new().max_rect(gutter).id_salt(("gutter", input.index)), |ui| {
-        draw_gutter(ui, cache, input);
+    let (left, plot) = rect.split_left_right_at_x(rect.left() + GUTTER);
+    ui.scope_builder(UiBuilder::new().max_rect(left).id_salt(("gutter", input.index)), |ui| {
+        gutter(ui, choice, input);
     });
-    ui.scope_builder(UiBuilder::new().max_rect(plot).id_salt(("plot", input.index)), |ui| draw_plot(ui, cache, input))
-        .inner
+    let show_noise = choice.shows(NOISE_SWITCH);
+    ui.scope_builder(UiBuilder::new().max_rect(plot).id_salt(("plot", input.index)), |ui| {
+        draw_plot(ui, cache, input, show_noise)
+    })
+    .inner
 }
 
-fn draw_gutter(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) {
-    ui.spacing_mut().item_spacing = vec2(6.0, 0.0);
-    ui.add_space(2.0);
-    ui.horizontal(|ui| {
-        ui.label(theme::strong(&input.group.title));
-        ui.label(theme::caption(ui, &input.group.unit));
-    });
-    let sample = input.prepared.sample_at(input.cursor_s);
-    let room = ui.available_height();
-    egui::ScrollArea::vertical().id_salt(("curves", input.index)).min_scrolled_height(0.0).max_height(room).show(
-        ui,
-        |ui| {
-            ui.spacing_mut().interact_size.y = 15.0;
-            let traces = &input.group.traces;
-            // Two columns when one would not fit.
-            let lines = traces.len() + usize::from(traces.iter().any(|t| predicted(input, t).is_some()));
-            let columns = if lines as f32 * 15.0 > room { 2 } else { 1 };
-            let width = (ui.available_width() - space::S) / columns as f32;
-            for line in traces.chunks(columns) {
-                ui.horizontal(|ui| {
-                    for trace in line {
-                        let size = vec2(width - 4.0, 15.0);
-                        ui.allocate_ui(size, |ui| {
-                            ui.set_min_size(size);
-                            curve_entry(ui, cache, input, trace, sample, columns > 1);
-                        });
-                    }
-                });
-            }
-            if input.group.traces.iter().any(|t| predicted(input, t).is_some()) {
-                let color = theme::role(ui.visuals().dark_mode, ColorRole::Simulated);
-                ui.horizontal(|ui| {
-                    dash(ui, color.gamma_multiply(0.75), 5.0);
-                    ui.label(RichText::new("simulated").size(11.5).color(color));
-                });
-            }
-        },
-    );
-}
-
-/// Swatch, name and value at the cursor; a click hides or shows the curve.
-fn curve_entry(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, trace: &Trace, sample: usize, narrow: bool) {
-    let shown = cache.is_shown(input.group, trace);
-    let p = palette(ui);
-    let color = if shown { theme::curve(ui.visuals().dark_mode, trace.role, trace.second) } else { p.faint };
-    let entry = ui.scope_builder(UiBuilder::new().sense(Sense::click()).id_salt(&trace.name), |ui| {
-        ui.horizontal(|ui| {
-            dash(ui, if shown { color } else { p.border }, 2.5);
-            let words = if shown { p.secondary } else { p.faint };
-            ui.add(egui::Label::new(RichText::new(&trace.label).size(11.5).color(words)).truncate());
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let value = trace.levels.samples(&input.prepared.recording).value(sample);
-                let text = if shown && value.is_finite() {
-                    value_text(value, &input.group.unit, narrow)
-                } else {
-                    String::new()
-                };
-                ui.label(RichText::new(text).size(11.5).color(p.text));
-            });
-        });
-    });
-    let response =
-        entry.response.on_hover_text(format!("{}: click to {}", trace.name, if shown { "hide" } else { "show" }));
-    if response.clicked() {
-        let key = key_of(input.group, trace);
-        if !cache.hidden.remove(&key) {
-            cache.hidden.insert(key);
-        }
+/// The colour of a curve: its own, or that of what it is compared with.
+pub fn curve_color(input: &RowInput<'_>, curve: &Curve, dark: bool, p: &Palette) -> Color32 {
+    let trace = &input.group.traces[curve.trace];
+    let own = theme::curve(dark, trace.role, trace.second);
+    let alone = input.group.traces.len() == 1;
+    match curve.layer {
+        Layer::Other(place) => theme::recording(dark, place).gamma_multiply(DIMMED),
+        Layer::Simulated => theme::role(dark, render::ColorRole::Simulated).gamma_multiply(0.75),
+        Layer::Extended => p.good,
+        Layer::LeftSimulated if alone => theme::role(dark, render::ColorRole::Simulated),
+        Layer::LeftExtended if alone => p.good,
+        // Several traces are told apart by their own colours, the models by how strong these are.
+        Layer::LeftSimulated if input.drawn.has(Layer::LeftExtended) => own.gamma_multiply(0.45),
+        Layer::Measured | Layer::LeftSimulated | Layer::LeftExtended => own,
     }
 }
 
-fn value_text(value: f64, unit: &str, narrow: bool) -> String {
-    let decimals = match unit {
-        "mm" if narrow => 1,
-        "mm" | "N" | "N·m" => 2,
-        "mm/s" | "°" | "°/s" => 1,
-        _ => 3,
-    };
-    format::number(value, decimals)
+fn width(layer: Layer) -> f32 {
+    match layer {
+        // A broad band under the measured curve: seen where they agree and where they part.
+        Layer::Simulated => 4.5,
+        Layer::Extended => 2.8,
+        Layer::Measured => 1.4,
+        Layer::Other(_) | Layer::LeftSimulated | Layer::LeftExtended => 1.2,
+    }
 }
 
-fn dash(ui: &mut Ui, color: Color32, width: f32) {
-    let (rect, _) = ui.allocate_exact_size(vec2(10.0, 15.0), Sense::hover());
-    ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(width, color));
-}
-
-fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>) -> RowOutcome {
+fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, show_noise: bool) -> RowOutcome {
     cache.update(input, ((ui.available_width() - AXIS_WIDTH) * ui.pixels_per_point()) as usize);
-    let (p, dark) = (palette(ui), ui.visuals().dark_mode);
-    let shown: Vec<(usize, &Trace)> =
-        input.group.traces.iter().enumerate().filter(|(_, t)| cache.is_shown(input.group, t)).collect();
-    let y_range = y_range(cache, input, &shown);
+    let (p, dark, inks) = (palette(ui), ui.visuals().dark_mode, inks(ui));
+    let noise = show_noise.then_some(inks.noise);
+    let y_range = y_range(cache, input, show_noise);
     let plot = still_plot(("row", input.index), p, input.height, 10.0, 130.0)
         .width(ui.available_width())
         .show_axes([input.time_axis, true])
         .sense(Sense::click_and_drag())
         .custom_x_axes(vec![time_axis(p, input.prepared.clockless())]);
     let response = plot.show(ui, |plot| {
-        let bounds = PlotBounds::from_min_max([input.view_s.0, y_range.0], [input.view_s.1, y_range.1]);
-        plot.set_plot_bounds(bounds);
-        for interval in input.segmentation.iter().flat_map(|s| &s.states) {
+        plot.set_plot_bounds(PlotBounds::from_min_max([input.view_s.0, y_range.0], [input.view_s.1, y_range.1]));
+        let (from, to) = input.view_s;
+        let visible = input.segmentation.iter().flat_map(|s| &s.states).filter(|i| i.t1 >= from && i.t0 <= to);
+        for interval in visible {
             let tint = theme::state_color(dark, interval.state).gamma_multiply(if dark { 0.16 } else { 0.22 });
             plot.span(Span::new("", interval.t0..=interval.t1).fill(tint).border_width(0.0));
         }
-        for (t, _) in &shown {
-            // A broad band under the measured curve: seen where they agree and where they part.
-            if let Some(cached) = cache.curves.get(&(input.index, *t, true)) {
-                let line = Line::new("", PlotPoints::Borrowed(&cached.points));
-                let color = theme::role(dark, ColorRole::Simulated).gamma_multiply(0.75);
-                plot.line(line.color(color).width(4.0).allow_hover(false));
-            }
+        if let Some(ink) = noise {
+            bands(plot, cache, input, ink);
         }
-        for (t, trace) in &shown {
-            if let Some(cached) = cache.curves.get(&(input.index, *t, false)) {
-                let line = Line::new("", PlotPoints::Borrowed(&cached.points));
-                plot.line(line.color(theme::curve(dark, trace.role, trace.second)).width(1.4).allow_hover(false));
-            }
+        for (place, curve) in input.drawn.curves.iter().enumerate() {
+            let line = Line::new("", PlotPoints::Borrowed(cache.points(input, place)));
+            let color = curve_color(input, curve, dark, p);
+            plot.line(line.color(color).width(width(curve.layer)).allow_hover(false));
         }
     });
     let doubt = shade(ui, &response.transform, input.prepared, input.group);
-    draw_cursor(ui, &response.transform, input, &shown);
+    draw_cursor(ui, &response.transform, input);
     if let Some(doubt) = doubt {
         response.response.clone().on_hover_text_at_pointer(doubt);
     }
     react(ui, &response.response, &response.transform, input)
 }
 
-/// The visible curves with a little air; never an empty range.
-fn y_range(cache: &PlotCache, input: &RowInput<'_>, shown: &[(usize, &Trace)]) -> (f64, f64) {
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for (t, _) in shown {
-        if let Some(cached) = cache.curves.get(&(input.index, *t, false)) {
-            for point in cached.points.iter().filter(|p| p.y.is_finite()) {
-                (low, high) = (low.min(point.y), high.max(point.y));
-            }
+/// Around the last model of every trace; about zero where the row is of what is left.
+fn bands<'a>(plot: &mut PlotUi<'a>, cache: &'a PlotCache, input: &RowInput<'_>, ink: Color32) {
+    if input.kind == RowKind::LeftOver {
+        if let Some(sigma) = input.drawn.curves.iter().filter_map(|c| c.sigma).reduce(f64::max) {
+            let (from, to) = input.view_s;
+            let edge = BAND_SIGMAS * sigma;
+            plot.add(FilledArea::new("", &[from, to], &[-edge; 2], &[edge; 2]).fill_color(ink).allow_hover(false));
         }
+        return;
+    }
+    let of_model = if input.drawn.has(Layer::Extended) { Layer::Extended } else { Layer::Simulated };
+    for (place, _) in input.drawn.curves.iter().enumerate().filter(|(_, c)| c.layer == of_model) {
+        if let Some(band) = cache.curves.get(&(input.index, place)).and_then(|c| c.band.as_ref()) {
+            plot.add(FilledArea::new("", &band.times, &band.low, &band.high).fill_color(ink).allow_hover(false));
+        }
+    }
+}
+
+/// The visible curves with a little air; never an empty range. A model that goes elsewhere does not press what was measured flat.
+fn y_range(cache: &PlotCache, input: &RowInput<'_>, show_noise: bool) -> (f64, f64) {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    let counts = |curve: &&Curve| !matches!(curve.layer, Layer::Simulated | Layer::Extended);
+    for (place, _) in input.drawn.curves.iter().enumerate().filter(|(_, c)| counts(c)) {
+        for point in cache.points(input, place).iter().filter(|p| p.y.is_finite()) {
+            (low, high) = (low.min(point.y), high.max(point.y));
+        }
+    }
+    if input.kind == RowKind::LeftOver && show_noise {
+        let edge = BAND_SIGMAS * input.drawn.curves.iter().filter_map(|c| c.sigma).fold(0.0, f64::max);
+        (low, high) = (low.min(-edge), high.max(edge));
     }
     if low > high {
         return (-1.0, 1.0);
@@ -259,23 +256,20 @@ fn y_range(cache: &PlotCache, input: &RowInput<'_>, shown: &[(usize, &Trace)]) -
     (low - air, high + air)
 }
 
-fn draw_cursor(ui: &Ui, transform: &PlotTransform, input: &RowInput<'_>, shown: &[(usize, &Trace)]) {
+fn draw_cursor(ui: &Ui, transform: &PlotTransform, input: &RowInput<'_>) {
     let (p, dark) = (palette(ui), ui.visuals().dark_mode);
     let area: Rect = *transform.frame();
     let painter = ui.painter().with_clip_rect(area.expand(1.0));
     let x = transform.position_from_point(&PlotPoint::new(input.cursor_s, 0.0)).x;
     painter.vline(x, area.y_range(), Stroke::new(1.2, p.accent));
     let sample = input.prepared.sample_at(input.cursor_s);
-    for (_, trace) in shown {
-        let value = trace.levels.samples(&input.prepared.recording).value(sample);
+    let marked = |layer| matches!(layer, Layer::Measured | Layer::LeftSimulated | Layer::LeftExtended);
+    for curve in input.drawn.curves.iter().filter(|c| marked(c.layer)) {
+        let value = curve.levels.samples(&curve.prepared.recording).value(sample);
         if value.is_finite() {
             let y = transform.position_from_point(&PlotPoint::new(input.cursor_s, value)).y;
-            painter.circle(
-                Pos2::new(x, y),
-                3.0,
-                theme::curve(dark, trace.role, trace.second),
-                Stroke::new(1.0, p.card),
-            );
+            let color = curve_color(input, curve, dark, p);
+            painter.circle(Pos2::new(x, y), 3.0, color, Stroke::new(1.0, p.card));
         }
     }
 }

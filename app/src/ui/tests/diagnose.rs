@@ -22,7 +22,7 @@ fn hiding(effect: Effect, bench: Bench, seed: u64) -> Recording {
     blind::make(&spec, seed).0.recordings.remove(0)
 }
 
-static RIPPLED: LazyLock<Recording> = LazyLock::new(|| hiding(Effect::Ripple, Bench::OneFinger, 3));
+pub static RIPPLED: LazyLock<Recording> = LazyLock::new(|| hiding(Effect::Ripple, Bench::OneFinger, 3));
 static ECCENTRIC: LazyLock<Recording> = LazyLock::new(|| hiding(Effect::Eccentric, Bench::OneFinger, 3));
 
 fn loaded(recording: Recording) -> Session {
@@ -31,7 +31,7 @@ fn loaded(recording: Recording) -> Session {
     session
 }
 
-fn diagnosed(recording: Recording) -> Session {
+pub fn diagnosed(recording: Recording) -> Session {
     let mut session = loaded(recording);
     let from = session.diagnosing.from;
     let answer = diagnosing::ask(&session.recordings, &session.choice, from, Progress::default());
@@ -96,6 +96,9 @@ fn the_button_diagnoses_in_the_background_names_the_cause_and_extends_the_model(
     harness.run_steps(2);
     wait(&mut harness, JobKind::Extend);
     let worlds = harness.state().session.diagnosing.worlds.clone().expect("both worlds");
+    wait(&mut harness, JobKind::SimulateExtended);
+    let replayed = harness.state().session.extended_replay().expect("played through the extended world");
+    assert!(replayed.curves.iter().any(|(name, _)| name == "fx_N"), "for the plots: {:?}", replayed.curves.len());
     let laws = |world: &haptics::world::World| -> Vec<&'static str> {
         world.crank.as_ref().expect("a crank").effects.iter().map(|e| e.law().id()).collect()
     };

@@ -3,6 +3,7 @@
 mod diagnose;
 mod panels;
 mod pictures;
+mod plots;
 mod rules;
 mod train;
 mod window;
@@ -106,6 +107,14 @@ pub fn no_driver() -> bool {
         let _ = writeln!(std::io::stderr(), "skipped: {error}");
     }
     missing.is_some()
+}
+
+/// Writes a picture into the folder that `TOUCHSTONE_PICTURES` names, to be looked at; nothing without it.
+pub fn keep(name: &str, picture: &image::RgbaImage) {
+    if let Some(folder) = std::env::var_os("TOUCHSTONE_PICTURES") {
+        let path = std::path::Path::new(&folder).join(format!("{name}.png"));
+        picture.save_with_format(path, image::ImageFormat::Png).expect("the folder can be written to");
+    }
 }
 
 pub fn count_near(picture: &image::RgbaImage, color: egui::Color32) -> usize {

@@ -13,13 +13,11 @@ use crate::ui::panels::scene::ScenePanel;
 use crate::ui::panels::segments::SegmentsPanel;
 use crate::ui::panels::trainer_side::TrainerSide;
 use crate::ui::panels::trainer_view::TrainerView;
-use crate::ui::prepare::Prepared;
 use crate::ui::session::Session;
 use crate::ui::{format, screenshot, theme};
 use egui_kittest::kittest::Queryable;
 use estimator::segment::SystemState;
-use haptics::recording::{Channel, Recording};
-use std::sync::Arc;
+use haptics::recording::Recording;
 use std::time::{Duration, Instant};
 
 fn panels() -> Vec<Box<dyn Panel>> {
@@ -127,39 +125,4 @@ fn doubtful_spans_are_shaded_and_listed() {
         let (with, without) = (marks(&recording), marks(&cart()));
         assert!(with > without + 30, "{with} and {without} pixels, dark {dark}");
     }
-}
-
-#[test]
-fn a_million_samples_stay_fast() {
-    let n = 1_000_000;
-    let wave = |k: usize| (0..n).map(|i| (f64::from(i) * 1e-4 * k as f64).sin()).collect();
-    let channel = |k: usize| Channel { name: format!("s{k}_V"), unit: "V".to_owned(), values: wave(k) };
-    let recording = Recording {
-        channels: (1..=6)
-            .map(channel)
-            .chain([Channel { name: "q_m".into(), unit: "m".into(), values: wave(7) }])
-            .collect(),
-        time_s: Some((0..n).map(|i| f64::from(i) * 1e-3).collect()),
-        ..Recording::default()
-    };
-    let mut session = Session::new();
-    session.show(vec![Arc::new(Prepared::new(recording))]);
-    let mut panel = LogPanel::default();
-    let mut harness = harness(session, [1400.0, 800.0], move |ui, session: &mut Session| panel.ui(ui, session));
-    let begun = Instant::now();
-    for i in 0..20 {
-        harness.state_mut().cursor_s = f64::from(i);
-        harness.step();
-    }
-    let moving_cursor = begun.elapsed() / 20;
-    let begun = Instant::now();
-    for i in 0..20 {
-        harness.state_mut().view_s = (0.0, 1_000.0 - f64::from(i));
-        harness.step();
-    }
-    let moving_view = begun.elapsed() / 20;
-    println!("cursor {moving_cursor:?}, view {moving_view:?} a picture");
-    // Unoptimised; a picture has 16 ms, these are limits against a relapse to drawing every sample.
-    assert!(moving_cursor < Duration::from_millis(150), "{moving_cursor:?}");
-    assert!(moving_view < Duration::from_millis(300), "{moving_view:?}");
 }

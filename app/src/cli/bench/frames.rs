@@ -1,0 +1,136 @@
+//! `touchstone bench frames`: what a picture of each panel costs the processor, with a long log.
+
+use super::super::{Output, parse_size};
+use crate::ui::frames::{Costs, Loaded, SUBJECTS};
+use clap::Args;
+use haptics::device::{Device, ScriptedOperator, Skill};
+use haptics::recording::Recording;
+use haptics::servo::recorder::{SensorModel, to_recording};
+use haptics::servo::safety::Limits;
+use haptics::servo::{Loop, Swap};
+use haptics::world::{State, presets};
+use serde_json::json;
+use std::fmt::Write;
+
+/// Servo period, s.
+const DT: f64 = 1e-3;
+/// Processor time that a picture may take, s: half of it is left of 60 pictures a second.
+const BUDGET_S: f64 = 8e-3;
+
+/// Arguments of `bench frames`.
+#[derive(Args)]
+pub struct FramesBench {
+    /// Samples of the log: the scripted operator's, over and over
+    #[arg(long, default_value_t = 1_000_000)]
+    samples: usize,
+    /// Size of the window in pixels
+    #[arg(long, default_value = "1920x1080", value_parser = parse_size)]
+    size: [u32; 2],
+    /// Pictures that are drawn of each panel and movement
+    #[arg(long, default_value_t = 60)]
+    pictures: usize,
+    /// Only the log's panels, without a fit: for logs that take minutes to fit
+    #[arg(long)]
+    no_fit: bool,
+}
+
+impl FramesBench {
+    pub(super) fn run(&self) -> anyhow::Result<Output> {
+        anyhow::ensure!(
+            (1_000..=50_000_000).contains(&self.samples),
+            "a log of {} samples is not possible; choose 1000 to 50000000",
+            self.samples
+        );
+        anyhow::ensure!(
+            (2..=10_000).contains(&self.pictures),
+            "{} pictures are not possible; choose 2 to 10000",
+            self.pictures
+        );
+        let recording = self.recording();
+        let samples = recording.len();
+        let (loaded, subjects) = if self.no_fit {
+            (Loaded::unfitted(recording), &SUBJECTS[..2])
+        } else {
+            (Loaded::new(recording).map_err(anyhow::Error::msg)?, &SUBJECTS[..])
+        };
+        let measured: Vec<(&str, Costs)> =
+            subjects.iter().map(|s| (s.name, loaded.measure(*s, self.size, self.pictures))).collect();
+        Ok(self.report(samples, &measured))
+    }
+
+    fn report(&self, samples: usize, measured: &[(&str, Costs)]) -> Output {
+        let mut text = format!(
+            "{samples} samples, {} × {} pixels, processor time of a picture in ms (budget {:.0})\n{:<12} {:>16} {:>16} {:>14} {:>10}\n",
+            self.size[0],
+            self.size[1],
+            1e3 * BUDGET_S,
+            "",
+            "playing",
+            "zooming",
+            "triangles",
+            "cutting"
+        );
+        for (name, costs) in measured {
+            let of = |median: f64, p95: f64| format!("{:.2} (95 %: {:.2})", 1e3 * median, 1e3 * p95);
+            let over = costs.playing.p95_s.max(costs.zooming.p95_s) > BUDGET_S;
+            let _ = writeln!(
+                text,
+                "{name:<12} {:>16} {:>16} {:>11} k {:>8.0} %{}",
+                of(costs.playing.median_s, costs.playing.p95_s),
+                of(costs.zooming.median_s, costs.zooming.p95_s),
+                costs.playing.triangles / 1000,
+                100.0 * costs.playing.tessellation,
+                if over { "  over" } else { "" }
+            );
+        }
+        let rows = measured.iter().map(|(name, c)| {
+            json!({ "panel": name, "playing_s": c.playing.median_s, "playing_p95_s": c.playing.p95_s,
+                    "zooming_s": c.zooming.median_s, "zooming_p95_s": c.zooming.p95_s, "triangles": c.playing.triangles })
+        });
+        let rows: Vec<_> = rows.collect();
+        Output { text, json: json!({ "samples": samples, "size": self.size, "budget_s": BUDGET_S, "frames": rows }) }
+    }
+
+    /// The scripted operator stacks two blocks, again and again.
+    fn recording(&self) -> Recording {
+        let world = presets::stacking();
+        let state = State::resting(&world);
+        let operator = ScriptedOperator::new(&world, &state, Skill::default(), 1);
+        let limits = Limits { max_force_n: operator.spec().max_force_n, ..Limits::default() };
+        let mut servo = Loop::new(Swap::at(world.clone(), state), Box::new(operator), limits);
+        let mut ticks = Vec::new();
+        while !servo.finished() && ticks.len() < self.samples {
+            ticks.push(servo.tick(DT));
+        }
+        let once = to_recording("stack, over and over", &world, &ticks, 1, &SensorModel::TYPICAL, 1);
+        repeated(once, self.samples)
+    }
+}
+
+/// The recording again and again until it has so many samples.
+fn repeated(mut once: Recording, samples: usize) -> Recording {
+    for channel in &mut once.channels {
+        channel.values = channel.values.iter().copied().cycle().take(samples).collect();
+    }
+    once.time_s = Some((0..samples).map(|i| i as f64 * DT).collect());
+    once.labels = None;
+    once
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_short_bench_tells_every_panel() {
+        let bench = FramesBench { samples: 20_000, size: [640, 480], pictures: 2, no_fit: false };
+        let output = bench.run().expect("it runs");
+        for subject in SUBJECTS {
+            assert!(output.text.contains(subject.name), "{}: {}", subject.name, output.text);
+        }
+        assert_eq!(output.json["samples"], 20_000);
+        assert!(output.json["frames"][0]["triangles"].as_u64().is_some_and(|n| n > 500), "{}", output.json);
+        let wrong = FramesBench { samples: 1, ..bench };
+        assert!(wrong.run().is_err_and(|e| e.to_string().contains("not possible")));
+    }
+}

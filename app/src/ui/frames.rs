@@ -1,0 +1,197 @@
+//! What a picture costs the processor: laying a panel out and cutting its shapes into triangles. What the graphics card does is apart.
+
+use super::app::App;
+use super::plots::LogView;
+use super::prepare::Prepared;
+use super::screenshot::{Panel, contents};
+use super::session::{self, FitChoice, Session, Workspace};
+use super::theme;
+use super::trainer::Clock;
+use cpu_time::ThreadTime;
+use egui::{Context, RawInput, Rect, UiBuilder};
+use haptics::recording::Recording;
+use std::sync::Arc;
+
+/// Pictures before anything is measured: layouts settle, curves are computed.
+const WARM_UP: usize = 6;
+
+/// What is measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject {
+    /// In words.
+    pub name: &'static str,
+    panel: Panel,
+    view: LogView,
+    workspace: Workspace,
+}
+
+/// Every panel that shows a recording.
+pub const SUBJECTS: [Subject; 9] = [
+    subject("log", Panel::Log),
+    Subject { view: LogView::Xy, ..subject("log, XY", Panel::Log) },
+    subject("segments", Panel::Segments),
+    subject("parameters", Panel::Parameters),
+    subject("results", Panel::Results),
+    subject("scene", Panel::Scene),
+    subject("Calibrate", Panel::Workbench),
+    Subject { workspace: Workspace::Diagnose, ..subject("Diagnose", Panel::Diagnose) },
+    Subject { workspace: Workspace::Train, ..subject("Train", Panel::Train) },
+];
+
+const fn subject(name: &'static str, panel: Panel) -> Subject {
+    Subject { name, panel, view: LogView::Time, workspace: Workspace::Calibrate }
+}
+
+/// Processor time of a picture, s.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cost {
+    /// Half of the pictures cost less.
+    pub median_s: f64,
+    /// One in twenty costs more.
+    pub p95_s: f64,
+    /// Share of the median that cutting into triangles takes.
+    pub tessellation: f64,
+    /// Triangles of the last picture.
+    pub triangles: usize,
+}
+
+/// What a panel costs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Costs {
+    /// While the cursor runs.
+    pub playing: Cost,
+    /// While the visible time changes with every picture.
+    pub zooming: Cost,
+}
+
+/// A long log with its fit, to be shown in one panel after the other.
+pub struct Loaded {
+    recordings: Vec<Arc<Prepared>>,
+    analysis: Option<Arc<estimator::pipeline::Analysis>>,
+    replays: Vec<Option<super::jobs::Replayed>>,
+}
+
+impl Loaded {
+    /// Prepares, fits and replays.
+    pub fn new(recording: Recording) -> Result<Self, String> {
+        let recordings = vec![Arc::new(Prepared::new(recording))];
+        let analysis = session::analyse(&recordings, &FitChoice::default())?;
+        let replays = session::replay_all(&analysis.world, &recordings);
+        Ok(Self { recordings, analysis: Some(Arc::new(analysis)), replays })
+    }
+
+    /// Without a fit: for logs of which only the plots matter.
+    pub fn unfitted(recording: Recording) -> Self {
+        Self { recordings: vec![Arc::new(Prepared::new(recording))], analysis: None, replays: Vec::new() }
+    }
+
+    fn session(&self, subject: Subject) -> Session {
+        let mut session = Session::new();
+        session.trainer.clock = Clock::Manual;
+        session.show(self.recordings.clone());
+        session.workspace = subject.workspace;
+        session.plots.view = subject.view;
+        session.analysis.clone_from(&self.analysis);
+        session.replays.clone_from(&self.replays);
+        session
+    }
+
+    /// Draws a panel `pictures` times each way, in a window of `size` pixels.
+    pub fn measure(&self, subject: Subject, size: [u32; 2], pictures: usize) -> Costs {
+        let mut stage = Stage::new(App::new(self.session(subject)), subject, size);
+        let (first, last) = stage.app.session.view_s;
+        for _ in 0..WARM_UP {
+            stage.picture();
+        }
+        let width = last - first;
+        let playing = stage.measure(pictures, |session, k| session.seek(first + width * k as f64 / pictures as f64));
+        let zooming = stage.measure(pictures, |session, k| {
+            let share = k as f64 / pictures as f64;
+            session.view_s = (first + 0.3 * share * width, last - 0.5 * share * width);
+        });
+        Costs { playing, zooming }
+    }
+}
+
+/// A window that is never shown.
+struct Stage {
+    ctx: Context,
+    app: App,
+    contents: super::screenshot::Contents,
+    size: egui::Vec2,
+    time_s: f64,
+}
+
+impl Stage {
+    fn new(app: App, subject: Subject, [width, height]: [u32; 2]) -> Self {
+        let ctx = Context::default();
+        theme::install(&ctx);
+        let size = egui::vec2(width as f32, height as f32);
+        Self { ctx, app, contents: contents(subject.panel), size, time_s: 0.0 }
+    }
+
+    /// Lays one picture out and cuts it up: both times, s, and the triangles.
+    fn picture(&mut self) -> (f64, f64, usize) {
+        self.time_s += 1.0 / 60.0;
+        let screen_rect = Some(Rect::from_min_size(egui::Pos2::ZERO, self.size));
+        let input = RawInput { screen_rect, time: Some(self.time_s), ..RawInput::default() };
+        let Self { ctx, app, contents, .. } = self;
+        let begun = ThreadTime::now();
+        let mut output = ctx.run_ui(input, |ui| {
+            let whole = ui.ctx().content_rect();
+            ui.scope_builder(UiBuilder::new().max_rect(whole), |ui| contents(ui, app));
+        });
+        let laid_out_s = begun.elapsed().as_secs_f64();
+        // There is no card to give the letters to.
+        output.textures_delta.clear();
+        let begun = ThreadTime::now();
+        let cut = ctx.tessellate(output.shapes, output.pixels_per_point);
+        let cut_s = begun.elapsed().as_secs_f64();
+        let triangles = cut.iter().map(|primitive| match &primitive.primitive {
+            egui::epaint::Primitive::Mesh(mesh) => mesh.indices.len() / 3,
+            egui::epaint::Primitive::Callback(_) => 0,
+        });
+        (laid_out_s, cut_s, triangles.sum())
+    }
+
+    fn measure(&mut self, pictures: usize, mut change: impl FnMut(&mut Session, usize)) -> Cost {
+        let mut costs: Vec<(f64, f64, usize)> = Vec::with_capacity(pictures);
+        for k in 0..pictures {
+            change(&mut self.app.session, k);
+            costs.push(self.picture());
+        }
+        let triangles = costs.last().map_or(0, |c| c.2);
+        costs.sort_by(|a, b| (a.0 + a.1).total_cmp(&(b.0 + b.1)));
+        let at = |share: f64| costs.get(((costs.len() - 1) as f64 * share) as usize).copied().unwrap_or_default();
+        let (median, late) = (at(0.5), at(0.95));
+        let median_s = median.0 + median.1;
+        Cost { median_s, p95_s: late.0 + late.1, tessellation: median.1 / median_s.max(1e-12), triangles }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::recording::Channel;
+
+    fn waves(n: usize) -> Recording {
+        let channel = |k: usize| Channel {
+            name: format!("f{k}_N"),
+            unit: "N".to_owned(),
+            values: (0..n).map(|i| (i as f64 * 1e-2 * k as f64).sin() + 0.1 * (i as f64 * 1.7).sin()).collect(),
+        };
+        let time_s = Some((0..n).map(|i| i as f64 * 1e-3).collect());
+        Recording { time_s, channels: (1..=4).map(channel).collect(), ..Recording::default() }
+    }
+
+    #[test]
+    fn a_picture_of_a_hundred_times_as_many_samples_has_no_more_triangles() {
+        let triangles = |n: usize| {
+            let costs = Loaded::unfitted(waves(n)).measure(SUBJECTS[0], [1920, 1080], 3);
+            costs.playing.triangles
+        };
+        let (short, long) = (triangles(20_000), triangles(2_000_000));
+        assert!(short > 1_000, "{short}");
+        assert!(long < short + short / 5, "{short} and {long} triangles");
+    }
+}

@@ -1,0 +1,90 @@
+//! Recordings laid over each other: which, and how far each is shifted in time.
+
+use super::jobs::{JobKind, Outcome};
+use super::plots::choices::Overlaid;
+use super::prepare::{Prepared, Trace};
+use super::session::Session;
+use estimator::segment::SystemState;
+use estimator::signal::lag::lag;
+use std::sync::Arc;
+
+/// Quantities that tell best where two recordings match, the best first: forces rise and fall with every contact.
+const TELLING: [&str; 5] = ["Task signals", "Force", "Torque", "Position", "Angle"];
+/// Less alike than this is not alike.
+const LEAST_LIKENESS: f64 = 0.3;
+
+impl Session {
+    /// Lays a recording over the shown one, or takes it away.
+    pub fn toggle_overlay(&mut self, recording: usize) {
+        let overlaid = &mut self.plots.overlaid;
+        match overlaid.iter().position(|o| o.recording == recording) {
+            Some(place) => drop(overlaid.remove(place)),
+            None => overlaid.push(Overlaid { recording, offset_s: 0.0 }),
+        }
+    }
+
+    /// Shifts a recording that lies over the shown one.
+    pub fn shift_overlay(&mut self, recording: usize, offset_s: f64) {
+        if let Some(overlaid) = self.plots.overlaid.iter_mut().find(|o| o.recording == recording) {
+            overlaid.offset_s = offset_s;
+        }
+    }
+
+    /// Shifts a recording to where it is most like the shown one, in the background.
+    pub fn align(&mut self, ctx: &egui::Context, recording: usize) {
+        let (Some(fixed), Some(moved)) = (self.prepared().cloned(), self.recordings.get(recording).cloned()) else {
+            return;
+        };
+        self.jobs.start_watched(ctx, JobKind::Align, "Laying recordings over each other".to_owned(), move |_| {
+            Outcome::Aligned(recording, most_alike(&fixed, &moved))
+        });
+    }
+
+    pub(super) fn aligned(&mut self, recording: usize, found: Result<f64, String>) {
+        match found {
+            Ok(offset_s) => self.shift_overlay(recording, offset_s),
+            Err(problem) => self.fail(problem),
+        }
+    }
+
+    /// When a recording is touched for the first time, s; `None` where its states are not known.
+    pub fn first_contact_s(&self, recording: usize) -> Option<f64> {
+        let states = &self.analysis.as_ref()?.segmentations.get(recording)?.as_ref()?.states;
+        let apart = |state| matches!(state, SystemState::FreeMotion | SystemState::NoState);
+        states.iter().find(|i| !apart(i.state)).map(|i| i.t0)
+    }
+
+    /// Shifts a recording so that its first contact is at that of the shown one; false where one of them is not known.
+    pub fn align_by_contact(&mut self, recording: usize) -> bool {
+        let both = self.first_contact_s(self.current).zip(self.first_contact_s(recording));
+        if let Some((here, there)) = both {
+            self.shift_overlay(recording, here - there);
+        }
+        both.is_some()
+    }
+}
+
+/// What to add to the times of `moved`, s, by the most telling signal that both have.
+fn most_alike(fixed: &Arc<Prepared>, moved: &Arc<Prepared>) -> Result<f64, String> {
+    let values = |prepared: &Prepared, trace: &Trace| -> Vec<f64> {
+        let samples = trace.levels.samples(&prepared.recording);
+        (0..samples.len()).map(|i| samples.value(i)).collect()
+    };
+    for title in TELLING {
+        for group in fixed.groups.iter().filter(|g| g.title == title) {
+            let Some(same) = moved.groups.iter().find(|g| g.key() == group.key()) else { continue };
+            for trace in &group.traces {
+                let Some(other) = same.traces.iter().find(|t| t.name == trace.name) else { continue };
+                let (a, b) = (values(fixed, trace), values(moved, other));
+                if let Some(found) = lag((&fixed.times, &a), (&moved.times, &b)).filter(|l| l.likeness > LEAST_LIKENESS)
+                {
+                    return Ok(found.offset_s);
+                }
+            }
+        }
+    }
+    Err(format!(
+        "{} and {} have no signal in which they are alike; shift one of them by hand.",
+        fixed.recording.name, moved.recording.name
+    ))
+}

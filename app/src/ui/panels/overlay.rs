@@ -1,0 +1,106 @@
+//! Recordings laid over the shown one: the menu that chooses them, and the legend with their shifts.
+
+use crate::ui::jobs::JobKind;
+use crate::ui::session::Session;
+use crate::ui::theme::{self, palette, recording as color, space};
+use crate::ui::widgets::swatch;
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{DragValue, PopupCloseBehavior, RichText, Ui};
+
+/// Longest name in the legend, letters.
+const LONGEST_NAME: usize = 22;
+
+/// The button with the list of the loaded recordings, where there are several.
+pub fn overlay_menu(ui: &mut Ui, session: &mut Session) {
+    if session.recordings.len() < 2 {
+        return;
+    }
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let button = egui::Button::new(RichText::new("Overlay").size(11.5)).small();
+    let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
+        ui.set_min_width(220.0);
+        for recording in 0..session.recordings.len() {
+            let name = session.recordings[recording].recording.name.clone();
+            let here = recording == session.current;
+            let mut on = here || session.plots.overlaid.iter().any(|o| o.recording == recording);
+            let words = if here { format!("{name} (shown)") } else { name };
+            if ui.add_enabled(!here, egui::Checkbox::new(&mut on, words)).changed() {
+                session.toggle_overlay(recording);
+            }
+        }
+    });
+    response.on_hover_text("Lay other recordings of this file over the shown one");
+}
+
+/// One entry for each recording that lies over the shown one; nothing without any.
+pub fn overlay_legend(ui: &mut Ui, session: &mut Session) {
+    // A recording does not lie over itself.
+    let (current, count) = (session.current, session.recordings.len());
+    session.plots.overlaid.retain(|o| o.recording != current && o.recording < count);
+    if session.plots.overlaid.is_empty() {
+        return;
+    }
+    let clockless = session.prepared().is_some_and(|p| p.clockless());
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().interact_size.y = 20.0;
+        ui.spacing_mut().button_padding.y = 2.0;
+        ui.label(theme::caption(ui, format!("over {}:", short(&session.recordings[current].recording.name))));
+        for place in 0..session.plots.overlaid.len() {
+            let Some(entry) = session.plots.overlaid.get(place).copied() else { break };
+            ui.push_id(("overlay", entry.recording), |ui| one(ui, session, place, entry.recording, clockless));
+        }
+    });
+}
+
+fn one(ui: &mut Ui, session: &mut Session, place: usize, recording: usize, clockless: bool) {
+    let dark = ui.visuals().dark_mode;
+    ui.add_space(space::S);
+    swatch(ui, color(dark, place));
+    let name = session.recordings[recording].recording.name.clone();
+    ui.label(RichText::new(short(&name)).size(11.5).color(palette(ui).text)).on_hover_text(&name);
+    let (first, last) = session.recordings[session.current].span();
+    if let Some(entry) = session.plots.overlaid.get_mut(place) {
+        let (speed, decimals, unit) = if clockless { (1.0, 0, " samples") } else { (1e-3 * (last - first), 3, " s") };
+        let drag = DragValue::new(&mut entry.offset_s).speed(speed.min(0.02)).max_decimals(decimals).suffix(unit);
+        ui.add(drag).on_hover_text("What is added to its times: drag, or click and type");
+    }
+    let running = session.jobs.is_running(JobKind::Align);
+    let hint = "Shift it to where its forces (else its motion) are most like those of the shown recording";
+    if ui.add_enabled(!running, egui::Button::new("Align").small()).on_hover_text(hint).clicked() {
+        let ctx = ui.ctx().clone();
+        session.align(&ctx, recording);
+    }
+    let known = session.first_contact_s(recording).is_some() && session.first_contact_s(session.current).is_some();
+    let (hint, why) = (
+        "Shift it so that its first contact is at that of the shown recording",
+        "The states of both recordings must be known first: press Fit",
+    );
+    let button = egui::Button::new("First contact").small();
+    if ui.add_enabled(known, button).on_hover_text(hint).on_disabled_hover_text(why).clicked() {
+        session.align_by_contact(recording);
+    }
+    if ui.small_button("×").on_hover_text("Take it away").clicked() {
+        session.toggle_overlay(recording);
+    }
+}
+
+fn short(name: &str) -> String {
+    let count = name.chars().count();
+    if count <= LONGEST_NAME {
+        return name.to_owned();
+    }
+    // The end tells recordings of one series apart.
+    format!("…{}", name.chars().skip(count - LONGEST_NAME + 1).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_names_keep_their_end() {
+        assert_eq!(short("crank"), "crank");
+        let name = short("a very long name of a recording, trial 17");
+        assert!(name.starts_with('…') && name.ends_with("trial 17") && name.chars().count() == LONGEST_NAME, "{name}");
+    }
+}
