@@ -1,6 +1,7 @@
 //! The plain list of shapes that makes one picture: built without a graphics device, so it can be made on any thread.
 
 use crate::drawable;
+use crate::light::{KEY, KeyLight};
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::{Shadow, Solid, Stroke};
@@ -24,6 +25,13 @@ pub enum Layer {
     Overlay,
 }
 
+impl Layer {
+    /// The table only receives them; what is translucent or laid over casts none.
+    pub(crate) fn casts_shadows(self) -> bool {
+        self == Self::World
+    }
+}
+
 /// Everything that one picture needs.
 #[derive(Clone, Debug)]
 pub struct DrawData {
@@ -36,7 +44,7 @@ pub struct DrawData {
     pub(crate) strokes: Vec<Stroke>,
     /// Lines in front of everything.
     pub(crate) overlay_strokes: Vec<Stroke>,
-    /// Shadows on the table.
+    /// Dim places of the table, below what is close to it.
     pub(crate) shadows: Vec<Shadow>,
 }
 
@@ -53,6 +61,9 @@ pub(crate) struct Globals {
     grid: Vec4,
     shadow: Vec4,
     table: Vec4,
+    map_from_world: Mat4,
+    map: Vec4,
+    key: Vec4,
 }
 
 impl DrawData {
@@ -71,7 +82,15 @@ impl DrawData {
         data.strokes.retain(Stroke::is_finite);
         data.overlay_strokes.retain(Stroke::is_finite);
         data.solids.sort_by_key(|(layer, mesh, _)| (*layer, *mesh));
+        data.set_light();
         data
+    }
+
+    /// Fits the key light's map around what casts shadows.
+    fn set_light(&mut self) {
+        let casters = self.solids.iter().filter(|(layer, _, _)| layer.casts_shadows());
+        let light = KeyLight::around(casters.map(|(_, _, solid)| solid));
+        (self.globals.map_from_world, self.globals.map) = (light.map_from_world, light.measures);
     }
 
     /// How many shapes there are: solids, strokes, shadows.
@@ -100,6 +119,9 @@ fn globals(view: &SceneView<'_>, size: [u32; 2]) -> Globals {
             let Vec2 { x, y } = table.half;
             Vec4::new(top, 0.45, x, y)
         }),
+        map_from_world: Mat4::IDENTITY,
+        map: Vec4::ZERO,
+        key: KEY.extend(0.0),
     }
 }
 

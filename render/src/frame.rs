@@ -1,7 +1,9 @@
 //! The buffers of one view, refilled for every picture and grown when needed.
 
 use crate::draw_data::{DrawData, Globals, Layer};
+use crate::maps::Maps;
 use crate::mesh::MeshKind;
+use crate::pipeline::Groups;
 use crate::shape::Solid;
 use bytemuck::Pod;
 use std::ops::Range;
@@ -11,6 +13,9 @@ use std::ops::Range;
 pub struct Frame {
     globals: wgpu::Buffer,
     pub(crate) bind_group: wgpu::BindGroup,
+    pub(crate) maps: Maps,
+    /// Whether there is a table to be lit.
+    pub(crate) has_table: bool,
     pub(crate) solids: Instances,
     pub(crate) strokes: Instances,
     pub(crate) overlay_strokes: Instances,
@@ -21,21 +26,18 @@ pub struct Frame {
 }
 
 impl Frame {
-    pub(crate) fn new(device: &wgpu::Device, layout: &wgpu::BindGroupLayout) -> Self {
+    pub(crate) fn new(device: &wgpu::Device, groups: &Groups) -> Self {
         let globals = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("globals"),
             size: size_of::<Globals>() as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("globals"),
-            layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: globals.as_entire_binding() }],
-        });
         Self {
+            bind_group: groups.globals(device, &globals),
             globals,
-            bind_group,
+            maps: Maps::new(device, groups),
+            has_table: false,
             solids: Instances::new(device, "solids", 24 << 10),
             strokes: Instances::new(device, "strokes", 16 << 10),
             overlay_strokes: Instances::new(device, "overlay strokes", 64 << 10),
@@ -54,6 +56,7 @@ impl Frame {
         self.strokes.upload(device, queue, &data.strokes);
         self.overlay_strokes.upload(device, queue, &data.overlay_strokes);
         self.shadows.upload(device, queue, &data.shadows);
+        self.has_table = data.solids.iter().any(|(layer, _, _)| *layer == Layer::Table);
         self.batches.clear();
         for (index, (layer, mesh, _)) in (0_u32..).zip(&data.solids) {
             match self.batches.last_mut() {

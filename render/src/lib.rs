@@ -17,6 +17,9 @@ pub mod drawable;
 pub mod error;
 pub mod frame;
 pub mod headless;
+mod light;
+mod maps;
+pub mod material;
 pub mod mesh;
 mod pipeline;
 pub mod renderer;
@@ -31,6 +34,7 @@ pub use draw_data::DrawData;
 pub use error::RenderError;
 pub use frame::Frame;
 pub use headless::Headless;
+pub use material::Material;
 pub use renderer::{DEPTH_FORMAT, Renderer, SAMPLES};
 pub use scene::{
     ArrowAnchor, ConstraintMarker, FingerStyle, ForceVector, SceneView, SolidRef, Trajectory, ViewOptions,

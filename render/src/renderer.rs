@@ -3,7 +3,7 @@
 use crate::draw_data::{DrawData, Layer};
 use crate::frame::Frame;
 use crate::mesh::MeshKind;
-use crate::pipeline::Pipelines;
+use crate::pipeline::{Groups, Pipelines};
 use crate::scene::SceneView;
 use crate::target::TextureTarget;
 use wgpu::util::DeviceExt;
@@ -25,7 +25,7 @@ const BACKGROUND_CELLS: u32 = 16 * 12;
 pub struct Renderer {
     pipelines: Pipelines,
     meshes: Vec<GpuMesh>,
-    pub(crate) globals_layout: wgpu::BindGroupLayout,
+    groups: Groups,
     format: wgpu::TextureFormat,
     samples: u32,
 }
@@ -42,23 +42,11 @@ impl Renderer {
     ///
     /// Colours are written for direct display (gamma-encoded), as egui does: prefer `Rgba8Unorm`. sRGB formats work too.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, samples: u32) -> Self {
-        let globals_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("globals"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-                count: None,
-            }],
-        });
+        let groups = Groups::new(device);
         Self {
-            pipelines: Pipelines::new(device, &globals_layout, format, samples),
+            pipelines: Pipelines::new(device, &groups, format, samples),
             meshes: MeshKind::ALL.iter().map(|kind| GpuMesh::new(device, *kind)).collect(),
-            globals_layout,
+            groups,
             format,
             samples,
         }
@@ -76,7 +64,7 @@ impl Renderer {
 
     /// The buffers of one view. Two views on the screen at once need a frame each.
     pub fn frame(&self, device: &wgpu::Device) -> Frame {
-        Frame::new(device, &self.globals_layout)
+        Frame::new(device, &self.groups)
     }
 
     /// Fills `frame` with what `view` shows in a picture of `size` pixels.
@@ -91,16 +79,33 @@ impl Renderer {
         frame.upload(device, queue, &DrawData::new(view, size));
     }
 
-    /// Draws a prepared frame into `target`, in a pass of its own.
+    /// Draws a prepared frame into `target`: shadow map, light of the table, picture, in a pass each.
     pub fn render(&self, encoder: &mut wgpu::CommandEncoder, target: &TextureTarget, frame: &Frame) {
+        self.light(encoder, frame);
         let mut pass = target.begin_pass(encoder);
         self.draw(&mut pass, frame);
     }
 
-    /// Draws a prepared frame into a pass that has this renderer's formats, a cleared depth buffer and the frame's size.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, frame: &Frame) {
+    /// Records what the key light reaches.
+    fn light(&self, encoder: &mut wgpu::CommandEncoder, frame: &Frame) {
+        let mut pass = frame.maps.begin_cast(encoder);
+        pass.set_bind_group(0, &frame.bind_group, &[]);
+        self.draw_solids(&mut pass, frame, Layer::World, &self.pipelines.cast);
+        drop(pass);
+        if frame.has_table {
+            let mut pass = frame.maps.begin_table(encoder);
+            pass.set_bind_group(0, &frame.bind_group, &[]);
+            pass.set_bind_group(1, &frame.maps.nearest_group, &[]);
+            pass.set_pipeline(&self.pipelines.table_light);
+            pass.draw(0..4, 0..1);
+        }
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, frame: &Frame) {
         let [width, height] = frame.size.map(|n| n as f32);
         pass.set_bind_group(0, &frame.bind_group, &[]);
+        pass.set_bind_group(1, &frame.maps.nearest_group, &[]);
+        pass.set_bind_group(2, &frame.maps.table_group, &[]);
         pass.set_viewport(0.0, 0.0, width, height, OVERLAY_DEPTH, 1.0);
         pass.set_pipeline(&self.pipelines.background);
         pass.draw(0..4, 0..BACKGROUND_CELLS);
@@ -113,7 +118,7 @@ impl Renderer {
         pass.set_viewport(0.0, 0.0, width, height, 0.0, OVERLAY_DEPTH);
         self.draw_solids(pass, frame, Layer::Glass, &self.pipelines.ghost);
         frame.overlay_strokes.draw_quads(pass, &self.pipelines.overlay_stroke);
-        self.draw_solids(pass, frame, Layer::Overlay, &self.pipelines.solid);
+        self.draw_solids(pass, frame, Layer::Overlay, &self.pipelines.overlay);
     }
 
     fn draw_solids(&self, pass: &mut wgpu::RenderPass<'_>, frame: &Frame, layer: Layer, with: &wgpu::RenderPipeline) {

@@ -1,5 +1,6 @@
 //! The three kinds of things a picture is made of, as the graphics driver takes them: solids, strokes and shadows.
 
+use crate::material::Material;
 use crate::theme::Color;
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
@@ -16,6 +17,8 @@ pub struct Solid {
     pub radius_and_unlit: [f32; 4],
     /// Colour (gamma 2 undone) and opacity.
     pub color: [f32; 4],
+    /// What it is made of, as the shader numbers it.
+    pub material: u32,
 }
 
 impl Solid {
@@ -110,9 +113,16 @@ impl Solid {
         self
     }
 
+    /// The same, made of something.
+    pub fn of(mut self, material: Material) -> Self {
+        self.material = material as u32;
+        self
+    }
+
     /// True when every number can be drawn.
     pub fn is_finite(&self) -> bool {
-        bytemuck::cast_ref::<Self, [f32; 24]>(self).iter().all(|x| x.is_finite())
+        let numbers = self.rows.iter().chain([&self.half_and_gloss, &self.radius_and_unlit, &self.color]);
+        numbers.flatten().all(|x| x.is_finite())
     }
 
     fn plate_with(center: Vec2, axis: Vec2, mut half: Vec3, radius: f32, z: [f32; 2], color: Color) -> Self {
@@ -131,6 +141,7 @@ impl Solid {
             half_and_gloss: half.extend(0.25).into(),
             radius_and_unlit: radius.extend(0.0).into(),
             color: color.linear().into(),
+            material: Material::Plain as u32,
         }
     }
 }

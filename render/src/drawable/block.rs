@@ -1,6 +1,7 @@
 //! Movable bodies: blocks are boxes with slightly rounded edges; barrels and needles have files of their own.
 
 use super::{Canvas, HALF_DEPTH_M, barrel, needle};
+use crate::Material;
 use crate::mesh::MeshKind;
 use crate::scene::{SceneView, SolidRef};
 use crate::shape::Solid;
@@ -54,7 +55,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
 fn draw_box(canvas: &mut Canvas<'_>, body: Body) {
     let Body { center, half, turn, color, unlit } = body;
     let solid = Solid::rounded_box(lift(center, 0.0), half.extend(HALF_DEPTH_M), turn, EDGE_M, color);
-    canvas.solid(MeshKind::Box, solid.gloss(0.3).unlit(unlit));
+    canvas.solid(MeshKind::Box, solid.gloss(0.22).of(Material::Wood).unlit(unlit));
     let reach = reach(half, turn);
     canvas.cast_shadow(Vec2::new(center.x, 0.0), Vec2::new(reach.x, HALF_DEPTH_M), center.y - reach.y, 1.0);
 }

@@ -2,6 +2,7 @@
 //! the table where it reaches it; a taut one is straight and shows how hard it pulls.
 
 use super::{Canvas, Mode, angle};
+use crate::Material;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;
@@ -31,7 +32,10 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
             if taut { pull_color(canvas, (state.cable_n / weight_n) as f32) } else { (canvas.palette.rope, 0.0) };
         let floor = canvas.table_top_m.map_or(f32::MIN, |top| top + RADIUS_M);
         let mut piece = |a: Vec3, b: Vec3| {
-            canvas.solid(MeshKind::Box, Solid::capsule(a, b, RADIUS_M, color).gloss(0.2).unlit(unlit));
+            canvas.solid(
+                MeshKind::Box,
+                Solid::capsule(a, b, RADIUS_M, color).gloss(0.2).of(Material::Rubber).unlit(unlit),
+            );
         };
         if taut {
             piece(anchor.extend(depth), end.extend(depth));
@@ -63,7 +67,7 @@ fn eyelet(canvas: &mut Canvas<'_>, anchor: Vec2, depth: f32) {
     }
     let at = |i: u16| (anchor + RING_M * angle(f32::from(i) / 12.0)).extend(depth);
     for i in 0..12 {
-        canvas.solid(MeshKind::Box, Solid::capsule(at(i), at(i + 1), WIRE_M, steel).gloss(0.8));
+        canvas.solid(MeshKind::Box, Solid::capsule(at(i), at(i + 1), WIRE_M, steel).gloss(0.8).of(Material::Polished));
     }
 }
 

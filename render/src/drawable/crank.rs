@@ -1,6 +1,7 @@
 //! The crank: a dial behind, an arm about the axis, an upright handle that the pads can hold.
 
 use super::{Canvas, HALF_DEPTH_M, Line, angle, at};
+use crate::Material;
 use crate::mesh::MeshKind;
 use crate::scene::{SceneView, SolidRef};
 use crate::shape::{Solid, Stroke};
@@ -53,10 +54,11 @@ fn dial(canvas: &mut Canvas<'_>, center: Vec2, radius: f32) {
 fn arm(canvas: &mut Canvas<'_>, center: Vec2, handle: Vec2) {
     let (link, brass, frame) = (canvas.palette.link, canvas.palette.brass, canvas.palette.frame);
     let tail = center - 0.32 * (handle - center);
-    canvas.solid(MeshKind::Plate, Solid::bar(tail, handle, 0.0042, ARM_Z, link).gloss(0.5));
+    canvas.solid(MeshKind::Plate, Solid::bar(tail, handle, 0.0042, ARM_Z, link).gloss(0.5).of(Material::Brushed));
     canvas.solid(MeshKind::Plate, Solid::disc(tail, 0.0062, [ARM_Z[0] - 0.001, ARM_Z[1] + 0.001], frame).gloss(0.3));
     canvas.solid(MeshKind::Plate, Solid::disc(center, 0.0058, [DIAL_Z[1], ARM_Z[1] + 0.0016], frame).gloss(0.4));
-    canvas.solid(MeshKind::Plate, Solid::disc(center, 0.0028, [DIAL_Z[1], 0.0], brass).gloss(0.8));
+    canvas
+        .solid(MeshKind::Plate, Solid::disc(center, 0.0028, [DIAL_Z[1], 0.0], brass).gloss(0.8).of(Material::Polished));
 }
 
 /// The handle keeps upright on its bearing; its sides are flat for the pads.
@@ -69,9 +71,13 @@ fn draw_handle(canvas: &mut Canvas<'_>, handle: Vec2, width: f32, highlighted: b
     let half = Vec3::new(0.5 * width, 0.5 * width + 0.001, 0.5 * (HALF_DEPTH_M - ARM_Z[1]) - 0.0004);
     let middle = at(handle, 0.5 * (HALF_DEPTH_M + ARM_Z[1]) + 0.0004);
     let edge = (0.22 * width).min(0.0025);
-    let grip = Solid::rounded_box(middle, half, 0.0, edge, color).unlit(if highlighted { 0.35 } else { 0.0 });
+    let grip = Solid::rounded_box(middle, half, 0.0, edge, color).of(Material::Rubber).unlit(if highlighted {
+        0.35
+    } else {
+        0.0
+    });
     canvas.solid(MeshKind::Box, grip);
     let cap = [HALF_DEPTH_M - 0.0005, HALF_DEPTH_M + 0.0012];
-    canvas.solid(MeshKind::Plate, Solid::disc(handle, 0.26 * width, cap, brass).gloss(0.8));
+    canvas.solid(MeshKind::Plate, Solid::disc(handle, 0.26 * width, cap, brass).gloss(0.8).of(Material::Polished));
     canvas.cast_shadow(Vec2::new(handle.x, 0.0), Vec2::new(0.5 * width, HALF_DEPTH_M), handle.y - half.y, 0.7);
 }

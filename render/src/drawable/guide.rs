@@ -1,6 +1,7 @@
 //! Guides: the slot behind the body that follows it, as two edges with a stop at each open end.
 
 use super::{Canvas, Mode};
+use crate::Material;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;
@@ -28,7 +29,10 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
         };
         let (edge, slot) = (canvas.palette.steel, canvas.palette.frame);
         let mut rod = |a: Vec2, b: Vec2, z: f32, radius: f32, color| {
-            canvas.solid(MeshKind::Box, Solid::capsule(a.extend(z), b.extend(z), radius, color).gloss(0.6));
+            canvas.solid(
+                MeshKind::Box,
+                Solid::capsule(a.extend(z), b.extend(z), radius, color).gloss(0.6).of(Material::Polished),
+            );
         };
         for k in 0..pieces {
             let ((a, left_a), (b, left_b)) = (at(k), at(k + 1));

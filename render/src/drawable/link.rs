@@ -4,6 +4,7 @@
 //! lengths are exactly those of the kinematics.
 
 use super::{Canvas, outwards, tip};
+use crate::Material;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;
@@ -73,7 +74,7 @@ fn joints(view: &SceneView<'_>, finger: usize) -> Option<Joints> {
 fn links(canvas: &mut Canvas<'_>, j: &Joints) {
     let (first, second) = (canvas.palette.link, canvas.palette.link_secondary);
     let mut bar = |a: Vec2, b: Vec2, radius, z, color| {
-        canvas.solid(MeshKind::Plate, Solid::bar(a, b, radius, z, color).gloss(0.45));
+        canvas.solid(MeshKind::Plate, Solid::bar(a, b, radius, z, color).gloss(0.45).of(Material::Brushed));
     };
     bar(j.base, j.elbow, BAR_RADIUS_M, UPPER_Z, first);
     bar(j.base + j.upper, j.elbow + j.upper, SECOND_RADIUS_M, UPPER_Z, second);
@@ -119,7 +120,10 @@ fn pins(canvas: &mut Canvas<'_>, j: &Joints, accent: Color) {
     for (center, radius) in all {
         let upper = center == j.base || center == j.elbow || center == j.base + j.upper || center == j.elbow + j.upper;
         let front = if upper { UPPER_Z[1] } else { COUPLER_Z[1] };
-        canvas.solid(MeshKind::Plate, Solid::disc(center, radius, [z_back, front + 0.0008], pin).gloss(0.9));
+        canvas.solid(
+            MeshKind::Plate,
+            Solid::disc(center, radius, [z_back, front + 0.0008], pin).gloss(0.9).of(Material::Polished),
+        );
         if radius > 0.002 {
             let ring = [front - 0.0001, front + 0.0004];
             canvas.solid(MeshKind::Plate, Solid::disc(center, radius + 0.0010, ring, accent).gloss(0.2));

@@ -3,6 +3,7 @@
 //! The sheet dents under the point. Once pierced it springs back, dragged along by the shaft, and the hole stays.
 
 use super::{Canvas, Mode, angle, at};
+use crate::Material;
 use crate::mesh::{MeshKind, SHEET_STATIONS, dent};
 use crate::scene::SceneView;
 use crate::shape::{Solid, Stroke};
@@ -98,7 +99,10 @@ fn point_along(membrane: &Membrane, world: &World, state: &State) -> Option<f64>
 fn back(canvas: &mut Canvas<'_>, sheet: &Sheet, holes: &[f32]) {
     let (paper, dark) = (canvas.palette.paper, canvas.palette.frame.mix(Color::rgb8(0, 0, 0), 0.35));
     let center = at(sheet.center, 0.0);
-    canvas.solid(MeshKind::Sheet, Solid::sheet(center, sheet.radius, sheet.apex, sheet.depth, paper).gloss(0.05));
+    canvas.solid(
+        MeshKind::Sheet,
+        Solid::sheet(center, sheet.radius, sheet.apex, sheet.depth, paper).gloss(0.05).of(Material::Paper),
+    );
     for along in holes {
         let place = at(sheet.point(*along) + Vec2::Y * 0.00005, 0.0);
         canvas.solid(MeshKind::Sheet, Solid::sheet(place, HOLE_M, 0.0, 0.0, dark).gloss(0.0).unlit(0.5));
@@ -122,7 +126,7 @@ fn wall(canvas: &mut Canvas<'_>, sheet: &Sheet) {
     let Some(y) = wall_heights(canvas, sheet) else { return };
     let shade = canvas.palette.paper.mix(canvas.palette.frame, 0.30);
     let radii = [FLARE * sheet.radius, sheet.radius];
-    canvas.solid(MeshKind::Shell, Solid::shell(sheet.center.x, radii, y, shade).gloss(0.05));
+    canvas.solid(MeshKind::Shell, Solid::shell(sheet.center.x, radii, y, shade).gloss(0.05).of(Material::Paper));
     let foot = Vec2::new(sheet.center.x, -0.5 * radii[0]);
     canvas.cast_shadow(foot, Vec2::new(radii[0], 0.5 * radii[0]), y[0], 0.5);
 }

@@ -140,7 +140,8 @@ impl<'a> Canvas<'a> {
 
     /// A circle in the plane `z`.
     fn circle(&mut self, center: Vec2, radius: f32, z: f32, line: Line, overlay: bool) {
-        let steps = 72;
+        // Small circles need fewer corners.
+        let steps = if radius < 0.004 { 24 } else { 72 };
         let at = |i: usize| (center + radius * angle(i as f32 / steps as f32)).extend(z);
         let arc = radius * std::f32::consts::TAU / steps as f32;
         for i in 0..steps {
@@ -152,22 +153,19 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// The shadows of a solid whose footprint on the table is `half` (x, z) about `center` (x, z) and whose underside is
-    /// `bottom_m` high: one straight below, one away from the key light, both fading with height.
+    /// The dimness that a solid makes on the table straight below it by keeping the sky away: its footprint is `half` (x, z)
+    /// about `center` (x, z), its underside `bottom_m` high; it fades with height. The key light's shadows are in its map.
     fn cast_shadow(&mut self, center: Vec2, half: Vec2, bottom_m: f32, strength: f32) {
         let Some(top) = self.table_top_m.filter(|_| self.mode == Mode::Real) else { return };
         let height = (bottom_m - top).max(0.0);
         let alpha = self.palette.shadow.alpha * strength;
-        let contact = Shadow {
+        let below = Shadow {
             center_and_half: [center.x, center.y, half.x, half.y],
             blur_and_alpha: [0.0022 + 0.22 * height, alpha / (1.0 + 40.0 * height)],
         };
-        let away = center + (0.004 + height) * Vec2::new(0.5, -0.5);
-        let key = Shadow {
-            center_and_half: [away.x, away.y, half.x, half.y],
-            blur_and_alpha: [0.005 + 0.2 * height, 0.6 * alpha / (1.0 + 20.0 * height)],
-        };
-        self.data.shadows.extend([contact, key].iter().filter(|s| s.center_and_half.iter().all(|x| x.is_finite())));
+        if below.center_and_half.iter().all(|x| x.is_finite()) {
+            self.data.shadows.push(below);
+        }
     }
 }
 

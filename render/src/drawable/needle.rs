@@ -2,6 +2,7 @@
 
 use super::Canvas;
 use super::block::Body;
+use crate::Material;
 use crate::mesh::MeshKind;
 use crate::shape::Solid;
 use crate::theme::{Color, Theme};
@@ -27,7 +28,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, body: Body) {
     hub(canvas, body, [at(HUB), at(1.0)]);
     let mut shaft = |from: f32, to: f32, radii: [f32; 2], color: Color| {
         let solid = Solid::cone(at(from), at(to), radii.map(|share| share * radius), color);
-        canvas.solid(MeshKind::Cone, solid.gloss(0.8).unlit(body.unlit));
+        canvas.solid(MeshKind::Cone, solid.gloss(0.8).of(Material::Polished).unlit(body.unlit));
     };
     let collar = body.color.mix(steel, 0.45);
     shaft(HUB + 0.005, SHOULDER, [0.72, 0.34], collar);

@@ -3,6 +3,7 @@
 //! The tip position is the middle of the foam's inner face. Pressed foam is drawn as thin as it is compressed.
 
 use super::{Canvas, outwards, tip};
+use crate::Material;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;
@@ -35,11 +36,15 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
         let (face, back) = (tip.x + out * pressed, tip.x + out * FOAM_M);
         let foam = slab([face, back], [bottom, tip.y + FOAM_DOWN_UP_M[1]], HALF_DEPTH_M);
         let bulge = 0.0006 + 0.3 * pressed;
-        canvas.solid(MeshKind::Box, Solid::rounded_box(foam.0, foam.1, 0.0, bulge, color).gloss(0.05));
+        canvas
+            .solid(MeshKind::Box, Solid::rounded_box(foam.0, foam.1, 0.0, bulge, color).gloss(0.05).of(Material::Foam));
 
         let blade = slab([back, back + out * BLADE_M], [bottom, tip.y + BLADE_TOP_M], HALF_DEPTH_M + 0.0005);
         let steel = canvas.palette.steel;
-        canvas.solid(MeshKind::Box, Solid::rounded_box(blade.0, blade.1, 0.0, 0.0007, steel).gloss(0.6));
+        canvas.solid(
+            MeshKind::Box,
+            Solid::rounded_box(blade.0, blade.1, 0.0, 0.0007, steel).gloss(0.6).of(Material::Brushed),
+        );
 
         let middle = Vec2::new(tip.x + out * 0.5 * (FOAM_M + BLADE_M), 0.0);
         canvas.cast_shadow(middle, Vec2::new(0.5 * (FOAM_M + BLADE_M), HALF_DEPTH_M), bottom, 0.8);

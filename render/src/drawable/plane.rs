@@ -1,6 +1,7 @@
 //! A fixed plane at any angle: the edge of the solid as a bar that runs across the picture, its rim on the surface.
 
 use super::{Canvas, HALF_DEPTH_M, Mode};
+use crate::Material;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;
@@ -19,6 +20,6 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
     let color = canvas.palette.steel;
     for depth in [-HALF_DEPTH_M, 0.0, HALF_DEPTH_M] {
         let (from, to) = ((middle - REACH_M * along).extend(depth), (middle + REACH_M * along).extend(depth));
-        canvas.solid(MeshKind::Box, Solid::capsule(from, to, HALF_M, color).gloss(0.3));
+        canvas.solid(MeshKind::Box, Solid::capsule(from, to, HALF_M, color).gloss(0.3).of(Material::Brushed));
     }
 }

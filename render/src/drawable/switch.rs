@@ -2,6 +2,7 @@
 //! throw: a ring at the left one, a bar at the right one, as on real switches. The mark of the side that it is on is lit.
 
 use super::{Canvas, HALF_DEPTH_M, Mode, at};
+use crate::Material;
 use crate::mesh::MeshKind;
 use crate::scene::{SceneView, SolidRef};
 use crate::shape::{Solid, Stroke};
@@ -125,7 +126,7 @@ fn lever(canvas: &mut Canvas<'_>, switch: &Switch, at_m: f64, highlighted: bool)
     let steel = canvas.palette.steel;
     let radius = switch.knob_radius_m as f32;
     let bar = Solid::cone(at(pivot, 0.0), at(knob, 0.0), LEVER.map(|share| share * size), steel);
-    canvas.solid(MeshKind::Cone, bar.gloss(0.8));
+    canvas.solid(MeshKind::Cone, bar.gloss(0.8).of(Material::Polished));
     let outwards = (knob - pivot).normalize_or(Vec2::Y);
     let collar = knob - outwards * radius;
     let neck = [1.7 * LEVER[1] * size, 1.9 * LEVER[1] * size];

@@ -1,6 +1,7 @@
 //! A single tool instead of two fingers: a slim probe whose ball end is at the tip of finger 1.
 
 use super::{Canvas, at, tip};
+use crate::Material;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;
@@ -15,13 +16,13 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
     let role = if view.options.saturated[0] { ColorRole::Saturated } else { ColorRole::Finger(0) };
     let (accent, steel, frame) = (canvas.color(role), canvas.palette.steel, canvas.palette.frame);
     canvas.solid(MeshKind::Box, Solid::ball(at(tip, 0.0), BALL_M, accent).gloss(0.5));
-    let mut rod = |from: f32, to: f32, radius: f32, color| {
+    let mut rod = |[from, to]: [f32; 2], radius: f32, color, material| {
         let half = Vec3::new(radius, 0.5 * (to - from), radius);
         let center = at(tip + Vec2::Y * 0.5 * (from + to), 0.0);
-        canvas.solid(MeshKind::Box, Solid::rounded_box(center, half, 0.0, radius, color).gloss(0.6));
+        canvas.solid(MeshKind::Box, Solid::rounded_box(center, half, 0.0, radius, color).gloss(0.6).of(material));
     };
-    rod(0.001, 0.034, 0.0011, steel);
-    rod(0.030, 0.037, 0.0026, accent);
-    rod(0.034, 0.075, 0.0042, frame);
+    rod([0.001, 0.034], 0.0011, steel, Material::Polished);
+    rod([0.030, 0.037], 0.0026, accent, Material::Plain);
+    rod([0.034, 0.075], 0.0042, frame, Material::Rubber);
     canvas.cast_shadow(Vec2::new(tip.x, 0.0), Vec2::splat(0.6 * BALL_M), tip.y - BALL_M, 0.8);
 }

@@ -16,6 +16,12 @@ struct Globals {
     shadow: vec4<f32>,
     // x: table height (m); y: darkening of solids close to it; z, w: half extents of the table top along x and z (m).
     table: vec4<f32>,
+    // From the world to the key light's map: x, y from 0 to 1 (y down), z from 0 at the light to 1.
+    map_from_world: mat4x4<f32>,
+    // Texels of the map's side, size of a texel (m), depth of its box (m), width of the light.
+    map: vec4<f32>,
+    // Unit vector towards the key light.
+    key: vec4<f32>,
 };
 
 @group(0) @binding(0) var<uniform> globals: Globals;

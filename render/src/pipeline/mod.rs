@@ -1,19 +1,33 @@
 //! The pipelines: how each kind of shape becomes pixels. Shaders stand beside this file.
 
+mod groups;
+
 use crate::mesh::Vertex;
 use crate::renderer::DEPTH_FORMAT;
 use crate::shape::{Shadow, Solid, Stroke};
+pub(crate) use groups::Groups;
 use wgpu::vertex_attr_array as attributes;
 
 const COMMON: &str = include_str!("common.wgsl");
+const KEY_LIGHT: &str = include_str!("key_light.wgsl");
+const MATERIAL: &str = include_str!("material.wgsl");
 const SOLID: &str = include_str!("solid.wgsl");
+const TABLE_LIGHT: &str = include_str!("table_light.wgsl");
 const STROKE: &str = include_str!("stroke.wgsl");
 const SHADOW: &str = include_str!("shadow.wgsl");
 const BACKGROUND: &str = include_str!("background.wgsl");
 
+/// Every driver can draw into these and read them: one channel each.
+pub(crate) const MAP_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+pub(crate) const TABLE_LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+
 /// All pipelines of a target format.
 #[derive(Debug)]
 pub(crate) struct Pipelines {
+    /// Solids as the key light sees them: their depth.
+    pub cast: wgpu::RenderPipeline,
+    /// What of the key light reaches the table.
+    pub table_light: wgpu::RenderPipeline,
     pub solid: wgpu::RenderPipeline,
     pub table: wgpu::RenderPipeline,
     /// Depth of translucent solids, so that only their nearest surface is seen.
@@ -23,14 +37,24 @@ pub(crate) struct Pipelines {
     pub stroke: wgpu::RenderPipeline,
     pub overlay_stroke: wgpu::RenderPipeline,
     pub background: wgpu::RenderPipeline,
+    /// Solids in front of everything.
+    pub overlay: wgpu::RenderPipeline,
 }
 
 /// What is the same in every pipeline of one renderer.
 struct Maker<'a> {
     device: &'a wgpu::Device,
-    layout: wgpu::PipelineLayout,
+    groups: &'a Groups,
+}
+
+/// What a pipeline draws into.
+#[derive(Clone, Copy)]
+struct Into {
     format: wgpu::TextureFormat,
     samples: u32,
+    /// How many of the bind groups its passes have.
+    groups: usize,
+    depth: bool,
 }
 
 /// What differs from pipeline to pipeline.
@@ -46,6 +70,9 @@ struct Spec<'a> {
     depth_compare: wgpu::CompareFunction,
     /// Positive: farther.
     depth_bias: i32,
+    into: Into,
+    /// Backs of closed solids are left out.
+    culled: bool,
 }
 
 /// What a pipeline does with the colour it computes.
@@ -58,19 +85,10 @@ enum Ink {
 }
 
 impl Pipelines {
-    pub(crate) fn new(
-        device: &wgpu::Device,
-        globals: &wgpu::BindGroupLayout,
-        format: wgpu::TextureFormat,
-        samples: u32,
-    ) -> Self {
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("scene"),
-            bind_group_layouts: &[Some(globals)],
-            immediate_size: 0,
-        });
-        let make = Maker { device, layout, format, samples };
-        let solid = make.module("solid", SOLID);
+    pub(crate) fn new(device: &wgpu::Device, groups: &Groups, format: wgpu::TextureFormat, samples: u32) -> Self {
+        let make = Maker { device, groups };
+        let solid = make.module("solid", &format!("{KEY_LIGHT}\n{MATERIAL}\n{SOLID}"));
+        let table_light = make.module("table light", &format!("{KEY_LIGHT}\n{TABLE_LIGHT}"));
         let stroke = make.module("stroke", STROKE);
         let shadow = make.module("shadow", SHADOW);
         let background = make.module("background", BACKGROUND);
@@ -87,6 +105,8 @@ impl Pipelines {
             depth_write: true,
             depth_compare: wgpu::CompareFunction::Less,
             depth_bias: 0,
+            into: Into { format, samples, groups: 3, depth: true },
+            culled: true,
         };
         let see_through = wgpu::CompareFunction::LessEqual;
         let stroke_buffers = [Some(stroke_layout())];
@@ -100,9 +120,13 @@ impl Pipelines {
             ink: Ink::Translucent,
             depth_write: false,
             depth_compare: see_through,
+            culled: false,
             ..opaque
         };
         Self {
+            cast: make.pipeline(&cast(&opaque)),
+            table_light: make.pipeline(&table_light_spec(&opaque, &table_light)),
+            overlay: make.pipeline(&Spec { label: "overlay", fragment: "fs_overlay", ..opaque }),
             table: make.pipeline(&Spec { label: "table", fragment: "fs_table", ..opaque }),
             ghost_depth: make.pipeline(&ghost_depth(&opaque)),
             ghost: make.pipeline(&ghost(&opaque)),
@@ -123,6 +147,7 @@ impl Pipelines {
                 depth_write: false,
                 depth_compare: wgpu::CompareFunction::Always,
                 topology: wgpu::PrimitiveTopology::TriangleStrip,
+                culled: false,
                 ..opaque
             }),
             overlay_stroke: make.pipeline(&Spec {
@@ -133,6 +158,32 @@ impl Pipelines {
             stroke: make.pipeline(&strokes),
             solid: make.pipeline(&opaque),
         }
+    }
+}
+
+/// The shadow map: thin sheets and open shells cast from both sides.
+fn cast<'a>(opaque: &Spec<'a>) -> Spec<'a> {
+    Spec {
+        label: "shadow map",
+        vertex: "vs_cast",
+        fragment: "fs_cast",
+        into: Into { format: MAP_FORMAT, samples: 1, groups: 1, depth: true },
+        culled: false,
+        ..*opaque
+    }
+}
+
+fn table_light_spec<'a>(opaque: &Spec<'a>, module: &'a wgpu::ShaderModule) -> Spec<'a> {
+    Spec {
+        label: "table light",
+        module,
+        vertex: "vs_table_light",
+        fragment: "fs_table_light",
+        buffers: &[],
+        topology: wgpu::PrimitiveTopology::TriangleStrip,
+        into: Into { format: TABLE_LIGHT_FORMAT, samples: 1, groups: 2, depth: false },
+        culled: false,
+        ..*opaque
     }
 }
 
@@ -165,14 +216,15 @@ impl Maker<'_> {
     }
 
     fn pipeline(&self, spec: &Spec<'_>) -> wgpu::RenderPipeline {
-        let constants = [("TARGET_IS_SRGB", f64::from(u8::from(self.format.is_srgb())))];
-        // Strips are flat things that face the viewer by construction.
-        let closed = spec.topology == wgpu::PrimitiveTopology::TriangleList;
+        let into = spec.into;
+        let srgb = [("TARGET_IS_SRGB", f64::from(u8::from(into.format.is_srgb())))];
+        // Light maps hold numbers, not colours; their shaders do not know the constant.
+        let constants: &[_] = if into.groups == 3 { &srgb } else { &[] };
         let blend = (spec.ink == Ink::Translucent).then_some(wgpu::BlendState::ALPHA_BLENDING);
         let write_mask = if spec.ink == Ink::None { wgpu::ColorWrites::empty() } else { wgpu::ColorWrites::ALL };
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(spec.label),
-            layout: Some(&self.layout),
+            layout: Some(&self.groups.pipeline_layout(self.device, into.groups)),
             vertex: wgpu::VertexState {
                 module: spec.module,
                 entry_point: Some(spec.vertex),
@@ -181,25 +233,25 @@ impl Maker<'_> {
             },
             primitive: wgpu::PrimitiveState {
                 topology: spec.topology,
-                cull_mode: closed.then_some(wgpu::Face::Back),
+                cull_mode: spec.culled.then_some(wgpu::Face::Back),
                 ..wgpu::PrimitiveState::default()
             },
-            depth_stencil: Some(wgpu::DepthStencilState {
+            depth_stencil: into.depth.then(|| wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
                 depth_write_enabled: Some(spec.depth_write),
                 depth_compare: Some(spec.depth_compare),
                 stencil: wgpu::StencilState::default(),
                 bias: wgpu::DepthBiasState { constant: spec.depth_bias, slope_scale: 0.0, clamp: 0.0 },
             }),
-            multisample: wgpu::MultisampleState { count: self.samples, ..wgpu::MultisampleState::default() },
+            multisample: wgpu::MultisampleState { count: into.samples, ..wgpu::MultisampleState::default() },
             fragment: Some(wgpu::FragmentState {
                 module: spec.module,
                 entry_point: Some(spec.fragment),
                 compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &constants,
+                    constants,
                     ..wgpu::PipelineCompilationOptions::default()
                 },
-                targets: &[Some(wgpu::ColorTargetState { format: self.format, blend, write_mask })],
+                targets: &[Some(wgpu::ColorTargetState { format: into.format, blend, write_mask })],
             }),
             multiview_mask: None,
             cache: None,
@@ -214,8 +266,9 @@ fn vertex_layout() -> wgpu::VertexBufferLayout<'static> {
 }
 
 fn solid_layout() -> wgpu::VertexBufferLayout<'static> {
-    const ATTRIBUTES: [wgpu::VertexAttribute; 6] =
-        attributes![3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4, 8 => Float32x4];
+    const ATTRIBUTES: [wgpu::VertexAttribute; 7] = attributes![
+        3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4, 8 => Float32x4, 10 => Uint32
+    ];
     layout::<Solid>(wgpu::VertexStepMode::Instance, &ATTRIBUTES)
 }
 
@@ -244,7 +297,15 @@ mod tests {
     /// Shaders are checked without a graphics device.
     #[test]
     fn shaders_are_valid() {
-        let scene = [("solid", SOLID), ("stroke", STROKE), ("shadow", SHADOW), ("background", BACKGROUND)];
+        let solid = format!("{KEY_LIGHT}\n{MATERIAL}\n{SOLID}");
+        let table_light = format!("{KEY_LIGHT}\n{TABLE_LIGHT}");
+        let scene = [
+            ("solid", solid.as_str()),
+            ("table_light", &table_light),
+            ("stroke", STROKE),
+            ("shadow", SHADOW),
+            ("background", BACKGROUND),
+        ];
         let scene = scene.map(|(name, source)| (name, format!("{COMMON}\n{source}")));
         let blit = ("blit", crate::blit::SHADER.to_owned());
         for (name, source) in scene.into_iter().chain([blit]) {

@@ -1,6 +1,11 @@
 //! Properties of the pictures: what must be seen, and where. Without a Vulkan driver they say so and pass.
 
+mod light;
 mod objects;
+#[path = "../../examples/gallery/plates/mod.rs"]
+mod plates;
+mod references;
+mod thresholds;
 
 use haptics::Vec2;
 use haptics::world::{Block, Contact, State, Surface, World};

@@ -1,6 +1,6 @@
 //! Needle, barrel and switch, each in a state that the world really came to.
 
-use crate::Plate;
+use super::Plate;
 use haptics::Vec2;
 use haptics::world::{Input, State, World, presets, step};
 use render::{Camera, ViewOptions};
