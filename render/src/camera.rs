@@ -82,6 +82,28 @@ impl Camera {
         }
     }
 
+    /// A camera on the way to another one, 0 here to 1 there; magnification changes evenly.
+    pub fn toward(&self, other: &Self, share: f32) -> Self {
+        let between = |a: f32, b: f32| a + (b - a) * share;
+        let grown = |a: f32, b: f32| a * (b / a).powf(share);
+        Self {
+            projection: other.projection,
+            target_m: self.target_m.lerp(other.target_m, share),
+            yaw_rad: between(self.yaw_rad, other.yaw_rad),
+            pitch_rad: between(self.pitch_rad, other.pitch_rad),
+            extent_m: Vec2::new(grown(self.extent_m.x, other.extent_m.x), grown(self.extent_m.y, other.extent_m.y)),
+        }
+    }
+
+    /// How far two cameras are apart, as a share of what they show and in radians, whichever is most.
+    pub fn apart(&self, other: &Self) -> f32 {
+        let shown = other.extent_m.max_element();
+        let moved = self.target_m.distance(other.target_m) / shown;
+        let magnified = (self.extent_m - other.extent_m).abs().max_element() / shown;
+        let turned = (self.yaw_rad - other.yaw_rad).abs().max((self.pitch_rad - other.pitch_rad).abs());
+        moved.max(magnified).max(turned)
+    }
+
     /// Moves the target so that the picture follows a drag of `pixels` (x right, y down).
     pub fn pan(&mut self, pixels: Vec2, size: [u32; 2]) {
         let metres = pixels / self.pixels_per_metre(size);

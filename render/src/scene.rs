@@ -40,8 +40,12 @@ pub struct ViewOptions {
     pub highlight: Option<SolidRef>,
     /// Curves in the plane.
     pub trajectories: Vec<Trajectory>,
+    /// What a model says that the tips exert, N: slender arrows beside those of the measured forces.
+    pub predicted_force_n: Option<[Vec2; 2]>,
     /// Force vectors along a path (thesis, figure 5.10).
     pub force_vectors: Vec<ForceVector>,
+    /// Their length, m per N, positive: many small arrows have another scale than one large one.
+    pub vector_scale_m_per_n: f32,
     /// Found centres of rotation and directions of motion.
     pub constraints: Vec<ConstraintMarker>,
     /// A second state, drawn translucent: a replay, a prediction, a target. Made for the same world.
@@ -62,7 +66,9 @@ impl Default for ViewOptions {
             saturated: [false; 2],
             highlight: None,
             trajectories: Vec::new(),
+            predicted_force_n: None,
             force_vectors: Vec::new(),
+            vector_scale_m_per_n: 0.012,
             constraints: Vec::new(),
             ghost: None,
         }
@@ -122,14 +128,14 @@ pub struct Trajectory {
 pub struct ForceVector {
     /// Where, world, m.
     pub at_m: Vec2,
-    /// The force, N; drawn from the point outwards with [`ViewOptions::force_scale_m_per_n`].
+    /// The force, N; drawn from the point outwards with [`ViewOptions::vector_scale_m_per_n`].
     pub force_n: Vec2,
     /// Its colour.
     pub role: ColorRole,
 }
 
 /// A constraint that was found in a recording.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ConstraintMarker {
     /// Motion about a centre.
     Revolute {
@@ -137,8 +143,8 @@ pub enum ConstraintMarker {
         center_m: Vec2,
         /// Radius, m.
         radius_m: f64,
-        /// Standard error of the centre, m; drawn as a disc of two of them.
-        center_std_m: f64,
+        /// Half axes of the region that the centre lies in, m, at right angles to each other; drawn as an ellipse.
+        center_axes_m: [Vec2; 2],
     },
     /// Motion along a line.
     Prismatic {
@@ -149,6 +155,20 @@ pub enum ConstraintMarker {
         /// Length drawn, m, half to each side.
         length_m: f64,
         /// Standard error across the line, m; drawn as a band of two of them to each side.
+        std_m: f64,
+    },
+    /// Motion along a curve.
+    Path {
+        /// Its points, world, m.
+        points_m: Vec<Vec2>,
+    },
+    /// A surface that pushes one way.
+    Surface {
+        /// Both ends of what was touched, world, m.
+        ends_m: [Vec2; 2],
+        /// Out of the surface, need not be unit.
+        normal: Vec2,
+        /// Standard error along the normal, m; drawn as a band of two of them to each side.
         std_m: f64,
     },
 }

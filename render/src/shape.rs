@@ -40,6 +40,13 @@ impl Solid {
         Self::bar(center, center, radius, z, color)
     }
 
+    /// A flat ellipse with the half axes `axes`, at right angles to each other, `z` from back to front (mesh: plate or disc).
+    pub fn ellipse(center: Vec2, axes: [Vec2; 2], z: [f32; 2], color: Color) -> Self {
+        let frame = [axes[0].extend(0.0), axes[0].perp().normalize_or_zero().extend(0.0) * axes[1].length(), Vec3::Z];
+        let half = Vec3::Z * 0.5 * (z[1] - z[0]);
+        Self::with_axes(center.extend(0.5 * (z[0] + z[1])), frame, half, Vec3::new(1.0, 1.0, 0.0), color)
+    }
+
     /// A plate with round corners; `half` includes them.
     pub fn plate(center: Vec2, half: Vec2, corner: f32, z: [f32; 2], color: Color) -> Self {
         let corner = corner.min(half.min_element());

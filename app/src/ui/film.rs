@@ -2,7 +2,7 @@
 
 use super::prepare::Prepared;
 use haptics::Vec2;
-use haptics::world::{BodyState, Contact, CrankState, Input, State, World, step};
+use haptics::world::{BodyState, Contact, CrankState, Input, MembraneState, State, Surface, SwitchState, World, step};
 
 /// Pictures a second.
 const RATE_HZ: f64 = 60.0;
@@ -17,6 +17,8 @@ struct Still {
     time_s: f64,
     bodies: Vec<BodyState>,
     crank: CrankState,
+    membrane: MembraneState,
+    switch: SwitchState,
     contacts: Vec<Contact>,
 }
 
@@ -55,13 +57,37 @@ impl Film {
         Some(Self { stills })
     }
 
-    /// Puts bodies, crank and contacts at a time into `state`, which must be of the film's world.
+    /// Puts bodies, crank, membrane, switch and contacts at a time into `state`, which must be of the film's world.
     pub fn pose(&self, time_s: f64, state: &mut State) {
         let index = self.stills.partition_point(|s| s.time_s <= time_s).saturating_sub(1);
         let Some(still) = self.stills.get(index) else { return };
         state.bodies.clone_from(&still.bodies);
         state.crank = still.crank;
+        state.membrane = still.membrane;
+        state.switch = still.switch;
         state.contacts.clone_from(&still.contacts);
+    }
+
+    /// Times at which both fingers hold something, with its number (a body's, or one past them for the crank's handle) and where the
+    /// virtual one is, m.
+    pub fn held(&self, world: &World) -> impl Iterator<Item = (f64, usize, Vec2)> {
+        let handle = self.stills.first().map(|first| first.bodies.len());
+        self.stills.iter().filter_map(move |still| match held_by_both(&still.contacts)? {
+            Surface::Block(index) => {
+                let index = usize::from(index);
+                Some((still.time_s, index, still.bodies.get(index)?.center_m))
+            }
+            Surface::Handle => {
+                let crank = world.crank.as_ref()?;
+                let (sin, cos) = still.crank.angle_rad.sin_cos();
+                Some((
+                    still.time_s,
+                    handle?,
+                    crank.center_m + (crank.radius_m + still.crank.radial_m) * Vec2::new(cos, sin),
+                ))
+            }
+            _ => None,
+        })
     }
 
     /// Position of a body at a time, m: for tests.
@@ -71,6 +97,24 @@ impl Film {
     }
 }
 
+/// What both fingers touch.
+fn held_by_both(contacts: &[Contact]) -> Option<Surface> {
+    let touched = |finger: u8| {
+        contacts.iter().filter_map(move |c| match (c.on, c.by) {
+            (other, Surface::Finger(f)) | (Surface::Finger(f), other) if f == finger => Some(other),
+            _ => None,
+        })
+    };
+    touched(0).find(|thing| touched(1).any(|other| other == *thing))
+}
+
 fn still(state: &State, time_s: f64) -> Still {
-    Still { time_s, bodies: state.bodies.clone(), crank: state.crank, contacts: state.contacts.clone() }
+    Still {
+        time_s,
+        bodies: state.bodies.clone(),
+        crank: state.crank,
+        membrane: state.membrane,
+        switch: state.switch,
+        contacts: state.contacts.clone(),
+    }
 }

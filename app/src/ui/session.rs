@@ -8,6 +8,7 @@ use super::mapping::Mapping;
 use super::plots::{Levels, PlotChoices};
 use super::prepare::Prepared;
 use super::rules::Rules;
+pub use super::scene::SceneLayers;
 use super::trainer::Trainer;
 use crate::tasks::Chosen;
 use estimator::online::enough::{Enough, Wanted};
@@ -56,26 +57,6 @@ pub struct Banner {
 
 /// How long one reads that something was done.
 const DONE_LASTS: Duration = Duration::from_secs(10);
-
-/// What the 3-D view of a recording shows beside the hand.
-#[allow(clippy::struct_excessive_bools)] // four independent switches, shown as such
-#[derive(Clone, Copy, Debug)]
-pub struct SceneLayers {
-    /// The path of the fingers or the tool.
-    pub path: bool,
-    /// Force vectors along the path.
-    pub forces_on_path: bool,
-    /// Found constraints.
-    pub constraints: bool,
-    /// Marks at contacts.
-    pub contacts: bool,
-}
-
-impl Default for SceneLayers {
-    fn default() -> Self {
-        Self { path: true, forces_on_path: false, constraints: true, contacts: true }
-    }
-}
 
 /// Everything that is shared between panels.
 #[derive(Default)]

@@ -12,7 +12,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
     for vector in &view.options.force_vectors {
         let color = canvas.color(vector.role);
         let tail = vec2(vector.at_m);
-        let along = vec2(vector.force_n) * view.options.force_scale_m_per_n;
+        let along = vec2(vector.force_n) * view.options.vector_scale_m_per_n;
         let head = tail + along;
         canvas.overlay_stroke(Stroke::line(at(tail, 0.0), at(head, 0.0), WIDTH_PX, color));
         let barb = along.normalize_or_zero() * (0.3 * along.length()).min(0.0022);

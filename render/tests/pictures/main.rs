@@ -234,14 +234,40 @@ fn everything_that_can_be_laid_over_is_seen() {
         width_px: 2.0,
         dashed: false,
     };
-    let revolute = ConstraintMarker::Revolute { center_m: Vec2::new(0.0, -0.06), radius_m: 0.02, center_std_m: 0.001 };
+    let revolute = ConstraintMarker::Revolute {
+        center_m: Vec2::new(0.0, -0.06),
+        radius_m: 0.02,
+        center_axes_m: [Vec2::new(0.002, 0.0), Vec2::new(0.0, 0.001)],
+    };
     let prismatic = ConstraintMarker::Prismatic {
         origin_m: Vec2::new(0.0, -0.06),
         direction: Vec2::new(1.0, 1.0),
         length_m: 0.05,
         std_m: 0.001,
     };
+    let path = ConstraintMarker::Path {
+        points_m: vec![Vec2::new(-0.03, -0.07), Vec2::new(0.0, -0.05), Vec2::new(0.03, -0.06)],
+    };
+    let surface = ConstraintMarker::Surface {
+        ends_m: [Vec2::new(-0.03, -0.06), Vec2::new(0.03, -0.05)],
+        normal: Vec2::new(0.0, 1.0),
+        std_m: 0.0005,
+    };
+    let predicted = ViewOptions {
+        show_forces: true,
+        predicted_force_n: Some([Vec2::new(1.0, 1.0); 2]),
+        fingers: FingerStyle::Tips,
+        ..bare()
+    };
+    let magenta = Theme::Light.color(ColorRole::Simulated);
+    let unsaid = count(
+        &draw(&mut headless, &world, &state, &ViewOptions { predicted_force_n: None, ..predicted.clone() }),
+        magenta,
+    );
+    assert!(count(&draw(&mut headless, &world, &state, &predicted), magenta) > unsaid + 50, "predicted forces");
     let overlays = [
+        ("curve", ViewOptions { constraints: vec![path], ..bare() }),
+        ("surface", ViewOptions { constraints: vec![surface], ..bare() }),
         ("trajectory", ViewOptions { trajectories: vec![trajectory], ..bare() }),
         ("centre", ViewOptions { constraints: vec![revolute], ..bare() }),
         ("direction", ViewOptions { constraints: vec![prismatic], ..bare() }),

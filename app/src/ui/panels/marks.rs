@@ -6,7 +6,7 @@ use crate::ui::trainer::Impacts;
 use egui::{Color32, Pos2, Stroke, Ui};
 use haptics::Vec2;
 use haptics::servo::Snapshot;
-use render::{Camera, ColorRole};
+use render::ColorRole;
 
 /// Radius of the strongest flash, points.
 const LARGEST: f64 = 34.0;
@@ -15,16 +15,16 @@ const SPARK: Color32 = Color32::from_rgb(0xFF, 0xB3, 0x1A);
 /// A device closer than this to its tip is not drawn beside it, m.
 const SAME_M: f64 = 2e-4;
 
-fn on_screen(ui: &Ui, view: &SceneResponse, camera: &Camera, point_in_world: Vec2) -> Pos2 {
-    let pixel = camera.pixel_of(point_in_world, view.size);
+fn on_screen(ui: &Ui, view: &SceneResponse, point_in_world: Vec2) -> Pos2 {
+    let pixel = view.camera.pixel_of(point_in_world, view.size);
     view.rect.min + egui::vec2(pixel.x, pixel.y) / ui.pixels_per_point()
 }
 
 /// A spark and a ring that grows and fades, by the speed of each impact.
-pub fn flashes(ui: &Ui, view: &SceneResponse, camera: &Camera, impacts: &Impacts) {
+pub fn flashes(ui: &Ui, view: &SceneResponse, impacts: &Impacts) {
     let painter = ui.painter().with_clip_rect(view.rect);
     for flash in impacts.flashes() {
-        let at = on_screen(ui, view, camera, flash.at_in_world);
+        let at = on_screen(ui, view, flash.at_in_world);
         let (size, faded) = (LARGEST * flash.strength(), flash.faded());
         let left = (1.0 - faded) as f32;
         painter.circle_filled(at, (0.35 * size * (1.0 - faded)) as f32, SPARK.gamma_multiply(0.8 * left));
@@ -34,7 +34,7 @@ pub fn flashes(ui: &Ui, view: &SceneResponse, camera: &Camera, impacts: &Impacts
 }
 
 /// The device's own fingers as rings, tied to the tips in the world.
-pub fn device(ui: &Ui, view: &SceneResponse, camera: &Camera, snapshot: &Snapshot) {
+pub fn device(ui: &Ui, view: &SceneResponse, snapshot: &Snapshot) {
     if snapshot.coupling.is_none() {
         return;
     }
@@ -46,7 +46,7 @@ pub fn device(ui: &Ui, view: &SceneResponse, camera: &Camera, snapshot: &Snapsho
             continue;
         }
         let color = role(ui.visuals().dark_mode, ColorRole::Finger(finger));
-        let [device, tip] = [device, tip].map(|point| on_screen(ui, view, camera, point));
+        let [device, tip] = [device, tip].map(|point| on_screen(ui, view, point));
         painter.line_segment([device, tip], Stroke::new(1.5, color));
         painter.circle_stroke(device, 5.0, Stroke::new(1.5, color));
     }

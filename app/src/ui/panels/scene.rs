@@ -2,7 +2,9 @@
 
 use super::Panel;
 use crate::ui::prepare::Prepared;
-use crate::ui::scene::{Wheel, camera_for, mechanism_view, options_for, scene_view, scene_world};
+use crate::ui::scene::{
+    Likeness, Rig, Wheel, camera_for, legend, mechanism_view, options_for, scene_view, scene_world,
+};
 use crate::ui::session::Session;
 use crate::ui::theme::{palette, space};
 use crate::ui::widgets::{empty_state, sheet};
@@ -12,15 +14,16 @@ use std::sync::Arc;
 
 /// The 3-D view of the recording.
 pub struct ScenePanel {
-    camera: Camera,
-    home: Camera,
+    rig: Rig,
     /// The recording that the camera was set up for.
     of: usize,
+    /// How like the recording its replay is, with the replay that this was computed of.
+    likeness: Option<(usize, Likeness)>,
 }
 
 impl Default for ScenePanel {
     fn default() -> Self {
-        Self { camera: Camera::workspace(), home: Camera::workspace(), of: 0 }
+        Self { rig: Rig::new(Camera::workspace()), of: 0, likeness: None }
     }
 }
 
@@ -44,42 +47,70 @@ impl Panel for ScenePanel {
             self.set_up(session, &prepared);
             let world = scene_world(session, &prepared);
             let (state, options) = options_for(session, &prepared, &world);
-            let view = scene_view(ui, "recording", &mut self.camera, self.home, Wheel::Zooms, (world, state, options));
+            let view = scene_view(ui, "recording", &mut self.rig, Wheel::Zooms, (world, state, options));
+            if session.layers.legend {
+                self.compare(session, &prepared);
+                legend(ui, view.rect, session, &prepared, self.likeness.as_ref().map(|(_, like)| like));
+            }
             layers(ui, view.rect, session);
         });
     }
 }
 
 impl ScenePanel {
+    /// Compares the replay with the recording, once for each replay.
+    fn compare(&mut self, session: &Session, prepared: &Prepared) {
+        let found = session.replay().zip(session.analysis.as_ref()).filter(|_| session.layers.replay);
+        let Some((replay, analysis)) = found else {
+            self.likeness = None;
+            return;
+        };
+        let of = std::ptr::from_ref(replay) as usize ^ Arc::as_ptr(analysis) as usize;
+        if self.likeness.is_none_or(|(known, _)| known != of) {
+            self.likeness = Some((of, Likeness::of(replay, &analysis.world, prepared)));
+        }
+    }
+
     /// Another recording, or a fit of it, changes what the whole picture is; a camera that was moved stays.
     fn set_up(&mut self, session: &Session, prepared: &Arc<Prepared>) {
         let of = Arc::as_ptr(prepared) as usize;
         let home = camera_for(session, prepared);
-        if self.of != of || self.camera == self.home {
-            (self.camera, self.of) = (home, of);
+        if self.of == of {
+            self.rig.move_home(home);
+        } else {
+            self.of = of;
+            self.rig.cut_to(home);
         }
-        self.home = home;
     }
 }
 
 /// Switches in the corner of the picture.
 fn layers(ui: &mut Ui, rect: Rect, session: &mut Session) {
-    let line = Rect::from_min_size(rect.left_top() + vec2(space::M, space::M), vec2(rect.width() - 120.0, 24.0));
+    let room = Rect::from_min_size(rect.left_top() + vec2(space::M, space::M), vec2(rect.width() - 128.0, 26.0));
     // A child of its own: it lies over the picture and takes no room.
-    let mut ui = ui.new_child(UiBuilder::new().max_rect(line).layout(egui::Layout::left_to_right(egui::Align::Center)));
-    ui.spacing_mut().item_spacing.x = 6.0;
+    let rows =
+        egui::Layout::left_to_right(egui::Align::Center).with_main_wrap(true).with_cross_align(egui::Align::Center);
+    let mut ui = ui.new_child(UiBuilder::new().max_rect(room).layout(rows));
+    ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
     ui.spacing_mut().button_padding = vec2(9.0, 2.0);
+    ui.spacing_mut().interact_size.y = 22.0;
     let layers = &mut session.layers;
     toggle(&mut ui, &mut layers.path, "Path", "Where the fingers went, in the visible time");
-    toggle(&mut ui, &mut layers.forces_on_path, "Forces", "Net force along the path");
-    toggle(&mut ui, &mut layers.constraints, "Constraints", "Centres of rotation and directions of motion");
+    toggle(&mut ui, &mut layers.forces_on_path, "Forces", "Net force of the hand along the path (thesis, figure 5.10)");
+    let unexplained =
+        "What weight and friction do not explain of the force: that of the constraint (thesis, figure 5.12)";
+    toggle(&mut ui, &mut layers.unexplained, "Unexplained", unexplained);
+    toggle(&mut ui, &mut layers.constraints, "Constraints", "Centres, lines, curves and surfaces that were found");
     toggle(&mut ui, &mut layers.contacts, "Contacts", "Contacts of the replay through the fitted world");
+    let replay = "The virtual object under the measured fingers: its forces, its handle, and how far they are off";
+    toggle(&mut ui, &mut layers.replay, "Real and virtual", replay);
+    toggle(&mut ui, &mut layers.legend, "Legend", "What the marks mean");
 }
 
 fn toggle(ui: &mut Ui, on: &mut bool, label: &str, hint: &str) {
     let p = palette(ui);
     let ink = if *on { p.text } else { p.secondary };
-    let fill = if *on { p.card } else { p.card.gamma_multiply(0.45) };
+    let fill = if *on { p.card } else { p.card.gamma_multiply(0.78) };
     let edge = if *on { p.accent } else { p.border };
     let button = egui::Button::new(RichText::new(label).size(11.5).color(ink)).corner_radius(11).fill(fill);
     let response = ui.add(button.min_size(vec2(0.0, 22.0)).stroke(Stroke::new(1.0, edge))).on_hover_text(hint);

@@ -4,11 +4,10 @@ use crate::ui::scene::SceneResponse;
 use crate::ui::trainer::{HandDevice, Steering, Trainer};
 use egui::{Event, Key, TouchPhase, Ui};
 use haptics::device::{KeysHeld, TouchHandle};
-use render::Camera;
 
 /// Gives this picture's touches to the touch device. Fingers on the glass while the mouse is the device make it the touch screen:
 /// whoever touches means it. The error is that of starting the device.
-pub fn touches(ui: &Ui, view: &SceneResponse, camera: &Camera, trainer: &mut Trainer) -> Result<(), String> {
+pub fn touches(ui: &Ui, view: &SceneResponse, trainer: &mut Trainer) -> Result<(), String> {
     let events: Vec<(u64, TouchPhase, egui::Pos2)> = ui.input(|i| {
         let touch = |event: &Event| match event {
             Event::Touch { id, phase, pos, .. } => Some((id.0, *phase, *pos)),
@@ -23,7 +22,7 @@ pub fn touches(ui: &Ui, view: &SceneResponse, camera: &Camera, trainer: &mut Tra
     }
     let Steering::Touch(handle) = &mut trainer.steering else { return Ok(()) };
     for (id, phase, at) in events {
-        let in_world = view.point_in_world(ui, camera, at);
+        let in_world = view.point_in_world(ui, at);
         pass_on(handle, (id, phase), in_world, view.rect.contains(at));
     }
     if !ui.input(|i| i.focused) && handle.count() > 0 {

@@ -1,7 +1,7 @@
 //! The virtual world, touched with the mouse.
 
 use super::{Panel, marks, steering};
-use crate::ui::scene::{SceneResponse, Wheel, scene_view};
+use crate::ui::scene::{Rig, SceneResponse, Wheel, scene_view};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::{HandDevice, Operator, Steering, Trainer, task_hint};
@@ -17,7 +17,7 @@ const WHEEL_N: f64 = 0.004;
 
 /// The picture of the trainer, and what the mouse does in it.
 pub struct TrainerView {
-    camera: Camera,
+    rig: Rig,
     #[cfg(feature = "sound")]
     sound: Option<Result<crate::ui::sound::Sound, String>>,
 }
@@ -25,7 +25,7 @@ pub struct TrainerView {
 impl Default for TrainerView {
     fn default() -> Self {
         Self {
-            camera: home(),
+            rig: Rig::new(home()),
             #[cfg(feature = "sound")]
             sound: None,
         }
@@ -67,18 +67,18 @@ impl Panel for TrainerView {
             let options = ViewOptions { saturated, ..ViewOptions::default() };
             let scene = (std::sync::Arc::clone(world), snapshot.state.clone(), options);
             let fault = snapshot.fault;
-            let view = scene_view(ui, "trainer", &mut self.camera, home(), Wheel::ZoomsWithCtrl, scene);
+            let view = scene_view(ui, "trainer", &mut self.rig, Wheel::ZoomsWithCtrl, scene);
             if let Some((snapshot, _)) = session.trainer.scene() {
-                marks::device(ui, &view, &self.camera, snapshot);
+                marks::device(ui, &view, snapshot);
             }
-            marks::flashes(ui, &view, &self.camera, &session.trainer.impacts);
+            marks::flashes(ui, &view, &session.trainer.impacts);
             if session.trainer.operator == Operator::You && session.trainer.hand != HandDevice::Replay {
-                if let Err(problem) = steering::touches(ui, &view, &self.camera, &mut session.trainer) {
+                if let Err(problem) = steering::touches(ui, &view, &mut session.trainer) {
                     session.fail(problem);
                 }
                 steering::keys(ui, &mut session.trainer);
                 if matches!(session.trainer.steering, Steering::Mouse(_)) {
-                    self.steer(ui, &view, &mut session.trainer, frame_s);
+                    steer(ui, &view, &mut session.trainer, frame_s);
                 }
                 hints(ui, view.rect, &session.trainer.hand);
                 if let Some((_, world)) = session.trainer.scene() {
@@ -110,27 +110,27 @@ impl TrainerView {
             Err(_) => {}
         }
     }
+}
 
-    fn steer(&mut self, ui: &Ui, view: &SceneResponse, trainer: &mut Trainer, frame_s: f64) {
-        let response = &view.response;
-        let pointer = ui.input(|i| i.pointer.latest_pos()).filter(|at| view.rect.contains(*at));
-        if let (Some(at), false) = (pointer.filter(|_| response.contains_pointer()), view.camera_moves) {
-            if ui.input(|i| i.pointer.delta() != egui::Vec2::ZERO || i.pointer.any_pressed())
-                && let Some(point) = view.point_in_world(ui, &self.camera, at)
-            {
-                trainer.pinch.move_to(point);
-            }
-            ui.ctx().set_cursor_icon(if trainer.pinch.closed() { CursorIcon::Grabbing } else { CursorIcon::Crosshair });
-            let (scroll, ctrl) = ui.input(|i| (f64::from(i.smooth_scroll_delta().y), i.modifiers.command));
-            if scroll != 0.0 && !ctrl {
-                trainer.pinch.strengthen(scroll * WHEEL_N);
-            }
+fn steer(ui: &Ui, view: &SceneResponse, trainer: &mut Trainer, frame_s: f64) {
+    let response = &view.response;
+    let pointer = ui.input(|i| i.pointer.latest_pos()).filter(|at| view.rect.contains(*at));
+    if let (Some(at), false) = (pointer.filter(|_| response.contains_pointer()), view.camera_moves) {
+        if ui.input(|i| i.pointer.delta() != egui::Vec2::ZERO || i.pointer.any_pressed())
+            && let Some(point) = view.point_in_world(ui, at)
+        {
+            trainer.pinch.move_to(point);
         }
-        trainer.pinch.button =
-            response.is_pointer_button_down_on() && ui.input(|i| i.pointer.button_down(PointerButton::Primary));
-        if !ui.ctx().egui_wants_keyboard_input() {
-            keys(ui, trainer, frame_s);
+        ui.ctx().set_cursor_icon(if trainer.pinch.closed() { CursorIcon::Grabbing } else { CursorIcon::Crosshair });
+        let (scroll, ctrl) = ui.input(|i| (f64::from(i.smooth_scroll_delta().y), i.modifiers.command));
+        if scroll != 0.0 && !ctrl {
+            trainer.pinch.strengthen(scroll * WHEEL_N);
         }
+    }
+    trainer.pinch.button =
+        response.is_pointer_button_down_on() && ui.input(|i| i.pointer.button_down(PointerButton::Primary));
+    if !ui.ctx().egui_wants_keyboard_input() {
+        keys(ui, trainer, frame_s);
     }
 }
 

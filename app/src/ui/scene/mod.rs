@@ -1,11 +1,21 @@
 //! The pictures of the render crate inside the window.
 
 mod callback;
+mod layers;
+mod legend;
+mod likeness;
+mod markers;
 mod mechanism;
 mod overlay;
+mod rig;
+mod vectors;
 mod view;
 
 pub use callback::{announce, picture};
+pub use layers::SceneLayers;
+pub use legend::legend;
+pub use likeness::Likeness;
 pub use mechanism::mechanism_view;
 pub use overlay::{camera_for, options_for, scene_world};
+pub use rig::Rig;
 pub use view::{SceneResponse, Wheel, scene_view};

@@ -1,14 +1,18 @@
-//! The 3-D view as a widget: picture, orbit, zoom, pan, reset.
+//! The 3-D view as a widget: picture, orbit, zoom, pan, reset; by mouse and by keys.
 
 use super::callback::{picture, pixels};
+use super::rig::Rig;
 use crate::ui::theme::{self, palette};
-use egui::{PointerButton, Rect, Response, Sense};
+use egui::{Key, PointerButton, Rect, Response, Sense};
 use haptics::world::{State, World};
 use render::{Camera, ViewOptions};
 use std::sync::Arc;
 
 /// Radians of orbit a point of drag.
 const ORBIT_RAD: f32 = 0.006;
+/// Turning by a held key, rad/s, and magnification in a second.
+const KEY_RAD_S: f32 = 1.2;
+const KEY_ZOOM: f32 = 2.6;
 
 /// What happened in the view.
 pub struct SceneResponse {
@@ -18,15 +22,17 @@ pub struct SceneResponse {
     pub rect: Rect,
     /// Its size, pixels.
     pub size: [u32; 2],
+    /// The camera that the picture was drawn with.
+    pub camera: Camera,
     /// True while the camera is being moved.
     pub camera_moves: bool,
 }
 
 impl SceneResponse {
     /// The point of the world's plane under a position of the pointer.
-    pub fn point_in_world(&self, ui: &egui::Ui, camera: &Camera, position: egui::Pos2) -> Option<haptics::Vec2> {
+    pub fn point_in_world(&self, ui: &egui::Ui, position: egui::Pos2) -> Option<haptics::Vec2> {
         let offset = (position - self.rect.min) * ui.pixels_per_point();
-        camera.point_in_plane([offset.x, offset.y].into(), self.size)
+        self.camera.point_in_plane([offset.x, offset.y].into(), self.size)
     }
 }
 
@@ -39,20 +45,24 @@ pub enum Wheel {
     ZoomsWithCtrl,
 }
 
-/// Draws the scene into all the room there is. Right drag turns, middle drag moves, wheel magnifies.
+/// Draws the scene into all the room there is. Right drag turns, middle drag moves, wheel magnifies; so do the keys W A S D, Q and E
+/// while the pointer is over the picture.
 pub fn scene_view(
     ui: &mut egui::Ui,
     view: &'static str,
-    camera: &mut Camera,
-    home: Camera,
+    rig: &mut Rig,
     wheel: Wheel,
     scene: (Arc<World>, State, ViewOptions),
 ) -> SceneResponse {
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     let size = pixels(ui, rect);
-    let camera_moves = steer(ui, &response, camera, wheel, size);
+    let camera_moves = steer(ui, &response, rig, wheel, size);
+    if rig.advance(ui.input(|i| i.stable_dt)) {
+        ui.ctx().request_repaint();
+    }
+    let camera = rig.shown();
     let (world, state, options) = scene;
-    let options = ViewOptions { camera: *camera, theme: theme::scene_theme(ui.visuals().dark_mode), ..options };
+    let options = ViewOptions { camera, theme: theme::scene_theme(ui.visuals().dark_mode), ..options };
     if !picture(ui, rect, view, world, state, options) {
         let p = palette(ui);
         ui.painter().rect_filled(rect, 0, p.sunken);
@@ -60,12 +70,13 @@ pub fn scene_view(
         ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, text, egui::FontId::proportional(13.0), p.faint);
     }
     round_corners(ui, rect);
-    reset_button(ui, rect, camera, home);
-    SceneResponse { response, rect, size, camera_moves }
+    reset_button(ui, rect, rig);
+    SceneResponse { response, rect, size, camera, camera_moves }
 }
 
-fn steer(ui: &egui::Ui, response: &Response, camera: &mut Camera, wheel: Wheel, size: [u32; 2]) -> bool {
+fn steer(ui: &egui::Ui, response: &Response, rig: &mut Rig, wheel: Wheel, size: [u32; 2]) -> bool {
     let mut moves = false;
+    let camera = rig.goal();
     let drag = response.drag_delta();
     if response.dragged_by(PointerButton::Secondary) {
         camera.orbit(-drag.x * ORBIT_RAD, drag.y * ORBIT_RAD);
@@ -84,8 +95,28 @@ fn steer(ui: &egui::Ui, response: &Response, camera: &mut Camera, wheel: Wheel, 
         } else if scroll != 0.0 && (wheel == Wheel::Zooms || ctrl) {
             camera.zoom((scroll * 0.004).exp());
         }
+        if !ui.ctx().egui_wants_keyboard_input() {
+            by_keys(ui, camera);
+        }
     }
     moves
+}
+
+/// Held keys turn and magnify evenly.
+fn by_keys(ui: &egui::Ui, camera: &mut Camera) {
+    let (held, seconds) = ui.input(|i| {
+        // With Ctrl or Alt they mean something else.
+        let plain = !i.modifiers.any() || i.modifiers.shift_only();
+        let held = |key| f32::from(u8::from(plain && i.key_down(key)));
+        let pairs = [(Key::D, Key::A), (Key::W, Key::S), (Key::E, Key::Q)];
+        (pairs.map(|(more, less)| held(more) - held(less)), i.stable_dt.min(0.1))
+    });
+    let [right, up, closer] = held;
+    if held != [0.0; 3] {
+        camera.orbit(right * KEY_RAD_S * seconds, up * KEY_RAD_S * seconds);
+        camera.zoom(KEY_ZOOM.powf(closer * seconds));
+        ui.ctx().request_repaint();
+    }
 }
 
 /// A picture is square; the card around it is not.
@@ -96,12 +127,12 @@ fn round_corners(ui: &egui::Ui, rect: Rect) {
     painter.rect_stroke(rect, theme::CARD_RADIUS, egui::Stroke::new(1.0, p.border), egui::StrokeKind::Inside);
 }
 
-fn reset_button(ui: &mut egui::Ui, rect: Rect, camera: &mut Camera, home: Camera) {
-    if *camera == home {
+fn reset_button(ui: &mut egui::Ui, rect: Rect, rig: &mut Rig) {
+    if rig.is_home() {
         return;
     }
-    if ui.input(|i| i.key_pressed(egui::Key::Num0)) && !ui.ctx().egui_wants_keyboard_input() {
-        *camera = home;
+    if ui.input(|i| i.key_pressed(Key::Num0)) && !ui.ctx().egui_wants_keyboard_input() {
+        rig.go_home();
         return;
     }
     let size = egui::vec2(92.0, 26.0);
@@ -109,6 +140,6 @@ fn reset_button(ui: &mut egui::Ui, rect: Rect, camera: &mut Camera, home: Camera
     let button = egui::Button::new(theme::caption(ui, "Reset view")).fill(palette(ui).card);
     let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(at));
     if ui.put(at, button).on_hover_text("Key 0").clicked() {
-        *camera = home;
+        rig.go_home();
     }
 }

@@ -16,7 +16,7 @@ pub struct Plate {
 
 /// All of them.
 pub fn plates() -> Vec<Plate> {
-    let mut plates = vec![stack(), grasp(), saturated(), crank(), ghost(), tool(), insertion()];
+    let mut plates = vec![stack(), grasp(), saturated(), crank(), ghost(), tool(), insertion(), touched(), guided()];
     for (name, camera) in [("close", Camera::workspace()), ("front", Camera::front())] {
         let mut plate = grasp();
         plate.name = name;
@@ -127,7 +127,7 @@ fn crank() -> Plate {
         constraints: vec![ConstraintMarker::Revolute {
             center_m: center + Vec2::new(0.0006, -0.0004),
             radius_m: radius,
-            center_std_m: 0.0011,
+            center_axes_m: [Vec2::new(0.0018, 0.0012), Vec2::new(-0.0006, 0.0009)],
         }],
         ..ViewOptions::default()
     };
@@ -173,5 +173,35 @@ fn insertion() -> Plate {
         length_m: 0.05,
         std_m: 0.001,
     }];
+    plate
+}
+
+/// A surface that was felt from above, with its error.
+fn touched() -> Plate {
+    let mut plate = tool();
+    plate.name = "surface";
+    plate.world.blocks.clear();
+    plate.state.bodies.clear();
+    plate.options.constraints = vec![ConstraintMarker::Surface {
+        ends_m: [Vec2::new(-0.030, -0.106), Vec2::new(0.034, -0.098)],
+        normal: Vec2::new(-0.12, 0.99),
+        std_m: 0.0006,
+    }];
+    plate.state.input.tip_in_world[0] = Vec2::new(0.006, -0.1015);
+    plate
+}
+
+/// A curve that a tool was led along.
+fn guided() -> Plate {
+    let mut plate = touched();
+    plate.name = "curve";
+    let points_m: Vec<Vec2> = (0..=60)
+        .map(|i| {
+            let t = f64::from(i) / 60.0;
+            Vec2::new(-0.035 + 0.07 * t, -0.085 + 0.02 * (5.0 * t).sin() * t)
+        })
+        .collect();
+    plate.state.input.tip_in_world[0] = points_m[40];
+    plate.options.constraints = vec![ConstraintMarker::Path { points_m }];
     plate
 }

@@ -1,0 +1,215 @@
+//! What the marks in the picture mean, with the numbers behind them.
+
+use super::markers::{self, Marked, error_of};
+use super::overlay::{follows_fingers, force_scale};
+use super::{Likeness, SceneLayers};
+use crate::ui::format::{number, significant};
+use crate::ui::prepare::Prepared;
+use crate::ui::session::Session;
+use crate::ui::theme::{self, palette, role, space};
+use egui::{Color32, FontId, Label, Layout, Rect, RichText, Sense, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2};
+use estimator::estimate::{Constraint, ConstraintKind, Phase, StrokePhase};
+use render::ColorRole;
+
+/// Height of a line, width of a mark, and the room below which the legend is left away, points.
+const LINE: f32 = 17.0;
+const MARK: f32 = 20.0;
+const LEAST: egui::Vec2 = vec2(300.0, 220.0);
+/// Share of the picture's width that it may take.
+const WIDEST: f32 = 0.7;
+
+/// How a mark looks.
+#[derive(Clone, Copy, PartialEq)]
+enum Mark {
+    Line,
+    Dashes,
+    Arrow,
+    Ring,
+    None,
+}
+
+struct Row {
+    mark: Mark,
+    color: ColorRole,
+    text: String,
+}
+
+impl Row {
+    fn new(mark: Mark, color: ColorRole, text: impl Into<String>) -> Self {
+        Self { mark, color, text: text.into() }
+    }
+}
+
+/// Draws it into the lower left corner of the picture in `rect`.
+pub fn legend(ui: &mut Ui, rect: Rect, session: &Session, prepared: &Prepared, likeness: Option<&Likeness>) {
+    let rows = rows(session, prepared, likeness);
+    if rows.is_empty() || rect.width() < LEAST.x || rect.height() < LEAST.y {
+        return;
+    }
+    let p = palette(ui);
+    let font = FontId::proportional(11.5);
+    let wide = |row: &Row| ui.painter().layout_no_wrap(row.text.clone(), font.clone(), p.text).size().x;
+    let widest = rows.iter().map(wide).fold(0.0, f32::max).min(WIDEST * rect.width() - MARK - 2.0 * space::M);
+    let size = vec2(widest + MARK + 2.0 * space::S + 4.0, LINE * rows.len() as f32 + 2.0 * space::XS + 2.0);
+    let low = rect.left_bottom() + vec2(space::M, -space::M);
+    let card = Rect::from_min_size(pos2(low.x, low.y - size.y), size);
+    ui.painter().rect_filled(card, theme::CONTROL_RADIUS, p.card.gamma_multiply(0.84));
+    ui.painter().rect_stroke(card, theme::CONTROL_RADIUS, Stroke::new(1.0, p.border), StrokeKind::Inside);
+    let inner = card.shrink2(vec2(space::S, space::XS + 1.0));
+    let mut ui = ui.new_child(UiBuilder::new().max_rect(inner).layout(Layout::top_down(egui::Align::Min)));
+    ui.spacing_mut().item_spacing = vec2(6.0, 0.0);
+    for row in rows {
+        ui.allocate_ui_with_layout(vec2(inner.width(), LINE), Layout::left_to_right(egui::Align::Center), |ui| {
+            let color = role(ui.visuals().dark_mode, row.color);
+            draw_mark(ui, row.mark, color);
+            ui.add(Label::new(RichText::new(row.text).size(11.5).color(p.text)).truncate());
+        });
+    }
+}
+
+fn draw_mark(ui: &mut Ui, mark: Mark, color: Color32) {
+    let (rect, _) = ui.allocate_exact_size(vec2(MARK - 6.0, LINE), Sense::hover());
+    let (painter, stroke) = (ui.painter(), Stroke::new(1.8, color));
+    let ends = [rect.left_center(), rect.right_center()];
+    match mark {
+        Mark::Line => {
+            painter.line_segment(ends, stroke);
+        }
+        Mark::Dashes => painter.extend(egui::Shape::dashed_line(&ends, stroke, 4.0, 2.5)),
+        Mark::Arrow => painter.arrow(ends[0], ends[1] - ends[0], stroke),
+        Mark::Ring => {
+            painter.circle_stroke(rect.center(), 4.5, Stroke::new(1.4, color));
+            painter.circle_filled(rect.center(), 1.6, color);
+        }
+        Mark::None => {}
+    }
+}
+
+fn rows(session: &Session, prepared: &Prepared, likeness: Option<&Likeness>) -> Vec<Row> {
+    let layers = &session.layers;
+    let mut rows = Vec::new();
+    if layers.path {
+        rows.extend(paths(session, prepared));
+    }
+    if layers.forces_on_path {
+        rows.push(Row::new(Mark::Arrow, ColorRole::Measured, format!("Force of the hand, {}", scale(prepared))));
+    }
+    if layers.unexplained {
+        let text = format!("Force that weight and friction do not explain, {}", scale(prepared));
+        rows.push(Row::new(Mark::Arrow, ColorRole::Constraint, text));
+    }
+    if layers.constraints {
+        for marked in markers::of(session, prepared) {
+            rows.extend(of_constraint(&marked, session.cursor_s));
+        }
+    }
+    if layers.contacts && prepared.tips.is_some() && session.replay().is_some_and(|r| r.film.is_some()) {
+        rows.push(Row::new(Mark::Ring, ColorRole::Measured, "Contact of the replay, by its force"));
+    }
+    rows.extend(of_replay(layers, likeness));
+    rows
+}
+
+fn paths(session: &Session, prepared: &Prepared) -> Vec<Row> {
+    if follows_fingers(session, prepared) {
+        let row = |finger, text| Row::new(Mark::Line, ColorRole::Finger(finger), text);
+        return vec![row(0, "Path of the left finger"), row(1, "Path of the right finger")];
+    }
+    let text = if prepared.tool.is_some() { "Path of the tool" } else { "Path of the hand" };
+    vec![Row::new(Mark::Line, ColorRole::Measured, text)]
+}
+
+/// How long the vectors along the path are.
+fn scale(prepared: &Prepared) -> String {
+    format!("1 N is {} mm", significant(f64::from(force_scale(prepared)) * 1e3, 2))
+}
+
+fn of_replay(layers: &SceneLayers, likeness: Option<&Likeness>) -> Vec<Row> {
+    if !layers.replay {
+        return Vec::new();
+    }
+    let none = || {
+        vec![Row::new(
+            Mark::None,
+            ColorRole::Simulated,
+            "No replay: the fit made no world that these fingers can touch",
+        )]
+    };
+    let Some(like) = likeness else { return none() };
+    let mut rows = Vec::new();
+    if let Some(force) = like.force_n {
+        let [force, of] = [force, like.of_force_n].map(|n| significant(n, 2));
+        let text = format!("Virtual force: {force} N off, of {of} N (RMS)");
+        rows.push(Row::new(Mark::Arrow, ColorRole::Simulated, text));
+    }
+    if let Some(place) = like.place_m {
+        let [place, way] = [place, like.of_way_m].map(|m| significant(m * 1e3, 2));
+        let text = format!("Virtual object: {place} mm off, on a way of {way} mm (RMS)");
+        rows.push(Row::new(Mark::Ring, ColorRole::Simulated, text));
+    }
+    if rows.is_empty() { none() } else { rows }
+}
+
+fn of_constraint(marked: &Marked<'_>, cursor_s: f64) -> Vec<Row> {
+    let constraint = marked.constraint;
+    let row = |mark, text: String| vec![Row::new(mark, ColorRole::Constraint, text)];
+    let mm = |m: f64| significant(m * 1e3, 2);
+    match constraint.kind {
+        ConstraintKind::Revolute => revolute(marked),
+        ConstraintKind::Prismatic => row(
+            Mark::Line,
+            format!("Line found; the path stays within {} mm", mm(constraint.residual_m.unwrap_or(0.0))),
+        ),
+        ConstraintKind::Spline => constraint.guide.as_ref().map_or_else(Vec::new, |guide| {
+            let (points, rms) = (guide.points_m.len(), mm(guide.rms_m));
+            row(Mark::Dashes, format!("Curve found: {points} control points, path within {rms} mm"))
+        }),
+        ConstraintKind::Unilateral => constraint.surface.as_ref().map_or_else(Vec::new, |touched| {
+            let rubs = touched.friction.map_or(String::new(), |mu| format!(", friction {}", significant(mu, 2)));
+            row(Mark::Line, format!("Surface found, ± {} mm{rubs}", mm(touched.offset_std_error_m)))
+        }),
+        ConstraintKind::Membrane => {
+            phase_at(&constraint.phases, cursor_s).map_or_else(Vec::new, |phase| row(Mark::None, in_words(phase)))
+        }
+        ConstraintKind::Undecided if constraint.existence.is_some() => {
+            row(Mark::None, "Constraint: cannot be decided from this recording".to_owned())
+        }
+        ConstraintKind::Screw => row(Mark::None, "Screw found: turning and sliding go together".to_owned()),
+        ConstraintKind::Free | ConstraintKind::Undecided => Vec::new(),
+    }
+}
+
+fn revolute(marked: &Marked<'_>) -> Vec<Row> {
+    let Constraint { radius_m: Some(radius_m), .. } = marked.constraint else { return Vec::new() };
+    let error = error_of(marked.constraint, "radius_m");
+    let plus_minus = if error > 0.0 { format!(" ± {}", significant(error * 1e3, 1)) } else { String::new() };
+    let circle = format!("Circle found, radius {}{plus_minus} mm", significant(radius_m * 1e3, 4));
+    let mut rows = vec![Row::new(Mark::Dashes, ColorRole::Constraint, circle)];
+    let center = error_of(marked.constraint, "center_m");
+    if center > 0.0 {
+        let drawn =
+            if marked.magnified > 1.0 { format!(", {} ×", number(marked.magnified, 0)) } else { String::new() };
+        let text = format!("Its centre ± {} mm (95 % ellipse{drawn})", significant(center * 1e3, 1));
+        rows.push(Row::new(Mark::Ring, ColorRole::Constraint, text));
+    }
+    rows
+}
+
+fn phase_at(phases: &[StrokePhase], cursor_s: f64) -> Option<&StrokePhase> {
+    phases.iter().find(|phase| (phase.t0..phase.t1).contains(&cursor_s))
+}
+
+/// What the sheet does at this moment (thesis, figure 5.14).
+fn in_words(phase: &StrokePhase) -> String {
+    let name = match phase.phase {
+        Phase::Free => "Needle outside of the sheet",
+        Phase::Insertion => "The needle presses the sheet in",
+        Phase::Penetration => "The needle goes in",
+        Phase::Extraction => "The needle comes out",
+    };
+    let depth = format!("{} mm deep at most", significant(phase.deepest_m.max(0.0) * 1e3, 2));
+    match phase.stiffness_n_m {
+        Some(stiffness) => format!("{name}: {} N/m, {depth}", significant(stiffness, 2)),
+        None => name.to_owned(),
+    }
+}
