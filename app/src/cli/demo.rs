@@ -51,6 +51,16 @@ const RECORDINGS: [BuiltIn; 2] = [
 const PICTURE: [u32; 2] = [1280, 720];
 const WORKBENCH: [u32; 2] = [1600, 1000];
 
+/// A recording that travels with the program, by name, loaded by way of `folder`.
+pub fn built_in(name: &str, folder: &Path) -> anyhow::Result<Vec<Recording>> {
+    let found = RECORDINGS.iter().find(|built_in| built_in.name == name);
+    let built_in = found.with_context(|| format!("there is no built-in recording `{name}`"))?;
+    let log = folder.join(format!("{name}.csv"));
+    write(&log, built_in.csv)?;
+    write(&folder.join(format!("{name}.meta.json")), built_in.meta)?;
+    Ok(estimator::log::load(&log, None)?)
+}
+
 impl Demo {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         let started = Instant::now();

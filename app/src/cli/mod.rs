@@ -9,6 +9,7 @@ mod device;
 mod diagnose;
 mod enough;
 mod fit;
+mod gallery;
 mod info;
 mod progress;
 mod record;
@@ -18,6 +19,8 @@ mod segment;
 mod simulate;
 mod stated;
 pub mod table;
+
+pub(crate) use demo::built_in;
 
 use crate::tasks::Chosen;
 use clap::{Args, Parser, Subcommand};
@@ -59,6 +62,8 @@ enum Command {
     Record(record::Record),
     /// A picture without a window
     Screenshot(screenshot::Screenshot),
+    /// Every panel and scene as pictures, light and dark, with a page that shows them
+    Gallery(gallery::Gallery),
     /// A log in another format: csv, mcap or parquet, by the ending of the output
     Convert(convert::Convert),
     /// Devices that drive the hand, and a self-test in words
@@ -199,6 +204,7 @@ pub fn main() -> ExitCode {
         }
         Some(Command::Record(args)) => args.run(),
         Some(Command::Screenshot(args)) => args.run(),
+        Some(Command::Gallery(args)) => args.run(),
         Some(Command::Convert(args)) => args.run(),
         Some(Command::Device(args)) => {
             return match args.run() {

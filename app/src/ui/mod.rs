@@ -4,7 +4,7 @@
 //! * [`panels`] show and change it, one panel a file; [`app`] lays them out into the two workspaces.
 //! * [`mapping`] is the dialog that says what the columns of a foreign table mean.
 //! * [`scene`] brings the pictures in, [`plots`] the curves; [`theme`] is the one place for colours and sizes.
-//! * [`screenshot`] draws any of it without a window.
+//! * [`screenshot`] draws any of it without a window, [`gallery`] all of it.
 
 pub mod app;
 pub mod diagnosing;
@@ -13,6 +13,7 @@ pub mod film;
 pub mod fit_choice;
 pub mod format;
 pub mod frames;
+pub mod gallery;
 pub mod jobs;
 mod keys;
 pub mod mapping;

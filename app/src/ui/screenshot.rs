@@ -89,7 +89,7 @@ pub fn recordings(
 }
 
 /// A session with everything computed, for a picture.
-fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Session> {
+pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Session> {
     let mut session = Session::new();
     session.trainer.clock = Clock::Manual;
     if matches!(panel, Panel::Trainer | Panel::Train | Panel::Devices) {

@@ -86,7 +86,7 @@ fn draw_mark(ui: &mut Ui, mark: Mark, color: Color32) {
 }
 
 fn rows(session: &Session, prepared: &Prepared, likeness: Option<&Likeness>) -> Vec<Row> {
-    let layers = &session.layers;
+    let layers = session.layers;
     let mut rows = Vec::new();
     if layers.path {
         rows.extend(paths(session, prepared));
@@ -124,7 +124,7 @@ fn scale(prepared: &Prepared) -> String {
     format!("1 N is {} mm", significant(f64::from(force_scale(prepared)) * 1e3, 2))
 }
 
-fn of_replay(layers: &SceneLayers, likeness: Option<&Likeness>) -> Vec<Row> {
+fn of_replay(layers: SceneLayers, likeness: Option<&Likeness>) -> Vec<Row> {
     if !layers.replay {
         return Vec::new();
     }

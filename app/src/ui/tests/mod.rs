@@ -5,6 +5,8 @@ mod panels;
 mod pictures;
 mod plots;
 mod rules;
+mod scene;
+mod thresholds;
 mod train;
 mod window;
 

@@ -1,8 +1,10 @@
 //! Pictures of panels, looked at pixel by pixel.
 
+use super::thresholds::{COLORS, DARK, INK, LIGHT, MARGIN, SURFACE};
 use super::{STACK, count_near, empty, no_driver, session};
-use crate::ui::{screenshot, theme};
+use crate::ui::{gallery, screenshot, theme};
 use estimator::segment::SystemState;
+use std::collections::HashSet;
 
 #[test]
 fn the_picture_of_the_log_has_a_band_in_the_states_colours() {
@@ -44,4 +46,68 @@ fn a_whole_workspace_is_drawn_without_anything() {
         let picture = screenshot::draw(empty(), panel, [1000, 700], false).expect("drawn");
         assert_eq!(picture.dimensions(), (1000, 700));
     }
+}
+
+/// Draws one plate of the gallery in both themes and looks at what every picture must have.
+fn look_at(plate: &gallery::Plate, studio: &mut gallery::Studio) {
+    for dark in [false, true] {
+        let name = format!("{}, dark {dark}", plate.name);
+        let picture = studio.draw(plate, dark).expect("drawn");
+        assert_eq!(picture.dimensions(), (plate.size[0], plate.size[1]), "{name}");
+        let colors: HashSet<_> = picture.pixels().map(|p| p.0).collect();
+        assert!(colors.len() > COLORS, "{name} is nearly blank: {} colours", colors.len());
+        let p = theme::Palette::of(dark);
+        let pixels = f64::from(picture.width() * picture.height());
+        let surface: usize = [p.window, p.card, p.sunken].iter().map(|c| count_near(&picture, *c)).sum();
+        assert!(surface as f64 / pixels > SURFACE, "{name}: {surface} pixels of surfaces");
+        let ink: usize = [p.text, p.secondary].iter().map(|c| count_near(&picture, *c)).sum();
+        assert!(ink > INK, "{name}: {ink} pixels of words");
+        let mean = picture.pixels().map(|p| f64::from(p[1])).sum::<f64>() / pixels;
+        assert!(if dark { mean < DARK } else { mean > LIGHT }, "{name}: mean brightness {mean:.0}");
+        if plate.is_framed() {
+            nothing_outside(&picture, p.window, &name);
+        }
+    }
+}
+
+/// What a panel draws stays in its place.
+fn nothing_outside(picture: &image::RgbaImage, window: egui::Color32, name: &str) {
+    let (width, height) = picture.dimensions();
+    let outside = |x: u32, y: u32| x.min(y).min(width - 1 - x).min(height - 1 - y) < MARGIN;
+    let near = |p: &image::Rgba<u8>| p.0.iter().zip(window.to_array()).all(|(a, b)| a.abs_diff(b) <= 2);
+    let stray = picture.enumerate_pixels().find(|(x, y, p)| outside(*x, *y) && !near(p));
+    assert!(stray.is_none(), "{name}: something is drawn outside, at {stray:?}");
+}
+
+fn look_at_all(wanted: impl Fn(&gallery::Plate) -> bool) {
+    if no_driver() {
+        return;
+    }
+    let mut studio = gallery::Studio::default();
+    let plates: Vec<_> = gallery::plates().into_iter().filter(wanted).collect();
+    assert!(!plates.is_empty());
+    for plate in plates {
+        look_at(&plate, &mut studio);
+    }
+}
+
+// In parts, so that they run beside each other.
+#[test]
+fn every_panel_is_drawn_in_light_and_dark() {
+    look_at_all(|plate| plate.is_framed() && plate.panel() != screenshot::Panel::Trainer && !plate.is_view());
+}
+
+#[test]
+fn every_page_is_drawn_in_light_and_dark() {
+    look_at_all(|plate| !plate.is_framed());
+}
+
+#[test]
+fn every_view_of_a_recording_is_drawn_in_light_and_dark() {
+    look_at_all(gallery::Plate::is_view);
+}
+
+#[test]
+fn every_world_is_drawn_in_light_and_dark() {
+    look_at_all(|plate| plate.panel() == screenshot::Panel::Trainer);
 }
