@@ -106,9 +106,26 @@ pub struct Meta {
     /// Least and largest value that a parameter can have, named as in `prior`; `null` leaves a side open.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub bounds: BTreeMap<String, [Option<f64>; 2]>,
+    /// Which state held when, set by a person: in the place of what a segmentation finds.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub segments: Vec<Segment>,
     /// Keys this version does not know: kept, so that saving loses nothing.
     #[serde(flatten)]
     pub other: BTreeMap<String, serde_json::Value>,
+}
+
+/// A stretch of a recording in one state, set by a person.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Segment {
+    /// Start, s (sample number when the log is clockless).
+    pub t0: f64,
+    /// End, s.
+    pub t1: f64,
+    /// Name of the state, e.g. `hold-above-ground`.
+    pub state: String,
+    /// The subtask that it belongs to, e.g. `carry-block-1`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub subtask: Option<String>,
 }
 
 /// A normal distribution, in the parameter's unit.

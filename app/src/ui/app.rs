@@ -1,58 +1,45 @@
-//! The window: top bar, messages, the two workspaces, keys, files dropped on it.
+//! The window: top bar, messages, the panels of the workspace, keys, files dropped on it.
 
-use super::files;
-use super::jobs::Purpose;
-use super::panels::Panel as _;
-use super::panels::device_detail::DeviceDetail;
-use super::panels::devices::DeviceList;
-use super::panels::diagnose::DiagnosePanel;
-use super::panels::diagnosis::DiagnosisPanel;
-use super::panels::log::LogPanel;
-use super::panels::recording::RecordingPanel;
-use super::panels::results::ResultsPanel;
-use super::panels::rules::RulesPanel;
-use super::panels::scene::ScenePanel;
-use super::panels::trainer_side::TrainerSide;
-use super::panels::trainer_view::TrainerView;
+use super::actions::{self, Action};
+use super::autosave::{Autosave, State};
+use super::dock::{Dock, Panels};
+use super::palette::{self, CommandPalette};
 use super::session::{Session, Workspace};
-use super::theme::{self, palette, space};
+use super::theme::{self, space};
+use super::tour::{self, Tour};
 use super::trainer::WorldChoice;
 use super::widgets::segmented;
+use super::{menu, restore};
 use egui::{Align, CentralPanel, Frame, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
 
 /// The application.
 pub struct App {
     /// What it knows.
     pub session: Session,
-    log: LogPanel,
-    recording: RecordingPanel,
-    results: ResultsPanel,
-    scene: ScenePanel,
-    rules: RulesPanel,
-    trainer_view: TrainerView,
-    trainer_side: TrainerSide,
-    device_list: DeviceList,
-    device_detail: DeviceDetail,
-    diagnose: DiagnosePanel,
-    diagnosis: DiagnosisPanel,
+    /// Where panels stand.
+    pub dock: Dock,
+    /// The command palette.
+    pub palette: CommandPalette,
+    /// The tour.
+    pub tour: Tour,
+    /// What a killed program had open.
+    pub left_behind: Option<Box<State>>,
+    /// Keeps what is open.
+    pub autosave: Option<Autosave>,
+    panels: Panels,
 }
 
 impl App {
-    /// A window over a session.
+    /// A window over a session. It keeps nothing on the disk until [`App::keep`] says where.
     pub fn new(session: Session) -> Self {
         Self {
             session,
-            log: LogPanel::default(),
-            recording: RecordingPanel::default(),
-            results: ResultsPanel::default(),
-            scene: ScenePanel::default(),
-            rules: RulesPanel,
-            trainer_view: TrainerView::default(),
-            trainer_side: TrainerSide,
-            device_list: DeviceList::default(),
-            device_detail: DeviceDetail,
-            diagnose: DiagnosePanel,
-            diagnosis: DiagnosisPanel,
+            dock: Dock::default(),
+            palette: CommandPalette::default(),
+            tour: Tour::default(),
+            left_behind: None,
+            autosave: None,
+            panels: Panels::default(),
         }
     }
 
@@ -61,29 +48,48 @@ impl App {
         let ctx = ui.ctx().clone();
         self.session.poll(&ctx);
         self.take_worlds();
-        if self.session.mapping.is_none() {
+        // A dialog waits for an answer first.
+        if self.session.mapping.is_none() && !self.palette.is_open() && !self.tour.is_on() {
+            actions::keys(ui, self);
             super::keys::handle(ui, &mut self.session);
         }
         dropped_files(&ctx, &mut self.session);
         self.session.advance(f64::from(ctx.input(|i| i.stable_dt)));
         self.top_bar(ui);
         super::recorder::unfinished(ui, &mut self.session);
+        restore::offer(ui, self);
         super::messages::banners(ui, &mut self.session);
         if self.session.workspace != Workspace::Devices {
             // A test force is for the page that shows its button to stop.
             self.session.trainer.trial.abort();
         }
-        match self.session.workspace {
-            _ if self.session.mapping.is_some() => self.mapping(ui),
-            Workspace::Train => self.train(ui),
-            Workspace::Calibrate => self.calibrate(ui),
-            Workspace::Diagnose => self.diagnose(ui),
-            Workspace::Devices => self.devices(ui),
+        if self.session.mapping.is_some() {
+            rest(ui, &mut self.session);
+            super::mapping::dialog::show(ui, &mut self.session);
+        } else {
+            if !matches!(self.session.workspace, Workspace::Train | Workspace::Devices) {
+                rest(ui, &mut self.session);
+            }
+            CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
+                self.dock.ui(ui, &mut self.panels, &mut self.session);
+            });
         }
+        palette::show(ui, self);
+        tour::show(ui, self);
+        self.keep_state();
         if self.session.playing {
             ctx.request_repaint();
         }
         drop_hint(&ctx);
+    }
+
+    fn keep_state(&mut self) {
+        let Some(autosave) = &mut self.autosave else { return };
+        if self.left_behind.is_none()
+            && let Some(problem) = autosave.follow(&self.session, &self.dock, self.tour.seen)
+        {
+            self.session.fail(problem);
+        }
     }
 
     /// Worlds that were opened or asked for go to the trainer.
@@ -109,25 +115,26 @@ impl App {
     }
 
     fn top_bar(&mut self, ui: &mut Ui) {
-        let p = palette(ui);
+        let p = theme::palette(ui);
         let frame = Frame::new().fill(p.card).inner_margin(Margin::symmetric(space::L as i8, 8));
         Side::top("top bar").frame(frame).show_separator_line(true).show(ui, |ui| {
             ui.horizontal(|ui| {
                 logo(ui);
                 ui.label(theme::title("Touchstone"));
-                ui.add_space(space::L);
-                let choices = [
-                    (Workspace::Train, "Train", "Touch a virtual world (Ctrl+1)"),
-                    (Workspace::Calibrate, "Calibrate", "Measure a real one from a log (Ctrl+2)"),
-                    (Workspace::Diagnose, "Diagnose", "What the model gets wrong, and why (Ctrl+3)"),
-                    (Workspace::Devices, "Devices", "What moves the fingers, and how well (Ctrl+4)"),
-                ];
+                ui.add_space(space::S);
                 // A dialog waits for an answer first.
                 let free = self.session.mapping.is_none();
-                ui.add_enabled_ui(free, |ui| segmented(ui, &mut self.session.workspace, &choices));
-                ui.add_space(space::L);
-                ui.label(RichText::new(self.subject()).color(p.secondary));
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| self.tools(ui));
+                ui.add_enabled_ui(free, |ui| {
+                    menu::button(ui, self);
+                    ui.add_space(space::S);
+                    segmented(ui, &mut self.session.workspace, &Workspace::CHOICES);
+                });
+                ui.add_space(space::M);
+                let subject = egui::Label::new(RichText::new(self.subject()).color(p.secondary));
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    self.tools(ui);
+                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.add(subject.truncate()));
+                });
             });
         });
     }
@@ -145,19 +152,36 @@ impl App {
     }
 
     fn tools(&mut self, ui: &mut Ui) {
+        let ctx = ui.ctx().clone();
         let dark = ui.visuals().dark_mode;
         if ui.button(if dark { "Light" } else { "Dark" }).on_hover_text("Switch the theme").clicked() {
-            ui.ctx().set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
+            Action::Theme.run(&ctx, self);
         }
         let free = self.session.mapping.is_none();
-        if ui
-            .add_enabled(free, egui::Button::new("Open log …"))
-            .on_hover_text("Ctrl+O, or drop a file on the window")
-            .clicked()
-        {
-            files::ask(ui.ctx(), &mut self.session.jobs, Purpose::OpenLog);
+        let open = ui.add_enabled(free, egui::Button::new("Open log …"));
+        if open.on_hover_text("Ctrl+O, or drop a file on the window").clicked() {
+            Action::OpenLog.run(&ctx, self);
         }
+        let find = ui.add_enabled(free, egui::Button::new("Find …"));
+        if find.on_hover_text("Every command by its name (Ctrl+P)").clicked() {
+            Action::Palette.run(&ctx, self);
+        }
+        self.undo_buttons(ui);
         self.progress(ui);
+    }
+
+    /// Where there is something to take back.
+    fn undo_buttons(&mut self, ui: &mut Ui) {
+        let (undo, redo) = (self.session.can_undo(), self.session.can_redo());
+        if !undo && !redo || self.session.workspace == Workspace::Train {
+            return;
+        }
+        if ui.add_enabled(redo, egui::Button::new("Redo")).on_hover_text("Ctrl+Shift+Z").clicked() {
+            self.session.redo();
+        }
+        if ui.add_enabled(undo, egui::Button::new("Undo")).on_hover_text("Ctrl+Z").clicked() {
+            self.session.undo();
+        }
     }
 
     /// What takes its time, how far it is, and the way to end it.
@@ -185,99 +209,6 @@ impl App {
         let since = if seconds > 0 { format!(" · {seconds} s") } else { String::new() };
         ui.label(theme::caption(ui, format!("{} …{since}", progress.what)));
     }
-
-    fn mapping(&mut self, ui: &mut Ui) {
-        if self.session.trainer.is_recording() {
-            self.session.trainer.update(f64::from(ui.input(|i| i.stable_dt)));
-        } else {
-            self.session.trainer.pause();
-        }
-        super::mapping::dialog::show(ui, &mut self.session);
-    }
-
-    fn train(&mut self, ui: &mut Ui) {
-        let session = &mut self.session;
-        let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
-        Side::right("trainer side").frame(plain).show_separator_line(false).resizable(false).exact_size(336.0).show(
-            ui,
-            |ui| {
-                self.trainer_side.ui(ui, session);
-            },
-        );
-        let frame = Frame::new().inner_margin(Margin { left: 12, right: 0, top: 12, bottom: 12 });
-        CentralPanel::default().frame(frame).show(ui, |ui| self.trainer_view.ui(ui, session));
-    }
-
-    fn devices(&mut self, ui: &mut Ui) {
-        let session = &mut self.session;
-        let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
-        let width = (0.36 * ui.available_width()).clamp(330.0, 380.0);
-        Side::left("device list").frame(plain).show_separator_line(false).resizable(false).exact_size(width).show(
-            ui,
-            |ui| {
-                self.device_list.ui(ui, session);
-            },
-        );
-        let frame = Frame::new().inner_margin(Margin { left: 0, right: 12, top: 12, bottom: 12 });
-        CentralPanel::default().frame(frame).show(ui, |ui| self.device_detail.ui(ui, session));
-    }
-
-    fn diagnose(&mut self, ui: &mut Ui) {
-        let session = &mut self.session;
-        rest(ui, session);
-        if session.diagnosing.answer.is_some() {
-            let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
-            let width = (0.28 * ui.available_width()).clamp(356.0, 420.0);
-            Side::right("diagnosis").frame(plain).show_separator_line(false).resizable(false).exact_size(width).show(
-                ui,
-                |ui| {
-                    self.diagnosis.ui(ui, session);
-                },
-            );
-        }
-        let right = if session.diagnosing.answer.is_some() { 0 } else { 12 };
-        let frame = Frame::new().inner_margin(Margin { left: 12, right, top: 12, bottom: 12 });
-        CentralPanel::default().frame(frame).show(ui, |ui| self.diagnose.ui(ui, session));
-    }
-
-    fn calibrate(&mut self, ui: &mut Ui) {
-        let session = &mut self.session;
-        rest(ui, session);
-        let width = ui.available_width();
-        let plain = Frame::new().inner_margin(Margin::same(space::M as i8));
-        Side::left("recording")
-            .frame(plain)
-            .show_separator_line(false)
-            .resizable(false)
-            .exact_size((0.18 * width).clamp(220.0, 264.0))
-            .show(ui, |ui| {
-                self.recording.ui(ui, session);
-            });
-        Side::right("results")
-            .frame(plain)
-            .show_separator_line(false)
-            .resizable(false)
-            .exact_size((0.26 * width).clamp(362.0, 384.0))
-            .show(ui, |ui| {
-                self.results.ui(ui, session);
-            });
-        let height = ui.available_height();
-        let upper = Frame::new().inner_margin(Margin { left: 0, right: 0, top: 12, bottom: 6 });
-        // The rules need more room than the picture, and keep their own.
-        let rules = session.rules.is_some();
-        Side::top(if rules { "rules" } else { "scene" })
-            .frame(upper)
-            .show_separator_line(false)
-            .resizable(true)
-            .default_size(if rules { 0.48 } else { 0.40 } * height)
-            .size_range(120.0..=0.75 * height)
-            .show(ui, |ui| {
-                // The rules take the place of the picture, so that the states below are seen to follow.
-                if session.rules.is_some() { self.rules.ui(ui, session) } else { self.scene.ui(ui, session) }
-            });
-        let lower = Frame::new().inner_margin(Margin { left: 0, right: 0, top: 6, bottom: 12 });
-        CentralPanel::default().frame(lower).show(ui, |ui| self.log.ui(ui, session));
-    }
 }
 
 impl eframe::App for App {
@@ -292,6 +223,12 @@ impl eframe::App for App {
     fn persist_egui_memory(&self) -> bool {
         true
     }
+
+    fn on_exit(&mut self) {
+        if let Some(autosave) = &self.autosave {
+            autosave.end(&self.session, &self.dock, self.tour.seen);
+        }
+    }
 }
 
 /// The trainer while the user looks elsewhere: a running recording goes on, everything else rests.
@@ -303,7 +240,6 @@ fn rest(ui: &Ui, session: &mut Session) {
         session.trainer.pause();
     }
 }
-
 /// A stone with a golden streak.
 fn logo(ui: &mut Ui) {
     let (rect, _) = ui.allocate_exact_size(egui::vec2(22.0, 22.0), egui::Sense::hover());

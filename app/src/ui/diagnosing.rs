@@ -1,12 +1,13 @@
 //! The diagnosis of what is loaded: what is asked, what came out, and the worlds before and after.
 
 use super::fit_choice::FitChoice;
+use super::fitting::replay_forces;
 use super::format;
 use super::jobs::{JobKind, Outcome, Replayed};
 use super::plots::Residuals;
 use super::prepare::Prepared;
-use super::session::{Session, replay_forces, sentence};
-use super::trainer::Compare;
+use super::session::{Session, Workspace, sentence};
+use super::trainer::{Compare, WorldChoice};
 use estimator::diagnose::{self, Diagnosis, Options, Progress, Worlds};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
@@ -96,7 +97,7 @@ pub fn extend(
 }
 
 fn plain(recordings: &[Arc<Prepared>], choice: &FitChoice) -> Vec<Recording> {
-    recordings.iter().map(|p| choice.given_to(&p.recording)).collect()
+    choice.given_to_all(recordings)
 }
 
 fn options(recordings: &[Recording], choice: &FitChoice, from: StartFrom, progress: Progress) -> Options {
@@ -160,6 +161,18 @@ impl Session {
                 });
             }
             Err(problem) => self.diagnosing.worlds_problem = Some(problem),
+        }
+    }
+
+    /// Takes both worlds into the trainer; what is in the way is said.
+    pub fn feel(&mut self) {
+        let chosen = self.comparison().and_then(|compare| {
+            self.trainer.compare = Some(compare);
+            self.trainer.choose(WorldChoice::After)
+        });
+        match chosen {
+            Ok(()) => self.workspace = Workspace::Train,
+            Err(problem) => self.fail(problem),
         }
     }
 

@@ -30,6 +30,19 @@ fn dialog(purpose: Purpose) -> Option<PathBuf> {
             .add_filter("All files", &["*"])
             .pick_file(),
         Purpose::OpenWorld => dialog.set_title("Open a world").add_filter("Worlds", &["json"]).pick_file(),
+        Purpose::OpenProject => {
+            dialog.set_title("Open a project").add_filter("Projects", &["touchstone.json", "json"]).pick_file()
+        }
+        Purpose::AddLog => dialog
+            .set_title("Add a recording of the same object")
+            .add_filter("Logs", &["csv", "txt", "tsv", "dat", "mcap", "parquet"])
+            .add_filter("All files", &["*"])
+            .pick_file(),
+        Purpose::SaveProject => {
+            let name = format!("project.{}", super::project::ENDING);
+            dialog.set_title("Save the project").set_file_name(name).save_file()
+        }
+        Purpose::SaveReport => dialog.set_title("Write a report").set_file_name("report.html").save_file(),
         Purpose::SaveLog => dialog.set_title("Save the recording").set_file_name("recording.csv").save_file(),
         Purpose::SaveWorld => dialog.set_title("Save the world").set_file_name("world.json").save_file(),
         Purpose::SaveExtended => {
@@ -42,10 +55,10 @@ fn dialog(purpose: Purpose) -> Option<PathBuf> {
 pub fn save_log(ctx: &egui::Context, session: &mut Session, field: &str) {
     let Some(prepared) = session.prepared().cloned() else { return };
     let path = PathBuf::from(field.trim());
-    let choice = session.choice.clone();
+    let (choice, index) = (session.choice.clone(), session.current);
     session.jobs.start(ctx, JobKind::Save, move || {
-        // A task of the user's goes along.
-        let recording = &choice.given_to(&prepared.recording);
+        // A task of the user's goes along, and what was stated and set by hand.
+        let recording = &choice.given_to(index, &prepared.recording);
         let written = estimator::log::write_csv(recording, &path)
             .and_then(|()| estimator::log::write_meta(recording, &path).map(drop));
         match written {
@@ -53,6 +66,23 @@ pub fn save_log(ctx: &egui::Context, session: &mut Session, field: &str) {
             Err(error) => Outcome::Failed(sentence(&error.to_string())),
         }
     });
+}
+
+/// Writes a report of the open files, as they are fitted.
+pub fn save_report(ctx: &egui::Context, session: &mut Session, path: PathBuf) {
+    let (sources, choice) = (session.sources.clone(), session.choice.clone());
+    session.jobs.start_watched(ctx, JobKind::Save, "Writing the report".to_owned(), move |_| {
+        match crate::report::of_files(&sources_of(&sources), &path, |index, recording| {
+            choice.given_to(index, &recording)
+        }) {
+            Ok(()) => Outcome::Saved(path),
+            Err(problem) => Outcome::Failed(problem),
+        }
+    });
+}
+
+fn sources_of(sources: &[super::project::Source]) -> Vec<(PathBuf, Option<PathBuf>)> {
+    sources.iter().map(|s| (s.log.clone(), s.meta.clone())).collect()
 }
 
 /// Writes the world with what a diagnosis found in it.

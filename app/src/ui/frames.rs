@@ -1,10 +1,11 @@
 //! What a picture costs the processor: laying a panel out and cutting its shapes into triangles. What the graphics card does is apart.
 
 use super::app::App;
+use super::fitting;
 use super::plots::LogView;
 use super::prepare::Prepared;
 use super::screenshot::{Panel, contents};
-use super::session::{self, FitChoice, Session, Workspace};
+use super::session::{FitChoice, Session, Workspace};
 use super::theme;
 use super::trainer::Clock;
 use cpu_time::ThreadTime;
@@ -75,8 +76,8 @@ impl Loaded {
     /// Prepares, fits and replays.
     pub fn new(recording: Recording) -> Result<Self, String> {
         let recordings = vec![Arc::new(Prepared::new(recording))];
-        let analysis = session::analyse(&recordings, &FitChoice::default())?;
-        let replays = session::replay_all(&analysis.world, &recordings);
+        let analysis = fitting::analyse(&recordings, &FitChoice::default())?;
+        let replays = fitting::replay_all(&analysis.world, &recordings);
         Ok(Self { recordings, analysis: Some(Arc::new(analysis)), replays })
     }
 

@@ -35,6 +35,10 @@ pub enum JobKind {
     Simulate,
     /// Judging whether there is enough data.
     Judge,
+    /// Replaying with a value that is tried.
+    WhatIf,
+    /// Looking how the force depends on the parameters.
+    Sensitivity,
     /// Waiting for a file dialog.
     Dialog,
     /// Writing a file.
@@ -66,6 +70,14 @@ pub enum Purpose {
     OpenLog,
     /// A world to train in.
     OpenWorld,
+    /// A project.
+    OpenProject,
+    /// Another recording of the same object.
+    AddLog,
+    /// Where the project goes.
+    SaveProject,
+    /// Where the report goes.
+    SaveReport,
     /// Where the recording goes.
     SaveLog,
     /// Where the calibrated world goes.
@@ -79,12 +91,18 @@ pub enum Purpose {
 pub enum Outcome {
     /// A log, ready to be shown.
     Loaded(PathBuf, Vec<Arc<Prepared>>),
+    /// A project, and all its recordings.
+    Project(Box<super::project::Project>, Vec<Arc<Prepared>>),
     /// A fit of what is loaded.
     Fitted(Box<Analysis>),
     /// The states of one recording, told anew.
     Segmented(usize, Box<Segmentation>),
     /// Predicted forces and the course of the world, one a recording that can be replayed.
     Simulated(Vec<Option<Replayed>>),
+    /// The values that were tried, and the replay of every recording with them.
+    Tried(std::collections::BTreeMap<String, f64>, Vec<Option<Replayed>>),
+    /// How the force depends on the parameters.
+    Sensitive(Arc<super::sensitivity::Sensitivity>),
     /// What is still missing for the parameters of the fit.
     Judged(Vec<Enough>),
     /// The answer of a file dialog; `None`: cancelled, or no dialog on this system.

@@ -6,33 +6,48 @@
 //! * [`scene`] brings the pictures in, [`plots`] the curves; [`theme`] is the one place for colours and sizes.
 //! * [`screenshot`] draws any of it without a window, [`gallery`] all of it.
 
+pub mod actions;
 pub mod app;
+pub mod autosave;
+pub mod by_hand;
 pub mod diagnosing;
+pub mod dock;
 mod files;
 pub mod film;
 pub mod fit_choice;
+pub mod fitting;
 pub mod format;
 pub mod frames;
 pub mod gallery;
 pub mod jobs;
 mod keys;
 pub mod mapping;
+mod menu;
 mod messages;
 mod opening;
 mod overlays;
+pub mod palette;
 pub mod panels;
 mod playback;
 pub mod plots;
 pub mod prepare;
+pub mod project;
+pub mod recent;
 mod recorder;
+mod restore;
 pub mod rules;
 pub mod scene;
 pub mod screenshot;
+pub mod sensitivity;
 pub mod session;
 #[cfg(feature = "sound")]
 pub mod sound;
+pub mod teach;
 pub mod theme;
+pub mod tour;
 pub mod trainer;
+pub mod undo;
+pub mod what_if;
 pub mod widgets;
 
 use crate::tasks::Chosen;
@@ -90,7 +105,12 @@ fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
         session.workspace = session::Workspace::Calibrate;
         session.open(&cc.egui_ctx, log);
     }
-    app::App::new(session)
+    let mut app = app::App::new(session);
+    if let Some(folder) = eframe::storage_dir("touchstone") {
+        let fresh = options.log.is_none() && options.world.is_none();
+        app.keep(&folder, fresh);
+    }
+    app
 }
 
 #[cfg(test)]

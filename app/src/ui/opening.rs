@@ -25,6 +25,8 @@ pub enum FileKind {
     World,
     /// The facts about a log.
     Sidecar,
+    /// Recordings, and how they are fitted.
+    Project,
 }
 
 /// Tells what a file is.
@@ -34,6 +36,9 @@ pub fn kind_of(path: &Path) -> FileKind {
     let text = start.strip_prefix("\u{feff}".as_bytes()).unwrap_or(&start);
     if read.is_err() || text.trim_ascii_start().first() != Some(&b'{') {
         return FileKind::Log;
+    }
+    if super::project::is_project(path) {
+        return FileKind::Project;
     }
     let named = path.file_name().is_some_and(|n| n.to_string_lossy().to_lowercase().ends_with(".meta.json"));
     if named || is_sidecar(path) { FileKind::Sidecar } else { FileKind::World }
@@ -99,6 +104,7 @@ impl Session {
         match kind_of(path) {
             FileKind::World => self.open_world(ctx, path),
             FileKind::Sidecar => self.open_sidecar(ctx, path),
+            FileKind::Project => self.open_project(ctx, path),
             FileKind::Log => {
                 let again = self.path.as_deref() == Some(path);
                 let sidecar = self.meta.clone().filter(|_| again);

@@ -2,6 +2,7 @@
 
 use super::app::App;
 use super::diagnosing;
+use super::fitting;
 use super::mapping::Mapping;
 use super::panels::log::LogPanel;
 use super::panels::parameters::ParametersPanel;
@@ -11,7 +12,7 @@ use super::panels::segments::SegmentsPanel;
 use super::panels::trainer_view::TrainerView;
 use super::prepare::Prepared;
 use super::scene;
-use super::session::{self, FitChoice, Session, Workspace};
+use super::session::{FitChoice, Session, Workspace};
 use super::theme::{self, space};
 use super::trainer::{Clock, Operator, Trainer, WorldChoice};
 use anyhow::{Context as _, anyhow};
@@ -113,11 +114,12 @@ pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Se
     }
     session.show(recordings.into_iter().map(|r| Arc::new(Prepared::new(r))).collect());
     session.choice = FitChoice { task: input.task, ..FitChoice::default() };
-    match session::analyse(&session.recordings, &session.choice) {
+    match fitting::analyse(&session.recordings, &session.choice) {
         Ok(analysis) => {
-            session.replays = session::replay_all(&analysis.world, &session.recordings);
-            session.enough = session::judge(&analysis, &session.recordings);
+            session.replays = fitting::replay_all(&analysis.world, &session.recordings);
+            session.enough = fitting::judge(&analysis, &session.recordings);
             session.analysis = Some(Arc::new(analysis));
+            session.refits.answered(&session.choice.clone());
         }
         Err(problem) => {
             session.fit_problem = Some(problem.clone());
@@ -143,7 +145,7 @@ fn diagnosed(session: &mut Session) {
         Ok(answer) => {
             match diagnosing::extend(&session.recordings, &session.choice, from, &answer) {
                 Ok(worlds) => {
-                    session.diagnosing.replays = session::replay_forces(&worlds.after, &session.recordings);
+                    session.diagnosing.replays = fitting::replay_forces(&worlds.after, &session.recordings);
                     session.diagnosing.worlds = Some(Arc::new(worlds));
                 }
                 Err(problem) => session.diagnosing.worlds_problem = Some(problem),

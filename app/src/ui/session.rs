@@ -1,28 +1,32 @@
 //! What the window knows: loaded recordings, their fit, the replay, the time cursor. Panels read and change it; jobs fill it.
 
 use super::diagnosing::Diagnosing;
-use super::film::Film;
 pub use super::fit_choice::FitChoice;
+use super::fitting::Refits;
 use super::jobs::{JobKind, Jobs, Outcome, Purpose, Replayed};
 use super::mapping::Mapping;
-use super::plots::{Levels, PlotChoices};
+use super::plots::PlotChoices;
 use super::prepare::Prepared;
+use super::project::Source;
+use super::recent::Recent;
 use super::rules::Rules;
 pub use super::scene::SceneLayers;
 use super::trainer::Trainer;
+use super::undo::Undo;
+use super::what_if::WhatIf;
 use crate::tasks::Chosen;
-use estimator::online::enough::{Enough, Wanted};
-use estimator::pipeline::{self, Analysis};
-use estimator::segment::{Segmentation, segment_by};
-use estimator::simulate::Simulation;
-use haptics::recording::Recording;
+use estimator::online::enough::Enough;
+use estimator::pipeline::Analysis;
+use estimator::segment::Segmentation;
 use haptics::world::World;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// The workspaces.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Workspace {
     /// Touch a virtual world.
     #[default]
@@ -33,6 +37,21 @@ pub enum Workspace {
     Diagnose,
     /// What moves the fingers, and how well.
     Devices,
+}
+
+impl Workspace {
+    /// All of them: name, and what it is for.
+    pub const CHOICES: [(Self, &str, &str); 4] = [
+        (Self::Train, "Train", "Touch a virtual world (Ctrl+1)"),
+        (Self::Calibrate, "Calibrate", "Measure a real one from a log (Ctrl+2)"),
+        (Self::Diagnose, "Diagnose", "What the model gets wrong, and why (Ctrl+3)"),
+        (Self::Devices, "Devices", "What moves the fingers, and how well (Ctrl+4)"),
+    ];
+
+    /// For people.
+    pub fn title(self) -> &'static str {
+        Self::CHOICES.iter().find(|(w, ..)| *w == self).map_or("", |(_, title, _)| title)
+    }
 }
 
 /// How grave a message is.
@@ -69,6 +88,14 @@ pub struct Session {
     pub current: usize,
     /// Where they came from.
     pub path: Option<PathBuf>,
+    /// The files that the recordings came from.
+    pub sources: Vec<Source>,
+    /// The project file that is open.
+    pub project_path: Option<PathBuf>,
+    /// The one that is being opened.
+    pub opening_project: Option<PathBuf>,
+    /// Files that were open before.
+    pub recent: Recent,
     /// A sidecar named by hand.
     pub meta: Option<PathBuf>,
     /// The task that the user named when opening.
@@ -81,6 +108,16 @@ pub struct Session {
     pub choice: FitChoice,
     /// The choice that the fit on the screen was made with differs from `choice`.
     pub stale: bool,
+    /// What refits have in common.
+    pub refits: Refits,
+    /// What can be taken back.
+    pub undo: Undo,
+    /// The parameter that is looked at closely, `object.name`.
+    pub selected_parameter: Option<String>,
+    /// How the force depends on the parameters.
+    pub sensitivity: Option<Arc<super::sensitivity::Sensitivity>>,
+    /// Values that are tried.
+    pub what_if: WhatIf,
     /// The fit.
     pub analysis: Option<Arc<Analysis>>,
     /// Why there is none, in one sentence.
@@ -109,8 +146,6 @@ pub struct Session {
     pub jobs: Jobs,
     /// A world that was opened from a file, for the trainer to take.
     pub opened_world: Option<Box<World>>,
-    /// Where to save: the dialog's answer for the panels.
-    pub chosen: Option<(Purpose, PathBuf)>,
     /// Set by a panel: the trainer should take the calibrated world.
     pub train_calibrated: bool,
     /// Recordings that a killed program left without their end.
@@ -164,6 +199,7 @@ impl Session {
     /// Reads the same log again.
     pub fn reload(&mut self, ctx: &egui::Context) {
         match self.path.clone() {
+            Some(_) if self.sources.len() > 1 => self.restore(ctx, super::project::Project::of(self)),
             Some(path) => self.open(ctx, &path),
             None => self.fail("There is no file to reload: open a log first."),
         }
@@ -186,10 +222,18 @@ impl Session {
         self.choice = FitChoice {
             task: self.task_hint.as_ref().map(Chosen::like),
             own: self.task_hint.as_ref().and_then(Chosen::own).cloned().map(Arc::new),
-            thresholds: None,
             method: self.choice.method,
+            ..FitChoice::default()
         };
+        self.refits.forget();
+        self.what_if.forget();
+        self.forget_changes();
         self.select(0);
+    }
+
+    /// True when the fitted world has something that the hand can touch.
+    pub fn can_train(&self) -> bool {
+        self.analysis.as_ref().is_some_and(|a| !a.world.blocks.is_empty() || a.world.crank.is_some())
     }
 
     /// Shows another recording of the file.
@@ -201,22 +245,6 @@ impl Session {
         }
     }
 
-    /// Segments and fits in the background.
-    pub fn refit(&mut self, ctx: &egui::Context) {
-        if self.recordings.is_empty() {
-            return;
-        }
-        self.stale = false;
-        self.jobs.cancel(JobKind::Simulate);
-        let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
-        self.jobs.start_watched(ctx, JobKind::Fit, "Fitting".to_owned(), move |_| {
-            match analyse(&recordings, &choice) {
-                Ok(analysis) => Outcome::Fitted(Box::new(analysis)),
-                Err(problem) => Outcome::Failed(problem),
-            }
-        });
-    }
-
     /// Ends a job that the user does not want to wait for; what was there before stays.
     pub fn give_up(&mut self, kind: JobKind) {
         self.jobs.cancel(kind);
@@ -225,6 +253,10 @@ impl Session {
         }
         if kind == JobKind::Curves {
             self.plots.give_up();
+        }
+        if kind == JobKind::Fit {
+            self.refits.gave_up();
+            self.stale = true;
         }
         if kind == JobKind::Diagnose {
             self.diagnosing.problem = Some("The diagnosis was cancelled before it came to an answer.".to_owned());
@@ -237,12 +269,18 @@ impl Session {
             self.take(ctx, outcome);
         }
         super::recorder::follow(ctx, self);
+        self.note_changes(ctx.input(|i| i.time));
+        self.follow_choice(ctx);
+        self.follow_what_if(ctx);
     }
 
     fn take(&mut self, ctx: &egui::Context, outcome: Outcome) {
         match outcome {
             Outcome::Loaded(path, recordings) => {
                 let mute = super::opening::says_nothing(&recordings);
+                self.recent.note(&path);
+                self.sources = vec![Source { log: path.clone(), meta: self.meta.clone() }];
+                self.project_path = None;
                 self.path = Some(path);
                 self.workspace = Workspace::Calibrate;
                 self.show(recordings);
@@ -251,6 +289,7 @@ impl Session {
                     None => self.refit(ctx),
                 }
             }
+            Outcome::Project(project, recordings) => self.opened_project(ctx, *project, recordings),
             Outcome::Unmapped(path, why) => {
                 self.path_field = path.display().to_string();
                 self.map_columns_of(ctx, &path, Some(why));
@@ -269,6 +308,8 @@ impl Session {
             Outcome::Fitted(analysis) => self.fitted(ctx, *analysis),
             Outcome::Segmented(index, found) => self.segmented(index, *found),
             Outcome::Simulated(replays) => self.replays = replays,
+            Outcome::Tried(values, replays) => self.what_if.take(values, replays),
+            Outcome::Sensitive(found) => self.sensitivity = Some(found),
             Outcome::Judged(enough) => self.enough = enough,
             Outcome::Diagnosed(answer) => self.diagnosed(answer),
             Outcome::Extended(worlds) => self.extended(ctx, worlds),
@@ -278,7 +319,17 @@ impl Session {
             Outcome::Cancelled | Outcome::Chosen(_, None) => {}
             Outcome::Chosen(Purpose::OpenLog, Some(path)) => self.open_any(ctx, &path),
             Outcome::Chosen(Purpose::OpenWorld, Some(path)) => self.open_world(ctx, &path),
-            Outcome::Chosen(purpose, Some(path)) => self.chosen = Some((purpose, path)),
+            Outcome::Chosen(Purpose::OpenProject, Some(path)) => self.open_project(ctx, &path),
+            Outcome::Chosen(Purpose::AddLog, Some(path)) => self.add_log(ctx, &path),
+            Outcome::Chosen(Purpose::SaveProject, Some(path)) => self.save_project_as(ctx, path),
+            Outcome::Chosen(Purpose::SaveReport, Some(path)) => super::files::save_report(ctx, self, path),
+            Outcome::Chosen(Purpose::SaveLog, Some(path)) => {
+                super::files::save_log(ctx, self, &path.display().to_string())
+            }
+            Outcome::Chosen(Purpose::SaveWorld, Some(path)) => {
+                super::files::save_world(ctx, self, &path.display().to_string())
+            }
+            Outcome::Chosen(Purpose::SaveExtended, Some(path)) => super::files::save_extended(ctx, self, path),
             Outcome::Unfinished(found) => self.unfinished = found,
             Outcome::World(world) => self.opened_world = Some(world),
             Outcome::Saved(path) => self.say(Tone::Done, format!("Saved to {}.", path.display())),
@@ -290,85 +341,6 @@ impl Session {
             }
         }
     }
-
-    /// Tells the states of the shown recording anew, in the background; the fit stays as it was.
-    pub fn resegment(&mut self, ctx: &egui::Context) {
-        let Some(prepared) = self.prepared().cloned() else { return };
-        self.stale = true;
-        let (index, choice) = (self.current, self.choice.clone());
-        self.jobs.start(ctx, JobKind::Segment, move || {
-            let recording = choice.given_to(&prepared.recording);
-            match segment_by(choice.method, &recording, choice.task, choice.thresholds) {
-                Ok(found) => Outcome::Segmented(index, Box::new(found)),
-                Err(error) => Outcome::Failed(sentence(&error.to_string())),
-            }
-        });
-    }
-
-    fn segmented(&mut self, index: usize, found: Segmentation) {
-        let Some(analysis) = self.analysis.as_ref() else { return };
-        let mut analysis = (**analysis).clone();
-        if let Some(place) = analysis.segmentations.get_mut(index) {
-            *place = Some(found);
-            self.analysis = Some(Arc::new(analysis));
-        }
-    }
-
-    fn fitted(&mut self, ctx: &egui::Context, analysis: Analysis) {
-        let analysis = Arc::new(analysis);
-        self.analysis = Some(Arc::clone(&analysis));
-        self.fit_problem = None;
-        let (recordings, fitted) = (self.recordings.clone(), Arc::clone(&analysis));
-        self.jobs.start(ctx, JobKind::Judge, move || Outcome::Judged(judge(&fitted, &recordings)));
-        let recordings = self.recordings.clone();
-        self.jobs.start_watched(ctx, JobKind::Simulate, "Replaying in the fitted world".to_owned(), move |_| {
-            Outcome::Simulated(replay_all(&analysis.world, &recordings))
-        });
-    }
-}
-
-/// Segments and fits; the sentence of an error.
-pub fn analyse(recordings: &[Arc<Prepared>], choice: &FitChoice) -> Result<Analysis, String> {
-    let plain: Vec<Recording> = recordings.iter().map(|p| choice.given_to(&p.recording)).collect();
-    let options = pipeline::Options { task: choice.task, thresholds: choice.thresholds, method: choice.method };
-    pipeline::analyse(&plain, &options).map_err(|error| sentence(&error.to_string()))
-}
-
-/// What is still missing for the parameters of a fit.
-pub fn judge(analysis: &Analysis, recordings: &[Arc<Prepared>]) -> Vec<Enough> {
-    let plain: Vec<Recording> = recordings.iter().map(|p| p.recording.clone()).collect();
-    estimator::online::enough_for(&plain, analysis.task, &analysis.fit, &Wanted::default())
-}
-
-/// Plays every recording through the world.
-pub fn replay_all(world: &World, recordings: &[Arc<Prepared>]) -> Vec<Option<Replayed>> {
-    recordings
-        .iter()
-        .map(|prepared| {
-            let simulation = estimator::simulate::simulate(world, &prepared.recording).ok().map(Arc::new);
-            let film = Film::shoot(world, prepared).map(Arc::new);
-            let curves = simulation.as_ref().map(curves).unwrap_or_default();
-            (simulation.is_some() || film.is_some()).then_some(Replayed { simulation, curves, film })
-        })
-        .collect()
-}
-
-/// The forces of every recording in a world, without the course of the world itself.
-pub fn replay_forces(world: &World, recordings: &[Arc<Prepared>]) -> Vec<Option<Replayed>> {
-    let replayed = |prepared: &Arc<Prepared>| {
-        let simulation = Arc::new(estimator::simulate::simulate(world, &prepared.recording).ok()?);
-        Some(Replayed { curves: curves(&simulation), simulation: Some(simulation), film: None })
-    };
-    recordings.iter().map(replayed).collect()
-}
-
-/// Predicted forces in shown units; their samples stay in the simulation.
-fn curves(simulation: &Arc<Simulation>) -> Vec<(String, Arc<Levels>)> {
-    let shown = |(index, channel): (usize, &haptics::recording::Channel)| {
-        let (_, factor) = super::format::channel_unit(&channel.unit);
-        (channel.name.clone(), Arc::new(Levels::of_simulation(simulation, index, factor)))
-    };
-    simulation.predicted.iter().enumerate().map(shown).collect()
 }
 
 /// Capital first, full stop last. A column's name in front stays as it is: `f_N` is no `F_N`.

@@ -21,7 +21,7 @@ use friction::{Friction, Sensed, friction, geometry_errors, heldout_quality};
 use geometry::Geometry;
 use haptics::Vec2;
 use haptics::law::drive_forces;
-use haptics::recording::{Channel, Recording, Task};
+use haptics::recording::{Channel, Recording, Segment, Task};
 use haptics::world::Crank;
 use held::{Held, Smooth, held, smooth};
 use motion::{Along, Rows, motions, motions_at};
@@ -57,12 +57,18 @@ pub fn fit_by(
     Ok((fit, seen.segmentation))
 }
 
+/// A segmentation, and what was asked for.
+struct Segmented {
+    asked: (Method, Option<Thresholds>, Vec<Segment>),
+    found: Segmentation,
+}
+
 /// What of a recording does not depend on how it is fitted: refits share it.
 pub struct Prepared {
     smooth: Arc<Smooth>,
     /// Two fingers squeeze the handle; one tool does not.
     grip: Option<GripSignals>,
-    segmented: Mutex<Option<(Method, Option<Thresholds>, Segmentation)>>,
+    segmented: Mutex<Option<Segmented>>,
 }
 
 impl Prepared {
@@ -73,7 +79,7 @@ impl Prepared {
         Ok(Self { smooth, grip, segmented: Mutex::new(None) })
     }
 
-    /// Made anew only when the thresholds or the method change.
+    /// Made anew only when the thresholds, the method or what a person has set change.
     fn segmentation(
         &self,
         method: Method,
@@ -81,14 +87,13 @@ impl Prepared {
         thresholds: Option<Thresholds>,
     ) -> Result<Segmentation, EstimateError> {
         let mut kept = self.segmented.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((m, t, segmentation)) = kept.as_ref()
-            && (*m, *t) == (method, thresholds)
-        {
-            return Ok(segmentation.clone());
+        let asked = (method, thresholds, recording.meta.segments.clone());
+        if let Some(kept) = kept.as_ref().filter(|kept| kept.asked == asked) {
+            return Ok(kept.found.clone());
         }
-        let segmentation = segment_by(method, recording, Some(Task::Crank), thresholds)?;
-        *kept = Some((method, thresholds, segmentation.clone()));
-        Ok(segmentation)
+        let found = segment_by(method, recording, Some(Task::Crank), thresholds)?;
+        *kept = Some(Segmented { asked, found: found.clone() });
+        Ok(found)
     }
 }
 

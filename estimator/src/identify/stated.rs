@@ -1,6 +1,6 @@
 //! What the user states beforehand: priors and bounds, from the sidecar or the command line.
 //!
-//! A prior is a measurement that was made elsewhere: it joins the estimates by their covariance (Kalman's update), so that it also
+//! A known value holds exactly: a fit that has the parameter in its regression leaves it out there; every other takes it in here. A prior is a measurement that was made elsewhere: it joins the estimates by their covariance (Kalman's update), so that it also
 //! sharpens what could not be told from its parameter. A bound cuts the distribution off; mean and spread of what is left stand in
 //! the result (moment matching), and what goes together with the parameter follows.
 
@@ -20,7 +20,7 @@ const LEARNT: f64 = 0.9;
 
 /// Takes what `meta` states into a fit. Warnings say where it contradicts the recording, or names nothing.
 pub fn apply(fit: &mut Fit, meta: &Meta) {
-    if meta.prior.is_empty() && meta.bounds.is_empty() {
+    if meta.known.is_empty() && meta.prior.is_empty() && meta.bounds.is_empty() {
         return;
     }
     let mut groups = std::mem::take(&mut fit.correlated);
@@ -84,6 +84,12 @@ fn update(group: &mut Correlated, meta: &Meta) -> Vec<Said> {
     let mut covariance = DMatrix::from_fn(p, p, |i, j| group.covariance[i][j]);
     let mut said = Vec::new();
     for j in 0..p {
+        // What the fit itself took as known has no variance any more.
+        if let Some(value) = stated(&meta.known, &group.parameters[j]).filter(|_| covariance[(j, j)] > 0.0) {
+            said.push(take_known(&mut values, &mut covariance, j, &group.parameters[j], *value));
+        }
+    }
+    for j in 0..p {
         if let Some(prior) = stated(&meta.prior, &group.parameters[j]) {
             said.push(take_prior(&mut values, &mut covariance, j, &group.parameters[j], *prior));
         }
@@ -101,6 +107,29 @@ fn update(group: &mut Correlated, meta: &Meta) -> Vec<Said> {
 /// The entry for `object.name`, or for `name` of any object.
 fn stated<'a, T>(all: &'a std::collections::BTreeMap<String, T>, full: &str) -> Option<&'a T> {
     all.get(full).or_else(|| all.get(full.rsplit('.').next()?))
+}
+
+fn take_known(values: &mut DVector<f64>, covariance: &mut DMatrix<f64>, j: usize, name: &str, value: f64) -> Said {
+    let own = covariance[(j, j)];
+    let how = format!("taken as known: {value}");
+    if !own.is_finite() {
+        (values[j], covariance[(j, j)]) = (value, 0.0);
+        return Said { parameter: j, how, spread: 0.0, warning: None };
+    }
+    let apart = (value - values[j]).abs() / own.sqrt();
+    let warning = (apart > CONTRADICTION).then(|| {
+        format!(
+            "the value {value} that {name} is known to have lies {apart:.1} standard errors off what the recording shows ({:.5} ± {:.5}); check both",
+            values[j],
+            own.sqrt()
+        )
+    });
+    condition(values, covariance, j, value, 0.0);
+    // To the last digit.
+    values[j] = value;
+    covariance.row_mut(j).fill(0.0);
+    covariance.column_mut(j).fill(0.0);
+    Said { parameter: j, how, spread: 0.0, warning }
 }
 
 fn take_prior(values: &mut DVector<f64>, covariance: &mut DMatrix<f64>, j: usize, name: &str, prior: Prior) -> Said {
@@ -247,6 +276,26 @@ fn others(group: &Correlated, said: &[Said]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_known_holds_exactly_and_sharpens_what_goes_with_it() {
+        let mut fit = merged();
+        let meta = Meta { known: [("coulomb_N".to_owned(), 0.3)].into(), ..Meta::default() };
+        apply(&mut fit, &meta);
+        let coulomb = fit.parameter("crank", "coulomb_N").expect("there");
+        assert_eq!((coulomb.value, coulomb.std_error), (Some(0.3), Some(0.0)));
+        let other = fit.parameter("crank", "friction_mu").expect("there");
+        assert!(other.std_error.is_some_and(|e| e < 0.02), "{other:?}");
+        assert!(fit.warnings.is_empty(), "{:?}", fit.warnings);
+        // Far off what was measured: said.
+        let mut fit = Fit {
+            parameters: vec![Parameter::identified("block-1", "weight_N", 0.35, 0.01, 10, "")],
+            ..Fit::default()
+        };
+        apply(&mut fit, &Meta { known: [("block-1.weight_N".to_owned(), 0.5)].into(), ..Meta::default() });
+        assert_eq!(fit.value("block-1", "weight_N"), Some(0.5));
+        assert!(fit.warnings.iter().any(|w| w.contains("15.0 standard errors")), "{:?}", fit.warnings);
+    }
 
     /// Two parameters whose sum is known to 0.01, and neither alone.
     fn merged() -> Fit {

@@ -4,6 +4,7 @@
 //! themselves are in the task's [`definition`]) and [`markov`] is its refinement, [`subtasks`] is stage 3. The results are plain intervals, the same for every method.
 
 mod align;
+pub mod by_hand;
 mod check;
 pub mod definition;
 mod each;
@@ -74,6 +75,9 @@ pub struct Segmentation {
     /// How it agrees with the labels of the recording, where it has any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub score: Option<Score>,
+    /// Whether a person set the intervals.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub by_hand: bool,
     /// What is known of every sample; only the hidden Markov model says so.
     #[serde(skip)]
     pub posterior: Option<StatePosterior>,
@@ -116,6 +120,7 @@ impl Segmentation {
             shows: task.shown_by_states(),
             warnings,
             score: None,
+            by_hand: false,
             posterior: None,
             definition: Some(Box::new(task.clone())),
         }
@@ -214,7 +219,9 @@ pub fn segment_by(
     given: Option<Thresholds>,
 ) -> Result<Segmentation, EstimateError> {
     let task = Definition::of(recording, task_of(recording, task)?)?;
-    let mut found = by_definition(method, recording, &task, given)?;
+    let found = by_definition(method, recording, &task, given)?;
+    let mut found =
+        if recording.meta.segments.is_empty() { found } else { by_hand::put(found, recording, &times(recording)) };
     found.score = score::score(recording, &found);
     Ok(found)
 }

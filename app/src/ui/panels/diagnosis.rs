@@ -8,9 +8,8 @@ use crate::ui::files;
 use crate::ui::format;
 use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::plots::inks;
-use crate::ui::session::{Session, Workspace, sentence};
+use crate::ui::session::{Session, sentence};
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::WorldChoice;
 use crate::ui::widgets::{bar, card, compact, plain_card, primary_button};
 use egui::{Align, Color32, Layout, RichText, ScrollArea, Ui, vec2};
 use estimator::diagnose::Diagnosis;
@@ -25,7 +24,6 @@ impl Panel for DiagnosisPanel {
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        take_choice(ui, session);
         let Some(answer) = session.diagnosing.answer.clone() else { return };
         ScrollArea::vertical().id_salt("diagnosis").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
@@ -148,13 +146,8 @@ fn feel(ui: &mut Ui, session: &mut Session) {
         if primary_button(ui, comparison.is_ok(), "Feel it in Train")
             .on_hover_text("Switch between both worlds while you hold the object")
             .clicked()
-            && let Ok(compare) = &comparison
         {
-            session.trainer.compare = Some(compare.clone());
-            match session.trainer.choose(WorldChoice::After) {
-                Ok(()) => session.workspace = Workspace::Train,
-                Err(problem) => session.fail(problem),
-            }
+            session.feel();
         }
         if ui.button("Save world …").on_hover_text("Writes the extended world as a file").clicked() {
             files::ask(ui.ctx(), &mut session.jobs, Purpose::SaveExtended);
@@ -162,14 +155,6 @@ fn feel(ui: &mut Ui, session: &mut Session) {
     });
     if let Err(problem) = comparison {
         ui.label(theme::caption(ui, problem));
-    }
-}
-
-/// The file dialog has answered.
-fn take_choice(ui: &Ui, session: &mut Session) {
-    match session.chosen.take() {
-        Some((Purpose::SaveExtended, path)) => files::save_extended(ui.ctx(), session, path),
-        other => session.chosen = other,
     }
 }
 

@@ -134,7 +134,7 @@ fn sources<'a>(session: &'a Session, prepared: &'a Arc<Prepared>) -> Sources<'a>
     Sources {
         recordings: &session.recordings,
         prepared,
-        simulated: session.replay(),
+        simulated: session.shown_curves(),
         extended: session.extended_replay(),
         analysis: analysis.and_then(|a| Some((a, a.segmentations.get(session.current)?.as_ref()?))),
     }

@@ -1,6 +1,7 @@
 //! One panel a file, behind one trait.
 
 pub(super) mod answers;
+mod boundaries;
 mod causes;
 mod compare;
 pub mod device_detail;
@@ -13,6 +14,7 @@ pub mod log;
 mod marks;
 pub mod measured;
 mod overlay;
+mod parameter_editor;
 pub mod parameters;
 mod passivity;
 pub mod recording;
@@ -23,6 +25,7 @@ mod rules_table;
 pub mod scene;
 mod script;
 pub mod segments;
+pub mod sensitivity;
 mod steering;
 mod task_choice;
 pub mod trainer_side;

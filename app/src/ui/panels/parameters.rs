@@ -1,9 +1,11 @@
 //! The fitted parameters: value ± error in sensible units; what the recording cannot show is greyed, with its reason.
 
 use super::Panel;
+use crate::ui::fit_choice::Stated;
 use crate::ui::format;
 use crate::ui::jobs::JobKind;
 use crate::ui::session::Session;
+use crate::ui::teach;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::card;
 use egui::{Align, Layout, RichText, Ui};
@@ -39,7 +41,7 @@ impl Panel for ParametersPanel {
             },
             |ui| match &analysis {
                 Some(analysis) => {
-                    table(ui, &analysis.fit);
+                    table(ui, session, &analysis.fit);
                     quality(ui, session, &analysis.fit);
                 }
                 None => nothing(ui, session, busy),
@@ -59,7 +61,7 @@ fn nothing(ui: &mut Ui, session: &Session, busy: bool) {
     ui.label(theme::caption(ui, text));
 }
 
-fn table(ui: &mut Ui, fit: &Fit) {
+fn table(ui: &mut Ui, session: &mut Session, fit: &Fit) {
     let mut objects: Vec<&str> = Vec::new();
     for parameter in &fit.parameters {
         if !objects.contains(&parameter.object.as_str()) {
@@ -92,7 +94,7 @@ fn table(ui: &mut Ui, fit: &Fit) {
             for object in objects {
                 heading(&mut body, object);
                 for parameter in fit.parameters.iter().filter(|p| p.object == object) {
-                    line(&mut body, parameter);
+                    line(&mut body, session, parameter);
                 }
             }
         });
@@ -111,15 +113,21 @@ fn heading(body: &mut TableBody<'_>, object: &str) {
     });
 }
 
-fn line(body: &mut TableBody<'_>, parameter: &Parameter) {
+fn line(body: &mut TableBody<'_>, session: &mut Session, parameter: &Parameter) {
+    let full = parameter.full_name();
     let quantity = format::parameter(&parameter.name, parameter.value);
+    let stated = is_stated(session, parameter);
     body.row(LINE, |mut row| {
+        row.set_selected(session.selected_parameter.as_ref() == Some(&full));
         let name = quantity.label.clone();
         let shown = parameter.value.filter(|_| parameter.identified);
         row.col(|ui| {
             let p = palette(ui);
             let color = if shown.is_some() { p.secondary } else { p.faint };
             ui.add(egui::Label::new(RichText::new(name).color(color)).truncate());
+            if let Some(word) = stated {
+                ui.label(RichText::new(word).size(10.5).color(p.accent));
+            }
         });
         if let Some(value) = shown {
             let error = parameter.std_error.map(|e| e * quantity.factor);
@@ -137,7 +145,13 @@ fn line(body: &mut TableBody<'_>, parameter: &Parameter) {
             row.col(|_| {});
             row.col(|_| {});
         }
-        row.response().on_hover_ui(|ui| explain(ui, parameter));
+        let response = row.response();
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Row, true, &full));
+        if response.clicked() {
+            let again = session.selected_parameter.as_ref() == Some(&full);
+            session.selected_parameter = (!again).then(|| full.clone());
+        }
+        response.on_hover_ui(|ui| explain(ui, parameter));
     });
 }
 
@@ -148,12 +162,32 @@ fn number(row: &mut egui_extras::TableRow<'_, '_>, text: &str, strong: bool) {
     });
 }
 
-/// How a number was found, or why there is none.
+/// A word beside parameters of which something is stated.
+fn is_stated(session: &Session, parameter: &Parameter) -> Option<&'static str> {
+    let (stated, name) = (&session.choice.stated, Stated::name_of(parameter));
+    if stated.known.contains_key(&name) {
+        Some("frozen")
+    } else if stated.prior.contains_key(&name) {
+        Some("prior")
+    } else {
+        stated.bounds.contains_key(&name).then_some("bounded")
+    }
+}
+
+/// What it is, how it was found, or why there is no value.
 fn explain(ui: &mut Ui, parameter: &Parameter) {
     ui.set_max_width(320.0);
+    if let Some(lesson) = teach::parameter(&parameter.name) {
+        ui.label(lesson.what);
+        if !lesson.formula.is_empty() {
+            ui.label(RichText::new(lesson.formula).italics().color(palette(ui).secondary));
+        }
+        ui.add_space(space::XS);
+    }
     ui.label(theme::strong(if parameter.identified { "How it was found" } else { "Why there is no value" }));
     ui.label(crate::ui::session::sentence(&parameter.how));
     ui.label(theme::caption(ui, format!("{} · {} samples", parameter.name, parameter.samples)));
+    ui.label(theme::caption(ui, "Click to try another value or to state one."));
 }
 
 /// How well the model reproduces what was measured.

@@ -2,6 +2,7 @@
 
 use super::Panel;
 use crate::ui::files;
+use crate::ui::fit_choice::Stated;
 use crate::ui::format;
 use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::session::Session;
@@ -24,7 +25,6 @@ impl Panel for RecordingPanel {
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
-        self.take_choice(ui, session);
         ScrollArea::vertical().id_salt("recording").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             plain_card(ui, "Recording", |ui| source(ui, session));
@@ -100,11 +100,11 @@ fn choose_trial(ui: &mut Ui, session: &mut Session) {
 }
 
 fn fit(ui: &mut Ui, session: &mut Session) {
-    let before = session.choice.clone();
     super::task_choice::task_choice(ui, session);
     method(ui, session);
     thresholds(ui, session);
-    session.stale |= before != session.choice;
+    part(ui, session);
+    by_hand(ui, session);
     let running = session.jobs.is_running(JobKind::Fit);
     ui.add_space(space::XS);
     ui.horizontal(|ui| {
@@ -118,8 +118,63 @@ fn fit(ui: &mut Ui, session: &mut Session) {
             ui.label(theme::caption(ui, "Fitting …"));
         } else if session.stale {
             ui.label(egui::RichText::new("settings changed").size(11.5).color(palette(ui).caution));
+        } else if let Some(took) = session.refits.took() {
+            let text = format!("took {}", format::short_time(took.as_secs_f64()));
+            ui.label(theme::caption(ui, text));
         }
     });
+    let hint = if session.analysis.is_some() && !session.refits.quick() {
+        "Fits of these recordings take too long for that: press Refit"
+    } else {
+        "Every change is fitted at once; Ctrl+Z takes it back"
+    };
+    ui.checkbox(&mut session.refits.live, "Follow every change").on_hover_text(hint);
+}
+
+/// Which part of the recording is fitted.
+fn part(ui: &mut Ui, session: &mut Session) {
+    let Some(prepared) = session.prepared().filter(|p| !p.clockless()) else { return };
+    let (whole, shown) = (prepared.span(), session.view_s);
+    ui.horizontal_wrapped(|ui| {
+        ui.label(theme::caption(ui, "Fitted"));
+        let words = match session.choice.only_s {
+            None => "the whole recording".to_owned(),
+            Some((from, to)) => format!("{} to {} s", format::number(from, 2), format::number(to, 2)),
+        };
+        ui.label(egui::RichText::new(words).size(12.0));
+    });
+    let zoomed = shown.1 - shown.0 < 0.999 * (whole.1 - whole.0) && session.choice.only_s != Some(shown);
+    ui.horizontal_wrapped(|ui| {
+        if zoomed && ui.link("Only what is shown").on_hover_text("Fit the part that the plots show").clicked() {
+            session.choice.only_s = Some(shown);
+        }
+        if session.choice.only_s.is_some() && ui.link("Whole recording").clicked() {
+            session.choice.only_s = None;
+        }
+    });
+}
+
+/// States that were set by hand, and what is stated of parameters, with the way back.
+fn by_hand(ui: &mut Ui, session: &mut Session) {
+    if session.choice.segments.contains_key(&session.current) {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(theme::caption(ui, "States set by hand"));
+            if ui.link("Find them again").clicked() {
+                let ctx = ui.ctx().clone();
+                session.forget_states(&ctx);
+            }
+        });
+    }
+    let stated = session.choice.stated.len();
+    if stated > 0 {
+        ui.horizontal_wrapped(|ui| {
+            let s = if stated == 1 { "" } else { "s" };
+            ui.label(theme::caption(ui, format!("{stated} statement{s} about parameters")));
+            if ui.link("Forget").clicked() {
+                session.choice.stated = Stated::default();
+            }
+        });
+    }
 }
 
 fn method(ui: &mut Ui, session: &mut Session) {
@@ -188,21 +243,6 @@ impl RecordingPanel {
         let fitted = session.analysis.is_some();
         if save_line(ui, session, &mut self.world_field, Purpose::SaveWorld, fitted) {
             files::save_world(ui.ctx(), session, &self.world_field);
-        }
-    }
-
-    /// A file dialog has answered.
-    fn take_choice(&mut self, ui: &Ui, session: &mut Session) {
-        match session.chosen.take() {
-            Some((Purpose::SaveLog, path)) => {
-                self.log_field = path.display().to_string();
-                files::save_log(ui.ctx(), session, &self.log_field);
-            }
-            Some((Purpose::SaveWorld, path)) => {
-                self.world_field = path.display().to_string();
-                files::save_world(ui.ctx(), session, &self.world_field);
-            }
-            other => session.chosen = other,
         }
     }
 }

@@ -25,6 +25,7 @@ impl Panel for ResultsPanel {
         ScrollArea::vertical().id_salt("results").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             self.parameters.ui(ui, session);
+            super::parameter_editor::selected(ui, session);
             super::measured::of_recording(ui, session);
             constraints(ui, session);
             warnings(ui, session);

@@ -1,6 +1,7 @@
 //! The segmentation: a coloured band of states, the subtasks under it, a legend.
 
 use super::Panel;
+use super::boundaries;
 use super::rules::parameter;
 use crate::ui::format;
 use crate::ui::session::Session;
@@ -104,7 +105,8 @@ fn x_of(session: &Session, area: Rangef, time: f64) -> f32 {
 
 fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, band: Rect) {
     let dark = ui.visuals().dark_mode;
-    let mut seek = None;
+    let (mut seek, mut change) = (None, None);
+    let can_be_set = session.states_can_be_set();
     for (index, interval) in segmentation.states.iter().enumerate() {
         let (left, right) = (x_of(session, band.x_range(), interval.t0), x_of(session, band.x_range(), interval.t1));
         if right - left < 0.4 {
@@ -129,9 +131,18 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
                 session.view_s.0 + share * (session.view_s.1 - session.view_s.0)
             });
         }
+        if can_be_set {
+            change = change.or(boundaries::menu(&response, segmentation, index, session));
+        }
         let by_model = segmentation.posterior.is_some();
         let shows = segmentation.shows.get(interval.state.name()).map_or(&[][..], Vec::as_slice);
         response.on_hover_ui(|ui| tooltip(ui, interval, word(segmentation, interval.state), shows, by_model));
+    }
+    if can_be_set {
+        change = change.or(boundaries::handles(ui, session.view_s, segmentation, band));
+    }
+    if let Some(change) = change {
+        session.set_states(&change);
     }
     if let Some(time) = seek {
         session.seek(time);

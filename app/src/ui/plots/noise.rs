@@ -119,6 +119,7 @@ mod tests {
             shows: BTreeMap::new(),
             warnings: Vec::new(),
             score: None,
+            by_hand: false,
             posterior: None,
             definition: None,
         };

@@ -9,6 +9,7 @@ mod scene;
 mod thresholds;
 mod train;
 mod window;
+mod workbench;
 
 use super::prepare::Prepared;
 use super::session::{self, Session, Workspace};
@@ -70,11 +71,12 @@ pub fn session(recording: Recording) -> Session {
     session.trainer.clock = Clock::Manual;
     session.workspace = Workspace::Calibrate;
     session.show(vec![Arc::new(Prepared::new(recording))]);
-    match session::analyse(&session.recordings, &session.choice) {
+    match crate::ui::fitting::analyse(&session.recordings, &session.choice) {
         Ok(analysis) => {
-            session.replays = session::replay_all(&analysis.world, &session.recordings);
-            session.enough = session::judge(&analysis, &session.recordings);
+            session.replays = crate::ui::fitting::replay_all(&analysis.world, &session.recordings);
+            session.enough = crate::ui::fitting::judge(&analysis, &session.recordings);
             session.analysis = Some(Arc::new(analysis));
+            session.refits.answered(&session.choice.clone());
         }
         Err(problem) => session.fit_problem = Some(problem),
     }

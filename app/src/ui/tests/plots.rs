@@ -3,13 +3,14 @@
 use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, cart, clockless_path, count_near, harness, keep, no_driver, session};
 use crate::ui::diagnosing;
+use crate::ui::fitting::{analyse, replay_all, replay_forces};
 use crate::ui::jobs::JobKind;
 use crate::ui::panels::Panel as _;
 use crate::ui::panels::log::LogPanel;
 use crate::ui::plots::LogView;
 use crate::ui::plots::choices::{XyAxis, XyColor};
 use crate::ui::prepare::Prepared;
-use crate::ui::session::{Session, Workspace, analyse, replay_all, replay_forces};
+use crate::ui::session::{Session, Workspace};
 use crate::ui::{screenshot, theme};
 use egui::Role;
 use egui_kittest::Harness;

@@ -4,7 +4,7 @@ use crate::estimate::EstimateError;
 use crate::segment::definition::Definition;
 use crate::segment::subtasks::MOST_CARRIES;
 use crate::segment::threshold::{Levels, percentile};
-use crate::segment::{Method, Segmentation, Thresholds, segment_signals_by};
+use crate::segment::{Method, Segmentation, Thresholds, by_hand, segment_signals_by};
 use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TaskSignals, half_width, smooth, task_signals};
 use haptics::Vec2;
@@ -60,6 +60,7 @@ impl Signals {
         let signals = task_signals(recording)?;
         let definition = Definition::of(recording, Task::Barrel)?;
         let segmentation = segment_signals_by(method, &signals, &definition, thresholds)?;
+        let segmentation = by_hand::put(segmentation, recording, &signals.time_s);
         let levels = Levels::of(&signals);
         let time_s = signals.time_s.clone();
         let value = |series: Vec<f64>| smooth(&time_s, &series).value;

@@ -19,7 +19,7 @@ use crate::constraint::{Carry, carried};
 use crate::estimate::{Constraint, Correlated, EstimateError, Fit, Parameter};
 use crate::segment::definition::Definition;
 use crate::segment::threshold::{Levels, percentile};
-use crate::segment::{Method, Segmentation, Thresholds, segment_signals_by, subtasks};
+use crate::segment::{Method, Segmentation, Thresholds, by_hand, segment_signals_by, subtasks};
 use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signals};
 use give::{Give, pad_parameter};
@@ -166,6 +166,7 @@ impl<'a> Blocks<'a> {
         let signals = task_signals(recording)?;
         let task = Definition::of(recording, Task::BlockStack)?;
         let segmentation = segment_signals_by(method, &signals, &task, thresholds)?;
+        let segmentation = by_hand::put(segmentation, recording, &signals.time_s);
         let levels = Levels::of(&signals);
         let vertical: Vec<f64> = signals.velocity.iter().map(|v| v.y).collect();
         let acceleration_y = smooth(&signals.time_s, &vertical).slope;

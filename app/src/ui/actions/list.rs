@@ -1,0 +1,418 @@
+//! The list: names, keys, groups, and what is in the way.
+
+use crate::ui::app::App;
+use crate::ui::by_hand::decides;
+use crate::ui::dock::Pane;
+use crate::ui::format;
+use crate::ui::session::{Session, Workspace};
+use egui::{Key, KeyboardShortcut, Modifiers};
+use std::path::PathBuf;
+
+/// One thing that can be done.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// Chooses a log.
+    OpenLog,
+    /// Chooses a world.
+    OpenWorld,
+    /// Chooses a project.
+    OpenProject,
+    /// Opens a file that was open before.
+    OpenRecent(PathBuf),
+    /// Adds another recording to those that are open.
+    AddLog,
+    /// Writes the project where it was opened.
+    SaveProject,
+    /// Writes it elsewhere.
+    SaveProjectAs,
+    /// Writes the shown recording.
+    SaveLog,
+    /// Writes the calibrated world.
+    SaveWorld,
+    /// Writes a report.
+    Report,
+    /// Reads the same files again.
+    Reload,
+    /// Says what columns mean.
+    MapColumns,
+    /// Ends the program.
+    Quit,
+    /// Takes the last change back.
+    Undo,
+    /// Brings it back.
+    Redo,
+    /// Fits with what is chosen.
+    Fit,
+    /// The rules of the task.
+    Rules,
+    /// Goes back to the states that were found.
+    ForgetStates,
+    /// Forgets what is stated of parameters.
+    ForgetStated,
+    /// Fits only what the plots show.
+    FitShown,
+    /// Fits all of the recording.
+    FitWhole,
+    /// Names what the model gets wrong.
+    Diagnose,
+    /// Takes it into the model.
+    Extend,
+    /// Takes the worlds before and after into the trainer.
+    Feel,
+    /// Takes the calibrated world into the trainer.
+    TrainCalibrated,
+    /// Begins or ends a recording.
+    Record,
+    /// Plays or stops.
+    Play,
+    /// To the beginning.
+    ToStart,
+    /// To the end.
+    ToEnd,
+    /// Shows the whole recording.
+    ShowAll,
+    /// Shows another recording.
+    Select(usize),
+    /// Puts the time cursor there.
+    GoTo {
+        /// In words.
+        what: String,
+        /// From, s.
+        from_s: f64,
+        /// To, s.
+        to_s: f64,
+    },
+    /// Opens a workspace.
+    Open(Workspace),
+    /// Shows or hides a panel.
+    Panel(Pane),
+    /// Titles on every panel, to move them.
+    Arrange,
+    /// The standard arrangement.
+    ResetLayout,
+    /// The other theme.
+    Theme,
+    /// Larger.
+    Larger,
+    /// Smaller.
+    Smaller,
+    /// As the system has it.
+    UsualSize,
+    /// All of the screen.
+    FullScreen,
+    /// Every action by its name.
+    Palette,
+    /// What is where.
+    Tour,
+}
+
+/// Where an action stands in menus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// Files.
+    File,
+    /// Changes, and how to take them back.
+    Edit,
+    /// Fit, diagnose, extend.
+    Calibrate,
+    /// Time.
+    Time,
+    /// Looks.
+    View,
+    /// Help.
+    Help,
+    /// Places in the recording: the palette only.
+    Places,
+}
+
+impl Group {
+    /// The menus.
+    pub const MENUS: [Self; 6] = [Self::File, Self::Edit, Self::Calibrate, Self::Time, Self::View, Self::Help];
+
+    /// For people.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::File => "File",
+            Self::Edit => "Edit",
+            Self::Calibrate => "Calibrate",
+            Self::Time => "Time",
+            Self::View => "View",
+            Self::Help => "Help",
+            Self::Places => "Go to",
+        }
+    }
+}
+
+const FIXED: [Action; 43] = {
+    use Action::{
+        AddLog, Arrange, Diagnose, Extend, Feel, Fit, FitShown, FitWhole, ForgetStated, ForgetStates, FullScreen,
+        Larger, MapColumns, Open, OpenLog, OpenProject, OpenWorld, Palette, Panel, Play, Quit, Record, Redo, Reload,
+        Report, ResetLayout, Rules, SaveLog, SaveProject, SaveProjectAs, SaveWorld, ShowAll, Smaller, Theme, ToEnd,
+        ToStart, Tour, TrainCalibrated, Undo, UsualSize,
+    };
+    [
+        OpenLog,
+        AddLog,
+        OpenWorld,
+        OpenProject,
+        SaveProject,
+        SaveProjectAs,
+        SaveLog,
+        SaveWorld,
+        Report,
+        Reload,
+        MapColumns,
+        Quit,
+        Undo,
+        Redo,
+        ForgetStates,
+        ForgetStated,
+        Fit,
+        FitShown,
+        FitWhole,
+        Rules,
+        Diagnose,
+        Extend,
+        Feel,
+        TrainCalibrated,
+        Record,
+        Play,
+        ToStart,
+        ToEnd,
+        ShowAll,
+        Open(Workspace::Train),
+        Open(Workspace::Calibrate),
+        Open(Workspace::Diagnose),
+        Open(Workspace::Devices),
+        Arrange,
+        ResetLayout,
+        Panel(Pane::Segments),
+        Theme,
+        Larger,
+        Smaller,
+        UsualSize,
+        FullScreen,
+        Palette,
+        Tour,
+    ]
+};
+
+impl Action {
+    /// Everything that the session as it is offers.
+    pub fn all(session: &Session) -> impl Iterator<Item = Self> {
+        let panels = Pane::of(session.workspace).iter().filter(|p| **p != Pane::Segments).map(|p| Self::Panel(*p));
+        let recent = session.recent.files().iter().map(|path| Self::OpenRecent(path.clone()));
+        let recordings = (0..session.recordings.len()).filter(|i| *i != session.current).map(Self::Select);
+        let known = !matches!(session.workspace, Workspace::Train | Workspace::Devices);
+        let places = if known { places(session) } else { Vec::new() };
+        let fixed = FIXED.into_iter().filter(move |a| *a != Self::Panel(Pane::Segments) || known);
+        let all: Vec<Self> = fixed.chain(panels).chain(recent).chain(recordings).chain(places).collect();
+        all.into_iter()
+    }
+
+    /// What it is called.
+    pub fn title(&self) -> String {
+        match self {
+            Self::OpenRecent(path) => {
+                format!("Open {}", path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default())
+            }
+            Self::Select(index) => format!("Show recording {}", index + 1),
+            Self::GoTo { what, .. } => format!("Go to: {what}"),
+            Self::Open(workspace) => format!("Open {}", workspace.title()),
+            Self::Panel(pane) => format!("Panel: {}", pane.title()),
+            other => other.fixed_title().to_owned(),
+        }
+    }
+
+    fn fixed_title(&self) -> &'static str {
+        match self {
+            Self::OpenLog => "Open log …",
+            Self::OpenWorld => "Open world …",
+            Self::OpenProject => "Open project …",
+            Self::AddLog => "Add recording …",
+            Self::SaveProject => "Save project",
+            Self::SaveProjectAs => "Save project as …",
+            Self::SaveLog => "Save recording as …",
+            Self::SaveWorld => "Save calibrated world as …",
+            Self::Report => "Write report …",
+            Self::Reload => "Reload",
+            Self::MapColumns => "Map columns …",
+            Self::Quit => "Quit",
+            Self::Undo => "Undo",
+            Self::Redo => "Redo",
+            Self::Fit => "Fit again",
+            Self::Rules => "Rules of the task …",
+            Self::ForgetStates => "Find states again",
+            Self::ForgetStated => "Forget what is stated of parameters",
+            Self::FitShown => "Fit only what is shown",
+            Self::FitWhole => "Fit the whole recording",
+            Self::Diagnose => "Diagnose",
+            Self::Extend => "Extend the model",
+            Self::Feel => "Feel before and after",
+            Self::TrainCalibrated => "Train in the calibrated world",
+            Self::Record => "Record, or stop",
+            Self::Play => "Play or pause",
+            Self::ToStart => "To the beginning",
+            Self::ToEnd => "To the end",
+            Self::ShowAll => "Show the whole recording",
+            Self::Arrange => "Arrange panels",
+            Self::ResetLayout => "Standard arrangement",
+            Self::Theme => "Light or dark",
+            Self::Larger => "Larger",
+            Self::Smaller => "Smaller",
+            Self::UsualSize => "Usual size",
+            Self::FullScreen => "Full screen",
+            Self::Palette => "All commands …",
+            Self::Tour => "Show me around",
+            Self::OpenRecent(_) | Self::Select(_) | Self::GoTo { .. } | Self::Open(_) | Self::Panel(_) => "",
+        }
+    }
+
+    /// What the palette looks for: the title, and other words for it.
+    pub fn search_text(&self) -> String {
+        let also = match self {
+            Self::Fit => " refit estimate",
+            Self::Theme => " theme colours",
+            Self::Larger | Self::Smaller | Self::UsualSize => " zoom scale",
+            Self::Diagnose => " cause wrong model",
+            Self::Rules => " thresholds segmentation",
+            Self::Tour => " help tour",
+            _ => "",
+        };
+        self.title() + also
+    }
+
+    /// Its keys.
+    pub fn keys(&self) -> Option<KeyboardShortcut> {
+        let ctrl = |key| Some(KeyboardShortcut::new(Modifiers::COMMAND, key));
+        let more = |key| Some(KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, key));
+        let plain = |key| Some(KeyboardShortcut::new(Modifiers::NONE, key));
+        match self {
+            Self::OpenLog => ctrl(Key::O),
+            Self::OpenProject => more(Key::O),
+            Self::SaveProject => ctrl(Key::S),
+            Self::SaveProjectAs => more(Key::S),
+            Self::Reload => plain(Key::F5),
+            Self::Quit => ctrl(Key::Q),
+            Self::Undo => ctrl(Key::Z),
+            Self::Redo => more(Key::Z),
+            Self::Fit => ctrl(Key::Enter),
+            Self::Diagnose => ctrl(Key::D),
+            Self::Extend => ctrl(Key::E),
+            Self::Play => plain(Key::Space),
+            Self::ToStart => plain(Key::Home),
+            Self::ToEnd => plain(Key::End),
+            Self::ShowAll => ctrl(Key::Num0),
+            Self::Open(Workspace::Train) => ctrl(Key::Num1),
+            Self::Open(Workspace::Calibrate) => ctrl(Key::Num2),
+            Self::Open(Workspace::Diagnose) => ctrl(Key::Num3),
+            Self::Open(Workspace::Devices) => ctrl(Key::Num4),
+            Self::FullScreen => plain(Key::F11),
+            Self::Palette => ctrl(Key::P),
+            Self::Tour => plain(Key::F1),
+            Self::Record => plain(Key::R),
+            _ => None,
+        }
+    }
+
+    /// Keys that mean nothing to a text field.
+    pub fn works_while_typing(&self) -> bool {
+        matches!(self, Self::Reload | Self::FullScreen | Self::Tour)
+    }
+
+    /// Its menu.
+    pub fn group(&self) -> Group {
+        match self {
+            Self::OpenLog
+            | Self::OpenWorld
+            | Self::OpenProject
+            | Self::OpenRecent(_)
+            | Self::AddLog
+            | Self::SaveProject
+            | Self::SaveProjectAs
+            | Self::SaveLog
+            | Self::SaveWorld
+            | Self::Report
+            | Self::Reload
+            | Self::MapColumns
+            | Self::Quit => Group::File,
+            Self::Undo | Self::Redo | Self::ForgetStates | Self::ForgetStated => Group::Edit,
+            Self::Fit
+            | Self::FitShown
+            | Self::FitWhole
+            | Self::Rules
+            | Self::Diagnose
+            | Self::Extend
+            | Self::Feel
+            | Self::TrainCalibrated
+            | Self::Record => Group::Calibrate,
+            Self::Play | Self::ToStart | Self::ToEnd | Self::ShowAll => Group::Time,
+            Self::Select(_) | Self::GoTo { .. } => Group::Places,
+            Self::Palette | Self::Tour => Group::Help,
+            _ => Group::View,
+        }
+    }
+
+    /// What is in the way, in a sentence; `None` where nothing is.
+    pub fn why_not(&self, app: &App) -> Option<&'static str> {
+        let session = &app.session;
+        let loaded = !session.recordings.is_empty();
+        let need = |there: bool, why: &'static str| (!there).then_some(why);
+        let recording = || need(loaded, "Open a log first.");
+        let fit = || need(session.analysis.is_some(), "There is no fit yet.");
+        match self {
+            Self::SaveLog | Self::MapColumns | Self::Fit | Self::Rules | Self::Diagnose => recording(),
+            Self::AddLog | Self::SaveProject | Self::SaveProjectAs | Self::Reload => {
+                need(session.path.is_some(), "Open a log first.")
+            }
+            Self::Report => need(session.path.is_some(), "Open or save a log first: a report is of files."),
+            Self::SaveWorld => fit(),
+            Self::TrainCalibrated => {
+                fit().or_else(|| need(session.can_train(), "This world has nothing for the hand."))
+            }
+            Self::Undo => need(session.can_undo(), "Nothing was changed."),
+            Self::Redo => need(session.can_redo(), "Nothing was taken back."),
+            Self::ForgetStates => {
+                need(session.choice.segments.contains_key(&session.current), "No state was set by hand.")
+            }
+            Self::ForgetStated => need(!session.choice.stated.is_empty(), "Nothing is stated of parameters."),
+            Self::FitShown => recording()
+                .or_else(|| need(session.prepared().is_some_and(|p| !p.clockless()), "This recording has no clock.")),
+            Self::FitWhole => need(session.choice.only_s.is_some(), "The whole recording is fitted already."),
+            Self::Extend => need(session.diagnosing.answer.is_some(), "Diagnose first."),
+            Self::Feel => need(session.diagnosing.worlds.is_some(), "Extend the model first."),
+            Self::Play | Self::ToStart | Self::ToEnd | Self::ShowAll => recording().or_else(|| {
+                need(session.workspace == Workspace::Calibrate || session.workspace == Workspace::Diagnose, "Not here.")
+            }),
+            Self::Record => need(session.workspace == Workspace::Train, "Recording is done in Train."),
+            Self::ResetLayout => need(app.dock.is_moved(session.workspace), "Nothing was moved."),
+            _ => None,
+        }
+    }
+
+    /// True or false for what is on or off.
+    pub fn is_on(&self, app: &mut App) -> Option<bool> {
+        match self {
+            Self::Panel(pane) => Some(app.dock.has(app.session.workspace, *pane)),
+            Self::Arrange => Some(app.dock.arranging),
+            Self::Open(workspace) => Some(app.session.workspace == *workspace),
+            _ => None,
+        }
+    }
+}
+
+/// Subtasks, states and warnings of the shown recording.
+fn places(session: &Session) -> Vec<Action> {
+    let Some(segmentation) = session.segmentation() else { return Vec::new() };
+    let mut places: Vec<Action> = Vec::new();
+    let named = session.analysis.as_ref().is_some_and(|a| decides(a.task));
+    for interval in segmentation.states.iter().filter(|_| named) {
+        let Some(subtask) = &interval.subtask else { continue };
+        let what = format::object(subtask).to_lowercase();
+        let again = places.iter().any(|p| matches!(p, Action::GoTo { what: w, .. } if *w == what));
+        if !again {
+            places.push(Action::GoTo { what, from_s: interval.t0, to_s: interval.t1 });
+        }
+    }
+    places
+}

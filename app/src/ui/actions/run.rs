@@ -1,0 +1,95 @@
+//! What actions do.
+
+use super::Action;
+use crate::ui::app::App;
+use crate::ui::files;
+use crate::ui::fit_choice::Stated;
+use crate::ui::jobs::Purpose;
+use crate::ui::rules::Rules;
+use crate::ui::session::{Session, Workspace};
+use egui::{Context, ViewportCommand};
+
+/// Steps of the size of everything.
+const SIZE_STEP: f32 = 0.1;
+/// Smallest and largest size.
+const SIZES: (f32, f32) = (0.6, 3.0);
+
+impl Action {
+    /// Does it.
+    pub fn run(&self, ctx: &Context, app: &mut App) {
+        match self {
+            Self::Panel(pane) => app.dock.toggle(app.session.workspace, *pane),
+            Self::Arrange => app.dock.arranging = !app.dock.arranging,
+            Self::ResetLayout => app.dock.reset(app.session.workspace),
+            Self::Palette => app.palette.open(),
+            Self::Tour => app.tour.begin(),
+            Self::Theme => {
+                let dark = ctx.global_style().visuals.dark_mode;
+                ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
+            }
+            Self::Larger => resize(ctx, SIZE_STEP),
+            Self::Smaller => resize(ctx, -SIZE_STEP),
+            Self::UsualSize => ctx.set_zoom_factor(1.0),
+            Self::FullScreen => {
+                let full = ctx.input(|i| i.viewport().fullscreen.unwrap_or(false));
+                ctx.send_viewport_cmd(ViewportCommand::Fullscreen(!full));
+            }
+            Self::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
+            other => with_session(other, ctx, &mut app.session),
+        }
+    }
+}
+
+fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
+    match action {
+        Action::OpenLog => files::ask(ctx, &mut session.jobs, Purpose::OpenLog),
+        Action::AddLog => files::ask(ctx, &mut session.jobs, Purpose::AddLog),
+        Action::OpenWorld => files::ask(ctx, &mut session.jobs, Purpose::OpenWorld),
+        Action::OpenProject => files::ask(ctx, &mut session.jobs, Purpose::OpenProject),
+        Action::OpenRecent(path) => session.open_any(ctx, path),
+        Action::SaveProject => session.save_project(ctx),
+        Action::SaveProjectAs => files::ask(ctx, &mut session.jobs, Purpose::SaveProject),
+        Action::SaveLog => files::ask(ctx, &mut session.jobs, Purpose::SaveLog),
+        Action::SaveWorld => files::ask(ctx, &mut session.jobs, Purpose::SaveWorld),
+        Action::Report => files::ask(ctx, &mut session.jobs, Purpose::SaveReport),
+        Action::Reload => session.reload(ctx),
+        Action::MapColumns => session.map_columns(ctx, None),
+        Action::Undo => session.undo(),
+        Action::Redo => session.redo(),
+        Action::Fit => session.refit(ctx),
+        Action::Rules => session.rules = Rules::open(session),
+        Action::ForgetStates => session.forget_states(ctx),
+        Action::ForgetStated => session.choice.stated = Stated::default(),
+        Action::FitShown => session.choice.only_s = Some(session.view_s),
+        Action::FitWhole => session.choice.only_s = None,
+        Action::Diagnose => {
+            session.workspace = Workspace::Diagnose;
+            session.diagnose(ctx);
+        }
+        Action::Extend => session.extend_model(ctx),
+        Action::Feel => session.feel(),
+        Action::TrainCalibrated => {
+            session.train_calibrated = true;
+            session.workspace = Workspace::Train;
+        }
+        Action::Record if session.trainer.is_recording() => crate::ui::recorder::stop_and_open(ctx, session),
+        Action::Record => crate::ui::recorder::start(session),
+        Action::Play => session.toggle_play(),
+        Action::ToStart => session.seek(f64::NEG_INFINITY),
+        Action::ToEnd => session.seek(f64::INFINITY),
+        Action::ShowAll => {
+            if let Some(prepared) = session.prepared() {
+                session.view_s = prepared.span();
+            }
+        }
+        Action::Select(index) => session.select(*index),
+        Action::GoTo { from_s, to_s, .. } => session.look_at(*from_s, *to_s),
+        Action::Open(workspace) => session.workspace = *workspace,
+        // Those of the window.
+        _ => {}
+    }
+}
+
+fn resize(ctx: &Context, by: f32) {
+    ctx.set_zoom_factor((ctx.zoom_factor() + by).clamp(SIZES.0, SIZES.1));
+}

@@ -1,0 +1,162 @@
+//! What is open is kept on the disk as it changes: a killed program loses seconds, not work.
+//!
+//! One window at a time keeps the state (a locked file says which); the next start offers to go on where a killed program was.
+
+use super::dock::Dock;
+use super::project::{Project, write_whole};
+use super::recent::Recent;
+use super::session::Session;
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
+
+/// Between two looks for changes.
+const EVERY: Duration = Duration::from_secs(2);
+
+/// Everything that the next start finds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct State {
+    /// What is open.
+    pub project: Project,
+    /// The project file that it belongs to.
+    pub project_path: Option<PathBuf>,
+    /// Where panels stand.
+    pub dock: Dock,
+    /// Files that were open before.
+    pub recent: Recent,
+    /// False while the program runs: it was killed when the next start finds it so.
+    pub ended: bool,
+    /// True once the user has been shown around.
+    pub toured: bool,
+}
+
+/// Keeps the state of one window.
+pub struct Autosave {
+    /// Work for the thread that writes, and what went wrong there.
+    sender: Sender<String>,
+    problems: Receiver<String>,
+    path: PathBuf,
+    /// What was written last.
+    last: State,
+    next: Instant,
+    /// Locked as long as the window is open.
+    _lock: File,
+}
+
+impl Autosave {
+    /// Takes the folder for this window; what the last one left. `None` where another window has it, or the disk refuses.
+    pub fn begin(folder: &Path) -> Option<(Self, State)> {
+        std::fs::create_dir_all(folder).ok()?;
+        let lock = File::create(folder.join("session.lock")).ok()?;
+        lock.try_lock().ok()?;
+        let path = folder.join("session.json");
+        // A file that cannot be read is as good as none.
+        let before: State = std::fs::read_to_string(&path)
+            .ok()
+            .and_then(|text| serde_json::from_str(&text).ok())
+            .unwrap_or_else(|| State { ended: true, ..State::default() });
+        let (sender, receiver) = channel::<String>();
+        let (complain, problems) = channel();
+        let to = path.clone();
+        let writer = move || {
+            for text in receiver {
+                if let Err(problem) = write_whole(&to, &text) {
+                    // The window goes on; the next change tries again.
+                    let _ = complain.send(problem);
+                }
+            }
+        };
+        std::thread::Builder::new().name("autosave".to_owned()).spawn(writer).ok()?;
+        let last = State { ended: true, ..State::default() };
+        Some((Self { sender, problems, path, last, next: Instant::now(), _lock: lock }, before))
+    }
+
+    /// Writes what has changed, now and then; call once a frame. What went wrong the last time comes back, in a sentence.
+    pub fn follow(&mut self, session: &Session, dock: &Dock, toured: bool) -> Option<String> {
+        let now = Instant::now();
+        if now < self.next {
+            return None;
+        }
+        self.next = now + EVERY;
+        let state = State { ended: false, ..state(session, dock, toured) };
+        if state != self.last
+            && let Ok(text) = serde_json::to_string(&state)
+        {
+            // The thread lives as long as this; without it there is nothing to be done.
+            let _ = self.sender.send(text);
+            self.last = state;
+        }
+        self.problems.try_recv().ok()
+    }
+
+    /// The window is closed by the user: written at once.
+    pub fn end(&self, session: &Session, dock: &Dock, toured: bool) {
+        let state = State { ended: true, ..state(session, dock, toured) };
+        if let Ok(text) = serde_json::to_string(&state) {
+            let _ = write_whole(&self.path, &text);
+        }
+    }
+}
+
+fn state(session: &Session, dock: &Dock, toured: bool) -> State {
+    State {
+        project: Project::of(session),
+        project_path: session.project_path.clone(),
+        dock: dock.clone(),
+        recent: session.recent.clone(),
+        ended: false,
+        toured,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ui::project::Source;
+    use crate::ui::session::Workspace;
+
+    fn wait_for(path: &Path) -> State {
+        let begun = Instant::now();
+        while begun.elapsed() < Duration::from_secs(20) {
+            let text = std::fs::read_to_string(path).unwrap_or_default();
+            if let Ok(state) = serde_json::from_str::<State>(&text) {
+                return state;
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        panic!("nothing was written");
+    }
+
+    #[test]
+    fn a_killed_window_leaves_what_was_open_and_a_closed_one_says_so() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (mut autosave, before) = Autosave::begin(folder.path()).expect("begins");
+        assert!(before.ended && before.project.recordings.is_empty(), "the first start");
+        let mut session = Session::new();
+        session.sources = vec![Source { log: PathBuf::from("/logs/a.csv"), meta: None }];
+        session.workspace = Workspace::Calibrate;
+        let dock = Dock::default();
+        autosave.follow(&session, &dock, true);
+        let found = wait_for(&folder.path().join("session.json"));
+        assert!(!found.ended && found.toured && found.project.recordings == session.sources);
+        assert!(Autosave::begin(folder.path()).is_none(), "a second window keeps out");
+        // As after a kill: the lock is gone, the file says that the program still runs.
+        drop(autosave);
+        let (autosave, before) = Autosave::begin(folder.path()).expect("begins again");
+        assert!(!before.ended && before.project == found.project);
+        autosave.end(&session, &dock, true);
+        drop(autosave);
+        assert!(Autosave::begin(folder.path()).expect("begins").1.ended);
+    }
+
+    #[test]
+    fn a_broken_file_is_as_good_as_none() {
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::write(folder.path().join("session.json"), "{ broken").expect("written");
+        let (_, before) = Autosave::begin(folder.path()).expect("begins");
+        assert_eq!(before, State { ended: true, ..State::default() });
+    }
+}

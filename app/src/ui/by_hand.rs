@@ -1,0 +1,188 @@
+//! States that the user sets by hand: boundaries are moved, stretches get another state, are split and joined.
+//!
+//! The band shows what was set at once; the fit follows when it is made again. What is set stands in the sidecar of a saved recording.
+
+use super::session::Session;
+use estimator::segment::{Interval, Segmentation, SystemState, by_hand};
+use haptics::recording::{Recording, Segment, Task};
+use std::sync::Arc;
+
+/// Samples that a stretch keeps at least.
+const LEAST_SAMPLES: usize = 2;
+
+/// A change of the states of one recording.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change {
+    /// The boundary after an interval goes to another time, s.
+    Move {
+        /// The interval before it.
+        interval: usize,
+        /// Where to.
+        to_s: f64,
+    },
+    /// An interval is of another state.
+    State {
+        /// Which.
+        interval: usize,
+        /// What it is.
+        state: SystemState,
+    },
+    /// An interval belongs to another subtask, or to none.
+    Subtask {
+        /// Which.
+        interval: usize,
+        /// The subtask.
+        subtask: Option<String>,
+    },
+    /// An interval becomes two.
+    Split {
+        /// Which.
+        interval: usize,
+        /// Where, s.
+        at_s: f64,
+    },
+    /// An interval and the next one become one, like the first.
+    Join {
+        /// Which.
+        interval: usize,
+    },
+}
+
+/// True when states decide which samples a fit of this task takes.
+pub fn decides(task: Task) -> bool {
+    matches!(task, Task::BlockStack | Task::Barrel | Task::Crank)
+}
+
+/// The intervals after a change; `None` where it makes no sense.
+pub fn changed(found: &Segmentation, times: &[f64], change: &Change) -> Option<Vec<Segment>> {
+    let mut segments = by_hand::stated(found);
+    let intervals = &found.states;
+    match change {
+        Change::Move { interval, to_s } => {
+            let (before, after) = (intervals.get(*interval)?, intervals.get(interval + 1)?);
+            let to = boundary(before, after, times, *to_s)?;
+            segments[*interval].t1 = times[to];
+            segments[interval + 1].t0 = times[to];
+        }
+        Change::State { interval, state } => {
+            let segment = segments.get_mut(*interval)?;
+            state.name().clone_into(&mut segment.state);
+            // A subtask is in one state: it does not hold any more.
+            segment.subtask = None;
+        }
+        Change::Subtask { interval, subtask } => segments.get_mut(*interval)?.subtask.clone_from(subtask),
+        Change::Split { interval, at_s } => {
+            let whole = intervals.get(*interval)?;
+            let at = times.partition_point(|t| *t < *at_s);
+            if at < whole.first + LEAST_SAMPLES || at + LEAST_SAMPLES > whole.end {
+                return None;
+            }
+            let mut second = segments[*interval].clone();
+            segments[*interval].t1 = times[at];
+            second.t0 = times[at];
+            segments.insert(interval + 1, second);
+        }
+        Change::Join { interval } => {
+            let next = segments.get(interval + 1)?.t1;
+            segments[*interval].t1 = next;
+            segments.remove(interval + 1);
+        }
+    }
+    Some(segments)
+}
+
+/// The sample at which the second of two intervals begins, as near to `to_s` as both keep something.
+fn boundary(before: &Interval, after: &Interval, times: &[f64], to_s: f64) -> Option<usize> {
+    let (least, most) = (before.first + LEAST_SAMPLES, after.end.checked_sub(LEAST_SAMPLES)?);
+    (least <= most && most < times.len()).then(|| times.partition_point(|t| *t < to_s).clamp(least, most))
+}
+
+impl Session {
+    /// True when the states of the shown recording can be set by hand, and the fit then follows.
+    pub fn states_can_be_set(&self) -> bool {
+        self.analysis.as_ref().is_some_and(|a| decides(a.task)) && self.rules.is_none()
+    }
+
+    /// Sets states of the shown recording by hand.
+    pub fn set_states(&mut self, change: &Change) {
+        let (Some(found), Some(prepared)) = (self.segmentation(), self.prepared()) else { return };
+        if let Some(segments) = changed(found, &prepared.times, change) {
+            self.choice.segments.insert(self.current, Arc::new(segments));
+            self.show_segments();
+        }
+    }
+
+    /// Goes back to the states that were found.
+    pub fn forget_states(&mut self, ctx: &egui::Context) {
+        self.choice.segments.remove(&self.current);
+        self.resegment(ctx);
+    }
+
+    /// Shows what was set by hand, before the fit has followed.
+    pub(super) fn show_segments(&mut self) {
+        let (Some(prepared), Some(found)) = (self.prepared().cloned(), self.segmentation().cloned()) else { return };
+        let Some(segments) = self.choice.segments.get(&self.current) else { return };
+        let mut stand_in = Recording::default();
+        stand_in.meta.segments.clone_from(segments);
+        let mut shown = by_hand::put(found, &stand_in, &prepared.times);
+        shown.score = None;
+        self.segmented(self.current, shown);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ui::tests::{STACK, session};
+
+    fn place(session: &Session, interval: usize) -> (f64, f64, SystemState) {
+        let found = &session.segmentation().expect("segmented").states[interval];
+        (found.t0, found.t1, found.state)
+    }
+
+    #[test]
+    fn a_boundary_moves_and_the_fit_follows_it() {
+        let mut session = session(STACK.clone());
+        let lifted = SystemState::HoldAboveGround;
+        let states = &session.segmentation().expect("segmented").states;
+        let carry = states.iter().position(|i| i.state == lifted).expect("carried");
+        let (t0, t1, _) = place(&session, carry);
+        let before = session.analysis.as_ref().expect("fitted").fit.parameter("block-1", "weight_N").cloned();
+        session.set_states(&Change::Move { interval: carry, to_s: t0 + 0.5 * (t1 - t0) });
+        let (_, now, _) = place(&session, carry);
+        assert!((now - t0 - 0.5 * (t1 - t0)).abs() < 0.02 && session.segmentation().is_some_and(|s| s.by_hand));
+        assert_eq!(place(&session, carry + 1).0, now, "no hole");
+        let after = crate::ui::fitting::analyse(&session.recordings, &session.choice).expect("fits");
+        let (before, after) = (before.expect("weighed"), after.fit.parameter("block-1", "weight_N").cloned());
+        let after = after.expect("weighed");
+        assert!(after.samples < before.samples * 3 / 4, "{} of {} samples", after.samples, before.samples);
+        let apart = (after.value.expect("a value") - before.value.expect("a value")).abs();
+        assert!(apart < 5.0 * after.std_error.expect("an error"), "half a carry weighs the same");
+    }
+
+    #[test]
+    fn a_boundary_stops_at_its_neighbours() {
+        let mut session = session(STACK.clone());
+        let (t0, ..) = place(&session, 1);
+        session.set_states(&Change::Move { interval: 1, to_s: -100.0 });
+        let (first, end, _) = place(&session, 1);
+        assert!(first == t0 && end > t0, "{first} to {end}");
+        session.set_states(&Change::Move { interval: 1, to_s: 1e9 });
+        assert!(place(&session, 2).1 > place(&session, 2).0);
+    }
+
+    #[test]
+    fn stretches_are_split_renamed_and_joined() {
+        let mut session = session(STACK.clone());
+        let count = session.segmentation().expect("segmented").states.len();
+        let (t0, t1, state) = place(&session, 0);
+        session.set_states(&Change::Split { interval: 0, at_s: 0.5 * (t0 + t1) });
+        session.set_states(&Change::State { interval: 1, state: SystemState::NoState });
+        assert_eq!((place(&session, 0).2, place(&session, 1).2), (state, SystemState::NoState));
+        assert_eq!(session.segmentation().expect("segmented").states.len(), count + 1);
+        session.set_states(&Change::Join { interval: 0 });
+        assert_eq!(place(&session, 0), (t0, t1, state));
+        session.set_states(&Change::Split { interval: 0, at_s: t1 + 100.0 });
+        assert_eq!(session.segmentation().expect("segmented").states.len(), count, "outside: nothing happens");
+    }
+}

@@ -1,0 +1,124 @@
+//! How tiles look and what may be done with them.
+
+use super::layout::GAP;
+use super::{Pane, Panels};
+use crate::ui::session::Session;
+use crate::ui::theme::{self, Palette, palette};
+use egui::{Color32, RichText, Stroke, Ui, Visuals, WidgetText};
+use egui_tiles::{Behavior, EditAction, ResizeState, SimplificationOptions, TabState, TileId, Tiles, UiResponse};
+
+/// Height of titles.
+const TITLES: f32 = 28.0;
+/// No panel is dragged smaller.
+const LEAST: f32 = 120.0;
+
+/// Draws the panels of a session.
+pub struct Tiling<'a> {
+    pub panels: &'a mut Panels,
+    pub session: &'a mut Session,
+    /// Every panel has its title.
+    pub arranging: bool,
+    /// Set when the user moves something.
+    pub edited: bool,
+}
+
+fn of(visuals: &Visuals) -> &'static Palette {
+    Palette::of(visuals.dark_mode)
+}
+
+impl Behavior<Pane> for Tiling<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, pane: &mut Pane) -> UiResponse {
+        self.panels.ui(*pane, ui, self.session);
+        UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
+        RichText::new(pane.title()).font(egui::FontId::new(12.0, theme::semibold())).into()
+    }
+
+    fn is_tab_closable(&self, _tiles: &Tiles<Pane>, _tile: TileId) -> bool {
+        self.arranging
+    }
+
+    fn is_tab_bar_visible(&self, _tile: TileId, tabs: &egui_tiles::Tabs) -> bool {
+        self.arranging || tabs.children.len() > 1
+    }
+
+    fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
+        TITLES
+    }
+
+    fn gap_width(&self, _style: &egui::Style) -> f32 {
+        GAP
+    }
+
+    fn min_size(&self) -> f32 {
+        LEAST
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+    }
+
+    fn resize_stroke(&self, style: &egui::Style, state: ResizeState) -> Stroke {
+        let p = of(&style.visuals);
+        match state {
+            ResizeState::Idle => Stroke::NONE,
+            ResizeState::Hovering => Stroke::new(2.0, p.border),
+            ResizeState::Dragging => Stroke::new(2.0, p.accent),
+        }
+    }
+
+    fn tab_title_spacing(&self, _visuals: &Visuals) -> f32 {
+        10.0
+    }
+
+    fn tab_bar_color(&self, visuals: &Visuals) -> Color32 {
+        of(visuals).window
+    }
+
+    fn tab_bg_color(&self, visuals: &Visuals, _tiles: &Tiles<Pane>, _tile: TileId, state: &TabState) -> Color32 {
+        if state.active { of(visuals).card } else { Color32::TRANSPARENT }
+    }
+
+    fn tab_outline_stroke(&self, visuals: &Visuals, _tiles: &Tiles<Pane>, _tile: TileId, state: &TabState) -> Stroke {
+        if state.active { Stroke::new(1.0, of(visuals).border) } else { Stroke::NONE }
+    }
+
+    fn tab_bar_hline_stroke(&self, _visuals: &Visuals) -> Stroke {
+        Stroke::NONE
+    }
+
+    fn tab_text_color(&self, visuals: &Visuals, _tiles: &Tiles<Pane>, _tile: TileId, state: &TabState) -> Color32 {
+        if state.active { of(visuals).text } else { of(visuals).secondary }
+    }
+
+    fn drag_preview_stroke(&self, visuals: &Visuals) -> Stroke {
+        Stroke::new(1.5, of(visuals).accent)
+    }
+
+    fn drag_preview_color(&self, visuals: &Visuals) -> Color32 {
+        of(visuals).accent.gamma_multiply(0.18)
+    }
+
+    fn dragged_overlay_color(&self, visuals: &Visuals) -> Color32 {
+        of(visuals).window.gamma_multiply(0.5)
+    }
+
+    fn top_bar_right_ui(
+        &mut self,
+        _tiles: &Tiles<Pane>,
+        ui: &mut Ui,
+        _tile: TileId,
+        _tabs: &egui_tiles::Tabs,
+        _scroll: &mut f32,
+    ) {
+        if self.arranging {
+            ui.label(RichText::new("drag the title").size(10.5).color(palette(ui).faint));
+        }
+    }
+
+    fn on_edit(&mut self, action: EditAction) {
+        self.edited |= !matches!(action, EditAction::TabSelected);
+    }
+}

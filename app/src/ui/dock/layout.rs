@@ -1,0 +1,71 @@
+//! The standard arrangements, and widths that suit the window.
+
+use super::Pane;
+use crate::ui::session::{Session, Workspace};
+use egui::Vec2;
+use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
+
+/// Between panels, and around them.
+pub const GAP: f32 = 12.0;
+/// Width of the trainer's side, points.
+const TRAINER_SIDE: f32 = 312.0;
+
+/// The arrangement that a workspace begins with.
+pub fn standard(workspace: Workspace) -> Tree<Pane> {
+    let mut tiles = Tiles::default();
+    let root = match workspace {
+        Workspace::Calibrate => {
+            let [recording, scene, log, results] =
+                [Pane::Recording, Pane::Scene, Pane::Log, Pane::Results].map(|p| tiles.insert_pane(p));
+            let middle = tiles.insert_vertical_tile(vec![scene, log]);
+            tiles.insert_horizontal_tile(vec![recording, middle, results])
+        }
+        Workspace::Train => side_by_side(&mut tiles, [Pane::Trainer, Pane::TrainerSide]),
+        Workspace::Diagnose => side_by_side(&mut tiles, [Pane::Diagnose, Pane::Diagnosis]),
+        Workspace::Devices => side_by_side(&mut tiles, [Pane::Devices, Pane::DeviceDetail]),
+    };
+    Tree::new(egui::Id::unique(("dock", workspace)), root, tiles)
+}
+
+fn side_by_side(tiles: &mut Tiles<Pane>, panes: [Pane; 2]) -> TileId {
+    let children = panes.map(|p| tiles.insert_pane(p)).to_vec();
+    tiles.insert_horizontal_tile(children)
+}
+
+/// Gives the columns of an arrangement that nobody has moved the widths that suit the room.
+pub fn suit(tree: &mut Tree<Pane>, workspace: Workspace, room: Vec2, session: &Session) {
+    let wide = room.x - 2.0 * GAP;
+    match workspace {
+        Workspace::Calibrate => {
+            let (left, right) = ((0.18 * wide).clamp(208.0, 240.0), (0.25 * wide).clamp(338.0, 364.0));
+            columns(tree, LinearDir::Horizontal, &[Some(left), None, Some(right)], wide);
+            // The rules need more room than the picture.
+            let upper = if session.rules.is_some() { 0.48 } else { 0.40 } * room.y;
+            columns(tree, LinearDir::Vertical, &[Some(upper), None], room.y - 2.0 * GAP);
+        }
+        Workspace::Train => columns(tree, LinearDir::Horizontal, &[None, Some(TRAINER_SIDE)], wide),
+        Workspace::Diagnose => {
+            columns(tree, LinearDir::Horizontal, &[None, Some((0.28 * wide).clamp(332.0, 396.0))], wide);
+        }
+        Workspace::Devices => {
+            columns(tree, LinearDir::Horizontal, &[Some((0.36 * wide).clamp(306.0, 356.0)), None], wide);
+        }
+    }
+}
+
+/// Shares of the first container of a direction: given widths, and one that takes the rest.
+fn columns(tree: &mut Tree<Pane>, dir: LinearDir, widths: &[Option<f32>], room: f32) {
+    let gaps = GAP * (widths.len() as f32 - 1.0);
+    let rest = (room - gaps - widths.iter().flatten().sum::<f32>()).max(1.0);
+    let linear = tree.tiles.tiles_mut().find_map(|tile| match tile {
+        Tile::Container(Container::Linear(linear)) if linear.dir == dir && linear.children.len() == widths.len() => {
+            Some(linear)
+        }
+        _ => None,
+    });
+    if let Some(Linear { children, shares, .. }) = linear {
+        for (child, width) in children.iter().zip(widths) {
+            shares.set_share(*child, width.unwrap_or(rest));
+        }
+    }
+}

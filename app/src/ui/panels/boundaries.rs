@@ -1,0 +1,124 @@
+//! Setting states by hand: handles between the states of the band, and what a right click on a state offers.
+
+use crate::ui::by_hand::Change;
+use crate::ui::format;
+use crate::ui::session::Session;
+use crate::ui::theme::{self, palette, state_color, state_name};
+use crate::ui::widgets::swatch;
+use egui::{CursorIcon, Pos2, Rect, Response, Sense, Stroke, Ui, vec2};
+use estimator::segment::{Segmentation, SystemState};
+
+/// Points at which a boundary can be taken hold of, to either side.
+const GRASP: f32 = 4.0;
+
+/// Handles on the boundaries that lie in the visible time; what was dragged.
+pub fn handles(ui: &Ui, view_s: (f64, f64), segmentation: &Segmentation, band: Rect) -> Option<Change> {
+    let mut change = None;
+    let (from, to) = view_s;
+    let per_s = f64::from(band.width()) / (to - from).max(1e-12);
+    let boundaries = segmentation.states.len().saturating_sub(1);
+    for (index, interval) in segmentation.states.iter().enumerate().take(boundaries) {
+        let x = band.left() + ((interval.t1 - from) * per_s) as f32;
+        if !band.x_range().expand(1.0).contains(x) {
+            continue;
+        }
+        let rect = Rect::from_center_size(Pos2::new(x, band.center().y), vec2(2.0 * GRASP, band.height() + 4.0));
+        let response = ui.interact(rect, ui.scope_id().with(("boundary", index)), Sense::drag());
+        let name = format!("Boundary at {} s", format::number(interval.t1, 2));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, &name));
+        if response.hovered() || response.dragged() {
+            ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
+            mark(ui, x, band);
+        }
+        if response.dragged()
+            && let Some(at) = response.interact_pointer_pos()
+        {
+            let to_s = from + f64::from(at.x - band.left()) / per_s;
+            change = Some(Change::Move { interval: index, to_s });
+        }
+        if !response.dragged() {
+            response.on_hover_text(format!("{name}\nDrag to move it; the fit follows"));
+        }
+    }
+    change
+}
+
+/// A grip where the boundary is held.
+fn mark(ui: &Ui, x: f32, band: Rect) {
+    let p = palette(ui);
+    let painter = ui.painter();
+    painter.vline(x, band.y_range().expand(3.0), Stroke::new(2.0, p.text));
+    painter.circle(Pos2::new(x, band.center().y), 4.5, p.card, Stroke::new(2.0, p.text));
+}
+
+/// What can be done with a state, on a right click; `at_s` is the time under the pointer.
+pub fn menu(response: &Response, segmentation: &Segmentation, index: usize, session: &Session) -> Option<Change> {
+    let mut change = None;
+    let cursor_s = session.cursor_s;
+    response.context_menu(|ui| {
+        let interval = &segmentation.states[index];
+        ui.label(theme::caption(ui, "Set by hand"));
+        ui.menu_button("State", |ui| {
+            for state in states(segmentation) {
+                let picked = ui
+                    .horizontal(|ui| {
+                        swatch(ui, state_color(ui.visuals().dark_mode, state));
+                        ui.selectable_label(state == interval.state, state_name(state)).clicked()
+                    })
+                    .inner;
+                if picked {
+                    change = Some(Change::State { interval: index, state });
+                    ui.close();
+                }
+            }
+        });
+        ui.menu_button("Subtask", |ui| {
+            for subtask in subtasks(segmentation) {
+                let words = subtask.as_deref().map_or("None".to_owned(), format::object);
+                if ui.selectable_label(subtask == interval.subtask, words).clicked() {
+                    change = Some(Change::Subtask { interval: index, subtask });
+                    ui.close();
+                }
+            }
+        });
+        let inside = cursor_s > interval.t0 && cursor_s < interval.t1;
+        let split = ui.add_enabled(inside, egui::Button::new("Split at the time cursor"));
+        if split.on_disabled_hover_text("Put the time cursor inside this state first").clicked() {
+            change = Some(Change::Split { interval: index, at_s: cursor_s });
+            ui.close();
+        }
+        let last = index + 1 >= segmentation.states.len();
+        if ui.add_enabled(!last, egui::Button::new("Join with the next")).clicked() {
+            change = Some(Change::Join { interval: index });
+            ui.close();
+        }
+    });
+    change
+}
+
+/// The states of the task, and none.
+fn states(segmentation: &Segmentation) -> Vec<SystemState> {
+    let mut states: Vec<SystemState> =
+        segmentation.definition.iter().flat_map(|d| d.states.iter().map(|rule| rule.state)).collect();
+    states.extend(segmentation.states.iter().map(|i| i.state));
+    states.push(SystemState::NoState);
+    let mut seen = Vec::new();
+    states.retain(|state| {
+        !seen.contains(state) && {
+            seen.push(*state);
+            true
+        }
+    });
+    states
+}
+
+/// The subtasks of the recording in their order, and none.
+fn subtasks(segmentation: &Segmentation) -> Vec<Option<String>> {
+    let mut names: Vec<Option<String>> = vec![None];
+    for interval in &segmentation.states {
+        if !names.contains(&interval.subtask) {
+            names.push(interval.subtask.clone());
+        }
+    }
+    names
+}

@@ -1,0 +1,195 @@
+//! One parameter: another value is tried on the replay at once, and what is known of it beforehand is stated.
+
+use crate::ui::fit_choice::Stated;
+use crate::ui::format::{self, Quantity};
+use crate::ui::session::Session;
+use crate::ui::teach;
+use crate::ui::theme::{self, palette, space};
+use crate::ui::what_if::residual_rms;
+use crate::ui::widgets::{card, compact, segmented};
+use egui::{Align, DragValue, Layout, RichText, Slider, Ui};
+use estimator::estimate::Parameter;
+use haptics::recording::Prior;
+
+/// The slider goes so many standard errors to either side …
+const SIGMAS: f64 = 6.0;
+/// … or this share of the value, whichever is more.
+const SHARE: f64 = 0.5;
+
+/// How a parameter comes to its value.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Source {
+    Estimated,
+    Prior,
+    Known,
+}
+
+/// The card of the selected parameter, if one is.
+pub fn selected(ui: &mut Ui, session: &mut Session) {
+    let Some(analysis) = session.analysis.clone() else { return };
+    let Some(name) = session.selected_parameter.clone() else { return };
+    let Some(parameter) = analysis.fit.parameters.iter().find(|p| p.full_name() == name) else { return };
+    let quantity = format::parameter(&parameter.name, parameter.value);
+    let heading = format!("{} · {}", format::object(&parameter.object), quantity.label.to_lowercase());
+    let mut close = false;
+    let leave = |ui: &mut Ui| close = ui.link("Close").clicked();
+    card(ui, &heading, leave, |ui| {
+        if let Some(lesson) = teach::parameter(&parameter.name) {
+            ui.label(theme::caption(ui, format!("{} {}", lesson.what, lesson.formula)));
+            ui.add_space(space::XS);
+        }
+        try_another(ui, session, parameter, &quantity);
+        ui.add_space(space::S);
+        state(ui, session, parameter, &quantity);
+    });
+    if close {
+        session.selected_parameter = None;
+    }
+}
+
+fn try_another(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quantity: &Quantity) {
+    let name = parameter.full_name();
+    let Some(fitted) = parameter.value.filter(|_| parameter.identified) else {
+        ui.label(theme::caption(ui, "It has no value that could be varied: state one below."));
+        return;
+    };
+    ui.label(theme::strong("Try another value"));
+    let tried = session.what_if.values.get(&name).copied();
+    let reach = (SIGMAS * parameter.std_error.unwrap_or(0.0)).max(SHARE * fitted.abs()).max(1e-9);
+    let mut shown = tried.unwrap_or(fitted) * quantity.factor;
+    let range = (fitted - reach) * quantity.factor..=(fitted + reach) * quantity.factor;
+    let digits = (2.0 - (reach * quantity.factor).log10().floor()).clamp(0.0, 8.0) as usize;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().slider_width = (ui.available_width() - 108.0).max(60.0);
+        let slider = Slider::new(&mut shown, range).suffix(format!(" {}", quantity.unit)).max_decimals(digits);
+        let response = ui.add(slider.clamping(egui::SliderClamping::Never));
+        if response.changed() {
+            session.try_value(&name, Some(shown / quantity.factor));
+        }
+    });
+    outcome(ui, session, tried.is_some());
+}
+
+/// What the tried values leave of the force, beside what the fit leaves.
+fn outcome(ui: &mut Ui, session: &mut Session, here: bool) {
+    if !session.what_if.is_on() {
+        ui.label(theme::caption(ui, "The simulated curves and what is left over follow the slider."));
+        return;
+    }
+    let p = palette(ui);
+    let (fitted, tried) = (residual_rms(&session.replays), residual_rms(&session.what_if.replays));
+    if let (Some(fitted), Some(tried)) = (fitted, tried) {
+        let change = 100.0 * (tried / fitted.max(1e-12) - 1.0);
+        let color = if change > 1.0 { p.caution } else { p.good };
+        let words = format!(
+            "{} N RMS left over · fitted {} N · {}{} %",
+            format::significant(tried, 3),
+            format::significant(fitted, 3),
+            if change >= 0.0 { "+" } else { "−" },
+            format::number(change.abs(), 1),
+        );
+        ui.label(RichText::new(words).size(11.5).color(color));
+    } else {
+        ui.label(theme::caption(ui, "Replaying …"));
+    }
+    let several = session.what_if.values.len() - usize::from(here);
+    compact(ui, |ui| {
+        if ui.link("Back to the fitted value").clicked() {
+            session.what_if.forget();
+        }
+        if several > 0 {
+            ui.label(theme::caption(ui, format!("{several} more tried")));
+        }
+    });
+}
+
+fn state(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quantity: &Quantity) {
+    let name = Stated::name_of(parameter);
+    let stated = &mut session.choice.stated;
+    let before = if stated.known.contains_key(&name) {
+        Source::Known
+    } else if stated.prior.contains_key(&name) {
+        Source::Prior
+    } else {
+        Source::Estimated
+    };
+    ui.label(theme::strong("Where its value comes from"));
+    let choices = [
+        (Source::Estimated, "Estimate", "From this recording alone"),
+        (Source::Prior, "Prior", "From this recording and what was believed before, each by its error"),
+        (Source::Known, "Freeze", "Taken as known exactly; not estimated"),
+    ];
+    let mut source = before;
+    if segmented(ui, &mut source, &choices) {
+        stated.known.remove(&name);
+        stated.prior.remove(&name);
+        // What stands in the slider is what one wants to hold on to.
+        let value = session.what_if.values.get(&parameter.full_name()).copied().or(parameter.value).unwrap_or(0.0);
+        let std = parameter.std_error.filter(|e| *e > 0.0).unwrap_or_else(|| (0.1 * value.abs()).max(1e-6));
+        match source {
+            Source::Known => drop(stated.known.insert(name.clone(), value)),
+            Source::Prior => drop(stated.prior.insert(name.clone(), Prior { mean: value, std })),
+            Source::Estimated => {}
+        }
+    }
+    if let Some(value) = stated.known.get_mut(&name) {
+        line(ui, "Value", quantity.unit, |ui| number(ui, value, quantity, None));
+    }
+    if let Some(prior) = stated.prior.get_mut(&name) {
+        line(ui, "Mean", quantity.unit, |ui| number(ui, &mut prior.mean, quantity, None));
+        line(ui, "± 1 σ", quantity.unit, |ui| number(ui, &mut prior.std, quantity, Some(1e-12)));
+    }
+    bounds(ui, stated, &name, parameter, quantity);
+}
+
+fn bounds(ui: &mut Ui, stated: &mut Stated, name: &str, parameter: &Parameter, quantity: &Quantity) {
+    let mut pair = stated.bounds.get(name).copied().unwrap_or([None, None]);
+    let value = parameter.value.unwrap_or(0.0);
+    let reach = parameter.std_error.map_or(0.1 * value.abs(), |e| 3.0 * e).max(1e-9);
+    for (index, (words, start)) in [("Not below", value - reach), ("Not above", value + reach)].into_iter().enumerate()
+    {
+        compact(ui, |ui| {
+            let mut on = pair[index].is_some();
+            if ui.checkbox(&mut on, RichText::new(words).size(12.0)).changed() {
+                pair[index] = on.then_some(start);
+            }
+            if let Some(bound) = &mut pair[index] {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    ui.label(theme::caption(ui, quantity.unit));
+                    number(ui, bound, quantity, None);
+                });
+            }
+        });
+    }
+    if let [Some(low), Some(high)] = &mut pair
+        && *low > *high
+    {
+        std::mem::swap(low, high);
+    }
+    if pair == [None, None] {
+        stated.bounds.remove(name);
+    } else {
+        stated.bounds.insert(name.to_owned(), pair);
+    }
+}
+
+fn line(ui: &mut Ui, label: &str, unit: &str, value: impl FnOnce(&mut Ui)) {
+    compact(ui, |ui| {
+        ui.label(theme::caption(ui, label));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.label(theme::caption(ui, unit));
+            value(ui);
+        });
+    });
+}
+
+/// A field for a number in SI, shown in the quantity's unit.
+fn number(ui: &mut Ui, value: &mut f64, quantity: &Quantity, least: Option<f64>) {
+    let mut shown = *value * quantity.factor;
+    let speed = (0.005 * shown.abs()).max(1e-5);
+    let low = least.map_or(f64::NEG_INFINITY, |least| least * quantity.factor);
+    let field = DragValue::new(&mut shown).speed(speed).max_decimals(6).range(low..=f64::INFINITY);
+    if ui.add(field).changed() {
+        *value = shown / quantity.factor;
+    }
+}

@@ -1,0 +1,142 @@
+//! How the result depends on the parameters, and how they go together: bars, and a matrix of correlations.
+
+use super::Panel;
+use crate::ui::format;
+use crate::ui::jobs::JobKind;
+use crate::ui::sensitivity::{CHANGE, Correlations, Effect};
+use crate::ui::session::Session;
+use crate::ui::theme::{self, Palette, palette, space};
+use crate::ui::widgets::{bar, compact, empty_state, plain_card};
+use egui::{Align, Align2, Color32, FontId, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
+
+/// Side of a cell of the matrix, points: at most, and at least.
+const CELL: (f32, f32) = (34.0, 16.0);
+/// Two parameters that go together more than this can hardly be told apart.
+const ALIKE: f64 = 0.9;
+
+/// The sensitivity panel.
+#[derive(Default)]
+pub struct SensitivityPanel;
+
+impl Panel for SensitivityPanel {
+    fn title(&self) -> &'static str {
+        "Sensitivity"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        let ctx = ui.ctx().clone();
+        session.want_sensitivity(&ctx);
+        let Some(found) = session.sensitivity.clone().filter(|_| session.analysis.is_some()) else {
+            let busy = session.jobs.is_running(JobKind::Sensitivity);
+            let text = if busy {
+                "Every parameter is changed a little, and the motion replayed."
+            } else {
+                "Once there is a fit, this shows how much the force depends on each of its parameters."
+            };
+            empty_state(ui, if busy { "Looking …" } else { "Nothing fitted yet" }, text, |_| {});
+            return;
+        };
+        ScrollArea::vertical().id_salt("sensitivity").auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = space::S;
+            plain_card(ui, "What the force depends on", |ui| effects(ui, session, &found.effects));
+            plain_card(ui, "What goes together", |ui| together(ui, &found.groups));
+        });
+    }
+}
+
+fn effects(ui: &mut Ui, session: &mut Session, effects: &[Effect]) {
+    let text =
+        format!("Change of the simulated force when a parameter is {} % larger.", format::number(100.0 * CHANGE, 0));
+    ui.label(theme::caption(ui, text));
+    let most = effects.iter().map(|e| e.force_rms).fold(0.0, f64::max);
+    if most <= 0.0 {
+        ui.label(theme::caption(ui, "The replay of this recording does not depend on any of them."));
+        return;
+    }
+    let p = palette(ui);
+    for effect in effects {
+        let response = compact(ui, |ui| {
+            let name = ui.add(egui::Label::new(RichText::new(words(&effect.name)).size(12.0)).sense(Sense::click()));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.label(RichText::new(format!("{} N", format::significant(effect.force_rms, 2))).size(12.0));
+            });
+            name
+        });
+        bar(ui, effect.force_rms, most, None, p.accent);
+        let uncertain = effect.by_its_error.map_or_else(String::new, |by| {
+            format!("\nIts own error changes the force by {} N.", format::significant(by, 2))
+        });
+        let hint = format!("{}{uncertain}\nClick to try another value.", words(&effect.name));
+        if response.on_hover_text(hint).clicked() {
+            session.selected_parameter = Some(effect.name.clone());
+        }
+    }
+}
+
+fn together(ui: &mut Ui, groups: &[Correlations]) {
+    if groups.is_empty() {
+        ui.label(theme::caption(ui, "Every parameter of this fit was found by itself."));
+        return;
+    }
+    ui.label(theme::caption(ui, "Where a cell is full, the recording shows only a mixture of the two."));
+    for group in groups {
+        ui.add_space(space::XS);
+        matrix(ui, group);
+        for (i, row) in group.values.iter().enumerate() {
+            for (j, value) in row.iter().enumerate().skip(i + 1).filter(|(_, v)| v.abs() > ALIKE) {
+                let how = if *value > 0.0 { "one less the other" } else { "their sum" };
+                let text = format!(
+                    "{} and {} go together ({}): {how} is known far better than each.",
+                    words(&group.names[i]),
+                    words(&group.names[j]).to_lowercase(),
+                    format::number(*value, 2)
+                );
+                ui.label(RichText::new(text).size(11.5).color(palette(ui).caution));
+            }
+        }
+    }
+}
+
+/// Names to the left, the lower triangle of cells to their right, numbered below.
+fn matrix(ui: &mut Ui, group: &Correlations) {
+    let p = palette(ui);
+    let n = group.names.len();
+    let font = FontId::proportional(11.5);
+    let names: Vec<String> = group.names.iter().map(|name| words(name)).collect();
+    let galleys: Vec<_> =
+        names.iter().map(|name| ui.painter().layout_no_wrap(name.clone(), font.clone(), p.secondary)).collect();
+    let wide = galleys.iter().map(|g| g.size().x).fold(0.0, f32::max) + 22.0;
+    let cell = ((ui.available_width() - wide) / n as f32).clamp(CELL.1, CELL.0);
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), cell * n as f32 + 16.0), Sense::hover());
+    for (i, galley) in galleys.into_iter().enumerate() {
+        let y = rect.top() + (i as f32 + 0.5) * cell;
+        ui.painter().text(Pos2::new(rect.left(), y), Align2::LEFT_CENTER, (i + 1).to_string(), font.clone(), p.faint);
+        ui.painter().galley(Pos2::new(rect.left() + 16.0, y - 0.5 * galley.size().y), galley, p.secondary);
+        let below = Pos2::new(rect.left() + wide + (i as f32 + 0.5) * cell, rect.top() + cell * n as f32 + 8.0);
+        ui.painter().text(below, Align2::CENTER_CENTER, (i + 1).to_string(), font.clone(), p.faint);
+        for j in 0..=i {
+            let corner = Pos2::new(rect.left() + wide + j as f32 * cell, rect.top() + i as f32 * cell);
+            let at = Rect::from_min_size(corner, vec2(cell, cell)).shrink(1.0);
+            ui.painter().rect_filled(at, 2, color(p, group.values[i][j]));
+            let response = ui.interact(at, ui.scope_id().with(("cell", i, j)), Sense::hover());
+            let value = format::number(group.values[i][j], 2);
+            response.on_hover_text(format!("{} with {}: {value}", names[i], names[j].to_lowercase()));
+            if i != j && cell > 24.0 {
+                let ink = theme::ink_on(color(p, group.values[i][j]));
+                ui.painter().text(at.center(), Align2::CENTER_CENTER, value, FontId::proportional(10.0), ink);
+            }
+        }
+    }
+}
+
+/// Accent for what grows together, caution for what grows against each other; nothing where neither.
+fn color(p: &Palette, correlation: f64) -> Color32 {
+    let end = if correlation >= 0.0 { p.accent } else { p.caution };
+    theme::mix(p.sunken, end, correlation.abs() as f32)
+}
+
+/// `block-1.weight_N` → `Block 1 weight`.
+fn words(full_name: &str) -> String {
+    let Some((object, name)) = full_name.split_once('.') else { return full_name.to_owned() };
+    format!("{} {}", format::object(object), format::parameter(name, None).label.to_lowercase())
+}

@@ -1,0 +1,256 @@
+//! A project: which recordings, how they are fitted, and what was looked at, in one small JSON file.
+
+use super::fit_choice::FitChoice;
+use super::jobs::{JobKind, Outcome, Ticket};
+use super::prepare::Prepared;
+use super::session::{Session, Workspace, sentence};
+use estimator::log::Watch;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The ending of project files.
+pub const ENDING: &str = "touchstone.json";
+/// The version that this program writes.
+const VERSION: u32 = 1;
+
+/// A file with recordings.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Source {
+    /// The log.
+    pub log: PathBuf,
+    /// A sidecar that does not stand beside it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub meta: Option<PathBuf>,
+}
+
+/// Everything that opening a project brings back.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Project {
+    /// The version of this format.
+    pub touchstone_project: u32,
+    /// The files, in order.
+    pub recordings: Vec<Source>,
+    /// How they are fitted.
+    pub choice: FitChoice,
+    /// The recording that is shown.
+    pub current: usize,
+    /// The time cursor, s.
+    pub cursor_s: f64,
+    /// The visible time, s.
+    pub view_s: (f64, f64),
+    /// The open workspace.
+    pub workspace: Workspace,
+}
+
+impl Project {
+    /// What a session has open.
+    pub fn of(session: &Session) -> Self {
+        Self {
+            touchstone_project: VERSION,
+            recordings: session.sources.clone(),
+            choice: session.choice.clone(),
+            current: session.current,
+            cursor_s: session.cursor_s,
+            view_s: session.view_s,
+            workspace: session.workspace,
+        }
+    }
+
+    /// Reads one; an error is a sentence.
+    pub fn read(path: &Path) -> Result<Self, String> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|e| format!("The project cannot be read ({e}): {}", path.display()))?;
+        let mut project: Self = serde_json::from_str(&text)
+            .map_err(|e| format!("This is no project that can be read ({e}): {}", path.display()))?;
+        if project.touchstone_project > VERSION {
+            return Err(format!("This project was written by a newer version of the program: {}", path.display()));
+        }
+        let folder = path.parent().unwrap_or(Path::new(""));
+        for source in &mut project.recordings {
+            source.log = folder.join(&source.log);
+            source.meta = source.meta.as_ref().map(|meta| folder.join(meta));
+        }
+        Ok(project)
+    }
+
+    /// Writes it whole or not at all; files below the project's folder are named from there, so that the folder can be moved.
+    pub fn write(&self, path: &Path) -> Result<(), String> {
+        let folder = std::path::absolute(path).ok().and_then(|p| p.parent().map(Path::to_path_buf)).unwrap_or_default();
+        let within = |p: &Path| {
+            let whole = std::path::absolute(p).unwrap_or_else(|_| p.to_path_buf());
+            whole.strip_prefix(&folder).map(Path::to_path_buf).unwrap_or(whole)
+        };
+        let mut project = self.clone();
+        for source in &mut project.recordings {
+            source.log = within(&source.log);
+            source.meta = source.meta.as_deref().map(within);
+        }
+        let text = serde_json::to_string_pretty(&project).map_err(|e| sentence(&e.to_string()))? + "\n";
+        write_whole(path, &text)
+    }
+}
+
+/// Writes beside the file first, so that a crash leaves the old one or the new one.
+pub fn write_whole(path: &Path, text: &str) -> Result<(), String> {
+    let failed = |e: std::io::Error| {
+        format!("The file cannot be written ({e}); check the folder and its permissions: {}", path.display())
+    };
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".part");
+    let beside = PathBuf::from(beside);
+    std::fs::write(&beside, text).map_err(failed)?;
+    std::fs::rename(&beside, path).map_err(failed)
+}
+
+/// Whether a JSON file is a project.
+pub fn is_project(path: &Path) -> bool {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let value: Option<serde_json::Value> = serde_json::from_str(&text).ok();
+    value.is_some_and(|v| v.get("touchstone_project").is_some())
+}
+
+/// Reads every file of a project; work for a job.
+fn read_all(project: Project, ticket: &Ticket) -> Outcome {
+    let mut recordings = Vec::new();
+    let count = project.recordings.len().max(1) as f64;
+    for (index, source) in project.recordings.iter().enumerate() {
+        let progress = |share: f64| ticket.tell((index as f64 + share) / count);
+        let watch = Watch { progress: &progress, cancelled: ticket.cancelled(), preview: None };
+        match estimator::log::load_watched(&source.log, source.meta.as_deref(), &watch) {
+            Ok(read) => recordings.extend(read.into_iter().map(|r| Arc::new(Prepared::new(r)))),
+            Err(estimator::log::LogError::Cancelled { .. }) => return Outcome::Cancelled,
+            Err(error) => return Outcome::Failed(sentence(&error.to_string())),
+        }
+    }
+    Outcome::Project(Box::new(project), recordings)
+}
+
+impl Session {
+    /// Opens a project file in the background.
+    pub fn open_project(&mut self, ctx: &egui::Context, path: &Path) {
+        match Project::read(path) {
+            Ok(project) => {
+                self.opening_project = Some(path.to_path_buf());
+                self.restore(ctx, project);
+            }
+            Err(problem) => self.fail(problem),
+        }
+    }
+
+    /// Opens what a project names, in the background.
+    pub fn restore(&mut self, ctx: &egui::Context, project: Project) {
+        if project.recordings.is_empty() {
+            self.fail("This project names no recording.");
+            return;
+        }
+        self.jobs.start_watched(ctx, JobKind::Load, "Opening the project".to_owned(), move |ticket| {
+            read_all(project, ticket)
+        });
+    }
+
+    /// A project's files were read.
+    pub(super) fn opened_project(&mut self, ctx: &egui::Context, project: Project, recordings: Vec<Arc<Prepared>>) {
+        let first = project.recordings.first().cloned().unwrap_or_default();
+        self.meta = first.meta;
+        self.path_field = first.log.display().to_string();
+        self.path = Some(first.log);
+        self.sources = project.recordings;
+        self.show(recordings);
+        self.choice = project.choice;
+        self.select(project.current);
+        if project.view_s.1 > project.view_s.0 {
+            self.view_s = project.view_s;
+        }
+        self.seek(project.cursor_s);
+        self.workspace = project.workspace;
+        self.project_path = self.opening_project.take();
+        if let Some(path) = self.project_path.clone() {
+            self.recent.note(&path);
+        }
+        self.refit(ctx);
+    }
+
+    /// Adds the recordings of another file to those that are open, and fits all of them together.
+    pub fn add_log(&mut self, ctx: &egui::Context, path: &Path) {
+        if self.sources.is_empty() {
+            self.open_any(ctx, path);
+            return;
+        }
+        let mut project = Project::of(self);
+        project.recordings.push(Source { log: path.to_path_buf(), meta: None });
+        self.opening_project.clone_from(&self.project_path);
+        self.restore(ctx, project);
+    }
+
+    /// Writes the project where it was opened, or asks where.
+    pub fn save_project(&mut self, ctx: &egui::Context) {
+        match self.project_path.clone() {
+            Some(path) => self.save_project_as(ctx, path),
+            None => super::files::ask(ctx, &mut self.jobs, super::jobs::Purpose::SaveProject),
+        }
+    }
+
+    /// Writes the project there.
+    pub fn save_project_as(&mut self, ctx: &egui::Context, path: PathBuf) {
+        let project = Project::of(self);
+        self.project_path = Some(path.clone());
+        self.recent.note(&path);
+        self.jobs.start(ctx, JobKind::Save, move || match project.write(&path) {
+            Ok(()) => Outcome::Saved(path),
+            Err(problem) => Outcome::Failed(problem),
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use estimator::segment::Method;
+
+    fn project(log: PathBuf) -> Project {
+        Project {
+            touchstone_project: VERSION,
+            recordings: vec![Source { log, meta: None }],
+            choice: FitChoice { method: Method::Hmm, ..FitChoice::default() },
+            cursor_s: 1.5,
+            view_s: (1.0, 2.0),
+            workspace: Workspace::Calibrate,
+            ..Project::default()
+        }
+    }
+
+    #[test]
+    fn a_project_moves_with_its_folder() {
+        let (old, new) = (tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder"));
+        let file = old.path().join("a.touchstone.json");
+        let mine = project(old.path().join("logs/a.csv"));
+        mine.write(&file).expect("written");
+        assert!(is_project(&file));
+        assert_eq!(Project::read(&file).as_ref(), Ok(&mine));
+        let moved = new.path().join("a.touchstone.json");
+        std::fs::rename(&file, &moved).expect("moved");
+        let again = Project::read(&moved).expect("read");
+        assert_eq!(again.recordings[0].log, new.path().join("logs/a.csv"));
+    }
+
+    #[test]
+    fn a_file_elsewhere_is_named_in_full() {
+        let (folder, other) = (tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder"));
+        let file = folder.path().join("a.touchstone.json");
+        project(other.path().join("a.csv")).write(&file).expect("written");
+        assert_eq!(Project::read(&file).expect("read").recordings[0].log, other.path().join("a.csv"));
+    }
+
+    #[test]
+    fn what_is_no_project_is_refused_in_words() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("x.json");
+        for (text, says) in [("{", "no project"), (r#"{"touchstone_project": 99}"#, "newer version")] {
+            std::fs::write(&file, text).expect("written");
+            assert!(Project::read(&file).is_err_and(|why| why.contains(says)), "{text}");
+        }
+        assert!(Project::read(&folder.path().join("none.json")).is_err_and(|why| why.contains("cannot be read")));
+    }
+}

@@ -1,0 +1,175 @@
+//! How much the simulated force depends on every parameter, and which parameters stand in for each other.
+
+use super::jobs::{JobKind, Outcome};
+use super::prepare::Prepared;
+use super::session::Session;
+use super::what_if;
+use estimator::pipeline::Analysis;
+use haptics::recording::Recording;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Parameters are changed by this share of their value …
+pub const CHANGE: f64 = 0.1;
+
+/// What a change of one parameter does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effect {
+    /// `object.name`.
+    pub name: String,
+    /// Change of the simulated force when the parameter grows by [`CHANGE`], N or Nm RMS.
+    pub force_rms: f64,
+    /// The same when it grows by one standard error.
+    pub by_its_error: Option<f64>,
+}
+
+/// The answer for one fit.
+#[derive(Clone, Debug)]
+pub struct Sensitivity {
+    /// The fit it belongs to.
+    of: Arc<Analysis>,
+    /// The largest effect first.
+    pub effects: Vec<Effect>,
+    /// Names and correlations of all parameters that were estimated together, group by group.
+    pub groups: Vec<Correlations>,
+}
+
+/// Correlations of parameters that were estimated together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Correlations {
+    /// `object.name` of each.
+    pub names: Vec<String>,
+    /// −1 … 1, one row a parameter.
+    pub values: Vec<Vec<f64>>,
+}
+
+impl Sensitivity {
+    /// True when it belongs to this fit.
+    pub fn is_of(&self, analysis: &Arc<Analysis>) -> bool {
+        Arc::ptr_eq(&self.of, analysis)
+    }
+}
+
+impl Session {
+    /// Computes it in the background, unless it is there.
+    pub fn want_sensitivity(&mut self, ctx: &egui::Context) {
+        let Some(analysis) = self.analysis.clone() else { return };
+        let there = self.sensitivity.as_ref().is_some_and(|s| s.is_of(&analysis));
+        // A fit that is about to change needs none.
+        if there || self.stale || self.jobs.is_running(JobKind::Sensitivity) || self.jobs.is_running(JobKind::Fit) {
+            return;
+        }
+        let (recordings, choice) = (self.recordings.clone(), self.choice.clone());
+        let what = "Looking how the force depends on the parameters".to_owned();
+        self.jobs.start_watched(ctx, JobKind::Sensitivity, what, move |ticket| {
+            let given = choice.given_to_all(&recordings);
+            match sensitivity(&analysis, &recordings, &given, |share| ticket.tell(share), ticket.cancelled()) {
+                Some(found) => Outcome::Sensitive(Arc::new(found)),
+                None => Outcome::Cancelled,
+            }
+        });
+    }
+}
+
+/// Effects of all identified parameters, and the correlations of the fit; `None` when cancelled.
+pub fn sensitivity(
+    analysis: &Arc<Analysis>,
+    recordings: &[Arc<Prepared>],
+    given: &[Recording],
+    tell: impl Fn(f64),
+    cancelled: &AtomicBool,
+) -> Option<Sensitivity> {
+    let fitted = predicted(analysis, recordings, given, None);
+    let all: Vec<_> = analysis.fit.parameters.iter().filter(|p| p.identified && p.name != "mass_kg").collect();
+    let mut effects = Vec::new();
+    for (done, parameter) in all.iter().enumerate() {
+        if cancelled.load(Ordering::Relaxed) {
+            return None;
+        }
+        tell(done as f64 / all.len() as f64);
+        let Some(value) = parameter.value.filter(|v| *v != 0.0) else { continue };
+        let name = parameter.full_name();
+        let moved = predicted(analysis, recordings, given, Some((&name, value * (1.0 + CHANGE))));
+        let force_rms = apart(&fitted, &moved);
+        // Small changes act in proportion.
+        let by_its_error = parameter.std_error.map(|e| force_rms * e / (CHANGE * value.abs()));
+        effects.push(Effect { name, force_rms, by_its_error });
+    }
+    effects.sort_by(|a, b| b.force_rms.total_cmp(&a.force_rms));
+    Some(Sensitivity { of: Arc::clone(analysis), effects, groups: correlations(analysis) })
+}
+
+/// Predicted force of every channel and recording with one value changed.
+fn predicted(
+    analysis: &Analysis,
+    recordings: &[Arc<Prepared>],
+    given: &[Recording],
+    change: Option<(&str, f64)>,
+) -> Vec<Vec<f64>> {
+    let values = change.map(|(name, value)| (name.to_owned(), value)).into_iter().collect();
+    let world = what_if::world(analysis, given, &values);
+    let of = |p: &Arc<Prepared>| estimator::simulate::simulate(&world, &p.recording).ok();
+    recordings.iter().filter_map(of).flat_map(|s| s.predicted).map(|channel| channel.values).collect()
+}
+
+/// RMS of the difference, samples that are not finite left out.
+fn apart(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    let pairs = a.iter().zip(b).flat_map(|(a, b)| a.iter().zip(b));
+    let (sum, count) = pairs
+        .map(|(a, b)| (a - b).powi(2))
+        .filter(|square| square.is_finite())
+        .fold((0.0, 0_usize), |(sum, count), square| (sum + square, count + 1));
+    (sum / count.max(1) as f64).sqrt()
+}
+
+fn correlations(analysis: &Analysis) -> Vec<Correlations> {
+    let several = analysis.fit.correlated.iter().filter(|g| g.parameters.len() > 1);
+    several
+        .filter_map(|group| {
+            let error = |i: usize| group.covariance[i][i].sqrt();
+            // What is known exactly, or not at all, goes together with nothing.
+            let kept: Vec<usize> =
+                (0..group.parameters.len()).filter(|i| error(*i) > 0.0 && error(*i).is_finite()).collect();
+            let row = |i: usize| kept.iter().map(|j| group.covariance[i][*j] / (error(i) * error(*j))).collect();
+            let names = kept.iter().map(|i| group.parameters[*i].clone()).collect();
+            (kept.len() > 1).then(|| Correlations { names, values: kept.iter().map(|i| row(*i)).collect() })
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ui::tests::{CRANK, STACK, session};
+
+    fn found(recording: Recording) -> Sensitivity {
+        let session = session(recording);
+        let analysis = session.analysis.clone().expect("fitted");
+        let given = session.choice.given_to_all(&session.recordings);
+        sensitivity(&analysis, &session.recordings, &given, |_| {}, &AtomicBool::new(false)).expect("not cancelled")
+    }
+
+    #[test]
+    fn the_force_depends_on_the_weight_as_the_weight_says() {
+        let found = found(STACK.clone());
+        let weight = found.effects.iter().find(|e| e.name == "block-1.weight_N").expect("weighed");
+        // A tenth of 0.35 N, shared by two fingers, for about a fifth of the time.
+        assert!(weight.force_rms > 0.001 && weight.force_rms < 0.035, "{weight:?}");
+        assert!(weight.by_its_error.is_some_and(|e| e < 0.3 * weight.force_rms));
+        assert!(found.effects.is_sorted_by(|a, b| a.force_rms >= b.force_rms));
+    }
+
+    #[test]
+    fn correlations_are_symmetric_and_one_with_themselves() {
+        let found = found(CRANK.clone());
+        assert!(!found.groups.is_empty());
+        for group in &found.groups {
+            for (i, row) in group.values.iter().enumerate() {
+                assert!((row[i] - 1.0).abs() < 1e-9);
+                assert!(
+                    row.iter().enumerate().all(|(j, r)| r.abs() <= 1.0 + 1e-9 && (r - group.values[j][i]).abs() < 1e-9)
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! Undo and redo of everything about the fit that the user changes.
+
+use super::fit_choice::FitChoice;
+use super::session::{Session, Tone};
+use egui::util::undoer::{Settings, Undoer};
+
+/// Changes that follow each other faster are one.
+const ONE_CHANGE_S: f32 = 0.6;
+/// So many are kept.
+const KEPT: usize = 200;
+
+/// What can be taken back, and brought back.
+pub struct Undo {
+    undoer: Undoer<FitChoice>,
+}
+
+impl Default for Undo {
+    fn default() -> Self {
+        let settings = Settings { max_undos: KEPT, stable_time: ONE_CHANGE_S, ..Settings::default() };
+        Self { undoer: Undoer::with_settings(settings) }
+    }
+}
+
+impl Session {
+    /// Notices what was changed; call once a frame.
+    pub fn note_changes(&mut self, now_s: f64) {
+        if !self.recordings.is_empty() {
+            self.undo.undoer.feed_state(now_s, &self.choice);
+        }
+    }
+
+    /// Begins anew, with other recordings.
+    pub fn forget_changes(&mut self) {
+        self.undo = Undo::default();
+    }
+
+    /// True when there is something to take back.
+    pub fn can_undo(&self) -> bool {
+        self.undo.undoer.has_undo(&self.choice)
+    }
+
+    /// True when something was taken back.
+    pub fn can_redo(&self) -> bool {
+        self.undo.undoer.has_redo(&self.choice)
+    }
+
+    /// Takes the last change back.
+    pub fn undo(&mut self) {
+        if let Some(before) = self.undo.undoer.undo(&self.choice).cloned() {
+            self.say(Tone::Done, format!("Undone: {}.", difference(&self.choice, &before)));
+            self.put_back(before);
+        }
+    }
+
+    /// Brings back what was taken back.
+    pub fn redo(&mut self) {
+        if let Some(after) = self.undo.undoer.redo(&self.choice).cloned() {
+            self.say(Tone::Done, format!("Redone: {}.", difference(&self.choice, &after)));
+            self.put_back(after);
+        }
+    }
+
+    fn put_back(&mut self, choice: FitChoice) {
+        if let (Some(rules), true) = (self.rules.as_mut(), self.choice.own != choice.own) {
+            rules.draft = choice.own.as_deref().unwrap_or(&rules.before).clone();
+            rules.untried = true;
+        }
+        let segments_differ = self.choice.segments != choice.segments;
+        self.choice = choice;
+        if segments_differ {
+            self.show_segments();
+        }
+    }
+}
+
+/// What differs between two choices, in words.
+fn difference(a: &FitChoice, b: &FitChoice) -> String {
+    let changed = [
+        (a.task != b.task, "task"),
+        (a.own != b.own, "rules"),
+        (a.thresholds != b.thresholds, "thresholds"),
+        (a.method != b.method, "method"),
+        (a.segments != b.segments, "states set by hand"),
+        (a.stated.known != b.stated.known, "known value"),
+        (a.stated.prior != b.stated.prior, "prior"),
+        (a.stated.bounds != b.stated.bounds, "bounds"),
+        (a.only_s != b.only_s, "part of the recording"),
+    ];
+    let names: Vec<&str> = changed.iter().filter(|(differs, _)| *differs).map(|(_, name)| *name).collect();
+    names.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ui::prepare::Prepared;
+    use estimator::segment::Method;
+    use haptics::recording::Recording;
+    use std::sync::Arc;
+
+    fn session() -> Session {
+        let mut session = Session::new();
+        session.show(vec![Arc::new(Prepared::new(Recording::default()))]);
+        session
+    }
+
+    /// Frames pass.
+    fn wait(session: &mut Session, from_s: f64) -> f64 {
+        for frame in 0..60 {
+            session.note_changes(from_s + f64::from(frame) / 30.0);
+        }
+        from_s + 2.0
+    }
+
+    #[test]
+    fn changes_are_taken_back_one_by_one_and_brought_back() {
+        let mut session = session();
+        let mut now = wait(&mut session, 0.0);
+        session.choice.method = Method::Hmm;
+        now = wait(&mut session, now);
+        session.choice.only_s = Some((1.0, 2.0));
+        wait(&mut session, now);
+        assert!(session.can_undo() && !session.can_redo());
+        session.undo();
+        assert_eq!((session.choice.method, session.choice.only_s), (Method::Hmm, None));
+        assert!(session.banners.last().is_some_and(|b| b.text == "Undone: part of the recording."));
+        session.undo();
+        assert_eq!(session.choice.method, Method::Threshold);
+        assert!(!session.can_undo());
+        session.undo();
+        session.redo();
+        session.redo();
+        assert_eq!(session.choice.only_s, Some((1.0, 2.0)));
+        assert!(!session.can_redo());
+    }
+
+    #[test]
+    fn a_drag_is_one_change() {
+        let mut session = session();
+        let mut now = wait(&mut session, 0.0);
+        for step in 0..100 {
+            session.choice.only_s = Some((0.0, f64::from(step)));
+            now += 0.02;
+            session.note_changes(now);
+        }
+        wait(&mut session, now);
+        session.undo();
+        assert_eq!(session.choice.only_s, None);
+    }
+
+    #[test]
+    fn other_recordings_begin_with_nothing_to_take_back() {
+        let mut session = session();
+        let now = wait(&mut session, 0.0);
+        session.choice.method = Method::Hmm;
+        wait(&mut session, now);
+        let again = session.recordings.clone();
+        session.show(again);
+        wait(&mut session, 10.0);
+        assert!(!session.can_undo());
+    }
+}
