@@ -119,16 +119,17 @@ impl App {
         let frame = Frame::new().fill(p.card).inner_margin(Margin::symmetric(space::L as i8, 8));
         Side::top("top bar").frame(frame).show_separator_line(true).show(ui, |ui| {
             ui.horizontal(|ui| {
+                ui.set_min_height(32.0);
                 logo(ui);
                 ui.label(theme::title("Touchstone"));
                 ui.add_space(space::S);
                 // A dialog waits for an answer first.
                 let free = self.session.mapping.is_none();
-                ui.add_enabled_ui(free, |ui| {
-                    menu::button(ui, self);
-                    ui.add_space(space::S);
-                    segmented(ui, &mut self.session.workspace, &Workspace::CHOICES);
-                });
+                if !free {
+                    ui.disable();
+                }
+                menu::button(ui, self);
+                segmented(ui, &mut self.session.workspace, &Workspace::CHOICES);
                 ui.add_space(space::M);
                 let subject = egui::Label::new(RichText::new(self.subject()).color(p.secondary));
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

@@ -324,10 +324,10 @@ impl Session {
             Outcome::Chosen(Purpose::SaveProject, Some(path)) => self.save_project_as(ctx, path),
             Outcome::Chosen(Purpose::SaveReport, Some(path)) => super::files::save_report(ctx, self, path),
             Outcome::Chosen(Purpose::SaveLog, Some(path)) => {
-                super::files::save_log(ctx, self, &path.display().to_string())
+                super::files::save_log(ctx, self, &path.display().to_string());
             }
             Outcome::Chosen(Purpose::SaveWorld, Some(path)) => {
-                super::files::save_world(ctx, self, &path.display().to_string())
+                super::files::save_world(ctx, self, &path.display().to_string());
             }
             Outcome::Chosen(Purpose::SaveExtended, Some(path)) => super::files::save_extended(ctx, self, path),
             Outcome::Unfinished(found) => self.unfinished = found,

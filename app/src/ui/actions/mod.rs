@@ -75,7 +75,7 @@ fn score(text: &str, query: &str) -> Option<i64> {
     }
     let reached = best.iter().flatten().max().copied()?;
     // Of equal matches the shorter text.
-    Some(reached * 100 - text.len() as i64)
+    Some(reached * 100 - i64::try_from(text.len()).ok()?)
 }
 
 #[cfg(test)]

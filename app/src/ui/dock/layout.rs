@@ -37,7 +37,7 @@ pub fn suit(tree: &mut Tree<Pane>, workspace: Workspace, room: Vec2, session: &S
     let wide = room.x - 2.0 * GAP;
     match workspace {
         Workspace::Calibrate => {
-            let (left, right) = ((0.18 * wide).clamp(208.0, 240.0), (0.25 * wide).clamp(338.0, 364.0));
+            let (left, right) = ((0.18 * wide).clamp(208.0, 240.0), (0.25 * wide).clamp(356.0, 372.0));
             columns(tree, LinearDir::Horizontal, &[Some(left), None, Some(right)], wide);
             // The rules need more room than the picture.
             let upper = if session.rules.is_some() { 0.48 } else { 0.40 } * room.y;

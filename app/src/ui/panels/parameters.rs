@@ -76,9 +76,9 @@ fn table(ui: &mut Ui, session: &mut Session, fit: &Fit) {
         .sense(egui::Sense::click())
         .cell_layout(Layout::left_to_right(Align::Center))
         .column(Column::remainder().clip(true).at_least(96.0))
-        .column(Column::exact(80.0))
-        .column(Column::exact(62.0))
-        .column(Column::exact(46.0))
+        .column(Column::exact(76.0))
+        .column(Column::exact(58.0))
+        .column(Column::exact(42.0))
         .header(16.0, |mut header| {
             header.col(|_| {});
             for text in ["Value", "± 1 σ"] {

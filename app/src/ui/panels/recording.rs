@@ -37,7 +37,9 @@ impl Panel for RecordingPanel {
 }
 
 fn source(ui: &mut Ui, session: &mut Session) {
-    let field = TextEdit::singleline(&mut session.path_field).hint_text("Path of a log").desired_width(f32::INFINITY);
+    let field = TextEdit::singleline(&mut session.path_field)
+        .hint_text("Path of a log, then Enter")
+        .desired_width(f32::INFINITY);
     let response = ui.add(field);
     let enter = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
     let ctx = ui.ctx().clone();
@@ -46,9 +48,7 @@ fn source(ui: &mut Ui, session: &mut Session) {
             files::ask(&ctx, &mut session.jobs, Purpose::OpenLog);
         }
         let named = !session.path_field.trim().is_empty();
-        if ui.add_enabled(named, egui::Button::new("Load")).on_hover_text("Read the file named above (F5)").clicked()
-            || (enter && named)
-        {
+        if enter && named {
             let path = PathBuf::from(session.path_field.trim());
             session.open_any(&ctx, &path);
         }
@@ -144,6 +144,9 @@ fn part(ui: &mut Ui, session: &mut Session) {
         ui.label(egui::RichText::new(words).size(12.0));
     });
     let zoomed = shown.1 - shown.0 < 0.999 * (whole.1 - whole.0) && session.choice.only_s != Some(shown);
+    if !zoomed && session.choice.only_s.is_none() {
+        return;
+    }
     ui.horizontal_wrapped(|ui| {
         if zoomed && ui.link("Only what is shown").on_hover_text("Fit the part that the plots show").clicked() {
             session.choice.only_s = Some(shown);
