@@ -2,10 +2,11 @@
 
 use super::thresholds::LAYER;
 use super::{CRANK, STACK, cart, clockless_path, harness, no_driver, session};
+use crate::ui::fitting::replay_all;
 use crate::ui::panels::Panel;
 use crate::ui::panels::scene::ScenePanel;
 use crate::ui::scene::{Likeness, options_for, scene_world};
-use crate::ui::session::{SceneLayers, Session, replay_all};
+use crate::ui::session::{SceneLayers, Session};
 use crate::ui::{screenshot, theme};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
