@@ -63,8 +63,8 @@ pub struct Prepared {
     pub tips: Option<[TipSeries; 2]>,
     /// The single tool, where it has one.
     pub tool: Option<TipSeries>,
-    /// Signals that states are told from.
-    pub signals: Option<TaskSignals>,
+    /// How the velocities that states are told from were obtained, where there are such signals.
+    pub velocity_from: Option<String>,
     /// Plots.
     pub groups: Vec<Group>,
     /// Samples that paths in space are drawn through.
@@ -75,16 +75,21 @@ impl Prepared {
     /// Derives everything; takes a moment for long logs.
     pub fn new(recording: Recording) -> Self {
         let times = times(&recording);
-        let tips = is_two_fingered(&recording)
-            .then(|| Some([tip_series(&recording, "1").ok()?, tip_series(&recording, "2").ok()?]))
-            .flatten();
+        let signals = is_two_fingered(&recording).then(|| task_signals(&recording).ok()).flatten();
+        let velocity_from = signals.as_ref().map(|s| s.velocity_from.clone());
+        // The signals' fingers where there are signals: those are the same, and long.
+        let (tips, of_task) = match signals {
+            Some(TaskSignals { tips, grip_force_n, net_force_n, .. }) => {
+                (Some(tips), Some((grip_force_n, net_force_n)))
+            }
+            None => (fingers(&recording), None),
+        };
         let tool = if tips.is_none() { tip_series(&recording, "").ok() } else { None };
-        let signals = if tips.is_some() { task_signals(&recording).ok() } else { None };
         let task = task_of(&recording, None).ok();
-        let groups = groups(&recording, signals.as_ref());
+        let groups = groups(&recording, of_task);
         let step = times.len().div_ceil(PATH_POINTS).max(1);
         let path_samples = (0..times.len()).step_by(step).collect();
-        Self { recording, times, task, tips, tool, signals, groups, path_samples }
+        Self { recording, times, task, tips, tool, velocity_from, groups, path_samples }
     }
 
     /// First and last time.
@@ -140,7 +145,17 @@ fn kind(name: &str, unit: &str) -> (u8, &'static str, bool) {
     }
 }
 
-fn groups(recording: &Recording, signals: Option<&TaskSignals>) -> Vec<Group> {
+fn fingers(recording: &Recording) -> Option<[TipSeries; 2]> {
+    if !is_two_fingered(recording) {
+        return None;
+    }
+    Some([tip_series(recording, "1").ok()?, tip_series(recording, "2").ok()?])
+}
+
+/// Grip force and net force of every sample, N.
+type OfTask = (Vec<f64>, Vec<Vec2>);
+
+fn groups(recording: &Recording, of_task: Option<OfTask>) -> Vec<Group> {
     let mut ranked: Vec<(u8, Group)> = Vec::new();
     for (index, channel) in recording.channels.iter().enumerate() {
         let (rank, title, shown) = kind(&channel.name, &channel.unit);
@@ -154,15 +169,16 @@ fn groups(recording: &Recording, signals: Option<&TaskSignals>) -> Vec<Group> {
             )),
         }
     }
-    if let Some(signals) = signals {
-        ranked.push((7, task_group(signals)));
+    if let Some(of_task) = of_task {
+        ranked.push((7, task_group(of_task)));
     }
     ranked.sort_by_key(|(rank, _)| *rank);
     ranked.into_iter().map(|(_, group)| group).collect()
 }
 
 /// Signals of the task (thesis, 5.2.2).
-fn task_group(signals: &TaskSignals) -> Group {
+fn task_group((grip_n, net_n): OfTask) -> Group {
+    let net = |pick: fn(&Vec2) -> f64| net_n.iter().map(pick).collect::<Vec<f64>>();
     let made = |name: &str, label: &str, role, second, values: Vec<f64>| Trace {
         name: name.to_owned(),
         label: label.to_owned(),
@@ -176,21 +192,9 @@ fn task_group(signals: &TaskSignals) -> Group {
         factor: 1.0,
         shown: true,
         traces: vec![
-            made("grip_N", "grip force", ColorRole::Measured, false, signals.grip_force_n.clone()),
-            made(
-                "net_y_N",
-                "net force, up",
-                ColorRole::Block(0),
-                false,
-                signals.net_force_n.iter().map(|f| f.y).collect(),
-            ),
-            made(
-                "net_x_N",
-                "net force, right",
-                ColorRole::Block(5),
-                false,
-                signals.net_force_n.iter().map(|f| f.x).collect(),
-            ),
+            made("grip_N", "grip force", ColorRole::Measured, false, grip_n),
+            made("net_y_N", "net force, up", ColorRole::Block(0), false, net(|f| f.y)),
+            made("net_x_N", "net force, right", ColorRole::Block(5), false, net(|f| f.x)),
         ],
     }
 }

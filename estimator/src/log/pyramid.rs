@@ -142,6 +142,15 @@ impl Pyramid {
         Some(band)
     }
 
+    /// The size of the largest blocks with at most `samples` samples; 1 when there are none.
+    pub fn grain(samples: usize) -> usize {
+        let mut grain = 1;
+        while grain * FAN <= samples {
+            grain *= FAN;
+        }
+        grain
+    }
+
     /// The smallest piece of at least `samples` samples that [`Pyramid::whole`] can answer for without the samples.
     pub fn granule(&self, samples: usize) -> usize {
         samples.max(1).div_ceil(FAN) * FAN
@@ -250,6 +259,16 @@ mod tests {
             }
             prop_assert_eq!(found.iter().map(|p| p.band).collect::<Vec<_>>(), expected);
         }
+    }
+
+    #[test]
+    fn a_range_between_edges_of_blocks_reads_no_sample() {
+        let values = signal(300_000, 5);
+        let pyramid = Pyramid::of(&values);
+        assert_eq!([0, 1, 15, 16, 255, 256, 5_000].map(Pyramid::grain), [1, 1, 1, 16, 16, 256, 4_096]);
+        let read = |_: Range<usize>| -> Band { panic!("a sample is read") };
+        let range = 16 * 31..16 * 3_000;
+        assert_eq!(pyramid.band(range.clone(), &read), plain(&values[range]));
     }
 
     #[test]

@@ -94,8 +94,8 @@ fn nothing_loaded(ui: &mut Ui, session: &mut Session) {
 }
 
 fn header(ui: &mut Ui, session: &mut Session, prepared: &Arc<Prepared>) {
-    ui.horizontal(|ui| {
-        // The tallest first, so that the rest stands in its middle.
+    ui.horizontal_wrapped(|ui| {
+        // As high as the tallest, so that the rest stands in its middle.
         ui.set_min_height(HEADER);
         ui.label(theme::heading("Log"));
         ui.add_space(space::S);
@@ -104,12 +104,11 @@ fn header(ui: &mut Ui, session: &mut Session, prepared: &Arc<Prepared>) {
         if session.plots.view == LogView::Time {
             chips(ui, &mut session.plots, prepared);
             overlay_menu(ui, session);
-        }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if ui.available_width() > 280.0 && session.plots.view == LogView::Time {
+            if ui.available_width() > 340.0 {
+                ui.add_space(space::L);
                 ui.label(theme::caption(ui, "wheel zooms · right drag moves · double click shows all"));
             }
-        });
+        }
     });
     ui.add_space(space::XS);
 }

@@ -77,8 +77,8 @@ fn source(ui: &mut Ui, session: &mut Session) {
         fact(ui, "Rate", format!("{} Hz", format::significant(rate, 3)));
     }
     fact(ui, "Channels", recording.channels.len().to_string());
-    if let Some(signals) = &prepared.signals {
-        fact(ui, "Velocities", signals.velocity_from.split(' ').next().unwrap_or_default().to_owned());
+    if let Some(from) = &prepared.velocity_from {
+        fact(ui, "Velocities", from.split(' ').next().unwrap_or_default().to_owned());
     }
 }
 

@@ -2,43 +2,113 @@
 
 use super::levels::Samples;
 use egui_plot::PlotPoint;
+use estimator::log::pyramid::Pyramid;
+use std::ops::Range;
+
+/// Least number of the pyramid's blocks in a column whose edges are moved to theirs.
+const BLOCKS_IN_A_COLUMN: usize = 10;
+
+/// Samples of a stretch of time, dealt out to columns of pixels: found once for all curves of a recording.
+#[derive(Clone, Debug, Default)]
+pub struct Columns {
+    /// The samples that are drawn: those inside, and a neighbour on either side, so that lines run on.
+    samples: Range<usize>,
+    /// One past the last sample of each column that has any, and the time in its middle; empty where every sample is drawn.
+    ends: Vec<(usize, f64)>,
+}
+
+impl Columns {
+    /// `count` columns between two times. Their edges lie where the pyramid's blocks do, as long as a column has many of those: no sample
+    /// needs to be read then, and nothing moves by more than a tenth of a pixel.
+    pub fn new(times: &[f64], from: f64, to: f64, count: usize) -> Self {
+        let n = times.len();
+        let first = times.partition_point(|t| *t < from).saturating_sub(1);
+        let end = (times.partition_point(|t| *t <= to) + 1).min(n);
+        let count = count.max(1);
+        if end <= first || end - first <= 3 * count {
+            return Self { samples: first..end.max(first), ends: Vec::new() };
+        }
+        let grain = Pyramid::grain((end - first) / count / BLOCKS_IN_A_COLUMN);
+        let (start, width) = (times[first], (times[end - 1] - times[first]) / count as f64);
+        let mut ends = Vec::with_capacity(count);
+        let (mut at, mut usual) = (first, (end - first) / count);
+        for column in 1..=count {
+            let limit = start + width * column as f64;
+            let exact = if column == count { end } else { step_to(&times[..end], at, usual, limit) };
+            let many = exact - at >= BLOCKS_IN_A_COLUMN * grain && column < count;
+            let next = if many { exact / grain * grain } else { exact };
+            if next > at {
+                ends.push((next, 0.5 * (times[at] + times[next - 1])));
+                (usual, at) = (next - at, next);
+            }
+        }
+        Self { samples: first..end, ends }
+    }
+}
+
+/// The first sample from `at` on that is not before `limit`, looked for outwards from `usual` samples further on: clocks are nearly even.
+fn step_to(times: &[f64], at: usize, usual: usize, limit: f64) -> usize {
+    // Every sample before `low` is before the limit, none from `high` on is.
+    let (mut low, mut high, mut step) = (at, times.len(), 1);
+    let guess = (at + usual).min(high);
+    if guess < high && times[guess] < limit {
+        low = guess + 1;
+        while low + step < high {
+            if times[low + step] >= limit {
+                high = low + step;
+                break;
+            }
+            (low, step) = (low + step + 1, 2 * step);
+        }
+    } else {
+        high = guess;
+        while low + step < high {
+            if times[high - step] < limit {
+                low = high - step + 1;
+                break;
+            }
+            (high, step) = (high - step, 2 * step);
+        }
+    }
+    low + times[low..high].partition_point(|t| *t < limit)
+}
 
 /// The curve between two times in at most two points a column (plus the neighbours outside, so that lines run on).
 pub fn decimate(times: &[f64], levels: Samples<'_>, from: f64, to: f64, columns: usize) -> Vec<PlotPoint> {
+    decimate_in(times, levels, &Columns::new(times, from, to, columns))
+}
+
+/// [`decimate`] into columns that are known already.
+pub fn decimate_in(times: &[f64], levels: Samples<'_>, columns: &Columns) -> Vec<PlotPoint> {
     let n = times.len().min(levels.len());
-    let first = times[..n].partition_point(|t| *t < from).saturating_sub(1);
-    let end = (times[..n].partition_point(|t| *t <= to) + 1).min(n);
+    let (first, end) = (columns.samples.start, columns.samples.end.min(n));
     if end <= first {
         return Vec::new();
     }
-    let columns = columns.max(1);
-    if end - first <= 3 * columns {
-        return (first..end).map(|i| PlotPoint::new(times[i], levels.value(i))).collect();
+    let sample = |i: usize| PlotPoint::new(times[i], levels.value(i));
+    if columns.ends.is_empty() {
+        return (first..end).map(sample).collect();
     }
-    let mut points = Vec::with_capacity(2 * columns + 2);
-    points.push(PlotPoint::new(times[first], levels.value(first)));
-    let (start, width) = (times[first], (times[end - 1] - times[first]) / columns as f64);
-    let mut at = first;
-    for column in 1..=columns {
-        let limit = start + width * column as f64;
-        let next = if column == columns { end } else { at + times[at..end].partition_point(|t| *t < limit) };
-        if next > at {
-            let (low, high) = levels.range(at, next);
-            if low > high {
-                // Nothing in this column is a number.
-                at = next;
-                continue;
-            }
-            let middle = 0.5 * (times[at] + times[next - 1]);
-            // The order follows the curve, so that slopes stay slopes.
-            let rising = levels.value(at) <= levels.value(next - 1);
-            let (a, b) = if rising { (low, high) } else { (high, low) };
-            points.push(PlotPoint::new(middle, a));
-            points.push(PlotPoint::new(middle, b));
-            at = next;
+    let mut points = Vec::with_capacity(2 * columns.ends.len() + 2);
+    points.push(sample(first));
+    let (mut at, mut before) = (first, levels.value(first));
+    for (next, middle) in &columns.ends {
+        let next = (*next).min(end);
+        let (low, high) = levels.range(at, next);
+        at = next;
+        // Nothing in this column is a number.
+        if low > high {
+            continue;
         }
+        // The nearer end first, so that slopes stay slopes.
+        let (a, b) = if (before - low).abs() <= (before - high).abs() { (low, high) } else { (high, low) };
+        points.push(PlotPoint::new(*middle, a));
+        if b != a {
+            points.push(PlotPoint::new(*middle, b));
+        }
+        before = b;
     }
-    points.push(PlotPoint::new(times[end - 1], levels.value(end - 1)));
+    points.push(sample(end - 1));
     points
 }
 
@@ -63,6 +133,46 @@ mod tests {
         let highest = points.iter().map(|p| p.y).fold(f64::MIN, f64::max);
         assert_eq!(highest, 7.0);
         assert!(points.windows(2).all(|w| w[0].x <= w[1].x));
+    }
+
+    #[test]
+    fn columns_hold_every_sample_once_at_the_time_that_it_has() {
+        // Uneven steps, a pause, and a burst.
+        let mut now = 0.0;
+        let times: Vec<f64> = (0..200_000)
+            .map(|i| {
+                now += if i == 70_000 {
+                    30.0
+                } else if i > 150_000 {
+                    1e-5
+                } else {
+                    1e-3 + 4e-4 * f64::from(i).sin()
+                };
+                now
+            })
+            .collect();
+        for (from, to, count) in [(0.0, now, 900), (10.0, 95.0, 300), (60.0, 200.0, 777)] {
+            let columns = Columns::new(&times, from, to, count);
+            let width = (times[columns.samples.end - 1] - times[columns.samples.start]) / count as f64;
+            let mut at = columns.samples.start;
+            for (next, middle) in &columns.ends {
+                assert!(*next > at && times[at] <= *middle && *middle <= times[next - 1]);
+                // A tenth of a column to either side; what has few samples is exact.
+                assert!(times[next - 1] - times[at] <= 1.25 * width, "{at}..{next} of {from} to {to}");
+                at = *next;
+            }
+            assert_eq!(at, columns.samples.end);
+            assert!(columns.ends.len() <= count);
+        }
+    }
+
+    #[test]
+    fn from_afar_no_sample_is_read() {
+        let n = 3_000_000;
+        let times: Vec<f64> = (0..n).map(|i| f64::from(i) * 1e-3).collect();
+        let columns = Columns::new(&times, 0.0, 3_000.0, 1_500);
+        let inside = &columns.ends[..columns.ends.len() - 1];
+        assert!(inside.iter().all(|(end, _)| end % 16 == 0));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::axes::{AXIS_WIDTH, still_plot, time_axis};
 use super::choices::GroupChoice;
 use super::curves::{Curve, Drawn, Layer, NOISE_SWITCH};
-use super::decimate;
+use super::decimate::{Columns, decimate_in};
 use super::doubts::shade;
 use super::gutter::gutter;
 use super::residual_plot::{BAND_SIGMAS, inks};
@@ -73,7 +73,14 @@ pub struct RowOutcome {
 #[derive(Default)]
 pub struct PlotCache {
     curves: HashMap<(usize, usize), Cached>,
+    /// Columns of the last view, by recording and offset: all curves of a recording share them.
+    columns: HashMap<ColumnsKey, (Arc<Prepared>, Columns)>,
 }
+
+/// Recording, visible time in its own, columns.
+type ColumnsKey = (usize, [u64; 2], usize);
+/// More recordings than are ever laid over each other.
+const MOST_COLUMNS: usize = 32;
 
 struct Cached {
     key: CacheKey,
@@ -114,7 +121,15 @@ impl PlotCache {
             return;
         }
         let (samples, offset) = (curve.levels.samples(&curve.prepared.recording), curve.offset_s);
-        let mut points = decimate(&curve.prepared.times, samples, from - offset, to - offset, columns);
+        let (from, to) = (from - offset, to - offset);
+        if self.columns.len() > MOST_COLUMNS {
+            self.columns.clear();
+        }
+        let times = &curve.prepared.times;
+        let shared = self.columns.entry((key.0, [from.to_bits(), to.to_bits()], columns));
+        let make = || (Arc::clone(&curve.prepared), Columns::new(times, from, to, columns));
+        let (_, shared) = shared.or_insert_with(make);
+        let mut points = decimate_in(times, samples, shared);
         for point in &mut points {
             point.x += offset;
         }

@@ -308,3 +308,26 @@ fn recordings_that_lie_over_each_other_have_their_own_colours() {
         assert!(with > without + 60, "dark {dark}: {with} and {without} pixels");
     }
 }
+
+#[test]
+fn nothing_of_the_log_is_cut_where_there_is_little_room() {
+    let make = || {
+        let mut session = two(&STACK, again(&STACK, "stack, the second of a long series", 0.5, 300));
+        session.toggle_overlay(1);
+        session.plots.groups.entry("Force/N".to_owned()).or_default().left_over = true;
+        session
+    };
+    for width in [480.0, 640.0, 1_000.0] {
+        let mut harness = log(make());
+        harness.set_size(egui::vec2(width, 520.0));
+        harness.run_steps(4);
+        for label in ["Position", "Task signals", "Overlay", "Align", "First contact", "×", "Position menu"] {
+            let rect = harness.get_by_role_and_label(Role::Button, label).rect();
+            assert!(rect.left() >= 0.0 && rect.right() <= width, "{label} at {width}: {rect:?}");
+        }
+    }
+    if !no_driver() {
+        let picture = screenshot::draw(make(), screenshot::Panel::Log, [640, 520], false).expect("drawn");
+        keep("little-room", &picture);
+    }
+}
