@@ -104,7 +104,7 @@ fn header(ui: &mut Ui, session: &mut Session, prepared: &Arc<Prepared>) {
         if session.plots.view == LogView::Time {
             chips(ui, &mut session.plots, prepared);
             overlay_menu(ui, session);
-            if ui.available_width() > 340.0 {
+            if ui.available_size_before_wrap().x > 360.0 {
                 ui.add_space(space::L);
                 ui.label(theme::caption(ui, "wheel zooms · right drag moves · double click shows all"));
             }

@@ -153,8 +153,10 @@ fn show(ui: &mut Ui, choice: &mut GroupChoice, input: &RowInput<'_>, entry: &Ent
             ui.add(egui::Label::new(RichText::new(&entry.label).size(11.5).color(words)).truncate());
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let value = entry.curve.map_or(f64::NAN, |c| c.levels.samples(&c.prepared.recording).value(sample));
-                let text = if shown && value.is_finite() && input.kind == RowKind::LeftOver {
-                    format::significant(value, 2)
+                let text = if input.kind == RowKind::LeftOver {
+                    // Its name takes the room of two.
+                    let told = shown && value.is_finite() && !narrow;
+                    if told { format::significant(value, 2) } else { String::new() }
                 } else if shown && value.is_finite() {
                     value_text(value, &input.drawn.unit, narrow)
                 } else {
