@@ -1,6 +1,6 @@
 //! Force arrows: the force that each fingertip exerts on the environment, in front of everything; beside it, slender, what a model says.
 
-use super::{Canvas, outwards, tip};
+use super::{Canvas, outwards, thing_scale, tip};
 use crate::draw_data::Layer;
 use crate::mesh::MeshKind;
 use crate::scene::{ArrowAnchor, FingerStyle, SceneView};
@@ -48,6 +48,7 @@ fn draw_arrow(
         ArrowAnchor::TailAtTip => (tip, tip + arrow),
     };
     let shift = Vec2::new(outwards(finger) * 0.0002, 0.0);
+    let shaft_m = shaft_m * thing_scale(view);
     let solid = Solid::arrow(tail + shift, head + shift, z, shaft_m, color).gloss(0.15).unlit(0.35);
     canvas.solid_in(Layer::Overlay, MeshKind::Arrow, solid);
 }

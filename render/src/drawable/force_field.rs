@@ -1,6 +1,6 @@
 //! Force vectors along a path, flat and thin (thesis, figure 5.10).
 
-use super::{Canvas, at};
+use super::{Canvas, at, mark_scale};
 use crate::scene::SceneView;
 use crate::shape::Stroke;
 use crate::vec2;
@@ -15,7 +15,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
         let along = vec2(vector.force_n) * view.options.vector_scale_m_per_n;
         let head = tail + along;
         canvas.overlay_stroke(Stroke::line(at(tail, 0.0), at(head, 0.0), WIDTH_PX, color));
-        let barb = along.normalize_or_zero() * (0.3 * along.length()).min(0.0022);
+        let barb = along.normalize_or_zero() * (0.3 * along.length()).min(0.0022 * mark_scale(view));
         for side in [0.42_f32, -0.42] {
             let end = head - Vec2::from_angle(side).rotate(barb);
             canvas.overlay_stroke(Stroke::line(at(head, 0.0), at(end, 0.0), WIDTH_PX, color));

@@ -169,6 +169,22 @@ impl<'a> Canvas<'a> {
     }
 }
 
+/// The picture's extent that marks were sized for, m: the workspace of the hand.
+const USUAL_EXTENT_M: f32 = 0.14;
+
+/// Factor for marks that must be seen at any magnification.
+fn mark_scale(view: &SceneView<'_>) -> f32 {
+    view.options.camera.extent_m.max_element() / USUAL_EXTENT_M
+}
+
+/// Factor for a tool and its force: in a room they would be a needle's point, and beside the hand they are as large as they are.
+fn thing_scale(view: &SceneView<'_>) -> f32 {
+    match view.options.fingers {
+        FingerStyle::Tool => (0.6 * mark_scale(view)).max(1.0),
+        _ => 1.0,
+    }
+}
+
 /// How a line looks.
 #[derive(Clone, Copy)]
 struct Line {

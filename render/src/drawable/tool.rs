@@ -1,6 +1,6 @@
 //! A single tool instead of two fingers: a slim probe whose ball end is at the tip of finger 1.
 
-use super::{Canvas, at, tip};
+use super::{Canvas, at, thing_scale, tip};
 use crate::Material;
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
@@ -13,10 +13,12 @@ const BALL_M: f32 = 0.0024;
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
     let Some(tip) = tip(view.state, 0) else { return };
+    let scale = thing_scale(view);
     let role = if view.options.saturated[0] { ColorRole::Saturated } else { ColorRole::Finger(0) };
     let (accent, steel, frame) = (canvas.color(role), canvas.palette.steel, canvas.palette.frame);
-    canvas.solid(MeshKind::Box, Solid::ball(at(tip, 0.0), BALL_M, accent).gloss(0.5));
+    canvas.solid(MeshKind::Box, Solid::ball(at(tip, 0.0), scale * BALL_M, accent).gloss(0.5));
     let mut rod = |[from, to]: [f32; 2], radius: f32, color, material| {
+        let [from, to, radius] = [from, to, radius].map(|length| scale * length);
         let half = Vec3::new(radius, 0.5 * (to - from), radius);
         let center = at(tip + Vec2::Y * 0.5 * (from + to), 0.0);
         canvas.solid(MeshKind::Box, Solid::rounded_box(center, half, 0.0, radius, color).gloss(0.6).of(material));

@@ -123,6 +123,13 @@ fn views() -> Vec<Plate> {
             "Measured forces beside those of the virtual block (figures 5.18 to 5.21)",
         ),
         view(
+            "door",
+            Sample::Door,
+            SceneLayers { unexplained: true, ..bare },
+            None,
+            "A door led by a tool: how well its hinge is known in each direction, and what it bears",
+        ),
+        view(
             "needle",
             Sample::Needle,
             SceneLayers { unexplained: true, ..bare },

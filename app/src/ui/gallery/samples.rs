@@ -4,7 +4,8 @@ use crate::cli::built_in;
 use crate::ui::trainer::{Clock, Operator, Trainer, WorldChoice};
 use crate::worlds;
 use anyhow::{Context as _, anyhow};
-use haptics::recording::Recording;
+use haptics::Vec2;
+use haptics::recording::{Channel, Recording};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -22,6 +23,8 @@ pub enum Sample {
     Crank,
     /// The scripted operator with the needle.
     Needle,
+    /// A tool that leads a door.
+    Door,
     /// A table whose columns have no meaning yet.
     Foreign,
     /// A built-in world, performed live.
@@ -45,6 +48,7 @@ impl Samples {
             Sample::Stack => built_in("stack", self.folder()?)?,
             Sample::Crank => built_in("crank", self.folder()?)?,
             Sample::Needle => performed("needle", self.folder()?)?,
+            Sample::Door => vec![door()],
             Sample::Foreign | Sample::World(_) => Vec::new(),
         };
         self.known.insert(sample, made.clone());
@@ -71,6 +75,40 @@ impl Samples {
         }
         self.folder.as_ref().map(TempDir::path).context("there is no room for temporary files")
     }
+}
+
+/// A handle 30 cm from its hinge, led through a sixth of a turn by a tool that also pulls, with the noise of a tracker and of a force
+/// sensor.
+fn door() -> Recording {
+    const RADIUS_M: f64 = 0.30;
+    // A generator of Lehmer's (1951): the same picture everywhere.
+    let mut seed = 7_u64;
+    let mut noise = move || {
+        let mut draw = || {
+            seed = seed * 48_271 % 0x7FFF_FFFF;
+            seed as f64 / f64::from(0x7FFF_FFFF_u32)
+        };
+        // Nearly normal, of variance 1.
+        (0..12).map(|_| draw()).sum::<f64>() - 6.0
+    };
+    let n = 600_u32;
+    let mut channels = ["x_m", "y_m", "fx_N", "fy_N"].map(|name| Channel {
+        name: name.to_owned(),
+        unit: name.rsplit('_').next().unwrap_or_default().to_owned(),
+        values: Vec::with_capacity(n as usize),
+    });
+    for i in 0..n {
+        let share = f64::from(i) / f64::from(n - 1);
+        let angle = 2.1 + 1.05 * share * share * (3.0 - 2.0 * share);
+        let (out, along) = (Vec2::new(angle.cos(), angle.sin()), Vec2::new(-angle.sin(), angle.cos()));
+        let force = (4.0 + 3.0 * (7.0 * share).sin()) * out + 1.5 * along;
+        let values = [RADIUS_M * out.x, RADIUS_M * out.y, force.x, force.y];
+        for ((channel, value), size) in channels.iter_mut().zip(values).zip([6e-4, 6e-4, 0.15, 0.15]) {
+            channel.values.push(value + size * noise());
+        }
+    }
+    let time_s = Some((0..n).map(|i| 0.01 * f64::from(i)).collect());
+    Recording { name: "door".to_owned(), channels: channels.into(), time_s, ..Recording::default() }
 }
 
 /// The scripted operator's recording in a built-in world.

@@ -3,20 +3,21 @@
 use anyhow::Context as _;
 use color_quant::NeuQuant;
 use image::RgbaImage;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Colours of the palette.
 const COLORS: usize = 256;
-/// The palette is learned from every so many pixels.
-const SAMPLED: i32 = 4;
+/// Bits of a channel that tell colours apart while the palette is learned.
+const BITS: u32 = 6;
 
 /// The file of a picture.
 pub fn small_png(picture: &RgbaImage) -> anyhow::Result<Vec<u8>> {
-    let palette = NeuQuant::new(SAMPLED, COLORS, picture.as_raw());
+    let palette = NeuQuant::new(1, COLORS, &evened_out(picture));
     let mut known = HashMap::new();
     let indices: Vec<u8> = picture
-        .pixels()
-        .map(|pixel| *known.entry(pixel.0).or_insert_with(|| palette.index_of(&pixel.0) as u8))
+        .enumerate_pixels()
+        .map(|(x, y, pixel)| dithered(pixel.0, x, y))
+        .map(|color| *known.entry(color).or_insert_with(|| palette.index_of(&color) as u8))
         .collect();
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, picture.width(), picture.height());
@@ -29,6 +30,37 @@ pub fn small_png(picture: &RgbaImage) -> anyhow::Result<Vec<u8>> {
     let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&indices));
     written.context("the picture could not be encoded")?;
     Ok(file)
+}
+
+/// A fixed pattern of a few steps of brightness, so that a gradient of few colours shows no bands.
+fn dithered([r, g, b, _]: [u8; 4], x: u32, y: u32) -> [u8; 4] {
+    /// Bayer's matrix (1973), −2 to 2.
+    const PATTERN: [[i8; 4]; 4] = [[-2, 0, -1, 1], [1, -1, 2, 0], [-1, 1, -2, 0], [2, 0, 1, -1]];
+    let step = PATTERN[y as usize % 4][x as usize % 4];
+    let [r, g, b] = [r, g, b].map(|c| c.saturating_add_signed(step));
+    [r, g, b, 255]
+}
+
+/// The picture's colours, each as often as the root of its number of pixels: a large gradient would leave no places of the palette to
+/// what is small and matters.
+fn evened_out(picture: &RgbaImage) -> Vec<u8> {
+    let mut bins: BTreeMap<[u8; 3], (u32, [u32; 3])> = BTreeMap::new();
+    for pixel in picture.pixels() {
+        let [r, g, b, _] = pixel.0;
+        let (count, sums) = bins.entry([r, g, b].map(|c| c >> (8 - BITS))).or_default();
+        *count += 1;
+        for (sum, value) in sums.iter_mut().zip([r, g, b]) {
+            *sum += u32::from(value);
+        }
+    }
+    let mut colors = Vec::new();
+    for (count, sums) in bins.into_values() {
+        let [r, g, b] = sums.map(|sum| (sum / count) as u8);
+        for _ in 0..count.isqrt() {
+            colors.extend([r, g, b, 255]);
+        }
+    }
+    colors
 }
 
 #[cfg(test)]

@@ -92,6 +92,8 @@ pub fn camera_for(session: &Session, prepared: &Prepared) -> Camera {
                     (low, high) = (low.inf(&center_m), high.sup(&center_m));
                 }
             }
+            // The switches lie over the upper edge.
+            high.y += 0.16 * (high - low).amax();
             let [low, high] = [low, high].map(|v| [v.x as f32, v.y as f32]);
             Camera { pitch_rad: 0.0, ..Camera::hand() }.framing(low.into(), high.into())
         }
