@@ -66,6 +66,15 @@ pub(crate) struct Globals {
     key: Vec4,
 }
 
+/// The part of them that light maps depend on: the box of the map, its measures, the table and where it stands.
+pub(crate) type LightGlobals = (Mat4, Vec4, Vec4, f32);
+
+impl Globals {
+    pub(crate) fn of_light(&self) -> LightGlobals {
+        (self.map_from_world, self.map, self.table, self.shadow.w)
+    }
+}
+
 impl DrawData {
     /// Lists what `view` shows in a picture of `size` pixels.
     pub fn new(view: &SceneView<'_>, size: [u32; 2]) -> Self {

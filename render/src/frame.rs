@@ -1,6 +1,6 @@
 //! The buffers of one view, refilled for every picture and grown when needed.
 
-use crate::draw_data::{DrawData, Globals, Layer};
+use crate::draw_data::{DrawData, Globals, Layer, LightGlobals};
 use crate::maps::Maps;
 use crate::mesh::MeshKind;
 use crate::pipeline::Groups;
@@ -16,6 +16,10 @@ pub struct Frame {
     pub(crate) maps: Maps,
     /// Whether there is a table to be lit.
     pub(crate) has_table: bool,
+    /// What the light maps were made of: while it stays they stay, however the viewer moves.
+    lit: Option<Lit>,
+    /// Whether they are to be made anew.
+    pub(crate) light_changed: bool,
     pub(crate) solids: Instances,
     pub(crate) strokes: Instances,
     pub(crate) overlay_strokes: Instances,
@@ -38,6 +42,8 @@ impl Frame {
             globals,
             maps: Maps::new(device, groups),
             has_table: false,
+            lit: None,
+            light_changed: true,
             solids: Instances::new(device, "solids", 24 << 10),
             strokes: Instances::new(device, "strokes", 16 << 10),
             overlay_strokes: Instances::new(device, "overlay strokes", 64 << 10),
@@ -57,6 +63,10 @@ impl Frame {
         self.overlay_strokes.upload(device, queue, &data.overlay_strokes);
         self.shadows.upload(device, queue, &data.shadows);
         self.has_table = data.solids.iter().any(|(layer, _, _)| *layer == Layer::Table);
+        let lit = Lit::of(data);
+        // What was asked for and not drawn yet is still to be drawn.
+        self.light_changed |= self.lit.as_ref() != Some(&lit);
+        self.lit = Some(lit);
         self.batches.clear();
         for (index, (layer, mesh, _)) in (0_u32..).zip(&data.solids) {
             match self.batches.last_mut() {
@@ -64,6 +74,20 @@ impl Frame {
                 _ => self.batches.push((*layer, *mesh, index..index + 1)),
             }
         }
+    }
+}
+
+/// Everything that the light maps depend on.
+#[derive(Debug, PartialEq)]
+struct Lit {
+    casters: Vec<(MeshKind, Solid)>,
+    light: LightGlobals,
+}
+
+impl Lit {
+    fn of(data: &DrawData) -> Self {
+        let casters = data.solids.iter().filter(|(layer, _, _)| layer.casts_shadows());
+        Self { casters: casters.map(|(_, mesh, solid)| (*mesh, *solid)).collect(), light: data.globals.of_light() }
     }
 }
 

@@ -84,7 +84,7 @@ impl Headless {
         self.target.resize(&self.device, [width, height]);
         self.renderer.prepare(&self.device, &self.queue, &mut self.frame, view, [width, height]);
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.renderer.render(&mut encoder, &self.target, &self.frame);
+        self.renderer.render(&mut encoder, &self.target, &mut self.frame);
         self.queue.submit([encoder.finish()]);
         self.wait()
     }

@@ -10,7 +10,7 @@ pub(crate) const KEY: Vec3 = Vec3::new(-0.4240, 0.7067, 0.5664);
 pub(crate) const MAP_TEXELS: u32 = 512;
 
 /// Size of the table's light map, texels: twice as long as deep, as the table is.
-pub(crate) const TABLE_TEXELS: [u32; 2] = [512, 256];
+pub(crate) const TABLE_TEXELS: [u32; 2] = [384, 192];
 
 /// Width of the light, as the tangent of half the angle that it is seen under: how fast shadows grow soft with distance.
 const SOFTNESS: f32 = 0.085;

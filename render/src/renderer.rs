@@ -80,8 +80,10 @@ impl Renderer {
     }
 
     /// Draws a prepared frame into `target`: shadow map, light of the table, picture, in a pass each.
-    pub fn render(&self, encoder: &mut wgpu::CommandEncoder, target: &TextureTarget, frame: &Frame) {
-        self.light(encoder, frame);
+    pub fn render(&self, encoder: &mut wgpu::CommandEncoder, target: &TextureTarget, frame: &mut Frame) {
+        if std::mem::take(&mut frame.light_changed) {
+            self.light(encoder, frame);
+        }
         let mut pass = target.begin_pass(encoder);
         self.draw(&mut pass, frame);
     }

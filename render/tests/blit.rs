@@ -65,7 +65,7 @@ fn draw_as_in_a_window(headless: &Headless, view: &SceneView<'_>, window: &wgpu:
 
     renderer.prepare(device, queue, &mut frame, view, SIZE);
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    renderer.render(&mut encoder, &target, &frame);
+    renderer.render(&mut encoder, &target, &mut frame);
     let surface = window.create_view(&wgpu::TextureViewDescriptor::default());
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {

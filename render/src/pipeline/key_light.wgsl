@@ -44,8 +44,8 @@ fn light_on_solid(world: vec3<f32>, normal: vec3<f32>) -> f32 {
 
 // Cosine and sine of the golden angle: each tap is turned by it from the one before, so that they cover a disc evenly.
 const GOLDEN: vec2<f32> = vec2(-0.7373688, 0.6754902);
-const SEARCH: i32 = 16;
-const TAPS: i32 = 20;
+const SEARCH: i32 = 14;
+const TAPS: i32 = 18;
 // What casts its shadow from farther away is too soft to matter, m.
 const WIDEST: f32 = 0.010;
 

@@ -148,3 +148,20 @@ fn what_lies_over_everything_stands_in_no_shadow() {
     let same = a.iter().filter(|pixel| b.contains(pixel)).count();
     assert!(same * 10 > a.len() * 6 && a.len() > 60, "{same} of {}", a.len());
 }
+
+/// Light maps are kept while only the viewer moves: the picture must be that of a device that knows nothing of the one before.
+#[test]
+fn shadows_that_were_kept_are_those_that_would_be_made() {
+    let (Some(mut kept), Some(mut fresh)) = (headless(), headless()) else { return };
+    let (world, state) = cube(0.01);
+    let (from_above, from_front) = (from_above(Theme::Light), bare());
+    let first = draw(&mut kept, &world, &state, &from_front);
+    let second = draw(&mut kept, &world, &state, &from_above);
+    assert_ne!(first, second);
+    assert_eq!(second, draw(&mut fresh, &world, &state, &from_above), "the viewer moved");
+    let mut moved = state.clone();
+    moved.bodies[0].center_m.x += 0.02;
+    let third = draw(&mut kept, &world, &moved, &from_above);
+    let mut fresh = headless().expect("there was one");
+    assert_eq!(third, draw(&mut fresh, &world, &moved, &from_above), "the cube moved");
+}

@@ -92,7 +92,7 @@ impl Resources {
         }
         let scene = SceneView { world: &picture.world, state: &picture.state, options: &picture.options };
         renderer.prepare(device, queue, &mut view.frame, &scene, picture.size);
-        renderer.render(encoder, &view.target, &view.frame);
+        renderer.render(encoder, &view.target, &mut view.frame);
     }
 }
 
