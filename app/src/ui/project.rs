@@ -2,6 +2,7 @@
 
 use super::fit_choice::FitChoice;
 use super::jobs::{JobKind, Outcome, Ticket};
+use super::plots::choices::KeptChoices;
 use super::prepare::Prepared;
 use super::session::{Session, Workspace, sentence};
 use estimator::log::Watch;
@@ -42,6 +43,8 @@ pub struct Project {
     pub view_s: (f64, f64),
     /// The open workspace.
     pub workspace: Workspace,
+    /// What the plots show.
+    pub plots: KeptChoices,
 }
 
 impl Project {
@@ -55,6 +58,7 @@ impl Project {
             cursor_s: session.cursor_s,
             view_s: session.view_s,
             workspace: session.workspace,
+            plots: session.plots.kept(),
         }
     }
 
@@ -165,6 +169,7 @@ impl Session {
         }
         self.seek(project.cursor_s);
         self.workspace = project.workspace;
+        self.plots.restore(project.plots);
         self.project_path = self.opening_project.take();
         if let Some(path) = self.project_path.clone() {
             self.recent.note(&path);

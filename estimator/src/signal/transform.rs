@@ -5,10 +5,12 @@
 
 use super::derive::{central_differences, even_period, interpolate, interpolate_cubic};
 use super::filter::low_pass;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// What is made of a signal.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Transform {
     /// The signal itself.
     #[default]

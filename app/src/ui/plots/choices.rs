@@ -4,10 +4,12 @@ use super::curves::NoiseCache;
 use super::derived::Derived;
 use crate::ui::prepare::Group;
 use estimator::signal::transform::Transform;
+use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// How the log is looked at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum LogView {
     /// Curves over time.
     #[default]
@@ -17,13 +19,15 @@ pub enum LogView {
 }
 
 /// What was chosen for the plot of one quantity.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct GroupChoice {
     /// Shown or not; `None`: as usual for this quantity.
     pub shown: Option<bool>,
     /// What is made of its curves.
     pub transform: Transform,
     /// What the curves on the screen were made with: that of before while the new ones are computed.
+    #[serde(skip)]
     pub drawn: Transform,
     /// A second plot below shows what the models leave.
     pub left_over: bool,
@@ -46,7 +50,7 @@ impl GroupChoice {
 }
 
 /// A recording laid over the shown one.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Overlaid {
     /// Which of the loaded ones.
     pub recording: usize,
@@ -55,7 +59,8 @@ pub struct Overlaid {
 }
 
 /// What an XY plot tells by colour.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum XyColor {
     /// The state.
     #[default]
@@ -65,7 +70,7 @@ pub enum XyColor {
 }
 
 /// One signal of an XY plot.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct XyAxis {
     /// Key of its group.
     pub group: String,
@@ -76,7 +81,8 @@ pub struct XyAxis {
 }
 
 /// The two signals of an XY plot.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct XyChoice {
     /// To the right.
     pub x: Option<XyAxis>,
@@ -103,7 +109,32 @@ pub struct PlotChoices {
     pub noise: NoiseCache,
 }
 
+/// What of the choices a project keeps.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct KeptChoices {
+    view: LogView,
+    groups: BTreeMap<String, GroupChoice>,
+    overlaid: Vec<Overlaid>,
+    xy: XyChoice,
+}
+
 impl PlotChoices {
+    /// For a project.
+    pub fn kept(&self) -> KeptChoices {
+        let without_curves = |choice: &GroupChoice| GroupChoice { drawn: Transform::None, ..choice.clone() };
+        let groups = self.groups.iter().map(|(key, choice)| (key.clone(), without_curves(choice)));
+        // A plot that somebody only looked at needs no word.
+        let groups = groups.filter(|(_, choice)| *choice != GroupChoice::default()).collect();
+        KeptChoices { view: self.view, groups, overlaid: self.overlaid.clone(), xy: self.xy.clone() }
+    }
+
+    /// As a project has it.
+    pub fn restore(&mut self, kept: KeptChoices) {
+        let KeptChoices { view, groups, overlaid, xy } = kept;
+        (self.view, self.groups, self.overlaid, self.xy) = (view, groups, overlaid, xy);
+    }
+
     /// What was chosen for a group.
     pub fn of(&mut self, group: &Group) -> &mut GroupChoice {
         self.groups.entry(group.key()).or_default()
@@ -197,6 +228,32 @@ mod tests {
         }
         assert_eq!(unit_after("mm", 2, true), "mm/sample²");
         assert_eq!(unit_after("mm/s", 1, true), "mm/s/sample", "a measured speed stays one");
+    }
+
+    #[test]
+    fn a_project_brings_the_choices_back() {
+        let mut choices = PlotChoices { view: LogView::Xy, ..PlotChoices::default() };
+        let choice = GroupChoice {
+            transform: Transform::LowPass(12.5),
+            drawn: Transform::LowPass(12.5),
+            left_over: true,
+            ..GroupChoice::default()
+        };
+        choices.groups.insert("Force/N".to_owned(), choice);
+        choices.groups.insert("Position/mm".to_owned(), GroupChoice::default());
+        choices.overlaid.push(Overlaid { recording: 1, offset_s: -0.25 });
+        let axis = XyAxis { group: "Force/N".into(), name: "f_N".into(), transform: Transform::Derivative };
+        choices.xy.y = Some(axis);
+        let text = serde_json::to_string(&choices.kept()).expect("written");
+        assert!(!text.contains("Position"), "{text}");
+        let mut back = PlotChoices::default();
+        back.restore(serde_json::from_str(&text).expect("read"));
+        assert_eq!(back.kept(), choices.kept());
+        assert_eq!(back.groups["Force/N"].transform, Transform::LowPass(12.5));
+        assert_eq!(
+            serde_json::from_str::<KeptChoices>("{}").expect("older projects have none"),
+            KeptChoices::default()
+        );
     }
 
     #[test]
