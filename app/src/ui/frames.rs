@@ -10,6 +10,7 @@ use super::theme;
 use super::trainer::Clock;
 use cpu_time::ThreadTime;
 use egui::{Context, RawInput, Rect, UiBuilder};
+use estimator::segment::Interval;
 use haptics::recording::Recording;
 use std::sync::Arc;
 
@@ -73,16 +74,30 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// Prepares, fits and replays.
-    pub fn new(recording: Recording) -> Result<Self, String> {
-        let recordings = vec![Arc::new(Prepared::new(recording))];
-        let analysis = fitting::analyse(&recordings, &FitChoice::default())?;
+    /// What was done `once`, over and over until there are so many samples. Fitted is the once: no task repeats itself so often.
+    pub fn over_and_over(once: Recording, samples: usize) -> Result<Self, String> {
+        let period_s = once.len() as f64 * once.rate_hz().map_or(1.0, |rate| 1.0 / rate);
+        let long = repeated(&once, samples, period_s);
+        let mut analysis = fitting::analyse(&[Arc::new(Prepared::new(once))], &FitChoice::default())?;
+        let last_s = long.time_s.as_ref().and_then(|t| t.last().copied()).unwrap_or_default();
+        for segmentation in analysis.segmentations.iter_mut().flatten() {
+            let states = std::mem::take(&mut segmentation.states);
+            let turns = (last_s / period_s).ceil() as usize;
+            let later = |turn: usize| {
+                let shift_s = turn as f64 * period_s;
+                states.iter().map(move |i| Interval { t0: i.t0 + shift_s, t1: i.t1 + shift_s, ..i.clone() })
+            };
+            segmentation.states = (0..turns).flat_map(later).filter(|i| i.t0 < last_s).collect();
+        }
+        let recordings = vec![Arc::new(Prepared::new(long))];
         let replays = fitting::replay_all(&analysis.world, &recordings);
         Ok(Self { recordings, analysis: Some(Arc::new(analysis)), replays })
     }
 
     /// Without a fit: for logs of which only the plots matter.
-    pub fn unfitted(recording: Recording) -> Self {
+    pub fn unfitted(once: &Recording, samples: usize) -> Self {
+        let period_s = once.len() as f64 * once.rate_hz().map_or(1.0, |rate| 1.0 / rate);
+        let recording = repeated(once, samples, period_s);
         Self { recordings: vec![Arc::new(Prepared::new(recording))], analysis: None, replays: Vec::new() }
     }
 
@@ -112,6 +127,21 @@ impl Loaded {
         });
         Costs { playing, zooming }
     }
+}
+
+/// The recording again and again, once a period, until it has so many samples.
+fn repeated(once: &Recording, samples: usize, period_s: f64) -> Recording {
+    let n = once.len().max(1);
+    let mut long = once.clone();
+    for channel in &mut long.channels {
+        channel.values =
+            once.channel(&channel.name).unwrap_or_default().iter().copied().cycle().take(samples).collect();
+    }
+    let of_once = estimator::signal::task::times(once);
+    let time = |i: usize| of_once.get(i % n).copied().unwrap_or_default() + (i / n) as f64 * period_s;
+    long.time_s = Some((0..samples).map(time).collect());
+    long.labels = None;
+    long
 }
 
 /// A window that is never shown.
@@ -188,7 +218,7 @@ mod tests {
     #[test]
     fn a_picture_of_a_hundred_times_as_many_samples_has_no_more_triangles() {
         let triangles = |n: usize| {
-            let costs = Loaded::unfitted(waves(n)).measure(SUBJECTS[0], [1920, 1080], 3);
+            let costs = Loaded::unfitted(&waves(20_000), n).measure(SUBJECTS[0], [1920, 1080], 3);
             costs.playing.triangles
         };
         let (short, long) = (triangles(20_000), triangles(2_000_000));

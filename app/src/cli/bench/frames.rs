@@ -29,7 +29,7 @@ pub struct FramesBench {
     /// Pictures that are drawn of each panel and movement
     #[arg(long, default_value_t = 60)]
     pictures: usize,
-    /// Only the log's panels, without a fit: for logs that take minutes to fit
+    /// Only the log's panels, without a fit and a replay: for logs that take minutes to replay
     #[arg(long)]
     no_fit: bool,
 }
@@ -46,12 +46,11 @@ impl FramesBench {
             "{} pictures are not possible; choose 2 to 10000",
             self.pictures
         );
-        let recording = self.recording();
-        let samples = recording.len();
+        let (once, samples) = (performance(), self.samples);
         let (loaded, subjects) = if self.no_fit {
-            (Loaded::unfitted(recording), &SUBJECTS[..2])
+            (Loaded::unfitted(&once, samples), &SUBJECTS[..2])
         } else {
-            (Loaded::new(recording).map_err(anyhow::Error::msg)?, &SUBJECTS[..])
+            (Loaded::over_and_over(once, samples).map_err(anyhow::Error::msg)?, &SUBJECTS[..])
         };
         let measured: Vec<(&str, Costs)> =
             subjects.iter().map(|s| (s.name, loaded.measure(*s, self.size, self.pictures))).collect();
@@ -90,31 +89,20 @@ impl FramesBench {
         let rows: Vec<_> = rows.collect();
         Output { text, json: json!({ "samples": samples, "size": self.size, "budget_s": BUDGET_S, "frames": rows }) }
     }
-
-    /// The scripted operator stacks two blocks, again and again.
-    fn recording(&self) -> Recording {
-        let world = presets::stacking();
-        let state = State::resting(&world);
-        let operator = ScriptedOperator::new(&world, &state, Skill::default(), 1);
-        let limits = Limits { max_force_n: operator.spec().max_force_n, ..Limits::default() };
-        let mut servo = Loop::new(Swap::at(world.clone(), state), Box::new(operator), limits);
-        let mut ticks = Vec::new();
-        while !servo.finished() && ticks.len() < self.samples {
-            ticks.push(servo.tick(DT));
-        }
-        let once = to_recording("stack, over and over", &world, &ticks, 1, &SensorModel::TYPICAL, 1);
-        repeated(once, self.samples)
-    }
 }
 
-/// The recording again and again until it has so many samples.
-fn repeated(mut once: Recording, samples: usize) -> Recording {
-    for channel in &mut once.channels {
-        channel.values = channel.values.iter().copied().cycle().take(samples).collect();
+/// The scripted operator stacks two blocks.
+fn performance() -> Recording {
+    let world = presets::stacking();
+    let state = State::resting(&world);
+    let operator = ScriptedOperator::new(&world, &state, Skill::default(), 1);
+    let limits = Limits { max_force_n: operator.spec().max_force_n, ..Limits::default() };
+    let mut servo = Loop::new(Swap::at(world.clone(), state), Box::new(operator), limits);
+    let mut ticks = Vec::new();
+    while !servo.finished() {
+        ticks.push(servo.tick(DT));
     }
-    once.time_s = Some((0..samples).map(|i| i as f64 * DT).collect());
-    once.labels = None;
-    once
+    to_recording("stack, over and over", &world, &ticks, 1, &SensorModel::TYPICAL, 1)
 }
 
 #[cfg(test)]

@@ -14,8 +14,9 @@ use std::sync::Arc;
 
 /// Most points of a curve: a pixel is met several times over.
 const MOST_POINTS: usize = 8_000;
-/// Most samples that are looked at for them; of more, every second, third … is.
-const MOST_SAMPLES: usize = 1_000_000;
+/// Most samples that are looked at for them; of more, every second, third … is. The first number while the view changes with every
+/// picture, the second once it stays.
+const MOST_SAMPLES: [usize; 2] = [120_000, 600_000];
 /// Shades that time is told by.
 const SHADES: usize = 48;
 
@@ -58,6 +59,8 @@ struct View {
     shown_s: (f64, f64),
     samples: Vec<usize>,
     points: Vec<PlotPoint>,
+    /// Nothing more can be seen by looking longer.
+    is_settled: bool,
 }
 
 fn same(a: &(Arc<Levels>, Arc<Levels>), b: &(Arc<Levels>, Arc<Levels>)) -> bool {
@@ -65,34 +68,41 @@ fn same(a: &(Arc<Levels>, Arc<Levels>), b: &(Arc<Levels>, Arc<Levels>)) -> bool 
 }
 
 impl XyCache {
-    fn update(&mut self, input: &XyInput<'_>) {
+    /// True when the next picture will show more.
+    fn update(&mut self, input: &XyInput<'_>) -> bool {
         let of = (Arc::clone(input.x), Arc::clone(input.y));
         let recording = &input.prepared.recording;
         let (x, y) = (input.x.samples(recording), input.y.samples(recording));
         let point = |i: usize| PlotPoint::new(x.value(i), y.value(i));
         let times = &input.prepared.times;
         if !self.whole.as_ref().is_some_and(|whole| same(&whole.of, &of)) {
-            let samples = thin(&x, &y, 0..times.len());
+            let samples = thin(&x, &y, 0..times.len(), MOST_SAMPLES[1]);
             self.whole = Some(Whole { of: of.clone(), points: samples.into_iter().map(point).collect() });
         }
-        if !self.view.as_ref().is_some_and(|view| same(&view.of, &of) && view.shown_s == input.view_s) {
-            let (from, to) = input.view_s;
-            let range = times.partition_point(|t| *t < from)..times.partition_point(|t| *t <= to);
-            let samples = thin(&x, &y, range);
-            let points = samples.iter().map(|i| point(*i)).collect();
-            self.view = Some(View { of, shown_s: input.view_s, samples, points });
+        let is_same = |view: &&View| same(&view.of, &of) && view.shown_s == input.view_s;
+        let stays = self.view.as_ref().filter(is_same);
+        if stays.is_some_and(|view| view.is_settled) {
+            return false;
         }
+        let most = MOST_SAMPLES[usize::from(stays.is_some())];
+        let (from, to) = input.view_s;
+        let range = times.partition_point(|t| *t < from)..times.partition_point(|t| *t <= to);
+        let is_settled = stays.is_some() || range.len() <= most;
+        let samples = thin(&x, &y, range, most);
+        let points = samples.iter().map(|i| point(*i)).collect();
+        self.view = Some(View { of, shown_s: input.view_s, samples, points, is_settled });
+        !is_settled
     }
 }
 
 /// The samples that a curve through the plane needs: of every stretch those farthest to each side.
-fn thin(x: &Samples<'_>, y: &Samples<'_>, range: Range<usize>) -> Vec<usize> {
+fn thin(x: &Samples<'_>, y: &Samples<'_>, range: Range<usize>, most: usize) -> Vec<usize> {
     let range = range.start.min(x.len())..range.end.min(x.len()).min(y.len());
     let is_number = |i: &usize| x.value(*i).is_finite() && y.value(*i).is_finite();
     if range.len() <= MOST_POINTS {
         return range.filter(is_number).collect();
     }
-    let step = range.len().div_ceil(MOST_SAMPLES);
+    let step = range.len().div_ceil(most);
     let stretch = range.len().div_ceil(MOST_POINTS / 4);
     let mut kept = Vec::with_capacity(MOST_POINTS + 4);
     for first in range.clone().step_by(stretch) {
@@ -116,7 +126,9 @@ fn thin(x: &Samples<'_>, y: &Samples<'_>, range: Range<usize>) -> Vec<usize> {
 
 /// Draws the plot `size` large; where the user has put the cursor, s.
 pub fn xy_plot(ui: &mut Ui, cache: &mut XyCache, input: &XyInput<'_>, size: Vec2) -> Option<f64> {
-    cache.update(input);
+    if cache.update(input) {
+        ui.ctx().request_repaint();
+    }
     let (p, dark) = (palette(ui), ui.visuals().dark_mode);
     let (Some(whole), Some(view)) = (&cache.whole, &cache.view) else { return None };
     let area = Vec2::new(size.x - AXIS_WIDTH, size.y - axis_height());
@@ -223,7 +235,7 @@ fn runs(input: &XyInput<'_>, view: &View, dark: bool) -> Vec<(Range<usize>, Colo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use haptics::recording::Recording;
+    use haptics::recording::{Channel, Recording};
 
     #[test]
     fn thinning_keeps_what_is_farthest_to_each_side() {
@@ -234,11 +246,42 @@ mod tests {
         (x[1_234], y[77_777], x[200_001], y[299_998]) = (5.0, -6.0, -7.0, 8.0);
         y[150_000] = f64::NAN;
         let (x, y, none) = (Levels::new(x), Levels::new(y), Recording::default());
-        let kept = thin(&x.samples(&none), &y.samples(&none), 0..n);
+        let kept = thin(&x.samples(&none), &y.samples(&none), 0..n, n);
         assert!(kept.len() <= MOST_POINTS + 4, "{}", kept.len());
         assert!([1_234, 77_777, 200_001, 299_998].iter().all(|i| kept.contains(i)));
         assert!(!kept.contains(&150_000) && kept.windows(2).all(|w| w[0] < w[1]));
-        assert_eq!(thin(&x.samples(&none), &y.samples(&none), 10..2_000).len(), 1_990);
+        assert_eq!(thin(&x.samples(&none), &y.samples(&none), 10..2_000, 100).len(), 1_990);
+    }
+
+    #[test]
+    fn a_view_that_stays_is_looked_at_longer() {
+        let n = 400_000;
+        let channel = |name: &str, values: Vec<f64>| Channel { name: name.into(), unit: "m".into(), values };
+        let mut x: Vec<f64> = (0..n).map(|i| (f64::from(i) * 1e-3).cos()).collect();
+        // One sample that every fourth does not meet.
+        x[200_001] = 3.0;
+        let y = (0..n).map(|i| (f64::from(i) * 1e-3).sin()).collect();
+        let recording = Recording { channels: vec![channel("x_m", x), channel("y_m", y)], ..Recording::default() };
+        let prepared = Arc::new(Prepared::new(recording));
+        let traces = &prepared.groups[0].traces;
+        let mut input = XyInput {
+            prepared: &prepared,
+            x: &traces[0].levels,
+            x_unit: "mm",
+            y: &traces[1].levels,
+            y_unit: "mm",
+            color: XyColor::Time,
+            segmentation: None,
+            view_s: (0.0, 399_999.0),
+            cursor_s: 0.0,
+        };
+        let mut cache = XyCache::default();
+        let has_spike = |cache: &XyCache| cache.view.as_ref().is_some_and(|v| v.samples.contains(&200_001));
+        assert!(cache.update(&input) && !has_spike(&cache), "at first only every fourth sample");
+        assert!(!cache.update(&input) && has_spike(&cache), "then every one");
+        assert!(!cache.update(&input) && has_spike(&cache), "and that stays");
+        input.view_s = (200_000.0, 200_100.0);
+        assert!(!cache.update(&input) && has_spike(&cache), "few are all looked at");
     }
 
     #[test]
