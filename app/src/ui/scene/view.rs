@@ -14,6 +14,9 @@ const ORBIT_RAD: f32 = 0.006;
 const KEY_RAD_S: f32 = 1.2;
 const KEY_ZOOM: f32 = 2.6;
 
+/// What a screen reader says of the picture.
+const SPOKEN: &str = "Scene in space. W, A, S and D turn it, Q and E magnify, 0 brings it back.";
+
 /// What happened in the view.
 pub struct SceneResponse {
     /// The whole picture.
@@ -46,7 +49,7 @@ pub enum Wheel {
 }
 
 /// Draws the scene into all the room there is. Right drag turns, middle drag moves, wheel magnifies; so do the keys W A S D, Q and E
-/// while the pointer is over the picture.
+/// while the pointer is over the picture or it has the focus.
 pub fn scene_view(
     ui: &mut egui::Ui,
     view: &'static str,
@@ -55,6 +58,7 @@ pub fn scene_view(
     scene: (Arc<World>, State, ViewOptions),
 ) -> SceneResponse {
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, SPOKEN));
     let size = pixels(ui, rect);
     let camera_moves = steer(ui, &response, rig, wheel, size);
     if rig.advance(ui.input(|i| i.stable_dt)) {
@@ -95,9 +99,10 @@ fn steer(ui: &egui::Ui, response: &Response, rig: &mut Rig, wheel: Wheel, size: 
         } else if scroll != 0.0 && (wheel == Wheel::Zooms || ctrl) {
             camera.zoom((scroll * 0.004).exp());
         }
-        if !ui.ctx().egui_wants_keyboard_input() {
-            by_keys(ui, camera);
-        }
+    }
+    let elsewhere = ui.ctx().egui_wants_keyboard_input();
+    if response.has_focus() || (response.hovered() && !elsewhere) {
+        by_keys(ui, camera);
     }
     moves
 }

@@ -198,3 +198,15 @@ fn keys_turn_the_view_while_the_pointer_is_over_it_and_zero_brings_it_back() {
     harness.run_steps(3);
     assert!(harness.query_by_label("Reset view").is_none());
 }
+
+#[test]
+fn the_picture_says_what_its_keys_do_and_takes_the_focus() {
+    let mut harness = panel(session(STACK.clone()));
+    harness.get_by_label_contains("Scene in space").focus();
+    harness.run_steps(2);
+    harness.key_down(egui::Key::W);
+    harness.run_steps(4);
+    harness.key_up(egui::Key::W);
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Reset view").is_some(), "it was turned without a pointer");
+}
