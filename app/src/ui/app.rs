@@ -4,12 +4,12 @@ use super::actions::{self, Action};
 use super::autosave::{Autosave, State};
 use super::dock::{Dock, Panels};
 use super::palette::{self, CommandPalette};
-use super::session::{Session, Workspace};
+use super::session::{Session, Tone, Workspace};
 use super::theme::{self, space};
 use super::tour::{self, Tour};
 use super::trainer::WorldChoice;
 use super::widgets::segmented;
-use super::{menu, restore};
+use super::{menu, messages, restore};
 use egui::{Align, CentralPanel, Frame, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
 
 /// The application.
@@ -58,7 +58,8 @@ impl App {
         self.top_bar(ui);
         super::recorder::unfinished(ui, &mut self.session);
         restore::offer(ui, self);
-        super::messages::banners(ui, &mut self.session);
+        messages::banners(ui, &mut self.session);
+        self.arranging(ui);
         if self.session.workspace != Workspace::Devices {
             // A test force is for the page that shows its button to stop.
             self.session.trainer.trial.abort();
@@ -81,6 +82,17 @@ impl App {
             ctx.request_repaint();
         }
         drop_hint(&ctx);
+    }
+
+    /// While panels are arranged: how, and the way out.
+    fn arranging(&mut self, ui: &mut Ui) {
+        let arranging = self.dock.arranging;
+        let mut done = false;
+        messages::strip(ui, "arranging", usize::from(arranging), |ui| {
+            let text = "Drag a title to put its panel elsewhere, or onto another's titles; × closes it, Menu, View brings it back.";
+            messages::message(ui, Tone::Done, text, |ui| done = ui.small_button("Done").clicked());
+        });
+        self.dock.arranging = arranging && !done;
     }
 
     fn keep_state(&mut self) {

@@ -2,10 +2,11 @@
 
 use super::session::{Session, Tone};
 use super::theme::{self, palette};
-use egui::{Align, Frame, Id, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
+use egui::{Align, Align2, Area, Frame, Id, Layout, Margin, Order, Panel as Side, RichText, Stroke, Ui};
 use std::time::Instant;
 
-/// Draws them above the workspace. What was done fades by itself; what went wrong stays until it is dismissed.
+/// What went wrong stays above the workspace until it is dismissed; what was done floats over its lower edge and goes by itself, so
+/// that nothing moves under the pointer.
 pub fn banners(ui: &mut Ui, session: &mut Session) {
     let now = Instant::now();
     session.banners.retain(|banner| banner.until.is_none_or(|until| now < until));
@@ -13,8 +14,9 @@ pub fn banners(ui: &mut Ui, session: &mut Session) {
         ui.ctx().request_repaint_after(first - now);
     }
     let mut closed = None;
-    strip(ui, "messages", session.banners.len(), |ui| {
-        for (index, banner) in session.banners.iter().enumerate() {
+    let wrong = session.banners.iter().filter(|b| b.tone == Tone::Error).count();
+    strip(ui, "messages", wrong, |ui| {
+        for (index, banner) in session.banners.iter().enumerate().filter(|(_, b)| b.tone == Tone::Error) {
             message(ui, banner.tone, &banner.text, |ui| {
                 if ui.small_button("Dismiss").clicked() {
                     closed = Some(index);
@@ -22,9 +24,34 @@ pub fn banners(ui: &mut Ui, session: &mut Session) {
             });
         }
     });
+    toasts(ui, session);
     if let Some(index) = closed {
         session.banners.remove(index);
     }
+}
+
+/// The newest at the bottom.
+fn toasts(ui: &Ui, session: &Session) {
+    let done: Vec<_> = session.banners.iter().filter(|b| b.tone == Tone::Done).collect();
+    if done.is_empty() {
+        return;
+    }
+    let area = Area::new(Id::unique("toasts")).order(Order::Foreground).anchor(Align2::RIGHT_BOTTOM, [-20.0, -20.0]);
+    area.show(ui.ctx(), |ui| {
+        let p = palette(ui);
+        ui.with_layout(Layout::top_down(Align::Max), |ui| {
+            for banner in done {
+                let fill = theme::mix(p.card, p.good, 0.16);
+                let frame = Frame::popup(ui.style()).fill(fill).stroke(Stroke::new(1.0, p.good)).corner_radius(8);
+                let shown = frame.inner_margin(Margin::symmetric(14, 8)).show(ui, |ui| {
+                    ui.add(egui::Label::new(RichText::new(&banner.text).color(p.text)).extend());
+                });
+                if !banner.hint.is_empty() {
+                    shown.response.on_hover_text(&banner.hint);
+                }
+            }
+        });
+    });
 }
 
 /// Room above the workspace for `count` messages.

@@ -40,7 +40,11 @@ pub fn show(ui: &Ui, app: &mut App) {
         return;
     }
     let ctx = ui.ctx().clone();
-    let found = actions::matching(&app.session, &app.palette.query);
+    let mut found = actions::matching(&app.session, &app.palette.query);
+    if app.palette.query.is_empty() {
+        // What can be done now stands first.
+        found.sort_by_key(|action| action.why_not(app).is_some());
+    }
     let mut run = None;
     let frame = Frame::popup(&ctx.global_style()).inner_margin(space::M);
     let area = Modal::default_area(egui::Id::unique("command palette")).anchor(Align2::CENTER_TOP, [0.0, 90.0]);

@@ -158,7 +158,7 @@ impl Session {
     pub(super) fn opened_project(&mut self, ctx: &egui::Context, project: Project, recordings: Vec<Arc<Prepared>>) {
         let first = project.recordings.first().cloned().unwrap_or_default();
         self.meta = first.meta;
-        self.path_field = first.log.display().to_string();
+        self.path_field.clear();
         self.path = Some(first.log);
         self.sources = project.recordings;
         self.show(recordings);

@@ -9,6 +9,7 @@ use super::panels::parameters::ParametersPanel;
 use super::panels::results::ResultsPanel;
 use super::panels::scene::ScenePanel;
 use super::panels::segments::SegmentsPanel;
+use super::panels::sensitivity::SensitivityPanel;
 use super::panels::trainer_view::TrainerView;
 use super::prepare::Prepared;
 use super::scene;
@@ -51,6 +52,16 @@ pub enum Panel {
     Diagnose,
     /// The dialog that maps the columns of the log.
     Mapping,
+    /// What the force depends on, and which parameters go together.
+    Sensitivity,
+    /// A parameter looked at closely, another value of it tried.
+    Parameter,
+    /// The Calibrate workspace while its panels are arranged.
+    Arrange,
+    /// The command palette.
+    Commands,
+    /// A card of the tour.
+    Tour,
 }
 
 /// What is shown.
@@ -126,8 +137,11 @@ pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Se
             session.fail(problem);
         }
     }
-    if panel == Panel::Diagnose {
-        diagnosed(&mut session);
+    match panel {
+        Panel::Diagnose => diagnosed(&mut session),
+        Panel::Sensitivity => session.look_at_sensitivity(),
+        Panel::Parameter => try_another_value(&mut session),
+        _ => {}
     }
     if panel == Panel::Rules {
         session.rules = super::rules::Rules::open(&mut session);
@@ -135,6 +149,18 @@ pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Se
     let (first, last) = session.view_s;
     session.seek(input.time_s.unwrap_or(first + 0.4 * (last - first)));
     Ok(session)
+}
+
+/// The first parameter with a good value a fifth larger.
+fn try_another_value(session: &mut Session) {
+    let Some(analysis) = session.analysis.clone() else { return };
+    let known = |p: &&estimator::estimate::Parameter| p.identified && p.value.is_some_and(|v| v != 0.0);
+    let weight = analysis.fit.parameters.iter().find(|p| p.name == "weight_N").filter(known);
+    let Some(parameter) = weight.or_else(|| analysis.fit.parameters.iter().find(known)) else { return };
+    let name = parameter.full_name();
+    session.try_value(&name, parameter.value.map(|v| 1.2 * v));
+    session.selected_parameter = Some(name);
+    session.try_now();
 }
 
 /// What the window's jobs would bring.
@@ -186,6 +212,12 @@ pub fn draw(session: Session, panel: Panel, size: [u32; 2], dark: bool) -> anyho
     let state = egui_kittest::wgpu::create_render_state(egui_kittest::wgpu::default_wgpu_setup(), options);
     let surface = state.clone();
     let mut app = App::new(session);
+    match panel {
+        Panel::Arrange => app.dock.arranging = true,
+        Panel::Commands => app.palette.open(),
+        Panel::Tour => app.tour.begin_at(4),
+        _ => {}
+    }
     let mut contents = contents(panel);
     let mut harness = egui_kittest::Harness::builder()
         .with_size(egui::vec2(size[0] as f32, size[1] as f32))
@@ -228,8 +260,16 @@ pub(super) fn contents(panel: Panel) -> Contents {
         Panel::Results => framed(ResultsPanel::default()),
         Panel::Scene => framed(ScenePanel::default()),
         Panel::Trainer => framed(TrainerView::default()),
-        Panel::Rules | Panel::Workbench | Panel::Train | Panel::Devices | Panel::Diagnose | Panel::Mapping => {
-            Box::new(|ui, app| app.show(ui))
-        }
+        Panel::Sensitivity => framed(SensitivityPanel),
+        Panel::Rules
+        | Panel::Workbench
+        | Panel::Train
+        | Panel::Devices
+        | Panel::Diagnose
+        | Panel::Mapping
+        | Panel::Parameter
+        | Panel::Arrange
+        | Panel::Commands
+        | Panel::Tour => Box::new(|ui, app| app.show(ui)),
     }
 }

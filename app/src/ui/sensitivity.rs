@@ -51,6 +51,14 @@ impl Sensitivity {
 }
 
 impl Session {
+    /// Computes it now, for a picture.
+    pub(super) fn look_at_sensitivity(&mut self) {
+        let Some(analysis) = &self.analysis else { return };
+        let given = self.choice.given_to_all(&self.recordings);
+        let found = sensitivity(analysis, &self.recordings, &given, |_| {}, &AtomicBool::new(false));
+        self.sensitivity = found.map(Arc::new);
+    }
+
     /// Computes it in the background, unless it is there.
     pub fn want_sensitivity(&mut self, ctx: &egui::Context) {
         let Some(analysis) = self.analysis.clone() else { return };

@@ -70,12 +70,14 @@ pub struct Banner {
     pub tone: Tone,
     /// One sentence.
     pub text: String,
+    /// More about it, for those who point at it.
+    pub hint: String,
     /// When it goes by itself; `None`: when it is dismissed.
     pub until: Option<Instant>,
 }
 
 /// How long one reads that something was done.
-const DONE_LASTS: Duration = Duration::from_secs(10);
+const DONE_LASTS: Duration = Duration::from_secs(6);
 
 /// Everything that is shared between panels.
 #[derive(Default)]
@@ -192,7 +194,16 @@ impl Session {
         let until = (tone == Tone::Done).then(|| Instant::now() + DONE_LASTS);
         match self.banners.iter_mut().find(|banner| banner.tone == tone && banner.text == text) {
             Some(banner) => banner.until = until,
-            None => self.banners.push(Banner { tone, text, until }),
+            None => self.banners.push(Banner { tone, text, hint: String::new(), until }),
+        }
+    }
+
+    /// Says where something was written: the name, and the whole path for those who point at it.
+    pub fn say_saved(&mut self, path: &std::path::Path) {
+        let text = format!("Saved {}.", super::mapping::name_of(path));
+        self.say(Tone::Done, text.clone());
+        if let Some(banner) = self.banners.iter_mut().find(|b| b.text == text) {
+            banner.hint = path.display().to_string();
         }
     }
 
@@ -279,6 +290,7 @@ impl Session {
             Outcome::Loaded(path, recordings) => {
                 let mute = super::opening::says_nothing(&recordings);
                 self.recent.note(&path);
+                self.path_field.clear();
                 self.sources = vec![Source { log: path.clone(), meta: self.meta.clone() }];
                 self.project_path = None;
                 self.path = Some(path);
@@ -302,7 +314,7 @@ impl Session {
             }
             Outcome::Mapped { log, sidecar } => {
                 self.mapping = None;
-                self.say(Tone::Done, format!("Saved to {}.", sidecar.display()));
+                self.say_saved(&sidecar);
                 self.open_with(ctx, &log, Some(sidecar));
             }
             Outcome::Fitted(analysis) => self.fitted(ctx, *analysis),
@@ -332,7 +344,7 @@ impl Session {
             Outcome::Chosen(Purpose::SaveExtended, Some(path)) => super::files::save_extended(ctx, self, path),
             Outcome::Unfinished(found) => self.unfinished = found,
             Outcome::World(world) => self.opened_world = Some(world),
-            Outcome::Saved(path) => self.say(Tone::Done, format!("Saved to {}.", path.display())),
+            Outcome::Saved(path) => self.say_saved(&path),
             Outcome::Failed(problem) => {
                 if !self.recordings.is_empty() && self.analysis.is_none() {
                     self.fit_problem = Some(problem.clone());

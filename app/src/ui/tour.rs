@@ -74,6 +74,11 @@ impl Tour {
         *self = Self { step: Some(0), before: None, seen: self.seen };
     }
 
+    /// From a card in the middle.
+    pub fn begin_at(&mut self, step: usize) {
+        *self = Self { step: Some(step.min(STEPS.len() - 1)), before: None, seen: self.seen };
+    }
+
     /// True while a card is shown.
     pub fn is_on(&self) -> bool {
         self.step.is_some()

@@ -101,6 +101,15 @@ impl Session {
         });
     }
 
+    /// Replays with the tried values now, for a picture.
+    pub(super) fn try_now(&mut self) {
+        let Some(analysis) = &self.analysis else { return };
+        let values = self.what_if.values.clone();
+        let world = world(analysis, &self.choice.given_to_all(&self.recordings), &values);
+        let replays = replay_forces(&world, &self.recordings);
+        self.what_if.take(values, replays);
+    }
+
     /// The replay that plots show: of the tried values while something is tried.
     pub fn shown_curves(&self) -> Option<&Replayed> {
         let tried = self.what_if.replays.get(self.current).filter(|_| self.what_if.is_on());

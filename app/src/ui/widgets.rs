@@ -134,13 +134,14 @@ pub fn key_hint(ui: &mut Ui, key: &str, what: &str) {
 }
 
 /// A label on the left and a value on the right of one line.
-pub fn fact(ui: &mut Ui, label: &str, value: impl Into<String>) {
+pub fn fact(ui: &mut Ui, label: &str, value: impl Into<String>) -> Response {
     compact(ui, |ui| {
         ui.label(theme::caption(ui, label));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.add(egui::Label::new(RichText::new(value.into()).size(12.0)).truncate());
-        });
-    });
+            ui.add(egui::Label::new(RichText::new(value.into()).size(12.0)).truncate())
+        })
+        .inner
+    })
 }
 
 /// A line that is no higher than its words.

@@ -36,6 +36,9 @@ pub fn key_text(ui: &Ui, action: &Action) -> String {
 
 /// Actions that the session as it is offers, best match of `query` first; all of them for an empty one.
 pub fn matching(session: &Session, query: &str) -> Vec<Action> {
+    if query.trim().is_empty() {
+        return Action::all(session).collect();
+    }
     let mut scored: Vec<(i64, usize, Action)> = Action::all(session)
         .enumerate()
         .filter_map(|(place, action)| Some((score(&action.search_text(), query)?, place, action)))

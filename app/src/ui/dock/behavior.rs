@@ -3,7 +3,7 @@
 use super::layout::GAP;
 use super::{Pane, Panels};
 use crate::ui::session::Session;
-use crate::ui::theme::{self, Palette, palette};
+use crate::ui::theme::{self, Palette};
 use egui::{Color32, RichText, Stroke, Ui, Visuals, WidgetText};
 use egui_tiles::{Behavior, EditAction, ResizeState, SimplificationOptions, TabState, TileId, Tiles, UiResponse};
 
@@ -103,19 +103,6 @@ impl Behavior<Pane> for Tiling<'_> {
 
     fn dragged_overlay_color(&self, visuals: &Visuals) -> Color32 {
         of(visuals).window.gamma_multiply(0.5)
-    }
-
-    fn top_bar_right_ui(
-        &mut self,
-        _tiles: &Tiles<Pane>,
-        ui: &mut Ui,
-        _tile: TileId,
-        _tabs: &egui_tiles::Tabs,
-        _scroll: &mut f32,
-    ) {
-        if self.arranging {
-            ui.label(RichText::new("drag the title").size(10.5).color(palette(ui).faint));
-        }
     }
 
     fn on_edit(&mut self, action: EditAction) {

@@ -7,6 +7,8 @@ use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 
 /// Between panels, and around them.
 pub const GAP: f32 = 12.0;
+/// Height that plots need to be read, points.
+const PLOTS: f32 = 446.0;
 /// Width of the trainer's side, points.
 const TRAINER_SIDE: f32 = 312.0;
 
@@ -40,7 +42,8 @@ pub fn suit(tree: &mut Tree<Pane>, workspace: Workspace, room: Vec2, session: &S
             let (left, right) = ((0.18 * wide).clamp(208.0, 240.0), (0.25 * wide).clamp(356.0, 372.0));
             columns(tree, LinearDir::Horizontal, &[Some(left), None, Some(right)], wide);
             // The rules need more room than the picture.
-            let upper = if session.rules.is_some() { 0.48 } else { 0.40 } * room.y;
+            let upper =
+                if session.rules.is_some() { 0.48 * room.y } else { (0.40 * room.y).min(room.y - PLOTS).max(150.0) };
             columns(tree, LinearDir::Vertical, &[Some(upper), None], room.y - 2.0 * GAP);
         }
         Workspace::Train => columns(tree, LinearDir::Horizontal, &[None, Some(TRAINER_SIDE)], wide),

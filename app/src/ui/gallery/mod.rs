@@ -2,6 +2,7 @@
 
 mod samples;
 mod small_png;
+pub mod walk;
 
 use super::scene::SceneLayers;
 use super::screenshot::{self, Panel, PanelInput};
@@ -46,8 +47,8 @@ impl Plate {
 
     /// A single panel with a margin around it, no whole page.
     pub fn is_framed(&self) -> bool {
-        use Panel::{Log, Parameters, Results, Scene, Segments, Trainer};
-        matches!(self.panel, Log | Parameters | Results | Scene | Segments | Trainer)
+        use Panel::{Log, Parameters, Results, Scene, Segments, Sensitivity, Trainer};
+        matches!(self.panel, Log | Parameters | Results | Scene | Segments | Sensitivity | Trainer)
     }
 
     /// A view of a recording in space with other layers than usual.
@@ -75,6 +76,11 @@ fn of_panel(panel: Panel) -> Plate {
         Panel::Train => (Sample::World("stack"), PAGE, "Train: the world, the forces, the servo's punctuality"),
         Panel::Devices => (Sample::World("stack"), PAGE, "Devices: what moves the fingers, and how well"),
         Panel::Diagnose => (Sample::Crank, PAGE, "Diagnose: what the model gets wrong, and why"),
+        Panel::Sensitivity => (Sample::Crank, COLUMN, "Sensitivity: what the force depends on, and what goes together"),
+        Panel::Parameter => (Sample::Crank, PAGE, "Another value of a parameter, tried on the replay"),
+        Panel::Arrange => (Sample::Stack, PAGE, "Panels while they are arranged: drag a title, close, bring back"),
+        Panel::Commands => (Sample::Stack, PAGE, "Every command by a few letters of its name"),
+        Panel::Tour => (Sample::Stack, PAGE, "Shown around, the first time"),
         Panel::Mapping => (Sample::Foreign, PAGE, "A foreign table: what its columns mean, with a preview"),
     };
     let name = panel.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
@@ -209,6 +215,10 @@ pub fn write_to(folder: &Path, only: Option<&str>, mut tell: impl FnMut(f64)) ->
                 .with_context(|| format!("the picture could not be written: {}", path.display()))?;
         }
     }
+    for dark in [false, true] {
+        let (more, size) = walked(folder, only, dark)?;
+        (pictures, bytes) = (pictures + more, bytes + size);
+    }
     if only.is_none() {
         let path = folder.join("README.md");
         std::fs::write(&path, page(&plates))
@@ -217,8 +227,36 @@ pub fn write_to(folder: &Path, only: Option<&str>, mut tell: impl FnMut(f64)) ->
     Ok((pictures, bytes))
 }
 
+/// The steps of the whole way, as a person goes it.
+fn walked(folder: &Path, only: Option<&str>, dark: bool) -> anyhow::Result<(usize, usize)> {
+    let (mut pictures, mut bytes) = (0, 0);
+    if only.is_some_and(|name| !"walk".starts_with(name) && !name.starts_with("walk")) {
+        return Ok((0, 0));
+    }
+    let place = tempfile::tempdir().context("there is no room for temporary files")?;
+    walk::walk(place.path(), PAGE, dark, true, |step, picture| {
+        if let Some(picture) = picture {
+            let png = small_png(&picture)?;
+            (pictures, bytes) = (pictures + 1, bytes + png.len());
+            std::fs::write(folder.join(step_file(step, dark)), png).context("the picture could not be written")?;
+        }
+        Ok(())
+    })?;
+    Ok((pictures, bytes))
+}
+
 fn file_name(plate: &Plate, dark: bool) -> String {
-    format!("{}-{}.png", plate.name, if dark { "dark" } else { "light" })
+    themed(&plate.name, dark)
+}
+
+/// Numbered, so that files stand in the order of the steps.
+fn step_file(step: &str, dark: bool) -> String {
+    let place = walk::STEPS.iter().position(|(name, _)| *name == step).unwrap_or_default();
+    themed(&format!("walk-{}-{step}", place + 1), dark)
+}
+
+fn themed(name: &str, dark: bool) -> String {
+    format!("{name}-{}.png", if dark { "dark" } else { "light" })
 }
 
 /// The page beside the pictures.
@@ -227,6 +265,13 @@ fn page(plates: &[Plate]) -> String {
         "# Gallery\n\nEvery panel and every scene, light and dark, drawn by the program itself:\n\
          `cargo run --release -p app -- gallery --out docs/gallery`\n\n| light | dark |\n|---|---|\n",
     );
+    for (step, line) in walk::STEPS {
+        let [light, dark] = [false, true].map(|dark| step_file(step, dark));
+        let _ = writeln!(
+            text,
+            "| From a log to a report: {line}<br>![{line}, light]({light}) | <br>![{line}, dark]({dark}) |"
+        );
+    }
     for plate in plates {
         let [light, dark] = [false, true].map(|dark| file_name(plate, dark));
         let line = plate.line;
@@ -257,6 +302,12 @@ mod tests {
         for plate in plates() {
             for dark in [false, true] {
                 let picture = Path::new(path).with_file_name(file_name(&plate, dark));
+                assert!(picture.is_file(), "{} is missing: {again}", picture.display());
+            }
+        }
+        for (step, _) in walk::STEPS {
+            for dark in [false, true] {
+                let picture = Path::new(path).with_file_name(step_file(step, dark));
                 assert!(picture.is_file(), "{} is missing: {again}", picture.display());
             }
         }

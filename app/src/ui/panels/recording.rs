@@ -17,6 +17,7 @@ use std::path::PathBuf;
 pub struct RecordingPanel {
     log_field: String,
     world_field: String,
+    report_field: String,
 }
 
 impl Panel for RecordingPanel {
@@ -52,6 +53,7 @@ fn source(ui: &mut Ui, session: &mut Session) {
             let path = PathBuf::from(session.path_field.trim());
             session.open_any(&ctx, &path);
         }
+        let named = named || session.path.is_some();
         let hint = "Say what the columns of this table mean; a sidecar remembers it";
         if ui.add_enabled(named, egui::Button::new("Map columns …")).on_hover_text(hint).clicked() {
             session.map_columns(&ctx, None);
@@ -69,7 +71,7 @@ fn source(ui: &mut Ui, session: &mut Session) {
     if session.recordings.len() > 1 {
         choose_trial(ui, session);
     } else {
-        fact(ui, "Name", recording.name.clone());
+        fact(ui, "Name", recording.name.clone()).on_hover_text(whole_path(session));
     }
     fact(ui, "Length", recording.duration_s().map_or_else(|| "no clock".to_owned(), |d| format!("{d:.1} s")));
     fact(ui, "Samples", format::grouped(recording.len()));
@@ -80,6 +82,10 @@ fn source(ui: &mut Ui, session: &mut Session) {
     if let Some(from) = &prepared.velocity_from {
         fact(ui, "Velocities", from.split(' ').next().unwrap_or_default().to_owned());
     }
+}
+
+fn whole_path(session: &Session) -> String {
+    session.path.as_ref().map(|path| path.display().to_string()).unwrap_or_default()
 }
 
 fn choose_trial(ui: &mut Ui, session: &mut Session) {
@@ -237,6 +243,7 @@ impl RecordingPanel {
         if self.log_field.is_empty() {
             "recording.csv".clone_into(&mut self.log_field);
             "world.json".clone_into(&mut self.world_field);
+            "report.html".clone_into(&mut self.report_field);
         }
         ui.label(theme::caption(ui, "Recording, with its sidecar"));
         if save_line(ui, session, &mut self.log_field, Purpose::SaveLog, true) {
@@ -247,20 +254,32 @@ impl RecordingPanel {
         if save_line(ui, session, &mut self.world_field, Purpose::SaveWorld, fitted) {
             files::save_world(ui.ctx(), session, &self.world_field);
         }
+        ui.label(theme::caption(ui, "Report of everything, one page"));
+        let is_file = !session.sources.is_empty();
+        if save_line(ui, session, &mut self.report_field, Purpose::SaveReport, is_file) {
+            files::save_report(ui.ctx(), session, PathBuf::from(self.report_field.trim()));
+        }
     }
 }
 
 /// A path field with `…` and `Save`; true when it is to be saved there.
 fn save_line(ui: &mut Ui, session: &mut Session, field: &mut String, purpose: Purpose, enabled: bool) -> bool {
+    let (place, does) = match purpose {
+        Purpose::SaveReport => ("Where the report goes", "Write report"),
+        Purpose::SaveWorld => ("Where the world goes", "Save world"),
+        _ => ("Where the recording goes", "Save recording"),
+    };
     ui.add_enabled_ui(enabled, |ui| {
         let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let save = ui.button("Save").clicked();
+            let save = ui.button("Save");
+            save.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, does));
             if ui.button("…").on_hover_text("Choose a place").clicked() {
                 files::ask(ui.ctx(), &mut session.jobs, purpose);
             }
-            ui.add(TextEdit::singleline(field).desired_width(ui.available_width()));
-            save
+            let edit = ui.add(TextEdit::singleline(field).desired_width(ui.available_width()));
+            edit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, enabled, place));
+            save.clicked()
         })
         .inner
     })

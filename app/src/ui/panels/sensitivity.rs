@@ -138,5 +138,6 @@ fn color(p: &Palette, correlation: f64) -> Color32 {
 /// `block-1.weight_N` → `Block 1 weight`.
 fn words(full_name: &str) -> String {
     let Some((object, name)) = full_name.split_once('.') else { return full_name.to_owned() };
-    format!("{} {}", format::object(object), format::parameter(name, None).label.to_lowercase())
+    let label = format::parameter(name, None).label.to_lowercase().replace("coulomb", "Coulomb");
+    format!("{} {label}", format::object(object))
 }

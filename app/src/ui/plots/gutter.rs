@@ -176,7 +176,7 @@ fn show(ui: &mut Ui, choice: &mut GroupChoice, input: &RowInput<'_>, entry: &Ent
 
 fn value_text(value: f64, unit: &str, narrow: bool) -> String {
     let decimals = match unit {
-        "mm" if narrow => 1,
+        "mm" if narrow => usize::from(value.abs() < 100.0),
         "mm" | "N" | "N·m" => 2,
         "mm/s" | "°" | "°/s" | "N/s" => 1,
         "mm/s²" | "°/s²" => 0,
