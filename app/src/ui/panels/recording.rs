@@ -15,9 +15,9 @@ use std::path::PathBuf;
 /// The recording panel.
 #[derive(Default)]
 pub struct RecordingPanel {
-    log_field: String,
-    world_field: String,
-    report_field: String,
+    log: String,
+    world: String,
+    report: String,
 }
 
 impl Panel for RecordingPanel {
@@ -240,24 +240,24 @@ fn thresholds(ui: &mut Ui, session: &mut Session) {
 
 impl RecordingPanel {
     fn save(&mut self, ui: &mut Ui, session: &mut Session) {
-        if self.log_field.is_empty() {
-            "recording.csv".clone_into(&mut self.log_field);
-            "world.json".clone_into(&mut self.world_field);
-            "report.html".clone_into(&mut self.report_field);
+        if self.log.is_empty() {
+            "recording.csv".clone_into(&mut self.log);
+            "world.json".clone_into(&mut self.world);
+            "report.html".clone_into(&mut self.report);
         }
         ui.label(theme::caption(ui, "Recording, with its sidecar"));
-        if save_line(ui, session, &mut self.log_field, Purpose::SaveLog, true) {
-            files::save_log(ui.ctx(), session, &self.log_field);
+        if save_line(ui, session, &mut self.log, Purpose::SaveLog, true) {
+            files::save_log(ui.ctx(), session, &self.log);
         }
         ui.label(theme::caption(ui, "Calibrated world"));
         let fitted = session.analysis.is_some();
-        if save_line(ui, session, &mut self.world_field, Purpose::SaveWorld, fitted) {
-            files::save_world(ui.ctx(), session, &self.world_field);
+        if save_line(ui, session, &mut self.world, Purpose::SaveWorld, fitted) {
+            files::save_world(ui.ctx(), session, &self.world);
         }
         ui.label(theme::caption(ui, "Report of everything, one page"));
         let is_file = !session.sources.is_empty();
-        if save_line(ui, session, &mut self.report_field, Purpose::SaveReport, is_file) {
-            files::save_report(ui.ctx(), session, PathBuf::from(self.report_field.trim()));
+        if save_line(ui, session, &mut self.report, Purpose::SaveReport, is_file) {
+            files::save_report(ui.ctx(), session, PathBuf::from(self.report.trim()));
         }
     }
 }
