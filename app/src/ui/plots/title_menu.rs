@@ -83,6 +83,10 @@ fn menu(ui: &mut Ui, choice: &mut GroupChoice, input: &RowInput<'_>) {
             ui.horizontal(|ui| {
                 ui.add_space(space::XL);
                 ui.label(theme::caption(ui, "up to"));
+                // Menus take the frames of their buttons away; a number that can be changed looks like one.
+                let p = palette(ui);
+                let field = &mut ui.visuals_mut().widgets.inactive;
+                (field.weak_bg_fill, field.bg_stroke) = (p.raised, Stroke::new(1.0, p.border));
                 let speed = 0.005 * *cutoff;
                 let drag = DragValue::new(cutoff).range(1e-4 * rate..=HIGHEST_CUTOFF * rate).speed(speed);
                 ui.add(drag.max_decimals(4).suffix(if clockless { " / sample" } else { " Hz" }));
