@@ -69,6 +69,8 @@ pub struct Prepared {
     pub groups: Vec<Group>,
     /// Samples that paths in space are drawn through.
     pub path_samples: Vec<usize>,
+    /// Of every channel, in its unit squared.
+    mean_squares: Vec<f64>,
 }
 
 impl Prepared {
@@ -89,7 +91,15 @@ impl Prepared {
         let groups = groups(&recording, of_task);
         let step = times.len().div_ceil(PATH_POINTS).max(1);
         let path_samples = (0..times.len()).step_by(step).collect();
-        Self { recording, times, task, tips, tool, velocity_from, groups, path_samples }
+        let mean_square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>() / v.len().max(1) as f64;
+        let mean_squares = recording.channels.iter().map(|c| mean_square(&c.values)).collect();
+        Self { recording, times, task, tips, tool, velocity_from, groups, path_samples, mean_squares }
+    }
+
+    /// Mean square of a channel, in its unit squared; 0 without it. Found once: a picture has no time for a million samples.
+    pub fn mean_square(&self, channel: &str) -> f64 {
+        let place = self.recording.channels.iter().position(|c| c.name == channel);
+        place.and_then(|k| self.mean_squares.get(k)).copied().unwrap_or(0.0)
     }
 
     /// First and last time.
@@ -263,6 +273,7 @@ mod tests {
         let position = &prepared.groups[0];
         assert_eq!((position.unit.as_str(), position.traces[1].label.as_str()), ("mm", "left y"));
         assert_eq!(position.traces[0].levels.samples(&prepared.recording).value(1), 2.0);
+        assert!((prepared.mean_square("x1_m") - 2.5e-6).abs() < 1e-15 && prepared.mean_square("none") == 0.0);
         assert_eq!(prepared.sample_at(0.4), 0);
         assert_eq!(prepared.sample_at(0.5), 1);
     }

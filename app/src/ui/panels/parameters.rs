@@ -219,8 +219,7 @@ fn residual(ui: &mut Ui, session: &Session, simulation: &Simulation) {
     // Together: a channel that carries little force may well be wrong by all of it.
     let (mut worst, mut left, mut measured) = (0.0_f64, 0.0, 0.0);
     for (name, rms) in &simulation.residual_rms {
-        let values = prepared.recording.channel(name).unwrap_or_default();
-        measured += values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64;
+        measured += prepared.mean_square(name);
         left += rms * rms;
         worst = worst.max(*rms);
     }
