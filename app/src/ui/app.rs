@@ -77,7 +77,7 @@ impl App {
         }
         palette::show(ui, self);
         tour::show(ui, self);
-        self.keep_state();
+        self.keep_state(&ctx);
         if self.session.playing {
             ctx.request_repaint();
         }
@@ -95,10 +95,10 @@ impl App {
         self.dock.arranging = arranging && !done;
     }
 
-    fn keep_state(&mut self) {
+    fn keep_state(&mut self, ctx: &egui::Context) {
         let Some(autosave) = &mut self.autosave else { return };
         if self.left_behind.is_none()
-            && let Some(problem) = autosave.follow(&self.session, &self.dock, self.tour.seen)
+            && let Some(problem) = autosave.follow(ctx, &self.session, &self.dock, self.tour.seen)
         {
             self.session.fail(problem);
         }

@@ -75,9 +75,11 @@ impl Autosave {
     }
 
     /// Writes what has changed, now and then; call once a frame. What went wrong the last time comes back, in a sentence.
-    pub fn follow(&mut self, session: &Session, dock: &Dock, toured: bool) -> Option<String> {
+    pub fn follow(&mut self, ctx: &egui::Context, session: &Session, dock: &Dock, toured: bool) -> Option<String> {
         let now = Instant::now();
         if now < self.next {
+            // A window that nobody moves any more draws no frame by itself: what this one changed would wait with it.
+            ctx.request_repaint_after(self.next - now);
             return None;
         }
         self.next = now + EVERY;
@@ -139,7 +141,7 @@ mod tests {
         session.sources = vec![Source { log: PathBuf::from("/logs/a.csv"), meta: None }];
         session.workspace = Workspace::Calibrate;
         let dock = Dock::default();
-        autosave.follow(&session, &dock, true);
+        autosave.follow(&egui::Context::default(), &session, &dock, true);
         let found = wait_for(&folder.path().join("session.json"));
         assert!(!found.ended && found.toured && found.project.recordings == session.sources);
         assert!(Autosave::begin(folder.path()).is_none(), "a second window keeps out");
