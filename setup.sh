@@ -65,6 +65,16 @@ setup_window() {
   fi
 }
 
+# A screen in memory, and hands to drive a window on it; without them that test is skipped, with a word.
+setup_real_window() {
+  if ! command -v Xvfb >/dev/null 2>&1 || ! command -v xdotool >/dev/null 2>&1; then
+    need "a window that the tests drive" xvfb xdotool || true
+  fi
+  if ! have_library 'libxkbcommon-x11\.so\.0'; then
+    need "the window under X11" libxkbcommon-x11-0 libxcursor1 libxi6 || true
+  fi
+}
+
 # Headers for the features that the default build leaves out; false where they cannot be had. `./test` only checks those features.
 setup_features() {
   have_headers || need "headers for sound and gamepads, to check these features" pkg-config libasound2-dev libudev-dev || return 1
