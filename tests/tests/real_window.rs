@@ -13,6 +13,8 @@ use tests::touchstone;
 
 /// The screen, pixels; the window opens in this size.
 const SCREEN: [usize; 2] = [1480, 920];
+/// What is as high, pixels, is a bar.
+const BAR: usize = 12;
 /// Software rendering on a busy machine takes its time.
 const PATIENCE: Duration = Duration::from_mins(3);
 
@@ -74,22 +76,25 @@ impl Screen {
         }
     }
 
-    /// The right end of the longest run of a state's colour in the lower half: left, right and height.
+    /// The longest bar of a state's colour in the lower half: left, right and top. A curve of that colour is no bar.
     fn run_of(&self, state: SystemState) -> Option<(usize, usize, usize)> {
         let wanted = [false, true].map(|dark| theme::state_color(dark, state).to_array());
         let near = |p: &[u8; 3]| wanted.iter().any(|w| p.iter().zip(w).all(|(a, b)| a.abs_diff(*b) <= 3));
+        let rows = self.picture();
+        let thick = |x: usize, y: usize| (1..BAR).all(|k| rows.get(y + k).is_some_and(|row| near(&row[x])));
         let mut best: Option<(usize, usize, usize)> = None;
-        for (y, row) in self.picture().iter().enumerate().skip(SCREEN[1] / 2) {
+        for (y, row) in rows.iter().enumerate().skip(SCREEN[1] / 2) {
             let mut from = None;
             for (x, pixel) in row.iter().chain([&[0, 0, 0]]).enumerate() {
                 match (near(pixel), from) {
                     (true, None) => from = Some(x),
-                    (false, Some(left)) => {
-                        if best.is_none_or(|(l, r, _)| x - left > r - l) {
+                    (false, Some(left)) if x - left > 8 => {
+                        if best.is_none_or(|(l, r, _)| x - left > r - l) && thick(left + 2, y) && thick(x - 3, y) {
                             best = Some((left, x, y));
                         }
                         from = None;
                     }
+                    (false, _) => from = None,
                     _ => {}
                 }
             }
@@ -186,7 +191,7 @@ fn a_person_opens_drags_takes_back_diagnoses_and_survives_a_kill() {
     screen.keep("2-states");
 
     // A boundary is dragged as a hand does it: down, on its way, up.
-    let at = |x: usize| [x.to_string(), (y + 3).to_string()];
+    let at = |x: usize| [x.to_string(), (y + 8).to_string()];
     let move_to = |x: usize| screen.xdotool(&["mousemove", &at(x)[0], &at(x)[1]]);
     move_to(right);
     std::thread::sleep(Duration::from_millis(400));

@@ -51,6 +51,8 @@ pub struct Answer {
 pub struct Diagnosing {
     /// The model of a mechanism to start from.
     pub from: StartFrom,
+    /// The cause that was asked about: why not?
+    pub asked_about: Option<String>,
     /// What came out.
     pub answer: Option<Arc<Answer>>,
     /// Why nothing did, in one sentence.

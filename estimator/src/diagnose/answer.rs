@@ -6,8 +6,10 @@ use super::explain::{p_value, parameters, rivals};
 use super::gain::{gain, rms, whiteness_p};
 use super::geometry::Study;
 use super::kept::of_study;
+use super::passed_over::{join, passed_over, unsaid};
 use super::report::{
-    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, Verdict,
+    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, PassedOver,
+    Verdict,
 };
 use super::select::{Chosen, Selection};
 use crate::words::amount;
@@ -147,6 +149,25 @@ pub struct Beside {
     pub warnings: Vec<String>,
 }
 
+/// What is left of a channel and has no name: channel, term, score, kind.
+fn unnamed(
+    (channel, expression, score, kind): (&str, String, f64, haptics::law::Kind),
+    warnings: &mut Vec<String>,
+) -> Cause {
+    warnings.push(format!(
+        "something is left of the {channel} that no known cause explains: it goes with {expression} (score {score:.0})"
+    ));
+    Cause {
+        id: format!("other:{expression}"),
+        kind,
+        parameters: Vec::new(),
+        p_value: super::gain::chi_square_tail(score, 1.0),
+        posterior: 0.0,
+        gain: Gain::default(),
+        evidence: format!("what is left of the {channel} goes with {expression}; no known cause does so here"),
+    }
+}
+
 /// The answer of several channels; the first one's figures stand for baseline and end.
 pub fn answer(
     parts: &[Part<'_>],
@@ -156,6 +177,7 @@ pub fn answer(
     let Beside { model, mut causes, mut alternatives, mut not_excited, mut warnings } = beside;
     let mut strange = Vec::new();
     let mut found: Vec<(f64, Cause)> = Vec::new();
+    let mut passed: Vec<PassedOver> = Vec::new();
     for part in parts {
         for (k, chosen) in part.study.chosen.iter().enumerate() {
             let cause = part.cause(k, chosen);
@@ -175,11 +197,13 @@ pub fn answer(
             strange.push((part.channel, expression, score, part.study.candidates[candidate].kind));
         }
         part.not_excited(&mut not_excited);
+        join(&mut passed, passed_over(part.study, &part.study.picks(), UNEXPLAINED));
     }
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     causes.extend(found.into_iter().map(|(_, cause)| cause));
     alternatives.retain(|a| causes.iter().all(|c| c.id != a.id));
     not_excited.retain(|n| causes.iter().all(|c| c.id != n.id) && alternatives.iter().all(|a| a.id != n.id));
+    let passed = unsaid(passed, &causes, &alternatives, &not_excited);
     let open: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > OPEN).cloned().collect();
     let verdict = match (causes.is_empty(), strange.is_empty()) {
         (true, true) => Verdict::None,
@@ -187,20 +211,7 @@ pub fn answer(
         _ if open.is_empty() => Verdict::Causes,
         _ => Verdict::Ambiguous,
     };
-    for (channel, expression, score, kind) in strange {
-        warnings.push(format!(
-            "something is left of the {channel} that no known cause explains: it goes with {expression} (score {score:.0})"
-        ));
-        causes.push(Cause {
-            id: format!("other:{expression}"),
-            kind,
-            parameters: Vec::new(),
-            p_value: super::gain::chi_square_tail(score, 1.0),
-            posterior: 0.0,
-            gain: Gain::default(),
-            evidence: format!("what is left of the {channel} goes with {expression}; no known cause does so here"),
-        });
-    }
+    causes.extend(strange.into_iter().map(|left| unnamed(left, &mut warnings)));
     let first = parts.first();
     let figures = |picks: &[usize]| {
         first.map_or((0.0, 0.0, 1.0), |part| {
@@ -219,6 +230,7 @@ pub fn answer(
         causes,
         alternatives,
         not_excited,
+        passed_over: passed,
         end: Final { heldout_rms_n: end, whiteness_p: end_white },
         warnings,
         validation: Vec::new(),

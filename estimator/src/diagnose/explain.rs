@@ -8,6 +8,7 @@ use super::force::Model;
 use super::gain::{chi_square_tail, gain, rms, whiteness_p};
 use super::geometry::Study;
 use super::kept::of_study;
+use super::passed_over::{passed_over, unsaid};
 use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, NotExcited, Verdict};
 use super::rollout::rollout;
 use super::select::{Chosen, Selection};
@@ -91,6 +92,8 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         ));
         causes.push(unnamed(study, candidate, score, &expression));
     }
+    let not_excited = not_excited(study, &picks);
+    let passed_over = passed_over(study, &picks, UNEXPLAINED);
     Diagnosis {
         verdict,
         baseline: Baseline {
@@ -100,7 +103,8 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
             whiteness_p: whiteness_p(study, &[], &stretch),
         },
         noise_floor_n: floor,
-        not_excited: not_excited(study, &picks),
+        passed_over: unsaid(passed_over, &causes, &alternatives, &not_excited),
+        not_excited,
         validation: Vec::new(),
         settled: Vec::new(),
         plain: plain(model, study),

@@ -24,6 +24,7 @@ mod hung;
 mod impact;
 mod kept;
 mod needle;
+mod passed_over;
 mod progress;
 mod pulled;
 mod quality;
@@ -42,7 +43,7 @@ mod world;
 
 pub use report::{
     Alternative, Baseline, Cause, CauseParameter, Diagnosis, Experiment, Final, Gain, NextExperiment, NotExcited,
-    Rollout, RolloutOf, Settled, Validation, Verdict,
+    PassedOver, Rollout, RolloutOf, Settled, Validation, Verdict,
 };
 
 pub use course::Course;

@@ -136,6 +136,21 @@ pub struct NotExcited {
     pub why: String,
 }
 
+/// A cause that was looked for and not named.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PassedOver {
+    /// Out of `spec/causes.md`.
+    pub id: String,
+    /// Its score on the model alone, in units of 2 ln(likelihood), what its parameters cost paid; 0 where it is impossible.
+    pub alone: f64,
+    /// Its score beside what was found.
+    pub beside: f64,
+    /// The score that names a cause.
+    pub least: f64,
+    /// Why it was not named.
+    pub why: String,
+}
+
 /// The recording that would settle what is open.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NextExperiment {
@@ -233,6 +248,9 @@ pub struct Diagnosis {
     pub alternatives: Vec<Alternative>,
     /// What this recording could not have shown.
     pub not_excited: Vec<NotExcited>,
+    /// What was looked for and not named, and why.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub passed_over: Vec<PassedOver>,
     /// What to record next; nothing when nothing is open.
     pub next_experiment: Option<NextExperiment>,
     /// Where it ended.

@@ -164,6 +164,14 @@ impl Selection<'_> {
         generic.iter().map(|c| (*c, score(*c))).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
+    /// How much a candidate adds to the chosen ones, what it costs paid; `None` where it cannot stand beside them, or only with an
+    /// impossible sign.
+    pub fn score_beside(&self, chosen: &[usize], c: usize) -> Option<f64> {
+        let fits = chosen.iter().all(|o| !self.excludes(self.candidates[*o].id, self.candidates[c].id));
+        let with = self.price(&[chosen, &[c]].concat());
+        (fits && with.is_finite()).then_some(self.plain_price(chosen)? - with)
+    }
+
     /// Everything that stands after forward selection, swaps and pruning; strongest first. `before`: what an earlier round chose; it is
     /// searched from there, too, and from nothing.
     pub fn run(&self, before: &[usize]) -> Vec<Chosen> {

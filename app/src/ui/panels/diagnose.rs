@@ -164,11 +164,14 @@ fn which(ui: &mut Ui, session: &mut Session) {
     ui.spacing_mut().button_padding = vec2(space::S, 0.0);
     let mut chosen = session.current;
     let name = |k: usize| session.recordings.get(k).map(|p| p.recording.name.clone()).unwrap_or_default();
-    ComboBox::from_id_salt("recording of the curves").selected_text(name(chosen)).width(120.0).show_ui(ui, |ui| {
+    let list = ComboBox::from_id_salt("recording of the curves").selected_text(name(chosen)).width(120.0);
+    let list = list.show_ui(ui, |ui| {
         for k in 0..session.recordings.len() {
             ui.selectable_value(&mut chosen, k, name(k));
         }
     });
+    let label = || egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Recording of the curves");
+    list.response.widget_info(label);
     if chosen != session.current {
         session.select(chosen);
     }

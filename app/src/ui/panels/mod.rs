@@ -32,6 +32,7 @@ pub mod trainer_side;
 pub mod trainer_timing;
 pub mod trainer_view;
 pub mod transport;
+mod why_not;
 mod xy;
 
 use super::session::Session;

@@ -184,7 +184,7 @@ fn two_recordings_of_one_object_are_diagnosed_together_and_shown_by_turns() {
     assert!(answer.residuals.iter().all(|r| !r.is_empty()));
     session.diagnosing.answer = Some(Arc::new(answer));
     let mut harness = window(session);
-    harness.get_by_role(egui::Role::ComboBox).click();
+    harness.get_by_role_and_label(egui::Role::ComboBox, "Recording of the curves").click();
     harness.run_steps(3);
     harness.get_by_role_and_label(egui::Role::Button, "again").click();
     harness.run_steps(3);

@@ -1,6 +1,6 @@
 //! The window without a window: sessions to draw, and what the tests share.
 
-mod diagnose;
+pub mod diagnose;
 mod panels;
 mod pictures;
 mod plots;
