@@ -46,7 +46,9 @@ impl Screen {
     }
 
     fn xdotool(&self, arguments: &[&str]) {
-        let status = Command::new("xdotool").args(arguments).env("DISPLAY", &self.display).status();
+        // What it waits for may never come.
+        let status =
+            Command::new("timeout").args(["120", "xdotool"]).args(arguments).env("DISPLAY", &self.display).status();
         assert!(status.is_ok_and(|s| s.success()), "xdotool {arguments:?}");
     }
 
