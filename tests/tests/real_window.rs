@@ -192,27 +192,38 @@ fn a_person_opens_drags_takes_back_diagnoses_and_survives_a_kill() {
     let (left, right, y) = until("the states", &screen, || screen.run_of(SystemState::HoldAboveGround));
     screen.keep("2-states");
 
+    let by_hand = |home: &Path| kept(home)["project"]["choice"]["segments"].as_object().is_some_and(|s| !s.is_empty());
     // A boundary is dragged as a hand does it: down, on its way, up.
     let at = |x: usize| [x.to_string(), (y + 8).to_string()];
     let move_to = |x: usize| screen.xdotool(&["mousemove", &at(x)[0], &at(x)[1]]);
+    // The grip's line stands out above the band, where no pointer covers it.
+    let grip = |screen: &Screen| screen.picture()[y - 2][right - 3..right + 4].to_vec();
+    let free = grip(&screen);
     move_to(right);
-    std::thread::sleep(Duration::from_millis(400));
+    until("the grip", &screen, || (grip(&screen) != free).then_some(()));
+    let offered = grip(&screen);
     screen.xdotool(&["mousedown", "1"]);
+    until("the grip in the hand", &screen, || (grip(&screen) != offered).then_some(()));
+    let goal = right - (right - left) / 3;
     for part in 1..=10 {
-        move_to(right - (right - left) / 3 * part / 10);
-        std::thread::sleep(Duration::from_millis(120));
+        move_to(right - (right - goal) * part / 10);
     }
+    // The colour of the next state has come where the first one was.
+    let behind = |screen: &Screen| screen.picture()[y + 2][goal + 20];
+    let was = behind(&screen);
+    let follows = || (behind(&screen) != was || by_hand(&home)).then_some(());
+    until("the boundary under the pointer", &screen, follows);
     screen.xdotool(&["mouseup", "1"]);
-    let by_hand = |home: &Path| kept(home)["project"]["choice"]["segments"].as_object().is_some_and(|s| !s.is_empty());
     until("the boundary", &screen, || by_hand(&home).then_some(()));
     screen.keep("3-boundary");
-    // Changes that follow each other at once are one: a person looks before taking back.
-    std::thread::sleep(Duration::from_millis(1_500));
     screen.xdotool(&["key", "ctrl+z"]);
     until("the way back", &screen, || (!by_hand(&home)).then_some(()));
 
+    // Behind the list everything is darker.
+    let logo = |screen: &Screen| screen.picture()[24][80..140].to_vec();
+    let bright = logo(&screen);
     screen.xdotool(&["key", "ctrl+p"]);
-    std::thread::sleep(Duration::from_millis(600));
+    until("the commands", &screen, || (logo(&screen) != bright).then_some(()));
     screen.keep("4-commands");
     screen.xdotool(&["type", "--delay", "60", "diagnose"]);
     screen.xdotool(&["key", "Return"]);
@@ -223,8 +234,12 @@ fn a_person_opens_drags_takes_back_diagnoses_and_survives_a_kill() {
     drop(program);
     assert_eq!(kept(&home)["ended"], false);
     let _program = start(&screen, &home);
-    until("the offer", &screen, || drawn(&screen).then_some(()));
-    std::thread::sleep(Duration::from_secs(2));
+    // Its frame is of the colour of what is fine.
+    let fine = [false, true].map(|dark| theme::Palette::of(dark).good.to_array());
+    let is_fine = |p: &[u8; 3]| fine.iter().any(|w| p.iter().zip(w).all(|(a, b)| a.abs_diff(*b) <= 3));
+    let framed =
+        |screen: &Screen| screen.picture()[..120].iter().any(|row| row.iter().filter(|p| is_fine(p)).count() > 600);
+    until("the offer", &screen, || framed(&screen).then_some(()));
     screen.keep("6-offer");
     screen.xdotool(&["mousemove", "1368", "79", "click", "1"]);
     // It goes on in Diagnose as soon as the recording is there; a person then looks at Calibrate.

@@ -28,7 +28,7 @@ pub fn handles(ui: &Ui, view_s: (f64, f64), segmentation: &Segmentation, band: R
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, &name));
         if response.hovered() || response.dragged() {
             ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
-            mark(ui, x, band);
+            mark(ui, x, band, response.is_pointer_button_down_on());
         }
         if response.dragged()
             && let Some(at) = response.interact_pointer_pos()
@@ -43,12 +43,13 @@ pub fn handles(ui: &Ui, view_s: (f64, f64), segmentation: &Segmentation, band: R
     change
 }
 
-/// A grip where the boundary is held.
-fn mark(ui: &Ui, x: f32, band: Rect) {
+/// A grip where the boundary can be taken, in another colour while it is held.
+fn mark(ui: &Ui, x: f32, band: Rect, held: bool) {
     let p = palette(ui);
+    let ink = if held { p.accent } else { p.text };
     let painter = ui.painter();
-    painter.vline(x, band.y_range().expand(3.0), Stroke::new(2.0, p.text));
-    painter.circle(Pos2::new(x, band.center().y), 4.5, p.card, Stroke::new(2.0, p.text));
+    painter.vline(x, band.y_range().expand(3.0), Stroke::new(2.0, ink));
+    painter.circle(Pos2::new(x, band.center().y), 4.5, p.card, Stroke::new(2.0, ink));
 }
 
 /// What can be done with a state, on a right click; `at_s` is the time under the pointer.
