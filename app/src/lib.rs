@@ -6,6 +6,7 @@ pub mod boards;
 pub mod cli;
 mod constraint_words;
 pub mod diagnosis_words;
+pub mod experiment;
 pub mod operator;
 pub mod recorder;
 pub mod report;

@@ -3,7 +3,7 @@
 use app::recorder::{FILE_BYTES, Order, Recorder, ServoFacts, Status, folder};
 use estimator::log;
 use haptics::device::{Device, ScriptedOperator, Skill};
-use haptics::recording::Recording;
+use haptics::recording::{Meta, Recording};
 use haptics::servo::rate::RateChoice;
 use haptics::servo::tap::{TapSource, tap};
 use haptics::servo::{Servo, ServoConfig, Swap, TickRecord};
@@ -19,7 +19,15 @@ const FOLDER: &str = "TOUCHSTONE_TEST_RECORDINGS";
 fn order(folder: &Path, world: &World) -> Order {
     let device = ScriptedOperator::new(world, &State::resting(world), Skill::default(), 1).spec().clone();
     let (folder, world) = (folder.to_path_buf(), Arc::new(world.clone()));
-    Order { folder, world, device: Some(device), seed: 1, file_bytes: FILE_BYTES, servo: ServoFacts::default() }
+    Order {
+        folder,
+        world,
+        device: Some(device),
+        seed: 1,
+        file_bytes: FILE_BYTES,
+        servo: ServoFacts::default(),
+        stated: Meta::default(),
+    }
 }
 
 fn servo(rate_hz: f64) -> Servo {

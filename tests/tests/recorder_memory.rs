@@ -2,6 +2,7 @@
 
 use app::recorder::{FILE_BYTES, Order, Recorder, ServoFacts};
 use haptics::device::{ScriptedOperator, Skill};
+use haptics::recording::Meta;
 use haptics::servo::safety::Limits;
 use haptics::servo::tap::tap;
 use haptics::servo::{Loop, Swap, TickRecord};
@@ -39,6 +40,7 @@ fn memory_stays_flat_however_long_it_records() {
         seed: 1,
         file_bytes: FILE_BYTES,
         servo: ServoFacts::default(),
+        stated: Meta::default(),
     };
     let recorder = Recorder::start(&source, order).expect("begins");
     let begun = Instant::now();

@@ -7,6 +7,7 @@ pub mod folder;
 mod work;
 
 use haptics::device::DeviceSpec;
+use haptics::recording::Meta;
 use haptics::servo::Privileges;
 use haptics::servo::tap::{Tap, TapSource};
 use haptics::servo::timing::Timing;
@@ -55,6 +56,8 @@ pub struct Order {
     pub file_bytes: u64,
     /// How the servo keeps its time until now.
     pub servo: ServoFacts,
+    /// What else the sidecar states: its `known` values and further keys.
+    pub stated: Meta,
 }
 
 /// How far a recording is.

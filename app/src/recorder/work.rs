@@ -71,6 +71,8 @@ impl Growing {
     fn begin(order: &Order, earlier: usize) -> Result<Self, String> {
         let (path, marker) = folder::reserve(&order.folder, &order.world.name)?;
         let mut meta = facts(&order.world);
+        meta.known.extend(order.stated.known.clone());
+        meta.other.extend(order.stated.other.clone());
         meta.other.insert("servo".to_owned(), order.servo.to_json());
         if earlier > 0 {
             meta.other.insert("recording_continued".to_owned(), serde_json::json!({ "earlier_files": earlier }));

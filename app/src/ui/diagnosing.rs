@@ -8,6 +8,7 @@ use super::plots::Residuals;
 use super::prepare::Prepared;
 use super::session::{Session, Workspace, sentence};
 use super::trainer::{Compare, WorldChoice};
+use crate::experiment::Rehearsal;
 use estimator::diagnose::{self, Diagnosis, Options, Progress, Worlds};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
@@ -44,6 +45,8 @@ pub struct Answer {
     pub diagnosis: Diagnosis,
     /// Its curves, one a recording.
     pub residuals: Vec<Residuals>,
+    /// The model that it started from.
+    pub from: StartFrom,
 }
 
 /// The diagnosis of the loaded recordings, as far as it has come.
@@ -63,6 +66,10 @@ pub struct Diagnosing {
     pub worlds_problem: Option<String>,
     /// The recordings' motion through the extended world, once that is there.
     pub replays: Vec<Option<Replayed>>,
+    /// What the experiment that is asked for would settle, rehearsed on simulated objects.
+    pub rehearsal: Option<Arc<Rehearsal>>,
+    /// Why it could not be rehearsed, in one sentence.
+    pub rehearsal_problem: Option<String>,
 }
 
 impl Diagnosing {
@@ -83,7 +90,7 @@ pub fn ask(
     let diagnosis = diagnose::diagnose(&plain, &options(&plain, choice, from, progress))
         .map_err(|error| sentence(&error.to_string()))?;
     let residuals = (0..recordings.len()).map(|k| Residuals::new(&diagnosis, k)).collect();
-    Ok(Answer { diagnosis, residuals })
+    Ok(Answer { diagnosis, residuals, from })
 }
 
 /// The worlds without and with what was found; the sentence of an error.
@@ -98,11 +105,11 @@ pub fn extend(
     diagnose::worlds(&plain, &options, &answer.diagnosis).map_err(|error| sentence(&error.to_string()))
 }
 
-fn plain(recordings: &[Arc<Prepared>], choice: &FitChoice) -> Vec<Recording> {
+pub(super) fn plain(recordings: &[Arc<Prepared>], choice: &FitChoice) -> Vec<Recording> {
     choice.given_to_all(recordings)
 }
 
-fn options(recordings: &[Recording], choice: &FitChoice, from: StartFrom, progress: Progress) -> Options {
+pub(super) fn options(recordings: &[Recording], choice: &FitChoice, from: StartFrom, progress: Progress) -> Options {
     let task = choice.task;
     let is_mechanism = recordings.first().is_some_and(|r| is_mechanism(r, task));
     Options { task, baseline: is_mechanism.then(|| from.baseline().to_owned()), progress, ..Options::default() }
@@ -122,6 +129,7 @@ impl Session {
         self.diagnosing.forget();
         self.jobs.cancel(JobKind::Extend);
         self.jobs.cancel(JobKind::SimulateExtended);
+        self.jobs.cancel(JobKind::Rehearse);
         let (recordings, choice, from) = (self.recordings.clone(), self.choice.clone(), self.diagnosing.from);
         self.jobs.start_watched(ctx, JobKind::Diagnose, "Diagnosing".to_owned(), move |ticket| {
             let ticket = ticket.clone();
@@ -194,7 +202,7 @@ impl Session {
 
 /// The world with its crank where the hand reaches all of the circle: other people's recordings have their origin elsewhere. What is
 /// felt does not depend on the place.
-fn reachable(world: &World) -> Result<World, String> {
+pub(super) fn reachable(world: &World) -> Result<World, String> {
     world.check().map_err(|error| sentence(&error.to_string()))?;
     let mut world = world.clone();
     let reach = world.hand.workspace;

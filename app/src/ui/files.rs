@@ -38,6 +38,11 @@ fn dialog(purpose: Purpose) -> Option<PathBuf> {
             .add_filter("Logs", &["csv", "txt", "tsv", "dat", "mcap", "parquet"])
             .add_filter("All files", &["*"])
             .pick_file(),
+        Purpose::AddExperiment => dialog
+            .set_title("Add a recording of the experiment")
+            .add_filter("Logs", &["csv", "txt", "tsv", "dat", "mcap", "parquet"])
+            .add_filter("All files", &["*"])
+            .pick_file(),
         Purpose::SaveProject => {
             let name = format!("project.{}", super::project::ENDING);
             dialog.set_title("Save the project").set_file_name(name).save_file()

@@ -57,6 +57,10 @@ pub enum JobKind {
     Extend,
     /// Replaying the measured motion through the extended world.
     SimulateExtended,
+    /// Rehearsing the experiment that a diagnosis asks for.
+    Rehearse,
+    /// Preparing that experiment for a person.
+    Guide,
     /// Computing curves for plots.
     Curves,
     /// Finding where a recording lies on another one.
@@ -74,6 +78,8 @@ pub enum Purpose {
     OpenProject,
     /// Another recording of the same object.
     AddLog,
+    /// A recording of the experiment that a diagnosis asks for.
+    AddExperiment,
     /// Where the project goes.
     SaveProject,
     /// Where the report goes.
@@ -130,6 +136,14 @@ pub enum Outcome {
     Diagnosed(Result<Box<Answer>, String>),
     /// The worlds without and with what was found, or why there are none.
     Extended(Result<Box<Worlds>, String>),
+    /// What an experiment would settle, or why that cannot be told.
+    Rehearsed(Result<Box<crate::experiment::Rehearsal>, String>),
+    /// An experiment for a person, or why it cannot be done.
+    Guided(Result<Box<super::guided::Guided>, String>),
+    /// The recording of an experiment that a person did, or why there is none.
+    Followed(Result<PathBuf, String>),
+    /// The recording of an experiment, to be diagnosed with the others.
+    Performed(PathBuf),
     /// Forces in the extended world, one a recording that can be replayed.
     SimulatedExtended(Vec<Option<Replayed>>),
     /// Computed curves, and what they were computed from.

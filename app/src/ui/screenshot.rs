@@ -2,6 +2,7 @@
 
 use super::app::App;
 use super::diagnosing;
+use super::experimenting;
 use super::fitting;
 use super::mapping::Mapping;
 use super::panels::log::LogPanel;
@@ -50,6 +51,10 @@ pub enum Panel {
     Devices,
     /// The whole Diagnose workspace, with its answer and the extended model.
     Diagnose,
+    /// The Diagnose workspace with what to record next, rehearsed.
+    Experiment,
+    /// That experiment in the Train workspace, half done.
+    Guided,
     /// The dialog that maps the columns of the log.
     Mapping,
     /// What the force depends on, and which parameters go together.
@@ -139,6 +144,7 @@ pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Se
     }
     match panel {
         Panel::Diagnose => diagnosed(&mut session),
+        Panel::Experiment | Panel::Guided => experiment(&mut session, panel)?,
         Panel::Sensitivity => session.look_at_sensitivity(),
         Panel::Parameter => try_another_value(&mut session),
         _ => {}
@@ -180,6 +186,28 @@ fn diagnosed(session: &mut Session) {
         }
         Err(problem) => session.diagnosing.problem = Some(problem),
     }
+}
+
+/// The experiment that is asked for: rehearsed, or half done by hand.
+fn experiment(session: &mut Session, panel: Panel) -> anyhow::Result<()> {
+    diagnosed(session);
+    let answer = session.diagnosing.answer.clone().context("these recordings cannot be diagnosed")?;
+    let (recordings, choice) = (session.recordings.clone(), session.choice.clone());
+    if panel == Panel::Experiment {
+        let made = experimenting::rehearse_now(&recordings, &choice, &answer, experimenting::ROUNDS, &|_| true);
+        session.diagnosing.rehearsal = Some(Arc::new(made.map_err(|problem| anyhow!(problem.unwrap_or_default()))?));
+        return Ok(());
+    }
+    let asked = answer.diagnosis.next_experiment.as_ref().context("nothing is open in these recordings")?;
+    let first = asked.separates.first().cloned().unwrap_or_default();
+    let guided = experimenting::guided_as_if(&recordings, &choice, &answer, &first);
+    session.guided(guided.map(Box::new));
+    let folder = tempfile::tempdir().context("there is no room for temporary files")?;
+    session.trainer.recordings_folder = Some(folder.path().to_path_buf());
+    session.begin_experiment();
+    session.follow_rings(8.2);
+    session.experiments.scratch = Some(folder);
+    Ok(())
 }
 
 /// The dialog over a log, with its preview.
@@ -266,6 +294,8 @@ pub(super) fn contents(panel: Panel) -> Contents {
         | Panel::Train
         | Panel::Devices
         | Panel::Diagnose
+        | Panel::Experiment
+        | Panel::Guided
         | Panel::Mapping
         | Panel::Parameter
         | Panel::Arrange

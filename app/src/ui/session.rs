@@ -1,6 +1,7 @@
 //! What the window knows: loaded recordings, their fit, the replay, the time cursor. Panels read and change it; jobs fill it.
 
 use super::diagnosing::Diagnosing;
+use super::experimenting::Experiments;
 pub use super::fit_choice::FitChoice;
 use super::fitting::Refits;
 use super::jobs::{JobKind, Jobs, Outcome, Purpose, Replayed};
@@ -128,6 +129,8 @@ pub struct Session {
     pub replays: Vec<Option<Replayed>>,
     /// What the model gets wrong.
     pub diagnosing: Diagnosing,
+    /// Experiments that would tell it better.
+    pub experiments: Experiments,
     /// What is still missing for the parameters of the fit.
     pub enough: Vec<Enough>,
     /// The time that is looked at.
@@ -227,6 +230,7 @@ impl Session {
         self.jobs.cancel(JobKind::Diagnose);
         self.jobs.cancel(JobKind::Extend);
         self.jobs.cancel(JobKind::SimulateExtended);
+        self.jobs.cancel(JobKind::Rehearse);
         self.plots.forget_recordings();
         self.playing = false;
         self.rules = None;
@@ -280,6 +284,7 @@ impl Session {
             self.take(ctx, outcome);
         }
         super::recorder::follow(ctx, self);
+        self.follow_experiment(ctx);
         self.note_changes(ctx.input(|i| i.time));
         self.follow_choice(ctx);
         self.follow_what_if(ctx);
@@ -301,7 +306,10 @@ impl Session {
                     None => self.refit(ctx),
                 }
             }
-            Outcome::Project(project, recordings) => self.opened_project(ctx, *project, recordings),
+            Outcome::Project(project, recordings) => {
+                self.opened_project(ctx, *project, recordings);
+                self.ask_again(ctx);
+            }
             Outcome::Unmapped(path, why) => {
                 self.path_field = path.display().to_string();
                 self.map_columns_of(ctx, &path, Some(why));
@@ -325,6 +333,10 @@ impl Session {
             Outcome::Judged(enough) => self.enough = enough,
             Outcome::Diagnosed(answer) => self.diagnosed(answer),
             Outcome::Extended(worlds) => self.extended(ctx, worlds),
+            Outcome::Rehearsed(rehearsal) => self.rehearsed(rehearsal),
+            Outcome::Guided(guided) => self.guided(guided),
+            Outcome::Followed(path) => self.followed(path),
+            Outcome::Performed(path) => self.performed(ctx, &path),
             Outcome::SimulatedExtended(replays) => self.diagnosing.replays = replays,
             Outcome::Curves(made) => self.plots.derived.take(made),
             Outcome::Aligned(recording, found) => self.aligned(recording, found),
@@ -333,6 +345,7 @@ impl Session {
             Outcome::Chosen(Purpose::OpenWorld, Some(path)) => self.open_world(ctx, &path),
             Outcome::Chosen(Purpose::OpenProject, Some(path)) => self.open_project(ctx, &path),
             Outcome::Chosen(Purpose::AddLog, Some(path)) => self.add_log(ctx, &path),
+            Outcome::Chosen(Purpose::AddExperiment, Some(path)) => self.add_experiment(ctx, &path),
             Outcome::Chosen(Purpose::SaveProject, Some(path)) => self.save_project_as(ctx, path),
             Outcome::Chosen(Purpose::SaveReport, Some(path)) => super::files::save_report(ctx, self, path),
             Outcome::Chosen(Purpose::SaveLog, Some(path)) => {
@@ -346,6 +359,7 @@ impl Session {
             Outcome::World(world) => self.opened_world = Some(world),
             Outcome::Saved(path) => self.say_saved(&path),
             Outcome::Failed(problem) => {
+                self.experiments.asks_again = false;
                 if !self.recordings.is_empty() && self.analysis.is_none() {
                     self.fit_problem = Some(problem.clone());
                 }

@@ -239,6 +239,7 @@ pub fn answer(
         kept: parts.iter().flat_map(|p| of_study(p.channel, p.study)).collect(),
         plain: Vec::new(),
         effects: Vec::new(),
+        hypotheses: Vec::new(),
     }
 }
 

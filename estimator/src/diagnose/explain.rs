@@ -12,6 +12,7 @@ use super::passed_over::{passed_over, unsaid};
 use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, NotExcited, Verdict};
 use super::rollout::rollout;
 use super::select::{Chosen, Selection};
+use super::suspects::hypotheses;
 use super::track::{Place, Track};
 use crate::words::amount;
 use haptics::law::{Coordinate, Law, ReturnSpring, entries};
@@ -32,7 +33,7 @@ const CLOCKS_DIFFER_S: f64 = 3e-4;
 pub(super) const FORCE: &str = "force";
 
 /// Two causes that are one and the same regressor, whatever the motion.
-const TWINS: [(&str, &str, &str); 1] = [(
+pub(super) const TWINS: [(&str, &str, &str); 1] = [(
     "eccentric-mass",
     "gravity-tilt",
     "on one crank gravity on a mass off the axis and a tilted plane are the same force",
@@ -109,6 +110,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         settled: Vec::new(),
         plain: plain(model, study),
         effects: effects(track, model, study),
+        hypotheses: hypotheses(track, model, study),
         course: course(track, study),
         kept: of_study(FORCE, study),
         causes,

@@ -35,6 +35,7 @@ mod several;
 mod slide;
 mod sliding;
 mod stuck;
+mod suspects;
 mod switch;
 mod system;
 mod track;
@@ -47,14 +48,16 @@ pub use report::{
 };
 
 pub use course::Course;
+pub use experiment::{Stroke, Strokes};
 pub use progress::Progress;
+pub use suspects::{SensorFault, Suspect, suspects};
 pub use world::{Worlds, extended_world, worlds};
 
 use crate::estimate::EstimateError;
 use crate::pipeline;
 use crate::segment::task_of;
 use force::Model;
-use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, ViscousFriction, Weight};
+use haptics::law::{CoulombFriction, EccentricMass, Effect, Inertia, Law, LoadFriction, ViscousFriction, Weight};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
 use held_arm::Axes;
@@ -267,7 +270,11 @@ fn upright(
     arm: &geometry::Arm,
 ) -> Result<(track::Track, Option<Cause>), EstimateError> {
     let as_recorded = signals.rows(recording, arm, Axes::PLAIN)?;
-    let model = plain_crank();
+    let mut model = plain_crank();
+    if hung::Hung::on_crank(recording).is_some() {
+        // On a tilted plane a hung weight acts out of phase, and in few strokes that may pass for friction that drives.
+        model.push(Effect::new(&EccentricMass, &[1.0, 0.0, arm.radius_m]));
+    }
     let left = |track: &track::Track| force::plain_rms(&mut track.clone(), &model);
     let (before, resists) = left(&as_recorded)?;
     if resists && before < PLAUSIBLE * as_recorded.force_noise {

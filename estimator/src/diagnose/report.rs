@@ -2,6 +2,7 @@
 
 use super::course::Course;
 use super::kept::Kept;
+use super::suspects::Hypothesis;
 use haptics::law::{Effect, Kind};
 use serde::{Deserialize, Serialize};
 
@@ -277,4 +278,7 @@ pub struct Diagnosis {
     /// What was found, as values of columns: for other recordings.
     #[serde(skip)]
     pub(super) kept: Vec<Kept>,
+    /// What is not excluded, as laws: to rehearse experiments.
+    #[serde(skip)]
+    pub(super) hypotheses: Vec<Hypothesis>,
 }

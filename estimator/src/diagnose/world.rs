@@ -19,12 +19,7 @@ pub struct Worlds {
 
 /// Both worlds of a diagnosis: those of the world that it started from, or of one calibrated from the recordings.
 pub fn worlds(recordings: &[Recording], options: &Options, diagnosis: &Diagnosis) -> Result<Worlds, EstimateError> {
-    let world = if let Some(world) = &options.world {
-        world.clone()
-    } else {
-        let fit = pipeline::Options { task: options.task, ..pipeline::Options::default() };
-        pipeline::analyse(recordings, &fit)?.world
-    };
+    let world = calibrated(recordings, options)?;
     let mut after = with_laws(&world, &diagnosis.effects);
     after.name = format!("{}, extended", world.name);
     if world.crank.is_none() && world.mechanism.is_none() {
@@ -32,6 +27,15 @@ pub fn worlds(recordings: &[Recording], options: &Options, diagnosis: &Diagnosis
         switch::extend(&mut after, diagnosis);
     }
     Ok(Worlds { before: with_laws(&world, &diagnosis.plain), after })
+}
+
+/// The world that the diagnosis started from, or one calibrated from the recordings.
+pub(super) fn calibrated(recordings: &[Recording], options: &Options) -> Result<World, EstimateError> {
+    if let Some(world) = &options.world {
+        return Ok(world.clone());
+    }
+    let fit = pipeline::Options { task: options.task, ..pipeline::Options::default() };
+    Ok(pipeline::analyse(recordings, &fit)?.world)
 }
 
 /// The world that runs what the diagnosis found: the one it started from, or one calibrated from the recordings, with the extended laws.
@@ -44,7 +48,7 @@ pub fn extended_world(
 }
 
 /// The world with other laws along its coordinate.
-fn with_laws(world: &World, laws: &[Effect]) -> World {
+pub(super) fn with_laws(world: &World, laws: &[Effect]) -> World {
     let mut world = world.clone();
     if let Some(crank) = &mut world.crank {
         crank.effects = beside(&crank.effects, laws);

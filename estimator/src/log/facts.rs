@@ -5,8 +5,21 @@ use haptics::recording::{Meta, Recording, Task, Warning};
 use serde_json::Value;
 
 /// Keys with a meaning. Others are kept, with a warning.
-const KEYS: [&str; 12] =
-    ["task", "rate_hz", "gravity_m_s2", "up", "hand", "columns", "scale", "select", "sign", "known", "prior", "bounds"];
+const KEYS: [&str; 13] = [
+    "task",
+    "rate_hz",
+    "gravity_m_s2",
+    "up",
+    "hand",
+    "columns",
+    "scale",
+    "select",
+    "sign",
+    "known",
+    "prior",
+    "bounds",
+    "simulated_object",
+];
 /// Axes that may point up.
 const UP: [&str; 7] = ["x", "y", "z", "-x", "-y", "-z", "none"];
 /// Known parameters that are above zero …

@@ -6,10 +6,13 @@ mod captured;
 mod eye;
 mod noise;
 mod plan;
+mod route;
 mod skill;
 #[cfg(test)]
 mod tests;
 
+pub use plan::Goal as HandGoal;
+pub use route::Route;
 pub use skill::{Mistake, Skill};
 
 use super::{Command, Device, DeviceSpec, HandImpedance, Sample};
@@ -21,11 +24,28 @@ use plan::{Goal, Plan};
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 
+/// Where a performance comes from.
+enum Way {
+    /// Made for what stands in the world, and made anew when something is lost.
+    Planned(Box<Plan>),
+    /// Told from outside.
+    Told(Route),
+}
+
+impl Way {
+    fn duration_s(&self) -> f64 {
+        match self {
+            Self::Planned(plan) => plan.duration_s(),
+            Self::Told(route) => route.duration_s(),
+        }
+    }
+}
+
 /// A device that performs a task by itself.
 pub struct ScriptedOperator {
     spec: DeviceSpec,
     impedance: HandImpedance,
-    plan: Plan,
+    way: Way,
     tremor: [Tremor; 2],
     pinch_wander: Wander,
     eye: Option<Eye>,
@@ -48,6 +68,15 @@ impl ScriptedOperator {
         let habits = [0x0b5e_55ed, 0x51ee_b1e5].map(|salt: u64| StdRng::seed_from_u64(seed ^ salt));
         let start = Goal::from_tips(state.input.tip_in_world);
         let plan = Plan::for_world(world, state, start, skill, mistakes, &mut rng, habits);
+        Self::going(Way::Planned(Box::new(plan)), state, skill, &mut rng)
+    }
+
+    /// An operator that follows a route, whatever stands there.
+    pub fn on_route(state: &State, route: Route, skill: Skill, seed: u64) -> Self {
+        Self::going(Way::Told(route), state, skill, &mut StdRng::seed_from_u64(seed))
+    }
+
+    fn going(way: Way, state: &State, skill: Skill, rng: &mut StdRng) -> Self {
         Self {
             spec: DeviceSpec {
                 name: "Scripted operator".to_owned(),
@@ -58,9 +87,9 @@ impl ScriptedOperator {
                 resolution_m: 0.0,
             },
             impedance: HandImpedance::default(),
-            plan,
-            tremor: [Tremor::new(skill.tremor_m, &mut rng), Tremor::new(skill.tremor_m, &mut rng)],
-            pinch_wander: Wander::new(skill.wander, &mut rng),
+            way,
+            tremor: [Tremor::new(skill.tremor_m, rng), Tremor::new(skill.tremor_m, rng)],
+            pinch_wander: Wander::new(skill.wander, rng),
             eye: skill.reaction_s.map(Eye::new),
             position: state.input.tip_in_world,
             velocity: [Vec2::zeros(); 2],
@@ -70,7 +99,7 @@ impl ScriptedOperator {
 
     /// Length of the whole performance, s, as planned so far: dropping a block makes it longer.
     pub fn duration_s(&self) -> f64 {
-        self.plan.duration_s()
+        self.way.duration_s()
     }
 }
 
@@ -81,7 +110,10 @@ impl Device for ScriptedOperator {
 
     fn exchange(&mut self, command: &Command, dt_s: f64) -> Sample {
         self.now_s += dt_s;
-        let (goal, rate) = self.plan.at(self.now_s);
+        let (goal, rate) = match &mut self.way {
+            Way::Planned(plan) => plan.at(self.now_s),
+            Way::Told(route) => route.at(self.now_s),
+        };
         // Squeezing harder than touching is done by wanting the tips closer: force over the arm's stiffness.
         let squeeze = goal.pinch_n * (1.0 + self.pinch_wander.at(self.now_s)) / self.impedance.stiffness_n_m;
         for (finger, side) in [(0, -1.0), (1, 1.0)] {
@@ -98,15 +130,16 @@ impl Device for ScriptedOperator {
     fn make_safe(&mut self) {}
 
     fn see(&mut self, world: &World, state: &State) {
-        let Some(eye) = &mut self.eye else { return };
+        let (Some(eye), Way::Planned(plan)) = (&mut self.eye, &mut self.way) else { return };
         if eye.look(self.now_s, state)
             && let Some(seen) = eye.noticed(self.now_s)
         {
-            self.plan.notice(&world.blocks, seen, self.now_s);
+            plan.notice(&world.blocks, seen, self.now_s);
         }
     }
 
     fn finished(&self) -> bool {
-        self.now_s > self.plan.duration_s() && !self.plan.is_recovering()
+        let recovering = matches!(&self.way, Way::Planned(plan) if plan.is_recovering());
+        self.now_s > self.way.duration_s() && !recovering
     }
 }

@@ -1,11 +1,16 @@
 //! Recordings to draw: those that travel with the program, and performances of the scripted operator.
 
 use crate::cli::built_in;
+use crate::experiment;
 use crate::ui::trainer::{Clock, Operator, Trainer, WorldChoice};
 use crate::worlds;
 use anyhow::{Context as _, anyhow};
+use estimator::diagnose::{Experiment, SensorFault};
 use haptics::Vec2;
+use haptics::law::{EccentricMass, Effect};
 use haptics::recording::{Channel, Recording};
+use haptics::servo::recorder::SensorModel;
+use haptics::world::{World, presets};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -25,6 +30,8 @@ pub enum Sample {
     Needle,
     /// A tool that leads a door.
     Door,
+    /// A crank with a mass off its axis, or on a tilted table: its recording cannot tell.
+    Askew,
     /// A table whose columns have no meaning yet.
     Foreign,
     /// A built-in world, performed live.
@@ -49,6 +56,7 @@ impl Samples {
             Sample::Crank => built_in("crank", self.folder()?)?,
             Sample::Needle => performed("needle", self.folder()?)?,
             Sample::Door => vec![door()],
+            Sample::Askew => vec![askew()?],
             Sample::Foreign | Sample::World(_) => Vec::new(),
         };
         self.known.insert(sample, made.clone());
@@ -75,6 +83,42 @@ impl Samples {
         }
         self.folder.as_ref().map(TempDir::path).context("there is no room for temporary files")
     }
+}
+
+/// The built-in crank with a mass off its axis.
+pub fn askew_world() -> World {
+    let mut world = presets::crank();
+    if let Some(crank) = &mut world.crank {
+        crank.effects.push(Effect::new(&EccentricMass, &[0.05, 0.0, crank.radius_m]));
+    }
+    world
+}
+
+/// The scripted operator moves that crank about.
+pub fn askew() -> anyhow::Result<Recording> {
+    let asked = Experiment {
+        id: "long-mixed".to_owned(),
+        seconds: 16.0,
+        free_s: 1.5,
+        middle: -std::f64::consts::FRAC_PI_2,
+        half_range: 4.0,
+        fast: 5.0,
+        across_n: 0.5,
+        added_weight_n: 0.0,
+        added_lever_m: 0.0,
+    };
+    done_with(&askew_world(), &asked, "askew")
+}
+
+/// The recording of an experiment on a world that stands for the real object.
+pub fn done_with(world: &World, asked: &Experiment, name: &str) -> anyhow::Result<Recording> {
+    let table = experiment::Timetable::new(world, asked, "move about").map_err(|problem| anyhow!(problem))?;
+    let sensing = (&SensorFault::default(), SensorModel::TYPICAL.force_noise_n);
+    let mut recording = experiment::perform(&table, asked, name, sensing, 5, &|_| true).context("nobody ended it")?;
+    // Here it is the real one.
+    recording.meta.other.remove(experiment::SIMULATED);
+    name.clone_into(&mut recording.name);
+    Ok(recording)
 }
 
 /// A handle 30 cm from its hinge, led through a sixth of a turn by a tool that also pulls, with the noise of a tracker and of a force

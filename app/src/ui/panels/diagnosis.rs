@@ -1,8 +1,8 @@
 //! What a diagnosis answers, beside its curves: the verdict, the causes, the extended model, what to record next.
 
 use super::Panel;
-use super::{causes, diagnose, why_not};
-use crate::diagnosis_words::{force_unit, headline, listed, title};
+use super::{causes, diagnose, next_experiment, why_not};
+use crate::diagnosis_words::{force_unit, headline, title};
 use crate::ui::diagnosing::Answer;
 use crate::ui::files;
 use crate::ui::format;
@@ -28,12 +28,13 @@ impl Panel for DiagnosisPanel {
         ScrollArea::vertical().id_salt("diagnosis").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             verdict(ui, session, &answer);
+            next_experiment::settled(ui, session, &answer.diagnosis);
+            next_experiment::card(ui, session, &answer.diagnosis);
             extension(ui, session, &answer);
             for (k, cause) in answer.diagnosis.causes.iter().enumerate() {
                 causes::cause(ui, k + 1, cause, &answer.diagnosis);
             }
             why_not::card(ui, session, &answer.diagnosis);
-            next(ui, &answer.diagnosis);
             hidden(ui, &answer.diagnosis);
             warnings(ui, &answer.diagnosis);
         });
@@ -157,19 +158,6 @@ fn feel(ui: &mut Ui, session: &mut Session) {
     if let Err(problem) = comparison {
         ui.label(theme::caption(ui, problem));
     }
-}
-
-fn next(ui: &mut Ui, diagnosis: &Diagnosis) {
-    let Some(next) = &diagnosis.next_experiment else { return };
-    plain_card(ui, "Record next", |ui| {
-        ui.add(egui::Label::new(sentence(&next.motion)).wrap());
-        let names: Vec<String> = next.separates.iter().map(|id| title(id)).collect();
-        let power = format::number(100.0 * next.expected_power, 0);
-        let text = format!("Tells {} apart with a probability of {power}\u{a0}%.", listed(&names));
-        ui.label(theme::caption(ui, text));
-        ui.add_space(2.0);
-        bar(ui, next.expected_power, 1.0, None, palette(ui).accent);
-    });
 }
 
 /// Causes that the recording could not have shown, each with the reason under the pointer.

@@ -1,6 +1,6 @@
 //! The virtual world, touched with the mouse.
 
-use super::{Panel, marks, steering};
+use super::{Panel, guide, marks, steering};
 use crate::ui::scene::{Rig, SceneResponse, Wheel, scene_view};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
@@ -72,6 +72,7 @@ impl Panel for TrainerView {
                 marks::device(ui, &view, snapshot);
             }
             marks::flashes(ui, &view, &session.trainer.impacts);
+            guide::ghost(ui, &view, session);
             if session.trainer.operator == Operator::You && session.trainer.hand != HandDevice::Replay {
                 if let Err(problem) = steering::touches(ui, &view, &mut session.trainer) {
                     session.fail(problem);
@@ -81,12 +82,13 @@ impl Panel for TrainerView {
                     steer(ui, &view, &mut session.trainer, frame_s);
                 }
                 hints(ui, view.rect, &session.trainer.hand);
-                if let Some((_, world)) = session.trainer.scene() {
+                if let Some((_, world)) = session.trainer.scene().filter(|_| session.experiments.guided.is_none()) {
                     pill(ui, view.rect, task_hint(world));
                 }
             } else {
                 pill(ui, view.rect, watching(&session.trainer));
             }
+            guide::card(ui, &view, session);
             if let Some(fault) = fault {
                 session.fail(fault);
             }

@@ -1,6 +1,7 @@
 //! The window without a window: sessions to draw, and what the tests share.
 
 pub mod diagnose;
+mod experiment;
 mod panels;
 mod pictures;
 mod plots;

@@ -58,6 +58,11 @@ impl WorldChoice {
 }
 
 impl Trainer {
+    /// The world that is touched, or would be.
+    pub fn standing_world(&self) -> World {
+        self.scene().map_or_else(|| self.world_of(self.choice), |(_, world)| (**world).clone())
+    }
+
     /// The world of a choice; the blocks where the choice has none.
     pub(super) fn world_of(&self, choice: WorldChoice) -> World {
         match choice {

@@ -29,6 +29,7 @@ pub use watch::{Watch, task_of as watched_task};
 
 use crate::recorder::{Recorder, Stopping};
 use haptics::device::{Device, DeviceSpec};
+use haptics::recording::Meta;
 use haptics::servo::{Privileges, ServoConfig, Snapshot, Swap, TickRecord};
 use haptics::world::{State, World};
 use std::path::PathBuf;
@@ -96,6 +97,8 @@ pub struct Trainer {
     /// Worlds by generation of the running engine.
     worlds: Vec<Arc<World>>,
     newest: Option<Snapshot>,
+    /// What recordings state of themselves.
+    pub stated: Meta,
     /// Where recordings go; absent: the user's folder for data.
     pub recordings_folder: Option<PathBuf>,
     recorder: Option<Recorder>,

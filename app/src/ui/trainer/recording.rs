@@ -20,9 +20,10 @@ impl Trainer {
             "The system names no folder for recordings; set HOME or XDG_DATA_HOME, then start the program again.",
         )?;
         self.recordings_made += 1;
+        let stated = self.stated.clone();
         let (device, servo, seed) = (self.spec.clone(), self.servo_facts(), self.recordings_made as u64);
         self.recorder =
-            Some(Recorder::start(&tap, Order { folder, world, device, seed, servo, file_bytes: FILE_BYTES })?);
+            Some(Recorder::start(&tap, Order { folder, world, device, seed, servo, file_bytes: FILE_BYTES, stated })?);
         Ok(())
     }
 

@@ -3,46 +3,10 @@
 use super::super::force::{Model, blur, column};
 use super::super::track::{Place, Row, Span, Track};
 use super::library::Excitation;
+use super::strokes::Course;
 use crate::diagnose::report::Experiment;
 use haptics::Vec2;
 use haptics::law::Motion;
-
-/// Peak over mean speed of a movement from rest to rest.
-const PEAK: f64 = 1.875;
-/// Nobody moves to and fro faster than this, s a movement.
-const SHORTEST_S: f64 = 0.25;
-
-/// Position and push across, in units of the experiment, at a time.
-struct Course {
-    knots: Vec<(f64, f64, f64)>,
-}
-
-impl Course {
-    /// `speed`: half ranges a second at pace 1.
-    fn of(excitation: &Excitation, speed: f64, until_s: f64) -> Self {
-        let mut knots = vec![(0.0, 0.0, 0.0)];
-        let mut k = 0;
-        while let Some((time_s, place, _)) = knots.last().copied().filter(|k| k.0 < until_s) {
-            let step = (excitation.step)(k);
-            let takes_s = (PEAK * (step.to - place).abs() / (step.pace * speed).max(1e-9)).max(SHORTEST_S);
-            knots.push((time_s + takes_s, step.to, step.across));
-            if step.rest_s > 0.0 {
-                knots.push((time_s + takes_s + step.rest_s, step.to, step.across));
-            }
-            k += 1;
-        }
-        Self { knots }
-    }
-
-    /// Smooth between the knots (minimum jerk).
-    fn at(&self, time_s: f64) -> (f64, f64) {
-        let next = self.knots.partition_point(|k| k.0 <= time_s).clamp(1, self.knots.len() - 1);
-        let ((t0, p0, a0), (t1, p1, a1)) = (self.knots[next - 1], self.knots[next]);
-        let x = ((time_s - t0) / (t1 - t0)).clamp(0.0, 1.0);
-        let smooth = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
-        (p0 + (p1 - p0) * smooth, a0 + (a1 - a0) * smooth)
-    }
-}
 
 /// The rows of an experiment on the object of `track`. `values`: what the model's laws come out at.
 pub fn imagine(track: &Track, model: &Model, values: &[f64], excitation: &Excitation, asked: &Experiment) -> Track {
@@ -119,27 +83,6 @@ fn add_free(track: &mut Track, free_s: f64) {
                 let motion = Motion { time_s: start_s + i as f64 * period_s, ..Motion::default() };
                 Row { stretch: 1 + 2 * k + end, place, ..row(motion, 0.0, axis) }
             }));
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::library::LIBRARY;
-    use super::*;
-
-    #[test]
-    fn no_motion_is_faster_or_wider_than_what_is_asked() {
-        for excitation in &LIBRARY {
-            let course = Course::of(excitation, 2.0, 20.0);
-            let mut fastest = 0.0_f64;
-            for i in 1..4000 {
-                let t = f64::from(i) * 0.005;
-                let (now, before) = (course.at(t).0, course.at(t - 0.005).0);
-                fastest = fastest.max((now - before).abs() / 0.005);
-                assert!(now.abs() <= 1.0 + 1e-9, "{}", excitation.id);
-            }
-            assert!(fastest > 0.4 && fastest < 2.0 * 1.25, "{}: {fastest}", excitation.id);
         }
     }
 }

@@ -3,6 +3,9 @@
 mod imagine;
 mod library;
 mod separation;
+mod strokes;
+
+pub use strokes::{Stroke, Strokes};
 
 use super::force::Model;
 use super::geometry::Study;

@@ -32,7 +32,7 @@ impl Goal {
         Self { center_m: 0.5 * (tips[0] + tips[1]), aperture_m: tips[1].x - tips[0].x, pinch_n: 0.0 }
     }
 
-    fn lerp(&self, to: &Self, share: f64) -> Self {
+    pub(super) fn lerp(&self, to: &Self, share: f64) -> Self {
         Self {
             center_m: self.center_m + (to.center_m - self.center_m) * share,
             aperture_m: self.aperture_m + (to.aperture_m - self.aperture_m) * share,

@@ -1,0 +1,106 @@
+//! The scripted operator does an experiment on a simulated object.
+
+use super::{SIMULATED, Timetable};
+use estimator::diagnose::{Experiment, SensorFault};
+use haptics::Vec2;
+use haptics::device::{Device as _, ScriptedOperator, Skill};
+use haptics::recording::Recording;
+use haptics::servo::recorder::{SensorModel, to_recording};
+use haptics::servo::safety::Limits;
+use haptics::servo::{Loop, Swap};
+use haptics::world::State;
+use std::collections::BTreeMap;
+
+/// Servo period, s.
+const DT_S: f64 = 1e-3;
+/// Every so many ticks are kept: 200 samples a second.
+const EVERY: usize = 5;
+/// How often the wish to end is looked at, ticks.
+const LOOKS: usize = 500;
+
+/// The recording that comes of it; nothing when `goes_on` (which is told the share done) says no. `about`: which object was simulated.
+/// `noise_n`: of one force sample.
+pub fn perform(
+    table: &Timetable,
+    asked: &Experiment,
+    about: &str,
+    (fault, noise_n): (&SensorFault, f64),
+    seed: u64,
+    goes_on: &dyn Fn(f64) -> bool,
+) -> Option<Recording> {
+    let (world, state) = (table.world.clone(), State::resting(&table.world));
+    let operator = ScriptedOperator::on_route(&state, table.route.clone(), Skill::default(), seed);
+    let limits = Limits { max_force_n: operator.spec().max_force_n, ..Limits::default() };
+    let mut servo = Loop::new(Swap::at(world, state), Box::new(operator), limits);
+    let total = (table.duration_s() / DT_S).ceil();
+    let mut ticks = Vec::with_capacity(total as usize + 2);
+    while !servo.finished() {
+        ticks.push(servo.tick(DT_S));
+        if ticks.len() % LOOKS == 0 && !goes_on(ticks.len() as f64 / total) {
+            return None;
+        }
+    }
+    servo.make_safe();
+    let sensor = SensorModel { force_noise_n: noise_n, ..SensorModel::TYPICAL };
+    let name = format!("simulated, {about}");
+    let mut recording = to_recording(&name, &table.world, &ticks, EVERY, &sensor, seed);
+    add_fault(&mut recording, fault);
+    recording.meta.other.insert(SIMULATED.to_owned(), about.into());
+    recording.meta.known.extend(what_is_known(asked));
+    Some(recording)
+}
+
+/// What is known of an experiment beforehand, as a sidecar states it: the weight that is hung on.
+pub fn what_is_known(asked: &Experiment) -> BTreeMap<String, f64> {
+    let weight = (asked.added_weight_n > 0.0).then(|| ("added_weight_N".to_owned(), asked.added_weight_n));
+    weight.into_iter().collect()
+}
+
+/// Half of it shows on either finger.
+fn add_fault(recording: &mut Recording, fault: &SensorFault) {
+    if *fault == SensorFault::default() {
+        return;
+    }
+    let times = recording.time_s.clone().unwrap_or_default();
+    let start_s = times.first().copied().unwrap_or_default();
+    for channel in &mut recording.channels {
+        let part: fn(Vec2) -> f64 = match channel.name.as_str() {
+            "fx1_N" | "fx2_N" => |force| 0.5 * force.x,
+            "fy1_N" | "fy2_N" => |force| 0.5 * force.y,
+            _ => continue,
+        };
+        for (value, time_s) in channel.values.iter_mut().zip(&times) {
+            *value += part(fault.at(time_s - start_s));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::timetable::tests::asked;
+    use super::*;
+    use haptics::world::presets;
+
+    #[test]
+    fn the_recording_says_that_it_is_simulated_and_holds_the_motion_that_was_asked_for() {
+        let world = presets::crank();
+        let asked = Experiment { seconds: 4.0, ..asked("sweep-across") };
+        let table = Timetable::new(&world, &asked, "turn to and fro").expect("it can be done");
+        let fault = SensorFault { offset_n: Vec2::new(0.3, 0.0), ..SensorFault::default() };
+        let recording = perform(&table, &asked, "a crank", (&fault, 0.005), 1, &|_| true).expect("not ended");
+        assert_eq!(super::super::simulated_object(&recording), Some("a crank"));
+        assert!(recording.name.starts_with("simulated"));
+        let mean = |names: [&str; 2], until: usize| {
+            let of = |name: &str| recording.channel(name).expect("a channel")[..until].iter().sum::<f64>();
+            (of(names[0]) + of(names[1])) / until as f64
+        };
+        // Nothing is touched for a second: only the fault shows.
+        assert!((mean(["fx1_N", "fx2_N"], 180) - 0.3).abs() < 0.01);
+        let crank = world.crank.as_ref().expect("a crank");
+        let (x1, x2) = (recording.channel("x1_m").expect("x"), recording.channel("x2_m").expect("x"));
+        let middle = |i: usize| 0.5 * (x1[i] + x2[i]) - crank.center_m.x;
+        let reach = (0..x1.len()).map(|i| middle(i).abs()).fold(0.0, f64::max);
+        assert!((reach - crank.radius_m).abs() < 1.5e-3, "{reach}");
+        assert!(perform(&table, &asked, "a crank", (&fault, 0.005), 1, &|share| share < 0.4).is_none());
+    }
+}

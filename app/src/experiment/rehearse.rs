@@ -1,0 +1,147 @@
+//! What an experiment would settle: it is done on every object that the diagnosis leaves open, and the question is asked again.
+
+use super::{Timetable, perform};
+use estimator::diagnose::{Diagnosis, NextExperiment, Suspect};
+use haptics::recording::Recording;
+
+/// An alternative less probable than this is as good as excluded (as in the estimator's settling of several recordings).
+const OPEN: f64 = 0.047;
+
+/// One performance on one object.
+#[derive(Clone, Debug)]
+pub struct Round {
+    /// Only what was simulated is left of what the experiment should tell apart.
+    pub settled: bool,
+    /// What was named, strongest first.
+    pub named: Vec<String>,
+    /// What else it could still be.
+    pub open: Vec<String>,
+    /// The recording.
+    pub recording: Recording,
+}
+
+/// What came of one object.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The cause that was in it.
+    pub id: String,
+    /// Its performances.
+    pub rounds: Vec<Round>,
+    /// Why there are none, in a sentence.
+    pub problem: Option<String>,
+}
+
+impl Outcome {
+    /// In how many rounds the question was settled rightly.
+    pub fn settled(&self) -> usize {
+        self.rounds.iter().filter(|r| r.settled).count()
+    }
+}
+
+/// An experiment, rehearsed.
+#[derive(Clone, Debug)]
+pub struct Rehearsal {
+    /// One an object that could be the real one.
+    pub outcomes: Vec<Outcome>,
+}
+
+impl Rehearsal {
+    /// Rounds that settled the question rightly, and all.
+    pub fn settled(&self) -> (usize, usize) {
+        (self.outcomes.iter().map(Outcome::settled).sum(), self.outcomes.iter().map(|o| o.rounds.len()).sum())
+    }
+}
+
+/// Does the experiment `rounds` times on each suspect among what it should tell apart, and asks `again` with the recording in addition.
+/// `noise_n`: of a force sample. An error is a sentence, or nothing when `goes_on` said no.
+pub fn rehearse(
+    suspects: &[Suspect],
+    next: &NextExperiment,
+    (rounds, noise_n): (u64, f64),
+    again: &dyn Fn(&Recording) -> Result<Diagnosis, String>,
+    goes_on: &dyn Fn(f64) -> bool,
+) -> Result<Rehearsal, Option<String>> {
+    let asked = next.experiment.as_ref().ok_or("This experiment is known in words only.".to_owned())?;
+    let wanted: Vec<&Suspect> = suspects.iter().filter(|s| next.separates.contains(&s.id)).collect();
+    if wanted.is_empty() {
+        return Err(Some("No object can be simulated for what is open here.".to_owned()));
+    }
+    let total = wanted.len() as f64 * rounds as f64;
+    let mut outcomes = Vec::new();
+    for (k, suspect) in wanted.iter().enumerate() {
+        let mut outcome = Outcome { id: suspect.id.clone(), rounds: Vec::new(), problem: None };
+        let table = match Timetable::new(&suspect.world, asked, &next.motion) {
+            Ok(table) => table,
+            Err(problem) => {
+                outcome.problem = Some(problem);
+                outcomes.push(outcome);
+                continue;
+            }
+        };
+        for round in 0..rounds {
+            let before = (k as f64 * rounds as f64 + round as f64) / total;
+            // Half of the time goes into the motion, half into the answer.
+            let tell = |share: f64| goes_on(before + 0.5 * share / total);
+            let about = format!("as if {}", suspect.id.replace('-', " "));
+            let sensing = (&suspect.fault, noise_n);
+            let recording = perform(&table, asked, &about, sensing, 1 + round, &tell).ok_or(None)?;
+            match again(&recording) {
+                Ok(answer) => outcome.rounds.push(judged(&answer, &suspect.id, &next.separates, recording)),
+                Err(problem) => outcome.problem = Some(problem),
+            }
+            if !goes_on(before + 1.0 / total) {
+                return Err(None);
+            }
+        }
+        outcomes.push(outcome);
+    }
+    Ok(Rehearsal { outcomes })
+}
+
+fn judged(answer: &Diagnosis, id: &str, separates: &[String], recording: Recording) -> Round {
+    let named: Vec<String> = answer.causes.iter().map(|c| c.id.clone()).collect();
+    let open: Vec<String> = answer.alternatives.iter().filter(|a| a.posterior > OPEN).map(|a| a.id.clone()).collect();
+    let others = separates.iter().filter(|s| *s != id);
+    let excluded = others.clone().all(|s| !named.contains(s) && !open.contains(s));
+    Round { settled: excluded && named.iter().any(|n| n == id), named, open, recording }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use blind::{Bench, Effect, Log, Spec};
+    use estimator::diagnose::{Options, Verdict, diagnose, suspects};
+
+    #[test]
+    fn a_hung_weight_would_tell_an_eccentric_mass_from_a_tilt_whichever_it_is() {
+        let effects = vec![(Effect::Eccentric, 0)];
+        let spec =
+            Spec { effects, ratio: 2.0, bench: Bench::OneFinger, log: Log::Mixed, rate_hz: 100.0, seconds: 15.0 };
+        let first = blind::make(&spec, 3).0.recordings.remove(0);
+        let options = Options::default();
+        let recordings = [first];
+        let answer = diagnose(&recordings, &options).expect("an answer");
+        assert_eq!(answer.verdict, Verdict::Ambiguous);
+        let next = answer.next_experiment.clone().expect("an experiment");
+        let suspects = suspects(&recordings, &options, &answer).expect("worlds");
+        let ids: Vec<&str> = suspects.iter().map(|s| s.id.as_str()).collect();
+        assert_eq!(ids, ["eccentric-mass", "gravity-tilt"]);
+        let again = |more: &Recording| {
+            let both = [recordings[0].clone(), more.clone()];
+            diagnose(&both, &options).map_err(|error| error.to_string())
+        };
+        let noise_n = answer.noise_floor_n;
+        let rehearsal = rehearse(&suspects, &next, (2, noise_n), &again, &|_| true).expect("rehearsed");
+        for outcome in &rehearsal.outcomes {
+            let came_out: Vec<_> = outcome.rounds.iter().map(|r| (&r.named, &r.open)).collect();
+            assert_eq!(
+                (outcome.settled(), outcome.rounds.len()),
+                (2, 2),
+                "{}: {came_out:?} {:?}",
+                outcome.id,
+                outcome.problem
+            );
+        }
+        assert_eq!(rehearse(&suspects, &next, (2, noise_n), &again, &|share| share < 0.3).err(), Some(None));
+    }
+}

@@ -1,0 +1,140 @@
+//! Over the trainer's picture while a person does an experiment: what to do now, how long still, and a ghost of the fingers to follow.
+
+use crate::ui::format;
+use crate::ui::guided::{Guided, Phase};
+use crate::ui::scene::SceneResponse;
+use crate::ui::session::{Session, sentence};
+use crate::ui::theme::{self, palette, space};
+use crate::ui::trainer::Trainer;
+use crate::ui::widgets::primary_button;
+use egui::{Frame, Margin, Pos2, ProgressBar, RichText, Shape, Stroke, Ui, vec2};
+use haptics::Vec2;
+use haptics::device::HandGoal;
+
+/// Width of the card, points.
+const WIDTH: f32 = 300.0;
+/// Radius of a ghost finger, points.
+const GHOST: f32 = 12.0;
+/// The word stands so far above them, clear of what is held, points.
+const WORD_ABOVE: f32 = 52.0;
+/// So far ahead the way is drawn, s, in so many steps.
+const AHEAD_S: f64 = 1.5;
+const AHEAD_STEPS: u32 = 30;
+
+/// The card of the experiment; also while nothing runs.
+pub fn card(ui: &mut Ui, view: &SceneResponse, session: &mut Session) {
+    if session.experiments.guided.is_none() {
+        return;
+    }
+    let p = palette(ui);
+    let corner = view.rect.left_top() + vec2(space::M, space::M);
+    let (mut begin, mut add, mut leave) = (false, false, false);
+    egui::Area::new(egui::Id::unique("experiment")).fixed_pos(corner).constrain_to(view.rect).show(ui.ctx(), |ui| {
+        let frame = Frame::new().fill(p.card).stroke(Stroke::new(1.0, p.border)).corner_radius(10);
+        frame.inner_margin(Margin::same(space::M as i8)).show(ui, |ui| {
+            ui.set_width(WIDTH.min(view.rect.width() - 4.0 * space::M));
+            let Some(guided) = &session.experiments.guided else { return };
+            ui.label(theme::caption(ui, "Experiment"));
+            match &guided.phase {
+                Phase::Ready => ready(ui, guided, &mut begin),
+                Phase::Going(_) => going(ui, guided, &session.trainer),
+                Phase::Ending => drop(ui.label("The recording gets its end …")),
+                Phase::Recorded(_) => recorded(ui, guided, &mut add, &mut begin),
+            }
+            ui.add_space(space::XS);
+            leave = ui.link("Leave the experiment").clicked();
+        });
+    });
+    let ctx = ui.ctx().clone();
+    if begin {
+        session.begin_experiment();
+    } else if add {
+        session.add_followed(&ctx);
+    } else if leave {
+        session.leave_experiment();
+    }
+}
+
+fn ready(ui: &mut Ui, guided: &Guided, begin: &mut bool) {
+    let longest = guided.table.steps.iter().max_by_key(|s| s.words.len());
+    if let Some(step) = longest {
+        ui.add(egui::Label::new(theme::strong(sentence(&step.words))).wrap());
+    }
+    let seconds = format::number(guided.table.duration_s(), 0);
+    let hung = format::number(guided.hung_n(), 2);
+    let hung = if guided.hung_n() > 0.0 { format!(" A weight of {hung} N hangs on it.") } else { String::new() };
+    let text = format!("Follow the two rings for {seconds} s; all of it is recorded.{hung}");
+    ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
+    simulated(ui, guided);
+    ui.add_space(space::XS);
+    *begin = primary_button(ui, true, "Begin").clicked();
+}
+
+/// Says of what object this is, where that is made up.
+fn simulated(ui: &mut Ui, guided: &Guided) {
+    if let Some(about) = &guided.about {
+        let text = format!("A SIMULATED object, {about}: the recording will say so.");
+        ui.add(egui::Label::new(RichText::new(text).size(11.5).color(palette(ui).caution)).wrap());
+    }
+}
+
+fn going(ui: &mut Ui, guided: &Guided, trainer: &Trainer) {
+    let Some((step, left_s, _)) = guided.now(trainer) else { return };
+    ui.add(egui::Label::new(theme::strong(sentence(&step.words))).wrap());
+    let place = guided.table.steps.iter().position(|s| s == step).unwrap_or_default() + 1;
+    let text = format!("{} s left · {place} of {}", format::number(left_s, 0), guided.table.steps.len());
+    ui.label(theme::caption(ui, text));
+    let done = guided.time_s(trainer).unwrap_or_default() / guided.table.duration_s();
+    ui.add(ProgressBar::new(done as f32).desired_height(6.0));
+}
+
+fn recorded(ui: &mut Ui, guided: &Guided, add: &mut bool, begin: &mut bool) {
+    ui.label(theme::strong("Recorded."));
+    simulated(ui, guided);
+    ui.add_space(space::XS);
+    ui.horizontal(|ui| {
+        *add = primary_button(ui, true, "Add to the diagnosis").clicked();
+        *begin = ui.button("Once more").clicked();
+    });
+}
+
+/// Two rings where the fingertips are wanted, filled while they are to hold, and the way that they will go.
+pub fn ghost(ui: &Ui, view: &SceneResponse, session: &Session) {
+    let Some(guided) = &session.experiments.guided else { return };
+    let Some((step, _, goal)) = guided.now(&session.trainer) else { return };
+    let painter = ui.painter().with_clip_rect(view.rect);
+    let (color, halo) = (palette(ui).accent, palette(ui).card);
+    let at = |point: Vec2| on_screen(ui, view, point);
+    let now_s = guided.time_s(&session.trainer).unwrap_or_default();
+    let ahead = (0..=AHEAD_STEPS).map(|k| {
+        let later_s = now_s + AHEAD_S * f64::from(k) / f64::from(AHEAD_STEPS);
+        at(guided.table.route.at(later_s).0.center_m)
+    });
+    let ahead: Vec<Pos2> = ahead.collect();
+    // Legible over bright metal and dark ground alike.
+    for (width, color) in [(6.0, halo), (2.5, color)] {
+        painter.add(Shape::line(ahead.clone(), Stroke::new(width, color)));
+        for tip in tips(&goal) {
+            painter.circle_stroke(at(tip), GHOST, Stroke::new(width, color));
+        }
+    }
+    for tip in tips(&goal).into_iter().filter(|_| step.holds) {
+        painter.circle_filled(at(tip), 0.45 * GHOST, color);
+    }
+    let word = if step.holds { "pinch" } else { "open" };
+    let text = painter.layout_no_wrap(word.to_owned(), egui::FontId::new(12.0, theme::semibold()), color);
+    let corner = at(goal.center_m) - vec2(0.5 * text.size().x, WORD_ABOVE + 0.5 * text.size().y);
+    painter.rect_filled(egui::Rect::from_min_size(corner, text.size()).expand2(vec2(7.0, 3.0)), 9, halo);
+    painter.galley(corner, text, color);
+    ui.ctx().request_repaint();
+}
+
+fn tips(goal: &HandGoal) -> [Vec2; 2] {
+    let half = Vec2::new(0.5 * goal.aperture_m, 0.0);
+    [goal.center_m - half, goal.center_m + half]
+}
+
+fn on_screen(ui: &Ui, view: &SceneResponse, point_in_world: Vec2) -> Pos2 {
+    let pixel = view.camera.pixel_of(point_in_world, view.size);
+    view.rect.min + vec2(pixel.x, pixel.y) / ui.pixels_per_point()
+}

@@ -1,0 +1,197 @@
+//! *Record next*: the experiment that would settle what is open, and three ways to it: rehearsed on simulated objects, done by hand in
+//! Train, loaded from a file.
+
+use crate::diagnosis_words::{listed, small, title};
+use crate::experiment::{Outcome, Rehearsal};
+use crate::ui::experimenting::{ROUNDS, Stage};
+use crate::ui::files;
+use crate::ui::format;
+use crate::ui::jobs::{JobKind, Purpose};
+use crate::ui::session::{Session, sentence};
+use crate::ui::theme::{self, palette, space};
+use crate::ui::widgets::{bar, compact, plain_card, primary_button};
+use egui::{Align, Layout, RichText, TextEdit, Ui};
+use estimator::diagnose::{Diagnosis, NextExperiment};
+use std::path::PathBuf;
+
+/// The card under the causes.
+pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
+    let Some(next) = &diagnosis.next_experiment else { return };
+    plain_card(ui, "Record next", |ui| {
+        ui.add(egui::Label::new(sentence(&next.motion)).wrap());
+        let names: Vec<String> = next.separates.iter().map(|id| title(id)).collect();
+        let power = format::number(100.0 * next.expected_power, 0);
+        let text = format!("Tells {} apart with a probability of {power}\u{a0}%.", listed(&names));
+        ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
+        bar(ui, next.expected_power, 1.0, None, palette(ui).accent);
+        ui.add_space(space::XS);
+        if next.experiment.is_some() {
+            perform(ui, session, next);
+        }
+        rehearsal(ui, session, next);
+        load(ui, session);
+    });
+}
+
+/// By the scripted operator, and by hand.
+fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
+    let ctx = ui.ctx().clone();
+    ui.horizontal_wrapped(|ui| {
+        let busy = session.jobs.is_running(JobKind::Rehearse);
+        let hint = format!(
+            "The scripted operator does it {ROUNDS} times on each object that is not excluded, and the question is asked again. The \
+             objects are simulated: it shows what would come out, and is no measurement."
+        );
+        if primary_button(ui, !busy, "Rehearse it").on_hover_text(hint).clicked() {
+            session.rehearse(&ctx);
+        }
+        let by_hand = egui::Button::new("Do it in Train …");
+        let menu = egui::containers::menu::MenuButton::from_button(by_hand);
+        let (response, _) = menu.ui(ui, |ui| {
+            ui.set_max_width(280.0);
+            ui.label(theme::caption(ui, "On which object?"));
+            if ui.button("The world that stands in Train").clicked() {
+                session.guide(&ctx, Stage::AsItStands);
+            }
+            for id in &next.separates {
+                if ui.button(format!("This one as if it had {}", indefinite(id))).clicked() {
+                    session.guide(&ctx, Stage::AsIf(id.clone()));
+                }
+            }
+        });
+        response.on_hover_text("With the device that moves the fingers: a target to follow, in words and in the picture; it is recorded");
+        if busy {
+            ui.add(egui::Spinner::new().size(16.0));
+            if ui.link("Cancel").clicked() {
+                session.give_up(JobKind::Rehearse);
+            }
+        }
+    });
+}
+
+/// `an eccentric mass`.
+fn indefinite(id: &str) -> String {
+    let name = small(&title(id));
+    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    format!("{article} {name}")
+}
+
+/// What came of the rehearsal.
+fn rehearsal(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
+    if let Some(problem) = &session.diagnosing.rehearsal_problem {
+        ui.add(egui::Label::new(RichText::new(problem).size(12.0).color(palette(ui).caution)).wrap());
+    }
+    let Some(rehearsal) = session.diagnosing.rehearsal.clone() else { return };
+    ui.add_space(space::XS);
+    ui.separator();
+    let note = "Rehearsed on SIMULATED objects: what would come out, no measurement.";
+    ui.add(egui::Label::new(RichText::new(note).size(11.5).color(palette(ui).caution)).wrap());
+    let mut add = None;
+    for (k, outcome) in rehearsal.outcomes.iter().enumerate() {
+        if object(ui, outcome) {
+            add = Some(k);
+        }
+    }
+    ui.add(egui::Label::new(theme::caption(ui, summary(&rehearsal, next))).wrap());
+    if let Some(k) = add {
+        let ctx = ui.ctx().clone();
+        session.add_rehearsed(&ctx, k);
+    }
+}
+
+/// One object: what was simulated, and how often it came out. True when its recording is to be added.
+fn object(ui: &mut Ui, outcome: &Outcome) -> bool {
+    let mut add = false;
+    let rounds = outcome.rounds.len();
+    compact(ui, |ui| {
+        ui.label(RichText::new(format!("If it is {}", small(&title(&outcome.id)))).size(12.0));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if rounds > 0 {
+                let link = ui.link("Add");
+                link.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::Role::Link, true, format!("Add simulated {}", outcome.id))
+                });
+                add = link
+                    .on_hover_text(
+                        "Saves the simulated recording and diagnoses it with the others, to see what it would settle",
+                    )
+                    .clicked();
+                let text = format!("{} of {rounds} settled", outcome.settled());
+                ui.label(theme::strong(text)).on_hover_text(came_out(outcome));
+            }
+        });
+    });
+    if let Some(problem) = &outcome.problem {
+        ui.add(egui::Label::new(RichText::new(problem).size(11.5).color(palette(ui).caution)).wrap());
+    }
+    if rounds > 0 {
+        let p = palette(ui);
+        let color = if outcome.settled() == rounds { p.good } else { p.caution };
+        bar(ui, outcome.settled() as f64, rounds as f64, None, color);
+    }
+    add
+}
+
+/// What every round named, in lines.
+fn came_out(outcome: &Outcome) -> String {
+    let names = |ids: &[String]| listed(&ids.iter().map(|id| title(id)).collect::<Vec<_>>());
+    let round = |(k, round): (usize, &crate::experiment::Round)| {
+        let named = if round.named.is_empty() { "nothing".to_owned() } else { names(&round.named) };
+        let open = if round.open.is_empty() { String::new() } else { format!("; or {}", names(&round.open)) };
+        format!("{}: {named}{open}", k + 1)
+    };
+    outcome.rounds.iter().enumerate().map(round).collect::<Vec<_>>().join("\n")
+}
+
+fn summary(rehearsal: &Rehearsal, next: &NextExperiment) -> String {
+    let (settled, all) = rehearsal.settled();
+    let expected = format::number(100.0 * next.expected_power, 0);
+    format!("{settled} of {all} settled the question rightly; {expected}\u{a0}% were expected.")
+}
+
+/// A recording that was made on the real object.
+fn load(ui: &mut Ui, session: &mut Session) {
+    ui.add_space(space::XS);
+    ui.label(theme::caption(ui, "Did it on the real object? Add its recording:"));
+    let ctx = ui.ctx().clone();
+    ui.horizontal(|ui| {
+        let width = (ui.available_width() - 44.0).max(60.0);
+        let field = TextEdit::singleline(&mut session.experiments.path_field).hint_text("Path of a log, then Enter");
+        let response = ui.add(field.desired_width(width));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Recording of the experiment"));
+        let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+        if ui.button("…").on_hover_text("Choose a file").clicked() {
+            files::ask(&ctx, &mut session.jobs, Purpose::AddExperiment);
+        }
+        let path = session.experiments.path_field.trim().to_owned();
+        if entered && !path.is_empty() {
+            session.add_experiment(&ctx, &PathBuf::from(path));
+        }
+    });
+}
+
+/// What a later recording settled, and which recordings were simulated: above the causes.
+pub fn settled(ui: &mut Ui, session: &Session, diagnosis: &Diagnosis) {
+    if !diagnosis.settled.is_empty() {
+        plain_card(ui, "Settled", |ui| {
+            for settled in &diagnosis.settled {
+                let text = format!("{}, not {}.", title(&settled.kept), small(&title(&settled.excluded)));
+                ui.add(egui::Label::new(theme::strong(text)).wrap());
+                ui.add(egui::Label::new(theme::caption(ui, sentence(&settled.why))).wrap());
+            }
+        });
+    }
+    let simulated = session.simulated();
+    if !simulated.is_empty() {
+        plain_card(ui, "Not measured", |ui| {
+            let text = format!(
+                "{} simulated: this answer shows what the experiment would settle, and says nothing more about the real object.",
+                match simulated.as_slice() {
+                    [one] => format!("“{one}” is"),
+                    several => format!("{} recordings are", several.len()),
+                }
+            );
+            ui.add(egui::Label::new(RichText::new(text).size(12.0).color(palette(ui).caution)).wrap());
+        });
+    }
+}

@@ -1,0 +1,196 @@
+//! The experiment that a diagnosis asks for: rehearsed, done by hand, loaded; and what it settles.
+
+use super::harness;
+use crate::experiment::simulated_object;
+use crate::ui::app::App;
+use crate::ui::gallery::samples::{askew, askew_world, done_with};
+use crate::ui::guided::Phase;
+use crate::ui::jobs::JobKind;
+use crate::ui::session::{Session, Workspace};
+use crate::ui::trainer::{Clock, WorldChoice};
+use egui::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use estimator::diagnose::Verdict;
+use haptics::recording::Recording;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+use std::time::{Duration, Instant};
+
+static ASKEW: LazyLock<Recording> = LazyLock::new(|| askew().expect("performed"));
+
+fn saved(recording: &Recording, folder: &Path) -> PathBuf {
+    let path = folder.join(format!("{}.csv", recording.name));
+    let recording = Recording { labels: None, ..recording.clone() };
+    estimator::log::write_csv(&recording, &path).expect("written");
+    estimator::log::write_meta(&recording, &path).expect("written");
+    path
+}
+
+/// Runs pictures until `over`, a minute at most.
+fn until(harness: &mut Harness<'_, App>, over: impl Fn(&Session) -> bool) {
+    let begun = Instant::now();
+    while !over(&harness.state().session) && begun.elapsed() < Duration::from_mins(1) {
+        std::thread::sleep(Duration::from_millis(5));
+        harness.run_steps(1);
+    }
+    assert!(over(&harness.state().session), "{:?}", harness.state().session.banners);
+    harness.run_steps(3);
+}
+
+fn quiet(session: &Session) -> bool {
+    !session.jobs.is_busy()
+}
+
+/// The ambiguous recording, opened from a file and diagnosed.
+fn asked<'a>(folder: &Path) -> Harness<'a, App> {
+    let mut session = Session::new();
+    session.trainer.clock = Clock::Manual;
+    session.trainer.recordings_folder = Some(folder.join("recordings"));
+    let mut harness = harness(App::new(session), [1280.0, 1600.0], |ui, app: &mut App| app.show(ui));
+    let ctx = harness.ctx.clone();
+    let path = saved(&ASKEW, folder);
+    harness.state_mut().session.open(&ctx, &path);
+    until(&mut harness, |s| s.analysis.is_some() && quiet(s));
+    harness.state_mut().session.workspace = Workspace::Diagnose;
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "Diagnose").click();
+    harness.run_steps(2);
+    until(&mut harness, |s| s.diagnosing.answer.is_some());
+    assert_eq!(verdict(&harness), Verdict::Ambiguous);
+    harness
+}
+
+fn verdict(harness: &Harness<'_, App>) -> Verdict {
+    harness.state().session.diagnosing.answer.as_ref().expect("an answer").diagnosis.verdict
+}
+
+/// What stands in the answer to both recordings.
+fn settled(harness: &Harness<'_, App>) -> Vec<(String, String)> {
+    let answer = harness.state().session.diagnosing.answer.as_ref().expect("an answer");
+    answer.diagnosis.settled.iter().map(|s| (s.kept.clone(), s.excluded.clone())).collect()
+}
+
+fn pair(kept: &str, excluded: &str) -> Vec<(String, String)> {
+    vec![(kept.to_owned(), excluded.to_owned())]
+}
+
+#[test]
+fn it_is_rehearsed_on_every_object_and_said_to_be_simulated() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut harness = asked(folder.path());
+    harness.get_by_role_and_label(Role::Button, "Rehearse it").click();
+    harness.run_steps(2);
+    until(&mut harness, |s| !s.jobs.is_running(JobKind::Rehearse));
+    let rehearsal = harness.state().session.diagnosing.rehearsal.clone().expect("rehearsed");
+    let ids: Vec<&str> = rehearsal.outcomes.iter().map(|o| o.id.as_str()).collect();
+    assert_eq!(ids, ["eccentric-mass", "gravity-tilt"]);
+    let (right, all) = rehearsal.settled();
+    let came_out: Vec<_> =
+        rehearsal.outcomes.iter().flat_map(|o| o.rounds.iter().map(|r| (&o.id, &r.named, &r.open))).collect();
+    assert!(all == 6 && right >= 5, "{right} of {all}: {came_out:?}");
+    for label in ["If it is eccentric mass", "If it is tilted plane"] {
+        assert!(harness.query_by_label(label).is_some(), "{label}");
+    }
+    assert!(harness.query_by_label_contains("SIMULATED").is_some());
+    assert_eq!(harness.state().session.recordings.len(), 1, "a rehearsal adds nothing by itself");
+    // One of them can be added, as what it is.
+    harness.get_by_role_and_label(Role::Link, "Add simulated gravity-tilt").click();
+    harness.run_steps(2);
+    until(&mut harness, |s| s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s));
+    let session = &harness.state().session;
+    assert_eq!(simulated_object(&session.recordings[1].recording), Some("as if gravity tilt"));
+    assert!(harness.query_by_label("Not measured").is_some());
+    assert_eq!(settled(&harness), pair("gravity-tilt", "eccentric-mass"), "that is what was simulated");
+}
+
+#[test]
+fn a_cancelled_rehearsal_leaves_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut harness = asked(folder.path());
+    harness.get_by_role_and_label(Role::Button, "Rehearse it").click();
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Link, "Cancel").click();
+    harness.run_steps(3);
+    let session = &harness.state().session;
+    assert!(!session.jobs.is_running(JobKind::Rehearse) && session.diagnosing.rehearsal.is_none());
+    assert!(harness.query_by_label("Rehearse it").is_some());
+}
+
+#[test]
+fn a_loaded_recording_of_the_experiment_settles_the_question() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut harness = asked(folder.path());
+    let answer = harness.state().session.diagnosing.answer.clone().expect("an answer");
+    let next = answer.diagnosis.next_experiment.as_ref().and_then(|n| n.experiment.clone()).expect("for a program");
+    let path = saved(&done_with(&askew_world(), &next, "hung").expect("performed"), folder.path());
+    harness.get_by_role_and_label(Role::TextInput, "Recording of the experiment").focus();
+    harness.run_steps(2);
+    harness
+        .get_by_role_and_label(Role::TextInput, "Recording of the experiment")
+        .type_text(&path.display().to_string());
+    harness.run_steps(2);
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(2);
+    until(&mut harness, |s| s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s));
+    assert_eq!((settled(&harness), verdict(&harness)), (pair("eccentric-mass", "gravity-tilt"), Verdict::Causes));
+    assert!(harness.query_by_label("Settled").is_some());
+    assert!(harness.query_by_label("Eccentric mass, not tilted plane.").is_some());
+    assert!(harness.query_by_label("Not measured").is_none() && harness.query_by_label("Record next").is_none());
+    assert_eq!(harness.state().session.workspace, Workspace::Diagnose);
+}
+
+#[test]
+fn a_person_follows_the_rings_in_train_and_adds_what_was_recorded() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut harness = asked(folder.path());
+    // The object of the recording stands in Train.
+    let trainer = &mut harness.state_mut().session.trainer;
+    trainer.file = Some(askew_world());
+    trainer.choose(WorldChoice::File).expect("it can be touched");
+    harness.get_by_role_and_label(Role::Button, "Do it in Train …").click();
+    harness.run_steps(3);
+    harness.get_by_role_and_label(Role::Button, "The world that stands in Train").click();
+    harness.run_steps(2);
+    until(&mut harness, |s| s.experiments.guided.is_some());
+    assert_eq!(harness.state().session.workspace, Workspace::Train);
+    harness.get_by_role_and_label(Role::Button, "Begin").click();
+    harness.run_steps(2);
+    assert!(harness.state().session.trainer.is_recording());
+    assert!(harness.query_by_label("Touch nothing.").is_some());
+    let session = &mut harness.state_mut().session;
+    let all_s = session.experiments.guided.as_ref().expect("going").table.duration_s();
+    session.follow_rings(3.0);
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Take hold.").is_some());
+    let session = &mut harness.state_mut().session;
+    session.follow_rings(all_s);
+    harness.run_steps(2);
+    until(&mut harness, |s| matches!(s.experiments.guided.as_ref().map(|g| &g.phase), Some(Phase::Recorded(_))));
+    harness.get_by_role_and_label(Role::Button, "Add to the diagnosis").click();
+    harness.run_steps(2);
+    until(&mut harness, |s| s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s));
+    let session = &harness.state().session;
+    let known = &session.recordings[1].recording.meta.known;
+    assert!(known.get("added_weight_N").is_some_and(|w| *w > 0.05), "{known:?}");
+    assert_eq!((session.workspace, settled(&harness)), (Workspace::Diagnose, pair("eccentric-mass", "gravity-tilt")));
+}
+
+#[test]
+fn an_experiment_that_is_left_keeps_no_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut harness = asked(folder.path());
+    harness.get_by_role_and_label(Role::Button, "Do it in Train …").click();
+    harness.run_steps(3);
+    harness.get_by_role_and_label(Role::Button, "This one as if it had a tilted plane").click();
+    harness.run_steps(2);
+    until(&mut harness, |s| s.experiments.guided.is_some());
+    assert!(harness.query_by_label_contains("SIMULATED object, as if gravity tilt").is_some());
+    harness.get_by_role_and_label(Role::Button, "Begin").click();
+    harness.run_steps(2);
+    harness.state_mut().session.follow_rings(3.0);
+    harness.get_by_role_and_label(Role::Link, "Leave the experiment").click();
+    harness.run_steps(3);
+    let session = &harness.state().session;
+    assert!(session.experiments.guided.is_none() && !session.trainer.is_recording());
+}

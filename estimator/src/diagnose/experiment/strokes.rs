@@ -1,0 +1,123 @@
+//! The strokes of a motion of the library: where the object is wanted when, and how hard it is pushed across.
+
+use super::library::{Excitation, HANG, LIBRARY};
+use crate::diagnose::report::Experiment;
+
+/// Peak over mean speed of a movement from rest to rest.
+const PEAK: f64 = 1.875;
+/// Nobody moves to and fro faster than this, s a movement.
+const SHORTEST_S: f64 = 0.25;
+
+/// Position and push across, in units of the experiment, at a time.
+#[derive(Clone, Debug)]
+pub(super) struct Course {
+    knots: Vec<(f64, f64, f64)>,
+}
+
+impl Course {
+    /// `speed`: half ranges a second at pace 1.
+    pub(super) fn of(excitation: &Excitation, speed: f64, until_s: f64) -> Self {
+        let mut knots = vec![(0.0, 0.0, 0.0)];
+        let mut k = 0;
+        while let Some((time_s, place, _)) = knots.last().copied().filter(|k| k.0 < until_s) {
+            let step = (excitation.step)(k);
+            let takes_s = (PEAK * (step.to - place).abs() / (step.pace * speed).max(1e-9)).max(SHORTEST_S);
+            knots.push((time_s + takes_s, step.to, step.across));
+            if step.rest_s > 0.0 {
+                knots.push((time_s + takes_s + step.rest_s, step.to, step.across));
+            }
+            k += 1;
+        }
+        Self { knots }
+    }
+
+    /// Smooth between the knots (minimum jerk).
+    pub(super) fn at(&self, time_s: f64) -> (f64, f64) {
+        let next = self.knots.partition_point(|k| k.0 <= time_s).clamp(1, self.knots.len() - 1);
+        let ((t0, p0, a0), (t1, p1, a1)) = (self.knots[next - 1], self.knots[next]);
+        let x = ((time_s - t0) / (t1 - t0)).clamp(0.0, 1.0);
+        let smooth = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
+        (p0 + (p1 - p0) * smooth, a0 + (a1 - a0) * smooth)
+    }
+}
+
+/// Where an experiment wants the object, and how hard it is pushed across its motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stroke {
+    /// Length in m, or angle in rad: as in the [`Experiment`].
+    pub coordinate: f64,
+    /// Outwards, N.
+    pub across_n: f64,
+}
+
+/// The motion of an experiment, for a hand that follows it.
+#[derive(Clone, Debug)]
+pub struct Strokes {
+    course: Course,
+    middle: f64,
+    half_range: f64,
+    across_n: f64,
+}
+
+impl Strokes {
+    /// Nothing for a motion that is not in the library, or numbers that make none.
+    pub fn of(asked: &Experiment) -> Option<Self> {
+        let excitation = LIBRARY.iter().chain([&HANG]).find(|e| e.id == asked.id)?;
+        let sane = [asked.seconds, asked.half_range, asked.fast].iter().all(|v| v.is_finite() && *v > 0.0);
+        if !sane || !asked.middle.is_finite() || !asked.across_n.is_finite() {
+            return None;
+        }
+        let course = Course::of(excitation, asked.fast / asked.half_range, asked.seconds);
+        Some(Self { course, middle: asked.middle, half_range: asked.half_range, across_n: asked.across_n })
+    }
+
+    /// What is wanted so long after the object was taken, s.
+    pub fn at(&self, time_s: f64) -> Stroke {
+        let (place, across) = self.course.at(time_s.max(0.0));
+        Stroke { coordinate: self.middle + self.half_range * place, across_n: self.across_n * across }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_motion_is_faster_or_wider_than_what_is_asked() {
+        for excitation in &LIBRARY {
+            let course = Course::of(excitation, 2.0, 20.0);
+            let mut fastest = 0.0_f64;
+            for i in 1..4000 {
+                let t = f64::from(i) * 0.005;
+                let (now, before) = (course.at(t).0, course.at(t - 0.005).0);
+                fastest = fastest.max((now - before).abs() / 0.005);
+                assert!(now.abs() <= 1.0 + 1e-9, "{}", excitation.id);
+            }
+            assert!(fastest > 0.4 && fastest < 2.0 * 1.25, "{}: {fastest}", excitation.id);
+        }
+    }
+
+    #[test]
+    fn strokes_go_about_the_middle_within_the_range_and_unknown_motions_are_none() {
+        let asked = Experiment {
+            id: "sweep-across".to_owned(),
+            seconds: 20.0,
+            free_s: 0.0,
+            middle: 3.0,
+            half_range: 2.0,
+            fast: 4.0,
+            across_n: 0.5,
+            added_weight_n: 0.0,
+            added_lever_m: 0.0,
+        };
+        let strokes = Strokes::of(&asked).expect("a motion of the library");
+        let all: Vec<Stroke> = (0..2_000).map(|k| strokes.at(f64::from(k) * 0.01)).collect();
+        let least = all.iter().map(|s| s.coordinate).fold(f64::MAX, f64::min);
+        let most = all.iter().map(|s| s.coordinate).fold(f64::MIN, f64::max);
+        assert!((least - 1.0).abs() < 1e-3 && (most - 5.0).abs() < 1e-3, "{least} {most}");
+        assert!(all.iter().any(|s| s.across_n > 0.49) && all.iter().any(|s| s.across_n < -0.49));
+        assert!((strokes.at(0.0).coordinate - 3.0).abs() < 1e-12, "it begins in the middle");
+        assert!(Strokes::of(&Experiment { id: "juggle".to_owned(), ..asked.clone() }).is_none());
+        assert!(Strokes::of(&Experiment { fast: f64::NAN, ..asked }).is_none());
+    }
+}
