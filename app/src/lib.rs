@@ -12,6 +12,7 @@ pub mod recorder;
 pub mod report;
 pub mod tasks;
 pub mod ui;
+pub mod video;
 pub mod worlds;
 
 pub use constraint_words::constraint_words;

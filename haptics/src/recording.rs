@@ -109,9 +109,22 @@ pub struct Meta {
     /// Which state held when, set by a person: in the place of what a segmentation finds.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub segments: Vec<Segment>,
+    /// The video that was taken meanwhile.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub video: Option<VideoMeta>,
     /// Keys this version does not know: kept, so that saving loses nothing.
     #[serde(flatten)]
     pub other: BTreeMap<String, serde_json::Value>,
+}
+
+/// A video of the hand.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct VideoMeta {
+    /// The file, from the log's folder.
+    pub file: std::path::PathBuf,
+    /// Time of the recording at which its first picture was taken, s.
+    #[serde(default)]
+    pub begins_at_s: f64,
 }
 
 /// A stretch of a recording in one state, set by a person.

@@ -48,6 +48,9 @@ impl App {
         let ctx = ui.ctx().clone();
         self.session.poll(&ctx);
         self.take_worlds();
+        if let Some(pane) = self.session.wanted_pane.take() {
+            self.dock.bring(self.session.workspace, pane);
+        }
         // A dialog waits for an answer first.
         if self.session.mapping.is_none() && !self.palette.is_open() && !self.tour.is_on() {
             actions::keys(ui, self);

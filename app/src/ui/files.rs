@@ -43,6 +43,11 @@ fn dialog(purpose: Purpose) -> Option<PathBuf> {
             .add_filter("Logs", &["csv", "txt", "tsv", "dat", "mcap", "parquet"])
             .add_filter("All files", &["*"])
             .pick_file(),
+        Purpose::OpenVideo => dialog
+            .set_title("Open a video of the hand")
+            .add_filter("Videos", &["mp4", "mov", "mkv", "webm", "avi", "m4v", "mpg", "ts", "gif"])
+            .add_filter("All files", &["*"])
+            .pick_file(),
         Purpose::SaveProject => {
             let name = format!("project.{}", super::project::ENDING);
             dialog.set_title("Save the project").set_file_name(name).save_file()

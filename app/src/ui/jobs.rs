@@ -5,6 +5,7 @@ use super::mapping::Looked;
 use super::mapping::preview::Seen;
 use super::plots::{Levels, Recipe};
 use super::prepare::Prepared;
+use crate::video::Video;
 use estimator::diagnose::Worlds;
 use estimator::log::preview::Preview;
 use estimator::online::enough::Enough;
@@ -65,6 +66,12 @@ pub enum JobKind {
     Curves,
     /// Finding where a recording lies on another one.
     Align,
+    /// Reading a video.
+    Video,
+    /// Decoding a picture of it.
+    Picture,
+    /// Finding where a video lies on its recording.
+    AlignVideo,
 }
 
 /// Why a file is being chosen.
@@ -80,6 +87,8 @@ pub enum Purpose {
     AddLog,
     /// A recording of the experiment that a diagnosis asks for.
     AddExperiment,
+    /// A video of the shown recording.
+    OpenVideo,
     /// Where the project goes.
     SaveProject,
     /// Where the report goes.
@@ -150,6 +159,19 @@ pub enum Outcome {
     Curves(Vec<(Recipe, Arc<Levels>)>),
     /// What to add to the times of a recording so that it lies on the shown one, s; or why that cannot be told.
     Aligned(usize, Result<f64, String>),
+    /// A video that was read, or why it cannot be shown.
+    Video(PathBuf, Result<Arc<Video>, String>),
+    /// A picture of a video; none where the file is damaged.
+    Picture {
+        /// The video.
+        file: PathBuf,
+        /// Number of the picture.
+        index: usize,
+        /// What it shows.
+        picture: Option<egui::ColorImage>,
+    },
+    /// When a video begins on its recording's clock, s; or why that cannot be told.
+    VideoAligned(PathBuf, Result<f64, String>),
     /// Nothing: the user has cancelled it.
     Cancelled,
     /// One sentence.

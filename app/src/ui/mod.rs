@@ -49,6 +49,7 @@ pub mod theme;
 pub mod tour;
 pub mod trainer;
 pub mod undo;
+pub mod video;
 pub mod what_if;
 pub mod widgets;
 

@@ -27,12 +27,17 @@ pub enum FileKind {
     Sidecar,
     /// Recordings, and how they are fitted.
     Project,
+    /// A video of the hand.
+    Video,
 }
 
 /// Tells what a file is.
 pub fn kind_of(path: &Path) -> FileKind {
     let mut start = Vec::new();
     let read = std::fs::File::open(path).and_then(|f| f.take(START_BYTES).read_to_end(&mut start));
+    if crate::video::looks_like_video(&start) {
+        return FileKind::Video;
+    }
     let text = start.strip_prefix("\u{feff}".as_bytes()).unwrap_or(&start);
     if read.is_err() || text.trim_ascii_start().first() != Some(&b'{') {
         return FileKind::Log;
@@ -105,6 +110,7 @@ impl Session {
             FileKind::World => self.open_world(ctx, path),
             FileKind::Sidecar => self.open_sidecar(ctx, path),
             FileKind::Project => self.open_project(ctx, path),
+            FileKind::Video => self.open_video(path),
             FileKind::Log => {
                 let again = self.path.as_deref() == Some(path);
                 let sidecar = self.meta.clone().filter(|_| again);

@@ -5,6 +5,7 @@ use super::jobs::{JobKind, Outcome, Ticket};
 use super::plots::choices::KeptChoices;
 use super::prepare::Prepared;
 use super::session::{Session, Workspace, sentence};
+use crate::video::VideoSource;
 use estimator::log::Watch;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -33,6 +34,9 @@ pub struct Project {
     pub touchstone_project: u32,
     /// The files, in order.
     pub recordings: Vec<Source>,
+    /// Videos of the hand.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub videos: Vec<VideoSource>,
     /// How they are fitted.
     pub choice: FitChoice,
     /// The recording that is shown.
@@ -53,6 +57,7 @@ impl Project {
         Self {
             touchstone_project: VERSION,
             recordings: session.sources.clone(),
+            videos: session.videos.sources.clone(),
             choice: session.choice.clone(),
             current: session.current,
             cursor_s: session.cursor_s,
@@ -76,6 +81,9 @@ impl Project {
             source.log = folder.join(&source.log);
             source.meta = source.meta.as_ref().map(|meta| folder.join(meta));
         }
+        for video in &mut project.videos {
+            video.file = folder.join(&video.file);
+        }
         Ok(project)
     }
 
@@ -90,6 +98,9 @@ impl Project {
         for source in &mut project.recordings {
             source.log = within(&source.log);
             source.meta = source.meta.as_deref().map(within);
+        }
+        for video in &mut project.videos {
+            video.file = within(&video.file);
         }
         let text = serde_json::to_string_pretty(&project).map_err(|e| sentence(&e.to_string()))? + "\n";
         write_whole(path, &text)
@@ -162,6 +173,7 @@ impl Session {
         self.path = Some(first.log);
         self.sources = project.recordings;
         self.show(recordings);
+        self.videos.sources = project.videos;
         self.choice = project.choice;
         self.select(project.current);
         if project.view_s.1 > project.view_s.0 {
@@ -217,6 +229,7 @@ mod tests {
     fn project(log: PathBuf) -> Project {
         Project {
             touchstone_project: VERSION,
+            videos: vec![VideoSource { file: log.with_extension("mp4"), recording: 0, begins_at_s: -0.4 }],
             recordings: vec![Source { log, meta: None }],
             choice: FitChoice { method: Method::Hmm, ..FitChoice::default() },
             cursor_s: 1.5,
@@ -238,6 +251,7 @@ mod tests {
         std::fs::rename(&file, &moved).expect("moved");
         let again = Project::read(&moved).expect("read");
         assert_eq!(again.recordings[0].log, new.path().join("logs/a.csv"));
+        assert_eq!(again.videos[0].file, new.path().join("logs/a.mp4"));
     }
 
     #[test]

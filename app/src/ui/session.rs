@@ -14,6 +14,7 @@ use super::rules::Rules;
 pub use super::scene::SceneLayers;
 use super::trainer::Trainer;
 use super::undo::Undo;
+use super::video::Videos;
 use super::what_if::WhatIf;
 use crate::tasks::Chosen;
 use estimator::online::enough::Enough;
@@ -143,6 +144,10 @@ pub struct Session {
     pub speed: f64,
     /// What the plots show.
     pub plots: PlotChoices,
+    /// Videos of the hand.
+    pub videos: Videos,
+    /// Set where something appears in a panel that may not stand in the window.
+    pub wanted_pane: Option<super::dock::Pane>,
     /// What the 3-D view shows.
     pub layers: SceneLayers,
     /// Messages.
@@ -242,6 +247,8 @@ impl Session {
         };
         self.refits.forget();
         self.what_if.forget();
+        self.videos = Videos::default();
+        self.jobs.cancel(JobKind::Video);
         self.forget_changes();
         self.select(0);
     }
@@ -257,6 +264,7 @@ impl Session {
         if let Some(prepared) = self.prepared() {
             self.view_s = prepared.span();
             self.cursor_s = self.view_s.0;
+            self.videos.loose_s = None;
         }
     }
 
@@ -265,6 +273,9 @@ impl Session {
         self.jobs.cancel(kind);
         if kind == JobKind::Fit && self.analysis.is_none() {
             self.fit_problem = Some("The fit was cancelled; press Fit to start it again.".to_owned());
+        }
+        if kind == JobKind::Video {
+            self.gave_up_video();
         }
         if kind == JobKind::Curves {
             self.plots.give_up();
@@ -298,9 +309,15 @@ impl Session {
                 self.path_field.clear();
                 self.sources = vec![Source { log: path.clone(), meta: self.meta.clone() }];
                 self.project_path = None;
-                self.path = Some(path);
+                let again = self.path.as_ref() == Some(&path) && recordings.len() == self.recordings.len();
+                let videos = std::mem::take(&mut self.videos);
                 self.workspace = Workspace::Calibrate;
                 self.show(recordings);
+                self.videos = videos;
+                if !again {
+                    self.videos.of_log(&path, &self.recordings);
+                }
+                self.path = Some(path);
                 match mute {
                     Some(why) => self.map_columns(ctx, Some(why)),
                     None => self.refit(ctx),
@@ -340,10 +357,14 @@ impl Session {
             Outcome::SimulatedExtended(replays) => self.diagnosing.replays = replays,
             Outcome::Curves(made) => self.plots.derived.take(made),
             Outcome::Aligned(recording, found) => self.aligned(recording, found),
+            Outcome::Video(file, answer) => self.video_was_read(file, answer),
+            Outcome::Picture { file, index, picture } => self.picture_came(ctx, (file, index), picture),
+            Outcome::VideoAligned(file, found) => self.video_aligned(&file, found),
             Outcome::Cancelled | Outcome::Chosen(_, None) => {}
             Outcome::Chosen(Purpose::OpenLog, Some(path)) => self.open_any(ctx, &path),
             Outcome::Chosen(Purpose::OpenWorld, Some(path)) => self.open_world(ctx, &path),
             Outcome::Chosen(Purpose::OpenProject, Some(path)) => self.open_project(ctx, &path),
+            Outcome::Chosen(Purpose::OpenVideo, Some(path)) => self.open_video(&path),
             Outcome::Chosen(Purpose::AddLog, Some(path)) => self.add_log(ctx, &path),
             Outcome::Chosen(Purpose::AddExperiment, Some(path)) => self.add_experiment(ctx, &path),
             Outcome::Chosen(Purpose::SaveProject, Some(path)) => self.save_project_as(ctx, path),

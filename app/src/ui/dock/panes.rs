@@ -14,6 +14,7 @@ use crate::ui::panels::segments::SegmentsPanel;
 use crate::ui::panels::sensitivity::SensitivityPanel;
 use crate::ui::panels::trainer_side::TrainerSide;
 use crate::ui::panels::trainer_view::TrainerView;
+use crate::ui::panels::video::VideoPanel;
 use crate::ui::session::{Session, Workspace};
 use egui::Ui;
 use serde::{Deserialize, Serialize};
@@ -34,6 +35,8 @@ pub enum Pane {
     Segments,
     /// How the result depends on the parameters, and they on each other.
     Sensitivity,
+    /// The video of the hand.
+    Video,
     /// The virtual world.
     Trainer,
     /// Its settings and figures.
@@ -50,13 +53,14 @@ pub enum Pane {
 
 impl Pane {
     /// Every one of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Recording,
         Self::Scene,
         Self::Log,
         Self::Results,
         Self::Segments,
         Self::Sensitivity,
+        Self::Video,
         Self::Trainer,
         Self::TrainerSide,
         Self::Diagnose,
@@ -74,6 +78,7 @@ impl Pane {
             Self::Results => "Results",
             Self::Segments => "States",
             Self::Sensitivity => "Sensitivity",
+            Self::Video => "Video of the hand",
             Self::Trainer => "Virtual world",
             Self::TrainerSide => "Trainer",
             Self::Diagnose => "Measured and modelled",
@@ -88,10 +93,10 @@ impl Pane {
         match workspace {
             Workspace::Train => &[Self::Trainer, Self::TrainerSide],
             Workspace::Calibrate => {
-                &[Self::Recording, Self::Scene, Self::Log, Self::Results, Self::Segments, Self::Sensitivity]
+                &[Self::Recording, Self::Scene, Self::Log, Self::Results, Self::Segments, Self::Sensitivity, Self::Video]
             }
             Workspace::Diagnose => {
-                &[Self::Diagnose, Self::Diagnosis, Self::Scene, Self::Log, Self::Segments, Self::Results]
+                &[Self::Diagnose, Self::Diagnosis, Self::Scene, Self::Log, Self::Segments, Self::Results, Self::Video]
             }
             Workspace::Devices => &[Self::Devices, Self::DeviceDetail],
         }
@@ -126,6 +131,7 @@ impl Panels {
             Pane::Results => self.results.ui(ui, session),
             Pane::Segments => SegmentsPanel.ui(ui, session),
             Pane::Sensitivity => SensitivityPanel.ui(ui, session),
+            Pane::Video => VideoPanel.ui(ui, session),
             Pane::Trainer => self.trainer.ui(ui, session),
             Pane::TrainerSide => TrainerSide.ui(ui, session),
             Pane::Diagnose => DiagnosePanel.ui(ui, session),

@@ -34,6 +34,7 @@ pub mod trainer_side;
 pub mod trainer_timing;
 pub mod trainer_view;
 pub mod transport;
+pub mod video;
 mod why_not;
 mod xy;
 

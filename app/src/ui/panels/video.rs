@@ -1,0 +1,197 @@
+//! The video of the hand: its picture at the time cursor, and where it lies in time.
+
+use super::Panel;
+use crate::ui::files;
+use crate::ui::format;
+use crate::ui::jobs::{JobKind, Purpose};
+use crate::ui::mapping::name_of;
+use crate::ui::session::Session;
+use crate::ui::theme::{self, palette, space};
+use crate::ui::video::State;
+use crate::ui::widgets::{empty_state, primary_button, sheet};
+use crate::video::Video;
+use egui::{
+    Align, Align2, Color32, CornerRadius, DragValue, FontId, Layout, Margin, Rect, RichText, Sense, Slider, Ui, pos2,
+    vec2,
+};
+use std::sync::Arc;
+
+/// Room for the controls below the picture, points.
+const CONTROLS: f32 = 64.0;
+
+/// The video panel.
+#[derive(Default)]
+pub struct VideoPanel;
+
+impl Panel for VideoPanel {
+    fn title(&self) -> &'static str {
+        "Video"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        let ctx = ui.ctx().clone();
+        sheet(ui).show(ui, |ui| {
+            ui.set_min_size(ui.available_size());
+            match session.video(&ctx) {
+                State::None => none(ui, session),
+                State::Reading => {
+                    empty_state(ui, "Reading the video …", "Its pictures are kept, so that any moment is there at once.", |ui| {
+                        ui.spinner();
+                    });
+                }
+                State::Failed(problem) => failed(ui, session, &problem),
+                State::There(video) => shown(ui, session, &video),
+            }
+        });
+    }
+}
+
+fn none(ui: &mut Ui, session: &mut Session) {
+    let loaded = session.prepared().is_some();
+    let text = if loaded {
+        "Drop a video of the hand on the window, or choose one: it then runs with the time cursor. A video that has its log's \
+         name, or that the sidecar names, is found by itself."
+    } else {
+        "Open a log first; a video of the hand then runs here with the time cursor."
+    };
+    empty_state(ui, "No video", text, |ui| {
+        if primary_button(ui, loaded, "Choose a video …").clicked() {
+            files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenVideo);
+        }
+    });
+}
+
+fn failed(ui: &mut Ui, session: &mut Session, problem: &str) {
+    empty_state(ui, "The video cannot be shown", problem, |ui| {
+        ui.horizontal(|ui| {
+            // Buttons in the middle of the line that the text stands on.
+            ui.add_space((0.5 * ui.available_width() - 140.0).max(0.0));
+            if ui.button("Try again").clicked() {
+                session.read_video_again();
+            }
+            if ui.button("Choose another …").clicked() {
+                files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenVideo);
+            }
+            if ui.button("Take it away").clicked() {
+                session.forget_video();
+            }
+        });
+    });
+}
+
+fn shown(ui: &mut Ui, session: &mut Session, video: &Arc<Video>) {
+    let whole = ui.available_rect_before_wrap();
+    let (above, below) = whole.split_top_bottom_at_y((whole.bottom() - CONTROLS).max(whole.top()));
+    picture(ui, session, video, above.shrink(1.0));
+    let layout = Layout::top_down(Align::Min);
+    ui.scope_builder(egui::UiBuilder::new().max_rect(below).layout(layout), |ui| {
+        egui::Frame::new().inner_margin(Margin::symmetric(space::M as i8, 6)).show(ui, |ui| controls(ui, session, video));
+    });
+}
+
+fn picture(ui: &mut Ui, session: &mut Session, video: &Arc<Video>, room: Rect) {
+    let p = palette(ui);
+    let corners = CornerRadius { nw: theme::CARD_RADIUS, ne: theme::CARD_RADIUS, sw: 0, se: 0 };
+    ui.painter().rect_filled(room, corners, p.sunken);
+    let time_s = session.video_time_s().unwrap_or(0.0);
+    let now = video.index_at(time_s);
+    // Before its beginning and after its end its first and last picture stand, dimmed.
+    let index = now.unwrap_or(if time_s < 0.0 { 0 } else { video.count() - 1 });
+    let ctx = ui.ctx().clone();
+    let texture = session.video_picture(&ctx, video, index);
+    let size = vec2(video.size[0] as f32, video.size[1] as f32);
+    let scale = (room.width() / size.x).min(room.height() / size.y).max(0.0);
+    let at = Rect::from_center_size(room.center(), size * scale);
+    if let Some(texture) = &texture {
+        let tint = if now.is_some() { Color32::WHITE } else { Color32::from_white_alpha(90) };
+        ui.painter().image(texture.id(), at, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), tint);
+    }
+    let response = ui.interact(room, ui.scope_id().with("video picture"), Sense::drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Video of the hand"));
+    scrub(session, video, &response);
+    if now.is_none() {
+        let text = if time_s < 0.0 {
+            format!("The video begins in {} s", format::number(-time_s, 1))
+        } else {
+            format!("The video ended {} s ago", format::number(time_s - video.duration_s(), 1))
+        };
+        let galley = ui.painter().layout_no_wrap(text, FontId::proportional(12.0), p.text);
+        let back = Rect::from_center_size(room.center(), galley.size() + vec2(20.0, 10.0));
+        ui.painter().rect_filled(back, 7, p.card);
+        ui.painter().galley(back.center() - 0.5 * galley.size(), galley, p.text);
+    } else if texture.is_none() {
+        let font = FontId::proportional(12.0);
+        ui.painter().text(room.center(), Align2::CENTER_CENTER, "…", font, p.secondary);
+    }
+}
+
+/// Dragging across the picture runs through the video: its width is ten seconds, or all of it where that is less.
+fn scrub(session: &mut Session, video: &Video, response: &egui::Response) {
+    let by = response.drag_delta().x;
+    if !response.dragged() || by == 0.0 {
+        return;
+    }
+    let step_s = f64::from(by / response.rect.width().max(1.0)) * video.duration_s().min(10.0);
+    session.playing = false;
+    match session.videos.loose_s {
+        Some(loose_s) => session.videos.loose_s = Some((loose_s + step_s).clamp(0.0, video.duration_s())),
+        None => session.seek(session.cursor_s + step_s),
+    }
+}
+
+fn controls(ui: &mut Ui, session: &mut Session, video: &Video) {
+    let Some(source) = session.video_source().cloned() else { return };
+    ui.spacing_mut().interact_size.y = 20.0;
+    ui.spacing_mut().button_padding.y = 2.0;
+    ui.horizontal(|ui| {
+        let mut loose = session.videos.loose_s.is_some();
+        let hint = "Look at the video by itself: find a moment that you recognise, put the time cursor where the recording shows \
+                    it, and say that they belong together";
+        if ui.checkbox(&mut loose, "By itself").on_hover_text(hint).changed() {
+            session.loosen_video(loose);
+        }
+        if let Some(mut at_s) = session.videos.loose_s {
+            ui.spacing_mut().slider_width = (ui.available_width() - 210.0).max(40.0);
+            let last = (video.duration_s() - 1.0 / video.rate_hz).max(0.0);
+            let slider = Slider::new(&mut at_s, 0.0..=last).step_by(1.0 / video.rate_hz).max_decimals(2).suffix(" s");
+            if ui.add(slider).on_hover_text("Where in the video").changed() {
+                session.videos.loose_s = Some(at_s);
+            }
+            if ui.button("They belong together").on_hover_text("This picture was taken at the time cursor").clicked() {
+                session.video_belongs_here();
+            }
+        } else {
+            ui.label(theme::caption(ui, "begins at"));
+            let mut begins_at_s = source.begins_at_s;
+            let drag = DragValue::new(&mut begins_at_s).speed(0.02).max_decimals(3).suffix(" s");
+            let hint = "When its first picture was taken, on the recording's clock: drag, or click and type";
+            if ui.add(drag).on_hover_text(hint).changed() {
+                session.shift_video(begins_at_s);
+            }
+            let free = !session.jobs.is_running(JobKind::AlignVideo);
+            let hint = "Shift it to where its pictures change when the recorded hand moves";
+            if ui.add_enabled(free, egui::Button::new("Align")).on_hover_text(hint).clicked() {
+                let ctx = ui.ctx().clone();
+                session.align_video(&ctx);
+            }
+        }
+    });
+    ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if ui.small_button("×").on_hover_text("Take the video away").clicked() {
+                session.forget_video();
+            }
+            let facts = format!(
+                "{} × {}, {} s",
+                video.size[0],
+                video.size[1],
+                format::number(video.duration_s(), 1)
+            );
+            ui.label(theme::caption(ui, facts));
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let name = RichText::new(name_of(&source.file)).size(11.5).color(palette(ui).secondary);
+                ui.add(egui::Label::new(name).truncate()).on_hover_text(source.file.display().to_string());
+            });
+        });
+    });
+}
