@@ -75,6 +75,11 @@ setup_real_window() {
   fi
 }
 
+# Videos of the hand are read by it; without it those tests are skipped, with a word, and the window says what to install.
+setup_video() {
+  command -v ffmpeg >/dev/null 2>&1 || need "videos of the hand" ffmpeg || true
+}
+
 # Headers for the features that the default build leaves out; false where they cannot be had. `./test` only checks those features.
 setup_features() {
   have_headers || need "headers for sound and gamepads, to check these features" pkg-config libasound2-dev libudev-dev || return 1

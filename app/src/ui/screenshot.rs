@@ -3,6 +3,7 @@
 use super::app::App;
 use super::diagnosing;
 use super::experimenting;
+use super::dock::Pane;
 use super::fitting;
 use super::mapping::Mapping;
 use super::panels::log::LogPanel;
@@ -17,6 +18,7 @@ use super::scene;
 use super::session::{FitChoice, Session, Workspace};
 use super::theme::{self, space};
 use super::trainer::{Clock, Operator, Trainer, WorldChoice};
+use crate::video::VideoSource;
 use anyhow::{Context as _, anyhow};
 use egui::{Frame, Ui, UiBuilder};
 use egui_kittest::wgpu::WgpuTestRenderer;
@@ -67,6 +69,8 @@ pub enum Panel {
     Commands,
     /// A card of the tour.
     Tour,
+    /// The Calibrate workspace with a video of the hand; the log's, or the one that is named.
+    Video,
 }
 
 /// What is shown.
@@ -82,6 +86,8 @@ pub struct PanelInput {
     pub task: Option<Task>,
     /// The world of the trainer; the two blocks when absent.
     pub world: Option<World>,
+    /// A video of the hand.
+    pub video: Option<VideoSource>,
     /// A person at the mouse instead of the scripted operator.
     pub by_hand: bool,
     /// Where the cursor stands, s (in the trainer: how far the scripted operator is); two fifths of the way when absent.
@@ -147,6 +153,7 @@ pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Se
         Panel::Experiment | Panel::Guided => experiment(&mut session, panel)?,
         Panel::Sensitivity => session.look_at_sensitivity(),
         Panel::Parameter => try_another_value(&mut session),
+        Panel::Video => with_video(&mut session, input),
         _ => {}
     }
     if panel == Panel::Rules {
@@ -155,6 +162,17 @@ pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Se
     let (first, last) = session.view_s;
     session.seek(input.time_s.unwrap_or(first + 0.4 * (last - first)));
     Ok(session)
+}
+
+/// The video that is named, or that belongs to the log.
+fn with_video(session: &mut Session, input: &PanelInput) {
+    session.wanted_pane = Some(Pane::Video);
+    match (&input.video, &input.log) {
+        (Some(source), _) => session.videos.sources.push(source.clone()),
+        (None, Some(log)) => session.videos.of_log(log, &session.recordings),
+        (None, None) => {}
+    }
+    session.read_video_now();
 }
 
 /// The first parameter with a good value a fifth larger.
@@ -300,6 +318,7 @@ pub(super) fn contents(panel: Panel) -> Contents {
         | Panel::Parameter
         | Panel::Arrange
         | Panel::Commands
-        | Panel::Tour => Box::new(|ui, app| app.show(ui)),
+        | Panel::Tour
+        | Panel::Video => Box::new(|ui, app| app.show(ui)),
     }
 }

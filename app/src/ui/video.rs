@@ -10,6 +10,7 @@ use egui::{ColorImage, TextureHandle, TextureOptions};
 use estimator::signal::lag::lag;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Endings that a video beside its log may have.
 const ENDINGS: [&str; 5] = ["mp4", "mov", "mkv", "webm", "avi"];
@@ -35,8 +36,18 @@ pub struct Videos {
     pub sources: Vec<VideoSource>,
     /// While the video is looked at by itself: where in it, s from its beginning.
     pub loose_s: Option<f64>,
+    /// Pictures are decoded while one waits: where there is no window whose next frame could show them.
+    at_once: bool,
     read: Vec<Read>,
     shown: Option<Shown>,
+}
+
+#[cfg(test)]
+impl Videos {
+    /// Number of the picture on the screen.
+    pub(super) fn shown(&self) -> Option<usize> {
+        self.shown.as_ref().filter(|s| s.texture.is_some()).map(|s| s.index)
+    }
 }
 
 /// How far the video of the shown recording is.
@@ -136,6 +147,15 @@ impl Session {
         State::Reading
     }
 
+    /// Reads it and waits: for pictures without a window.
+    pub(super) fn read_video_now(&mut self) {
+        let Some(file) = self.video_source().map(|s| s.file.clone()) else { return };
+        let watch = Watch { progress: &|_| {}, cancelled: &AtomicBool::new(false) };
+        let answer = Video::read(&file, &watch).map(Arc::new).map_err(|e| sentence(&e.to_string()));
+        self.video_was_read(file, answer);
+        self.videos.at_once = true;
+    }
+
     /// A cancelled one is asked for again by hand.
     pub(super) fn gave_up_video(&mut self) {
         if let Some(file) = self.video_source().map(|s| s.file.clone()) {
@@ -168,13 +188,14 @@ impl Session {
         let shown = self.videos.shown.as_ref().filter(|s| s.file == file);
         if shown.is_none_or(|s| s.index != index) && !self.jobs.is_running(JobKind::Picture) {
             let (video, file) = (Arc::clone(video), file.clone());
-            self.jobs.start(ctx, JobKind::Picture, move || {
-                let picture = video.picture(index).map(|p| {
-                    let size = [p.width() as usize, p.height() as usize];
-                    ColorImage::from_rgb(size, p.as_raw())
+            if self.videos.at_once {
+                self.picture_came(ctx, (file, index), decoded(&video, index));
+            } else {
+                self.jobs.start(ctx, JobKind::Picture, move || {
+                    let picture = decoded(&video, index);
+                    Outcome::Picture { file, index, picture }
                 });
-                Outcome::Picture { file, index, picture }
-            });
+            }
         }
         self.videos.shown.as_ref().filter(|s| s.file == file).and_then(|s| s.texture.clone())
     }
@@ -246,11 +267,17 @@ impl Session {
     }
 }
 
+fn decoded(video: &Video, index: usize) -> Option<ColorImage> {
+    let picture = video.picture(index)?;
+    Some(ColorImage::from_rgb([picture.width() as usize, picture.height() as usize], picture.as_raw()))
+}
+
 /// Where a video begins on the recording's clock, s, by what moves in both.
 fn begins_at(prepared: &Prepared, times: &[f64], changes: &[f64]) -> Result<f64, String> {
     let nothing = "Nothing moves in the video when the recorded hand moves; look at the video by itself, find a moment that \
                    you recognise, put the cursor there, and press They belong together.";
-    let speed = hand_speed(prepared).ok_or("This recording says nothing of how the hand moved; shift the video by hand.")?;
+    let speed =
+        hand_speed(prepared).ok_or("This recording says nothing of how the hand moved; shift the video by hand.")?;
     let found = lag((&prepared.times, &speed), (times, changes)).filter(|l| l.likeness > LEAST_LIKENESS);
     found.map(|l| l.offset_s).ok_or_else(|| nothing.to_owned())
 }

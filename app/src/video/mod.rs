@@ -5,8 +5,10 @@
 
 mod pictures;
 mod program;
+mod writer;
 
 pub use program::is_there;
+pub use writer::Writer;
 
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -27,7 +29,9 @@ const MOTION_PIXELS: [usize; 2] = [64, 36];
 #[derive(Debug, thiserror::Error)]
 pub enum VideoError {
     /// The reader is not installed.
-    #[error("Videos are read by the program ffmpeg, which was not found; install it (Debian and Ubuntu: apt install ffmpeg) and try again.")]
+    #[error(
+        "Videos are read by the program ffmpeg, which was not found; install it (Debian and Ubuntu: apt install ffmpeg) and try again."
+    )]
     NoReader,
     /// The reader did not start.
     #[error("The program ffmpeg cannot be started ({0}).")]
@@ -175,7 +179,7 @@ pub fn motion(file: &Path, cancelled: &AtomicBool) -> Result<(Vec<f64>, Vec<f64>
     Ok((times, changes))
 }
 
-/// True for what begins like a video: MP4 and QuickTime, Matroska and WebM, AVI, MPEG, Ogg, GIF.
+/// True for what begins like a video: MP4 and its like, Matroska, AVI, MPEG, Ogg, GIF.
 pub fn looks_like_video(start: &[u8]) -> bool {
     let at = |offset: usize, mark: &[u8]| start.get(offset..offset + mark.len()) == Some(mark);
     at(4, b"ftyp")
@@ -190,4 +194,4 @@ pub fn looks_like_video(start: &[u8]) -> bool {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -13,6 +13,14 @@ const CHUNK: usize = 64 << 10;
 /// Bytes of complaints that are kept: the first ones tell the cause.
 const COMPLAINTS: u64 = 4 << 10;
 
+/// Only files, and only formats that hold pictures themselves: a playlist may name anything, and is asked for again and again.
+const SAFE: [&str; 4] = [
+    "-protocol_whitelist",
+    "file",
+    "-format_whitelist",
+    "mov,matroska,avi,mpeg,mpegts,ogg,gif,asf,flv,mpegvideo,h264,hevc,mjpeg,ivf",
+];
+
 /// What is known of a video before its pictures are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facts {
@@ -56,7 +64,7 @@ struct ProbeFormat {
 /// Asks for rate and duration of the first video in a file.
 pub fn look(file: &Path) -> Result<Facts, VideoError> {
     let mut command = Command::new("ffprobe");
-    command.args(["-v", "error", "-protocol_whitelist", "file", "-select_streams", "v:0"]);
+    command.args(["-v", "error"]).args(SAFE).args(["-select_streams", "v:0"]);
     command.args(["-show_entries", "stream=avg_frame_rate,r_frame_rate,duration:format=duration", "-of", "json"]);
     command.arg("-i").arg(input(file)).stdin(Stdio::null());
     let answer = command.output().map_err(not_started)?;
@@ -82,7 +90,7 @@ fn ratio(text: &str) -> Option<f64> {
 }
 
 /// A path that is never taken for an option or an address.
-fn input(file: &Path) -> OsString {
+pub(super) fn input(file: &Path) -> OsString {
     let mut input = OsString::from("file:");
     input.push(file);
     input
@@ -102,7 +110,12 @@ pub fn jpeg_pictures(
     let filter = format!(
         "fps={rate_hz}:start_time=0,scale=w='min({most_pixels},iw)':h='min({most_pixels},ih)':force_original_aspect_ratio=decrease"
     );
-    stream(file, &["-vf", &filter, "-c:v", "mjpeg", "-q:v", "4", "-pix_fmt", "yuvj420p", "-f", "image2pipe"], cancelled, sink)
+    stream(
+        file,
+        &["-vf", &filter, "-c:v", "mjpeg", "-q:v", "4", "-pix_fmt", "yuvj420p", "-f", "image2pipe"],
+        cancelled,
+        sink,
+    )
 }
 
 /// The whole video as grey pictures of one size, a byte a pixel.
@@ -120,9 +133,8 @@ pub fn grey_pictures(
 /// Runs `ffmpeg` and hands on what it writes. A damaged end is no error as long as there were pictures before it.
 fn stream(file: &Path, output: &[&str], cancelled: &AtomicBool, sink: Sink<'_>) -> Result<(), VideoError> {
     let mut command = Command::new("ffmpeg");
-    command.args(["-nostdin", "-v", "error", "-protocol_whitelist", "file", "-i"]).arg(input(file));
+    command.args(["-nostdin", "-v", "error"]).args(SAFE).arg("-i").arg(input(file));
     command.args(["-map", "0:v:0", "-an", "-sn"]).args(output).args(["-threads", "1", "pipe:1"]);
-    // The output needs its protocol too.
     let mut child = Running(
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().map_err(not_started)?,
     );
@@ -166,7 +178,7 @@ impl Drop for Running {
 }
 
 /// Reads everything, so that the program never waits, and keeps the beginning.
-fn first_words(mut pipe: impl Read) -> String {
+pub(super) fn first_words(mut pipe: impl Read) -> String {
     let mut kept = Vec::new();
     let _ = pipe.by_ref().take(COMPLAINTS).read_to_end(&mut kept);
     let _ = std::io::copy(&mut pipe, &mut std::io::sink());
@@ -174,13 +186,13 @@ fn first_words(mut pipe: impl Read) -> String {
 }
 
 /// What the program complains about first, without the file's name, which is told anyway.
-fn first_line(said: &str, file: &Path) -> String {
+pub(super) fn first_line(said: &str, file: &Path) -> String {
     let name = format!("file:{}", file.display());
     let line = said.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or("it holds no picture");
     line.replace(&format!("{name}: "), "").replace(&name, "the file")
 }
 
-fn not_started(error: std::io::Error) -> VideoError {
+pub(super) fn not_started(error: std::io::Error) -> VideoError {
     if error.kind() == std::io::ErrorKind::NotFound { VideoError::NoReader } else { VideoError::NotStarted(error) }
 }
 

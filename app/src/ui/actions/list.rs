@@ -21,6 +21,8 @@ pub enum Action {
     OpenRecent(PathBuf),
     /// Adds another recording to those that are open.
     AddLog,
+    /// Chooses a video of the hand.
+    AddVideo,
     /// Writes the project where it was opened.
     SaveProject,
     /// Writes it elsewhere.
@@ -143,16 +145,17 @@ impl Group {
     }
 }
 
-const FIXED: [Action; 43] = {
+const FIXED: [Action; 44] = {
     use Action::{
-        AddLog, Arrange, Diagnose, Extend, Feel, Fit, FitShown, FitWhole, ForgetStated, ForgetStates, FullScreen,
-        Larger, MapColumns, Open, OpenLog, OpenProject, OpenWorld, Palette, Panel, Play, Quit, Record, Redo, Reload,
-        Report, ResetLayout, Rules, SaveLog, SaveProject, SaveProjectAs, SaveWorld, ShowAll, Smaller, Theme, ToEnd,
-        ToStart, Tour, TrainCalibrated, Undo, UsualSize,
+        AddLog, AddVideo, Arrange, Diagnose, Extend, Feel, Fit, FitShown, FitWhole, ForgetStated, ForgetStates,
+        FullScreen, Larger, MapColumns, Open, OpenLog, OpenProject, OpenWorld, Palette, Panel, Play, Quit, Record,
+        Redo, Reload, Report, ResetLayout, Rules, SaveLog, SaveProject, SaveProjectAs, SaveWorld, ShowAll, Smaller,
+        Theme, ToEnd, ToStart, Tour, TrainCalibrated, Undo, UsualSize,
     };
     [
         OpenLog,
         AddLog,
+        AddVideo,
         OpenWorld,
         OpenProject,
         SaveProject,
@@ -230,6 +233,7 @@ impl Action {
             Self::OpenWorld => "Open world …",
             Self::OpenProject => "Open project …",
             Self::AddLog => "Add recording …",
+            Self::AddVideo => "Add video …",
             Self::SaveProject => "Save project",
             Self::SaveProjectAs => "Save project as …",
             Self::SaveLog => "Save recording as …",
@@ -272,6 +276,7 @@ impl Action {
     pub fn search_text(&self) -> String {
         let also = match self {
             Self::Fit => " refit estimate",
+            Self::AddVideo => " camera film",
             Self::Theme => " theme colours",
             Self::Larger | Self::Smaller | Self::UsualSize => " zoom scale",
             Self::Diagnose => " cause wrong model",
@@ -328,6 +333,7 @@ impl Action {
             | Self::OpenProject
             | Self::OpenRecent(_)
             | Self::AddLog
+            | Self::AddVideo
             | Self::SaveProject
             | Self::SaveProjectAs
             | Self::SaveLog
@@ -366,6 +372,8 @@ impl Action {
                 need(session.path.is_some(), "Open a log first.")
             }
             Self::Report => need(session.path.is_some(), "Open or save a log first: a report is of files."),
+            Self::AddVideo => recording()
+                .or_else(|| need(session.prepared().is_some_and(|p| !p.clockless()), "This recording has no clock.")),
             Self::SaveWorld => fit(),
             Self::TrainCalibrated => {
                 fit().or_else(|| need(session.can_train(), "This world has nothing for the hand."))

@@ -44,6 +44,7 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
     match action {
         Action::OpenLog => files::ask(ctx, &mut session.jobs, Purpose::OpenLog),
         Action::AddLog => files::ask(ctx, &mut session.jobs, Purpose::AddLog),
+        Action::AddVideo => files::ask(ctx, &mut session.jobs, Purpose::OpenVideo),
         Action::OpenWorld => files::ask(ctx, &mut session.jobs, Purpose::OpenWorld),
         Action::OpenProject => files::ask(ctx, &mut session.jobs, Purpose::OpenProject),
         Action::OpenRecent(path) => session.open_any(ctx, path),

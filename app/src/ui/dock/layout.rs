@@ -4,6 +4,7 @@ use super::Pane;
 use crate::ui::session::{Session, Workspace};
 use egui::Vec2;
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
+use std::collections::BTreeSet;
 
 /// Between panels, and around them.
 pub const GAP: f32 = 12.0;
@@ -27,6 +28,12 @@ pub fn standard(workspace: Workspace) -> Tree<Pane> {
         Workspace::Devices => side_by_side(&mut tiles, [Pane::Devices, Pane::DeviceDetail]),
     };
     Tree::new(egui::Id::unique(("dock", workspace)), root, tiles)
+}
+
+/// The panels in it.
+pub fn standard_panes(workspace: Workspace) -> BTreeSet<Pane> {
+    let tree = standard(workspace);
+    Pane::ALL.into_iter().filter(|pane| tree.tiles.find_pane(pane).is_some()).collect()
 }
 
 fn side_by_side(tiles: &mut Tiles<Pane>, panes: [Pane; 2]) -> TileId {
@@ -56,17 +63,21 @@ pub fn suit(tree: &mut Tree<Pane>, workspace: Workspace, room: Vec2, session: &S
     }
 }
 
-/// Shares of the first container of a direction: given widths, and one that takes the rest.
+/// Shares of the outermost columns, or of the rows within one: given sizes, and one that takes the rest. Where panels were taken out or
+/// brought in there, shares stay as they are.
 fn columns(tree: &mut Tree<Pane>, dir: LinearDir, widths: &[Option<f32>], room: f32) {
     let gaps = GAP * (widths.len() as f32 - 1.0);
     let rest = (room - gaps - widths.iter().flatten().sum::<f32>()).max(1.0);
-    let linear = tree.tiles.tiles_mut().find_map(|tile| match tile {
-        Tile::Container(Container::Linear(linear)) if linear.dir == dir && linear.children.len() == widths.len() => {
-            Some(linear)
-        }
-        _ => None,
-    });
-    if let Some(Linear { children, shares, .. }) = linear {
+    let root = tree.root();
+    let outer = root.and_then(|root| tree.tiles.get_container(root)).map(Container::children_vec).unwrap_or_default();
+    let asked = |tree: &Tree<Pane>, tile: TileId| {
+        tree.tiles.get_container(tile).is_some_and(
+            |container| matches!(container, Container::Linear(l) if l.dir == dir && l.children.len() == widths.len()),
+        )
+    };
+    let found = root.into_iter().chain(outer).find(|tile| asked(tree, *tile));
+    if let Some(Tile::Container(Container::Linear(linear))) = found.and_then(|tile| tree.tiles.get_mut(tile)) {
+        let Linear { children, shares, .. } = linear;
         for (child, width) in children.iter().zip(widths) {
             shares.set_share(*child, width.unwrap_or(rest));
         }

@@ -5,6 +5,7 @@
 mod behavior;
 mod layout;
 mod panes;
+mod place;
 
 pub use panes::{Pane, Panels};
 
@@ -13,13 +14,13 @@ use behavior::Tiling;
 use egui::{Frame, Margin, Ui};
 use egui_tiles::{TileId, Tree};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The arrangement of one workspace.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Arrangement {
     tree: Tree<Pane>,
-    /// Whether the user has moved anything.
+    /// Whether the user has moved anything: shares of the room are then left alone.
     pub moved: bool,
 }
 
@@ -58,9 +59,9 @@ impl Dock {
         self.all.remove(&workspace);
     }
 
-    /// True when something was moved there.
+    /// True when something was moved, taken out or brought in there.
     pub fn is_moved(&self, workspace: Workspace) -> bool {
-        self.all.get(&workspace).is_some_and(|a| a.moved)
+        self.all.get(&workspace).is_some_and(|a| a.moved || a.panes() != layout::standard_panes(workspace))
     }
 
     /// True when the panel stands somewhere in the workspace.
@@ -81,7 +82,6 @@ impl Dock {
             Some(tile) => drop(mine.tree.remove_recursively(tile)),
             None => mine.add(pane),
         }
-        mine.moved = true;
     }
 
     /// Brings a panel to the front, and in where it is not there.
@@ -89,27 +89,19 @@ impl Dock {
         let mine = self.of(workspace);
         if mine.find(pane).is_none() {
             mine.add(pane);
-            mine.moved = true;
         }
         mine.tree.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(p) if *p == pane));
     }
 }
 
 impl Arrangement {
-    fn find(&self, pane: Pane) -> Option<TileId> {
-        self.tree.tiles.find_pane(&pane)
+    /// The panels that stand in it.
+    fn panes(&self) -> BTreeSet<Pane> {
+        Pane::ALL.into_iter().filter(|pane| self.find(*pane).is_some()).collect()
     }
 
-    /// At the right edge, or alone.
-    fn add(&mut self, pane: Pane) {
-        let tile = self.tree.tiles.insert_pane(pane);
-        match self.tree.root() {
-            None => self.tree.root = Some(tile),
-            Some(root) => match self.tree.tiles.get_mut(root) {
-                Some(egui_tiles::Tile::Container(container)) => container.add_child(tile),
-                _ => self.tree.root = Some(self.tree.tiles.insert_horizontal_tile(vec![root, tile])),
-            },
-        }
+    fn find(&self, pane: Pane) -> Option<TileId> {
+        self.tree.tiles.find_pane(&pane)
     }
 
     /// The tabs that hold nothing but this tile, or the tile itself.
@@ -164,6 +156,34 @@ mod tests {
         dock.bring(at, Pane::Results);
         dock.bring(at, Pane::Log);
         assert!(dock.has(at, Pane::Results) && dock.has(at, Pane::Log));
+    }
+
+    #[test]
+    fn a_panel_comes_in_beside_those_it_belongs_to_and_can_be_read() {
+        let mut dock = Dock::default();
+        let at = Workspace::Calibrate;
+        for pane in [Pane::Video, Pane::Sensitivity, Pane::Segments] {
+            dock.bring(at, pane);
+        }
+        dock.toggle(at, Pane::Recording);
+        dock.toggle(at, Pane::Recording);
+        let mut session = Session::new();
+        let (mut panels, mut rects) = (Panels::default(), Vec::new());
+        let ctx = egui::Context::default();
+        crate::ui::theme::install(&ctx);
+        let room = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 680.0));
+        let input = egui::RawInput { screen_rect: Some(room), ..Default::default() };
+        let mut output = ctx.run_ui(input, |ui| {
+            session.workspace = at;
+            dock.ui(ui, &mut panels, &mut session);
+        });
+        output.textures_delta.clear();
+        for pane in [Pane::Video, Pane::Scene, Pane::Segments, Pane::Recording, Pane::Log] {
+            rects.push(dock.rect(at, pane).expect("drawn"));
+        }
+        assert!(rects.iter().all(|r| r.width() > 150.0 && r.height() > 100.0), "{rects:?}");
+        let [video, scene, ..] = rects[..] else { unreachable!("five were asked for") };
+        assert!(video.left() >= scene.right() && (video.top() - scene.top()).abs() < 1.0, "side by side: {rects:?}");
     }
 
     #[test]

@@ -20,7 +20,7 @@ use egui::Ui;
 use serde::{Deserialize, Serialize};
 
 /// A panel by its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Pane {
     /// Which recording, and how it is fitted.
@@ -92,9 +92,15 @@ impl Pane {
     pub fn of(workspace: Workspace) -> &'static [Self] {
         match workspace {
             Workspace::Train => &[Self::Trainer, Self::TrainerSide],
-            Workspace::Calibrate => {
-                &[Self::Recording, Self::Scene, Self::Log, Self::Results, Self::Segments, Self::Sensitivity, Self::Video]
-            }
+            Workspace::Calibrate => &[
+                Self::Recording,
+                Self::Scene,
+                Self::Log,
+                Self::Results,
+                Self::Segments,
+                Self::Sensitivity,
+                Self::Video,
+            ],
             Workspace::Diagnose => {
                 &[Self::Diagnose, Self::Diagnosis, Self::Scene, Self::Log, Self::Segments, Self::Results, Self::Video]
             }

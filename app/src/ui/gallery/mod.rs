@@ -1,5 +1,6 @@
 //! Every panel and every scene in light and dark: the pictures of `docs/gallery`, and what the tests of pictures look at.
 
+mod filmed;
 pub mod samples;
 mod small_png;
 pub mod walk;
@@ -84,6 +85,9 @@ fn of_panel(panel: Panel) -> Plate {
         Panel::Arrange => (Sample::Stack, PAGE, "Panels while they are arranged: drag a title, close, bring back"),
         Panel::Commands => (Sample::Stack, PAGE, "Every command by a few letters of its name"),
         Panel::Tour => (Sample::Stack, PAGE, "Shown around, the first time"),
+        Panel::Video => {
+            (Sample::Stack, PAGE, "A video of the hand (here of the virtual one) runs with the time cursor")
+        }
         Panel::Mapping => (Sample::Foreign, PAGE, "A foreign table: what its columns mean, with a preview"),
     };
     let name = panel.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
@@ -181,6 +185,10 @@ impl Studio {
     /// Draws one plate.
     pub fn draw(&mut self, plate: &Plate, dark: bool) -> anyhow::Result<image::RgbaImage> {
         let input = self.input(plate).with_context(|| format!("the gallery's picture {}", plate.name))?;
+        let mut input = input;
+        if plate.panel == Panel::Video {
+            input.video = Some(self.samples.film(&input)?);
+        }
         let mut session = screenshot::session_for(&input, plate.panel)?;
         session.layers = plate.layers;
         screenshot::draw(session, plate.panel, plate.size, dark)

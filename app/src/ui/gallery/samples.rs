@@ -1,8 +1,11 @@
 //! Recordings to draw: those that travel with the program, and performances of the scripted operator.
 
+use super::filmed::filmed;
 use crate::cli::built_in;
 use crate::experiment;
+use crate::ui::screenshot::{Panel, PanelInput, session_for};
 use crate::ui::trainer::{Clock, Operator, Trainer, WorldChoice};
+use crate::video::VideoSource;
 use crate::worlds;
 use anyhow::{Context as _, anyhow};
 use estimator::diagnose::{Experiment, SensorFault};
@@ -75,6 +78,12 @@ impl Samples {
         }
         std::fs::write(&path, text)?;
         Ok(path)
+    }
+
+    /// A film of the virtual hand in the middle of a recording, as if a camera stood beside it.
+    pub fn film(&mut self, input: &PanelInput) -> anyhow::Result<VideoSource> {
+        let file = self.folder()?.join("hand.mp4");
+        filmed(&mut session_for(input, Panel::Scene)?, &file)
     }
 
     fn folder(&mut self) -> anyhow::Result<&Path> {

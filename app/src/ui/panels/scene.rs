@@ -3,14 +3,18 @@
 use super::Panel;
 use crate::ui::prepare::Prepared;
 use crate::ui::scene::{
-    Likeness, Rig, Wheel, camera_for, legend, mechanism_view, options_for, scene_view, scene_world,
+    Likeness, Rig, SceneLayers, Wheel, camera_for, legend, mechanism_view, options_for, scene_view, scene_world,
 };
 use crate::ui::session::Session;
 use crate::ui::theme::{palette, space};
 use crate::ui::widgets::{empty_state, sheet};
-use egui::{Rect, RichText, Stroke, Ui, UiBuilder, vec2};
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{PopupCloseBehavior, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
 use render::Camera;
 use std::sync::Arc;
+
+/// Narrower, the picture has no room for switches and legend, points.
+const WIDE: f32 = 420.0;
 
 /// The 3-D view of the recording.
 pub struct ScenePanel {
@@ -48,7 +52,7 @@ impl Panel for ScenePanel {
             let world = scene_world(session, &prepared);
             let (state, options) = options_for(session, &prepared, &world);
             let view = scene_view(ui, "recording", &mut self.rig, Wheel::Zooms, (world, state, options));
-            if session.layers.legend {
+            if session.layers.legend && view.rect.width() >= WIDE {
                 self.compare(session, &prepared);
                 legend(ui, view.rect, session, &prepared, self.likeness.as_ref().map(|(_, like)| like));
             }
@@ -84,7 +88,27 @@ impl ScenePanel {
     }
 }
 
-/// Switches in the corner of the picture.
+/// What can be switched on and off in the picture: name, hint, and where it is kept.
+type Switch = (&'static str, &'static str, fn(&mut SceneLayers) -> &mut bool);
+const SWITCHES: [Switch; 7] = [
+    ("Path", "Where the fingers went, in the visible time", |l| &mut l.path),
+    ("Forces", "Net force of the hand along the path (thesis, figure 5.10)", |l| &mut l.forces_on_path),
+    (
+        "Unexplained",
+        "What weight and friction do not explain of the force: that of the constraint (thesis, figure 5.12)",
+        |l| &mut l.unexplained,
+    ),
+    ("Constraints", "Centres, lines, curves and surfaces that were found", |l| &mut l.constraints),
+    ("Contacts", "Contacts of the replay through the fitted world", |l| &mut l.contacts),
+    (
+        "Real and virtual",
+        "The virtual object under the measured fingers: its forces, its handle, and how far they are off",
+        |l| &mut l.replay,
+    ),
+    ("Legend", "What the marks mean", |l| &mut l.legend),
+];
+
+/// Switches in the corner of the picture; in a small one they are in a menu.
 fn layers(ui: &mut Ui, rect: Rect, session: &mut Session) {
     let room = Rect::from_min_size(rect.left_top() + vec2(space::M, space::M), vec2(rect.width() - 128.0, 26.0));
     // A child of its own: it lies over the picture and takes no room.
@@ -95,16 +119,20 @@ fn layers(ui: &mut Ui, rect: Rect, session: &mut Session) {
     ui.spacing_mut().button_padding = vec2(9.0, 2.0);
     ui.spacing_mut().interact_size.y = 22.0;
     let layers = &mut session.layers;
-    toggle(&mut ui, &mut layers.path, "Path", "Where the fingers went, in the visible time");
-    toggle(&mut ui, &mut layers.forces_on_path, "Forces", "Net force of the hand along the path (thesis, figure 5.10)");
-    let unexplained =
-        "What weight and friction do not explain of the force: that of the constraint (thesis, figure 5.12)";
-    toggle(&mut ui, &mut layers.unexplained, "Unexplained", unexplained);
-    toggle(&mut ui, &mut layers.constraints, "Constraints", "Centres, lines, curves and surfaces that were found");
-    toggle(&mut ui, &mut layers.contacts, "Contacts", "Contacts of the replay through the fitted world");
-    let replay = "The virtual object under the measured fingers: its forces, its handle, and how far they are off";
-    toggle(&mut ui, &mut layers.replay, "Real and virtual", replay);
-    toggle(&mut ui, &mut layers.legend, "Legend", "What the marks mean");
+    if rect.width() >= WIDE {
+        for (label, hint, of) in SWITCHES {
+            toggle(&mut ui, of(layers), label, hint);
+        }
+        return;
+    }
+    let p = palette(&ui);
+    let button = egui::Button::new(RichText::new("Shown").size(11.5)).corner_radius(11).fill(p.card);
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    MenuButton::from_button(button.stroke(Stroke::new(1.0, p.border))).config(config).ui(&mut ui, |ui| {
+        for (label, hint, of) in SWITCHES {
+            ui.checkbox(of(layers), label).on_hover_text(hint);
+        }
+    });
 }
 
 fn toggle(ui: &mut Ui, on: &mut bool, label: &str, hint: &str) {
@@ -112,7 +140,8 @@ fn toggle(ui: &mut Ui, on: &mut bool, label: &str, hint: &str) {
     let ink = if *on { p.text } else { p.secondary };
     let fill = if *on { p.card } else { p.card.gamma_multiply(0.78) };
     let edge = if *on { p.accent } else { p.border };
-    let button = egui::Button::new(RichText::new(label).size(11.5).color(ink)).corner_radius(11).fill(fill);
+    let text = RichText::new(label).size(11.5).color(ink);
+    let button = egui::Button::new(text).wrap_mode(egui::TextWrapMode::Extend).corner_radius(11).fill(fill);
     let response = ui.add(button.min_size(vec2(0.0, 22.0)).stroke(Stroke::new(1.0, edge))).on_hover_text(hint);
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, *on, label));
     if response.clicked() {

@@ -35,9 +35,14 @@ impl Panel for VideoPanel {
             match session.video(&ctx) {
                 State::None => none(ui, session),
                 State::Reading => {
-                    empty_state(ui, "Reading the video …", "Its pictures are kept, so that any moment is there at once.", |ui| {
-                        ui.spinner();
-                    });
+                    empty_state(
+                        ui,
+                        "Reading the video …",
+                        "Its pictures are kept, so that any moment is there at once.",
+                        |ui| {
+                            ui.spinner();
+                        },
+                    );
                 }
                 State::Failed(problem) => failed(ui, session, &problem),
                 State::There(video) => shown(ui, session, &video),
@@ -85,7 +90,9 @@ fn shown(ui: &mut Ui, session: &mut Session, video: &Arc<Video>) {
     picture(ui, session, video, above.shrink(1.0));
     let layout = Layout::top_down(Align::Min);
     ui.scope_builder(egui::UiBuilder::new().max_rect(below).layout(layout), |ui| {
-        egui::Frame::new().inner_margin(Margin::symmetric(space::M as i8, 6)).show(ui, |ui| controls(ui, session, video));
+        egui::Frame::new()
+            .inner_margin(Margin::symmetric(space::M as i8, 6))
+            .show(ui, |ui| controls(ui, session, video));
     });
 }
 
@@ -140,58 +147,71 @@ fn scrub(session: &mut Session, video: &Video, response: &egui::Response) {
 }
 
 fn controls(ui: &mut Ui, session: &mut Session, video: &Video) {
-    let Some(source) = session.video_source().cloned() else { return };
     ui.spacing_mut().interact_size.y = 20.0;
     ui.spacing_mut().button_padding.y = 2.0;
+    let loose = session.videos.loose_s;
     ui.horizontal(|ui| {
-        let mut loose = session.videos.loose_s.is_some();
+        let mut by_itself = loose.is_some();
         let hint = "Look at the video by itself: find a moment that you recognise, put the time cursor where the recording shows \
                     it, and say that they belong together";
-        if ui.checkbox(&mut loose, "By itself").on_hover_text(hint).changed() {
-            session.loosen_video(loose);
+        if ui.checkbox(&mut by_itself, "By itself").on_hover_text(hint).changed() {
+            session.loosen_video(by_itself);
         }
-        if let Some(mut at_s) = session.videos.loose_s {
-            ui.spacing_mut().slider_width = (ui.available_width() - 210.0).max(40.0);
-            let last = (video.duration_s() - 1.0 / video.rate_hz).max(0.0);
-            let slider = Slider::new(&mut at_s, 0.0..=last).step_by(1.0 / video.rate_hz).max_decimals(2).suffix(" s");
-            if ui.add(slider).on_hover_text("Where in the video").changed() {
-                session.videos.loose_s = Some(at_s);
-            }
-            if ui.button("They belong together").on_hover_text("This picture was taken at the time cursor").clicked() {
-                session.video_belongs_here();
-            }
-        } else {
-            ui.label(theme::caption(ui, "begins at"));
-            let mut begins_at_s = source.begins_at_s;
-            let drag = DragValue::new(&mut begins_at_s).speed(0.02).max_decimals(3).suffix(" s");
-            let hint = "When its first picture was taken, on the recording's clock: drag, or click and type";
-            if ui.add(drag).on_hover_text(hint).changed() {
-                session.shift_video(begins_at_s);
-            }
-            let free = !session.jobs.is_running(JobKind::AlignVideo);
-            let hint = "Shift it to where its pictures change when the recorded hand moves";
-            if ui.add_enabled(free, egui::Button::new("Align")).on_hover_text(hint).clicked() {
-                let ctx = ui.ctx().clone();
-                session.align_video(&ctx);
-            }
+        if loose.is_none() {
+            place(ui, session);
+        } else if ui.button("They belong together").on_hover_text("This picture was taken at the time cursor").clicked() {
+            session.video_belongs_here();
         }
     });
-    ui.horizontal(|ui| {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if ui.small_button("×").on_hover_text("Take the video away").clicked() {
-                session.forget_video();
-            }
-            let facts = format!(
-                "{} × {}, {} s",
-                video.size[0],
-                video.size[1],
-                format::number(video.duration_s(), 1)
-            );
-            ui.label(theme::caption(ui, facts));
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                let name = RichText::new(name_of(&source.file)).size(11.5).color(palette(ui).secondary);
-                ui.add(egui::Label::new(name).truncate()).on_hover_text(source.file.display().to_string());
-            });
+    ui.horizontal(|ui| match session.videos.loose_s {
+        Some(at_s) => runner(ui, session, video, at_s),
+        None => facts(ui, session, video),
+    });
+}
+
+/// Where the video lies in time.
+fn place(ui: &mut Ui, session: &mut Session) {
+    let Some(mut begins_at_s) = session.video_source().map(|s| s.begins_at_s) else { return };
+    ui.label(theme::caption(ui, "begins at"));
+    let drag = DragValue::new(&mut begins_at_s).speed(0.02).max_decimals(3).suffix(" s");
+    let hint = "When its first picture was taken, on the recording's clock: drag, or click and type";
+    if ui.add(drag).on_hover_text(hint).changed() {
+        session.shift_video(begins_at_s);
+    }
+    let free = !session.jobs.is_running(JobKind::AlignVideo);
+    let hint = "Shift it to where its pictures change when the recorded hand moves";
+    let align = ui.add_enabled(free, egui::Button::new("Align")).on_hover_text(hint);
+    align.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, free, "Align video"));
+    if align.clicked() {
+        let ctx = ui.ctx().clone();
+        session.align_video(&ctx);
+    }
+}
+
+/// Runs through the video while it is looked at by itself.
+fn runner(ui: &mut Ui, session: &mut Session, video: &Video, mut at_s: f64) {
+    let step_s = 1.0 / video.rate_hz;
+    ui.spacing_mut().slider_width = (ui.available_width() - 72.0).max(40.0);
+    let slider = Slider::new(&mut at_s, 0.0..=(video.duration_s() - step_s).max(0.0));
+    if ui.add(slider.step_by(step_s).max_decimals(2).suffix(" s")).on_hover_text("Where in the video").changed() {
+        session.videos.loose_s = Some(at_s);
+    }
+}
+
+fn facts(ui: &mut Ui, session: &mut Session, video: &Video) {
+    let Some(file) = session.video_source().map(|s| s.file.clone()) else { return };
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        let away = ui.small_button("×").on_hover_text("Take the video away");
+        away.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Take the video away"));
+        if away.clicked() {
+            session.forget_video();
+        }
+        let [wide, high] = video.size;
+        let facts = format!("{wide} × {high}, {} s", format::number(video.duration_s(), 1));
+        ui.label(theme::caption(ui, facts));
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            let name = RichText::new(name_of(&file)).size(11.5).color(palette(ui).secondary);
+            ui.add(egui::Label::new(name).truncate()).on_hover_text(file.display().to_string());
         });
     });
 }

@@ -9,6 +9,7 @@ mod rules;
 mod scene;
 mod thresholds;
 mod train;
+mod video;
 mod window;
 mod workbench;
 
