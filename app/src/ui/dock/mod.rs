@@ -165,8 +165,10 @@ mod tests {
         for pane in [Pane::Video, Pane::Sensitivity, Pane::Segments] {
             dock.bring(at, pane);
         }
-        dock.toggle(at, Pane::Recording);
-        dock.toggle(at, Pane::Recording);
+        for pane in [Pane::Recording, Pane::Scene, Pane::Log] {
+            dock.toggle(at, pane);
+            dock.toggle(at, pane);
+        }
         let mut session = Session::new();
         let (mut panels, mut rects) = (Panels::default(), Vec::new());
         let ctx = egui::Context::default();
@@ -183,6 +185,7 @@ mod tests {
         }
         assert!(rects.iter().all(|r| r.width() > 150.0 && r.height() > 100.0), "{rects:?}");
         let [video, scene, ..] = rects[..] else { unreachable!("five were asked for") };
+        assert!(rects[3].right() <= scene.left() && scene.bottom() <= rects[4].top(), "as it was: {rects:?}");
         assert!(video.left() >= scene.right() && (video.top() - scene.top()).abs() < 1.0, "side by side: {rects:?}");
     }
 

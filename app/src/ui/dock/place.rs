@@ -1,65 +1,89 @@
-//! Where a panel comes in when it is brought back: beside those that it belongs to.
+//! Where a panel comes in when it is brought back: where it stood in the standard arrangement, or beside those that it belongs to.
 
 use super::{Arrangement, Pane};
 use egui_tiles::{Container, ContainerKind, Tile, TileId};
 
-/// The panel that it belongs to, and how the two then stand.
-fn neighbour(pane: Pane) -> Option<(Pane, ContainerKind)> {
+/// The panels that it belongs to, the nearest first: how the two then stand, and whether it comes first.
+fn neighbours(pane: Pane) -> &'static [(Pane, ContainerKind, bool)] {
+    use ContainerKind::{Horizontal, Tabs, Vertical};
     match pane {
-        Pane::Video => Some((Pane::Scene, ContainerKind::Horizontal)),
-        Pane::Segments | Pane::Sensitivity => Some((Pane::Results, ContainerKind::Tabs)),
-        _ => None,
+        Pane::Video => &[(Pane::Scene, Horizontal, false), (Pane::Log, Vertical, true)],
+        Pane::Scene => &[(Pane::Video, Horizontal, true), (Pane::Log, Vertical, true)],
+        Pane::Log => &[(Pane::Scene, Vertical, false), (Pane::Video, Vertical, false)],
+        Pane::Segments | Pane::Sensitivity => &[(Pane::Results, Tabs, false)],
+        _ => &[],
     }
 }
 
+/// True for panels of the left edge.
+fn comes_first(pane: Pane) -> bool {
+    matches!(pane, Pane::Recording | Pane::Trainer | Pane::Diagnose | Pane::Devices)
+}
+
 impl Arrangement {
-    /// Brings a panel in: beside its neighbour, else at the right edge, else alone.
+    /// Brings a panel in: beside its neighbour, else at its edge, else alone.
     pub(super) fn add(&mut self, pane: Pane) {
         let tile = self.tree.tiles.insert_pane(pane);
-        let beside = neighbour(pane).and_then(|(other, kind)| Some((self.find(other)?, kind)));
+        let beside = neighbours(pane).iter().find_map(|(other, kind, first)| Some((self.find(*other)?, *kind, *first)));
         match (beside, self.tree.root()) {
-            (Some((other, kind)), Some(_)) => self.split(other, tile, kind),
-            (None, Some(root)) => self.at_the_edge(root, tile),
-            (_, None) => self.tree.root = Some(tile),
+            (Some((other, ContainerKind::Tabs, _)), _) => self.share_tabs(other, tile),
+            (Some((other, kind, first)), _) => {
+                let other = self.whole(other, kind);
+                self.split(other, kind, if first { vec![tile, other] } else { vec![other, tile] });
+            }
+            (None, Some(root)) => self.at_the_edge(root, tile, comes_first(pane)),
+            (None, None) => self.tree.root = Some(tile),
         }
         self.tree.make_active(|id, _| id == tile);
     }
 
-    /// Puts `new` where `old` stands, together with it.
-    fn split(&mut self, old: TileId, new: TileId, kind: ContainerKind) {
-        // A panel that stands among tabs shares them all.
-        let parent = self.tree.tiles.parent_of(old);
-        let tabs =
-            parent.filter(|p| self.tree.tiles.get_container(*p).is_some_and(|c| c.kind() == ContainerKind::Tabs));
-        if let Some(Tile::Container(container)) =
-            tabs.filter(|_| kind == ContainerKind::Tabs).and_then(|p| self.tree.tiles.get_mut(p))
-        {
-            container.add_child(new);
-            return;
+    /// What is split for a panel beside this one: the tabs that it stands among, the row that it stands in when the new one goes below.
+    fn whole(&self, tile: TileId, kind: ContainerKind) -> TileId {
+        let tile = self.tabs_of(tile).unwrap_or(tile);
+        let row = self.tree.tiles.parent_of(tile).filter(|parent| self.tree.root() != Some(*parent));
+        let is_row =
+            |t: &TileId| self.tree.tiles.get_container(*t).map(Container::kind) == Some(ContainerKind::Horizontal);
+        row.filter(is_row).filter(|_| kind == ContainerKind::Vertical).unwrap_or(tile)
+    }
+
+    /// The tabs that a panel stands among.
+    fn tabs_of(&self, tile: TileId) -> Option<TileId> {
+        let parent = self.tree.tiles.parent_of(tile)?;
+        (self.tree.tiles.get_container(parent)?.kind() == ContainerKind::Tabs).then_some(parent)
+    }
+
+    fn share_tabs(&mut self, old: TileId, new: TileId) {
+        let tabs = self.tabs_of(old);
+        match tabs.and_then(|tabs| self.tree.tiles.get_mut(tabs)) {
+            Some(Tile::Container(container)) => container.add_child(new),
+            _ => self.split(old, ContainerKind::Tabs, vec![old, new]),
         }
-        let old = tabs.unwrap_or(old);
+    }
+
+    /// Puts a container of both where `old` stands; its share of the room goes along.
+    fn split(&mut self, old: TileId, kind: ContainerKind, both: Vec<TileId>) {
         let parent = self.tree.tiles.parent_of(old);
-        let both = self.tree.tiles.insert_container(Container::new(kind, vec![old, new]));
-        match parent.and_then(|p| self.tree.tiles.get_mut(p)) {
-            Some(Tile::Container(container)) => {
-                // Its share of the room goes along.
-                let _ = container.replace_child(old, both);
-            }
+        let both = self.tree.tiles.insert_container(Container::new(kind, both));
+        match parent.and_then(|parent| self.tree.tiles.get_mut(parent)) {
+            Some(Tile::Container(container)) => drop(container.replace_child(old, both)),
             _ => self.tree.root = Some(both),
         }
     }
 
-    /// As wide as the others are on the average.
-    fn at_the_edge(&mut self, root: TileId, tile: TileId) {
+    /// A column of its own, as wide as the others are on the average.
+    fn at_the_edge(&mut self, root: TileId, tile: TileId, first: bool) {
         match self.tree.tiles.get_mut(root) {
             Some(Tile::Container(Container::Linear(linear))) => {
-                let mean = linear.children.iter().map(|c| linear.shares[*c]).sum::<f32>()
-                    / linear.children.len().max(1) as f32;
-                linear.add_child(tile);
+                let shares = linear.children.iter().map(|child| linear.shares[*child]).sum::<f32>();
+                let mean = shares / linear.children.len().max(1) as f32;
+                linear.children.insert(if first { 0 } else { linear.children.len() }, tile);
                 linear.shares.set_share(tile, mean);
             }
             Some(Tile::Container(container)) => container.add_child(tile),
-            _ => self.tree.root = Some(self.tree.tiles.insert_horizontal_tile(vec![root, tile])),
+            _ => {
+                let both = if first { vec![tile, root] } else { vec![root, tile] };
+                self.tree.root = Some(self.tree.tiles.insert_horizontal_tile(both));
+            }
         }
     }
 }
