@@ -61,6 +61,29 @@ fn dialog(purpose: Purpose) -> Option<PathBuf> {
     }
 }
 
+impl Session {
+    /// A dialog was answered.
+    pub(super) fn chosen(&mut self, ctx: &egui::Context, purpose: Purpose, path: PathBuf) {
+        match purpose {
+            Purpose::OpenLog => self.open_any(ctx, &path),
+            Purpose::OpenWorld => self.open_world(ctx, &path),
+            Purpose::OpenProject => self.open_project(ctx, &path),
+            Purpose::OpenVideo => self.open_video(&path),
+            Purpose::AddLog => self.add_log(ctx, &path),
+            Purpose::AddExperiment => self.add_experiment(ctx, &path),
+            Purpose::SaveProject => self.save_project_as(ctx, path),
+            Purpose::SaveReport => save_report(ctx, self, path),
+            Purpose::SaveLog => {
+                save_log(ctx, self, &path.display().to_string());
+            }
+            Purpose::SaveWorld => {
+                save_world(ctx, self, &path.display().to_string());
+            }
+            Purpose::SaveExtended => save_extended(ctx, self, path),
+        }
+    }
+}
+
 /// Writes the shown recording and its sidecar.
 pub fn save_log(ctx: &egui::Context, session: &mut Session, field: &str) {
     let Some(prepared) = session.prepared().cloned() else { return };

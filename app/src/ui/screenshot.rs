@@ -2,8 +2,8 @@
 
 use super::app::App;
 use super::diagnosing;
-use super::experimenting;
 use super::dock::Pane;
+use super::experimenting;
 use super::fitting;
 use super::mapping::Mapping;
 use super::panels::log::LogPanel;

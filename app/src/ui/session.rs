@@ -4,7 +4,7 @@ use super::diagnosing::Diagnosing;
 use super::experimenting::Experiments;
 pub use super::fit_choice::FitChoice;
 use super::fitting::Refits;
-use super::jobs::{JobKind, Jobs, Outcome, Purpose, Replayed};
+use super::jobs::{JobKind, Jobs, Outcome, Replayed};
 use super::mapping::Mapping;
 use super::plots::PlotChoices;
 use super::prepare::Prepared;
@@ -361,21 +361,7 @@ impl Session {
             Outcome::Picture { file, index, picture } => self.picture_came(ctx, (file, index), picture),
             Outcome::VideoAligned(file, found) => self.video_aligned(&file, found),
             Outcome::Cancelled | Outcome::Chosen(_, None) => {}
-            Outcome::Chosen(Purpose::OpenLog, Some(path)) => self.open_any(ctx, &path),
-            Outcome::Chosen(Purpose::OpenWorld, Some(path)) => self.open_world(ctx, &path),
-            Outcome::Chosen(Purpose::OpenProject, Some(path)) => self.open_project(ctx, &path),
-            Outcome::Chosen(Purpose::OpenVideo, Some(path)) => self.open_video(&path),
-            Outcome::Chosen(Purpose::AddLog, Some(path)) => self.add_log(ctx, &path),
-            Outcome::Chosen(Purpose::AddExperiment, Some(path)) => self.add_experiment(ctx, &path),
-            Outcome::Chosen(Purpose::SaveProject, Some(path)) => self.save_project_as(ctx, path),
-            Outcome::Chosen(Purpose::SaveReport, Some(path)) => super::files::save_report(ctx, self, path),
-            Outcome::Chosen(Purpose::SaveLog, Some(path)) => {
-                super::files::save_log(ctx, self, &path.display().to_string());
-            }
-            Outcome::Chosen(Purpose::SaveWorld, Some(path)) => {
-                super::files::save_world(ctx, self, &path.display().to_string());
-            }
-            Outcome::Chosen(Purpose::SaveExtended, Some(path)) => super::files::save_extended(ctx, self, path),
+            Outcome::Chosen(purpose, Some(path)) => self.chosen(ctx, purpose, path),
             Outcome::Unfinished(found) => self.unfinished = found,
             Outcome::World(world) => self.opened_world = Some(world),
             Outcome::Saved(path) => self.say_saved(&path),
