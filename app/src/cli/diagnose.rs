@@ -125,7 +125,15 @@ pub(super) fn describe(diagnosis: &Diagnosis) -> String {
         let of = other.of.as_ref().map_or(String::new(), |of| format!(" of the {of}"));
         let unit = other.unit.as_deref();
         let said = |value: f64| unit.map_or_else(|| format!("{value:.4}"), |unit| amount(value, unit));
-        let _ = write!(text, "  validation {}{of}: {} unexplained before, {} after", k + 1, said(before), said(after));
+        let [low, high] = other.interval.map(|share| 100.0 * share);
+        let _ = write!(
+            text,
+            "  validation {}{of}: {} unexplained before, {} after; {:.0} % of its power goes [{low:.0}, {high:.0}]",
+            k + 1,
+            said(before),
+            said(after),
+            100.0 * other.share
+        );
         let left_out = if other.left_out.is_empty() { String::new() } else { other.left_out.join(", ") };
         let _ = if left_out.is_empty() {
             writeln!(text)

@@ -1,5 +1,7 @@
 //! The diagnosis of what is loaded: what is asked, what came out, and the worlds before and after.
 
+use super::atlas::Sheet;
+use super::checking::Checked;
 use super::fit_choice::FitChoice;
 use super::fitting::replay_forces;
 use super::format;
@@ -45,6 +47,8 @@ pub struct Answer {
     pub diagnosis: Diagnosis,
     /// Its curves, one a recording.
     pub residuals: Vec<Residuals>,
+    /// What every suspect would take of the force, one a recording.
+    pub atlas: Vec<Sheet>,
     /// The model that it started from.
     pub from: StartFrom,
 }
@@ -54,6 +58,10 @@ pub struct Answer {
 pub struct Diagnosing {
     /// The model of a mechanism to start from.
     pub from: StartFrom,
+    /// Whether the atlas is shown in place of the curves.
+    pub shows_atlas: bool,
+    /// The suspect that is shown large.
+    pub atlas_open: Option<String>,
     /// The cause that was asked about: why not?
     pub asked_about: Option<String>,
     /// What came out.
@@ -68,6 +76,10 @@ pub struct Diagnosing {
     pub replays: Vec<Option<Replayed>>,
     /// What the experiment that is asked for would settle, rehearsed on simulated objects.
     pub rehearsal: Option<Arc<Rehearsal>>,
+    /// What the answer is worth on other recordings.
+    pub checked: Vec<Checked>,
+    /// The path field of a recording to check on.
+    pub check_field: String,
     /// Why it could not be rehearsed, in one sentence.
     pub rehearsal_problem: Option<String>,
 }
@@ -75,7 +87,7 @@ pub struct Diagnosing {
 impl Diagnosing {
     /// Forgets everything but the question.
     pub fn forget(&mut self) {
-        *self = Self { from: self.from, ..Self::default() };
+        *self = Self { from: self.from, shows_atlas: self.shows_atlas, ..Self::default() };
     }
 }
 
@@ -87,10 +99,11 @@ pub fn ask(
     progress: Progress,
 ) -> Result<Answer, String> {
     let plain = plain(recordings, choice);
-    let diagnosis = diagnose::diagnose(&plain, &options(&plain, choice, from, progress))
-        .map_err(|error| sentence(&error.to_string()))?;
+    let options = Options { atlas: true, ..options(&plain, choice, from, progress) };
+    let diagnosis = diagnose::diagnose(&plain, &options).map_err(|error| sentence(&error.to_string()))?;
     let residuals = (0..recordings.len()).map(|k| Residuals::new(&diagnosis, k)).collect();
-    Ok(Answer { diagnosis, residuals, from })
+    let atlas = (0..recordings.len()).map(|k| Sheet::new(&diagnosis, k)).collect();
+    Ok(Answer { diagnosis, residuals, atlas, from })
 }
 
 /// The worlds without and with what was found; the sentence of an error.
@@ -130,6 +143,7 @@ impl Session {
         self.jobs.cancel(JobKind::Extend);
         self.jobs.cancel(JobKind::SimulateExtended);
         self.jobs.cancel(JobKind::Rehearse);
+        self.jobs.cancel(JobKind::Check);
         let (recordings, choice, from) = (self.recordings.clone(), self.choice.clone(), self.diagnosing.from);
         self.jobs.start_watched(ctx, JobKind::Diagnose, "Diagnosing".to_owned(), move |ticket| {
             let ticket = ticket.clone();

@@ -1,22 +1,40 @@
 //! File dialogs and saving, all in the background. Where the system has no dialog, the path fields do the same.
 
+use super::checking::On;
 use super::jobs::{JobKind, Jobs, Outcome, Purpose};
 use super::session::{Session, sentence};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+
+/// Nobody cancels this fast: there is no dialog.
+const THERE: Duration = Duration::from_millis(250);
+const NO_DIALOG: &str =
+    "This system opens no file dialog; type the path into the field, or drop the file on the window.";
+/// Endings of logs.
+const LOGS: &[&str] = &["csv", "txt", "tsv", "dat", "mcap", "parquet"];
 
 /// Opens a file dialog on a thread of its own.
 pub fn ask(ctx: &egui::Context, jobs: &mut Jobs, purpose: Purpose) {
     jobs.start(ctx, JobKind::Dialog, move || {
         let asked = Instant::now();
         let chosen = dialog(purpose);
-        // Nobody cancels this fast: there is no dialog.
-        if chosen.is_none() && asked.elapsed() < Duration::from_millis(250) {
-            let text =
-                "This system opens no file dialog; type the path into the field, or drop the file on the window.";
-            return Outcome::Failed(text.to_owned());
+        if chosen.is_none() && asked.elapsed() < THERE {
+            return Outcome::Failed(NO_DIALOG.to_owned());
         }
         Outcome::Chosen(purpose, chosen)
+    });
+}
+
+/// Opens a file dialog for several files, on a thread of its own.
+pub fn ask_many(ctx: &egui::Context, jobs: &mut Jobs, purpose: Purpose) {
+    jobs.start(ctx, JobKind::Dialog, move || {
+        let asked = Instant::now();
+        let dialog = rfd::FileDialog::new().set_title("Recordings of the same object").add_filter("Logs", LOGS);
+        match dialog.add_filter("All files", &["*"]).pick_files() {
+            Some(paths) => Outcome::ChosenMany(purpose, paths),
+            None if asked.elapsed() < THERE => Outcome::Failed(NO_DIALOG.to_owned()),
+            None => Outcome::Cancelled,
+        }
     });
 }
 
@@ -25,7 +43,7 @@ fn dialog(purpose: Purpose) -> Option<PathBuf> {
     match purpose {
         Purpose::OpenLog => dialog
             .set_title("Open a log")
-            .add_filter("Logs", &["csv", "txt", "tsv", "dat", "mcap", "parquet"])
+            .add_filter("Logs", LOGS)
             // What a file is, its content tells.
             .add_filter("All files", &["*"])
             .pick_file(),
@@ -35,12 +53,12 @@ fn dialog(purpose: Purpose) -> Option<PathBuf> {
         }
         Purpose::AddLog => dialog
             .set_title("Add a recording of the same object")
-            .add_filter("Logs", &["csv", "txt", "tsv", "dat", "mcap", "parquet"])
+            .add_filter("Logs", LOGS)
             .add_filter("All files", &["*"])
             .pick_file(),
-        Purpose::AddExperiment => dialog
+        Purpose::AddExperiment | Purpose::Check => dialog
             .set_title("Add a recording of the experiment")
-            .add_filter("Logs", &["csv", "txt", "tsv", "dat", "mcap", "parquet"])
+            .add_filter("Logs", LOGS)
             .add_filter("All files", &["*"])
             .pick_file(),
         Purpose::OpenVideo => dialog
@@ -71,6 +89,7 @@ impl Session {
             Purpose::OpenVideo => self.open_video(&path),
             Purpose::AddLog => self.add_log(ctx, &path),
             Purpose::AddExperiment => self.add_experiment(ctx, &path),
+            Purpose::Check => self.check(ctx, On::Files(vec![path])),
             Purpose::SaveProject => self.save_project_as(ctx, path),
             Purpose::SaveReport => save_report(ctx, self, path),
             Purpose::SaveLog => {

@@ -1,21 +1,38 @@
 //! What a picture costs the processor: laying a panel out and cutting its shapes into triangles. What the graphics card does is apart.
 
 use super::app::App;
+use super::diagnosing::{self, Answer, StartFrom};
 use super::fitting;
 use super::plots::LogView;
 use super::prepare::Prepared;
 use super::screenshot::{Panel, contents};
 use super::session::{FitChoice, Session, Workspace};
 use super::theme;
-use super::trainer::Clock;
+use super::trainer::{Clock, Operator};
 use cpu_time::ThreadTime;
 use egui::{Context, RawInput, Rect, UiBuilder};
+use estimator::diagnose::{Progress, Worlds};
 use estimator::segment::Interval;
 use haptics::recording::Recording;
 use std::sync::Arc;
 
+/// From picture to picture, s.
+const PICTURE_S: f64 = 1.0 / 60.0;
 /// Pictures before anything is measured: layouts settle, curves are computed.
 const WARM_UP: usize = 6;
+
+/// What a page shows beside the log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum With {
+    /// Nothing more.
+    Log,
+    /// The answer of a diagnosis, its extended model and replays.
+    Answer,
+    /// The same with the atlas in place of the curves.
+    Atlas,
+    /// A running servo: the scripted operator at work.
+    Servo,
+}
 
 /// What is measured.
 #[derive(Clone, Copy, Debug)]
@@ -25,10 +42,18 @@ pub struct Subject {
     panel: Panel,
     view: LogView,
     workspace: Workspace,
+    with: With,
 }
 
-/// Every panel that shows a recording.
-pub const SUBJECTS: [Subject; 9] = [
+impl Subject {
+    /// True when the recording must be diagnosed first.
+    pub fn needs_answer(&self) -> bool {
+        matches!(self.with, With::Answer | With::Atlas)
+    }
+}
+
+/// Every panel that shows a recording, and the pages with a running servo.
+pub const SUBJECTS: [Subject; 12] = [
     subject("log", Panel::Log),
     Subject { view: LogView::Xy, ..subject("log, XY", Panel::Log) },
     subject("segments", Panel::Segments),
@@ -36,12 +61,15 @@ pub const SUBJECTS: [Subject; 9] = [
     subject("results", Panel::Results),
     subject("scene", Panel::Scene),
     subject("Calibrate", Panel::Workbench),
-    Subject { workspace: Workspace::Diagnose, ..subject("Diagnose", Panel::Diagnose) },
-    Subject { workspace: Workspace::Train, ..subject("Train", Panel::Train) },
+    Subject { workspace: Workspace::Diagnose, ..subject("Diagnose, before", Panel::Diagnose) },
+    Subject { workspace: Workspace::Diagnose, with: With::Answer, ..subject("Diagnose", Panel::Diagnose) },
+    Subject { workspace: Workspace::Diagnose, with: With::Atlas, ..subject("Diagnose, atlas", Panel::Diagnose) },
+    Subject { workspace: Workspace::Train, with: With::Servo, ..subject("Train", Panel::Train) },
+    Subject { workspace: Workspace::Devices, with: With::Servo, ..subject("Devices", Panel::Devices) },
 ];
 
 const fn subject(name: &'static str, panel: Panel) -> Subject {
-    Subject { name, panel, view: LogView::Time, workspace: Workspace::Calibrate }
+    Subject { name, panel, view: LogView::Time, workspace: Workspace::Calibrate, with: With::Log }
 }
 
 /// Processor time of a picture, s.
@@ -71,6 +99,8 @@ pub struct Loaded {
     recordings: Vec<Arc<Prepared>>,
     analysis: Option<Arc<estimator::pipeline::Analysis>>,
     replays: Vec<Option<super::jobs::Replayed>>,
+    answer: Option<Arc<Answer>>,
+    worlds: Option<Arc<Worlds>>,
 }
 
 impl Loaded {
@@ -91,14 +121,26 @@ impl Loaded {
         }
         let recordings = vec![Arc::new(Prepared::new(long))];
         let replays = fitting::replay_all(&analysis.world, &recordings);
-        Ok(Self { recordings, analysis: Some(Arc::new(analysis)), replays })
+        Ok(Self { recordings, analysis: Some(Arc::new(analysis)), replays, answer: None, worlds: None })
     }
 
     /// Without a fit: for logs of which only the plots matter.
     pub fn unfitted(once: &Recording, samples: usize) -> Self {
         let period_s = once.len() as f64 * once.rate_hz().map_or(1.0, |rate| 1.0 / rate);
         let recording = repeated(once, samples, period_s);
-        Self { recordings: vec![Arc::new(Prepared::new(recording))], analysis: None, replays: Vec::new() }
+        let recordings = vec![Arc::new(Prepared::new(recording))];
+        Self { recordings, analysis: None, replays: Vec::new(), answer: None, worlds: None }
+    }
+
+    /// Diagnosed, and the model extended by what was found.
+    pub fn diagnosed(once: Recording, samples: usize) -> Result<Self, String> {
+        let mut loaded = Self::over_and_over(once, samples)?;
+        let (choice, from) = (FitChoice::default(), StartFrom::default());
+        let answer = diagnosing::ask(&loaded.recordings, &choice, from, Progress::default())?;
+        let worlds = diagnosing::extend(&loaded.recordings, &choice, from, &answer)?;
+        loaded.answer = Some(Arc::new(answer));
+        loaded.worlds = Some(Arc::new(worlds));
+        Ok(loaded)
     }
 
     fn session(&self, subject: Subject) -> Session {
@@ -109,6 +151,14 @@ impl Loaded {
         session.plots.view = subject.view;
         session.analysis.clone_from(&self.analysis);
         session.replays.clone_from(&self.replays);
+        if subject.needs_answer() {
+            session.diagnosing.answer.clone_from(&self.answer);
+            session.diagnosing.worlds.clone_from(&self.worlds);
+            session.diagnosing.shows_atlas = subject.with == With::Atlas;
+        }
+        if subject.with == With::Servo {
+            session.trainer.operator = Operator::Scripted;
+        }
         session
     }
 
@@ -120,8 +170,18 @@ impl Loaded {
             stage.picture();
         }
         let width = last - first;
-        let playing = stage.measure(pictures, |session, k| session.seek(first + width * k as f64 / pictures as f64));
+        // The servo goes on between two pictures; it has a thread of its own, so its time is not the picture's.
+        let runs = |session: &mut Session| {
+            if subject.with == With::Servo {
+                session.trainer.run_unseen(PICTURE_S);
+            }
+        };
+        let playing = stage.measure(pictures, |session, k| {
+            runs(session);
+            session.seek(first + width * k as f64 / pictures as f64);
+        });
         let zooming = stage.measure(pictures, |session, k| {
+            runs(session);
             let share = k as f64 / pictures as f64;
             session.view_s = (first + 0.3 * share * width, last - 0.5 * share * width);
         });
@@ -163,7 +223,7 @@ impl Stage {
 
     /// Lays one picture out and cuts it up: both times, s, and the triangles.
     fn picture(&mut self) -> (f64, f64, usize) {
-        self.time_s += 1.0 / 60.0;
+        self.time_s += PICTURE_S;
         let screen_rect = Some(Rect::from_min_size(egui::Pos2::ZERO, self.size));
         let input = RawInput { screen_rect, time: Some(self.time_s), ..RawInput::default() };
         let Self { ctx, app, contents, .. } = self;

@@ -62,6 +62,8 @@ pub enum JobKind {
     Rehearse,
     /// Preparing that experiment for a person.
     Guide,
+    /// Checking a diagnosis on other recordings.
+    Check,
     /// Computing curves for plots.
     Curves,
     /// Finding where a recording lies on another one.
@@ -89,6 +91,8 @@ pub enum Purpose {
     AddExperiment,
     /// A video of the shown recording.
     OpenVideo,
+    /// Recordings to check a diagnosis on.
+    Check,
     /// Where the project goes.
     SaveProject,
     /// Where the report goes.
@@ -122,6 +126,10 @@ pub enum Outcome {
     Judged(Vec<Enough>),
     /// The answer of a file dialog; `None`: cancelled, or no dialog on this system.
     Chosen(Purpose, Option<PathBuf>),
+    /// The answer of a file dialog for several files.
+    ChosenMany(Purpose, Vec<PathBuf>),
+    /// What a diagnosis is worth on other recordings.
+    Checked(Vec<super::checking::Checked>),
     /// A world from a file.
     World(Box<World>),
     /// Where something was written.

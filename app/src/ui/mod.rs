@@ -8,8 +8,10 @@
 
 pub mod actions;
 pub mod app;
+pub mod atlas;
 pub mod autosave;
 pub mod by_hand;
+pub mod checking;
 pub mod diagnosing;
 pub mod dock;
 pub mod experimenting;

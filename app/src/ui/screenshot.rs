@@ -6,6 +6,7 @@ use super::dock::Pane;
 use super::experimenting;
 use super::fitting;
 use super::mapping::Mapping;
+use super::panels::diagnosis::DiagnosisPanel;
 use super::panels::log::LogPanel;
 use super::panels::parameters::ParametersPanel;
 use super::panels::results::ResultsPanel;
@@ -53,7 +54,9 @@ pub enum Panel {
     Devices,
     /// The whole Diagnose workspace, with its answer and the extended model.
     Diagnose,
-    /// The Diagnose workspace with what to record next, rehearsed.
+    /// The Diagnose workspace with the residual atlas.
+    Atlas,
+    /// What a diagnosis answers, with what to record next, rehearsed.
     Experiment,
     /// That experiment in the Train workspace, half done.
     Guided,
@@ -150,6 +153,10 @@ pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Se
     }
     match panel {
         Panel::Diagnose => diagnosed(&mut session),
+        Panel::Atlas => {
+            diagnosed(&mut session);
+            session.diagnosing.shows_atlas = true;
+        }
         Panel::Experiment | Panel::Guided => experiment(&mut session, panel)?,
         Panel::Sensitivity => session.look_at_sensitivity(),
         Panel::Parameter => try_another_value(&mut session),
@@ -307,12 +314,13 @@ pub(super) fn contents(panel: Panel) -> Contents {
         Panel::Scene => framed(ScenePanel::default()),
         Panel::Trainer => framed(TrainerView::default()),
         Panel::Sensitivity => framed(SensitivityPanel),
+        Panel::Experiment => framed(DiagnosisPanel),
         Panel::Rules
         | Panel::Workbench
         | Panel::Train
         | Panel::Devices
         | Panel::Diagnose
-        | Panel::Experiment
+        | Panel::Atlas
         | Panel::Guided
         | Panel::Mapping
         | Panel::Parameter

@@ -1,5 +1,6 @@
 //! What the window knows: loaded recordings, their fit, the replay, the time cursor. Panels read and change it; jobs fill it.
 
+use super::checking::On;
 use super::diagnosing::Diagnosing;
 use super::experimenting::Experiments;
 pub use super::fit_choice::FitChoice;
@@ -236,6 +237,7 @@ impl Session {
         self.jobs.cancel(JobKind::Extend);
         self.jobs.cancel(JobKind::SimulateExtended);
         self.jobs.cancel(JobKind::Rehearse);
+        self.jobs.cancel(JobKind::Check);
         self.plots.forget_recordings();
         self.playing = false;
         self.rules = None;
@@ -350,6 +352,7 @@ impl Session {
             Outcome::Judged(enough) => self.enough = enough,
             Outcome::Diagnosed(answer) => self.diagnosed(answer),
             Outcome::Extended(worlds) => self.extended(ctx, worlds),
+            Outcome::Checked(checked) => self.checked(checked),
             Outcome::Rehearsed(rehearsal) => self.rehearsed(rehearsal),
             Outcome::Guided(guided) => self.guided(guided),
             Outcome::Followed(path) => self.followed(path),
@@ -362,6 +365,7 @@ impl Session {
             Outcome::VideoAligned(file, found) => self.video_aligned(&file, found),
             Outcome::Cancelled | Outcome::Chosen(_, None) => {}
             Outcome::Chosen(purpose, Some(path)) => self.chosen(ctx, purpose, path),
+            Outcome::ChosenMany(_, paths) => self.check(ctx, On::Files(paths)),
             Outcome::Unfinished(found) => self.unfinished = found,
             Outcome::World(world) => self.opened_world = Some(world),
             Outcome::Saved(path) => self.say_saved(&path),

@@ -1,5 +1,6 @@
 //! From comparisons of several channels to one answer in words.
 
+use super::atlas::Atlas;
 use super::candidate::Candidate;
 use super::course::Course;
 use super::explain::{p_value, parameters, rivals};
@@ -239,6 +240,7 @@ pub fn answer(
         kept: parts.iter().flat_map(|p| of_study(p.channel, p.study)).collect(),
         plain: Vec::new(),
         effects: Vec::new(),
+        atlas: Atlas::default(),
         hypotheses: Vec::new(),
     }
 }

@@ -1,5 +1,6 @@
 //! From a comparison to an answer in words.
 
+use super::atlas::Atlas;
 use super::candidate::Candidate;
 use super::course::course;
 use super::experiment::propose;
@@ -110,6 +111,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         settled: Vec::new(),
         plain: plain(model, study),
         effects: effects(track, model, study),
+        atlas: Atlas::default(),
         hypotheses: hypotheses(track, model, study),
         course: course(track, study),
         kept: of_study(FORCE, study),

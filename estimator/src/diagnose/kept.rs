@@ -4,6 +4,7 @@ use super::answer::Compared;
 use super::candidate::{Candidate, Searched};
 use super::geometry::Study;
 use super::report::Validation;
+use super::validate::compared;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::law::Kind;
@@ -104,12 +105,12 @@ pub fn measure(kept: &[Kept], order: &[&str], channels: &[Compared]) -> Result<V
             continue;
         }
         let after: Vec<f64> = study.y.iter().zip(&sum).map(|(y, s)| y - s).collect();
+        // Rows that are held out in turn stand for their neighbours; other places of the channel (empty fingers) count with them.
+        let squares: Vec<f64> = study.weight.iter().map(|w| w * w).collect();
         found = Some(Validation {
-            rms_before: open(channel, &study.y)?,
-            rms_after: open(channel, &after)?,
             of: is_any.then(|| channel.channel.to_owned()),
             unit: is_any.then(|| channel.unit.to_owned()),
-            left_out: Vec::new(),
+            ..compared(&open(channel, &study.y)?, &open(channel, &after)?, &squares)
         });
     }
     let missing = kept.iter().filter(|k| channels.iter().all(|c| c.channel != k.channel));
@@ -119,8 +120,8 @@ pub fn measure(kept: &[Kept], order: &[&str], channels: &[Compared]) -> Result<V
     Ok(found)
 }
 
-/// Root mean square that the open part of the model leaves of a target.
-fn open(channel: &Compared, y: &[f64]) -> Result<f64, EstimateError> {
+/// What the open part of the model leaves of a target, row by row.
+fn open(channel: &Compared, y: &[f64]) -> Result<Vec<f64>, EstimateError> {
     let study = &channel.study;
     let base: Vec<Vec<f64>> = study.base.iter().filter(|c| c.iter().any(|v| *v != 0.0)).cloned().collect();
     let squares: Vec<f64> = study.weight.iter().map(|w| w * w).collect();
@@ -131,7 +132,5 @@ fn open(channel: &Compared, y: &[f64]) -> Result<f64, EstimateError> {
             left.iter_mut().zip(column).for_each(|(l, c)| *l -= value * c);
         }
     }
-    // Rows that are held out in turn stand for their neighbours; other places of the channel (empty fingers) count with them.
-    let (sum, weight) = left.iter().zip(&squares).fold((0.0, 0.0), |(s, n), (l, w)| (s + w * l * l, n + w));
-    Ok((sum / f64::max(weight, 1e-12)).sqrt())
+    Ok(left)
 }

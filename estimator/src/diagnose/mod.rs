@@ -4,6 +4,7 @@
 //! Method: named hypotheses, effective-variance weights, whitening, forward selection with swaps, a locked test part.
 
 mod answer;
+pub mod atlas;
 mod blocks;
 mod candidate;
 mod compare;
@@ -73,6 +74,8 @@ pub struct Options {
     pub world: Option<World>,
     /// How far it is, and the wish to end it.
     pub progress: Progress,
+    /// Whether [`Diagnosis::atlas`] is wanted: what every suspect alone would take of the force.
+    pub atlas: bool,
 }
 
 /// Least score of a cause, in units of 2 ln(likelihood): keeps false alarms below 1 in 200 (`facts/diagnosis.md`, 3) …
@@ -196,6 +199,9 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
     let study = force::study(&mut track, &model, &fixed, limit)?;
     options.progress.tell(0.8)?;
     let mut found = explain::explain(&track, &model, &study, &geometries, faults);
+    if options.atlas {
+        found.atlas = atlas::atlas(&track, &study, limit);
+    }
     name_joint(&mut found, first_link);
     Ok(found)
 }
@@ -327,7 +333,11 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     options.progress.tell(0.4)?;
     let study = force::study(&mut track, &model, &Model::new(), limit)?;
     options.progress.tell(0.8)?;
-    Ok(explain::explain(&track, &model, &study, &[], faults))
+    let mut found = explain::explain(&track, &model, &study, &[], faults);
+    if options.atlas {
+        found.atlas = atlas::atlas(&track, &study, limit);
+    }
+    Ok(found)
 }
 
 /// The laws of a baseline's name.

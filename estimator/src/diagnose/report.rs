@@ -1,5 +1,6 @@
 //! What a diagnosis answers. These types *are* the JSON of `touchstone diagnose --json`.
 
+use super::atlas::Atlas;
 use super::course::Course;
 use super::kept::Kept;
 use super::suspects::Hypothesis;
@@ -199,6 +200,12 @@ pub struct Validation {
     pub rms_before: f64,
     /// … and with what was found.
     pub rms_after: f64,
+    /// Part of the power that the model leaves which goes with what was found; below zero where it makes more of it …
+    #[serde(default)]
+    pub share: f64,
+    /// … and its 95 % interval, by a bootstrap over pieces of the recording.
+    #[serde(default)]
+    pub interval: [f64; 2],
     /// Which channel, where there are several, …
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub of: Option<String>,
@@ -278,6 +285,9 @@ pub struct Diagnosis {
     /// What was found, as values of columns: for other recordings.
     #[serde(skip)]
     pub(super) kept: Vec<Kept>,
+    /// What every suspect alone would take of the force; empty unless it was asked for, and for tasks without one coordinate.
+    #[serde(skip)]
+    pub atlas: Atlas,
     /// What is not excluded, as laws: to rehearse experiments.
     #[serde(skip)]
     pub(super) hypotheses: Vec<Hypothesis>,

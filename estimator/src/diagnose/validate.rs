@@ -2,11 +2,42 @@
 
 use super::dictionary::{Dictionary, dry_of};
 use super::force::{blur, column};
+use super::gain::bootstrap;
 use super::grid::Grid;
 use super::kept::Kept;
 use super::report::Validation;
 use super::track::{Place, Track};
 use haptics::law::{Effect, Kind, Memories};
+
+/// A recording is cut into so many pieces for the interval: neighbouring rows share what is wrong with them.
+const PIECES: usize = 32;
+/// Draws of the bootstrap over them.
+const DRAWS: usize = 400;
+
+/// What is left before and after, row by row in order, and the rows' weights: root mean squares, and the part of the power that goes.
+pub fn compared(before: &[f64], after: &[f64], weight: &[f64]) -> Validation {
+    let long = before.len().div_ceil(PIECES).max(1);
+    let sum = |left: &[f64], weight: &[f64]| left.iter().zip(weight).map(|(l, w)| w * l * l).sum::<f64>();
+    let pieces: Vec<[f64; 2]> = before
+        .chunks(long)
+        .zip(after.chunks(long))
+        .zip(weight.chunks(long))
+        .map(|((b, a), w)| [sum(b, w), sum(a, w)])
+        .collect();
+    let share = |drawn: &[usize]| {
+        let [b, a] = drawn.iter().fold([0.0; 2], |[b, a], k| [b + pieces[*k][0], a + pieces[*k][1]]);
+        1.0 - a / f64::max(b, 1e-300)
+    };
+    let all: Vec<usize> = (0..pieces.len()).collect();
+    let rows = weight.iter().sum::<f64>().max(1e-12);
+    Validation {
+        rms_before: (sum(before, weight) / rows).sqrt(),
+        rms_after: (sum(after, weight) / rows).sqrt(),
+        share: share(&all),
+        interval: bootstrap(all.len(), DRAWS, &share),
+        ..Validation::default()
+    }
+}
 
 /// Force of the laws along every row, with what they remember; they start anew at every stretch.
 fn predicted(track: &Track, effects: &[Effect]) -> Vec<f64> {
@@ -57,13 +88,28 @@ pub fn validate(track: &mut Track, before: &[Effect], after: &[Effect], known: &
     let mut left_out = Vec::new();
     let sensed = faults(track, &with, known, kept, &mut left_out);
     with.iter_mut().zip(sensed).for_each(|(w, s)| *w += s);
-    let rms = |model: &[f64]| {
-        let along = track.rows.iter().zip(model).filter(|(r, _)| r.place == Place::Along);
-        let (sum, weight) = along.fold((0.0, 0.0), |(s, w), (row, force)| {
-            let sure = row.motion.direction.powi(4);
-            (s + sure * (row.y - force).powi(2), w + sure)
-        });
-        (sum / f64::max(weight, 1e-12)).sqrt()
-    };
-    Validation { rms_before: rms(&without), rms_after: rms(&with), left_out, ..Validation::default() }
+    let along = || track.rows.iter().enumerate().filter(|(_, r)| r.place == Place::Along);
+    let weight: Vec<f64> = along().map(|(_, r)| r.motion.direction.powi(4)).collect();
+    let left = |model: &[f64]| -> Vec<f64> { along().map(|(i, r)| r.y - model[i]).collect() };
+    Validation { left_out, ..compared(&left(&without), &left(&with), &weight) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_interval_holds_what_goes_and_is_wider_where_pieces_differ() {
+        let before = vec![2.0; 640];
+        let even: Vec<f64> = (0..640).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let found = compared(&before, &even, &vec![1.0; 640]);
+        assert!((found.share - 0.75).abs() < 1e-12 && (found.rms_before - 2.0).abs() < 1e-12);
+        assert!(found.interval.iter().all(|v| (v - 0.75).abs() < 1e-12), "{:?}", found.interval);
+        // All of it in the first half, nothing in the second: not sure at all.
+        let half: Vec<f64> = (0..640).map(|i| if i < 320 { 0.0 } else { 2.0 }).collect();
+        let [low, high] = compared(&before, &half, &vec![1.0; 640]).interval;
+        assert!(low < 0.4 && high > 0.6 && low > 0.1 && high < 0.9, "{low} {high}");
+        let worse = compared(&even, &before, &vec![1.0; 640]);
+        assert!(worse.interval[1] < 0.0, "{:?}", worse.interval);
+    }
 }

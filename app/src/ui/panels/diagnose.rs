@@ -1,7 +1,7 @@
 //! What the model gets wrong, as curves: measured against modelled, and what is left against each suspect variable.
 
 use super::Panel;
-use crate::ui::diagnosing::StartFrom;
+use crate::ui::diagnosing::{Answer, StartFrom};
 use crate::ui::files;
 use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::plots::{Cloud, Residuals, cloud_plot, force_plot, has_directions, inks};
@@ -31,6 +31,7 @@ impl Panel for DiagnosePanel {
             ui.set_min_size(ui.available_size());
             let answer = session.diagnosing.answer.clone();
             match answer.as_ref().and_then(|a| a.residuals.get(session.current).filter(|r| !r.is_empty())) {
+                Some(_) if session.diagnosing.shows_atlas => suspects(ui, session, answer.as_deref()),
                 Some(curves) => draw(ui, session, curves),
                 None => nothing(ui, session),
             }
@@ -113,6 +114,36 @@ pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
     changed
 }
 
+/// The atlas with its heading.
+fn suspects(ui: &mut Ui, session: &mut Session, answer: Option<&Answer>) {
+    let Some((answer, sheet)) = answer.and_then(|a| a.atlas.get(session.current).map(|s| (a, s))) else { return };
+    ui.spacing_mut().item_spacing.y = space::XS;
+    head(ui, "Left over against every suspect", sheet.unit, |ui| {
+        let (p, inks) = (palette(ui), inks(ui));
+        key(ui, inks.noise, 9.0, "± 2 σ");
+        key(ui, p.good, 2.0, "named");
+        key(ui, p.accent, 2.0, "suspect alone");
+        key(ui, inks.model, 2.0, "left over");
+        views(ui, session);
+        which(ui, session);
+    });
+    let text = "Means of what the model leaves, over the variable of each suspect, and what the suspect alone would take of it. The number is its \
+                evidence: 2 ln likelihood, its parameters paid.";
+    ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
+    ui.add_space(space::XS);
+    super::atlas::show(ui, session, sheet, &answer.diagnosis);
+}
+
+/// Curves or atlas.
+fn views(ui: &mut Ui, session: &mut Session) {
+    let text = if session.diagnosing.shows_atlas { "Curves" } else { "Atlas" };
+    let hint = "Switches between the curves and what is left over against every suspect";
+    if ui.link(text).on_hover_text(hint).clicked() {
+        session.diagnosing.shows_atlas = !session.diagnosing.shows_atlas;
+    }
+    ui.add_space(space::S);
+}
+
 fn draw(ui: &mut Ui, session: &mut Session, curves: &Residuals) {
     let height = ui.available_height();
     let gap = space::S;
@@ -123,6 +154,7 @@ fn draw(ui: &mut Ui, session: &mut Session, curves: &Residuals) {
         key(ui, inks.extended, 2.0, "with what was found");
         key(ui, inks.model, 2.0, "model");
         key(ui, inks.measured, 2.0, "measured");
+        views(ui, session);
         which(ui, session);
     });
     let upper = (TIME_SHARE * height).max(90.0);

@@ -1,7 +1,7 @@
 //! What a diagnosis answers, beside its curves: the verdict, the causes, the extended model, what to record next.
 
 use super::Panel;
-use super::{causes, diagnose, next_experiment, why_not};
+use super::{causes, check, diagnose, next_experiment, why_not};
 use crate::diagnosis_words::{force_unit, headline, title};
 use crate::ui::diagnosing::Answer;
 use crate::ui::files;
@@ -34,6 +34,7 @@ impl Panel for DiagnosisPanel {
             for (k, cause) in answer.diagnosis.causes.iter().enumerate() {
                 causes::cause(ui, k + 1, cause, &answer.diagnosis);
             }
+            check::card(ui, session, &answer.diagnosis);
             why_not::card(ui, session, &answer.diagnosis);
             hidden(ui, &answer.diagnosis);
             warnings(ui, &answer.diagnosis);

@@ -1,8 +1,10 @@
 //! One panel a file, behind one trait.
 
 pub(super) mod answers;
+mod atlas;
 mod boundaries;
 mod causes;
+mod check;
 mod compare;
 pub mod device_detail;
 pub mod devices;

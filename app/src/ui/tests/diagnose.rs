@@ -17,8 +17,13 @@ use std::time::{Duration, Instant};
 
 /// A turned crank in which something is hidden, from a generator that shares nothing with the program.
 fn hiding(effect: Effect, bench: Bench, seed: u64) -> Recording {
+    hiding_so_much(effect, bench, seed, 2.0)
+}
+
+/// The same; `ratio`: the effect over the noise.
+pub fn hiding_so_much(effect: Effect, bench: Bench, seed: u64, ratio: f64) -> Recording {
     let effects = vec![(effect, 0)];
-    let spec = Spec { effects, ratio: 2.0, bench, log: Log::Mixed, rate_hz: 100.0, seconds: 15.0 };
+    let spec = Spec { effects, ratio, bench, log: Log::Mixed, rate_hz: 100.0, seconds: 15.0 };
     blind::make(&spec, seed).0.recordings.remove(0)
 }
 

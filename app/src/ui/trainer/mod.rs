@@ -262,6 +262,13 @@ impl Trainer {
         self.follow_recording();
     }
 
+    /// Runs a manual clock on without looking at what comes of it: the next [`Self::update`] does.
+    pub fn run_unseen(&mut self, seconds: f64) {
+        if let Some(engine) = &mut self.engine {
+            engine.advance(seconds);
+        }
+    }
+
     /// Runs a manual clock on; the mouse's goal follows in steps of a picture.
     pub fn advance(&mut self, seconds: f64) {
         const FRAME_S: f64 = 1.0 / 60.0;

@@ -1,0 +1,187 @@
+//! The residual atlas: what the model leaves against the variable of every suspect, with what that suspect alone would take of it.
+
+use crate::ui::atlas::{Cell, Line, Sheet};
+use crate::ui::format;
+use crate::ui::plots::{BAND_SIGMAS, decimals, inks, marks};
+use crate::ui::session::{Session, sentence};
+use crate::ui::theme::{self, Palette, palette, space};
+use crate::ui::widgets::compact;
+use egui::{
+    Align, Align2, Color32, FontId, Layout, Pos2, Rect, Response, RichText, ScrollArea, Sense, Shape, Stroke, Ui, pos2,
+    vec2,
+};
+use estimator::diagnose::Diagnosis;
+use haptics::law;
+
+/// Least size of a cell, points, and the room for its words.
+const CELL: [f32; 2] = [204.0, 132.0];
+const WORDS: f32 = 18.0;
+/// Room for numbers beside a large picture.
+const NUMBERS: [f32; 2] = [52.0, 20.0];
+
+/// The grid, or one suspect large.
+pub fn show(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Diagnosis) {
+    let open = session.diagnosing.atlas_open.clone();
+    match open.and_then(|id| sheet.cells.iter().find(|c| c.id == id)) {
+        Some(cell) => large(ui, session, sheet, cell, diagnosis),
+        None => grid(ui, session, sheet),
+    }
+}
+
+fn grid(ui: &mut Ui, session: &mut Session, sheet: &Sheet) {
+    let gap = space::M;
+    let mut clicked = None;
+    ScrollArea::vertical().id_salt("atlas").auto_shrink(false).show(ui, |ui| {
+        ui.spacing_mut().item_spacing = vec2(gap, gap);
+        let columns = (((ui.available_width() + gap) / (CELL[0] + gap)) as usize).max(1);
+        let width = (ui.available_width() - gap * (columns as f32 - 1.0)) / columns as f32;
+        for line in sheet.cells.chunks(columns) {
+            ui.horizontal(|ui| {
+                for cell in line {
+                    if small(ui, sheet, cell, vec2(width, CELL[1])).clicked() {
+                        clicked = Some(cell.id.clone());
+                    }
+                }
+            });
+        }
+    });
+    if clicked.is_some() {
+        session.diagnosing.atlas_open = clicked;
+    }
+}
+
+/// One suspect of the grid.
+fn small(ui: &mut Ui, sheet: &Sheet, cell: &Cell, size: egui::Vec2) -> Response {
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let words = format!("{} against {}", cell.title, cell.variable);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &words));
+    if !ui.is_rect_visible(rect) {
+        return response;
+    }
+    let p = palette(ui);
+    let plot = Rect::from_min_max(rect.min + vec2(0.0, WORDS), rect.max - vec2(0.0, WORDS));
+    picture(ui, plot, sheet, cell, false);
+    let edge = if response.hovered() || response.has_focus() { p.accent } else { p.border };
+    ui.painter().rect_stroke(plot, 4, Stroke::new(1.0, edge), egui::StrokeKind::Inside);
+    let painter = ui.painter().with_clip_rect(rect);
+    let score = format::number(cell.score, 0);
+    let color = if cell.named { p.good } else { p.secondary };
+    let right = painter.text(rect.right_top(), Align2::RIGHT_TOP, score, FontId::proportional(11.5), color);
+    let name = painter.with_clip_rect(Rect::from_min_max(rect.min, pos2(right.left() - 6.0, rect.bottom())));
+    name.text(rect.left_top(), Align2::LEFT_TOP, &cell.title, FontId::new(12.0, theme::semibold()), p.text);
+    let small = FontId::proportional(11.0);
+    let [low, high] = ends(cell);
+    painter.text(rect.left_bottom(), Align2::LEFT_BOTTOM, low, small.clone(), p.faint);
+    painter.text(rect.right_bottom(), Align2::RIGHT_BOTTOM, high, small.clone(), p.faint);
+    let middle = format!("{}, {}", cell.variable, cell.unit);
+    painter.text(rect.center_bottom(), Align2::CENTER_BOTTOM, middle, small, p.secondary);
+    response.on_hover_text(format!(
+        "{words}: what is left of the force (score {}). A click shows it large.",
+        format::number(cell.score, 0)
+    ))
+}
+
+/// Both ends of the variable, as numbers.
+fn ends(cell: &Cell) -> [String; 2] {
+    let digits = decimals(0.1 * (cell.range.1 - cell.range.0)).min(2);
+    [cell.range.0, cell.range.1].map(|v| format::number(v, digits))
+}
+
+/// Band, zero, means of what is left, and what the suspect takes of it.
+fn picture(ui: &Ui, rect: Rect, sheet: &Sheet, cell: &Cell, points: bool) {
+    let (p, inks) = (palette(ui), inks(ui));
+    let painter = ui.painter().with_clip_rect(rect);
+    painter.rect_filled(rect, 4, p.sunken);
+    let at = |[x, y]: [f64; 2]| place(rect, cell.range, sheet.largest, x, y);
+    let band = BAND_SIGMAS * sheet.noise;
+    painter.rect_filled(Rect::from_two_pos(at([cell.range.0, band]), at([cell.range.1, -band])), 0, inks.noise);
+    painter.hline(rect.x_range(), at([cell.range.0, 0.0]).y, Stroke::new(1.0, p.border));
+    if points {
+        for point in &cell.cloud {
+            painter.circle_filled(at(*point), 1.2, inks.model.gamma_multiply(0.30));
+        }
+    }
+    lines(&painter, &cell.left, &at, inks.model, if points { 2.0 } else { 1.5 });
+    lines(&painter, &cell.taken, &at, suspect_ink(p, cell), if points { 3.0 } else { 2.0 });
+}
+
+/// What was found is green everywhere.
+fn suspect_ink(p: &Palette, cell: &Cell) -> Color32 {
+    if cell.named { p.good } else { p.accent }
+}
+
+fn place(rect: Rect, (low, high): (f64, f64), largest: f64, x: f64, y: f64) -> Pos2 {
+    let right = ((x - low) / (high - low)) as f32;
+    let up = (0.5 + 0.5 * y / largest) as f32;
+    pos2(rect.left() + right * rect.width(), rect.bottom() - up * rect.height())
+}
+
+/// Forwards solid, backwards dashed.
+fn lines(painter: &egui::Painter, lines: &[Line], at: &dyn Fn([f64; 2]) -> Pos2, color: Color32, width: f32) {
+    let stroke = Stroke::new(width, color);
+    for (k, line) in lines.iter().enumerate() {
+        for part in line {
+            let points: Vec<Pos2> = part.iter().map(|p| at(*p)).collect();
+            if k == 0 {
+                painter.add(Shape::line(points, stroke));
+            } else {
+                painter.extend(Shape::dashed_line(&points, stroke, 4.0, 3.0));
+            }
+        }
+    }
+}
+
+/// One suspect over the whole panel, with numbers and words.
+fn large(ui: &mut Ui, session: &mut Session, sheet: &Sheet, cell: &Cell, diagnosis: &Diagnosis) {
+    let p = palette(ui);
+    compact(ui, |ui| {
+        if ui.link("← All suspects").clicked() || ui.input(|i| i.key_pressed(egui::Key::Escape)) {
+            session.diagnosing.atlas_open = None;
+        }
+        ui.add_space(space::S);
+        ui.label(theme::strong(&cell.title));
+        ui.label(theme::caption(ui, format!("{} over {}, {}", sheet.unit, cell.variable, cell.unit)));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let note = if cell.named { "named" } else { "not named" };
+            ui.label(RichText::new(note).size(11.5).color(if cell.named { p.good } else { p.secondary }));
+        });
+    });
+    if let Some(entry) = law::cause(&cell.id) {
+        ui.label(RichText::new(entry.equation).monospace());
+        ui.add(
+            egui::Label::new(theme::caption(ui, format!("It shows: {}", crate::diagnosis_words::small(entry.shows))))
+                .wrap(),
+        );
+    }
+    let score = format::number(cell.score, 0);
+    let mut says = format!("Alone it scores {score} (2 ln likelihood, its parameters paid).");
+    if let Some(passed) = diagnosis.passed_over.iter().find(|passed| passed.id == cell.id) {
+        says = format!("{says} {}", sentence(&passed.why));
+    }
+    ui.add(egui::Label::new(theme::caption(ui, says)).wrap());
+    ui.add_space(space::XS);
+    let (rect, _) = ui.allocate_exact_size(ui.available_size().max(vec2(120.0, 120.0)), Sense::hover());
+    let plot = Rect::from_min_max(rect.min + vec2(NUMBERS[0], 4.0), rect.max - vec2(8.0, NUMBERS[1]));
+    picture(ui, plot, sheet, cell, true);
+    numbers(ui, plot, sheet, cell);
+}
+
+/// A quiet grid with its numbers.
+fn numbers(ui: &Ui, plot: Rect, sheet: &Sheet, cell: &Cell) {
+    let p = palette(ui);
+    let (painter, font) = (ui.painter(), FontId::proportional(11.0));
+    let grid = Stroke::new(0.5, p.border);
+    for mark in marks(cell.range, 8.0).into_iter().filter(|m| (cell.range.0..=cell.range.1).contains(&m.value)) {
+        let at = place(plot, cell.range, sheet.largest, mark.value, 0.0);
+        painter.vline(at.x, plot.y_range(), grid);
+        let text = format::number(mark.value, decimals(mark.step_size));
+        painter.text(pos2(at.x, plot.bottom() + 4.0), Align2::CENTER_TOP, text, font.clone(), p.secondary);
+    }
+    let heights = (-sheet.largest, sheet.largest);
+    for mark in marks(heights, 6.0).into_iter().filter(|m| m.value.abs() <= sheet.largest) {
+        let at = place(plot, cell.range, sheet.largest, cell.range.0, mark.value);
+        painter.hline(plot.x_range(), at.y, grid);
+        let text = format::number(mark.value, decimals(mark.step_size));
+        painter.text(pos2(plot.left() - 6.0, at.y), Align2::RIGHT_CENTER, text, font.clone(), p.secondary);
+    }
+}

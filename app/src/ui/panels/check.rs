@@ -1,0 +1,136 @@
+//! *Check on other recordings*: what was found, on data that took no part in it.
+
+use crate::diagnosis_words::{listed, shown_unit, title};
+use crate::ui::checking::{Checked, Holds, On, holds};
+use crate::ui::files;
+use crate::ui::format;
+use crate::ui::jobs::{JobKind, Purpose};
+use crate::ui::session::Session;
+use crate::ui::theme::{self, Palette, palette, space};
+use crate::ui::widgets::{bar, compact, plain_card};
+use egui::{Align, Color32, Layout, RichText, TextEdit, Ui};
+use estimator::diagnose::{Diagnosis, Validation};
+use std::path::PathBuf;
+
+/// The card under the causes, where there is something to check.
+pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
+    if diagnosis.causes.is_empty() {
+        return;
+    }
+    plain_card(ui, "Check on other recordings", |ui| {
+        let text =
+            "What was found is put to recordings of the same object that took no part; nothing is fitted to them.";
+        ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
+        ask(ui, session);
+        left_out(ui, session);
+        for checked in &session.diagnosing.checked {
+            ui.separator();
+            result(ui, checked);
+        }
+    });
+}
+
+fn ask(ui: &mut Ui, session: &mut Session) {
+    let ctx = ui.ctx().clone();
+    ui.horizontal(|ui| {
+        let busy = session.jobs.is_running(JobKind::Check);
+        let width = (ui.available_width() - if busy { 68.0 } else { 44.0 }).max(60.0);
+        let field = TextEdit::singleline(&mut session.diagnosing.check_field).hint_text("Path of a log, then Enter");
+        let response = ui.add(field.desired_width(width));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Recording to check on"));
+        let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+        if ui.button("…").on_hover_text("Choose one or several files").clicked() {
+            files::ask_many(&ctx, &mut session.jobs, Purpose::Check);
+        }
+        if busy {
+            ui.add(egui::Spinner::new().size(16.0));
+        }
+        let path = session.diagnosing.check_field.trim().to_owned();
+        if entered && !path.is_empty() {
+            session.check(&ctx, On::Files(vec![PathBuf::from(path)]));
+        }
+    });
+}
+
+/// Where several recordings are open, each can be checked on by what the others say.
+fn left_out(ui: &mut Ui, session: &mut Session) {
+    if session.recordings.len() < 2 {
+        return;
+    }
+    let names: Vec<String> = session.recordings.iter().map(|p| p.recording.name.clone()).collect();
+    let mut chosen = None;
+    ui.menu_button("Leave an open one out …", |ui| {
+        for (k, name) in names.iter().enumerate() {
+            if ui.button(name).clicked() {
+                chosen = Some(k);
+            }
+        }
+    })
+    .response
+    .on_hover_text("The others are diagnosed without it, and it is checked whether their answer holds for it");
+    if let Some(k) = chosen {
+        let ctx = ui.ctx().clone();
+        session.check(&ctx, On::LeftOut(k));
+    }
+}
+
+fn result(ui: &mut Ui, checked: &Checked) {
+    let p = palette(ui);
+    match &checked.found {
+        Err(problem) => {
+            ui.add(egui::Label::new(theme::strong(&checked.name)).truncate());
+            ui.add(egui::Label::new(RichText::new(problem).size(12.0).color(p.caution)).wrap());
+        }
+        Ok(validation) => figures(ui, checked, validation),
+    }
+}
+
+fn figures(ui: &mut Ui, checked: &Checked, validation: &Validation) {
+    let (p, verdict) = (palette(ui), holds(validation));
+    compact(ui, |ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let rms = |value: f64| format::significant(value, 2);
+            let unit = shown_unit(&checked.unit);
+            let text = format!("{} → {} {unit} RMS", rms(validation.rms_before), rms(validation.rms_after));
+            ui.label(RichText::new(text).size(12.0));
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add(egui::Label::new(theme::strong(&checked.name)).truncate());
+            });
+        });
+    });
+    bar(ui, validation.share.max(0.0), 1.0, None, color(p, verdict));
+    let percent = |share: f64| format::number(100.0 * share, 0);
+    let [low, high] = validation.interval.map(percent);
+    let text = format!("{} % [{low}, {high}] of the power that the model leaves", percent(validation.share));
+    ui.add(egui::Label::new(theme::caption(ui, text)).wrap()).on_hover_text(
+        "Share of the left-over power that goes, with its 95 % interval from a bootstrap over pieces of the recording",
+    );
+    ui.add(egui::Label::new(RichText::new(words(verdict)).size(12.0).color(color(p, verdict))).wrap());
+    if !validation.left_out.is_empty() {
+        let names: Vec<String> = validation.left_out.iter().map(|id| title(id)).collect();
+        ui.add(
+            egui::Label::new(theme::caption(
+                ui,
+                format!("Left out, because it cannot be had here: {}.", listed(&names)),
+            ))
+            .wrap(),
+        );
+    }
+    ui.add_space(space::XS);
+}
+
+fn color(p: &Palette, verdict: Holds) -> Color32 {
+    match verdict {
+        Holds::Yes => p.good,
+        Holds::Unclear => p.caution,
+        Holds::No => p.danger,
+    }
+}
+
+fn words(verdict: Holds) -> &'static str {
+    match verdict {
+        Holds::Yes => "It holds here, too.",
+        Holds::Unclear => "Whether it holds here cannot be told.",
+        Holds::No => "It does not hold here: the model alone does better.",
+    }
+}

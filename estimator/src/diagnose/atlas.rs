@@ -1,0 +1,102 @@
+//! The residual atlas: what the model leaves of the force beside what every suspect, alone, would take of it.
+
+use super::geometry::{Study, residual};
+use super::select::Selection;
+use super::track::{Place, Track};
+use haptics::law::cause;
+
+/// What a suspect's force goes with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Variable {
+    /// Place along the motion.
+    Place,
+    /// Its rate.
+    Velocity,
+    /// The rate of that.
+    Acceleration,
+    /// Force across the motion.
+    Across,
+    /// Measured force along the motion.
+    Force,
+    /// How fast that changes.
+    ForceRate,
+    /// Time.
+    Time,
+}
+
+impl Variable {
+    /// What a cause is best seen against. `planar`: the force has two axes, whose share along the motion changes with the place.
+    fn of(id: &str, planar: bool) -> Self {
+        match id {
+            "coulomb-friction" | "viscous-friction" | "stribeck" | "quadratic-drag" | "friction-asymmetry" => {
+                Self::Velocity
+            }
+            "inertia" => Self::Acceleration,
+            "load-friction" | "force-cross-axis" => Self::Across,
+            "force-gain" | "force-saturation" => Self::Force,
+            "time-delay" => Self::ForceRate,
+            "mass-change" | "friction-change" | "force-drift" => Self::Time,
+            "force-bias" if !planar => Self::Time,
+            _ => Self::Place,
+        }
+    }
+}
+
+/// One suspect of the atlas.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
+    /// Out of `spec/causes.md`.
+    pub id: String,
+    /// What it explains alone, in units of 2 ln(likelihood), what its parameters cost paid.
+    pub score: f64,
+    /// What it is best seen against.
+    pub variable: Variable,
+    /// What it takes of the model's residual, one an instant of the course, N or N m; the model is fitted anew beside it.
+    pub taken: Vec<f64>,
+}
+
+/// Everything that could have been there, most evidence first, and what it is seen against.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Atlas {
+    /// Suspects that the recording could have shown.
+    pub suspects: Vec<Seen>,
+    /// Rate of the rate of the coordinate, one an instant, m/s² or rad/s².
+    pub acceleration: Vec<f64>,
+    /// How fast the measured force changes, N/s or N m/s.
+    pub force_rate: Vec<f64>,
+}
+
+/// The atlas of a comparison. `threshold`: the score that names a cause.
+pub(super) fn atlas(track: &Track, study: &Study, threshold: f64) -> Atlas {
+    let Study { system, candidates, .. } = study;
+    let selection = Selection { system, candidates, threshold, dry: true, one_loss: false };
+    let mut best: Vec<(&str, usize, f64)> = Vec::new();
+    for (c, candidate) in candidates.iter().enumerate() {
+        if candidate.expression.is_some() || cause(candidate.id).is_none() || !system.supported(c) {
+            continue;
+        }
+        let Some(score) = selection.score_beside(&[], c) else { continue };
+        match best.iter_mut().find(|(id, ..)| *id == candidate.id) {
+            Some(held) if held.2 >= score => {}
+            Some(held) => (held.1, held.2) = (c, score),
+            None => best.push((candidate.id, c, score)),
+        }
+    }
+    best.sort_by(|a, b| b.2.total_cmp(&a.2));
+    let along: Vec<usize> = (0..track.rows.len()).filter(|i| track.rows[*i].place == Place::Along).collect();
+    let left = |picks: &[usize]| {
+        let solved = system.solve(picks)?;
+        Some(residual(&study.y, &study.base, candidates, picks, &solved))
+    };
+    let before = left(&[]).unwrap_or_else(|| study.y.clone());
+    let seen = |(id, c, score): &(&str, usize, f64)| {
+        let after = left(&[*c])?;
+        let taken = along.iter().map(|i| before[*i] - after[*i]).collect();
+        Some(Seen { id: (*id).to_owned(), score: *score, variable: Variable::of(id, track.planar), taken })
+    };
+    Atlas {
+        suspects: best.iter().filter_map(seen).collect(),
+        acceleration: along.iter().map(|i| track.rows[*i].motion.acceleration).collect(),
+        force_rate: along.iter().map(|i| track.rows[*i].force_rate.dot(&track.rows[*i].along)).collect(),
+    }
+}
