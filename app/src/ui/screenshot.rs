@@ -58,7 +58,7 @@ pub enum Panel {
     Atlas,
     /// What a diagnosis answers, with what to record next, rehearsed.
     Experiment,
-    /// That experiment in the Train workspace, half done.
+    /// That experiment done by hand in the virtual world, half done.
     Guided,
     /// The dialog that maps the columns of the log.
     Mapping,
@@ -312,7 +312,7 @@ pub(super) fn contents(panel: Panel) -> Contents {
         Panel::Parameters => framed(ParametersPanel),
         Panel::Results => framed(ResultsPanel::default()),
         Panel::Scene => framed(ScenePanel::default()),
-        Panel::Trainer => framed(TrainerView::default()),
+        Panel::Trainer | Panel::Guided => framed(TrainerView::default()),
         Panel::Sensitivity => framed(SensitivityPanel),
         Panel::Experiment => framed(DiagnosisPanel),
         Panel::Rules
@@ -321,7 +321,6 @@ pub(super) fn contents(panel: Panel) -> Contents {
         | Panel::Devices
         | Panel::Diagnose
         | Panel::Atlas
-        | Panel::Guided
         | Panel::Mapping
         | Panel::Parameter
         | Panel::Arrange

@@ -20,7 +20,6 @@ pub use small_png::small_png;
 
 /// Sizes of whole pages, of single panels and of scenes, pixels.
 const PAGE: [u32; 2] = [1280, 720];
-const TRAIN: [u32; 2] = [1000, 600];
 const PANEL: [u32; 2] = [640, 480];
 const COLUMN: [u32; 2] = [440, 760];
 const SCENE: [u32; 2] = [720, 480];
@@ -80,7 +79,7 @@ fn of_panel(panel: Panel) -> Plate {
         Panel::Diagnose => (Sample::Crank, PAGE, "Diagnose: what the model gets wrong, and why"),
         Panel::Atlas => (Sample::Askew, PAGE, "The residual atlas: what is left over against every suspect"),
         Panel::Experiment => (Sample::Askew, COLUMN, "What to record next, rehearsed on simulated objects"),
-        Panel::Guided => (Sample::Askew, TRAIN, "An experiment done by hand in Train: two rings to follow"),
+        Panel::Guided => (Sample::Askew, PANEL, "An experiment done by hand in Train: two rings to follow"),
         Panel::Sensitivity => (Sample::Crank, COLUMN, "Sensitivity: what the force depends on, and what goes together"),
         Panel::Parameter => (Sample::Crank, PAGE, "Another value of a parameter, tried on the replay"),
         Panel::Arrange => (Sample::Stack, PAGE, "Panels while they are arranged: drag a title, close, bring back"),
