@@ -5,6 +5,7 @@ use crate::ui::app::App;
 use crate::ui::format;
 use crate::ui::jobs::JobKind;
 use crate::ui::scene;
+use crate::ui::screenshot::in_whole_window;
 use crate::ui::session::{Session, Workspace};
 use crate::ui::theme;
 use crate::ui::trainer::Clock;
@@ -96,15 +97,7 @@ fn window(size: [u32; 2], dark: bool, draw: bool) -> anyhow::Result<Harness<'sta
         .allow_missing_glyphs()
         .with_render_cursor(false)
         .with_max_steps(8);
-    let show = |ui: &mut egui::Ui, app: &mut App| {
-        // The test kit's margin is not ours.
-        let whole = ui.ctx().content_rect();
-        ui.scope_builder(egui::UiBuilder::new().max_rect(whole), |ui| {
-            ui.set_clip_rect(whole);
-            ui.painter().rect_filled(whole, 0, theme::palette(ui).window);
-            app.show(ui);
-        });
-    };
+    let show = |ui: &mut egui::Ui, app: &mut App| in_whole_window(ui, |ui| app.show(ui));
     let app = App::new(session);
     if !draw {
         return Ok(builder.with_context_setup(theme::install).build_ui_state(show, app));

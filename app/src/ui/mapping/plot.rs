@@ -115,7 +115,7 @@ fn frame<'a>(ui: &Ui, id: &str, height: f32) -> Plot<'a> {
         .grid_spacing(egui::Rangef::new(4.0, 40.0))
         .x_grid_spacer(|input| marks(input.bounds, 6.0))
         .y_grid_spacer(|input| marks(input.bounds, 5.0))
-        .custom_y_axes(vec![value_axis(palette(ui))])
+        .custom_y_axes(vec![value_axis(palette(ui), height)])
 }
 
 /// Millimetres along the lower edge, labelled as the times are.

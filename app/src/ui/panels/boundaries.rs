@@ -24,8 +24,8 @@ pub fn handles(ui: &Ui, view_s: (f64, f64), segmentation: &Segmentation, band: R
         }
         let rect = Rect::from_center_size(Pos2::new(x, band.center().y), vec2(2.0 * GRASP, band.height() + 4.0));
         let response = ui.interact(rect, ui.scope_id().with(("boundary", index)), Sense::drag());
-        let name = format!("Boundary at {} s", format::number(interval.t1, 2));
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, &name));
+        let name = || format!("Boundary at {} s", format::number(interval.t1, 2));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, name()));
         if response.hovered() || response.dragged() {
             ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
             mark(ui, x, band, response.is_pointer_button_down_on());
@@ -36,7 +36,8 @@ pub fn handles(ui: &Ui, view_s: (f64, f64), segmentation: &Segmentation, band: R
             let to_s = from + f64::from(at.x - band.left()) / per_s;
             change = Some(Change::Move { interval: index, to_s });
         }
-        if !response.dragged() {
+        if response.hovered() && !response.dragged() {
+            let name = name();
             response.on_hover_text(format!("{name}\nDrag to move it; the fit follows"));
         }
     }

@@ -140,7 +140,11 @@ fn line(body: &mut TableBody<'_>, session: &mut Session, parameter: &Parameter) 
         } else {
             row.col(|ui| {
                 let text = RichText::new("not shown").size(12.0).italics().color(palette(ui).faint);
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(text));
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    // Slanted letters lean out of their place.
+                    ui.add_space(2.0);
+                    ui.label(text);
+                });
             });
             row.col(|_| {});
             row.col(|_| {});

@@ -45,7 +45,7 @@ fn constraints(ui: &mut Ui, session: &Session) {
             let name = if analysis.fit.constraints.len() > 1 { constraint.recording.as_deref() } else { None };
             ui.horizontal(|ui| {
                 ui.label(theme::strong(heading(constraint)));
-                ui.label(theme::caption(ui, name.unwrap_or_default()));
+                ui.add(egui::Label::new(theme::caption(ui, name.unwrap_or_default())).truncate());
             });
             for fact in facts(constraint) {
                 ui.label(fact);

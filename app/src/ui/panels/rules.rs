@@ -13,7 +13,7 @@ use estimator::segment::definition::Definition;
 use haptics::recording::Task;
 
 /// Height of what stands below the tables: thresholds, name, and what is wrong.
-const FOOT: f32 = 78.0;
+const FOOT: f32 = 94.0;
 
 /// The editor of the rules.
 #[derive(Default)]

@@ -13,6 +13,35 @@ use haptics::recording::Task;
 
 /// Height of a line.
 const LINE: f32 = 30.0;
+/// Where there is less room than this the table of states is drawn closely, points.
+const ROOMY: f32 = 740.0;
+
+/// Widths in the table of states, points.
+struct Widths {
+    state: f32,
+    phase: f32,
+    chip: f32,
+    buttons: f32,
+    gap: f32,
+}
+
+impl Widths {
+    fn of(room: f32) -> Self {
+        if room < ROOMY {
+            Self { state: 152.0, phase: 104.0, chip: 18.0, buttons: 44.0, gap: 4.0 }
+        } else {
+            Self { state: 188.0, phase: 120.0, chip: 20.0, buttons: 60.0, gap: space::S }
+        }
+    }
+
+    /// Three chips beside each other.
+    fn signs(&self) -> f32 {
+        3.0 * self.chip + 2.0 * CHIP_GAP + 4.0
+    }
+}
+
+/// Between the signs of a signal.
+const CHIP_GAP: f32 = 1.0;
 
 /// What is done with a line.
 enum Done {
@@ -40,18 +69,19 @@ pub fn states(ui: &mut Ui, open: &mut Rules) {
     let known = signals(open.draft.like);
     let needle = open.draft.like == Task::Needle;
     let mut done = None;
-    ui.spacing_mut().item_spacing.y = 0.0;
+    let widths = Widths::of(ui.available_width());
+    ui.spacing_mut().item_spacing = vec2(widths.gap, 0.0);
     let mut table = TableBuilder::new(ui)
         .id_salt("states")
         .vscroll(false)
         .cell_layout(Layout::left_to_right(Align::Center))
-        .column(Column::exact(188.0));
+        .column(Column::exact(widths.state));
     for _ in known {
-        table = table.column(Column::exact(if needle { 120.0 } else { 70.0 }));
+        table = table.column(Column::exact(if needle { widths.phase } else { widths.signs() }));
     }
     table
         .column(Column::remainder().clip(true).at_least(80.0))
-        .column(Column::exact(60.0))
+        .column(Column::exact(widths.buttons))
         .header(18.0, |mut header| {
             header.col(|ui| drop(ui.label(theme::caption(ui, "State"))));
             for (name, _) in known {
@@ -67,7 +97,11 @@ pub fn states(ui: &mut Ui, open: &mut Rules) {
                     row.col(|ui| state(ui, open, ("rule", rule), |open| &mut open.draft.states[rule].state));
                     for (name, values) in known {
                         row.col(|ui| {
-                            if needle { phase(ui, open, rule, values) } else { signs(ui, open, rule, name, values) }
+                            if needle {
+                                phase(ui, open, rule, values);
+                            } else {
+                                signs(ui, open, rule, (name, values), widths.chip);
+                            }
                         });
                     }
                     row.col(|ui| shown(ui, open, rule));
@@ -90,12 +124,13 @@ pub fn states(ui: &mut Ui, open: &mut Rules) {
 fn buttons(row: &mut TableRow<'_, '_>, index: usize, removable: bool, done: &mut Option<Done>) {
     row.col(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
+        ui.spacing_mut().button_padding.x = 4.0;
         let small = |text: &str, size| Button::new(RichText::new(text).size(size)).small().frame_when_inactive(false);
         if ui.add_enabled(index > 0, small("▲", 10.0)).on_hover_text("Move up: rules are tried from the top").clicked()
         {
             *done = Some(Done::Up(index));
         }
-        if ui.add_enabled(removable, small("×", 17.0)).on_hover_text("Remove").clicked() {
+        if ui.add_enabled(removable, small("×", 15.0)).on_hover_text("Remove").clicked() {
             *done = Some(Done::Gone(index));
         }
     });
@@ -115,8 +150,8 @@ fn state(ui: &mut Ui, open: &mut Rules, id: (&str, usize), place: impl Fn(&mut R
 }
 
 /// The signs that a signal may have: three chips, none of them lit for any.
-fn signs(ui: &mut Ui, open: &mut Rules, rule: usize, name: &str, values: &[&str]) {
-    ui.spacing_mut().item_spacing.x = 2.0;
+fn signs(ui: &mut Ui, open: &mut Rules, rule: usize, (name, values): (&str, &[&str]), chip_width: f32) {
+    ui.spacing_mut().item_spacing.x = CHIP_GAP;
     ui.spacing_mut().button_padding = vec2(0.0, 0.0);
     let p = palette(ui);
     let lit = open.draft.states[rule].when.get(name).cloned().unwrap_or_default();
@@ -129,7 +164,7 @@ fn signs(ui: &mut Ui, open: &mut Rules, rule: usize, name: &str, values: &[&str]
             (p.faint, Color32::TRANSPARENT, Stroke::new(1.0, p.border))
         };
         let chip = Button::new(RichText::new(text).size(12.0).color(ink)).fill(fill).stroke(edge).corner_radius(4);
-        let response = ui.add(chip.min_size(vec2(20.0, 20.0)));
+        let response = ui.add(chip.min_size(vec2(chip_width, 20.0)));
         let label = format!("{} {} {value}", state_name(open.draft.states[rule].state), signal(name).0);
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, on, label.clone()));
         if response.clicked() {
@@ -143,12 +178,15 @@ fn phase(ui: &mut Ui, open: &mut Rules, rule: usize, values: &[&str]) {
     let when = &mut open.draft.states[rule].when;
     let mut chosen = when.get("phase").cloned().unwrap_or_default();
     let text = if chosen.is_empty() { "any" } else { chosen.as_str() };
-    ComboBox::from_id_salt(("phase", rule)).width(104.0).selected_text(text.to_owned()).show_ui(ui, |ui| {
-        ui.selectable_value(&mut chosen, String::new(), "any");
-        for value in values {
-            ui.selectable_value(&mut chosen, (*value).to_owned(), *value);
-        }
-    });
+    ComboBox::from_id_salt(("phase", rule))
+        .width(ui.available_width() - 2.0 * space::S)
+        .selected_text(text.to_owned())
+        .show_ui(ui, |ui| {
+            ui.selectable_value(&mut chosen, String::new(), "any");
+            for value in values {
+                ui.selectable_value(&mut chosen, (*value).to_owned(), *value);
+            }
+        });
     if chosen.is_empty() {
         when.remove("phase");
     } else {

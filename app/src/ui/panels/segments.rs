@@ -8,12 +8,17 @@ use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space, state_color, state_name};
 use crate::ui::widgets::{card, compact, empty_state, swatch};
 use egui::{Align, Align2, FontId, Layout, Pos2, Rangef, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
+use egui_extras::{Column, TableBuilder};
 use estimator::segment::score::Score;
 use estimator::segment::{Interval, Segmentation, SystemState};
 use std::ops::Range;
 
 /// Height of the band.
 const BAND: f32 = 22.0;
+/// No word is as narrow as this.
+const LEAST_WORD: f32 = 14.0;
+/// Height of a line of the list.
+const LINE: f32 = 21.0;
 /// Height of the subtasks' line.
 const SUBTASKS: f32 = 18.0;
 
@@ -107,6 +112,7 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
     let dark = ui.visuals().dark_mode;
     let (mut seek, mut change) = (None, None);
     let can_be_set = session.states_can_be_set();
+    let some_menu_is_open = egui::Popup::is_any_open(ui.ctx());
     for (index, interval) in segmentation.states.iter().enumerate() {
         let (left, right) = (x_of(session, band.x_range(), interval.t0), x_of(session, band.x_range(), interval.t1));
         if right - left < 0.4 {
@@ -116,12 +122,16 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
         let color = state_color(dark, interval.state);
         ui.painter().rect_filled(rect, if rect.width() > 8.0 { 3 } else { 0 }, color);
         let ink = theme::ink_on(color);
-        if !caption(ui, rect, word(segmentation, interval.state), ink) {
+        if rect.width() > LEAST_WORD && !caption(ui, rect, word(segmentation, interval.state), ink) {
             caption(ui, rect, theme::state_short(interval.state), ink);
         }
         let response = ui.interact(rect, ui.scope_id().with(("state", index)), Sense::click());
         response
             .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, word(segmentation, interval.state)));
+        // Menu and tooltip of hundreds of states would cost most of the picture.
+        if !response.hovered() && !response.clicked() && !some_menu_is_open {
+            continue;
+        }
         if response.hovered() {
             ui.painter().rect_stroke(rect, 3, Stroke::new(1.5, palette(ui).text), StrokeKind::Inside);
         }
@@ -210,7 +220,10 @@ fn draw_subtasks(ui: &mut Ui, session: &Session, segmentation: &Segmentation, li
         let name = format::object(&name);
         let rect = Rect::from_x_y_ranges(left..=right, line.top() + 3.0..=line.bottom());
         caption(ui, rect, &name, p.secondary);
-        ui.interact(rect, ui.scope_id().with(("subtask", &name)), Sense::hover()).on_hover_text(name);
+        let response = ui.interact(rect, ui.scope_id().with(("subtask", &name)), Sense::hover());
+        if response.hovered() {
+            response.on_hover_text(name);
+        }
     }
 }
 
@@ -270,25 +283,39 @@ fn intervals(ui: &mut Ui, session: &mut Session) {
     };
     let dark = ui.visuals().dark_mode;
     let mut seek = None;
-    egui::ScrollArea::vertical().id_salt("intervals").show(ui, |ui| {
-        egui::Grid::new("interval list").num_columns(5).spacing(vec2(18.0, 5.0)).show(ui, |ui| {
+    let elided = |ui: &mut Ui, text: RichText| drop(ui.add(egui::Label::new(text).truncate()));
+    let p = palette(ui);
+    // Where there is little room, states and subtasks share it.
+    let state = (0.34 * ui.available_width()).clamp(60.0, 130.0);
+    TableBuilder::new(ui)
+        .id_salt("intervals")
+        .auto_shrink([false, true])
+        .min_scrolled_height(0.0)
+        .cell_layout(Layout::left_to_right(Align::Center))
+        .column(Column::exact(10.0))
+        .columns(Column::exact(54.0), 2)
+        .column(Column::exact(state))
+        .column(Column::remainder().clip(true))
+        .header(LINE, |mut header| {
             for text in ["", "From", "Length", "State", "Subtask"] {
-                ui.label(theme::caption(ui, text));
+                header.col(|ui| elided(ui, theme::caption(ui, text)));
             }
-            ui.end_row();
-            for interval in &segmentation.states {
-                swatch(ui, state_color(dark, interval.state));
-                if ui.link(format!("{} s", format::number(interval.t0, 2))).clicked() {
-                    seek = Some(interval.t0);
-                }
-                ui.label(format!("{} s", format::number(interval.t1 - interval.t0, 2)));
-                ui.label(word(segmentation, interval.state));
+        })
+        .body(|body| {
+            body.rows(LINE, segmentation.states.len(), |mut row| {
+                let interval = &segmentation.states[row.index()];
+                row.col(|ui| drop(swatch(ui, state_color(dark, interval.state))));
+                row.col(|ui| {
+                    if ui.link(format!("{} s", format::number(interval.t0, 2))).clicked() {
+                        seek = Some(interval.t0);
+                    }
+                });
+                row.col(|ui| drop(ui.label(format!("{} s", format::number(interval.t1 - interval.t0, 2)))));
+                row.col(|ui| elided(ui, RichText::new(word(segmentation, interval.state))));
                 let subtask = interval.subtask.as_deref().map(format::object).unwrap_or_default();
-                ui.label(RichText::new(subtask).color(palette(ui).secondary));
-                ui.end_row();
-            }
+                row.col(|ui| elided(ui, RichText::new(subtask).color(p.secondary)));
+            });
         });
-    });
     if let Some(time) = seek {
         session.seek(time);
     }

@@ -121,9 +121,10 @@ fn matrix(ui: &mut Ui, group: &Correlations) {
             let response = ui.interact(at, ui.scope_id().with(("cell", i, j)), Sense::hover());
             let value = format::number(group.values[i][j], 2);
             response.on_hover_text(format!("{} with {}: {value}", names[i], names[j].to_lowercase()));
-            if i != j && cell > 24.0 {
-                let ink = theme::ink_on(color(p, group.values[i][j]));
-                ui.painter().text(at.center(), Align2::CENTER_CENTER, value, FontId::proportional(10.0), ink);
+            let ink = theme::ink_on(color(p, group.values[i][j]));
+            let galley = ui.painter().layout_no_wrap(value, FontId::proportional(10.0), ink);
+            if i != j && galley.size().x < at.width() {
+                ui.painter().galley(at.center() - 0.5 * galley.size(), galley, ink);
             }
         }
     }

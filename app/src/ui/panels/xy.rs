@@ -6,7 +6,7 @@ use crate::ui::plots::{AXIS_WIDTH, GUTTER, Levels, Recipe, Sources, XyCache, XyI
 use crate::ui::prepare::{Group, Prepared, Trace};
 use crate::ui::theme::{self, palette, space, state_name};
 use crate::ui::widgets::{compact, segmented, swatch};
-use egui::{ComboBox, Rangef, Sense, Ui, UiBuilder, vec2};
+use egui::{ComboBox, Rangef, ScrollArea, Sense, Ui, UiBuilder, vec2};
 use estimator::segment::SystemState;
 use estimator::signal::transform::Transform;
 use std::sync::Arc;
@@ -31,7 +31,9 @@ pub fn xy_view(
     let Some((x_axis, y_axis)) = chosen(plots, prepared) else { return (area, None) };
     (plots.xy.x, plots.xy.y) = (Some(x_axis), Some(y_axis));
     ui.scope_builder(UiBuilder::new().max_rect(left).id_salt("xy gutter"), |ui| {
-        gutter(ui, plots, sources, cursor_s);
+        // Of a short plot the last choices are scrolled to.
+        let scroll = ScrollArea::vertical().id_salt("xy choices").max_height(height).min_scrolled_height(0.0);
+        scroll.show(ui, |ui| gutter(ui, plots, sources, cursor_s));
     });
     let (Some(x_axis), Some(y_axis)) = (plots.xy.x.clone(), plots.xy.y.clone()) else { return (area, None) };
     let both = signal(plots, prepared, &x_axis).zip(signal(plots, prepared, &y_axis));

@@ -31,7 +31,7 @@ pub fn still_plot(id: impl Hash + Debug, p: &Palette, height: f32, across: f64, 
         .x_grid_spacer(move |input| marks(input.bounds, across))
         .y_grid_spacer(move |input| marks(input.bounds, if height > tall { 6.0 } else { 4.0 }))
         .set_margin_fraction(Vec2::ZERO)
-        .custom_y_axes(vec![value_axis(p)])
+        .custom_y_axes(vec![value_axis(p, height)])
 }
 
 /// Seconds, or sample numbers.
@@ -48,10 +48,17 @@ pub fn variable_axis(p: &Palette, unit: &'static str) -> AxisHints<'static> {
         .tick_label_font(FontId::proportional(11.0))
 }
 
-/// Values in the group's unit.
-pub fn value_axis(p: &Palette) -> AxisHints<'static> {
+/// Half the height of a label, points.
+const HALF_LABEL: f64 = 6.0;
+
+/// Values in the group's unit, on an axis of so many points. A value at the very end would be cut in half: it is left out.
+pub fn value_axis(p: &Palette, height: f32) -> AxisHints<'static> {
     AxisHints::new_y()
-        .formatter(|mark, _| format::number(mark.value, decimals(mark.step_size)))
+        .formatter(move |mark, range| {
+            let air = HALF_LABEL * (range.end() - range.start()) / f64::from(height);
+            let inside = mark.value >= range.start() + air && mark.value <= range.end() - air;
+            if inside { format::number(mark.value, decimals(mark.step_size)) } else { String::new() }
+        })
         .min_thickness(AXIS_WIDTH)
         .label_spacing(Rangef::new(10.0, 14.0))
         .tick_label_color(p.secondary)

@@ -6,10 +6,14 @@ use super::row::{RowInput, RowKind, curve_color};
 use super::title_menu::title_menu;
 use crate::ui::format;
 use crate::ui::theme::{self, palette, space};
-use egui::{Align, Color32, Layout, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
+use egui::{Align, Color32, FontId, Layout, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
 
 /// Height of an entry, points.
 const LINE: f32 = 15.0;
+/// Size of its words.
+const WORDS: f32 = 11.5;
+/// In less room than this not even a letter of a name can be read.
+const LEAST_NAME: f32 = 14.0;
 
 /// One line of the gutter.
 struct Entry<'a> {
@@ -29,7 +33,8 @@ pub fn gutter(ui: &mut Ui, choice: &mut GroupChoice, input: &RowInput<'_>) {
     ui.add_space(2.0);
     head(ui, choice, input);
     let entries = entries(ui, input);
-    let room = ui.available_height();
+    // Whole lines: half a line cannot be read.
+    let room = (ui.available_height() / LINE).floor().max(1.0) * LINE;
     let sample = input.prepared.sample_at(input.cursor_s);
     let scroll = egui::ScrollArea::vertical().id_salt(("curves", input.index)).min_scrolled_height(0.0);
     scroll.max_height(room).show(ui, |ui| {
@@ -146,31 +151,54 @@ fn layers<'a>(ui: &Ui, input: &RowInput<'a>) -> Vec<Entry<'a>> {
 fn show(ui: &mut Ui, choice: &mut GroupChoice, input: &RowInput<'_>, entry: &Entry<'_>, sample: usize, narrow: bool) {
     let shown = choice.shows(entry.switch);
     let p = palette(ui);
+    let value = value_words(input, entry, sample, narrow).filter(|_| shown).unwrap_or_default();
+    let value = ui.painter().layout_no_wrap(value, FontId::proportional(WORDS), p.text);
     let response = ui.scope_builder(UiBuilder::new().sense(Sense::click()).id_salt(&entry.label), |ui| {
         ui.horizontal(|ui| {
+            let right = ui.max_rect().right();
             dash(ui, if shown { entry.color } else { p.border }, entry.width);
             let words = if shown { p.secondary } else { p.faint };
-            ui.add(egui::Label::new(RichText::new(&entry.label).size(11.5).color(words)).truncate());
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let value = entry.curve.map_or(f64::NAN, |c| c.levels.samples(&c.prepared.recording).value(sample));
-                let text = if input.kind == RowKind::LeftOver {
-                    // Its name takes the room of two.
-                    let told = shown && value.is_finite() && !narrow;
-                    if told { format::significant(value, 2) } else { String::new() }
-                } else if shown && value.is_finite() {
-                    value_text(value, &input.drawn.unit, narrow)
-                } else {
-                    String::new()
-                };
-                ui.label(RichText::new(text).size(11.5).color(p.text));
+            // The value comes first; the name takes what is left, and its end goes where that is too little.
+            let room = right - ui.cursor().left() - value.size().x - ui.spacing().item_spacing.x;
+            let name = egui::Label::new(RichText::new(&entry.label).size(WORDS).color(words)).truncate();
+            let size = vec2(room.max(0.0), LINE);
+            ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+                ui.set_min_size(size);
+                ui.set_max_width(size.x);
+                if size.x > LEAST_NAME {
+                    ui.add(name);
+                }
             });
+            ui.label(value);
         });
     });
     let doing = if shown { "hide" } else { "show" };
-    let response = response.response.on_hover_text(format!("{}: click to {doing}", entry.hint));
+    let response = response.response.on_hover_text(format!(
+        "{}{}: click to {doing}",
+        entry.hint,
+        whole_value(input, entry, sample)
+    ));
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, shown, &entry.label));
     if response.clicked() {
         choice.toggle(entry.switch);
+    }
+}
+
+/// The value with its unit, for the tooltip: in the gutter it may have been left out.
+fn whole_value(input: &RowInput<'_>, entry: &Entry<'_>, sample: usize) -> String {
+    let value = entry.curve.map(|c| c.levels.samples(&c.prepared.recording).value(sample));
+    let value = value.filter(|v| v.is_finite());
+    value.map_or_else(String::new, |v| format!(", {} {}", format::significant(v, 5), input.drawn.unit))
+}
+
+/// What an entry tells of the cursor's time.
+fn value_words(input: &RowInput<'_>, entry: &Entry<'_>, sample: usize, narrow: bool) -> Option<String> {
+    let curve = entry.curve?;
+    let value = Some(curve.levels.samples(&curve.prepared.recording).value(sample)).filter(|v| v.is_finite())?;
+    match input.kind {
+        // Its name takes the room of two.
+        RowKind::LeftOver => (!narrow).then(|| format::significant(value, 2)),
+        RowKind::Curves => Some(value_text(value, &input.drawn.unit, narrow)),
     }
 }
 
