@@ -52,7 +52,8 @@ impl App {
             self.dock.bring(self.session.workspace, pane);
         }
         // A dialog waits for an answer first.
-        if self.session.mapping.is_none() && !self.palette.is_open() && !self.tour.is_on() {
+        if self.session.mapping.is_none() && !self.palette.is_open() && !self.tour.is_on() && self.dock.naming.is_none()
+        {
             actions::keys(ui, self);
             super::keys::handle(ui, &mut self.session);
         }
@@ -79,6 +80,7 @@ impl App {
             });
         }
         palette::show(ui, self);
+        super::dock::naming::show(ui, self);
         tour::show(ui, self);
         self.keep_state(&ctx);
         if self.session.playing {

@@ -180,6 +180,8 @@ pub enum Outcome {
     },
     /// When a video begins on its recording's clock, s; or why that cannot be told.
     VideoAligned(PathBuf, Result<f64, String>),
+    /// The same, while somebody shifts it: by shown and moved recording; `None` where they are not alike.
+    MostAlike((usize, usize), Option<f64>),
     /// Nothing: the user has cancelled it.
     Cancelled,
     /// One sentence.

@@ -3,7 +3,10 @@
 use super::actions::{self, Action, Group};
 use super::app::App;
 use super::theme::palette;
-use egui::{Button, RichText, Ui};
+use egui::{Button, RichText, ScrollArea, Ui};
+
+/// Room for the bar above a menu, and for the edge of the window below, points.
+const ABOVE: f32 = 110.0;
 
 /// The button that opens it.
 pub fn button(ui: &mut Ui, app: &mut App) {
@@ -18,12 +21,18 @@ pub fn button(ui: &mut Ui, app: &mut App) {
 
 fn entries(ui: &mut Ui, app: &mut App, group: Group) {
     ui.set_min_width(230.0);
-    let all: Vec<Action> = Action::all(&app.session).filter(|a| a.group() == group).collect();
+    let all: Vec<Action> = Action::all(app).filter(|a| a.group() == group).collect();
+    // Recent files and named arrangements make long menus.
+    let height = ui.ctx().content_rect().height() - ABOVE;
+    ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| all_of(ui, app, all));
+}
+
+fn all_of(ui: &mut Ui, app: &mut App, all: Vec<Action>) {
     for action in all {
         let why = action.why_not(app);
-        let tick = if action.is_on(app) == Some(true) { "✔ " } else { "" };
+        let on = action.is_on(app) == Some(true);
         let keys = RichText::new(actions::key_text(ui, &action)).size(11.0).color(palette(ui).secondary);
-        let entry = Button::new(format!("{tick}{}", action.title())).right_text(keys);
+        let entry = Button::new(action.title()).right_text(keys).selected(on);
         let response = ui.add_enabled(why.is_none(), entry);
         let clicked = response.clicked();
         if let Some(why) = why {

@@ -2,6 +2,7 @@
 
 use super::jobs::{JobKind, Outcome};
 use super::plots::choices::Overlaid;
+use super::plots::shift::Likeliest;
 use super::prepare::{Prepared, Trace};
 use super::session::Session;
 use estimator::segment::SystemState;
@@ -37,6 +38,21 @@ impl Session {
         };
         self.jobs.start_watched(ctx, JobKind::Align, "Laying recordings over each other".to_owned(), move |_| {
             Outcome::Aligned(recording, most_alike(&fixed, &moved))
+        });
+    }
+
+    /// Looks in the background where a recording is most like the shown one, once: there it comes to rest when it is shifted by hand.
+    pub fn find_likeliest(&mut self, ctx: &egui::Context, likeliest: &mut Likeliest, recording: usize) {
+        let pair = (self.current, recording);
+        let (Some(fixed), Some(moved)) = (self.prepared().cloned(), self.recordings.get(recording).cloned()) else {
+            return;
+        };
+        if likeliest.contains_key(&pair) || self.jobs.is_running(JobKind::Align) {
+            return;
+        }
+        likeliest.insert(pair, None);
+        self.jobs.start_watched(ctx, JobKind::Align, "Comparing recordings".to_owned(), move |_| {
+            Outcome::MostAlike(pair, most_alike(&fixed, &moved).ok())
         });
     }
 

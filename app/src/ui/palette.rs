@@ -40,7 +40,7 @@ pub fn show(ui: &Ui, app: &mut App) {
         return;
     }
     let ctx = ui.ctx().clone();
-    let mut found = actions::matching(&app.session, &app.palette.query);
+    let mut found = actions::matching(app, &app.palette.query);
     if app.palette.query.is_empty() {
         // What can be done now stands first.
         found.sort_by_key(|action| action.why_not(app).is_some());

@@ -14,6 +14,8 @@ use super::panels::scene::ScenePanel;
 use super::panels::segments::SegmentsPanel;
 use super::panels::sensitivity::SensitivityPanel;
 use super::panels::trainer_view::TrainerView;
+use super::plots::choices::XyAxis;
+use super::plots::{LogView, can_compare};
 use super::prepare::Prepared;
 use super::scene;
 use super::session::{FitChoice, Session, Workspace};
@@ -24,6 +26,7 @@ use anyhow::{Context as _, anyhow};
 use egui::{Frame, Ui, UiBuilder};
 use egui_kittest::wgpu::WgpuTestRenderer;
 use estimator::diagnose::Progress;
+use estimator::signal::transform::Transform;
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
 use std::path::PathBuf;
@@ -34,6 +37,10 @@ use std::sync::Arc;
 pub enum Panel {
     /// Plots, band and time slider.
     Log,
+    /// One signal against another.
+    Xy,
+    /// What the models leave of the measured forces.
+    LeftOver,
     /// States and subtasks.
     Segments,
     /// The rules of the task, open in the Calibrate workspace.
@@ -158,6 +165,12 @@ pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Se
             session.diagnosing.shows_atlas = true;
         }
         Panel::Experiment | Panel::Guided => experiment(&mut session, panel)?,
+        Panel::Xy => against_each_other(&mut session),
+        Panel::LeftOver => {
+            diagnosed(&mut session);
+            session.workspace = Workspace::Calibrate;
+            what_is_left(&mut session);
+        }
         Panel::Sensitivity => session.look_at_sensitivity(),
         Panel::Parameter => try_another_value(&mut session),
         Panel::Video => with_video(&mut session, input),
@@ -180,6 +193,27 @@ fn with_video(session: &mut Session, input: &PanelInput) {
         (None, None) => {}
     }
     session.read_video_now();
+}
+
+/// The lifting force over the height, where both are known; else what the window begins with.
+fn against_each_other(session: &mut Session) {
+    session.plots.view = LogView::Xy;
+    let Some(prepared) = session.prepared().cloned() else { return };
+    let axis = |name: &str| {
+        let group = prepared.groups.iter().find(|g| g.traces.iter().any(|t| t.name == name))?;
+        Some(XyAxis { group: group.key(), name: name.to_owned(), transform: Transform::None })
+    };
+    (session.plots.xy.x, session.plots.xy.y) = (axis("y1_m"), axis("net_y_N"));
+}
+
+/// A plot of what is left over of every quantity that the model predicts, and only those quantities.
+fn what_is_left(session: &mut Session) {
+    let Some(prepared) = session.prepared().cloned() else { return };
+    for group in &prepared.groups {
+        let comparable = can_compare(session.shown_curves(), group);
+        let choice = session.plots.of(group);
+        (choice.shown, choice.left_over) = (Some(comparable), comparable);
+    }
 }
 
 /// The first parameter with a good value a fifth larger.
@@ -264,13 +298,7 @@ pub fn draw(session: Session, panel: Panel, size: [u32; 2], dark: bool) -> anyho
     let options = egui_wgpu::RendererOptions::default();
     let state = egui_kittest::wgpu::create_render_state(egui_kittest::wgpu::default_wgpu_setup(), options);
     let surface = state.clone();
-    let mut app = App::new(session);
-    match panel {
-        Panel::Arrange => app.dock.arranging = true,
-        Panel::Commands => app.palette.open(),
-        Panel::Tour => app.tour.begin_at(4),
-        _ => {}
-    }
+    let mut app = app_for(session, panel);
     let mut contents = contents(panel);
     let mut harness = egui_kittest::Harness::builder()
         .with_size(egui::vec2(size[0] as f32, size[1] as f32))
@@ -284,16 +312,32 @@ pub fn draw(session: Session, panel: Panel, size: [u32; 2], dark: bool) -> anyho
         })
         .renderer(WgpuTestRenderer::from_render_state(state))
         .build_ui(move |ui| {
-            // The test kit's margin is not ours.
-            let whole = ui.ctx().content_rect();
-            ui.scope_builder(UiBuilder::new().max_rect(whole), |ui| {
-                ui.set_clip_rect(whole);
-                ui.painter().rect_filled(whole, 0, theme::palette(ui).window);
-                contents(ui, &mut app);
-            });
+            in_whole_window(ui, |ui| contents(ui, &mut app));
         });
     harness.run_steps(4);
     harness.render().map_err(|error| anyhow!(error)).context("the panel could not be drawn")
+}
+
+/// The window that a panel is drawn in.
+pub(super) fn app_for(session: Session, panel: Panel) -> App {
+    let mut app = App::new(session);
+    match panel {
+        Panel::Arrange => app.dock.arranging = true,
+        Panel::Commands => app.palette.open(),
+        Panel::Tour => app.tour.begin_at(4),
+        _ => {}
+    }
+    app
+}
+
+/// Draws over all of a window of the test kit, whose margin is not ours.
+pub(super) fn in_whole_window(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    let whole = ui.ctx().content_rect();
+    ui.scope_builder(UiBuilder::new().max_rect(whole), |ui| {
+        ui.set_clip_rect(whole);
+        ui.painter().rect_filled(whole, 0, theme::palette(ui).window);
+        contents(ui);
+    });
 }
 
 /// Draws a panel of the window.
@@ -307,7 +351,7 @@ pub(super) fn contents(panel: Panel) -> Contents {
         })
     }
     match panel {
-        Panel::Log => framed(LogPanel::default()),
+        Panel::Log | Panel::Xy | Panel::LeftOver => framed(LogPanel::default()),
         Panel::Segments => framed(SegmentsPanel),
         Panel::Parameters => framed(ParametersPanel),
         Panel::Results => framed(ResultsPanel::default()),

@@ -363,6 +363,9 @@ impl Session {
             Outcome::Video(file, answer) => self.video_was_read(file, answer),
             Outcome::Picture { file, index, picture } => self.picture_came(ctx, (file, index), picture),
             Outcome::VideoAligned(file, found) => self.video_aligned(&file, found),
+            Outcome::MostAlike(pair, found) => {
+                self.plots.likeliest.insert(pair, found);
+            }
             Outcome::Cancelled | Outcome::Chosen(_, None) => {}
             Outcome::Chosen(purpose, Some(path)) => self.chosen(ctx, purpose, path),
             Outcome::ChosenMany(_, paths) => self.check(ctx, On::Files(paths)),

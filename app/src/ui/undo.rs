@@ -1,6 +1,7 @@
-//! Undo and redo of everything about the fit that the user changes.
+//! Undo and redo of everything about the fit that the user changes, and of recordings that lie over each other.
 
 use super::fit_choice::FitChoice;
+use super::plots::choices::Overlaid;
 use super::session::{Session, Tone};
 use egui::util::undoer::{Settings, Undoer};
 
@@ -11,7 +12,21 @@ const KEPT: usize = 200;
 
 /// What can be taken back, and brought back.
 pub struct Undo {
-    undoer: Undoer<FitChoice>,
+    undoer: Undoer<Undoable>,
+}
+
+/// What the user changes and may want back.
+#[derive(Clone, Debug, PartialEq)]
+struct Undoable {
+    choice: FitChoice,
+    /// Which recordings lie over the shown one, and how far they are shifted.
+    overlaid: Vec<Overlaid>,
+}
+
+impl Undoable {
+    fn of(session: &Session) -> Self {
+        Self { choice: session.choice.clone(), overlaid: session.plots.overlaid.clone() }
+    }
 }
 
 impl Default for Undo {
@@ -25,7 +40,8 @@ impl Session {
     /// Notices what was changed; call once a frame.
     pub fn note_changes(&mut self, now_s: f64) {
         if !self.recordings.is_empty() {
-            self.undo.undoer.feed_state(now_s, &self.choice);
+            let now = Undoable::of(self);
+            self.undo.undoer.feed_state(now_s, &now);
         }
     }
 
@@ -36,31 +52,34 @@ impl Session {
 
     /// True when there is something to take back.
     pub fn can_undo(&self) -> bool {
-        self.undo.undoer.has_undo(&self.choice)
+        self.undo.undoer.has_undo(&Undoable::of(self))
     }
 
     /// True when something was taken back.
     pub fn can_redo(&self) -> bool {
-        self.undo.undoer.has_redo(&self.choice)
+        self.undo.undoer.has_redo(&Undoable::of(self))
     }
 
     /// Takes the last change back.
     pub fn undo(&mut self) {
-        if let Some(before) = self.undo.undoer.undo(&self.choice).cloned() {
-            self.say(Tone::Done, format!("Undone: {}.", difference(&self.choice, &before)));
+        let now = Undoable::of(self);
+        if let Some(before) = self.undo.undoer.undo(&now).cloned() {
+            self.say(Tone::Done, format!("Undone: {}.", difference(&now, &before)));
             self.put_back(before);
         }
     }
 
     /// Brings back what was taken back.
     pub fn redo(&mut self) {
-        if let Some(after) = self.undo.undoer.redo(&self.choice).cloned() {
-            self.say(Tone::Done, format!("Redone: {}.", difference(&self.choice, &after)));
+        let now = Undoable::of(self);
+        if let Some(after) = self.undo.undoer.redo(&now).cloned() {
+            self.say(Tone::Done, format!("Redone: {}.", difference(&now, &after)));
             self.put_back(after);
         }
     }
 
-    fn put_back(&mut self, choice: FitChoice) {
+    fn put_back(&mut self, Undoable { choice, overlaid }: Undoable) {
+        self.plots.overlaid = overlaid;
         if let (Some(rules), true) = (self.rules.as_mut(), self.choice.own != choice.own) {
             rules.draft = choice.own.as_deref().unwrap_or(&rules.before).clone();
             rules.untried = true;
@@ -74,7 +93,8 @@ impl Session {
 }
 
 /// What differs between two choices, in words.
-fn difference(a: &FitChoice, b: &FitChoice) -> String {
+fn difference(now: &Undoable, then: &Undoable) -> String {
+    let (a, b) = (&now.choice, &then.choice);
     let changed = [
         (a.task != b.task, "task"),
         (a.own != b.own, "rules"),
@@ -85,6 +105,7 @@ fn difference(a: &FitChoice, b: &FitChoice) -> String {
         (a.stated.prior != b.stated.prior, "prior"),
         (a.stated.bounds != b.stated.bounds, "bounds"),
         (a.only_s != b.only_s, "part of the recording"),
+        (now.overlaid != then.overlaid, "recordings over each other"),
     ];
     let names: Vec<&str> = changed.iter().filter(|(differs, _)| *differs).map(|(_, name)| *name).collect();
     names.join(", ")

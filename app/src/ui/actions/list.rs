@@ -92,6 +92,14 @@ pub enum Action {
     Arrange,
     /// The standard arrangement.
     ResetLayout,
+    /// Gives the arrangement a name.
+    SaveLayout,
+    /// An arrangement by its name.
+    Layout(String),
+    /// Another name for the open one.
+    RenameLayout,
+    /// Forgets the open one's name.
+    DeleteLayout,
     /// The other theme.
     Theme,
     /// Larger.
@@ -145,12 +153,12 @@ impl Group {
     }
 }
 
-const FIXED: [Action; 44] = {
+const FIXED: [Action; 47] = {
     use Action::{
-        AddLog, AddVideo, Arrange, Diagnose, Extend, Feel, Fit, FitShown, FitWhole, ForgetStated, ForgetStates,
-        FullScreen, Larger, MapColumns, Open, OpenLog, OpenProject, OpenWorld, Palette, Panel, Play, Quit, Record,
-        Redo, Reload, Report, ResetLayout, Rules, SaveLog, SaveProject, SaveProjectAs, SaveWorld, ShowAll, Smaller,
-        Theme, ToEnd, ToStart, Tour, TrainCalibrated, Undo, UsualSize,
+        AddLog, AddVideo, Arrange, DeleteLayout, Diagnose, Extend, Feel, Fit, FitShown, FitWhole, ForgetStated,
+        ForgetStates, FullScreen, Larger, MapColumns, Open, OpenLog, OpenProject, OpenWorld, Palette, Panel, Play,
+        Quit, Record, Redo, Reload, RenameLayout, Report, ResetLayout, Rules, SaveLayout, SaveLog, SaveProject,
+        SaveProjectAs, SaveWorld, ShowAll, Smaller, Theme, ToEnd, ToStart, Tour, TrainCalibrated, Undo, UsualSize,
     };
     [
         OpenLog,
@@ -189,6 +197,9 @@ const FIXED: [Action; 44] = {
         Open(Workspace::Devices),
         Arrange,
         ResetLayout,
+        SaveLayout,
+        RenameLayout,
+        DeleteLayout,
         Panel(Pane::Segments),
         Theme,
         Larger,
@@ -201,15 +212,17 @@ const FIXED: [Action; 44] = {
 };
 
 impl Action {
-    /// Everything that the session as it is offers.
-    pub fn all(session: &Session) -> impl Iterator<Item = Self> {
+    /// Everything that the window as it is offers.
+    pub fn all(app: &App) -> impl Iterator<Item = Self> + use<> {
+        let session = &app.session;
+        let layouts = app.dock.names(session.workspace).map(|name| Self::Layout(name.to_owned()));
         let panels = Pane::of(session.workspace).iter().filter(|p| **p != Pane::Segments).map(|p| Self::Panel(*p));
         let recent = session.recent.files().iter().map(|path| Self::OpenRecent(path.clone()));
         let recordings = (0..session.recordings.len()).filter(|i| *i != session.current).map(Self::Select);
         let known = !matches!(session.workspace, Workspace::Train | Workspace::Devices);
         let places = if known { places(session) } else { Vec::new() };
         let fixed = FIXED.into_iter().filter(move |a| *a != Self::Panel(Pane::Segments) || known);
-        let all: Vec<Self> = fixed.chain(panels).chain(recent).chain(recordings).chain(places).collect();
+        let all: Vec<Self> = fixed.chain(layouts).chain(panels).chain(recent).chain(recordings).chain(places).collect();
         all.into_iter()
     }
 
@@ -223,6 +236,7 @@ impl Action {
             Self::GoTo { what, .. } => format!("Go to: {what}"),
             Self::Open(workspace) => format!("Open {}", workspace.title()),
             Self::Panel(pane) => format!("Panel: {}", pane.title()),
+            Self::Layout(name) => format!("Arrangement: {name}"),
             other => other.fixed_title().to_owned(),
         }
     }
@@ -261,6 +275,9 @@ impl Action {
             Self::ShowAll => "Show the whole recording",
             Self::Arrange => "Arrange panels",
             Self::ResetLayout => "Standard arrangement",
+            Self::SaveLayout => "Save arrangement as …",
+            Self::RenameLayout => "Rename arrangement …",
+            Self::DeleteLayout => "Delete arrangement",
             Self::Theme => "Light or dark",
             Self::Larger => "Larger",
             Self::Smaller => "Smaller",
@@ -268,7 +285,12 @@ impl Action {
             Self::FullScreen => "Full screen",
             Self::Palette => "All commands …",
             Self::Tour => "Show me around",
-            Self::OpenRecent(_) | Self::Select(_) | Self::GoTo { .. } | Self::Open(_) | Self::Panel(_) => "",
+            Self::OpenRecent(_)
+            | Self::Select(_)
+            | Self::GoTo { .. }
+            | Self::Open(_)
+            | Self::Panel(_)
+            | Self::Layout(_) => "",
         }
     }
 
@@ -282,6 +304,9 @@ impl Action {
             Self::Diagnose => " cause wrong model",
             Self::Rules => " thresholds segmentation",
             Self::Tour => " help tour",
+            Self::SaveLayout | Self::RenameLayout | Self::DeleteLayout | Self::Layout(_) | Self::ResetLayout => {
+                " layout panels"
+            }
             _ => "",
         };
         self.title() + also
@@ -394,6 +419,9 @@ impl Action {
             }),
             Self::Record => need(session.workspace == Workspace::Train, "Recording is done in Train."),
             Self::ResetLayout => need(app.dock.is_moved(session.workspace), "Nothing was moved."),
+            Self::RenameLayout | Self::DeleteLayout => {
+                need(app.dock.chosen(session.workspace).is_some(), "Save this arrangement, or choose one.")
+            }
             _ => None,
         }
     }
@@ -403,6 +431,7 @@ impl Action {
         match self {
             Self::Panel(pane) => Some(app.dock.has(app.session.workspace, *pane)),
             Self::Arrange => Some(app.dock.arranging),
+            Self::Layout(name) => Some(app.dock.chosen(app.session.workspace) == Some(name)),
             Self::Open(workspace) => Some(app.session.workspace == *workspace),
             _ => None,
         }

@@ -6,7 +6,6 @@ mod run;
 pub use list::{Action, Group};
 
 use super::app::App;
-use super::session::Session;
 use egui::{KeyboardShortcut, Ui};
 
 /// Does whatever the pressed keys ask for; call once a frame, while no dialog is open.
@@ -15,7 +14,7 @@ pub fn keys(ui: &Ui, app: &mut App) {
     let typing = ctx.egui_wants_keyboard_input();
     // Shift or Alt more makes another shortcut: those with the most modifiers come first.
     let mut all: Vec<(Action, KeyboardShortcut)> =
-        Action::all(&app.session).filter_map(|a| a.keys().map(|keys| (a, keys))).collect();
+        Action::all(app).filter_map(|a| a.keys().map(|keys| (a, keys))).collect();
     all.sort_by_key(|(_, k)| std::cmp::Reverse(usize::from(k.modifiers.shift) + usize::from(k.modifiers.alt)));
     for (action, keys) in all {
         // While somebody writes, letters are letters.
@@ -34,12 +33,12 @@ pub fn key_text(ui: &Ui, action: &Action) -> String {
     action.keys().map(|keys| ui.ctx().format_shortcut(&keys)).unwrap_or_default()
 }
 
-/// Actions that the session as it is offers, best match of `query` first; all of them for an empty one.
-pub fn matching(session: &Session, query: &str) -> Vec<Action> {
+/// Actions that the window as it is offers, best match of `query` first; all of them for an empty one.
+pub fn matching(app: &App, query: &str) -> Vec<Action> {
     if query.trim().is_empty() {
-        return Action::all(session).collect();
+        return Action::all(app).collect();
     }
-    let mut scored: Vec<(i64, usize, Action)> = Action::all(session)
+    let mut scored: Vec<(i64, usize, Action)> = Action::all(app)
         .enumerate()
         .filter_map(|(place, action)| Some((score(&action.search_text(), query)?, place, action)))
         .collect();
@@ -86,25 +85,25 @@ mod tests {
     use super::*;
     use crate::ui::tests::{STACK, empty, session};
 
-    fn first(session: &Session, query: &str) -> String {
-        matching(session, query).first().map(Action::title).unwrap_or_default()
+    fn first(app: &App, query: &str) -> String {
+        matching(app, query).first().map(Action::title).unwrap_or_default()
     }
 
     #[test]
     fn a_few_letters_find_what_is_meant() {
-        let session = session(STACK.clone());
-        assert_eq!(first(&session, "undo"), "Undo");
-        assert_eq!(first(&session, "opl"), "Open log …");
-        assert_eq!(first(&session, "refit"), "Fit again");
-        assert_eq!(first(&session, "carry block 2"), "Go to: carry block 2");
-        assert_eq!(first(&session, "dark"), "Light or dark");
-        assert!(matching(&session, "zzzqqq").is_empty());
+        let app = App::new(session(STACK.clone()));
+        assert_eq!(first(&app, "undo"), "Undo");
+        assert_eq!(first(&app, "opl"), "Open log …");
+        assert_eq!(first(&app, "refit"), "Fit again");
+        assert_eq!(first(&app, "carry block 2"), "Go to: carry block 2");
+        assert_eq!(first(&app, "dark"), "Light or dark");
+        assert!(matching(&app, "zzzqqq").is_empty());
     }
 
     #[test]
     fn no_two_actions_share_their_keys() {
-        let session = session(STACK.clone());
-        let mut keys: Vec<_> = Action::all(&session).filter_map(|a| a.keys()).collect();
+        let app = App::new(session(STACK.clone()));
+        let mut keys: Vec<_> = Action::all(&app).filter_map(|a| a.keys()).collect();
         let count = keys.len();
         keys.dedup_by(|a, b| a == b);
         let mut unique = Vec::new();

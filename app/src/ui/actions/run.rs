@@ -2,11 +2,12 @@
 
 use super::Action;
 use crate::ui::app::App;
+use crate::ui::dock::naming::Naming;
 use crate::ui::files;
 use crate::ui::fit_choice::Stated;
 use crate::ui::jobs::Purpose;
 use crate::ui::rules::Rules;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::session::{Session, Tone, Workspace};
 use egui::{Context, ViewportCommand};
 
 /// Steps of the size of everything.
@@ -21,6 +22,7 @@ impl Action {
             Self::Panel(pane) => app.dock.toggle(app.session.workspace, *pane),
             Self::Arrange => app.dock.arranging = !app.dock.arranging,
             Self::ResetLayout => app.dock.reset(app.session.workspace),
+            Self::SaveLayout | Self::Layout(_) | Self::RenameLayout | Self::DeleteLayout => with_layouts(self, app),
             Self::Palette => app.palette.open(),
             Self::Tour => app.tour.begin(),
             Self::Theme => {
@@ -37,6 +39,22 @@ impl Action {
             Self::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
             other => with_session(other, ctx, &mut app.session),
         }
+    }
+}
+
+fn with_layouts(action: &Action, app: &mut App) {
+    let workspace = app.session.workspace;
+    let chosen = app.dock.chosen(workspace).map(str::to_owned);
+    match (action, chosen) {
+        (Action::SaveLayout, chosen) => app.dock.naming = Some(Naming::to_save(workspace, chosen.as_deref())),
+        (Action::RenameLayout, Some(name)) => app.dock.naming = Some(Naming::to_rename(workspace, &name)),
+        (Action::DeleteLayout, Some(name)) if app.dock.delete(workspace, &name) => {
+            app.session.say(Tone::Done, format!("The arrangement “{name}” is deleted; panels stay where they are."));
+        }
+        (Action::Layout(name), _) => {
+            app.dock.choose(workspace, name);
+        }
+        _ => {}
     }
 }
 

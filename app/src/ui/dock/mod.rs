@@ -4,6 +4,8 @@
 
 mod behavior;
 mod layout;
+mod named;
+pub mod naming;
 mod panes;
 mod place;
 
@@ -11,6 +13,8 @@ pub use panes::{Pane, Panels};
 
 use super::session::{Session, Workspace};
 use behavior::Tiling;
+use named::Named;
+use naming::Naming;
 use egui::{Frame, Margin, Ui};
 use egui_tiles::{TileId, Tree};
 use serde::{Deserialize, Serialize};
@@ -28,6 +32,12 @@ pub struct Arrangement {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Dock {
     all: BTreeMap<Workspace, Arrangement>,
+    /// Those with names.
+    #[serde(default)]
+    named: BTreeMap<Workspace, Named>,
+    /// A name that is being asked for.
+    #[serde(skip)]
+    pub naming: Option<Naming>,
     /// Titles are shown on every panel, to drag and to close them.
     #[serde(skip)]
     pub arranging: bool,
@@ -57,6 +67,7 @@ impl Dock {
     /// Everything where it belongs again, in one workspace.
     pub fn reset(&mut self, workspace: Workspace) {
         self.all.remove(&workspace);
+        self.choose_none(workspace);
     }
 
     /// True when something was moved, taken out or brought in there.

@@ -8,9 +8,11 @@ fn neighbours(pane: Pane) -> &'static [(Pane, ContainerKind, bool)] {
     use ContainerKind::{Horizontal, Tabs, Vertical};
     match pane {
         Pane::Video => &[(Pane::Scene, Horizontal, false), (Pane::Log, Vertical, true)],
-        Pane::Scene => &[(Pane::Video, Horizontal, true), (Pane::Log, Vertical, true)],
-        Pane::Log => &[(Pane::Scene, Vertical, false), (Pane::Video, Vertical, false)],
-        Pane::Segments | Pane::Sensitivity => &[(Pane::Results, Tabs, false)],
+        Pane::Scene => &[(Pane::Video, Horizontal, true), (Pane::Log, Vertical, true), (Pane::Diagnosis, Tabs, false)],
+        Pane::Log => &[(Pane::Scene, Vertical, false), (Pane::Video, Vertical, false), (Pane::Diagnosis, Tabs, false)],
+        Pane::Segments | Pane::Sensitivity => &[(Pane::Results, Tabs, false), (Pane::Diagnosis, Tabs, false)],
+        // A third column would leave the curves no room.
+        Pane::Results => &[(Pane::Diagnosis, Tabs, false)],
         _ => &[],
     }
 }

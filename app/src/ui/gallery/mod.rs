@@ -7,6 +7,7 @@ pub mod walk;
 
 use super::scene::SceneLayers;
 use super::screenshot::{self, Panel, PanelInput};
+use super::session::Session;
 use crate::worlds;
 use anyhow::Context as _;
 use clap::ValueEnum as _;
@@ -46,10 +47,16 @@ impl Plate {
         self.panel
     }
 
+    /// The same recording or world in another panel or page.
+    #[cfg(test)]
+    pub(super) fn shown_in(&self, panel: Panel) -> Self {
+        Self { name: format!("{} in {panel:?}", self.name), panel, size: PAGE, ..self.clone() }
+    }
+
     /// A single panel with a margin around it, no whole page.
     pub fn is_framed(&self) -> bool {
-        use Panel::{Log, Parameters, Results, Scene, Segments, Sensitivity, Trainer};
-        matches!(self.panel, Log | Parameters | Results | Scene | Segments | Sensitivity | Trainer)
+        use Panel::{LeftOver, Log, Parameters, Results, Scene, Segments, Sensitivity, Trainer, Xy};
+        matches!(self.panel, Log | Xy | LeftOver | Parameters | Results | Scene | Segments | Sensitivity | Trainer)
     }
 
     /// A view of a recording in space with other layers than usual.
@@ -67,6 +74,10 @@ pub fn plates() -> Vec<Plate> {
 fn of_panel(panel: Panel) -> Plate {
     let (sample, size, line) = match panel {
         Panel::Log => (Sample::Stack, PANEL, "The log: curves by quantity, the states as a band, one time cursor"),
+        Panel::Xy => (Sample::Needle, PANEL, "XY: the force of a needle over its depth, coloured by state"),
+        Panel::LeftOver => {
+            (Sample::Crank, PANEL, "What is left over: measured less simulated, and less the extended model")
+        }
         Panel::Segments => (Sample::Stack, PANEL, "Segments: what was done when, found in the recording"),
         Panel::Rules => (Sample::Stack, PAGE, "Rules of a task, open beside the states that they find"),
         Panel::Parameters => (Sample::Stack, COLUMN, "Parameters: values with errors, and how each was found"),
@@ -184,6 +195,11 @@ pub struct Studio {
 impl Studio {
     /// Draws one plate.
     pub fn draw(&mut self, plate: &Plate, dark: bool) -> anyhow::Result<image::RgbaImage> {
+        screenshot::draw(self.session(plate)?, plate.panel, plate.size, dark)
+    }
+
+    /// What a plate is drawn from.
+    pub(super) fn session(&mut self, plate: &Plate) -> anyhow::Result<Session> {
         let input = self.input(plate).with_context(|| format!("the gallery's picture {}", plate.name))?;
         let mut input = input;
         if plate.panel == Panel::Video {
@@ -191,7 +207,7 @@ impl Studio {
         }
         let mut session = screenshot::session_for(&input, plate.panel)?;
         session.layers = plate.layers;
-        screenshot::draw(session, plate.panel, plate.size, dark)
+        Ok(session)
     }
 
     fn input(&mut self, plate: &Plate) -> anyhow::Result<PanelInput> {

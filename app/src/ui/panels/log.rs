@@ -7,7 +7,9 @@ use super::segments::band;
 use super::transport::transport;
 use super::xy::xy_view;
 use crate::ui::files;
+use crate::ui::format::number;
 use crate::ui::jobs::Purpose;
+use crate::ui::plots::shift::Grasp;
 use crate::ui::plots::{
     Drawn, GUTTER, LogView, PlotCache, PlotChoices, RowInput, RowKind, Sources, XyCache, axis_height, can_compare,
     curves, row,
@@ -16,7 +18,7 @@ use crate::ui::prepare::Prepared;
 use crate::ui::session::{Session, Workspace};
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{empty_state, primary_button, segmented, sheet};
-use egui::{Rangef, RichText, ScrollArea, Stroke, Ui};
+use egui::{Key, Modifiers, Rangef, RichText, ScrollArea, Stroke, Ui};
 use std::sync::Arc;
 
 /// Least height of a plot, points.
@@ -152,6 +154,43 @@ fn places(sources: &Sources<'_>, plots: &mut PlotChoices, prepared: &Prepared) -
     places
 }
 
+/// The shift of what is held, in words, and the place of what is held or pointed at.
+fn under_hand(plots: &PlotChoices, clockless: bool) -> (Option<(String, bool)>, Option<usize>) {
+    let Some(held) = plots.held else { return (None, plots.pointed) };
+    let place = plots.overlaid.iter().position(|o| o.recording == held.recording);
+    let offset = place.map_or(0.0, |place| plots.overlaid[place].offset_s);
+    let sign = if offset > 0.0 { "+" } else { "" };
+    let shift = if clockless { format!("{sign}{offset:.0} samples") } else { format!("{sign}{} s", number(offset, 3)) };
+    let words = if held.snapped { format!("{shift}: most alike") } else { shift };
+    (Some((words, held.snapped)), place)
+}
+
+/// Shifts what is held by its curve; the time of a curve that was only clicked on.
+fn shifting(
+    ui: &Ui,
+    session: &mut Session,
+    plots: &mut PlotChoices,
+    grasp: Option<Grasp>,
+    area: Rangef,
+) -> Option<f64> {
+    plots.pointed = if let Some(Grasp::Over(place) | Grasp::Takes(place, _)) = grasp { Some(place) } else { None };
+    let clockless = session.prepared().is_some_and(|p| p.clockless());
+    if let Some(recording) = grasp.and_then(|grasp| plots.grasp(grasp, session.current, clockless)) {
+        session.playing = false;
+        session.find_likeliest(ui.ctx(), &mut plots.likeliest, recording);
+    }
+    if plots.held.is_some() && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
+        plots.take_back();
+    }
+    if plots.held.is_none() || ui.input(|i| i.pointer.primary_down()) {
+        return None;
+    }
+    let clicked = plots.let_go();
+    let x = ui.input(|i| i.pointer.latest_pos()).filter(|_| clicked)?.x;
+    let share = f64::from((x - area.min) / area.span().max(1.0));
+    Some(session.view_s.0 + share * (session.view_s.1 - session.view_s.0))
+}
+
 impl LogPanel {
     /// One signal against another; where the slider below lies horizontally.
     fn xy(&mut self, ui: &mut Ui, session: &mut Session, plots: &mut PlotChoices, prepared: &Arc<Prepared>) -> Rangef {
@@ -180,6 +219,7 @@ impl LogPanel {
             return area;
         }
         ui.spacing_mut().item_spacing.y = 4.0;
+        let (held, grasped) = under_hand(plots, prepared.clockless());
         let shares: f32 = places.iter().map(Place::share).sum();
         let room = ui.available_height() - FOOT;
         let each = ((room - axis_height() - 4.0 * places.len() as f32) / shares).max(LEAST_HEIGHT);
@@ -187,13 +227,15 @@ impl LogPanel {
         let scroll =
             ScrollArea::vertical().id_salt("plots").max_height(room.max(LEAST_HEIGHT)).auto_shrink([false, true]);
         scroll.scroll_source(egui::scroll_area::ScrollSource::SCROLL_BAR).show(ui, |ui| {
-            let (mut seek, mut view_s) = (None, None);
+            let (mut seek, mut view_s, mut grasp) = (None, None, None);
             for (index, place) in places.iter().enumerate() {
                 let group = &prepared.groups[place.group];
                 let sources = sources(session, prepared);
                 let last = index + 1 == places.len();
                 let input = RowInput {
                     index,
+                    held: held.clone(),
+                    grasped,
                     kind: place.kind,
                     group,
                     prepared,
@@ -209,7 +251,9 @@ impl LogPanel {
                 let outcome = row(ui, &mut self.cache, plots.of(group), &input);
                 area = outcome.area;
                 (seek, view_s) = (outcome.seek.or(seek), outcome.view_s.or(view_s));
+                grasp = grasp.or(outcome.grasp);
             }
+            seek = seek.or(shifting(ui, session, plots, grasp, area));
             if let Some(view) = view_s {
                 session.view_s = view;
             }

@@ -2,6 +2,7 @@
 
 use super::curves::NoiseCache;
 use super::derived::Derived;
+use super::shift::{Held, Likeliest};
 use crate::ui::prepare::Group;
 use estimator::signal::transform::Transform;
 use serde::{Deserialize, Serialize};
@@ -101,6 +102,12 @@ pub struct PlotChoices {
     pub groups: BTreeMap<String, GroupChoice>,
     /// Recordings that lie over the shown one, in the order in which they were added.
     pub overlaid: Vec<Overlaid>,
+    /// The one of them that is held by its curve.
+    pub held: Option<Held>,
+    /// The place of the one that the pointer was over in the picture before.
+    pub pointed: Option<usize>,
+    /// Where recordings are most like each other.
+    pub likeliest: Likeliest,
     /// The XY plot.
     pub xy: XyChoice,
     /// Computed curves.
@@ -155,6 +162,8 @@ impl PlotChoices {
     /// Other recordings were loaded: which lie over which is of no use any more.
     pub fn forget_recordings(&mut self) {
         self.overlaid.clear();
+        self.likeliest.clear();
+        (self.held, self.pointed) = (None, None);
     }
 }
 

@@ -9,9 +9,11 @@ mod doubts;
 mod gutter;
 mod levels;
 mod noise;
+mod react;
 mod residual_plot;
 mod residuals;
 mod row;
+pub mod shift;
 mod title_menu;
 mod xy;
 

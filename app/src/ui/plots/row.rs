@@ -6,7 +6,9 @@ use super::curves::{Curve, Drawn, Layer, NOISE_SWITCH};
 use super::decimate::{Columns, decimate_in};
 use super::doubts::shade;
 use super::gutter::gutter;
+use super::react::react;
 use super::residual_plot::{BAND_SIGMAS, inks};
+use super::shift::Grasp;
 use crate::ui::prepare::{Group, Prepared};
 use crate::ui::theme::{self, Palette, palette};
 use egui::{Color32, Pos2, Rangef, Rect, Sense, Stroke, Ui, UiBuilder, vec2};
@@ -21,6 +23,9 @@ pub const GUTTER: f32 = 196.0;
 const AXIS_HEIGHT: f32 = 20.0;
 /// How much of their colour other recordings keep.
 const DIMMED: f32 = 0.75;
+
+/// Curves under the hand are so much broader, points.
+const GRASPED: f32 = 1.2;
 
 /// What a row is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -57,6 +62,10 @@ pub struct RowInput<'a> {
     pub time_axis: bool,
     /// Height, points.
     pub height: f32,
+    /// Another recording is held by its curve: its shift in words, and whether it has come to rest.
+    pub held: Option<(String, bool)>,
+    /// The place of the recording that the pointer was over, or holds: its curves stand out.
+    pub grasped: Option<usize>,
 }
 
 /// What the user did in a row.
@@ -67,6 +76,8 @@ pub struct RowOutcome {
     pub view_s: Option<(f64, f64)>,
     /// Where the plot's area lies horizontally.
     pub area: Rangef,
+    /// The pointer has to do with the curve of another recording.
+    pub grasp: Option<Grasp>,
 }
 
 /// Thinned curves, kept while the view stays.
@@ -138,7 +149,7 @@ impl PlotCache {
         self.curves.insert(slot, Cached { key, _curve: curve.clone(), points, band });
     }
 
-    fn points(&self, input: &RowInput<'_>, place: usize) -> &[PlotPoint] {
+    pub(super) fn points(&self, input: &RowInput<'_>, place: usize) -> &[PlotPoint] {
         self.curves.get(&(input.index, place)).map_or(&[], |cached| &cached.points)
     }
 }
@@ -222,7 +233,8 @@ fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, show_nois
         for (place, curve) in input.drawn.curves.iter().enumerate() {
             let line = Line::new("", PlotPoints::Borrowed(cache.points(input, place)));
             let color = curve_color(input, curve, dark, p);
-            plot.line(line.color(color).width(width(curve.layer)).allow_hover(false));
+            let more = if input.grasped.is_some_and(|g| curve.layer == Layer::Other(g)) { GRASPED } else { 0.0 };
+            plot.line(line.color(color).width(width(curve.layer) + more).allow_hover(false));
         }
     });
     let doubt = shade(ui, &response.transform, input.prepared, input.group);
@@ -230,7 +242,7 @@ fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, show_nois
     if let Some(doubt) = doubt {
         response.response.clone().on_hover_text_at_pointer(doubt);
     }
-    react(ui, &response.response, &response.transform, input)
+    react(ui, &response.response, &response.transform, cache, input)
 }
 
 /// Around the last model of every trace; about zero where the row is of what is left.
@@ -287,38 +299,6 @@ fn draw_cursor(ui: &Ui, transform: &PlotTransform, input: &RowInput<'_>) {
             painter.circle(Pos2::new(x, y), 3.0, color, Stroke::new(1.0, p.card));
         }
     }
-}
-
-/// Left: cursor. Wheel: zoom about the pointer. Right or middle: move. Double click: everything.
-fn react(ui: &Ui, response: &egui::Response, transform: &PlotTransform, input: &RowInput<'_>) -> RowOutcome {
-    let mut outcome = RowOutcome { area: transform.frame().x_range(), seek: None, view_s: None };
-    let (first, last) = input.prepared.span();
-    let (from, to) = input.view_s;
-    let pointer = response.interact_pointer_pos().or(response.hover_pos());
-    let time = pointer.map(|at| transform.value_from_position(at).x);
-    if response.double_clicked() {
-        outcome.view_s = Some((first, last));
-        return outcome;
-    }
-    if response.is_pointer_button_down_on() && ui.input(|i| i.pointer.primary_down()) {
-        outcome.seek = time;
-    }
-    let drag = response.drag_delta().x;
-    let moved = [egui::PointerButton::Secondary, egui::PointerButton::Middle].iter().any(|b| response.dragged_by(*b));
-    if moved && drag != 0.0 {
-        let shift = -f64::from(drag) * (to - from) / f64::from(transform.frame().width().max(1.0));
-        let shift = shift.clamp(first - from, (last - to).max(first - from));
-        outcome.view_s = Some((from + shift, to + shift));
-    }
-    let scroll = if response.hovered() { ui.input(|i| i.smooth_scroll_delta().y) } else { 0.0 };
-    if let (Some(center), true) = (time, scroll != 0.0) {
-        let factor = (-f64::from(scroll) * 0.004).exp();
-        let width = ((to - from) * factor).clamp((last - first) * 1e-5, last - first);
-        let start = center - (center - from) / (to - from) * width;
-        let start = start.clamp(first, (last - width).max(first));
-        outcome.view_s = Some((start, start + width));
-    }
-    outcome
 }
 
 /// Height that a row of plots adds for the time axis.

@@ -3,11 +3,14 @@
 mod check;
 pub mod diagnose;
 mod experiment;
+mod layouts;
+mod legible;
 mod panels;
 mod pictures;
 mod plots;
 mod rules;
 mod scene;
+mod shifting;
 mod thresholds;
 mod train;
 mod video;

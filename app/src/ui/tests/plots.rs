@@ -21,7 +21,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// The log panel alone, with the window's jobs.
-fn log<'a>(session: Session) -> Harness<'a, Session> {
+pub fn log<'a>(session: Session) -> Harness<'a, Session> {
     let mut panel = LogPanel::default();
     harness(session, [1000.0, 640.0], move |ui, session: &mut Session| {
         let ctx = ui.ctx().clone();
@@ -36,7 +36,7 @@ fn press(harness: &mut Harness<'_, Session>, role: Role, label: &str) {
 }
 
 /// Runs until `over`, or too long.
-fn until(harness: &mut Harness<'_, Session>, over: impl Fn(&Session) -> bool) {
+pub fn until(harness: &mut Harness<'_, Session>, over: impl Fn(&Session) -> bool) {
     let begun = Instant::now();
     while !over(harness.state()) {
         assert!(begun.elapsed() < Duration::from_mins(1), "it never comes");
@@ -59,7 +59,7 @@ fn extended() -> Session {
 }
 
 /// The same motion recorded again: later, and with another zero.
-fn again(recording: &Recording, name: &str, later_s: f64, skip: usize) -> Recording {
+pub fn again(recording: &Recording, name: &str, later_s: f64, skip: usize) -> Recording {
     let mut other = recording.clone();
     other.name = name.to_owned();
     let times = other.time_s.as_mut().expect("a clock");
@@ -77,7 +77,7 @@ fn again(recording: &Recording, name: &str, later_s: f64, skip: usize) -> Record
     other
 }
 
-fn two(first: &Recording, second: Recording) -> Session {
+pub fn two(first: &Recording, second: Recording) -> Session {
     let mut session = Session::new();
     session.workspace = Workspace::Calibrate;
     session.show(vec![Arc::new(Prepared::new(first.clone())), Arc::new(Prepared::new(second))]);
