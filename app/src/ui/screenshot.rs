@@ -179,7 +179,7 @@ pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Se
     if panel == Panel::Rules {
         session.rules = super::rules::Rules::open(&mut session);
     }
-    let (first, last) = session.view_s;
+    let (first, last) = session.prepared().map_or(session.view_s, |prepared| prepared.span());
     session.seek(input.time_s.unwrap_or(first + 0.4 * (last - first)));
     Ok(session)
 }
@@ -214,6 +214,9 @@ fn what_is_left(session: &mut Session) {
         let choice = session.plots.of(group);
         (choice.shown, choice.left_over) = (Some(comparable), comparable);
     }
+    // A tenth of the way, in which single curves can be told apart.
+    let (first, last) = session.view_s;
+    session.view_s = (first + 0.36 * (last - first), first + 0.46 * (last - first));
 }
 
 /// The first parameter with a good value a fifth larger.

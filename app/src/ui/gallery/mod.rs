@@ -160,6 +160,14 @@ fn views() -> Vec<Plate> {
             None,
             "A needle in its sheet, with the stiffness of the moment (figure 5.14)",
         ),
+        view(
+            "rail",
+            Sample::Rail,
+            bare,
+            None,
+            "A recording of one coordinate: a carriage on a rail, and the force that pushes it",
+        ),
+        view("shaft", Sample::Shaft, bare, None, "A recording of one angle: a shaft, and the torque that turns it"),
     ]
 }
 

@@ -35,6 +35,10 @@ pub enum Sample {
     Door,
     /// A crank with a mass off its axis, or on a tilted table: its recording cannot tell.
     Askew,
+    /// A cart on a rail, of which only the way and the force are known.
+    Rail,
+    /// A shaft, of which only the angle and the torque are known.
+    Shaft,
     /// A table whose columns have no meaning yet.
     Foreign,
     /// A built-in world, performed live.
@@ -59,6 +63,8 @@ impl Samples {
             Sample::Crank => built_in("crank", self.folder()?)?,
             Sample::Needle => performed("needle", self.folder()?)?,
             Sample::Door => vec![door()],
+            Sample::Rail => vec![one_coordinate("cart", ("q_m", "m", 0.12), ("f_N", "N", [2.0, 5.0, 0.8]))],
+            Sample::Shaft => vec![one_coordinate("shaft", ("q_rad", "rad", 1.4), ("tau_Nm", "Nm", [0.02, 0.05, 0.03]))],
             Sample::Askew => vec![askew()?],
             Sample::Foreign | Sample::World(_) => Vec::new(),
         };
@@ -162,6 +168,29 @@ fn door() -> Recording {
     }
     let time_s = Some((0..n).map(|i| 0.01 * f64::from(i)).collect());
     Recording { name: "door".to_owned(), channels: channels.into(), time_s, ..Recording::default() }
+}
+
+/// Ten seconds of something with inertia, viscous and Coulomb friction that is pushed to and fro.
+fn one_coordinate(
+    name: &str,
+    (coordinate, unit, reach): (&str, &str, f64),
+    (effort, effort_unit, [inertia, viscous, coulomb]): (&str, &str, [f64; 3]),
+) -> Recording {
+    let time: Vec<f64> = (0..2_000).map(|i| f64::from(i) * 5e-3).collect();
+    let motion = |t: f64| reach * ((1.3 * t).sin() + 0.4 * (3.1 * t).sin());
+    let rate = |t: f64| reach * (1.3 * (1.3 * t).cos() + 1.24 * (3.1 * t).cos());
+    let change = |t: f64| -reach * (1.69 * (1.3 * t).sin() + 3.844 * (3.1 * t).sin());
+    let needed = |t: f64| inertia * change(t) + viscous * rate(t) + coulomb * rate(t).signum();
+    let channel = |name: &str, unit: &str, values: Vec<f64>| Channel { name: name.into(), unit: unit.into(), values };
+    Recording {
+        name: name.to_owned(),
+        channels: vec![
+            channel(coordinate, unit, time.iter().map(|t| motion(*t)).collect()),
+            channel(effort, effort_unit, time.iter().map(|t| needed(*t)).collect()),
+        ],
+        time_s: Some(time),
+        ..Recording::default()
+    }
 }
 
 /// The scripted operator's recording in a built-in world.

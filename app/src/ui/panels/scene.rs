@@ -3,7 +3,7 @@
 use super::Panel;
 use crate::ui::prepare::Prepared;
 use crate::ui::scene::{
-    Likeness, Rig, SceneLayers, Wheel, camera_for, legend, mechanism_view, options_for, scene_view, scene_world,
+    Likeness, Mechanism, Rig, SceneLayers, Wheel, camera_for, legend, options_for, scene_view, scene_world,
 };
 use crate::ui::session::Session;
 use crate::ui::theme::{palette, space};
@@ -45,7 +45,7 @@ impl Panel for ScenePanel {
                 return;
             };
             if prepared.tips.is_none() && prepared.tool.is_none() {
-                mechanism_view(ui, session, &prepared);
+                self.one_coordinate(ui, session, &prepared);
                 return;
             }
             self.set_up(session, &prepared);
@@ -62,6 +62,19 @@ impl Panel for ScenePanel {
 }
 
 impl ScenePanel {
+    /// A recording without a place in space.
+    fn one_coordinate(&mut self, ui: &mut Ui, session: &Session, prepared: &Arc<Prepared>) {
+        let Some(mechanism) = Mechanism::of(prepared, session.cursor_s) else {
+            let text = "This recording has no path: there is nothing to place in space.";
+            empty_state(ui, "Nothing to show in space", text, |_| {});
+            return;
+        };
+        self.home(mechanism.camera, prepared);
+        let scene = (Arc::clone(&mechanism.world), mechanism.state.clone(), mechanism.options.clone());
+        let view = scene_view(ui, "recording", &mut self.rig, Wheel::Zooms, scene);
+        mechanism.write_over(ui, view.rect, &view.camera, view.size);
+    }
+
     /// Compares the replay with the recording, once for each replay.
     fn compare(&mut self, session: &Session, prepared: &Prepared) {
         let found = session.replay().zip(session.analysis.as_ref()).filter(|_| session.layers.replay);
@@ -77,8 +90,11 @@ impl ScenePanel {
 
     /// Another recording, or a fit of it, changes what the whole picture is; a camera that was moved stays.
     fn set_up(&mut self, session: &Session, prepared: &Arc<Prepared>) {
+        self.home(camera_for(session, prepared), prepared);
+    }
+
+    fn home(&mut self, home: Camera, prepared: &Arc<Prepared>) {
         let of = Arc::as_ptr(prepared) as usize;
-        let home = camera_for(session, prepared);
         if self.of == of {
             self.rig.move_home(home);
         } else {

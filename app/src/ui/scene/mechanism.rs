@@ -1,89 +1,208 @@
-//! A recording without a place in space: one coordinate, drawn as a carriage on a rail or as a dial.
+//! A recording without a place in space: one coordinate, as a carriage on a rail or as a crank on its shaft. Their sizes are the picture's:
+//! the recording knows none. The rail is as long as the way that was recorded.
 
 use crate::ui::format;
 use crate::ui::prepare::Prepared;
-use crate::ui::session::Session;
-use crate::ui::theme::{self, palette};
-use egui::{Align2, FontId, Pos2, Rect, Stroke, Vec2, vec2};
-use render::ColorRole;
+use crate::ui::theme::{self, palette, space};
+use egui::{Align2, FontId, Pos2, Rect, Ui};
+use haptics::Vec2;
+use haptics::world::{Block, Guide, State, World, presets};
+use render::{Camera, ColorRole, FingerStyle, ForceVector, ViewOptions};
+use std::sync::Arc;
 
-/// Draws the mechanism at the cursor.
-pub fn mechanism_view(ui: &mut egui::Ui, session: &Session, prepared: &Prepared) {
-    let (rect, _) = ui.allocate_exact_size(ui.available_size(), egui::Sense::hover());
-    let p = palette(ui);
-    ui.painter().rect_filled(rect.shrink(1.0), theme::CARD_RADIUS, p.sunken);
-    let sample = prepared.sample_at(session.cursor_s);
-    let recording = &prepared.recording;
-    let force = recording.channel("f_N").or_else(|| recording.channel("tau_Nm"));
-    let force = force.map(|f| (f[sample], f.iter().fold(0.0_f64, |m, v| m.max(v.abs()))));
-    if let Some(q) = recording.channel("q_m") {
-        rail(ui, rect, q, sample, force);
-    } else if let Some(q) = recording.channel("q_rad") {
-        dial(ui, rect, q[sample], force);
-    } else {
-        let text = "This recording has no path: there is nothing to place in space.";
-        ui.painter().text(rect.center(), Align2::CENTER_CENTER, text, FontId::proportional(13.0), p.secondary);
-    }
+/// Half the length of the rail, m.
+const HALF_RAIL_M: f64 = 0.034;
+/// Carriage: width and height, m.
+const CARRIAGE_M: [f64; 2] = [0.014, 0.010];
+/// The rail's height above the table, m.
+const ABOVE_TABLE_M: f64 = 0.018;
+/// Length of the arrow of the largest force, m.
+const ARROW_M: f64 = 0.022;
+/// Numbers along the rail.
+const NUMBERS: u8 = 4;
+
+/// One coordinate at the cursor.
+pub struct Mechanism {
+    /// What carries it in the picture.
+    pub world: Arc<World>,
+    /// With the coordinate in it.
+    pub state: State,
+    /// With the force in it.
+    pub options: ViewOptions,
+    /// All of it.
+    pub camera: Camera,
+    /// The force in words.
+    force: Option<String>,
+    /// Numbers along the rail: where, and what.
+    numbers: Vec<(Vec2, String)>,
 }
 
-fn rail(ui: &egui::Ui, rect: Rect, q: &[f64], sample: usize, force: Option<(f64, f64)>) {
-    let (p, dark, painter) = (palette(ui), ui.visuals().dark_mode, ui.painter());
-    let (low, high) = q.iter().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
-    let span = (high - low).max(1e-9);
-    let inset = rect.shrink2(vec2(rect.width() * 0.12, 0.0));
-    let y = rect.center().y + 10.0;
-    let x_of = |value: f64| inset.left() + ((value - low) / span) as f32 * inset.width();
-    painter.line_segment(
-        [Pos2::new(inset.left() - 30.0, y), Pos2::new(inset.right() + 30.0, y)],
-        Stroke::new(4.0, p.border),
-    );
-    for tick in 0..=10 {
-        let value = low + span * f64::from(tick) / 10.0;
-        let x = x_of(value);
-        let long = if tick % 5 == 0 { 12.0 } else { 7.0 };
-        painter.line_segment([Pos2::new(x, y + 26.0), Pos2::new(x, y + 26.0 + long)], Stroke::new(1.0, p.faint));
-        if tick % 5 == 0 {
-            let text = format!("{} mm", format::number(value * 1e3, 0));
-            let at = Pos2::new(x, y + 44.0);
-            painter.text(at, Align2::CENTER_TOP, text, FontId::proportional(11.5), p.secondary);
+impl Mechanism {
+    /// `None` where the recording has no coordinate.
+    pub fn of(prepared: &Prepared, cursor_s: f64) -> Option<Self> {
+        let recording = &prepared.recording;
+        let sample = prepared.sample_at(cursor_s);
+        let now = |name: &str| recording.channel(name).map(|values| (values[sample], most(values)));
+        match (recording.channel("q_m"), recording.channel("q_rad")) {
+            (Some(q), _) => Some(Self::rail(q, sample, now("f_N"))),
+            (None, Some(q)) => Some(Self::shaft(q[sample], now("tau_Nm"))),
+            (None, None) => None,
         }
     }
-    let body = Rect::from_center_size(Pos2::new(x_of(q[sample]), y - 2.0), vec2(64.0, 40.0));
-    painter.rect_filled(body, 5, theme::role(dark, ColorRole::Block(0)));
-    if let Some((now, most)) = force {
-        arrow(painter, body.center_top() + vec2(0.0, -24.0), vec2((now / most.max(1e-9)) as f32 * 120.0, 0.0), dark);
-        label(ui, rect, &format!("{} N", format::number(now, 2)));
+
+    fn rail(q: &[f64], sample: usize, force: Option<(f64, f64)>) -> Self {
+        let finite = || q.iter().copied().filter(|v| v.is_finite());
+        let (low, high) = (finite().fold(f64::MAX, f64::min), finite().fold(f64::MIN, f64::max));
+        let mut world = World::empty("Rail");
+        let floor_m = world.floor.as_ref().map_or(0.0, |floor| floor.height_m);
+        let y = floor_m + ABOVE_TABLE_M;
+        let end = HALF_RAIL_M + 0.5 * CARRIAGE_M[0];
+        let points_m = vec![Vec2::new(-end, y), Vec2::new(end, y)];
+        let mut carriage = Block::upright("carriage", 0.1, CARRIAGE_M[0], CARRIAGE_M[1], 0.0, y - 0.5 * CARRIAGE_M[1]);
+        let guide = Guide { points_m, closed: false, stiffness_n_m: 1.0, damping_n_s_m: 0.0, friction_n: 0.0 };
+        carriage.guide = Some(guide);
+        world.blocks = vec![carriage];
+        let x_of = |value: f64| HALF_RAIL_M * (2.0 * (value - low) / (high - low).max(1e-12) - 1.0).clamp(-1.0, 1.0);
+        let mut state = State::resting(&world);
+        let at = Vec2::new(if q[sample].is_finite() { x_of(q[sample]) } else { 0.0 }, y);
+        if let Some(body) = state.bodies.first_mut() {
+            body.center_m = at;
+        }
+        let along = Vec2::new(1.0, 0.0);
+        let numbers = (0..=NUMBERS).filter(|_| low < high).map(|k| {
+            let value = low + (high - low) * f64::from(k) / f64::from(NUMBERS);
+            let decimals = if high - low < 0.01 { 2 } else { 0 };
+            (Vec2::new(x_of(value), y - 0.009), format!("{} mm", format::number(1e3 * value, decimals)))
+        });
+        let above = at + Vec2::new(0.0, 0.5 * CARRIAGE_M[1] + 0.004);
+        Self {
+            options: options(force, above, along),
+            camera: framing([-end - 0.004, floor_m - 0.004], [end + 0.004, y + 0.020]),
+            force: force.map(|(now, _)| format!("{} N", format::number(now, 2))),
+            numbers: numbers.collect(),
+            world: Arc::new(world),
+            state,
+        }
+    }
+
+    fn shaft(angle_rad: f64, torque: Option<(f64, f64)>) -> Self {
+        let world = presets::crank();
+        let mut state = State::resting(&world);
+        state.crank.angle_rad = if angle_rad.is_finite() { angle_rad } else { 0.0 };
+        let handle = state.handle_in_world(&world).unwrap_or_default();
+        let (center, radius) = world.crank.as_ref().map_or((Vec2::zeros(), 0.02), |c| (c.center_m, c.radius_m));
+        let out = (handle - center) / radius.max(1e-9);
+        // Counter-clockwise is positive.
+        let along = Vec2::new(-out.y, out.x);
+        let reach = radius + 0.024;
+        let floor_m = world.floor.as_ref().map_or(center.y - reach, |floor| floor.height_m);
+        let low = [center.x - 1.4 * reach, floor_m.max(center.y - 1.3 * reach)];
+        Self {
+            options: options(torque, handle, along),
+            camera: framing(low, [center.x + 1.4 * reach, center.y + reach]),
+            force: torque.map(|(now, _)| format!("{} N·m", format::number(now, 3))),
+            numbers: Vec::new(),
+            world: Arc::new(world),
+            state,
+        }
+    }
+
+    /// Numbers along the rail, and the force; over the picture, drawn by `camera` at `size` pixels.
+    pub fn write_over(&self, ui: &Ui, rect: Rect, camera: &Camera, size: [u32; 2]) {
+        let p = palette(ui);
+        let painter = ui.painter().with_clip_rect(rect);
+        let mut last = f32::MIN;
+        for (at, text) in &self.numbers {
+            let pixel = camera.pixel_of(*at, size) / ui.pixels_per_point();
+            let galley = painter.layout_no_wrap(text.clone(), FontId::proportional(11.5), p.secondary);
+            let at = rect.min + egui::vec2(pixel.x - 0.5 * galley.size().x, pixel.y);
+            // Where they stand close, every second or third is enough.
+            if at.x > last + space::S && rect.contains_rect(Rect::from_min_size(at, galley.size())) {
+                last = at.x + galley.size().x;
+                painter.galley(at, galley, p.secondary);
+            }
+        }
+        if let Some(force) = &self.force {
+            let at: Pos2 = rect.center_top() + egui::vec2(0.0, space::M);
+            painter.text(at, Align2::CENTER_TOP, force, FontId::new(18.0, theme::semibold()), p.text);
+        }
     }
 }
 
-fn dial(ui: &egui::Ui, rect: Rect, q: f64, force: Option<(f64, f64)>) {
-    let (p, dark, painter) = (palette(ui), ui.visuals().dark_mode, ui.painter());
-    let radius = 0.3 * rect.height().min(rect.width());
-    let center = rect.center();
-    painter.circle(center, radius, p.card, Stroke::new(2.0, p.border));
-    for tick in 0..12 {
-        let along = Vec2::angled(-f32::from(tick as u8) * std::f32::consts::TAU / 12.0);
-        painter.line_segment([center + along * (radius - 8.0), center + along * radius], Stroke::new(1.0, p.faint));
-    }
-    let arm = Vec2::angled(-q as f32) * radius * 0.92;
-    let color = theme::role(dark, ColorRole::Block(0));
-    painter.line_segment([center, center + arm], Stroke::new(7.0, color));
-    painter.circle_filled(center, 8.0, p.text);
-    painter.circle_filled(center + arm, 9.0, color);
-    if let Some((now, most)) = force {
-        let push = arm.rot90() * (-(now / most.max(1e-9)) as f32 * 0.6);
-        arrow(painter, center + arm, push, dark);
-        label(ui, rect, &format!("{} N·m", format::number(now, 3)));
+fn most(values: &[f64]) -> f64 {
+    values.iter().filter(|v| v.is_finite()).fold(0.0_f64, |most, v| most.max(v.abs()))
+}
+
+/// Nobody holds it; the force is an arrow `along` from a point.
+fn options(force: Option<(f64, f64)>, at_m: Vec2, along: Vec2) -> ViewOptions {
+    let arrow = force.filter(|(now, most)| now.is_finite() && *most > 0.0).map(|(now, most)| ForceVector {
+        at_m,
+        force_n: now / most * along,
+        role: ColorRole::Measured,
+    });
+    ViewOptions {
+        fingers: FingerStyle::Hidden,
+        show_workspace: false,
+        show_forces: false,
+        force_vectors: arrow.into_iter().collect(),
+        vector_scale_m_per_n: ARROW_M as f32,
+        ..ViewOptions::default()
     }
 }
 
-fn arrow(painter: &egui::Painter, from: Pos2, along: Vec2, dark: bool) {
-    if along.length() > 2.0 {
-        painter.arrow(from, along, Stroke::new(3.0, theme::role(dark, ColorRole::Measured)));
-    }
+fn framing(low: [f64; 2], high: [f64; 2]) -> Camera {
+    let [low, high] = [low, high].map(|corner| corner.map(|v| v as f32));
+    Camera { pitch_rad: 0.3, yaw_rad: 0.35, ..Camera::hand() }.framing(low.into(), high.into())
 }
 
-fn label(ui: &egui::Ui, rect: Rect, text: &str) {
-    let at = rect.center_top() + vec2(0.0, 24.0);
-    ui.painter().text(at, Align2::CENTER_TOP, text, FontId::new(18.0, theme::semibold()), palette(ui).text);
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::recording::{Channel, Recording};
+
+    fn recorded(channels: &[(&str, &str, [f64; 3])]) -> Prepared {
+        let channel = |(name, unit, values): &(&str, &str, [f64; 3])| Channel {
+            name: (*name).to_owned(),
+            unit: (*unit).to_owned(),
+            values: values.to_vec(),
+        };
+        let channels = channels.iter().map(channel).collect();
+        Prepared::new(Recording { time_s: Some(vec![0.0, 1.0, 2.0]), channels, ..Recording::default() })
+    }
+
+    #[test]
+    fn the_carriage_goes_from_end_to_end_of_its_rail_with_its_force() {
+        let prepared = recorded(&[("q_m", "m", [-0.2, 0.1, 0.4]), ("f_N", "N", [-4.0, 0.0, 2.0])]);
+        let at = |t: f64| Mechanism::of(&prepared, t).expect("a coordinate");
+        let x = |t: f64| at(t).state.bodies[0].center_m.x;
+        assert!((x(0.0) + HALF_RAIL_M).abs() < 1e-12 && x(1.0).abs() < 1e-12 && (x(2.0) - HALF_RAIL_M).abs() < 1e-12);
+        let arrow = |t: f64| at(t).options.force_vectors[0].force_n;
+        assert_eq!((arrow(0.0), arrow(2.0)), (Vec2::new(-1.0, 0.0), Vec2::new(0.5, 0.0)));
+        let numbers = at(0.0).numbers;
+        assert_eq!((numbers[0].1.as_str(), numbers[4].1.as_str()), ("−200 mm", "400 mm"));
+    }
+
+    #[test]
+    fn the_shaft_turns_counter_clockwise_and_its_arrow_goes_along() {
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let prepared = recorded(&[("q_rad", "rad", [0.0, quarter, 0.0]), ("tau_Nm", "Nm", [0.2, 0.1, 0.0])]);
+        let start = Mechanism::of(&prepared, 0.0).expect("a coordinate");
+        let turned = Mechanism::of(&prepared, 1.0).expect("a coordinate");
+        let center = start.world.crank.as_ref().expect("a crank").center_m;
+        let out = |m: &Mechanism| m.state.handle_in_world(&m.world).expect("a handle") - center;
+        assert!(out(&start).x > 0.0 && out(&start).y.abs() < 1e-9);
+        assert!(out(&turned).y > 0.0 && out(&turned).x.abs() < 1e-9);
+        assert!((start.options.force_vectors[0].force_n - Vec2::new(0.0, 1.0)).norm() < 1e-9);
+        assert!((turned.options.force_vectors[0].force_n - Vec2::new(-0.5, 0.0)).norm() < 1e-9);
+    }
+
+    #[test]
+    fn recordings_that_say_little_are_harmless() {
+        assert!(Mechanism::of(&recorded(&[("a", "A", [0.0; 3])]), 0.0).is_none());
+        let still = Mechanism::of(&recorded(&[("q_m", "m", [0.5; 3])]), 0.0).expect("a coordinate");
+        assert!(still.numbers.is_empty() && still.options.force_vectors.is_empty());
+        let gaps = recorded(&[("q_m", "m", [f64::NAN, 0.0, 1.0]), ("f_N", "N", [f64::NAN; 3])]);
+        let gap = Mechanism::of(&gaps, 0.0).expect("a coordinate");
+        assert!(gap.state.bodies[0].center_m.x == 0.0 && gap.options.force_vectors.is_empty());
+    }
 }

@@ -15,7 +15,7 @@ pub use callback::{announce, picture};
 pub use layers::SceneLayers;
 pub use legend::legend;
 pub use likeness::Likeness;
-pub use mechanism::mechanism_view;
+pub use mechanism::Mechanism;
 pub use overlay::{camera_for, options_for, scene_world};
 pub use rig::Rig;
 pub use view::{SceneResponse, Wheel, scene_view};
