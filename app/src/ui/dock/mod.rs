@@ -13,10 +13,10 @@ pub use panes::{Pane, Panels};
 
 use super::session::{Session, Workspace};
 use behavior::Tiling;
-use named::Named;
-use naming::Naming;
 use egui::{Frame, Margin, Ui};
 use egui_tiles::{TileId, Tree};
+use named::Named;
+use naming::Naming;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 

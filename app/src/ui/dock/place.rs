@@ -7,7 +7,7 @@ use egui_tiles::{Container, ContainerKind, Tile, TileId};
 fn neighbours(pane: Pane) -> &'static [(Pane, ContainerKind, bool)] {
     use ContainerKind::{Horizontal, Tabs, Vertical};
     match pane {
-        Pane::Video => &[(Pane::Scene, Horizontal, false), (Pane::Log, Vertical, true)],
+        Pane::Video => &[(Pane::Scene, Horizontal, false), (Pane::Log, Vertical, true), (Pane::Diagnosis, Tabs, false)],
         Pane::Scene => &[(Pane::Video, Horizontal, true), (Pane::Log, Vertical, true), (Pane::Diagnosis, Tabs, false)],
         Pane::Log => &[(Pane::Scene, Vertical, false), (Pane::Video, Vertical, false), (Pane::Diagnosis, Tabs, false)],
         Pane::Segments | Pane::Sensitivity => &[(Pane::Results, Tabs, false), (Pane::Diagnosis, Tabs, false)],
