@@ -167,7 +167,6 @@ fn views() -> Vec<Plate> {
             None,
             "A recording of one coordinate: a carriage on a rail, and the force that pushes it",
         ),
-        view("shaft", Sample::Shaft, bare, None, "A recording of one angle: a shaft, and the torque that turns it"),
     ]
 }
 

@@ -37,8 +37,6 @@ pub enum Sample {
     Askew,
     /// A cart on a rail, of which only the way and the force are known.
     Rail,
-    /// A shaft, of which only the angle and the torque are known.
-    Shaft,
     /// A table whose columns have no meaning yet.
     Foreign,
     /// A built-in world, performed live.
@@ -64,7 +62,6 @@ impl Samples {
             Sample::Needle => performed("needle", self.folder()?)?,
             Sample::Door => vec![door()],
             Sample::Rail => vec![one_coordinate("cart", ("q_m", "m", 0.12), ("f_N", "N", [2.0, 5.0, 0.8]))],
-            Sample::Shaft => vec![one_coordinate("shaft", ("q_rad", "rad", 1.4), ("tau_Nm", "Nm", [0.02, 0.05, 0.03]))],
             Sample::Askew => vec![askew()?],
             Sample::Foreign | Sample::World(_) => Vec::new(),
         };
