@@ -69,6 +69,8 @@ pub struct Prepared {
     pub groups: Vec<Group>,
     /// Samples that paths in space are drawn through.
     pub path_samples: Vec<usize>,
+    /// Median sampling rate, Hz; `None` without a clock. Found once: a picture has no time to sort a million steps.
+    pub rate_hz: Option<f64>,
     /// Of every channel, in its unit squared.
     mean_squares: Vec<f64>,
 }
@@ -93,7 +95,8 @@ impl Prepared {
         let path_samples = (0..times.len()).step_by(step).collect();
         let mean_square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>() / v.len().max(1) as f64;
         let mean_squares = recording.channels.iter().map(|c| mean_square(&c.values)).collect();
-        Self { recording, times, task, tips, tool, velocity_from, groups, path_samples, mean_squares }
+        let rate_hz = recording.rate_hz();
+        Self { recording, times, task, tips, tool, velocity_from, groups, path_samples, rate_hz, mean_squares }
     }
 
     /// Mean square of a channel, in its unit squared; 0 without it. Found once: a picture has no time for a million samples.

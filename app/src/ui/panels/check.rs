@@ -100,8 +100,12 @@ fn figures(ui: &mut Ui, checked: &Checked, validation: &Validation) {
     });
     bar(ui, validation.share.max(0.0), 1.0, None, color(p, verdict));
     let percent = |share: f64| format::number(100.0 * share, 0);
-    let [low, high] = validation.interval.map(percent);
-    let text = format!("{} % [{low}, {high}] of the power that the model leaves", percent(validation.share));
+    let (share, [low, high]) = (validation.share, validation.interval);
+    let text = if share >= 0.0 {
+        format!("{} % [{}, {}] of the power that the model leaves goes.", percent(share), percent(low), percent(high))
+    } else {
+        format!("The power that is left grows by {} % [{}, {}].", percent(-share), percent(-high), percent(-low))
+    };
     ui.add(egui::Label::new(theme::caption(ui, text)).wrap()).on_hover_text(
         "Share of the left-over power that goes, with its 95 % interval from a bootstrap over pieces of the recording",
     );

@@ -75,7 +75,7 @@ fn source(ui: &mut Ui, session: &mut Session) {
     }
     fact(ui, "Length", recording.duration_s().map_or_else(|| "no clock".to_owned(), |d| format!("{d:.1} s")));
     fact(ui, "Samples", format::grouped(recording.len()));
-    if let Some(rate) = recording.rate_hz() {
+    if let Some(rate) = prepared.rate_hz {
         fact(ui, "Rate", format!("{} Hz", format::significant(rate, 3)));
     }
     fact(ui, "Channels", recording.channels.len().to_string());

@@ -1,12 +1,14 @@
 //! What was found, checked on other recordings; and the residual atlas.
 
 use super::diagnose::{RIPPLED, diagnosed, hiding_so_much};
-use super::harness;
+use super::{count_near, harness, keep, no_driver};
 use crate::ui::app::App;
-use crate::ui::checking::{Holds, On, check_now, holds};
+use crate::ui::checking::{Checked, Holds, On, check_now, holds};
 use crate::ui::jobs::JobKind;
 use crate::ui::prepare::Prepared;
+use crate::ui::screenshot::{self, Panel};
 use crate::ui::session::Session;
+use crate::ui::theme;
 use blind::{Bench, Effect};
 use egui::Role;
 use egui_kittest::Harness;
@@ -138,4 +140,45 @@ fn the_atlas_has_every_suspect_by_its_evidence_and_shows_one_large() {
     harness.get_by_role_and_label(Role::Link, "Curves").click();
     harness.run_steps(3);
     assert!(harness.query_by_label("Force along the motion").is_some());
+}
+
+/// The session of a picture: `suspect` large, and the figures of two checks.
+fn pictured(suspect: Option<&str>) -> Session {
+    let mut session = diagnosed(RIPPLED.clone());
+    let answer = session.diagnosing.answer.clone().expect("an answer");
+    session.diagnosing.shows_atlas = true;
+    session.diagnosing.atlas_open = suspect.map(str::to_owned);
+    let mut plain = hiding_so_much(Effect::Ripple, Bench::OneFinger, 3, 1e-6);
+    "without-it".clone_into(&mut plain.name);
+    for recording in [RIPPLED.clone(), plain] {
+        let found = validate(std::slice::from_ref(&recording), &Options::default(), &answer.diagnosis)
+            .expect("figures")
+            .remove(0);
+        let unit = "N".to_owned();
+        session.diagnosing.checked.push(Checked { name: recording.name, found: Ok(found), unit });
+    }
+    session
+}
+
+#[test]
+fn a_large_suspect_and_the_checks_are_drawn_in_both_themes() {
+    if no_driver() {
+        return;
+    }
+    for dark in [false, true] {
+        let p = theme::Palette::of(dark);
+        let named =
+            screenshot::draw(pictured(Some("position-ripple")), Panel::Atlas, [1280, 720], dark).expect("drawn");
+        let other = screenshot::draw(pictured(Some("force-bias")), Panel::Atlas, [1280, 720], dark).expect("drawn");
+        keep(&format!("atlas-large-{dark}"), &named);
+        // What was named is green, what was not has the colour of suspects; the cloud and its means that of the model.
+        let simulated = theme::role(dark, render::ColorRole::Simulated);
+        assert!(count_near(&named, p.good) > count_near(&other, p.good) + 300, "dark {dark}");
+        assert!(count_near(&other, p.accent) > count_near(&named, p.accent) + 200, "dark {dark}");
+        assert!(count_near(&named, simulated) > 300, "dark {dark}");
+        let card = screenshot::draw(pictured(None), Panel::Experiment, [440, 1300], dark).expect("drawn");
+        keep(&format!("checks-{dark}"), &card);
+        let green = count_near(&card, p.good);
+        assert!(green > 2_000, "the bar of what is left and that of the check that holds, dark {dark}: {green}");
+    }
 }
