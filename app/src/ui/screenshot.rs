@@ -6,6 +6,7 @@ use super::dock::Pane;
 use super::experimenting;
 use super::fitting;
 use super::mapping::Mapping;
+use super::panels::diagnose::DiagnosePanel;
 use super::panels::diagnosis::DiagnosisPanel;
 use super::panels::log::LogPanel;
 use super::panels::parameters::ParametersPanel;
@@ -61,7 +62,7 @@ pub enum Panel {
     Devices,
     /// The whole Diagnose workspace, with its answer and the extended model.
     Diagnose,
-    /// The Diagnose workspace with the residual atlas.
+    /// The residual atlas.
     Atlas,
     /// What a diagnosis answers, with what to record next, rehearsed.
     Experiment,
@@ -361,13 +362,13 @@ pub(super) fn contents(panel: Panel) -> Contents {
         Panel::Scene => framed(ScenePanel::default()),
         Panel::Trainer | Panel::Guided => framed(TrainerView::default()),
         Panel::Sensitivity => framed(SensitivityPanel),
+        Panel::Atlas => framed(DiagnosePanel),
         Panel::Experiment => framed(DiagnosisPanel),
         Panel::Rules
         | Panel::Workbench
         | Panel::Train
         | Panel::Devices
         | Panel::Diagnose
-        | Panel::Atlas
         | Panel::Mapping
         | Panel::Parameter
         | Panel::Arrange

@@ -22,6 +22,7 @@ pub use small_png::small_png;
 /// Sizes of whole pages, of single panels and of scenes, pixels.
 const PAGE: [u32; 2] = [1280, 720];
 const PANEL: [u32; 2] = [640, 480];
+const ATLAS: [u32; 2] = [720, 540];
 const COLUMN: [u32; 2] = [440, 760];
 const SCENE: [u32; 2] = [720, 480];
 
@@ -88,7 +89,7 @@ fn of_panel(panel: Panel) -> Plate {
         Panel::Train => (Sample::World("stack"), PAGE, "Train: the world, the forces, the servo's punctuality"),
         Panel::Devices => (Sample::World("stack"), PAGE, "Devices: what moves the fingers, and how well"),
         Panel::Diagnose => (Sample::Crank, PAGE, "Diagnose: what the model gets wrong, and why"),
-        Panel::Atlas => (Sample::Askew, PAGE, "The residual atlas: what is left over against every suspect"),
+        Panel::Atlas => (Sample::Askew, ATLAS, "The residual atlas: what is left over against every suspect"),
         Panel::Experiment => (Sample::Askew, COLUMN, "What to record next, rehearsed on simulated objects"),
         Panel::Guided => (Sample::Askew, PANEL, "An experiment done by hand in Train: two rings to follow"),
         Panel::Sensitivity => (Sample::Crank, COLUMN, "Sensitivity: what the force depends on, and what goes together"),
