@@ -46,6 +46,11 @@ pub fn sheet(ui: &Ui) -> Frame {
     Frame::new().fill(p.card).stroke(Stroke::new(1.0, p.border)).corner_radius(CornerRadius::same(CARD_RADIUS))
 }
 
+/// What a screen reader calls a widget whose words stand elsewhere, or nowhere.
+pub fn call(response: &Response, name: &str) {
+    response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
+}
+
 /// One of several, side by side.
 pub fn segmented<T: PartialEq + Copy>(ui: &mut Ui, value: &mut T, choices: &[(T, &str, &str)]) -> bool {
     let p = palette(ui);

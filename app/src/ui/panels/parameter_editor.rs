@@ -6,7 +6,7 @@ use crate::ui::session::Session;
 use crate::ui::teach;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::what_if::residual_rms;
-use crate::ui::widgets::{card, compact, segmented};
+use crate::ui::widgets::{call, card, compact, segmented};
 use egui::{Align, DragValue, Layout, RichText, Slider, Ui};
 use estimator::estimate::Parameter;
 use haptics::recording::Prior;
@@ -61,9 +61,13 @@ fn try_another(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quanti
     let digits = (2.0 - (reach * quantity.factor).log10().floor()).clamp(0.0, 8.0) as usize;
     ui.horizontal(|ui| {
         ui.spacing_mut().slider_width = (ui.available_width() - 108.0).max(60.0);
-        let slider = Slider::new(&mut shown, range).suffix(format!(" {}", quantity.unit)).max_decimals(digits);
-        let response = ui.add(slider.clamping(egui::SliderClamping::Never));
-        if response.changed() {
+        let slider = Slider::new(&mut shown, range).show_value(false);
+        let slid = ui.add(slider.clamping(egui::SliderClamping::Never));
+        let number = DragValue::new(&mut shown).speed(0.01 * reach * quantity.factor).max_decimals(digits);
+        let typed = ui.add(number.suffix(format!(" {}", quantity.unit)));
+        call(&slid, "Another value");
+        call(&typed, "Another value, as a number");
+        if slid.changed() || typed.changed() {
             session.try_value(&name, Some(shown / quantity.factor));
         }
     });

@@ -7,7 +7,7 @@ use crate::ui::format;
 use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{fact, plain_card, primary_button};
+use crate::ui::widgets::{call, fact, plain_card, primary_button};
 use egui::{ComboBox, DragValue, ScrollArea, TextEdit, Ui};
 use estimator::segment::{Method, Thresholds};
 use std::path::PathBuf;
@@ -91,7 +91,7 @@ fn whole_path(session: &Session) -> String {
 fn choose_trial(ui: &mut Ui, session: &mut Session) {
     let names: Vec<String> = session.recordings.iter().map(|p| p.recording.name.clone()).collect();
     let mut chosen = session.current;
-    ComboBox::from_id_salt("trial")
+    let list = ComboBox::from_id_salt("trial")
         .width(ui.available_width() - 2.0 * ui.spacing().button_padding.x)
         .selected_text(&names[chosen])
         .truncate()
@@ -100,6 +100,7 @@ fn choose_trial(ui: &mut Ui, session: &mut Session) {
                 ui.selectable_value(&mut chosen, index, name);
             }
         });
+    call(&list.response, "Which recording");
     if chosen != session.current {
         session.select(chosen);
     }
@@ -194,7 +195,7 @@ fn method(ui: &mut Ui, session: &mut Session) {
             Method::Hmm => "Hidden Markov model",
         };
         let choice = &mut session.choice.method;
-        ComboBox::from_id_salt("method")
+        let list = ComboBox::from_id_salt("method")
             .width(ui.available_width() - 2.0 * ui.spacing().button_padding.x)
             .selected_text(name(*choice))
             .truncate()
@@ -205,6 +206,7 @@ fn method(ui: &mut Ui, session: &mut Session) {
                     "Starts from the rules and learns from the recording; every sample has a probability",
                 );
             });
+        call(&list.response, "States by");
     });
 }
 

@@ -4,7 +4,7 @@ use crate::operator;
 use crate::ui::session::Session;
 use crate::ui::theme;
 use crate::ui::trainer::Script;
-use crate::ui::widgets::compact;
+use crate::ui::widgets::{call, compact};
 use egui::{Align, ComboBox, Layout, Ui};
 use haptics::device::Mistake;
 
@@ -46,21 +46,23 @@ fn labelled(ui: &mut Ui, label: &str, contents: impl FnOnce(&mut Ui)) {
 
 fn level(ui: &mut Ui, script: &mut Script) {
     let shown = operator::LEVELS.iter().find(|(name, ..)| *name == script.level).map_or("", |(_, shown, _)| shown);
-    ComboBox::from_id_salt("skill").selected_text(shown).width(190.0).show_ui(ui, |ui| {
+    let list = ComboBox::from_id_salt("skill").selected_text(shown).width(190.0).show_ui(ui, |ui| {
         for (name, shown, hint) in operator::LEVELS {
             ui.selectable_value(&mut script.level, name, shown).on_hover_text(hint);
         }
     });
+    call(&list.response, "How well it does it");
 }
 
 fn mistake(ui: &mut Ui, script: &mut Script, possible: &[Mistake]) {
     let chosen = script.mistake.filter(|mistake| possible.contains(mistake));
     let shown = chosen.map_or("None", |mistake| operator::mistake_words(mistake).0);
-    ComboBox::from_id_salt("mistake").selected_text(shown).width(190.0).show_ui(ui, |ui| {
+    let list = ComboBox::from_id_salt("mistake").selected_text(shown).width(190.0).show_ui(ui, |ui| {
         ui.selectable_value(&mut script.mistake, None, "None").on_hover_text("Does it as well as it can");
         for mistake in possible {
             let (shown, hint) = operator::mistake_words(*mistake);
             ui.selectable_value(&mut script.mistake, Some(*mistake), shown).on_hover_text(hint);
         }
     });
+    call(&list.response, "Mistake");
 }

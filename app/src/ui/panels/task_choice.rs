@@ -5,6 +5,7 @@ use crate::ui::format;
 use crate::ui::rules::Rules;
 use crate::ui::session::{Session, sentence};
 use crate::ui::theme;
+use crate::ui::widgets::call;
 use egui::{ComboBox, Ui};
 use estimator::segment::definition::{Definition, SIDECAR_KEY};
 use estimator::segment::library;
@@ -35,7 +36,7 @@ pub fn task_choice(ui: &mut Ui, session: &mut Session) {
             (None, Some(task)) => format::object(task.name()),
             (None, None) => automatic.clone(),
         };
-        ComboBox::from_id_salt("task")
+        let list = ComboBox::from_id_salt("task")
             .width(ui.available_width() - 2.0 * ui.spacing().button_padding.x)
             .selected_text(text)
             .truncate()
@@ -61,6 +62,7 @@ pub fn task_choice(ui: &mut Ui, session: &mut Session) {
                     }
                 }
             });
+        call(&list.response, "Task");
     });
     match picked {
         Some(Picked::Automatic) => set(session, None, None),

@@ -3,6 +3,7 @@
 use crate::ui::format;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space, state_color};
+use crate::ui::widgets::call;
 use egui::{Pos2, Rangef, Rect, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, vec2};
 
 /// Playback speeds on offer.
@@ -24,14 +25,15 @@ pub fn transport(ui: &mut Ui, session: &mut Session, area: Rangef) {
                 _ => format::clock(session.cursor_s),
             };
             ui.add_sized(vec2(62.0, 20.0), egui::Label::new(theme::strong(text)));
-            egui::ComboBox::from_id_salt("speed").width(58.0).selected_text(speed_text(session.speed)).show_ui(
-                ui,
-                |ui| {
+            let list = egui::ComboBox::from_id_salt("speed")
+                .width(58.0)
+                .selected_text(speed_text(session.speed))
+                .show_ui(ui, |ui| {
                     for speed in SPEEDS {
                         ui.selectable_value(&mut session.speed, speed, speed_text(speed));
                     }
-                },
-            );
+                });
+            call(&list.response, "Speed of playing");
         },
     );
     overview(ui, session, Rect::from_x_y_ranges(area, rect.center().y - 7.0..=rect.center().y + 7.0));

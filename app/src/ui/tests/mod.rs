@@ -11,6 +11,7 @@ mod plots;
 mod rules;
 mod scene;
 mod shifting;
+mod spoken;
 mod thresholds;
 mod train;
 mod video;
