@@ -15,4 +15,5 @@ pub mod pipeline;
 pub mod segment;
 pub mod signal;
 pub mod simulate;
+pub mod training;
 pub mod words;

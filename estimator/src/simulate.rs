@@ -144,11 +144,25 @@ fn assemble(recording: &Recording, predicted: Vec<Channel>, measured: impl Fn(&s
 
 /// Moves the world's fingers as they were measured; the force of each tip on the environment at every sample, N.
 fn play(world: &World, recording: &Recording) -> Result<[Vec<Vec2>; 2], EstimateError> {
+    let mut forces = [Vec::with_capacity(recording.len()), Vec::with_capacity(recording.len())];
+    walk(world, recording, |_, state| {
+        for (finger, series) in forces.iter_mut().enumerate() {
+            series.push(state.tip_force_n[finger]);
+        }
+    })?;
+    Ok(forces)
+}
+
+/// Moves the recorded fingers through `world`, from where its things stand at first, and shows the state at every sample: its time, s,
+/// and the world's state then.
+///
+/// # Errors
+/// Without two fingers.
+pub fn walk(world: &World, recording: &Recording, mut see: impl FnMut(f64, &State)) -> Result<(), EstimateError> {
     let signals = task_signals(recording)?;
     let n = signals.len();
     let tip = |finger: usize, i: usize| signals.tips[finger].position[i];
     let mut state = State::new(world, [tip(0, 0), tip(1, 0)]);
-    let mut forces = [Vec::with_capacity(n), Vec::with_capacity(n)];
     for i in 0..n {
         if i > 0 {
             let gap_s = signals.time_s[i] - signals.time_s[i - 1];
@@ -163,11 +177,9 @@ fn play(world: &World, recording: &Recording) -> Result<[Vec<Vec2>; 2], Estimate
                 step(world, &mut state, &input, gap_s / parts as f64);
             }
         }
-        for (finger, series) in forces.iter_mut().enumerate() {
-            series.push(state.tip_force_n[finger]);
-        }
+        see(signals.time_s[i], &state);
     }
-    Ok(forces)
+    Ok(())
 }
 
 fn velocity(tip: &TipSeries, i: usize) -> Vec2 {

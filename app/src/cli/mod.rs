@@ -14,6 +14,7 @@ mod info;
 mod progress;
 mod record;
 mod report;
+mod score;
 mod screenshot;
 mod segment;
 mod simulate;
@@ -58,6 +59,8 @@ enum Command {
     Simulate(simulate::Simulate),
     /// Everything about one or several logs on one HTML page that needs nothing else
     Report(report::Report),
+    /// How well a task was done, from the recording of a trainee's attempt
+    Score(score::Score),
     /// Make a recording from the virtual hand
     Record(record::Record),
     /// A picture without a window
@@ -202,6 +205,7 @@ pub fn main() -> ExitCode {
                 Err(error) => fail(&error),
             };
         }
+        Some(Command::Score(args)) => args.run(),
         Some(Command::Record(args)) => args.run(),
         Some(Command::Screenshot(args)) => args.run(),
         Some(Command::Gallery(args)) => args.run(),

@@ -27,6 +27,7 @@ mod write;
 pub use checks::warnings as quality;
 pub use errors::LogError;
 pub use format::Format;
+pub use mcap::attached::attached;
 pub use mcap::stream::McapStream;
 pub use plan::PAIRS;
 pub use sidecar::{path_for as sidecar_path, write as write_meta, write_as_is as write_sidecar};

@@ -1,5 +1,6 @@
 //! MCAP files: topics of messages in JSON, protobuf or ROS 2 CDR, to one table.
 
+pub mod attached;
 mod cdr;
 mod clocks;
 mod json;

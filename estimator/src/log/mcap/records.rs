@@ -16,7 +16,7 @@ const CHUNK_BYTES: u64 = 32 << 20;
 /// The caller hears of the progress, and may end it, every so many bytes.
 const WATCH_BYTES: u64 = 1 << 20;
 /// Op code and length before every record.
-const PREFIX: usize = 9;
+pub(super) const PREFIX: usize = 9;
 
 /// What the walk meets. Everything else in a file (indices, attachments, statistics) is passed over.
 pub enum Event<'a> {
@@ -95,13 +95,13 @@ fn is_wanted(opcode: u8) -> bool {
     matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE | op::CHUNK | op::METADATA)
 }
 
-fn split_prefix(prefix: [u8; PREFIX]) -> (u8, u64) {
+pub(super) fn split_prefix(prefix: [u8; PREFIX]) -> (u8, u64) {
     let [opcode, length @ ..] = prefix;
     (opcode, u64::from_le_bytes(length))
 }
 
 /// Fills `buffer`, or says that the file is shorter.
-fn fill(file: &mut impl Read, buffer: &mut [u8]) -> std::io::Result<bool> {
+pub(super) fn fill(file: &mut impl Read, buffer: &mut [u8]) -> std::io::Result<bool> {
     match file.read_exact(buffer) {
         Ok(()) => Ok(true),
         Err(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => Ok(false),

@@ -1,0 +1,140 @@
+//! `touchstone score`: how well a task was done, from its recording.
+
+use super::{LogArgs, Output};
+use anyhow::Context as _;
+use clap::Args;
+use estimator::training::course::Course;
+use estimator::training::definitions::ALL;
+use estimator::training::{Measures, measure};
+use haptics::world::World;
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Arguments of `score`.
+#[derive(Args)]
+pub struct Score {
+    /// Recording of a trainee's attempt
+    log: PathBuf,
+    #[command(flatten)]
+    source: LogArgs,
+    /// The world that was touched: a file, or a built-in world; the one in the recording when not given
+    #[arg(long)]
+    world: Option<PathBuf>,
+    /// Force of a finger above which a press counts as too hard, N
+    #[arg(long, default_value_t = 4.0, value_parser = parse_limit)]
+    limit_n: f64,
+    /// Say how every measure is computed
+    #[arg(long)]
+    definitions: bool,
+}
+
+fn parse_limit(text: &str) -> Result<f64, String> {
+    let limit = text.parse().ok().filter(|limit: &f64| *limit > 0.0 && limit.is_finite());
+    limit.ok_or_else(|| format!("`{text}` is no force; write a number above 0, in N"))
+}
+
+impl Score {
+    pub(super) fn run(&self) -> anyhow::Result<Output> {
+        let recordings = self.source.load(&self.log)?;
+        let world = self.world()?;
+        let (mut text, mut all) = (String::new(), Vec::new());
+        for recording in &recordings {
+            let measures = super::progress::during("measuring", |_| measure(recording, world.as_ref(), self.limit_n))?;
+            let _ = writeln!(text, "{}", recording.name);
+            describe(&measures, &mut text);
+            let mut value = serde_json::to_value(&measures)?;
+            value["name"] = json!(recording.name);
+            all.push(value);
+        }
+        if world.is_none() {
+            text.push_str("No world is in the recording; name it with --world to have what became of its objects.\n");
+        }
+        if self.definitions {
+            for definition in ALL {
+                let _ = writeln!(text, "{} ({}): {}", definition.name, definition.key, definition.text);
+            }
+        }
+        let world = world.map(|w| w.name);
+        let mut json = json!({ "world": world, "measures": all });
+        if self.definitions {
+            let told = ALL.map(|d| {
+                json!({ "key": d.key, "name": d.name, "unit": d.unit, "text": d.text, "less_is_better": d.less_is_better })
+            });
+            json["definitions"] = Value::from(told.to_vec());
+        }
+        Ok(Output { text, json })
+    }
+
+    fn world(&self) -> anyhow::Result<Option<World>> {
+        if let Some(named) = &self.world {
+            return crate::worlds::find(named).map(Some);
+        }
+        let Some(bytes) = estimator::log::attached(&self.log, "world.json")? else { return Ok(None) };
+        let text = String::from_utf8(bytes).context("the world in the recording is no text")?;
+        let world = World::from_json(&text).with_context(|| {
+            format!("the world in the recording cannot be used; name one with --world: {}", self.log.display())
+        })?;
+        Ok(Some(world))
+    }
+}
+
+fn describe(measures: &Measures, text: &mut String) {
+    let mut line = |name: &str, value: String| drop(writeln!(text, "  {name:<34} {value}"));
+    let hand = &measures.hand;
+    line("time", format!("{:.1} s, {:.1} s of it in motion", hand.duration_s, hand.moving_s));
+    let paths: Vec<String> = hand.path_length_m.iter().map(|way| format!("{:.0} mm", 1e3 * way)).collect();
+    line("path of each finger", paths.join(", "));
+    let [wide, high] = hand.range_m;
+    line("room used", format!("{:.0} mm wide, {:.0} mm high", 1e3 * wide, 1e3 * high));
+    if let (Some(peak), Some(over_s)) = (hand.peak_force_n, hand.over_limit_s) {
+        let usual = hand.rms_force_n.map_or_else(String::new, |n| format!(", usually {n:.2} N"));
+        line("force", format!("{peak:.2} N at the most{usual}, {over_s:.2} s above {} N", hand.limit_n));
+    }
+    if let (Some(sparc), Some(jerk)) = (hand.sparc, hand.log_dimensionless_jerk) {
+        line("smoothness", format!("spectral arc length {sparc:.2}, log dimensionless jerk {jerk:.2}"));
+    }
+    if let Some(course) = &measures.course {
+        describe_course(course, &mut line);
+    }
+}
+
+fn describe_course(course: &Course, line: &mut dyn FnMut(&str, String)) {
+    if let Some(blocks) = &course.blocks {
+        let counts = |n: usize, one: &str| if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") };
+        let grasps: usize = blocks.grasps.iter().sum();
+        let (drops, slips) = (counts(blocks.drops.len(), "drop"), counts(blocks.slips.len(), "slip"));
+        line("blocks", format!("{}, {drops}, {slips}", counts(grasps, "grasp")));
+        for stack in &blocks.stacks {
+            let what = format!("block {} on block {}", stack.upper + 1, stack.lower + 1);
+            let tilt_deg = stack.tilt_rad.to_degrees();
+            line(&what, format!("{:+.1} mm beside its middle, tilted by {tilt_deg:+.1}°", 1e3 * stack.offset_m));
+        }
+        for (k, (carried, needed)) in blocks.carried_m.iter().zip(&blocks.displaced_m).enumerate() {
+            if *carried > 0.0 {
+                line(
+                    &format!("block {} carried", k + 1),
+                    format!("{:.0} mm for {:.0} mm", 1e3 * carried, 1e3 * needed),
+                );
+            }
+        }
+        let done = blocks.at_rest_since_s.map_or("not at rest at the end".to_owned(), |t| format!("after {t:.1} s"));
+        line("done", done);
+    }
+    if let Some(crank) = &course.crank {
+        line("crank", format!("{:.2} turns, {} times turned back", crank.turns, crank.reversals));
+        let even = 100.0 * crank.speed_variation;
+        line("speed", format!("{:.2} rad/s on the average, ± {even:.0} %", crank.mean_speed_rad_s));
+        line("effort off the tangent", format!("{:.3} J", crank.off_tangent_j));
+    }
+    if let Some(needle) = &course.needle {
+        for puncture in &needle.punctures {
+            let (beyond, beside) = (1e3 * puncture.overshoot_m, 1e3 * puncture.along_m);
+            let when = format!("pierced after {:.1} s", puncture.time_s);
+            line(
+                &when,
+                format!("{beyond:.1} mm too far, {beside:+.1} mm from the middle, at {:.2} N", puncture.force_n),
+            );
+        }
+    }
+}
