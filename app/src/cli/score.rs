@@ -80,7 +80,9 @@ impl Score {
 }
 
 fn describe(measures: &Measures, text: &mut String) {
-    let mut line = |name: &str, value: String| drop(writeln!(text, "  {name:<34} {value}"));
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<34} {value}");
+    };
     let hand = &measures.hand;
     line("time", format!("{:.1} s, {:.1} s of it in motion", hand.duration_s, hand.moving_s));
     let paths: Vec<String> = hand.path_length_m.iter().map(|way| format!("{:.0} mm", 1e3 * way)).collect();

@@ -15,7 +15,7 @@ pub const SPARC_CUTOFF_HZ: f64 = 10.0;
 ///
 /// `speed`: n samples at `rate_hz`, ≥ 0. `None` without motion.
 pub fn sparc(speed: &[f64], rate_hz: f64) -> Option<f64> {
-    if speed.len() < 2 || !(rate_hz > 0.0) || !speed.iter().all(|v| v.is_finite()) {
+    if speed.len() < 2 || !positive(rate_hz) || !speed.iter().all(|v| v.is_finite()) {
         return None;
     }
     let size = speed.len().next_power_of_two() << SPARC_PAD_LEVEL;
@@ -40,7 +40,7 @@ pub fn sparc(speed: &[f64], rate_hz: f64) -> Option<f64> {
 /// `speed`: n samples at `rate_hz`, ≥ 0. `None` without motion.
 pub fn log_dimensionless_jerk(speed: &[f64], rate_hz: f64) -> Option<f64> {
     let largest = speed.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-    if speed.len() < 4 || !(rate_hz > 0.0) || !(largest > 0.0) {
+    if speed.len() < 4 || !positive(rate_hz) || !positive(largest) {
         return None;
     }
     let step_s = 1.0 / rate_hz;
@@ -48,6 +48,10 @@ pub fn log_dimensionless_jerk(speed: &[f64], rate_hz: f64) -> Option<f64> {
     let duration_s = speed.len() as f64 * step_s;
     let scaled = duration_s.powi(3) / largest.powi(2) * step_s * jerk.map(|j| j * j).sum::<f64>();
     (scaled > 0.0 && scaled.is_finite()).then(|| -scaled.ln())
+}
+
+fn positive(value: f64) -> bool {
+    value > 0.0 && value.is_finite()
 }
 
 #[cfg(test)]

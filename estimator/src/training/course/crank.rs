@@ -16,7 +16,7 @@ pub struct CrankMeasures {
     pub turns: f64,
     /// How often the direction changed by more than [`REVERSAL_RAD`].
     pub reversals: usize,
-    /// Force of the bearing against the hand along the way of the handle, ∫ |F_radial| |ds|, J: effort that turns nothing.
+    /// Force of the bearing against the hand along the way of the handle, ∫ |F| |ds| of its radial part, J: effort that turns nothing.
     pub off_tangent_j: f64,
     /// Mean speed while it turned, rad/s.
     pub mean_speed_rad_s: f64,
