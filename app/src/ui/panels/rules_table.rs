@@ -3,7 +3,7 @@
 use super::rules::parameter;
 use crate::ui::rules::Rules;
 use crate::ui::theme::{self, palette, space, state_color, state_name};
-use crate::ui::widgets::swatch;
+use crate::ui::widgets::{call, swatch};
 use egui::{Align, Button, Color32, ComboBox, Layout, RichText, Stroke, TextEdit, Ui, vec2};
 use egui_extras::{Column, TableBuilder, TableRow};
 use estimator::segment::SystemState;
@@ -142,11 +142,13 @@ fn state(ui: &mut Ui, open: &mut Rules, id: (&str, usize), place: impl Fn(&mut R
     let chosen = place(open);
     swatch(ui, state_color(ui.visuals().dark_mode, *chosen));
     let width = (ui.available_width() - 2.0 * space::S).min(164.0);
-    ComboBox::from_id_salt(id).width(width).selected_text(state_name(*chosen)).truncate().show_ui(ui, |ui| {
+    let list = ComboBox::from_id_salt(id).width(width).selected_text(state_name(*chosen)).truncate();
+    let list = list.show_ui(ui, |ui| {
         for state in all {
             ui.selectable_value(chosen, state, state_name(state));
         }
     });
+    call(&list.response, &format!("State of {} {}", id.0, id.1 + 1));
 }
 
 /// The signs that a signal may have: three chips, none of them lit for any.
@@ -178,7 +180,7 @@ fn phase(ui: &mut Ui, open: &mut Rules, rule: usize, values: &[&str]) {
     let when = &mut open.draft.states[rule].when;
     let mut chosen = when.get("phase").cloned().unwrap_or_default();
     let text = if chosen.is_empty() { "any" } else { chosen.as_str() };
-    ComboBox::from_id_salt(("phase", rule))
+    let list = ComboBox::from_id_salt(("phase", rule))
         .width(ui.available_width() - 2.0 * space::S)
         .selected_text(text.to_owned())
         .show_ui(ui, |ui| {
@@ -187,6 +189,7 @@ fn phase(ui: &mut Ui, open: &mut Rules, rule: usize, values: &[&str]) {
                 ui.selectable_value(&mut chosen, (*value).to_owned(), *value);
             }
         });
+    call(&list.response, &format!("Phase of rule {}", rule + 1));
     if chosen.is_empty() {
         when.remove("phase");
     } else {
@@ -201,7 +204,7 @@ fn shown(ui: &mut Ui, open: &mut Rules, rule: usize) {
     let words: Vec<String> = shown.iter().map(|name| parameter(name)).collect();
     let text = if words.is_empty() { "nothing".to_owned() } else { words.join(", ") };
     let ink = if words.is_empty() { palette(ui).faint } else { palette(ui).text };
-    ComboBox::from_id_salt(("shows", rule))
+    let list = ComboBox::from_id_salt(("shows", rule))
         .width(ui.available_width() - space::S)
         .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside)
         .selected_text(RichText::new(&text).size(12.0).color(ink))
@@ -216,9 +219,9 @@ fn shown(ui: &mut Ui, open: &mut Rules, rule: usize) {
                     }
                 }
             }
-        })
-        .response
-        .on_hover_text(format!("Fits take their samples from the states that show a parameter.\n{text}"));
+        });
+    call(&list.response, &format!("What the state of rule {} shows", rule + 1));
+    list.response.on_hover_text(format!("Fits take their samples from the states that show a parameter.\n{text}"));
 }
 
 /// Subtasks with their states: in an expected order, or each on its own.
@@ -270,7 +273,8 @@ fn group(ui: &mut Ui, open: &mut Rules, title: &str, steps: impl Fn(&mut Rules) 
                     body.row(LINE, |mut row| {
                         row.col(|ui| {
                             let name = &mut steps(open)[index].name;
-                            ui.add(TextEdit::singleline(name).desired_width(174.0));
+                            let field = ui.add(TextEdit::singleline(name).desired_width(174.0));
+                            call(&field, &format!("Name of step {}", index + 1));
                         });
                         row.col(|ui| state(ui, open, ("step", index), |open| &mut steps(open)[index].state));
                         row.col(|ui| {

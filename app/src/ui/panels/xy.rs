@@ -5,7 +5,7 @@ use crate::ui::plots::choices::{PlotChoices, XyAxis, XyColor, name, unit_after};
 use crate::ui::plots::{AXIS_WIDTH, GUTTER, Levels, Recipe, Sources, XyCache, XyInput, xy_plot};
 use crate::ui::prepare::{Group, Prepared, Trace};
 use crate::ui::theme::{self, palette, space, state_name};
-use crate::ui::widgets::{compact, segmented, swatch};
+use crate::ui::widgets::{call, compact, segmented, swatch};
 use egui::{ComboBox, Rangef, ScrollArea, Sense, Ui, UiBuilder, vec2};
 use estimator::segment::SystemState;
 use estimator::signal::transform::Transform;
@@ -135,6 +135,7 @@ fn pick(ui: &mut Ui, salt: &str, axis: &mut XyAxis, prepared: &Prepared) {
             }
         }
     });
+    call(&response.response, &format!("{salt}: which signal"));
     response.response.on_hover_text(format!("{salt}: which signal"));
     let combo = ComboBox::from_id_salt(("xy transform", salt)).width(width).selected_text(name(axis.transform));
     let response = combo.show_ui(ui, |ui| {
@@ -142,6 +143,7 @@ fn pick(ui: &mut Ui, salt: &str, axis: &mut XyAxis, prepared: &Prepared) {
             ui.selectable_value(&mut axis.transform, transform, name(transform));
         }
     });
+    call(&response.response, &format!("{salt}: what is made of it"));
     response.response.on_hover_text(format!("{salt}: what is made of it"));
 }
 

@@ -4,6 +4,7 @@ use super::diagnose::{RIPPLED, diagnosed};
 use super::{CRANK, STACK, empty, harness, session};
 use crate::ui::app::App;
 use crate::ui::dock::Pane;
+use crate::ui::plots::LogView;
 use crate::ui::rules::Rules;
 use crate::ui::session::{Session, Workspace};
 
@@ -31,7 +32,13 @@ fn every_widget_has_a_name_for_a_screen_reader() {
     crank.selected_parameter = Some("crank.radius_m".to_owned());
     let mut rules = session(STACK.clone());
     rules.rules = Rules::open(&mut rules);
+    let mut xy = session(STACK.clone());
+    xy.plots.view = LogView::Xy;
+    let mut video = session(STACK.clone());
+    video.open_video(std::path::Path::new("none.mp4"));
     let found = [
+        unnamed("XY", xy, |_| {}),
+        unnamed("video", video, |_| {}),
         unnamed("Calibrate, empty", at(Workspace::Calibrate, empty()), |_| {}),
         unnamed("Calibrate, blocks", session(STACK.clone()), everywhere(Workspace::Calibrate)),
         unnamed("Calibrate, crank", crank, |_| {}),
