@@ -151,6 +151,37 @@ fn drawn(screen: &Screen) -> bool {
     rows.iter().flatten().any(|p| *p != rows[0][0])
 }
 
+/// True once a state was set by hand.
+fn by_hand(home: &Path) -> bool {
+    kept(home)["project"]["choice"]["segments"].as_object().is_some_and(|s| !s.is_empty())
+}
+
+/// Drags the right boundary of a bar a third of its length to the left.
+fn drag(screen: &Screen, home: &Path, (left, right, y): (usize, usize, usize)) {
+    // A boundary is dragged as a hand does it: down, on its way, up.
+    let at = |x: usize| [x.to_string(), (y + 8).to_string()];
+    let move_to = |x: usize| screen.xdotool(&["mousemove", &at(x)[0], &at(x)[1]]);
+    // The grip's line stands out above the band, where no pointer covers it.
+    let grip = |screen: &Screen| screen.picture()[y - 2][right - 3..right + 4].to_vec();
+    let free = grip(screen);
+    move_to(right);
+    until("the grip", screen, || (grip(screen) != free).then_some(()));
+    let offered = grip(screen);
+    screen.xdotool(&["mousedown", "1"]);
+    until("the grip in the hand", screen, || (grip(screen) != offered).then_some(()));
+    let goal = right - (right - left) / 3;
+    for part in 1..=10 {
+        move_to(right - (right - goal) * part / 10);
+    }
+    // The colour of the next state has come where the first one was.
+    let behind = |screen: &Screen| screen.picture()[y + 2][goal + 20];
+    let was = behind(screen);
+    let follows = || (behind(screen) != was || by_hand(home)).then_some(());
+    until("the boundary under the pointer", screen, follows);
+    screen.xdotool(&["mouseup", "1"]);
+    until("the boundary", screen, || by_hand(home).then_some(()));
+}
+
 #[test]
 fn a_person_opens_drags_takes_back_diagnoses_and_survives_a_kill() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -189,32 +220,10 @@ fn a_person_opens_drags_takes_back_diagnoses_and_survives_a_kill() {
     screen.xdotool(&["key", "Return"]);
     let recordings = |home: &Path| kept(home)["project"]["recordings"].as_array().map_or(0, Vec::len);
     until("the recording", &screen, || (recordings(&home) == 1).then_some(()));
-    let (left, right, y) = until("the states", &screen, || screen.run_of(SystemState::HoldAboveGround));
+    let states = until("the states", &screen, || screen.run_of(SystemState::HoldAboveGround));
     screen.keep("2-states");
 
-    let by_hand = |home: &Path| kept(home)["project"]["choice"]["segments"].as_object().is_some_and(|s| !s.is_empty());
-    // A boundary is dragged as a hand does it: down, on its way, up.
-    let at = |x: usize| [x.to_string(), (y + 8).to_string()];
-    let move_to = |x: usize| screen.xdotool(&["mousemove", &at(x)[0], &at(x)[1]]);
-    // The grip's line stands out above the band, where no pointer covers it.
-    let grip = |screen: &Screen| screen.picture()[y - 2][right - 3..right + 4].to_vec();
-    let free = grip(&screen);
-    move_to(right);
-    until("the grip", &screen, || (grip(&screen) != free).then_some(()));
-    let offered = grip(&screen);
-    screen.xdotool(&["mousedown", "1"]);
-    until("the grip in the hand", &screen, || (grip(&screen) != offered).then_some(()));
-    let goal = right - (right - left) / 3;
-    for part in 1..=10 {
-        move_to(right - (right - goal) * part / 10);
-    }
-    // The colour of the next state has come where the first one was.
-    let behind = |screen: &Screen| screen.picture()[y + 2][goal + 20];
-    let was = behind(&screen);
-    let follows = || (behind(&screen) != was || by_hand(&home)).then_some(());
-    until("the boundary under the pointer", &screen, follows);
-    screen.xdotool(&["mouseup", "1"]);
-    until("the boundary", &screen, || by_hand(&home).then_some(()));
+    drag(&screen, &home, states);
     screen.keep("3-boundary");
     screen.xdotool(&["key", "ctrl+z"]);
     until("the way back", &screen, || (!by_hand(&home)).then_some(()));
