@@ -7,22 +7,21 @@ use crate::ui::format;
 use crate::ui::session::{Session, Workspace};
 use egui::{Key, KeyboardShortcut, Modifiers};
 use std::path::PathBuf;
+use strum::{EnumIter, IntoEnumIterator as _};
 
-/// One thing that can be done.
-#[derive(Clone, Debug, PartialEq)]
+/// One thing that can be done. Those without particulars stand first, in the order of the menus.
+#[derive(Clone, Debug, PartialEq, EnumIter)]
 pub enum Action {
     /// Chooses a log.
     OpenLog,
-    /// Chooses a world.
-    OpenWorld,
-    /// Chooses a project.
-    OpenProject,
-    /// Opens a file that was open before.
-    OpenRecent(PathBuf),
     /// Adds another recording to those that are open.
     AddLog,
     /// Chooses a video of the hand.
     AddVideo,
+    /// Chooses a world.
+    OpenWorld,
+    /// Chooses a project.
+    OpenProject,
     /// Writes the project where it was opened.
     SaveProject,
     /// Writes it elsewhere.
@@ -43,18 +42,18 @@ pub enum Action {
     Undo,
     /// Brings it back.
     Redo,
-    /// Fits with what is chosen.
-    Fit,
-    /// The rules of the task.
-    Rules,
     /// Goes back to the states that were found.
     ForgetStates,
     /// Forgets what is stated of parameters.
     ForgetStated,
+    /// Fits with what is chosen.
+    Fit,
     /// Fits only what the plots show.
     FitShown,
     /// Fits all of the recording.
     FitWhole,
+    /// The rules of the task.
+    Rules,
     /// Names what the model gets wrong.
     Diagnose,
     /// Takes it into the model.
@@ -73,33 +72,20 @@ pub enum Action {
     ToEnd,
     /// Shows the whole recording.
     ShowAll,
-    /// Shows another recording.
-    Select(usize),
-    /// Puts the time cursor there.
-    GoTo {
-        /// In words.
-        what: String,
-        /// From, s.
-        from_s: f64,
-        /// To, s.
-        to_s: f64,
-    },
     /// Opens a workspace.
     Open(Workspace),
-    /// Shows or hides a panel.
-    Panel(Pane),
     /// Titles on every panel, to move them.
     Arrange,
     /// The standard arrangement.
     ResetLayout,
     /// Gives the arrangement a name.
     SaveLayout,
-    /// An arrangement by its name.
-    Layout(String),
     /// Another name for the open one.
     RenameLayout,
     /// Forgets the open one's name.
     DeleteLayout,
+    /// Shows or hides a panel.
+    Panel(Pane),
     /// The other theme.
     Theme,
     /// Larger.
@@ -114,6 +100,25 @@ pub enum Action {
     Palette,
     /// What is where.
     Tour,
+    /// Opens a file that was open before.
+    #[strum(disabled)]
+    OpenRecent(PathBuf),
+    /// Shows another recording.
+    #[strum(disabled)]
+    Select(usize),
+    /// Puts the time cursor there.
+    #[strum(disabled)]
+    GoTo {
+        /// In words.
+        what: String,
+        /// From, s.
+        from_s: f64,
+        /// To, s.
+        to_s: f64,
+    },
+    /// An arrangement by its name.
+    #[strum(disabled)]
+    Layout(String),
 }
 
 /// Where an action stands in menus.
@@ -153,64 +158,6 @@ impl Group {
     }
 }
 
-const FIXED: [Action; 47] = {
-    use Action::{
-        AddLog, AddVideo, Arrange, DeleteLayout, Diagnose, Extend, Feel, Fit, FitShown, FitWhole, ForgetStated,
-        ForgetStates, FullScreen, Larger, MapColumns, Open, OpenLog, OpenProject, OpenWorld, Palette, Panel, Play,
-        Quit, Record, Redo, Reload, RenameLayout, Report, ResetLayout, Rules, SaveLayout, SaveLog, SaveProject,
-        SaveProjectAs, SaveWorld, ShowAll, Smaller, Theme, ToEnd, ToStart, Tour, TrainCalibrated, Undo, UsualSize,
-    };
-    [
-        OpenLog,
-        AddLog,
-        AddVideo,
-        OpenWorld,
-        OpenProject,
-        SaveProject,
-        SaveProjectAs,
-        SaveLog,
-        SaveWorld,
-        Report,
-        Reload,
-        MapColumns,
-        Quit,
-        Undo,
-        Redo,
-        ForgetStates,
-        ForgetStated,
-        Fit,
-        FitShown,
-        FitWhole,
-        Rules,
-        Diagnose,
-        Extend,
-        Feel,
-        TrainCalibrated,
-        Record,
-        Play,
-        ToStart,
-        ToEnd,
-        ShowAll,
-        Open(Workspace::Train),
-        Open(Workspace::Calibrate),
-        Open(Workspace::Diagnose),
-        Open(Workspace::Devices),
-        Arrange,
-        ResetLayout,
-        SaveLayout,
-        RenameLayout,
-        DeleteLayout,
-        Panel(Pane::Segments),
-        Theme,
-        Larger,
-        Smaller,
-        UsualSize,
-        FullScreen,
-        Palette,
-        Tour,
-    ]
-};
-
 impl Action {
     /// Everything that the window as it is offers.
     pub fn all(app: &App) -> impl Iterator<Item = Self> + use<> {
@@ -221,7 +168,17 @@ impl Action {
         let recordings = (0..session.recordings.len()).filter(|i| *i != session.current).map(Self::Select);
         let known = !matches!(session.workspace, Workspace::Train | Workspace::Devices);
         let places = if known { places(session) } else { Vec::new() };
-        let fixed = FIXED.into_iter().filter(move |a| *a != Self::Panel(Pane::Segments) || known);
+        let fixed = Self::iter().flat_map(|action| match action {
+            Self::Open(_) => Workspace::CHOICES.map(|(workspace, ..)| Self::Open(workspace)).to_vec(),
+            Self::Panel(_) => {
+                if known {
+                    vec![Self::Panel(Pane::Segments)]
+                } else {
+                    Vec::new()
+                }
+            }
+            other => vec![other],
+        });
         let all: Vec<Self> = fixed.chain(layouts).chain(panels).chain(recent).chain(recordings).chain(places).collect();
         all.into_iter()
     }

@@ -20,10 +20,11 @@ use egui::Ui;
 use serde::{Deserialize, Serialize};
 
 /// A panel by its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Pane {
     /// Which recording, and how it is fitted.
+    #[default]
     Recording,
     /// The recording in space, or the rules of its task.
     Scene,
