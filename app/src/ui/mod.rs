@@ -98,6 +98,7 @@ fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
     }
     if let Some(state) = &cc.wgpu_render_state {
         scene::announce(&cc.egui_ctx, state);
+        scene::warm_up(&cc.egui_ctx, state);
     }
     let mut session = Session::new();
     session.meta.clone_from(&options.meta);

@@ -4,7 +4,8 @@ use egui_wgpu::{CallbackResources, CallbackTrait, ScreenDescriptor, wgpu};
 use haptics::world::{State, World};
 use render::{Blit, Frame, Renderer, SAMPLES, SceneView, TextureTarget, ViewOptions};
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::{Arc, Mutex};
 
 /// Format of the texture that the scene is drawn into.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -21,6 +22,24 @@ fn surface_id() -> egui::Id {
 pub fn announce(ctx: &egui::Context, state: &egui_wgpu::RenderState) {
     ctx.data_mut(|data| data.insert_temp(surface_id(), Surface(state.target_format)));
 }
+
+/// Builds what draws scenes on a thread of its own, so that the window's first picture need not wait for it; until it is there scenes
+/// are left out.
+pub fn warm_up(ctx: &egui::Context, state: &egui_wgpu::RenderState) {
+    let (sender, receiver) = channel();
+    let (device, surface, ctx) = (state.device.clone(), state.target_format, ctx.clone());
+    let spawned = std::thread::Builder::new().name("pipelines".to_owned()).spawn(move || {
+        // Nobody listens any more in a window that was closed at once.
+        let _ = sender.send(Resources::new(&device, surface));
+        ctx.request_repaint();
+    });
+    if spawned.is_ok() {
+        state.renderer.write().callback_resources.insert(Warming(Mutex::new(receiver)));
+    }
+}
+
+/// Where what [`warm_up`] builds comes out.
+struct Warming(Mutex<Receiver<Resources>>);
 
 /// Draws a scene into `rect`; false when there is no graphics device. `view` tells apart several pictures in one window.
 pub fn picture(
@@ -66,6 +85,12 @@ struct ViewResources {
     bound: wgpu::BindGroup,
 }
 
+impl Warming {
+    fn take(&self) -> Result<Resources, TryRecvError> {
+        self.0.lock().map_or(Err(TryRecvError::Disconnected), |receiver| receiver.try_recv())
+    }
+}
+
 impl Resources {
     fn new(device: &wgpu::Device, surface: wgpu::TextureFormat) -> Self {
         Self {
@@ -106,7 +131,14 @@ impl CallbackTrait for Picture {
         resources: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
         if !resources.contains::<Resources>() {
-            resources.insert(Resources::new(device, self.surface));
+            match resources.get::<Warming>().map(Warming::take) {
+                Some(Err(TryRecvError::Empty)) => return Vec::new(),
+                Some(Ok(warm)) => drop(resources.insert(warm)),
+                // Without a thread it is built here.
+                Some(Err(TryRecvError::Disconnected)) | None => {
+                    drop(resources.insert(Resources::new(device, self.surface)));
+                }
+            }
         }
         if let Some(own) = resources.get_mut::<Resources>() {
             own.prepare(device, queue, encoder, self);

@@ -11,7 +11,7 @@ mod rig;
 mod vectors;
 mod view;
 
-pub use callback::{announce, picture};
+pub use callback::{announce, picture, warm_up};
 pub use layers::SceneLayers;
 pub use legend::legend;
 pub use likeness::Likeness;
