@@ -56,6 +56,7 @@ pub mod what_if;
 pub mod widgets;
 
 use crate::tasks::Chosen;
+use anyhow::Context as _;
 use session::Session;
 use std::path::PathBuf;
 
@@ -82,13 +83,46 @@ pub fn run(options: RunOptions) -> anyhow::Result<()> {
         .with_inner_size([1480.0, 920.0])
         .with_min_inner_size([1120.0, 680.0])
         .with_drag_and_drop(true);
-    let native = eframe::NativeOptions { viewport, renderer: eframe::Renderer::Wgpu, ..Default::default() };
+    let native = eframe::NativeOptions {
+        viewport,
+        renderer: eframe::Renderer::Wgpu,
+        wgpu_options: graphics(),
+        ..Default::default()
+    };
     let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
         Ok(Box::new(create(cc, &options)))
     };
-    eframe::run_native("touchstone", native, Box::new(start)).map_err(|error| {
-        anyhow::anyhow!("the window could not be opened ({error}); is there a display and a graphics driver?")
-    })
+    match eframe::run_native("touchstone", native, Box::new(start)) {
+        Err(eframe::Error::Wgpu(_)) if std::env::var_os(BACKEND).is_none() => with_open_gl(),
+        opened => opened.map_err(|error| {
+            anyhow::anyhow!("the window could not be opened ({error}); is there a display and a graphics driver?")
+        }),
+    }
+}
+
+/// What chooses the graphics interface, for wgpu.
+const BACKEND: &str = "WGPU_BACKEND";
+
+/// The system's own interface alone: to look for OpenGL as well takes a tenth of a second on every start.
+fn graphics() -> egui_wgpu::WgpuConfiguration {
+    let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
+    setup.instance_descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY);
+    egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() }
+}
+
+/// Starts again with OpenGL, where there is nothing else: a window system can be opened once a process.
+fn with_open_gl() -> anyhow::Result<()> {
+    let again = std::process::Command::new(std::env::current_exe()?)
+        .args(std::env::args_os().skip(1))
+        .env(BACKEND, "gl")
+        .status()
+        .context("the window could not be opened, and neither with OpenGL")?;
+    // What was in the way there it has said itself.
+    anyhow::ensure!(
+        again.success(),
+        "there is no graphics driver but OpenGL's, and the window did not stay open with that one"
+    );
+    Ok(())
 }
 
 fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
