@@ -29,8 +29,12 @@ pub fn warm_up(ctx: &egui::Context, state: &egui_wgpu::RenderState) {
     let (sender, receiver) = channel();
     let (device, surface, ctx) = (state.device.clone(), state.target_format, ctx.clone());
     let spawned = std::thread::Builder::new().name("pipelines".to_owned()).spawn(move || {
-        // Nobody listens any more in a window that was closed at once.
-        let _ = sender.send(Resources::new(&device, surface));
+        match Resources::tried(&device, surface) {
+            // Nobody listens any more in a window that was closed at once.
+            Some(made) => drop(sender.send(made)),
+            // Panels say so in the picture's place.
+            None => ctx.data_mut(|data| data.remove::<Surface>(surface_id())),
+        }
         ctx.request_repaint();
     });
     if spawned.is_ok() {
@@ -92,6 +96,13 @@ impl Warming {
 }
 
 impl Resources {
+    /// `None` where the graphics driver lacks what the pictures need.
+    fn tried(device: &wgpu::Device, surface: wgpu::TextureFormat) -> Option<Self> {
+        let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let made = Self::new(device, surface);
+        pollster::block_on(scope.pop()).is_none().then_some(made)
+    }
+
     fn new(device: &wgpu::Device, surface: wgpu::TextureFormat) -> Self {
         Self {
             renderer: Renderer::new(device, FORMAT, SAMPLES),
@@ -132,12 +143,11 @@ impl CallbackTrait for Picture {
     ) -> Vec<wgpu::CommandBuffer> {
         if !resources.contains::<Resources>() {
             match resources.get::<Warming>().map(Warming::take) {
-                Some(Err(TryRecvError::Empty)) => return Vec::new(),
                 Some(Ok(warm)) => drop(resources.insert(warm)),
-                // Without a thread it is built here.
-                Some(Err(TryRecvError::Disconnected)) | None => {
-                    drop(resources.insert(Resources::new(device, self.surface)));
-                }
+                // Not yet, or never.
+                Some(Err(_)) => return Vec::new(),
+                // Without a window there is no thread either.
+                None => drop(resources.insert(Resources::new(device, self.surface))),
             }
         }
         if let Some(own) = resources.get_mut::<Resources>() {
