@@ -5,6 +5,7 @@ use crate::ui::session::{Session, Workspace};
 use egui::Vec2;
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use std::collections::BTreeSet;
+use strum::IntoEnumIterator as _;
 
 /// Between panels, and around them.
 pub const GAP: f32 = 12.0;
@@ -33,7 +34,7 @@ pub fn standard(workspace: Workspace) -> Tree<Pane> {
 /// The panels in it.
 pub fn standard_panes(workspace: Workspace) -> BTreeSet<Pane> {
     let tree = standard(workspace);
-    Pane::ALL.into_iter().filter(|pane| tree.tiles.find_pane(pane).is_some()).collect()
+    Pane::iter().filter(|pane| tree.tiles.find_pane(pane).is_some()).collect()
 }
 
 fn side_by_side(tiles: &mut Tiles<Pane>, panes: [Pane; 2]) -> TileId {

@@ -19,6 +19,7 @@ use named::Named;
 use naming::Naming;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
+use strum::IntoEnumIterator as _;
 
 /// The arrangement of one workspace.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -108,7 +109,7 @@ impl Dock {
 impl Arrangement {
     /// The panels that stand in it.
     fn panes(&self) -> BTreeSet<Pane> {
-        Pane::ALL.into_iter().filter(|pane| self.find(*pane).is_some()).collect()
+        Pane::iter().filter(|pane| self.find(*pane).is_some()).collect()
     }
 
     fn find(&self, pane: Pane) -> Option<TileId> {
@@ -126,7 +127,7 @@ impl Arrangement {
 
     /// Panels that have nothing to show yet leave their room to the others.
     fn show_only_what_has_contents(&mut self, session: &Session) {
-        for pane in Pane::ALL {
+        for pane in Pane::iter() {
             if let Some(tile) = self.find(pane) {
                 // Alone, it hides its tabs as well: they would keep the room.
                 self.tree.set_visible(tile, pane.has_contents(session));
@@ -158,12 +159,12 @@ mod tests {
     fn every_panel_can_be_taken_out_and_comes_back() {
         let mut dock = Dock::default();
         let at = Workspace::Calibrate;
-        for pane in Pane::ALL {
+        for pane in Pane::iter() {
             if dock.has(at, pane) {
                 dock.toggle(at, pane);
             }
         }
-        assert!(Pane::ALL.iter().all(|p| !dock.has(at, *p)));
+        assert!(Pane::iter().all(|p| !dock.has(at, p)));
         dock.bring(at, Pane::Results);
         dock.bring(at, Pane::Log);
         assert!(dock.has(at, Pane::Results) && dock.has(at, Pane::Log));

@@ -20,7 +20,9 @@ use egui::Ui;
 use serde::{Deserialize, Serialize};
 
 /// A panel by its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default, strum::EnumIter, Serialize, Deserialize,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum Pane {
     /// Which recording, and how it is fitted.
@@ -53,23 +55,6 @@ pub enum Pane {
 }
 
 impl Pane {
-    /// Every one of them.
-    pub const ALL: [Self; 13] = [
-        Self::Recording,
-        Self::Scene,
-        Self::Log,
-        Self::Results,
-        Self::Segments,
-        Self::Sensitivity,
-        Self::Video,
-        Self::Trainer,
-        Self::TrainerSide,
-        Self::Diagnose,
-        Self::Diagnosis,
-        Self::Devices,
-        Self::DeviceDetail,
-    ];
-
     /// For people.
     pub fn title(self) -> &'static str {
         match self {

@@ -1,7 +1,7 @@
 //! What was found, checked on other recordings; and the residual atlas.
 
 use super::diagnose::{RIPPLED, diagnosed, hiding_so_much};
-use super::{count_near, harness, keep, no_driver};
+use super::{count_near, harness, keep, no_driver, until_done};
 use crate::ui::app::App;
 use crate::ui::checking::{Checked, Holds, On, check_now, holds};
 use crate::ui::jobs::JobKind;
@@ -18,7 +18,6 @@ use estimator::diagnose::{Options, validate};
 use haptics::recording::Recording;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 fn saved(recording: &Recording, name: &str, folder: &Path) -> PathBuf {
     let path = folder.join(format!("{name}.csv"));
@@ -31,15 +30,6 @@ fn window<'a>(session: Session) -> Harness<'a, App> {
     harness(App::new(session), [1280.0, 1800.0], |ui, app: &mut App| app.show(ui))
 }
 
-fn wait(harness: &mut Harness<'_, App>, kind: JobKind) {
-    let begun = Instant::now();
-    while harness.state().session.jobs.is_running(kind) && begun.elapsed() < Duration::from_mins(1) {
-        std::thread::sleep(Duration::from_millis(5));
-        harness.run_steps(1);
-    }
-    harness.run_steps(3);
-}
-
 fn type_path(harness: &mut Harness<'_, App>, path: &str) {
     let label = "Recording to check on";
     harness.get_by_role_and_label(Role::TextInput, label).focus();
@@ -48,7 +38,7 @@ fn type_path(harness: &mut Harness<'_, App>, path: &str) {
     harness.run_steps(2);
     harness.key_press(egui::Key::Enter);
     harness.run_steps(2);
-    wait(harness, JobKind::Check);
+    until_done(harness, JobKind::Check);
 }
 
 #[test]
@@ -90,7 +80,7 @@ fn an_open_recording_is_left_out_and_the_others_answer_for_it() {
     harness.run_steps(3);
     harness.get_by_role_and_label(Role::Button, "again").click();
     harness.run_steps(2);
-    wait(&mut harness, JobKind::Check);
+    until_done(&mut harness, JobKind::Check);
     let session = &harness.state().session;
     let checked = session.diagnosing.checked.first().expect("checked");
     assert_eq!((checked.name.as_str(), checked.found.as_ref().map(holds)), ("again", Ok(Holds::Yes)));

@@ -1,6 +1,6 @@
 //! The Diagnose workspace: what it asks for, what it answers, the extended model and how it is felt.
 
-use super::{STACK, cart, clockless_path, count_near, empty, harness, no_driver, session};
+use super::{STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until, until_done};
 use crate::ui::app::App;
 use crate::ui::diagnosing;
 use crate::ui::jobs::JobKind;
@@ -13,7 +13,6 @@ use egui_kittest::kittest::Queryable;
 use estimator::diagnose::{Progress, Verdict};
 use haptics::recording::{Recording, Task};
 use std::sync::{Arc, LazyLock};
-use std::time::{Duration, Instant};
 
 /// A turned crank in which something is hidden, from a generator that shares nothing with the program.
 fn hiding(effect: Effect, bench: Bench, seed: u64) -> Recording {
@@ -51,16 +50,6 @@ fn window<'a>(session: Session) -> Harness<'a, App> {
     harness(App::new(session), [1280.0, 1400.0], |ui, app: &mut App| app.show(ui))
 }
 
-/// Runs until the job is over.
-fn wait(harness: &mut Harness<'_, App>, kind: JobKind) {
-    let begun = Instant::now();
-    while harness.state().session.jobs.is_running(kind) && begun.elapsed() < Duration::from_mins(1) {
-        std::thread::sleep(Duration::from_millis(5));
-        harness.run_steps(1);
-    }
-    harness.run_steps(3);
-}
-
 #[test]
 fn without_a_recording_it_says_what_to_do() {
     let mut session = empty();
@@ -86,7 +75,7 @@ fn the_button_diagnoses_in_the_background_names_the_cause_and_extends_the_model(
     let mut harness = window(loaded(RIPPLED.clone()));
     harness.get_by_role_and_label(egui::Role::Button, "Diagnose").click();
     harness.run_steps(2);
-    wait(&mut harness, JobKind::Diagnose);
+    until_done(&mut harness, JobKind::Diagnose);
     let answer = harness.state().session.diagnosing.answer.clone().expect("an answer");
     assert_eq!(answer.diagnosis.causes[0].id, "position-ripple");
     for label in [
@@ -99,9 +88,9 @@ fn the_button_diagnoses_in_the_background_names_the_cause_and_extends_the_model(
     }
     harness.get_by_role_and_label(egui::Role::Button, "Extend the model").click();
     harness.run_steps(2);
-    wait(&mut harness, JobKind::Extend);
+    until_done(&mut harness, JobKind::Extend);
     let worlds = harness.state().session.diagnosing.worlds.clone().expect("both worlds");
-    wait(&mut harness, JobKind::SimulateExtended);
+    until_done(&mut harness, JobKind::SimulateExtended);
     let replayed = harness.state().session.extended_replay().expect("played through the extended world");
     assert!(replayed.curves.iter().any(|(name, _)| name == "fx_N"), "for the plots: {:?}", replayed.curves.len());
     let laws = |world: &haptics::world::World| -> Vec<&'static str> {
@@ -167,12 +156,7 @@ fn the_results_of_a_fit_lead_to_the_diagnosis() {
     harness.get_by_label("Diagnose …").click();
     harness.run_steps(2);
     assert_eq!(harness.state().workspace, Workspace::Diagnose);
-    let begun = Instant::now();
-    while harness.state().diagnosing.answer.is_none() && begun.elapsed() < Duration::from_mins(1) {
-        std::thread::sleep(Duration::from_millis(5));
-        harness.run_steps(1);
-    }
-    assert!(harness.state().diagnosing.answer.is_some());
+    until(&mut harness, "the answer", |session| session.diagnosing.answer.is_some());
 }
 
 #[test]
@@ -218,7 +202,7 @@ fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
     assert!(harness.query_by_role_and_label(egui::Role::RadioButton, "Inertia").is_some());
     harness.get_by_role_and_label(egui::Role::Button, "Diagnose").click();
     harness.run_steps(2);
-    wait(&mut harness, JobKind::Diagnose);
+    until_done(&mut harness, JobKind::Diagnose);
     let session = &mut harness.state_mut().session;
     let answer = session.diagnosing.answer.clone().expect("an answer");
     let ids: Vec<&str> = answer.diagnosis.causes.iter().map(|c| c.id.as_str()).collect();
@@ -230,7 +214,7 @@ fn a_mechanism_starts_from_a_model_that_can_be_chosen_and_cannot_be_felt() {
     // Another model to start from asks anew.
     harness.get_by_role_and_label(egui::Role::RadioButton, "+ dry").click();
     harness.run_steps(2);
-    wait(&mut harness, JobKind::Diagnose);
+    until_done(&mut harness, JobKind::Diagnose);
     let answer = harness.state().session.diagnosing.answer.clone().expect("another answer");
     assert!(answer.diagnosis.baseline.model.contains("coulomb-friction"), "{}", answer.diagnosis.baseline.model);
 }

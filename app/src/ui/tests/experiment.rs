@@ -1,6 +1,6 @@
 //! The experiment that a diagnosis asks for: rehearsed, done by hand, loaded; and what it settles.
 
-use super::harness;
+use super::{harness, until};
 use crate::experiment::simulated_object;
 use crate::ui::app::App;
 use crate::ui::gallery::samples::{askew, askew_world, done_with};
@@ -15,7 +15,6 @@ use estimator::diagnose::Verdict;
 use haptics::recording::Recording;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
-use std::time::{Duration, Instant};
 
 static ASKEW: LazyLock<Recording> = LazyLock::new(|| askew().expect("performed"));
 
@@ -25,17 +24,6 @@ fn saved(recording: &Recording, folder: &Path) -> PathBuf {
     estimator::log::write_csv(&recording, &path).expect("written");
     estimator::log::write_meta(&recording, &path).expect("written");
     path
-}
-
-/// Runs pictures until `over`, a minute at most.
-fn until(harness: &mut Harness<'_, App>, over: impl Fn(&Session) -> bool) {
-    let begun = Instant::now();
-    while !over(&harness.state().session) && begun.elapsed() < Duration::from_mins(1) {
-        std::thread::sleep(Duration::from_millis(5));
-        harness.run_steps(1);
-    }
-    assert!(over(&harness.state().session), "{:?}", harness.state().session.banners);
-    harness.run_steps(3);
 }
 
 fn quiet(session: &Session) -> bool {
@@ -51,12 +39,18 @@ fn asked<'a>(folder: &Path) -> Harness<'a, App> {
     let ctx = harness.ctx.clone();
     let path = saved(&ASKEW, folder);
     harness.state_mut().session.open(&ctx, &path);
-    until(&mut harness, |s| s.analysis.is_some() && quiet(s));
+    until(&mut harness, "the next step", |app| {
+        let s = &app.session;
+        s.analysis.is_some() && quiet(s)
+    });
     harness.state_mut().session.workspace = Workspace::Diagnose;
     harness.run_steps(2);
     harness.get_by_role_and_label(Role::Button, "Diagnose").click();
     harness.run_steps(2);
-    until(&mut harness, |s| s.diagnosing.answer.is_some());
+    until(&mut harness, "the next step", |app| {
+        let s = &app.session;
+        s.diagnosing.answer.is_some()
+    });
     assert_eq!(verdict(&harness), Verdict::Ambiguous);
     harness
 }
@@ -81,7 +75,10 @@ fn it_is_rehearsed_on_every_object_and_said_to_be_simulated() {
     let mut harness = asked(folder.path());
     harness.get_by_role_and_label(Role::Button, "Rehearse it").click();
     harness.run_steps(2);
-    until(&mut harness, |s| !s.jobs.is_running(JobKind::Rehearse));
+    until(&mut harness, "the next step", |app| {
+        let s = &app.session;
+        !s.jobs.is_running(JobKind::Rehearse)
+    });
     let rehearsal = harness.state().session.diagnosing.rehearsal.clone().expect("rehearsed");
     let ids: Vec<&str> = rehearsal.outcomes.iter().map(|o| o.id.as_str()).collect();
     assert_eq!(ids, ["eccentric-mass", "gravity-tilt"]);
@@ -97,7 +94,10 @@ fn it_is_rehearsed_on_every_object_and_said_to_be_simulated() {
     // One of them can be added, as what it is.
     harness.get_by_role_and_label(Role::Link, "Add simulated gravity-tilt").click();
     harness.run_steps(2);
-    until(&mut harness, |s| s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s));
+    until(&mut harness, "the next step", |app| {
+        let s = &app.session;
+        s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+    });
     let session = &harness.state().session;
     assert_eq!(simulated_object(&session.recordings[1].recording), Some("as if gravity tilt"));
     assert!(harness.query_by_label("Not measured").is_some());
@@ -132,7 +132,10 @@ fn a_loaded_recording_of_the_experiment_settles_the_question() {
     harness.run_steps(2);
     harness.key_press(egui::Key::Enter);
     harness.run_steps(2);
-    until(&mut harness, |s| s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s));
+    until(&mut harness, "the next step", |app| {
+        let s = &app.session;
+        s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+    });
     assert_eq!((settled(&harness), verdict(&harness)), (pair("eccentric-mass", "gravity-tilt"), Verdict::Causes));
     assert!(harness.query_by_label("Settled").is_some());
     assert!(harness.query_by_label("Eccentric mass, not tilted plane.").is_some());
@@ -152,7 +155,10 @@ fn a_person_follows_the_rings_in_train_and_adds_what_was_recorded() {
     harness.run_steps(3);
     harness.get_by_role_and_label(Role::Button, "The world that stands in Train").click();
     harness.run_steps(2);
-    until(&mut harness, |s| s.experiments.guided.is_some());
+    until(&mut harness, "the next step", |app| {
+        let s = &app.session;
+        s.experiments.guided.is_some()
+    });
     assert_eq!(harness.state().session.workspace, Workspace::Train);
     harness.get_by_role_and_label(Role::Button, "Begin").click();
     harness.run_steps(2);
@@ -166,10 +172,16 @@ fn a_person_follows_the_rings_in_train_and_adds_what_was_recorded() {
     let session = &mut harness.state_mut().session;
     session.follow_rings(all_s);
     harness.run_steps(2);
-    until(&mut harness, |s| matches!(s.experiments.guided.as_ref().map(|g| &g.phase), Some(Phase::Recorded(_))));
+    until(&mut harness, "the next step", |app| {
+        let s = &app.session;
+        matches!(s.experiments.guided.as_ref().map(|g| &g.phase), Some(Phase::Recorded(_)))
+    });
     harness.get_by_role_and_label(Role::Button, "Add to the diagnosis").click();
     harness.run_steps(2);
-    until(&mut harness, |s| s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s));
+    until(&mut harness, "the next step", |app| {
+        let s = &app.session;
+        s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+    });
     let session = &harness.state().session;
     let known = &session.recordings[1].recording.meta.known;
     assert!(known.get("added_weight_N").is_some_and(|w| *w > 0.05), "{known:?}");
@@ -184,7 +196,10 @@ fn an_experiment_that_is_left_keeps_no_file() {
     harness.run_steps(3);
     harness.get_by_role_and_label(Role::Button, "This one as if it had a tilted plane").click();
     harness.run_steps(2);
-    until(&mut harness, |s| s.experiments.guided.is_some());
+    until(&mut harness, "the next step", |app| {
+        let s = &app.session;
+        s.experiments.guided.is_some()
+    });
     assert!(harness.query_by_label_contains("SIMULATED object, as if gravity tilt").is_some());
     harness.get_by_role_and_label(Role::Button, "Begin").click();
     harness.run_steps(2);

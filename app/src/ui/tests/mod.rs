@@ -18,6 +18,8 @@ mod video;
 mod window;
 mod workbench;
 
+use super::app::App;
+use super::jobs::JobKind;
 use super::prepare::Prepared;
 use super::session::{self, Session, Workspace};
 use super::theme;
@@ -26,6 +28,7 @@ use egui_kittest::Harness;
 use haptics::recording::{Channel, Recording};
 use std::io::Write;
 use std::sync::{Arc, LazyLock};
+use std::time::{Duration, Instant};
 
 /// The scripted operator's recording in a preset world.
 fn performed(choice: WorldChoice) -> Recording {
@@ -109,6 +112,28 @@ pub fn harness<'a, S: 'a>(
         builder.with_context_setup(theme::install).build_ui_state(move |ui, state| show(ui, state), state);
     harness.run_steps(3);
     harness
+}
+
+/// Frames pass until `over`; what never comes fails with a word.
+pub fn until<S>(harness: &mut Harness<'_, S>, what: &str, over: impl Fn(&S) -> bool) {
+    let begun = Instant::now();
+    while !over(harness.state()) {
+        assert!(begun.elapsed() < Duration::from_mins(2), "{what} never comes");
+        // Jobs have threads of their own; nothing wakes a window that is not there.
+        std::thread::sleep(Duration::from_millis(3));
+        harness.run_steps(1);
+    }
+    harness.run_steps(3);
+}
+
+/// Until the window's jobs of a kind are over.
+pub fn until_done(harness: &mut Harness<'_, App>, kind: JobKind) {
+    until(harness, "the end of a job", |app| !app.session.jobs.is_running(kind));
+}
+
+/// Until the window has nothing more to do.
+pub fn until_quiet(harness: &mut Harness<'_, App>) {
+    until(harness, "the end of all jobs", |app| !app.session.jobs.is_busy());
 }
 
 /// True, with a visible word, where pictures cannot be drawn.

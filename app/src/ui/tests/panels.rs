@@ -1,6 +1,6 @@
 //! Every panel on an empty session, on blocks, on a crank, on a mechanism; what is shown and what buttons do.
 
-use super::{CRANK, STACK, cart, clockless_path, count_near, empty, harness, no_driver, session};
+use super::{CRANK, STACK, cart, clockless_path, count_near, empty, harness, no_driver, session, until};
 use crate::ui::jobs::JobKind;
 use crate::ui::panels::Panel;
 use crate::ui::panels::diagnose::DiagnosePanel;
@@ -18,7 +18,6 @@ use crate::ui::{format, screenshot, theme};
 use egui_kittest::kittest::Queryable;
 use estimator::segment::SystemState;
 use haptics::recording::Recording;
-use std::time::{Duration, Instant};
 
 fn panels() -> Vec<Box<dyn Panel>> {
     vec![
@@ -75,13 +74,8 @@ fn refit_starts_a_job_and_brings_a_fit() {
     });
     harness.get_by_role_and_label(egui::Role::Button, "Fit").click();
     harness.run_steps(1);
-    let begun = Instant::now();
     assert!(harness.state().jobs.is_running(JobKind::Fit) || harness.state().analysis.is_some());
-    while harness.state().analysis.is_none() && begun.elapsed() < Duration::from_mins(1) {
-        std::thread::sleep(Duration::from_millis(5));
-        harness.run_steps(1);
-    }
-    assert!(harness.state().analysis.is_some());
+    until(&mut harness, "the fit", |session| session.analysis.is_some());
 }
 
 #[test]

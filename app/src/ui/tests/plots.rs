@@ -1,7 +1,7 @@
 //! The plots of the log, used as a person does: transforms, what is left over, XY, recordings over each other.
 
 use super::diagnose::{RIPPLED, diagnosed};
-use super::{CRANK, STACK, cart, clockless_path, count_near, harness, keep, no_driver, session};
+use super::{CRANK, STACK, cart, clockless_path, count_near, harness, keep, no_driver, session, until};
 use crate::ui::diagnosing;
 use crate::ui::fitting::{analyse, replay_all, replay_forces};
 use crate::ui::jobs::JobKind;
@@ -18,7 +18,6 @@ use egui_kittest::kittest::Queryable;
 use estimator::signal::transform::Transform;
 use haptics::recording::{Channel, Recording};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 /// The log panel alone, with the window's jobs.
 pub fn log<'a>(session: Session) -> Harness<'a, Session> {
@@ -33,17 +32,6 @@ pub fn log<'a>(session: Session) -> Harness<'a, Session> {
 fn press(harness: &mut Harness<'_, Session>, role: Role, label: &str) {
     harness.get_by_role_and_label(role, label).click();
     harness.run_steps(4);
-}
-
-/// Runs until `over`, or too long.
-pub fn until(harness: &mut Harness<'_, Session>, over: impl Fn(&Session) -> bool) {
-    let begun = Instant::now();
-    while !over(harness.state()) {
-        assert!(begun.elapsed() < Duration::from_mins(1), "it never comes");
-        std::thread::sleep(Duration::from_millis(3));
-        harness.run_steps(1);
-    }
-    harness.run_steps(3);
 }
 
 /// A turned crank in which a ripple is hidden, with the model without and with it.
@@ -128,7 +116,7 @@ fn a_long_log_is_transformed_in_the_background_and_shown_when_it_is_there() {
     session.plots.groups.entry("Position/mm".to_owned()).or_default().transform = Transform::Derivative;
     let mut harness = log(session);
     // Until it is there the plot stays what it was, unit and all.
-    until(&mut harness, |s| s.plots.groups["Position/mm"].drawn == Transform::Derivative);
+    until(&mut harness, "the derivative", |s| s.plots.groups["Position/mm"].drawn == Transform::Derivative);
     assert!(harness.query_by_label("mm/s").is_some());
     assert_eq!(harness.state().plots.derived.len(), 1);
     // Not wanted any more, it is let go.
@@ -259,7 +247,7 @@ fn another_recording_is_laid_over_and_aligned() {
     harness.run_steps(3);
     assert!(harness.query_by_label("stack again").is_some(), "in the legend");
     press(&mut harness, Role::Button, "Align");
-    until(&mut harness, |s| !s.jobs.is_running(JobKind::Align));
+    until(&mut harness, "the place", |s| !s.jobs.is_running(JobKind::Align));
     let offset_s = harness.state().plots.overlaid[0].offset_s;
     assert!((offset_s + later_s).abs() < 2e-3, "{offset_s} s");
     harness.state_mut().plots.overlaid[0].offset_s = 0.0;

@@ -1,6 +1,6 @@
 //! The editor of a task's rules: chips, faults, live states, saving.
 
-use super::{CRANK, STACK, harness, session};
+use super::{CRANK, STACK, harness, session, until};
 use crate::ui::jobs::JobKind;
 use crate::ui::panels::Panel as _;
 use crate::ui::panels::rules::RulesPanel;
@@ -9,7 +9,6 @@ use crate::ui::session::Session;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use estimator::segment::SystemState;
-use std::time::{Duration, Instant};
 
 fn open(mut session: Session) -> Harness<'static, Session> {
     session.rules = Rules::open(&mut session);
@@ -22,13 +21,8 @@ fn open(mut session: Session) -> Harness<'static, Session> {
 
 /// Until nothing is told anew any more.
 fn settle(harness: &mut Harness<'_, Session>) {
-    let begun = Instant::now();
     harness.run_steps(2);
-    while harness.state().jobs.is_running(JobKind::Segment) && begun.elapsed() < Duration::from_mins(1) {
-        std::thread::sleep(Duration::from_millis(5));
-        harness.run_steps(1);
-    }
-    harness.run_steps(2);
+    until(harness, "the states", |session| !session.jobs.is_running(JobKind::Segment));
 }
 
 fn carried_s(session: &Session) -> f64 {

@@ -1,7 +1,7 @@
 //! A recording that lies over another is shifted by its curve, with the pointer.
 
-use super::plots::{again, log, two, until};
-use super::{CRANK, session};
+use super::plots::{again, log, two};
+use super::{CRANK, session, until};
 use crate::ui::session::Session;
 use egui::{CursorIcon, Key, Modifiers, Pos2, pos2};
 use egui_kittest::Harness;
@@ -94,7 +94,7 @@ fn it_comes_to_rest_where_both_are_most_alike_unless_alt_is_held() {
     let mut harness = over_each_other();
     let from = grip(&mut harness, 700.0);
     drag(&mut harness, from, 690.0);
-    until(&mut harness, |s| s.plots.likeliest.get(&(0, 1)).is_some_and(Option::is_some));
+    until(&mut harness, "the likeliest place", |s| s.plots.likeliest.get(&(0, 1)).is_some_and(Option::is_some));
     let likeliest_s = harness.state().plots.likeliest[&(0, 1)].expect("found");
     assert!((likeliest_s + LATER_S).abs() < 5e-3, "{likeliest_s} s");
     // Points a second, from what the drag has done so far.

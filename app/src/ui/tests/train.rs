@@ -1,6 +1,6 @@
 //! The trainer's page: hints, legends, the scripted operator's choices, the passivity controller.
 
-use super::{empty, harness};
+use super::{empty, harness, until_quiet};
 use crate::operator;
 use crate::ui::app::App;
 use crate::ui::trainer::{Operator, USUAL_CONTROL_N_S_M, WorldChoice, task_hint};
@@ -43,12 +43,7 @@ fn a_built_in_world_by_name_is_that_of_the_list_and_another_one_comes_from_its_f
     let ctx = harness.ctx.clone();
     let mut open = |name: &str| {
         harness.state_mut().session.open_world(&ctx, std::path::Path::new(name));
-        let begun = std::time::Instant::now();
-        while harness.state().session.jobs.is_busy() && begun.elapsed().as_secs() < 20 {
-            std::thread::sleep(std::time::Duration::from_millis(5));
-            harness.run_steps(1);
-        }
-        harness.run_steps(2);
+        until_quiet(&mut harness);
         (harness.state().session.trainer.choice, harness.state().session.banners.len())
     };
     assert_eq!(open("needle"), (WorldChoice::Needle, 0));

@@ -1,6 +1,6 @@
 //! The video of the hand beside a recording, used as a person does.
 
-use super::{STACK, clockless_path, empty, harness, session};
+use super::{STACK, clockless_path, empty, harness, session, until};
 use crate::ui::app::App;
 use crate::ui::dock::Pane;
 use crate::ui::prepare::Prepared;
@@ -11,7 +11,6 @@ use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 /// Pictures a second.
 const RATE_HZ: u32 = 25;
@@ -33,18 +32,6 @@ fn window<'a>(session: Session) -> Harness<'a, App> {
     harness(App::new(session), [1280.0, 720.0], |ui, app: &mut App| app.show(ui))
 }
 
-/// Runs until `over`, or too long.
-fn until(harness: &mut Harness<'_, App>, what: &str, over: impl Fn(&Session) -> bool) {
-    let begun = Instant::now();
-    while !over(&harness.state().session) {
-        let said = &harness.state().session.banners;
-        assert!(begun.elapsed() < Duration::from_mins(1), "{what} never comes: {said:?}");
-        std::thread::yield_now();
-        harness.run_steps(1);
-    }
-    harness.run_steps(3);
-}
-
 fn press(harness: &mut Harness<'_, App>, role: Role, label: &str) {
     harness.get_by_role_and_label(role, label).click();
     harness.run_steps(3);
@@ -64,16 +51,16 @@ fn a_dropped_video_is_shown_runs_with_the_cursor_and_finds_its_place() {
     harness.state_mut().session.open_dropped(&ctx, std::slice::from_ref(&file));
     harness.run_steps(2);
     assert!(harness.state_mut().dock.has(Workspace::Calibrate, Pane::Video), "its panel has come");
-    until(&mut harness, "the first picture", |s| s.videos.shown() == Some(0));
+    until(&mut harness, "the first picture", |app| app.session.videos.shown() == Some(0));
     harness.state_mut().session.seek(4.0);
-    until(&mut harness, "the picture at the cursor", |s| s.videos.shown() == Some(100));
+    until(&mut harness, "the picture at the cursor", |app| app.session.videos.shown() == Some(100));
 
     press(&mut harness, Role::Button, "Align video");
-    until(&mut harness, "its place", |s| s.video_source().is_some_and(|v| v.begins_at_s != 0.0));
+    until(&mut harness, "its place", |app| app.session.video_source().is_some_and(|v| v.begins_at_s != 0.0));
     let first = harness.state().session.recordings[0].span().0;
     let begins_at_s = harness.state().session.video_source().expect("a video").begins_at_s;
     assert!((begins_at_s - (first - 1.7)).abs() < 0.06, "it begins at {begins_at_s} s");
-    until(&mut harness, "the picture that belongs to the cursor", |s| s.videos.shown() == Some(142));
+    until(&mut harness, "the picture that belongs to the cursor", |app| app.session.videos.shown() == Some(142));
 
     // It is kept with the project, and goes with another recording.
     let project = crate::ui::project::Project::of(&harness.state().session);
@@ -94,11 +81,11 @@ fn a_video_is_laid_over_its_recording_by_a_moment_that_one_recognises() {
     let mut session = session(STACK.clone());
     session.open_video(&file);
     let mut harness = window(session);
-    until(&mut harness, "the first picture", |s| s.videos.shown() == Some(0));
+    until(&mut harness, "the first picture", |app| app.session.videos.shown() == Some(0));
     press(&mut harness, Role::CheckBox, "By itself");
     harness.state_mut().session.videos.loose_s = Some(2.0);
     harness.state_mut().session.seek(9.5);
-    until(&mut harness, "the picture that was looked for", |s| s.videos.shown() == Some(50));
+    until(&mut harness, "the picture that was looked for", |app| app.session.videos.shown() == Some(50));
     press(&mut harness, Role::Button, "They belong together");
     let session = &harness.state().session;
     assert!(session.videos.loose_s.is_none());
@@ -106,7 +93,7 @@ fn a_video_is_laid_over_its_recording_by_a_moment_that_one_recognises() {
     assert_eq!(session.videos.shown(), Some(50), "the picture stays");
     // Before its beginning, the first picture stands there, with a word.
     harness.state_mut().session.seek(5.0);
-    until(&mut harness, "the first picture", |s| s.videos.shown() == Some(0));
+    until(&mut harness, "the first picture", |app| app.session.videos.shown() == Some(0));
 }
 
 #[test]
@@ -124,7 +111,7 @@ fn a_video_that_stands_beside_its_log_is_found_with_its_sidecar() {
         let mut harness = window(empty());
         let ctx = harness.ctx.clone();
         harness.state_mut().session.open(&ctx, log);
-        until(&mut harness, "the log", |s| !s.recordings.is_empty());
+        until(&mut harness, "the log", |app| !app.session.recordings.is_empty());
         harness.state().session.video_source().cloned().expect("a video")
     };
     let beside = opened(&log);
@@ -153,7 +140,7 @@ fn what_is_in_the_way_of_a_video_is_said() {
     let mut session = session(STACK.clone());
     session.open_any(&ctx, &file);
     let mut harness = window(session);
-    until(&mut harness, "the refusal", |s| !s.jobs.is_busy());
+    until(&mut harness, "the refusal", |app| !app.session.jobs.is_busy());
     assert!(matches!(harness.state_mut().session.video(&ctx), State::Failed(why) if why.contains("no video")));
     assert!(harness.query_by_label("Try again").is_some());
 }

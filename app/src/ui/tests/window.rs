@@ -1,6 +1,6 @@
 //! The whole window: keys, messages, from the trainer to the calibration.
 
-use super::{STACK, empty, harness, session};
+use super::{STACK, empty, harness, session, until, until_quiet};
 use crate::recorder::folder;
 use crate::ui::app::App;
 use crate::ui::recorder;
@@ -8,7 +8,6 @@ use crate::ui::session::Workspace;
 use crate::ui::trainer::{Clock, Operator};
 use egui_kittest::kittest::Queryable;
 use haptics::recording::Meta;
-use std::time::{Duration, Instant};
 
 #[test]
 fn keys_play_scrub_and_switch() {
@@ -46,11 +45,7 @@ fn a_recording_made_in_the_trainer_is_calibrated_from() {
     }
     harness.run_steps(1);
     harness.get_by_label("Stop and calibrate").click();
-    let begun = Instant::now();
-    while harness.state().session.analysis.is_none() && begun.elapsed() < Duration::from_mins(1) {
-        std::thread::sleep(Duration::from_millis(5));
-        harness.run_steps(1);
-    }
+    until(&mut harness, "the fit", |app| app.session.analysis.is_some());
     let session = &harness.state().session;
     assert_eq!(session.workspace, Workspace::Calibrate);
     assert!(session.analysis.as_ref().is_some_and(|a| a.fit.value("block-2", "weight_N").is_some()));
@@ -75,27 +70,19 @@ fn a_recording_that_a_killed_program_left_behind_is_offered_and_opened() {
     let mut app = App::new(empty());
     app.session.trainer.recordings_folder = Some(folder.path().to_path_buf());
     let mut harness = harness(app, [1200.0, 800.0], |ui, app: &mut App| app.show(ui));
-    let settle = |harness: &mut egui_kittest::Harness<'_, App>| {
-        let begun = Instant::now();
-        while harness.state().session.jobs.is_busy() && begun.elapsed() < Duration::from_mins(1) {
-            std::thread::sleep(Duration::from_millis(5));
-            harness.run_steps(1);
-        }
-        harness.run_steps(2);
-    };
     let ctx = harness.ctx.clone();
     recorder::look_for_unfinished(&ctx, &mut harness.state_mut().session);
-    settle(&mut harness);
+    until_quiet(&mut harness);
     assert!(harness.query_by_label("Dismiss").is_none(), "it has its end");
     let (cut, marker) = folder::reserve(folder.path(), "cart").expect("reserves");
     std::fs::write(&cut, &without_end).expect("writes");
     drop(marker);
     recorder::look_for_unfinished(&ctx, &mut harness.state_mut().session);
-    settle(&mut harness);
+    until_quiet(&mut harness);
     assert_eq!(harness.state().session.unfinished, std::slice::from_ref(&cut));
     harness.get_by_label("Open").click();
     harness.run_steps(2);
-    settle(&mut harness);
+    until_quiet(&mut harness);
     assert!(harness.state().session.unfinished.is_empty() && folder::unfinished(folder.path()).is_empty(), "said once");
     let session = &harness.state().session;
     assert_eq!(session.path.as_ref(), Some(&cut), "{:?}", session.banners);
@@ -107,11 +94,7 @@ fn a_missing_file_is_a_banner_that_can_be_dismissed() {
     let mut harness = harness(App::new(empty()), [1200.0, 800.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
     harness.state_mut().session.open(&ctx, std::path::Path::new("/nowhere/none.csv"));
-    let begun = Instant::now();
-    while harness.state().session.banners.is_empty() && begun.elapsed() < Duration::from_secs(20) {
-        std::thread::sleep(Duration::from_millis(5));
-        harness.run_steps(1);
-    }
+    until(&mut harness, "the message", |app| !app.session.banners.is_empty());
     assert!(harness.state().session.banners[0].text.contains("none.csv"));
     harness.run_steps(2);
     harness.get_by_label("Dismiss").click();

@@ -1,6 +1,6 @@
 //! The engineer's workbench: boundaries, other values, statements, undo, commands, panels that move, projects.
 
-use super::{CRANK, STACK, empty, harness, session};
+use super::{CRANK, STACK, empty, harness, session, until, until_quiet};
 use crate::ui::actions::Action;
 use crate::ui::app::App;
 use crate::ui::dock::Pane;
@@ -10,7 +10,6 @@ use egui::{Key, Modifiers, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use haptics::recording::Recording;
-use std::time::{Duration, Instant};
 
 fn window(recording: Recording) -> Harness<'static, App> {
     harness(App::new(session(recording)), [1480.0, 920.0], |ui, app: &mut App| app.show(ui))
@@ -18,12 +17,8 @@ fn window(recording: Recording) -> Harness<'static, App> {
 
 /// Frames pass until the jobs have nothing more to do, and changes are noted.
 fn settle(harness: &mut Harness<'_, App>) {
-    let begun = Instant::now();
     harness.run_steps(2);
-    while harness.state().session.jobs.is_busy() && begun.elapsed() < Duration::from_mins(2) {
-        std::thread::sleep(Duration::from_millis(5));
-        harness.run_steps(1);
-    }
+    until_quiet(harness);
     // More than half a second of frames: a change is done with.
     harness.run_steps(60);
 }
@@ -188,12 +183,8 @@ fn what_a_killed_window_had_open_is_offered_and_comes_back() {
     first.state_mut().session.open_any(&ctx, &log);
     settle(&mut first);
     first.state_mut().session.choice.only_s = Some((1.0, 9.0));
-    let begun = Instant::now();
     let kept = || std::fs::read_to_string(state.join("session.json")).unwrap_or_default();
-    while !kept().contains("[1.0,9.0]") && begun.elapsed() < Duration::from_secs(30) {
-        std::thread::sleep(Duration::from_millis(50));
-        first.run_steps(1);
-    }
+    until(&mut first, "the file with the change", |_| kept().contains("[1.0,9.0]"));
     // A killed program closes nothing.
     drop(first);
     let mut app = App::new(empty());
