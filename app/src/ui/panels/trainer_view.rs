@@ -4,7 +4,7 @@ use super::{Panel, guide, marks, steering};
 use crate::ui::scene::{Rig, SceneResponse, Wheel, scene_view};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::trainer::{HandDevice, Operator, Steering, Trainer, task_hint};
+use crate::ui::trainer::{Clock, HandDevice, Operator, Steering, Trainer, task_hint};
 use crate::ui::widgets::{empty_state, key_hint, sheet};
 use egui::{Align, CursorIcon, Key, PointerButton, Rect, Ui, UiBuilder, pos2};
 use haptics::Vec2;
@@ -43,6 +43,12 @@ impl Panel for TrainerView {
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        // The window's first picture comes before the servo, which takes a processor for itself.
+        if session.trainer.clock == Clock::RealTime && ui.ctx().cumulative_frame_nr() == 0 {
+            ui.ctx().request_repaint();
+            sheet(ui).show(ui, |ui| ui.set_min_size(ui.available_size()));
+            return;
+        }
         if let Err(problem) = session.trainer.ensure_running() {
             session.fail(problem);
         }

@@ -4,7 +4,7 @@ use egui_wgpu::{CallbackResources, CallbackTrait, ScreenDescriptor, wgpu};
 use haptics::world::{State, World};
 use render::{Blit, Frame, Renderer, SAMPLES, SceneView, TextureTarget, ViewOptions};
 use std::collections::HashMap;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex};
 
 /// Format of the texture that the scene is drawn into.
@@ -23,27 +23,24 @@ pub fn announce(ctx: &egui::Context, state: &egui_wgpu::RenderState) {
     ctx.data_mut(|data| data.insert_temp(surface_id(), Surface(state.target_format)));
 }
 
-/// Builds what draws scenes on a thread of its own, so that the window's first picture need not wait for it; until it is there scenes
-/// are left out.
+/// Lets what draws scenes be built on a thread of its own, after the window's first picture, which need not wait for it; until it is
+/// there scenes are left out.
 pub fn warm_up(ctx: &egui::Context, state: &egui_wgpu::RenderState) {
-    let (sender, receiver) = channel();
-    let (device, surface, ctx) = (state.device.clone(), state.target_format, ctx.clone());
-    let spawned = std::thread::Builder::new().name("pipelines".to_owned()).spawn(move || {
-        match Resources::tried(&device, surface) {
-            // Nobody listens any more in a window that was closed at once.
-            Some(made) => drop(sender.send(made)),
-            // Panels say so in the picture's place.
-            None => ctx.data_mut(|data| data.remove::<Surface>(surface_id())),
-        }
-        ctx.request_repaint();
-    });
-    if spawned.is_ok() {
-        state.renderer.write().callback_resources.insert(Warming(Mutex::new(receiver)));
-    }
+    let warming = Warming { ctx: ctx.clone(), stage: Mutex::new(Stage::FirstPicture) };
+    state.renderer.write().callback_resources.insert(warming);
 }
 
-/// Where what [`warm_up`] builds comes out.
-struct Warming(Mutex<Receiver<Resources>>);
+/// How far what draws scenes is.
+struct Warming {
+    ctx: egui::Context,
+    stage: Mutex<Stage>,
+}
+
+enum Stage {
+    FirstPicture,
+    Next,
+    Building(Receiver<Resources>),
+}
 
 /// Draws a scene into `rect`; false when there is no graphics device. `view` tells apart several pictures in one window.
 pub fn picture(
@@ -90,8 +87,39 @@ struct ViewResources {
 }
 
 impl Warming {
-    fn take(&self) -> Result<Resources, TryRecvError> {
-        self.0.lock().map_or(Err(TryRecvError::Disconnected), |receiver| receiver.try_recv())
+    /// What was built, once; `None` until then, and where nothing can be.
+    fn take(&self, device: &wgpu::Device, surface: wgpu::TextureFormat) -> Option<Resources> {
+        let mut stage = self.stage.lock().ok()?;
+        match &*stage {
+            Stage::FirstPicture => {
+                *stage = Stage::Next;
+                self.ctx.request_repaint();
+                None
+            }
+            Stage::Next => {
+                *stage = Stage::Building(self.build(device.clone(), surface));
+                None
+            }
+            Stage::Building(receiver) => receiver.try_recv().ok(),
+        }
+    }
+
+    fn build(&self, device: wgpu::Device, surface: wgpu::TextureFormat) -> Receiver<Resources> {
+        let (sender, receiver) = channel();
+        let ctx = self.ctx.clone();
+        let work = move || {
+            match Resources::tried(&device, surface) {
+                // Nobody listens any more in a window that was closed at once.
+                Some(made) => drop(sender.send(made)),
+                // Panels say so in the picture's place.
+                None => ctx.data_mut(|data| data.remove::<Surface>(surface_id())),
+            }
+            ctx.request_repaint();
+        };
+        if std::thread::Builder::new().name("pipelines".to_owned()).spawn(work).is_err() {
+            self.ctx.data_mut(|data| data.remove::<Surface>(surface_id()));
+        }
+        receiver
     }
 }
 
@@ -142,13 +170,13 @@ impl CallbackTrait for Picture {
         resources: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
         if !resources.contains::<Resources>() {
-            match resources.get::<Warming>().map(Warming::take) {
-                Some(Ok(warm)) => drop(resources.insert(warm)),
-                // Not yet, or never.
-                Some(Err(_)) => return Vec::new(),
-                // Without a window there is no thread either.
-                None => drop(resources.insert(Resources::new(device, self.surface))),
-            }
+            let made = match resources.get::<Warming>() {
+                Some(warming) => warming.take(device, self.surface),
+                // Without a window nothing has to be there at once.
+                None => Some(Resources::new(device, self.surface)),
+            };
+            let Some(made) = made else { return Vec::new() };
+            resources.insert(made);
         }
         if let Some(own) = resources.get_mut::<Resources>() {
             own.prepare(device, queue, encoder, self);
