@@ -28,7 +28,7 @@ const fn neutral(key: &'static str, name: &'static str, unit: &'static str, text
 }
 
 /// Every measure, those of the hand first.
-pub const ALL: [Definition; 25] = [
+pub const ALL: [Definition; 27] = [
     less("duration_s", "Time", "s", "From the first sample to the last."),
     less("moving_s", "Time in motion", "s", "Time in which the middle between the tips was faster than 5 mm/s."),
     less("path_length_m", "Path", "m", "Length of each tip's path, up to 10 Hz so that noise of sensors adds nothing."),
@@ -96,4 +96,6 @@ pub const ALL: [Definition; 25] = [
         "How much farther the needle went in the half second after the sheet gave way.",
     ),
     less("punctures.along_m", "Lateral error", "m", "Where the sheet was pierced, from its middle."),
+    less("touched", "Places touched", "", "How many places of the sheet the needle has touched."),
+    less("deepest_m", "Deepest insertion", "m", "How far the point went beyond the undisturbed sheet at the most."),
 ];
