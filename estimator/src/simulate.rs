@@ -158,30 +158,35 @@ fn play(world: &World, recording: &Recording) -> Result<[Vec<Vec2>; 2], Estimate
 ///
 /// # Errors
 /// Without two fingers.
-pub fn walk(world: &World, recording: &Recording, mut see: impl FnMut(f64, &State)) -> Result<(), EstimateError> {
+pub fn walk(world: &World, recording: &Recording, see: impl FnMut(f64, &State)) -> Result<(), EstimateError> {
     let signals = task_signals(recording)?;
-    let n = signals.len();
-    let tip = |finger: usize, i: usize| signals.tips[finger].position[i];
-    let mut state = State::new(world, [tip(0, 0), tip(1, 0)]);
-    for i in 0..n {
-        if i > 0 {
-            let gap_s = signals.time_s[i] - signals.time_s[i - 1];
-            let parts = (gap_s / STEP_S).ceil().max(1.0) as usize;
-            for part in 1..=parts {
-                let share = part as f64 / parts as f64;
-                let between = |finger: usize| tip(finger, i - 1) + (tip(finger, i) - tip(finger, i - 1)) * share;
-                let input = Input {
-                    tip_in_world: [between(0), between(1)],
-                    tip_velocity: [velocity(&signals.tips[0], i), velocity(&signals.tips[1], i)],
-                };
-                step(world, &mut state, &input, gap_s / parts as f64);
-            }
-        }
-        see(signals.time_s[i], &state);
-    }
+    walk_tips(world, &signals.time_s, &signals.tips, see);
     Ok(())
 }
 
+/// [`walk`] for fingers whose motion is known already: where both are at each time, s. Samples that one of the lists lacks are not walked.
+pub fn walk_tips(world: &World, time_s: &[f64], tips: &[TipSeries; 2], mut see: impl FnMut(f64, &State)) {
+    let n = tips.iter().map(|tip| tip.position.len()).fold(time_s.len(), usize::min);
+    if n == 0 {
+        return;
+    }
+    let tip = |finger: usize, i: usize| tips[finger].position[i];
+    let mut state = State::new(world, [tip(0, 0), tip(1, 0)]);
+    see(time_s[0], &state);
+    for i in 1..n {
+        let gap_s = time_s[i] - time_s[i - 1];
+        let parts = (gap_s / STEP_S).ceil().max(1.0) as usize;
+        let tip_velocity = [0, 1].map(|finger| velocity(&tips[finger], i));
+        for part in 1..=parts {
+            let share = part as f64 / parts as f64;
+            let between = |finger: usize| tip(finger, i - 1) + (tip(finger, i) - tip(finger, i - 1)) * share;
+            let input = Input { tip_in_world: [between(0), between(1)], tip_velocity };
+            step(world, &mut state, &input, gap_s / parts as f64);
+        }
+        see(time_s[i], &state);
+    }
+}
+
 fn velocity(tip: &TipSeries, i: usize) -> Vec2 {
-    tip.velocity.as_ref().map_or_else(Vec2::zeros, |v| v[i])
+    tip.velocity.as_ref().and_then(|v| v.get(i)).copied().unwrap_or_default()
 }

@@ -1,13 +1,12 @@
 //! The course of the world while the recorded fingers move through it: what the 3-D view plays back.
 
 use super::prepare::Prepared;
+use estimator::simulate::walk_tips;
 use haptics::Vec2;
-use haptics::world::{BodyState, Contact, CrankState, Input, MembraneState, State, Surface, SwitchState, World, step};
+use haptics::world::{BodyState, Contact, CrankState, MembraneState, State, Surface, SwitchState, World};
 
 /// Pictures a second.
 const RATE_HZ: f64 = 60.0;
-/// Longest step of the simulation, s.
-const STEP_S: f64 = 1e-3;
 /// Longest recording that is played through a world, s: an hour of simulation is minutes of computing.
 const LONGEST_S: f64 = 900.0;
 
@@ -31,29 +30,17 @@ pub struct Film {
 impl Film {
     /// Moves the recorded fingers through `world`. `None` without two fingers and a clock.
     pub fn shoot(world: &World, prepared: &Prepared) -> Option<Self> {
-        let [left, right] = prepared.tips.as_ref()?;
-        let time = prepared.recording.time_s.as_ref()?;
+        let (tips, time_s) = prepared.tips.as_ref().zip(prepared.recording.time_s.as_ref())?;
         let (first, last) = prepared.span();
-        if time.len() < 2 || last - first > LONGEST_S || world.mechanism.is_some() {
+        if time_s.len() < 2 || last - first > LONGEST_S || world.mechanism.is_some() {
             return None;
         }
-        let tips = |i: usize| [left.position[i], right.position[i]];
-        let mut state = State::new(world, tips(0));
-        let mut stills = vec![still(&state, first)];
-        for i in 1..time.len() {
-            let (from, to, span_s) = (tips(i - 1), tips(i), time[i] - time[i - 1]);
-            let parts = (span_s / STEP_S).ceil().max(1.0);
-            let measured = |series: &estimator::signal::task::TipSeries| series.velocity.as_ref().map(|v| v[i]);
-            let velocity = [measured(left), measured(right)].map(Option::unwrap_or_default);
-            for part in 1..=parts as usize {
-                let share = part as f64 / parts;
-                let tip_in_world = [0, 1].map(|f| from[f] + (to[f] - from[f]) * share);
-                step(world, &mut state, &Input { tip_in_world, tip_velocity: velocity }, span_s / parts);
+        let mut stills: Vec<Still> = Vec::new();
+        walk_tips(world, time_s, tips, |now_s, state| {
+            if stills.last().is_none_or(|before| now_s - before.time_s >= 1.0 / RATE_HZ) {
+                stills.push(still(state, now_s));
             }
-            if time[i] - stills[stills.len() - 1].time_s >= 1.0 / RATE_HZ {
-                stills.push(still(&state, time[i]));
-            }
-        }
+        });
         Some(Self { stills })
     }
 
