@@ -42,7 +42,7 @@ impl Session {
     }
 
     /// Looks in the background where a recording is most like the shown one, once: there it comes to rest when it is shifted by hand.
-    pub fn find_likeliest(&mut self, ctx: &egui::Context, likeliest: &mut Likeliest, recording: usize) {
+    pub fn find_likeliest(&mut self, ctx: &egui::Context, likeliest: &Likeliest, recording: usize) {
         let pair = (self.current, recording);
         let (Some(fixed), Some(moved)) = (self.prepared().cloned(), self.recordings.get(recording).cloned()) else {
             return;
@@ -50,7 +50,7 @@ impl Session {
         if likeliest.contains_key(&pair) || self.jobs.is_running(JobKind::Align) {
             return;
         }
-        likeliest.insert(pair, None);
+        // Known only once the answer is here: a search that was cancelled is begun again by the next hand on the curve.
         self.jobs.start_watched(ctx, JobKind::Align, "Comparing recordings".to_owned(), move |_| {
             Outcome::MostAlike(pair, most_alike(&fixed, &moved).ok())
         });

@@ -177,7 +177,7 @@ fn shifting(
     let clockless = session.prepared().is_some_and(|p| p.clockless());
     if let Some(recording) = grasp.and_then(|grasp| plots.grasp(grasp, session.current, clockless)) {
         session.playing = false;
-        session.find_likeliest(ui.ctx(), &mut plots.likeliest, recording);
+        session.find_likeliest(ui.ctx(), &plots.likeliest, recording);
     }
     if plots.held.is_some() && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
         plots.take_back();

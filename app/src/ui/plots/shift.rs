@@ -48,7 +48,7 @@ pub enum Grasp {
     },
 }
 
-/// Shifts at which recordings are most like each other, by shown and moved recording; `None`: they are not alike, or it is being looked for.
+/// Shifts at which recordings are most like each other, by shown and moved recording; `None`: they are not alike.
 pub type Likeliest = BTreeMap<(usize, usize), Option<f64>>;
 
 impl PlotChoices {

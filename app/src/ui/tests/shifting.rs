@@ -2,6 +2,7 @@
 
 use super::plots::{again, log, two};
 use super::{CRANK, session, until};
+use crate::ui::jobs::JobKind;
 use crate::ui::session::Session;
 use egui::{CursorIcon, Key, Modifiers, Pos2, pos2};
 use egui_kittest::Harness;
@@ -108,6 +109,22 @@ fn it_comes_to_rest_where_both_are_most_alike_unless_alt_is_held() {
     harness.run_steps(2);
     let freely_s = offset_s(&harness);
     assert!(freely_s != likeliest_s && (freely_s - likeliest_s).abs() < 6.0 * s_per_point, "{freely_s} s");
+}
+
+#[test]
+fn a_search_for_its_place_that_was_cancelled_is_begun_again_by_the_next_hand_on_it() {
+    let mut harness = over_each_other();
+    let from = grip(&mut harness, 700.0);
+    harness.drag_at(from);
+    harness.run_steps(1);
+    assert!(harness.state().jobs.is_running(JobKind::Align), "the hand on the curve begins the search");
+    harness.state_mut().give_up(JobKind::Align);
+    harness.drop_at(from);
+    harness.run_steps(2);
+    assert!(harness.state().plots.likeliest.is_empty() && !harness.state().jobs.is_running(JobKind::Align));
+    let from = grip(&mut harness, 700.0);
+    drag(&mut harness, from, 690.0);
+    until(&mut harness, "the likeliest place", |s| s.plots.likeliest.get(&(0, 1)).is_some_and(Option::is_some));
 }
 
 #[test]
