@@ -3,7 +3,7 @@
 use super::Panel;
 use crate::ui::prepare::Prepared;
 use crate::ui::scene::{
-    Likeness, Mechanism, Rig, SceneLayers, Wheel, camera_for, legend, options_for, scene_view, scene_world,
+    Legend, Likeness, Mechanism, Rig, SceneLayers, Wheel, camera_for, options_for, scene_view, scene_world,
 };
 use crate::ui::session::Session;
 use crate::ui::theme::{palette, space};
@@ -15,6 +15,10 @@ use std::sync::Arc;
 
 /// Narrower, the picture has no room for switches and legend, points.
 const WIDE: f32 = 420.0;
+/// Lower, it has no room for a legend, points.
+const HIGH: f32 = 180.0;
+/// Room that the button beside the switches needs, points.
+const RESET: f32 = 120.0;
 
 /// The 3-D view of the recording.
 pub struct ScenePanel {
@@ -51,12 +55,17 @@ impl Panel for ScenePanel {
             self.set_up(session, &prepared);
             let world = scene_world(session, &prepared);
             let (state, options) = options_for(session, &prepared, &world);
-            let view = scene_view(ui, "recording", &mut self.rig, Wheel::Zooms, (world, state, options));
-            if session.layers.legend && view.rect.width() >= WIDE {
-                self.compare(session, &prepared);
-                legend(ui, view.rect, session, &prepared, self.likeness.as_ref().map(|(_, like)| like));
+            let legend = self.legend(ui, session, &prepared);
+            let (mut above, mut strip) = (ui.available_rect_before_wrap(), ui.available_rect_before_wrap());
+            above.max.y -= legend.as_ref().map_or(0.0, Legend::height);
+            strip.min.y = above.max.y;
+            let view = ui.scope_builder(UiBuilder::new().max_rect(above), |ui| {
+                scene_view(ui, "recording", &mut self.rig, Wheel::Zooms, (world, state, options))
+            });
+            if let Some(legend) = legend {
+                legend.show(ui, strip);
             }
-            layers(ui, view.rect, session);
+            layers(ui, view.inner.rect, session);
         });
     }
 }
@@ -73,6 +82,16 @@ impl ScenePanel {
         let scene = (Arc::clone(&mechanism.world), mechanism.state.clone(), mechanism.options.clone());
         let view = scene_view(ui, "recording", &mut self.rig, Wheel::Zooms, scene);
         mechanism.write_over(ui, view.rect, &view.camera, view.size);
+    }
+
+    /// The legend, where it is wanted and has room.
+    fn legend(&mut self, ui: &Ui, session: &Session, prepared: &Prepared) -> Option<Legend> {
+        let room = ui.available_size();
+        if !session.layers.legend || room.x < WIDE || room.y < HIGH {
+            return None;
+        }
+        self.compare(session, prepared);
+        Some(Legend::new(ui, room.x, session, prepared, self.likeness.as_ref().map(|(_, like)| like)))
     }
 
     /// Compares the replay with the recording, once for each replay.
@@ -126,7 +145,7 @@ const SWITCHES: [Switch; 7] = [
 
 /// Switches in the corner of the picture; in a small one they are in a menu.
 fn layers(ui: &mut Ui, rect: Rect, session: &mut Session) {
-    let room = Rect::from_min_size(rect.left_top() + vec2(space::M, space::M), vec2(rect.width() - 128.0, 26.0));
+    let room = Rect::from_min_size(rect.left_top() + vec2(space::M, space::M), vec2(rect.width() - RESET, 26.0));
     // A child of its own: it lies over the picture and takes no room.
     let rows =
         egui::Layout::left_to_right(egui::Align::Center).with_main_wrap(true).with_cross_align(egui::Align::Center);

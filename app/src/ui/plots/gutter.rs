@@ -9,7 +9,9 @@ use crate::ui::theme::{self, palette, space};
 use egui::{Align, Color32, FontId, Layout, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
 
 /// Height of an entry, points.
-const LINE: f32 = 15.0;
+const LINE: f32 = 14.0;
+/// Empty room below its words, points.
+const BELOW: f32 = 2.0;
 /// Size of its words.
 const WORDS: f32 = 11.5;
 /// In less room than this not even a letter of a name can be read.
@@ -33,8 +35,8 @@ pub fn gutter(ui: &mut Ui, choice: &mut GroupChoice, input: &RowInput<'_>) {
     ui.add_space(2.0);
     head(ui, choice, input);
     let entries = entries(ui, input);
-    // Whole lines: half a line cannot be read.
-    let room = (ui.available_height() / LINE).floor().max(1.0) * LINE;
+    // Whole lines: half a line cannot be read. The last one needs no room below its words.
+    let room = ((ui.available_height() + BELOW) / LINE).floor().max(1.0) * LINE;
     let sample = input.prepared.sample_at(input.cursor_s);
     let scroll = egui::ScrollArea::vertical().id_salt(("curves", input.index)).min_scrolled_height(0.0);
     scroll.max_height(room).show(ui, |ui| {

@@ -1,4 +1,4 @@
-//! What the marks in the picture mean, with the numbers behind them.
+//! What the marks in the picture mean, with the numbers behind them: a strip below it.
 
 use super::markers::{self, Marked, error_of};
 use super::overlay::{follows_fingers, force_scale};
@@ -6,17 +6,17 @@ use super::{Likeness, SceneLayers};
 use crate::ui::format::{number, significant};
 use crate::ui::prepare::Prepared;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, role, space};
-use egui::{Color32, FontId, Label, Layout, Rect, RichText, Sense, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2};
+use crate::ui::theme::{palette, role, space};
+use egui::{Align, Color32, FontId, Label, Layout, Rect, RichText, Sense, Stroke, Ui, UiBuilder, vec2};
 use estimator::estimate::{Constraint, ConstraintKind, Phase, StrokePhase};
 use render::ColorRole;
 
-/// Height of a line, width of a mark, and the room below which the legend is left away, points.
+/// Height of a line and size of its words, points; a mark with and without its distance from them, and what is between entries.
 const LINE: f32 = 17.0;
+const WORDS: f32 = 11.5;
+const SIGN: f32 = 14.0;
 const MARK: f32 = 20.0;
-const LEAST: egui::Vec2 = vec2(300.0, 220.0);
-/// Share of the picture's width that it may take.
-const WIDEST: f32 = 0.7;
+const APART: f32 = space::L;
 
 /// How a mark looks.
 #[derive(Clone, Copy, PartialEq)]
@@ -32,43 +32,74 @@ struct Row {
     mark: Mark,
     color: ColorRole,
     text: String,
+    /// What else it says at other times: the widest decides about its room, so that nothing moves while the cursor does.
+    else_says: Vec<String>,
 }
 
 impl Row {
     fn new(mark: Mark, color: ColorRole, text: impl Into<String>) -> Self {
-        Self { mark, color, text: text.into() }
+        Self { mark, color, text: text.into(), else_says: Vec::new() }
+    }
+
+    fn width(&self, ui: &Ui) -> f32 {
+        let wide = |text: &String| {
+            ui.painter().layout_no_wrap(text.clone(), FontId::proportional(WORDS), Color32::PLACEHOLDER).size().x
+        };
+        MARK + self.else_says.iter().chain([&self.text]).map(wide).fold(0.0, f32::max).ceil() + 1.0
     }
 }
 
-/// Draws it into the lower left corner of the picture in `rect`.
-pub fn legend(ui: &mut Ui, rect: Rect, session: &Session, prepared: &Prepared, likeness: Option<&Likeness>) {
-    let rows = rows(session, prepared, likeness);
-    if rows.is_empty() || rect.width() < LEAST.x || rect.height() < LEAST.y {
-        return;
+/// The legend, laid out for a strip below the picture: it never covers what is shown.
+pub struct Legend {
+    /// Entries of each line, with their widths, points.
+    lines: Vec<Vec<(f32, Row)>>,
+}
+
+impl Legend {
+    /// In as many lines as it takes. `width`: of the strip, points.
+    pub fn new(ui: &Ui, width: f32, session: &Session, prepared: &Prepared, likeness: Option<&Likeness>) -> Self {
+        let room = width - 2.0 * space::M;
+        let (mut lines, mut taken) = (Vec::<Vec<(f32, Row)>>::new(), f32::INFINITY);
+        for row in rows(session, prepared, likeness) {
+            let wide = row.width(ui).min(room);
+            if taken + APART + wide > room {
+                lines.push(Vec::new());
+                taken = -APART;
+            }
+            taken += APART + wide;
+            if let Some(line) = lines.last_mut() {
+                line.push((wide, row));
+            }
+        }
+        Self { lines }
     }
-    let p = palette(ui);
-    let font = FontId::proportional(11.5);
-    let wide = |row: &Row| ui.painter().layout_no_wrap(row.text.clone(), font.clone(), p.text).size().x;
-    let widest = rows.iter().map(wide).fold(0.0, f32::max).min(WIDEST * rect.width() - MARK - 2.0 * space::M);
-    let size = vec2(widest + MARK + 2.0 * space::S + 4.0, LINE * rows.len() as f32 + 2.0 * space::XS + 2.0);
-    let low = rect.left_bottom() + vec2(space::M, -space::M);
-    let card = Rect::from_min_size(pos2(low.x, low.y - size.y), size);
-    ui.painter().rect_filled(card, theme::CONTROL_RADIUS, p.card.gamma_multiply(0.84));
-    ui.painter().rect_stroke(card, theme::CONTROL_RADIUS, Stroke::new(1.0, p.border), StrokeKind::Inside);
-    let inner = card.shrink2(vec2(space::S, space::XS + 1.0));
-    let mut ui = ui.new_child(UiBuilder::new().max_rect(inner).layout(Layout::top_down(egui::Align::Min)));
-    ui.spacing_mut().item_spacing = vec2(6.0, 0.0);
-    for row in rows {
-        ui.allocate_ui_with_layout(vec2(inner.width(), LINE), Layout::left_to_right(egui::Align::Center), |ui| {
-            let color = role(ui.visuals().dark_mode, row.color);
-            draw_mark(ui, row.mark, color);
-            ui.add(Label::new(RichText::new(row.text).size(11.5).color(p.text)).truncate());
-        });
+
+    /// Height of its strip, points; 0 without an entry.
+    pub fn height(&self) -> f32 {
+        if self.lines.is_empty() { 0.0 } else { LINE * self.lines.len() as f32 + 2.0 * space::XS }
+    }
+
+    /// Draws it.
+    pub fn show(self, ui: &mut Ui, strip: Rect) {
+        let p = palette(ui);
+        let mut corner = strip.min + vec2(space::M, space::XS);
+        for line in self.lines {
+            for (wide, row) in line {
+                let entry = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(wide, LINE)));
+                let mut ui = ui.new_child(entry.layout(Layout::left_to_right(Align::Center)));
+                ui.spacing_mut().item_spacing = vec2(MARK - SIGN, 0.0);
+                let color = role(ui.visuals().dark_mode, row.color);
+                draw_mark(&mut ui, row.mark, color);
+                ui.add(Label::new(RichText::new(row.text).size(WORDS).color(p.text)).truncate());
+                corner.x += wide + APART;
+            }
+            corner = strip.min + vec2(space::M, corner.y + LINE - strip.min.y);
+        }
     }
 }
 
 fn draw_mark(ui: &mut Ui, mark: Mark, color: Color32) {
-    let (rect, _) = ui.allocate_exact_size(vec2(MARK - 6.0, LINE), Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(vec2(SIGN, LINE), Sense::hover());
     let (painter, stroke) = (ui.painter(), Stroke::new(1.8, color));
     let ends = [rect.left_center(), rect.right_center()];
     match mark {
@@ -169,7 +200,9 @@ fn of_constraint(marked: &Marked<'_>, cursor_s: f64) -> Vec<Row> {
             row(Mark::Line, format!("Surface found, ± {} mm{rubs}", mm(touched.offset_std_error_m)))
         }),
         ConstraintKind::Membrane => {
-            phase_at(&constraint.phases, cursor_s).map_or_else(Vec::new, |phase| row(Mark::None, in_words(phase)))
+            let text = phase_at(&constraint.phases, cursor_s).map(in_words).unwrap_or_default();
+            let else_says = constraint.phases.iter().map(in_words).collect();
+            vec![Row { else_says, ..Row::new(Mark::None, ColorRole::Constraint, text) }]
         }
         ConstraintKind::Undecided if constraint.existence.is_some() => {
             row(Mark::None, "Constraint: cannot be decided from this recording".to_owned())

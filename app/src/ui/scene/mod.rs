@@ -13,7 +13,7 @@ mod view;
 
 pub use callback::{announce, picture, warm_up};
 pub use layers::SceneLayers;
-pub use legend::legend;
+pub use legend::Legend;
 pub use likeness::Likeness;
 pub use mechanism::Mechanism;
 pub use overlay::{camera_for, options_for, scene_world};

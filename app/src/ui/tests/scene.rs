@@ -48,6 +48,25 @@ fn the_legend_says_what_was_found_and_can_be_switched_off() {
 }
 
 #[test]
+fn the_legend_stands_below_the_picture_and_covers_nothing_of_it() {
+    for size in [[650.0, 223.0], [450.0, 320.0], [1000.0, 700.0]] {
+        let mut session = session(CRANK.clone());
+        let all = SceneLayers { forces_on_path: true, unexplained: true, replay: true, ..SceneLayers::default() };
+        session.layers = all;
+        let mut panel = ScenePanel::default();
+        let harness = harness(session, size, move |ui, session: &mut Session| panel.ui(ui, session));
+        let picture = harness.get_by_role(egui::Role::Image).rect();
+        assert!(picture.height() > 0.5 * size[1], "{size:?}: {picture}");
+        for words in
+            ["Path of the hand", "Force of the hand", "Circle found", "Contact of the replay", "Virtual object"]
+        {
+            let entry = harness.get_by_label_contains(words).rect();
+            assert!(entry.top() >= picture.bottom() && entry.bottom() <= size[1], "{size:?}, {words}: {entry}");
+        }
+    }
+}
+
+#[test]
 fn real_beside_virtual_is_measured() {
     let mut harness = panel(session(CRANK.clone()));
     assert!(harness.query_by_label_contains("Virtual force").is_none());
