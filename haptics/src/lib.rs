@@ -7,6 +7,7 @@
 //! * [`law`]: one physical law a file, shared by the servo, the replay, the fit and the diagnosis.
 //! * [`servo`]: the kilohertz thread, its timing statistics and its safety.
 //! * [`device`]: where finger positions come from and forces go to.
+//! * [`teleop`]: the same with a slow line between operator and world.
 //! * [`recording`]: one log, in memory.
 
 pub mod device;
@@ -14,6 +15,7 @@ pub mod hand;
 pub mod law;
 pub mod recording;
 pub mod servo;
+pub mod teleop;
 pub mod world;
 
 /// A point or vector of the plane: x to the right, y up.

@@ -53,6 +53,8 @@ pub struct Snapshot {
     pub delay_s: f64,
     /// Stiffness of a line with waves between device and world, N/m ([`Device::line_stiffness_n_m`]); `None` without one.
     pub line_n_m: Option<f64>,
+    /// True once a performing device (a script, a replay) is done.
+    pub finished: bool,
     /// Why the servo stopped, if it did.
     pub fault: Option<&'static str>,
 }
@@ -71,6 +73,7 @@ impl Snapshot {
             coupling: None,
             delay_s: 0.0,
             line_n_m: None,
+            finished: false,
             fault: None,
         }
     }

@@ -131,6 +131,7 @@ impl Runner {
         buffer.coupling = self.body.coupling();
         buffer.delay_s = self.body.delay_s();
         buffer.line_n_m = self.body.line_stiffness_n_m();
+        buffer.finished = self.body.finished();
         buffer.fault = fault;
         self.snapshot.publish();
     }

@@ -148,8 +148,8 @@ fn operator_state(ui: &mut Ui, session: &mut Session) {
 fn forces(ui: &mut Ui, trainer: &Trainer) {
     let dark = ui.visuals().dark_mode;
     let p = palette(ui);
-    let Some((snapshot, _)) = trainer.scene() else { return };
-    let (tick, limit) = (snapshot.tick, trainer.config().limits.max_force_n);
+    let Some(tick) = trainer.seen_tick() else { return };
+    let limit = trainer.config().limits.max_force_n;
     plain_card(ui, "Forces", |ui| {
         let grip = tick.tip_force_n[0].x.min(-tick.tip_force_n[1].x).max(0.0);
         let lift = tick.tip_force_n[0].y + tick.tip_force_n[1].y;

@@ -69,9 +69,13 @@ impl Panel for TrainerView {
                 return;
             };
             let limit = session.trainer.config().limits.max_force_n;
-            let saturated = snapshot.tick.tip_force_n.map(|f| f.norm() > limit);
-            let options = ViewOptions { saturated, ..ViewOptions::default() };
-            let scene = (std::sync::Arc::clone(world), snapshot.state.clone(), options);
+            let trainer = &session.trainer;
+            let state = trainer.seen().unwrap_or(&snapshot.state).clone();
+            let saturated = state.tip_force_n.map(|f| f.norm() > limit);
+            // The far world stands behind the model as a ghost; without a model its late picture is all there is.
+            let ghost = trainer.view().filter(|view| view.predicted).map(|view| view.there.clone());
+            let options = ViewOptions { saturated, ghost, ..ViewOptions::default() };
+            let scene = (std::sync::Arc::clone(world), state, options);
             let fault = snapshot.fault;
             let view = scene_view(ui, "trainer", &mut self.rig, Wheel::ZoomsWithCtrl, scene);
             if let Some((snapshot, _)) = session.trainer.scene() {

@@ -62,15 +62,15 @@ pub enum Steering {
     Gamepad(haptics::device::gamepad::GamepadThread),
 }
 
-/// A device, the window's end of it, and how long it performs, s (people perform for ever).
-pub type Made = (Box<dyn Device>, Steering, f64);
+/// A device, and the window's end of it.
+pub type Made = (Box<dyn Device>, Steering);
 
 impl HandDevice {
     /// Makes the device, its fingers where the state has them. The error is one sentence.
     pub fn make(&self, world: &World, state: &mut State, settings: &HandSettings) -> Result<Made, String> {
         let tips = state.input.tip_in_world;
         let workspace = world.hand.workspace;
-        let made = |device: Box<dyn Device>, steering| Ok((device, steering, f64::INFINITY));
+        let made = |device: Box<dyn Device>, steering| Ok((device, steering));
         match self {
             Self::Mouse => {
                 let (handle, device) = mouse(mouse_start(tips), workspace);
@@ -88,8 +88,7 @@ impl HandDevice {
                 let log = settings.log.as_ref().ok_or("There is no log to replay: open one in Calibrate first.")?;
                 let device = ReplayDevice::from_recording(log).map_err(|e| said(&e))?;
                 state.input.tip_in_world = device.start_in_world();
-                let seconds = device.duration_s();
-                Ok((Box::new(device), Steering::None, seconds))
+                made(Box::new(device), Steering::None)
             }
             Self::Haply(left, right) => {
                 let hand = HaplyHand::open([left, right], world.hand.workspace.center_m, crate::program().as_deref())

@@ -2,6 +2,7 @@
 
 mod choice;
 mod control;
+mod delay;
 mod engine;
 mod hand;
 mod history;
@@ -31,6 +32,7 @@ use crate::recorder::{Recorder, Stopping};
 use haptics::device::{Device, DeviceSpec};
 use haptics::recording::Meta;
 use haptics::servo::{Privileges, ServoConfig, Snapshot, Swap, TickRecord};
+use haptics::teleop::{Delay, ViewSource};
 use haptics::world::{State, World};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -106,7 +108,9 @@ pub struct Trainer {
     scratch: Vec<TickRecord>,
     recordings_made: usize,
     performances: u64,
-    finished_at_s: f64,
+    delay: Delay,
+    /// What the operator sees over a slow line.
+    view: Option<ViewSource>,
 }
 
 impl Trainer {
@@ -149,6 +153,7 @@ impl Trainer {
             }
         };
         self.spec = Some(device.spec().clone());
+        let device = self.connect(device, &swap)?;
         self.history = History::default();
         self.pinch.prepare_for(&swap.world, &swap.state);
         self.worlds = vec![Arc::new(swap.world.clone())];
@@ -166,14 +171,13 @@ impl Trainer {
         self.steering = Steering::None;
         match self.operator {
             Operator::You => {
-                let (device, steering, seconds) = self.hand.make(world, state, &self.settings)?;
-                (self.steering, self.finished_at_s) = (steering, state.time_s + seconds);
+                let (device, steering) = self.hand.make(world, state, &self.settings)?;
+                self.steering = steering;
                 Ok(device)
             }
             Operator::Scripted => {
                 self.performances += 1;
                 let operator = self.script.operator(world, state, self.performances);
-                self.finished_at_s = operator.duration_s();
                 Ok(Box::new(operator))
             }
         }
@@ -207,7 +211,8 @@ impl Trainer {
         self.choice = choice;
         let world = self.world_of(choice);
         let swap = if goes_on { Swap::going_on(world) } else { Swap::new(world) };
-        let running = self.engine.is_some() && (goes_on || self.operator == Operator::You);
+        // A line's far end and near end know one world.
+        let running = self.engine.is_some() && self.view.is_none() && (goes_on || self.operator == Operator::You);
         if !running {
             return self.restart();
         }
@@ -246,6 +251,7 @@ impl Trainer {
                 kept.tick = snapshot.tick;
                 kept.timing = snapshot.timing;
                 kept.coupling = snapshot.coupling;
+                kept.finished = snapshot.finished;
                 kept.fault = snapshot.fault;
             }
             None => self.newest = Some(snapshot.clone()),
@@ -256,8 +262,11 @@ impl Trainer {
         }
         self.struck_m_s = self.impacts.update(&self.scratch, frame_s);
         engine.test_force(self.trial.advance(frame_s));
-        if let Some(newest) = &self.newest {
-            self.steering.follow(&mut self.pinch, &newest.tick, frame_s);
+        if let Some(view) = &mut self.view {
+            view.newest();
+        }
+        if let Some(tick) = self.seen_tick() {
+            self.steering.follow(&mut self.pinch, &tick, frame_s);
         }
         self.follow_recording();
     }
@@ -302,8 +311,7 @@ impl Trainer {
 
     /// True once a script or a replay is done.
     pub fn performance_over(&self) -> bool {
-        let now_s = self.newest.as_ref().map_or(0.0, |s| s.state.time_s);
-        self.engine.is_some() && now_s > self.finished_at_s
+        self.engine.is_some() && self.newest.as_ref().is_some_and(|newest| newest.finished)
     }
 
     /// True while pictures must follow each other quickly.

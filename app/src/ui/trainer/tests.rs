@@ -192,3 +192,58 @@ fn a_folder_that_takes_no_files_is_one_sentence_and_training_goes_on() {
     trainer.advance(0.2);
     assert!(trainer.scene().expect("running").0.tick.time_s > before_s);
 }
+
+/// Carries a block over a slow line as people do: moves, waits, looks. Returns how far the block went and how far it should have.
+fn carry_slowly(trainer: &mut Trainer, by_m: f64, wait_s: f64) -> (f64, f64) {
+    let from = body(trainer, 0);
+    let up = Vec2::new(0.0, 0.022);
+    let over = Vec2::new(by_m, 0.0);
+    drag(trainer, from + up, from, 1.0);
+    trainer.advance(wait_s);
+    trainer.pinch.button = true;
+    trainer.advance(1.0 + 2.0 * wait_s);
+    for (a, b) in [(from, from + up), (from + up, from + up + over)] {
+        drag(trainer, a, b, 2.0);
+        trainer.advance(wait_s);
+    }
+    (body(trainer, 0).x - from.x, by_m)
+}
+
+#[test]
+fn over_a_slow_line_the_picture_is_late_and_a_block_is_carried_all_the_same() {
+    for round_trip_s in [0.15, 0.5] {
+        let mut trainer = manual();
+        trainer.set_delay(Delay::of(round_trip_s, false)).expect("a line");
+        let hand = |state: &State| 0.5 * (state.input.tip_in_world[0] + state.input.tip_in_world[1]);
+        trainer.advance(0.5);
+        let (start, true_start) =
+            (hand(trainer.seen().expect("a picture")), hand(&trainer.scene().expect("running").0.state));
+        assert!((start - true_start).norm() < 1e-4, "both at rest");
+        trainer.pinch.move_to(start + Vec2::new(0.01, 0.0));
+        trainer.advance(0.9 * round_trip_s);
+        let seen = hand(trainer.seen().expect("a picture"));
+        let there = hand(&trainer.scene().expect("running").0.state);
+        assert!((seen - start).norm() < 1e-4, "{round_trip_s} s: nothing is seen yet: {seen:?}");
+        assert!((there - start).norm() > 1e-3, "{round_trip_s} s: the far hand has begun: {there:?}");
+        trainer.advance(3.0);
+        assert!((hand(trainer.seen().expect("a picture")) - start).x > 9e-3, "{round_trip_s} s: and arrives");
+        let (went, should) = carry_slowly(&mut trainer, 0.02, 2.0 * round_trip_s + 0.5);
+        assert!((went - should).abs() < 4e-3, "{round_trip_s} s: carried {went} m");
+        let lifted = body(&trainer, 0).y + 0.125;
+        assert!(lifted > 0.015, "{round_trip_s} s: still held, {lifted} m above the table");
+    }
+}
+
+#[test]
+fn impossible_lines_are_refused_and_none_changes_nothing() {
+    let mut trainer = manual();
+    let refused = trainer.set_delay(Delay { loss: 1.5, ..Delay::default() }).expect_err("no such line");
+    assert!(refused.contains("loss") && trainer.delay() == Delay::default(), "{refused}");
+    assert!(trainer.view().is_none() && trainer.seen() == trainer.scene().map(|(newest, _)| &newest.state));
+    trainer.set_delay(Delay::of(0.15, false)).expect("a line");
+    assert!(trainer.view().is_some());
+    trainer.choose(WorldChoice::Crank).expect("another world at both ends");
+    assert!(trainer.view().is_some_and(|view| view.here.bodies.is_empty()));
+    trainer.set_delay(Delay::default()).expect("no line");
+    assert!(trainer.view().is_none());
+}

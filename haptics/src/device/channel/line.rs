@@ -10,7 +10,7 @@ const MOST_HZ: f64 = 8_000.0;
 const NANOSECOND: f64 = 1e-9;
 
 /// A line that delays, scatters and loses. Its room is made once.
-pub(in crate::device) struct Line<T> {
+pub(crate) struct Line<T> {
     delay_s: f64,
     jitter_s: f64,
     loss: f64,

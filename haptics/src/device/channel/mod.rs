@@ -10,7 +10,7 @@
 mod forwarding;
 #[cfg(test)]
 mod hold;
-pub(super) mod line;
+pub(crate) mod line;
 #[cfg(test)]
 mod tests;
 
@@ -56,7 +56,8 @@ pub enum ChannelError {
 }
 
 impl ChannelConfig {
-    fn check(&self) -> Result<(), ChannelError> {
+    /// Says what makes the network impossible, if anything does.
+    pub fn check(&self) -> Result<(), ChannelError> {
         for (name, time_s) in [("delay", self.delay_s), ("jitter", self.jitter_s)] {
             if !(0.0..=2.0).contains(&time_s) {
                 return Err(ChannelError::Time(name, time_s));

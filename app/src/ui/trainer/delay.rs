@@ -1,0 +1,66 @@
+//! A slow line between the operator and the world: what it is, and what is seen over it.
+
+use super::{Operator, Trainer};
+use crate::ui::session::sentence;
+use haptics::device::Device;
+use haptics::servo::rate::SAFE_HZ;
+use haptics::servo::{Swap, TickRecord};
+use haptics::teleop::{self, Delay, Ends, View};
+use haptics::world::State;
+
+impl Trainer {
+    /// The line between the operator and the world.
+    pub fn delay(&self) -> Delay {
+        self.delay
+    }
+
+    /// Puts another line between the operator and the world, or none. A running servo is started anew; the world stays as it is,
+    /// and the scripted operator starts over. Impossible lines are refused in a sentence, and the one before stays.
+    pub fn set_delay(&mut self, delay: Delay) -> Result<(), String> {
+        delay.check().map_err(|error| sentence(&error.to_string()))?;
+        if delay == self.delay {
+            return Ok(());
+        }
+        self.delay = delay;
+        match (self.engine.is_some(), self.operator) {
+            (false, _) => Ok(()),
+            (true, Operator::Scripted) => self.restart(),
+            (true, Operator::You) => {
+                self.pause();
+                self.ensure_running()
+            }
+        }
+    }
+
+    /// Puts the line before a device, where there is one.
+    pub(super) fn connect(&mut self, device: Box<dyn Device>, swap: &Swap) -> Result<Box<dyn Device>, String> {
+        self.view = None;
+        if self.delay.is_none() {
+            return Ok(device);
+        }
+        // For the slowest rate: a damper that is enough there is enough at every faster one.
+        let ends =
+            Ends { world: &swap.world, state: &swap.state, period_s: 1.0 / SAFE_HZ, seed: self.performances + 1 };
+        let (device, view) = teleop::connect(device, &ends, &self.delay).map_err(|e| sentence(&e.to_string()))?;
+        self.view = Some(view);
+        Ok(device)
+    }
+
+    /// What the operator sees over the line; `None` without one.
+    pub fn view(&self) -> Option<&View> {
+        self.view.as_ref().map(teleop::ViewSource::last)
+    }
+
+    /// What is under the operator's hand as far as the operator can know: the world itself, the model of it, or the late picture.
+    pub fn seen(&self) -> Option<&State> {
+        self.view().map(|view| &view.here).or(self.newest.as_ref().map(|newest| &newest.state))
+    }
+
+    /// The newest tick as the operator knows it.
+    pub fn seen_tick(&self) -> Option<TickRecord> {
+        let tick = self.newest.as_ref()?.tick;
+        let Some(View { here, .. }) = self.view() else { return Some(tick) };
+        let device_in_world = here.input.tip_in_world;
+        Some(TickRecord { input: here.input, device_in_world, tip_force_n: here.tip_force_n, ..tick })
+    }
+}

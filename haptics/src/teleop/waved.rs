@@ -1,0 +1,118 @@
+//! Without a model: forces and motions in wave variables, and a picture that comes late.
+//!
+//! Waves over a delay d feel like a spring of b/d in series with the world. With half a second of round trip that is 36 N/m for a
+//! relaxed finger: what is pinched with it turns out of the fingers. So the far hand is made stronger than the near one: its forces
+//! are divided by a gain before they come back, which multiplies the impedance of the line at the far end and leaves the near
+//! one alone. Both ends stay passive, the far one in units of the gain (power scaling: Colgate 1993). What is felt is a share of
+//! what is exerted, and said to be one ([`gain`]).
+
+use super::album::Album;
+use super::view::ViewInput;
+use super::{Delay, Ends, hand_stiffness_n_m};
+use crate::device::channel::{ChannelConfig, ChannelDevice, ChannelError, Waves};
+use crate::device::{Command, Device, DeviceSpec, Sample};
+use crate::servo::ForceGuard;
+use crate::world::{State, World};
+
+/// How many times the far forces are those that are felt: as much as gives the far fingers a hand's stiffness over a line of
+/// `line_n_m` (N/m), and never less than one.
+fn gain(line_n_m: Option<f64>) -> f64 {
+    line_n_m.map_or(1.0, |line_n_m| (hand_stiffness_n_m() / line_n_m).max(1.0))
+}
+
+/// An operator behind a line with waves who sees late.
+pub(super) struct WavedHand {
+    channel: ChannelDevice,
+    spec: DeviceSpec,
+    gain: f64,
+    pictures: Album<f64>,
+    seen: State,
+    view: ViewInput,
+    now_s: f64,
+    taken_s: f64,
+}
+
+impl WavedHand {
+    pub fn new(
+        operator: Box<dyn Device>,
+        ends: &Ends<'_>,
+        delay: &Delay,
+        view: ViewInput,
+    ) -> Result<Self, ChannelError> {
+        let waves = Some(Waves::new(operator.spec(), ends.world, ends.period_s));
+        let name = operator.spec().name.clone();
+        let channel = ChannelDevice::new(operator, ChannelConfig { waves, ..delay.channel(ends.seed) })?;
+        let gain = gain(channel.line_stiffness_n_m());
+        let mut spec = channel.spec().clone();
+        spec.name = format!("{name} over {:.0} ms and back", 1e3 * delay.round_trip_s);
+        // What the servo may ask for is divided before it is felt.
+        spec.max_force_n *= gain;
+        spec.damping_n_s_m *= gain;
+        Ok(Self {
+            channel,
+            spec,
+            gain,
+            pictures: Album::new(ends.state, delay, ends.seed),
+            seen: ends.state.clone(),
+            view,
+            now_s: 0.0,
+            taken_s: 0.0,
+        })
+    }
+
+    fn publish(&mut self) {
+        let view = self.view.input_buffer_mut();
+        view.here.copy_from(&self.seen);
+        view.there.copy_from(&self.seen);
+        view.age_s = self.now_s - self.taken_s;
+        view.predicted = false;
+        self.view.publish();
+    }
+}
+
+impl Device for WavedHand {
+    fn spec(&self) -> &DeviceSpec {
+        &self.spec
+    }
+
+    fn exchange(&mut self, command: &Command, dt_s: f64) -> Sample {
+        self.now_s += dt_s;
+        if let Some((picture, taken_s)) = self.pictures.receive(self.now_s) {
+            picture.show_in(&mut self.seen);
+            self.taken_s = *taken_s;
+        }
+        let felt = Command { force_n: command.force_n.map(|force| force / self.gain) };
+        let sample = self.channel.exchange(&felt, dt_s);
+        self.publish();
+        sample
+    }
+
+    fn delay_s(&self) -> f64 {
+        self.channel.delay_s()
+    }
+
+    fn line_stiffness_n_m(&self) -> Option<f64> {
+        self.channel.line_stiffness_n_m().map(|line_n_m| line_n_m * self.gain)
+    }
+
+    fn make_safe(&mut self) {
+        self.channel.make_safe();
+    }
+
+    fn guard(&mut self) -> Option<ForceGuard> {
+        self.channel.guard()
+    }
+
+    fn strike(&mut self, speed_m_s: f64) {
+        self.channel.strike(speed_m_s);
+    }
+
+    fn see(&mut self, world: &World, state: &State) {
+        self.pictures.offer(self.now_s, state, self.now_s);
+        self.channel.see(world, &self.seen);
+    }
+
+    fn finished(&self) -> bool {
+        self.channel.finished()
+    }
+}
