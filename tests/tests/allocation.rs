@@ -16,6 +16,7 @@ use haptics::servo::rate::{RateReport, Watch};
 use haptics::servo::safety::Limits;
 use haptics::servo::timing::{TickTiming, TimingCollector};
 use haptics::servo::{Loop, Swap};
+use haptics::teleop::{self, Delay, Ends};
 use haptics::world::{State, Wall, World, presets};
 use std::io::{Read, Write};
 use std::time::Duration;
@@ -202,6 +203,25 @@ fn a_device_behind_a_slow_network() {
             let config = ChannelConfig { delay_s: 0.25, jitter_s: 0.05, loss: 0.1, seed: 1, waves };
             let device = ChannelDevice::new(Box::new(operator), config).expect("a possible network");
             run(&mut servo(&world, Box::new(device)), 10_000);
+        }
+    }
+}
+
+#[test]
+fn an_operator_over_a_slow_line_with_and_without_a_model() {
+    for world in presets::all() {
+        for predicted in [false, true] {
+            let state = State::resting(&world);
+            let operator = ScriptedOperator::new(&world, &state, Skill::expert(), 3).waiting();
+            let delay = Delay { jitter_s: 0.02, loss: 0.1, ..Delay::of(0.15, predicted) };
+            let guess = teleop::guess(&world, 3);
+            let limits = Limits { max_force_n: 12.0, ..Limits::default() };
+            let ends = Ends { world: &world, state: &state, guess: Some(&guess), limits, period_s: DT, seed: 1 };
+            let (device, mut view) = teleop::connect(Box::new(operator), &ends, &delay).expect("a possible line");
+            let mut servo = servo(&world, device);
+            run(&mut servo, 15_000);
+            assert_no_alloc(|| servo.interrupted());
+            assert!(view.newest().age_s < 0.3, "pictures come: {} s", view.newest().age_s);
         }
     }
 }

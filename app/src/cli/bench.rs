@@ -1,6 +1,7 @@
 //! `touchstone bench`. Here `bench servo`: how punctual the servo is on this machine, with and without pictures being drawn beside it.
 
 mod blind;
+mod delay;
 mod frames;
 mod online;
 mod verdict;
@@ -40,6 +41,8 @@ enum What {
     Blind(blind::BlindBench),
     /// What a picture of each panel costs the processor, with a long log
     Frames(frames::FramesBench),
+    /// How long tasks take over a slow line, with and without a model that answers at once (simulated time)
+    Delay(delay::DelayBench),
     /// Cost of a sample of the estimator beside the servo, against a tick of the servo
     Online(online::OnlineBench),
 }
@@ -76,6 +79,7 @@ impl Bench {
             What::Online(bench) => bench.run(),
             What::Blind(bench) => bench.run(),
             What::Frames(bench) => bench.run(),
+            What::Delay(bench) => bench.run(),
         }
     }
 
@@ -83,7 +87,7 @@ impl Bench {
     pub(super) fn passivity_control(&self) -> Option<f64> {
         match &self.what {
             What::Servo(bench) => bench.control.passivity_control,
-            What::Online(_) | What::Blind(_) | What::Frames(_) => None,
+            What::Online(_) | What::Blind(_) | What::Frames(_) | What::Delay(_) => None,
         }
     }
 }

@@ -96,6 +96,10 @@ pub trait Device: Send {
     /// hold their last force.
     fn make_safe(&mut self);
 
+    /// The servo stood still for longer than its watchdog allows. For devices that have a safety stage of their own: the force comes
+    /// up softly again.
+    fn interrupted(&mut self) {}
+
     /// A second way to zero force, for another thread, while `exchange` does not come back; asked for once, before the first
     /// `exchange`. Devices that wait for nothing, or guard themselves on a thread of their own, need none.
     fn guard(&mut self) -> Option<crate::servo::ForceGuard> {

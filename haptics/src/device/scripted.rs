@@ -5,6 +5,7 @@ mod builder;
 mod captured;
 mod eye;
 mod noise;
+mod patience;
 mod plan;
 mod route;
 mod skill;
@@ -20,6 +21,7 @@ use crate::Vec2;
 use crate::world::{State, World};
 use eye::Eye;
 use noise::{Tremor, Wander};
+use patience::Patience;
 use plan::{Goal, Plan};
 use rand::SeedableRng;
 use rand::rngs::StdRng;
@@ -49,9 +51,13 @@ pub struct ScriptedOperator {
     tremor: [Tremor; 2],
     pinch_wander: Wander,
     eye: Option<Eye>,
+    /// Present: each movement waits until the one before was seen to end.
+    patience: Option<Patience>,
     position: [Vec2; 2],
     velocity: [Vec2; 2],
     now_s: f64,
+    /// How far the plan is, s: behind the clock by what was waited.
+    plan_s: f64,
 }
 
 impl ScriptedOperator {
@@ -91,10 +97,20 @@ impl ScriptedOperator {
             tremor: [Tremor::new(skill.tremor_m, rng), Tremor::new(skill.tremor_m, rng)],
             pinch_wander: Wander::new(skill.wander, rng),
             eye: skill.reaction_s.map(Eye::new),
+            patience: None,
             position: state.input.tip_in_world,
             velocity: [Vec2::zeros(); 2],
             now_s: 0.0,
+            plan_s: 0.0,
         }
+    }
+
+    /// The same operator, who begins a movement when the one before was seen to have ended: move and wait (Ferrell 1965), as people
+    /// do over a slow line. Operators that do not look ([`Skill::reaction_s`]) and those on a route go on as they are.
+    #[must_use]
+    pub fn waiting(mut self) -> Self {
+        self.patience = self.eye.as_ref().map(|_| Patience::default());
+        self
     }
 
     /// Length of the whole performance, s, as planned so far: dropping a block makes it longer.
@@ -110,9 +126,13 @@ impl Device for ScriptedOperator {
 
     fn exchange(&mut self, command: &Command, dt_s: f64) -> Sample {
         self.now_s += dt_s;
+        self.plan_s += match (&mut self.patience, &self.way) {
+            (Some(patience), Way::Planned(plan)) => patience.allow(plan.ends(self.plan_s, dt_s), dt_s),
+            _ => dt_s,
+        };
         let (goal, rate) = match &mut self.way {
-            Way::Planned(plan) => plan.at(self.now_s),
-            Way::Told(route) => route.at(self.now_s),
+            Way::Planned(plan) => plan.at(self.plan_s),
+            Way::Told(route) => route.at(self.plan_s),
         };
         // Squeezing harder than touching is done by wanting the tips closer: force over the arm's stiffness.
         let squeeze = goal.pinch_n * (1.0 + self.pinch_wander.at(self.now_s)) / self.impedance.stiffness_n_m;
@@ -131,15 +151,18 @@ impl Device for ScriptedOperator {
 
     fn see(&mut self, world: &World, state: &State) {
         let (Some(eye), Way::Planned(plan)) = (&mut self.eye, &mut self.way) else { return };
-        if eye.look(self.now_s, state)
+        if eye.look(self.now_s, self.plan_s, state)
             && let Some(seen) = eye.noticed(self.now_s)
         {
-            plan.notice(&world.blocks, seen, self.now_s);
+            plan.notice(&world.blocks, seen, self.plan_s);
+            if let Some(patience) = &mut self.patience {
+                patience.look(seen);
+            }
         }
     }
 
     fn finished(&self) -> bool {
         let recovering = matches!(&self.way, Way::Planned(plan) if plan.is_recovering());
-        self.now_s > self.way.duration_s() && !recovering
+        self.plan_s > self.way.duration_s() && !recovering
     }
 }

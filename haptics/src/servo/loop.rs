@@ -233,6 +233,7 @@ impl Loop {
     /// Says that the loop stood still for longer than the watchdog allows: zero force, then up again softly.
     pub fn interrupted(&mut self) {
         self.safety.interrupted();
+        self.device.interrupted();
     }
 
     /// Pushes with a small force instead of the world's, N on the operator's fingers, to try the device; `None` ends it. It
@@ -260,6 +261,12 @@ impl Loop {
     pub fn make_safe(&mut self) {
         self.device.make_safe();
         self.sent_force_n = [Vec2::zeros(); 2];
+    }
+
+    /// World and state, for what keeps a model true.
+    pub(crate) fn model_mut(&mut self) -> (&mut World, &mut State) {
+        let Swap { world, state, .. } = &mut *self.current;
+        (world, state)
     }
 
     /// The world that is running.

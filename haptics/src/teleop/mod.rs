@@ -1,18 +1,35 @@
 //! Teleoperation: the operator here, the world far away, a slow line between them.
 //!
 //! The servo's world stays the far one: what is recorded and scored is what happened there. Everything at the operator's end is a
-//! device of that servo ([`waved`]): force and motion go over the line in wave variables, which cannot give energy out, and the
-//! operator sees a picture that is late.
+//! device of that servo, in one of two ways (`docs/delay.md`):
+//!
+//! * [`waved`]: force and motion go over the line in wave variables, which cannot give energy out, and the operator sees a
+//!   picture that is late. Honest, and slow: move, wait, look.
+//! * [`modelled`]: the operator touches a model of the far world that answers at once (predictive display and model-mediated
+//!   control; Sheridan 1993, Mitra & Niemeyer 2008). What the hand does is sent there and done by a hand of its own; what comes
+//!   back corrects the model, slowly enough that no force jumps.
+//!
+//! Force reaches the operator through the safety stage in both: that of the servo, which sends it over the line, or that of a
+//! second [`crate::servo::Loop`] at the operator's end, on the model.
 
 mod album;
+mod far_hand;
+mod guess;
+mod model;
+mod modelled;
 mod picture;
+#[cfg(test)]
+mod tests;
 mod view;
 mod waved;
 
+pub use guess::{GUESS_OFF, guess};
+pub use model::Weighed;
 pub use view::{View, ViewSource};
 
 use crate::device::channel::{ChannelConfig, ChannelError};
 use crate::device::{Device, HandImpedance};
+use crate::servo::safety::Limits;
 use crate::world::{State, World};
 use serde::{Deserialize, Serialize};
 
@@ -26,7 +43,7 @@ pub struct Delay {
     pub jitter_s: f64,
     /// Share of the packets that is lost, 0 to 1.
     pub loss: f64,
-    /// Whether a model of the far world is to answer at once (no model does yet).
+    /// Whether a model of the far world answers at once.
     pub predicted: bool,
 }
 
@@ -65,6 +82,10 @@ pub struct Ends<'a> {
     pub world: &'a World,
     /// Its state.
     pub state: &'a State,
+    /// What the operator's end believes of the far world at first; `None`: the truth.
+    pub guess: Option<&'a World>,
+    /// What may reach the operator.
+    pub limits: Limits,
     /// The servo's slowest period, s.
     pub period_s: f64,
     /// Draws the fate of the packets.
@@ -77,9 +98,13 @@ pub fn connect(
     ends: &Ends<'_>,
     delay: &Delay,
 ) -> Result<(Box<dyn Device>, ViewSource), ChannelError> {
-    let (view, source) = view::view(ends.state, false);
-    let device = waved::WavedHand::new(operator, ends, delay, view)?;
-    Ok((Box::new(device), source))
+    let (view, source) = view::view(ends.state, delay.predicted);
+    let device: Box<dyn Device> = if delay.predicted {
+        Box::new(modelled::ModelledHand::new(operator, ends, delay, view)?)
+    } else {
+        Box::new(waved::WavedHand::new(operator, ends, delay, view)?)
+    };
+    Ok((device, source))
 }
 
 /// Stiffness that a far fingertip must have to hold anything, N/m: a hand's own.

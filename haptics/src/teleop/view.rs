@@ -1,5 +1,6 @@
 //! What the operator is shown: here at once, there late. By triple buffer from the servo's thread to the window.
 
+use super::model::Weighed;
 use crate::world::State;
 use triple_buffer::{Output, triple_buffer};
 
@@ -14,6 +15,8 @@ pub struct View {
     pub age_s: f64,
     /// Whether a model answers.
     pub predicted: bool,
+    /// What the body that was carried last weighs, as far as the model has learnt it.
+    pub weighed: Option<Weighed>,
 }
 
 /// The servo's end.
@@ -36,7 +39,7 @@ impl ViewSource {
 
 /// Both ends; everything is where `state` has it.
 pub(super) fn view(state: &State, predicted: bool) -> (ViewInput, ViewSource) {
-    let first = View { here: state.clone(), there: state.clone(), age_s: 0.0, predicted };
+    let first = View { here: state.clone(), there: state.clone(), age_s: 0.0, predicted, weighed: None };
     let (input, output) = triple_buffer(&first);
     (input, ViewSource(output))
 }

@@ -99,6 +99,10 @@ impl Device for WavedHand {
         self.channel.make_safe();
     }
 
+    fn interrupted(&mut self) {
+        self.channel.interrupted();
+    }
+
     fn guard(&mut self) -> Option<ForceGuard> {
         self.channel.guard()
     }

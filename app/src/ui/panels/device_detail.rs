@@ -203,6 +203,11 @@ fn force_test(ui: &mut Ui, trainer: &mut Trainer, spec: &DeviceSpec) {
             ui.label(theme::caption(ui, "This device gives nobody a force, so there is none to try."));
             return;
         }
+        if !trainer.delay().is_none() {
+            let text = "Over a slow line a push would not be the device's own: choose no delay in Train first.";
+            ui.label(theme::caption(ui, text));
+            return;
+        }
         if trainer.trial.is_running() {
             let left = number(trainer.trial.left_s(), 1);
             ui.label(theme::caption(ui, format!("It pushes; {left} s are left. Let go or press Esc when in doubt.")));

@@ -6,6 +6,7 @@ mod boundaries;
 mod causes;
 mod check;
 mod compare;
+mod delay;
 pub mod device_detail;
 pub mod devices;
 pub mod diagnose;

@@ -33,6 +33,7 @@ impl Panel for TrainerSide {
             plain_card(ui, "Recording", |ui| recorder::controls(ui, session));
             forces(ui, &session.trainer);
             super::measured::beside(ui, &mut session.trainer);
+            super::delay::delay(ui, session);
             super::passivity::passivity(ui, session);
             super::trainer_timing::timing(ui, &session.trainer);
         });

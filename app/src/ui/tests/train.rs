@@ -129,3 +129,55 @@ fn what_the_hand_has_measured_so_far_is_shown_and_can_be_switched_off() {
     harness.run_steps(2);
     assert!(!harness.state().session.trainer.watch.on && harness.query_by_label("Switched off.").is_some());
 }
+
+#[test]
+fn a_slow_line_is_chosen_and_the_card_says_what_the_picture_shows() {
+    let mut harness = window();
+    let settle = |harness: &mut Harness<'_, App>, seconds: f64| {
+        harness.state_mut().session.trainer.advance(seconds);
+        harness.run_steps(3);
+    };
+    click_in_view(&mut harness, "500 ms");
+    settle(&mut harness, 0.5);
+    let delay = |harness: &Harness<'_, App>| harness.state().session.trainer.delay();
+    assert_eq!((delay(&harness).round_trip_s, delay(&harness).predicted), (0.5, true));
+    let solid = "Solid: the model under your hand, at once. Ghost: the far world as it was 250 ms ago.";
+    assert!(harness.query_by_label(solid).is_some());
+    click_in_view(&mut harness, "Predictive model");
+    settle(&mut harness, 0.5);
+    assert!(!delay(&harness).predicted && harness.query_by_label(solid).is_none());
+    assert!(harness.query_by_label("You see the far world as it was 250 ms ago. Move, wait, look.").is_some());
+    click_in_view(&mut harness, "Unsteady line");
+    settle(&mut harness, 0.5);
+    assert!(delay(&harness).jitter_s > 0.0 && delay(&harness).loss > 0.0);
+    click_in_view(&mut harness, "150 ms");
+    settle(&mut harness, 0.5);
+    assert!((delay(&harness).round_trip_s, delay(&harness).predicted) == (0.15, false) && delay(&harness).loss > 0.0);
+    // A recording would end with the servo: no switching meanwhile.
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    harness.state_mut().session.trainer.recordings_folder = Some(folder.path().to_path_buf());
+    harness.state_mut().session.trainer.start_recording().expect("begins");
+    harness.run_steps(2);
+    click_in_view(&mut harness, "None");
+    harness.run_steps(2);
+    assert_eq!(delay(&harness).round_trip_s, 0.15);
+    harness.state_mut().session.trainer.discard_recording();
+    harness.run_steps(2);
+    click_in_view(&mut harness, "None");
+    settle(&mut harness, 0.2);
+    assert!(delay(&harness).is_none() && harness.state().session.trainer.view().is_none());
+}
+
+#[test]
+fn what_was_carried_over_the_line_is_weighed_in_the_card() {
+    let mut harness = window();
+    let trainer = &mut harness.state_mut().session.trainer;
+    trainer.set_delay(haptics::teleop::Delay::of(0.5, true)).expect("a line");
+    (trainer.script.level, trainer.operator) = ("expert", Operator::Scripted);
+    trainer.restart().expect("two blocks");
+    trainer.advance(9.0);
+    harness.run_steps(2);
+    let weighed = harness.state().session.trainer.view().and_then(|view| view.weighed).expect("it was carried");
+    assert!((weighed.mass_kg * 9.81 - 0.343).abs() < 0.02, "{weighed:?}");
+    assert!(harness.query_by_label("Carried last").is_some());
+}

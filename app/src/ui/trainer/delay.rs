@@ -4,7 +4,7 @@ use super::{Operator, Trainer};
 use crate::ui::session::sentence;
 use haptics::device::Device;
 use haptics::servo::rate::SAFE_HZ;
-use haptics::servo::{Swap, TickRecord};
+use haptics::servo::{ServoConfig, Swap, TickRecord};
 use haptics::teleop::{self, Delay, Ends, View};
 use haptics::world::State;
 
@@ -38,9 +38,17 @@ impl Trainer {
         if self.delay.is_none() {
             return Ok(device);
         }
-        // For the slowest rate: a damper that is enough there is enough at every faster one.
-        let ends =
-            Ends { world: &swap.world, state: &swap.state, period_s: 1.0 / SAFE_HZ, seed: self.performances + 1 };
+        let seed = self.performances + 1;
+        let guess = teleop::guess(&swap.world, seed);
+        let ends = Ends {
+            world: &swap.world,
+            state: &swap.state,
+            guess: Some(&guess),
+            limits: ServoConfig::default().limits,
+            // For the slowest rate: a damper that is enough there is enough at every faster one.
+            period_s: 1.0 / SAFE_HZ,
+            seed,
+        };
         let (device, view) = teleop::connect(device, &ends, &self.delay).map_err(|e| sentence(&e.to_string()))?;
         self.view = Some(view);
         Ok(device)

@@ -178,7 +178,8 @@ impl Trainer {
             Operator::Scripted => {
                 self.performances += 1;
                 let operator = self.script.operator(world, state, self.performances);
-                Ok(Box::new(operator))
+                // Over a slow line people move and wait.
+                Ok(Box::new(if self.delay.is_none() { operator } else { operator.waiting() }))
             }
         }
     }
@@ -242,7 +243,6 @@ impl Trainer {
         let Some(engine) = &mut self.engine else { return };
         self.scratch.clear();
         engine.drain(&mut self.scratch);
-        self.history.extend(&self.scratch);
         let snapshot = engine.newest();
         match &mut self.newest {
             Some(kept) => {
@@ -264,6 +264,10 @@ impl Trainer {
         engine.test_force(self.trial.advance(frame_s));
         if let Some(view) = &mut self.view {
             view.newest();
+        }
+        match self.seen_tick().filter(|_| self.view.is_some()) {
+            Some(seen) => self.history.extend(&[seen]),
+            None => self.history.extend(&self.scratch),
         }
         if let Some(tick) = self.seen_tick() {
             self.steering.follow(&mut self.pinch, &tick, frame_s);

@@ -210,6 +210,28 @@ fn carry_slowly(trainer: &mut Trainer, by_m: f64, wait_s: f64) -> (f64, f64) {
 }
 
 #[test]
+fn on_a_model_the_hand_is_seen_at_once_and_the_far_world_as_a_ghost() {
+    for round_trip_s in [0.15, 0.5] {
+        let mut trainer = manual();
+        trainer.set_delay(Delay::of(round_trip_s, true)).expect("a line");
+        trainer.advance(0.5);
+        let middle = |state: &State| 0.5 * (state.input.tip_in_world[0] + state.input.tip_in_world[1]);
+        let start = middle(trainer.seen().expect("a model"));
+        trainer.pinch.move_to(start + Vec2::new(0.01, 0.0));
+        trainer.advance(0.5 * round_trip_s);
+        let view = trainer.view().expect("a line");
+        assert!(view.predicted && middle(&view.here).x > start.x + 2e-3, "{round_trip_s} s: here it moves");
+        assert!((middle(&view.there) - start).norm() < 1e-4, "{round_trip_s} s: there it does not yet");
+        let (went, should) = carry_slowly(&mut trainer, 0.02, 0.3);
+        trainer.advance(round_trip_s);
+        assert!((body(&trainer, 0).y + 0.125) > 0.015, "{round_trip_s} s: held at the far end");
+        assert!((went - should).abs() < 4e-3, "{round_trip_s} s: carried {went} m");
+        let weighed = trainer.view().and_then(|view| view.weighed).expect("it was carried");
+        assert!((weighed.mass_kg * 9.81 - 0.343).abs() < 0.03, "{round_trip_s} s: {weighed:?}");
+    }
+}
+
+#[test]
 fn over_a_slow_line_the_picture_is_late_and_a_block_is_carried_all_the_same() {
     for round_trip_s in [0.15, 0.5] {
         let mut trainer = manual();

@@ -250,6 +250,10 @@ impl Device for ChannelDevice {
         self.inner.make_safe();
     }
 
+    fn interrupted(&mut self) {
+        self.inner.interrupted();
+    }
+
     fn guard(&mut self) -> Option<ForceGuard> {
         // Not over the line either: the servo's thread and the device's driver are the same with and without it.
         self.inner.guard()

@@ -50,6 +50,24 @@ pub(super) enum Move {
     Turn { center_m: Vec2, radius_m: f64, from_rad: f64, to_rad: f64, pull_m: f64, grasp: Goal },
 }
 
+impl Move {
+    /// False for a pause.
+    fn moves(&self) -> bool {
+        !matches!(self, Self::Reach { from, to } if from == to)
+    }
+
+    /// Where it ends.
+    fn end(&self) -> Goal {
+        match *self {
+            Self::Reach { to, .. } => to,
+            Self::Turn { center_m, radius_m, to_rad, grasp, .. } => {
+                let (sin, cos) = to_rad.sin_cos();
+                Goal { center_m: center_m + Vec2::new(cos, sin) * radius_m, ..grasp }
+            }
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Phase {
     pub start_s: f64,
@@ -141,7 +159,7 @@ impl Plan {
             if now_s >= self.duration_s() {
                 self.try_again(job, blocks, seen, now_s);
             }
-        } else if let (Some(job), Some(then)) = (self.holding(now_s), self.holding(seen.time_s))
+        } else if let (Some(job), Some(then)) = (self.holding(now_s), self.holding(seen.plan_s))
             && job == then
             && let Some((center_m, _)) = seen.bodies.get(self.jobs[job].block)
             && (center_m - seen.hand_m).norm() > LOST_M
@@ -190,6 +208,12 @@ impl Plan {
             }
         }
         builder.wait(1.0);
+    }
+
+    /// Where the movement ends that ends within the next `dt_s`, when another follows it.
+    pub fn ends(&self, now_s: f64, dt_s: f64) -> Option<Goal> {
+        let (phase, next) = (self.phases.get(self.current)?, self.phases.get(self.current + 1)?);
+        (now_s + dt_s >= phase.end_s && next.movement.moves()).then(|| phase.movement.end())
     }
 
     /// Length, s.

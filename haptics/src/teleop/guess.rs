@@ -1,0 +1,35 @@
+//! A first model of a world that nobody has measured: things are seen, so that their shapes and places are right; what they weigh and
+//! how they resist is guessed.
+
+use crate::law::Enters;
+use crate::world::World;
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+
+/// How far a guess is off at the most, relative to the truth: what people make of the look of a thing is of this order.
+pub const GUESS_OFF: f64 = 0.4;
+
+/// A guess of a world: masses, friction under the fingers and laws of the crank, each by a factor of its own between 1 − [`GUESS_OFF`]
+/// and 1 + [`GUESS_OFF`], drawn by the seed. A guess that could not be run is given up for the truth.
+pub fn guess(world: &World, seed: u64) -> World {
+    let mut rng = StdRng::seed_from_u64(seed);
+    let mut off = || rng.random_range(1.0 - GUESS_OFF..1.0 + GUESS_OFF);
+    let mut guessed = world.clone();
+    for block in &mut guessed.blocks {
+        let factor = off();
+        block.mass_kg *= factor;
+        if let Some(content) = &mut block.content {
+            content.mass_kg *= factor;
+        }
+        block.finger_friction *= off();
+    }
+    for effect in guessed.crank.iter_mut().flat_map(|crank| &mut crank.effects) {
+        let parameters = effect.law().parameters();
+        for (value, spec) in effect.values.iter_mut().zip(parameters) {
+            if spec.enters == Enters::Linear {
+                *value *= off();
+            }
+        }
+    }
+    if guessed.check().is_ok() { guessed } else { world.clone() }
+}
