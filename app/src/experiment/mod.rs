@@ -5,6 +5,7 @@
 
 mod perform;
 mod rehearse;
+mod sensing;
 mod timetable;
 
 pub use perform::{perform, what_is_known};

@@ -1,8 +1,9 @@
 //! The scripted operator does an experiment on a simulated object.
 
+use super::sensing::see_through;
 use super::{SIMULATED, Timetable};
 use estimator::diagnose::{Experiment, SensorFault};
-use haptics::Vec2;
+use estimator::segment::SystemState;
 use haptics::device::{Device as _, ScriptedOperator, Skill};
 use haptics::recording::Recording;
 use haptics::servo::recorder::{SensorModel, to_recording};
@@ -44,7 +45,8 @@ pub fn perform(
     let sensor = SensorModel { force_noise_n: noise_n, ..SensorModel::TYPICAL };
     let name = format!("simulated, {about}");
     let mut recording = to_recording(&name, &table.world, &ticks, EVERY, &sensor, seed);
-    add_fault(&mut recording, fault);
+    let carried = ticks.iter().find(|tick| tick.label == SystemState::HoldAboveGround.name());
+    see_through(&mut recording, fault, carried.map_or(0.0, |tick| tick.time_s));
     recording.meta.other.insert(SIMULATED.to_owned(), about.into());
     recording.meta.known.extend(what_is_known(asked));
     Some(recording)
@@ -56,29 +58,11 @@ pub fn what_is_known(asked: &Experiment) -> BTreeMap<String, f64> {
     weight.into_iter().collect()
 }
 
-/// Half of it shows on either finger.
-fn add_fault(recording: &mut Recording, fault: &SensorFault) {
-    if *fault == SensorFault::default() {
-        return;
-    }
-    let times = recording.time_s.clone().unwrap_or_default();
-    let start_s = times.first().copied().unwrap_or_default();
-    for channel in &mut recording.channels {
-        let part: fn(Vec2) -> f64 = match channel.name.as_str() {
-            "fx1_N" | "fx2_N" => |force| 0.5 * force.x,
-            "fy1_N" | "fy2_N" => |force| 0.5 * force.y,
-            _ => continue,
-        };
-        for (value, time_s) in channel.values.iter_mut().zip(&times) {
-            *value += part(fault.at(time_s - start_s));
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::timetable::tests::asked;
     use super::*;
+    use haptics::Vec2;
     use haptics::world::presets;
 
     #[test]
@@ -86,7 +70,7 @@ mod tests {
         let world = presets::crank();
         let asked = Experiment { seconds: 4.0, ..asked("sweep-across") };
         let table = Timetable::new(&world, &asked, "turn to and fro").expect("it can be done");
-        let fault = SensorFault { offset_n: Vec2::new(0.3, 0.0), ..SensorFault::default() };
+        let fault = SensorFault { offset_n: [Vec2::new(0.15, 0.0); 2], ..SensorFault::default() };
         let recording = perform(&table, &asked, "a crank", (&fault, 0.005), 1, &|_| true).expect("not ended");
         assert_eq!(super::super::simulated_object(&recording), Some("a crank"));
         assert!(recording.name.starts_with("simulated"));

@@ -71,7 +71,7 @@ pub fn rehearse(
     for (k, suspect) in wanted.iter().enumerate() {
         let mut outcome = Outcome { id: suspect.id.clone(), rounds: Vec::new(), problem: None };
         let table = match Timetable::new(&suspect.world, asked, &next.motion) {
-            Ok(table) => table,
+            Ok(table) => table.leaking_once_held(),
             Err(problem) => {
                 outcome.problem = Some(problem);
                 outcomes.push(outcome);
@@ -95,6 +95,12 @@ pub fn rehearse(
         }
         outcomes.push(outcome);
     }
+    let missing = next.separates.iter().filter(|id| suspects.iter().all(|s| s.id != **id));
+    outcomes.extend(missing.map(|id| Outcome {
+        id: id.clone(),
+        rounds: Vec::new(),
+        problem: Some("No object can be simulated with this in it.".to_owned()),
+    }));
     Ok(Rehearsal { outcomes })
 }
 
@@ -109,8 +115,9 @@ fn judged(answer: &Diagnosis, id: &str, separates: &[String], recording: Recordi
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ui::gallery::samples::leaking;
     use blind::{Bench, Effect, Log, Spec};
-    use estimator::diagnose::{Options, Verdict, diagnose, suspects};
+    use estimator::diagnose::{Options, SensorFault, Verdict, diagnose, suspects};
 
     #[test]
     fn a_hung_weight_would_tell_an_eccentric_mass_from_a_tilt_whichever_it_is() {
@@ -143,5 +150,31 @@ mod tests {
             );
         }
         assert_eq!(rehearse(&suspects, &next, (2, noise_n), &again, &|share| share < 0.3).err(), Some(None));
+    }
+
+    #[test]
+    fn a_carry_would_tell_a_leak_from_a_drift_of_the_sensor_whichever_it_is() {
+        let recordings = [leaking().expect("performed")];
+        let options = Options::default();
+        let answer = diagnose(&recordings, &options).expect("an answer");
+        assert_eq!(answer.verdict, Verdict::Ambiguous, "{:?}", answer.causes);
+        let next = answer.next_experiment.clone().expect("an experiment");
+        let suspects = suspects(&recordings, &options, &answer).expect("worlds");
+        let again = |more: &Recording| {
+            let both = [recordings[0].clone(), more.clone()];
+            diagnose(&both, &options).map_err(|error| error.to_string())
+        };
+        let noise_n = answer.noise_floor_n / std::f64::consts::SQRT_2;
+        let rehearsal = rehearse(&suspects, &next, (2, noise_n), &again, &|_| true).expect("rehearsed");
+        let came_out = |o: &Outcome| o.rounds.iter().map(|r| (r.named.clone(), r.open.clone())).collect::<Vec<_>>();
+        for id in ["mass-change", "force-drift"] {
+            let outcome = rehearsal.outcomes.iter().find(|o| o.id == id).expect("it is open");
+            let found = (outcome.settled(), outcome.rounds.len());
+            assert_eq!(found, (2, 2), "{id}: {:?} {:?}", came_out(outcome), outcome.problem);
+        }
+        let drifts = suspects.iter().find(|s| s.id == "force-drift").expect("a suspect");
+        let leaks = suspects.iter().find(|s| s.id == "mass-change").expect("a suspect");
+        assert!(leaks.world.blocks[0].content.is_some() && leaks.fault == SensorFault::default());
+        assert!(drifts.world.blocks[0].content.is_none() && drifts.fault != SensorFault::default());
     }
 }

@@ -71,6 +71,16 @@ impl Timetable {
         Ok(Self { world, route, steps })
     }
 
+    /// The same where whatever leaks begins to when it is held: a diagnosis counts a leak from when it could first see it.
+    #[must_use]
+    pub fn leaking_once_held(mut self) -> Self {
+        let held_from_s = self.steps.iter().find(|step| step.holds).map(|step| step.until_s);
+        for content in self.world.blocks.iter_mut().filter_map(|block| block.content.as_mut()) {
+            content.leaks_from_s = content.leaks_from_s.and(held_from_s);
+        }
+        self
+    }
+
     /// Length, s.
     pub fn duration_s(&self) -> f64 {
         self.route.duration_s()
@@ -177,23 +187,28 @@ impl Writer {
         self.steps.push(Step { until_s, words: words.into(), holds });
     }
 
-    /// Keeps off, comes and closes; what is held is `width_m` wide and `at` there.
-    fn take(&mut self, free_s: f64, at: Vec2, width_m: f64, pinch_n: f64) {
+    /// Keeps off, comes and closes; what is held is `width_m` wide and `at` there. `over_m`: from how far above it is reached for.
+    fn take(&mut self, free_s: f64, (at, over_m): (Vec2, f64), width_m: f64, pinch_n: f64) {
         self.wait(free_s.max(LEAST_FREE_S));
         self.say("Touch nothing.", false);
         let open = HandGoal { center_m: at, aperture_m: width_m + CLEARANCE_M, pinch_n: 0.0 };
+        if over_m > 0.0 {
+            // On the straight way a finger would come down on top of it.
+            self.go(REACH_S, HandGoal { center_m: at + Vec2::new(0.0, over_m), ..open });
+        }
         self.go(REACH_S, open);
-        self.say("Go there with open fingers.", false);
+        let words = if over_m > 0.0 { "Go down over it with open fingers." } else { "Go there with open fingers." };
+        self.say(words, false);
         self.go(CLOSE_S, HandGoal { aperture_m: width_m, pinch_n, ..open });
         self.wait(REST_S);
         self.say("Take hold.", true);
     }
 
     /// Opens, goes away and keeps off.
-    fn let_go(&mut self, free_s: f64, width_m: f64) {
+    fn let_go(&mut self, free_s: f64, over_m: f64, width_m: f64) {
         self.wait(REST_S);
         self.go(CLOSE_S, HandGoal { aperture_m: width_m + 2.0 * CLEARANCE_M, pinch_n: 0.0, ..self.at });
-        let up = self.at.center_m + Vec2::new(0.0, AWAY_M);
+        let up = self.at.center_m + Vec2::new(0.0, over_m.max(AWAY_M));
         self.go(CLOSE_S, HandGoal { center_m: up, ..self.at });
         self.go(REACH_S, self.away);
         self.say("Let go and take the hand away.", false);
@@ -219,7 +234,7 @@ impl Writer {
             let center_m = crank.center_m + Vec2::new(cos, sin) * (crank.radius_m + beside_m);
             HandGoal { center_m, aperture_m: width_m, pinch_n }
         };
-        self.take(asked.free_s, held(rest, 0.0).center_m, width_m, pinch_n);
+        self.take(asked.free_s, (held(rest, 0.0).center_m, 0.0), width_m, pinch_n);
         let first = strokes.at(0.0).coordinate - turns;
         let fast = 0.5 * asked.fast;
         self.along(rest, first, fast, &|angle| held(angle, 0.0));
@@ -236,7 +251,7 @@ impl Writer {
         let turn = TAU * ((last - rest) / TAU).round();
         self.along(last, rest + turn, fast, &|angle| held(angle, 0.0));
         self.say("Go to where it rests.", true);
-        self.let_go(asked.free_s, width_m);
+        self.let_go(asked.free_s, 0.0, width_m);
         Ok(())
     }
 
@@ -261,14 +276,15 @@ impl Writer {
         let sag_m = 0.5 * block.mass_kg * world.gravity_m_s2 / HandImpedance::default().stiffness_n_m;
         let lifted = at + Vec2::new(0.0, 2.0 * asked.half_range + sag_m);
         let takes_s = (PEAK * (lifted - at).norm() / asked.fast).max(REST_S);
-        self.take(asked.free_s, at, block.width_m, asked.across_n);
+        let over_m = 0.5 * block.height_m + AWAY_M;
+        self.take(asked.free_s, (at, over_m), block.width_m, asked.across_n);
         self.go(takes_s, HandGoal { center_m: lifted, ..self.at });
         self.wait(asked.seconds);
         self.say(motion, true);
         if asked.free_s > 0.0 {
             self.go(takes_s, HandGoal { center_m: at, ..self.at });
             self.say("Put it down.", true);
-            self.let_go(asked.free_s, block.width_m);
+            self.let_go(asked.free_s, over_m, block.width_m);
         }
         Ok(())
     }

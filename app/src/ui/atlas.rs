@@ -1,10 +1,10 @@
-//! The residual atlas, ready to be drawn: what the model leaves of the force as means over ranges of each suspect's variable, and
+//! The residual atlas, ready to be drawn: what the model leaves of the force, or of each channel, as means over ranges of each suspect's variable, and
 //! what that suspect alone would take of it.
 
 use super::format;
 use crate::diagnosis_words::{force_unit, title};
 use estimator::diagnose::Diagnosis;
-use estimator::diagnose::atlas::{Atlas, Seen, Variable};
+use estimator::diagnose::atlas::{Against, Atlas, Channel, Seen, Variable};
 use estimator::diagnose::course::{Course, Instant};
 use std::f64::consts::TAU;
 
@@ -19,11 +19,26 @@ const MOST_POINTS: usize = 2_000;
 /// Means over ranges, broken where there were none.
 pub type Line = Vec<Vec<[f64; 2]>>;
 
+/// What everything of a channel is drawn by.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Scale {
+    /// The channel in words; nothing for the force along the motion.
+    pub channel: &'static str,
+    /// Its shown unit.
+    pub unit: &'static str,
+    /// Noise of a row, in that unit.
+    pub noise: f64,
+    /// Largest mean that is shown, in that unit.
+    pub largest: f64,
+}
+
 /// One suspect.
 #[derive(Clone, Debug)]
 pub struct Cell {
     /// Out of the catalogue.
     pub id: String,
+    /// What it is drawn by.
+    pub scale: Scale,
     /// In words.
     pub title: String,
     /// What it explains alone, in units of 2 ln(likelihood), parameters paid.
@@ -47,36 +62,114 @@ pub struct Cell {
 /// One recording's atlas.
 #[derive(Clone, Debug, Default)]
 pub struct Sheet {
-    /// Shown unit of the force.
-    pub unit: &'static str,
-    /// Noise of a row, N or N m.
-    pub noise: f64,
-    /// Largest mean that is shown, N or N m.
-    pub largest: f64,
-    /// Most evidence first.
+    /// Channel after channel, most evidence first in each.
     pub cells: Vec<Cell>,
 }
 
 impl Sheet {
     /// The atlas of the recording of this number.
     pub fn new(diagnosis: &Diagnosis, recording: usize) -> Self {
-        let (course, atlas) = (&diagnosis.course, &diagnosis.atlas);
-        let trusted = |i: &usize| {
-            let row = &course.instants[*i];
-            row.recording == recording && row.weight >= LEAST_WEIGHT
-        };
-        let rows: Vec<usize> = (0..course.instants.len()).filter(trusted).collect();
-        if rows.is_empty() {
-            return Self::default();
-        }
-        let named = |id: &str| diagnosis.causes.iter().any(|c| c.id == id);
-        let cells: Vec<Cell> =
-            atlas.suspects.iter().map(|seen| cell(course, atlas, seen, &rows, named(&seen.id))).collect();
-        let means = cells.iter().flat_map(|c| c.left.iter().chain(&c.taken)).flatten().flatten();
-        let most = means.map(|p| p[1].abs()).fold(0.0, f64::max);
-        let noise = diagnosis.noise_floor_n;
-        Self { unit: force_unit(diagnosis), noise, largest: (1.12 * most).max(3.0 * noise).max(1e-9), cells }
+        let mut cells = along_the_motion(diagnosis, recording);
+        cells.extend(diagnosis.atlas.channels.iter().flat_map(|channel| of_channel(diagnosis, channel, recording)));
+        Self { cells }
     }
+
+    /// True where nothing was compared.
+    pub fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
+
+    /// The shown unit, where there is one.
+    pub fn unit(&self) -> &'static str {
+        let mut units = self.cells.iter().map(|c| c.scale.unit);
+        let first = units.next().unwrap_or_default();
+        if units.all(|unit| unit == first) { first } else { "" }
+    }
+
+    /// The suspect that is called this.
+    pub fn find(&self, key: &str) -> Option<&Cell> {
+        self.cells.iter().find(|c| c.key() == key)
+    }
+}
+
+impl Cell {
+    /// What it is called among all: a cause may be a suspect in several channels.
+    pub fn key(&self) -> String {
+        if self.scale.channel.is_empty() {
+            self.id.clone()
+        } else {
+            format!("{} in the {}", self.id, self.scale.channel)
+        }
+    }
+
+    /// Its title and what it is seen against, in words.
+    pub fn words(&self) -> String {
+        let of = if self.scale.channel.is_empty() { String::new() } else { format!(" in the {}", self.scale.channel) };
+        format!("{} against {}{of}", self.title, self.variable)
+    }
+}
+
+fn is_named(diagnosis: &Diagnosis, id: &str) -> bool {
+    diagnosis.causes.iter().any(|c| c.id == id)
+}
+
+/// Gives all cells of a channel its scale.
+fn scaled(mut cells: Vec<Cell>, channel: &'static str, unit: &'static str, noise: f64) -> Vec<Cell> {
+    let means = cells.iter().flat_map(|c| c.left.iter().chain(&c.taken)).flatten().flatten();
+    let most = means.map(|p| p[1].abs()).fold(0.0, f64::max);
+    let scale = Scale { channel, unit, noise, largest: (1.12 * most).max(3.0 * noise).max(1e-9) };
+    for cell in &mut cells {
+        cell.scale = scale;
+    }
+    cells
+}
+
+fn along_the_motion(diagnosis: &Diagnosis, recording: usize) -> Vec<Cell> {
+    let (course, atlas) = (&diagnosis.course, &diagnosis.atlas);
+    let trusted = |i: &usize| {
+        let row = &course.instants[*i];
+        row.recording == recording && row.weight >= LEAST_WEIGHT
+    };
+    let rows: Vec<usize> = (0..course.instants.len()).filter(trusted).collect();
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let cell = |seen: &Seen| cell(course, atlas, seen, &rows, is_named(diagnosis, &seen.id));
+    scaled(atlas.suspects.iter().map(cell).collect(), "", force_unit(diagnosis), diagnosis.noise_floor_n)
+}
+
+/// A channel of a task without one coordinate.
+fn of_channel(diagnosis: &Diagnosis, channel: &Channel, recording: usize) -> Vec<Cell> {
+    let (unit, factor) = format::channel_unit(channel.unit);
+    let cell = |against: &Against| {
+        let rows: Vec<usize> =
+            (0..against.rows.len()).filter(|k| channel.recording[against.rows[*k]] == recording).collect();
+        let (variable, si) = words_of(against.variable);
+        let (shown, stretch) = format::channel_unit(si);
+        let x: Vec<f64> = rows.iter().map(|k| stretch * against.over[*k]).collect();
+        let range = range(&x);
+        let left = |k: usize| factor * channel.left[against.rows[k]];
+        let line = |y: &dyn Fn(usize) -> f64| {
+            let points = rows.iter().zip(&x).map(|(k, x)| ([*x, y(*k)], 1.0));
+            vec![means(points, range)]
+        };
+        let step = rows.len().div_ceil(MOST_POINTS).max(1);
+        Cell {
+            id: against.id.clone(),
+            scale: Scale::default(),
+            title: title(&against.id),
+            score: against.score,
+            named: is_named(diagnosis, &against.id),
+            variable,
+            unit: shown,
+            range,
+            left: line(&left),
+            taken: line(&|k| factor * against.taken[k]),
+            cloud: rows.iter().zip(&x).step_by(step).map(|(k, x)| [*x, left(*k)]).collect(),
+        }
+    };
+    let cells: Vec<Cell> = channel.suspects.iter().map(cell).filter(|cell| !cell.cloud.is_empty()).collect();
+    scaled(cells, channel.name, unit, factor * channel.noise)
 }
 
 fn cell(course: &Course, atlas: &Atlas, seen: &Seen, rows: &[usize], named: bool) -> Cell {
@@ -95,12 +188,17 @@ fn cell(course: &Course, atlas: &Atlas, seen: &Seen, rows: &[usize], named: bool
     let ways: &[fn(&Instant) -> bool] =
         if seen.variable == Variable::Place { &[|i| i.velocity > 0.0, |i| i.velocity < 0.0] } else { &[|_| true] };
     let lines = |y: &dyn Fn(usize) -> f64| -> Vec<Line> {
-        ways.iter().map(|way| means(course, rows, &x, range, y, *way)).collect()
+        let along = |way: &fn(&Instant) -> bool| {
+            let rows = rows.iter().zip(&x).filter(|(i, _)| way(&course.instants[**i]));
+            means(rows.map(|(i, x)| ([*x, y(*i)], course.instants[*i].weight.powi(2))), range)
+        };
+        ways.iter().map(along).collect()
     };
     let step = rows.len().div_ceil(MOST_POINTS).max(1);
     let point = |(i, x): (&usize, &f64)| [*x, course.instants[*i].left_before];
     Cell {
         id: seen.id.clone(),
+        scale: Scale::default(),
         title: title(&seen.id),
         score: seen.score,
         named,
@@ -124,17 +222,27 @@ fn words(variable: Variable, course: &Course, rows: &[usize]) -> (&'static str, 
             let (low, high) = range(&angles);
             (if high - low > 1.2 * TAU { WRAPPED } else { "angle" }, "rad")
         }
-        Variable::Place => ("position", "m"),
         Variable::Velocity if angular => ("angular velocity", "rad_s"),
-        Variable::Velocity => ("velocity", "m_s"),
         Variable::Acceleration if angular => ("angular acceleration", "rad/s²"),
+        Variable::Force if angular => ("measured torque", "Nm"),
+        Variable::ForceRate if angular => ("change of the torque", "N·m/s"),
+        other => words_of(other),
+    }
+}
+
+/// The same where nothing turns.
+fn words_of(variable: Variable) -> (&'static str, &'static str) {
+    match variable {
+        Variable::Place => ("position", "m"),
+        Variable::Velocity => ("velocity", "m_s"),
         Variable::Acceleration => ("acceleration", "m_s2"),
         Variable::Across => ("force across", "N"),
-        Variable::Force if angular => ("measured torque", "Nm"),
         Variable::Force => ("measured force", "N"),
-        Variable::ForceRate if angular => ("change of the torque", "N·m/s"),
         Variable::ForceRate => ("change of the force", "N/s"),
         Variable::Time => ("time", "s"),
+        Variable::Grip => ("grip force", "N"),
+        Variable::Lift => ("lift", "N"),
+        Variable::Width => ("distance of the tips", "m"),
     }
 }
 
@@ -149,24 +257,18 @@ fn value(variable: Variable, course: &Course, atlas: &Atlas, i: usize) -> f64 {
         Variable::Force => instant.measured,
         Variable::ForceRate => atlas.force_rate.get(i).copied().unwrap_or(0.0),
         Variable::Time => instant.time_s,
+        // Nothing is gripped along one coordinate.
+        Variable::Grip | Variable::Lift | Variable::Width => 0.0,
     }
 }
 
-/// Means over even ranges of x, each row as far as it is trusted.
-fn means(
-    course: &Course,
-    rows: &[usize],
-    x: &[f64],
-    (low, high): (f64, f64),
-    y: &dyn Fn(usize) -> f64,
-    way: fn(&Instant) -> bool,
-) -> Line {
+/// Means over even ranges of x, each point as far as it is trusted (second entry).
+fn means(points: impl Iterator<Item = ([f64; 2], f64)>, (low, high): (f64, f64)) -> Line {
     let mut bins = [([0.0; 3], 0_usize); BINS];
-    for (i, x) in rows.iter().zip(x).filter(|(i, _)| way(&course.instants[**i])) {
+    for ([x, y], weight) in points {
         let place = ((x - low) / (high - low) * BINS as f64).clamp(0.0, BINS as f64 - 1.0) as usize;
-        let weight = course.instants[*i].weight.powi(2);
         let (sums, count) = &mut bins[place];
-        for (sum, value) in sums.iter_mut().zip([weight * x, weight * y(*i), weight]) {
+        for (sum, value) in sums.iter_mut().zip([weight * x, weight * y, weight]) {
             *sum += value;
         }
         *count += 1;

@@ -75,7 +75,7 @@ pub fn guided_as_if(
     let suspect = suspects.iter().find(|s| s.id == id).ok_or("This cause cannot be simulated.")?;
     let next = answer.diagnosis.next_experiment.as_ref().ok_or("Nothing is open.")?;
     let asked = next.experiment.as_ref().ok_or("This experiment is known in words only.")?;
-    let table = Timetable::new(&reachable(&suspect.world)?, asked, &next.motion)?;
+    let table = Timetable::new(&reachable(&suspect.world)?, asked, &next.motion)?.leaking_once_held();
     Ok(Guided::new(table, asked.clone(), Some(format!("as if {}", id.replace('-', " ")))))
 }
 

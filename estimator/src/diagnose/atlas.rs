@@ -1,9 +1,11 @@
 //! The residual atlas: what the model leaves of the force beside what every suspect, alone, would take of it.
 
+use super::answer::Compared;
 use super::geometry::{Study, residual};
 use super::select::Selection;
 use super::track::{Place, Track};
 use haptics::law::cause;
+use std::collections::BTreeSet;
 
 /// What a suspect's force goes with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -22,6 +24,12 @@ pub enum Variable {
     ForceRate,
     /// Time.
     Time,
+    /// Force with which something is gripped.
+    Grip,
+    /// Force with which something is lifted.
+    Lift,
+    /// Distance of the tips.
+    Width,
 }
 
 impl Variable {
@@ -64,10 +72,86 @@ pub struct Atlas {
     pub acceleration: Vec<f64>,
     /// How fast the measured force changes, N/s or N m/s.
     pub force_rate: Vec<f64>,
+    /// Tasks without one coordinate have channels instead of all that.
+    pub channels: Vec<Channel>,
 }
 
-/// The atlas of a comparison. `threshold`: the score that names a cause.
-pub(super) fn atlas(track: &Track, study: &Study, threshold: f64) -> Atlas {
+/// One channel of a task without one coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// What it is, in words.
+    pub name: &'static str,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Noise of a row.
+    pub noise: f64,
+    /// Which recording each row is of.
+    pub recording: Vec<usize>,
+    /// What the model leaves of each row.
+    pub left: Vec<f64>,
+    /// Suspects that the recordings could have shown, most evidence first.
+    pub suspects: Vec<Against>,
+}
+
+/// One suspect of a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Against {
+    /// Out of `spec/causes.md`.
+    pub id: String,
+    /// As [`Seen::score`].
+    pub score: f64,
+    /// What it is best seen against.
+    pub variable: Variable,
+    /// The rows in which it could be, …
+    pub rows: Vec<usize>,
+    /// … the variable there, SI, …
+    pub over: Vec<f64>,
+    /// … and what it takes of the model's residual.
+    pub taken: Vec<f64>,
+}
+
+/// The rows of a channel as they are looked at.
+pub(super) struct View {
+    /// Which recording each row is of.
+    pub recording: Vec<usize>,
+    /// Rows of one number are of one sensor, or of one sum of sensors: a suspect is shown over all that it could be in.
+    pub sensor: Vec<usize>,
+    /// What the rows are seen against.
+    pub over: Vec<(Variable, Vec<f64>)>,
+}
+
+impl Compared {
+    /// This channel's part of the atlas. `best`: what a cause is best seen against; the first variable of the view where that is missing.
+    pub(super) fn atlas(&self, view: &View, threshold: f64, best: fn(&str) -> Variable) -> Channel {
+        let Study { system, candidates, .. } = &self.study;
+        let left = |picks: &[usize]| {
+            let solved = system.solve(picks)?;
+            Some(residual(&self.study.y, &self.study.base, candidates, picks, &solved))
+        };
+        let before = left(&[]).unwrap_or_else(|| self.study.y.clone());
+        let against = |(id, c, score): &(&str, usize, f64)| {
+            let after = left(&[*c])?;
+            let acts = |i: usize| candidates[*c].columns.iter().any(|column| column[i] != 0.0);
+            let sensors: BTreeSet<usize> = (0..before.len()).filter(|i| acts(*i)).map(|i| view.sensor[i]).collect();
+            let rows: Vec<usize> = (0..before.len()).filter(|i| sensors.contains(&view.sensor[*i])).collect();
+            let (variable, values) = view.over.iter().find(|(v, _)| *v == best(id)).or(view.over.first())?;
+            Some(Against {
+                id: (*id).to_owned(),
+                score: *score,
+                variable: *variable,
+                over: rows.iter().map(|i| values[*i]).collect(),
+                taken: rows.iter().map(|i| before[*i] - after[*i]).collect(),
+                rows,
+            })
+        };
+        let suspects = strongest(&self.study, threshold).iter().filter_map(against).collect();
+        let Self { channel: name, unit, floor: noise, .. } = *self;
+        Channel { name, unit, noise, recording: view.recording.clone(), left: before, suspects }
+    }
+}
+
+/// Of every cause that the rows could show the candidate with most evidence, and that: the strongest cause first.
+fn strongest(study: &Study, threshold: f64) -> Vec<(&'static str, usize, f64)> {
     let Study { system, candidates, .. } = study;
     let selection = Selection { system, candidates, threshold, dry: true, one_loss: false };
     let mut best: Vec<(&str, usize, f64)> = Vec::new();
@@ -83,6 +167,12 @@ pub(super) fn atlas(track: &Track, study: &Study, threshold: f64) -> Atlas {
         }
     }
     best.sort_by(|a, b| b.2.total_cmp(&a.2));
+    best
+}
+
+/// The atlas of a comparison. `threshold`: the score that names a cause.
+pub(super) fn atlas(track: &Track, study: &Study, threshold: f64) -> Atlas {
+    let Study { system, candidates, .. } = study;
     let along: Vec<usize> = (0..track.rows.len()).filter(|i| track.rows[*i].place == Place::Along).collect();
     let left = |picks: &[usize]| {
         let solved = system.solve(picks)?;
@@ -95,8 +185,9 @@ pub(super) fn atlas(track: &Track, study: &Study, threshold: f64) -> Atlas {
         Some(Seen { id: (*id).to_owned(), score: *score, variable: Variable::of(id, track.planar), taken })
     };
     Atlas {
-        suspects: best.iter().filter_map(seen).collect(),
+        suspects: strongest(study, threshold).iter().filter_map(seen).collect(),
         acceleration: along.iter().map(|i| track.rows[*i].motion.acceleration).collect(),
         force_rate: along.iter().map(|i| track.rows[*i].force_rate.dot(&track.rows[*i].along)).collect(),
+        channels: Vec::new(),
     }
 }

@@ -6,56 +6,88 @@ use super::explain::TWINS;
 use super::extend::{effects, effects_of};
 use super::force::Model;
 use super::geometry::Study;
-use super::report::Diagnosis;
+use super::report::{CauseParameter, Diagnosis};
 use super::track::Track;
 use super::world::{calibrated, with_laws};
 use super::{Options, blocks, switch};
 use crate::estimate::EstimateError;
 use haptics::Vec2;
-use haptics::law::{EccentricMass, Effect, ForceDrift, GravityTilt, Kind, Law as _, Motion, Weight};
+use haptics::law::{EccentricMass, Effect, GravityTilt, Kind, Law as _, Weight};
 use haptics::recording::Recording;
 use haptics::world::World;
 
-/// What a force sensor adds to both axes: a fault of the measurement that the world knows nothing of.
+/// What the force sensors of both fingers make of the force: a fault of the measurement that the world knows nothing of.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SensorFault {
-    /// Always, N.
-    pub offset_n: Vec2,
-    /// At the start, N/s …
-    pub rate_n_s: Vec2,
+    /// Added always, one a finger, N.
+    pub offset_n: [Vec2; 2],
+    /// Added more and more: the rate at the start, one a finger, N/s …
+    pub drift_n_s: [Vec2; 2],
     /// … and the time in which that settles, s; 0: never.
     pub settles_s: f64,
+    /// It begins to drift once something is held, not at the start.
+    pub drifts_once_held: bool,
+    /// Share of the finger's y force that is read in x, and of its x force that is read in y, one a finger.
+    pub cross: [Vec2; 2],
+    /// How much too much is read, as a share.
+    pub gain_error: f64,
+    /// How much later the force comes than the motion, s.
+    pub delay_s: f64,
 }
 
 impl SensorFault {
-    /// What it adds at a time since the start of a recording, N.
-    pub fn at(&self, time_s: f64) -> Vec2 {
-        let time = Motion { time_s, ..Motion::default() };
-        self.offset_n + self.rate_n_s * Effect::new(&ForceDrift, &[1.0, self.settles_s]).force(&time)
+    /// Adds what a candidate came out at; false for a fault that is none of these.
+    fn add(&mut self, candidate: &Candidate, values: &[f64]) -> bool {
+        if candidate.id == "force-drift" {
+            self.settles_s = candidate.searched.first().map_or(0.0, |s| s.value);
+        }
+        candidate.linear.iter().zip(values).all(|((name, _), value)| self.add_one(candidate.id, name, *value))
     }
 
-    /// Adds what a candidate of the force came out at; false for a fault that is no force of its own.
-    fn add(&mut self, candidate: &Candidate, values: &[f64]) -> bool {
-        let both = values.first().zip(values.get(1)).map(|(x, y)| Vec2::new(*x, *y));
-        match (candidate.id, both) {
-            ("force-bias", Some(offset)) => self.offset_n += offset,
-            ("force-drift", Some(rate)) => {
-                self.rate_n_s += rate;
-                self.settles_s = candidate.searched.first().map_or(0.0, |s| s.value);
+    /// Faults of the net force are halved between the fingers; those in proportion to the force are each finger's own.
+    fn add_one(&mut self, id: &str, name: &str, value: f64) -> bool {
+        let (fingers, name) = match (name.strip_suffix('1'), name.strip_suffix('2')) {
+            (Some(name), _) if name != "g - " => (0..1, name),
+            (_, Some(name)) => (1..2, name),
+            _ => (0..2, name),
+        };
+        let half = value / fingers.len() as f64;
+        for finger in fingers {
+            match (id, name) {
+                ("force-bias", "bx") => self.offset_n[finger].x += half,
+                ("force-bias", "by") => self.offset_n[finger].y += half,
+                ("force-drift", "rx") => self.drift_n_s[finger].x += half,
+                ("force-drift", "ry") => self.drift_n_s[finger].y += half,
+                ("force-cross-axis", "kappa_xy") => self.cross[finger].x += value,
+                ("force-cross-axis", "kappa_yx") => self.cross[finger].y += value,
+                ("force-gain", _) => self.gain_error = value,
+                ("time-delay", "tau") => self.delay_s = value,
+                _ => return false,
             }
-            _ => return false,
         }
         true
     }
 }
 
-/// One answer that is not excluded, as laws.
+/// What is in the object, by the way in which its task looks for it.
+#[derive(Clone, Debug, PartialEq)]
+enum Inside {
+    /// All laws along the coordinate.
+    Laws(Vec<Effect>),
+    /// What acts on blocks: causes with their parameters.
+    Acts(Vec<Act>),
+}
+
+/// A cause that acts on blocks, with what it comes out at.
+pub(super) type Act = (String, Vec<CauseParameter>);
+
+/// One answer that is not excluded.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Hypothesis {
     /// The cause that is thought to be there.
     id: String,
-    /// All laws along the coordinate; nothing where a cause among them has none.
-    laws: Option<Vec<Effect>>,
+    /// Nothing where a cause among them cannot be simulated.
+    inside: Option<Inside>,
     fault: Option<SensorFault>,
 }
 
@@ -66,7 +98,7 @@ pub struct Suspect {
     pub id: String,
     /// The object with it.
     pub world: World,
-    /// What the force sensors add.
+    /// What the force sensors make of its forces.
     pub fault: SensorFault,
 }
 
@@ -78,9 +110,9 @@ pub(super) fn hypotheses(track: &Track, model: &Model, study: &Study) -> Vec<Hyp
         let own = study.candidates[chosen.candidate].id;
         let mut add = |id: &str, picks: &[usize]| {
             let Some(solved) = study.system.solve(picks) else { return };
-            let laws = effects_of(track, model, study, picks, &solved);
+            let inside = effects_of(track, model, study, picks, &solved).map(Inside::Laws);
             let fault = fault(study, picks, &solved.values);
-            all.push(Hypothesis { id: id.to_owned(), laws, fault });
+            all.push(Hypothesis { id: id.to_owned(), inside, fault });
         };
         add(own, &picks);
         for (rival, _) in &chosen.rivals {
@@ -90,15 +122,56 @@ pub(super) fn hypotheses(track: &Track, model: &Model, study: &Study) -> Vec<Hyp
         }
         let twins = TWINS.iter().filter(|(a, b, _)| *a == own && study.candidates.iter().all(|c| c.id != *b));
         for (_, twin, _) in twins.filter(|_| track.planar) {
-            let laws = tilted(&effects(track, model, study));
+            let inside = tilted(&effects(track, model, study)).map(Inside::Laws);
             let fault = study.solved.as_ref().and_then(|s| fault(study, &picks, &s.values));
-            all.push(Hypothesis { id: (*twin).to_owned(), laws, fault });
+            all.push(Hypothesis { id: (*twin).to_owned(), inside, fault });
         }
     }
     all
 }
 
-/// The faults of the sensors among some candidates; nothing where one of them is no force of its own.
+/// How a channel of blocks is put into a world.
+pub(super) trait Simulated {
+    /// What the model itself came out at: weights.
+    fn base(&self, values: &[f64]) -> Vec<Act>;
+    /// A cause with its parameters as a world takes them; nothing where it takes none.
+    fn act(&self, candidate: &Candidate, values: &[f64]) -> Option<Act>;
+    /// Whether a fault begins once something is held.
+    fn is_late(&self, candidate: &Candidate) -> bool;
+}
+
+/// The same for what acts on carried blocks.
+pub(super) fn of_blocks(study: &Study, channel: &dyn Simulated) -> Vec<Hypothesis> {
+    let picks = study.picks();
+    let mut all = Vec::new();
+    for (k, chosen) in study.chosen.iter().enumerate() {
+        for candidate in std::iter::once(chosen.candidate).chain(chosen.rivals.iter().map(|(rival, _)| *rival)) {
+            let mut picks = picks.clone();
+            picks[k] = candidate;
+            let Some(solved) = study.system.solve(&picks) else { continue };
+            let mut at = study.base.len();
+            let plant = picks.iter().map(|p| {
+                let candidate = &study.candidates[*p];
+                let values = &solved.values[at..at + candidate.columns.len()];
+                at += candidate.columns.len();
+                if candidate.kind == Kind::Plant { Some(channel.act(candidate, values)) } else { None }
+            });
+            let mut acts = channel.base(&solved.values[..study.base.len()]);
+            let inside = plant.flatten().collect::<Option<Vec<Act>>>().map(|plant| {
+                acts.extend(plant);
+                Inside::Acts(acts)
+            });
+            let fault = fault(study, &picks, &solved.values).map(|fault| SensorFault {
+                drifts_once_held: picks.iter().any(|p| channel.is_late(&study.candidates[*p])),
+                ..fault
+            });
+            all.push(Hypothesis { id: study.candidates[candidate].id.to_owned(), inside, fault });
+        }
+    }
+    all
+}
+
+/// The faults of the sensors among some candidates; nothing where one of them is none that can be put into a recording.
 fn fault(study: &Study, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
     let mut sum = SensorFault::default();
     let mut at = study.base.len();
@@ -125,7 +198,7 @@ fn tilted(laws: &[Effect]) -> Option<Vec<Effect>> {
 }
 
 /// Everything that the recordings leave open, as worlds: first what was found. Answers that no world can imitate are left out; so is
-/// everything where a fault of the sensors was found that is no force of its own.
+/// everything where a fault of the sensors was found that cannot be put into a recording.
 pub fn suspects(
     recordings: &[Recording],
     options: &Options,
@@ -133,7 +206,10 @@ pub fn suspects(
 ) -> Result<Vec<Suspect>, EstimateError> {
     let world = calibrated(recordings, options)?;
     let suspect = |h: &Hypothesis| {
-        let mut world = with_laws(&world, h.laws.as_ref()?);
+        let mut world = match h.inside.as_ref()? {
+            Inside::Laws(laws) => with_laws(&world, laws),
+            Inside::Acts(acts) => blocks::with_acts(&world, diagnosis, acts),
+        };
         world.name = format!("{}, with {}", world.name, h.id.replace('-', " "));
         Some(Suspect { id: h.id.clone(), world, fault: h.fault? })
     };
@@ -159,7 +235,7 @@ pub fn suspects(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use haptics::law::ViscousFriction;
+    use haptics::law::{Motion, ViscousFriction};
 
     fn force(laws: &[Effect], angle_rad: f64, radius_m: f64) -> f64 {
         let motion = Motion {
@@ -190,10 +266,36 @@ mod tests {
     }
 
     #[test]
-    fn a_drift_grows_and_an_offset_stays() {
-        let fault = SensorFault { offset_n: Vec2::new(0.1, 0.0), rate_n_s: Vec2::new(0.0, 0.02), settles_s: 0.0 };
-        assert!((fault.at(10.0) - Vec2::new(0.1, 0.2)).norm() < 1e-12);
-        let settling = SensorFault { settles_s: 5.0, ..fault };
-        assert!((settling.at(1e3).y - 0.1).abs() < 1e-9, "{:?}", settling.at(1e3));
+    fn faults_are_each_fingers_own_or_halved_between_them() {
+        let column = || vec![1.0];
+        let mut fault = SensorFault::default();
+        let net = vec![("bx", "N"), ("by", "N")];
+        assert!(
+            fault.add(&Candidate::several("force-bias", Kind::Instrument, vec![column(), column()], net), &[0.2, -0.4])
+        );
+        let one =
+            |id, name| Candidate::several(id, Kind::Instrument, vec![column()], vec![(name, "1")]).at("tau", 5.0, "s");
+        for (id, name, value) in [
+            ("force-bias", "by2", 0.1),
+            ("force-drift", "ry1", 0.02),
+            ("force-cross-axis", "kappa_yx1", 0.1),
+            ("force-cross-axis", "kappa_xy", -0.3),
+            ("force-gain", "g - 1", 0.05),
+            ("time-delay", "tau", 0.01),
+        ] {
+            assert!(fault.add(&one(id, name), &[value]), "{id} {name}");
+        }
+        let expected = SensorFault {
+            offset_n: [Vec2::new(0.1, -0.2), Vec2::new(0.1, -0.1)],
+            drift_n_s: [Vec2::new(0.0, 0.02), Vec2::zeros()],
+            settles_s: 5.0,
+            drifts_once_held: false,
+            cross: [Vec2::new(-0.3, 0.1), Vec2::new(-0.3, 0.0)],
+            gain_error: 0.05,
+            delay_s: 0.01,
+        };
+        assert_eq!(fault, expected);
+        assert!(!fault.add(&one("length-scale", "epsilon"), &[0.1]), "no fault of a force");
+        assert!(!fault.add(&one("force-bias", "b"), &[0.1]), "no finger feels what moves along one coordinate");
     }
 }

@@ -69,7 +69,17 @@ impl Plate {
 /// All of them: pages and panels first, then the views of the scene, then the worlds of the trainer.
 pub fn plates() -> Vec<Plate> {
     let panels = Panel::value_variants().iter().map(|panel| of_panel(*panel));
-    panels.chain(views()).chain(worlds::BUILT_IN.iter().filter_map(|(name, _)| of_world(name))).collect()
+    let of_blocks = Plate {
+        name: "atlas-blocks".to_owned(),
+        sample: Sample::Leaking,
+        line: "The same of blocks: a part for every channel that was compared",
+        ..of_panel(Panel::Atlas)
+    };
+    panels
+        .chain([of_blocks])
+        .chain(views())
+        .chain(worlds::BUILT_IN.iter().filter_map(|(name, _)| of_world(name)))
+        .collect()
 }
 
 fn of_panel(panel: Panel) -> Plate {

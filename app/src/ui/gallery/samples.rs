@@ -13,7 +13,7 @@ use haptics::Vec2;
 use haptics::law::{EccentricMass, Effect};
 use haptics::recording::{Channel, Recording};
 use haptics::servo::recorder::SensorModel;
-use haptics::world::{World, presets};
+use haptics::world::{Content, World, presets};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -35,6 +35,8 @@ pub enum Sample {
     Door,
     /// A crank with a mass off its axis, or on a tilted table: its recording cannot tell.
     Askew,
+    /// A block that leaks, or is weighed by a sensor that drifts: its recording cannot tell.
+    Leaking,
     /// A cart on a rail, of which only the way and the force are known.
     Rail,
     /// A table whose columns have no meaning yet.
@@ -63,6 +65,7 @@ impl Samples {
             Sample::Door => vec![door()],
             Sample::Rail => vec![one_coordinate("cart", ("q_m", "m", 0.12), ("f_N", "N", [2.0, 5.0, 0.8]))],
             Sample::Askew => vec![askew()?],
+            Sample::Leaking => vec![leaking()?],
             Sample::Foreign | Sample::World(_) => Vec::new(),
         };
         self.known.insert(sample, made.clone());
@@ -120,6 +123,31 @@ pub fn askew() -> anyhow::Result<Recording> {
         added_lever_m: 0.0,
     };
     done_with(&askew_world(), &asked, "askew")
+}
+
+/// The built-in blocks, of which the first leaks.
+pub fn leaking_world() -> World {
+    let mut world = presets::stacking();
+    if let Some(block) = world.blocks.first_mut() {
+        block.content = Some(Content { mass_kg: 0.6 * block.mass_kg, leak_kg_s: 0.5e-3, leaks_from_s: Some(0.0) });
+    }
+    world
+}
+
+/// The scripted operator lifts that block and does not let go any more: a sensor that drifts would have recorded the same.
+pub fn leaking() -> anyhow::Result<Recording> {
+    let asked = Experiment {
+        id: "carry-still".to_owned(),
+        seconds: 6.0,
+        free_s: 0.0,
+        middle: 0.0,
+        half_range: 0.012,
+        fast: 0.06,
+        across_n: 1.8,
+        added_weight_n: 0.0,
+        added_lever_m: 0.0,
+    };
+    done_with(&leaking_world(), &asked, "leaking")
 }
 
 /// The recording of an experiment on a world that stands for the real object.

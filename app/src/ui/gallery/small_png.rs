@@ -15,8 +15,9 @@ pub fn small_png(picture: &RgbaImage) -> anyhow::Result<Vec<u8>> {
     let palette = NeuQuant::new(1, COLORS, &evened_out(picture));
     let mut known = HashMap::new();
     let indices: Vec<u8> = picture
-        .enumerate_pixels()
-        .map(|(x, y, pixel)| dithered(pixel.0, x, y))
+        // Without a pattern of dots between colours: it would hide the bands of a gradient, and nearly double the file.
+        .pixels()
+        .map(|pixel| pixel.0)
         .map(|color| *known.entry(color).or_insert_with(|| palette.index_of(&color) as u8))
         .collect();
     let mut file = Vec::new();
@@ -30,15 +31,6 @@ pub fn small_png(picture: &RgbaImage) -> anyhow::Result<Vec<u8>> {
     let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&indices));
     written.context("the picture could not be encoded")?;
     Ok(file)
-}
-
-/// A fixed pattern of a few steps of brightness, so that a gradient of few colours shows no bands.
-fn dithered([r, g, b, _]: [u8; 4], x: u32, y: u32) -> [u8; 4] {
-    /// Bayer's matrix (1973), −2 to 2.
-    const PATTERN: [[i8; 4]; 4] = [[-2, 0, -1, 1], [1, -1, 2, 0], [-1, 1, -2, 0], [2, 0, 1, -1]];
-    let step = PATTERN[y as usize % 4][x as usize % 4];
-    let [r, g, b] = [r, g, b].map(|c| c.saturating_add_signed(step));
-    [r, g, b, 255]
 }
 
 /// The picture's colours, each as often as the root of its number of pixels: a large gradient would leave no places of the palette to

@@ -1,7 +1,7 @@
 //! The residual atlas: what the model leaves against the variable of every suspect, with what that suspect alone would take of it.
 
-use crate::ui::atlas::{Cell, Line, Sheet};
-use crate::ui::format;
+use crate::ui::atlas::{Cell, Line, Scale, Sheet};
+use crate::ui::format::{self, capitalised};
 use crate::ui::plots::{BAND_SIGMAS, decimals, inks, marks};
 use crate::ui::session::{Session, sentence};
 use crate::ui::theme::{self, Palette, palette, space};
@@ -22,8 +22,8 @@ const NUMBERS: [f32; 2] = [52.0, 20.0];
 /// The grid, or one suspect large.
 pub fn show(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Diagnosis) {
     let open = session.diagnosing.atlas_open.clone();
-    match open.and_then(|id| sheet.cells.iter().find(|c| c.id == id)) {
-        Some(cell) => large(ui, session, sheet, cell, diagnosis),
+    match open.and_then(|key| sheet.find(&key)) {
+        Some(cell) => large(ui, session, cell, diagnosis),
         None => grid(ui, session, sheet),
     }
 }
@@ -35,14 +35,24 @@ fn grid(ui: &mut Ui, session: &mut Session, sheet: &Sheet) {
         ui.spacing_mut().item_spacing = vec2(gap, gap);
         let columns = (((ui.available_width() + gap) / (CELL[0] + gap)) as usize).max(1);
         let width = (ui.available_width() - gap * (columns as f32 - 1.0)) / columns as f32;
-        for line in sheet.cells.chunks(columns) {
-            ui.horizontal(|ui| {
-                for cell in line {
-                    if small(ui, sheet, cell, vec2(width, CELL[1])).clicked() {
-                        clicked = Some(cell.id.clone());
+        for channel in sheet.cells.chunk_by(|a, b| a.scale.channel == b.scale.channel) {
+            if let Some(Scale { channel, unit, .. }) =
+                channel.first().map(|c| c.scale).filter(|s| !s.channel.is_empty())
+            {
+                compact(ui, |ui| {
+                    ui.label(theme::strong(capitalised(channel)));
+                    ui.label(theme::caption(ui, unit));
+                });
+            }
+            for line in channel.chunks(columns) {
+                ui.horizontal(|ui| {
+                    for cell in line {
+                        if small(ui, cell, vec2(width, CELL[1])).clicked() {
+                            clicked = Some(cell.key());
+                        }
                     }
-                }
-            });
+                });
+            }
         }
     });
     if clicked.is_some() {
@@ -51,16 +61,16 @@ fn grid(ui: &mut Ui, session: &mut Session, sheet: &Sheet) {
 }
 
 /// One suspect of the grid.
-fn small(ui: &mut Ui, sheet: &Sheet, cell: &Cell, size: egui::Vec2) -> Response {
+fn small(ui: &mut Ui, cell: &Cell, size: egui::Vec2) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    let words = format!("{} against {}", cell.title, cell.variable);
+    let words = cell.words();
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &words));
     if !ui.is_rect_visible(rect) {
         return response;
     }
     let p = palette(ui);
     let plot = Rect::from_min_max(rect.min + vec2(0.0, WORDS), rect.max - vec2(0.0, WORDS));
-    picture(ui, plot, sheet, cell, false);
+    picture(ui, plot, cell, false);
     let edge = if response.hovered() || response.has_focus() { p.accent } else { p.border };
     ui.painter().rect_stroke(plot, 4, Stroke::new(1.0, edge), egui::StrokeKind::Inside);
     let painter = ui.painter().with_clip_rect(rect);
@@ -76,7 +86,7 @@ fn small(ui: &mut Ui, sheet: &Sheet, cell: &Cell, size: egui::Vec2) -> Response 
     let middle = format!("{}, {}", cell.variable, cell.unit);
     painter.text(rect.center_bottom(), Align2::CENTER_BOTTOM, middle, small, p.secondary);
     response.on_hover_text(format!(
-        "{words}: what is left of the force (score {}). A click shows it large.",
+        "{words}: what the model leaves (score {}). A click shows it large.",
         format::number(cell.score, 0)
     ))
 }
@@ -88,12 +98,12 @@ fn ends(cell: &Cell) -> [String; 2] {
 }
 
 /// Band, zero, means of what is left, and what the suspect takes of it.
-fn picture(ui: &Ui, rect: Rect, sheet: &Sheet, cell: &Cell, points: bool) {
+fn picture(ui: &Ui, rect: Rect, cell: &Cell, points: bool) {
     let (p, inks) = (palette(ui), inks(ui));
     let painter = ui.painter().with_clip_rect(rect);
     painter.rect_filled(rect, 4, p.sunken);
-    let at = |[x, y]: [f64; 2]| place(rect, cell.range, sheet.largest, x, y);
-    let band = BAND_SIGMAS * sheet.noise;
+    let at = |[x, y]: [f64; 2]| place(rect, cell.range, cell.scale.largest, x, y);
+    let band = BAND_SIGMAS * cell.scale.noise;
     painter.rect_filled(Rect::from_two_pos(at([cell.range.0, band]), at([cell.range.1, -band])), 0, inks.noise);
     painter.hline(rect.x_range(), at([cell.range.0, 0.0]).y, Stroke::new(1.0, p.border));
     if points {
@@ -132,7 +142,7 @@ fn lines(painter: &egui::Painter, lines: &[Line], at: &dyn Fn([f64; 2]) -> Pos2,
 }
 
 /// One suspect over the whole panel, with numbers and words.
-fn large(ui: &mut Ui, session: &mut Session, sheet: &Sheet, cell: &Cell, diagnosis: &Diagnosis) {
+fn large(ui: &mut Ui, session: &mut Session, cell: &Cell, diagnosis: &Diagnosis) {
     let p = palette(ui);
     compact(ui, |ui| {
         if ui.link("← All suspects").clicked() || ui.input(|i| i.key_pressed(egui::Key::Escape)) {
@@ -140,7 +150,7 @@ fn large(ui: &mut Ui, session: &mut Session, sheet: &Sheet, cell: &Cell, diagnos
         }
         ui.add_space(space::S);
         ui.label(theme::strong(&cell.title));
-        ui.label(theme::caption(ui, format!("{} over {}, {}", sheet.unit, cell.variable, cell.unit)));
+        ui.label(theme::caption(ui, format!("{} over {}, {}", cell.scale.unit, cell.variable, cell.unit)));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let note = if cell.named { "named" } else { "not named" };
             ui.label(RichText::new(note).size(11.5).color(if cell.named { p.good } else { p.secondary }));
@@ -162,24 +172,24 @@ fn large(ui: &mut Ui, session: &mut Session, sheet: &Sheet, cell: &Cell, diagnos
     ui.add_space(space::XS);
     let (rect, _) = ui.allocate_exact_size(ui.available_size().max(vec2(120.0, 120.0)), Sense::hover());
     let plot = Rect::from_min_max(rect.min + vec2(NUMBERS[0], 4.0), rect.max - vec2(8.0, NUMBERS[1]));
-    picture(ui, plot, sheet, cell, true);
-    numbers(ui, plot, sheet, cell);
+    picture(ui, plot, cell, true);
+    numbers(ui, plot, cell);
 }
 
 /// A quiet grid with its numbers.
-fn numbers(ui: &Ui, plot: Rect, sheet: &Sheet, cell: &Cell) {
+fn numbers(ui: &Ui, plot: Rect, cell: &Cell) {
     let p = palette(ui);
     let (painter, font) = (ui.painter(), FontId::proportional(11.0));
     let grid = Stroke::new(0.5, p.border);
     for mark in marks(cell.range, 8.0).into_iter().filter(|m| (cell.range.0..=cell.range.1).contains(&m.value)) {
-        let at = place(plot, cell.range, sheet.largest, mark.value, 0.0);
+        let at = place(plot, cell.range, cell.scale.largest, mark.value, 0.0);
         painter.vline(at.x, plot.y_range(), grid);
         let text = format::number(mark.value, decimals(mark.step_size));
         painter.text(pos2(at.x, plot.bottom() + 4.0), Align2::CENTER_TOP, text, font.clone(), p.secondary);
     }
-    let heights = (-sheet.largest, sheet.largest);
-    for mark in marks(heights, 6.0).into_iter().filter(|m| m.value.abs() <= sheet.largest) {
-        let at = place(plot, cell.range, sheet.largest, cell.range.0, mark.value);
+    let heights = (-cell.scale.largest, cell.scale.largest);
+    for mark in marks(heights, 6.0).into_iter().filter(|m| m.value.abs() <= cell.scale.largest) {
+        let at = place(plot, cell.range, cell.scale.largest, cell.range.0, mark.value);
         painter.hline(plot.x_range(), at.y, grid);
         let text = format::number(mark.value, decimals(mark.step_size));
         painter.text(pos2(plot.left() - 6.0, at.y), Align2::RIGHT_CENTER, text, font.clone(), p.secondary);

@@ -1,6 +1,7 @@
 //! What the model gets wrong, as curves: measured against modelled, and what is left against each suspect variable.
 
 use super::Panel;
+use crate::ui::atlas::Sheet;
 use crate::ui::diagnosing::{Answer, StartFrom};
 use crate::ui::files;
 use crate::ui::jobs::{JobKind, Purpose};
@@ -30,10 +31,15 @@ impl Panel for DiagnosePanel {
         sheet(ui).inner_margin(space::M).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
             let answer = session.diagnosing.answer.clone();
-            match answer.as_ref().and_then(|a| a.residuals.get(session.current).filter(|r| !r.is_empty())) {
-                Some(_) if session.diagnosing.shows_atlas => suspects(ui, session, answer.as_deref()),
-                Some(curves) => draw(ui, session, curves),
-                None => nothing(ui, session),
+            let of = session.current;
+            let curves = answer.as_ref().and_then(|a| a.residuals.get(of).filter(|r| !r.is_empty()));
+            let atlas = answer.as_ref().and_then(|a| Some((&**a, a.atlas.get(of).filter(|sheet| !sheet.is_empty())?)));
+            match (curves, atlas) {
+                (Some(curves), None) => draw(ui, session, curves, false),
+                (Some(curves), Some(_)) if !session.diagnosing.shows_atlas => draw(ui, session, curves, true),
+                // Tasks without one coordinate have no curves along it.
+                (curves, Some((answer, sheet))) => suspects(ui, session, answer, sheet, curves.is_some()),
+                (None, None) => nothing(ui, session),
             }
         });
     }
@@ -115,16 +121,17 @@ pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
 }
 
 /// The atlas with its heading.
-fn suspects(ui: &mut Ui, session: &mut Session, answer: Option<&Answer>) {
-    let Some((answer, sheet)) = answer.and_then(|a| a.atlas.get(session.current).map(|s| (a, s))) else { return };
+fn suspects(ui: &mut Ui, session: &mut Session, answer: &Answer, sheet: &Sheet, has_curves: bool) {
     ui.spacing_mut().item_spacing.y = space::XS;
-    head(ui, "Left over against every suspect", sheet.unit, |ui| {
+    head(ui, "Left over against every suspect", sheet.unit(), |ui| {
         let (p, inks) = (palette(ui), inks(ui));
         key(ui, inks.noise, 9.0, "± 2 σ");
         key(ui, p.good, 2.0, "named");
         key(ui, p.accent, 2.0, "suspect alone");
         key(ui, inks.model, 2.0, "left over");
-        views(ui, session);
+        if has_curves {
+            views(ui, session);
+        }
         which(ui, session);
     });
     let text = "Means of what the model leaves, over the variable of each suspect, and what the suspect alone would take of it. The number is its \
@@ -144,7 +151,7 @@ fn views(ui: &mut Ui, session: &mut Session) {
     ui.add_space(space::S);
 }
 
-fn draw(ui: &mut Ui, session: &mut Session, curves: &Residuals) {
+fn draw(ui: &mut Ui, session: &mut Session, curves: &Residuals, has_atlas: bool) {
     let height = ui.available_height();
     let gap = space::S;
     ui.spacing_mut().item_spacing.y = 0.0;
@@ -154,7 +161,9 @@ fn draw(ui: &mut Ui, session: &mut Session, curves: &Residuals) {
         key(ui, inks.extended, 2.0, "with what was found");
         key(ui, inks.model, 2.0, "model");
         key(ui, inks.measured, 2.0, "measured");
-        views(ui, session);
+        if has_atlas {
+            views(ui, session);
+        }
         which(ui, session);
     });
     let upper = (TIME_SHARE * height).max(90.0);

@@ -26,18 +26,23 @@ fn saved(recording: &Recording, folder: &Path) -> PathBuf {
     path
 }
 
-fn quiet(session: &Session) -> bool {
+pub(super) fn quiet(session: &Session) -> bool {
     !session.jobs.is_busy()
 }
 
 /// The ambiguous recording, opened from a file and diagnosed.
 fn asked<'a>(folder: &Path) -> Harness<'a, App> {
+    asked_about(&ASKEW, folder)
+}
+
+/// Any that leaves something open.
+pub(super) fn asked_about<'a>(recording: &Recording, folder: &Path) -> Harness<'a, App> {
     let mut session = Session::new();
     session.trainer.clock = Clock::Manual;
     session.trainer.recordings_folder = Some(folder.join("recordings"));
     let mut harness = harness(App::new(session), [1280.0, 1600.0], |ui, app: &mut App| app.show(ui));
     let ctx = harness.ctx.clone();
-    let path = saved(&ASKEW, folder);
+    let path = saved(recording, folder);
     harness.state_mut().session.open(&ctx, &path);
     until(&mut harness, "the next step", |app| {
         let s = &app.session;
@@ -60,12 +65,12 @@ fn verdict(harness: &Harness<'_, App>) -> Verdict {
 }
 
 /// What stands in the answer to both recordings.
-fn settled(harness: &Harness<'_, App>) -> Vec<(String, String)> {
+pub(super) fn settled(harness: &Harness<'_, App>) -> Vec<(String, String)> {
     let answer = harness.state().session.diagnosing.answer.as_ref().expect("an answer");
     answer.diagnosis.settled.iter().map(|s| (s.kept.clone(), s.excluded.clone())).collect()
 }
 
-fn pair(kept: &str, excluded: &str) -> Vec<(String, String)> {
+pub(super) fn pair(kept: &str, excluded: &str) -> Vec<(String, String)> {
     vec![(kept.to_owned(), excluded.to_owned())]
 }
 

@@ -5,6 +5,7 @@ use super::cable::{cables, errors};
 use super::rows::{Place, Row, Rows};
 use super::seen::Seen;
 use crate::diagnose::answer::{Compared, Found, parameter};
+use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::geometry::Study;
@@ -23,6 +24,10 @@ pub struct Carry {
     cable_errors: Option<[f64; 4]>,
     /// Which block each row is of; 0 where nothing is held.
     numbers: Vec<usize>,
+    /// Numbers of the blocks whose weights the model leaves open, in the order of its columns.
+    pub weighed: Vec<usize>,
+    /// The rows as the atlas looks at them.
+    pub view: View,
 }
 
 /// Compares what may act on carried blocks and on the sensors. `world`: inertia and cables of it belong to the model.
@@ -71,8 +76,43 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     let along = rows.all.iter().map(is_carried).collect();
     let longest_s = longest_s(&rows);
     let channel = "net force on carried blocks";
+    let view = view(&rows);
     let compared = Compared { study, channel, unit: "N", floor, along, stretch: rows.stretch };
-    Ok(Carry { compared, longest_s, cable_errors, numbers })
+    let weighed = (1..=known.len()).filter(|k| known[k - 1].is_none()).collect();
+    Ok(Carry { compared, longest_s, cable_errors, numbers, weighed, view })
+}
+
+/// What the rows are seen against: what the block does along the row's own axis, and how it is held.
+fn view(rows: &Rows<'_>) -> View {
+    let sensor = |r: &Row| match r.place {
+        Place::Carried { axis, .. } => axis,
+        Place::Free { finger, axis } => 2 + 2 * finger + axis,
+    };
+    let own = |of: &dyn Fn(&Seen<'_>, &Row, usize) -> f64| rows.carried(|one, row, _, axis| of(one, row, axis));
+    View {
+        recording: rows.all.iter().map(|r| r.recording).collect(),
+        sensor: rows.all.iter().map(sensor).collect(),
+        over: vec![
+            (Variable::Time, rows.column(|r| r.time_s)),
+            (Variable::Velocity, own(&|one, r, axis| one.velocity[axis][r.i])),
+            (Variable::Acceleration, own(&|one, r, axis| one.acceleration[axis][r.i])),
+            (Variable::Place, rows.column(|r| rows.seen[r.recording].place[0][r.i])),
+            (Variable::Grip, rows.column(|r| rows.seen[r.recording].blocks.grip[r.i])),
+            (Variable::Lift, rows.column(|r| rows.seen[r.recording].blocks.lift[r.i])),
+        ],
+    }
+}
+
+/// What a cause in the net force is best seen against.
+pub fn best_seen(id: &str) -> Variable {
+    match id {
+        "inertia" => Variable::Acceleration,
+        "viscous-friction" => Variable::Velocity,
+        "added-constraint" => Variable::Place,
+        "force-cross-axis" => Variable::Grip,
+        "force-gain" | "gravity-tilt" => Variable::Lift,
+        _ => Variable::Time,
+    }
 }
 
 /// Which block a column acts at.

@@ -2,6 +2,7 @@
 
 use super::seen::Seen;
 use crate::diagnose::answer::{Compared, Found, parameter};
+use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::{Channel, stretches};
 use crate::diagnose::report::CauseParameter;
@@ -22,6 +23,8 @@ const USUAL_SCALE: f64 = 0.02;
 /// The comparison and what its words need.
 pub struct Grasp {
     pub compared: Compared,
+    /// The rows as the atlas looks at them.
+    pub view: View,
     /// Mean distance and grip of each block, m and N.
     means: Vec<(f64, f64)>,
     /// Give of a pad at no force that the model has, m/N.
@@ -30,6 +33,7 @@ pub struct Grasp {
 
 /// Rows of all recordings.
 struct Rows {
+    recording: Vec<usize>,
     number: Vec<usize>,
     time_s: Vec<f64>,
     width_m: Vec<f64>,
@@ -40,6 +44,7 @@ struct Rows {
 
 fn rows(seen: &[Seen<'_>]) -> Rows {
     let mut rows = Rows {
+        recording: Vec::new(),
         number: Vec::new(),
         time_s: Vec::new(),
         width_m: Vec::new(),
@@ -51,6 +56,7 @@ fn rows(seen: &[Seen<'_>]) -> Rows {
     for (k, one) in seen.iter().enumerate() {
         for number in 1..=one.count {
             for i in one.gripped(number) {
+                rows.recording.push(k);
                 rows.number.push(number);
                 rows.time_s.push(one.time_s(i));
                 rows.width_m.push(one.blocks.width[i]);
@@ -117,7 +123,17 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     let along = vec![true; n];
     let compared =
         Compared { study, channel: "distance of the tips", unit: "m", floor: floor_m, along, stretch: rows.stretch };
-    Ok(Some(Grasp { compared, means, modelled }))
+    let view = View {
+        recording: rows.recording,
+        sensor: vec![0; n],
+        over: vec![(Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)],
+    };
+    Ok(Some(Grasp { compared, view, means, modelled }))
+}
+
+/// What a cause in the distance of the tips is best seen against.
+pub fn best_seen(id: &str) -> Variable {
+    if id == "length-scale" { Variable::Width } else { Variable::Grip }
 }
 
 fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {

@@ -2,6 +2,7 @@
 
 use super::seen::Seen;
 use crate::diagnose::answer::{Compared, Found, parameter};
+use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::{Channel, stretches};
 use crate::diagnose::report::CauseParameter;
@@ -39,6 +40,8 @@ pub struct Stand {
 /// The comparison and what its words need.
 pub struct Ground {
     pub compared: Compared,
+    /// The rows as the atlas looks at them.
+    pub view: View,
     pub stands: Vec<Stand>,
     rows: Rows,
 }
@@ -108,7 +111,18 @@ pub fn ground(
     let study = channel.compare(threshold)?;
     let channel = "height of the grip over the ground";
     let compared = Compared { study, channel, unit: "m", floor: floor_m, along, stretch };
-    Ok(Some(Ground { compared, stands, rows }))
+    let view = View {
+        recording: rows.stand.iter().map(|s| stands[*s].recording).collect(),
+        // One rest is no continuation of another: each has a height of its own.
+        sensor: rows.stand.clone(),
+        over: vec![(Variable::Time, rows.time_s.clone()), (Variable::Lift, rows.lift_n.clone())],
+    };
+    Ok(Some(Ground { compared, view, stands, rows }))
+}
+
+/// What a cause in the height of the grip is best seen against.
+pub fn best_seen(id: &str) -> Variable {
+    if id == "pad-compliance" { Variable::Lift } else { Variable::Time }
 }
 
 fn add(

@@ -12,15 +12,20 @@ mod ground;
 mod moved;
 mod rows;
 mod seen;
+mod simulated;
+
+pub use simulated::{extend, with_acts};
 
 use super::answer::{Beside, Compared, Found, Part, answer};
 use super::candidate::Candidate;
 use super::quality;
 use super::report::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
+use super::suspects::of_blocks;
 use super::{Options, threshold};
 use crate::estimate::EstimateError;
+use carry::Carry;
 use haptics::recording::Recording;
-use haptics::world::{Cable, Content, World};
+use haptics::world::World;
 use seen::Seen;
 
 /// Diagnoses recordings of the same blocks.
@@ -52,25 +57,39 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let grasp_shows = |f: &Found<'_>| grasp.as_ref().map(|g| g.shows(f)).unwrap_or_default();
     let grasp_states = |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &grasp { g.states(c, p) } else { p };
     let ground_shows = |f: &Found<'_>| ground.as_ref().map(|g| g.shows(f)).unwrap_or_default();
-    let mut parts: Vec<Part<'_>> = vec![carry.compared.part(&carry::Carry::shows, &carry_states, &carry_usual)];
+    let mut parts: Vec<Part<'_>> = vec![carry.compared.part(&Carry::shows, &carry_states, &carry_usual)];
     parts.extend(grasp.as_ref().map(|g| g.compared.part(&grasp_shows, &grasp_states, &grasp::Grasp::usual)));
     parts.extend(
         ground.as_ref().map(|g| g.compared.part(&ground_shows, &ground::Ground::states, &ground::Ground::usual)),
     );
-    Ok(answer(&parts, beside, &|open| experiment::propose(open, &carry, &seen).or_else(|| next(open))))
+    let mut found = answer(&parts, beside, &|open| experiment::propose(open, &carry, &seen).or_else(|| next(open)));
+    if options.atlas {
+        let limit = limit(&seen);
+        let Carry { compared, view, .. } = &carry;
+        found.atlas.channels.push(compared.atlas(view, limit, carry::best_seen));
+        found.atlas.channels.extend(grasp.iter().map(|g| g.compared.atlas(&g.view, limit, grasp::best_seen)));
+        found.atlas.channels.extend(ground.iter().map(|g| g.compared.atlas(&g.view, limit, ground::best_seen)));
+    }
+    found.hypotheses = of_blocks(&carry.compared.study, &carry);
+    Ok(found)
 }
 
 /// Net force, distance of the tips and height of the grip, compared.
 fn look(
     seen: &[Seen<'_>],
     world: Option<&World>,
-) -> Result<(carry::Carry, Option<grasp::Grasp>, Option<ground::Ground>), EstimateError> {
-    let limit = threshold(seen.iter().map(|s| s.period_s).fold(0.0, f64::max));
+) -> Result<(Carry, Option<grasp::Grasp>, Option<ground::Ground>), EstimateError> {
+    let limit = limit(seen);
     let carry = carry::carry(seen, world, limit)?;
     let grasp = grasp::grasp(seen, world, limit)?;
     // A block that a cable pulls at is held by more than its ground.
     let ground = if carry.has("added-constraint") { None } else { ground::ground(seen, world, carry.cross(), limit)? };
     Ok((carry, grasp, ground))
+}
+
+/// Least score of a cause.
+fn limit(seen: &[Seen<'_>]) -> f64 {
+    threshold(seen.iter().map(|s| s.period_s).fold(0.0, f64::max))
 }
 
 /// The channels of other recordings of the same blocks.
@@ -116,41 +135,4 @@ fn next(open: &[Alternative]) -> Option<NextExperiment> {
     let mut separates = vec![first.instead_of.clone()];
     separates.extend(open.iter().filter(|a| a.instead_of == first.instead_of).map(|a| a.id.clone()));
     Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: power, experiment: None })
-}
-
-/// What was found, put into a world.
-pub fn extend(world: &mut World, diagnosis: &Diagnosis) {
-    for cause in &diagnosis.causes {
-        let value = |name: &str| cause.parameters.iter().find(|p| p.name == name).map(|p| p.value);
-        match cause.id.as_str() {
-            "pad-compliance" => {
-                world.pad.stiffness_n_m = value("k").filter(|k| *k > 0.0).unwrap_or(world.pad.stiffness_n_m);
-                let shear = value("k_shear").filter(|k| *k > 0.0);
-                world.pad.shear_stiffness_n_m = shear.unwrap_or(world.pad.shear_stiffness_n_m);
-            }
-            "stiffness-hardening" => {
-                world.pad.stiffness_n_m = value("k1").filter(|k| *k > 0.0).unwrap_or(world.pad.stiffness_n_m);
-                world.pad.cubic_n_m3 = value("k3").map_or(world.pad.cubic_n_m3, |k| k.max(0.0));
-            }
-            "mass-change" => {
-                let gravity = world.gravity_m_s2.max(1e-9);
-                let number = value("block").map_or(0, |b| (b as usize).saturating_sub(1));
-                if let (Some(rate), Some(block)) = (value("rate").filter(|r| *r < 0.0), world.blocks.get_mut(number)) {
-                    let mass_kg = 0.5 * block.mass_kg;
-                    block.content =
-                        Some(Content { mass_kg, leak_kg_s: -rate / gravity, leaks_from_s: value("t0").or(Some(0.0)) });
-                }
-            }
-            "added-constraint" => {
-                let number = value("block").map_or(0, |b| (b as usize).saturating_sub(1));
-                if let (Some(k), Some(x), Some(y), Some(length_m), Some(block)) =
-                    (value("k"), value("anchor x"), value("anchor y"), value("length"), world.blocks.get_mut(number))
-                {
-                    let anchor_m = haptics::Vec2::new(x, y);
-                    block.cable = Some(Cable { anchor_m, length_m, stiffness_n_m: k, damping_n_s_m: 0.0 });
-                }
-            }
-            _ => {}
-        }
-    }
 }

@@ -1,0 +1,116 @@
+//! A recording, seen through sensors that are wrong: what the world did stays, what is read of its forces changes.
+
+use estimator::diagnose::SensorFault;
+use haptics::Vec2;
+use haptics::recording::Recording;
+
+/// Names of the forces of both fingers.
+const FORCES: [[&str; 2]; 2] = [["fx1_N", "fy1_N"], ["fx2_N", "fy2_N"]];
+
+/// Replaces the forces by what such sensors would have read. `held_from_s`: since when something is held.
+pub fn see_through(recording: &mut Recording, fault: &SensorFault, held_from_s: f64) {
+    let Some(times) = recording.time_s.clone().filter(|_| *fault != SensorFault::default()) else { return };
+    for (finger, names) in FORCES.iter().enumerate() {
+        let (Some(x), Some(y)) = (recording.channel(names[0]), recording.channel(names[1])) else { continue };
+        let felt: Vec<Vec2> = x.iter().zip(y).map(|(x, y)| Vec2::new(*x, *y)).collect();
+        let drifts_from_s =
+            if fault.drifts_once_held { held_from_s } else { times.first().copied().unwrap_or_default() };
+        let read = read(&times, &felt, (fault, finger), drifts_from_s);
+        for channel in &mut recording.channels {
+            let part: fn(&Vec2) -> f64 = match names.iter().position(|name| *name == channel.name) {
+                Some(0) => |force| force.x,
+                Some(_) => |force| force.y,
+                None => continue,
+            };
+            channel.values = read.iter().map(part).collect();
+        }
+    }
+}
+
+/// What a finger's sensor reads at each time, N.
+fn read(times: &[f64], felt: &[Vec2], (fault, finger): (&SensorFault, usize), drifts_from_s: f64) -> Vec<Vec2> {
+    let cross = fault.cross[finger];
+    times
+        .iter()
+        .map(|time_s| {
+            let force = at(times, felt, time_s - fault.delay_s);
+            let crossed = Vec2::new(force.x + cross.x * force.y, force.y + cross.y * force.x);
+            let drifted_for_s = drifted_for((time_s - drifts_from_s).max(0.0), fault.settles_s);
+            (1.0 + fault.gain_error) * crossed + fault.offset_n[finger] + drifted_for_s * fault.drift_n_s[finger]
+        })
+        .collect()
+}
+
+/// For how long a drift has gone on at its first rate, s: one that settles comes to rest there in its time constant.
+fn drifted_for(time_s: f64, settles_s: f64) -> f64 {
+    if settles_s > 0.0 { -settles_s * (-time_s / settles_s).exp_m1() } else { time_s }
+}
+
+/// The force at a time, between samples in a straight line; the first and the last go on.
+fn at(times: &[f64], felt: &[Vec2], time_s: f64) -> Vec2 {
+    let after = times.partition_point(|t| *t <= time_s);
+    match (after.checked_sub(1).and_then(|i| felt.get(i)), felt.get(after)) {
+        (Some(before), Some(next)) => {
+            let share = (time_s - times[after - 1]) / (times[after] - times[after - 1]);
+            before + (next - before) * share
+        }
+        (Some(only), None) | (None, Some(only)) => *only,
+        (None, None) => Vec2::zeros(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::recording::Channel;
+
+    /// A force that grows evenly in y and stays in x, a second of it.
+    fn ramp() -> Recording {
+        let times: Vec<f64> = (0..101).map(|k| 3.0 + 0.01 * f64::from(k)).collect();
+        let channel = |name: &str, of: &dyn Fn(f64) -> f64| Channel {
+            name: name.to_owned(),
+            unit: "N".to_owned(),
+            values: times.iter().map(|t| of(*t - 3.0)).collect(),
+        };
+        let channels = vec![
+            channel("fx1_N", &|_| 2.0),
+            channel("fy1_N", &|t| t),
+            channel("fx2_N", &|_| -2.0),
+            channel("fy2_N", &|t| t),
+        ];
+        Recording { time_s: Some(times), channels, ..Recording::default() }
+    }
+
+    /// What is read at half a second: both axes of the first finger, then of the second.
+    fn half_way(fault: &SensorFault) -> [f64; 4] {
+        let mut recording = ramp();
+        see_through(&mut recording, fault, 3.4);
+        ["fx1_N", "fy1_N", "fx2_N", "fy2_N"].map(|name| recording.channel(name).expect("a channel")[50])
+    }
+
+    fn near(found: [f64; 4], expected: [f64; 4]) {
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?}, not {expected:?}");
+    }
+
+    #[test]
+    fn every_fault_changes_what_it_is_about_and_nothing_else() {
+        let none = SensorFault::default();
+        near(half_way(&none), [2.0, 0.5, -2.0, 0.5]);
+        let offset_n = [Vec2::new(0.1, 0.0), Vec2::new(0.0, -0.2)];
+        near(half_way(&SensorFault { offset_n, ..none }), [2.1, 0.5, -2.0, 0.3]);
+        let drift_n_s = [Vec2::zeros(), Vec2::new(0.0, 0.4)];
+        near(half_way(&SensorFault { drift_n_s, ..none }), [2.0, 0.5, -2.0, 0.7]);
+        near(half_way(&SensorFault { drift_n_s, drifts_once_held: true, ..none }), [2.0, 0.5, -2.0, 0.54]);
+        let cross = [Vec2::new(0.0, 0.1), Vec2::zeros()];
+        near(half_way(&SensorFault { cross, ..none }), [2.0, 0.7, -2.0, 0.5]);
+        near(half_way(&SensorFault { gain_error: -0.1, ..none }), [1.8, 0.45, -1.8, 0.45]);
+        near(half_way(&SensorFault { delay_s: 0.025, ..none }), [2.0, 0.475, -2.0, 0.475]);
+    }
+
+    #[test]
+    fn a_drift_that_settles_comes_to_rest() {
+        assert!((drifted_for(10.0, 0.0) - 10.0).abs() < 1e-12);
+        assert!((drifted_for(0.01, 5.0) - 0.01).abs() < 1e-4, "at its first rate in the beginning");
+        assert!((drifted_for(1e3, 5.0) - 5.0).abs() < 1e-9);
+    }
+}
