@@ -7,6 +7,7 @@ pub mod cli;
 mod constraint_words;
 pub mod diagnosis_words;
 pub mod experiment;
+pub mod history;
 pub mod operator;
 pub mod recorder;
 pub mod report;

@@ -10,6 +10,7 @@ mod diagnose;
 mod enough;
 mod fit;
 mod gallery;
+mod history;
 mod info;
 mod progress;
 mod record;
@@ -61,6 +62,8 @@ enum Command {
     Report(report::Report),
     /// How well a task was done, from the recording of a trainee's attempt
     Score(score::Score),
+    /// Who practised what, when, and how well; learning curves, and a table for other programs
+    History(history::History),
     /// Make a recording from the virtual hand
     Record(record::Record),
     /// A picture without a window
@@ -206,6 +209,7 @@ pub fn main() -> ExitCode {
             };
         }
         Some(Command::Score(args)) => args.run(),
+        Some(Command::History(args)) => args.run(),
         Some(Command::Record(args)) => args.run(),
         Some(Command::Screenshot(args)) => args.run(),
         Some(Command::Gallery(args)) => args.run(),

@@ -7,6 +7,7 @@
 pub mod course;
 pub mod definitions;
 pub mod hand;
+pub mod progress;
 pub mod smoothness;
 
 use crate::estimate::EstimateError;

@@ -1,0 +1,70 @@
+//! Attempts that the database did not take: one JSON file each in a folder beside it, until it takes them.
+
+use super::{Attempt, Store};
+use std::fs::File;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+/// The folder of a database at this path.
+fn folder(database: &Path) -> PathBuf {
+    database.with_extension("waiting")
+}
+
+/// Keeps an attempt beside the database; it is on the disk when this returns.
+pub fn keep(database: &Path, attempt: &Attempt) -> Result<PathBuf, String> {
+    let refused = |error: std::io::Error| {
+        format!("The attempt could not be kept ({error}); check the disk and its permissions: {}.", database.display())
+    };
+    let folder = folder(database);
+    std::fs::create_dir_all(&folder).map_err(refused)?;
+    let text = serde_json::to_string_pretty(attempt).map_err(|error| refused(error.into()))?;
+    // Whole or not at all: written under another name first.
+    let mut whole = tempfile::NamedTempFile::new_in(&folder).map_err(refused)?;
+    whole.write_all(text.as_bytes()).and_then(|()| whole.as_file().sync_all()).map_err(refused)?;
+    let stem = attempt.began.as_nanosecond();
+    let mut number = 0_u32;
+    loop {
+        let path = folder.join(format!("{stem}-{number}.json"));
+        match whole.persist_noclobber(&path) {
+            Ok(_) => {
+                // The name, too, must be on the disk; where folders cannot be synced it comes there by itself.
+                let _ = File::open(&folder).and_then(|folder| folder.sync_all());
+                return Ok(path);
+            }
+            Err(error) if error.error.kind() == std::io::ErrorKind::AlreadyExists => whole = error.file,
+            Err(error) => return Err(refused(error.error)),
+        }
+        number += 1;
+    }
+}
+
+/// Takes in what waits beside the database: how many, and what is wrong with the rest. What cannot be read stays where it is.
+pub fn take_in(database: &Path, store: &mut Store) -> (usize, Vec<String>) {
+    let (mut taken, mut problems) = (0, Vec::new());
+    let Ok(entries) = std::fs::read_dir(folder(database)) else { return (taken, problems) };
+    let waits = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "json");
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(waits).collect();
+    paths.sort();
+    for path in paths {
+        let read = std::fs::read_to_string(&path).map_err(|error| error.to_string());
+        let attempt = read.and_then(|text| serde_json::from_str::<Attempt>(&text).map_err(|error| error.to_string()));
+        match attempt {
+            Err(error) => {
+                problems
+                    .push(format!("An attempt that waits to be kept cannot be read ({error}): {}.", path.display()));
+            }
+            Ok(attempt) => match store.add(&attempt) {
+                Ok(_) => {
+                    // Should the file stay, it is known already at the next start.
+                    let _ = std::fs::remove_file(&path);
+                    taken += 1;
+                }
+                Err(problem) => {
+                    problems.push(problem);
+                    break;
+                }
+            },
+        }
+    }
+    (taken, problems)
+}

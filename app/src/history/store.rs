@@ -1,0 +1,155 @@
+//! The database: what it says is kept has reached the disk.
+
+use super::{Attempt, Conditions, schema};
+use jiff::Timestamp;
+use rusqlite::{Connection, OptionalExtension as _, Row, params};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// How long another process may hold the file, until that is said.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// Which attempts; nothing stands for all.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Query {
+    /// Of this trainee.
+    pub trainee: Option<String>,
+    /// At this lesson.
+    pub lesson: Option<String>,
+}
+
+/// An open database. Errors are sentences.
+#[derive(Debug)]
+pub struct Store {
+    connection: Connection,
+    path: PathBuf,
+}
+
+impl Store {
+    /// Opens the file, or makes it.
+    pub fn open(path: &Path) -> Result<Self, String> {
+        let refused = |why: &str| format!("The history cannot be opened: {why}. File: {}.", path.display());
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(|error| refused(&error.to_string()))?;
+        }
+        let mut connection = Connection::open(path).map_err(|error| refused(&error.to_string()))?;
+        set_up(&mut connection).map_err(|why| refused(&why))?;
+        Ok(Self { connection, path: path.to_path_buf() })
+    }
+
+    fn said(&self, error: &rusqlite::Error) -> String {
+        let busy = error.sqlite_error_code() == Some(rusqlite::ErrorCode::DatabaseBusy);
+        let why = if busy { "another program holds it".to_owned() } else { error.to_string() };
+        format!("The history could not be written or read: {why}. File: {}.", self.path.display())
+    }
+
+    /// Adds a trainee; one of that name stays as it is.
+    pub fn add_trainee(&mut self, name: &str, created: Timestamp) -> Result<(), String> {
+        let name = name.trim();
+        if name.is_empty() {
+            return Err("A trainee needs a name.".to_owned());
+        }
+        let made = self.connection.execute(
+            "INSERT INTO trainees (name, created) VALUES (?1, ?2) ON CONFLICT (name) DO NOTHING",
+            params![name, created.to_string()],
+        );
+        made.map(|_| ()).map_err(|error| self.said(&error))
+    }
+
+    /// Names of all trainees, in the order of the alphabet.
+    pub fn trainees(&self) -> Result<Vec<String>, String> {
+        let names = || -> rusqlite::Result<Vec<String>> {
+            let mut asked = self.connection.prepare("SELECT name FROM trainees ORDER BY name COLLATE NOCASE")?;
+            asked.query_map([], |row| row.get(0))?.collect()
+        };
+        names().map_err(|error| self.said(&error))
+    }
+
+    /// Keeps an attempt. One that is known already (same trainee, lesson and beginning) stays as it is: false then.
+    pub fn add(&mut self, attempt: &Attempt) -> Result<bool, String> {
+        self.add_trainee(&attempt.trainee, attempt.began)?;
+        let Attempt { lesson, began, duration_s, completed, score, meets_criterion, proficient, .. } = attempt;
+        let conditions = serde_json::to_string(&attempt.conditions).unwrap_or_default();
+        let recording = attempt.recording.as_ref().map(|path| path.display().to_string());
+        let added = self.connection.execute(
+            "INSERT INTO attempts (trainee, lesson, conditions, began, duration_s, completed, score, meets_criterion, proficient, measures,
+                measures_version, grade_version, recording)
+             SELECT id, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13 FROM trainees WHERE name = ?1
+             ON CONFLICT DO NOTHING",
+            params![
+                attempt.trainee.trim(),
+                lesson,
+                conditions,
+                began.to_string(),
+                duration_s,
+                completed,
+                score,
+                meets_criterion,
+                proficient,
+                attempt.measures.to_string(),
+                attempt.measures_version,
+                attempt.grade_version,
+                recording,
+            ],
+        );
+        added.map(|rows| rows > 0).map_err(|error| self.said(&error))
+    }
+
+    /// Attempts, the oldest first.
+    pub fn attempts(&self, query: &Query) -> Result<Vec<Attempt>, String> {
+        let rows = || -> rusqlite::Result<Vec<Attempt>> {
+            let mut asked = self.connection.prepare(
+                "SELECT trainees.name, lesson, conditions, began, duration_s, completed, score, meets_criterion, proficient, measures,
+                    measures_version, grade_version, recording
+                 FROM attempts JOIN trainees ON trainees.id = attempts.trainee
+                 WHERE (?1 IS NULL OR trainees.name = ?1) AND (?2 IS NULL OR lesson = ?2)",
+            )?;
+            asked.query_map(params![query.trainee, query.lesson], attempt)?.collect()
+        };
+        let mut rows = rows().map_err(|error| self.said(&error))?;
+        // By the moment: as words, fractions of a second would come before whole ones.
+        rows.sort_by_key(|attempt| attempt.began);
+        Ok(rows)
+    }
+}
+
+fn set_up(connection: &mut Connection) -> Result<(), String> {
+    let said = |error: rusqlite::Error| match error.sqlite_error_code() {
+        Some(rusqlite::ErrorCode::NotADatabase) => {
+            "the file is no database, or is damaged; move it away, and a new one is made".to_owned()
+        }
+        Some(rusqlite::ErrorCode::DatabaseBusy) => "another program holds it".to_owned(),
+        _ => error.to_string(),
+    };
+    connection.busy_timeout(PATIENCE).map_err(said)?;
+    // Readers and one writer at a time; what is committed is on the disk before it counts.
+    let _mode: Option<String> =
+        connection.query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0)).optional().map_err(said)?;
+    connection.pragma_update(None, "synchronous", "FULL").map_err(said)?;
+    connection.pragma_update(None, "foreign_keys", true).map_err(said)?;
+    schema::migrate(connection)
+}
+
+/// A row of [`Store::attempts`].
+fn attempt(row: &Row<'_>) -> rusqlite::Result<Attempt> {
+    let text = |place: usize| row.get::<_, String>(place);
+    let wrong = |place: usize, error: Box<dyn std::error::Error + Send + Sync>| {
+        rusqlite::Error::FromSqlConversionFailure(place, rusqlite::types::Type::Text, error)
+    };
+    let conditions: Conditions = serde_json::from_str(&text(2)?).map_err(|e| wrong(2, e.into()))?;
+    Ok(Attempt {
+        trainee: text(0)?,
+        lesson: text(1)?,
+        conditions,
+        began: text(3)?.parse().map_err(|e: jiff::Error| wrong(3, e.into()))?,
+        duration_s: row.get(4)?,
+        completed: row.get(5)?,
+        score: row.get(6)?,
+        meets_criterion: row.get(7)?,
+        proficient: row.get(8)?,
+        measures: serde_json::from_str(&text(9)?).map_err(|e| wrong(9, e.into()))?,
+        measures_version: row.get(10)?,
+        grade_version: row.get(11)?,
+        recording: row.get::<_, Option<String>>(12)?.map(PathBuf::from),
+    })
+}
