@@ -11,7 +11,7 @@ const OPEN_M: f64 = 2e-3;
 /// A hand that moves less than this from one look to the one before it counts as at rest, m.
 const STILL_M: f64 = 2e-4;
 /// Share of the wanted pinch that must be seen; the rest gives in pads and springs.
-const PINCHED: f64 = 0.6;
+const PINCHED: f64 = 0.45;
 /// A grip below this is none, N.
 const LOOSE_N: f64 = 0.05;
 /// Whoever has waited so long goes on, s.

@@ -49,15 +49,36 @@ fn the_crank_is_turned_over_half_a_second_either_way() {
     }
 }
 
-#[test]
-fn every_task_is_done_on_a_model_over_a_line_that_scatters_and_loses() {
-    let delay = Delay { jitter_s: 0.05, loss: 0.2, ..Delay::of(0.3, true) };
-    for (world, done) in [
-        (presets::stacking(), is_stacked as fn(&State) -> bool),
+/// What a task must have come to, by its world.
+type Done = fn(&State) -> bool;
+
+fn tasks() -> [(World, Done); 4] {
+    [
+        (presets::stacking(), is_stacked as Done),
         (presets::needle(), |state| state.membrane.holes.iter().filter(|hole| hole.history.punctured).count() == 2),
         (presets::switch(), |state| state.switch.at_m < -5e-3),
         (presets::barrel(), |state| !state.bodies[0].broken && state.bodies[0].angle_rad.abs() < 0.1),
-    ] {
+    ]
+}
+
+#[test]
+fn every_task_is_done_over_half_a_second_and_no_wait_is_in_vain() {
+    for (world, done) in tasks() {
+        let (direct_s, _, state) = perform(&world, &Delay::of(0.0, false), 3);
+        assert!(done(&state), "{}: {state:?}", world.name);
+        for predicted in [false, true] {
+            let (seconds, _, state) = perform(&world, &Delay::of(0.5, predicted), 3);
+            assert!(done(&state), "{}, predicted {predicted}: {state:?}", world.name);
+            let most = if predicted { 1.1 } else { 1.5 };
+            assert!(seconds < most * direct_s, "{}, predicted {predicted}: {seconds} s, {direct_s} s", world.name);
+        }
+    }
+}
+
+#[test]
+fn every_task_is_done_on_a_model_over_a_line_that_scatters_and_loses() {
+    let delay = Delay { jitter_s: 0.05, loss: 0.2, ..Delay::of(0.3, true) };
+    for (world, done) in tasks() {
         let (_, _, state) = perform(&world, &delay, 3);
         assert!(done(&state), "{}: {state:?}", world.name);
     }
