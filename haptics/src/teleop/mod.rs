@@ -25,7 +25,7 @@ mod waved;
 
 pub use guess::{GUESS_OFF, guess};
 pub use model::Weighed;
-pub use view::{View, ViewSource};
+pub use view::{Knock, View, ViewSource};
 
 use crate::device::channel::{ChannelConfig, ChannelError};
 use crate::device::{Device, HandImpedance};

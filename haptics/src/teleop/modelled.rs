@@ -8,7 +8,7 @@ use super::album::Album;
 use super::far_hand::{FarHand, Goal};
 use super::model::Tutor;
 use super::picture::Grasp;
-use super::view::ViewInput;
+use super::view::{Knock, ViewInput};
 use super::{Delay, Ends};
 use crate::device::channel::ChannelError;
 use crate::device::channel::line::Line;
@@ -34,6 +34,7 @@ pub(super) struct ModelledHand {
     pictures: Album<Stamp>,
     there: State,
     taken_s: f64,
+    knock: Knock,
     view: ViewInput,
     now_s: f64,
     /// Since when the operator is done, s.
@@ -73,6 +74,7 @@ impl ModelledHand {
             pictures: Album::new(ends.state, delay, ends.seed),
             there: ends.state.clone(),
             taken_s: 0.0,
+            knock: Knock::default(),
             view,
             now_s: 0.0,
             done_s: None,
@@ -95,6 +97,7 @@ impl ModelledHand {
         view.here.copy_from(self.model.state());
         view.there.copy_from(&self.there);
         view.age_s = self.now_s - self.taken_s;
+        view.knock = self.knock;
         view.weighed = self.tutor.weighed();
         self.view.publish();
     }
@@ -109,6 +112,9 @@ impl Device for ModelledHand {
         self.now_s += dt_s;
         self.look();
         let tick = self.model.tick(dt_s);
+        if tick.impact_m_s > 0.0 {
+            self.knock = self.knock.next(self.now_s, tick.impact_m_s, tick.impact_in_world);
+        }
         self.tutor.correct(&mut self.model, self.now_s, dt_s);
         self.words.send(self.now_s, Goal { said_s: self.now_s, input: tick.input, force_n: tick.tip_force_n });
         if let Some(goal) = self.words.receive(self.now_s) {

@@ -1,6 +1,7 @@
 //! What the operator is shown: here at once, there late. By triple buffer from the servo's thread to the window.
 
 use super::model::Weighed;
+use crate::Vec2;
 use crate::world::State;
 use triple_buffer::{Output, triple_buffer};
 
@@ -15,8 +16,36 @@ pub struct View {
     pub age_s: f64,
     /// Whether a model answers.
     pub predicted: bool,
+    /// The newest impact as the operator knows it: the model's at once, those of the far world late.
+    pub knock: Knock,
     /// What the body that was carried last weighs, as far as the model has learnt it.
     pub weighed: Option<Weighed>,
+}
+
+/// Slower impacts this soon after one belong to it, s: longer than a picture takes.
+const RATTLE_S: f64 = 0.04;
+
+/// Something struck something.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Knock {
+    /// Counts them: another number is another impact.
+    pub number: u64,
+    /// When it was, s on the clock of the end that it happened at.
+    pub time_s: f64,
+    /// How fast, m/s.
+    pub speed_m_s: f64,
+    /// Where, m in the world.
+    pub at_in_world: Vec2,
+}
+
+impl Knock {
+    /// The next impact; a slower one that follows at once, as when things rattle, is left out.
+    pub(super) fn next(self, time_s: f64, speed_m_s: f64, at_in_world: Vec2) -> Self {
+        if speed_m_s < self.speed_m_s && time_s < self.time_s + RATTLE_S {
+            return self;
+        }
+        Self { number: self.number + 1, time_s, speed_m_s, at_in_world }
+    }
 }
 
 /// The servo's end.
@@ -39,7 +68,14 @@ impl ViewSource {
 
 /// Both ends; everything is where `state` has it.
 pub(super) fn view(state: &State, predicted: bool) -> (ViewInput, ViewSource) {
-    let first = View { here: state.clone(), there: state.clone(), age_s: 0.0, predicted, weighed: None };
+    let first = View {
+        here: state.clone(),
+        there: state.clone(),
+        age_s: 0.0,
+        predicted,
+        knock: Knock::default(),
+        weighed: None,
+    };
     let (input, output) = triple_buffer(&first);
     (input, ViewSource(output))
 }

@@ -7,12 +7,16 @@
 //! what is exerted, and said to be one ([`gain`]).
 
 use super::album::Album;
-use super::view::ViewInput;
+use super::view::{Knock, ViewInput};
 use super::{Delay, Ends, hand_stiffness_n_m};
+use crate::device::channel::line::Line;
 use crate::device::channel::{ChannelConfig, ChannelDevice, ChannelError, Waves};
 use crate::device::{Command, Device, DeviceSpec, Sample};
 use crate::servo::ForceGuard;
 use crate::world::{State, World};
+
+/// Salt of the impacts' fate.
+const SALT: u64 = 0x5be0_cd19_137e_2179;
 
 /// How many times the far forces are those that are felt: as much as gives the far fingers a hand's stiffness over a line of
 /// `line_n_m` (N/m), and never less than one.
@@ -26,6 +30,11 @@ pub(super) struct WavedHand {
     spec: DeviceSpec,
     gain: f64,
     pictures: Album<f64>,
+    /// Impacts on their way to the operator's eye and ear.
+    knocks: Line<Knock>,
+    struck_m_s: Option<f64>,
+    /// The newest at the far end, and as it is known here.
+    knock: [Knock; 2],
     seen: State,
     view: ViewInput,
     now_s: f64,
@@ -53,6 +62,9 @@ impl WavedHand {
             spec,
             gain,
             pictures: Album::new(ends.state, delay, ends.seed),
+            knocks: Line::new(delay.one_way_s(), delay.jitter_s, delay.loss, ends.seed ^ SALT),
+            struck_m_s: None,
+            knock: [Knock::default(); 2],
             seen: ends.state.clone(),
             view,
             now_s: 0.0,
@@ -66,6 +78,7 @@ impl WavedHand {
         view.there.copy_from(&self.seen);
         view.age_s = self.now_s - self.taken_s;
         view.predicted = false;
+        view.knock = self.knock[1];
         self.view.publish();
     }
 }
@@ -81,6 +94,9 @@ impl Device for WavedHand {
             picture.show_in(&mut self.seen);
             self.taken_s = *taken_s;
         }
+        if let Some(knock) = self.knocks.receive(self.now_s) {
+            self.knock[1] = knock;
+        }
         let felt = Command { force_n: command.force_n.map(|force| force / self.gain) };
         let sample = self.channel.exchange(&felt, dt_s);
         self.publish();
@@ -92,7 +108,8 @@ impl Device for WavedHand {
     }
 
     fn line_stiffness_n_m(&self) -> Option<f64> {
-        self.channel.line_stiffness_n_m().map(|line_n_m| line_n_m * self.gain)
+        // What is felt; the far fingers are stiffer by the gain.
+        self.channel.line_stiffness_n_m()
     }
 
     fn make_safe(&mut self) {
@@ -108,11 +125,19 @@ impl Device for WavedHand {
     }
 
     fn strike(&mut self, speed_m_s: f64) {
+        self.struck_m_s = Some(speed_m_s);
         self.channel.strike(speed_m_s);
     }
 
     fn see(&mut self, world: &World, state: &State) {
         self.pictures.offer(self.now_s, state, self.now_s);
+        if let Some(speed_m_s) = self.struck_m_s.take() {
+            let next = self.knock[0].next(self.now_s, speed_m_s, state.impact_in_world);
+            if next != self.knock[0] {
+                self.knocks.send(self.now_s, next);
+            }
+            self.knock[0] = next;
+        }
         self.channel.see(world, &self.seen);
     }
 

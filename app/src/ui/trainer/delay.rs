@@ -34,7 +34,7 @@ impl Trainer {
 
     /// Puts the line before a device, where there is one.
     pub(super) fn connect(&mut self, device: Box<dyn Device>, swap: &Swap) -> Result<Box<dyn Device>, String> {
-        self.view = None;
+        (self.view, self.knocked) = (None, 0);
         if self.delay.is_none() {
             return Ok(device);
         }
@@ -57,6 +57,27 @@ impl Trainer {
     /// What the operator sees over the line; `None` without one.
     pub fn view(&self) -> Option<&View> {
         self.view.as_ref().map(teleop::ViewSource::last)
+    }
+
+    /// Takes in what the operator can know by now: forces and impacts of every tick, or over a line what is seen over it.
+    pub(super) fn look(&mut self, frame_s: f64) {
+        let Some(view) = &mut self.view else {
+            self.struck_m_s = self.impacts.update(&self.scratch, frame_s);
+            self.history.extend(&self.scratch);
+            return;
+        };
+        view.newest();
+        let knock = self.take_knock();
+        self.struck_m_s = self.impacts.update(knock.as_slice(), frame_s);
+        let seen = self.seen_tick();
+        self.history.extend(seen.as_slice());
+    }
+
+    /// An impact that was not seen yet, as a tick.
+    fn take_knock(&mut self) -> Option<TickRecord> {
+        let knock = self.view().map(|view| view.knock).filter(|knock| knock.number != self.knocked)?;
+        self.knocked = knock.number;
+        Some(TickRecord { impact_m_s: knock.speed_m_s, impact_in_world: knock.at_in_world, ..TickRecord::default() })
     }
 
     /// What is under the operator's hand as far as the operator can know: the world itself, the model of it, or the late picture.

@@ -139,6 +139,7 @@ impl Inline {
         self.snapshot.generation = self.body.generation();
         self.snapshot.coupling = self.body.coupling();
         self.snapshot.delay_s = self.body.delay_s();
+        self.snapshot.line_n_m = self.body.line_stiffness_n_m();
         self.snapshot.finished = self.body.finished();
         self.snapshot.timing.sample_age_s = self.body.sample_age_s();
     }

@@ -111,6 +111,8 @@ pub struct Trainer {
     delay: Delay,
     /// What the operator sees over a slow line.
     view: Option<ViewSource>,
+    /// Number of the newest impact that was seen over it.
+    knocked: u64,
 }
 
 impl Trainer {
@@ -251,6 +253,7 @@ impl Trainer {
                 kept.tick = snapshot.tick;
                 kept.timing = snapshot.timing;
                 kept.coupling = snapshot.coupling;
+                (kept.delay_s, kept.line_n_m) = (snapshot.delay_s, snapshot.line_n_m);
                 kept.finished = snapshot.finished;
                 kept.fault = snapshot.fault;
             }
@@ -260,15 +263,8 @@ impl Trainer {
         if let Some(world) = self.worlds.get(generation).or(self.worlds.last()) {
             self.watch.take(&self.scratch, world, self.clock == Clock::Manual);
         }
-        self.struck_m_s = self.impacts.update(&self.scratch, frame_s);
         engine.test_force(self.trial.advance(frame_s));
-        if let Some(view) = &mut self.view {
-            view.newest();
-        }
-        match self.seen_tick().filter(|_| self.view.is_some()) {
-            Some(seen) => self.history.extend(&[seen]),
-            None => self.history.extend(&self.scratch),
-        }
+        self.look(frame_s);
         if let Some(tick) = self.seen_tick() {
             self.steering.follow(&mut self.pinch, &tick, frame_s);
         }

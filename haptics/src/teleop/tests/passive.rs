@@ -137,3 +137,30 @@ fn on_a_model_the_line_has_no_say_in_the_forces_while_the_model_is_true() {
         assert!(run(delay) == direct, "{delay:?}");
     }
 }
+
+#[test]
+fn an_impact_is_known_late_over_the_line_and_at_once_on_a_model() {
+    // A block falls onto the other one while the hand stays away.
+    let mut world = presets::stacking();
+    world.blocks[0].start.center_m.y += 0.01;
+    let state = State::resting(&world);
+    for predicted in [false, true] {
+        let (operator, _) = grip(state.input.tip_in_world[0] + Vec2::new(0.012, 0.0), [0.012, 0.012], 1.0);
+        let delay = Delay::of(0.5, predicted);
+        let (mut servo, mut view) = over_a_line((&world, &state), (&world, &state), operator, &delay);
+        let (mut there, mut here) = (None, None);
+        for tick in 0..1_500_i32 {
+            let record = servo.tick(DT);
+            there = there.or((record.impact_m_s > 0.1).then_some(tick));
+            let knock = view.newest().knock;
+            here = here.or((knock.number > 0 && knock.speed_m_s > 0.1).then_some(tick));
+            let off_m = (knock.at_in_world - world.blocks[0].start.center_m).norm();
+            assert!(knock.speed_m_s < 0.1 || off_m < 0.03, "tick {tick}, predicted {predicted}: {knock:?}");
+        }
+        let late = here.expect("known") - there.expect("it fell");
+        assert!(
+            if predicted { late.abs() < 5 } else { (250..=254).contains(&late) },
+            "predicted {predicted}: {late} ms"
+        );
+    }
+}
