@@ -29,6 +29,7 @@ use egui_kittest::wgpu::WgpuTestRenderer;
 use estimator::diagnose::Progress;
 use estimator::signal::transform::Transform;
 use haptics::recording::{Recording, Task};
+use haptics::teleop::Delay;
 use haptics::world::World;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -54,6 +55,8 @@ pub enum Panel {
     Scene,
     /// The virtual world.
     Trainer,
+    /// The virtual world over half a second, on a model.
+    Delay,
     /// The whole Calibrate workspace.
     Workbench,
     /// The whole Train workspace.
@@ -126,8 +129,8 @@ pub fn recordings(
 pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Session> {
     let mut session = Session::new();
     session.trainer.clock = Clock::Manual;
-    if matches!(panel, Panel::Trainer | Panel::Train | Panel::Devices) {
-        session.trainer = performing(input).map_err(|problem| anyhow!(problem))?;
+    if matches!(panel, Panel::Trainer | Panel::Train | Panel::Devices | Panel::Delay) {
+        session.trainer = performing(input, panel).map_err(|problem| anyhow!(problem))?;
         if panel == Panel::Devices {
             session.workspace = Workspace::Devices;
         }
@@ -283,8 +286,12 @@ fn mapping(input: &PanelInput) -> anyhow::Result<Mapping> {
 }
 
 /// The scripted operator in the middle of its task, or a person before it.
-fn performing(input: &PanelInput) -> Result<Trainer, String> {
+fn performing(input: &PanelInput, panel: Panel) -> Result<Trainer, String> {
     let mut trainer = Trainer::default();
+    if panel == Panel::Delay {
+        trainer.script.level = "expert";
+        trainer.set_delay(Delay::of(0.5, true))?;
+    }
     (trainer.clock, trainer.operator) = (Clock::Manual, if input.by_hand { Operator::You } else { Operator::Scripted });
     if let Some(world) = &input.world {
         trainer.file = Some(world.clone());
@@ -360,7 +367,7 @@ pub(super) fn contents(panel: Panel) -> Contents {
         Panel::Parameters => framed(ParametersPanel),
         Panel::Results => framed(ResultsPanel::default()),
         Panel::Scene => framed(ScenePanel::default()),
-        Panel::Trainer | Panel::Guided => framed(TrainerView::default()),
+        Panel::Trainer | Panel::Guided | Panel::Delay => framed(TrainerView::default()),
         Panel::Sensitivity => framed(SensitivityPanel),
         Panel::Atlas => framed(DiagnosePanel),
         Panel::Experiment => framed(DiagnosisPanel),

@@ -56,8 +56,11 @@ impl Plate {
 
     /// A single panel with a margin around it, no whole page.
     pub fn is_framed(&self) -> bool {
-        use Panel::{LeftOver, Log, Parameters, Results, Scene, Segments, Sensitivity, Trainer, Xy};
-        matches!(self.panel, Log | Xy | LeftOver | Parameters | Results | Scene | Segments | Sensitivity | Trainer)
+        use Panel::{Delay, LeftOver, Log, Parameters, Results, Scene, Segments, Sensitivity, Trainer, Xy};
+        matches!(
+            self.panel,
+            Log | Xy | LeftOver | Parameters | Results | Scene | Segments | Sensitivity | Trainer | Delay
+        )
     }
 
     /// A view of a recording in space with other layers than usual.
@@ -101,6 +104,9 @@ fn of_panel(panel: Panel) -> Plate {
         Panel::Diagnose => (Sample::Crank, PAGE, "Diagnose: what the model gets wrong, and why"),
         Panel::Atlas => (Sample::Askew, ATLAS, "The residual atlas: what is left over against every suspect"),
         Panel::Experiment => (Sample::Askew, COLUMN, "What to record next, rehearsed on simulated objects"),
+        Panel::Delay => {
+            (Sample::World("stack"), PANEL, "Over half a second: the model under the hand solid, the far world a ghost")
+        }
         Panel::Guided => (Sample::Askew, PANEL, "An experiment done by hand in Train: two rings to follow"),
         Panel::Sensitivity => (Sample::Crank, COLUMN, "Sensitivity: what the force depends on, and what goes together"),
         Panel::Parameter => (Sample::Crank, PAGE, "Another value of a parameter, tried on the replay"),
