@@ -73,6 +73,7 @@ fn dialog(purpose: Purpose) -> Option<PathBuf> {
         Purpose::SaveReport => dialog.set_title("Write a report").set_file_name("report.html").save_file(),
         Purpose::SaveLog => dialog.set_title("Save the recording").set_file_name("recording.csv").save_file(),
         Purpose::SaveWorld => dialog.set_title("Save the world").set_file_name("world.json").save_file(),
+        Purpose::SaveHistory => dialog.set_title("Save the attempts").set_file_name("attempts.csv").save_file(),
         Purpose::SaveExtended => {
             dialog.set_title("Save the extended world").set_file_name("extended-world.json").save_file()
         }
@@ -99,6 +100,7 @@ impl Session {
                 save_world(ctx, self, &path.display().to_string());
             }
             Purpose::SaveExtended => save_extended(ctx, self, path),
+            Purpose::SaveHistory => self.export_history(path),
         }
     }
 }

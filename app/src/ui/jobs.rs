@@ -103,6 +103,8 @@ pub enum Purpose {
     SaveWorld,
     /// Where the extended world goes.
     SaveExtended,
+    /// Where a table of attempts goes.
+    SaveHistory,
 }
 
 /// What a job brings back.

@@ -25,6 +25,7 @@ pub mod gallery;
 pub mod guided;
 pub mod jobs;
 mod keys;
+pub mod learning;
 pub mod mapping;
 mod menu;
 mod messages;
@@ -149,6 +150,9 @@ fn create(cc: &eframe::CreationContext<'_>, options: &RunOptions) -> app::App {
     if let Some(folder) = eframe::storage_dir("touchstone") {
         let fresh = options.log.is_none() && options.world.is_none();
         app.keep(&folder, fresh);
+        if let Some(database) = crate::history::of_user() {
+            app.session.open_history(&cc.egui_ctx, database);
+        }
     }
     app
 }

@@ -10,6 +10,7 @@ use super::panels::diagnose::DiagnosePanel;
 use super::panels::diagnosis::DiagnosisPanel;
 use super::panels::log::LogPanel;
 use super::panels::parameters::ParametersPanel;
+use super::panels::progress::ProgressPanel;
 use super::panels::results::ResultsPanel;
 use super::panels::scene::ScenePanel;
 use super::panels::segments::SegmentsPanel;
@@ -22,6 +23,7 @@ use super::scene;
 use super::session::{FitChoice, Session, Workspace};
 use super::theme::{self, space};
 use super::trainer::{Clock, Operator, Trainer, WorldChoice};
+use crate::history::History;
 use crate::video::VideoSource;
 use anyhow::{Context as _, anyhow};
 use egui::{Frame, Ui, UiBuilder};
@@ -71,6 +73,8 @@ pub enum Panel {
     Experiment,
     /// That experiment done by hand in the virtual world, half done.
     Guided,
+    /// How a trainee gets better, from a made-up history.
+    Progress,
     /// The dialog that maps the columns of the log.
     Mapping,
     /// What the force depends on, and which parameters go together.
@@ -134,6 +138,18 @@ pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Se
         if panel == Panel::Devices {
             session.workspace = Workspace::Devices;
         }
+        return Ok(session);
+    }
+    if panel == Panel::Progress {
+        let folder = tempfile::tempdir().context("there is no room for temporary files")?;
+        let history =
+            History::start(folder.path().join("history.sqlite"), || {}).map_err(|problem| anyhow!(problem))?;
+        session.learning.keep_in(history);
+        session.experiments.scratch = Some(folder);
+        session.learning.trainees = vec!["Ada".to_owned(), "Grace".to_owned()];
+        session.learning.trainee = Some("Ada".to_owned());
+        session.learning.experts.insert("pinch".to_owned(), 92.0);
+        session.learning.take(super::gallery::samples::practice());
         return Ok(session);
     }
     session.workspace = Workspace::Calibrate;
@@ -369,6 +385,7 @@ pub(super) fn contents(panel: Panel) -> Contents {
         Panel::Scene => framed(ScenePanel::default()),
         Panel::Trainer | Panel::Guided | Panel::Delay => framed(TrainerView::default()),
         Panel::Sensitivity => framed(SensitivityPanel),
+        Panel::Progress => framed(ProgressPanel),
         Panel::Atlas => framed(DiagnosePanel),
         Panel::Experiment => framed(DiagnosisPanel),
         Panel::Rules

@@ -131,6 +131,8 @@ pub struct Session {
     pub replays: Vec<Option<Replayed>>,
     /// What the model gets wrong.
     pub diagnosing: Diagnosing,
+    /// Who practises, and how they get better.
+    pub learning: super::learning::Learning,
     /// Experiments that would tell it better.
     pub experiments: Experiments,
     /// What is still missing for the parameters of the fit.
@@ -298,6 +300,7 @@ impl Session {
         }
         super::recorder::follow(ctx, self);
         self.follow_experiment(ctx);
+        self.follow_history();
         self.note_changes(ctx.input(|i| i.time));
         self.follow_choice(ctx);
         self.follow_what_if(ctx);

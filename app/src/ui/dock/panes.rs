@@ -6,6 +6,7 @@ use crate::ui::panels::devices::DeviceList;
 use crate::ui::panels::diagnose::DiagnosePanel;
 use crate::ui::panels::diagnosis::DiagnosisPanel;
 use crate::ui::panels::log::LogPanel;
+use crate::ui::panels::progress::ProgressPanel;
 use crate::ui::panels::recording::RecordingPanel;
 use crate::ui::panels::results::ResultsPanel;
 use crate::ui::panels::rules::RulesPanel;
@@ -44,6 +45,8 @@ pub enum Pane {
     Trainer,
     /// Its settings and figures.
     TrainerSide,
+    /// How who practises gets better.
+    Progress,
     /// Measured against modelled force.
     Diagnose,
     /// What the model gets wrong.
@@ -67,6 +70,7 @@ impl Pane {
             Self::Video => "Video of the hand",
             Self::Trainer => "Virtual world",
             Self::TrainerSide => "Trainer",
+            Self::Progress => "Progress",
             Self::Diagnose => "Measured and modelled",
             Self::Diagnosis => "Diagnosis",
             Self::Devices => "Devices",
@@ -77,7 +81,7 @@ impl Pane {
     /// Those that make sense in a workspace.
     pub fn of(workspace: Workspace) -> &'static [Self] {
         match workspace {
-            Workspace::Train => &[Self::Trainer, Self::TrainerSide],
+            Workspace::Train => &[Self::Trainer, Self::TrainerSide, Self::Progress],
             Workspace::Calibrate => &[
                 Self::Recording,
                 Self::Scene,
@@ -126,6 +130,7 @@ impl Panels {
             Pane::Video => VideoPanel.ui(ui, session),
             Pane::Trainer => self.trainer.ui(ui, session),
             Pane::TrainerSide => TrainerSide.ui(ui, session),
+            Pane::Progress => ProgressPanel.ui(ui, session),
             Pane::Diagnose => DiagnosePanel.ui(ui, session),
             Pane::Diagnosis => DiagnosisPanel.ui(ui, session),
             Pane::Devices => self.devices.ui(ui, session),

@@ -11,6 +11,7 @@ fn neighbours(pane: Pane) -> &'static [(Pane, ContainerKind, bool)] {
         Pane::Scene => &[(Pane::Video, Horizontal, true), (Pane::Log, Vertical, true), (Pane::Diagnosis, Tabs, false)],
         Pane::Log => &[(Pane::Scene, Vertical, false), (Pane::Video, Vertical, false), (Pane::Diagnosis, Tabs, false)],
         Pane::Segments | Pane::Sensitivity => &[(Pane::Results, Tabs, false), (Pane::Diagnosis, Tabs, false)],
+        Pane::Progress => &[(Pane::Trainer, Tabs, false)],
         // A third column would leave the curves no room.
         Pane::Results => &[(Pane::Diagnosis, Tabs, false)],
         _ => &[],

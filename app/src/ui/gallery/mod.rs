@@ -24,6 +24,7 @@ const PAGE: [u32; 2] = [1280, 720];
 const PANEL: [u32; 2] = [640, 480];
 const ATLAS: [u32; 2] = [720, 540];
 const COLUMN: [u32; 2] = [440, 760];
+const PRACTICE: [u32; 2] = [720, 760];
 const SCENE: [u32; 2] = [720, 480];
 
 /// One picture of the gallery.
@@ -56,10 +57,10 @@ impl Plate {
 
     /// A single panel with a margin around it, no whole page.
     pub fn is_framed(&self) -> bool {
-        use Panel::{Delay, LeftOver, Log, Parameters, Results, Scene, Segments, Sensitivity, Trainer, Xy};
+        use Panel::{Delay, LeftOver, Log, Parameters, Progress, Results, Scene, Segments, Sensitivity, Trainer, Xy};
         matches!(
             self.panel,
-            Log | Xy | LeftOver | Parameters | Results | Scene | Segments | Sensitivity | Trainer | Delay
+            Log | Xy | LeftOver | Parameters | Progress | Results | Scene | Segments | Sensitivity | Trainer | Delay
         )
     }
 
@@ -115,6 +116,9 @@ fn of_panel(panel: Panel) -> Plate {
         Panel::Tour => (Sample::Stack, PAGE, "Shown around, the first time"),
         Panel::Video => {
             (Sample::Stack, PAGE, "A video of the hand (here of the virtual one) runs with the time cursor")
+        }
+        Panel::Progress => {
+            (Sample::World("stack"), PRACTICE, "Progress: a trainee's learning curve at a lesson (a made-up history)")
         }
         Panel::Mapping => (Sample::Foreign, PAGE, "A foreign table: what its columns mean, with a preview"),
     };

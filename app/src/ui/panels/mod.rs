@@ -22,6 +22,7 @@ mod overlay;
 mod parameter_editor;
 pub mod parameters;
 mod passivity;
+pub mod progress;
 pub mod recording;
 mod remote;
 pub mod results;

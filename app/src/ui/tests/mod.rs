@@ -9,6 +9,7 @@ mod legible;
 mod panels;
 mod pictures;
 mod plots;
+mod progress;
 mod rules;
 mod scene;
 mod shifting;

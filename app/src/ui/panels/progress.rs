@@ -1,0 +1,338 @@
+//! *Progress*: who practises, their learning curve at a lesson, and their attempts.
+
+use super::Panel;
+use crate::ui::files;
+use crate::ui::format;
+use crate::ui::jobs::Purpose;
+use crate::ui::learning::{Learned, Practised};
+use crate::ui::plots::{decimals, inks, marks};
+use crate::ui::session::Session;
+use crate::ui::theme::{self, palette, space};
+use crate::ui::widgets::{call, compact, empty_state, plain_card};
+use egui::{
+    Align, Align2, ComboBox, FontId, Grid, Key, Layout, Mesh, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke,
+    TextEdit, Ui, pos2, vec2,
+};
+
+/// Height of the curve, points, and the room for its numbers.
+const CURVE: f32 = 240.0;
+const NUMBERS: [f32; 2] = [40.0, 20.0];
+/// Radius of an attempt's mark, points.
+const MARK: f32 = 3.5;
+/// Height of a row of the table, points.
+const ROW: f32 = 18.0;
+/// Attempts that the table shows at most: the last ones.
+const MOST_ROWS: usize = 200;
+
+/// The progress of who practises.
+#[derive(Default)]
+pub struct ProgressPanel;
+
+impl Panel for ProgressPanel {
+    fn title(&self) -> &'static str {
+        "Progress"
+    }
+
+    fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        ScrollArea::vertical().id_salt("progress").auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = space::S;
+            plain_card(ui, "Who practises", |ui| who(ui, session));
+            if session.learning.attempts.is_empty() {
+                let text = match &session.learning.trainee {
+                    Some(name) => {
+                        format!("{name} has not attempted a lesson yet. What they do is kept and shown here.")
+                    }
+                    None => "Choose who practises, or add them: their attempts at lessons are kept and shown here."
+                        .to_owned(),
+                };
+                empty_state(ui, "No attempts yet", &text, |_| {});
+                return;
+            }
+            plain_card(ui, "Learning", |ui| learning(ui, session));
+            plain_card(ui, "Attempts", |ui| attempts(ui, session));
+        });
+    }
+}
+
+fn who(ui: &mut Ui, session: &mut Session) {
+    let learning = &mut session.learning;
+    let mut chosen = None;
+    ui.horizontal(|ui| {
+        let shown = learning.trainee.clone().unwrap_or_else(|| "Nobody yet".to_owned());
+        let list = ComboBox::from_id_salt("trainee").selected_text(shown).width(180.0).truncate();
+        let list = list.show_ui(ui, |ui| {
+            for name in &learning.trainees {
+                if ui.selectable_label(learning.trainee.as_ref() == Some(name), name).clicked() {
+                    chosen = Some(name.clone());
+                }
+            }
+        });
+        call(&list.response, "Trainee");
+        ui.add_space(space::S);
+        let is_kept = learning.is_kept();
+        let field = TextEdit::singleline(&mut learning.name_field).hint_text("Name of a new one");
+        let response = ui.add_enabled(is_kept, field.desired_width(150.0));
+        call(&response, "Name of a new trainee");
+        let entered = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+        let named = is_kept && !learning.name_field.trim().is_empty();
+        if ui.add_enabled(named, egui::Button::new("Add")).clicked() || (entered && named) {
+            learning.add_trainee();
+        }
+    });
+    if let Some(name) = chosen {
+        learning.choose(&name);
+    }
+    if !session.learning.is_kept() {
+        let text = "Nothing is kept: the system names no folder for data. Set HOME or XDG_DATA_HOME, then start the program again.";
+        ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
+    }
+}
+
+fn learning(ui: &mut Ui, session: &mut Session) {
+    lessons(ui, session);
+    let learned = session.learning.learned.clone();
+    let expert = session.learning.shown().and_then(|p| session.learning.experts.get(&p.lesson).copied());
+    if learned.tries.is_empty() {
+        ui.label(theme::caption(ui, "None of these attempts has a score."));
+        return;
+    }
+    ui.add_space(space::XS);
+    curve(ui, &learned, expert);
+    ui.add(egui::Label::new(theme::caption(ui, in_words(&learned))).wrap());
+}
+
+/// Which lesson is looked at.
+fn lessons(ui: &mut Ui, session: &mut Session) {
+    let (practised, shown) = (session.learning.practised(), session.learning.shown());
+    let mut chosen: Option<Practised> = None;
+    ui.horizontal(|ui| {
+        let words = shown.as_ref().map(Practised::words).unwrap_or_default();
+        let list = ComboBox::from_id_salt("lesson").selected_text(words).width(260.0).truncate();
+        let list = list.show_ui(ui, |ui| {
+            for one in &practised {
+                if ui.selectable_label(shown.as_ref() == Some(one), one.words()).clicked() {
+                    chosen = Some(one.clone());
+                }
+            }
+        });
+        call(&list.response, "Lesson");
+        let (p, model) = (palette(ui), inks(ui).model);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            key(ui, "mean of a session", |ui, rect| {
+                ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(1.5, p.secondary));
+            });
+            for (words, color) in [("criterion met", p.good), ("attempt", model)] {
+                key(ui, words, |ui, rect| {
+                    ui.painter().circle_filled(rect.center(), MARK, color);
+                });
+            }
+        });
+    });
+    if chosen.is_some() {
+        session.learning.look_at(chosen);
+    }
+}
+
+/// A mark and what it means, from the right.
+fn key(ui: &mut Ui, words: &str, mark: impl FnOnce(&Ui, Rect)) {
+    ui.label(theme::caption(ui, words));
+    let (rect, _) = ui.allocate_exact_size(vec2(10.0, ROW), Sense::hover());
+    mark(ui, rect);
+    ui.add_space(space::S);
+}
+
+/// What the curve says.
+fn in_words(learned: &Learned) -> String {
+    let number = |value: f64| format::significant(value, 3);
+    let mut words = Vec::new();
+    if let Some((first, last, mean, half)) = learned.sessions.last() {
+        let half = half.map_or(String::new(), |half| format!(" ± {}", format::significant(half, 2)));
+        let count = last + 1 - first;
+        let of = if count == 1 { "one attempt".to_owned() } else { format!("{count} attempts") };
+        words.push(format!("Last session: {}{half} in {of} (mean, 95 % interval).", number(*mean)));
+    }
+    match &learned.curve {
+        Some(curve) if curve.is_seen => words.push(format!(
+            "Power law of practice (band: 95 % interval): it goes to {}, with an exponent of {} [{}, {}].",
+            number(curve.level),
+            format::significant(curve.exponent, 2),
+            format::significant(curve.exponent_interval[0], 2),
+            format::significant(curve.exponent_interval[1], 2)
+        )),
+        Some(_) => words.push("The scores do not change by more than chance would make them.".to_owned()),
+        None => words.push("Six scores or more show a curve.".to_owned()),
+    }
+    words.push(match learned.proficient_at {
+        Some(attempt) => format!("Proficient after attempt {attempt}: the criterion was met twice in a row."),
+        None => "Not proficient yet: that is the criterion met twice in a row.".to_owned(),
+    });
+    words.join(" ")
+}
+
+/// Where numbers stand in the picture.
+struct Axes {
+    plot: Rect,
+    last: f64,
+    heights: (f64, f64),
+}
+
+impl Axes {
+    fn of(plot: Rect, learned: &Learned, expert: Option<f64>) -> Self {
+        let scores = learned.tries.iter().map(|(_, t)| t.value).chain(expert);
+        let sessions = learned
+            .sessions
+            .iter()
+            .flat_map(|(.., mean, half)| [mean - half.unwrap_or(0.0), mean + half.unwrap_or(0.0)]);
+        let curve = learned.points.iter().map(|p| p.value);
+        let (low, high) =
+            scores.chain(sessions).chain(curve).fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
+        let room = 0.08 * (high - low).max(1e-6 + 0.01 * high.abs());
+        let last = learned.points.last().map_or(0.0, |p| p.attempt).max(learned.attempts.len() as f64);
+        Self { plot, last: last + 0.5, heights: (low - room, high + room) }
+    }
+
+    fn at(&self, attempt: f64, value: f64) -> Pos2 {
+        let right = ((attempt - 0.5) / (self.last - 0.5)) as f32;
+        let up = ((value - self.heights.0) / (self.heights.1 - self.heights.0)) as f32;
+        pos2(self.plot.left() + right * self.plot.width(), self.plot.bottom() - up * self.plot.height())
+    }
+
+    /// A quiet grid with its numbers.
+    fn draw(&self, ui: &Ui) {
+        let (p, font) = (palette(ui), FontId::proportional(11.0));
+        let painter = ui.painter();
+        painter.rect_filled(self.plot, 4, p.sunken);
+        let grid = Stroke::new(0.5, p.border);
+        for mark in marks((1.0, self.last), 8.0).into_iter().filter(|m| m.value >= 1.0 && m.step_size >= 1.0) {
+            let at = self.at(mark.value, self.heights.0);
+            painter.vline(at.x, self.plot.y_range(), grid);
+            let text = format::number(mark.value, 0);
+            painter.text(pos2(at.x, at.y + 4.0), Align2::CENTER_TOP, text, font.clone(), p.secondary);
+        }
+        let inside = |m: &f64| (self.heights.0..=self.heights.1).contains(m);
+        for mark in marks(self.heights, 5.0).into_iter().filter(|m| inside(&m.value)) {
+            let at = self.at(0.5, mark.value);
+            painter.hline(self.plot.x_range(), at.y, grid);
+            let text = format::number(mark.value, decimals(mark.step_size));
+            painter.text(pos2(at.x - 6.0, at.y), Align2::RIGHT_CENTER, text, font.clone(), p.secondary);
+        }
+    }
+}
+
+/// Attempts, means of sessions, the power law with its band, the expert's level.
+fn curve(ui: &mut Ui, learned: &Learned, expert: Option<f64>) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CURVE), Sense::hover());
+    let spoken = format!("Scores of {} attempts, in their order", learned.tries.len());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &spoken));
+    let plot = Rect::from_min_max(rect.min + vec2(NUMBERS[0], 4.0), rect.max - vec2(4.0, NUMBERS[1]));
+    let axes = Axes::of(plot, learned, expert);
+    axes.draw(ui);
+    let (p, inks) = (palette(ui), inks(ui));
+    let painter = ui.painter().with_clip_rect(plot);
+    if learned.curve.as_ref().is_some_and(|curve| curve.is_seen) {
+        painter.add(Shape::mesh(band(learned, &axes, inks.noise)));
+        let line = learned.points.iter().map(|point| axes.at(point.attempt, point.value)).collect();
+        painter.add(Shape::line(line, Stroke::new(2.0, p.accent)));
+    }
+    for (first, last, mean, half) in &learned.sessions {
+        let (left, right) = (axes.at(*first as f64 - 0.35, *mean), axes.at(*last as f64 + 0.35, *mean));
+        let stroke = Stroke::new(1.5, p.secondary);
+        painter.line_segment([left, right], stroke);
+        if let Some(half) = half {
+            let middle = 0.5 * (*first + *last) as f64;
+            painter.line_segment([axes.at(middle, mean - half), axes.at(middle, mean + half)], stroke);
+        }
+    }
+    for (number, t) in &learned.tries {
+        let color = if t.meets_criterion { p.good } else { inks.model };
+        painter.circle_filled(axes.at(*number as f64, t.value), MARK, color);
+    }
+    if let Some(expert) = expert {
+        let ends = [axes.at(0.5, expert), axes.at(axes.last, expert)];
+        painter.extend(Shape::dashed_line(&ends, Stroke::new(2.0, p.good), 6.0, 4.0));
+        let at = ends[1] - vec2(6.0, 3.0);
+        painter.text(at, Align2::RIGHT_BOTTOM, "expert", FontId::proportional(11.0), p.good);
+    }
+    hints(&response, learned, &axes);
+}
+
+fn band(learned: &Learned, axes: &Axes, color: egui::Color32) -> Mesh {
+    let mut mesh = Mesh::default();
+    for point in &learned.points {
+        for value in point.interval {
+            mesh.colored_vertex(axes.at(point.attempt, value.clamp(axes.heights.0, axes.heights.1)), color);
+        }
+    }
+    for k in 1..learned.points.len() as u32 {
+        let (a, b) = (2 * k - 2, 2 * k);
+        mesh.add_triangle(a, a + 1, b);
+        mesh.add_triangle(a + 1, b, b + 1);
+    }
+    mesh
+}
+
+/// The attempt under the pointer, in words.
+fn hints(response: &egui::Response, learned: &Learned, axes: &Axes) {
+    let Some(pointer) = response.hover_pos() else { return };
+    let near = |(number, t): &&(usize, estimator::training::progress::Try)| {
+        axes.at(*number as f64, t.value).distance(pointer) < 2.5 * MARK
+    };
+    if let Some((number, t)) = learned.tries.iter().find(near)
+        && let Some(attempt) = learned.attempts.get(number - 1)
+    {
+        let text = format!("Attempt {number}: {}, {}", format::significant(t.value, 3), when(attempt));
+        response.clone().on_hover_text_at_pointer(text);
+    }
+}
+
+/// `2026-11-22 19:05 UTC`.
+fn when(attempt: &crate::history::Attempt) -> String {
+    attempt.began.strftime("%Y-%m-%d %H:%M UTC").to_string()
+}
+
+fn attempts(ui: &mut Ui, session: &mut Session) {
+    compact(ui, |ui| {
+        let all = session.learning.learned.attempts.len();
+        ui.label(theme::caption(ui, if all == 1 { "One attempt.".to_owned() } else { format!("{all} attempts.") }));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let hint = "All attempts of this trainee at every lesson, every measure a column";
+            if ui.link("Save as a table …").on_hover_text(hint).clicked() {
+                files::ask(ui.ctx(), &mut session.jobs, Purpose::SaveHistory);
+            }
+        });
+    });
+    ui.add_space(space::XS);
+    let p = palette(ui);
+    ui.spacing_mut().interact_size.y = ROW;
+    let rows = &session.learning.learned.attempts;
+    Grid::new("attempts").num_columns(6).striped(true).spacing(vec2(space::L, space::XS)).show(ui, |ui| {
+        for name in ["", "Begun", "Took", "Score", "Criterion", "Recording"] {
+            ui.label(theme::caption(ui, name));
+        }
+        ui.end_row();
+        for (k, attempt) in rows.iter().enumerate().rev().take(MOST_ROWS) {
+            ui.label(theme::caption(ui, (k + 1).to_string()));
+            ui.label(RichText::new(when(attempt)).size(12.0));
+            ui.label(RichText::new(format!("{} s", format::number(attempt.duration_s, 1))).size(12.0));
+            let score = attempt.score.map_or_else(|| "–".to_owned(), |score| format::significant(score, 3));
+            ui.label(RichText::new(score).size(12.0).strong());
+            let (criterion, color) = match (attempt.completed, attempt.meets_criterion) {
+                (false, _) => ("not completed", p.caution),
+                (true, true) => ("met", p.good),
+                (true, false) => ("not met", p.secondary),
+            };
+            ui.label(RichText::new(criterion).size(12.0).color(color));
+            let file = attempt.recording.as_ref().map(|path| (crate::ui::mapping::name_of(path), path));
+            match file {
+                Some((name, path)) => {
+                    ui.add(egui::Label::new(RichText::new(name).size(12.0)).truncate())
+                        .on_hover_text(path.display().to_string());
+                }
+                None => {
+                    ui.label("");
+                }
+            }
+            ui.end_row();
+        }
+    });
+}
