@@ -1,13 +1,14 @@
 //! *Progress*: who practises, their learning curve at a lesson, and their attempts.
 
 use super::Panel;
+use crate::history::Attempt;
 use crate::ui::files;
 use crate::ui::format;
 use crate::ui::jobs::Purpose;
 use crate::ui::learning::{Learned, Practised};
 use crate::ui::plots::{decimals, inks, marks};
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
+use crate::ui::theme::{self, Palette, palette, space};
 use crate::ui::widgets::{call, compact, empty_state, plain_card};
 use egui::{
     Align, Align2, ComboBox, FontId, Grid, Key, Layout, Mesh, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke,
@@ -57,7 +58,7 @@ impl Panel for ProgressPanel {
 fn who(ui: &mut Ui, session: &mut Session) {
     let learning = &mut session.learning;
     let mut chosen = None;
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let shown = learning.trainee.clone().unwrap_or_else(|| "Nobody yet".to_owned());
         let list = ComboBox::from_id_salt("trainee").selected_text(shown).width(180.0).truncate();
         let list = list.show_ui(ui, |ui| {
@@ -107,7 +108,8 @@ fn lessons(ui: &mut Ui, session: &mut Session) {
     let mut chosen: Option<Practised> = None;
     ui.horizontal(|ui| {
         let words = shown.as_ref().map(Practised::words).unwrap_or_default();
-        let list = ComboBox::from_id_salt("lesson").selected_text(words).width(260.0).truncate();
+        let list =
+            ComboBox::from_id_salt("lesson").selected_text(words).width(ui.available_width().min(260.0)).truncate();
         let list = list.show_ui(ui, |ui| {
             for one in &practised {
                 if ui.selectable_label(shown.as_ref() == Some(one), one.words()).clicked() {
@@ -116,28 +118,28 @@ fn lessons(ui: &mut Ui, session: &mut Session) {
             }
         });
         call(&list.response, "Lesson");
-        let (p, model) = (palette(ui), inks(ui).model);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            key(ui, "mean of a session", |ui, rect| {
-                ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(1.5, p.secondary));
-            });
-            for (words, color) in [("criterion met", p.good), ("attempt", model)] {
-                key(ui, words, |ui, rect| {
-                    ui.painter().circle_filled(rect.center(), MARK, color);
-                });
-            }
-        });
     });
     if chosen.is_some() {
         session.learning.look_at(chosen);
     }
+    let (p, model) = (palette(ui), inks(ui).model);
+    ui.horizontal_wrapped(|ui| {
+        for (words, color) in [("attempt", model), ("criterion met", p.good)] {
+            key(ui, words, |ui, rect| {
+                ui.painter().circle_filled(rect.center(), MARK, color);
+            });
+        }
+        key(ui, "mean of a session", |ui, rect| {
+            ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(1.5, p.secondary));
+        });
+    });
 }
 
-/// A mark and what it means, from the right.
+/// A mark and what it means.
 fn key(ui: &mut Ui, words: &str, mark: impl FnOnce(&Ui, Rect)) {
-    ui.label(theme::caption(ui, words));
     let (rect, _) = ui.allocate_exact_size(vec2(10.0, ROW), Sense::hover());
     mark(ui, rect);
+    ui.label(theme::caption(ui, words));
     ui.add_space(space::S);
 }
 
@@ -286,7 +288,7 @@ fn hints(response: &egui::Response, learned: &Learned, axes: &Axes) {
 }
 
 /// `2026-11-22 19:05 UTC`.
-fn when(attempt: &crate::history::Attempt) -> String {
+fn when(attempt: &Attempt) -> String {
     attempt.began.strftime("%Y-%m-%d %H:%M UTC").to_string()
 }
 
@@ -305,6 +307,11 @@ fn attempts(ui: &mut Ui, session: &mut Session) {
     let p = palette(ui);
     ui.spacing_mut().interact_size.y = ROW;
     let rows = &session.learning.learned.attempts;
+    // In a narrow panel the table is wider than its card.
+    ScrollArea::horizontal().id_salt("table").show(ui, |ui| table(ui, rows, p));
+}
+
+fn table(ui: &mut Ui, rows: &[Attempt], p: &Palette) {
     Grid::new("attempts").num_columns(6).striped(true).spacing(vec2(space::L, space::XS)).show(ui, |ui| {
         for name in ["", "Begun", "Took", "Score", "Criterion", "Recording"] {
             ui.label(theme::caption(ui, name));
