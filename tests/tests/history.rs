@@ -15,7 +15,7 @@ fn history(database: &Path) -> Command {
 /// One line for `--import`.
 fn line(number: usize) -> String {
     let attempt = json!({
-        "trainee": if number % 3 == 0 { "Ada" } else { "Grace" },
+        "trainee": if number.is_multiple_of(3) { "Ada" } else { "Grace" },
         "lesson": "pinch",
         "conditions": { "delay_ms": 0.0, "predicted": false },
         "began": format!("2026-11-22T{:02}:{:02}:{:02}Z", number / 3_600, number / 60 % 60, number % 60),
