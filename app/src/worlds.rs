@@ -2,22 +2,11 @@
 
 use anyhow::Context;
 use haptics::recording::Task;
-use haptics::world::{Shape, World, presets};
+use haptics::world::{Shape, World};
 use std::path::Path;
 
-/// Makes a world.
-pub type Make = fn() -> World;
-
 /// The built-in worlds by name. Each lies as `assets/worlds/NAME.json` in the sources, the same as a user would write it.
-pub const BUILT_IN: [(&str, Make); 7] = [
-    ("stack", presets::stacking),
-    ("crank", presets::crank),
-    ("needle", presets::needle),
-    ("barrel", presets::barrel),
-    ("switch", presets::switch),
-    ("guide", presets::guide),
-    ("table", presets::table),
-];
+pub use haptics::world::presets::BUILT_IN;
 
 /// The world of a file, or the built-in one of that name. A file that is there comes first.
 pub fn find(name: &Path) -> anyhow::Result<World> {
@@ -49,6 +38,7 @@ pub fn lacks(world: &World, task: Task) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use haptics::world::presets;
     use std::path::PathBuf;
 
     fn file_of(name: &str) -> PathBuf {

@@ -6,8 +6,10 @@
 
 pub mod course;
 pub mod definitions;
+pub mod figures;
 pub mod hand;
 pub mod progress;
+pub mod lesson;
 pub mod smoothness;
 
 use crate::estimate::EstimateError;
@@ -41,7 +43,7 @@ pub struct Measures {
 /// Without positions, or without a clock.
 pub fn measure(recording: &Recording, world: Option<&World>, limit_n: f64) -> Result<Measures, EstimateError> {
     let hand = hand::measure(recording, limit_n)?;
-    let course = world.map(|world| course::follow(world, recording)).transpose()?;
+    let course = world.map(|world| course::follow(world, recording, |_, _| {})).transpose()?;
     Ok(Measures { version: VERSION, hand, course })
 }
 

@@ -1,6 +1,7 @@
 //! A scripted operator that does the tasks like a person: reaches in minimum jerk, pinches with a spare margin, trembles,
 //! lets go. It sees the world as a person sees the screen, and drives the fingers through the arm's impedance.
 
+mod acts;
 mod builder;
 mod captured;
 mod eye;
@@ -12,6 +13,7 @@ mod skill;
 #[cfg(test)]
 mod tests;
 
+pub use acts::Act;
 pub use plan::Goal as HandGoal;
 pub use route::Route;
 pub use skill::{Mistake, Skill};
@@ -53,6 +55,7 @@ pub struct ScriptedOperator {
     eye: Option<Eye>,
     /// Present: each movement waits until the one before was seen to end.
     patience: Option<Patience>,
+    acts_begin_s: Vec<f64>,
     position: [Vec2; 2],
     velocity: [Vec2; 2],
     now_s: f64,
@@ -77,6 +80,20 @@ impl ScriptedOperator {
         Self::going(Way::Planned(Box::new(plan)), state, skill, &mut rng)
     }
 
+    /// An operator that does what it is told, act by act; acts that the world has nothing for are left out.
+    pub fn doing(world: &World, state: &State, acts: &[Act], skill: Skill, seed: u64) -> Self {
+        let mut rng = StdRng::seed_from_u64(seed);
+        let habits = [0x0b5e_55ed, 0x51ee_b1e5].map(|salt: u64| StdRng::seed_from_u64(seed ^ salt));
+        let start = Goal::from_tips(state.input.tip_in_world);
+        let (plan, begin_s) = Plan::of_acts(world, state, start, skill, acts, &mut rng, habits);
+        Self { acts_begin_s: begin_s, ..Self::going(Way::Planned(Box::new(plan)), state, skill, &mut rng) }
+    }
+
+    /// When each act begins, s, as planned at first; empty for an operator that was not told any.
+    pub fn acts_begin_s(&self) -> &[f64] {
+        &self.acts_begin_s
+    }
+
     /// An operator that follows a route, whatever stands there.
     pub fn on_route(state: &State, route: Route, skill: Skill, seed: u64) -> Self {
         Self::going(Way::Told(route), state, skill, &mut StdRng::seed_from_u64(seed))
@@ -98,6 +115,7 @@ impl ScriptedOperator {
             pinch_wander: Wander::new(skill.wander, rng),
             eye: skill.reaction_s.map(Eye::new),
             patience: None,
+            acts_begin_s: Vec::new(),
             position: state.input.tip_in_world,
             velocity: [Vec2::zeros(); 2],
             now_s: 0.0,

@@ -7,6 +7,7 @@ mod collide;
 pub mod contact;
 mod driven;
 mod energy;
+mod face;
 mod fixed;
 mod fixture;
 mod guide;

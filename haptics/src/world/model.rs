@@ -84,6 +84,9 @@ pub struct Pad {
     pub shear_stiffness_n_m: f64,
     /// Tangential damping of the sticking pad, N s/m, ≥ 0.
     pub shear_damping_n_s_m: f64,
+    /// Height of the pad's flat face, m, ≥ 0: it keeps what it presses on from turning. 0: it touches at a point.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub face_m: f64,
     /// A slip of what is held, at a given time and over a given way; absent: it slips when friction says so.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slip: Option<FingertipSlip>,
@@ -99,6 +102,7 @@ impl Default for Pad {
             damping_n_s_m: 1.5,
             shear_stiffness_n_m: 1500.0,
             shear_damping_n_s_m: 1.5,
+            face_m: 0.0,
             slip: None,
         }
     }
@@ -297,6 +301,7 @@ impl World {
         }
         positive("pad", "stiffness_n_m", self.pad.stiffness_n_m)?;
         positive("pad", "thickness_m", self.pad.thickness_m)?;
+        not_negative("pad", "face_m", self.pad.face_m)?;
         positive("pad", "shear_stiffness_n_m", self.pad.shear_stiffness_n_m)?;
         not_negative("pad", "damping_n_s_m", self.pad.damping_n_s_m)?;
         not_negative("pad", "shear_damping_n_s_m", self.pad.shear_damping_n_s_m)?;

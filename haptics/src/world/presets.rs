@@ -48,6 +48,25 @@ pub fn all() -> [World; 7] {
     [stacking(), crank(), needle(), barrel(), switch(), guide(), table()]
 }
 
+/// Makes a world.
+pub type Make = fn() -> World;
+
+/// The built-in worlds by name.
+pub const BUILT_IN: [(&str, Make); 7] = [
+    ("stack", stacking),
+    ("crank", crank),
+    ("needle", needle),
+    ("barrel", barrel),
+    ("switch", switch),
+    ("guide", guide),
+    ("table", table),
+];
+
+/// The built-in world of a name.
+pub fn named(name: &str) -> Option<World> {
+    BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, make)| make())
+}
+
 /// A bare table: somewhere to try the fingers.
 pub fn table() -> World {
     World::empty("Empty table")

@@ -211,7 +211,14 @@ fn press_all(
             _ => {}
         }
         match touch.contact.by {
-            Surface::Block(index) => load(&mut solids[usize::from(index)], touch.arm_by_m, -force),
+            Surface::Block(index) => {
+                let index = usize::from(index);
+                load(&mut solids[index], touch.arm_by_m, -force);
+                if world.pad.face_m > 0.0 && matches!(touch.contact.on, Surface::Finger(_)) {
+                    solids[index].moment_n_m +=
+                        world.pad.righting_n_m(&touch.contact, &solids[index].rect, &bodies[index]);
+                }
+            }
             Surface::Handle => on_handle -= force,
             Surface::Knob => on_knob -= force,
             _ => {}

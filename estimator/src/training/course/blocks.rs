@@ -63,6 +63,10 @@ pub struct BlockMeasures {
     pub carried_m: Vec<f64>,
     /// Straight way from where it was first taken to where it was last let go, m.
     pub displaced_m: Vec<f64>,
+    /// Content that has run out of all of them, kg.
+    pub spilled_kg: f64,
+    /// Walls that broke.
+    pub broken: usize,
     /// Since when everything has been resting, with nothing held, s; absent while something moves or is held at the end.
     pub at_rest_since_s: Option<f64>,
 }
@@ -106,6 +110,8 @@ impl Watch {
         let still = state.bodies.iter().all(|b| b.velocity_m_s.norm() < RESTING_M_S);
         let free = self.blocks.iter().all(|b| !b.held);
         self.found.at_rest_since_s = (still && free).then(|| self.found.at_rest_since_s.unwrap_or(time_s));
+        self.found.spilled_kg = state.bodies.iter().map(|b| b.leaked_kg).sum();
+        self.found.broken = state.bodies.iter().filter(|b| b.broken).count();
         self.end.clear();
         let contacts = |index: usize| state.contacts.iter().filter(move |c| touches(c, index)).copied().collect();
         self.end.extend(state.bodies.iter().enumerate().map(|(k, b)| (b.center_m, b.angle_rad, contacts(k))));

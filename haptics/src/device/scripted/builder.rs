@@ -1,6 +1,6 @@
 //! Makes the movements of a performance: reaches with their misses and corrections, carries, turns.
 
-use super::plan::{Goal, Job, Move, Phase};
+use super::plan::{Goal, Job, Move, Phase, Spin};
 use super::{Mistake, Skill};
 use crate::Vec2;
 use crate::world::{State, World};
@@ -14,6 +14,8 @@ const CLEARANCE_M: f64 = 0.006;
 const CARRY_HEIGHT_M: f64 = 0.012;
 /// Share of the reaction time that passes between a miss and its correction: the eye leads the hand.
 const CORRECTION_LAG: f64 = 0.6;
+/// Pinch on something heavy, relative to the least that holds it: nobody's pinch is steady.
+pub(super) const SPARE_PINCH: f64 = 2.2;
 /// A crushing pinch, relative to the usual one.
 const CRUSH: f64 = 3.5;
 /// A pinch that loosens: relative to the least that holds, at the beginning and at the end of the lift.
@@ -27,6 +29,7 @@ pub(super) struct Builder<'a> {
     rng: &'a mut StdRng,
     habits: &'a mut StdRng,
     holds: Option<usize>,
+    placed: Option<usize>,
     /// Whether the list may grow: only before the servo runs.
     pub growing: bool,
 }
@@ -41,7 +44,7 @@ impl<'a> Builder<'a> {
         rng: &'a mut StdRng,
         habits: &'a mut StdRng,
     ) -> Self {
-        Self { phases, now_s, at, skill, rng, habits, holds: None, growing: false }
+        Self { phases, now_s, at, skill, rng, habits, holds: None, placed: None, growing: false }
     }
 
     /// Where the hand will be when the movements so far are done.
@@ -65,10 +68,14 @@ impl<'a> Builder<'a> {
 
     fn push(&mut self, usual_s: f64, movement: Move) {
         let span_s = self.vary(usual_s * self.skill.pace, 0.2);
+        self.push_for(span_s, movement);
+    }
+
+    fn push_for(&mut self, span_s: f64, movement: Move) {
         // In the servo the list has the room it was made with; beyond it the performance ends early.
         if self.growing || self.phases.len() < self.phases.capacity() {
             let end_s = self.now_s + span_s;
-            self.phases.push(Phase { start_s: self.now_s, end_s, movement, holds: self.holds });
+            self.phases.push(Phase { start_s: self.now_s, end_s, movement, holds: self.holds, placed: self.placed });
             self.now_s = end_s;
         }
     }
@@ -80,6 +87,32 @@ impl<'a> Builder<'a> {
 
     pub fn wait(&mut self, usual_s: f64) {
         self.reach(usual_s, self.at);
+    }
+
+    /// When the movements so far are done, s.
+    pub(super) fn now_s(&self) -> f64 {
+        self.now_s
+    }
+
+    /// Stays as it is for a time that everybody keeps to, because it was asked for, and a little longer.
+    pub(super) fn hold(&mut self, seconds: f64) {
+        let extra_s = self.vary(0.3 * self.skill.pace, 0.2);
+        self.push_for(seconds + extra_s, Move::Reach { from: self.at, to: self.at });
+    }
+
+    /// How far beside its goal this operator ends, m, as skill has it: nothing for a steady hand.
+    pub(super) fn scatter_m(&mut self) -> f64 {
+        if self.skill.aim_error_m == 0.0 {
+            return 0.0;
+        }
+        let normal: f64 = StandardNormal.sample(self.habits);
+        0.4 * self.skill.aim_error_m * normal
+    }
+
+    /// Turns at an even speed; the hand ends at `end`.
+    pub(super) fn turn_evenly(&mut self, spin: Spin, span_s: f64, end: Vec2) {
+        self.push_for(span_s, Move::Spin(spin));
+        self.at = Goal { center_m: end, ..spin.grasp };
     }
 
     /// A reach through the air: it ends beside its goal, mostly beyond it, and is corrected once that has been seen.
@@ -170,7 +203,8 @@ impl<'a> Builder<'a> {
         let around = Goal { center_m: from + Vec2::new(0.0, grasp_dy), ..open };
         self.reach(0.7, around);
         self.wait(0.2);
-        let usual_n = self.choose_pinch(self.skill.pinch_n, 0.25);
+        let least_n = if job.hold_s.is_some() { SPARE_PINCH * job.least_pinch_n } else { 0.0 };
+        let usual_n = self.choose_pinch(self.skill.pinch_n.max(least_n), 0.25);
         let (pinch_n, lifted_n) = match job.mistake {
             Some(Mistake::Crush) => (CRUSH * usual_n, CRUSH * usual_n),
             Some(Mistake::WeakPinch) => (LOOSENING[0] * job.least_pinch_n, LOOSENING[1] * job.least_pinch_n),
@@ -187,6 +221,9 @@ impl<'a> Builder<'a> {
         let carried = Goal { pinch_n: lifted_n, ..up(clear_y, &held) };
         self.reach(0.8, carried);
         self.wait(0.3);
+        if let Some(hold_s) = job.hold_s.filter(|hold_s| *hold_s > 0.0) {
+            self.hold(hold_s);
+        }
         let above = Goal { center_m: Vec2::new(job.to_m.x, clear_y), ..carried };
         if job.mistake == Some(Mistake::EarlyRelease) {
             self.let_go_on_the_way(above, width_m);
@@ -203,7 +240,9 @@ impl<'a> Builder<'a> {
         let released = Goal { aperture_m: width_m + CLEARANCE_M, pinch_n: 0.0, ..placed };
         self.reach(0.5, released);
         self.wait(0.2);
+        self.placed = Some(index);
         self.reach(0.7, up(clear_y, &released));
+        self.placed = None;
     }
 
     /// How far beside its place a block is put, m: enough to be seen, not enough to fall.

@@ -1,6 +1,7 @@
 //! What the scripted operator wants to do when: a list of minimum-jerk movements (Flash & Hogan 1985), made ahead, and made anew
 //! from where the hand is when the operator sees that a block was lost.
 
+use super::acts::{Act, Places};
 use super::builder::Builder;
 use super::eye::Frame;
 use super::{Mistake, Skill};
@@ -10,6 +11,8 @@ use rand::rngs::StdRng;
 
 /// A block that is farther from the fingers than this is not held any more, m.
 const LOST_M: f64 = 0.005;
+/// A block that stands farther from its place than this is put there again, m.
+const MISPLACED_M: f64 = 0.0025;
 /// After so many failures with one block the operator goes on to the next.
 const MOST_ATTEMPTS: u8 = 4;
 /// Movements that one carry takes at the most, with its corrections.
@@ -48,6 +51,26 @@ pub(super) enum Move {
     Reach { from: Goal, to: Goal },
     /// About a centre, in minimum jerk of the angle, pulling or pushing along the arm.
     Turn { center_m: Vec2, radius_m: f64, from_rad: f64, to_rad: f64, pull_m: f64, grasp: Goal },
+    /// About a centre at an even speed.
+    Spin(Spin),
+}
+
+/// A turn at an even speed, as far as a hand can.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spin {
+    pub center_m: Vec2,
+    pub radius_m: f64,
+    pub from_rad: f64,
+    pub to_rad: f64,
+    /// Time to come to its speed, and to leave it, s.
+    pub ramp_s: f64,
+    /// How far off the circle the hand pulls, m.
+    pub pull_m: f64,
+    /// Modulation of the speed by each of the waves, relative.
+    pub uneven: f64,
+    /// Frequency, Hz, and phase of what the speed varies with.
+    pub waves: [(f64, f64); 2],
+    pub grasp: Goal,
 }
 
 impl Move {
@@ -75,6 +98,8 @@ pub(super) struct Phase {
     pub movement: Move,
     /// The job whose block should be between the fingers meanwhile.
     pub holds: Option<usize>,
+    /// The job whose block has just been put down.
+    pub placed: Option<usize>,
 }
 
 /// One block to carry.
@@ -90,6 +115,8 @@ pub(super) struct Job {
     pub width_m: f64,
     /// Least pinch that holds it, N per finger.
     pub least_pinch_n: f64,
+    /// How long it is held at that height, s, beside the usual rest, where somebody told that; absent where nobody told anything.
+    pub hold_s: Option<f64>,
     /// What goes wrong with it.
     pub mistake: Option<Mistake>,
     attempts: u8,
@@ -99,7 +126,7 @@ impl Job {
     pub fn new(world: &World, block: usize, to_m: Vec2, clear_y_m: f64) -> Self {
         let shape = &world.blocks[block];
         let least_pinch_n = 0.5 * shape.mass_kg * world.gravity_m_s2 / shape.finger_friction.max(0.05);
-        Self { block, to_m, clear_y_m, width_m: shape.width_m, least_pinch_n, mistake: None, attempts: 0 }
+        Self { block, to_m, clear_y_m, width_m: shape.width_m, least_pinch_n, hold_s: None, mistake: None, attempts: 0 }
     }
 }
 
@@ -135,7 +162,7 @@ impl Plan {
         } else if world.membrane.is_some() {
             builder.pierce_sheet(world, state, mistakes);
         } else if world.switch.is_some() {
-            builder.throw_switch(world, state);
+            builder.throw_switch(world, state, 6);
         } else if world.blocks.iter().any(|b| b.shape == Shape::Barrel) {
             builder.examine_barrel(world, state, mistakes);
         } else if world.blocks.is_empty() {
@@ -148,9 +175,39 @@ impl Plan {
             }
         }
         builder.wait(1.0);
-        // Room for every attempt that may follow: nothing grows in the tick.
-        plan.phases.reserve(plan.jobs.len() * usize::from(MOST_ATTEMPTS) * PER_CARRY);
-        plan
+        plan.with_room()
+    }
+
+    /// Does what it is told, act by act; what the world lacks is left out.
+    pub fn of_acts(
+        world: &World,
+        state: &State,
+        start: Goal,
+        skill: Skill,
+        acts: &[Act],
+        rng: &mut StdRng,
+        habits: [StdRng; 2],
+    ) -> (Self, Vec<f64>) {
+        let mut plan = Self { phases: Vec::new(), current: 0, jobs: Vec::new(), retry: None, skill, habits };
+        let mut builder = Builder::new(&mut plan.phases, 0.0, start, skill, rng, &mut plan.habits[0]);
+        builder.growing = true;
+        builder.wait(0.5);
+        let mut places = Places::new(world, state);
+        let mut begin_s = Vec::with_capacity(acts.len());
+        for act in acts {
+            begin_s.push(builder.now_s());
+            if act.lacks(world).is_none() && act.wrong().is_none() {
+                builder.act(act, &mut places, &mut plan.jobs);
+            }
+        }
+        builder.wait(1.0);
+        (plan.with_room(), begin_s)
+    }
+
+    /// Room for every attempt that may follow: nothing grows in the tick.
+    fn with_room(mut self) -> Self {
+        self.phases.reserve(self.jobs.len() * usize::from(MOST_ATTEMPTS) * PER_CARRY);
+        self
     }
 
     /// Acts on what was seen of the world (that the jobs are about) one reaction time ago: lost blocks are fetched again.
@@ -165,7 +222,24 @@ impl Plan {
             && (center_m - seen.hand_m).norm() > LOST_M
         {
             self.stop_and_open(job, now_s);
+        } else if let Some(job) = self.phase_at(seen.time_s).and_then(|phase| phase.placed)
+            && self.misses(job, seen)
+        {
+            self.stop_and_open(job, now_s);
         }
+    }
+
+    /// True when a block that was told to go somewhere is seen to stand elsewhere, and has not moved since the last attempt began.
+    fn misses(&self, job: usize, seen: &Frame) -> bool {
+        let Job { block, to_m, hold_s, attempts, .. } = self.jobs[job];
+        let begun_again = self.phases[..=self.current].iter().any(|phase| phase.holds.is_some_and(|held| held > job));
+        hold_s.is_some()
+            && attempts + 1 < MOST_ATTEMPTS
+            && !begun_again
+            && seen
+                .bodies
+                .get(block)
+                .is_some_and(|(at, _)| (at.x - to_m.x).abs() > MISPLACED_M || (at.y - to_m.y).abs() > 2.0 * MISPLACED_M)
     }
 
     /// True while a lost block has not been fetched yet: there is more to come than the list says.
@@ -174,8 +248,11 @@ impl Plan {
     }
 
     fn holding(&self, time_s: f64) -> Option<usize> {
-        let upto = &self.phases[..=self.current];
-        upto.iter().rev().find(|phase| phase.start_s <= time_s)?.holds
+        self.phase_at(time_s)?.holds
+    }
+
+    fn phase_at(&self, time_s: f64) -> Option<&Phase> {
+        self.phases[..=self.current].iter().rev().find(|phase| phase.start_s <= time_s)
     }
 
     /// Breaks off, opens the fingers, goes up out of the way and waits for things to come to rest.
@@ -251,6 +328,7 @@ impl Plan {
                 let rates = Goal { center_m: Vec2::new(-sin, cos) * speed, aperture_m: 0.0, pinch_n: 0.0 };
                 (Goal { center_m: center, ..grasp }, rates)
             }
+            Move::Spin(spin) => spin.goal(now_s - phase.start_s, span_s),
         }
     }
 }

@@ -295,3 +295,67 @@ fn throws_the_switch_over_and_back() {
         assert_eq!(throws, 6, "seed {seed}");
     }
 }
+
+#[test]
+fn told_acts_are_done_in_the_world_and_what_it_lacks_is_said() {
+    let mut world = presets::table();
+    world.pad.face_m = 0.016;
+    world.blocks = vec![crate::world::Block::upright("block", 0.03, 0.016, 0.016, 0.0, -0.125)];
+    let lift = Act::Lift { block: "block".into(), height_m: 0.015, seconds: 1.0 };
+    let carry = Act::Carry { block: "block".into(), x_m: 0.012, on: None };
+    let shown = |acts: &[Act]| {
+        let mut state = State::resting(&world);
+        let mut operator = ScriptedOperator::doing(&world, &state, acts, Skill::expert(), 5);
+        let (mut highest_m, mut up_s) = (f64::MIN, 0.0);
+        while !operator.finished() {
+            operator.see(&world, &state);
+            let sample = operator.exchange(&Command { force_n: state.tip_force_n.map(|f| -f) }, DT);
+            step(
+                &world,
+                &mut state,
+                &Input { tip_in_world: sample.tip_in_world, tip_velocity: sample.tip_velocity },
+                DT,
+            );
+            let above_m = state.bodies[0].center_m.y - world.blocks[0].start.center_m.y;
+            highest_m = f64::max(highest_m, above_m);
+            up_s += if above_m > 0.013 { DT } else { 0.0 };
+        }
+        (state, highest_m, up_s, operator.acts_begin_s().to_vec())
+    };
+    let (state, highest_m, up_s, begins_s) = shown(&[lift.clone(), carry.clone()]);
+    assert!(highest_m > 0.014 && up_s > 1.0, "{highest_m} m, {up_s} s");
+    assert!((state.bodies[0].center_m.x - 0.012).abs() < 0.003, "{:?}", state.bodies[0].center_m);
+    assert!(begins_s.len() == 2 && begins_s[1] > begins_s[0] + 3.0, "{begins_s:?}");
+    let turn = Act::Turn { turns: 1.0, turn_s: 2.0 };
+    assert!([&lift, &carry].iter().all(|act| act.lacks(&world).is_none() && act.wrong().is_none()));
+    assert_eq!(turn.lacks(&world).as_deref(), Some("there is no crank"));
+    let unknown = Act::Carry { block: "block".into(), x_m: 0.0, on: Some("wall".into()) };
+    assert!(unknown.lacks(&world).is_some_and(|why| why.contains("wall")));
+    assert!(Act::Press { force_n: f64::NAN, seconds: 1.0 }.wrong().is_some());
+    let (untouched, ..) = shown(&[turn]);
+    assert!((untouched.bodies[0].center_m - world.blocks[0].start.center_m).norm() < 1e-3, "left out");
+}
+
+#[test]
+fn an_even_turn_comes_to_its_speed_and_back() {
+    let spin = plan::Spin {
+        center_m: Vec2::zeros(),
+        radius_m: 0.02,
+        from_rad: 1.0,
+        to_rad: 1.0 + 12.0,
+        ramp_s: 0.5,
+        pull_m: 0.0,
+        uneven: 0.0,
+        waves: [(1.0, 0.0); 2],
+        grasp: HandGoal { center_m: Vec2::zeros(), aperture_m: 0.01, pinch_n: 1.0 },
+    };
+    let span_s = 4.5;
+    let at = |t: f64| spin.at(t, span_s);
+    assert!((at(0.0).0 - 1.0).abs() < 1e-12 && (at(span_s).0 - 13.0).abs() < 1e-12 && at(0.0).1.abs() < 1e-12);
+    for k in 1..450 {
+        let t = 0.01 * f64::from(k);
+        let slope = (at(t + 1e-5).0 - at(t - 1e-5).0) / 2e-5;
+        assert!((slope - at(t).1).abs() < 1e-5, "rate at {t} s: {slope} and {}", at(t).1);
+        assert!(!(0.5..=4.0).contains(&t) || (at(t).1 - 3.0).abs() < 1e-9, "even in the middle");
+    }
+}

@@ -1,0 +1,48 @@
+//! What a recording says of the attempt that it is: enough to grade it again from its file alone.
+
+use super::Lesson;
+use crate::estimate::EstimateError;
+use haptics::recording::Recording;
+use serde::{Deserialize, Serialize};
+
+/// The key of a sidecar that holds it.
+pub const SIDECAR_KEY: &str = "lesson";
+
+/// Which attempt a recording is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Attempted {
+    /// The lesson's id.
+    pub id: String,
+    /// Which of the lesson's worlds it was.
+    #[serde(default)]
+    pub variant: usize,
+    /// What the trainee answered, from 0, where there was a question.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub answer: Option<usize>,
+    /// The whole lesson, so that it can be graded where that lesson is not known, or is another one by now.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub definition: Option<Box<Lesson>>,
+}
+
+impl Attempted {
+    /// What a recording says of it; nothing where it is no attempt.
+    ///
+    /// # Errors
+    /// When something stands there that cannot be read.
+    pub fn of(recording: &Recording) -> Result<Option<Self>, EstimateError> {
+        let Some(value) = recording.meta.other.get(SIDECAR_KEY) else { return Ok(None) };
+        serde_json::from_value(value.clone()).map(Some).map_err(|error| {
+            EstimateError::Other(format!("what {} says of its lesson cannot be read: {error}", recording.name))
+        })
+    }
+
+    /// Writes it into a recording's sidecar.
+    pub fn give_to(&self, recording: &mut Recording) {
+        recording.meta.other.insert(SIDECAR_KEY.to_owned(), self.to_json());
+    }
+
+    /// As it stands in a sidecar.
+    pub fn to_json(&self) -> serde_json::Value {
+        serde_json::to_value(self).unwrap_or_default()
+    }
+}

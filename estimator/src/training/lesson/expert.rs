@@ -1,0 +1,102 @@
+//! What experts need for a lesson: mean and spread of each judged measure, without outliers.
+
+use super::grade::{self, badness};
+use super::perform::perform;
+use super::{Attempted, Lesson};
+use crate::estimate::EstimateError;
+use crate::training::figures::figures;
+use haptics::device::Skill;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Attempts that the spread is taken from.
+pub const ATTEMPTS: usize = 40;
+/// Where the seeds of the experts' attempts begin: apart from those that tests draw.
+const FIRST_SEED: u64 = 0x0e59_e127;
+/// What lies farther from the quartiles than so many times their distance is an outlier (Tukey 1977).
+const FENCE: f64 = 1.5;
+
+/// Mean and standard deviation of something.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Spread {
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation.
+    pub sd: f64,
+}
+
+/// What experts need.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Expert {
+    /// Attempts that were completed, of those that were made.
+    pub completed: [usize; 2],
+    /// Version of the measures.
+    pub measures_version: u32,
+    /// By key of the measure.
+    pub measures: BTreeMap<String, Spread>,
+    /// How far the experts' attempts are worse than their own mean ([`grade::badness`]).
+    pub badness: Spread,
+}
+
+/// Lets the scripted expert do a lesson [`ATTEMPTS`] times.
+///
+/// # Errors
+/// When the lesson cannot be done, or when fewer than half of the attempts come to the goal.
+pub fn measure(lesson: &Lesson) -> Result<Expert, EstimateError> {
+    let mut found: Vec<BTreeMap<&'static str, f64>> = Vec::new();
+    for index in 0..ATTEMPTS {
+        let variant = index % lesson.variant_count();
+        let performance = perform(lesson, variant, Skill::expert(), FIRST_SEED + index as u64)?;
+        let answer = lesson.question.as_ref().map(|_| variant);
+        let attempted = Attempted { id: lesson.id.clone(), variant, answer, definition: None };
+        let seen = grade::see(lesson, &attempted, &performance.world, &performance.recording("expert"))?;
+        if seen.completed {
+            let mut all = figures(&seen.measures);
+            all.extend(seen.completed_s.map(|value| ("completed_s", value)));
+            found.push(all);
+        }
+    }
+    if found.len() < ATTEMPTS / 2 {
+        return Err(EstimateError::Other(format!(
+            "the expert reached the goals of `{}` in {} of {ATTEMPTS} attempts only; change its goals or its demonstration",
+            lesson.id,
+            found.len()
+        )));
+    }
+    let mut measures = BTreeMap::new();
+    for judged in &lesson.judged {
+        let values: Vec<f64> = found.iter().filter_map(|f| f.get(judged.measure.as_str()).copied()).collect();
+        let spread = spread_of(&values).ok_or_else(|| {
+            EstimateError::Other(format!("`{}` was not measured in the expert's attempts", judged.measure))
+        })?;
+        measures.insert(judged.measure.clone(), spread);
+    }
+    let completed = [found.len(), ATTEMPTS];
+    let mut expert =
+        Expert { completed, measures_version: crate::training::VERSION, measures, badness: Spread::default() };
+    let bad: Vec<f64> = found.iter().filter_map(|f| badness(lesson, &expert, f)).collect();
+    expert.badness = spread_of(&bad).unwrap_or_default();
+    Ok(expert)
+}
+
+/// Mean and standard deviation of what lies within the fences of the quartiles.
+pub fn spread_of(values: &[f64]) -> Option<Spread> {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    if sorted.len() < 2 {
+        return None;
+    }
+    let quantile = |share: f64| {
+        let place = share * (sorted.len() - 1) as f64;
+        let (below, part) = (place.floor() as usize, place.fract());
+        sorted[below] + part * (sorted[(below + 1).min(sorted.len() - 1)] - sorted[below])
+    };
+    let (first, third) = (quantile(0.25), quantile(0.75));
+    let fence = FENCE * (third - first);
+    let kept: Vec<f64> = sorted.iter().copied().filter(|v| (first - fence..=third + fence).contains(v)).collect();
+    let mean = kept.iter().sum::<f64>() / kept.len() as f64;
+    let square = kept.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (kept.len() - 1).max(1) as f64;
+    Some(Spread { mean, sd: square.sqrt() })
+}

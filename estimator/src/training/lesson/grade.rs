@@ -1,0 +1,201 @@
+//! What an attempt is worth: its measures beside those of experts. Everything comes from the recording, and the same recording gives
+//! the same numbers, to the bit.
+
+use super::expert::Expert;
+use super::{Attempted, Lesson, Progress, advice};
+use crate::estimate::EstimateError;
+use crate::training::course::follow;
+use crate::training::definitions::Definition;
+use crate::training::figures::figures;
+use crate::training::{Measures, VERSION, hand};
+use haptics::recording::Recording;
+use haptics::world::World;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Version of how scores are made of measures. Scores of different versions are not compared.
+pub const GRADE_VERSION: u32 = 1;
+/// A measure that is worse than the experts' mean by this many of their units halves the score.
+const HALVES: f64 = 5.0;
+/// The unit of a measure is the experts' standard deviation, but no less than this share of their mean.
+const LEAST_SHARE: f64 = 0.1;
+/// One measure alone is never worse than this, nor better than that, in units: nothing outweighs everything else.
+const WORST: f64 = 25.0;
+const BEST: f64 = -2.0;
+
+/// A measure of an attempt beside that of experts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Figure {
+    /// Key of its definition.
+    pub measure: String,
+    /// How much it counts.
+    pub weight: f64,
+    /// Its value, in the definition's unit.
+    pub value: f64,
+    /// The experts' mean.
+    pub expert_mean: f64,
+    /// Their standard deviation.
+    pub expert_sd: f64,
+    /// Their mean, worse by one standard deviation: what a proficient attempt keeps.
+    pub criterion: f64,
+    /// Whether it is kept.
+    pub meets_criterion: bool,
+    /// How many units it is worse than the experts' mean; below zero it is better.
+    pub worse_by: f64,
+}
+
+/// A goal, and whether it was reached.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Reached {
+    /// The goal's words.
+    pub says: String,
+    /// Whether it was reached (a rule: kept).
+    pub reached: bool,
+}
+
+/// What an attempt is worth.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Grade {
+    /// [`GRADE_VERSION`].
+    pub version: u32,
+    /// The lesson's id.
+    pub lesson: String,
+    /// Every goal reached, every rule kept, the question answered rightly.
+    pub completed: bool,
+    /// The goals.
+    pub goals: Vec<Reached>,
+    /// The rules.
+    pub rules: Vec<Reached>,
+    /// Whether the answer was right, where there was a question.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub answered_rightly: Option<bool>,
+    /// 100 is the experts' average; absent for an attempt that was not completed.
+    pub score: Option<f64>,
+    /// The score that a proficient attempt reaches: the experts' mean, worse by one standard deviation.
+    pub score_criterion: f64,
+    /// Completed, and the score reaches it.
+    pub meets_criterion: bool,
+    /// What was judged, in the lesson's order.
+    pub figures: Vec<Figure>,
+    /// What to do better next, in one sentence.
+    pub advice: String,
+    /// Everything that was measured.
+    pub measures: Measures,
+    /// From the hand's first motion until the last goal was reached, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub completed_s: Option<f64>,
+}
+
+/// What happened, before it is compared with anything.
+pub struct SeenAttempt {
+    /// Everything that was measured.
+    pub measures: Measures,
+    /// The goals.
+    pub goals: Vec<Reached>,
+    /// The rules.
+    pub rules: Vec<Reached>,
+    /// Whether the answer was right.
+    pub answered_rightly: Option<bool>,
+    /// Everything is as it should be.
+    pub completed: bool,
+    /// From the first motion to the last goal, s.
+    pub completed_s: Option<f64>,
+}
+
+/// Plays a recording through its world and looks at goals, rules and measures.
+///
+/// # Errors
+/// Without two fingers, or without a clock.
+pub fn see(
+    lesson: &Lesson,
+    attempted: &Attempted,
+    world: &World,
+    recording: &Recording,
+) -> Result<SeenAttempt, EstimateError> {
+    let hand = hand::measure(recording, lesson.limit_n)?;
+    let mut progress = Progress::new(lesson, world);
+    let begin_s = recording.time_s.as_ref().and_then(|t| t.first().copied()).unwrap_or(0.0);
+    let course = follow(world, recording, |time_s, state| progress.see(time_s - begin_s, state))?;
+    let goals: Vec<Reached> =
+        progress.standings().map(|(goal, s)| Reached { says: goal.says.clone(), reached: s.reached }).collect();
+    let rules: Vec<Reached> =
+        progress.rules().map(|(rule, kept)| Reached { says: rule.says.clone(), reached: kept }).collect();
+    let answered_rightly = lesson.question.as_ref().map(|_| attempted.answer == Some(attempted.variant));
+    let completed = progress.is_completed() && progress.broken().is_none() && answered_rightly != Some(false);
+    let measures = Measures { version: VERSION, hand, course: Some(course) };
+    Ok(SeenAttempt { measures, goals, rules, answered_rightly, completed, completed_s: progress.completed_s() })
+}
+
+/// Grades an attempt from its recording, in the world that was touched.
+///
+/// # Errors
+/// Without two fingers or a clock, and for a lesson whose experts were not measured.
+pub fn grade(
+    lesson: &Lesson,
+    attempted: &Attempted,
+    world: &World,
+    recording: &Recording,
+) -> Result<Grade, EstimateError> {
+    let expert = lesson.expert.as_ref().ok_or_else(|| {
+        EstimateError::Other(format!("nobody has measured the experts of the lesson `{}` yet", lesson.id))
+    })?;
+    let seen = see(lesson, attempted, world, recording)?;
+    let mut all = figures(&seen.measures);
+    all.extend(seen.completed_s.map(|value| ("completed_s", value)));
+    let figures: Vec<Figure> = lesson.judged.iter().filter_map(|j| figure(j, expert, &all)).collect();
+    let score = badness(lesson, expert, &all).filter(|_| seen.completed).map(score_of);
+    let score_criterion = score_of(expert.badness.mean + expert.badness.sd);
+    let mut grade = Grade {
+        version: GRADE_VERSION,
+        lesson: lesson.id.clone(),
+        completed: seen.completed,
+        goals: seen.goals,
+        rules: seen.rules,
+        answered_rightly: seen.answered_rightly,
+        score,
+        score_criterion,
+        meets_criterion: score.is_some_and(|score| score >= score_criterion),
+        figures,
+        advice: String::new(),
+        measures: seen.measures,
+        completed_s: seen.completed_s,
+    };
+    grade.advice = advice::of(&grade);
+    Ok(grade)
+}
+
+/// 100 for the experts' average; half of it for every [`HALVES`] units that an attempt is worse.
+fn score_of(badness: f64) -> f64 {
+    100.0 * (-badness / HALVES).exp2()
+}
+
+fn figure(judged: &super::Judged, expert: &Expert, all: &BTreeMap<&'static str, f64>) -> Option<Figure> {
+    let definition = Definition::of(&judged.measure)?;
+    let spread = expert.measures.get(&judged.measure)?;
+    let value = *all.get(judged.measure.as_str())?;
+    let sign = if definition.less_is_better? { 1.0 } else { -1.0 };
+    let unit = spread.sd.max(LEAST_SHARE * spread.mean.abs()).max(definition.grain);
+    let criterion = spread.mean + sign * spread.sd;
+    Some(Figure {
+        measure: judged.measure.clone(),
+        weight: judged.weight,
+        value,
+        expert_mean: spread.mean,
+        expert_sd: spread.sd,
+        criterion,
+        meets_criterion: sign * (value - criterion) <= 0.0,
+        worse_by: (sign * (value - spread.mean) / unit).clamp(BEST, WORST),
+    })
+}
+
+/// How many units an attempt is worse than the experts' mean, over all judged measures by their weights; `None` where one was not
+/// measured.
+pub fn badness(lesson: &Lesson, expert: &Expert, all: &BTreeMap<&'static str, f64>) -> Option<f64> {
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for judged in &lesson.judged {
+        let figure = figure(judged, expert, all)?;
+        sum += judged.weight * figure.worse_by;
+        weights += judged.weight;
+    }
+    (weights > 0.0).then(|| sum / weights)
+}

@@ -1,0 +1,110 @@
+//! How far an attempt is, from state to state: the same for a running world and for a recording that is played through it.
+
+use super::goal::{Standing, Watch, is_kept};
+use super::{Goal, Lesson, Rule};
+use haptics::Vec2;
+use haptics::world::{State, World};
+
+/// A hand faster than this has begun, m/s.
+const BEGINS_M_S: f64 = 0.005;
+
+/// What several goals need to know.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seen {
+    /// Something has been touched.
+    pub touched: bool,
+    /// Times the switch went over.
+    pub throws: usize,
+}
+
+/// Watches an attempt.
+pub struct Progress {
+    goals: Vec<(Goal, Watch)>,
+    rules: Vec<(Rule, bool)>,
+    world: World,
+    switch: Option<crate::training::course::SwitchWatch>,
+    seen: Seen,
+    before: Option<(f64, Vec2)>,
+    begun_s: Option<f64>,
+    completed_at_s: Option<f64>,
+    now_s: f64,
+}
+
+impl Progress {
+    /// Nothing seen yet.
+    pub fn new(lesson: &Lesson, world: &World) -> Self {
+        Self {
+            goals: lesson.goals.iter().map(|goal| (goal.clone(), Watch::new())).collect(),
+            rules: lesson.rules.iter().map(|rule| (rule.clone(), true)).collect(),
+            switch: crate::training::course::SwitchWatch::new(world),
+            world: world.clone(),
+            seen: Seen::default(),
+            before: None,
+            begun_s: None,
+            completed_at_s: None,
+            now_s: 0.0,
+        }
+    }
+
+    /// The next state, at its time, s. What comes after the last goal was reached changes nothing but broken rules.
+    pub fn see(&mut self, time_s: f64, state: &State) {
+        let middle = 0.5 * (state.input.tip_in_world[0] + state.input.tip_in_world[1]);
+        let (before_s, before) = self.before.unwrap_or((time_s, middle));
+        let span_s = (time_s - before_s).max(0.0);
+        self.now_s = time_s;
+        // Over 20 ms at least: steps of sensors are no speed.
+        if self.begun_s.is_none() && span_s > 0.0 {
+            let fast = state.input.tip_velocity.iter().any(|v| v.norm() > BEGINS_M_S);
+            let moved = (middle - before).norm() / span_s > BEGINS_M_S;
+            self.begun_s = (fast && moved).then_some(time_s);
+        }
+        self.before = Some((time_s, middle));
+        self.seen.touched |= !state.contacts.is_empty() && state.tip_force_n.iter().any(|f| f.norm() > 0.05);
+        if let Some(watch) = &mut self.switch {
+            watch.see(state);
+            self.seen.throws = watch.found().throws;
+        }
+        for (rule, kept) in &mut self.rules {
+            *kept &= is_kept(&rule.kind, &self.world, state);
+        }
+        if self.completed_at_s.is_some() {
+            return;
+        }
+        for (goal, watch) in &mut self.goals {
+            watch.see(&goal.kind, &self.world, state, span_s, &self.seen);
+        }
+        if self.goals.iter().all(|(_, watch)| watch.standing().reached) {
+            self.completed_at_s = Some(time_s);
+        }
+    }
+
+    /// How each goal stands, in the lesson's order.
+    pub fn standings(&self) -> impl Iterator<Item = (&Goal, Standing)> {
+        self.goals.iter().map(|(goal, watch)| (goal, watch.standing()))
+    }
+
+    /// The rules, and whether each was kept so far.
+    pub fn rules(&self) -> impl Iterator<Item = (&Rule, bool)> {
+        self.rules.iter().map(|(rule, kept)| (rule, *kept))
+    }
+
+    /// True once every goal was reached.
+    pub fn is_completed(&self) -> bool {
+        self.completed_at_s.is_some()
+    }
+
+    /// The rule that was broken, if one was.
+    pub fn broken(&self) -> Option<&Rule> {
+        self.rules.iter().find(|(_, kept)| !kept).map(|(rule, _)| rule)
+    }
+
+    /// From the hand's first motion until the last goal was reached, s.
+    pub fn completed_s(&self) -> Option<f64> {
+        Some(self.completed_at_s? - self.begun_s.unwrap_or(0.0))
+    }
+
+    /// From the hand's first motion until now, or until the last goal was reached, s.
+    pub fn running_s(&self) -> f64 {
+        self.begun_s.map_or(0.0, |begun_s| self.completed_at_s.unwrap_or(self.now_s) - begun_s)
+    }
+}
