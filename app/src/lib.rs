@@ -8,6 +8,7 @@ mod constraint_words;
 pub mod diagnosis_words;
 pub mod experiment;
 pub mod history;
+pub mod lessons;
 pub mod operator;
 pub mod recorder;
 pub mod report;

@@ -5,6 +5,7 @@ use estimator::log;
 use haptics::device::{Device, ScriptedOperator, Skill};
 use haptics::recording::{Meta, Recording};
 use haptics::servo::rate::RateChoice;
+use haptics::servo::recorder::SensorModel;
 use haptics::servo::tap::{TapSource, tap};
 use haptics::servo::{Servo, ServoConfig, Swap, TickRecord};
 use haptics::world::{State, World, presets};
@@ -23,6 +24,7 @@ fn order(folder: &Path, world: &World) -> Order {
         folder,
         world,
         device: Some(device),
+        sensors: SensorModel::TYPICAL,
         seed: 1,
         file_bytes: FILE_BYTES,
         servo: ServoFacts::default(),

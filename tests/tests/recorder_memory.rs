@@ -3,6 +3,7 @@
 use app::recorder::{FILE_BYTES, Order, Recorder, ServoFacts};
 use haptics::device::{ScriptedOperator, Skill};
 use haptics::recording::Meta;
+use haptics::servo::recorder::SensorModel;
 use haptics::servo::safety::Limits;
 use haptics::servo::tap::tap;
 use haptics::servo::{Loop, Swap, TickRecord};
@@ -37,6 +38,7 @@ fn memory_stays_flat_however_long_it_records() {
         folder: folder.path().to_path_buf(),
         world: Arc::new(presets::stacking()),
         device: None,
+        sensors: SensorModel::TYPICAL,
         seed: 1,
         file_bytes: FILE_BYTES,
         servo: ServoFacts::default(),

@@ -12,6 +12,7 @@ mod fit;
 mod gallery;
 mod history;
 mod info;
+mod lessons;
 mod progress;
 mod record;
 mod report;
@@ -64,6 +65,8 @@ enum Command {
     Score(score::Score),
     /// Who practised what, when, and how well; learning curves, and a table for other programs
     History(history::History),
+    /// Lessons: what there is to learn, what their experts need
+    Lessons(lessons::Lessons),
     /// Make a recording from the virtual hand
     Record(record::Record),
     /// A picture without a window
@@ -210,6 +213,7 @@ pub fn main() -> ExitCode {
         }
         Some(Command::Score(args)) => args.run(),
         Some(Command::History(args)) => args.run(),
+        Some(Command::Lessons(args)) => args.run(),
         Some(Command::Record(args)) => args.run(),
         Some(Command::Screenshot(args)) => args.run(),
         Some(Command::Gallery(args)) => args.run(),

@@ -4,8 +4,11 @@ use super::{LogArgs, Output};
 use anyhow::Context as _;
 use clap::Args;
 use estimator::training::course::Course;
-use estimator::training::definitions::ALL;
+use estimator::training::definitions::{ALL, Definition};
+use estimator::training::lesson::advice::shown;
+use estimator::training::lesson::{Attempted, Grade, grade};
 use estimator::training::{Measures, measure};
+use haptics::recording::Recording;
 use haptics::world::World;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -45,6 +48,11 @@ impl Score {
             describe(&measures, &mut text);
             let mut value = serde_json::to_value(&measures)?;
             value["name"] = json!(recording.name);
+            if let (Some(attempted), Some(world)) = (Attempted::of(recording)?, &world) {
+                let grade = grade_of(&attempted, world, recording)?;
+                describe_grade(&grade, &mut text);
+                value["grade"] = serde_json::to_value(&grade)?;
+            }
             all.push(value);
         }
         if world.is_none() {
@@ -77,6 +85,27 @@ impl Score {
         })?;
         Ok(Some(world))
     }
+}
+
+/// An attempt at a lesson is graded by the lesson that travels in it, else by the one of its name.
+fn grade_of(attempted: &Attempted, world: &World, recording: &Recording) -> anyhow::Result<Grade> {
+    let lesson = match &attempted.definition {
+        Some(lesson) => (**lesson).clone(),
+        None => crate::lessons::find(&attempted.id)?,
+    };
+    Ok(grade(&lesson, attempted, world, recording)?)
+}
+
+fn describe_grade(grade: &Grade, text: &mut String) {
+    let score = grade.score.map_or("not completed".to_owned(), |score| format!("{score:.0} of 100"));
+    let lesson = format!("lesson {}", grade.lesson);
+    let _ = writeln!(text, "  {lesson:<34} {score}, proficient from {:.0} on", grade.score_criterion);
+    for figure in &grade.figures {
+        let Some(definition) = Definition::of(&figure.measure) else { continue };
+        let (value, mean) = (shown(figure.value, definition.unit), shown(figure.expert_mean, definition.unit));
+        let _ = writeln!(text, "    {:<32} {value}, experts {mean}", definition.name);
+    }
+    let _ = writeln!(text, "  {}", grade.advice);
 }
 
 fn describe(measures: &Measures, text: &mut String) {

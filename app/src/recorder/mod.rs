@@ -9,9 +9,11 @@ mod work;
 use haptics::device::DeviceSpec;
 use haptics::recording::Meta;
 use haptics::servo::Privileges;
+use haptics::servo::recorder::SensorModel;
 use haptics::servo::tap::{Tap, TapSource};
 use haptics::servo::timing::Timing;
 use haptics::world::World;
+use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::mpsc::{Receiver, channel};
@@ -35,7 +37,7 @@ pub struct ServoFacts {
 }
 
 impl ServoFacts {
-    fn to_json(self) -> serde_json::Value {
+    fn to_json(self) -> Value {
         let Self { timing, privileges } = self;
         serde_json::json!({ "why": timing.rate.sentence(), "timing": timing, "privileges": privileges })
     }
@@ -50,6 +52,8 @@ pub struct Order {
     pub world: Arc<World>,
     /// The device that touches it.
     pub device: Option<DeviceSpec>,
+    /// How the hand's sensors see it.
+    pub sensors: SensorModel,
     /// Draws the sensors' noise.
     pub seed: u64,
     /// A file that has become so large is followed by the next one, bytes ([`FILE_BYTES`]).
@@ -110,6 +114,7 @@ struct Shared {
     wish: AtomicU8,
     status: Mutex<Status>,
     servo: Mutex<ServoFacts>,
+    late: Mutex<Map<String, Value>>,
 }
 
 impl Shared {
@@ -131,6 +136,11 @@ impl Shared {
         let mut status = self.status();
         status.path = Some(path.to_path_buf());
         status.files = files;
+    }
+
+    /// What is stated at the end.
+    fn late(&self) -> Map<String, Value> {
+        self.late.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     fn servo(&self) -> MutexGuard<'_, ServoFacts> {
@@ -160,6 +170,7 @@ impl Recorder {
             wish: AtomicU8::new(Wish::Record as u8),
             status: Mutex::default(),
             servo: Mutex::new(order.servo),
+            late: Mutex::default(),
         });
         let theirs = Arc::clone(&shared);
         let (running, over) = channel::<()>();
@@ -183,6 +194,11 @@ impl Recorder {
     /// Keeps for the end of the file how the servo keeps its time.
     pub fn tell(&self, servo: ServoFacts) {
         *self.shared.servo() = servo;
+    }
+
+    /// Keeps for the end of the file what its sidecar states in addition, or in another way than at the beginning.
+    pub fn state(&self, key: &str, value: Value) {
+        self.shared.late.lock().unwrap_or_else(PoisonError::into_inner).insert(key.to_owned(), value);
     }
 
     /// Ends it: no further tick is taken, the file gets its end in the background.

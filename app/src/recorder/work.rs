@@ -6,7 +6,7 @@ use crate::ui::session::sentence;
 use estimator::log::{Attachment, LogError, McapStream};
 use haptics::recording::Meta;
 use haptics::servo::TickRecord;
-use haptics::servo::recorder::{COLUMNS, Rows, SensorModel, facts};
+use haptics::servo::recorder::{COLUMNS, Rows, facts};
 use haptics::servo::tap::Tap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -37,7 +37,7 @@ pub(super) fn run(tap: Tap, order: &Order, shared: &Shared) {
 
 /// File after file, all of which are in `files`.
 fn record(tap: Tap, order: &Order, shared: &Shared, files: &mut Vec<PathBuf>) -> Result<(), String> {
-    let rows = Rows::new(SensorModel::TYPICAL, order.seed);
+    let rows = Rows::new(order.sensors, order.seed);
     let mut source = Source { tap, shared, rows, held: None, start_s: None, last_s: None, told: Instant::now() };
     loop {
         let mut file = Growing::begin(order, files.len())?;
@@ -96,6 +96,7 @@ impl Growing {
             serde_json::json!({ "ticks": self.stream.rows(), "dropped": status.dropped, "left_out": status.left_out });
         self.meta.other.insert("servo".to_owned(), shared.servo().to_json());
         self.meta.other.insert("recorder".to_owned(), recorder);
+        self.meta.other.extend(shared.late());
         let (stream, meta) = (self.stream, &self.meta);
         let ended = filled.and_then(|full| {
             stream.finish_with(meta).map_err(|error| sentence(&error.to_string()))?;

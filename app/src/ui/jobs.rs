@@ -64,6 +64,10 @@ pub enum JobKind {
     Guide,
     /// Checking a diagnosis on other recordings.
     Check,
+    /// Letting the expert of a lesson do it.
+    Expert,
+    /// Grading an attempt at a lesson.
+    Grade,
     /// Computing curves for plots.
     Curves,
     /// Finding where a recording lies on another one.
@@ -159,6 +163,10 @@ pub enum Outcome {
     Rehearsed(Result<Box<crate::experiment::Rehearsal>, String>),
     /// An experiment for a person, or why it cannot be done.
     Guided(Result<Box<super::guided::Guided>, String>),
+    /// The expert of a lesson has done it.
+    Expert(Result<Box<super::lessons::Trace>, String>),
+    /// An attempt at a lesson was graded.
+    Graded(Result<Box<super::lessons::Debrief>, String>),
     /// The recording of an experiment that a person did, or why there is none.
     Followed(Result<PathBuf, String>),
     /// The recording of an experiment, to be diagnosed with the others.

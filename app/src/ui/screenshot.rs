@@ -63,6 +63,12 @@ pub enum Panel {
     Workbench,
     /// The whole Train workspace.
     Train,
+    /// The list of lessons, in Train.
+    Lessons,
+    /// A lesson that is practised with the mouse, half done.
+    Practice,
+    /// What came of an attempt at a lesson.
+    Debrief,
     /// The whole Devices page.
     Devices,
     /// The whole Diagnose workspace, with its answer and the extended model.
@@ -112,6 +118,9 @@ pub struct PanelInput {
     pub time_s: Option<f64>,
 }
 
+/// How far the practice of the picture is, s.
+const PRACTICE_S: f64 = 7.5;
+
 /// Draws a panel in `size` pixels.
 pub fn panel(input: &PanelInput, panel: Panel, size: [u32; 2], dark: bool) -> anyhow::Result<image::RgbaImage> {
     let session = session_for(input, panel)?;
@@ -133,6 +142,10 @@ pub fn recordings(
 pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Session> {
     let mut session = Session::new();
     session.trainer.clock = Clock::Manual;
+    if matches!(panel, Panel::Lessons | Panel::Practice | Panel::Debrief) {
+        lesson(&mut session, panel)?;
+        return Ok(session);
+    }
     if matches!(panel, Panel::Trainer | Panel::Train | Panel::Devices | Panel::Delay) {
         session.trainer = performing(input, panel).map_err(|problem| anyhow!(problem))?;
         if panel == Panel::Devices {
@@ -202,6 +215,30 @@ pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Se
     let (first, last) = session.prepared().map_or(session.view_s, |prepared| prepared.span());
     session.seek(input.time_s.unwrap_or(first + 0.4 * (last - first)));
     Ok(session)
+}
+
+/// The list of lessons, or one of them with a hand on the mouse.
+fn lesson(session: &mut Session, panel: Panel) -> anyhow::Result<()> {
+    let folder = tempfile::tempdir()?;
+    session.trainer.recordings_folder = Some(folder.path().to_path_buf());
+    session.experiments.scratch = Some(folder);
+    session.workspace = Workspace::Train;
+    session.lessons.shown = true;
+    // Those of whoever makes the picture do not belong into it.
+    session.lessons.folder = Some(PathBuf::new());
+    session.lessons.load();
+    let wanted = session.lessons.all.iter().find(|lesson| lesson.id == "stack-two").cloned();
+    let (Some(lesson), false) = (wanted, panel == Panel::Lessons) else { return Ok(()) };
+    session.open_lesson_now(&lesson);
+    if panel == Panel::Practice {
+        session.practise_lesson();
+        session.follow_expert(PRACTICE_S);
+        return Ok(());
+    }
+    session.test_lesson();
+    session.follow_expert(60.0);
+    session.end_lesson_now(None);
+    Ok(())
 }
 
 /// The video that is named, or that belongs to the log.
@@ -391,6 +428,9 @@ pub(super) fn contents(panel: Panel) -> Contents {
         Panel::Rules
         | Panel::Workbench
         | Panel::Train
+        | Panel::Lessons
+        | Panel::Practice
+        | Panel::Debrief
         | Panel::Devices
         | Panel::Diagnose
         | Panel::Mapping

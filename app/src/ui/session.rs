@@ -6,6 +6,7 @@ use super::experimenting::Experiments;
 pub use super::fit_choice::FitChoice;
 use super::fitting::Refits;
 use super::jobs::{JobKind, Jobs, Outcome, Replayed};
+use super::lessons::Lessons;
 use super::mapping::Mapping;
 use super::plots::PlotChoices;
 use super::prepare::Prepared;
@@ -135,6 +136,8 @@ pub struct Session {
     pub learning: super::learning::Learning,
     /// Experiments that would tell it better.
     pub experiments: Experiments,
+    /// Lessons.
+    pub lessons: Lessons,
     /// What is still missing for the parameters of the fit.
     pub enough: Vec<Enough>,
     /// The time that is looked at.
@@ -301,6 +304,7 @@ impl Session {
         super::recorder::follow(ctx, self);
         self.follow_experiment(ctx);
         self.follow_history();
+        self.follow_lesson(ctx);
         self.note_changes(ctx.input(|i| i.time));
         self.follow_choice(ctx);
         self.follow_what_if(ctx);
@@ -358,6 +362,8 @@ impl Session {
             Outcome::Checked(checked) => self.checked(checked),
             Outcome::Rehearsed(rehearsal) => self.rehearsed(rehearsal),
             Outcome::Guided(guided) => self.guided(guided),
+            Outcome::Expert(trace) => self.expert_did_it(trace),
+            Outcome::Graded(debrief) => self.graded(debrief),
             Outcome::Followed(path) => self.followed(path),
             Outcome::Performed(path) => self.performed(ctx, &path),
             Outcome::SimulatedExtended(replays) => self.diagnosing.replays = replays,

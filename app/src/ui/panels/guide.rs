@@ -2,6 +2,7 @@
 
 use crate::ui::format;
 use crate::ui::guided::{Guided, Phase};
+use crate::ui::lessons;
 use crate::ui::scene::SceneResponse;
 use crate::ui::session::{Session, sentence};
 use crate::ui::theme::{self, palette, space};
@@ -102,28 +103,55 @@ fn recorded(ui: &mut Ui, guided: &Guided, add: &mut bool, begin: &mut bool) {
 pub fn ghost(ui: &Ui, view: &SceneResponse, session: &Session) {
     let Some(guided) = &session.experiments.guided else { return };
     let Some((step, _, goal)) = guided.now(&session.trainer) else { return };
-    let painter = ui.painter().with_clip_rect(view.rect);
-    let (color, halo) = (palette(ui).accent, palette(ui).card);
-    let at = |point: Vec2| on_screen(ui, view, point);
     let now_s = guided.time_s(&session.trainer).unwrap_or_default();
     let ahead = (0..=AHEAD_STEPS).map(|k| {
         let later_s = now_s + AHEAD_S * f64::from(k) / f64::from(AHEAD_STEPS);
-        at(guided.table.route.at(later_s).0.center_m)
+        guided.table.route.at(later_s).0.center_m
     });
-    let ahead: Vec<Pos2> = ahead.collect();
+    let word = if step.holds { "pinch" } else { "open" };
+    rings(ui, view, tips(&goal), &Rings { ahead: ahead.collect(), holds: step.holds, word });
+}
+
+/// The same where an expert's fingers go in a lesson that is practised.
+pub fn expert(ui: &Ui, view: &SceneResponse, session: &Session) {
+    let lessons = &session.lessons;
+    let Some(open) = lessons.open.as_deref().filter(|open| open.phase == lessons::Phase::Practising) else { return };
+    let Some(trace) = open.expert.as_deref().filter(|_| !lessons.ghost_off) else { return };
+    let now_s = open.progress.running_s();
+    let Some(point) = trace.at(now_s).filter(|_| now_s < trace.duration_s()) else { return };
+    let middle = |later_s: f64| trace.at(later_s).map(|p| 0.5 * (p.tips_in_world[0] + p.tips_in_world[1]));
+    let ahead = (0..=AHEAD_STEPS).filter_map(|k| middle(now_s + AHEAD_S * f64::from(k) / f64::from(AHEAD_STEPS)));
+    let holds = point.touches();
+    let word = if holds { "expert presses" } else { "expert" };
+    rings(ui, view, point.tips_in_world, &Rings { ahead: ahead.collect(), holds, word });
+}
+
+/// What stands with two rings.
+struct Rings {
+    /// The way of their middle, m in the world.
+    ahead: Vec<Vec2>,
+    holds: bool,
+    word: &'static str,
+}
+
+fn rings(ui: &Ui, view: &SceneResponse, tips: [Vec2; 2], shown: &Rings) {
+    let painter = ui.painter().with_clip_rect(view.rect);
+    let (color, halo) = (palette(ui).accent, palette(ui).card);
+    let at = |point: Vec2| on_screen(ui, view, point);
+    let ahead: Vec<Pos2> = shown.ahead.iter().map(|point| at(*point)).collect();
     // Legible over bright metal and dark ground alike.
     for (width, color) in [(6.0, halo), (2.5, color)] {
         painter.add(Shape::line(ahead.clone(), Stroke::new(width, color)));
-        for tip in tips(&goal) {
+        for tip in tips {
             painter.circle_stroke(at(tip), GHOST, Stroke::new(width, color));
         }
     }
-    for tip in tips(&goal).into_iter().filter(|_| step.holds) {
+    for tip in tips.into_iter().filter(|_| shown.holds) {
         painter.circle_filled(at(tip), 0.45 * GHOST, color);
     }
-    let word = if step.holds { "pinch" } else { "open" };
-    let text = painter.layout_no_wrap(word.to_owned(), egui::FontId::new(12.0, theme::semibold()), color);
-    let corner = at(goal.center_m) - vec2(0.5 * text.size().x, WORD_ABOVE + 0.5 * text.size().y);
+    let text = painter.layout_no_wrap(shown.word.to_owned(), egui::FontId::new(12.0, theme::semibold()), color);
+    let middle = 0.5 * (tips[0] + tips[1]);
+    let corner = at(middle) - vec2(0.5 * text.size().x, WORD_ABOVE + 0.5 * text.size().y);
     painter.rect_filled(egui::Rect::from_min_size(corner, text.size()).expand2(vec2(7.0, 3.0)), 9, halo);
     painter.galley(corner, text, color);
     ui.ctx().request_repaint();

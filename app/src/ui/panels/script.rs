@@ -10,9 +10,9 @@ use haptics::device::Mistake;
 
 /// What stands in the operator's card while the script moves the fingers.
 pub fn script(ui: &mut Ui, session: &mut Session) {
-    let before = session.trainer.script;
+    let before = session.trainer.script.clone();
     let possible = session.trainer.scene().map(|(_, world)| operator::mistakes_in(world)).unwrap_or_default();
-    let mut wanted = before;
+    let mut wanted = before.clone();
     labelled(ui, "Skill", |ui| level(ui, &mut wanted));
     let none_here = possible.is_empty();
     labelled(ui, "Mistake", |ui| {

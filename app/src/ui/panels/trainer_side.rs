@@ -27,11 +27,23 @@ impl Panel for TrainerSide {
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ScrollArea::vertical().id_salt("trainer side").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
-            super::compare::compare(ui, session);
-            world(ui, session);
-            operator(ui, session);
-            plain_card(ui, "Recording", |ui| recorder::controls(ui, session));
+            let choices = [
+                (false, "Free practice", "Any world, any operator"),
+                (true, "Lessons", "Tasks that are shown, practised and tested"),
+            ];
+            ui.vertical_centered(|ui| segmented(ui, &mut session.lessons.shown, &choices));
+            if session.lessons.shown {
+                super::lessons::side(ui, session);
+            } else {
+                super::compare::compare(ui, session);
+                world(ui, session);
+                operator(ui, session);
+                plain_card(ui, "Recording", |ui| recorder::controls(ui, session));
+            }
             forces(ui, &session.trainer);
+            if session.lessons.shown {
+                return;
+            }
             super::measured::beside(ui, &mut session.trainer);
             super::delay::delay(ui, session);
             super::passivity::passivity(ui, session);

@@ -1,6 +1,6 @@
 //! The virtual world, touched with the mouse.
 
-use super::{Panel, guide, marks, steering};
+use super::{Panel, guide, lessons, marks, steering};
 use crate::ui::scene::{Rig, SceneResponse, Wheel, scene_view};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
@@ -83,6 +83,7 @@ impl Panel for TrainerView {
             }
             marks::flashes(ui, &view, &session.trainer.impacts);
             guide::ghost(ui, &view, session);
+            guide::expert(ui, &view, session);
             if session.trainer.operator == Operator::You && session.trainer.hand != HandDevice::Replay {
                 if let Err(problem) = steering::touches(ui, &view, &mut session.trainer) {
                     session.fail(problem);
@@ -92,11 +93,16 @@ impl Panel for TrainerView {
                     steer(ui, &view, &mut session.trainer, frame_s);
                 }
                 hints(ui, view.rect, &session.trainer.hand);
-                if let Some((_, world)) = session.trainer.scene().filter(|_| session.experiments.guided.is_none()) {
+                if let Some(hint) = lessons::hint(session) {
+                    pill(ui, view.rect, &hint);
+                } else if let Some((_, world)) =
+                    session.trainer.scene().filter(|_| session.experiments.guided.is_none())
+                {
                     pill(ui, view.rect, task_hint(world));
                 }
             } else {
-                pill(ui, view.rect, watching(&session.trainer));
+                let hint = lessons::hint(session);
+                pill(ui, view.rect, hint.as_deref().unwrap_or_else(|| watching(&session.trainer)));
             }
             guide::card(ui, &view, session);
             if let Some(fault) = fault {

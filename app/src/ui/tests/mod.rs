@@ -6,6 +6,7 @@ pub mod diagnose;
 mod experiment;
 mod layouts;
 mod legible;
+mod lessons;
 mod panels;
 mod pictures;
 mod plots;

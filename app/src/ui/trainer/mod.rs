@@ -57,6 +57,16 @@ pub enum Clock {
     Manual,
 }
 
+/// How the sensors of the virtual hand see what is recorded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sensors {
+    /// As good encoders and strain gauges do: to measure objects from.
+    #[default]
+    Usual,
+    /// As it is: to see again what happened.
+    Ideal,
+}
+
 /// Everything behind the trainer's panels.
 #[derive(Default)]
 pub struct Trainer {
@@ -99,6 +109,8 @@ pub struct Trainer {
     /// Worlds by generation of the running engine.
     worlds: Vec<Arc<World>>,
     newest: Option<Snapshot>,
+    /// How the sensors see what is recorded.
+    pub sensors: Sensors,
     /// What recordings state of themselves.
     pub stated: Meta,
     /// Where recordings go; absent: the user's folder for data.
@@ -108,6 +120,8 @@ pub struct Trainer {
     scratch: Vec<TickRecord>,
     recordings_made: usize,
     performances: u64,
+    /// When each act of a told performance begins, s.
+    pub acts_begin_s: Vec<f64>,
     delay: Delay,
     /// What the operator sees over a slow line.
     view: Option<ViewSource>,
@@ -182,6 +196,8 @@ impl Trainer {
                 let operator = self.script.operator(world, state, self.performances);
                 // Over a slow line people move and wait.
                 Ok(Box::new(if self.delay.is_none() { operator } else { operator.waiting() }))
+                self.acts_begin_s = operator.acts_begin_s().to_vec();
+                Ok(Box::new(operator))
             }
         }
     }

@@ -64,6 +64,11 @@ impl Pinch {
         (self.button, self.latched) = (false, false);
     }
 
+    /// How far apart open fingers are, m.
+    pub fn opening_m(&self) -> f64 {
+        self.opening_m
+    }
+
     /// True while the fingers are to be closed.
     pub fn closed(&self) -> bool {
         self.button || self.latched

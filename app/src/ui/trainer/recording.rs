@@ -1,7 +1,8 @@
 //! Recording while training: starting it, following it, ending it. The ticks go to the disk past the window.
 
-use super::{Engine, Trainer};
+use super::{Engine, Sensors, Trainer};
 use crate::recorder::{FILE_BYTES, Order, Recorder, ServoFacts, Status, Stopping, folder};
+use haptics::servo::recorder::SensorModel;
 use std::sync::Arc;
 
 impl Trainer {
@@ -19,12 +20,25 @@ impl Trainer {
         let folder = self.recordings_folder.clone().or_else(folder::of_user).ok_or(
             "The system names no folder for recordings; set HOME or XDG_DATA_HOME, then start the program again.",
         )?;
+        let sensors = match self.sensors {
+            Sensors::Usual => SensorModel::TYPICAL,
+            Sensors::Ideal => SensorModel::IDEAL,
+        };
         self.recordings_made += 1;
         let stated = self.stated.clone();
         let (device, servo, seed) = (self.spec.clone(), self.servo_facts(), self.recordings_made as u64);
-        self.recorder =
-            Some(Recorder::start(&tap, Order { folder, world, device, seed, servo, file_bytes: FILE_BYTES, stated })?);
+        self.recorder = Some(Recorder::start(
+            &tap,
+            Order { folder, world, device, sensors, seed, servo, file_bytes: FILE_BYTES, stated },
+        )?);
         Ok(())
+    }
+
+    /// States something at the end of the running recording.
+    pub fn state_at_end(&mut self, key: &str, value: serde_json::Value) {
+        if let Some(recorder) = &self.recorder {
+            recorder.state(key, value);
+        }
     }
 
     /// True while every tick is kept.

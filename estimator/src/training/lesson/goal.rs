@@ -5,8 +5,12 @@ use haptics::world::{Contact, State, Surface, World};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
+/// What is held for a time is held for so long more by [`Kind::stricter`], s.
+pub(super) const LONGER_S: f64 = 0.15;
 /// What must hold of a place holds for this long before it counts, s.
 const SETTLED_S: f64 = 0.5;
+/// What is to be held for a time may be left for so long, s.
+const GONE_S: f64 = 0.05;
 /// Slower than this a block rests, m/s.
 const RESTING_M_S: f64 = 0.002;
 
@@ -123,6 +127,30 @@ pub enum Forbidden {
     },
 }
 
+impl Kind {
+    /// The same, a little harder to reach: what a window that looks sixty times a second takes for reached is then reached in every
+    /// sample of the recording, too.
+    #[must_use]
+    pub fn stricter(self) -> Self {
+        match self {
+            Self::Press { least_n, most_n, for_s } => {
+                Self::Press { least_n: 1.02 * least_n, most_n: 0.98 * most_n, for_s: for_s + LONGER_S }
+            }
+            Self::Pinch { block, least_n, most_n, for_s } => {
+                Self::Pinch { block, least_n: 1.02 * least_n, most_n: 0.98 * most_n, for_s: for_s + LONGER_S }
+            }
+            Self::HoldUp { block, above_m, for_s } => {
+                Self::HoldUp { block, above_m: 1.02 * above_m, for_s: for_s + LONGER_S }
+            }
+            Self::Stacked { order, within_m } => Self::Stacked { order, within_m: 0.98 * within_m },
+            Self::At { block, x_m, within_m } => Self::At { block, x_m, within_m: 0.98 * within_m },
+            Self::Turned { turns } => Self::Turned { turns: 1.005 * turns },
+            Self::CableTaut { block, for_s } => Self::CableTaut { block, for_s: for_s + LONGER_S },
+            same @ (Self::Pierced { .. } | Self::Thrown { .. } | Self::LetGo) => same,
+        }
+    }
+}
+
 /// A name in a goal that the world has nothing for; `None` when all is there.
 pub(super) fn lacks(kind: &Kind, world: &World) -> Option<String> {
     let unknown = |name: &String| find(world, name).is_none().then(|| format!("there is no block `{name}`"));
@@ -164,15 +192,25 @@ pub struct Standing {
 /// Watches one goal from state to state.
 #[derive(Clone, Debug)]
 pub(super) struct Watch {
+    settles_s: f64,
     held_s: f64,
+    gone_s: f64,
     count: f64,
     was: bool,
     standing: Standing,
 }
 
 impl Watch {
-    pub(super) fn new() -> Self {
-        Self { held_s: 0.0, count: 0.0, was: false, standing: Standing::default() }
+    /// What must hold of a place counts after `SETTLED_S` and so much more, s.
+    pub(super) fn new(longer_s: f64) -> Self {
+        Self {
+            settles_s: SETTLED_S + longer_s,
+            held_s: 0.0,
+            gone_s: 0.0,
+            count: 0.0,
+            was: false,
+            standing: Standing::default(),
+        }
     }
 
     pub(super) fn standing(&self) -> Standing {
@@ -236,7 +274,13 @@ impl Watch {
 
     /// What is done once it has been held for a time.
     fn hold(&mut self, now: bool, span_s: f64, for_s: f64) {
-        self.held_s = if now { self.held_s + span_s } else { 0.0 };
+        // A tremor that leaves for a moment does not begin the time anew.
+        self.gone_s = if now { 0.0 } else { self.gone_s + span_s };
+        self.held_s = match (now, self.gone_s > GONE_S) {
+            (true, _) => self.held_s + span_s,
+            (false, false) => self.held_s,
+            (false, true) => 0.0,
+        };
         let share = if for_s > 0.0 { (self.held_s / for_s).min(1.0) } else { f64::from(u8::from(now)) };
         self.standing.reached |= share >= 1.0;
         self.standing.share = if self.standing.reached { 1.0 } else { share };
@@ -245,7 +289,8 @@ impl Watch {
     /// What counts only as long as it is so.
     fn settle(&mut self, now: bool, span_s: f64) {
         self.held_s = if now { self.held_s + span_s } else { 0.0 };
-        self.standing = Standing { reached: self.held_s >= SETTLED_S, share: (self.held_s / SETTLED_S).min(1.0) };
+        self.standing =
+            Standing { reached: self.held_s >= self.settles_s, share: (self.held_s / self.settles_s).min(1.0) };
     }
 
     fn counted(&mut self, wanted: f64) {

@@ -1,6 +1,6 @@
 //! How far an attempt is, from state to state: the same for a running world and for a recording that is played through it.
 
-use super::goal::{Standing, Watch, is_kept};
+use super::goal::{LONGER_S, Standing, Watch, is_kept};
 use super::{Goal, Lesson, Rule};
 use haptics::Vec2;
 use haptics::world::{State, World};
@@ -31,10 +31,22 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Nothing seen yet.
+    /// Nothing seen yet, for every sample of a recording.
     pub fn new(lesson: &Lesson, world: &World) -> Self {
+        Self::watching(lesson, world, 0.0)
+    }
+
+    /// Nothing seen yet, for a window that looks sixty times a second: its goals are a little harder to reach, so that what it takes for
+    /// reached is reached in the recording, too.
+    pub fn live(lesson: &Lesson, world: &World) -> Self {
+        let harder = |goal: &Goal| Goal { says: goal.says.clone(), kind: goal.kind.clone().stricter() };
+        let lesson = Lesson { goals: lesson.goals.iter().map(harder).collect(), ..lesson.clone() };
+        Self::watching(&lesson, world, LONGER_S)
+    }
+
+    fn watching(lesson: &Lesson, world: &World, longer_s: f64) -> Self {
         Self {
-            goals: lesson.goals.iter().map(|goal| (goal.clone(), Watch::new())).collect(),
+            goals: lesson.goals.iter().map(|goal| (goal.clone(), Watch::new(longer_s))).collect(),
             rules: lesson.rules.iter().map(|rule| (rule.clone(), true)).collect(),
             switch: crate::training::course::SwitchWatch::new(world),
             world: world.clone(),

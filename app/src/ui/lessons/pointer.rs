@@ -1,0 +1,50 @@
+//! A person's hand on the mouse that does what the expert did, more slowly: for pictures and tests of a manual clock.
+
+use super::Phase;
+use super::trace::Point;
+use crate::ui::session::Session;
+use haptics::Vec2;
+
+/// Pictures a second.
+const FRAME_S: f64 = 1.0 / 60.0;
+/// A mouse is slower than an expert's hand.
+const SLOWER: f64 = 0.6;
+/// A grip that is meant, N.
+const GRIP_N: f64 = 0.15;
+/// A push to the side that is meant, N.
+const PUSH_N: f64 = 0.1;
+
+impl Session {
+    /// Does the open lesson with the mouse for some time, or until its attempt is over.
+    pub fn follow_expert(&mut self, seconds: f64) {
+        let mut left_s = seconds;
+        while left_s > 0.0 {
+            let Some(open) = self.lessons.open.as_ref() else { return };
+            let (Some(trace), true) = (&open.expert, matches!(open.phase, Phase::Practising | Phase::Testing)) else {
+                return;
+            };
+            let now_s = self.trainer.scene().map_or(0.0, |(snapshot, _)| snapshot.state.time_s);
+            let Some(point) = trace.at(SLOWER * now_s).copied() else { return };
+            self.point_as(&point);
+            self.trainer.advance(FRAME_S);
+            if !self.see_lesson() || self.lessons.open.as_ref().is_some_and(|open| open.progress.is_completed()) {
+                return;
+            }
+            left_s -= FRAME_S;
+        }
+    }
+
+    fn point_as(&mut self, point: &Point) {
+        let holds = point.grip_n() > GRIP_N;
+        let pinch = &mut self.trainer.pinch;
+        // Fingers that are farther apart push later.
+        let apart_m = point.tips_in_world[1].x - point.tips_in_world[0].x;
+        let push_n = point.tip_force_n[0].x + point.tip_force_n[1].x;
+        let later_m = if holds || push_n.abs() < PUSH_N { 0.0 } else { 0.5 * (pinch.opening_m() - apart_m).max(0.0) };
+        pinch.move_to(point.wanted_m() + Vec2::new(later_m * push_n.signum(), 0.0));
+        pinch.button = holds;
+        if holds {
+            pinch.strengthen(point.grip_n().max(0.6) - pinch.strength_n());
+        }
+    }
+}

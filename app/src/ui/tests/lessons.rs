@@ -1,0 +1,125 @@
+//! Lessons as a trainee goes through them: shown, practised, tested, told what to do better.
+
+use super::{empty, harness, until};
+use crate::ui::app::App;
+use crate::ui::lessons::{Debrief, Phase};
+use crate::ui::screenshot::{self, Panel};
+use crate::ui::session::{Session, Workspace};
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use std::path::Path;
+use std::sync::Arc;
+
+fn in_train(folder: &Path) -> Session {
+    let mut session = empty();
+    session.workspace = Workspace::Train;
+    session.trainer.recordings_folder = Some(folder.to_path_buf());
+    session.lessons.folder = Some(folder.join("lessons"));
+    session
+}
+
+fn window(session: Session) -> Harness<'static, App> {
+    harness(screenshot::app_for(session, Panel::Train), [1280.0, 900.0], |ui, app: &mut App| app.show(ui))
+}
+
+fn phase(harness: &Harness<'_, App>) -> Option<Phase> {
+    harness.state().session.lessons.open.as_ref().map(|open| open.phase.clone())
+}
+
+fn click(harness: &mut Harness<'_, App>, role: Role, label: &str) {
+    harness.get_by_role_and_label(role, label).click();
+    harness.run_steps(3);
+}
+
+/// Does an open lesson's test with the mouse; the answer to a question is that of the world that stands there.
+fn attempted(session: &mut Session) -> Debrief {
+    session.test_lesson();
+    session.follow_expert(120.0);
+    let open = session.lessons.open.as_ref().expect("open");
+    let answer = open.lesson.question.as_ref().map(|_| open.variant);
+    session.end_lesson_now(answer);
+    match session.lessons.open.as_ref().map(|open| &open.phase) {
+        Some(Phase::Debrief(debrief)) => (**debrief).clone(),
+        other => panic!("{other:?}: {:?}", session.banners),
+    }
+}
+
+#[test]
+fn every_lesson_can_be_completed_with_the_mouse_and_its_file_has_the_same_grade() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = in_train(folder.path());
+    session.lessons.load();
+    assert_eq!((session.lessons.all.len(), session.lessons.problems.len()), (11, 0));
+    let mut missed = Vec::new();
+    for lesson in session.lessons.all.clone() {
+        session.open_lesson_now(&lesson);
+        let debrief = attempted(&mut session);
+        if !debrief.grade.completed {
+            missed.push(format!("{}: {}", lesson.id, debrief.grade.advice));
+        }
+        let (again, _) = crate::ui::lessons::graded_from(&debrief.path, None).expect("graded from its file alone");
+        assert_eq!(again, debrief.grade, "{}", lesson.id);
+        assert!(debrief.trace.duration_s() > 2.0, "{}", lesson.id);
+    }
+    assert!(missed.is_empty(), "{missed:#?}");
+}
+
+#[test]
+fn a_trainee_is_shown_a_lesson_practises_it_and_is_told_how_it_was() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut harness = window(in_train(folder.path()));
+    click(&mut harness, Role::RadioButton, "Lessons");
+    click(&mut harness, Role::Link, "Lift and hold");
+    assert_eq!(phase(&harness), Some(Phase::Brief));
+    until(&mut harness, "the expert", |app| {
+        app.session.lessons.open.as_ref().is_some_and(|open| open.expert.is_some())
+    });
+    click(&mut harness, Role::Button, "Watch");
+    assert!(harness.query_by_label_contains("An expert shows it").is_some());
+    harness.state_mut().session.trainer.advance(30.0);
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("That was all").is_some());
+    click(&mut harness, Role::Button, "Practise");
+    assert_eq!(phase(&harness), Some(Phase::Practising));
+    assert!(!harness.state().session.trainer.is_recording(), "practice is not recorded");
+    harness.state_mut().session.follow_expert(60.0);
+    harness.run_steps(3);
+    assert!(harness.query_all_by_label_contains("All goals reached").next().is_some());
+    click(&mut harness, Role::Button, "Take the test");
+    assert!(harness.state().session.trainer.is_recording());
+    harness.state_mut().session.follow_expert(60.0);
+    until(&mut harness, "the debrief", |app| {
+        app.session.lessons.open.as_ref().is_some_and(|open| matches!(open.phase, Phase::Debrief(_)))
+    });
+    let Some(Phase::Debrief(debrief)) = phase(&harness) else { panic!("no debrief") };
+    assert!(debrief.grade.completed && debrief.path.is_file(), "{:?}", debrief.grade);
+    assert!(harness.query_by_label(&debrief.grade.advice).is_some(), "{}", debrief.grade.advice);
+    assert!(harness.query_by_label("Time to complete").is_some());
+    click(&mut harness, Role::Link, "All lessons");
+    assert_eq!(phase(&harness), None);
+    assert!(harness.query_by_label("Needle through a membrane").is_some());
+}
+
+#[test]
+fn an_attempt_that_is_left_keeps_no_file_and_a_wrong_answer_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = in_train(folder.path());
+    session.lessons.load();
+    let barrel = session.lessons.all.iter().find(|l| l.id == "barrel").map(Arc::clone).expect("a barrel");
+    session.open_lesson_now(&barrel);
+    session.test_lesson();
+    session.follow_expert(3.0);
+    session.close_lesson();
+    assert!(!session.trainer.is_recording() && session.lessons.open.is_none());
+    session.open_lesson_now(&barrel);
+    session.test_lesson();
+    session.follow_expert(120.0);
+    let right = session.lessons.open.as_ref().expect("open").variant;
+    session.end_lesson_now(Some((right + 1) % 4));
+    let Some(Phase::Debrief(debrief)) = session.lessons.open.as_ref().map(|open| open.phase.clone()) else {
+        panic!("no debrief: {:?}", session.banners)
+    };
+    assert_eq!((debrief.grade.completed, debrief.grade.answered_rightly), (false, Some(false)));
+    assert!(debrief.grade.advice.contains("answer was wrong"), "{}", debrief.grade.advice);
+}
