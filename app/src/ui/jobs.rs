@@ -165,6 +165,8 @@ pub enum Outcome {
     Guided(Result<Box<super::guided::Guided>, String>),
     /// The expert of a lesson has done it.
     Expert(Result<Box<super::lessons::Trace>, String>),
+    /// A lesson in the calibrated world is ready.
+    Practise(Result<Box<estimator::training::lesson::Lesson>, String>),
     /// An attempt at a lesson was graded.
     Graded(Result<Box<super::lessons::Debrief>, String>),
     /// The recording of an experiment that a person did, or why there is none.

@@ -364,6 +364,7 @@ impl Session {
             Outcome::Guided(guided) => self.guided(guided),
             Outcome::Expert(trace) => self.expert_did_it(trace),
             Outcome::Graded(debrief) => self.graded(debrief),
+            Outcome::Practise(lesson) => self.lesson_made(ctx, lesson),
             Outcome::Followed(path) => self.followed(path),
             Outcome::Performed(path) => self.performed(ctx, &path),
             Outcome::SimulatedExtended(replays) => self.diagnosing.replays = replays,

@@ -62,6 +62,8 @@ pub enum Action {
     Feel,
     /// Takes the calibrated world into the trainer.
     TrainCalibrated,
+    /// Makes a lesson of it.
+    PractiseOnThis,
     /// Begins or ends a recording.
     Record,
     /// Plays or stops.
@@ -225,6 +227,7 @@ impl Action {
             Self::Extend => "Extend the model",
             Self::Feel => "Feel before and after",
             Self::TrainCalibrated => "Train in the calibrated world",
+            Self::PractiseOnThis => "Practise on this (a lesson in the calibrated world)",
             Self::Record => "Record, or stop",
             Self::Play => "Play or pause",
             Self::ToStart => "To the beginning",
@@ -333,6 +336,7 @@ impl Action {
             | Self::Extend
             | Self::Feel
             | Self::TrainCalibrated
+            | Self::PractiseOnThis
             | Self::Record => Group::Calibrate,
             Self::Play | Self::ToStart | Self::ToEnd | Self::ShowAll => Group::Time,
             Self::Select(_) | Self::GoTo { .. } => Group::Places,
@@ -357,7 +361,7 @@ impl Action {
             Self::AddVideo => recording()
                 .or_else(|| need(session.prepared().is_some_and(|p| !p.clockless()), "This recording has no clock.")),
             Self::SaveWorld => fit(),
-            Self::TrainCalibrated => {
+            Self::TrainCalibrated | Self::PractiseOnThis => {
                 fit().or_else(|| need(session.can_train(), "This world has nothing for the hand."))
             }
             Self::Undo => need(session.can_undo(), "Nothing was changed."),

@@ -6,10 +6,10 @@ mod trace;
 pub use trace::{Trace, trace_of};
 
 use super::jobs::{JobKind, Outcome};
-use super::session::{Session, sentence};
+use super::session::{Session, Workspace, sentence};
 use super::trainer::{Operator, Sensors, Trainer, WorldChoice};
 use crate::recorder::Stopping;
-use estimator::training::lesson::{Attempted, Grade, Lesson, Progress, attempt, grade};
+use estimator::training::lesson::{Attempted, Grade, Lesson, Progress, attempt, expert, grade, practise};
 use haptics::recording::Meta;
 use haptics::world::World;
 use std::path::{Path, PathBuf};
@@ -155,6 +155,29 @@ impl Session {
     pub fn open_lesson_now(&mut self, lesson: &Arc<Lesson>) {
         if self.open_lesson_only(lesson) {
             self.expert_did_it(trace::of_expert(lesson).map(Box::new));
+        }
+    }
+
+    /// Makes a lesson of the calibrated world, with experts of its own; in the background.
+    pub fn practise_on_this(&mut self, ctx: &egui::Context) {
+        let Some(world) = self.analysis.as_ref().map(|analysis| analysis.world.clone()) else { return };
+        self.jobs.start_watched(ctx, JobKind::Expert, "Watching an expert in this world".to_owned(), move |_| {
+            let measured = practise::on(world).and_then(|mut lesson| {
+                lesson.expert = Some(expert::measure(&lesson)?);
+                Ok(Box::new(lesson))
+            });
+            Outcome::Practise(measured.map_err(|error| sentence(&error.to_string())))
+        });
+    }
+
+    /// The lesson in the calibrated world is ready.
+    pub(super) fn lesson_made(&mut self, ctx: &egui::Context, lesson: Result<Box<Lesson>, String>) {
+        match lesson {
+            Ok(lesson) => {
+                self.workspace = Workspace::Train;
+                self.open_lesson(ctx, &Arc::from(lesson));
+            }
+            Err(problem) => self.fail(problem),
         }
     }
 

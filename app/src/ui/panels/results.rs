@@ -202,6 +202,11 @@ fn train_with_it(ui: &mut Ui, session: &mut Session) {
                 session.train_calibrated = true;
                 session.workspace = Workspace::Train;
             }
+            let hint = "A lesson in this world: shown, practised and tested, with experts of its own";
+            if ui.button("Practise on this").on_hover_text(hint).clicked() {
+                let ctx = ui.ctx().clone();
+                session.practise_on_this(&ctx);
+            }
         });
     });
 }

@@ -123,3 +123,24 @@ fn an_attempt_that_is_left_keeps_no_file_and_a_wrong_answer_is_told() {
     assert_eq!((debrief.grade.completed, debrief.grade.answered_rightly), (false, Some(false)));
     assert!(debrief.grade.advice.contains("answer was wrong"), "{}", debrief.grade.advice);
 }
+
+#[test]
+fn a_calibrated_world_becomes_a_lesson() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = super::session(super::STACK.clone());
+    session.trainer.recordings_folder = Some(folder.path().to_path_buf());
+    session.lessons.folder = Some(folder.path().join("lessons"));
+    let mut harness = window(session);
+    let ctx = harness.ctx.clone();
+    harness.state_mut().session.practise_on_this(&ctx);
+    until(&mut harness, "the lesson", |app| {
+        app.session.lessons.open.as_ref().is_some_and(|open| open.expert.is_some())
+    });
+    let session = &mut harness.state_mut().session;
+    assert_eq!(session.workspace, Workspace::Train);
+    let debrief = attempted(session);
+    assert!(debrief.grade.completed, "{:?}", debrief.grade);
+    let measured = session.analysis.as_ref().map(|a| a.world.blocks[0].mass_kg);
+    let touched = session.trainer.standing_world().blocks.first().map(|b| b.mass_kg);
+    assert_eq!(measured, touched, "it is the measured block");
+}

@@ -8,6 +8,7 @@ pub mod goal;
 pub mod grade;
 pub mod library;
 pub mod perform;
+pub mod practise;
 mod progress;
 
 pub use attempt::Attempted;
@@ -168,8 +169,11 @@ impl Lesson {
             json_patch::patch(&mut json, patch)
                 .map_err(|error| wrong(format!("a change of the world fits nothing there: {error}")))?;
         }
-        let world: World =
+        let mut world: World =
             serde_json::from_value(json).map_err(|error| wrong(format!("the changes leave no world: {error}")))?;
+        if matches!(self.world, Base::Named(_)) {
+            world.name.clone_from(&self.title);
+        }
         world.check().map_err(|error| wrong(error.to_string()))?;
         Ok(world)
     }
@@ -189,7 +193,9 @@ impl Lesson {
         if !crate::segment::library::is_name(&self.id) {
             return Err(wrong(format!("`{}` cannot be a lesson's id: use letters, digits, - and _", self.id)));
         }
-        if !(self.limit_n > 0.0 && self.limit_n.is_finite()) || !(self.at_most_s > 0.0 && self.at_most_s <= 3600.0) {
+        let is_possible =
+            self.limit_n > 0.0 && self.limit_n.is_finite() && self.at_most_s > 0.0 && self.at_most_s <= 3600.0;
+        if !is_possible {
             return Err(wrong("`limit_n` must be a force above 0 and `at_most_s` a time up to 3600 s"));
         }
         if self.goals.is_empty() || self.judged.is_empty() || self.demonstration.is_empty() {
@@ -197,7 +203,8 @@ impl Lesson {
         }
         for judged in &self.judged {
             let known = Definition::of(&judged.measure).is_some_and(|d| d.less_is_better.is_some() && d.grain > 0.0);
-            if !known || !(judged.weight > 0.0 && judged.weight.is_finite()) {
+            let counts = judged.weight > 0.0 && judged.weight.is_finite();
+            if !(known && counts) {
                 return Err(wrong(format!(
                     "`{}` with the weight {} cannot be judged: name a measure of docs/training.md that can be better or worse, with a \
                      weight above 0",

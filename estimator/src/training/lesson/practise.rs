@@ -1,0 +1,213 @@
+//! Any world that was measured becomes a lesson: what can be done with the things that stand in it.
+
+use super::{Base, Goal, Judged, Lesson, Rule, SCHEMA, Step, goal};
+use crate::estimate::EstimateError;
+use haptics::device::Act;
+use haptics::world::{Block, Shape, World};
+
+/// The id of such lessons.
+pub const ID: &str = "practise-on-this";
+/// A force of a finger above this is too large, N.
+const LIMIT_N: f64 = 4.0;
+/// Longest attempt, s.
+const AT_MOST_S: f64 = 120.0;
+/// A block that is nearer to the middle than this is carried to the right, m.
+const MIDDLE_M: f64 = 0.008;
+/// Where it is then put, m.
+const ASIDE_M: f64 = 0.016;
+/// Most that blocks may be beside their places, m.
+const WITHIN_M: f64 = 0.005;
+/// Height of a usual pad's face, m.
+const FACE_M: f64 = 0.016;
+
+/// A lesson in a world; its experts are still to be measured ([`super::expert::measure`]).
+///
+/// # Errors
+/// When nothing stands in the world that a lesson is known for.
+pub fn on(mut world: World) -> Result<Lesson, EstimateError> {
+    let (what, goals, demonstration, judged) = task_of(&world).ok_or_else(|| {
+        super::wrong(
+            "no lesson is known for what stands in this world; train in it without one, or write a lesson of your own",
+        )
+    })?;
+    if world.pad.face_m == 0.0 && !world.blocks.is_empty() {
+        // What was measured says nothing of it, and no hand holds anything between two points.
+        world.pad.face_m = FACE_M;
+    }
+    let rules = world.blocks.iter().filter(|b| b.wall.is_some_and(|w| w.strength_n.is_some())).map(whole).collect();
+    let text = format!(
+        "Your own object, as it was measured. {what}\n\nIt weighs, slides and gives as the recording says; what a recording cannot say is as usual.\n\n\
+         *Experts are the scripted operator's: their figures were found in this very world.*"
+    );
+    let lesson = Lesson {
+        schema: SCHEMA,
+        id: ID.to_owned(),
+        title: format!("Practise: {}", world.name),
+        place: 0,
+        goal: what,
+        world: Base::Whole(Box::new(world)),
+        changes: json_patch::Patch::default(),
+        variants: Vec::new(),
+        limit_n: LIMIT_N,
+        at_most_s: AT_MOST_S,
+        goals,
+        rules,
+        question: None,
+        demonstration,
+        judged,
+        expert: None,
+        text,
+    };
+    lesson.check()?;
+    Ok(lesson)
+}
+
+type Parts = (String, Vec<Goal>, Vec<Step>, Vec<Judged>);
+
+fn task_of(world: &World) -> Option<Parts> {
+    let goal = |says: &str, kind| Goal { says: says.to_owned(), kind };
+    let step = |says: &str, act| Step { says: says.to_owned(), act };
+    let let_go = goal("Let go and take the fingers away", goal::Kind::LetGo);
+    let with = |more: &[(&str, f64)]| {
+        let usual = [("completed_s", 3.0), ("rms_force_n", 2.0), ("path_length_m", 1.0)];
+        let all = usual.iter().chain(more);
+        all.map(|(measure, weight)| Judged { measure: (*measure).to_owned(), weight: *weight }).collect::<Vec<_>>()
+    };
+    if world.crank.is_some() {
+        let says = "Turn the crank three times counter-clockwise, at an even speed.";
+        let turned = goal("Three turns counter-clockwise", goal::Kind::Turned { turns: 3.0 });
+        let turn = step("Take the handle and turn it evenly", Act::Turn { turns: 3.15, turn_s: 2.0 });
+        return Some((
+            says.into(),
+            vec![turned, let_go],
+            vec![turn],
+            with(&[("speed_variation", 2.0), ("off_tangent_j", 1.0)]),
+        ));
+    }
+    if world.membrane.is_some() && world.blocks.iter().any(|b| b.shape == Shape::Needle) {
+        let pierced = goal("Pierce the sheet", goal::Kind::Pierced { times: 1 });
+        let act = step("Take the needle and push it through slowly", Act::Pierce { along_m: 0.0, beyond_m: 0.0005 });
+        let more = [("punctures.overshoot_m", 2.0), ("punctures.along_m", 1.0)];
+        return Some((
+            "Pierce the sheet in the middle and stop at once.".into(),
+            vec![pierced],
+            vec![act],
+            with(&more),
+        ));
+    }
+    if world.switch.is_some() {
+        let thrown = goal("Throw the switch four times", goal::Kind::Thrown { times: 4 });
+        let act = step("Push until it snaps, then give way", Act::Throw { times: 4 });
+        let parts = with(&[("stop_force_n", 1.0), ("fell_back", 1.0)]);
+        let judged = parts.into_iter().filter(|j| j.measure != "rms_force_n").collect();
+        return Some(("Throw the switch four times.".into(), vec![thrown, let_go], vec![act], judged));
+    }
+    let carried: Vec<&Block> = world.blocks.iter().filter(|b| b.shape == Shape::Block && b.guide.is_none()).collect();
+    match carried.as_slice() {
+        [] => world.blocks.iter().find(|b| b.shape == Shape::Barrel).map(|barrel| {
+            let kind = goal::Kind::HoldUp { block: barrel.name.clone(), above_m: 0.004, for_s: 2.0 };
+            let act = Act::Lift { block: barrel.name.clone(), height_m: 0.010, seconds: 2.3 };
+            let lifted = goal("Hold it up for 2 s", kind);
+            (
+                "Lift it, hold it still, and put it back.".into(),
+                vec![lifted, let_go],
+                vec![step("Lift it and hold it", act)],
+                with(&[]),
+            )
+        }),
+        [one] => {
+            let kind = goal::Kind::HoldUp { block: one.name.clone(), above_m: 0.010, for_s: 2.0 };
+            let act = Act::Lift { block: one.name.clone(), height_m: 0.015, seconds: 2.3 };
+            let lifted = goal("Hold it 10 mm up for 2 s", kind);
+            let judged = with(&[("drops", 2.0)]);
+            Some((
+                "Lift the block, hold it still, and put it back.".into(),
+                vec![lifted, let_go],
+                vec![step("Lift it and hold it", act)],
+                judged,
+            ))
+        }
+        several => Some(moved(several, let_go, with(&[("drops", 2.0), ("stacks.offset_m", 1.0)]))),
+    }
+}
+
+/// A tower goes to the other side, block by block; blocks that stand apart are put on each other.
+fn moved(blocks: &[&Block], let_go: Goal, judged: Vec<Judged>) -> Parts {
+    let mut order = blocks.to_vec();
+    order.sort_by(|a, b| b.start.center_m.y.total_cmp(&a.start.center_m.y));
+    let base = |b: &Block| b.start.center_m.y - 0.5 * b.height_m;
+    let lowest = order.iter().map(|b| base(b)).fold(f64::INFINITY, f64::min);
+    let are_apart = order.iter().all(|b| base(b) < lowest + 0.5 * b.height_m);
+    let (mut steps, mut names) = (Vec::new(), Vec::new());
+    let aside_m = if are_apart {
+        // The widest carries the others.
+        order.sort_by(|a, b| b.width_m.total_cmp(&a.width_m));
+        order[0].start.center_m.x
+    } else {
+        let from_m = order[0].start.center_m.x;
+        if from_m.abs() < MIDDLE_M { ASIDE_M } else { -from_m }
+    };
+    for (place, block) in order.iter().enumerate() {
+        let on: Option<String> = names.last().cloned();
+        if !(are_apart && place == 0) {
+            let act = Act::Carry { block: block.name.clone(), x_m: aside_m, on: on.clone() };
+            let where_to = on.map_or("to the other side".to_owned(), |on| format!("on {on}"));
+            steps.push(Step { says: format!("{} {where_to}", block.name), act });
+        }
+        names.push(block.name.clone());
+    }
+    let mut goals = Vec::new();
+    if !are_apart {
+        let kind = goal::Kind::At { block: names[0].clone(), x_m: aside_m, within_m: WITHIN_M };
+        let side = if aside_m > 0.0 { "right" } else { "left" };
+        goals.push(Goal {
+            says: format!("{} stands {:.0} mm {side} of the middle", names[0], 1e3 * aside_m.abs()),
+            kind,
+        });
+    }
+    let tower = names.join(", then ");
+    let kind = goal::Kind::Stacked { order: names, within_m: WITHIN_M };
+    goals.push(Goal { says: format!("A tower from below: {tower}"), kind });
+    goals.push(let_go);
+    let what = if are_apart { "Stack the blocks." } else { "Move the tower to the other side, block by block." };
+    (what.to_owned(), goals, steps, judged)
+}
+
+fn whole(block: &Block) -> Rule {
+    let says = format!("Do not break {}", block.name);
+    Rule { says, kind: goal::Forbidden::Break { block: block.name.clone() } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::training::lesson::expert;
+    use haptics::world::presets;
+
+    #[test]
+    fn every_world_that_can_be_touched_becomes_a_lesson_that_an_expert_completes() {
+        for world in [presets::stacking(), presets::crank(), presets::needle(), presets::switch(), presets::barrel()] {
+            let name = world.name.clone();
+            let lesson = on(world).unwrap_or_else(|e| panic!("{name}: {e}"));
+            let expert = expert::measure(&lesson).unwrap_or_else(|e| panic!("{name}: {e}"));
+            assert!(expert.completed[0] + 2 >= expert.completed[1], "{name}: {:?}", expert.completed);
+            assert!(lesson.title.contains(&name));
+        }
+        let why = on(presets::table()).expect_err("nothing stands there").to_string();
+        assert!(why.contains("no lesson is known"), "{why}");
+    }
+
+    #[test]
+    fn blocks_that_stand_apart_are_stacked_on_the_widest() {
+        let mut world = presets::table();
+        world.blocks = vec![
+            Block::upright("small", 0.02, 0.012, 0.012, -0.018, -0.125),
+            Block::upright("wide", 0.04, 0.024, 0.012, 0.012, -0.125),
+        ];
+        let lesson = on(world).expect("a lesson");
+        let kind = lesson.goals.first().map(|g| g.kind.clone());
+        let order = vec!["wide".to_owned(), "small".to_owned()];
+        assert_eq!(kind, Some(goal::Kind::Stacked { order, within_m: WITHIN_M }));
+        assert!(expert::measure(&lesson).is_ok());
+    }
+}
