@@ -15,11 +15,10 @@ pub fn show(ui: &mut Ui, text: &str) {
     let (mut job, mut strong, mut leaning) = (LayoutJob::default(), 0_u32, 0_u32);
     for event in Parser::new(text) {
         match event {
-            Event::Start(Tag::Strong) => strong += 1,
+            Event::Start(Tag::Strong | Tag::Heading { .. }) => strong += 1,
             Event::End(TagEnd::Strong) => strong -= 1,
             Event::Start(Tag::Emphasis) => leaning += 1,
             Event::End(TagEnd::Emphasis) => leaning -= 1,
-            Event::Start(Tag::Heading { .. }) => strong += 1,
             Event::End(TagEnd::Heading(_)) => {
                 strong -= 1;
                 flush(ui, &mut job);

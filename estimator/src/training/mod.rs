@@ -8,8 +8,8 @@ pub mod course;
 pub mod definitions;
 pub mod figures;
 pub mod hand;
-pub mod progress;
 pub mod lesson;
+pub mod progress;
 pub mod smoothness;
 
 use crate::estimate::EstimateError;

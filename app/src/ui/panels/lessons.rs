@@ -26,10 +26,7 @@ enum Wish {
 /// All of it.
 pub fn side(ui: &mut Ui, session: &mut Session) {
     session.lessons.load();
-    let wish = match session.lessons.open.is_some() {
-        true => open(ui, session),
-        false => list(ui, session),
-    };
+    let wish = if session.lessons.open.is_some() { open(ui, session) } else { list(ui, session) };
     let ctx = ui.ctx().clone();
     match wish {
         Some(Wish::Open(lesson)) => session.open_lesson(&ctx, &lesson),
@@ -73,7 +70,7 @@ fn row(ui: &mut Ui, number: usize, lesson: &Lesson) -> bool {
 
 fn open(ui: &mut Ui, session: &mut Session) -> Option<Wish> {
     let mut wish = None;
-    let Some(open) = session.lessons.open.as_deref() else { return None };
+    let open = session.lessons.open.as_deref()?;
     let (trainer, mut ghost_off) = (&session.trainer, session.lessons.ghost_off);
     let all = |ui: &mut Ui| {
         if ui.link("All lessons").clicked() {

@@ -194,10 +194,9 @@ impl Trainer {
             Operator::Scripted => {
                 self.performances += 1;
                 let operator = self.script.operator(world, state, self.performances);
+                self.acts_begin_s = operator.acts_begin_s().to_vec();
                 // Over a slow line people move and wait.
                 Ok(Box::new(if self.delay.is_none() { operator } else { operator.waiting() }))
-                self.acts_begin_s = operator.acts_begin_s().to_vec();
-                Ok(Box::new(operator))
             }
         }
     }

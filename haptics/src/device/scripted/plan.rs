@@ -83,7 +83,8 @@ impl Move {
     fn end(&self) -> Goal {
         match *self {
             Self::Reach { to, .. } => to,
-            Self::Turn { center_m, radius_m, to_rad, grasp, .. } => {
+            Self::Turn { center_m, radius_m, to_rad, grasp, .. }
+            | Self::Spin(Spin { center_m, radius_m, to_rad, grasp, .. }) => {
                 let (sin, cos) = to_rad.sin_cos();
                 Goal { center_m: center_m + Vec2::new(cos, sin) * radius_m, ..grasp }
             }
