@@ -29,7 +29,7 @@ fn attempt(lesson: &Lesson, level: &str, folder: &Path) -> PathBuf {
     let performance = perform(lesson, 0, Skill::from_name(level).expect("a level"), 11).expect("performed");
     let mut recording = performance.recording("attempt");
     let definition = Some(Box::new(lesson.clone()));
-    Attempted { id: lesson.id.clone(), variant: 0, answer: None, definition }.give_to(&mut recording);
+    Attempted { definition, ..Attempted::at(lesson, 0) }.give_to(&mut recording);
     let world = Attachment {
         name: "world.json".to_owned(),
         media_type: "application/json".to_owned(),

@@ -136,9 +136,15 @@ impl Open {
         trainer.acts_begin_s.iter().rposition(|begin_s| *begin_s <= now_s)
     }
 
-    fn attempted(&self, answer: Option<usize>) -> Attempted {
-        let definition = Some(Box::new((*self.lesson).clone()));
-        Attempted { id: self.lesson.id.clone(), variant: self.variant, answer, definition }
+    fn attempted(&self, trainer: &Trainer, answer: Option<usize>) -> Attempted {
+        let line = trainer.delay();
+        Attempted {
+            answer,
+            delay_ms: 1e3 * line.round_trip_s,
+            predicted: line.predicted && !line.is_none(),
+            definition: Some(Box::new((*self.lesson).clone())),
+            ..Attempted::at(&self.lesson, self.variant)
+        }
     }
 }
 
@@ -225,7 +231,7 @@ impl Session {
         self.begin_phase(Phase::Testing, Operator::You);
         let Some(open) = self.lessons.open.as_ref().filter(|open| open.phase == Phase::Testing) else { return };
         let mut stated = Meta::default();
-        stated.other.insert(attempt::SIDECAR_KEY.to_owned(), open.attempted(None).to_json());
+        stated.other.insert(attempt::SIDECAR_KEY.to_owned(), open.attempted(&self.trainer, None).to_json());
         (self.trainer.stated, self.trainer.sensors) = (stated, Sensors::Ideal);
         let begun = self.trainer.start_recording();
         (self.trainer.stated, self.trainer.sensors) = (Meta::default(), Sensors::Usual);
@@ -292,7 +298,7 @@ impl Session {
     pub fn end_lesson(&mut self, ctx: &egui::Context, answer: Option<usize>) {
         let Some(open) = &mut self.lessons.open else { return };
         if answer.is_some() {
-            self.trainer.state_at_end(attempt::SIDECAR_KEY, open.attempted(answer).to_json());
+            self.trainer.state_at_end(attempt::SIDECAR_KEY, open.attempted(&self.trainer, answer).to_json());
         }
         open.phase = Phase::Grading;
         let Some(stopping) = self.trainer.stop_recording() else { return };
@@ -304,7 +310,7 @@ impl Session {
     pub fn end_lesson_now(&mut self, answer: Option<usize>) {
         let Some(open) = &mut self.lessons.open else { return };
         if answer.is_some() {
-            self.trainer.state_at_end(attempt::SIDECAR_KEY, open.attempted(answer).to_json());
+            self.trainer.state_at_end(attempt::SIDECAR_KEY, open.attempted(&self.trainer, answer).to_json());
         }
         let lesson = Arc::clone(&open.lesson);
         let Some(stopping) = self.trainer.stop_recording() else { return };

@@ -41,11 +41,13 @@ impl Panel for TrainerSide {
                 plain_card(ui, "Recording", |ui| recorder::controls(ui, session));
             }
             forces(ui, &session.trainer);
+            if !session.lessons.shown {
+                super::measured::beside(ui, &mut session.trainer);
+            }
+            super::delay::delay(ui, session);
             if session.lessons.shown {
                 return;
             }
-            super::measured::beside(ui, &mut session.trainer);
-            super::delay::delay(ui, session);
             super::passivity::passivity(ui, session);
             super::trainer_timing::timing(ui, &session.trainer);
         });

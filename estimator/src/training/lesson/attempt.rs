@@ -19,12 +19,23 @@ pub struct Attempted {
     /// What the trainee answered, from 0, where there was a question.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub answer: Option<usize>,
+    /// Round trip of the line between hand and world, ms; 0: none.
+    #[serde(default)]
+    pub delay_ms: f64,
+    /// Whether a model of the far world answered at once.
+    #[serde(default)]
+    pub predicted: bool,
     /// The whole lesson, so that it can be graded where that lesson is not known, or is another one by now.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub definition: Option<Box<Lesson>>,
 }
 
 impl Attempted {
+    /// An attempt without a delay, and without an answer so far.
+    pub fn at(lesson: &Lesson, variant: usize) -> Self {
+        Self { id: lesson.id.clone(), variant, answer: None, delay_ms: 0.0, predicted: false, definition: None }
+    }
+
     /// What a recording says of it; nothing where it is no attempt.
     ///
     /// # Errors

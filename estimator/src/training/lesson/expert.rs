@@ -50,7 +50,7 @@ pub fn measure(lesson: &Lesson) -> Result<Expert, EstimateError> {
         let variant = index % lesson.variant_count();
         let performance = perform(lesson, variant, Skill::expert(), FIRST_SEED + index as u64)?;
         let answer = lesson.question.as_ref().map(|_| variant);
-        let attempted = Attempted { id: lesson.id.clone(), variant, answer, definition: None };
+        let attempted = Attempted { answer, ..Attempted::at(lesson, variant) };
         let seen = grade::see(lesson, &attempted, &performance.world, &performance.recording("expert"))?;
         if seen.completed {
             let mut all = figures(&seen.measures);

@@ -19,7 +19,7 @@ fn graded(lesson: &Lesson, level: &str, seed: u64) -> Grade {
     let skill = Skill::from_name(level).expect("a level");
     let performance = perform::perform(lesson, variant, skill, seed).expect("performed");
     let answer = lesson.question.as_ref().map(|_| variant);
-    let attempted = Attempted { id: lesson.id.clone(), variant, answer, definition: None };
+    let attempted = Attempted { answer, ..Attempted::at(lesson, variant) };
     grade(lesson, &attempted, &performance.world, &performance.recording("attempt")).expect("graded")
 }
 
@@ -98,7 +98,7 @@ fn every_built_in_lesson_has_a_text_and_what_experts_need() {
 fn an_attempt_that_stops_half_way_has_no_score_and_is_told_what_is_missing() {
     let lesson = lesson("stack-two");
     let mut performance = perform::perform(&lesson, 0, Skill::expert(), 3).expect("performed");
-    let attempted = Attempted { id: lesson.id.clone(), variant: 0, answer: None, definition: None };
+    let attempted = Attempted::at(&lesson, 0);
     let whole = grade(&lesson, &attempted, &performance.world, &performance.recording("whole")).expect("graded");
     assert!(whole.completed && whole.score.is_some_and(|score| score > 80.0), "{whole:?}");
     performance.ticks.truncate(performance.ticks.len() / 2);
@@ -112,7 +112,7 @@ fn a_crushed_cup_ends_the_attempt_whatever_else_was_reached() {
     let lesson = lesson("pinch");
     let crushing = Skill { pinch_n: 9.0, ..Skill::expert() };
     let performance = perform::perform(&lesson, 0, crushing, 3).expect("performed");
-    let attempted = Attempted { id: lesson.id.clone(), variant: 0, answer: None, definition: None };
+    let attempted = Attempted::at(&lesson, 0);
     let grade = grade(&lesson, &attempted, &performance.world, &performance.recording("crushed")).expect("graded");
     assert!(!grade.completed && grade.score.is_none(), "{grade:?}");
     assert!(grade.rules.iter().any(|rule| !rule.reached) && grade.advice.contains("crush"), "{}", grade.advice);
@@ -124,7 +124,7 @@ fn a_wrong_answer_is_not_completed_and_the_right_one_belongs_to_the_world() {
     let performance = perform::perform(&lesson, 1, Skill::expert(), 3).expect("performed");
     let recording = performance.recording("barrel");
     let of = |answer| {
-        let attempted = Attempted { id: lesson.id.clone(), variant: 1, answer, definition: None };
+        let attempted = Attempted { answer, ..Attempted::at(&lesson, 1) };
         grade(&lesson, &attempted, &performance.world, &recording).expect("graded")
     };
     assert!(of(Some(1)).completed && of(Some(1)).answered_rightly == Some(true));
@@ -140,8 +140,7 @@ fn the_same_attempt_has_the_same_grade_to_the_bit_also_from_its_file() {
     let lesson = lesson("restack");
     let performance = perform::perform(&lesson, 0, Skill::novice(), 8).expect("performed");
     let mut recording = performance.recording("attempt");
-    let attempted =
-        Attempted { id: lesson.id.clone(), variant: 0, answer: None, definition: Some(Box::new(lesson.clone())) };
+    let attempted = Attempted { definition: Some(Box::new(lesson.clone())), ..Attempted::at(&lesson, 0) };
     attempted.give_to(&mut recording);
     let first = grade(&lesson, &attempted, &performance.world, &recording).expect("graded");
     let folder = tempfile::tempdir().expect("a folder");
