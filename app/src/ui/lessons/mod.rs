@@ -1,5 +1,6 @@
 //! Lessons in Train: watching an expert, practising, the test, and what came of it. No drawing here.
 
+mod kept;
 mod pointer;
 mod trace;
 
@@ -319,6 +320,9 @@ impl Session {
 
     /// The attempt was graded.
     pub(super) fn graded(&mut self, debrief: Result<Box<Debrief>, String>) {
+        if let Ok(debrief) = &debrief {
+            self.keep_graded(debrief);
+        }
         let Some(open) = &mut self.lessons.open else { return };
         match debrief {
             Ok(debrief) => open.phase = Phase::Debrief(debrief),

@@ -1,6 +1,7 @@
 //! Lessons beside the trainer's picture: the list, what one is about, and how far an attempt is.
 
 use super::debrief;
+use crate::ui::dock::Pane;
 use crate::ui::lessons::{Open, Phase};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
@@ -21,6 +22,7 @@ enum Wish {
     Back,
     End(Option<usize>),
     OpenLog(std::path::PathBuf),
+    Progress,
 }
 
 /// All of it.
@@ -37,6 +39,7 @@ pub fn side(ui: &mut Ui, session: &mut Session) {
         Some(Wish::Back) => session.back_to_brief(),
         Some(Wish::End(answer)) => session.end_lesson(&ctx, answer),
         Some(Wish::OpenLog(path)) => session.open(&ctx, &path),
+        Some(Wish::Progress) => session.wanted_pane = Some(Pane::Progress),
         None => {}
     }
 }
@@ -95,7 +98,7 @@ fn open(ui: &mut Ui, session: &mut Session) -> Option<Wish> {
             Phase::Debrief(debrief) => {
                 debrief::show(ui, debrief, open.expert.as_deref());
                 ui.add_space(space::S);
-                debriefed(ui, debrief)
+                debriefed(ui, debrief, session.learning.trainee.as_deref())
             }
         };
     });
@@ -171,14 +174,23 @@ fn asking(ui: &mut Ui, open: &Open) -> Option<Wish> {
     wish
 }
 
-fn debriefed(ui: &mut Ui, shown: &crate::ui::lessons::Debrief) -> Option<Wish> {
-    let wish = buttons(
+fn debriefed(ui: &mut Ui, shown: &crate::ui::lessons::Debrief, trainee: Option<&str>) -> Option<Wish> {
+    let mut wish = buttons(
         ui,
         &[("Practise", "Try it; nothing is recorded", Wish::Practise), ("Watch", "The expert shows it", Wish::Watch)],
         Some(("Once more", Wish::Test)),
     );
     let link = ui.link("Open its recording in Calibrate").on_hover_text(shown.path.display().to_string());
-    if link.clicked() { Some(Wish::OpenLog(shown.path.clone())) } else { wish }
+    if link.clicked() {
+        wish = Some(Wish::OpenLog(shown.path.clone()));
+    }
+    let kept = trainee.map_or("Who practises? Attempts are kept by name …".to_owned(), |name| {
+        format!("Kept for {name}: see the progress …")
+    });
+    if ui.link(kept).on_hover_text("The panel Progress: who practises, all attempts, the learning curve").clicked() {
+        wish = Some(Wish::Progress);
+    }
+    wish
 }
 
 /// The time since the hand began, and what is left of it.

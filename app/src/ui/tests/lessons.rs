@@ -69,6 +69,11 @@ fn every_lesson_can_be_completed_with_the_mouse_and_its_file_has_the_same_grade(
 fn a_trainee_is_shown_a_lesson_practises_it_and_is_told_how_it_was() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut harness = window(in_train(folder.path()));
+    let ctx = harness.ctx.clone();
+    harness.state_mut().session.open_history(&ctx, folder.path().join("history.sqlite"));
+    let learning = &mut harness.state_mut().session.learning;
+    "Ada".clone_into(&mut learning.name_field);
+    learning.add_trainee();
     click(&mut harness, Role::RadioButton, "Lessons");
     click(&mut harness, Role::Link, "Lift and hold");
     assert_eq!(phase(&harness), Some(Phase::Brief));
@@ -96,6 +101,10 @@ fn a_trainee_is_shown_a_lesson_practises_it_and_is_told_how_it_was() {
     assert!(debrief.grade.completed && debrief.path.is_file(), "{:?}", debrief.grade);
     assert!(harness.query_by_label(&debrief.grade.advice).is_some(), "{}", debrief.grade.advice);
     assert!(harness.query_by_label("Time to complete").is_some());
+    until(&mut harness, "the history", |app| !app.session.learning.attempts.is_empty());
+    let kept = harness.state().session.learning.attempts[0].clone();
+    assert_eq!((kept.trainee.as_str(), kept.lesson.as_str()), ("Ada", "lift-and-hold"));
+    assert_eq!((kept.score, kept.completed, kept.proficient), (debrief.grade.score, true, false));
     click(&mut harness, Role::Link, "All lessons");
     assert_eq!(phase(&harness), None);
     assert!(harness.query_by_label("Needle through a membrane").is_some());

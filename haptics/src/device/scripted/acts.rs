@@ -178,6 +178,7 @@ impl<'a> Places<'a> {
         let beside_m = if lifted.is_some() { 0.0 } else { builder.scatter_m() };
         let to_m = to_m + Vec2::new(beside_m, 0.0);
         let mut job = Job::new(self.world, index, to_m, lifted.map_or_else(|| self.clear_y_m(index), |(y, _)| y));
+        job.above_y_m = job.clear_y_m.max(from.y + 0.5 * self.world.blocks[index].height_m + 0.5 * CARRY_HEIGHT_M);
         job.hold_s = Some(lifted.map_or(0.0, |(_, seconds)| seconds));
         self.centers_m[index] = to_m;
         Some((job, from))

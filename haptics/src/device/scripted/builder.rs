@@ -199,7 +199,7 @@ impl<'a> Builder<'a> {
         let open = Goal { center_m: from, aperture_m: width_m + CLEARANCE_M, pinch_n: 0.0 };
         let grasp_dy = self.rng.random_range(-0.001..0.001);
         let up = |y: f64, goal: &Goal| Goal { center_m: Vec2::new(goal.center_m.x, y), ..*goal };
-        self.aim(0.9, up(clear_y, &open));
+        self.aim(0.9, up(job.above_y_m, &open));
         let around = Goal { center_m: from + Vec2::new(0.0, grasp_dy), ..open };
         self.reach(0.7, around);
         self.wait(0.2);
@@ -241,7 +241,7 @@ impl<'a> Builder<'a> {
         self.reach(0.5, released);
         self.wait(0.2);
         self.placed = Some(index);
-        self.reach(0.7, up(clear_y, &released));
+        self.reach(0.7, up(job.above_y_m, &released));
         self.placed = None;
     }
 

@@ -112,6 +112,8 @@ pub(super) struct Job {
     pub to_m: Vec2,
     /// Height at which nothing is in the way, m.
     pub clear_y_m: f64,
+    /// Height from which the fingers come down on it, and to which they go afterwards, m.
+    pub above_y_m: f64,
     /// Width that the world gives it between the pads, m.
     pub width_m: f64,
     /// Least pinch that holds it, N per finger.
@@ -127,7 +129,17 @@ impl Job {
     pub fn new(world: &World, block: usize, to_m: Vec2, clear_y_m: f64) -> Self {
         let shape = &world.blocks[block];
         let least_pinch_n = 0.5 * shape.mass_kg * world.gravity_m_s2 / shape.finger_friction.max(0.05);
-        Self { block, to_m, clear_y_m, width_m: shape.width_m, least_pinch_n, hold_s: None, mistake: None, attempts: 0 }
+        Self {
+            block,
+            to_m,
+            clear_y_m,
+            above_y_m: clear_y_m,
+            width_m: shape.width_m,
+            least_pinch_n,
+            hold_s: None,
+            mistake: None,
+            attempts: 0,
+        }
     }
 }
 

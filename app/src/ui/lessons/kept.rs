@@ -1,0 +1,41 @@
+//! Attempts that are over go into the history of who practises.
+
+use super::Debrief;
+use crate::history::{Attempt, Conditions};
+use crate::ui::session::Session;
+use jiff::{SignedDuration, Timestamp};
+
+impl Session {
+    /// Keeps a graded attempt under the name of who practises; nothing where nobody is named.
+    pub(super) fn keep_graded(&mut self, debrief: &Debrief) {
+        self.learning.experts.insert(debrief.grade.lesson.clone(), 100.0);
+        let Some(trainee) = self.learning.trainee.clone() else { return };
+        let line = self.trainer.delay();
+        let conditions = Conditions { delay_ms: 1e3 * line.round_trip_s, predicted: line.predicted && !line.is_none() };
+        let attempt = attempt_of(debrief, trainee, conditions, Timestamp::now());
+        let before = self.learning.attempts.iter().rev().find(|earlier| earlier.is_like(&attempt));
+        let proficient = attempt.meets_criterion && before.is_some_and(|earlier| earlier.meets_criterion);
+        self.keep_attempt(Attempt { proficient, ..attempt });
+    }
+}
+
+/// An attempt that ended now.
+fn attempt_of(debrief: &Debrief, trainee: String, conditions: Conditions, ended: Timestamp) -> Attempt {
+    let grade = &debrief.grade;
+    let duration_s = grade.measures.hand.duration_s;
+    Attempt {
+        trainee,
+        lesson: grade.lesson.clone(),
+        conditions,
+        began: ended.checked_sub(SignedDuration::from_secs_f64(duration_s)).unwrap_or(ended),
+        duration_s,
+        completed: grade.completed,
+        score: grade.score,
+        meets_criterion: grade.meets_criterion,
+        proficient: false,
+        measures: serde_json::to_value(&grade.measures).unwrap_or_default(),
+        measures_version: grade.measures.version,
+        grade_version: grade.version,
+        recording: Some(debrief.path.clone()),
+    }
+}
