@@ -214,7 +214,12 @@ impl Session {
             self.trainer.discard_recording();
         }
         self.trainer.script.acts = None;
-        self.trainer.operator = Operator::You;
+        // An expert who shows something stops, and the trainee has the hand again.
+        if self.trainer.operator == Operator::Scripted
+            && let Err(problem) = self.trainer.hand_to(Operator::You)
+        {
+            self.fail(problem);
+        }
     }
 
     /// Lets the expert show the lesson.

@@ -5,6 +5,7 @@ use crate::ui::app::App;
 use crate::ui::lessons::{Debrief, Phase};
 use crate::ui::screenshot::{self, Panel};
 use crate::ui::session::{Session, Workspace};
+use crate::ui::trainer::Operator;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -116,6 +117,10 @@ fn an_attempt_that_is_left_keeps_no_file_and_a_wrong_answer_is_told() {
     let mut session = in_train(folder.path());
     session.lessons.load();
     let barrel = session.lessons.all.iter().find(|l| l.id == "barrel").map(Arc::clone).expect("a barrel");
+    session.open_lesson_now(&barrel);
+    session.watch_lesson();
+    session.close_lesson();
+    assert_eq!(session.trainer.operator, Operator::You, "the expert stops");
     session.open_lesson_now(&barrel);
     session.test_lesson();
     session.follow_expert(3.0);

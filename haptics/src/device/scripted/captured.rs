@@ -7,6 +7,8 @@ use crate::Vec2;
 use crate::device::HandImpedance;
 use crate::world::{Membrane, Shape, State, World};
 
+/// Spread of an expert's pinch: who varies more holds more firmly.
+const EXPERT_SPREAD: f64 = 0.06;
 /// Spare opening around hub, barrel and knob, m on both sides together.
 const CLEARANCE_M: f64 = 0.006;
 
@@ -67,7 +69,7 @@ impl Builder<'_> {
         self.aim(0.9, up(0.020, &open));
         self.reach(0.7, open);
         // Heavier than it looks: more than twice the least that lifts it, because nobody's pinch is steady; more where it varies.
-        let spare = if self.skill().pinch_spread > 0.0 { 3.0 } else { 2.2 };
+        let spare = 2.2 + 10.0 * (self.skill().pinch_spread - EXPERT_SPREAD).max(0.0);
         let least_n = 0.5 * barrel.mass_kg * world.gravity_m_s2 / barrel.finger_friction.max(0.05);
         let usual_n = self.choose_pinch((spare * least_n).max(self.skill().pinch_n), 0.1);
         let held = Goal { aperture_m: barrel.width_m, pinch_n: usual_n, ..open };
@@ -82,8 +84,8 @@ impl Builder<'_> {
             let away = (start - cable.anchor_m).x.signum();
             let far = lifted.center_m.y - give_m - cable.anchor_m.y;
             let reach_m = (cable.length_m.powi(2) - far.powi(2)).max(0.0).sqrt();
-            // Whoever looks pulls until it shows.
-            let until_m = if self.skill().reaction_s.is_some() { 0.002 } else { 0.0 };
+            // Whoever is not sure of the hand pulls until it shows.
+            let until_m = 0.6 * self.skill().aim_error_m;
             let x = cable.anchor_m.x + away * (reach_m + until_m + self.between(0.0015, 0.0025));
             self.reach(1.8, Goal { center_m: Vec2::new(x, lifted.center_m.y), ..lifted });
             self.wait(0.8);
