@@ -11,6 +11,9 @@ const FRAME_S: f64 = 1.0 / 60.0;
 const SLOWER: f64 = 0.6;
 /// A grip that is meant, N.
 const GRIP_N: f64 = 0.15;
+/// A pull on what holds an object back, N, and how much farther than the expert a mouse pulls then, m.
+const PULL_N: f64 = 0.2;
+const UNTIL_TAUT_M: f64 = 0.002;
 /// A push to the side that is meant, N.
 const PUSH_N: f64 = 0.1;
 
@@ -37,11 +40,18 @@ impl Session {
     fn point_as(&mut self, point: &Point) {
         let holds = point.grip_n() > GRIP_N;
         let pinch = &mut self.trainer.pinch;
-        // Fingers that are farther apart push later.
         let apart_m = point.tips_in_world[1].x - point.tips_in_world[0].x;
         let push_n = point.tip_force_n[0].x + point.tip_force_n[1].x;
-        let later_m = if holds || push_n.abs() < PUSH_N { 0.0 } else { 0.5 * (pinch.opening_m() - apart_m).max(0.0) };
-        pinch.move_to(point.wanted_m() + Vec2::new(later_m * push_n.signum(), 0.0));
+        let farther_m = if holds && push_n.abs() > PULL_N {
+            // Whoever sees a cable pulls until it is taut.
+            UNTIL_TAUT_M
+        } else if !holds && push_n.abs() > PUSH_N {
+            // Fingers that are farther apart push later.
+            0.5 * (pinch.opening_m() - apart_m).max(0.0)
+        } else {
+            0.0
+        };
+        pinch.move_to(point.wanted_m() + Vec2::new(farther_m * push_n.signum(), 0.0));
         pinch.button = holds;
         if holds {
             pinch.strengthen(point.grip_n().max(0.6) - pinch.strength_n());
