@@ -13,7 +13,7 @@ const SLOWER: f64 = 0.6;
 const GRIP_N: f64 = 0.15;
 /// A pull on what holds an object back, N, and how much farther than the expert a mouse pulls then, m.
 const PULL_N: f64 = 0.2;
-const UNTIL_TAUT_M: f64 = 0.002;
+const UNTIL_TAUT_M: f64 = 0.004;
 /// A push to the side that is meant, N.
 const PUSH_N: f64 = 0.1;
 
