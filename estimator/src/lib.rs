@@ -3,6 +3,7 @@
 //! `log` reads, `signal` derives, `segment` says what was happening when, `identify` and `constraint` estimate, `calibrate`
 //! writes a world, `simulate` replays the measured motion through it. Every stage is a plain function between plain types.
 
+pub mod assistant;
 pub mod calibrate;
 pub mod constraint;
 pub mod diagnose;

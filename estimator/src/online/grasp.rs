@@ -1,8 +1,10 @@
 //! Everything that is collected of one object that is carried.
 
+use super::block::pull::{Hold, Left};
 use super::change::ChangeDetector;
 use super::recursive::Recursive;
 use super::store::Store;
+use haptics::Vec2;
 
 /// Rows of a reading that are kept for judging a leak.
 const KEPT: usize = 400;
@@ -27,6 +29,8 @@ pub(super) struct Row {
     pub(super) grip_n: f64,
     pub(super) width_m: f64,
     pub(super) width_rate_m_s: f64,
+    /// Middle between the tips, m in the world.
+    pub(super) at_m: Vec2,
     /// Largest ratio of shear to normal force that is certain, and its error.
     pub(super) ratio: Option<(f64, f64)>,
     pub(super) carried: bool,
@@ -41,6 +45,8 @@ pub(super) struct Grasp {
     pub(super) width: Recursive<3>,
     pub(super) reading: Store<READING>,
     pub(super) bound: Option<(f64, f64)>,
+    /// What else holds it.
+    pub(super) hold: Hold,
     /// Mean and mean square of the grip, N and N².
     pub(super) grip: [f64; 2],
     pub(super) held_rows: u64,
@@ -57,6 +63,7 @@ impl Grasp {
             width: Recursive::new([1.0, 1.0, 0.01], memory_rows, block_rows),
             reading: Store::new(KEPT),
             bound: None,
+            hold: Hold::new(false_alarms, row_s),
             grip: [0.0; 2],
             held_rows: 0,
             carried_rows: 0,
@@ -70,11 +77,12 @@ impl Grasp {
         self.width.reset();
         self.change.restart(0.0);
         self.reading.clear();
+        self.hold.clear();
         (self.bound, self.grip, self.held_rows, self.carried_rows, self.told) = (None, [0.0; 2], 0, 0, false);
     }
 
-    /// Takes in a row; says when the weight jumped, with the weight before, bias in.
-    pub(super) fn take(&mut self, row: &Row) -> Option<(super::change::Change, f64)> {
+    /// Takes in a row and, where it is known, what weight and inertia leave of its force; says when the weight jumped, with the weight before, bias in.
+    pub(super) fn take(&mut self, row: &Row, left: Option<&Left>) -> Option<(super::change::Change, f64)> {
         self.held_rows += 1;
         let share = 1.0 / self.held_rows as f64;
         self.grip[0] += share * (row.grip_n - self.grip[0]);
@@ -86,6 +94,9 @@ impl Grasp {
             self.bound = Some((ratio, error));
         }
         if !row.carried {
+            return None;
+        }
+        if left.is_some_and(|left| self.hold.take(left)) {
             return None;
         }
         self.carried_rows += 1;

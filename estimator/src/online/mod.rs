@@ -21,6 +21,7 @@ mod triangle;
 
 use crate::estimate::{EstimateError, Parameter};
 use block::Blocks;
+pub use block::pull::{Anchor, Pull};
 use crank::Crank;
 use enough::{Enough, Problem, Wanted};
 use filter::{Filters, Sample};
@@ -83,6 +84,10 @@ pub struct Report {
     pub leaks: Vec<(String, LeakAnswer)>,
     /// Share of the largest shear that surely held which is free now; below zero it may slip. Absent while nothing is held.
     pub slip_margin: Option<f64>,
+    /// What is held now.
+    pub held: Option<String>,
+    /// What else holds an object.
+    pub pulls: Vec<Pull>,
 }
 
 #[derive(Clone, Debug)]

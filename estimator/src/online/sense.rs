@@ -79,6 +79,15 @@ impl Sense {
         error.is_finite().then(|| (self.lift_bias.values()[0], error))
     }
 
+    /// Sum of both fingers' forces at rest, N, and the standard error of each of its components; `None` before it was seen for long
+    /// enough.
+    pub(super) fn net_bias(&self) -> Option<(Vec2, f64)> {
+        let (lift, error) = self.lift_bias()?;
+        let across_error = self.bias[0].std_errors()[0].hypot(self.bias[2].std_errors()[0]);
+        let across = self.bias[0].values()[0] + self.bias[2].values()[0];
+        across_error.is_finite().then(|| (Vec2::new(across, lift), error.max(across_error)))
+    }
+
     /// Noise of the sum of the vertical forces from row to row, N.
     pub(super) fn lift_noise_n(&self) -> f64 {
         self.lift_bias.noise()

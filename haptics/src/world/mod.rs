@@ -32,5 +32,6 @@ pub use guide::{Guide, Guided, MAX_GUIDE_POINTS};
 pub use label::true_label;
 pub use model::*;
 pub use plane::Plane;
+pub use rect::Rect;
 pub use state::*;
 pub use step::{finger_contacts, step, substeps};

@@ -5,6 +5,7 @@ mod generator;
 mod leaks;
 mod losses;
 mod missing;
+mod pulls;
 
 use estimator::{identify, online};
 

@@ -3,6 +3,9 @@
 //! The rows are those of the batch fit ([`crate::identify::block`]): the vertical sum over a constant and the acceleration, the width
 //! over the grip. The pads count as linear here; the batch fit also averages over pads that bend.
 
+pub mod pull;
+mod report;
+
 use super::enough::{Problem, block_problems};
 use super::filter::{Filters, Sample};
 use super::grasp::{Grasp, Row};
@@ -14,6 +17,9 @@ use crate::estimate::Parameter;
 use crate::segment::SystemState;
 use haptics::Vec2;
 use haptics::recording::Task;
+use pull::Left;
+pub(crate) use report::leak_parameter;
+use report::{friction, grip_stiffness, mean_width, width};
 
 /// The ends of a state are left out, s: contacts ring there.
 const GUARD_S: f64 = 0.12;
@@ -28,14 +34,8 @@ const TELL_ROWS: u64 = 16;
 /// … which agree within these shares.
 const SAME_WIDTH: f64 = 0.02;
 const SAME_WEIGHT: f64 = 0.1;
-/// The grip must vary by this share of its mean for the pads' give to show.
-const LEAST_GRIP_VARIATION: f64 = 0.05;
-/// Relative error of a width whose pad compression is not known (thesis).
-const UNKNOWN_COMPRESSION: f64 = 0.07;
 /// Events that are kept.
 const MOST_EVENTS: usize = 32;
-/// A give is told when it is so many errors from zero.
-const SIGNIFICANT: f64 = 3.0;
 
 /// Blocks of one session.
 #[derive(Clone, Debug)]
@@ -51,9 +51,13 @@ pub struct Blocks {
     waits: usize,
     next_row_s: f64,
     let_go: bool,
+    held: bool,
     free: Store<2>,
     events: Vec<Event>,
     margin: Option<f64>,
+    /// Sum of the sensors' biases and its standard error, N, once known; noise of a sum from row to row, N.
+    bias: Option<(Vec2, f64)>,
+    noise_n: f64,
 }
 
 impl Blocks {
@@ -75,9 +79,12 @@ impl Blocks {
             waits: 0,
             next_row_s: f64::NEG_INFINITY,
             let_go: true,
+            held: false,
             free: Store::new(400),
             events: Vec::with_capacity(MOST_EVENTS),
             margin: None,
+            bias: None,
+            noise_n: 0.0,
         }
     }
 
@@ -94,11 +101,12 @@ impl Blocks {
             self.waits = 0;
         }
         let carried = now.state == SystemState::HoldAboveGround;
-        let held = carried || matches!(now.state, SystemState::HoldOnGround | SystemState::SlidingOnGround);
-        if !held {
+        self.held = carried || matches!(now.state, SystemState::HoldOnGround | SystemState::SlidingOnGround);
+        if !self.held {
             self.margin = None;
             if now.state == SystemState::FreeMotion && now.time_s - now.since_s > LET_GO_S {
                 self.let_go = true;
+                self.objects.iter_mut().for_each(|o| o.hold.let_go());
             }
             return;
         }
@@ -109,12 +117,14 @@ impl Blocks {
         let row = row(now.time_s, carried, filters, sense);
         self.margin = self.margin_of(&row);
         if now.time_s - now.since_s > GUARD_S {
-            self.wait(row, now.time_s);
+            self.wait(row, now.time_s, sense);
         }
     }
 
     /// Rows go in once their state has lasted on.
-    fn wait(&mut self, row: Row, time_s: f64) {
+    fn wait(&mut self, row: Row, time_s: f64, sense: &Sense) {
+        self.bias = sense.net_bias();
+        self.noise_n = sense.lift_noise_n();
         if self.waits == WAITING {
             self.waiting.copy_within(1.., 0);
             self.waits -= 1;
@@ -136,7 +146,8 @@ impl Blocks {
             self.begin();
         }
         let Some(index) = self.current.filter(|_| !self.let_go) else { return };
-        let changed = self.objects[index].take(row);
+        let left = self.left(index, row);
+        let changed = self.objects[index].take(row, left.as_ref());
         if let Some((change, before)) = changed {
             if self.events.len() == MOST_EVENTS {
                 self.events.remove(0);
@@ -147,6 +158,26 @@ impl Blocks {
             self.events.push(Event { object: index, parameter: "weight_N", grows, noticed_s, began_s, before });
         }
         self.tell(index);
+    }
+
+    /// What weight and inertia leave of the force on a carried object; `None` before both are known.
+    fn left(&self, index: usize, row: &Row) -> Option<Left> {
+        let (bias, bias_error) = self.bias.filter(|_| row.carried)?;
+        let object = &self.objects[index];
+        let weight_error = object.weight.std_errors()[0];
+        let weight_n = object.weight.values()[0] - bias.y;
+        if !weight_error.is_finite() {
+            return None;
+        }
+        let [ax, ay] = row.acceleration;
+        let inertia = weight_n / self.gravity * Vec2::new(ax, ay);
+        Some(Left {
+            time_s: row.time_s,
+            at_m: row.at_m,
+            force_n: Vec2::new(row.across_n, row.lift_n) - bias - Vec2::new(0.0, weight_n) - inertia,
+            noise_n: self.noise_n.max(1e-4),
+            common_n: bias_error.hypot(weight_error).hypot(Left::model_n(weight_n)),
+        })
     }
 
     fn begin(&mut self) {
@@ -195,6 +226,7 @@ impl Blocks {
             let name = self.name(index);
             report.parameters.extend(self.weight(&name, object, sense));
             report.parameters.push(width(&name, object));
+            report.parameters.push(grip_stiffness(&name, object));
             report.parameters.push(friction(&name, object));
             if self.task != Task::Barrel {
                 let why = "only a slip shows it; the lower bound is the largest ratio that held";
@@ -207,30 +239,8 @@ impl Blocks {
         }
         report.events.extend_from_slice(&self.events);
         report.slip_margin = self.margin;
-    }
-
-    fn weight(&self, name: &str, object: &Grasp, sense: &Sense) -> Vec<Parameter> {
-        let samples = object.carried_rows as usize;
-        let error = object.weight.std_errors()[0];
-        let why = match sense.lift_bias() {
-            None => {
-                "the hand was not seen free yet: a bias of the force sensors would pass for weight; let go for a second"
-            }
-            Some(_) if !error.is_finite() => "it was not carried for long enough yet",
-            Some((bias, bias_error)) => {
-                let (value, error) = (object.weight.values()[0] - bias, error.hypot(bias_error));
-                let how = "mean of the summed vertical forces while carried, accelerations and bias taken out";
-                let mass = "weight divided by gravity";
-                return vec![
-                    Parameter::identified(name, "weight_N", value, error, samples, how),
-                    Parameter::identified(name, "mass_kg", value / self.gravity, error / self.gravity, samples, mass),
-                ];
-            }
-        };
-        vec![
-            Parameter::unidentified(name, "weight_N", samples, why),
-            Parameter::unidentified(name, "mass_kg", samples, why),
-        ]
+        report.held = self.current.filter(|_| self.held).map(|index| self.name(index));
+        report.pulls = (0..self.count).filter_map(|k| self.objects[k].hold.pull(k)).collect();
     }
 
     /// Leak or drift of one object, from its readings and those of the others; `None` while there are too few.
@@ -275,61 +285,6 @@ impl Blocks {
     }
 }
 
-/// `leak_kg_s` as a parameter of a fit.
-pub(crate) fn leak_parameter(object: &str, answer: &LeakAnswer, samples: usize) -> Parameter {
-    let how = match &answer.motion {
-        Some(motion) => format!("{}; {motion}", answer.why),
-        None => answer.why.clone(),
-    };
-    match (answer.verdict, answer.leak_kg_s) {
-        (Verdict::Leak | Verdict::Both | Verdict::SensorDrift, Some(leak)) => {
-            Parameter::identified(object, "leak_kg_s", leak.value, leak.std_error, samples, &how)
-        }
-        _ => Parameter::unidentified(object, "leak_kg_s", samples, &how),
-    }
-}
-
-/// Mean distance of the tips, m.
-fn mean_width(object: &Grasp) -> f64 {
-    let [width, slope, _] = object.width.values();
-    width + slope * object.grip[0]
-}
-
-fn width(name: &str, object: &Grasp) -> Parameter {
-    let samples = object.held_rows as usize;
-    let (mean_grip, spread) = object.grip_and_spread();
-    let error = object.width.std_errors()[0];
-    if error.is_finite() && spread > LEAST_GRIP_VARIATION * mean_grip {
-        let [value, slope, _] = object.width.values();
-        let give = -0.5 * slope;
-        let how = if give > SIGNIFICANT * 0.5 * object.width.std_errors()[1] {
-            format!("distance of the tips while held, extrapolated to no grip (pads give {:.0} N/m each)", 1.0 / give)
-        } else {
-            "distance of the tips while held, extrapolated to no grip".to_owned()
-        };
-        return Parameter::identified(name, "width_m", value, error, samples, &how);
-    }
-    if object.held_rows < 8 {
-        return Parameter::unidentified(name, "width_m", samples, "it was not held for long enough yet");
-    }
-    let value = mean_width(object);
-    let how = "mean distance of the tips; the grip was too even to tell the pads' give, so 7 % is added to the error";
-    Parameter::identified(name, "width_m", value, UNKNOWN_COMPRESSION * value, samples, how)
-}
-
-fn friction(name: &str, object: &Grasp) -> Parameter {
-    let samples = object.held_rows as usize;
-    match object.bound {
-        Some((ratio, error)) => {
-            let how = "largest ratio of vertical to horizontal tip force while grasped; true friction is at least this";
-            Parameter::identified(name, "friction_lower_bound", (ratio - error).max(0.0), error, samples, how)
-        }
-        None => {
-            Parameter::unidentified(name, "friction_lower_bound", samples, "the grip was never firm enough to tell")
-        }
-    }
-}
-
 fn row(time_s: f64, carried: bool, filters: &Filters, sense: &Sense) -> Row {
     let pick = |s: &Sample| {
         [
@@ -341,6 +296,8 @@ fn row(time_s: f64, carried: bool, filters: &Filters, sense: &Sense) -> Row {
             s[2] - s[0],
             0.5 * (s[4] + s[6]),
             0.5 * (s[5] + s[7]),
+            0.5 * (s[0] + s[2]),
+            0.5 * (s[1] + s[3]),
         ]
     };
     let (value, slope) = filters.smooth(pick);
@@ -364,6 +321,7 @@ fn row(time_s: f64, carried: bool, filters: &Filters, sense: &Sense) -> Row {
         width_m: value[5],
         width_rate_m_s: slope[5],
         acceleration: [slope[6], slope[7]],
+        at_m: Vec2::new(value[8], value[9]),
         ratio,
         carried,
     }

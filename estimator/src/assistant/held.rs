@@ -1,0 +1,131 @@
+//! What is in the hand, as far as it is known: each value with its error, or not at all.
+
+use super::contents::{Guess, guess};
+use crate::estimate::Parameter;
+use crate::online::Report;
+use crate::online::leak::Verdict;
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// A value and its standard error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Known {
+    /// In SI units.
+    pub value: f64,
+    /// One standard error.
+    pub std_error: f64,
+}
+
+/// What one sees of a thing without touching it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Look {
+    /// How tall it is, m, by eye.
+    pub height_m: Option<f64>,
+    /// It is round: as deep as wide. What is not round has a depth that nobody knows.
+    pub round: bool,
+    /// What such a vessel weighs when it is empty, kg; absent: it is no vessel.
+    pub empty_kg: Option<f64>,
+}
+
+/// The object in the hand.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Held {
+    /// Its name in reports.
+    pub object: String,
+    /// N.
+    pub weight_n: Option<Known>,
+    /// m.
+    pub width_m: Option<Known>,
+    /// Stiffness of one pad and the wall behind it, N/m.
+    pub grip_stiffness_n_m: Option<Known>,
+    /// Share of the shear that surely held which is free now; below zero it may slip.
+    pub slip_margin: Option<f64>,
+    /// What may be in it.
+    pub contents: Option<Guess>,
+    /// It loses weight: kg/s.
+    pub leaks_kg_s: Option<Known>,
+}
+
+/// Sizes seen by eye are right to this share.
+const BY_EYE: f64 = 0.05;
+/// Empty vessels of a kind differ by this share.
+const EMPTY_SHARE: f64 = 0.05;
+/// A share of the vessel's volume that is wall: the content is in the rest.
+const INSIDE: f64 = 0.95;
+
+impl Held {
+    /// What a report says of the object in the hand; `None` while nothing is held.
+    pub fn of(report: &Report, look: &Look) -> Option<Self> {
+        let object = report.held.clone()?;
+        let known =
+            |name: &str| report.parameters.iter().find(|p| p.object == object && p.name == name).and_then(known);
+        let (weight_n, width_m) = (known("weight_N"), known("width_m"));
+        let leaks = report
+            .leaks
+            .iter()
+            .find(|(name, _)| *name == object)
+            .filter(|(_, answer)| matches!(answer.verdict, Verdict::Leak | Verdict::Both));
+        Some(Self {
+            weight_n,
+            width_m,
+            grip_stiffness_n_m: known("grip_stiffness_N_m"),
+            slip_margin: report.slip_margin,
+            contents: known("mass_kg").zip(width_m).and_then(|(mass, width)| contents(mass, width, look)),
+            leaks_kg_s: leaks.and_then(|_| known("leak_kg_s")),
+            object,
+        })
+    }
+
+    /// True when nothing is known of it yet.
+    pub fn is_blank(&self) -> bool {
+        self.weight_n.is_none() && self.width_m.is_none() && self.slip_margin.is_none()
+    }
+}
+
+fn known(parameter: &Parameter) -> Option<Known> {
+    let value = parameter.value.filter(|_| parameter.identified)?;
+    Some(Known { value, std_error: parameter.std_error.filter(|e| e.is_finite())? })
+}
+
+/// Density of what is in a round vessel, and what that may be.
+fn contents(mass_kg: Known, width_m: Known, look: &Look) -> Option<Guess> {
+    let (height_m, empty_kg) = (look.height_m.filter(|_| look.round)?, look.empty_kg?);
+    let volume_m3 = INSIDE * 0.25 * PI * width_m.value.powi(2) * height_m;
+    if volume_m3 <= 0.0 {
+        return None;
+    }
+    let inside_kg = mass_kg.value - empty_kg;
+    let mass_error = mass_kg.std_error.hypot(EMPTY_SHARE * empty_kg);
+    let size_error = (2.0 * width_m.std_error / width_m.value).hypot(BY_EYE);
+    let value = inside_kg / volume_m3;
+    Some(guess(Known { value, std_error: (mass_error / volume_m3).hypot(value * size_error) }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn report(mass_kg: f64) -> Report {
+        let object = "barrel".to_owned();
+        let parameters = vec![
+            Parameter::identified(&object, "mass_kg", mass_kg, 0.0005, 100, "weighed"),
+            Parameter::identified(&object, "weight_N", 9.81 * mass_kg, 0.005, 100, "weighed"),
+            Parameter::identified(&object, "width_m", 0.036, 1e-4, 100, "felt"),
+            Parameter::unidentified(&object, "grip_stiffness_N_m", 100, "too even"),
+        ];
+        Report { held: Some(object), parameters, slip_margin: Some(0.4), ..Report::default() }
+    }
+
+    #[test]
+    fn only_what_is_known_is_told() {
+        let look = Look { height_m: Some(0.046), round: true, empty_kg: Some(0.060) };
+        let full = Held::of(&report(0.060 + 0.0445), &look).expect("held");
+        assert!(full.weight_n.is_some() && full.grip_stiffness_n_m.is_none() && full.leaks_kg_s.is_none());
+        let guess = full.contents.expect("a density");
+        assert_eq!(guess.kinds[0].0, "water or something like it", "{guess:?}");
+        let empty = Held::of(&report(0.0605), &look).and_then(|h| h.contents).expect("a density");
+        assert_eq!(empty.kinds[0].0, "nothing or a gas", "{empty:?}");
+        assert_eq!(Held::of(&report(0.1), &Look::default()).and_then(|h| h.contents), None, "no volume, no density");
+        assert_eq!(Held::of(&Report::default(), &look), None);
+    }
+}
