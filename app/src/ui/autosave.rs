@@ -2,6 +2,7 @@
 //!
 //! One window at a time keeps the state (a locked file says which); the next start offers to go on where a killed program was.
 
+use super::assistant::Assistant;
 use super::dock::Dock;
 use super::project::{Project, write_whole};
 use super::recent::Recent;
@@ -31,6 +32,8 @@ pub struct State {
     pub ended: bool,
     /// True once the user has been shown around.
     pub toured: bool,
+    /// What the assistant shows.
+    pub assistant: Assistant,
 }
 
 /// Keeps the state of one window.
@@ -111,6 +114,7 @@ fn state(session: &Session, dock: &Dock, toured: bool) -> State {
         recent: session.recent.clone(),
         ended: false,
         toured,
+        assistant: session.assistant,
     }
 }
 

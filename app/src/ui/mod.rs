@@ -8,6 +8,7 @@
 
 pub mod actions;
 pub mod app;
+pub mod assistant;
 pub mod atlas;
 pub mod autosave;
 pub mod by_hand;

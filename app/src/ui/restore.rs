@@ -14,6 +14,7 @@ impl App {
         let Some((autosave, before)) = Autosave::begin(folder) else { return };
         self.dock = before.dock.clone();
         self.session.recent = before.recent.clone();
+        self.session.assistant = before.assistant;
         self.tour.seen = before.toured;
         self.autosave = Some(autosave);
         if !before.ended && !before.project.recordings.is_empty() {

@@ -59,6 +59,8 @@ pub enum Panel {
     Trainer,
     /// The virtual world over half a second, on a model.
     Delay,
+    /// The assistant over the virtual world.
+    Assistant,
     /// The whole Calibrate workspace.
     Workbench,
     /// The whole Train workspace.
@@ -146,7 +148,7 @@ pub(super) fn session_for(input: &PanelInput, panel: Panel) -> anyhow::Result<Se
         lesson(&mut session, panel)?;
         return Ok(session);
     }
-    if matches!(panel, Panel::Trainer | Panel::Train | Panel::Devices | Panel::Delay) {
+    if matches!(panel, Panel::Trainer | Panel::Train | Panel::Devices | Panel::Delay | Panel::Assistant) {
         session.trainer = performing(input, panel).map_err(|problem| anyhow!(problem))?;
         if panel == Panel::Devices {
             session.workspace = Workspace::Devices;
@@ -420,7 +422,7 @@ pub(super) fn contents(panel: Panel) -> Contents {
         Panel::Parameters => framed(ParametersPanel),
         Panel::Results => framed(ResultsPanel::default()),
         Panel::Scene => framed(ScenePanel::default()),
-        Panel::Trainer | Panel::Guided | Panel::Delay => framed(TrainerView::default()),
+        Panel::Trainer | Panel::Guided | Panel::Delay | Panel::Assistant => framed(TrainerView::default()),
         Panel::Sensitivity => framed(SensitivityPanel),
         Panel::Progress => framed(ProgressPanel),
         Panel::Atlas => framed(DiagnosePanel),

@@ -136,6 +136,8 @@ pub struct Session {
     pub learning: super::learning::Learning,
     /// Experiments that would tell it better.
     pub experiments: Experiments,
+    /// What the assistant shows over the trainer's picture.
+    pub assistant: super::assistant::Assistant,
     /// Lessons.
     pub lessons: Lessons,
     /// What is still missing for the parameters of the fit.

@@ -1,6 +1,7 @@
 //! What is in the hand, as far as it is known: each value with its error, or not at all.
 
 use super::contents::{Guess, guess};
+use super::slip::{Slip, slip};
 use crate::estimate::Parameter;
 use crate::online::Report;
 use crate::online::leak::Verdict;
@@ -38,8 +39,8 @@ pub struct Held {
     pub width_m: Option<Known>,
     /// Stiffness of one pad and the wall behind it, N/m.
     pub grip_stiffness_n_m: Option<Known>,
-    /// Share of the shear that surely held which is free now; below zero it may slip.
-    pub slip_margin: Option<f64>,
+    /// How near it is to slipping.
+    pub slip: Option<Slip>,
     /// What may be in it.
     pub contents: Option<Guess>,
     /// It loses weight: kg/s.
@@ -69,7 +70,10 @@ impl Held {
             weight_n,
             width_m,
             grip_stiffness_n_m: known("grip_stiffness_N_m"),
-            slip_margin: report.slip_margin,
+            slip: known("friction_lower_bound").zip(report.slip_margin).and_then(|(held, margin)| {
+                // The margin is what is left of the ratio that surely held.
+                slip((1.0 - margin) * held.value, held)
+            }),
             contents: known("mass_kg").zip(width_m).and_then(|(mass, width)| contents(mass, width, look)),
             leaks_kg_s: leaks.and_then(|_| known("leak_kg_s")),
             object,
@@ -78,7 +82,7 @@ impl Held {
 
     /// True when nothing is known of it yet.
     pub fn is_blank(&self) -> bool {
-        self.weight_n.is_none() && self.width_m.is_none() && self.slip_margin.is_none()
+        self.weight_n.is_none() && self.width_m.is_none() && self.slip.is_none()
     }
 }
 

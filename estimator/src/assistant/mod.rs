@@ -7,9 +7,11 @@
 pub mod collision;
 pub mod contents;
 pub mod held;
+pub mod slip;
 pub mod warnings;
 
 pub use collision::Collision;
 pub use contents::{Guess, guess};
 pub use held::{Held, Known, Look};
+pub use slip::{Slip, slip};
 pub use warnings::{Load, Warning, Warnings, warnings};

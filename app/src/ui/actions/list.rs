@@ -64,6 +64,8 @@ pub enum Action {
     TrainCalibrated,
     /// Makes a lesson of it.
     PractiseOnThis,
+    /// Says over the trainer's picture what is known, and warns; or not.
+    Assistant,
     /// Begins or ends a recording.
     Record,
     /// Plays or stops.
@@ -228,6 +230,7 @@ impl Action {
             Self::Feel => "Feel before and after",
             Self::TrainCalibrated => "Train in the calibrated world",
             Self::PractiseOnThis => "Practise on this (a lesson in the calibrated world)",
+            Self::Assistant => "Assistant on or off",
             Self::Record => "Record, or stop",
             Self::Play => "Play or pause",
             Self::ToStart => "To the beginning",
@@ -300,6 +303,7 @@ impl Action {
             Self::FullScreen => plain(Key::F11),
             Self::Palette => ctrl(Key::P),
             Self::Tour => plain(Key::F1),
+            Self::Assistant => plain(Key::H),
             Self::Record => plain(Key::R),
             _ => None,
         }
@@ -337,6 +341,7 @@ impl Action {
             | Self::Feel
             | Self::TrainCalibrated
             | Self::PractiseOnThis
+            | Self::Assistant
             | Self::Record => Group::Calibrate,
             Self::Play | Self::ToStart | Self::ToEnd | Self::ShowAll => Group::Time,
             Self::Select(_) | Self::GoTo { .. } => Group::Places,
@@ -378,6 +383,7 @@ impl Action {
             Self::Play | Self::ToStart | Self::ToEnd | Self::ShowAll => recording().or_else(|| {
                 need(session.workspace == Workspace::Calibrate || session.workspace == Workspace::Diagnose, "Not here.")
             }),
+            Self::Assistant => need(session.workspace == Workspace::Train, "The assistant helps in Train."),
             Self::Record => need(session.workspace == Workspace::Train, "Recording is done in Train."),
             Self::ResetLayout => need(app.dock.is_moved(session.workspace), "Nothing was moved."),
             Self::RenameLayout | Self::DeleteLayout => {
@@ -392,6 +398,7 @@ impl Action {
         match self {
             Self::Panel(pane) => Some(app.dock.has(app.session.workspace, *pane)),
             Self::Arrange => Some(app.dock.arranging),
+            Self::Assistant => Some(app.session.assistant.on),
             Self::Layout(name) => Some(app.dock.chosen(app.session.workspace) == Some(name)),
             Self::Open(workspace) => Some(app.session.workspace == *workspace),
             _ => None,

@@ -91,6 +91,7 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
             session.train_calibrated = true;
             session.workspace = Workspace::Train;
         }
+        Action::Assistant => session.assistant.on = !session.assistant.on,
         Action::PractiseOnThis => session.practise_on_this(ctx),
         Action::Record if session.trainer.is_recording() => crate::ui::recorder::stop_and_open(ctx, session),
         Action::Record => crate::ui::recorder::start(session),

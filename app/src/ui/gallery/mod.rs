@@ -57,10 +57,22 @@ impl Plate {
 
     /// A single panel with a margin around it, no whole page.
     pub fn is_framed(&self) -> bool {
-        use Panel::{Delay, LeftOver, Log, Parameters, Progress, Results, Scene, Segments, Sensitivity, Trainer, Xy};
+        use Panel::{
+            Assistant, Delay, LeftOver, Log, Parameters, Progress, Results, Scene, Segments, Sensitivity, Trainer, Xy,
+        };
         matches!(
             self.panel,
-            Log | Xy | LeftOver | Parameters | Progress | Results | Scene | Segments | Sensitivity | Trainer | Delay
+            Log | Xy
+                | LeftOver
+                | Parameters
+                | Progress
+                | Results
+                | Scene
+                | Segments
+                | Sensitivity
+                | Trainer
+                | Delay
+                | Assistant
         )
     }
 
@@ -99,6 +111,11 @@ fn of_panel(panel: Panel) -> Plate {
         Panel::Results => (Sample::Crank, COLUMN, "Results: constraints, warnings, what is still missing"),
         Panel::Scene => (Sample::Stack, SCENE, "The recording in space, in the world that was measured"),
         Panel::Trainer => (Sample::World("stack"), PANEL, "The virtual world, touched by the scripted operator"),
+        Panel::Assistant => (
+            Sample::World("barrel"),
+            PANEL,
+            "The assistant: what is held, what may be in it, and the cable that holds it",
+        ),
         Panel::Workbench => (Sample::Stack, PAGE, "Calibrate: a recording of two blocks, segmented and fitted"),
         Panel::Train => (Sample::World("stack"), PAGE, "Train: the world, the forces, the servo's punctuality"),
         Panel::Lessons => (Sample::World("table"), PAGE, "Lessons: from the first touch to the real task"),

@@ -1,6 +1,7 @@
 //! One panel a file, behind one trait.
 
 pub(super) mod answers;
+mod assistant;
 mod atlas;
 mod boundaries;
 mod causes;

@@ -41,6 +41,7 @@ impl Panel for TrainerSide {
                 plain_card(ui, "Recording", |ui| recorder::controls(ui, session));
             }
             forces(ui, &session.trainer);
+            super::assistant::assistant(ui, session);
             if !session.lessons.shown {
                 super::measured::beside(ui, &mut session.trainer);
             }

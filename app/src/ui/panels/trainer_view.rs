@@ -1,6 +1,7 @@
 //! The virtual world, touched with the mouse.
 
 use super::{Panel, guide, lessons, marks, steering};
+use crate::ui::assistant;
 use crate::ui::scene::{Rig, SceneResponse, Wheel, scene_view};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
@@ -82,6 +83,7 @@ impl Panel for TrainerView {
                 marks::device(ui, &view, snapshot);
             }
             marks::flashes(ui, &view, &session.trainer.impacts);
+            assistant::draw(ui, &view, session);
             guide::ghost(ui, &view, session);
             guide::expert(ui, &view, session);
             if session.trainer.operator == Operator::You && session.trainer.hand != HandDevice::Replay {

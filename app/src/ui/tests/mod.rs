@@ -1,5 +1,6 @@
 //! The window without a window: sessions to draw, and what the tests share.
 
+mod assistant;
 mod carry;
 mod check;
 pub mod diagnose;

@@ -176,7 +176,8 @@ impl Blocks {
             at_m: row.at_m,
             force_n: Vec2::new(row.across_n, row.lift_n) - bias - Vec2::new(0.0, weight_n) - inertia,
             noise_n: self.noise_n.max(1e-4),
-            common_n: bias_error.hypot(weight_error).hypot(Left::model_n(weight_n)),
+            common_n: Vec2::new(ax * weight_error / self.gravity, weight_error)
+                .map(|e| e.hypot(bias_error).hypot(Left::model_n(weight_n))),
         })
     }
 

@@ -54,7 +54,7 @@ pub struct Pull {
     pub pulls: bool,
     /// Its newest force on the object, N.
     pub force_n: Vec2,
-    /// Standard error of each component of it, N.
+    /// Standard error of its size, N.
     pub std_error_n: f64,
     /// Where the object was held then, m in the world.
     pub at_m: Vec2,
@@ -71,8 +71,8 @@ pub(in super::super) struct Left {
     pub(in super::super) force_n: Vec2,
     /// Noise of a row, N.
     pub(in super::super) noise_n: f64,
-    /// What all rows err alike by, N.
-    pub(in super::super) common_n: f64,
+    /// What all rows err alike by, N: only vertical forces know the weight's error.
+    pub(in super::super) common_n: Vec2,
 }
 
 impl Left {
@@ -82,7 +82,13 @@ impl Left {
     }
 
     fn suspect(&self) -> bool {
-        self.force_n.x.abs() > SUSPECT * self.noise_n + 2.0 * self.common_n
+        self.force_n.x.abs() > MATTERS_N + SUSPECT * self.noise_n + 2.0 * self.common_n.x
+    }
+
+    /// Standard error of the force's size, N.
+    fn size_error_n(&self) -> f64 {
+        let along = self.force_n.try_normalize(1e-12).unwrap_or_else(Vec2::x);
+        self.noise_n.hypot(along.component_mul(&self.common_n).norm())
     }
 }
 
@@ -150,8 +156,7 @@ impl Hold {
         if suspect {
             self.calm = 0;
             self.newest = Some(*left);
-            let error = left.noise_n.hypot(left.common_n);
-            if error < LINE_SHARE * left.force_n.norm() {
+            if left.noise_n.hypot(left.common_n.norm()) < LINE_SHARE * left.force_n.norm() {
                 self.lines.push([left.time_s, left.at_m.x, left.at_m.y, left.force_n.x, left.force_n.y]);
             }
         } else {
@@ -176,7 +181,7 @@ impl Hold {
             began_s,
             pulls: self.pulls,
             force_n: -newest.force_n,
-            std_error_n: newest.noise_n.hypot(newest.common_n),
+            std_error_n: newest.size_error_n(),
             at_m: newest.at_m,
             anchor: self.anchor(&newest),
         })
@@ -196,7 +201,8 @@ impl Hold {
         };
         let mut covariance = random * ALIKE;
         for axis in [Vec2::x(), Vec2::y()] {
-            let by = [moved(GRASP_M * axis, Vec2::zeros())?, moved(Vec2::zeros(), newest.common_n * axis)?];
+            let common_n = newest.common_n.component_mul(&axis);
+            let by = [moved(GRASP_M * axis, Vec2::zeros())?, moved(Vec2::zeros(), common_n)?];
             covariance += by.iter().map(|d| d * d.transpose()).sum::<Matrix2<f64>>();
         }
         let eigen = SymmetricEigen::new(covariance);
@@ -278,7 +284,7 @@ mod tests {
 
     fn left(index: usize, at_m: Vec2, pull_n: Vec2) -> Left {
         let force_n = Vec2::new(noise(2 * index), noise(2 * index + 1)) - pull_n;
-        Left { time_s: index as f64 * ROW_S, at_m, force_n, noise_n: NOISE_N, common_n: 0.002 }
+        Left { time_s: index as f64 * ROW_S, at_m, force_n, noise_n: NOISE_N, common_n: Vec2::new(0.002, 0.002) }
     }
 
     #[test]

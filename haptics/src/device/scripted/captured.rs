@@ -11,6 +11,8 @@ use crate::world::{Membrane, Shape, State, World};
 const EXPERT_SPREAD: f64 = 0.06;
 /// Spare opening around hub, barrel and knob, m on both sides together.
 const CLEARANCE_M: f64 = 0.006;
+/// A hand comes to a barrel this far above its rim, m.
+const RIM_M: f64 = 0.003;
 
 impl Builder<'_> {
     /// Takes the needle out of its place, pierces the sheet twice, some way apart, and leaves the needle in the second hole.
@@ -66,7 +68,9 @@ impl Builder<'_> {
         let (barrel, start) = (&world.blocks[index], state.bodies[index].center_m);
         let open = Goal { center_m: start, aperture_m: barrel.width_m + CLEARANCE_M, pinch_n: 0.0 };
         let up = |y: f64, goal: &Goal| Goal { center_m: goal.center_m + Vec2::new(0.0, y), ..*goal };
-        self.aim(0.9, up(0.020, &open));
+        // Over its rim, so that opening fingers do not land on it.
+        let over_m = (0.5 * barrel.height_m + RIM_M).max(0.020);
+        self.aim(0.9, up(over_m, &open));
         self.reach(0.7, open);
         // Heavier than it looks: more than twice the least that lifts it, because nobody's pinch is steady; more where it varies.
         let spare = 2.2 + 10.0 * (self.skill().pinch_spread - EXPERT_SPREAD).max(0.0);
@@ -99,7 +103,7 @@ impl Builder<'_> {
         self.wait(0.8);
         self.reach(0.8, Goal { pinch_n: 0.3 * usual_n, ..put_down });
         self.reach(0.5, Goal { pinch_n: 0.0, aperture_m: open.aperture_m, ..put_down });
-        self.reach(0.8, up(0.020, &open));
+        self.reach(0.8, up(over_m, &open));
     }
 
     /// Pushes the switch over, so many times, to and fro, with the knob between the open fingers.

@@ -1,0 +1,136 @@
+//! The assistant over the trainer's picture: what is in the hand, what is about to go wrong, what was found to hold. Which of it is shown
+//! is the user's choice; in a test nobody helps.
+
+mod draw;
+mod words;
+
+pub use draw::draw;
+
+use super::lessons::Phase;
+use super::session::Session;
+use super::trainer::Trainer;
+use estimator::assistant::{Held, Load, Look, Warnings, collision, warnings};
+use estimator::online::{Pull, Report};
+use haptics::Vec2;
+use haptics::world::{Shape, State, World};
+use serde::{Deserialize, Serialize};
+
+/// Parts of the assistant that are switched on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+// One switch for each part is what the user sees.
+#[allow(clippy::struct_excessive_bools)]
+pub struct Assistant {
+    /// All of it.
+    pub on: bool,
+    /// Weight, width and stiffness of what is held.
+    pub held: bool,
+    /// How near it is to slipping.
+    pub slip: bool,
+    /// What may be in it.
+    pub contents: bool,
+    /// Warning of too much force.
+    pub force: bool,
+    /// Warning of a blow that comes.
+    pub collision: bool,
+    /// Warning of the edge of the workspace.
+    pub edge: bool,
+    /// Draws what holds an object.
+    pub constraint: bool,
+}
+
+impl Default for Assistant {
+    fn default() -> Self {
+        Self {
+            on: true,
+            held: true,
+            slip: true,
+            contents: true,
+            force: true,
+            collision: true,
+            edge: true,
+            constraint: true,
+        }
+    }
+}
+
+/// A circle that a handle was found to go round: centre, m, with the errors of its coordinates, and radius with its error, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Circle {
+    center_m: Vec2,
+    center_error_m: Vec2,
+    radius_m: (f64, f64),
+}
+
+/// What there is to say at one moment.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Said {
+    held: Option<Held>,
+    /// Middle of what is held, m in the world.
+    held_at_m: Vec2,
+    warnings: Warnings,
+    pulls: Vec<Pull>,
+    circle: Option<Circle>,
+}
+
+/// Why nothing is said now, in a sentence; `None` while it is.
+pub fn silent(session: &Session) -> Option<&'static str> {
+    let testing =
+        session.lessons.open.as_ref().is_some_and(|open| matches!(open.phase, Phase::Testing | Phase::Asking));
+    testing.then_some("In a test you are on your own.")
+}
+
+fn said(session: &Session) -> Option<Said> {
+    if !session.assistant.on || silent(session).is_some() {
+        return None;
+    }
+    let trainer = &session.trainer;
+    let (_, world) = trainer.scene()?;
+    let state = trainer.seen()?;
+    let delay = trainer.delay();
+    let late_s = if delay.is_none() || delay.predicted { 0.0 } else { delay.round_trip_s };
+    let load = Load { limit_n: limit_n(session), late_s };
+    let report = trainer.watch.report();
+    let held_body = collision::held(state);
+    Some(Said {
+        held: report.as_deref().and_then(|report| Held::of(report, &look(world, held_body))),
+        held_at_m: middle(state, held_body),
+        warnings: warnings(world, state, &load),
+        pulls: report.as_deref().map(|r| r.pulls.clone()).unwrap_or_default(),
+        circle: report.as_deref().and_then(circle),
+    })
+}
+
+/// The most that a finger should press, N: by the lesson, or what the servo sends at most.
+fn limit_n(session: &Session) -> f64 {
+    let by_lesson = session.lessons.open.as_ref().map(|open| open.lesson.limit_n);
+    by_lesson.unwrap_or_else(|| max_force_n(&session.trainer))
+}
+
+fn max_force_n(trainer: &Trainer) -> f64 {
+    trainer.config().limits.max_force_n
+}
+
+/// What one sees of a body without touching it, and what such a vessel weighs when it is empty.
+fn look(world: &World, body: Option<usize>) -> Look {
+    let Some(block) = body.and_then(|k| world.blocks.get(k)) else { return Look::default() };
+    Look {
+        height_m: Some(block.height_m),
+        round: block.shape == Shape::Barrel,
+        empty_kg: block.content.map(|content| block.mass_kg - content.mass_kg),
+    }
+}
+
+fn middle(state: &State, body: Option<usize>) -> Vec2 {
+    let tips = state.input.tip_in_world;
+    body.and_then(|k| state.bodies.get(k)).map_or(0.5 * (tips[0] + tips[1]), |b| b.center_m)
+}
+
+fn circle(report: &Report) -> Option<Circle> {
+    let of = |name: &str| {
+        let parameter = report.parameters.iter().find(|p| p.object == "crank" && p.name == name && p.identified)?;
+        parameter.value.zip(parameter.std_error.filter(|e| e.is_finite()))
+    };
+    let (x, y, radius_m) = (of("center_x_m")?, of("center_y_m")?, of("radius_m")?);
+    Some(Circle { center_m: Vec2::new(x.0, y.0), center_error_m: Vec2::new(x.1, y.1), radius_m })
+}

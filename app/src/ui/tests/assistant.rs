@@ -1,0 +1,122 @@
+//! The assistant over the trainer's picture: what it says, when it is silent, and that every part of it can be switched off.
+
+use super::{empty, harness};
+use crate::ui::app::App;
+use crate::ui::screenshot::{self, Panel};
+use crate::ui::session::{Session, Workspace};
+use crate::ui::trainer::{Clock, Operator, WorldChoice};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use haptics::Vec2;
+use std::sync::Arc;
+
+fn in_train(operator: Operator, choice: WorldChoice) -> Session {
+    let mut session = empty();
+    session.workspace = Workspace::Train;
+    session.trainer.clock = Clock::Manual;
+    (session.trainer.operator, session.trainer.choice) = (operator, choice);
+    session.trainer.ensure_running().expect("runs");
+    session
+}
+
+fn window(session: Session) -> Harness<'static, App> {
+    harness(screenshot::app_for(session, Panel::Train), [1280.0, 900.0], |ui, app: &mut App| app.show(ui))
+}
+
+fn says(harness: &Harness<'_, App>, words: &str) -> bool {
+    harness.query_all_by_label_contains(words).next().is_some()
+}
+
+/// Lets the scripted operator go on until something is said.
+fn until_said(harness: &mut Harness<'_, App>, words: &str) {
+    const AT_MOST_S: usize = 30;
+    for _ in 0..4 * AT_MOST_S {
+        harness.state_mut().session.trainer.advance(0.25);
+        harness.run_steps(1);
+        if says(harness, words) {
+            return;
+        }
+    }
+    panic!("{words:?} was never said");
+}
+
+#[test]
+fn a_barrel_is_weighed_its_contents_are_guessed_and_its_cable_is_drawn() {
+    let mut harness = window(in_train(Operator::Scripted, WorldChoice::Barrel));
+    harness.run_steps(2);
+    assert!(!says(&harness, "Grip to spare"), "nothing is held yet");
+    until_said(&mut harness, "Grip to spare");
+    until_said(&mut harness, "Density inside");
+    assert!(says(&harness, "Inside: "));
+    until_said(&mut harness, "Something holds it");
+    assert!(says(&harness, "Weight") && says(&harness, " ± "));
+    harness.state_mut().session.assistant.constraint = false;
+    harness.state_mut().session.assistant.contents = false;
+    harness.run_steps(2);
+    assert!(!says(&harness, "Something holds it") && !says(&harness, "Inside: ") && says(&harness, "Grip to spare"));
+    harness.state_mut().session.assistant.on = false;
+    harness.run_steps(2);
+    assert!(!says(&harness, "Grip to spare") && says(&harness, "Switched off: nothing is said"));
+}
+
+#[test]
+fn a_crank_shows_the_circle_that_was_found() {
+    let mut harness = window(in_train(Operator::Scripted, WorldChoice::Crank));
+    until_said(&mut harness, "It turns on a circle: radius");
+    assert!(harness.state().session.trainer.watch.report().is_some());
+}
+
+#[test]
+fn the_edge_of_the_reach_and_too_hard_a_grip_are_warned_of() {
+    let session = in_train(Operator::You, WorldChoice::Blocks);
+    let (_, world) = session.trainer.scene().expect("a scene");
+    let workspace = world.hand.workspace;
+    let mut harness = window(session);
+    harness.run_steps(2);
+    assert!(!says(&harness, "the edge of its reach"));
+    harness.state_mut().session.trainer.pinch.move_to(workspace.center_m + Vec2::new(workspace.radius_m, 0.0));
+    until_said(&mut harness, "the edge of its reach");
+    harness.state_mut().session.assistant.edge = false;
+    harness.run_steps(2);
+    assert!(!says(&harness, "the edge of its reach"));
+    let mut harness = window(squeezing());
+    until_said(&mut harness, "of 2.5 N");
+}
+
+/// The lesson in which nothing may be crushed, with far too firm a hand.
+fn squeezing() -> Session {
+    let mut session = in_train(Operator::You, WorldChoice::Blocks);
+    session.lessons.load();
+    let lesson = session.lessons.all.iter().find(|l| l.id == "pinch").map(Arc::clone).expect("a lesson");
+    session.open_lesson_now(&lesson);
+    session.practise_lesson();
+    let (_, world) = session.trainer.scene().expect("a scene");
+    let block_m = world.blocks[0].start.center_m;
+    for above_m in [0.03, 0.0] {
+        session.trainer.pinch.move_to(block_m + Vec2::new(0.0, above_m));
+        session.trainer.advance(1.5);
+    }
+    session.trainer.pinch.button = true;
+    session.trainer.pinch.strengthen(50.0);
+    session
+}
+
+#[test]
+fn in_a_test_of_a_lesson_nobody_helps() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = in_train(Operator::You, WorldChoice::Blocks);
+    session.trainer.recordings_folder = Some(folder.path().to_path_buf());
+    session.lessons.load();
+    session.lessons.shown = true;
+    let lesson = session.lessons.all.iter().find(|l| l.id == "lift-and-hold").map(Arc::clone).expect("a lesson");
+    session.open_lesson_now(&lesson);
+    session.practise_lesson();
+    session.follow_expert(6.0);
+    let mut harness = window(session);
+    harness.run_steps(2);
+    assert!(says(&harness, "Grip to spare"), "while practising");
+    harness.state_mut().session.test_lesson();
+    harness.state_mut().session.follow_expert(6.0);
+    harness.run_steps(2);
+    assert!(!says(&harness, "Grip to spare") && says(&harness, "In a test you are on your own."));
+}
