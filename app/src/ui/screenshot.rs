@@ -340,6 +340,14 @@ fn mapping(input: &PanelInput) -> anyhow::Result<Mapping> {
     Ok(mapping)
 }
 
+/// The barrel of the lesson, full.
+fn unknown_barrel() -> Result<World, String> {
+    const FULL: usize = 1;
+    let (lessons, _) = crate::lessons::all(None);
+    let barrel = lessons.iter().find(|lesson| lesson.id == "barrel").ok_or("the lesson of the barrel is missing")?;
+    barrel.world(FULL).map_err(|error| super::session::sentence(&error.to_string()))
+}
+
 /// The scripted operator in the middle of its task, or a person before it.
 fn performing(input: &PanelInput, panel: Panel) -> Result<Trainer, String> {
     let mut trainer = Trainer::default();
@@ -348,12 +356,15 @@ fn performing(input: &PanelInput, panel: Panel) -> Result<Trainer, String> {
         trainer.set_delay(Delay::of(0.5, true))?;
     }
     (trainer.clock, trainer.operator) = (Clock::Manual, if input.by_hand { Operator::You } else { Operator::Scripted });
-    if let Some(world) = &input.world {
+    let of_lesson = if panel == Panel::Assistant { Some(unknown_barrel()?) } else { None };
+    if let Some(world) = of_lesson.as_ref().or(input.world.as_ref()) {
         trainer.file = Some(world.clone());
         trainer.choice = WorldChoice::File;
     }
     trainer.ensure_running()?;
-    trainer.advance(input.time_s.unwrap_or(6.3));
+    // The assistant's when the cable pulls.
+    let usual_s = if panel == Panel::Assistant { 8.6 } else { 6.3 };
+    trainer.advance(input.time_s.unwrap_or(usual_s));
     Ok(trainer)
 }
 

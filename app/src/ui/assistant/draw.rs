@@ -17,7 +17,7 @@ use render::ColorRole;
 /// Half axes of an ellipse that holds 95 % of a normal distribution in the plane, in standard errors: √χ²₂(0.95).
 const ELLIPSE_95: f64 = 2.4477;
 /// Width of the plate, points, and how far it stands from the middle of what is held.
-const PLATE: f32 = 212.0;
+const PLATE: f32 = 198.0;
 const ASIDE: f32 = 128.0;
 /// Where the lines of warnings begin below the picture's upper edge, points: under the hint.
 const BELOW_HINT: f32 = 48.0;
@@ -221,30 +221,27 @@ impl Canvas<'_> {
     fn pull(&self, pull: &Pull) {
         let color = role(self.ui.visuals().dark_mode, ColorRole::Constraint);
         let Some(along) = pull.force_n.try_normalize(1e-9) else { return };
-        match pull.anchor {
-            Some(anchor) => {
-                self.dashed(&[self.at(pull.at_m), self.at(anchor.at_m)], color);
-                let [long, short] = anchor.axes_m;
-                self.line(self.ring(anchor.at_m, ELLIPSE_95 * long, ELLIPSE_95 * short), 2.0, color);
-                self.painter().circle_filled(self.at(anchor.at_m), 3.0, color);
-            }
-            None => {
-                // As wide as the direction is uncertain.
-                let turn = 2.0 * (pull.std_error_n / pull.force_n.norm()).min(0.7);
-                for side in [-turn, turn] {
-                    let (sin, cos) = side.sin_cos();
-                    let way = Vec2::new(cos * along.x - sin * along.y, sin * along.x + cos * along.y);
-                    self.dashed(&[self.at(pull.at_m), self.at(pull.at_m + RAY_M * way)], color.gamma_multiply(0.7));
-                }
-                self.line(vec![self.at(pull.at_m), self.at(pull.at_m + RAY_M * along)], 2.0, color);
-            }
+        if let Some(anchor) = pull.anchor {
+            self.dashed(&[self.at(pull.at_m), self.at(anchor.at_m)], color);
+            let [long, short] = anchor.axes_m;
+            self.line(self.ring(anchor.at_m, ELLIPSE_95 * long, ELLIPSE_95 * short), 2.0, color);
+            self.painter().circle_filled(self.at(anchor.at_m), 3.0, color);
+            return;
         }
+        // As wide as the direction is uncertain.
+        let turn = 2.0 * (pull.std_error_n / pull.force_n.norm()).min(0.7);
+        for side in [-turn, turn] {
+            let (sin, cos) = side.sin_cos();
+            let way = Vec2::new(cos * along.x - sin * along.y, sin * along.x + cos * along.y);
+            self.dashed(&[self.at(pull.at_m), self.at(pull.at_m + RAY_M * way)], color.gamma_multiply(0.7));
+        }
+        self.line(vec![self.at(pull.at_m), self.at(pull.at_m + RAY_M * along)], 2.0, color);
     }
 
     /// The circle that a handle was found to go round, and its centre.
     fn circle(&self, circle: &Circle) {
         let color = role(self.ui.visuals().dark_mode, ColorRole::Constraint);
-        let radius = circle.radius_m.0;
+        let radius = circle.radius.value;
         self.dashed(&self.ring(circle.center_m, Vec2::new(radius, 0.0), Vec2::new(0.0, radius)), color);
         let error = ELLIPSE_95 * circle.center_error_m;
         self.line(self.ring(circle.center_m, Vec2::new(error.x, 0.0), Vec2::new(0.0, error.y)), 2.0, color);

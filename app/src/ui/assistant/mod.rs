@@ -9,7 +9,7 @@ pub use draw::draw;
 use super::lessons::Phase;
 use super::session::Session;
 use super::trainer::Trainer;
-use estimator::assistant::{Held, Load, Look, Warnings, collision, warnings};
+use estimator::assistant::{Held, Known, Load, Look, Warnings, collision, warnings};
 use estimator::online::{Pull, Report};
 use haptics::Vec2;
 use haptics::world::{Shape, State, World};
@@ -54,12 +54,12 @@ impl Default for Assistant {
     }
 }
 
-/// A circle that a handle was found to go round: centre, m, with the errors of its coordinates, and radius with its error, m.
+/// A circle that a handle was found to go round: centre, m, with the errors of its coordinates, and radius, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Circle {
     center_m: Vec2,
     center_error_m: Vec2,
-    radius_m: (f64, f64),
+    radius: Known,
 }
 
 /// What there is to say at one moment.
@@ -131,6 +131,7 @@ fn circle(report: &Report) -> Option<Circle> {
         let parameter = report.parameters.iter().find(|p| p.object == "crank" && p.name == name && p.identified)?;
         parameter.value.zip(parameter.std_error.filter(|e| e.is_finite()))
     };
-    let (x, y, radius_m) = (of("center_x_m")?, of("center_y_m")?, of("radius_m")?);
-    Some(Circle { center_m: Vec2::new(x.0, y.0), center_error_m: Vec2::new(x.1, y.1), radius_m })
+    let (x, y, (value, std_error)) = (of("center_x_m")?, of("center_y_m")?, of("radius_m")?);
+    let radius = Known { value, std_error };
+    Some(Circle { center_m: Vec2::new(x.0, y.0), center_error_m: Vec2::new(x.1, y.1), radius })
 }

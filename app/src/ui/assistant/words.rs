@@ -31,16 +31,17 @@ pub(super) fn held(held: &Held, parts: Assistant) -> Vec<(&'static str, String)>
         push("Leaks", held.leaks_kg_s, 1e3, "g/s");
     }
     if let Some(guess) = held.contents.as_ref().filter(|_| parts.contents) {
-        lines.push(("Density inside", value(guess.density, 1e-3, "g/cm³")));
+        lines.push(("Density", value(guess.density, 1e-3, "g/cm³")));
     }
     lines
 }
 
 /// Value ± error with its unit.
 fn value(known: Known, factor: f64, unit: &str) -> String {
-    let (value, error) = with_error(known.value * factor, Some(known.std_error * factor));
-    let error = error.map_or_else(String::new, |e| format!(" ± {e}"));
-    format!("{value}{error} {unit}")
+    let (value, error) = (known.value * factor, known.std_error * factor);
+    // One digit of the error is enough for a glance.
+    let decimals = if error > 0.0 { (-error.log10().floor()).clamp(0.0, 6.0) as usize } else { 3 };
+    format!("{} ± {} {unit}", number(value, decimals), number(error, decimals))
 }
 
 /// `Inside: fuel or oil (62 %), or water or something like it (31 %)`.
@@ -118,10 +119,8 @@ pub(super) fn pull(pull: &Pull) -> String {
 
 /// A circle that was found.
 pub(super) fn circle(circle: &Circle) -> String {
-    let (radius, error) = with_error(1e3 * circle.radius_m.0, Some(1e3 * circle.radius_m.1));
-    let error = error.map_or_else(String::new, |e| format!(" ± {e}"));
     let center = number(1e3 * circle.center_error_m.norm(), 2);
-    format!("It turns on a circle: radius {radius}{error} mm, centre ± {center} mm")
+    format!("It turns on a circle: radius {}, centre ± {center} mm", value(circle.radius, 1e3, "mm"))
 }
 
 #[cfg(test)]
@@ -140,9 +139,9 @@ mod tests {
             ..Held::default()
         };
         let lines = super::held(&held, Assistant::default());
-        assert_eq!(lines[0], ("Weight", "1.023 ± 0.012 N".to_owned()));
-        assert_eq!(lines[1], ("Stiffness", "1.850 ± 0.090 N/mm".to_owned()));
-        assert_eq!(lines[2], ("Density inside", "1.010 ± 0.060 g/cm³".to_owned()));
+        assert_eq!(lines[0], ("Weight", "1.02 ± 0.01 N".to_owned()));
+        assert_eq!(lines[1], ("Stiffness", "1.85 ± 0.09 N/mm".to_owned()));
+        assert_eq!(lines[2], ("Density", "1.01 ± 0.06 g/cm³".to_owned()));
         let parts = Assistant { held: false, ..Assistant::default() };
         assert_eq!(super::held(&held, parts).len(), 1);
         let words = contents(held.contents.as_ref().expect("guessed"));

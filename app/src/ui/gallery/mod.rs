@@ -112,7 +112,7 @@ fn of_panel(panel: Panel) -> Plate {
         Panel::Scene => (Sample::Stack, SCENE, "The recording in space, in the world that was measured"),
         Panel::Trainer => (Sample::World("stack"), PANEL, "The virtual world, touched by the scripted operator"),
         Panel::Assistant => (
-            Sample::World("barrel"),
+            Sample::World("table"),
             PANEL,
             "The assistant: what is held, what may be in it, and the cable that holds it",
         ),

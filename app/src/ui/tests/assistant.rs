@@ -46,7 +46,7 @@ fn a_barrel_is_weighed_its_contents_are_guessed_and_its_cable_is_drawn() {
     harness.run_steps(2);
     assert!(!says(&harness, "Grip to spare"), "nothing is held yet");
     until_said(&mut harness, "Grip to spare");
-    until_said(&mut harness, "Density inside");
+    until_said(&mut harness, "Density");
     assert!(says(&harness, "Inside: "));
     until_said(&mut harness, "Something holds it");
     assert!(says(&harness, "Weight") && says(&harness, " ± "));
@@ -96,7 +96,7 @@ fn squeezing() -> Session {
         session.trainer.pinch.move_to(block_m + Vec2::new(0.0, above_m));
         session.trainer.advance(1.5);
     }
-    session.trainer.pinch.button = true;
+    session.trainer.pinch.latched = true;
     session.trainer.pinch.strengthen(50.0);
     session
 }

@@ -68,8 +68,8 @@ impl Builder<'_> {
         let (barrel, start) = (&world.blocks[index], state.bodies[index].center_m);
         let open = Goal { center_m: start, aperture_m: barrel.width_m + CLEARANCE_M, pinch_n: 0.0 };
         let up = |y: f64, goal: &Goal| Goal { center_m: goal.center_m + Vec2::new(0.0, y), ..*goal };
-        // Over its rim, so that opening fingers do not land on it.
-        let over_m = (0.5 * barrel.height_m + RIM_M).max(0.020);
+        // Over its rim, so that opening fingers, as tall as their pads, do not land on it.
+        let over_m = (0.5 * (barrel.height_m + world.pad.face_m) + RIM_M).max(0.020);
         self.aim(0.9, up(over_m, &open));
         self.reach(0.7, open);
         // Heavier than it looks: more than twice the least that lifts it, because nobody's pinch is steady; more where it varies.
