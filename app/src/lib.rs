@@ -7,6 +7,7 @@ pub mod cli;
 mod constraint_words;
 pub mod diagnosis_words;
 pub mod experiment;
+pub mod export;
 pub mod history;
 pub mod lessons;
 pub mod operator;

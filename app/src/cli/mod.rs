@@ -8,6 +8,7 @@ mod demo;
 mod device;
 mod diagnose;
 mod enough;
+mod export;
 mod fit;
 mod gallery;
 mod history;
@@ -75,6 +76,8 @@ enum Command {
     Gallery(gallery::Gallery),
     /// A log in another format: csv, mcap or parquet, by the ending of the output
     Convert(convert::Convert),
+    /// A world as a file of another simulator: MuJoCo's MJCF, URDF or SDF, and what has no counterpart there
+    Export(export::Export),
     /// Devices that drive the hand, and a self-test in words
     Device(device::Device),
     /// How punctual the servo is on this machine, and how good the diagnosis is
@@ -218,6 +221,7 @@ pub fn main() -> ExitCode {
         Some(Command::Screenshot(args)) => args.run(),
         Some(Command::Gallery(args)) => args.run(),
         Some(Command::Convert(args)) => args.run(),
+        Some(Command::Export(args)) => args.run(),
         Some(Command::Device(args)) => {
             return match args.run() {
                 Ok((output, passed)) => {

@@ -3,6 +3,7 @@
 use super::checking::On;
 use super::jobs::{JobKind, Jobs, Outcome, Purpose};
 use super::session::{Session, sentence};
+use crate::export::{Format, export};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -73,6 +74,13 @@ fn dialog(purpose: Purpose) -> Option<PathBuf> {
         Purpose::SaveReport => dialog.set_title("Write a report").set_file_name("report.html").save_file(),
         Purpose::SaveLog => dialog.set_title("Save the recording").set_file_name("recording.csv").save_file(),
         Purpose::SaveWorld => dialog.set_title("Save the world").set_file_name("world.json").save_file(),
+        Purpose::ExportWorld => dialog
+            .set_title("Export the world: .xml for MuJoCo, .urdf or .sdf")
+            .add_filter("MuJoCo", &["xml", "mjcf"])
+            .add_filter("URDF", &["urdf"])
+            .add_filter("SDF", &["sdf", "world"])
+            .set_file_name("world.xml")
+            .save_file(),
         Purpose::SaveHistory => dialog.set_title("Save the attempts").set_file_name("attempts.csv").save_file(),
         Purpose::SaveExtended => {
             dialog.set_title("Save the extended world").set_file_name("extended-world.json").save_file()
@@ -99,6 +107,7 @@ impl Session {
             Purpose::SaveWorld => {
                 save_world(ctx, self, &path.display().to_string());
             }
+            Purpose::ExportWorld => export_world(ctx, self, path),
             Purpose::SaveExtended => save_extended(ctx, self, path),
             Purpose::SaveHistory => self.export_history(path),
         }
@@ -155,6 +164,27 @@ pub fn save_world(ctx: &egui::Context, session: &mut Session, field: &str) {
     session.jobs.start(ctx, JobKind::Save, move || match write(&path, &analysis.world.to_json()) {
         Ok(()) => Outcome::Saved(path),
         Err(problem) => Outcome::Failed(problem),
+    });
+}
+
+/// Writes the calibrated world for another simulator; what has no counterpart there stands at the top of the file.
+pub fn export_world(ctx: &egui::Context, session: &mut Session, path: PathBuf) {
+    let Some(analysis) = session.analysis.clone() else { return };
+    session.jobs.start(ctx, JobKind::Save, move || {
+        let Some(format) = Format::of_ending(&path) else {
+            return Outcome::Failed(format!(
+                "The ending names no format; use .xml (MuJoCo), .urdf or .sdf: {}",
+                path.display()
+            ));
+        };
+        let exported = export(&analysis.world, format, false);
+        if exported.bodies.is_empty() {
+            return Outcome::Failed(format!("Nothing of this world has a counterpart in {}.", format.name()));
+        }
+        match write(&path, &exported.text) {
+            Ok(()) => Outcome::Saved(path),
+            Err(problem) => Outcome::Failed(problem),
+        }
     });
 }
 

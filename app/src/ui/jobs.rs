@@ -105,6 +105,8 @@ pub enum Purpose {
     SaveLog,
     /// Where the calibrated world goes.
     SaveWorld,
+    /// To write the calibrated world for another simulator.
+    ExportWorld,
     /// Where the extended world goes.
     SaveExtended,
     /// Where a table of attempts goes.

@@ -30,6 +30,8 @@ pub enum Action {
     SaveLog,
     /// Writes the calibrated world.
     SaveWorld,
+    /// Writes the calibrated world for another simulator.
+    ExportWorld,
     /// Writes a report.
     Report,
     /// Reads the same files again.
@@ -213,6 +215,7 @@ impl Action {
             Self::SaveProjectAs => "Save project as …",
             Self::SaveLog => "Save recording as …",
             Self::SaveWorld => "Save calibrated world as …",
+            Self::ExportWorld => "Export calibrated world (MuJoCo, URDF, SDF) …",
             Self::Report => "Write report …",
             Self::Reload => "Reload",
             Self::MapColumns => "Map columns …",
@@ -327,6 +330,7 @@ impl Action {
             | Self::SaveProjectAs
             | Self::SaveLog
             | Self::SaveWorld
+            | Self::ExportWorld
             | Self::Report
             | Self::Reload
             | Self::MapColumns
@@ -365,7 +369,7 @@ impl Action {
             Self::Report => need(session.path.is_some(), "Open or save a log first: a report is of files."),
             Self::AddVideo => recording()
                 .or_else(|| need(session.prepared().is_some_and(|p| !p.clockless()), "This recording has no clock.")),
-            Self::SaveWorld => fit(),
+            Self::SaveWorld | Self::ExportWorld => fit(),
             Self::TrainCalibrated | Self::PractiseOnThis => {
                 fit().or_else(|| need(session.can_train(), "This world has nothing for the hand."))
             }

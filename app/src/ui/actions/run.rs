@@ -70,6 +70,7 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         Action::SaveProjectAs => files::ask(ctx, &mut session.jobs, Purpose::SaveProject),
         Action::SaveLog => files::ask(ctx, &mut session.jobs, Purpose::SaveLog),
         Action::SaveWorld => files::ask(ctx, &mut session.jobs, Purpose::SaveWorld),
+        Action::ExportWorld => files::ask(ctx, &mut session.jobs, Purpose::ExportWorld),
         Action::Report => files::ask(ctx, &mut session.jobs, Purpose::SaveReport),
         Action::Reload => session.reload(ctx),
         Action::MapColumns => session.map_columns(ctx, None),

@@ -1,0 +1,235 @@
+//! What of a world is solid bodies on joints, in the frame of other simulators.
+
+use super::frame::{Vec3, of_plane, turning};
+use super::joint::Coordinate;
+use super::{Fate, Remark, mechanism, xml};
+use haptics::Vec2;
+use haptics::world::{Block, Shape, World};
+
+/// Blocks have no third size here, and other simulators want one, m.
+pub const DEPTH_M: f64 = 0.02;
+
+/// Everything that a file can show.
+pub struct Scene {
+    /// Name for the file.
+    pub name: String,
+    /// Gravity, m/s².
+    pub gravity: Vec3,
+    /// What moves.
+    pub bodies: Vec<Body>,
+    /// What does not.
+    pub grounds: Vec<Ground>,
+    /// What became of the parts.
+    pub remarks: Vec<Remark>,
+}
+
+/// A half-space that pushes.
+pub struct Ground {
+    /// `floor` or `plane`.
+    pub name: &'static str,
+    /// A point of the surface, m.
+    pub point_m: Vec3,
+    /// Out of the solid.
+    pub normal: Vec3,
+    /// Coulomb coefficient.
+    pub friction: f64,
+    /// Of one point of contact, N/m.
+    pub stiffness_n_m: f64,
+    /// Of one point of contact, N s/m.
+    pub damping_n_s_m: f64,
+}
+
+/// A rigid body; its own frame is parallel to the world's where its coordinates are zero.
+pub struct Body {
+    /// Name in the file, unlike any other.
+    pub name: String,
+    /// Origin of its frame where its coordinates are zero, m.
+    pub origin_m: Vec3,
+    /// kg.
+    pub mass_kg: f64,
+    /// Centre of mass in its own frame, m.
+    pub middle_m: Vec3,
+    /// Moment of inertia about the centre of mass, about the joint's axis, kg m².
+    pub inertia_kg_m2: f64,
+    /// Share of the weight that gravity has on it; only MJCF can have it other than 1.
+    pub weighs: f64,
+    /// How it moves.
+    pub moves: Moves,
+    /// What it looks like.
+    pub outline: Outline,
+}
+
+/// How a body moves.
+pub enum Moves {
+    /// Freely in the plane: two lengths and, unless it keeps upright, an angle about [`turning`].
+    InPlane {
+        /// Centre at the start, m in the plane.
+        start_m: Vec2,
+        /// Angle at the start, rad.
+        angle_rad: f64,
+        /// Keeps its angle.
+        upright: bool,
+    },
+    /// Along one coordinate.
+    Along(Coordinate),
+}
+
+/// What a body looks like.
+pub enum Outline {
+    /// A box of a width, a depth and a height, m.
+    Box {
+        /// Sizes, m.
+        size_m: [f64; 3],
+        /// Against the ground and each other.
+        contact: Surface,
+    },
+    /// An arm from the axis to a handle, a cylinder along the axis.
+    Arm {
+        /// Middle of the handle in the body's frame, m.
+        handle_m: Vec3,
+        /// Along the handle.
+        axis: Vec3,
+        /// Radius of the handle, m.
+        radius_m: f64,
+    },
+    /// A ball, for something with no shape in the world, m.
+    Mark {
+        /// Its middle in the body's frame, m.
+        at_m: Vec3,
+    },
+}
+
+/// How a body touches.
+#[derive(Clone, Copy)]
+pub struct Surface {
+    /// Against other blocks.
+    pub friction: f64,
+    /// Against fingers.
+    pub finger_friction: f64,
+    /// N/m for each point of contact.
+    pub stiffness_n_m: f64,
+    /// N s/m for each point of contact.
+    pub damping_n_s_m: f64,
+}
+
+impl Scene {
+    /// Says what became of a part.
+    pub fn remark(&mut self, object: &str, what: &str, fate: Fate, how: impl Into<String>) {
+        self.remarks.push(Remark { object: object.to_owned(), what: what.to_owned(), fate, how: how.into() });
+    }
+
+    /// A name for a body.
+    pub fn free_name(&self, wanted: &str) -> String {
+        let taken: Vec<String> = self.bodies.iter().map(|body| body.name.clone()).collect();
+        xml::name(wanted, &taken)
+    }
+}
+
+/// The scene of a world.
+pub fn of_world(world: &World) -> Scene {
+    let mut scene = Scene {
+        name: xml::name(&world.name, &[]),
+        gravity: of_plane(world.gravity_vector()),
+        bodies: Vec::new(),
+        grounds: Vec::new(),
+        remarks: Vec::new(),
+    };
+    grounds(world, &mut scene);
+    for block in &world.blocks {
+        add_block(block, &mut scene);
+    }
+    if let Some(crank) = &world.crank {
+        mechanism::add_crank(crank, &mut scene);
+    }
+    if let Some(found) = &world.mechanism {
+        mechanism::add(found, &mut scene);
+    }
+    if world.membrane.is_some() {
+        scene.remark("membrane", "all of it", Fate::LeftOut, "a sheet that gives and breaks is no body on a joint");
+    }
+    if world.switch.is_some() {
+        scene.remark(
+            "switch",
+            "all of it",
+            Fate::LeftOut,
+            "a force with two branches over one way is no joint's spring",
+        );
+    }
+    if world.pad.slip.is_some() {
+        scene.remark("pad", "fingertip-slip", Fate::LeftOut, "slips happen here when friction says so");
+    }
+    scene
+}
+
+fn grounds(world: &World, scene: &mut Scene) {
+    if let Some(floor) = &world.floor {
+        scene.grounds.push(Ground {
+            name: "floor",
+            point_m: Vec3::new(0.0, 0.0, floor.height_m),
+            normal: Vec3::z(),
+            friction: floor.loss.map_or(floor.friction, |loss| loss.mu),
+            stiffness_n_m: floor.stiffness_n_m,
+            damping_n_s_m: if floor.loss.is_some() { 0.0 } else { floor.damping_n_s_m },
+        });
+        if floor.loss.is_some() {
+            scene.remark("floor", "velocity-loss", Fate::LeftOut, "no restitution that is the same for every mass");
+        }
+    }
+    if let Some(plane) = &world.plane {
+        scene.grounds.push(Ground {
+            name: "plane",
+            point_m: of_plane(plane.point_m),
+            normal: of_plane(plane.normal()),
+            friction: plane.friction,
+            stiffness_n_m: plane.stiffness_n_m,
+            damping_n_s_m: plane.damping_n_s_m,
+        });
+    }
+}
+
+fn add_block(block: &Block, scene: &mut Scene) {
+    let (width, height) = (block.width_m, block.height_m);
+    let name = scene.free_name(&block.name);
+    scene.bodies.push(Body {
+        origin_m: Vec3::zeros(),
+        mass_kg: block.mass_kg,
+        middle_m: Vec3::zeros(),
+        inertia_kg_m2: block.mass_kg * (width * width + height * height) / 12.0,
+        weighs: 1.0,
+        moves: Moves::InPlane {
+            start_m: block.start.center_m,
+            angle_rad: block.start.angle_rad,
+            upright: block.keeps_upright(),
+        },
+        outline: Outline::Box {
+            size_m: [width, DEPTH_M, height],
+            contact: Surface {
+                friction: block.block_friction,
+                finger_friction: block.finger_friction,
+                stiffness_n_m: block.stiffness_n_m,
+                damping_n_s_m: block.damping_n_s_m,
+            },
+        },
+        name: name.clone(),
+    });
+    let depth = format!("{} mm, taken for granted: this world is flat", DEPTH_M * 1e3);
+    scene.remark(&name, "depth", Fate::Approximate, depth);
+    scene.remark(&name, "mass, width, height, start", Fate::Kept, "the body's own");
+    let mut lost = |there: bool, what: &str, why: &str| {
+        if there {
+            scene.remark(&name, what, Fate::LeftOut, why);
+        }
+    };
+    lost(block.wall.is_some(), "wall", "bodies are rigid; there is no wall that gives and breaks");
+    lost(block.content.is_some_and(|c| c.leak_kg_s > 0.0), "content", "masses do not change; it stays full");
+    lost(block.guide.is_some(), "guide", "joints are lines and circles, not curves");
+    lost(block.shape == Shape::Needle, "point", "it is a box here, without a point that pierces");
+}
+
+/// Axis of a body's only or last turning coordinate.
+pub fn axis_of(body: &Body) -> Vec3 {
+    match &body.moves {
+        Moves::InPlane { .. } => turning(),
+        Moves::Along(coordinate) => coordinate.axis,
+    }
+}
