@@ -9,6 +9,7 @@ pub mod fumble;
 pub mod generate;
 pub mod handling;
 pub mod mechanisms;
+pub mod python;
 pub mod tasks;
 
 use estimator::log;

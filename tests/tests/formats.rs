@@ -130,21 +130,9 @@ fn a_killed_recorder_leaves_a_file_up_to_its_last_second() {
     assert!(log.warnings.iter().any(|w| w.kind == "cut-off"), "{:?}", log.warnings);
 }
 
-/// Runs a script of `tests/python` on a file with `python3`, or what `TOUCHSTONE_PYTHON` names; `None` when it has to be
-/// skipped, with a visible word.
+/// What a script of `tests/python` says of a file; `None` when it has to be skipped, with a visible word.
 fn python(script: &str, file: &Path) -> Option<Value> {
-    let program = std::env::var("TOUCHSTONE_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let script = tests::workspace().join("tests/python").join(script);
-    let Ok(output) = Command::new(&program).arg(&script).arg(file).output() else {
-        println!("skipped: {program} cannot be started");
-        return None;
-    };
-    let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    if said.starts_with("skipped:") {
-        println!("{}", said.trim());
-        return None;
-    }
-    assert!(output.status.success(), "{}: {}", script.display(), String::from_utf8_lossy(&output.stderr));
+    let said = tests::python::output_of(&format!("tests/python/{script}"), &[text(file)])?;
     Some(serde_json::from_str(&said).expect("one JSON object"))
 }
 

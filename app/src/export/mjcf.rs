@@ -23,6 +23,10 @@ const TIP_AWAY_M: f64 = 0.03;
 /// Torsional and rolling friction of MuJoCo's pairs: its defaults; neither acts in a plane.
 const OTHER_FRICTION: &str = "0.005 0.0001 0.0001";
 
+/// MuJoCo's dry friction of joints creeps at rest and bends at slow speeds; so it does much less than by default.
+const STIFF_FRICTION: &str = "0.002 1";
+const FIRM_FRICTION: &str = "0.99 0.999 0.001";
+
 /// The whole document.
 pub fn write(world: &World, scene: &mut Scene, fingers: bool) -> Element {
     remark_on_contacts(scene);
@@ -148,7 +152,9 @@ fn along_one(joint: Element, along: &Coordinate) -> Element {
         .with("axis", numbers(along.axis.as_slice()))
         .with("ref", along.start)
         .with("damping", along.damping)
-        .with("frictionloss", along.dry);
+        .with("frictionloss", along.dry)
+        .with("solreffriction", STIFF_FRICTION)
+        .with("solimpfriction", FIRM_FRICTION);
     if let Some((stiffness, rest)) = along.spring {
         joint = joint.with("stiffness", stiffness).with("springref", rest);
     }

@@ -1,0 +1,33 @@
+//! Scripts in Python that the tests run, where there is one.
+
+use crate::workspace;
+use std::path::PathBuf;
+use std::process::Command;
+
+/// The Python to use: what `TOUCHSTONE_PYTHON` names, that of the environment which `./test` makes, or `python3`.
+fn program() -> PathBuf {
+    if let Some(named) = std::env::var_os("TOUCHSTONE_PYTHON") {
+        return named.into();
+    }
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from);
+    let own = target.join(if cfg!(windows) { "python/Scripts/python.exe" } else { "python/bin/python" });
+    if own.is_file() { own } else { "python3".into() }
+}
+
+/// What a script of the workspace prints; `None` when it has to be skipped, with a visible word: there is no Python, or the script
+/// itself says `skipped: …` because a package is missing.
+pub fn output_of(script: &str, arguments: &[&str]) -> Option<String> {
+    let program = program();
+    let path = workspace().join(script);
+    let Ok(output) = Command::new(&program).arg(&path).args(arguments).output() else {
+        println!("skipped: {} cannot be started", program.display());
+        return None;
+    };
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    if said.starts_with("skipped:") {
+        println!("{}", said.trim());
+        return None;
+    }
+    assert!(output.status.success(), "{script}: {}", String::from_utf8_lossy(&output.stderr));
+    Some(said)
+}
