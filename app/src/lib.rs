@@ -13,6 +13,7 @@ pub mod lessons;
 pub mod operator;
 pub mod recorder;
 pub mod report;
+pub mod schema;
 pub mod tasks;
 pub mod ui;
 pub mod video;

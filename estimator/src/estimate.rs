@@ -6,10 +6,11 @@ pub use constraint::{
     Constraint, ConstraintKind, Existence, Guide, Leaning, Phase, Screw, Sided, Slip, StrokePhase, Touched, Yielding,
 };
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// One estimated parameter.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Parameter {
     /// `block-1`, `crank`, `mechanism`, `needle`, …
     pub object: String,
@@ -75,7 +76,7 @@ impl Parameter {
 }
 
 /// Parameters that were estimated together, with how their errors go together.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Correlated {
     /// `object.name` of each.
     pub parameters: Vec<String>,
@@ -89,7 +90,7 @@ pub struct Correlated {
 }
 
 /// Everything that a fit found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Fit {
     /// Task name.
     pub task: String,
@@ -108,7 +109,7 @@ pub struct Fit {
 }
 
 /// Agreement between the measured force and the fitted model.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Quality {
     /// RMS force residual on the samples that were fitted, in `unit`.
     pub rms: f64,

@@ -5,11 +5,12 @@ mod labels;
 pub use labels::Labels;
 
 use crate::hand::Hand;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// What a recording is of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Task {
     /// Two blocks, unstacked and restacked.
@@ -180,7 +181,7 @@ pub struct Channel {
 }
 
 /// Samples `first..end` of a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Span {
     /// First sample.
     pub first: usize,
@@ -189,7 +190,7 @@ pub struct Span {
 }
 
 /// Something the reader should know before trusting a number.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Warning {
     /// Stable short name: `gap`, `stuck-channel`, `copied-channel`, `saturation`, `clock-jump`, `no-clock`, …
     pub kind: String,

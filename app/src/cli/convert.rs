@@ -6,7 +6,8 @@ use clap::Args;
 use estimator::log::Attachment;
 use haptics::recording::Warning;
 use haptics::world::World;
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -26,6 +27,19 @@ pub struct Convert {
     source: LogArgs,
 }
 
+/// What `convert --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// The file that was written.
+    out: PathBuf,
+    /// Recordings in it.
+    recordings: usize,
+    /// Samples of all of them.
+    samples: usize,
+    /// What looks wrong in the samples.
+    warnings: Vec<Warning>,
+}
+
 impl Convert {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         self.spare_the_input()?;
@@ -38,8 +52,9 @@ impl Convert {
         for warning in &warnings {
             let _ = write!(text, "\n  ! {}", warning.text); // writing into a string cannot fail
         }
-        let json = json!({ "out": self.out, "recordings": recordings.len(), "samples": samples, "warnings": warnings });
-        Ok(Output { text, json })
+        let warnings = warnings.into_iter().cloned().collect();
+        let said = Said { out: self.out.clone(), recordings: recordings.len(), samples, warnings };
+        Ok(Output { text, json: serde_json::to_value(&said)? })
     }
 
     /// Neither the input nor its sidecar may be written over.

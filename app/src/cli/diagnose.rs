@@ -1,6 +1,9 @@
 //! `touchstone diagnose`: what the simulation gets wrong, why, and what the extension gains.
 
+pub(crate) mod fleet;
+
 use super::{LogArgs, Output};
+use crate::tasks::Chosen;
 use anyhow::Context;
 use clap::Args;
 use estimator::diagnose::{
@@ -8,13 +11,14 @@ use estimator::diagnose::{
 };
 use estimator::words::amount;
 use haptics::world::World;
-use std::fmt::Write;
-use std::path::PathBuf;
+use std::fmt::Write as _;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
 /// Arguments of `diagnose`.
 #[derive(Args)]
 pub struct Diagnose {
-    /// Log files of one object
+    /// Log files of one object; with `--json-lines`, of one object each
     #[arg(required = true)]
     logs: Vec<PathBuf>,
     #[command(flatten)]
@@ -31,6 +35,15 @@ pub struct Diagnose {
     /// Write the world with what was found in it here
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Diagnose every log by itself and print a line of JSON for each as soon as it is done, also for those that fail
+    #[arg(long, conflicts_with_all = ["out", "validate"])]
+    json_lines: bool,
+    /// How many logs at the same time [default: one for each processor]
+    #[arg(long, requires = "json_lines", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Append the lines to this file instead, and leave out logs that stand in it already, unchanged
+    #[arg(long, requires = "json_lines", value_name = "LINES")]
+    resume: Option<PathBuf>,
 }
 
 impl Diagnose {
@@ -39,17 +52,7 @@ impl Diagnose {
         for log in &self.logs {
             recordings.extend(self.source.load(log)?);
         }
-        let named_file = self.baseline.as_ref().map(PathBuf::from).filter(|b| b.extension().is_some());
-        let world = match self.world.as_ref().or(named_file.as_ref()) {
-            Some(path) => {
-                let text = std::fs::read_to_string(path)
-                    .with_context(|| format!("the world could not be read: {}", path.display()))?;
-                Some(World::from_json(&text).with_context(|| format!("no world: {}", path.display()))?)
-            }
-            None => None,
-        };
-        let baseline = self.baseline.clone().filter(|_| world.is_none());
-        let options = Options { baseline, world, ..Options::default() };
+        let options = self.options()?;
         let mut diagnosis = super::progress::during("diagnosing", |share| {
             let share = share.clone();
             let progress = Progress::new(move |done| {
@@ -69,6 +72,83 @@ impl Diagnose {
             let _ = writeln!(text, "world: {}", path.display());
         }
         Ok(Output { text, json: serde_json::to_value(&diagnosis)? })
+    }
+}
+
+impl Diagnose {
+    /// What to start from.
+    fn options(&self) -> anyhow::Result<Options> {
+        let named_file = self.baseline.as_ref().map(PathBuf::from).filter(|b| b.extension().is_some());
+        let world = match self.world.as_ref().or(named_file.as_ref()) {
+            Some(path) => {
+                let text = std::fs::read_to_string(path)
+                    .with_context(|| format!("the world could not be read: {}", path.display()))?;
+                Some(World::from_json(&text).with_context(|| format!("no world: {}", path.display()))?)
+            }
+            None => None,
+        };
+        let baseline = self.baseline.clone().filter(|_| world.is_none());
+        Ok(Options { baseline, world, ..Options::default() })
+    }
+
+    /// Whether every log has a line of its own.
+    pub(super) fn is_fleet(&self) -> bool {
+        self.json_lines
+    }
+
+    /// Every log by itself; a sentence when some of them failed.
+    pub(super) fn run_fleet(&self) -> anyhow::Result<Option<String>> {
+        let options = self.options()?;
+        if let Some(task) = &self.source.task {
+            Chosen::find(task)?;
+        }
+        let standing = self.resume.as_deref().map(fleet::standing).transpose()?.unwrap_or_default();
+        let mut out: Box<dyn Write + Send> = match &self.resume {
+            Some(path) => Box::new(fleet::append_to(path)?),
+            None => Box::new(std::io::stdout()),
+        };
+        let asked = self.asked(&options);
+        let usual = std::thread::available_parallelism().map_or(1, usize::from);
+        let tally = super::progress::during(&format!("diagnosing {} logs", self.logs.len()), |share| {
+            let run = fleet::Run {
+                logs: &self.logs,
+                jobs: self.jobs.map_or(usual, usize::from),
+                standing: &standing,
+                key: &|log| fleet::Key::of(log, self.source.meta.as_deref(), &asked),
+                work: &|log| self.one(log, &options),
+                told: &|dealt_with| share.tell(dealt_with as f64 / self.logs.len() as f64),
+            };
+            run.through(&mut out)
+        })?;
+        let fleet::Tally { done, failed, kept } = tally;
+        // Standard output is for the lines alone.
+        eprintln!("{done} diagnosed, {kept} stood there already, {failed} failed");
+        Ok((failed > 0)
+            .then(|| format!("{failed} of {} logs could not be diagnosed; their lines say why", self.logs.len())))
+    }
+
+    fn one(&self, log: &Path, options: &Options) -> anyhow::Result<serde_json::Value> {
+        let mut recordings = estimator::log::load(log, self.source.meta.as_deref())?;
+        if let Some(task) = self.source.task.as_deref().map(Chosen::find).transpose()? {
+            for recording in &mut recordings {
+                task.give_to(recording);
+            }
+        }
+        Ok(serde_json::to_value(diagnose(&recordings, options)?)?)
+    }
+
+    /// Version and options: another answer may be expected when they change.
+    fn asked(&self, options: &Options) -> String {
+        let mut asked = format!("touchstone {}", env!("CARGO_PKG_VERSION"));
+        let mut add = |name: &str, value: Option<String>| {
+            if let Some(value) = value {
+                let _ = write!(asked, " --{name} {value}");
+            }
+        };
+        add("task", self.source.task.clone());
+        add("baseline", options.baseline.clone());
+        add("world", options.world.as_ref().map(|world| crate::report::source::sha256(world.to_json().as_bytes())));
+        asked
     }
 }
 

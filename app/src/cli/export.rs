@@ -1,10 +1,11 @@
 //! `touchstone export`: a world for other simulators.
 
 use super::Output;
-use crate::export::{Fate, Format, export};
+use crate::export::{Fate, Format, Remark, export};
 use anyhow::Context;
 use clap::Args;
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -22,6 +23,23 @@ pub struct Export {
     /// Add two fingertips that can be led by motors (MJCF)
     #[arg(long)]
     fingers: bool,
+}
+
+/// What `export --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// The file that was written.
+    out: PathBuf,
+    /// Its format.
+    to: Format,
+    /// The world's name.
+    world: String,
+    /// Where the world's plane lies in the file.
+    frame: &'static str,
+    /// Names of the movable bodies in the file.
+    bodies: Vec<String>,
+    /// What became of every part of the world.
+    parts: Vec<Remark>,
 }
 
 impl Export {
@@ -44,14 +62,14 @@ impl Export {
                 let _ = writeln!(text, "  {word:<11} {}, {}: {}", remark.object, remark.what, remark.how);
             }
         }
-        let json = json!({
-            "out": self.out,
-            "to": self.to,
-            "world": world.name,
-            "frame": crate::export::FRAME,
-            "bodies": exported.bodies,
-            "parts": exported.remarks,
-        });
-        Ok(Output { text, json })
+        let said = Said {
+            out: self.out.clone(),
+            to: self.to,
+            world: world.name,
+            frame: crate::export::FRAME,
+            bodies: exported.bodies,
+            parts: exported.remarks,
+        };
+        Ok(Output { text, json: serde_json::to_value(&said)? })
     }
 }

@@ -6,9 +6,11 @@ use super::{LogArgs, Output, enough};
 use anyhow::Context;
 use clap::Args;
 use estimator::estimate::{Constraint, Fit as Fitted};
-use estimator::online::enough::Wanted;
+use estimator::online::enough::{Enough, Wanted};
 use estimator::online::enough_for;
 use estimator::pipeline::{Options, analyse};
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -28,6 +30,16 @@ pub struct Fit {
     out: Option<PathBuf>,
     #[command(flatten)]
     stated: Stated,
+}
+
+/// What `fit --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said<'a> {
+    /// What was found.
+    #[serde(flatten)]
+    fit: &'a Fitted,
+    /// Whether each parameter is known as well as was wanted, and what to do where it is not.
+    enough: Vec<Enough>,
 }
 
 impl Fit {
@@ -59,10 +71,7 @@ impl Fit {
         }
         let missing = enough_for(&recordings, analysis.task, &analysis.fit, &wanted);
         text.push_str(&enough::table(&missing));
-        let mut json = serde_json::to_value(&analysis.fit)?;
-        if let Some(answer) = json.as_object_mut() {
-            answer.insert("enough".to_owned(), serde_json::to_value(&missing)?);
-        }
+        let json = serde_json::to_value(Said { fit: &analysis.fit, enough: missing })?;
         Ok(Output { text, json })
     }
 }

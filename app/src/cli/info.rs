@@ -4,7 +4,10 @@ use super::{LogArgs, Output};
 use clap::Args;
 use estimator::segment::definition::Definition;
 use haptics::recording::{Recording, Task, Warning};
+use schemars::JsonSchema;
+use serde::Serialize;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -21,7 +24,7 @@ impl Info {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         let recordings = self.source.load(&self.log)?;
         let text = recordings.iter().map(describe).collect::<Vec<_>>().join("\n");
-        let mut all: Vec<Value> = recordings.iter().map(to_json).collect();
+        let mut all: Vec<Value> = recordings.iter().map(to_json).collect::<serde_json::Result<_>>()?;
         let json = if all.len() == 1 {
             all.remove(0)
         } else {
@@ -70,27 +73,64 @@ fn definition(recording: &Recording, task: Task) -> Option<Definition> {
     Definition::of(recording, task).ok()
 }
 
-fn to_json(recording: &Recording) -> Value {
+/// What `info --json` prints of one recording; of a file of several, `recordings` and `warnings` of all.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// The file, and the trial where there are several.
+    name: String,
+    /// Value of the `trial` column, where there are several.
+    trial: Option<String>,
+    /// What was done, as far as it is known.
+    task: Option<Task>,
+    /// Name of the task's definition.
+    task_definition: Option<String>,
+    /// Parameters that each state of the task shows.
+    shows: Option<BTreeMap<String, Vec<String>>>,
+    /// Number of samples.
+    samples: usize,
+    /// Samples a second; absent without a clock.
+    rate_hz: Option<f64>,
+    /// Length, s; absent without a clock.
+    duration_s: Option<f64>,
+    /// The channels.
+    columns: Vec<Column>,
+    /// Whether there is a column of states.
+    labelled: bool,
+    /// What looks wrong in the samples.
+    warnings: Vec<Warning>,
+}
+
+/// One channel.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Column {
+    /// Its name.
+    name: String,
+    /// Its unit after reading: SI.
+    unit: String,
+    /// Its least value; absent where it has none.
+    min: Option<f64>,
+    /// Its largest value; absent where it has none.
+    max: Option<f64>,
+}
+
+fn to_json(recording: &Recording) -> serde_json::Result<Value> {
     let task = recording.meta.task.and_then(|task| definition(recording, task));
-    let columns: Vec<Value> = recording
-        .channels
-        .iter()
-        .map(|channel| {
-            let (low, high) = range(&channel.values);
-            json!({ "name": channel.name, "unit": channel.unit, "min": low, "max": high })
-        })
-        .collect();
-    json!({
-        "name": recording.name,
-        "trial": recording.trial,
-        "task": recording.meta.task,
-        "task_definition": task.as_ref().map(|task| &task.name),
-        "shows": task.as_ref().map(Definition::shown_by_states),
-        "samples": recording.len(),
-        "rate_hz": recording.rate_hz(),
-        "duration_s": recording.duration_s(),
-        "columns": columns,
-        "labelled": recording.labels.is_some(),
-        "warnings": recording.warnings,
+    let columns = recording.channels.iter().map(|channel| {
+        let (low, high) = range(&channel.values);
+        let [min, max] = [low, high].map(|value| Some(value).filter(|value| value.is_finite()));
+        Column { name: channel.name.clone(), unit: channel.unit.clone(), min, max }
+    });
+    serde_json::to_value(Said {
+        name: recording.name.clone(),
+        trial: recording.trial.clone(),
+        task: recording.meta.task,
+        task_definition: task.as_ref().map(|task| task.name.clone()),
+        shows: task.as_ref().map(Definition::shown_by_states),
+        samples: recording.len(),
+        rate_hz: recording.rate_hz(),
+        duration_s: recording.duration_s(),
+        columns: columns.collect(),
+        labelled: recording.labels.is_some(),
+        warnings: recording.warnings.clone(),
     })
 }

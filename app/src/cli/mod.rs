@@ -3,24 +3,24 @@
 //! Exit codes: 0 done, 1 the input or the run failed, 2 wrong usage.
 
 mod bench;
-mod convert;
+pub(crate) mod convert;
 mod demo;
 mod device;
-mod diagnose;
+pub(crate) mod diagnose;
 mod enough;
-mod export;
-mod fit;
+pub(crate) mod export;
+pub(crate) mod fit;
 mod gallery;
 mod history;
-mod info;
+pub(crate) mod info;
 mod lessons;
 mod progress;
-mod record;
+pub(crate) mod record;
 mod report;
 mod score;
-mod screenshot;
+pub(crate) mod screenshot;
 mod segment;
-mod simulate;
+pub(crate) mod simulate;
 mod stated;
 pub mod table;
 
@@ -202,6 +202,13 @@ pub fn main() -> ExitCode {
         Some(Command::Info(args)) => args.run(),
         Some(Command::Segment(args)) => args.run(),
         Some(Command::Fit(args)) => args.run(),
+        Some(Command::Diagnose(args)) if args.is_fleet() => {
+            return match args.run_fleet() {
+                Ok(None) => ExitCode::SUCCESS,
+                Ok(Some(problem)) => fail(&anyhow::Error::msg(problem)),
+                Err(error) => fail(&error),
+            };
+        }
         Some(Command::Diagnose(args)) => args.run(),
         Some(Command::Simulate(args)) => args.run(),
         Some(Command::Report(args)) => {

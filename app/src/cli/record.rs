@@ -11,6 +11,8 @@ use haptics::servo::recorder::{SensorModel, to_recording};
 use haptics::servo::safety::Limits;
 use haptics::servo::{Loop, Swap, TickRecord};
 use haptics::world::{State, World, presets};
+use schemars::JsonSchema;
+use serde::Serialize;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -67,6 +69,19 @@ enum Sensors {
 /// Longest recording, s: an hour at 1 kHz is half a gigabyte of ticks.
 pub(super) const LONGEST_S: f64 = 3600.0;
 
+/// What `record --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// The recording.
+    out: PathBuf,
+    /// Its sidecar.
+    meta: PathBuf,
+    /// Its samples.
+    samples: usize,
+    /// Its length, s.
+    seconds: f64,
+}
+
 impl Record {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         anyhow::ensure!(
@@ -87,8 +102,8 @@ impl Record {
         let seconds = recording.duration_s().unwrap_or(0.0);
         let text =
             format!("{}: {} samples, {seconds:.2} s\n{}", self.out.display(), recording.len(), sidecar.display());
-        let json = json!({ "out": self.out, "meta": sidecar, "samples": recording.len(), "seconds": seconds });
-        Ok(Output { text, json })
+        let said = Said { out: self.out.clone(), meta: sidecar, samples: recording.len(), seconds };
+        Ok(Output { text, json: serde_json::to_value(&said)? })
     }
 
     fn world(&self) -> anyhow::Result<World> {

@@ -8,7 +8,8 @@ use haptics::recording::Recording;
 use haptics::servo::{Loop, Swap, safety::Limits};
 use haptics::world::State;
 use render::{Headless, SceneView, Theme, Trajectory, ViewOptions};
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `screenshot`.
@@ -39,6 +40,17 @@ pub struct Screenshot {
     out: PathBuf,
 }
 
+/// What `screenshot --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// The picture.
+    out: PathBuf,
+    /// Pixels from left to right.
+    width: u32,
+    /// Pixels from top to bottom.
+    height: u32,
+}
+
 impl Screenshot {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         let picture = match (&self.scene, &self.log) {
@@ -47,8 +59,9 @@ impl Screenshot {
             (None, None) => anyhow::bail!("name a scene or a log"),
         };
         save(&picture, &self.out)?;
-        let json = json!({ "out": self.out, "width": self.size[0], "height": self.size[1] });
-        Ok(Output { text: self.out.display().to_string(), json })
+        let [width, height] = self.size;
+        let said = Said { out: self.out.clone(), width, height };
+        Ok(Output { text: self.out.display().to_string(), json: serde_json::to_value(&said)? })
     }
 
     fn panel_picture(&self, log: &Path) -> anyhow::Result<image::RgbaImage> {

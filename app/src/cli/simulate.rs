@@ -2,7 +2,9 @@
 
 use super::{LogArgs, Output};
 use clap::Args;
-use serde_json::{Map, json};
+use schemars::JsonSchema;
+use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -20,6 +22,19 @@ pub struct Simulate {
     out: PathBuf,
 }
 
+/// What `simulate --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// The file with the predicted forces.
+    out: PathBuf,
+    /// Its samples.
+    samples: usize,
+    /// Names of the predicted channels.
+    columns: Vec<String>,
+    /// Root mean square of measured minus predicted for each channel that was measured, in its unit.
+    residual_rms: BTreeMap<String, f64>,
+}
+
 impl Simulate {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         let world = crate::worlds::find(&self.world)?;
@@ -35,17 +50,17 @@ impl Simulate {
         estimator::log::write_csv(&simulation.to_recording(recording), &self.out)?;
         let mut text =
             format!("{}: {} samples of {} predicted\n", self.out.display(), simulation.time_s.len(), recording.name);
-        let mut rms = Map::new();
+        let mut residual_rms = BTreeMap::new();
         for (name, value) in &simulation.residual_rms {
             let _ = writeln!(text, "  {name:<10} measured − predicted: {value:.4} RMS");
-            rms.insert(name.clone(), json!(value));
+            residual_rms.insert(name.clone(), *value);
         }
-        let json = json!({
-            "out": self.out,
-            "samples": simulation.time_s.len(),
-            "columns": simulation.predicted.iter().map(|c| &c.name).collect::<Vec<_>>(),
-            "residual_rms": rms,
-        });
-        Ok(Output { text, json })
+        let said = Said {
+            out: self.out.clone(),
+            samples: simulation.time_s.len(),
+            columns: simulation.predicted.iter().map(|column| column.name.clone()).collect(),
+            residual_rms,
+        };
+        Ok(Output { text, json: serde_json::to_value(&said)? })
     }
 }

@@ -15,10 +15,11 @@ mod urdf;
 mod xml;
 
 use haptics::world::World;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// What a world can be exported to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, clap::ValueEnum, strum::EnumIter)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize, clap::ValueEnum, strum::EnumIter)]
 #[serde(rename_all = "lowercase")]
 pub enum Format {
     /// MuJoCo's own format
@@ -51,7 +52,7 @@ impl Format {
 }
 
 /// How a part of a world went over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, JsonSchema, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fate {
     /// The format has the same.
@@ -63,7 +64,7 @@ pub enum Fate {
 }
 
 /// One line of what became of a world.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Remark {
     /// `block-1`, `crank`, `floor`, … as in the world.
     pub object: String,

@@ -70,11 +70,20 @@ fn digest(path: &Path) -> io::Result<(u64, String)> {
         hash.update(&buffer[..n]);
         length += n as u64;
     }
-    let mut digits = String::new();
-    for byte in hash.finalize() {
+    Ok((length, digits(&hash.finalize())))
+}
+
+/// Bytes as hexadecimal digits.
+fn digits(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut digits, byte| {
         let _ = write!(digits, "{byte:02x}");
-    }
-    Ok((length, digits))
+        digits
+    })
+}
+
+/// SHA-256 of bytes, in hexadecimal digits.
+pub fn sha256(bytes: &[u8]) -> String {
+    digits(&Sha256::digest(bytes))
 }
 
 fn text(path: &Path) -> Option<String> {

@@ -5,10 +5,11 @@ use super::course::Course;
 use super::kept::Kept;
 use super::suspects::Hypothesis;
 use haptics::law::{Effect, Kind};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The answer in one word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// Something beyond the model is there, and it has a name.
@@ -22,7 +23,7 @@ pub enum Verdict {
 }
 
 /// The model that was started from.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Baseline {
     /// Its terms, e.g. `weight+load-friction+viscous-friction`.
     pub model: String,
@@ -37,7 +38,7 @@ pub struct Baseline {
 }
 
 /// A parameter of a cause.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct CauseParameter {
     /// As in the law's page of the catalogue.
     pub name: String,
@@ -50,7 +51,7 @@ pub struct CauseParameter {
 }
 
 /// What an extension is worth on data that took part in nothing.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Gain {
     /// Unexplained force without the cause (all others in), N or N m.
     pub heldout_rms_before: f64,
@@ -66,7 +67,7 @@ pub struct Gain {
 }
 
 /// What a rollout is compared by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RolloutOf {
     /// The position, under the measured force.
@@ -76,7 +77,7 @@ pub enum RolloutOf {
 }
 
 /// Error of a model that runs forward in time from the measured state, over windows of data that took part in nothing.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Rollout {
     /// What is compared.
     pub of: RolloutOf,
@@ -97,7 +98,7 @@ pub struct Rollout {
 }
 
 /// A cause that was found.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Cause {
     /// Out of `spec/causes.md`, or `other:<expression>`.
     pub id: String,
@@ -116,7 +117,7 @@ pub struct Cause {
 }
 
 /// A cause that would explain the recording as well.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Alternative {
     /// Out of `spec/causes.md`.
     pub id: String,
@@ -130,7 +131,7 @@ pub struct Alternative {
 }
 
 /// A cause that this recording could not have shown.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct NotExcited {
     /// Out of `spec/causes.md`.
     pub id: String,
@@ -139,7 +140,7 @@ pub struct NotExcited {
 }
 
 /// A cause that was looked for and not named.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct PassedOver {
     /// Out of `spec/causes.md`.
     pub id: String,
@@ -154,7 +155,7 @@ pub struct PassedOver {
 }
 
 /// The recording that would settle what is open.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct NextExperiment {
     /// What to do, in words.
     pub motion: String,
@@ -168,7 +169,7 @@ pub struct NextExperiment {
 }
 
 /// A motion of the library, for an operator that is a program. Lengths are m, angles rad: as the coordinate is (a crank's is its angle).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Experiment {
     /// Which motion: `sweep-across`, `sweep-let-go`, `short-strokes`, `bursts`, `one-way`, `rests-and-squeezes`, `long-mixed`,
     /// `hang-weight`, `carry-let-go`, `carry-still` or `slide-let-go`; `docs/diagnosis.md` says what each is.
@@ -194,7 +195,7 @@ pub struct Experiment {
 }
 
 /// What the found laws are worth on a recording that took part in nothing.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Validation {
     /// Unexplained force by the model alone, as fitted, N or N m; of tasks without one coordinate what is left of a channel.
     pub rms_before: f64,
@@ -218,7 +219,7 @@ pub struct Validation {
 }
 
 /// A question that an earlier recording left open and a later one answered.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Settled {
     /// Name of the recording that settled it.
     pub by: String,
@@ -231,7 +232,7 @@ pub struct Settled {
 }
 
 /// How well the extended model does in the end.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Final {
     /// Unexplained force on the blocks that took part in nothing, N or N m.
     #[serde(rename = "heldout_rms_N")]
@@ -241,7 +242,7 @@ pub struct Final {
 }
 
 /// Everything that a diagnosis found.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Diagnosis {
     /// The answer in one word.
     pub verdict: Verdict,

@@ -1,10 +1,11 @@
 //! Constraints as a fit tells them: these types are part of the JSON of `touchstone fit --json`.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The kind of a geometric constraint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ConstraintKind {
     /// Turning about a fixed axis.
@@ -26,7 +27,7 @@ pub enum ConstraintKind {
 }
 
 /// A constraint found in a recording.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Constraint {
     /// What it is.
     pub kind: ConstraintKind,
@@ -104,7 +105,7 @@ pub struct Constraint {
 }
 
 /// A kind that is likelier than the others but not certain.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Leaning {
     /// What it would be.
     pub kind: ConstraintKind,
@@ -147,7 +148,7 @@ impl Constraint {
 }
 
 /// Whether force that weight, inertia and friction do not explain shows a constraint (`docs/constraints.md`).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Existence {
     /// `true` when it shows one, `false` when it shows that there is none worth speaking of, absent when it cannot tell.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -171,7 +172,7 @@ pub struct Existence {
 }
 
 /// From which side a constraint was loaded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 pub enum Sided {
     /// Loaded one way only: that it holds the other way was not seen.
     #[serde(rename = "one-sided seen")]
@@ -182,7 +183,7 @@ pub enum Sided {
 }
 
 /// How the path gives way to force across it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Yielding {
     /// Stiffness, N/m; absent when no give was seen.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -194,7 +195,7 @@ pub struct Yielding {
 }
 
 /// A sudden shift of the path, as when the grasp slips on a handle.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Slip {
     /// By when, s; absent without a clock.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -211,7 +212,7 @@ pub struct Slip {
 }
 
 /// A motion of one degree of freedom: a turn about an axis with a shift along it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Screw {
     /// A point of the axis, m; the origin for a slide, which has none.
     pub point_m: [f64; 3],
@@ -226,7 +227,7 @@ pub struct Screw {
 }
 
 /// A path as a uniform cubic B-spline with few control points (as `guide` in a world file; `docs/constraints.md`).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Guide {
     /// Control points, m; two numbers each for a planar path, three otherwise. An open path ends in its first and last.
     pub points_m: Vec<Vec<f64>>,
@@ -241,7 +242,7 @@ pub struct Guide {
 }
 
 /// A surface that pushes one way, where no push presses it in.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Touched {
     /// A point of it in the middle of what was touched, m.
     pub point_m: Vec<f64>,
@@ -264,7 +265,7 @@ pub struct Touched {
 }
 
 /// What a needle is doing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Phase {
     /// Outside.
@@ -278,7 +279,7 @@ pub enum Phase {
 }
 
 /// One phase of a stroke.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct StrokePhase {
     /// What.
     pub phase: Phase,

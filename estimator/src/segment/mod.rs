@@ -28,6 +28,7 @@ use definition::Definition;
 use grasps::Hand;
 use haptics::recording::{Recording, Task};
 use motion::Motion;
+use schemars::JsonSchema;
 use score::Score;
 use serde::{Deserialize, Serialize};
 pub use state::SystemState;
@@ -35,7 +36,7 @@ use std::collections::BTreeMap;
 pub use threshold::Thresholds;
 
 /// One interval in one state.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Interval {
     /// Start, s (sample number when the log is clockless).
     pub t0: f64,
@@ -57,7 +58,7 @@ pub struct Interval {
 }
 
 /// The answer of a segmentation; serialises to `segment --json`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Segmentation {
     /// `threshold` or `hmm`.
     pub method: String,
@@ -181,7 +182,7 @@ pub fn task_of(recording: &Recording, stated: Option<Task>) -> Result<Task, Esti
 }
 
 /// How states are told apart.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// Qualitative reasoning: thresholds and rules.

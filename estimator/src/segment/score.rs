@@ -4,6 +4,7 @@
 use super::{Segmentation, SystemState};
 use crate::signal::task::times;
 use haptics::recording::{Recording, Task};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -13,7 +14,7 @@ const TOLERANCE_S: f64 = 0.1;
 const TOLERANCE_SAMPLES: f64 = 1.5;
 
 /// The agreement of one recording.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Score {
     /// Labelled samples that were compared.
     pub samples: usize,
@@ -39,7 +40,7 @@ pub struct Score {
 }
 
 /// The agreement in one state, by samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct StateScore {
     /// 2 · right / (labelled + found).
     pub f1: f64,

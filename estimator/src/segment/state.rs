@@ -1,9 +1,10 @@
 //! The contact configurations that recordings are divided into.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Contact configuration of the system.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SystemState {
     /// Nothing is touched.

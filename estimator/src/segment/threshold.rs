@@ -3,10 +3,11 @@
 use crate::signal::noise::white_noise;
 use crate::signal::task::TaskSignals;
 use haptics::Vec2;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Symmetric thresholds of the qualitative values +, 0, −.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Thresholds {
     /// Velocity, m/s (thesis: 0.05).
     pub velocity_m_s: f64,

@@ -1,10 +1,11 @@
 //! What stands in the catalogue about a law or a fault: for files, the app and the pages `docs/causes/<id>.md`
 //! ([`super::page`]).
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Whether a law changes the world or corrects the recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
     /// Part of what the trainee feels.

@@ -13,6 +13,7 @@ pub use wanted::Wanted;
 
 use crate::estimate::Parameter;
 use nalgebra::{DMatrix, DVector};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Nobody waits longer than this for a number, s.
@@ -27,7 +28,7 @@ const TRIAL_S: f64 = 5.0;
 const HELPS: f64 = 0.1;
 
 /// A motion that shows something.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Motion {
     /// Nothing new.
@@ -74,7 +75,7 @@ impl Motion {
 }
 
 /// What is known of one parameter, and what is missing.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Enough {
     /// The object.
     pub object: String,
@@ -97,7 +98,7 @@ pub struct Enough {
 }
 
 /// A motion that is missing.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Missing {
     /// Which one.
     pub motion: Motion,

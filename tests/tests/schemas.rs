@@ -1,0 +1,178 @@
+//! The JSON of the command line is what `docs/schemas` says, and the contract beside the checkout is in it.
+//!
+//! `TOUCHSTONE_WRITE_SCHEMAS=1 cargo test -p tests --test schemas` writes the schemas anew after a type was changed.
+
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tests::schema::faults;
+use tests::{touchstone, workspace};
+
+fn schemas() -> BTreeMap<&'static str, Value> {
+    app::schema::all().into_iter().collect()
+}
+
+fn file_of(name: &str) -> PathBuf {
+    workspace().join("docs/schemas").join(format!("{name}.json"))
+}
+
+#[test]
+fn the_schemas_are_those_of_the_types() {
+    for (name, schema) in schemas() {
+        let text = serde_json::to_string_pretty(&schema).expect("JSON") + "\n";
+        if std::env::var_os("TOUCHSTONE_WRITE_SCHEMAS").is_some() {
+            std::fs::write(file_of(name), &text).expect("docs can be written");
+        }
+        let stands = std::fs::read_to_string(file_of(name)).unwrap_or_default();
+        assert!(stands == text, "{}: write it anew, see the head of this test", file_of(name).display());
+    }
+    let files = std::fs::read_dir(workspace().join("docs/schemas")).expect("the folder").count();
+    assert_eq!(files, schemas().len(), "every file in docs/schemas has a command");
+}
+
+/// Runs a command with `--json` and holds what it prints against its schema.
+fn holds(name: &str, arguments: &[&str]) -> Value {
+    let output = Command::new(touchstone()).args(arguments).arg("--json").output().expect("the program starts");
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    let said: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    let wrong = faults(&schemas()[name], &said);
+    assert!(wrong.is_empty(), "{arguments:?}: {wrong:#?}");
+    agreed(name, &said);
+    said
+}
+
+/// A library in Python says the same, where there is one; a document without something that is required, it refuses.
+fn agreed(name: &str, said: &Value) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (whole, lacking) = (folder.path().join("whole.json"), folder.path().join("lacking.json"));
+    std::fs::write(&whole, said.to_string()).expect("written");
+    std::fs::write(&lacking, "{}").expect("written");
+    let schema = file_of(name);
+    for (document, good) in [(&whole, true), (&lacking, false)] {
+        let Some(found) = tests::python::output_of("tests/python/check_schemas.py", &[text(&schema), text(document)])
+        else {
+            return;
+        };
+        let found: Vec<String> = serde_json::from_str(&found).expect("a list");
+        assert_eq!(found.is_empty(), good, "{name}: {found:?}");
+    }
+}
+
+fn asset(name: &str) -> String {
+    workspace().join("assets/recordings").join(name).display().to_string()
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("a plain path")
+}
+
+/// A log with two trials of a mass on a slide, pushed to and fro.
+fn two_trials(folder: &Path) -> PathBuf {
+    let mut rows = String::from("t_s,q_m,f_N,trial\n");
+    for (trial, mass_kg) in [(1, 2.0), (2, 2.5)] {
+        for i in 0..3000 {
+            let t = f64::from(i) * 2e-3;
+            let (q, a) = (0.05 * (5.0 * t).sin(), -0.05 * 25.0 * (5.0 * t).sin());
+            let f = mass_kg * a + 0.4 * (5.0 * t).cos().signum();
+            writeln!(rows, "{t:.3},{q:.6},{f:.5},{trial}").expect("memory can be written");
+        }
+    }
+    let path = folder.join("slide.csv");
+    std::fs::write(&path, rows).expect("written");
+    std::fs::write(folder.join("slide.meta.json"), r#"{"task": "mechanism"}"#).expect("written");
+    path
+}
+
+#[test]
+fn what_the_commands_print_is_what_the_schemas_say() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let (stack, crank) = (asset("stack.csv"), asset("crank.csv"));
+    let trials = two_trials(folder.path());
+    for log in [stack.as_str(), crank.as_str(), text(&trials)] {
+        holds("info", &["info", log]);
+        holds("fit", &["fit", log, "--out", &file("world.json")]);
+        holds("diagnose", &["diagnose", log]);
+    }
+    for method in ["threshold", "hmm"] {
+        holds("segment", &["segment", &stack, "--method", method]);
+    }
+    let fit = holds("fit", &["fit", &crank, "--out", &file("crank.json")]);
+    assert!(fit["enough"].as_array().is_some_and(|enough| !enough.is_empty()));
+    holds("simulate", &["simulate", &file("crank.json"), &crank, "--out", &file("simulated.csv")]);
+    holds("convert", &["convert", &stack, &file("stack.mcap")]);
+    for to in ["mjcf", "urdf", "sdf"] {
+        holds("export", &["export", &file("crank.json"), "--to", to, "--out", &file("exported.xml")]);
+    }
+    let record = ["record", "--task", "crank", "--operator", "scripted", "--seconds", "1", "--out", &file("made.csv")];
+    holds("record", &record);
+    holds("screenshot", &["screenshot", "--scene", "crank", "--size", "160x120", "--out", &file("scene.png")]);
+}
+
+#[test]
+fn a_fleet_prints_lines_as_the_schema_says_and_goes_on_where_it_was() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (bad, lines) = (folder.path().join("bad.csv"), folder.path().join("lines.jsonl"));
+    std::fs::write(&bad, "t_s,q_m\n0,nothing\n").expect("written");
+    let logs = [asset("stack.csv"), text(&bad).to_owned(), asset("crank.csv")];
+    let run = |logs: &[String]| {
+        let mut command = Command::new(touchstone());
+        command.arg("diagnose").args(logs).args(["--json-lines", "--jobs", "2", "--resume", text(&lines)]);
+        let output = command.output().expect("the program starts");
+        assert!(output.stdout.is_empty(), "the lines are in the file");
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let (code, said) = run(&logs);
+    assert!(code == Some(1) && said.contains("1 of 3 logs could not be diagnosed"), "{said}");
+    let read = || std::fs::read_to_string(&lines).expect("lines");
+    for line in read().lines() {
+        let line: Value = serde_json::from_str(line).expect("one JSON object a line");
+        let wrong = faults(&schemas()["diagnose-lines"], &line);
+        assert!(wrong.is_empty(), "{wrong:#?}");
+        assert_eq!(line.get("error").is_some(), line["file"] == text(&bad), "{line}");
+    }
+    let before = read();
+    assert!(run(&logs).1.contains("3 stood there already") && read() == before);
+    // What was cut off when a run was killed is done again.
+    std::fs::write(&lines, &before[..before.len() - 40]).expect("written");
+    assert!(run(&logs).1.contains("2 stood there already"));
+    assert_eq!(read().lines().count(), 4);
+    let to_output = Command::new(touchstone()).args(["diagnose", &logs[0], "--json-lines"]).output().expect("runs");
+    assert!(to_output.status.success() && to_output.stdout.ends_with(b"\n"));
+    serde_json::from_slice::<Value>(&to_output.stdout).expect("one line");
+}
+
+#[test]
+fn wrong_documents_are_refused() {
+    let schemas = schemas();
+    let mut said = holds("diagnose", &["diagnose", &asset("crank.csv")]);
+    said["verdict"] = "perhaps".into();
+    assert!(!faults(&schemas["diagnose"], &said).is_empty());
+    said.as_object_mut().expect("an object").remove("verdict");
+    assert!(!faults(&schemas["diagnose"], &said).is_empty());
+}
+
+/// Every name that the contract gives in an example of a command is one that its schema knows.
+#[test]
+fn the_contract_s_names_are_in_the_schemas() {
+    let Ok(contract) = std::fs::read_to_string(workspace().join("../shared/spec/command-line.md")) else {
+        println!("skipped: ../shared/spec/command-line.md is not here");
+        return;
+    };
+    let schemas = schemas();
+    for name in ["segment", "fit", "diagnose"] {
+        let (_, section) = contract.split_once(&format!("## `{name} --json`")).expect("a section of the contract");
+        let section = section.split("\n## ").next().unwrap_or_default();
+        let said = schemas[name].to_string();
+        let mut names = 0;
+        for (end, _) in section.match_indices("\":") {
+            let key = section[..end].rsplit('"').next().expect("a name in quotes");
+            // `std_error:{…}` and the like hold names of parameters.
+            assert!(said.contains(&format!("\"{key}\"")), "{name}: the schema does not know `{key}`");
+            names += 1;
+        }
+        assert!(names > 5, "{name}: {names} names");
+    }
+}
