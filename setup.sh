@@ -90,15 +90,15 @@ have_headers() {
   command -v pkg-config >/dev/null 2>&1 && pkg-config --exists alsa libudev
 }
 
-# MuJoCo, matplotlib and jsonschema for the tests beside other programs, in an environment of their own under the build folder; without them
-# those tests are skipped, with a word.
+# MuJoCo, matplotlib and jsonschema for the tests beside other programs, in an environment of their own under the build folder, which sees what is
+# installed besides; without them those tests are skipped, with a word.
 setup_python() {
   [ -z "${TOUCHSTONE_PYTHON:-}" ] || return 0
   command -v python3 >/dev/null 2>&1 || return 0
   environment=${CARGO_TARGET_DIR:-target}/python
   [ ! -e "$environment/ready" ] || return 0
   echo "Installing MuJoCo and matplotlib for the tests, into $environment." >&2
-  if python3 -m venv "$environment" >/dev/null 2>&1 &&
+  if python3 -m venv --system-site-packages "$environment" >/dev/null 2>&1 &&
     "$environment/bin/pip" install --quiet --disable-pip-version-check mujoco matplotlib jsonschema >/dev/null 2>&1; then
     touch "$environment/ready"
   else

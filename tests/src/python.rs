@@ -9,7 +9,8 @@ fn program() -> PathBuf {
     if let Some(named) = std::env::var_os("TOUCHSTONE_PYTHON") {
         return named.into();
     }
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from);
+    // A relative folder is meant from where `./test` stands.
+    let target = workspace().join(std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()));
     let own = target.join(if cfg!(windows) { "python/Scripts/python.exe" } else { "python/bin/python" });
     if own.is_file() { own } else { "python3".into() }
 }

@@ -49,12 +49,16 @@ impl Course {
 /// All comparisons; `None` where MuJoCo is missing.
 pub fn compared() -> Option<Table> {
     let crank = turned_crank()?;
+    let swung = [Format::Mjcf, Format::Urdf].map(swung_crank);
+    let [Some(swung), Some(swung_urdf)] = swung else { return None };
     let slid = slid_block(0.0)?;
     let slope = slid_block(-0.25)?;
     let dropped = dropped_block()?;
     let lifted = lifted_block()?;
     let rows = vec![
         crank.row("crank, turned by the same force at its handle", ("angle", 0), "rad", 5e-3),
+        swung.row("crank, let go", ("angle", 0), "rad", 1e-3),
+        swung_urdf.row("crank as URDF, let go", ("angle", 0), "rad", 50e-3),
         slid.row("block, sent over the floor at 0.3 m/s", ("x", 0), "m", 0.3e-3),
         slope.row("block, sent up a floor tilted by 0.25 rad", ("x", 0), "m", 0.5e-3),
         dropped.row("block, dropped by 5 mm until it lies", ("y", 1), "m", 0.3e-3),
@@ -64,10 +68,10 @@ pub fn compared() -> Option<Table> {
 }
 
 /// Runs an exported world in MuJoCo.
-fn played(world: &World, fingers: bool, job: &mut Value) -> Option<Vec<Vec<f64>>> {
+fn played(world: &World, (format, fingers): (Format, bool), job: &mut Value) -> Option<Vec<Vec<f64>>> {
     let folder = tempfile::tempdir().expect("a folder");
     let (model, file) = (folder.path().join("world.xml"), folder.path().join("job.json"));
-    std::fs::write(&model, export(world, Format::Mjcf, fingers).text).expect("the model is written");
+    std::fs::write(&model, export(world, format, fingers).text).expect("the model is written");
     job["model"] = json!(model);
     job["step_s"] = json!(STEP_S);
     std::fs::write(&file, job.to_string()).expect("the job is written");
@@ -128,7 +132,26 @@ fn turned_crank() -> Option<Course> {
         angles.push(vec![state.crank.angle_rad]);
     });
     let force = json!({ "body": "crank", "site": "crank-handle", "rows": forces });
-    let theirs = played(&world, false, &mut json!({ "at_s": times(angles.len()), "force": force }))?;
+    let theirs = played(&world, (Format::Mjcf, false), &mut json!({ "at_s": times(angles.len()), "force": force }))?;
+    Some(Course { ours: thinned(&angles), theirs })
+}
+
+/// The crank falls from a little above the horizontal and comes to rest, nobody touching it.
+fn swung_crank(format: Format) -> Option<Course> {
+    let mut world = presets::crank();
+    let crank = world.crank.as_mut().expect("a crank");
+    crank.start_rad = 0.3;
+    let start_rad = crank.start_rad;
+    let mut angles = Vec::new();
+    let mut state = State::new(&world, away(0.0));
+    stepped(&world, &mut state, 2.0, &away, |state| angles.push(vec![state.crank.angle_rad]));
+    let mut theirs = played(&world, (format, false), &mut json!({ "at_s": times(angles.len()) }))?;
+    if format == Format::Urdf {
+        // There a joint is zero where the world starts.
+        for row in &mut theirs {
+            row[0] += start_rad;
+        }
+    }
     Some(Course { ours: thinned(&angles), theirs })
 }
 
@@ -153,7 +176,7 @@ fn alone(world: &World, seconds: f64, speed_m_s: f64) -> Option<Course> {
         places.push(vec![body.center_m.x, body.center_m.y, body.angle_rad]);
     });
     let mut job = json!({ "at_s": times(places.len()), "speed": { "block-1-x": speed_m_s } });
-    let theirs = played(world, false, &mut job)?;
+    let theirs = played(world, (Format::Mjcf, false), &mut job)?;
     Some(Course { ours: thinned(&places), theirs })
 }
 
@@ -188,6 +211,7 @@ fn lifted_block() -> Option<Course> {
         let body = &state.bodies[0];
         places.push(vec![body.center_m.x, body.center_m.y, body.angle_rad]);
     });
-    let theirs = played(&world, true, &mut json!({ "at_s": times(places.len()), "controls": controls }))?;
+    let theirs =
+        played(&world, (Format::Mjcf, true), &mut json!({ "at_s": times(places.len()), "controls": controls }))?;
     Some(Course { ours: thinned(&places), theirs })
 }
