@@ -1,15 +1,17 @@
 //! Experiments that a diagnosis asks for, performed: by the scripted operator on a simulated object, or shown to a person.
 //!
-//! [`Timetable`] says where the hand is wanted when, [`perform`] lets the scripted operator do it, [`rehearse`] does so with every object
-//! that the diagnosis leaves open and asks again each time: what would come out, and how surely?
+//! [`Timetable`] says where the hand is wanted when, [`MotionPlan`] where the coordinate of a mechanism is that has no handle, [`perform`]
+//! lets the scripted operator do it, [`rehearse`] does so with every object that the diagnosis leaves open and asks again each time: what would come out, and how surely?
 
+mod motion_plan;
 mod perform;
 mod rehearse;
 mod sensing;
 mod timetable;
 
+pub use motion_plan::MotionPlan;
 pub use perform::{perform, what_is_known};
-pub use rehearse::{Outcome, Rehearsal, Round, rehearse};
+pub use rehearse::{Like, Outcome, Rehearsal, Round, rehearse};
 pub use timetable::{Step, Timetable};
 
 /// The key of the sidecar under which a recording says that its object was simulated.

@@ -1,7 +1,7 @@
 //! What an experiment would settle: it is done on every object that the diagnosis leaves open, and the question is asked again.
 
-use super::{Timetable, perform};
-use estimator::diagnose::{Diagnosis, NextExperiment, Suspect};
+use super::{MotionPlan, Timetable, perform};
+use estimator::diagnose::{Diagnosis, Experiment, NextExperiment, Suspect};
 use haptics::recording::Recording;
 
 /// An alternative less probable than this is as good as excluded (as in the estimator's settling of several recordings).
@@ -52,12 +52,53 @@ impl Rehearsal {
     }
 }
 
+/// What simulated recordings have to be like.
+#[derive(Clone, Copy, Debug)]
+pub struct Like<'a> {
+    /// The first recording of the real object: a mechanism's sensors are as noisy as its.
+    pub recording: &'a Recording,
+    /// Noise of a finger's force sample, N.
+    pub noise_n: f64,
+}
+
+/// How the experiment is done on an object.
+enum Way {
+    /// By two fingers.
+    Held(Box<Timetable>),
+    /// Along the coordinate of what has no handle.
+    Driven(MotionPlan),
+}
+
+impl Way {
+    fn new(suspect: &Suspect, asked: &Experiment, motion: &str) -> Result<Self, String> {
+        if suspect.world.mechanism.is_some() && suspect.world.crank.is_none() {
+            return MotionPlan::new(asked).map(Self::Driven);
+        }
+        Timetable::new(&suspect.world, asked, motion).map(|table| Self::Held(Box::new(table.leaking_once_held())))
+    }
+
+    /// Nothing when `goes_on` said no.
+    fn perform(
+        &self,
+        suspect: &Suspect,
+        (asked, like): (&Experiment, &Like<'_>),
+        seed: u64,
+        goes_on: &dyn Fn(f64) -> bool,
+    ) -> Result<Option<Recording>, String> {
+        let about = format!("as if {}", suspect.id.replace('-', " "));
+        match self {
+            Self::Held(table) => Ok(perform(table, asked, &about, (&suspect.fault, like.noise_n), seed, goes_on)),
+            Self::Driven(plan) => plan.perform(suspect, &about, like, seed, goes_on),
+        }
+    }
+}
+
 /// Does the experiment `rounds` times on each suspect among what it should tell apart, and asks `again` with the recording in addition.
-/// `noise_n`: of a force sample. An error is a sentence, or nothing when `goes_on` said no.
+/// An error is a sentence, or nothing when `goes_on` said no.
 pub fn rehearse(
     suspects: &[Suspect],
     next: &NextExperiment,
-    (rounds, noise_n): (u64, f64),
+    (rounds, like): (u64, Like<'_>),
     again: &dyn Fn(&Recording) -> Result<Diagnosis, String>,
     goes_on: &dyn Fn(f64) -> bool,
 ) -> Result<Rehearsal, Option<String>> {
@@ -70,8 +111,8 @@ pub fn rehearse(
     let mut outcomes = Vec::new();
     for (k, suspect) in wanted.iter().enumerate() {
         let mut outcome = Outcome { id: suspect.id.clone(), rounds: Vec::new(), problem: None };
-        let table = match Timetable::new(&suspect.world, asked, &next.motion) {
-            Ok(table) => table.leaking_once_held(),
+        let way = match Way::new(suspect, asked, &next.motion) {
+            Ok(way) => way,
             Err(problem) => {
                 outcome.problem = Some(problem);
                 outcomes.push(outcome);
@@ -82,9 +123,13 @@ pub fn rehearse(
             let before = (k as f64 * rounds as f64 + round as f64) / total;
             // Half of the time goes into the motion, half into the answer.
             let tell = |share: f64| goes_on(before + 0.5 * share / total);
-            let about = format!("as if {}", suspect.id.replace('-', " "));
-            let sensing = (&suspect.fault, noise_n);
-            let recording = perform(&table, asked, &about, sensing, 1 + round, &tell).ok_or(None)?;
+            let recording = match way.perform(suspect, (asked, &like), 1 + round, &tell) {
+                Ok(recording) => recording.ok_or(None)?,
+                Err(problem) => {
+                    outcome.problem = Some(problem);
+                    break;
+                }
+            };
             match again(&recording) {
                 Ok(answer) => outcome.rounds.push(judged(&answer, &suspect.id, &next.separates, recording)),
                 Err(problem) => outcome.problem = Some(problem),
@@ -137,8 +182,8 @@ mod tests {
             let both = [recordings[0].clone(), more.clone()];
             diagnose(&both, &options).map_err(|error| error.to_string())
         };
-        let noise_n = answer.noise_floor_n;
-        let rehearsal = rehearse(&suspects, &next, (2, noise_n), &again, &|_| true).expect("rehearsed");
+        let like = Like { recording: &recordings[0], noise_n: answer.noise_floor_n };
+        let rehearsal = rehearse(&suspects, &next, (2, like), &again, &|_| true).expect("rehearsed");
         for outcome in &rehearsal.outcomes {
             let came_out: Vec<_> = outcome.rounds.iter().map(|r| (&r.named, &r.open)).collect();
             assert_eq!(
@@ -149,7 +194,7 @@ mod tests {
                 outcome.problem
             );
         }
-        assert_eq!(rehearse(&suspects, &next, (2, noise_n), &again, &|share| share < 0.3).err(), Some(None));
+        assert_eq!(rehearse(&suspects, &next, (2, like), &again, &|share| share < 0.3).err(), Some(None));
     }
 
     #[test]
@@ -164,8 +209,8 @@ mod tests {
             let both = [recordings[0].clone(), more.clone()];
             diagnose(&both, &options).map_err(|error| error.to_string())
         };
-        let noise_n = answer.noise_floor_n / std::f64::consts::SQRT_2;
-        let rehearsal = rehearse(&suspects, &next, (2, noise_n), &again, &|_| true).expect("rehearsed");
+        let like = Like { recording: &recordings[0], noise_n: answer.noise_floor_n / std::f64::consts::SQRT_2 };
+        let rehearsal = rehearse(&suspects, &next, (2, like), &again, &|_| true).expect("rehearsed");
         let came_out = |o: &Outcome| o.rounds.iter().map(|r| (r.named.clone(), r.open.clone())).collect::<Vec<_>>();
         for id in ["mass-change", "force-drift"] {
             let outcome = rehearsal.outcomes.iter().find(|o| o.id == id).expect("it is open");
@@ -176,5 +221,40 @@ mod tests {
         let leaks = suspects.iter().find(|s| s.id == "mass-change").expect("a suspect");
         assert!(leaks.world.blocks[0].content.is_some() && leaks.fault == SensorFault::default());
         assert!(drifts.world.blocks[0].content.is_none() && drifts.fault != SensorFault::default());
+    }
+
+    /// A hinge of the generator's with a mass off its axis, and the object for another motion.
+    fn hinge(seed: u64) -> (Recording, blind::case::Object) {
+        let effects = vec![(Effect::Eccentric, 0)];
+        let spec = Spec { effects, ratio: 2.0, bench: Bench::Angular, log: Log::Mixed, rate_hz: 250.0, seconds: 15.0 };
+        let (mut case, _, object) = blind::case::make_with_object(&spec, &[], seed);
+        (case.recordings.remove(0), object)
+    }
+
+    #[test]
+    fn a_mechanisms_experiment_is_rehearsed_along_its_coordinate_and_settles_the_question_on_the_real_one_too() {
+        let (first, object) = hinge(4);
+        let options = Options { baseline: Some("mass+viscous+coulomb".to_owned()), ..Options::default() };
+        let recordings = [first];
+        let answer = diagnose(&recordings, &options).expect("an answer");
+        assert_eq!(answer.verdict, Verdict::Ambiguous, "{:?}", answer.causes);
+        let next = answer.next_experiment.clone().expect("an experiment");
+        let suspects = suspects(&recordings, &options, &answer).expect("worlds");
+        let again = |more: &Recording| {
+            let both = [recordings[0].clone(), more.clone()];
+            diagnose(&both, &options).map_err(|error| error.to_string())
+        };
+        let like = Like { recording: &recordings[0], noise_n: answer.noise_floor_n };
+        let rehearsal = rehearse(&suspects, &next, (2, like), &again, &|_| true).expect("rehearsed");
+        for id in ["eccentric-mass", "gravity-tilt"] {
+            let outcome = rehearsal.outcomes.iter().find(|o| o.id == id).expect("it is open");
+            let came_out: Vec<_> = outcome.rounds.iter().map(|r| (&r.named, &r.open)).collect();
+            assert_eq!(outcome.settled(), 2, "{id}: {came_out:?} {:?}", outcome.problem);
+        }
+        // The real object, moved by the generator's own hand as the answer asks.
+        let asked = next.experiment.as_ref().expect("for a program");
+        let real = object.perform(asked, 9).expect("the hand knows the motion");
+        let settled = judged(&again(&real).expect("an answer"), "eccentric-mass", &next.separates, real);
+        assert!(settled.settled, "{:?} or {:?}", settled.named, settled.open);
     }
 }

@@ -27,6 +27,22 @@ pub fn see_through(recording: &mut Recording, fault: &SensorFault, held_from_s: 
     }
 }
 
+/// The force along a mechanism's coordinate, and what its sensor makes of it.
+pub fn see_along(recording: &mut Recording, fault: &SensorFault) {
+    let Some(times) = recording.time_s.clone().filter(|_| *fault != SensorFault::default()) else { return };
+    let Some(channel) = recording.channels.iter_mut().find(|c| ["f_N", "tau_Nm"].contains(&c.name.as_str())) else {
+        return;
+    };
+    let felt: Vec<Vec2> = channel.values.iter().map(|force| Vec2::new(*force, 0.0)).collect();
+    let begun_s = times.first().copied().unwrap_or_default();
+    let read = |time_s: f64| {
+        let drifted_for_s = drifted_for(time_s - begun_s, fault.settles_s);
+        let force = at(&times, &felt, time_s - fault.delay_s).x;
+        (1.0 + fault.gain_error) * force + fault.offset_along + drifted_for_s * fault.drift_along_per_s
+    };
+    channel.values = times.iter().map(|time_s| read(*time_s)).collect();
+}
+
 /// What a finger's sensor reads at each time, N.
 fn read(times: &[f64], felt: &[Vec2], (fault, finger): (&SensorFault, usize), drifts_from_s: f64) -> Vec<Vec2> {
     let cross = fault.cross[finger];
@@ -105,6 +121,17 @@ mod tests {
         near(half_way(&SensorFault { cross, ..none }), [2.0, 0.7, -2.0, 0.5]);
         near(half_way(&SensorFault { gain_error: -0.1, ..none }), [1.8, 0.45, -1.8, 0.45]);
         near(half_way(&SensorFault { delay_s: 0.025, ..none }), [2.0, 0.475, -2.0, 0.475]);
+    }
+
+    #[test]
+    fn along_a_coordinate_an_offset_a_drift_and_a_delay_are_read() {
+        let mut recording = ramp();
+        recording.channels.retain(|c| c.name == "fy1_N");
+        recording.channels[0].name = "f_N".to_owned();
+        let fault = SensorFault { offset_along: 0.3, drift_along_per_s: 0.2, delay_s: 0.05, ..SensorFault::default() };
+        see_along(&mut recording, &fault);
+        let read = recording.channel("f_N").expect("still there")[50];
+        assert!((read - (0.45 + 0.3 + 0.1)).abs() < 1e-9, "{read}");
     }
 
     #[test]

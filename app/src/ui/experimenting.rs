@@ -7,9 +7,10 @@ use super::jobs::{JobKind, Outcome};
 use super::mapping::name_of;
 use super::prepare::Prepared;
 use super::session::{Session, Tone, Workspace, sentence};
-use crate::experiment::{Rehearsal, Timetable, rehearse, simulated_object};
+use crate::experiment::{Like, MotionPlan, Rehearsal, Timetable, rehearse, simulated_object};
 use crate::recorder::folder;
 use estimator::diagnose::{self, Progress, Suspect};
+use haptics::law::Coordinate;
 use haptics::recording::Recording;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -23,6 +24,8 @@ pub const ROUNDS: u64 = 3;
 pub struct Experiments {
     /// The path field of a recording that was made elsewhere.
     pub path_field: String,
+    /// The plan of a mechanism's motion is shown.
+    pub shows_plan: bool,
     /// The experiment that a person does in Train.
     pub guided: Option<Box<Guided>>,
     /// Where a picture's recording goes: it lives as long as the session.
@@ -56,7 +59,9 @@ pub fn rehearse_now(
         let all: Vec<Recording> = plain.iter().chain([more]).cloned().collect();
         diagnose::diagnose(&all, &options).map_err(|error| sentence(&error.to_string()))
     };
-    rehearse(&suspects, next, (rounds, answer.diagnosis.noise_floor_n), &again, goes_on)
+    let first = plain.first().ok_or_else(|| Some("No recording is open.".to_owned()))?;
+    let like = Like { recording: first, noise_n: answer.diagnosis.noise_floor_n };
+    rehearse(&suspects, next, (rounds, like), &again, goes_on)
 }
 
 fn suspects(plain: &[Recording], choice: &FitChoice, answer: &Answer) -> Result<Vec<Suspect>, Option<String>> {
@@ -148,16 +153,34 @@ impl Session {
         let rehearsal = self.diagnosing.rehearsal.clone();
         let round = rehearsal.as_ref().and_then(|r| r.outcomes.get(outcome)?.rounds.first());
         let Some(recording) = round.map(|r| r.recording.clone()) else { return };
-        let Some(folder) = self.trainer.recordings_folder.clone().or_else(folder::of_user) else {
-            self.fail(
-                "The system names no folder for recordings; set HOME or XDG_DATA_HOME, then start the program again.",
-            );
-            return;
-        };
+        let Some(folder) = self.folder_of_recordings() else { return };
         self.jobs.start(ctx, JobKind::Save, move || match write(&folder, recording) {
             Ok(path) => Outcome::Performed(path),
             Err(problem) => Outcome::Failed(problem),
         });
+    }
+
+    /// Writes the plan of a mechanism's motion into the folder of recordings.
+    pub fn save_motion_plan(&mut self, ctx: &egui::Context, plan: &MotionPlan, coordinate: Coordinate) {
+        let Some(folder) = self.folder_of_recordings() else { return };
+        let text = plan.to_csv(coordinate);
+        self.jobs.start(ctx, JobKind::Save, move || {
+            let written = free_path(&folder, "plan").and_then(|path| {
+                let failed = |e| format!("The plan cannot be written ({e}): {}", path.display());
+                std::fs::write(&path, text).map_err(failed).map(|()| path.clone())
+            });
+            written.map_or_else(Outcome::Failed, Outcome::Saved)
+        });
+    }
+
+    fn folder_of_recordings(&mut self) -> Option<PathBuf> {
+        let folder = self.trainer.recordings_folder.clone().or_else(folder::of_user);
+        if folder.is_none() {
+            self.fail(
+                "The system names no folder for recordings; set HOME or XDG_DATA_HOME, then start the program again.",
+            );
+        }
+        folder
     }
 
     /// Which of the open recordings were simulated.
@@ -182,13 +205,17 @@ impl Session {
 
 /// Writes a recording beside others, under a name of its own.
 fn write(folder: &Path, recording: Recording) -> Result<PathBuf, String> {
-    std::fs::create_dir_all(folder).map_err(|e| format!("The folder cannot be made ({e}): {}", folder.display()))?;
-    let stem = recording.name.replace(", ", "-").replace(' ', "-");
-    let mut free = (1..u32::MAX).map(|k| folder.join(format!("{stem}-{k}.csv"))).filter(|path| !path.exists());
-    let path = free.next().unwrap_or_default();
+    let path = free_path(folder, &recording.name.replace(", ", "-").replace(' ', "-"))?;
     let recording = Recording { labels: None, ..recording };
     estimator::log::write_csv(&recording, &path)
         .and_then(|()| estimator::log::write_meta(&recording, &path))
         .map_err(|error| sentence(&error.to_string()))?;
     Ok(path)
+}
+
+/// A name in a folder, which is made, that no file has yet.
+fn free_path(folder: &Path, stem: &str) -> Result<PathBuf, String> {
+    std::fs::create_dir_all(folder).map_err(|e| format!("The folder cannot be made ({e}): {}", folder.display()))?;
+    let mut free = (1..u32::MAX).map(|k| folder.join(format!("{stem}-{k}.csv"))).filter(|path| !path.exists());
+    free.next().ok_or_else(|| format!("No name for another file is free in {}", folder.display()))
 }

@@ -18,7 +18,7 @@ pub use impedance::HandImpedance;
 pub use keyboard::{KeyboardDevice, KeyboardHandle, KeysHeld, keyboard};
 pub use mouse::{MouseDevice, MouseHandle, MouseTarget, mouse};
 pub use replay::{ReplayDevice, ReplayError};
-pub use scripted::{Act, HandGoal, Mistake, Route, ScriptedOperator, Skill};
+pub use scripted::{Act, HandGoal, Mistake, Pull, PullSensor, Pulled, Route, ScriptedOperator, Skill};
 pub use touch::{TouchDevice, TouchHandle, touch};
 
 use crate::Vec2;

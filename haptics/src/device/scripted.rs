@@ -4,6 +4,7 @@
 mod acts;
 mod builder;
 mod captured;
+mod direct;
 mod eye;
 mod noise;
 mod patience;
@@ -14,6 +15,7 @@ mod skill;
 mod tests;
 
 pub use acts::Act;
+pub use direct::{Pull, PullSensor, Pulled};
 pub use plan::Goal as HandGoal;
 pub use route::Route;
 pub use skill::{Mistake, Skill};

@@ -20,6 +20,7 @@ mod lessons;
 pub mod log;
 mod marks;
 pub mod measured;
+mod motion_plan;
 mod next_experiment;
 mod overlay;
 mod parameter_editor;

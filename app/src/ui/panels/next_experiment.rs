@@ -1,8 +1,10 @@
 //! *Record next*: the experiment that would settle what is open, and three ways to it: rehearsed on simulated objects, done by hand in
 //! Train, loaded from a file.
 
+use super::motion_plan;
 use crate::diagnosis_words::{listed, small, title};
 use crate::experiment::{Outcome, Rehearsal};
+use crate::ui::diagnosing::is_mechanism;
 use crate::ui::experimenting::{ROUNDS, Stage};
 use crate::ui::files;
 use crate::ui::format;
@@ -12,6 +14,7 @@ use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, compact, plain_card, primary_button};
 use egui::{Align, Layout, RichText, TextEdit, Ui};
 use estimator::diagnose::{Diagnosis, NextExperiment};
+use haptics::law::Coordinate;
 use std::path::PathBuf;
 
 /// The card under the causes.
@@ -25,16 +28,27 @@ pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
         ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
         bar(ui, next.expected_power, 1.0, None, palette(ui).accent);
         ui.add_space(space::XS);
-        if next.experiment.is_some() {
-            perform(ui, session, next);
+        if let Some(asked) = &next.experiment {
+            let coordinate = driven(session, diagnosis);
+            perform(ui, session, next, coordinate.is_some());
+            if let Some(coordinate) = coordinate.filter(|_| session.experiments.shows_plan) {
+                motion_plan::show(ui, session, asked, coordinate);
+            }
         }
         rehearsal(ui, session, next);
         load(ui, session);
     });
 }
 
-/// By the scripted operator, and by hand.
-fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
+/// The coordinate of what has no handle: nothing for what the hand of Train can hold.
+fn driven(session: &Session, diagnosis: &Diagnosis) -> Option<Coordinate> {
+    let task = session.choice.task;
+    let is_mechanism = session.prepared().is_some_and(|p| is_mechanism(&p.recording, task));
+    is_mechanism.then_some(if diagnosis.course.is_angular { Coordinate::Angular } else { Coordinate::Linear })
+}
+
+/// By the scripted operator, and by hand: in Train, or after a plan on the real mechanism.
+fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment, is_driven: bool) {
     let ctx = ui.ctx().clone();
     ui.horizontal_wrapped(|ui| {
         let busy = session.jobs.is_running(JobKind::Rehearse);
@@ -45,21 +59,13 @@ fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
         if primary_button(ui, !busy, "Rehearse it").on_hover_text(hint).clicked() {
             session.rehearse(&ctx);
         }
-        let by_hand = egui::Button::new("Do it in Train …");
-        let menu = egui::containers::menu::MenuButton::from_button(by_hand);
-        let (response, _) = menu.ui(ui, |ui| {
-            ui.set_max_width(280.0);
-            ui.label(theme::caption(ui, "On which object?"));
-            if ui.button("The world that stands in Train").clicked() {
-                session.guide(&ctx, Stage::AsItStands);
-            }
-            for id in &next.separates {
-                if ui.button(format!("This one as if it had {}", indefinite(id))).clicked() {
-                    session.guide(&ctx, Stage::AsIf(id.clone()));
-                }
-            }
-        });
-        response.on_hover_text("With the device that moves the fingers: a target to follow, in words and in the picture; it is recorded");
+        if is_driven {
+            let hint = "The motion over time, to follow on the real machine. A mechanism that is driven directly has no handle for the \
+                        fingers of Train.";
+            ui.toggle_value(&mut session.experiments.shows_plan, "Plan of the motion").on_hover_text(hint);
+        } else {
+            in_train(ui, session, next);
+        }
         if busy {
             ui.add(egui::Spinner::new().size(16.0));
             if ui.link("Cancel").clicked() {
@@ -67,6 +73,28 @@ fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
             }
         }
     });
+}
+
+/// A menu of the objects that it can be done on in Train.
+fn in_train(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
+    let ctx = ui.ctx().clone();
+    let by_hand = egui::Button::new("Do it in Train …");
+    let menu = egui::containers::menu::MenuButton::from_button(by_hand);
+    let (response, _) = menu.ui(ui, |ui| {
+        ui.set_max_width(280.0);
+        ui.label(theme::caption(ui, "On which object?"));
+        if ui.button("The world that stands in Train").clicked() {
+            session.guide(&ctx, Stage::AsItStands);
+        }
+        for id in &next.separates {
+            if ui.button(format!("This one as if it had {}", indefinite(id))).clicked() {
+                session.guide(&ctx, Stage::AsIf(id.clone()));
+            }
+        }
+    });
+    response.on_hover_text(
+        "With the device that moves the fingers: a target to follow, in words and in the picture; it is recorded",
+    );
 }
 
 /// `an eccentric mass`.

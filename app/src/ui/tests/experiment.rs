@@ -214,3 +214,53 @@ fn an_experiment_that_is_left_keeps_no_file() {
     let session = &harness.state().session;
     assert!(session.experiments.guided.is_none() && !session.trainer.is_recording());
 }
+
+/// A hinge with a mass off its axis, of the blind generator, and the object for another motion.
+fn hinge() -> (Recording, blind::case::Object) {
+    let effects = vec![(blind::Effect::Eccentric, 0)];
+    let (bench, log) = (blind::Bench::Angular, blind::Log::Mixed);
+    let spec = blind::Spec { effects, ratio: 2.0, bench, log, rate_hz: 250.0, seconds: 15.0 };
+    let (mut case, _, object) = blind::case::make_with_object(&spec, &[], 4);
+    let mut recording = case.recordings.remove(0);
+    "hinge".clone_into(&mut recording.name);
+    (recording, object)
+}
+
+#[test]
+fn a_mechanisms_experiment_is_rehearsed_and_planned_and_what_was_recorded_after_it_settles_the_question() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (first, object) = hinge();
+    let mut harness = asked_about(&first, folder.path());
+    assert!(harness.query_by_label("Do it in Train …").is_none(), "there is no handle to hold");
+    harness.get_by_role_and_label(Role::Button, "Rehearse it").click();
+    harness.run_steps(2);
+    until(&mut harness, "the rehearsal", |app| !app.session.jobs.is_running(JobKind::Rehearse));
+    let session = &harness.state().session;
+    assert_eq!(session.diagnosing.rehearsal_problem, None);
+    let rehearsal = session.diagnosing.rehearsal.clone().expect("rehearsed");
+    let (right, all) = rehearsal.settled();
+    let problems: Vec<_> = rehearsal.outcomes.iter().map(|o| (&o.id, &o.problem)).collect();
+    assert!(all == 6 && right >= 5, "{right} of {all}: {problems:?}");
+    // The plan is shown, and saved for whatever drives the real one.
+    harness.get_by_role_and_label(Role::Button, "Plan of the motion").click();
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Plan of the motion, 21 s").is_some());
+    harness.get_by_role_and_label(Role::Button, "Save the plan").click();
+    harness.run_steps(2);
+    until(&mut harness, "the plan", |app| quiet(&app.session));
+    let plan = std::fs::read_to_string(folder.path().join("recordings/plan-1.csv")).expect("written");
+    assert!(plan.starts_with("t_s,q_rad\n"), "{}", &plan[..40]);
+    // The real one, moved as the answer asks by the generator's own hand.
+    let answer = harness.state().session.diagnosing.answer.clone().expect("an answer");
+    let next = answer.diagnosis.next_experiment.as_ref().and_then(|n| n.experiment.clone()).expect("for a program");
+    let mut real = object.perform(&next, 9).expect("the hand knows the motion");
+    "hung".clone_into(&mut real.name);
+    let path = saved(&real, folder.path());
+    let ctx = harness.ctx.clone();
+    harness.state_mut().session.add_experiment(&ctx, &path);
+    until(&mut harness, "the answer to both", |app| {
+        let s = &app.session;
+        s.recordings.len() == 2 && s.diagnosing.answer.is_some() && quiet(s)
+    });
+    assert_eq!(settled(&harness), pair("eccentric-mass", "gravity-tilt"));
+}
