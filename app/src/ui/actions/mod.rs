@@ -22,7 +22,8 @@ pub fn keys(ui: &Ui, app: &mut App) {
         if plain && typing {
             continue;
         }
-        if ctx.input_mut(|i| i.consume_shortcut(&keys)) && action.why_not(app).is_none() {
+        // A key that asks for nothing here is left to the panels: in Train the space bar pinches.
+        if action.why_not(app).is_none() && ctx.input_mut(|i| i.consume_shortcut(&keys)) {
             action.run(&ctx, app);
         }
     }
