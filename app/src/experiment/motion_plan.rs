@@ -12,8 +12,9 @@ use haptics::recording::Recording;
 use haptics::world::Mechanism;
 use std::fmt::Write as _;
 
-/// It rests before and after, s.
+/// It rests before and after, s, and comes to rest in this time: a machine that follows it must not be stopped hard.
 const REST_S: f64 = 0.5;
+const SLOWS_S: f64 = 2.0;
 /// Points of a plan in a file come at this rate, Hz.
 const FILE_HZ: f64 = 50.0;
 /// Fastest sampling of a simulated recording, Hz.
@@ -37,12 +38,17 @@ impl MotionPlan {
 
     /// Length, s.
     pub fn duration_s(&self) -> f64 {
-        self.asked.seconds + 2.0 * REST_S
+        self.asked.seconds + 0.5 * SLOWS_S + 2.0 * REST_S
     }
 
     /// Where the coordinate is wanted, m or rad.
     pub fn at(&self, time_s: f64) -> f64 {
-        self.strokes.at((time_s - REST_S).clamp(0.0, self.asked.seconds)).coordinate
+        let slows_from_s = self.asked.seconds - 0.5 * SLOWS_S;
+        // From there its clock runs slower and slower (cos²), until it has stood still at the last stroke.
+        let slowing = ((time_s - REST_S - slows_from_s) / SLOWS_S).clamp(0.0, 1.0);
+        let slowed_s = SLOWS_S * (0.5 * slowing + (std::f64::consts::PI * slowing).sin() / std::f64::consts::TAU);
+        let moved_s = (time_s - REST_S).clamp(0.0, slows_from_s) + slowed_s;
+        self.strokes.at(moved_s).coordinate
     }
 
     /// Lowest and highest coordinate, m or rad.
@@ -161,12 +167,18 @@ mod tests {
         let plan = MotionPlan::new(&asked_for).expect("a motion of the library");
         let (low, high) = plan.range();
         assert!((plan.at(0.0) - 12.0).abs() < 1e-12 && (plan.at(0.4) - 12.0).abs() < 1e-12);
-        let all: Vec<f64> = (0..2_100).map(|k| plan.at(f64::from(k) * 0.01)).collect();
+        let all: Vec<f64> = (0..2_200).map(|k| plan.at(f64::from(k) * 0.01)).collect();
         assert!(all.iter().all(|q| (low - 1e-9..=high + 1e-9).contains(q)));
         assert!(all.iter().any(|q| *q > high - 0.05) && all.iter().any(|q| *q < low + 0.05), "it goes to both ends");
+        let speeds: Vec<f64> = all.windows(2).map(|pair| (pair[1] - pair[0]) / 0.01).collect();
+        let jolt = speeds.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        assert!(
+            jolt < 0.3 && speeds[speeds.len() - 1].abs() < 1e-9,
+            "it never starts or stops hard: {jolt} rad/s in 10 ms"
+        );
         let text = plan.to_csv(Coordinate::Angular);
         assert!(text.starts_with("t_s,q_rad\n0.000,12.000000\n"));
-        assert_eq!(text.lines().count(), 1 + 1 + (21.0 * FILE_HZ) as usize);
+        assert_eq!(text.lines().count(), 1 + 1 + (22.0 * FILE_HZ) as usize);
         assert!(MotionPlan::new(&asked("carry-still")).is_err_and(|why| why.ends_with('.')));
     }
 }

@@ -8,9 +8,10 @@ use estimator::diagnose::atlas::{Against, Atlas, Channel, Seen, Variable};
 use estimator::diagnose::course::{Course, Instant};
 use std::f64::consts::TAU;
 
-/// Ranges of a variable, and rows that a mean needs.
-const BINS: usize = 40;
+/// Ranges of a variable: fewest and most; rows that a mean needs, and usually has at least.
+const BINS: (usize, usize) = (6, 40);
 const LEAST_ROWS: usize = 4;
+const USUAL_ROWS: usize = 8;
 /// Rows that are trusted less are not drawn: there the sign of all friction is a guess.
 const LEAST_WEIGHT: f64 = 0.5;
 /// Most points of a cloud.
@@ -141,17 +142,25 @@ fn along_the_motion(diagnosis: &Diagnosis, recording: usize) -> Vec<Cell> {
 /// A channel of a task without one coordinate.
 fn of_channel(diagnosis: &Diagnosis, channel: &Channel, recording: usize) -> Vec<Cell> {
     let (unit, factor) = format::channel_unit(channel.unit);
+    // Short recordings are seen all together.
+    let is_of = |row: usize| channel.recording.get(row).is_none_or(|of| *of == recording);
     let cell = |against: &Against| {
-        let rows: Vec<usize> =
-            (0..against.rows.len()).filter(|k| channel.recording[against.rows[*k]] == recording).collect();
-        let (variable, si) = words_of(against.variable);
+        let rows: Vec<usize> = (0..against.rows.len()).filter(|k| is_of(against.rows[*k])).collect();
+        let (variable, si) = words_of(against.variable, channel.is_angular);
         let (shown, stretch) = format::channel_unit(si);
         let x: Vec<f64> = rows.iter().map(|k| stretch * against.over[*k]).collect();
         let range = range(&x);
         let left = |k: usize| factor * channel.left[against.rows[k]];
-        let line = |y: &dyn Fn(usize) -> f64| {
-            let points = rows.iter().zip(&x).map(|(k, x)| ([*x, y(*k)], 1.0));
-            vec![means(points, range)]
+        let both = [1.0, -1.0];
+        let seen_both_ways = matches!(against.variable, Variable::Place | Variable::Depth) && !channel.way.is_empty();
+        let ways: &[f64] = if seen_both_ways { &both } else { &[0.0] };
+        let line = |y: &dyn Fn(usize) -> f64| -> Vec<Line> {
+            let along = |way: &f64| {
+                let goes = |k: usize| *way == 0.0 || channel.way[against.rows[k]] * way > 0.0;
+                let points = rows.iter().zip(&x).filter(|(k, _)| goes(**k)).map(|(k, x)| ([*x, y(*k)], 1.0));
+                means(points, range)
+            };
+            ways.iter().map(along).collect()
         };
         let step = rows.len().div_ceil(MOST_POINTS).max(1);
         Cell {
@@ -226,13 +235,18 @@ fn words(variable: Variable, course: &Course, rows: &[usize]) -> (&'static str, 
         Variable::Acceleration if angular => ("angular acceleration", "rad/s²"),
         Variable::Force if angular => ("measured torque", "Nm"),
         Variable::ForceRate if angular => ("change of the torque", "N·m/s"),
-        other => words_of(other),
+        other => words_of(other, angular),
     }
 }
 
-/// The same where nothing turns.
-fn words_of(variable: Variable) -> (&'static str, &'static str) {
+/// The same of channels of tasks without one coordinate.
+fn words_of(variable: Variable, is_angular: bool) -> (&'static str, &'static str) {
     match variable {
+        Variable::Place if is_angular => ("angle", "rad"),
+        Variable::Velocity if is_angular => ("angular velocity", "rad_s"),
+        Variable::Load if is_angular => ("load", "Nm"),
+        Variable::Load => ("load", "N"),
+        Variable::Depth => ("depth in the sheet", "m"),
         Variable::Place => ("position", "m"),
         Variable::Velocity => ("velocity", "m_s"),
         Variable::Acceleration => ("acceleration", "m_s2"),
@@ -258,15 +272,17 @@ fn value(variable: Variable, course: &Course, atlas: &Atlas, i: usize) -> f64 {
         Variable::ForceRate => atlas.force_rate.get(i).copied().unwrap_or(0.0),
         Variable::Time => instant.time_s,
         // Nothing is gripped along one coordinate.
-        Variable::Grip | Variable::Lift | Variable::Width => 0.0,
+        Variable::Grip | Variable::Lift | Variable::Width | Variable::Depth | Variable::Load => 0.0,
     }
 }
 
 /// Means over even ranges of x, each point as far as it is trusted (second entry).
 fn means(points: impl Iterator<Item = ([f64; 2], f64)>, (low, high): (f64, f64)) -> Line {
-    let mut bins = [([0.0; 3], 0_usize); BINS];
+    let points: Vec<([f64; 2], f64)> = points.collect();
+    let count = (points.len() / USUAL_ROWS).clamp(BINS.0, BINS.1);
+    let mut bins = vec![([0.0; 3], 0_usize); count];
     for ([x, y], weight) in points {
-        let place = ((x - low) / (high - low) * BINS as f64).clamp(0.0, BINS as f64 - 1.0) as usize;
+        let place = ((x - low) / (high - low) * count as f64).clamp(0.0, count as f64 - 1.0) as usize;
         let (sums, count) = &mut bins[place];
         for (sum, value) in sums.iter_mut().zip([weight * x, weight * y, weight]) {
             *sum += value;

@@ -316,6 +316,7 @@ fn experiment(session: &mut Session, panel: Panel) -> anyhow::Result<()> {
     let (recordings, choice) = (session.recordings.clone(), session.choice.clone());
     if panel == Panel::Experiment {
         let made = experimenting::rehearse_now(&recordings, &choice, &answer, experimenting::ROUNDS, &|_| true);
+        session.experiments.shows_plan = true;
         session.diagnosing.rehearsal = Some(Arc::new(made.map_err(|problem| anyhow!(problem.unwrap_or_default()))?));
         return Ok(());
     }

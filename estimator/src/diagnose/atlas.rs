@@ -30,6 +30,10 @@ pub enum Variable {
     Lift,
     /// Distance of the tips.
     Width,
+    /// Depth of a needle beyond the surface of its sheet.
+    Depth,
+    /// Load at the output of a transmission.
+    Load,
 }
 
 impl Variable {
@@ -83,10 +87,14 @@ pub struct Channel {
     pub name: &'static str,
     /// SI unit.
     pub unit: &'static str,
+    /// Whether places are angles, and rates those of angles.
+    pub is_angular: bool,
     /// Noise of a row.
     pub noise: f64,
-    /// Which recording each row is of.
+    /// Which recording each row is of; empty where single recordings say too little by themselves.
     pub recording: Vec<usize>,
+    /// Which way it went in each row, as a sign; empty where that says nothing.
+    pub way: Vec<f64>,
     /// What the model leaves of each row.
     pub left: Vec<f64>,
     /// Suspects that the recordings could have shown, most evidence first.
@@ -112,41 +120,73 @@ pub struct Against {
 
 /// The rows of a channel as they are looked at.
 pub(super) struct View {
-    /// Which recording each row is of.
+    /// Which recording each row is of; empty: all are shown together.
     pub recording: Vec<usize>,
     /// Rows of one number are of one sensor, or of one sum of sensors: a suspect is shown over all that it could be in.
     pub sensor: Vec<usize>,
     /// What the rows are seen against.
     pub over: Vec<(Variable, Vec<f64>)>,
+    /// Which way it went in each row, as a sign; empty where that says nothing.
+    pub way: Vec<f64>,
+    /// Whether places are angles.
+    pub is_angular: bool,
+}
+
+impl View {
+    /// Rows of one sensor, of which the way says nothing.
+    pub fn of(recording: Vec<usize>, over: Vec<(Variable, Vec<f64>)>) -> Self {
+        let sensor = vec![0; over.first().map_or(0, |(_, values)| values.len())];
+        Self { recording, sensor, over, way: Vec::new(), is_angular: false }
+    }
 }
 
 impl Compared {
     /// This channel's part of the atlas. `best`: what a cause is best seen against; the first variable of the view where that is missing.
     pub(super) fn atlas(&self, view: &View, threshold: f64, best: fn(&str) -> Variable) -> Channel {
-        let Study { system, candidates, .. } = &self.study;
-        let left = |picks: &[usize]| {
-            let solved = system.solve(picks)?;
-            Some(residual(&self.study.y, &self.study.base, candidates, picks, &solved))
-        };
-        let before = left(&[]).unwrap_or_else(|| self.study.y.clone());
-        let against = |(id, c, score): &(&str, usize, f64)| {
-            let after = left(&[*c])?;
-            let acts = |i: usize| candidates[*c].columns.iter().any(|column| column[i] != 0.0);
-            let sensors: BTreeSet<usize> = (0..before.len()).filter(|i| acts(*i)).map(|i| view.sensor[i]).collect();
-            let rows: Vec<usize> = (0..before.len()).filter(|i| sensors.contains(&view.sensor[*i])).collect();
-            let (variable, values) = view.over.iter().find(|(v, _)| *v == best(id)).or(view.over.first())?;
-            Some(Against {
-                id: (*id).to_owned(),
-                score: *score,
-                variable: *variable,
-                over: rows.iter().map(|i| values[*i]).collect(),
-                taken: rows.iter().map(|i| before[*i] - after[*i]).collect(),
-                rows,
-            })
-        };
-        let suspects = strongest(&self.study, threshold).iter().filter_map(against).collect();
-        let Self { channel: name, unit, floor: noise, .. } = *self;
-        Channel { name, unit, noise, recording: view.recording.clone(), left: before, suspects }
+        channel(&self.study, (self.channel, self.unit, self.floor), view, threshold, best)
+    }
+}
+
+/// A compared channel's part of the atlas: its name, unit and noise.
+pub(super) fn channel(
+    study: &Study,
+    (name, unit, noise): (&'static str, &'static str, f64),
+    view: &View,
+    threshold: f64,
+    best: fn(&str) -> Variable,
+) -> Channel {
+    let Study { system, candidates, .. } = study;
+    let left = |picks: &[usize]| {
+        let solved = system.solve(picks)?;
+        Some(residual(&study.y, &study.base, candidates, picks, &solved))
+    };
+    let before = left(&[]).unwrap_or_else(|| study.y.clone());
+    let against = |(id, c, score): &(&str, usize, f64)| {
+        let after = left(&[*c])?;
+        let acts = |i: usize| candidates[*c].columns.iter().any(|column| column[i] != 0.0);
+        let sensors: BTreeSet<usize> = (0..before.len()).filter(|i| acts(*i)).map(|i| view.sensor[i]).collect();
+        let rows: Vec<usize> = (0..before.len()).filter(|i| sensors.contains(&view.sensor[*i])).collect();
+        let (variable, values) = view.over.iter().find(|(v, _)| *v == best(id)).or(view.over.first())?;
+        Some(Against {
+            id: (*id).to_owned(),
+            score: *score,
+            variable: *variable,
+            over: rows.iter().map(|i| values[*i]).collect(),
+            taken: rows.iter().map(|i| before[*i] - after[*i]).collect(),
+            rows,
+        })
+    };
+    let suspects = strongest(study, threshold).iter().filter_map(against).collect();
+    let View { recording, way, is_angular, .. } = view;
+    Channel {
+        name,
+        unit,
+        is_angular: *is_angular,
+        noise,
+        recording: recording.clone(),
+        way: way.clone(),
+        left: before,
+        suspects,
     }
 }
 

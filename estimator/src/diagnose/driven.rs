@@ -2,11 +2,12 @@
 //! motion, give under the load and friction of the input are what it may lack.
 
 use super::answer::{Beside, Found, Part, answer};
+use super::atlas::{self, Variable, View};
 use super::candidate::Candidate;
 use super::compare::{Channel, stretches};
 use super::geometry::Study;
 use super::report::{CauseParameter, Diagnosis, NotExcited};
-use super::{quality, threshold};
+use super::{Options, quality, threshold};
 use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
 use crate::signal::task::smooth;
@@ -60,7 +61,7 @@ pub fn is_driven(recordings: &[Recording]) -> bool {
 }
 
 /// Diagnoses recordings of one transmission.
-pub fn driven(recordings: &[Recording]) -> Result<Diagnosis, EstimateError> {
+pub fn driven(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     let Some(names) = recordings.first().and_then(columns) else { return Err(super::nothing()) };
     let rows: Vec<Row> = recordings.iter().enumerate().flat_map(|(k, r)| rows(r, k, names)).collect();
     let mut beside = Beside {
@@ -104,13 +105,41 @@ pub fn driven(recordings: &[Recording]) -> Result<Diagnosis, EstimateError> {
         usual: &|_| None,
     };
     let floor = white_noise(&rows.iter().map(|r| r.output).collect::<Vec<_>>());
-    let mut parts = vec![part(&way, "output's place", names.unit, floor)];
+    let mut named = vec![(&way, "output's place", names.unit, floor)];
     if let Some(force) = &force {
         let floor = white_noise(&rows.iter().map(|r| r.force.unwrap_or(0.0)).collect::<Vec<_>>());
         // The force is what a trainee feels: its figures stand for the whole.
-        parts.insert(0, part(force, "force at the input", names.force_unit, floor));
+        named.insert(0, (force, "force at the input", names.force_unit, floor));
     }
-    Ok(answer(&parts, beside, &|_| None))
+    let parts: Vec<Part<'_>> = named.iter().map(|(study, name, unit, floor)| part(study, name, unit, *floor)).collect();
+    let mut found = answer(&parts, beside, &|_| None);
+    if options.atlas {
+        let view = view(&rows, names);
+        let of = |(study, name, unit, floor): &(&Study, &'static str, &'static str, f64)| {
+            atlas::channel(study, (name, unit, *floor), &view, threshold(period_s), best_seen)
+        };
+        found.atlas.channels = named.iter().map(of).collect();
+    }
+    Ok(found)
+}
+
+/// What the rows of both channels are seen against.
+fn view(rows: &[Row], names: &Columns) -> View {
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let load = |r: &Row| r.load.or(r.force).unwrap_or(0.0);
+    let over =
+        vec![(Variable::Place, of(&|r| r.input)), (Variable::Velocity, of(&|r| r.rate)), (Variable::Load, of(&load))];
+    let recording = rows.iter().map(|r| r.recording).collect();
+    View { way: of(&|r| r.rate), is_angular: names.unit == "rad", ..View::of(recording, over) }
+}
+
+/// What a cause of a transmission is best seen against.
+fn best_seen(id: &str) -> Variable {
+    match id {
+        "coulomb-friction" | "viscous-friction" | "quadratic-drag" | "time-delay" => Variable::Velocity,
+        "pad-compliance" | "load-friction" => Variable::Load,
+        _ => Variable::Place,
+    }
 }
 
 fn rows(recording: &Recording, number: usize, names: &Columns) -> Vec<Row> {

@@ -114,10 +114,10 @@ fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<Diag
         return thrown;
     }
     if pulled::is_pulled(recordings) {
-        return pulled::pulled(recordings);
+        return pulled::pulled(recordings, options);
     }
     if driven::is_driven(recordings) {
-        return driven::driven(recordings);
+        return driven::driven(recordings, options);
     }
     mechanism(recordings, options)
 }

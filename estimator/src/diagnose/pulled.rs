@@ -2,11 +2,12 @@
 //! the place can, and so can two estimates of one force that do not agree.
 
 use super::answer::{Beside, Found, Part, answer};
+use super::atlas::{self, Variable, View};
 use super::candidate::Candidate;
 use super::compare::Channel;
 use super::geometry::Study;
 use super::report::{CauseParameter, Diagnosis, NotExcited};
-use super::{THRESHOLD, quality};
+use super::{Options, THRESHOLD, quality};
 use crate::constraint::detect_in;
 use crate::estimate::{ConstraintKind, EstimateError};
 use crate::identify::mechanism::path::{self, from_constraint, project};
@@ -53,7 +54,7 @@ pub fn is_pulled(recordings: &[Recording]) -> bool {
 }
 
 /// Diagnoses paths of one mechanism.
-pub fn pulled(recordings: &[Recording]) -> Result<Diagnosis, EstimateError> {
+pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     let mut rows = Vec::new();
     let mut kinds = Vec::new();
     let mut beside = Beside::default();
@@ -77,12 +78,9 @@ pub fn pulled(recordings: &[Recording]) -> Result<Diagnosis, EstimateError> {
         "the paths follow {kind} ({turns} revolute, {slides} prismatic of {}); without a clock nothing that depends on speed can be told",
         kinds.len()
     ));
-    for (id, why) in [
-        ("inertia", "there is no clock"),
-        ("viscous-friction", "there is no clock"),
-        ("time-delay", "there is no clock"),
-    ] {
-        beside.not_excited.push(NotExcited { id: id.to_owned(), why: format!("{why}; give a t_s column or rate_hz") });
+    for id in ["inertia", "viscous-friction", "time-delay"] {
+        let why = "there is no clock; give a t_s column or rate_hz".to_owned();
+        beside.not_excited.push(NotExcited { id: id.to_owned(), why });
     }
     let forced = recordings.iter().all(|r| path::forces(r).is_some()) && rows.len() >= 40;
     beside.model = if forced { format!("{kind}+coulomb-friction") } else { kind.to_owned() };
@@ -130,7 +128,58 @@ pub fn pulled(recordings: &[Recording]) -> Result<Diagnosis, EstimateError> {
     if let Some((study, floor)) = &second {
         parts.push(part(study, "difference of the two forces", "N", *floor, &other.0, &other.1, &of_second));
     }
-    Ok(answer(&parts, beside, &|_| None))
+    let mut found = answer(&parts, beside, &|_| None);
+    if options.atlas {
+        let is_angular = turns >= slides && turns > 0;
+        found.atlas.channels = in_the_atlas(&rows, is_angular, (&along.0, unit, floor), second.as_ref());
+    }
+    Ok(found)
+}
+
+/// Both comparisons as parts of the atlas.
+fn in_the_atlas(
+    rows: &[Row],
+    is_angular: bool,
+    (along, unit, floor): (&Study, &'static str, f64),
+    second: Option<&(Study, f64)>,
+) -> Vec<atlas::Channel> {
+    let way = View { is_angular, ..view(rows) };
+    let both = View { is_angular, ..view_of_both(rows) };
+    let of_place = |_: &str| Variable::Place;
+    let mut found = vec![atlas::channel(along, ("force along the way", unit, floor), &way, THRESHOLD, of_place)];
+    found.extend(second.map(|(study, floor)| {
+        atlas::channel(study, ("difference of the two forces", "N", *floor), &both, THRESHOLD, best_of_both)
+    }));
+    found
+}
+
+/// What the force along the way is seen against.
+fn view(rows: &[Row]) -> View {
+    let over = vec![(Variable::Place, rows.iter().map(|r| r.place).collect())];
+    let way = rows.iter().map(|r| r.direction).collect();
+    View { way, ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
+}
+
+/// What two forces are seen against: the rows of all three axes follow each other.
+fn view_of_both(rows: &[Row]) -> View {
+    let each =
+        |f: &dyn Fn(&Row, usize) -> f64| (0..3).flat_map(|a| rows.iter().map(move |r| f(r, a))).collect::<Vec<f64>>();
+    let across = |r: &Row, axis: usize| if axis < 2 { r.measured_n[1 - axis] } else { 0.0 };
+    let over = vec![
+        (Variable::Place, each(&|r, _| r.place)),
+        (Variable::Force, each(&|r, axis| r.measured_n[axis])),
+        (Variable::Across, each(&across)),
+    ];
+    let sensor = (0..3).flat_map(|axis| rows.iter().map(move |_| axis)).collect();
+    View { sensor, ..View::of((0..3).flat_map(|_| rows.iter().map(|r| r.recording)).collect(), over) }
+}
+
+fn best_of_both(id: &str) -> Variable {
+    match id {
+        "force-gain" => Variable::Force,
+        "force-cross-axis" => Variable::Across,
+        _ => Variable::Place,
+    }
 }
 
 /// A door does not drive whoever opens it: a force that takes work all the way is the one on the hand.

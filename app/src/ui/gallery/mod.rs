@@ -91,8 +91,20 @@ pub fn plates() -> Vec<Plate> {
         line: "The same of blocks: a part for every channel that was compared",
         ..of_panel(Panel::Atlas)
     };
+    let of_needle = Plate {
+        name: "atlas-needle".to_owned(),
+        sample: Sample::Needle,
+        line: "The same of a needle: its sheet and its shaft, over depth, speed and time",
+        ..of_panel(Panel::Atlas)
+    };
+    let of_hinge = Plate {
+        name: "experiment-hinge".to_owned(),
+        sample: Sample::Hinge,
+        line: "What to record next of a mechanism without a handle: rehearsed, and planned for the real one",
+        ..of_panel(Panel::Experiment)
+    };
     panels
-        .chain([of_blocks])
+        .chain([of_blocks, of_needle, of_hinge])
         .chain(views())
         .chain(worlds::BUILT_IN.iter().filter_map(|(name, _)| of_world(name)))
         .collect()

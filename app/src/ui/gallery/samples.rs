@@ -39,6 +39,8 @@ pub enum Sample {
     Askew,
     /// A block that leaks, or is weighed by a sensor that drifts: its recording cannot tell.
     Leaking,
+    /// A hinge with a mass off its axis, or on an axis that leans: its recording cannot tell.
+    Hinge,
     /// A cart on a rail, of which only the way and the force are known.
     Rail,
     /// A table whose columns have no meaning yet.
@@ -68,6 +70,7 @@ impl Samples {
             Sample::Rail => vec![one_coordinate("cart", ("q_m", "m", 0.12), ("f_N", "N", [2.0, 5.0, 0.8]))],
             Sample::Askew => vec![askew()?],
             Sample::Leaking => vec![leaking()?],
+            Sample::Hinge => vec![hinge().0],
             Sample::Foreign | Sample::World(_) => Vec::new(),
         };
         self.known.insert(sample, made.clone());
@@ -150,6 +153,17 @@ pub fn leaking() -> anyhow::Result<Recording> {
         added_lever_m: 0.0,
     };
     done_with(&leaking_world(), &asked, "leaking")
+}
+
+/// A hinge that is driven directly, and the object for another motion of it.
+pub fn hinge() -> (Recording, blind::case::Object) {
+    let effects = vec![(blind::Effect::Eccentric, 0)];
+    let (bench, log) = (blind::Bench::Angular, blind::Log::Mixed);
+    let spec = blind::Spec { effects, ratio: 2.0, bench, log, rate_hz: 250.0, seconds: 15.0 };
+    let (mut case, _, object) = blind::case::make_with_object(&spec, &[], 4);
+    let mut recording = case.recordings.pop().unwrap_or_default();
+    "hinge".clone_into(&mut recording.name);
+    (recording, object)
 }
 
 /// A made-up trainee's attempts at one lesson: four sessions, slow and hesitating at first.

@@ -1,5 +1,6 @@
 //! The residual atlas: what the model leaves against the variable of every suspect, with what that suspect alone would take of it.
 
+use crate::diagnosis_words::{listed, title};
 use crate::ui::atlas::{Cell, Line, Scale, Sheet};
 use crate::ui::format::{self, capitalised};
 use crate::ui::plots::{BAND_SIGMAS, decimals, inks, marks};
@@ -24,11 +25,11 @@ pub fn show(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Diagn
     let open = session.diagnosing.atlas_open.clone();
     match open.and_then(|key| sheet.find(&key)) {
         Some(cell) => large(ui, session, cell, diagnosis),
-        None => grid(ui, session, sheet),
+        None => grid(ui, session, sheet, diagnosis),
     }
 }
 
-fn grid(ui: &mut Ui, session: &mut Session, sheet: &Sheet) {
+fn grid(ui: &mut Ui, session: &mut Session, sheet: &Sheet, diagnosis: &Diagnosis) {
     let gap = space::M;
     let mut clicked = None;
     ScrollArea::vertical().id_salt("atlas").auto_shrink(false).show(ui, |ui| {
@@ -54,10 +55,22 @@ fn grid(ui: &mut Ui, session: &mut Session, sheet: &Sheet) {
                 });
             }
         }
+        if let Some(text) = without_picture(sheet, diagnosis) {
+            ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
+        }
     });
     if clicked.is_some() {
         session.diagnosing.atlas_open = clicked;
     }
+}
+
+/// Causes that were not found in a channel: faults of samples, scales out of a free fall.
+fn without_picture(sheet: &Sheet, diagnosis: &Diagnosis) -> Option<String> {
+    let unseen =
+        diagnosis.causes.iter().filter(|c| law::cause(&c.id).is_some() && sheet.cells.iter().all(|s| s.id != c.id));
+    let names: Vec<String> = unseen.map(|c| title(&c.id)).collect();
+    let what = if names.len() == 1 { "was found in another way and has" } else { "were found in other ways and have" };
+    (!names.is_empty()).then(|| format!("{} {what} no picture here; the evidence stands beside.", listed(&names)))
 }
 
 /// One suspect of the grid.

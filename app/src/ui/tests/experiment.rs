@@ -3,7 +3,7 @@
 use super::{harness, until};
 use crate::experiment::simulated_object;
 use crate::ui::app::App;
-use crate::ui::gallery::samples::{askew, askew_world, done_with};
+use crate::ui::gallery::samples::{askew, askew_world, done_with, hinge};
 use crate::ui::guided::Phase;
 use crate::ui::jobs::JobKind;
 use crate::ui::session::{Session, Workspace};
@@ -215,17 +215,6 @@ fn an_experiment_that_is_left_keeps_no_file() {
     assert!(session.experiments.guided.is_none() && !session.trainer.is_recording());
 }
 
-/// A hinge with a mass off its axis, of the blind generator, and the object for another motion.
-fn hinge() -> (Recording, blind::case::Object) {
-    let effects = vec![(blind::Effect::Eccentric, 0)];
-    let (bench, log) = (blind::Bench::Angular, blind::Log::Mixed);
-    let spec = blind::Spec { effects, ratio: 2.0, bench, log, rate_hz: 250.0, seconds: 15.0 };
-    let (mut case, _, object) = blind::case::make_with_object(&spec, &[], 4);
-    let mut recording = case.recordings.remove(0);
-    "hinge".clone_into(&mut recording.name);
-    (recording, object)
-}
-
 #[test]
 fn a_mechanisms_experiment_is_rehearsed_and_planned_and_what_was_recorded_after_it_settles_the_question() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -244,7 +233,7 @@ fn a_mechanisms_experiment_is_rehearsed_and_planned_and_what_was_recorded_after_
     // The plan is shown, and saved for whatever drives the real one.
     harness.get_by_role_and_label(Role::Button, "Plan of the motion").click();
     harness.run_steps(3);
-    assert!(harness.query_by_label("Plan of the motion, 21 s").is_some());
+    assert!(harness.query_by_label("Plan of the motion, 22 s").is_some());
     harness.get_by_role_and_label(Role::Button, "Save the plan").click();
     harness.run_steps(2);
     until(&mut harness, "the plan", |app| quiet(&app.session));

@@ -100,6 +100,8 @@ fn view(rows: &Rows<'_>) -> View {
             (Variable::Grip, rows.column(|r| rows.seen[r.recording].blocks.grip[r.i])),
             (Variable::Lift, rows.column(|r| rows.seen[r.recording].blocks.lift[r.i])),
         ],
+        way: Vec::new(),
+        is_angular: false,
     }
 }
 

@@ -123,11 +123,7 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     let along = vec![true; n];
     let compared =
         Compared { study, channel: "distance of the tips", unit: "m", floor: floor_m, along, stretch: rows.stretch };
-    let view = View {
-        recording: rows.recording,
-        sensor: vec![0; n],
-        over: vec![(Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)],
-    };
+    let view = View::of(rows.recording, vec![(Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)]);
     Ok(Some(Grasp { compared, view, means, modelled }))
 }
 

@@ -116,6 +116,8 @@ pub fn ground(
         // One rest is no continuation of another: each has a height of its own.
         sensor: rows.stand.clone(),
         over: vec![(Variable::Time, rows.time_s.clone()), (Variable::Lift, rows.lift_n.clone())],
+        way: Vec::new(),
+        is_angular: false,
     };
     Ok(Some(Ground { compared, view, stands, rows }))
 }

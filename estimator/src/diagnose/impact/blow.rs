@@ -2,6 +2,7 @@
 
 use super::powers;
 use crate::diagnose::answer::{Compared, Found, parameter};
+use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::report::CauseParameter;
@@ -27,10 +28,10 @@ const SLOW_M_S: f64 = 0.4;
 /// Fewer blows show nothing.
 const LEAST_BLOWS: usize = 24;
 /// Score that makes a cause.
-const THRESHOLD: f64 = 20.0;
+pub const THRESHOLD: f64 = 20.0;
 
 /// Compares what impacts leave of the speed. `restitution`: that of the model. `None` where too few blows are clear.
-pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option<Compared>, EstimateError> {
+pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option<(Compared, View)>, EstimateError> {
     let pairs: Vec<(f64, f64)> =
         seen.tracks.iter().filter_map(|t| corner(t, half_width_m, seen.fall.down_m_s2)).collect();
     if pairs.len() < LEAST_BLOWS {
@@ -62,7 +63,14 @@ pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option
         });
     }
     let along = vec![true; n];
-    Ok(Some(Compared { study, channel: "speed after impacts", unit: "m/s", floor, along, stretch }))
+    // A throw has one blow: all of them are seen together, over the speed that they came with.
+    let view = View::of(Vec::new(), vec![(Variable::Velocity, pairs.iter().map(|(before, _)| -before).collect())]);
+    Ok(Some((Compared { study, channel: "speed after impacts", unit: "m/s", floor, along, stretch }, view)))
+}
+
+/// What a cause in the impacts is best seen against.
+pub fn best_seen(_: &str) -> Variable {
+    Variable::Velocity
 }
 
 /// Velocity upwards of the corner that hits first, before and after, m/s.

@@ -60,9 +60,15 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     let loses = |c: &Candidate, found: Vec<CauseParameter>| blow::states(c, &found);
     let (slide_shows, blow_shows) = (|f: &Found<'_>| sliding::shows(f), |f: &Found<'_>| blow::shows(f));
     let mut parts: Vec<Part<'_>> = Vec::new();
-    parts.extend(sliding.as_ref().map(|s| s.part(&slide_shows, &slides, &|_| None)));
-    parts.extend(blow.as_ref().map(|b| b.part(&blow_shows, &loses, &|_| None)));
-    Ok(answer(&parts, beside, &next))
+    parts.extend(sliding.as_ref().map(|(s, _)| s.part(&slide_shows, &slides, &|_| None)));
+    parts.extend(blow.as_ref().map(|(b, _)| b.part(&blow_shows, &loses, &|_| None)));
+    let mut found = answer(&parts, beside, &next);
+    if options.atlas {
+        let channels = &mut found.atlas.channels;
+        channels.extend(sliding.as_ref().map(|(s, view)| s.atlas(view, sliding::THRESHOLD, sliding::best_seen)));
+        channels.extend(blow.as_ref().map(|(b, view)| b.atlas(view, blow::THRESHOLD, blow::best_seen)));
+    }
+    Ok(found)
 }
 
 /// Powers 0 … of a number, one row an entry.

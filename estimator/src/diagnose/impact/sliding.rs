@@ -2,6 +2,7 @@
 
 use super::powers;
 use crate::diagnose::answer::{Compared, Found};
+use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::report::CauseParameter;
@@ -14,7 +15,7 @@ use nalgebra::{DVector, Vector3};
 /// Fewer slides show nothing.
 const LEAST_SLIDES: usize = 4;
 /// Score that makes a cause.
-const THRESHOLD: f64 = 25.0;
+pub const THRESHOLD: f64 = 25.0;
 /// Speeds at which static friction falls off that are tried, as shares of the usual one.
 const STRIBECK: [f64; 4] = [0.1, 0.25, 0.5, 0.9];
 
@@ -26,7 +27,7 @@ struct Way {
 }
 
 /// Compares what slows the body. `mu`: friction that the model has.
-pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<Compared>, EstimateError> {
+pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, EstimateError> {
     if seen.slides.len() < LEAST_SLIDES {
         return Ok(None);
     }
@@ -67,7 +68,16 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<Compared>, EstimateError
     };
     let study = channel.compare(THRESHOLD)?;
     let along = vec![true; n];
-    Ok(Some(Compared { study, channel: "way of the slides", unit: "m", floor, along, stretch }))
+    let each = |of: fn(&Way) -> &Vec<f64>| ways.iter().flat_map(of).copied().collect::<Vec<f64>>();
+    let over = vec![(Variable::Time, each(|w| &w.time_s)), (Variable::Velocity, each(|w| &w.speed_m_s))];
+    // A single slide is short: all of them are seen together.
+    let view = View::of(Vec::new(), over);
+    Ok(Some((Compared { study, channel: "way of the slides", unit: "m", floor, along, stretch }, view)))
+}
+
+/// What a cause in the slides is best seen against.
+pub fn best_seen(id: &str) -> Variable {
+    if id == "load-friction" { Variable::Time } else { Variable::Velocity }
 }
 
 fn way(seen: &Tossed, track: usize, first: usize, samples: usize) -> Option<Way> {

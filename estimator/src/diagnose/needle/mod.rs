@@ -26,7 +26,7 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let (seen, names, left_out) = joined(recordings)?;
     let law = options.world.as_ref().and_then(|w| w.membrane.as_ref()).map(|m| &m.law);
     let limit = threshold(seen.period_s);
-    let sheet = sheet::sheet(&seen, law, limit)?;
+    let (sheet, view) = sheet::sheet(&seen, law, limit)?;
     let shaft = shaft::shaft(&seen, law, limit)?;
     let mut beside = Beside {
         model: format!(
@@ -52,7 +52,13 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let (on_sheet, on_shaft) = (|f: &Found<'_>| sheet::shows(f), |f: &Found<'_>| shaft::shows(f));
     let mut parts: Vec<Part<'_>> = vec![sheet.part(&on_sheet, &plain, &sheet::usual)];
     parts.extend(shaft.as_ref().map(|s| s.compared.part(&on_shaft, &plain, &|_| None)));
-    Ok(answer(&parts, beside, &next))
+    let mut found = answer(&parts, beside, &next);
+    if options.atlas {
+        let of_shaft = |s: &shaft::Shaft| s.compared.atlas(&s.view, limit, sheet::best_seen);
+        found.atlas.channels.push(sheet.atlas(&view, limit, sheet::best_seen));
+        found.atlas.channels.extend(shaft.as_ref().map(of_shaft));
+    }
+    Ok(found)
 }
 
 /// The channels of other recordings of the same needle and sheet.
@@ -60,7 +66,7 @@ pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compa
     let (seen, ..) = joined(recordings)?;
     let law = options.world.as_ref().and_then(|w| w.membrane.as_ref()).map(|m| &m.law);
     let limit = threshold(seen.period_s);
-    let mut found = vec![sheet::sheet(&seen, law, limit)?];
+    let mut found = vec![sheet::sheet(&seen, law, limit)?.0];
     found.extend(shaft::shaft(&seen, law, limit)?.map(|s| s.compared));
     Ok(found)
 }

@@ -2,6 +2,7 @@
 
 use super::rows::{Needle, Phase, Row};
 use crate::diagnose::answer::{Compared, Found};
+use crate::diagnose::atlas::View;
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::dictionary::Dictionary;
@@ -30,6 +31,8 @@ const RIM_SHARE: f64 = 0.05;
 /// The comparison.
 pub struct Shaft {
     pub compared: Compared,
+    /// What its rows are seen against.
+    pub view: View,
     /// What the model without a cause has.
     pub model: &'static str,
 }
@@ -114,7 +117,7 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
     let study = channel.compare(threshold)?;
     let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, stretch };
-    Ok(Some(Shaft { compared, model }))
+    Ok(Some(Shaft { compared, view: super::sheet::view(&rows), model }))
 }
 
 /// Friction of a world's hole along the measured way, N, drag left out.

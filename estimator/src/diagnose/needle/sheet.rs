@@ -2,6 +2,7 @@
 
 use super::rows::{Needle, Phase, Row};
 use crate::diagnose::answer::{Compared, Found};
+use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
 use crate::estimate::EstimateError;
@@ -13,7 +14,7 @@ use haptics::law::object::MembraneLaw;
 const DENTS: [f64; 16] = [0.04, 0.07, 0.1, 0.13, 0.16, 0.19, 0.22, 0.25, 0.28, 0.32, 0.36, 0.4, 0.45, 0.5, 0.58, 0.66];
 
 /// Compares what the sheet may be beside a linear spring (or the law of a world), and what may be wrong with the force.
-pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Compared, EstimateError> {
+pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<(Compared, View), EstimateError> {
     let mut rows: Vec<Row> = needle.rows.iter().filter(|r| r.phase != Phase::Hole).copied().collect();
     let floor_n = white_noise(&rows.iter().map(|r| r.force_n).collect::<Vec<f64>>());
     shuffle(&mut rows);
@@ -89,7 +90,34 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         period_s: needle.period_s,
     };
     let study = channel.compare(threshold)?;
-    Ok(Compared { study, channel: "force outside and on the sheet", unit: "N", floor: floor_n, along, stretch })
+    let compared =
+        Compared { study, channel: "force outside and on the sheet", unit: "N", floor: floor_n, along, stretch };
+    let view = View {
+        // What presses the sheet says nothing of empty fingers.
+        sensor: rows.iter().map(|r| usize::from(touches(r))).collect(),
+        ..view(&rows)
+    };
+    Ok((compared, view))
+}
+
+/// What rows of a needle are seen against.
+pub fn view(rows: &[Row]) -> View {
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let over = vec![
+        (Variable::Time, of(&|r| r.time_s - r.start_s)),
+        (Variable::Depth, of(&|r| r.depth_m)),
+        (Variable::Velocity, of(&|r| r.rate_m_s)),
+    ];
+    View { way: of(&|r| r.rate_m_s), ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
+}
+
+/// What a cause on a needle is best seen against.
+pub fn best_seen(id: &str) -> Variable {
+    match id {
+        "stiffness-hardening" | "hysteresis" => Variable::Depth,
+        "viscous-friction" | "coulomb-friction" | "quadratic-drag" => Variable::Velocity,
+        _ => Variable::Time,
+    }
 }
 
 /// A push is over within a second: rows that are held out in blocks would take all of one. Rows a filter window apart hardly hang

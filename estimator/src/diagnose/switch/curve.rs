@@ -6,6 +6,7 @@ use super::model::Known;
 use super::push::Push;
 use super::rows::direction;
 use crate::diagnose::answer::{Compared, Found};
+use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::{Candidate, Shape};
 use crate::diagnose::compare::{Channel, stretches};
 use crate::estimate::EstimateError;
@@ -36,7 +37,12 @@ struct Point {
 }
 
 /// Compares the measured curve with the world's. Nothing where too little of it was seen.
-pub fn curve(push: &Push, known: &Known<'_>, period_s: f64, threshold: f64) -> Result<Option<Compared>, EstimateError> {
+pub fn curve(
+    push: &Push,
+    known: &Known<'_>,
+    period_s: f64,
+    threshold: f64,
+) -> Result<Option<(Compared, View)>, EstimateError> {
     let viscous =
         push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == "viscous-friction");
     let mut times = Vec::new();
@@ -74,7 +80,23 @@ pub fn curve(push: &Push, known: &Known<'_>, period_s: f64, threshold: f64) -> R
     };
     let study = channel.compare(threshold)?;
     let (channel, unit, floor) = ("force over the knob's way beside the world's curve", "N", push.compared.floor);
-    Ok(Some(Compared { study, channel, unit, floor, along, stretch }))
+    let over = vec![
+        (Variable::Place, of(&|p| p.at_m)),
+        (Variable::Velocity, of(&|p| p.speed_m_s)),
+        (Variable::Force, of(&|p| p.asked_n)),
+    ];
+    let recording = times.iter().map(|t| t.0).collect();
+    let view = View { way: of(&|p| direction(p.side)), ..View::of(recording, over) };
+    Ok(Some((Compared { study, channel, unit, floor, along, stretch }, view)))
+}
+
+/// What a cause beside the world's curve is best seen against.
+pub fn best_seen(id: &str) -> Variable {
+    match id {
+        "viscous-friction" => Variable::Velocity,
+        "force-gain" => Variable::Force,
+        _ => Variable::Place,
+    }
 }
 
 fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candidate> {

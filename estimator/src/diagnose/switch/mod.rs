@@ -10,6 +10,7 @@ mod rows;
 mod stop;
 
 use super::answer::{Beside, Compared, Found, Part, answer};
+use super::atlas::View;
 use super::candidate::Candidate;
 use super::report::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
 use super::{Options, quality, threshold};
@@ -23,8 +24,8 @@ use push::Push;
 struct Look {
     seen: rows::Seen,
     push: Push,
-    curve: Option<Compared>,
-    stop: Option<Compared>,
+    curve: Option<(Compared, View)>,
+    stop: Option<(Compared, View)>,
 }
 
 fn look(recordings: &[Recording], bad: &[Vec<bool>], options: &Options) -> Result<Look, EstimateError> {
@@ -39,7 +40,7 @@ fn look(recordings: &[Recording], bad: &[Vec<bool>], options: &Options) -> Resul
     };
     // A knob that asks for other forces, or a sensor that tells others, lies elsewhere in its stops.
     let has = |id: &str| push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == id);
-    let other = curve.as_ref().is_some_and(|c| !c.study.chosen.is_empty()) || has("friction-change");
+    let other = curve.as_ref().is_some_and(|(c, _)| !c.study.chosen.is_empty()) || has("friction-change");
     let stop = if other { None } else { stop::stop(&seen, known.as_ref(), limit)? };
     Ok(Look { seen, push, curve, stop })
 }
@@ -48,7 +49,7 @@ fn look(recordings: &[Recording], bad: &[Vec<bool>], options: &Options) -> Resul
 pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compared>, EstimateError> {
     let bad: Vec<Vec<bool>> = recordings.iter().map(|r| quality::faults(r).bad).collect();
     let Look { push, curve, stop, .. } = look(recordings, &bad, options)?;
-    Ok(std::iter::once(push.compared).chain(curve).chain(stop).collect())
+    Ok(std::iter::once(push.compared).chain(curve.map(|c| c.0)).chain(stop.map(|s| s.0)).collect())
 }
 
 /// Diagnoses recordings of one switch.
@@ -68,9 +69,17 @@ pub fn switch(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let (on_way, on_curve, on_stop) =
         (|f: &Found<'_>| Push::shows(f), |f: &Found<'_>| curve::shows(f), |f: &Found<'_>| stop::shows(f));
     let mut parts: Vec<Part<'_>> = vec![push.compared.part(&on_way, &plain, &Push::usual)];
-    parts.extend(curve.as_ref().map(|c| c.part(&on_curve, &plain, &|_| None)));
-    parts.extend(stop.as_ref().map(|s| s.part(&on_stop, &plain, &|_| None)));
-    Ok(answer(&parts, beside, &next))
+    parts.extend(curve.as_ref().map(|(c, _)| c.part(&on_curve, &plain, &|_| None)));
+    parts.extend(stop.as_ref().map(|(s, _)| s.part(&on_stop, &plain, &|_| None)));
+    let mut found = answer(&parts, beside, &next);
+    if options.atlas {
+        let limit = threshold(seen.period_s);
+        let channels = &mut found.atlas.channels;
+        channels.push(push.compared.atlas(&push.view, limit, push::best_seen));
+        channels.extend(curve.as_ref().map(|(c, view)| c.atlas(view, limit, curve::best_seen)));
+        channels.extend(stop.as_ref().map(|(s, view)| s.atlas(view, limit, stop::best_seen)));
+    }
+    Ok(found)
 }
 
 /// What a recording of this kind could not show.

@@ -3,6 +3,7 @@
 
 use super::rows::{Place, Row, Seen, direction};
 use crate::diagnose::answer::{Compared, Found};
+use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::geometry::Study;
@@ -27,6 +28,8 @@ const LEAST_VISCOUS_N_S_M: f64 = 0.8;
 /// The comparison.
 pub struct Push {
     pub compared: Compared,
+    /// What its rows are seen against.
+    pub view: View,
     /// Rows of throws that took part, and what the found causes add to the force along the travel there, N.
     pub rows: Vec<(Row, f64)>,
 }
@@ -154,10 +157,37 @@ pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
     let study = channel.compare(threshold)?;
     let found = of_found(&study, rows.len());
     let along = rows.iter().map(|r| matches!(r.place, Place::Push(_))).collect();
+    let view = view(&rows);
     let is_push = |(r, _): &(Row, f64)| matches!(r.place, Place::Push(_));
     let kept = rows.into_iter().zip(found).filter(is_push).collect();
     let (channel, unit, floor) = ("force on the knob", "N", seen.noise_n);
-    Ok(Push { compared: Compared { study, channel, unit, floor, along, stretch }, rows: kept })
+    Ok(Push { compared: Compared { study, channel, unit, floor, along, stretch }, view, rows: kept })
+}
+
+/// What the rows are seen against; fingers that touch nothing are sensors of their own.
+fn view(rows: &[Row]) -> View {
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let sensor = |r: &Row| match r.place {
+        Place::Free(finger, axis) => 1 + 2 * finger + axis,
+        Place::Push(_) | Place::Stop(_) => 0,
+    };
+    let over = vec![
+        (Variable::Time, of(&|r| r.time_s)),
+        (Variable::Place, of(&|r| r.tip.x)),
+        (Variable::Velocity, of(&Row::speed_m_s)),
+    ];
+    let way = of(&|r| r.side().map_or(0.0, direction));
+    let sensor = rows.iter().map(sensor).collect();
+    View { sensor, way, ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
+}
+
+/// What a cause on the way of the throws is best seen against.
+pub fn best_seen(id: &str) -> Variable {
+    match id {
+        "viscous-friction" => Variable::Velocity,
+        "time-delay" => Variable::Place,
+        _ => Variable::Time,
+    }
 }
 
 /// What the chosen causes add to the rows.

@@ -3,6 +3,7 @@
 use super::model::Known;
 use super::rows::{Place, Row, Seen, direction};
 use crate::diagnose::answer::{Compared, Found};
+use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
 use crate::estimate::EstimateError;
@@ -16,7 +17,7 @@ const ERRORS: f64 = 3.0;
 const STRANGE_M: f64 = 6e-5;
 
 /// Compares what may move the tip while it presses the knob against a stop. Nothing where that was hardly done.
-pub fn stop(seen: &Seen, known: Option<&Known<'_>>, threshold: f64) -> Result<Option<Compared>, EstimateError> {
+pub fn stop(seen: &Seen, known: Option<&Known<'_>>, threshold: f64) -> Result<Option<(Compared, View)>, EstimateError> {
     let indices: Vec<usize> = (0..seen.rows.len()).filter(|i| matches!(seen.rows[*i].place, Place::Stop(_))).collect();
     if indices.len() < LEAST_ROWS {
         return Ok(None);
@@ -72,7 +73,16 @@ pub fn stop(seen: &Seen, known: Option<&Known<'_>>, threshold: f64) -> Result<Op
         period_s: seen.period_s,
     };
     let study = channel.compare(threshold)?;
-    Ok(Some(Compared { study, channel: "place of the tip on the stop", unit: "m", floor, along, stretch }))
+    let over = vec![(Variable::Force, of(&pressed)), (Variable::Time, of(&|r| r.time_s))];
+    // The two stops are places of their own.
+    let view =
+        View { sensor: rows.iter().map(side).collect(), ..View::of(rows.iter().map(|r| r.recording).collect(), over) };
+    Ok(Some((Compared { study, channel: "place of the tip on the stop", unit: "m", floor, along, stretch }, view)))
+}
+
+/// What a cause on the stops is best seen against: how hard the knob is pressed.
+pub fn best_seen(_: &str) -> Variable {
+    Variable::Force
 }
 
 /// What in the residual shows a cause.
