@@ -3,6 +3,7 @@
 //! One window at a time keeps the state (a locked file says which); the next start offers to go on where a killed program was.
 
 use super::assistant::Assistant;
+use super::comfort::Comfort;
 use super::dock::Dock;
 use super::project::{Project, write_whole};
 use super::recent::Recent;
@@ -30,6 +31,8 @@ pub struct State {
     pub recent: Recent,
     /// False while the program runs: it was killed when the next start finds it so.
     pub ended: bool,
+    /// What makes training comfortable.
+    pub comfort: Comfort,
     /// True once the user has been shown around.
     pub toured: bool,
     /// What the assistant shows.
@@ -111,6 +114,7 @@ fn state(session: &Session, dock: &Dock, toured: bool) -> State {
         project: Project::of(session),
         project_path: session.project_path.clone(),
         dock: dock.clone(),
+        comfort: session.comfort,
         recent: session.recent.clone(),
         ended: false,
         toured,

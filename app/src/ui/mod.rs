@@ -13,6 +13,7 @@ pub mod atlas;
 pub mod autosave;
 pub mod by_hand;
 pub mod checking;
+pub mod comfort;
 pub mod diagnosing;
 pub mod dock;
 pub mod experimenting;

@@ -15,6 +15,7 @@ impl App {
         self.dock = before.dock.clone();
         self.session.recent = before.recent.clone();
         self.session.assistant = before.assistant;
+        self.session.comfort = before.comfort;
         self.tour.seen = before.toured;
         self.autosave = Some(autosave);
         if !before.ended && !before.project.recordings.is_empty() {

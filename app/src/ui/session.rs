@@ -1,6 +1,7 @@
 //! What the window knows: loaded recordings, their fit, the replay, the time cursor. Panels read and change it; jobs fill it.
 
 use super::checking::On;
+use super::comfort::Comfort;
 use super::diagnosing::Diagnosing;
 use super::experimenting::Experiments;
 pub use super::fit_choice::FitChoice;
@@ -86,6 +87,8 @@ const DONE_LASTS: Duration = Duration::from_secs(6);
 /// Everything that is shared between panels.
 #[derive(Default)]
 pub struct Session {
+    /// What makes training comfortable.
+    pub comfort: Comfort,
     /// The open workspace.
     pub workspace: Workspace,
     /// Loaded recordings.

@@ -93,6 +93,7 @@ pub struct Loop {
     stored: Stored,
     passivity_control_n_s_m: Option<f64>,
     test: ForceTest,
+    held: bool,
     generation: u64,
 }
 
@@ -119,6 +120,7 @@ impl Loop {
             stored: Stored::default(),
             passivity_control_n_s_m: None,
             test: ForceTest::default(),
+            held: false,
             generation: 0,
         }
     }
@@ -136,6 +138,9 @@ impl Loop {
     pub fn tick(&mut self, dt_s: f64) -> TickRecord {
         if !(dt_s > 0.0 && dt_s.is_finite()) {
             return self.tick_without_time();
+        }
+        if self.held {
+            return self.tick_held(dt_s);
         }
         if dt_s != self.coupled_for_s {
             self.couple(dt_s);
@@ -194,6 +199,19 @@ impl Loop {
         self.last
     }
 
+    /// The world stands still, its clock too, and the force goes.
+    fn tick_held(&mut self, dt_s: f64) -> TickRecord {
+        let mut flags = SafetyFlags::default();
+        // A hand that a program thinks out stays where it is; a real one moves on, and is still listened to.
+        if self.device.spec().force_feedback {
+            let raw = self.device.exchange(&Command { force_n: self.sent_force_n }, dt_s);
+            self.last.device_in_world = self.safety.admit(&raw, dt_s, &mut flags).tip_in_world;
+        }
+        self.sent_force_n = self.safety.release(dt_s, &mut flags);
+        self.last = TickRecord { flags, sent_force_n: self.sent_force_n, impact_m_s: 0.0, ..self.last };
+        self.last
+    }
+
     fn tick_without_time(&mut self) -> TickRecord {
         self.make_safe();
         self.safety.interrupted();
@@ -240,6 +258,17 @@ impl Loop {
     /// comes up slowly and passes the safety stage like any force.
     pub fn test_force(&mut self, wanted_n: Option<[Vec2; 2]>) {
         self.test.ask(wanted_n);
+    }
+
+    /// Holds the world still, or lets it go on. Held, its clock stands and the force on the operator goes; afterwards the force comes up
+    /// with the start ramp.
+    pub fn hold(&mut self, held: bool) {
+        self.held = held;
+    }
+
+    /// Whether the world is held still.
+    pub fn is_held(&self) -> bool {
+        self.held
     }
 
     /// The virtual coupling in use; `None`: the device renders the world directly.

@@ -36,6 +36,7 @@ pub(super) struct Runner {
     pub granted: Arc<AtomicU8>,
     pub beat: Arc<Beat>,
     pub test: Arc<Request>,
+    pub hold: Arc<AtomicBool>,
     pub config: ServoConfig,
     pub summary: Timing,
     pub rate: RateReport,
@@ -84,10 +85,14 @@ impl Runner {
             }
             self.take_swap();
             self.body.test_force(self.test.get());
+            self.body.hold(self.hold.load(Ordering::Relaxed));
             let tick = self.body.tick(period_s);
-            // A full ring means that no picture is drawn: the newest ticks are dropped, the servo goes on.
-            let _ = self.ticks.push(tick);
-            self.tap.offer(tick);
+            // A world that is held still has no time to be recorded.
+            if !self.body.is_held() {
+                // A full ring means that no picture is drawn: the newest ticks are dropped, the servo goes on.
+                let _ = self.ticks.push(tick);
+                self.tap.offer(tick);
+            }
             let compute_s = started.elapsed().as_secs_f64();
             let sample_age_s = self.body.sample_age_s();
             let has_force = self.body.has_met_both() && !tick.flags.stale;

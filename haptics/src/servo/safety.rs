@@ -153,6 +153,20 @@ impl Safety {
         self.last_force_n
     }
 
+    /// Lets the force go within [`FADE_S`] while the world is held still; afterwards it comes up with the start ramp.
+    pub fn release(&mut self, dt_s: f64, flags: &mut SafetyFlags) -> [Vec2; 2] {
+        self.ramp = 0.0;
+        self.swapping = Swapping::Done;
+        flags.stale = self.sample_age_s() > self.limits.watchdog_s || self.interrupted;
+        self.interrupted = false;
+        let most = if flags.stale { f64::INFINITY } else { self.limits.max_force_n / FADE_S * dt_s };
+        for last in &mut self.last_force_n {
+            let size = last.norm();
+            *last = if size <= most { Vec2::zeros() } else { *last * (1.0 - most / size) };
+        }
+        self.last_force_n
+    }
+
     /// The ramped force of the world, with what is left of the one before.
     fn blend(&mut self, wanted_n: [Vec2; 2], dt_s: f64) -> [Vec2; 2] {
         if self.swapping == Swapping::Asked {
@@ -190,6 +204,28 @@ mod tests {
     use super::*;
 
     const DT: f64 = 1e-3;
+
+    #[test]
+    fn a_held_force_goes_within_a_twentieth_of_a_second_and_comes_back_with_the_start_ramp() {
+        let mut safety = Safety::new(Limits::default(), [Vec2::zeros(); 2]);
+        let (wanted, mut flags) = ([Vec2::new(3.0, 0.0), Vec2::new(-3.0, 0.0)], SafetyFlags::default());
+        for _ in 0..1_000 {
+            safety.admit(&fresh(), DT, &mut flags);
+            safety.limit(wanted, DT, &mut flags);
+        }
+        assert_eq!(safety.last_force_n, wanted);
+        let mut before_n = 3.0;
+        for k in 0..50 {
+            safety.admit(&fresh(), DT, &mut flags);
+            let now_n = safety.release(DT, &mut flags)[0].x;
+            assert!(now_n <= before_n && before_n - now_n < 0.1, "{before_n} N to {now_n} N in tick {k}");
+            before_n = now_n;
+        }
+        assert_eq!(safety.last_force_n, [Vec2::zeros(); 2]);
+        safety.admit(&fresh(), DT, &mut flags);
+        let first = safety.limit(wanted, DT, &mut flags);
+        assert!(first[0].norm() < 0.01, "it comes back softly: {first:?}");
+    }
 
     fn safety() -> Safety {
         Safety::new(Limits { max_slew_n_s: 100.0, ..Limits::default() }, [Vec2::zeros(); 2])

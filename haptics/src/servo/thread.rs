@@ -75,6 +75,7 @@ pub struct Servo {
     granted: Arc<AtomicU8>,
     beat: Arc<Beat>,
     test: Arc<Request>,
+    hold: Arc<AtomicBool>,
     config: ServoConfig,
     threads: Vec<JoinHandle<()>>,
 }
@@ -97,6 +98,7 @@ impl Servo {
         let granted = Arc::new(AtomicU8::new(0));
         let beat = Arc::new(Beat::default());
         let test = Arc::new(Request::default());
+        let hold = Arc::new(AtomicBool::new(false));
         let limits = Limits { max_force_n: config.limits.max_force_n.min(device.spec().max_force_n), ..config.limits };
         let guard = device.guard();
         let scratch = swap.state.clone();
@@ -111,6 +113,7 @@ impl Servo {
             granted: Arc::clone(&granted),
             beat: Arc::clone(&beat),
             test: Arc::clone(&test),
+            hold: Arc::clone(&hold),
             config,
             summary: first.timing,
             rate: nominal,
@@ -126,7 +129,7 @@ impl Servo {
                 |_| beat.finish(),
             )?,
         ];
-        Ok(Self { newest, ticks, tap, swaps, retired, stop, granted, beat, test, config, threads })
+        Ok(Self { newest, ticks, tap, swaps, retired, stop, granted, beat, test, hold, config, threads })
     }
 
     /// The newest snapshot; never waits. It has a fault while the servo stands still.
@@ -160,6 +163,11 @@ impl Servo {
     /// Pushes with a small force instead of the world's, N on the operator's fingers, to try the device; `None` ends it.
     pub fn test_force(&self, wanted_n: Option<[Vec2; 2]>) {
         self.test.set(wanted_n);
+    }
+
+    /// Holds the world still, or lets it go on; see [`Loop::hold`].
+    pub fn hold(&self, held: bool) {
+        self.hold.store(held, Ordering::Relaxed);
     }
 
     /// What the system granted.

@@ -68,6 +68,8 @@ pub enum Action {
     PractiseOnThis,
     /// Says over the trainer's picture what is known, and warns; or not.
     Assistant,
+    /// Puts everything in Train back where it started.
+    StartOver,
     /// Begins or ends a recording.
     Record,
     /// Plays or stops.
@@ -234,6 +236,7 @@ impl Action {
             Self::TrainCalibrated => "Train in the calibrated world",
             Self::PractiseOnThis => "Practise on this (a lesson in the calibrated world)",
             Self::Assistant => "Assistant on or off",
+            Self::StartOver => "Start over in Train",
             Self::Record => "Record, or stop",
             Self::Play => "Play or pause",
             Self::ToStart => "To the beginning",
@@ -270,6 +273,7 @@ impl Action {
             Self::Diagnose => " cause wrong model",
             Self::Rules => " thresholds segmentation",
             Self::Tour => " help tour",
+            Self::StartOver => " reset again anew",
             Self::SaveLayout | Self::RenameLayout | Self::DeleteLayout | Self::Layout(_) | Self::ResetLayout => {
                 " layout panels"
             }
@@ -308,6 +312,7 @@ impl Action {
             Self::Tour => plain(Key::F1),
             Self::Assistant => plain(Key::H),
             Self::Record => plain(Key::R),
+            Self::StartOver => plain(Key::N),
             _ => None,
         }
     }
@@ -346,6 +351,7 @@ impl Action {
             | Self::TrainCalibrated
             | Self::PractiseOnThis
             | Self::Assistant
+            | Self::StartOver
             | Self::Record => Group::Calibrate,
             Self::Play | Self::ToStart | Self::ToEnd | Self::ShowAll => Group::Time,
             Self::Select(_) | Self::GoTo { .. } => Group::Places,
@@ -389,6 +395,7 @@ impl Action {
             }),
             Self::Assistant => need(session.workspace == Workspace::Train, "The assistant helps in Train."),
             Self::Record => need(session.workspace == Workspace::Train, "Recording is done in Train."),
+            Self::StartOver => need(session.workspace == Workspace::Train, "There is nothing to start over here."),
             Self::ResetLayout => need(app.dock.is_moved(session.workspace), "Nothing was moved."),
             Self::RenameLayout | Self::DeleteLayout => {
                 need(app.dock.chosen(session.workspace).is_some(), "Save this arrangement, or choose one.")

@@ -93,6 +93,7 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
             session.workspace = Workspace::Train;
         }
         Action::Assistant => session.assistant.on = !session.assistant.on,
+        Action::StartOver => session.start_over(),
         Action::PractiseOnThis => session.practise_on_this(ctx),
         Action::Record if session.trainer.is_recording() => crate::ui::recorder::stop_and_open(ctx, session),
         Action::Record => crate::ui::recorder::start(session),

@@ -54,13 +54,29 @@ pub fn suit(tree: &mut Tree<Pane>, workspace: Workspace, room: Vec2, session: &S
                 if session.rules.is_some() { 0.48 * room.y } else { (0.40 * room.y).min(room.y - PLOTS).max(150.0) };
             columns(tree, LinearDir::Vertical, &[Some(upper), None], room.y - 2.0 * GAP);
         }
-        Workspace::Train => columns(tree, LinearDir::Horizontal, &[None, Some(TRAINER_SIDE)], wide),
+        Workspace::Train => {
+            let left = session.comfort.left_handed;
+            side_first(tree, left);
+            let [side, picture] = [Some(TRAINER_SIDE), None];
+            columns(tree, LinearDir::Horizontal, &if left { [side, picture] } else { [picture, side] }, wide);
+        }
         Workspace::Diagnose => {
             columns(tree, LinearDir::Horizontal, &[None, Some((0.28 * wide).clamp(332.0, 396.0))], wide);
         }
         Workspace::Devices => {
             columns(tree, LinearDir::Horizontal, &[Some((0.36 * wide).clamp(306.0, 356.0)), None], wide);
         }
+    }
+}
+
+/// Puts the controls of the trainer left or right of its picture.
+fn side_first(tree: &mut Tree<Pane>, left: bool) {
+    let (Some(pane), Some(root)) = (tree.tiles.find_pane(&Pane::TrainerSide), tree.root()) else { return };
+    // A pane stands in the row itself, or in a card of titles there.
+    let holder = tree.tiles.parent_of(pane).filter(|holder| *holder != root);
+    if let Some(Tile::Container(Container::Linear(linear))) = tree.tiles.get_mut(root) {
+        let is_side = |child: &TileId| *child == pane || Some(*child) == holder;
+        linear.children.sort_by_key(|child| is_side(child) != left);
     }
 }
 

@@ -6,6 +6,7 @@ mod atlas;
 mod boundaries;
 mod causes;
 mod check;
+mod comfort;
 mod compare;
 mod debrief;
 mod delay;

@@ -46,6 +46,7 @@ impl Panel for TrainerSide {
                 super::measured::beside(ui, &mut session.trainer);
             }
             super::delay::delay(ui, session);
+            super::comfort::card(ui, session);
             if session.lessons.shown {
                 return;
             }
@@ -61,7 +62,7 @@ fn world(ui: &mut Ui, session: &mut Session) {
     let (has_calibrated, has_file) = (session.trainer.calibrated.is_some(), session.trainer.file.is_some());
     let (mut chosen, mut again) = (None, false);
     let start_over = |ui: &mut Ui| {
-        again = ui.link("Start over").on_hover_text("Puts everything back where it started").clicked();
+        again = ui.link("Start over").on_hover_text("Puts everything back where it started (N)").clicked();
     };
     let without_log = (!has_calibrated).then_some("Fit a recording in Calibrate first");
     let without_file = (!has_file).then_some("Open a world file first");

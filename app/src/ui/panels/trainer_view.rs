@@ -7,7 +7,7 @@ use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::{Clock, HandDevice, Operator, Steering, Trainer, task_hint};
 use crate::ui::widgets::{empty_state, key_hint, sheet};
-use egui::{Align, CursorIcon, Key, PointerButton, Rect, Ui, UiBuilder, pos2};
+use egui::{Align, CursorIcon, Key, Rect, Ui, UiBuilder, pos2};
 use haptics::Vec2;
 use render::{Camera, ViewOptions};
 
@@ -19,6 +19,8 @@ const WHEEL_N: f64 = 0.004;
 /// The picture of the trainer, and what the mouse does in it.
 pub struct TrainerView {
     rig: Rig,
+    /// The window had the focus in the picture before.
+    had_focus: bool,
     #[cfg(feature = "sound")]
     sound: Option<Result<crate::ui::sound::Sound, String>>,
 }
@@ -27,6 +29,7 @@ impl Default for TrainerView {
     fn default() -> Self {
         Self {
             rig: Rig::new(home()),
+            had_focus: false,
             #[cfg(feature = "sound")]
             sound: None,
         }
@@ -54,6 +57,12 @@ impl Panel for TrainerView {
             session.fail(problem);
         }
         super::compare::key(ui, session);
+        let has_focus = ui.input(|i| i.focused);
+        // Where nothing ever has the focus (no window manager) there is none to be lost.
+        if std::mem::replace(&mut self.had_focus, has_focus) && !has_focus && session.comfort.pauses {
+            session.trainer.lose_focus();
+        }
+        self.rig.turned_by = session.comfort.turns();
         let frame_s = f64::from(ui.input(|i| i.stable_dt));
         session.trainer.update(frame_s);
         #[cfg(feature = "sound")]
@@ -86,15 +95,18 @@ impl Panel for TrainerView {
             assistant::draw(ui, &view, session);
             guide::ghost(ui, &view, session);
             guide::expert(ui, &view, session);
-            if session.trainer.operator == Operator::You && session.trainer.hand != HandDevice::Replay {
+            let held = session.trainer.held().is_some();
+            if held {
+                super::comfort::paused(ui, view.rect, &mut session.trainer);
+            } else if session.trainer.operator == Operator::You && session.trainer.hand != HandDevice::Replay {
                 if let Err(problem) = steering::touches(ui, &view, &mut session.trainer) {
                     session.fail(problem);
                 }
                 steering::keys(ui, &mut session.trainer);
                 if matches!(session.trainer.steering, Steering::Mouse(_)) {
-                    steer(ui, &view, &mut session.trainer, frame_s);
+                    steer(ui, &view, session, frame_s);
                 }
-                hints(ui, view.rect, &session.trainer.hand);
+                hints(ui, view.rect, &session.trainer.hand, session.comfort.left_handed);
                 if let Some(hint) = lessons::hint(session) {
                     pill(ui, view.rect, &hint);
                 } else if let Some((_, world)) =
@@ -106,7 +118,9 @@ impl Panel for TrainerView {
                 let hint = lessons::hint(session);
                 pill(ui, view.rect, hint.as_deref().unwrap_or_else(|| watching(&session.trainer)));
             }
-            guide::card(ui, &view, session);
+            if !held {
+                guide::card(ui, &view, session);
+            }
             if let Some(fault) = fault {
                 session.fail(fault);
             }
@@ -120,19 +134,32 @@ impl Panel for TrainerView {
 }
 
 impl TrainerView {
-    /// Lets the newest impact be heard. The output is opened with the first one; a machine without sound is told about once.
+    /// Lets impacts, slips and forces that are too large be heard. The output is opened with the first of them; a machine without sound is told about once.
     #[cfg(feature = "sound")]
     fn knock(&mut self, session: &mut Session) {
-        let Some(speed_m_s) = session.trainer.struck_m_s.take() else { return };
+        let struck_m_s = session.trainer.struck_m_s.take();
+        let limit_n = session.trainer.config().limits.max_force_n;
+        let seen = session.trainer.seen().filter(|_| session.trainer.held().is_none());
+        let slip_m_s = seen.map_or(0.0, crate::ui::trainer::slip_m_s);
+        let excess = seen.is_some_and(|state| state.tip_force_n.iter().any(|force| force.norm() > limit_n));
+        if self.sound.is_none() && struck_m_s.is_none() && slip_m_s == 0.0 && !excess {
+            return;
+        }
         match self.sound.get_or_insert_with(crate::ui::sound::Sound::open) {
-            Ok(sound) => sound.strike(speed_m_s),
+            Ok(sound) => {
+                sound.follow(session.comfort.loudness(), slip_m_s, excess);
+                if let Some(speed_m_s) = struck_m_s {
+                    sound.strike(speed_m_s);
+                }
+            }
             Err(problem) if !problem.is_empty() => session.fail(std::mem::take(problem)),
             Err(_) => {}
         }
     }
 }
 
-fn steer(ui: &Ui, view: &SceneResponse, trainer: &mut Trainer, frame_s: f64) {
+fn steer(ui: &Ui, view: &SceneResponse, session: &mut Session, frame_s: f64) {
+    let (pinches, trainer) = (session.comfort.pinches(), &mut session.trainer);
     let response = &view.response;
     let pointer = ui.input(|i| i.pointer.latest_pos()).filter(|at| view.rect.contains(*at));
     if let (Some(at), false) = (pointer.filter(|_| response.contains_pointer()), view.camera_moves) {
@@ -147,8 +174,7 @@ fn steer(ui: &Ui, view: &SceneResponse, trainer: &mut Trainer, frame_s: f64) {
             trainer.pinch.strengthen(scroll * WHEEL_N);
         }
     }
-    trainer.pinch.button =
-        response.is_pointer_button_down_on() && ui.input(|i| i.pointer.button_down(PointerButton::Primary));
+    trainer.pinch.button = response.is_pointer_button_down_on() && ui.input(|i| i.pointer.button_down(pinches));
     if !ui.ctx().egui_wants_keyboard_input() {
         keys(ui, trainer, frame_s);
     }
@@ -180,25 +206,35 @@ fn keys(ui: &Ui, trainer: &mut Trainer, frame_s: f64) {
 }
 
 /// What mouse and keys do, along the lower edge.
-fn hints(ui: &mut Ui, rect: Rect, hand: &HandDevice) {
+fn hints(ui: &mut Ui, rect: Rect, hand: &HandDevice, left_handed: bool) {
     let line = Rect::from_min_max(pos2(rect.left() + space::M, rect.bottom() - 34.0), rect.right_bottom());
     let layout = egui::Layout::left_to_right(Align::Center);
     let mut ui = ui.new_child(UiBuilder::new().max_rect(line.with_max_y(rect.bottom() - 8.0)).layout(layout));
     ui.spacing_mut().item_spacing.x = 12.0;
-    for (key, what) in hints_of(hand) {
+    for (key, what) in hints_of(hand, left_handed) {
         if ui.available_width() > 150.0 {
             key_hint(&mut ui, key, what);
         }
     }
 }
 
-fn hints_of(hand: &HandDevice) -> &'static [(&'static str, &'static str)] {
+fn hints_of(hand: &HandDevice, left_handed: bool) -> &'static [(&'static str, &'static str)] {
     match hand {
+        HandDevice::Mouse if left_handed => &[
+            ("Mouse", "moves the fingers"),
+            ("Right button", "pinches"),
+            ("Wheel", "strength"),
+            ("Left drag", "turns the view"),
+            ("N", "starts over"),
+            ("Arrows", "move"),
+            ("Space", "pinches and holds"),
+        ],
         HandDevice::Mouse => &[
             ("Mouse", "moves the fingers"),
             ("Left button", "pinches"),
             ("Wheel", "strength"),
             ("Right drag", "turns the view"),
+            ("N", "starts over"),
             ("Arrows", "move"),
             ("Space", "pinches and holds"),
         ],

@@ -13,12 +13,14 @@ pub struct Rig {
     shown: Camera,
     goal: Camera,
     home: Camera,
+    /// The mouse button that turns it.
+    pub turned_by: egui::PointerButton,
 }
 
 impl Rig {
     /// At rest at `home`.
     pub fn new(home: Camera) -> Self {
-        Self { shown: home, goal: home, home }
+        Self { shown: home, goal: home, home, turned_by: egui::PointerButton::Secondary }
     }
 
     /// What the picture is drawn with now.

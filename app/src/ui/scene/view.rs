@@ -80,9 +80,10 @@ pub fn scene_view(
 
 fn steer(ui: &egui::Ui, response: &Response, rig: &mut Rig, wheel: Wheel, size: [u32; 2]) -> bool {
     let mut moves = false;
+    let turned_by = rig.turned_by;
     let camera = rig.goal();
     let drag = response.drag_delta();
-    if response.dragged_by(PointerButton::Secondary) {
+    if response.dragged_by(turned_by) {
         camera.orbit(-drag.x * ORBIT_RAD, drag.y * ORBIT_RAD);
         moves = true;
     }

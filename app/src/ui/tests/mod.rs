@@ -3,6 +3,7 @@
 mod assistant;
 mod carry;
 mod check;
+mod comfort;
 pub mod diagnose;
 mod experiment;
 mod layouts;

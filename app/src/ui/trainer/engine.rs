@@ -91,6 +91,14 @@ impl Engine {
         }
     }
 
+    /// Holds the world still, or lets it go on; the force goes, and comes back softly.
+    pub fn hold(&mut self, held: bool) {
+        match self {
+            Self::Thread(servo) => servo.hold(held),
+            Self::Inline(inline) => inline.body.hold(held),
+        }
+    }
+
     /// Steps a manual loop; the thread needs no help.
     pub fn advance(&mut self, seconds: f64) {
         if let Self::Inline(inline) = self {
@@ -122,6 +130,11 @@ impl Inline {
         while self.owed_s >= period_s {
             self.owed_s -= period_s;
             let tick = self.body.tick(period_s);
+            if self.body.is_held() {
+                // It has no time: nothing of it is recorded.
+                self.snapshot.tick = tick;
+                continue;
+            }
             self.ticks.push(tick);
             while self.tap_in.must_wait() {
                 // Many times real time, without a device: there is nobody who could feel it.

@@ -5,7 +5,9 @@ mod control;
 mod delay;
 mod engine;
 mod hand;
+mod heard;
 mod history;
+mod hold;
 mod impacts;
 mod pinch;
 mod recording;
@@ -19,7 +21,9 @@ pub use choice::{Compare, WorldChoice};
 pub use control::{MOST_CONTROL_N_S_M, USUAL_CONTROL_N_S_M};
 pub use engine::{Engine, Inline};
 pub use hand::{HandDevice, HandSettings, Steering, spec_sentences};
+pub use heard::slip_m_s;
 pub use history::{History, Moment};
+pub use hold::{Cause as HoldCause, PAUSED};
 pub use impacts::{Flash, Impacts};
 pub use pinch::Pinch;
 pub use remote::Remote;
@@ -123,6 +127,7 @@ pub struct Trainer {
     /// When each act of a told performance begins, s.
     pub acts_begin_s: Vec<f64>,
     delay: Delay,
+    hold: hold::Hold,
     /// What the operator sees over a slow line.
     view: Option<ViewSource>,
     /// Number of the newest impact that was seen over it.
@@ -157,6 +162,7 @@ impl Trainer {
         self.end_recording();
         // The old device first: a port can be open only once.
         self.engine = None;
+        self.hold_nothing();
         self.steering = Steering::None;
         self.trial.abort();
         let Swap { world, state, .. } = &mut *swap;
@@ -218,6 +224,7 @@ impl Trainer {
     pub fn pause(&mut self) {
         self.end_recording();
         self.engine = None;
+        self.hold_nothing();
         self.steering = Steering::None;
         self.trial.abort();
     }
@@ -274,6 +281,8 @@ impl Trainer {
             }
             None => self.newest = Some(snapshot.clone()),
         }
+        self.listen(frame_s);
+        let Some(engine) = &mut self.engine else { return };
         let generation = self.newest.as_ref().map_or(0, |s| s.generation as usize);
         if let Some(world) = self.worlds.get(generation).or(self.worlds.last()) {
             self.watch.take(&self.scratch, world, self.clock == Clock::Manual);

@@ -24,6 +24,7 @@ impl Trainer {
             Sensors::Usual => SensorModel::TYPICAL,
             Sensors::Ideal => SensorModel::IDEAL,
         };
+        self.hold.count_anew();
         self.recordings_made += 1;
         let stated = self.stated.clone();
         let (device, servo, seed) = (self.spec.clone(), self.servo_facts(), self.recordings_made as u64);

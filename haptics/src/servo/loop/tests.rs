@@ -47,3 +47,31 @@ fn the_observer_sees_a_sampled_spring_give_out_energy_and_the_controller_takes_i
     let controlled = prodding(Some(50.0)).energy_j;
     assert!(controlled > 0.02 * watched, "{controlled} against {watched}");
 }
+
+#[test]
+fn a_held_world_has_no_time_and_no_force_and_goes_on_softly() {
+    for force_feedback in [true, false] {
+        let still = || vec![Vec2::zeros(); 2];
+        let spec =
+            ReplayDevice::new("spec", vec![0.0, 1.0], [still(), still()], [still(), still()]).expect("two samples");
+        let spec = DeviceSpec { force_feedback, max_force_n: 4.0, ..spec.spec().clone() };
+        let mut servo = Loop::new(Swap::new(presets::table()), Box::new(Prodding(spec, 0.0)), Limits::default());
+        for _ in 0..1_000 {
+            servo.tick(1e-3);
+        }
+        let before = (servo.state().time_s, servo.state().input.tip_in_world);
+        servo.hold(true);
+        let mut seen = Vec::new();
+        for _ in 0..100 {
+            seen.push(servo.tick(1e-3));
+        }
+        assert_eq!((servo.state().time_s, servo.state().input.tip_in_world), before, "the world stands still");
+        assert!(seen.iter().all(|tick| tick.time_s == before.0));
+        assert!(seen[60..].iter().all(|tick| tick.sent_force_n == [Vec2::zeros(); 2]), "the force is gone");
+        let heard = seen.windows(2).any(|w| w[0].device_in_world != w[1].device_in_world);
+        assert_eq!(heard, force_feedback, "a real hand is listened to, a thought-out one waits");
+        servo.hold(false);
+        let after = servo.tick(1e-3);
+        assert!(after.time_s > before.0 && after.sent_force_n[0].norm() < 0.05, "{after:?}");
+    }
+}

@@ -1,0 +1,94 @@
+//! What makes training comfortable: the side of the hand, a pause when the window loses the focus, how loud it is. Remembered from one
+//! start to the next.
+
+use super::guided;
+use super::lessons;
+use super::session::{Session, Tone};
+use egui::PointerButton;
+use serde::{Deserialize, Serialize};
+
+/// What a person has chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Comfort {
+    /// The mouse is in the left hand: controls stand left of the picture, the right button pinches, the left one turns the view.
+    pub left_handed: bool,
+    /// The world stands still while another window has the keyboard.
+    pub pauses: bool,
+    /// How loud, 0 to 1.
+    pub volume: f32,
+    /// Not at all.
+    pub muted: bool,
+}
+
+impl Default for Comfort {
+    fn default() -> Self {
+        Self { left_handed: false, pauses: true, volume: 0.7, muted: false }
+    }
+}
+
+impl Comfort {
+    /// The mouse button that pinches.
+    pub fn pinches(&self) -> PointerButton {
+        if self.left_handed { PointerButton::Secondary } else { PointerButton::Primary }
+    }
+
+    /// The mouse button that turns the view of the trainer.
+    pub fn turns(&self) -> PointerButton {
+        if self.left_handed { PointerButton::Primary } else { PointerButton::Secondary }
+    }
+
+    /// How loud it sounds, 0 to 1.
+    pub fn loudness(&self) -> f32 {
+        if self.muted { 0.0 } else { self.volume.clamp(0.0, 1.0) }
+    }
+}
+
+impl Session {
+    /// Puts everything in Train back where it started, by one key. What is being done begins anew: an experiment, a try at a lesson; an
+    /// attempt that counts is removed, which is said.
+    pub fn start_over(&mut self) {
+        if self.experiments.guided.as_ref().is_some_and(|g| matches!(g.phase, guided::Phase::Going(_))) {
+            self.begin_experiment();
+            self.say(Tone::Done, "The experiment begins anew; what was recorded of it is removed.".to_owned());
+            return;
+        }
+        let Some(phase) = self.lessons.open.as_ref().map(|open| open.phase.clone()) else {
+            let choice = self.trainer.choice;
+            if let Err(problem) = self.trainer.choose(choice) {
+                self.fail(problem);
+            }
+            return;
+        };
+        match phase {
+            lessons::Phase::Watching => self.watch_lesson(),
+            lessons::Phase::Practising => self.practise_lesson(),
+            lessons::Phase::Testing | lessons::Phase::Asking => {
+                self.test_lesson();
+                self.say(Tone::Done, "The attempt begins anew; what was recorded of it is removed.".to_owned());
+            }
+            lessons::Phase::Brief | lessons::Phase::Debrief(_) => self.back_to_brief(),
+            // The recording is being read.
+            lessons::Phase::Grading => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_left_hand_swaps_the_buttons_and_mute_is_silence() {
+        let right = Comfort::default();
+        let left = Comfort { left_handed: true, ..right };
+        assert_eq!((left.pinches(), left.turns()), (right.turns(), right.pinches()));
+        assert_ne!(left.pinches(), right.pinches());
+        assert!(right.loudness() > 0.0);
+        assert_eq!(Comfort { muted: true, ..right }.loudness(), 0.0);
+        assert_eq!(Comfort { volume: 7.0, ..right }.loudness(), 1.0, "a file may say anything");
+        // Files of older versions have less in them.
+        let older: Comfort = serde_json::from_str("{\"left_handed\":true}").expect("read");
+        assert_eq!(older, left);
+    }
+}

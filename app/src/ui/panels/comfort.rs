@@ -1,0 +1,83 @@
+//! The card about comfort beside the trainer's picture, and the words over the picture while the world is held still.
+
+use crate::ui::session::Session;
+use crate::ui::theme::{self, palette, space};
+use crate::ui::trainer::Trainer;
+use crate::ui::widgets::{compact, plain_card};
+use egui::{Align2, Key, Modifiers, Rect, Sense, Ui, UiBuilder};
+
+/// Choices that are remembered.
+pub fn card(ui: &mut Ui, session: &mut Session) {
+    plain_card(ui, "Comfort", |ui| {
+        let comfort = &mut session.comfort;
+        let choices = [
+            (
+                &mut comfort.left_handed,
+                "Left-handed",
+                "Controls stand left of the picture; the right mouse button pinches, the left one turns the view",
+            ),
+            (
+                &mut comfort.pauses,
+                "Pause when the window loses the focus",
+                "The world stands still and the force goes until you go on; the time of a lesson does not count meanwhile",
+            ),
+        ];
+        for (choice, label, hint) in choices {
+            compact(ui, |ui| ui.checkbox(choice, label).on_hover_text(hint));
+        }
+        sound(ui, session);
+    });
+}
+
+/// How loud. A build without sound says so.
+fn sound(ui: &mut Ui, session: &mut Session) {
+    let comfort = &mut session.comfort;
+    if !cfg!(feature = "sound") {
+        let text = "This build is silent: impacts flash. Build it with its feature “sound” to hear them.";
+        ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
+        return;
+    }
+    compact(ui, |ui| {
+        ui.checkbox(&mut comfort.muted, "Mute").on_hover_text("No knocks, no scraping, no warning tone");
+        let mut percent = 100.0 * comfort.volume;
+        let slider = egui::Slider::new(&mut percent, 0.0..=100.0).suffix(" %").fixed_decimals(0);
+        let response =
+            ui.add_enabled(!comfort.muted, slider).on_hover_text("How loud contacts, slips and warnings are");
+        response.widget_info(|| egui::WidgetInfo::slider(true, f64::from(percent), "Volume"));
+        if response.changed() {
+            comfort.volume = percent / 100.0;
+        }
+    });
+}
+
+/// What is said over the picture while the world is held still; a click there or the space bar goes on.
+pub fn paused(ui: &mut Ui, picture: Rect, trainer: &mut Trainer) {
+    let Some((what, then)) = trainer.held_words() else { return };
+    let p = palette(ui);
+    ui.painter().rect_filled(picture, theme::CARD_RADIUS, p.window.gamma_multiply(0.45));
+    let size = egui::vec2(320.0_f32.min(picture.width() - 2.0 * space::M), 62.0);
+    let rect = Align2::CENTER_CENTER.align_size_within_rect(size, picture);
+    let id = ui.scope_id().with("paused");
+    let response = ui.interact(rect, id, Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{what} {then}")));
+    let mut ui = ui.new_child(UiBuilder::new().max_rect(rect));
+    let edge = if response.hovered() { p.accent } else { p.caution };
+    egui::Frame::new()
+        .fill(p.card)
+        .stroke(egui::Stroke::new(1.5, edge))
+        .corner_radius(theme::CARD_RADIUS)
+        .inner_margin(space::M)
+        .show(&mut ui, |ui| {
+            ui.set_min_size(size - egui::Vec2::splat(2.0 * space::M));
+            ui.vertical_centered(|ui| {
+                ui.add(egui::Label::new(theme::strong(what)).selectable(false));
+                ui.add_space(space::XS);
+                ui.add(egui::Label::new(theme::caption(ui, then)).selectable(false));
+            });
+        });
+    let space_bar = !ui.ctx().egui_wants_keyboard_input()
+        && ui.input_mut(|i| i.focused && i.consume_key(Modifiers::NONE, Key::Space));
+    if response.clicked() || space_bar {
+        trainer.go_on();
+    }
+}
