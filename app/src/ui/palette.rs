@@ -40,11 +40,7 @@ pub fn show(ui: &Ui, app: &mut App) {
         return;
     }
     let ctx = ui.ctx().clone();
-    let mut found = actions::matching(app, &app.palette.query);
-    if app.palette.query.is_empty() {
-        // What can be done now stands first.
-        found.sort_by_key(|action| action.why_not(app).is_some());
-    }
+    let mut found = found_for(app);
     let mut run = None;
     let frame = Frame::popup(&ctx.global_style()).inner_margin(space::M);
     let area = Modal::default_area(egui::Id::unique("command palette")).anchor(Align2::CENTER_TOP, [0.0, 90.0]);
@@ -56,6 +52,8 @@ pub fn show(ui: &Ui, app: &mut App) {
         field.request_focus();
         if field.changed() {
             app.palette.chosen = 0;
+            // Whoever types quickly presses Enter before another picture is drawn: what it chooses is of these letters.
+            found = found_for(app);
         }
         ui.add_space(space::XS);
         if found.is_empty() {
@@ -80,6 +78,16 @@ pub fn show(ui: &Ui, app: &mut App) {
     if let Some(action) = picked {
         action.run(&ctx, app);
     }
+}
+
+/// What has the letters that were typed.
+fn found_for(app: &App) -> Vec<Action> {
+    let mut found = actions::matching(app, &app.palette.query);
+    if app.palette.query.is_empty() {
+        // What can be done now stands first.
+        found.sort_by_key(|action| action.why_not(app).is_some());
+    }
+    found
 }
 
 fn moved_by_keys(ui: &Ui, palette: &mut CommandPalette, count: usize) {

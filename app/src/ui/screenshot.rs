@@ -408,6 +408,21 @@ pub(super) fn app_for(session: Session, panel: Panel) -> App {
     app
 }
 
+/// Where a window of this size (points) shows the plane of the trainer's world.
+pub fn trainer_place(size: [f32; 2]) -> Option<scene::Place> {
+    let mut session = Session::new();
+    session.trainer.clock = Clock::Manual;
+    session.workspace = Workspace::Train;
+    let mut harness = egui_kittest::Harness::builder()
+        .with_size(egui::vec2(size[0], size[1]))
+        .with_accessibility_check(false)
+        .allow_missing_glyphs()
+        .with_context_setup(theme::install)
+        .build_ui_state(|ui, app: &mut App| in_whole_window(ui, |ui| app.show(ui)), App::new(session));
+    harness.run_steps(4);
+    harness.state().session.trainer_place
+}
+
 /// Draws over all of a window of the test kit, whose margin is not ours.
 pub(super) fn in_whole_window(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     let whole = ui.ctx().content_rect();

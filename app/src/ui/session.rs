@@ -139,6 +139,8 @@ pub struct Session {
     pub learning: super::learning::Learning,
     /// Experiments that would tell it better.
     pub experiments: Experiments,
+    /// Where the trainer's picture was drawn last.
+    pub trainer_place: Option<super::scene::Place>,
     /// What the assistant shows over the trainer's picture.
     pub assistant: super::assistant::Assistant,
     /// Lessons.

@@ -70,6 +70,12 @@ pub enum Action {
     Assistant,
     /// Puts everything in Train back where it started.
     StartOver,
+    /// Lets the expert show the open lesson.
+    Watch,
+    /// Tries it.
+    Practise,
+    /// Takes its test.
+    TakeTest,
     /// Begins or ends a recording.
     Record,
     /// Plays or stops.
@@ -124,6 +130,12 @@ pub enum Action {
         /// To, s.
         to_s: f64,
     },
+    /// Answers the lesson's question.
+    #[strum(disabled)]
+    Answer(usize, String),
+    /// Opens a lesson, by its name.
+    #[strum(disabled)]
+    Lesson(String),
     /// An arrangement by its name.
     #[strum(disabled)]
     Layout(String),
@@ -187,7 +199,17 @@ impl Action {
             }
             other => vec![other],
         });
-        let all: Vec<Self> = fixed.chain(layouts).chain(panels).chain(recent).chain(recordings).chain(places).collect();
+        let lessons = session.lessons.all.iter().map(|lesson| Self::Lesson(lesson.title.clone()));
+        let answers = session.lessons.answers().into_iter().enumerate().map(|(k, words)| Self::Answer(k, words));
+        let all: Vec<Self> = fixed
+            .chain(answers)
+            .chain(lessons)
+            .chain(layouts)
+            .chain(panels)
+            .chain(recent)
+            .chain(recordings)
+            .chain(places)
+            .collect();
         all.into_iter()
     }
 
@@ -201,6 +223,8 @@ impl Action {
             Self::GoTo { what, .. } => format!("Go to: {what}"),
             Self::Open(workspace) => format!("Open {}", workspace.title()),
             Self::Panel(pane) => format!("Panel: {}", pane.title()),
+            Self::Lesson(title) => format!("Lesson: {title}"),
+            Self::Answer(_, words) => format!("Answer: {words}"),
             Self::Layout(name) => format!("Arrangement: {name}"),
             other => other.fixed_title().to_owned(),
         }
@@ -237,6 +261,9 @@ impl Action {
             Self::PractiseOnThis => "Practise on this (a lesson in the calibrated world)",
             Self::Assistant => "Assistant on or off",
             Self::StartOver => "Start over in Train",
+            Self::Watch => "Watch the lesson",
+            Self::Practise => "Practise the lesson",
+            Self::TakeTest => "Take the lesson's test",
             Self::Record => "Record, or stop",
             Self::Play => "Play or pause",
             Self::ToStart => "To the beginning",
@@ -257,6 +284,8 @@ impl Action {
             Self::OpenRecent(_)
             | Self::Select(_)
             | Self::GoTo { .. }
+            | Self::Lesson(_)
+            | Self::Answer(..)
             | Self::Open(_)
             | Self::Panel(_)
             | Self::Layout(_) => "",
@@ -354,7 +383,13 @@ impl Action {
             | Self::StartOver
             | Self::Record => Group::Calibrate,
             Self::Play | Self::ToStart | Self::ToEnd | Self::ShowAll => Group::Time,
-            Self::Select(_) | Self::GoTo { .. } => Group::Places,
+            Self::Select(_)
+            | Self::GoTo { .. }
+            | Self::Lesson(_)
+            | Self::Answer(..)
+            | Self::Watch
+            | Self::Practise
+            | Self::TakeTest => Group::Places,
             Self::Palette | Self::Tour => Group::Help,
             _ => Group::View,
         }
@@ -394,6 +429,9 @@ impl Action {
                 need(session.workspace == Workspace::Calibrate || session.workspace == Workspace::Diagnose, "Not here.")
             }),
             Self::Assistant => need(session.workspace == Workspace::Train, "The assistant helps in Train."),
+            Self::Watch | Self::Practise | Self::TakeTest => {
+                need(session.lessons.open.is_some(), "Open a lesson first.")
+            }
             Self::Record => need(session.workspace == Workspace::Train, "Recording is done in Train."),
             Self::StartOver => need(session.workspace == Workspace::Train, "There is nothing to start over here."),
             Self::ResetLayout => need(app.dock.is_moved(session.workspace), "Nothing was moved."),

@@ -94,6 +94,11 @@ fn with_session(action: &Action, ctx: &Context, session: &mut Session) {
         }
         Action::Assistant => session.assistant.on = !session.assistant.on,
         Action::StartOver => session.start_over(),
+        Action::Answer(index, _) => session.end_lesson(ctx, Some(*index)),
+        Action::Lesson(title) => session.open_lesson_titled(ctx, title),
+        Action::Watch => session.watch_lesson(),
+        Action::Practise => session.practise_lesson(),
+        Action::TakeTest => session.test_lesson(),
         Action::PractiseOnThis => session.practise_on_this(ctx),
         Action::Record if session.trainer.is_recording() => crate::ui::recorder::stop_and_open(ctx, session),
         Action::Record => crate::ui::recorder::start(session),

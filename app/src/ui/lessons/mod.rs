@@ -4,6 +4,7 @@ mod kept;
 mod pointer;
 mod trace;
 
+pub use pointer::{Pointed, pointer_through};
 pub use trace::{Trace, trace_of};
 
 use super::jobs::{JobKind, Outcome};
@@ -93,6 +94,14 @@ impl Lessons {
     }
 }
 
+impl Lessons {
+    /// What may be answered now; nothing while no question is open.
+    pub fn answers(&self) -> Vec<String> {
+        let open = self.open.as_deref().filter(|open| open.phase == Phase::Asking);
+        open.and_then(|open| open.lesson.question.as_ref()).map(|q| q.answers.clone()).unwrap_or_default()
+    }
+}
+
 impl Open {
     fn new(lesson: &Arc<Lesson>, variant: usize) -> Result<Self, String> {
         let world = lesson.world(variant).map_err(|error| sentence(&error.to_string()))?;
@@ -155,6 +164,15 @@ impl Session {
         if self.open_lesson_only(lesson) {
             let lesson = Arc::clone(lesson);
             self.jobs.start(ctx, JobKind::Expert, move || Outcome::Expert(trace::of_expert(&lesson).map(Box::new)));
+        }
+    }
+
+    /// The same by its title, in Train.
+    pub fn open_lesson_titled(&mut self, ctx: &egui::Context, title: &str) {
+        if let Some(lesson) = self.lessons.all.iter().find(|lesson| lesson.title == title).cloned() {
+            self.workspace = Workspace::Train;
+            self.close_lesson();
+            self.open_lesson(ctx, &lesson);
         }
     }
 

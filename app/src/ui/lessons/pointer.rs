@@ -2,8 +2,11 @@
 
 use super::Phase;
 use super::trace::Point;
-use crate::ui::session::Session;
+use crate::ui::session::{Session, sentence};
+use crate::ui::trainer::Pinch;
+use estimator::training::lesson::Lesson;
 use haptics::Vec2;
+use haptics::world::State;
 
 /// Pictures a second.
 const FRAME_S: f64 = 1.0 / 60.0;
@@ -11,6 +14,8 @@ const FRAME_S: f64 = 1.0 / 60.0;
 const SLOWER: f64 = 0.6;
 /// A grip that is meant, N.
 const GRIP_N: f64 = 0.15;
+/// A mouse does not pinch more weakly, N.
+const WEAKEST_N: f64 = 0.6;
 /// A pull on what holds an object back, N, and how much farther than the expert a mouse pulls then, m.
 const PULL_N: f64 = 0.2;
 const UNTIL_TAUT_M: f64 = 0.004;
@@ -38,23 +43,54 @@ impl Session {
     }
 
     fn point_as(&mut self, point: &Point) {
-        let holds = point.grip_n() > GRIP_N;
         let pinch = &mut self.trainer.pinch;
+        let pointed = Pointed::of(point, pinch.opening_m());
+        pinch.move_to(pointed.at_m);
+        pinch.button = pointed.pinches;
+        if pointed.pinches {
+            pinch.strengthen(pointed.strength_n - pinch.strength_n());
+        }
+    }
+}
+
+/// Where the mouse is, and what it does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pointed {
+    /// The pointer, m in the world.
+    pub at_m: Vec2,
+    /// Its button is down.
+    pub pinches: bool,
+    /// How firmly, N.
+    pub strength_n: f64,
+}
+
+impl Pointed {
+    /// As the expert did it, by a mouse whose open fingers are `opening_m` apart.
+    fn of(point: &Point, opening_m: f64) -> Self {
+        let pinches = point.grip_n() > GRIP_N;
         let apart_m = point.tips_in_world[1].x - point.tips_in_world[0].x;
         let push_n = point.tip_force_n[0].x + point.tip_force_n[1].x;
-        let farther_m = if holds && push_n.abs() > PULL_N {
+        let farther_m = if pinches && push_n.abs() > PULL_N {
             // Whoever sees a cable pulls until it is taut.
             UNTIL_TAUT_M
-        } else if !holds && push_n.abs() > PUSH_N {
+        } else if !pinches && push_n.abs() > PUSH_N {
             // Fingers that are farther apart push later.
-            0.5 * (pinch.opening_m() - apart_m).max(0.0)
+            0.5 * (opening_m - apart_m).max(0.0)
         } else {
             0.0
         };
-        pinch.move_to(point.wanted_m() + Vec2::new(farther_m * push_n.signum(), 0.0));
-        pinch.button = holds;
-        if holds {
-            pinch.strengthen(point.grip_n().max(0.6) - pinch.strength_n());
-        }
+        let at_m = point.wanted_m() + Vec2::new(farther_m * push_n.signum(), 0.0);
+        Self { at_m, pinches, strength_n: point.grip_n().max(WEAKEST_N) }
     }
+}
+
+/// What a person's mouse does in a lesson, `every_s` seconds from one to the next: the expert's way, as slowly as [`Session::follow_expert`].
+pub fn pointer_through(lesson: &Lesson, every_s: f64) -> Result<Vec<Pointed>, String> {
+    let trace = super::trace::of_expert(lesson)?;
+    let world = lesson.world(0).map_err(|error| sentence(&error.to_string()))?;
+    let mut pinch = Pinch::default();
+    pinch.prepare_for(&world, &State::resting(&world));
+    let count = (trace.duration_s() / (SLOWER * every_s)).ceil() as usize;
+    let at = |k: usize| trace.at(SLOWER * every_s * k as f64).map(|point| Pointed::of(point, pinch.opening_m()));
+    Ok((0..=count).filter_map(at).collect())
 }

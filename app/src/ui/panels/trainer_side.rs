@@ -25,6 +25,8 @@ impl Panel for TrainerSide {
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
+        // Commands name them, wherever one is.
+        session.lessons.load();
         ScrollArea::vertical().id_salt("trainer side").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
             let choices = [

@@ -88,6 +88,7 @@ impl Panel for TrainerView {
             let scene = (std::sync::Arc::clone(world), state, options);
             let fault = snapshot.fault;
             let view = scene_view(ui, "trainer", &mut self.rig, Wheel::ZoomsWithCtrl, scene);
+            session.trainer_place = Some(view.place(ui));
             if let Some((snapshot, _)) = session.trainer.scene() {
                 marks::device(ui, &view, snapshot);
             }

@@ -18,4 +18,4 @@ pub use likeness::Likeness;
 pub use mechanism::Mechanism;
 pub use overlay::{camera_for, options_for, scene_world};
 pub use rig::Rig;
-pub use view::{SceneResponse, Wheel, scene_view};
+pub use view::{Place, SceneResponse, Wheel, scene_view};

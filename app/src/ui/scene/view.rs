@@ -31,7 +31,30 @@ pub struct SceneResponse {
     pub camera_moves: bool,
 }
 
+/// Where the world's plane is in the window.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    rect: Rect,
+    size: [u32; 2],
+    camera: Camera,
+    pixels_per_point: f32,
+}
+
+impl Place {
+    /// A point of the plane, in points of the window.
+    pub fn at(&self, point_in_world: haptics::Vec2) -> egui::Pos2 {
+        let pixel = self.camera.pixel_of(point_in_world, self.size);
+        self.rect.min + egui::vec2(pixel.x, pixel.y) / self.pixels_per_point
+    }
+}
+
 impl SceneResponse {
+    /// Where the picture shows the plane.
+    pub fn place(&self, ui: &egui::Ui) -> Place {
+        let pixels_per_point = ui.pixels_per_point();
+        Place { rect: self.rect, size: self.size, camera: self.camera, pixels_per_point }
+    }
+
     /// The point of the world's plane under a position of the pointer.
     pub fn point_in_world(&self, ui: &egui::Ui, position: egui::Pos2) -> Option<haptics::Vec2> {
         let offset = (position - self.rect.min) * ui.pixels_per_point();

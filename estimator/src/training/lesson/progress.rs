@@ -7,6 +7,8 @@ use haptics::world::{State, World};
 
 /// A hand faster than this has begun, m/s.
 const BEGINS_M_S: f64 = 0.005;
+/// What looks this seldom is a window, s.
+const PICTURE_S: f64 = 0.01;
 
 /// What several goals need to know.
 #[derive(Clone, Copy, Debug, Default)]
@@ -64,11 +66,12 @@ impl Progress {
         let (before_s, before) = self.before.unwrap_or((time_s, middle));
         let span_s = (time_s - before_s).max(0.0);
         self.now_s = time_s;
-        // Over 20 ms at least: steps of sensors are no speed.
+        // Steps of sensors are no speed: from one sample to the next both must say so. A slow window looks when a hand that follows its
+        // pointer has come to rest already.
         if self.begun_s.is_none() && span_s > 0.0 {
             let fast = state.input.tip_velocity.iter().any(|v| v.norm() > BEGINS_M_S);
             let moved = (middle - before).norm() / span_s > BEGINS_M_S;
-            self.begun_s = (fast && moved).then_some(time_s);
+            self.begun_s = (moved && (fast || span_s >= PICTURE_S)).then_some(time_s);
         }
         self.before = Some((time_s, middle));
         self.seen.touched |= !state.contacts.is_empty() && state.tip_force_n.iter().any(|f| f.norm() > 0.05);

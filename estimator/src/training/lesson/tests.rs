@@ -192,3 +192,17 @@ fn a_users_folder_is_read_and_what_is_broken_there_is_told() {
     assert!(problems.len() == 1 && problems[0].contains("broken.json"), "{problems:?}");
     assert!(library::of_folder(&folder.path().join("none")).0.is_empty());
 }
+
+#[test]
+fn a_slow_window_sees_the_hand_begin_though_it_rests_whenever_it_looks() {
+    let (lessons, _) = library::of_folder(&assets());
+    let world = lessons[0].world(0).expect("a world");
+    let mut progress = super::Progress::live(&lessons[0], &world);
+    let mut state = State::resting(&world);
+    for look in 0..20_u32 {
+        // It moves between two looks only.
+        state.input.tip_in_world.iter_mut().for_each(|tip| tip.y -= if look > 5 { 0.002 } else { 0.0 });
+        progress.see(0.1 * f64::from(look), &state);
+    }
+    assert!((progress.running_s() - 1.3).abs() < 0.11, "{}", progress.running_s());
+}

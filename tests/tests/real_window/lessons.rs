@@ -1,0 +1,135 @@
+//! Lessons in a real window: opened and begun by their names, done with a pointer that goes where a person's would, graded from their files.
+
+use crate::screen::{SCREEN, Screen, drawn, kept, start, until};
+use app::ui::lessons::{Pointed, pointer_through};
+use app::ui::scene::Place;
+use app::ui::screenshot::trainer_place;
+use estimator::training::lesson::Lesson;
+use serde_json::Value;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+use tests::touchstone;
+
+/// Between two places of the pointer.
+const EVERY: Duration = Duration::from_millis(33);
+/// What a key changes of the strength, and what the mouse begins with, N.
+const KEY_N: f64 = 0.2;
+const BEGINS_N: f64 = 1.5;
+/// Those that are done unless `TOUCHSTONE_LESSONS` names others, or `all`: together they press, carry, turn and answer.
+const USUAL: [&str; 3] = ["lift-and-hold", "crank-even", "barrel"];
+
+fn wanted() -> Vec<Lesson> {
+    let named = std::env::var("TOUCHSTONE_LESSONS").unwrap_or_default();
+    let is_wanted = |lesson: &Lesson| match named.as_str() {
+        "" => USUAL.contains(&lesson.id.as_str()),
+        "all" => true,
+        names => names.split(',').any(|name| name == lesson.id),
+    };
+    let (lessons, problems) = app::lessons::all(None);
+    assert!(problems.is_empty(), "{problems:?}");
+    lessons.into_iter().filter(is_wanted).collect()
+}
+
+/// Chooses a command by its name. Behind the list everything is darker.
+fn command(screen: &Screen, name: &str) {
+    let light = |screen: &Screen| -> u32 {
+        screen.picture()[18..30].iter().flat_map(|row| &row[40..140]).flatten().map(|part| u32::from(*part)).sum()
+    };
+    let least = light(screen) * 17 / 20;
+    screen.xdotool(&["key", "ctrl+p"]);
+    until("the commands", screen, || (light(screen) < least).then_some(()));
+    screen.xdotool(&["type", "--delay", "25", name]);
+    screen.xdotool(&["key", "Return"]);
+    until("the end of the commands", screen, || (light(screen) > least).then_some(()));
+}
+
+fn recordings(home: &Path) -> Vec<PathBuf> {
+    let folder = home.join("data/touchstone/recordings");
+    let all = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    all.filter(|path| path.extension().is_some_and(|e| e == "mcap")).collect()
+}
+
+/// Moves the pointer through a lesson in its own time; the strength that the mouse has in the end.
+fn point(screen: &Screen, place: &Place, way: &[Pointed], mut strength_n: f64) -> f64 {
+    let mut hand = screen.hand();
+    let mut say = |words: String| writeln!(hand.commands(), "{words}").expect("the pointer moves");
+    let (begun, mut down) = (Instant::now(), false);
+    for (k, pointed) in way.iter().enumerate() {
+        let at = place.at(pointed.at_m);
+        say(format!("mousemove {:.0} {:.0}", at.x, at.y));
+        if pointed.pinches != down {
+            down = pointed.pinches;
+            say(format!("{} 1", if down { "mousedown" } else { "mouseup" }));
+        }
+        while down && (pointed.strength_n - strength_n).abs() > 0.5 * KEY_N + 1e-9 {
+            let way = (pointed.strength_n - strength_n).signum();
+            strength_n += way * KEY_N;
+            say(format!("key {}", if way > 0.0 { "equal" } else { "minus" }));
+        }
+        // A hand's own pace, not a wait for the program.
+        std::thread::sleep((EVERY * (k as u32 + 1)).saturating_sub(begun.elapsed()));
+    }
+    if down {
+        say("mouseup 1".to_owned());
+    }
+    strength_n
+}
+
+fn graded(path: &Path) -> Option<Value> {
+    let scored = Command::new(touchstone()).arg("score").arg(path).arg("--json").output().ok()?;
+    let answer: Value = serde_json::from_slice(&scored.stdout).ok()?;
+    answer["measures"].get(0)?.get("grade").cloned()
+}
+
+#[test]
+fn lessons_are_done_with_a_pointer_as_a_person_does_them() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    if let Err(error) = render::Headless::new() {
+        let _ = writeln!(std::io::stderr(), "skipped: {error}");
+        return;
+    }
+    let Some(screen) = Screen::new(folder.path()) else {
+        let _ = writeln!(std::io::stderr(), "skipped: Xvfb and xdotool are needed for a real window");
+        return;
+    };
+    let home = folder.path().join("home");
+    let place = trainer_place(SCREEN.map(|pixels| pixels as f32)).expect("the trainer is drawn");
+    let _program = start(&screen, &home);
+    until("the first picture", &screen, || drawn(&screen).then_some(()));
+    until("the tour", &screen, || kept(&home).get("toured").cloned());
+    screen.xdotool(&["key", "Escape"]);
+    until("the end of the tour", &screen, || (kept(&home)["toured"] == true).then_some(()));
+    screen.xdotool(&["key", "ctrl+1"]);
+    let mut strength_n = BEGINS_N;
+    let mut missed = Vec::new();
+    for lesson in wanted() {
+        let before = recordings(&home);
+        command(&screen, &format!("Lesson: {}", lesson.title));
+        screen.keep(&format!("lesson-{}-1-brief", lesson.id));
+        let way = pointer_through(&lesson, EVERY.as_secs_f64()).expect("a way");
+        command(&screen, "Take the lesson's test");
+        let new = |home: &Path| recordings(home).into_iter().find(|path| !before.contains(path));
+        let path = until("the recording", &screen, || new(&home));
+        strength_n = point(&screen, &place, &way[..way.len() / 2], strength_n);
+        screen.keep(&format!("lesson-{}-2-test", lesson.id));
+        strength_n = point(&screen, &place, &way[way.len() / 2..], strength_n);
+        if lesson.question.is_some() {
+            screen.keep(&format!("lesson-{}-3-question", lesson.id));
+            command(&screen, &format!("Answer: {}", lesson.question.as_ref().map_or("", |q| q.answers[0].as_str())));
+        }
+        screen.keep(&format!("lesson-{}-4-debrief", lesson.id));
+        let Some(grade) = graded(&path) else {
+            missed.push(format!("{}: not over", lesson.id));
+            continue;
+        };
+        // Nobody told the pointer what is in a barrel.
+        let reached = grade["completed"] == true || grade["answered_rightly"] == false;
+        println!("{}: {}", lesson.id, grade);
+        if !reached {
+            missed.push(format!("{}: {}", lesson.id, grade["advice"]));
+        }
+    }
+    assert!(missed.is_empty(), "{missed:#?}");
+}
