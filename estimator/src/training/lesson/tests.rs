@@ -2,6 +2,7 @@
 
 use super::*;
 use haptics::device::Skill;
+use haptics::world::State;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
