@@ -12,6 +12,9 @@ use haptics::recording::Task;
 
 /// Bias of the sensors is remembered for so many seconds of free motion.
 const BIAS_MEMORY_S: f64 = 20.0;
+/// A zero of a sensor moves no farther than this, N, and no faster than this, N/s, on top.
+const MOST_DRIFT_N: f64 = 0.1;
+const MOST_DRIFT_N_S: f64 = 0.02;
 /// Rows of free motion are so far apart, s.
 pub(super) const FREE_ROW_S: f64 = 0.06;
 /// Before anything was seen: the thesis's thresholds come out of these.
@@ -44,6 +47,8 @@ pub(super) struct Sense {
     least: [f64; 4],
     most: [f64; 4],
     quiet_since_s: f64,
+    /// When the bias was seen last, s.
+    learned_s: f64,
 }
 
 impl Sense {
@@ -64,6 +69,7 @@ impl Sense {
             least: [f64::INFINITY; 4],
             most: [f64::NEG_INFINITY; 4],
             quiet_since_s: f64::NEG_INFINITY,
+            learned_s: f64::NEG_INFINITY,
         })
     }
 
@@ -118,7 +124,7 @@ impl Sense {
         let quiet = force.iter().all(|f| f.norm() < limits.force_n.max(0.03));
         if state == SystemState::FreeMotion && quiet && time_s - since_s > 0.15 && time_s >= self.next_free_s {
             self.next_free_s = time_s + FREE_ROW_S;
-            self.learn_bias([c[0], c[1], c[2], c[3]]);
+            self.learn_bias(time_s, [c[0], c[1], c[2], c[3]]);
             *free_row = Some((time_s, c[1] + c[3]));
         }
         now
@@ -145,15 +151,20 @@ impl Sense {
         }
         let limit = 0.5 * self.usual.thresholds().force_n;
         let far = self.bias.iter().zip(raw).any(|(bias, value)| (value - bias.values()[0]).abs() > limit);
-        if far {
+        let since_s = time_s - self.learned_s;
+        let most = MOST_DRIFT_N + MOST_DRIFT_N_S * since_s;
+        // One finger that presses on something is as quiet, but no zero moves so far so soon.
+        let presses = self.bias.iter().zip(raw).any(|(bias, value)| (value - bias.values()[0]).abs() > most);
+        if far && !(presses && since_s.is_finite()) {
             self.bias.iter_mut().for_each(Recursive::reset);
             self.lift_bias.reset();
-            self.learn_bias(raw);
+            self.learn_bias(time_s, raw);
         }
         (self.least, self.most, self.quiet_since_s) = (raw, raw, time_s);
     }
 
-    fn learn_bias(&mut self, raw: [f64; 4]) {
+    fn learn_bias(&mut self, time_s: f64, raw: [f64; 4]) {
+        self.learned_s = time_s;
         for (bias, value) in self.bias.iter_mut().zip(raw) {
             bias.push(&[1.0], value, 1.0);
         }

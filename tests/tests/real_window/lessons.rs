@@ -17,6 +17,8 @@ const EVERY: Duration = Duration::from_millis(33);
 /// What a key changes of the strength, and what the mouse begins with, N.
 const KEY_N: f64 = 0.2;
 const BEGINS_N: f64 = 1.5;
+/// A lesson is tried so often at most.
+const ATTEMPTS: usize = 3;
 /// Those that are done unless `TOUCHSTONE_LESSONS` names others, or `all`: together they press, carry, turn and answer.
 const USUAL: [&str; 3] = ["lift-and-hold", "crank-even", "barrel"];
 
@@ -105,31 +107,46 @@ fn lessons_are_done_with_a_pointer_as_a_person_does_them() {
     let mut strength_n = BEGINS_N;
     let mut missed = Vec::new();
     for lesson in wanted() {
-        let before = recordings(&home);
         command(&screen, &format!("Lesson: {}", lesson.title));
         screen.keep(&format!("lesson-{}-1-brief", lesson.id));
         let way = pointer_through(&lesson, EVERY.as_secs_f64()).expect("a way");
-        command(&screen, "Take the lesson's test");
-        let new = |home: &Path| recordings(home).into_iter().find(|path| !before.contains(path));
-        let path = until("the recording", &screen, || new(&home));
-        strength_n = point(&screen, &place, &way[..way.len() / 2], strength_n);
-        screen.keep(&format!("lesson-{}-2-test", lesson.id));
-        strength_n = point(&screen, &place, &way[way.len() / 2..], strength_n);
-        if lesson.question.is_some() {
-            screen.keep(&format!("lesson-{}-3-question", lesson.id));
-            command(&screen, &format!("Answer: {}", lesson.question.as_ref().map_or("", |q| q.answers[0].as_str())));
+        // A pointer that looks at nothing fails now and then, as people do.
+        let mut grades = Vec::new();
+        while grades.len() < ATTEMPTS && !grades.last().is_some_and(reached) {
+            grades.push(attempt(&screen, (&home, &place), &lesson, &way, &mut strength_n));
         }
-        screen.keep(&format!("lesson-{}-4-debrief", lesson.id));
-        let Some(grade) = graded(&path) else {
-            missed.push(format!("{}: not over", lesson.id));
-            continue;
-        };
-        // Nobody told the pointer what is in a barrel.
-        let reached = grade["completed"] == true || grade["answered_rightly"] == false;
-        println!("{}: {}", lesson.id, grade);
-        if !reached {
-            missed.push(format!("{}: {}", lesson.id, grade["advice"]));
+        println!("{}: {} attempts, {}", lesson.id, grades.len(), grades.last().unwrap_or(&Value::Null));
+        if !grades.last().is_some_and(reached) {
+            missed.push(format!("{}: {}", lesson.id, grades.last().unwrap_or(&Value::Null)["advice"]));
         }
     }
     assert!(missed.is_empty(), "{missed:#?}");
+}
+
+/// Nobody told the pointer what is in a barrel.
+fn reached(grade: &Value) -> bool {
+    grade["completed"] == true || grade["answered_rightly"] == false
+}
+
+/// Takes the test of the open lesson; its grade, nothing when it was not over.
+fn attempt(
+    screen: &Screen,
+    (home, place): (&Path, &Place),
+    lesson: &Lesson,
+    way: &[Pointed],
+    strength_n: &mut f64,
+) -> Value {
+    let before = recordings(home);
+    command(screen, "Take the lesson's test");
+    let new = |home: &Path| recordings(home).into_iter().find(|path| !before.contains(path));
+    let path = until("the recording", screen, || new(home));
+    *strength_n = point(screen, place, &way[..way.len() / 2], *strength_n);
+    screen.keep(&format!("lesson-{}-2-test", lesson.id));
+    *strength_n = point(screen, place, &way[way.len() / 2..], *strength_n);
+    if let Some(question) = &lesson.question {
+        screen.keep(&format!("lesson-{}-3-question", lesson.id));
+        command(screen, &format!("Answer: {}", question.answers[0]));
+    }
+    screen.keep(&format!("lesson-{}-4-debrief", lesson.id));
+    graded(&path).unwrap_or_default()
 }

@@ -19,6 +19,8 @@ const ELLIPSE_95: f64 = 2.4477;
 /// Width of the plate, points, and how far it stands from the middle of what is held.
 const PLATE: f32 = 198.0;
 const ASIDE: f32 = 128.0;
+/// A narrower picture has no room for it, points.
+const ROOM: f32 = 480.0;
 /// Where the lines of warnings begin below the picture's upper edge, points: under the hint.
 const BELOW_HINT: f32 = 48.0;
 /// Length of a line along which something pulls whose end is not known, m.
@@ -99,7 +101,8 @@ fn plate(ui: &mut Ui, view: &SceneResponse, held: &Held, at_m: Vec2, parts: Assi
     let lines = words::held(held, parts);
     let guess = held.contents.as_ref().filter(|_| parts.contents);
     let slip = held.slip.filter(|_| parts.slip);
-    if lines.is_empty() && guess.is_none() && slip.is_none() {
+    let nothing = lines.is_empty() && guess.is_none() && slip.is_none();
+    if nothing || view.rect.width() < ROOM {
         return;
     }
     let height = 34.0

@@ -67,7 +67,7 @@ pub(super) fn slip(slip: &Slip) -> (String, Urgency) {
         _ => Urgency::Note,
     };
     let [free, least, most] = [slip.free, slip.least, slip.most].map(|share| number(100.0 * share, 0));
-    (format!("Grip to spare: {free} % ({least} to {most} %)"), urgency)
+    (format!("Grip to spare: {free} % ({least}–{most})"), urgency)
 }
 
 pub(super) fn title(held: &Held) -> String {
@@ -147,7 +147,7 @@ mod tests {
         let words = contents(held.contents.as_ref().expect("guessed"));
         assert!(words.starts_with("Inside: water or something like it (") && words.ends_with("%)"), "{words}");
         let near = Slip { free: 0.12, least: 0.01, most: 0.4, by_a_jolt: 0.6 };
-        assert_eq!(slip(&near), ("Grip to spare: 12 % (1 to 40 %)".to_owned(), Urgency::Danger));
+        assert_eq!(slip(&near), ("Grip to spare: 12 % (1–40)".to_owned(), Urgency::Danger));
         let hard = Warning::Force { finger: 1, force_n: (3.2, 0.01), limit_n: 3.0, over: true };
         assert_eq!(warning(&hard), ("Right finger: too hard, 3.200 ± 0.010 of 3.0 N".to_owned(), Urgency::Danger));
         let edge = Warning::Edge { finger: 0, left_m: (0.0042, 2e-4), at_m: Vec2::zeros() };

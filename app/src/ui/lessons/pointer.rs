@@ -19,6 +19,8 @@ const WEAKEST_N: f64 = 0.6;
 /// A pull on what holds an object back, N, and how much farther than the expert a mouse pulls then, m.
 const PULL_N: f64 = 0.2;
 const UNTIL_TAUT_M: f64 = 0.004;
+/// How much deeper than the expert a mouse presses what it holds, m.
+const UNTIL_IT_GIVES_M: f64 = 0.003;
 /// A push to the side that is meant, N.
 const PUSH_N: f64 = 0.1;
 
@@ -79,7 +81,10 @@ impl Pointed {
         } else {
             0.0
         };
-        let at_m = point.wanted_m() + Vec2::new(farther_m * push_n.signum(), 0.0);
+        // Whoever presses down with what is held goes on until it gives.
+        let presses = pinches && point.tip_force_n[0].y + point.tip_force_n[1].y < -PULL_N;
+        let deeper_m = if presses { UNTIL_IT_GIVES_M } else { 0.0 };
+        let at_m = point.wanted_m() + Vec2::new(farther_m * push_n.signum(), -deeper_m);
         Self { at_m, pinches, strength_n: point.grip_n().max(WEAKEST_N) }
     }
 }

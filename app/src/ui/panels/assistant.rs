@@ -3,7 +3,7 @@
 use crate::ui::assistant;
 use crate::ui::session::Session;
 use crate::ui::theme;
-use crate::ui::widgets::card;
+use crate::ui::widgets::{call, card};
 use egui::Ui;
 
 /// The card beside the trainer's picture.
@@ -12,7 +12,9 @@ pub fn assistant(ui: &mut Ui, session: &mut Session) {
     let parts = &mut session.assistant;
     let mut on = parts.on;
     let switch = |ui: &mut Ui| {
-        ui.checkbox(&mut on, "On").on_hover_text("Says over the picture what the hand has measured, and warns (H)");
+        let hint = "Says over the picture what the hand has measured, and warns (H)";
+        let response = ui.checkbox(&mut on, "On").on_hover_text(hint);
+        call(&response, "Assistant on");
     };
     card(ui, "Assistant", switch, |ui| {
         if let Some(why) = silent {

@@ -89,13 +89,7 @@ impl Panel for TrainerView {
             let fault = snapshot.fault;
             let view = scene_view(ui, "trainer", &mut self.rig, Wheel::ZoomsWithCtrl, scene);
             session.trainer_place = Some(view.place(ui));
-            if let Some((snapshot, _)) = session.trainer.scene() {
-                marks::device(ui, &view, snapshot);
-            }
-            marks::flashes(ui, &view, &session.trainer.impacts);
-            assistant::draw(ui, &view, session);
-            guide::ghost(ui, &view, session);
-            guide::expert(ui, &view, session);
+            over(ui, &view, session);
             let held = session.trainer.held().is_some();
             if held {
                 super::comfort::paused(ui, view.rect, &mut session.trainer);
@@ -132,6 +126,17 @@ impl Panel for TrainerView {
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(66));
         }
     }
+}
+
+/// What is drawn over the picture.
+fn over(ui: &mut Ui, view: &SceneResponse, session: &Session) {
+    if let Some((snapshot, _)) = session.trainer.scene() {
+        marks::device(ui, view, snapshot);
+    }
+    marks::flashes(ui, view, &session.trainer.impacts);
+    assistant::draw(ui, view, session);
+    guide::ghost(ui, view, session);
+    guide::expert(ui, view, session);
 }
 
 impl TrainerView {

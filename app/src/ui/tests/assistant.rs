@@ -120,3 +120,19 @@ fn in_a_test_of_a_lesson_nobody_helps() {
     harness.run_steps(2);
     assert!(!says(&harness, "Grip to spare") && says(&harness, "In a test you are on your own."));
 }
+
+#[test]
+fn a_finger_that_pressed_on_a_block_did_not_spoil_the_zero_of_its_sensor() {
+    let mut session = in_train(Operator::You, WorldChoice::Blocks);
+    session.lessons.load();
+    let lesson = session.lessons.all.iter().find(|l| l.id == "stack-two").map(Arc::clone).expect("a lesson");
+    session.open_lesson_now(&lesson);
+    session.practise_lesson();
+    // The pointer comes down on the block first, and carries it then.
+    session.follow_expert(7.5);
+    let report = session.trainer.watch.report().expect("watched");
+    let weight = report.parameters.iter().find(|p| p.name == "weight_N").expect("weighed");
+    let (_, world) = session.trainer.scene().expect("a scene");
+    let truth_n = world.blocks[0].mass_kg * world.gravity_m_s2;
+    assert!((weight.value.expect("known") - truth_n).abs() < 0.05 * truth_n, "{weight:?}");
+}

@@ -198,7 +198,7 @@ fn a_users_folder_is_read_and_what_is_broken_there_is_told() {
 fn a_slow_window_sees_the_hand_begin_though_it_rests_whenever_it_looks() {
     let (lessons, _) = library::of_folder(&assets());
     let world = lessons[0].world(0).expect("a world");
-    let mut progress = super::Progress::live(&lessons[0], &world);
+    let mut progress = Progress::live(&lessons[0], &world);
     let mut state = State::resting(&world);
     for look in 0..20_u32 {
         // It moves between two looks only.
