@@ -29,6 +29,8 @@ impl Lessons {
             );
             let measured = super::progress::during("watching the expert", |_| expert::measure(&lesson))?;
             lesson.expert = Some(measured);
+            lesson.expert_over =
+                super::progress::during("watching the expert over slow lines", |_| expert::over_lines(&lesson));
             std::fs::write(path, serde_json::to_string_pretty(&lesson)? + "\n")?;
         }
         Ok(one(&lesson)?)
@@ -64,6 +66,11 @@ fn one(lesson: &Lesson) -> serde_json::Result<Output> {
             }
         }
         None => text.push_str("Its experts were not measured yet: --measure-expert does that.\n"),
+    }
+    for over in &lesson.expert_over {
+        let model = if over.predicted { "with a model" } else { "without a model" };
+        let seconds = over.expert.measures.get("completed_s").map_or(f64::NAN, |s| s.mean);
+        let _ = writeln!(text, "experts over {:.0} ms {model}: {seconds:.1} s", over.delay_ms);
     }
     let mut json = serde_json::to_value(lesson)?;
     json["text"] = json!(lesson.text);

@@ -34,17 +34,18 @@ fn wanted() -> Vec<Lesson> {
     lessons.into_iter().filter(is_wanted).collect()
 }
 
-/// Chooses a command by its name. Behind the list everything is darker.
+/// Chooses a command by its name. Behind the list everything is darker, the program's name too.
 fn command(screen: &Screen, name: &str) {
-    let light = |screen: &Screen| -> u32 {
-        screen.picture()[18..30].iter().flat_map(|row| &row[40..140]).flatten().map(|part| u32::from(*part)).sum()
-    };
-    let least = light(screen) * 17 / 20;
+    /// A part of a colour as bright as words on the dark, or the paper around words on the light; behind a list it is half of that.
+    const BRIGHT: u8 = 0xD0;
+    let clear =
+        |screen: &Screen| screen.picture()[18..30].iter().flat_map(|row| &row[40..140]).flatten().any(|v| *v >= BRIGHT);
+    until("a window with nothing before it", screen, || clear(screen).then_some(()));
     screen.xdotool(&["key", "ctrl+p"]);
-    until("the commands", screen, || (light(screen) < least).then_some(()));
+    until("the commands", screen, || (!clear(screen)).then_some(()));
     screen.xdotool(&["type", "--delay", "25", name]);
     screen.xdotool(&["key", "Return"]);
-    until("the end of the commands", screen, || (light(screen) > least).then_some(()));
+    until("the end of the commands", screen, || clear(screen).then_some(()));
 }
 
 fn recordings(home: &Path) -> Vec<PathBuf> {

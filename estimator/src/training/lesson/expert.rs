@@ -1,11 +1,12 @@
 //! What experts need for a lesson: mean and spread of each judged measure, without outliers.
 
 use super::grade::{self, badness};
-use super::perform::perform;
-use super::{Attempted, Lesson};
+use super::perform::perform_over;
+use super::{Attempted, Lesson, Over};
 use crate::estimate::EstimateError;
 use crate::training::figures::figures;
 use haptics::device::Skill;
+use haptics::teleop::Delay;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -45,10 +46,30 @@ pub struct Expert {
 /// # Errors
 /// When the lesson cannot be done, or when fewer than half of the attempts come to the goal.
 pub fn measure(lesson: &Lesson) -> Result<Expert, EstimateError> {
+    measure_over(lesson, &Delay::default())
+}
+
+/// Lines that built-in lessons have experts for: round trip, s, and whether a model answers.
+pub const LINES: [(f64, bool); 4] = [(0.15, false), (0.15, true), (0.5, false), (0.5, true)];
+
+/// What experts need over each of [`LINES`]; lines over which most of them fail are left out.
+pub fn over_lines(lesson: &Lesson) -> Vec<Over> {
+    let over = |(round_trip_s, predicted): (f64, bool)| {
+        let expert = measure_over(lesson, &Delay::of(round_trip_s, predicted)).ok()?;
+        Some(Over { delay_ms: 1e3 * round_trip_s, predicted, expert })
+    };
+    LINES.into_iter().filter_map(over).collect()
+}
+
+/// The same over a slow line.
+///
+/// # Errors
+/// As [`measure`], and when there is no such line.
+pub fn measure_over(lesson: &Lesson, line: &Delay) -> Result<Expert, EstimateError> {
     let mut found: Vec<BTreeMap<&'static str, f64>> = Vec::new();
     for index in 0..ATTEMPTS {
         let variant = index % lesson.variant_count();
-        let performance = perform(lesson, variant, Skill::expert(), FIRST_SEED + index as u64)?;
+        let performance = perform_over(lesson, variant, Skill::expert(), FIRST_SEED + index as u64, line)?;
         let answer = lesson.question.as_ref().map(|_| variant);
         let attempted = Attempted { answer, ..Attempted::at(lesson, variant) };
         let seen = grade::see(lesson, &attempted, &performance.world, &performance.recording("expert"))?;

@@ -136,7 +136,7 @@ pub fn grade(
     world: &World,
     recording: &Recording,
 ) -> Result<Grade, EstimateError> {
-    let expert = lesson.expert.as_ref().ok_or_else(|| {
+    let expert = lesson.experts(attempted).ok_or_else(|| {
         EstimateError::Other(format!("nobody has measured the experts of the lesson `{}` yet", lesson.id))
     })?;
     let seen = see(lesson, attempted, world, recording)?;

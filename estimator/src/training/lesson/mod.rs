@@ -69,9 +69,24 @@ pub struct Lesson {
     /// What experts need for it; absent until it was measured ([`expert::measure`]).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expert: Option<Expert>,
+    /// What they need over slow lines ([`expert::measure_over`]); an attempt over another line is held against those without one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub expert_over: Vec<Over>,
     /// The text for people, Markdown: from the file beside it.
     #[serde(skip)]
     pub text: String,
+}
+
+/// What experts need over a slow line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Over {
+    /// Round trip, ms.
+    pub delay_ms: f64,
+    /// A model of the far world answered at once.
+    pub predicted: bool,
+    /// What they need.
+    pub expert: Expert,
 }
 
 // serde hands over a reference.
@@ -124,6 +139,13 @@ fn wrong(what: impl Into<String>) -> EstimateError {
 }
 
 impl Lesson {
+    /// What experts need under the conditions of an attempt: over its line, where that was measured, else without one.
+    pub fn experts(&self, attempted: &Attempted) -> Option<&Expert> {
+        let same =
+            |over: &&Over| (over.delay_ms - attempted.delay_ms).abs() < 0.5 && over.predicted == attempted.predicted;
+        self.expert_over.iter().find(same).map(|over| &over.expert).or(self.expert.as_ref())
+    }
+
     /// Reads a lesson and checks it.
     ///
     /// # Errors

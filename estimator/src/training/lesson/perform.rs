@@ -2,11 +2,12 @@
 
 use super::Lesson;
 use crate::estimate::EstimateError;
-use haptics::device::{Device as _, ScriptedOperator, Skill};
+use haptics::device::{Device, ScriptedOperator, Skill};
 use haptics::recording::Recording;
 use haptics::servo::recorder::{SensorModel, to_recording};
 use haptics::servo::safety::Limits;
 use haptics::servo::{Loop, Swap, TickRecord};
+use haptics::teleop::{self, Delay, Ends};
 use haptics::world::{State, World};
 
 /// Ticks a second: the usual servo's.
@@ -27,16 +28,45 @@ pub struct Performance {
 /// # Errors
 /// When the lesson's world cannot be made.
 pub fn perform(lesson: &Lesson, variant: usize, skill: Skill, seed: u64) -> Result<Performance, EstimateError> {
+    perform_over(lesson, variant, skill, seed, &Delay::default())
+}
+
+/// The same over a slow line, where the operator moves and waits for what it sees.
+///
+/// # Errors
+/// When the lesson's world cannot be made, or there is no such line.
+pub fn perform_over(
+    lesson: &Lesson,
+    variant: usize,
+    skill: Skill,
+    seed: u64,
+    line: &Delay,
+) -> Result<Performance, EstimateError> {
     let world = lesson.world(variant)?;
     let state = State::resting(&world);
     let operator = ScriptedOperator::doing(&world, &state, &lesson.acts(), skill, seed);
     let steps_s = operator.acts_begin_s().to_vec();
     let limits = Limits { max_force_n: operator.spec().max_force_n, ..Limits::default() };
-    let mut servo = Loop::new(Swap::at(world.clone(), state), Box::new(operator), limits);
+    let mut view = None;
+    let device: Box<dyn Device> = if line.is_none() {
+        Box::new(operator)
+    } else {
+        let guess = teleop::guess(&world, seed);
+        let period_s = 1.0 / RATE_HZ;
+        let ends = Ends { world: &world, state: &state, guess: Some(&guess), limits, period_s, seed };
+        let connected = teleop::connect(Box::new(operator.waiting()), &ends, line);
+        let (device, source) = connected.map_err(|error| EstimateError::Other(error.to_string()))?;
+        view = Some(source);
+        device
+    };
+    let mut servo = Loop::new(Swap::at(world.clone(), state), device, limits);
     let most = (lesson.at_most_s * RATE_HZ) as usize;
     let mut ticks = Vec::new();
     while ticks.len() < most && !servo.finished() {
         ticks.push(servo.tick(1.0 / RATE_HZ));
+        if let Some(view) = &mut view {
+            view.newest();
+        }
     }
     servo.make_safe();
     Ok(Performance { world, ticks, steps_s })

@@ -56,6 +56,7 @@ pub fn on(mut world: World) -> Result<Lesson, EstimateError> {
         demonstration,
         judged,
         expert: None,
+        expert_over: Vec::new(),
         text,
     };
     lesson.check()?;

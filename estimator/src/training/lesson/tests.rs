@@ -2,6 +2,7 @@
 
 use super::*;
 use haptics::device::Skill;
+use haptics::teleop::Delay;
 use haptics::world::State;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -70,13 +71,28 @@ fn the_experts_in_the_files_are_what_is_measured() {
     lessons.par_iter().filter(looked_at).for_each(|lesson| {
         let expert = expert::measure(lesson).expect("measured");
         if write {
-            let measured = Lesson { expert: Some(expert), ..lesson.clone() };
+            let expert_over = expert::over_lines(lesson);
+            let measured = Lesson { expert: Some(expert), expert_over, ..lesson.clone() };
             let json = serde_json::to_string_pretty(&measured).expect("JSON") + "\n";
             std::fs::write(assets().join(format!("{}.json", lesson.id)), json).expect("written");
         } else {
             assert_eq!(lesson.expert.as_ref(), Some(&expert), "{}: measure it anew", lesson.id);
         }
     });
+}
+
+#[test]
+fn an_attempt_over_a_line_is_held_against_experts_over_that_line() {
+    let lesson = lesson("stack-two");
+    let line = Delay::of(0.5, false);
+    let performance = perform::perform_over(&lesson, 0, Skill::expert(), 3, &line).expect("performed");
+    let recording = performance.recording("far away");
+    let here = Attempted::at(&lesson, 0);
+    let there = Attempted { delay_ms: 500.0, predicted: false, ..here.clone() };
+    let [near, far] = [here, there].map(|a| grade(&lesson, &a, &performance.world, &recording).expect("graded"));
+    assert!(near.completed && far.completed, "{near:?}");
+    assert!(far.score > near.score, "{:?} against {:?}: the line is not the trainee's fault", far.score, near.score);
+    assert!(far.score.is_some_and(|score| score > 50.0), "{:?}", far.score);
 }
 
 fn lesson(id: &str) -> Lesson {
@@ -91,6 +107,9 @@ fn every_built_in_lesson_has_a_text_and_what_experts_need() {
         let expert = lesson.expert.as_ref().expect("measured");
         assert_eq!(expert.completed, [expert::ATTEMPTS; 2], "{}", lesson.id);
         assert_eq!(expert.measures_version, crate::training::VERSION, "{}", lesson.id);
+        // Nobody presses softly half a second late.
+        let lines = if lesson.id == "first-touch" { 3 } else { 4 };
+        assert_eq!(lesson.expert_over.len(), lines, "{}", lesson.id);
         assert!(lesson.text.len() > 200 && !lesson.goal.is_empty(), "{}", lesson.id);
     }
 }
