@@ -4,7 +4,7 @@ use app::ui::theme;
 use estimator::segment::SystemState;
 use serde_json::Value;
 use std::fs;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -33,7 +33,7 @@ impl Drop for Screen {
 
 impl Screen {
     /// `None` where the machine lacks what it needs.
-    pub fn new(folder: &Path) -> Option<Self> {
+    fn new(folder: &Path) -> Option<Self> {
         Command::new("xdotool").arg("version").stdout(Stdio::null()).stderr(Stdio::null()).status().ok()?;
         let size = format!("{}x{}x24", SCREEN[0], SCREEN[1]);
         let mut server = Command::new("Xvfb");
@@ -42,6 +42,19 @@ impl Screen {
         let mut number = String::new();
         BufReader::new(server.stdout.take()?).read_line(&mut number).ok()?;
         Some(Self { server, display: format!(":{}", number.trim()), folder: folder.to_owned() })
+    }
+
+    /// The same, and a word about what is missing.
+    pub fn or_skip(folder: &Path) -> Option<Self> {
+        if let Err(error) = render::Headless::new() {
+            let _ = writeln!(std::io::stderr(), "skipped: {error}");
+            return None;
+        }
+        let screen = Self::new(folder);
+        if screen.is_none() {
+            let _ = writeln!(std::io::stderr(), "skipped: Xvfb and xdotool are needed for a real window");
+        }
+        screen
     }
 
     pub fn xdotool(&self, arguments: &[&str]) {
