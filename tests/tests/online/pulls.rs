@@ -1,6 +1,6 @@
 //! What else holds a carried object: none that is not there, and the cable of a barrel with where it is tied.
 
-use crate::generator::{Fault, perform, unhurried};
+use crate::generator::{Fault, perform};
 use crate::online::{Settings, replay};
 use estimator::online::Report;
 use haptics::Vec2;
@@ -36,7 +36,6 @@ fn nothing_pulls_at_blocks_that_are_carried() {
             !online.report().pulls.is_empty()
         })
         .collect();
-    let _ = unhurried();
     assert!(accused.is_empty(), "a pull was claimed where there is none: seeds {accused:?}");
 }
 
