@@ -1,8 +1,7 @@
 //! The assistant over the trainer's picture: what it says, when it is silent, and that every part of it can be switched off.
 
-use super::{empty, harness};
+use super::{empty, train_window};
 use crate::ui::app::App;
-use crate::ui::screenshot::{self, Panel};
 use crate::ui::session::{Session, Workspace};
 use crate::ui::trainer::{Clock, Operator, WorldChoice};
 use egui_kittest::Harness;
@@ -17,10 +16,6 @@ fn in_train(operator: Operator, choice: WorldChoice) -> Session {
     (session.trainer.operator, session.trainer.choice) = (operator, choice);
     session.trainer.ensure_running().expect("runs");
     session
-}
-
-fn window(session: Session) -> Harness<'static, App> {
-    harness(screenshot::app_for(session, Panel::Train), [1280.0, 900.0], |ui, app: &mut App| app.show(ui))
 }
 
 fn says(harness: &Harness<'_, App>, words: &str) -> bool {
@@ -42,7 +37,7 @@ fn until_said(harness: &mut Harness<'_, App>, words: &str) {
 
 #[test]
 fn a_barrel_is_weighed_its_contents_are_guessed_and_its_cable_is_drawn() {
-    let mut harness = window(in_train(Operator::Scripted, WorldChoice::Barrel));
+    let mut harness = train_window(in_train(Operator::Scripted, WorldChoice::Barrel));
     harness.run_steps(2);
     assert!(!says(&harness, "Grip to spare"), "nothing is held yet");
     until_said(&mut harness, "Grip to spare");
@@ -61,7 +56,7 @@ fn a_barrel_is_weighed_its_contents_are_guessed_and_its_cable_is_drawn() {
 
 #[test]
 fn a_crank_shows_the_circle_that_was_found() {
-    let mut harness = window(in_train(Operator::Scripted, WorldChoice::Crank));
+    let mut harness = train_window(in_train(Operator::Scripted, WorldChoice::Crank));
     until_said(&mut harness, "It turns on a circle: radius");
     assert!(harness.state().session.trainer.watch.report().is_some());
 }
@@ -71,7 +66,7 @@ fn the_edge_of_the_reach_and_too_hard_a_grip_are_warned_of() {
     let session = in_train(Operator::You, WorldChoice::Blocks);
     let (_, world) = session.trainer.scene().expect("a scene");
     let workspace = world.hand.workspace;
-    let mut harness = window(session);
+    let mut harness = train_window(session);
     harness.run_steps(2);
     assert!(!says(&harness, "the edge of its reach"));
     harness.state_mut().session.trainer.pinch.move_to(workspace.center_m + Vec2::new(workspace.radius_m, 0.0));
@@ -79,7 +74,7 @@ fn the_edge_of_the_reach_and_too_hard_a_grip_are_warned_of() {
     harness.state_mut().session.assistant.edge = false;
     harness.run_steps(2);
     assert!(!says(&harness, "the edge of its reach"));
-    let mut harness = window(squeezing());
+    let mut harness = train_window(squeezing());
     until_said(&mut harness, "of 2.5 N");
 }
 
@@ -112,7 +107,7 @@ fn in_a_test_of_a_lesson_nobody_helps() {
     session.open_lesson_now(&lesson);
     session.practise_lesson();
     session.follow_expert(6.0);
-    let mut harness = window(session);
+    let mut harness = train_window(session);
     harness.run_steps(2);
     assert!(says(&harness, "Grip to spare"), "while practising");
     harness.state_mut().session.test_lesson();

@@ -1,30 +1,16 @@
 //! Comfort in Train: a pause when the window loses the focus, everything anew by one key, a left hand, what is remembered.
 
-use super::{empty, harness, keep, no_driver};
+use super::{empty, in_train, keep, no_driver, train_window};
 use crate::ui::app::App;
 use crate::ui::lessons::Phase;
 use crate::ui::screenshot::{self, Panel};
-use crate::ui::session::{Session, Workspace};
 use crate::ui::trainer::{HoldCause, Operator, PAUSED, Trainer, WorldChoice};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use std::path::Path;
 
 const LOST: &str = "Paused: the window lost the focus. Click here or press Space to go on.";
-
-fn in_train(folder: &Path) -> Session {
-    let mut session = empty();
-    session.workspace = Workspace::Train;
-    session.trainer.recordings_folder = Some(folder.to_path_buf());
-    session.lessons.folder = Some(folder.join("lessons"));
-    session
-}
-
-fn window(session: Session) -> Harness<'static, App> {
-    harness(screenshot::app_for(session, Panel::Train), [1280.0, 900.0], |ui, app: &mut App| app.show(ui))
-}
 
 fn focus(harness: &mut Harness<'_, App>, has: bool) {
     harness.input_mut().focused = has;
@@ -42,7 +28,7 @@ fn trainer<'a>(harness: &'a mut Harness<'_, App>) -> &'a mut Trainer {
 #[test]
 fn a_window_without_focus_holds_the_world_until_one_goes_on_and_the_recording_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut harness = window(in_train(folder.path()));
+    let mut harness = train_window(in_train(folder.path()));
     focus(&mut harness, true);
     trainer(&mut harness).start_recording().expect("begins");
     trainer(&mut harness).advance(0.5);
@@ -76,7 +62,7 @@ fn a_window_without_focus_holds_the_world_until_one_goes_on_and_the_recording_sa
 #[test]
 fn nothing_is_held_for_the_scripted_operator_nor_where_it_is_not_wanted() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut harness = window(in_train(folder.path()));
+    let mut harness = train_window(in_train(folder.path()));
     focus(&mut harness, true);
     trainer(&mut harness).hand_to(Operator::Scripted).expect("works");
     focus(&mut harness, false);
@@ -98,7 +84,7 @@ fn nothing_is_held_for_the_scripted_operator_nor_where_it_is_not_wanted() {
 #[test]
 fn one_key_starts_over_and_a_test_begins_anew_with_a_word() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut harness = window(in_train(folder.path()));
+    let mut harness = train_window(in_train(folder.path()));
     trainer(&mut harness).choose(WorldChoice::Blocks).expect("works");
     harness.run_steps(2);
     trainer(&mut harness).advance(2.0);
@@ -125,7 +111,7 @@ fn one_key_starts_over_and_a_test_begins_anew_with_a_word() {
 #[test]
 fn a_left_hand_has_the_controls_on_its_side_and_pinches_with_the_other_button() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut harness = window(in_train(folder.path()));
+    let mut harness = train_window(in_train(folder.path()));
     harness.run_steps(3);
     let right = harness.get_by_label("Comfort").rect().left();
     harness.get_by_label("Left-handed").scroll_to_me();

@@ -1,28 +1,14 @@
 //! Lessons as a trainee goes through them: shown, practised, tested, told what to do better.
 
-use super::{empty, harness, until};
+use super::{in_train, train_window, until};
 use crate::ui::app::App;
 use crate::ui::lessons::{Debrief, Phase};
-use crate::ui::screenshot::{self, Panel};
 use crate::ui::session::{Session, Workspace};
 use crate::ui::trainer::Operator;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use std::path::Path;
 use std::sync::Arc;
-
-fn in_train(folder: &Path) -> Session {
-    let mut session = empty();
-    session.workspace = Workspace::Train;
-    session.trainer.recordings_folder = Some(folder.to_path_buf());
-    session.lessons.folder = Some(folder.join("lessons"));
-    session
-}
-
-fn window(session: Session) -> Harness<'static, App> {
-    harness(screenshot::app_for(session, Panel::Train), [1280.0, 900.0], |ui, app: &mut App| app.show(ui))
-}
 
 fn phase(harness: &Harness<'_, App>) -> Option<Phase> {
     harness.state().session.lessons.open.as_ref().map(|open| open.phase.clone())
@@ -69,7 +55,7 @@ fn every_lesson_can_be_completed_with_the_mouse_and_its_file_has_the_same_grade(
 #[test]
 fn a_trainee_is_shown_a_lesson_practises_it_and_is_told_how_it_was() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut harness = window(in_train(folder.path()));
+    let mut harness = train_window(in_train(folder.path()));
     let ctx = harness.ctx.clone();
     harness.state_mut().session.open_history(&ctx, folder.path().join("history.sqlite"));
     let learning = &mut harness.state_mut().session.learning;
@@ -144,7 +130,7 @@ fn a_calibrated_world_becomes_a_lesson() {
     let mut session = super::session(super::STACK.clone());
     session.trainer.recordings_folder = Some(folder.path().to_path_buf());
     session.lessons.folder = Some(folder.path().join("lessons"));
-    let mut harness = window(session);
+    let mut harness = train_window(session);
     let ctx = harness.ctx.clone();
     harness.state_mut().session.practise_on_this(&ctx);
     until(&mut harness, "the lesson", |app| {

@@ -26,12 +26,14 @@ mod workbench;
 use super::app::App;
 use super::jobs::JobKind;
 use super::prepare::Prepared;
+use super::screenshot::{self, Panel};
 use super::session::{self, Session, Workspace};
 use super::theme;
 use super::trainer::{Clock, Operator, Trainer, WorldChoice};
 use egui_kittest::Harness;
 use haptics::recording::{Channel, Recording};
 use std::io::Write;
+use std::path::Path;
 use std::sync::{Arc, LazyLock};
 use std::time::{Duration, Instant};
 
@@ -107,6 +109,20 @@ pub fn empty() -> Session {
     session
 }
 
+/// Train, with its files in a folder.
+pub fn in_train(folder: &Path) -> Session {
+    let mut session = empty();
+    session.workspace = Workspace::Train;
+    session.trainer.recordings_folder = Some(folder.to_path_buf());
+    session.lessons.folder = Some(folder.join("lessons"));
+    session
+}
+
+/// A window that shows a session in Train.
+pub fn train_window(session: Session) -> Harness<'static, App> {
+    harness(screenshot::app_for(session, Panel::Train), [1280.0, 900.0], |ui, app: &mut App| app.show(ui))
+}
+
 pub fn harness<'a, S: 'a>(
     state: S,
     size: [f32; 2],
@@ -153,7 +169,7 @@ pub fn no_driver() -> bool {
 /// Writes a picture into the folder that `TOUCHSTONE_PICTURES` names, to be looked at; nothing without it.
 pub fn keep(name: &str, picture: &image::RgbaImage) {
     if let Some(folder) = std::env::var_os("TOUCHSTONE_PICTURES") {
-        let path = std::path::Path::new(&folder).join(format!("{name}.png"));
+        let path = Path::new(&folder).join(format!("{name}.png"));
         picture.save_with_format(path, image::ImageFormat::Png).expect("the folder can be written to");
     }
 }
