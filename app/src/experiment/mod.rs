@@ -3,11 +3,13 @@
 //! [`Timetable`] says where the hand is wanted when, [`MotionPlan`] where the coordinate of a mechanism is that has no handle, [`perform`]
 //! lets the scripted operator do it, [`rehearse`] does so with every object that the diagnosis leaves open and asks again each time: what would come out, and how surely?
 
+mod captured;
 mod motion_plan;
 mod perform;
 mod rehearse;
 mod sensing;
 mod timetable;
+mod tool;
 
 pub use motion_plan::MotionPlan;
 pub use perform::{perform, what_is_known};

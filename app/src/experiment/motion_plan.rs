@@ -137,7 +137,7 @@ fn names(coordinate: Coordinate) -> [&'static str; 3] {
 }
 
 /// How often the first recording was sampled, Hz.
-fn rate_hz(recording: &Recording) -> Result<f64, String> {
+pub(super) fn rate_hz(recording: &Recording) -> Result<f64, String> {
     let times = recording.time_s.as_deref().unwrap_or_default();
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);

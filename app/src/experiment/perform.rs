@@ -5,7 +5,7 @@ use super::{SIMULATED, Timetable};
 use estimator::diagnose::{Experiment, SensorFault};
 use estimator::segment::SystemState;
 use haptics::device::{Device as _, ScriptedOperator, Skill};
-use haptics::recording::Recording;
+use haptics::recording::{Recording, Task};
 use haptics::servo::recorder::{SensorModel, to_recording};
 use haptics::servo::safety::Limits;
 use haptics::servo::{Loop, Swap};
@@ -47,6 +47,11 @@ pub fn perform(
     let mut recording = to_recording(&name, &table.world, &ticks, EVERY, &sensor, seed);
     let carried = ticks.iter().find(|tick| tick.label == SystemState::HoldAboveGround.name());
     see_through(&mut recording, fault, carried.map_or(0.0, |tick| tick.time_s));
+    if table.world.membrane.is_some() {
+        recording.meta.task = Some(Task::Needle);
+    } else if table.world.switch.is_some() {
+        recording.meta.task = Some(Task::Switch);
+    }
     recording.meta.other.insert(SIMULATED.to_owned(), about.into());
     recording.meta.known.extend(what_is_known(asked));
     Some(recording)

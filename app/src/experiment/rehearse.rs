@@ -1,8 +1,10 @@
 //! What an experiment would settle: it is done on every object that the diagnosis leaves open, and the question is asked again.
 
+use super::tool::{insert, is_tool};
 use super::{MotionPlan, Timetable, perform};
 use estimator::diagnose::{Diagnosis, Experiment, NextExperiment, Suspect};
-use haptics::recording::Recording;
+use estimator::signal::noise::white_noise_under_fast_motion;
+use haptics::recording::{Recording, Task};
 
 /// An alternative less probable than this is as good as excluded (as in the estimator's settling of several recordings).
 const OPEN: f64 = 0.047;
@@ -61,16 +63,30 @@ pub struct Like<'a> {
     pub noise_n: f64,
 }
 
+impl Like<'_> {
+    /// The same as one sample of a finger has it: what a diagnosis of needles and switches tells is that of means.
+    fn sample_noise_n(&self) -> f64 {
+        let is_captured = matches!(self.recording.meta.task, Some(Task::Needle | Task::Switch));
+        let own = self.recording.channel("fx1_N").filter(|_| is_captured).map(white_noise_under_fast_motion);
+        own.unwrap_or(self.noise_n)
+    }
+}
+
 /// How the experiment is done on an object.
 enum Way {
     /// By two fingers.
     Held(Box<Timetable>),
     /// Along the coordinate of what has no handle.
     Driven(MotionPlan),
+    /// By a single tool that is a needle.
+    Tool,
 }
 
 impl Way {
-    fn new(suspect: &Suspect, asked: &Experiment, motion: &str) -> Result<Self, String> {
+    fn new(suspect: &Suspect, (asked, like): (&Experiment, &Like<'_>), motion: &str) -> Result<Self, String> {
+        if suspect.world.membrane.is_some() && is_tool(like.recording) {
+            return Ok(Self::Tool);
+        }
         if suspect.world.mechanism.is_some() && suspect.world.crank.is_none() {
             return MotionPlan::new(asked).map(Self::Driven);
         }
@@ -87,7 +103,10 @@ impl Way {
     ) -> Result<Option<Recording>, String> {
         let about = format!("as if {}", suspect.id.replace('-', " "));
         match self {
-            Self::Held(table) => Ok(perform(table, asked, &about, (&suspect.fault, like.noise_n), seed, goes_on)),
+            Self::Held(table) => {
+                Ok(perform(table, asked, &about, (&suspect.fault, like.sample_noise_n()), seed, goes_on))
+            }
+            Self::Tool => insert(suspect, (asked, like), &about, seed, goes_on),
             Self::Driven(plan) => plan.perform(suspect, &about, like, seed, goes_on),
         }
     }
@@ -111,7 +130,7 @@ pub fn rehearse(
     let mut outcomes = Vec::new();
     for (k, suspect) in wanted.iter().enumerate() {
         let mut outcome = Outcome { id: suspect.id.clone(), rounds: Vec::new(), problem: None };
-        let way = match Way::new(suspect, asked, &next.motion) {
+        let way = match Way::new(suspect, (asked, &like), &next.motion) {
             Ok(way) => way,
             Err(problem) => {
                 outcome.problem = Some(problem);
@@ -164,97 +183,83 @@ mod tests {
     use blind::{Bench, Effect, Log, Spec};
     use estimator::diagnose::{Options, SensorFault, Verdict, diagnose, suspects};
 
+    /// A recording that leaves something open, with all that a rehearsal needs of it.
+    struct Asked {
+        recording: [Recording; 1],
+        options: Options,
+        answer: Diagnosis,
+        next: NextExperiment,
+        suspects: Vec<Suspect>,
+    }
+
+    impl Asked {
+        fn of(recording: Recording, options: Options) -> Self {
+            let recording = [recording];
+            let answer = diagnose(&recording, &options).expect("an answer");
+            assert_eq!(answer.verdict, Verdict::Ambiguous, "{:?}", answer.causes);
+            let next = answer.next_experiment.clone().expect("an experiment");
+            let suspects = suspects(&recording, &options, &answer).expect("worlds");
+            Self { recording, options, answer, next, suspects }
+        }
+
+        fn again(&self, more: &Recording) -> Result<Diagnosis, String> {
+            let both = [self.recording[0].clone(), more.clone()];
+            diagnose(&both, &self.options).map_err(|error| error.to_string())
+        }
+
+        /// Twice on each suspect, with so much noise of a force sample.
+        fn rehearsed(&self, noise_n: f64, goes_on: &dyn Fn(f64) -> bool) -> Result<Rehearsal, Option<String>> {
+            let like = Like { recording: &self.recording[0], noise_n };
+            rehearse(&self.suspects, &self.next, (2, like), &|more| self.again(more), goes_on)
+        }
+
+        /// Each of these causes is settled in both rounds.
+        fn settles(&self, noise_n: f64, ids: &[&str]) {
+            let rehearsal = self.rehearsed(noise_n, &|_| true).expect("rehearsed");
+            for id in ids {
+                let outcome = rehearsal.outcomes.iter().find(|o| o.id == *id).expect("it is open");
+                let came_out: Vec<_> = outcome.rounds.iter().map(|r| (&r.named, &r.open)).collect();
+                let found = (outcome.settled(), outcome.rounds.len());
+                assert_eq!(found, (2, 2), "{id}: {came_out:?} {:?}", outcome.problem);
+            }
+        }
+    }
+
+    fn spec(bench: Bench, rate_hz: f64) -> Spec {
+        Spec { effects: vec![(Effect::Eccentric, 0)], ratio: 2.0, bench, log: Log::Mixed, rate_hz, seconds: 15.0 }
+    }
+
     #[test]
     fn a_hung_weight_would_tell_an_eccentric_mass_from_a_tilt_whichever_it_is() {
-        let effects = vec![(Effect::Eccentric, 0)];
-        let spec =
-            Spec { effects, ratio: 2.0, bench: Bench::OneFinger, log: Log::Mixed, rate_hz: 100.0, seconds: 15.0 };
-        let first = blind::make(&spec, 3).0.recordings.remove(0);
-        let options = Options::default();
-        let recordings = [first];
-        let answer = diagnose(&recordings, &options).expect("an answer");
-        assert_eq!(answer.verdict, Verdict::Ambiguous);
-        let next = answer.next_experiment.clone().expect("an experiment");
-        let suspects = suspects(&recordings, &options, &answer).expect("worlds");
-        let ids: Vec<&str> = suspects.iter().map(|s| s.id.as_str()).collect();
+        let first = blind::make(&spec(Bench::OneFinger, 100.0), 3).0.recordings.remove(0);
+        let asked = Asked::of(first, Options::default());
+        let ids: Vec<&str> = asked.suspects.iter().map(|s| s.id.as_str()).collect();
         assert_eq!(ids, ["eccentric-mass", "gravity-tilt"]);
-        let again = |more: &Recording| {
-            let both = [recordings[0].clone(), more.clone()];
-            diagnose(&both, &options).map_err(|error| error.to_string())
-        };
-        let like = Like { recording: &recordings[0], noise_n: answer.noise_floor_n };
-        let rehearsal = rehearse(&suspects, &next, (2, like), &again, &|_| true).expect("rehearsed");
-        for outcome in &rehearsal.outcomes {
-            let came_out: Vec<_> = outcome.rounds.iter().map(|r| (&r.named, &r.open)).collect();
-            assert_eq!(
-                (outcome.settled(), outcome.rounds.len()),
-                (2, 2),
-                "{}: {came_out:?} {:?}",
-                outcome.id,
-                outcome.problem
-            );
-        }
-        assert_eq!(rehearse(&suspects, &next, (2, like), &again, &|share| share < 0.3).err(), Some(None));
+        asked.settles(asked.answer.noise_floor_n, &ids);
+        assert_eq!(asked.rehearsed(asked.answer.noise_floor_n, &|share| share < 0.3).err(), Some(None));
     }
 
     #[test]
     fn a_carry_would_tell_a_leak_from_a_drift_of_the_sensor_whichever_it_is() {
-        let recordings = [leaking().expect("performed")];
-        let options = Options::default();
-        let answer = diagnose(&recordings, &options).expect("an answer");
-        assert_eq!(answer.verdict, Verdict::Ambiguous, "{:?}", answer.causes);
-        let next = answer.next_experiment.clone().expect("an experiment");
-        let suspects = suspects(&recordings, &options, &answer).expect("worlds");
-        let again = |more: &Recording| {
-            let both = [recordings[0].clone(), more.clone()];
-            diagnose(&both, &options).map_err(|error| error.to_string())
-        };
-        let like = Like { recording: &recordings[0], noise_n: answer.noise_floor_n / std::f64::consts::SQRT_2 };
-        let rehearsal = rehearse(&suspects, &next, (2, like), &again, &|_| true).expect("rehearsed");
-        let came_out = |o: &Outcome| o.rounds.iter().map(|r| (r.named.clone(), r.open.clone())).collect::<Vec<_>>();
-        for id in ["mass-change", "force-drift"] {
-            let outcome = rehearsal.outcomes.iter().find(|o| o.id == id).expect("it is open");
-            let found = (outcome.settled(), outcome.rounds.len());
-            assert_eq!(found, (2, 2), "{id}: {:?} {:?}", came_out(outcome), outcome.problem);
-        }
-        let drifts = suspects.iter().find(|s| s.id == "force-drift").expect("a suspect");
-        let leaks = suspects.iter().find(|s| s.id == "mass-change").expect("a suspect");
+        let asked = Asked::of(leaking().expect("performed"), Options::default());
+        asked.settles(asked.answer.noise_floor_n / std::f64::consts::SQRT_2, &["mass-change", "force-drift"]);
+        let drifts = asked.suspects.iter().find(|s| s.id == "force-drift").expect("a suspect");
+        let leaks = asked.suspects.iter().find(|s| s.id == "mass-change").expect("a suspect");
         assert!(leaks.world.blocks[0].content.is_some() && leaks.fault == SensorFault::default());
         assert!(drifts.world.blocks[0].content.is_none() && drifts.fault != SensorFault::default());
     }
 
-    /// A hinge of the generator's with a mass off its axis, and the object for another motion.
-    fn hinge(seed: u64) -> (Recording, blind::case::Object) {
-        let effects = vec![(Effect::Eccentric, 0)];
-        let spec = Spec { effects, ratio: 2.0, bench: Bench::Angular, log: Log::Mixed, rate_hz: 250.0, seconds: 15.0 };
-        let (mut case, _, object) = blind::case::make_with_object(&spec, &[], seed);
-        (case.recordings.remove(0), object)
-    }
-
     #[test]
     fn a_mechanisms_experiment_is_rehearsed_along_its_coordinate_and_settles_the_question_on_the_real_one_too() {
-        let (first, object) = hinge(4);
+        let (mut case, _, object) = blind::case::make_with_object(&spec(Bench::Angular, 250.0), &[], 4);
         let options = Options { baseline: Some("mass+viscous+coulomb".to_owned()), ..Options::default() };
-        let recordings = [first];
-        let answer = diagnose(&recordings, &options).expect("an answer");
-        assert_eq!(answer.verdict, Verdict::Ambiguous, "{:?}", answer.causes);
-        let next = answer.next_experiment.clone().expect("an experiment");
-        let suspects = suspects(&recordings, &options, &answer).expect("worlds");
-        let again = |more: &Recording| {
-            let both = [recordings[0].clone(), more.clone()];
-            diagnose(&both, &options).map_err(|error| error.to_string())
-        };
-        let like = Like { recording: &recordings[0], noise_n: answer.noise_floor_n };
-        let rehearsal = rehearse(&suspects, &next, (2, like), &again, &|_| true).expect("rehearsed");
-        for id in ["eccentric-mass", "gravity-tilt"] {
-            let outcome = rehearsal.outcomes.iter().find(|o| o.id == id).expect("it is open");
-            let came_out: Vec<_> = outcome.rounds.iter().map(|r| (&r.named, &r.open)).collect();
-            assert_eq!(outcome.settled(), 2, "{id}: {came_out:?} {:?}", outcome.problem);
-        }
+        let asked = Asked::of(case.recordings.remove(0), options);
+        asked.settles(asked.answer.noise_floor_n, &["eccentric-mass", "gravity-tilt"]);
         // The real object, moved by the generator's own hand as the answer asks.
-        let asked = next.experiment.as_ref().expect("for a program");
-        let real = object.perform(asked, 9).expect("the hand knows the motion");
-        let settled = judged(&again(&real).expect("an answer"), "eccentric-mass", &next.separates, real);
+        let motion = asked.next.experiment.as_ref().expect("for a program");
+        let real = object.perform(motion, 9).expect("the hand knows the motion");
+        let answer = asked.again(&real).expect("an answer");
+        let settled = judged(&answer, "eccentric-mass", &asked.next.separates, real);
         assert!(settled.settled, "{:?} or {:?}", settled.named, settled.open);
     }
 }

@@ -4,13 +4,13 @@ use estimator::diagnose::SensorFault;
 use haptics::Vec2;
 use haptics::recording::Recording;
 
-/// Names of the forces of both fingers.
-const FORCES: [[&str; 2]; 2] = [["fx1_N", "fy1_N"], ["fx2_N", "fy2_N"]];
+/// Names of the forces of both fingers, and of a single tool, which has the first finger's sensor.
+const FORCES: [(usize, [&str; 2]); 3] = [(0, ["fx1_N", "fy1_N"]), (1, ["fx2_N", "fy2_N"]), (0, ["fx_N", "fy_N"])];
 
 /// Replaces the forces by what such sensors would have read. `held_from_s`: since when something is held.
 pub fn see_through(recording: &mut Recording, fault: &SensorFault, held_from_s: f64) {
     let Some(times) = recording.time_s.clone().filter(|_| *fault != SensorFault::default()) else { return };
-    for (finger, names) in FORCES.iter().enumerate() {
+    for (finger, names) in FORCES {
         let (Some(x), Some(y)) = (recording.channel(names[0]), recording.channel(names[1])) else { continue };
         let felt: Vec<Vec2> = x.iter().zip(y).map(|(x, y)| Vec2::new(*x, *y)).collect();
         let drifts_from_s =

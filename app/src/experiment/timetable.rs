@@ -10,12 +10,12 @@ use std::f64::consts::TAU;
 /// Goals are so far apart, s: the arm is a hundred times slower.
 const PERIOD_S: f64 = 2e-3;
 /// Spare opening of the fingers around an object, m on both sides together.
-const CLEARANCE_M: f64 = 0.006;
+pub(super) const CLEARANCE_M: f64 = 0.006;
 /// Nothing is touched for so long at least before and after, s: sensors show their zero.
-const LEAST_FREE_S: f64 = 1.0;
+pub(super) const LEAST_FREE_S: f64 = 1.0;
 /// A reach through the air, closing or opening, and a rest between them, s.
-const REACH_S: f64 = 1.0;
-const CLOSE_S: f64 = 0.6;
+pub(super) const REACH_S: f64 = 1.0;
+pub(super) const CLOSE_S: f64 = 0.6;
 const REST_S: f64 = 0.4;
 /// Peak over mean speed of a movement from rest to rest.
 const PEAK: f64 = 1.875;
@@ -59,6 +59,10 @@ impl Timetable {
         let mut writer = Writer::at_rest(&world);
         if let Some(crank) = &world.crank {
             writer.turn(crank, &world, asked, motion)?;
+        } else if let Some(membrane) = &world.membrane {
+            writer.pierce(membrane, &world, asked)?;
+        } else if let Some(switch) = &world.switch {
+            writer.throw(switch, asked)?;
         } else if asked.id.starts_with("carry-") && !world.blocks.is_empty() {
             writer.carry(&world, asked, motion)?;
         } else {
@@ -101,6 +105,8 @@ fn made_ready(world: &World, asked: &Experiment) -> Result<World, String> {
             hang(&mut crank.effects, asked.added_weight_n, world.gravity_m_s2);
         }
         crank.start_rad = rest_rad(crank);
+    } else if let Some(switch) = world.switch.as_mut().filter(|_| asked.added_weight_n <= 0.0) {
+        switch.start_m = switch.curve.points.first().map_or(switch.start_m, |end| end.at_m);
     } else if asked.added_weight_n > 0.0 {
         return Err("Nothing can be hung on the object of this world.".to_owned());
     }
@@ -146,11 +152,11 @@ fn rest_rad(crank: &Crank) -> f64 {
 }
 
 /// Writes goals one after the other.
-struct Writer {
-    goals: Vec<HandGoal>,
+pub(super) struct Writer {
+    pub(super) goals: Vec<HandGoal>,
     steps: Vec<Step>,
-    at: HandGoal,
-    away: HandGoal,
+    pub(super) at: HandGoal,
+    pub(super) away: HandGoal,
 }
 
 impl Writer {
@@ -159,16 +165,16 @@ impl Writer {
         Self { goals: vec![at], steps: Vec::new(), at, away: at }
     }
 
-    fn now_s(&self) -> f64 {
+    pub(super) fn now_s(&self) -> f64 {
         PERIOD_S * (self.goals.len() - 1) as f64
     }
 
-    fn wait(&mut self, seconds: f64) {
+    pub(super) fn wait(&mut self, seconds: f64) {
         self.go(seconds, self.at);
     }
 
     /// In minimum jerk.
-    fn go(&mut self, seconds: f64, to: HandGoal) {
+    pub(super) fn go(&mut self, seconds: f64, to: HandGoal) {
         let (from, count) = (self.at, (seconds / PERIOD_S).round().max(1.0) as usize);
         for k in 1..=count {
             let u = k as f64 / count as f64;
@@ -182,13 +188,13 @@ impl Writer {
         self.at = to;
     }
 
-    fn say(&mut self, words: impl Into<String>, holds: bool) {
+    pub(super) fn say(&mut self, words: impl Into<String>, holds: bool) {
         let until_s = self.now_s();
         self.steps.push(Step { until_s, words: words.into(), holds });
     }
 
     /// Keeps off, comes and closes; what is held is `width_m` wide and `at` there. `over_m`: from how far above it is reached for.
-    fn take(&mut self, free_s: f64, (at, over_m): (Vec2, f64), width_m: f64, pinch_n: f64) {
+    pub(super) fn take(&mut self, free_s: f64, (at, over_m): (Vec2, f64), width_m: f64, pinch_n: f64) {
         self.wait(free_s.max(LEAST_FREE_S));
         self.say("Touch nothing.", false);
         let open = HandGoal { center_m: at, aperture_m: width_m + CLEARANCE_M, pinch_n: 0.0 };
@@ -205,7 +211,7 @@ impl Writer {
     }
 
     /// Opens, goes away and keeps off.
-    fn let_go(&mut self, free_s: f64, over_m: f64, width_m: f64) {
+    pub(super) fn let_go(&mut self, free_s: f64, over_m: f64, width_m: f64) {
         self.wait(REST_S);
         self.go(CLOSE_S, HandGoal { aperture_m: width_m + 2.0 * CLEARANCE_M, pinch_n: 0.0, ..self.at });
         let up = self.at.center_m + Vec2::new(0.0, over_m.max(AWAY_M));
@@ -302,7 +308,7 @@ fn usual_drag_n(crank: &Crank, asked: &Experiment) -> f64 {
     crank.effects.iter().filter(resists).map(|e| e.force(&motion)).sum::<f64>().abs()
 }
 
-fn unknown(asked: &Experiment) -> String {
+pub(super) fn unknown(asked: &Experiment) -> String {
     format!("Nobody here knows the motion `{}`; do it on the real object and load the recording.", asked.id)
 }
 

@@ -71,6 +71,8 @@ pub struct Candidate {
     pub shape: Shape,
     /// The least size of its first parameter: what is smaller is within what the model itself is known by.
     pub least: f64,
+    /// Measurement noise of its column, a row: a rate is measured less well than a direction.
+    pub noise: f64,
     /// Side of a one-sided law: +1, −1, or 0 where there is none.
     pub side: f64,
     /// Of a generic term that is no cause: its expression.
@@ -90,6 +92,7 @@ impl Candidate {
             sign: 0.0,
             shape: Shape::Any,
             least: 0.0,
+            noise: 0.0,
             side: 0.0,
             expression: None,
         }
@@ -113,6 +116,7 @@ impl Candidate {
             sign: 0.0,
             shape: Shape::Any,
             least: 0.0,
+            noise: 0.0,
             side: 0.0,
             expression: None,
         }
@@ -141,6 +145,12 @@ impl Candidate {
     /// Whose first parameter is so large at least.
     pub fn at_least(mut self, least: f64) -> Self {
         self.least = least;
+        self
+    }
+
+    /// Whose column is measured with so much noise.
+    pub fn noisy(mut self, noise: f64) -> Self {
+        self.noise = noise;
         self
     }
 

@@ -49,7 +49,7 @@ pub use report::{
 };
 
 pub use course::Course;
-pub use experiment::{Stroke, Strokes};
+pub use experiment::{Insertions, Stroke, Strokes, Throw, Throws};
 pub use progress::Progress;
 pub use suspects::{SensorFault, Suspect, suspects};
 pub use world::{Worlds, extended_world, worlds};

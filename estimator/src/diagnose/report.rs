@@ -172,7 +172,8 @@ pub struct NextExperiment {
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Experiment {
     /// Which motion: `sweep-across`, `sweep-let-go`, `short-strokes`, `bursts`, `one-way`, `rests-and-squeezes`, `long-mixed`,
-    /// `hang-weight`, `carry-let-go`, `carry-still` or `slide-let-go`; `docs/diagnosis.md` says what each is.
+    /// `hang-weight`, `carry-let-go`, `carry-still`, `slide-let-go`, `pierce-slow-fast` or `throw-slow-fast`; `docs/diagnosis.md` says what
+    /// each is.
     pub id: String,
     /// How long the object is held, s.
     pub seconds: f64,

@@ -347,11 +347,26 @@ impl Selection<'_> {
         order
     }
 
+    /// What the noise of a candidate's own column takes off its score, the last of `chosen`: that it is measured less well speaks not
+    /// against it.
+    fn forgiven(&self, chosen: &[usize], c: usize) -> f64 {
+        /// What is left of the residual at least is something else.
+        const MOST: f64 = 0.9;
+        let noise = self.candidates[c].noise;
+        let Some(solved) = self.system.solve(chosen).filter(|_| noise > 0.0) else { return 0.0 };
+        let own = self.system.base + chosen.iter().map(|c| self.candidates[*c].columns.len()).sum::<usize>()
+            - self.candidates[c].columns.len();
+        let whitened = 1.0 + self.system.coefficients.iter().map(|a| a * a).sum::<f64>();
+        let share = (solved.values[own] * noise).powi(2) * whitened * self.system.rows / solved.rss;
+        -self.system.rows * (1.0 - share.min(MOST)).ln()
+    }
+
     /// The best candidate of every other cause that scores nearly as well in this one's place.
     fn rivals(&self, rest: &[usize], own: usize, whole: f64) -> Vec<(usize, f64)> {
         let mut best: Vec<(usize, f64)> = Vec::new();
         for c in self.open(rest).filter(|c| self.candidates[*c].id != self.candidates[own].id) {
-            let behind = self.price(&[rest, &[c]].concat()) - whole;
+            let others = [rest, &[c]].concat();
+            let behind = (self.price(&others) - whole - self.forgiven(&others, c)).max(0.0);
             if !behind.is_finite() || behind > AMBIGUOUS {
                 continue;
             }

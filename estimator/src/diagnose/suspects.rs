@@ -9,7 +9,7 @@ use super::geometry::Study;
 use super::report::{CauseParameter, Diagnosis};
 use super::track::Track;
 use super::world::{calibrated, with_laws};
-use super::{Options, blocks, switch};
+use super::{Options, blocks, needle, switch};
 use crate::estimate::EstimateError;
 use haptics::Vec2;
 use haptics::law::{EccentricMass, Effect, GravityTilt, Kind, Law as _, Weight};
@@ -160,42 +160,73 @@ pub(super) trait Simulated {
     fn act(&self, candidate: &Candidate, values: &[f64]) -> Option<Act>;
     /// Whether a fault begins once something is held.
     fn is_late(&self, candidate: &Candidate) -> bool;
+    /// A fault as the sensors have it.
+    fn fault(&self, fault: SensorFault) -> SensorFault {
+        fault
+    }
 }
 
-/// The same for what acts on carried blocks.
-pub(super) fn of_blocks(study: &Study, channel: &dyn Simulated) -> Vec<Hypothesis> {
-    let picks = study.picks();
+/// The same for what has no laws along one coordinate: each question of each channel, the others answered as they were.
+pub(super) fn of_channels(channels: &[(&Study, &dyn Simulated)]) -> Vec<Hypothesis> {
+    let found: Vec<Vec<usize>> = channels.iter().map(|(study, _)| study.picks()).collect();
     let mut all = Vec::new();
-    for (k, chosen) in study.chosen.iter().enumerate() {
-        for candidate in std::iter::once(chosen.candidate).chain(chosen.rivals.iter().map(|(rival, _)| *rival)) {
-            let mut picks = picks.clone();
-            picks[k] = candidate;
-            let Some(solved) = study.system.solve(&picks) else { continue };
-            let mut at = study.base.len();
-            let plant = picks.iter().map(|p| {
-                let candidate = &study.candidates[*p];
-                let values = &solved.values[at..at + candidate.columns.len()];
-                at += candidate.columns.len();
-                if candidate.kind == Kind::Plant { Some(channel.act(candidate, values)) } else { None }
-            });
-            let mut acts = channel.base(&solved.values[..study.base.len()]);
-            let inside = plant.flatten().collect::<Option<Vec<Act>>>().map(|plant| {
-                acts.extend(plant);
-                Inside::Acts(acts)
-            });
-            let fault = fault(study, &picks, &solved.values).map(|fault| SensorFault {
-                drifts_once_held: picks.iter().any(|p| channel.is_late(&study.candidates[*p])),
-                ..fault
-            });
-            all.push(Hypothesis { id: study.candidates[candidate].id.to_owned(), inside, fault, hung_share: 1.0 });
+    for (c, (study, _)) in channels.iter().enumerate() {
+        for (k, chosen) in study.chosen.iter().enumerate() {
+            for candidate in std::iter::once(chosen.candidate).chain(chosen.rivals.iter().map(|(rival, _)| *rival)) {
+                let mut picks = found.clone();
+                picks[c][k] = candidate;
+                let id = study.candidates[candidate].id.to_owned();
+                all.extend(of_picks(channels, &picks).map(|(acts, fault)| Hypothesis {
+                    id,
+                    inside: acts.map(Inside::Acts),
+                    fault,
+                    hung_share: 1.0,
+                }));
+            }
         }
     }
     all
 }
 
+/// Acts and faults of some candidates of each channel; nothing where they cannot be solved.
+fn of_picks(
+    channels: &[(&Study, &dyn Simulated)],
+    picks: &[Vec<usize>],
+) -> Option<(Option<Vec<Act>>, Option<SensorFault>)> {
+    let (mut acts, mut sum) = (Some(Vec::new()), Some(SensorFault::default()));
+    for ((study, channel), picks) in channels.iter().zip(picks) {
+        let solved = study.system.solve(picks)?;
+        let mut at = study.base.len();
+        let mut own = channel.base(&solved.values[..at]);
+        for candidate in picks.iter().map(|p| &study.candidates[*p]) {
+            let values = &solved.values[at..at + candidate.columns.len()];
+            at += candidate.columns.len();
+            match channel.act(candidate, values) {
+                _ if candidate.kind != Kind::Plant => {}
+                Some(act) => own.push(act),
+                None => acts = None,
+            }
+        }
+        if let Some(acts) = &mut acts {
+            acts.append(&mut own);
+        }
+        sum = sum.and_then(|sum| add_faults(&sum, study, picks, &solved.values));
+        if let Some(sum) = &mut sum {
+            sum.drifts_once_held |= picks.iter().any(|p| channel.is_late(&study.candidates[*p]));
+        }
+    }
+    let as_sensed = |sum| channels.first().map_or(sum, |(_, channel)| channel.fault(sum));
+    Some((acts, sum.map(as_sensed)))
+}
+
 /// The faults of the sensors among some candidates; nothing where one of them is none that can be put into a recording.
 fn fault(study: &Study, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
-    let mut sum = SensorFault::default();
+    add_faults(&SensorFault::default(), study, picks, values)
+}
+
+/// The same beside others.
+fn add_faults(beside: &SensorFault, study: &Study, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
+    let mut sum = *beside;
     let mut at = study.base.len();
     for candidate in picks.iter().map(|p| &study.candidates[*p]) {
         let end = at + candidate.columns.len();
@@ -219,6 +250,15 @@ fn tilted(laws: &[Effect]) -> Option<Vec<Effect>> {
     Some(others.chain([Effect::new(&Weight, &[weight_n]), tilt]).collect())
 }
 
+/// The world with all that was found about a needle, as its first hypothesis has it.
+pub(super) fn as_found(world: &World, diagnosis: &Diagnosis) -> Option<World> {
+    let first = diagnosis.hypotheses.first().filter(|_| world.membrane.is_some())?;
+    match first.inside.as_ref()? {
+        Inside::Acts(acts) => Some(needle::with_acts(world, acts)),
+        Inside::Laws(_) => None,
+    }
+}
+
 /// Everything that the recordings leave open, as worlds: first what was found. Answers that no world can imitate are left out; so is
 /// everything where a fault of the sensors was found that cannot be put into a recording.
 pub fn suspects(
@@ -230,6 +270,8 @@ pub fn suspects(
     let suspect = |h: &Hypothesis| {
         let mut world = match h.inside.as_ref()? {
             Inside::Laws(laws) => with_laws(&world, laws),
+            Inside::Acts(acts) if world.membrane.is_some() => needle::with_acts(&world, acts),
+            Inside::Acts(acts) if world.switch.is_some() => switch::with_acts(&world, acts),
             Inside::Acts(acts) => blocks::with_acts(&world, diagnosis, acts),
         };
         world.name = format!("{}, with {}", world.name, h.id.replace('-', " "));

@@ -1,6 +1,7 @@
 //! The worlds before and after a diagnosis.
 
 use super::report::Diagnosis;
+use super::suspects::as_found;
 use super::{Options, blocks, pipeline, switch};
 use crate::estimate::EstimateError;
 use haptics::law::{Effect, Role};
@@ -25,6 +26,7 @@ pub fn worlds(recordings: &[Recording], options: &Options, diagnosis: &Diagnosis
     if world.crank.is_none() && world.mechanism.is_none() {
         blocks::extend(&mut after, diagnosis);
         switch::extend(&mut after, diagnosis);
+        after = as_found(&after, diagnosis).unwrap_or(after);
     }
     Ok(Worlds { before: with_laws(&world, &diagnosis.plain), after })
 }

@@ -5,7 +5,7 @@ use super::sensor::{Instruments, look};
 use super::{Case, Truth};
 use crate::generate::{Errors, act};
 use blind::Chance;
-use estimator::diagnose::Options;
+use estimator::diagnose::{Experiment, Options};
 use estimator::pipeline;
 use haptics::Vec2;
 use haptics::device::Skill;
@@ -69,8 +69,26 @@ pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
 pub fn twice(kind: Kind, seed: u64) -> (Case, Truth, Recording) {
     let mut chance = Chance::new(seed, 78);
     let (case, truth, (sheet, drift_n_s)) = tool(kind, &mut chance);
-    let again = perform(&sheet, drift_n_s, &mut chance);
+    let usual = plan(&sheet, &mut chance);
+    let again = perform(&sheet, drift_n_s, &usual, &mut chance);
     (case, truth, again)
+}
+
+/// A case that a stand pushed in, and to and fro in the hole, at one speed: what rubs there is the same at any speed, or is not.
+pub fn at_one_speed(kind: Kind, seed: u64) -> (Case, Truth) {
+    let mut chance = Chance::new(seed, 78);
+    let (mut case, truth, (sheet, drift_n_s)) = tool(kind, &mut chance);
+    let even = stand(&sheet, &mut chance);
+    case.recordings = vec![perform(&sheet, drift_n_s, &even, &mut chance)];
+    (case, truth)
+}
+
+/// The same sheet under a tool that does what was asked for; nothing for a motion that is none of a needle's.
+pub fn as_asked(kind: Kind, seed: u64, asked: &Experiment, by: u64) -> Option<Recording> {
+    let (_, _, (sheet, drift_n_s)) = tool(kind, &mut Chance::new(seed, 78));
+    let mut chance = Chance::new(by, 78);
+    let wanted = follow(asked, &mut chance)?;
+    Some(perform(&sheet, drift_n_s, &wanted, &mut chance))
 }
 
 /// What the tool meets.
@@ -89,14 +107,14 @@ impl Sheet {
     }
 }
 
-/// A smooth way through turning points (time, place).
-fn way(t: f64, turns: &[(f64, f64)]) -> f64 {
+/// A way through turning points (time, place): smooth, or at an even speed between them.
+fn way(t: f64, turns: &[(f64, f64)], is_even: bool) -> f64 {
     let k = turns.partition_point(|(at, _)| *at <= t);
     let (Some(&(t0, from)), Some(&(t1, to))) = (k.checked_sub(1).and_then(|k| turns.get(k)), turns.get(k)) else {
         return if k == 0 { turns[0].1 } else { turns[turns.len() - 1].1 };
     };
     let s = (t - t0) / (t1 - t0);
-    from + (to - from) * s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s)
+    from + (to - from) * if is_even { s } else { s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s) }
 }
 
 /// With the sheet and the drift.
@@ -150,7 +168,8 @@ fn tool(kind: Kind, chance: &mut Chance) -> (Case, Truth, (Sheet, f64)) {
         }
         _ => {}
     }
-    let recordings = vec![perform(&sheet, drift_n_s, chance)];
+    let usual = plan(&sheet, chance);
+    let recordings = vec![perform(&sheet, drift_n_s, &usual, chance)];
     (Case { recordings, options: Options::default() }, truth, (sheet, drift_n_s))
 }
 
@@ -158,6 +177,8 @@ fn tool(kind: Kind, chance: &mut Chance) -> (Case, Truth, (Sheet, f64)) {
 struct Plan {
     turns: Vec<(f64, f64)>,
     cross: Vec<(f64, f64)>,
+    /// A stand does it: at an even speed, without a tremor.
+    is_even: bool,
 }
 
 /// In a little, back, through, to and fro in the hole at two speeds, out; the same at another place.
@@ -195,30 +216,82 @@ fn plan(sheet: &Sheet, chance: &mut Chance) -> Plan {
         cross.extend([(at, side), (at + 0.8, side + 8e-3)]);
         turns.push((at + 1.0, outside));
     }
-    Plan { turns, cross }
+    Plan { turns, cross, is_even: false }
+}
+
+impl Sheet {
+    /// How deep it is pushed in when it gives way the first time, m.
+    fn deep_m(&self) -> f64 {
+        let mut x = 0.0;
+        while self.elastic_n(x) < self.puncture_n[0] {
+            x += 1e-6;
+        }
+        x
+    }
+}
+
+/// Through once, and to and fro in the hole, all at one speed.
+fn stand(sheet: &Sheet, chance: &mut Chance) -> Plan {
+    let (deep, speed_m_s) = (sheet.deep_m(), chance.between(4e-3, 7e-3));
+    let outside = -chance.between(4e-3, 7e-3);
+    let mut turns = vec![(0.0, outside), (1.0, outside)];
+    let mut go = |place: f64| {
+        let (at, from) = turns[turns.len() - 1];
+        turns.push((at + (place - from).abs() / speed_m_s, place));
+    };
+    go(deep + 6e-3);
+    for _ in 0..4 {
+        go(deep + 1.5e-3);
+        go(deep + 6e-3);
+    }
+    go(outside);
+    Plan { turns, cross: vec![(0.0, 0.0)], is_even: true }
+}
+
+/// What was asked for, after its description: for each insertion some way in and out, through, slow and fast strokes in the hole, out.
+fn follow(asked: &Experiment, chance: &mut Chance) -> Option<Plan> {
+    let (deep, full) = (asked.middle - asked.half_range, asked.middle + asked.half_range);
+    let mut turns = vec![(0.0, -4e-3), (1.0, -4e-3)];
+    let mut cross = vec![(0.0, 0.0)];
+    let strokes = |slow: f64| [(deep, slow), (full, slow), (deep, slow), (full, slow)];
+    while asked.id == "pierce-slow-fast" && turns[turns.len() - 1].0 < asked.seconds {
+        let mut moves = vec![(0.6 * deep, 0.2), (-4e-3, 1.0), (full, 0.5)];
+        moves.extend(strokes(0.15).into_iter().chain(strokes(1.0)).chain(strokes(1.0)));
+        moves.push((-4e-3, 0.5));
+        for (place, pace) in moves {
+            let (at, from) = turns[turns.len() - 1];
+            let takes_s = 1.875 * (place - from).abs() / (pace * asked.fast) * chance.between(0.95, 1.05);
+            turns.push((at + takes_s.max(0.15), place));
+        }
+        let ((at, _), side) = (turns[turns.len() - 1], cross[cross.len() - 1].1);
+        cross.extend([(at, side), (at + 0.8, side + 8e-3)]);
+        turns.push((at + 1.0, -4e-3));
+    }
+    (turns.len() > 2).then_some(Plan { turns, cross, is_even: false })
 }
 
 /// The sheet under the tool, and what its instruments read.
-fn perform(sheet: &Sheet, drift_n_s: f64, chance: &mut Chance) -> Recording {
+fn perform(sheet: &Sheet, drift_n_s: f64, plan: &Plan, chance: &mut Chance) -> Recording {
     const FINE_S: f64 = 5e-5;
     let rate_hz = chance.pick(&[250.0, 500.0, 1000.0]);
     let every = (1.0 / (rate_hz * FINE_S)).round() as usize;
-    let Plan { turns, cross } = plan(sheet, chance);
+    let Plan { turns, cross, is_even } = plan;
+    let tremor_m = if *is_even { 0.0 } else { 4e-5 };
     let end_s = turns[turns.len() - 1].0 + 0.5;
     let surface_m = chance.between(-0.02, 0.02);
     let bias = 0.03 * chance.normal();
     let phase = chance.between(0.0, 6.0);
-    let (mut deepest, mut pierced, mut place) = (0.0_f64, false, 0_usize);
+    let (mut deepest, mut pierced, mut site, mut place) = (0.0_f64, false, 0_usize, 0_usize);
     let (mut time, mut depth, mut side, mut force) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut before = turns[0].1;
     for fine in 0..(end_s / FINE_S) as usize {
         let t = fine as f64 * FINE_S;
-        let across = way(t, &cross);
-        let here = usize::from(across > 4e-3);
-        if here != place {
-            (place, deepest, pierced) = (here, 0.0, false);
+        let across = way(t, cross, false);
+        let here = (across / 8e-3).round() as usize;
+        if here != site {
+            (site, place, deepest, pierced) = (here, here.min(1), 0.0, false);
         }
-        let x = way(t, &turns) + 4e-5 * (50.0 * t + phase).sin();
+        let x = way(t, turns, *is_even) + tremor_m * (50.0 * t + phase).sin();
         let speed = (x - before) / FINE_S;
         before = x;
         let mut f = 0.0;

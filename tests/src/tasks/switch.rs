@@ -4,7 +4,7 @@ use super::sensor::{Instruments, look};
 use super::{Case, Truth};
 use crate::captured::draw_curve;
 use blind::Chance;
-use estimator::diagnose::Options;
+use estimator::diagnose::{Experiment, Options};
 use estimator::pipeline;
 use haptics::Vec2;
 use haptics::device::HandImpedance;
@@ -102,12 +102,61 @@ pub fn twice(kind: Kind, seed: u64) -> (Case, Truth, Recording) {
     (case, truth, again.expect("it was asked for"))
 }
 
-fn made(kind: Kind, seed: u64, twice: bool) -> (Case, Truth, Option<Recording>) {
+/// A case beside a captured world in which the switch is thrown to one side only, once a recording, and put back in between: what rubs
+/// more both ways, or one way, looks alike.
+pub fn to_one_side(kind: Kind, seed: u64) -> (Case, Truth) {
+    let (_, truth, at) = hidden(kind, seed);
+    let mut chance = Chance::new(seed, 84);
+    let mut once = || {
+        let throw = Throw { takes_s: chance.between(2.0, 3.5), beyond_m: 4e-3, stays_s: 0.4 };
+        record_throws(&at, &[throw], &mut chance)
+    };
+    let recordings = vec![once(), once(), once()];
+    let captured = record(&at.before, &Instruments::default(), Beside::default(), &mut chance);
+    let known = pipeline::analyse(&[captured], &pipeline::Options::default()).expect("it was thrown both ways").world;
+    (Case { recordings, options: Options { world: Some(known), ..Options::default() } }, truth)
+}
+
+/// The same switch, thrown as was asked for; nothing for a motion that is none of a switch's.
+pub fn as_asked(kind: Kind, seed: u64, asked: &Experiment, by: u64) -> Option<Recording> {
+    let (_, _, at) = hidden(kind, seed);
+    let mut chance = Chance::new(by, 84);
+    let switch = at.world.switch.as_ref().expect("a switch");
+    let knob_m = switch.knob_in_world(switch.curve.points.last().expect("an end").at_m).x;
+    let beyond_m = asked.half_range - knob_m - 3e-3;
+    let pace = |k: usize| [0.15, 1.0, 0.4][(k / 2) % 3] * chance_near_one(k);
+    let takes_s = |k: usize| 1.875 * 2.0 * asked.half_range / (pace(k) * asked.fast);
+    let mut throws: Vec<Throw> = Vec::new();
+    while asked.id == "throw-slow-fast" && throws.iter().map(|t| t.takes_s + 1.0).sum::<f64>() < asked.seconds {
+        throws.push(Throw { takes_s: takes_s(throws.len()), beyond_m, stays_s: 0.35 });
+    }
+    (!throws.is_empty()).then(|| record_throws(&at, &throws, &mut chance))
+}
+
+/// Nobody is as fast every time.
+fn chance_near_one(k: usize) -> f64 {
+    1.0 + 0.05 * (2.3 * k as f64).sin()
+}
+
+/// A switch with what is hidden in it.
+struct Hidden {
+    before: World,
+    world: World,
+    instruments: Instruments,
+    beside: Beside,
+}
+
+fn hidden(kind: Kind, seed: u64) -> (Chance, Truth, Hidden) {
     let mut chance = Chance::new(seed, 83);
     let before = drawn(seed, &mut chance);
     let mut world = before.clone();
     let (mut instruments, mut beside, mut truth) = (Instruments::default(), Beside::default(), Truth::default());
     hide(kind, &mut world, (&mut instruments, &mut beside), &mut truth, &mut chance);
+    (chance, truth, Hidden { before, world, instruments, beside })
+}
+
+fn made(kind: Kind, seed: u64, twice: bool) -> (Case, Truth, Option<Recording>) {
+    let (mut chance, truth, Hidden { before, world, instruments, beside }) = hidden(kind, seed);
     let recording = record(&world, &instruments, beside, &mut chance);
     let known = kind.has_world().then(|| {
         let captured = record(&before, &Instruments::default(), Beside::default(), &mut chance);
@@ -258,7 +307,24 @@ fn bind(world: &mut World, chance: &mut Chance) {
 }
 
 fn record(world: &World, instruments: &Instruments, beside: Beside, chance: &mut Chance) -> Recording {
-    let mut ticks = throws(world, beside, chance);
+    let throws = throws(chance);
+    record_way(world, instruments, beside, &throws, chance)
+}
+
+fn record_throws(at: &Hidden, throws: &[Throw], chance: &mut Chance) -> Recording {
+    record_way(&at.world, &at.instruments, at.beside, throws, chance)
+}
+
+fn record_way(
+    world: &World,
+    instruments: &Instruments,
+    beside: Beside,
+    throws: &[Throw],
+    chance: &mut Chance,
+) -> Recording {
+    let switch = world.switch.as_ref().expect("a switch");
+    let way = way(switch, throws, chance.between(1.0, 2.0));
+    let mut ticks = act(world, beside, &way, switch.knob_radius_m + 3e-3);
     let forces: Vec<[Vec2; 2]> =
         (0..ticks.len()).map(|k| ticks[k.saturating_sub(beside.late_ms)].tip_force_n).collect();
     ticks.iter_mut().zip(forces).for_each(|(tick, force)| tick.tip_force_n = force);
@@ -266,18 +332,14 @@ fn record(world: &World, instruments: &Instruments, beside: Beside, chance: &mut
     look(world, &ticks, every, instruments, Task::Switch, chance)
 }
 
-/// One tick a millisecond.
-fn throws(world: &World, beside: Beside, chance: &mut Chance) -> Vec<TickRecord> {
-    let switch = world.switch.as_ref().expect("a switch");
+fn throws(chance: &mut Chance) -> Vec<Throw> {
     let count = 2 * chance.pick(&[5, 6, 7]);
     let each = |chance: &mut Chance| Throw {
         takes_s: chance.of_order(0.8, 2.6),
         beyond_m: chance.between(2e-3, 6e-3),
         stays_s: chance.between(0.2, 0.5),
     };
-    let throws: Vec<Throw> = (0..count).map(|_| each(chance)).collect();
-    let way = way(switch, &throws, chance.between(1.0, 2.0));
-    act(world, beside, &way, switch.knob_radius_m + 3e-3)
+    (0..count).map(|_| each(chance)).collect()
 }
 
 /// Where the middle of both fingers is wanted: times, s, and places, m.

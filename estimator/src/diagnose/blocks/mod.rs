@@ -20,7 +20,7 @@ use super::answer::{Beside, Compared, Found, Part, answer};
 use super::candidate::Candidate;
 use super::quality;
 use super::report::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
-use super::suspects::of_blocks;
+use super::suspects::of_channels;
 use super::{Options, threshold};
 use crate::estimate::EstimateError;
 use carry::Carry;
@@ -70,7 +70,7 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         found.atlas.channels.extend(grasp.iter().map(|g| g.compared.atlas(&g.view, limit, grasp::best_seen)));
         found.atlas.channels.extend(ground.iter().map(|g| g.compared.atlas(&g.view, limit, ground::best_seen)));
     }
-    found.hypotheses = of_blocks(&carry.compared.study, &carry);
+    found.hypotheses = of_channels(&[(&carry.compared.study, &carry)]);
     Ok(found)
 }
 

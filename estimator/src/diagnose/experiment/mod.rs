@@ -4,8 +4,11 @@ mod imagine;
 mod library;
 mod separation;
 mod strokes;
+mod turns;
 
 pub use strokes::{Stroke, Strokes};
+pub use turns::{Insertions, Throw, Throws};
+pub(super) use turns::{PIERCE, THROW};
 
 use super::force::Model;
 use super::geometry::Study;
@@ -13,7 +16,7 @@ use super::report::{Alternative, Experiment, NextExperiment};
 use super::track::Track;
 use imagine::imagine;
 use library::{Excitation, HANG, LIBRARY};
-use separation::separation;
+pub(super) use separation::{Imagined, separation};
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Lengths of a proposed recording, s: the shortest that is likely to do.
@@ -49,11 +52,9 @@ pub fn propose(track: &Track, model: &Model, study: &Study, open: &[Alternative]
     for seconds in LENGTHS_S {
         for excitation in LIBRARY.iter().filter(|e| track.planar || e.free_s == 0.0) {
             let asked = asked(track, excitation, seconds);
-            let imagined = imagine(track, model, values, excitation, &asked);
-            let least = pairs
-                .iter()
-                .filter_map(|pair| separation(&imagined, model, study, *pair))
-                .fold(f64::INFINITY, f64::min);
+            let imagined = Imagined::along(&imagine(track, model, values, excitation, &asked), model, study);
+            let least =
+                pairs.iter().filter_map(|pair| separation(&imagined, study, *pair)).fold(f64::INFINITY, f64::min);
             if least.is_finite() && best.as_ref().is_none_or(|(most, _)| least > *most) {
                 let next = proposal(excitation.words.to_owned(), &pairs, SURE * power(least), asked);
                 best = Some((least, next));

@@ -9,35 +9,22 @@ use super::super::system::{Held, Rows, whiten};
 use super::super::track::Track;
 use nalgebra::{DMatrix, DVector};
 
-/// λ of the worse case: either the found cause is there or its rival, and the model and the other one imitate what they can of it on this
-/// motion. Over the noise as it is coloured.
-pub fn separation(imagined: &Track, model: &Model, study: &Study, pair: (&str, &str)) -> Option<f64> {
-    let found = study.chosen.iter().position(|c| study.candidates[c.candidate].id == pair.0)?;
-    let mut picks = study.picks();
-    let eye = Eye::new(imagined, model, study)?;
-    let forward = eye.lambda(study, &picks, found, pair.1)?;
-    let rival = study.chosen[found].rivals.iter().find(|(c, _)| study.candidates[*c].id == pair.1);
-    let Some((rival, _)) = rival else { return Some(forward) };
-    picks[found] = *rival;
-    let backward = eye.lambda(study, &picks, found, pair.0);
-    Some(backward.map_or(forward, |backward| forward.min(backward)))
+/// Rows of a motion that was not made yet, as a channel would see them.
+pub struct Imagined {
+    /// Columns of the model and of everything that could explain the rows.
+    pub base: Vec<Vec<f64>>,
+    pub candidates: Vec<Candidate>,
+    /// Rows of one number follow each other without a gap.
+    pub stretch: Vec<usize>,
+    /// What each row's noise is smaller by.
+    pub weight: Vec<f64>,
+    /// Time between rows, s.
+    pub period_s: f64,
 }
 
-/// What would be seen of causes on a motion.
-struct Eye<'a> {
-    candidates: Vec<Candidate>,
-    /// The model's own columns, whitened.
-    base: Vec<Vec<f64>>,
-    weight: Vec<f64>,
-    stretch: Vec<usize>,
-    track: &'a Track,
-    coefficients: &'a [f64],
-    variance: f64,
-}
-
-impl<'a> Eye<'a> {
-    fn new(track: &'a Track, model: &Model, study: &'a Study) -> Option<Self> {
-        let solved = study.solved.as_ref()?;
+impl Imagined {
+    /// What would be seen of causes along a coordinate.
+    pub fn along(track: &Track, model: &Model, study: &Study) -> Self {
         let base: Vec<Vec<f64>> = model.iter().map(|e| column(track, e)).collect();
         let predicted: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
         let dry = dry_of(track, &predicted);
@@ -53,18 +40,52 @@ impl<'a> Eye<'a> {
             grid: &grid,
         }
         .candidates();
-        let variance = (solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0)).max(1e-24);
-        let mut eye = Self {
+        let variance = variance(study).unwrap_or(1.0);
+        Self {
+            base,
             candidates,
-            base: Vec::new(),
+            stretch: track.rows.iter().map(|r| r.stretch).collect(),
             // Where the direction is a guess, so is all of the friction.
             weight: track.rows.iter().map(|r| (1.0 + r.y * r.y * r.open / variance).powf(-0.5)).collect(),
-            stretch: track.rows.iter().map(|r| r.stretch).collect(),
-            track,
-            coefficients: &study.system.coefficients,
-            variance,
-        };
-        eye.base = base.iter().map(|column| eye.white(column)).collect();
+            period_s: track.period_s,
+        }
+    }
+}
+
+/// What a study left of a row's power, on the average.
+fn variance(study: &Study) -> Option<f64> {
+    let solved = study.solved.as_ref()?;
+    Some((solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0)).max(1e-24))
+}
+
+/// λ of the worse case: either the found cause is there or its rival, and the model and the other one imitate what they can of it on this
+/// motion. Over the noise as it is coloured.
+pub fn separation(imagined: &Imagined, study: &Study, pair: (&str, &str)) -> Option<f64> {
+    let found = study.chosen.iter().position(|c| study.candidates[c.candidate].id == pair.0)?;
+    let mut picks = study.picks();
+    let eye = Eye::new(imagined, study)?;
+    let forward = eye.lambda(study, &picks, found, pair.1)?;
+    let rival = study.chosen[found].rivals.iter().find(|(c, _)| study.candidates[*c].id == pair.1);
+    let Some((rival, _)) = rival else { return Some(forward) };
+    picks[found] = *rival;
+    let backward = eye.lambda(study, &picks, found, pair.0);
+    Some(backward.map_or(forward, |backward| forward.min(backward)))
+}
+
+/// What would be seen of causes on a motion.
+struct Eye<'a> {
+    on: &'a Imagined,
+    /// The model's own columns, whitened.
+    base: Vec<Vec<f64>>,
+    coefficients: &'a [f64],
+    variance: f64,
+}
+
+impl<'a> Eye<'a> {
+    fn new(on: &'a Imagined, study: &'a Study) -> Option<Self> {
+        let mut eye =
+            Self { on, base: Vec::new(), coefficients: &study.system.coefficients, variance: variance(study)? };
+        eye.base = on.base.iter().map(|column| eye.white(column)).collect();
         Some(eye)
     }
 
@@ -72,11 +93,11 @@ impl<'a> Eye<'a> {
         let (testable, time_s) = (vec![Held::Never; column.len()], vec![0.0; column.len()]);
         let rows = Rows {
             y: column,
-            stretch: &self.stretch,
+            stretch: &self.on.stretch,
             testable: &testable,
             time_s: &time_s,
-            weight: &self.weight,
-            period_s: self.track.period_s,
+            weight: &self.on.weight,
+            period_s: self.on.period_s,
         };
         whiten(column, &rows, self.coefficients)
     }
@@ -86,14 +107,14 @@ impl<'a> Eye<'a> {
         let solved = study.system.solve(picks)?;
         let own = &study.candidates[picks[k]];
         let at = study.base.len() + picks[..k].iter().map(|c| study.candidates[*c].columns.len()).sum::<usize>();
-        let like = nearest(&self.candidates, own)?;
+        let like = nearest(&self.on.candidates, own)?;
         let parts = like.columns.iter().zip(&solved.values[at..at + own.columns.len()]);
-        let effect = parts.fold(vec![0.0; self.weight.len()], |mut sum, (c, v)| {
+        let effect = parts.fold(vec![0.0; self.on.weight.len()], |mut sum, (c, v)| {
             sum.iter_mut().zip(c).for_each(|(s, x)| *s += v * x);
             sum
         });
         let effect = self.white(&effect);
-        let rivals = self.candidates.iter().filter(|c| c.id == other);
+        let rivals = self.on.candidates.iter().filter(|c| c.id == other);
         let left = rivals.map(|rival| {
             let rival: Vec<Vec<f64>> = rival.columns.iter().map(|c| self.white(c)).collect();
             unexplained(&effect, self.base.iter().chain(&rival)) / self.variance

@@ -2,9 +2,13 @@
 //!
 //! Without a world the sheet is a linear spring and the hole holds nothing, as in the thesis's simulation; with one they are its laws.
 
+mod experiment;
 mod rows;
 mod shaft;
 mod sheet;
+mod simulated;
+
+pub use simulated::with_acts;
 
 use super::answer::{Beside, Compared, Found, Part, answer, parameter};
 use super::candidate::Candidate;
@@ -52,12 +56,15 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let (on_sheet, on_shaft) = (|f: &Found<'_>| sheet::shows(f), |f: &Found<'_>| shaft::shows(f));
     let mut parts: Vec<Part<'_>> = vec![sheet.part(&on_sheet, &plain, &sheet::usual)];
     parts.extend(shaft.as_ref().map(|s| s.compared.part(&on_shaft, &plain, &|_| None)));
-    let mut found = answer(&parts, beside, &next);
+    let asked =
+        |open: &[Alternative]| experiment::propose(open, (&seen, law), (&sheet, shaft.as_ref())).or_else(|| next(open));
+    let mut found = answer(&parts, beside, &asked);
     if options.atlas {
         let of_shaft = |s: &shaft::Shaft| s.compared.atlas(&s.view, limit, sheet::best_seen);
         found.atlas.channels.push(sheet.atlas(&view, limit, sheet::best_seen));
         found.atlas.channels.extend(shaft.as_ref().map(of_shaft));
     }
+    found.hypotheses = simulated::hypotheses((&sheet, shaft.as_ref()), (seen.holds, seen.two_fingered), law.is_some());
     Ok(found)
 }
 

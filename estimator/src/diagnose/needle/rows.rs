@@ -5,14 +5,15 @@ use crate::estimate::EstimateError;
 use crate::identify::needle::Sheet;
 use crate::identify::needle::signals::{Along, along};
 use crate::identify::needle::strokes::{BEYOND_DENT_M, Push, pushes};
+use crate::signal::noise::white_noise;
 use crate::signal::task::{half_width, smooth, times};
 use haptics::recording::Recording;
 use std::ops::Range;
 
 /// The needle counts as in the hole from this depth on, m: at the surface the sheet lets go.
-const INSIDE_M: f64 = 5e-4;
+pub const INSIDE_M: f64 = 5e-4;
 /// … and outside from this far above the surface.
-const OUTSIDE_M: f64 = 3e-4;
+pub const OUTSIDE_M: f64 = 3e-4;
 /// Rows so close to the surface, m, or to a puncture, s, are of both sides.
 const EDGE_M: f64 = 1e-4;
 const WINDOW_S: f64 = 0.02;
@@ -79,8 +80,10 @@ pub struct Needle {
     pub two_fingered: bool,
     /// Stiffness that the sheet begins with, N/m.
     pub stiffness_n_m: f64,
-    /// Noise of the rate, m/s.
+    /// Noise of the rate, m/s …
     pub rate_noise_m_s: f64,
+    /// … and what of it comes from the noise of the measured way, whatever the motion.
+    pub slope_noise_m_s: f64,
     /// In order.
     pub punctures: Vec<Puncture>,
 }
@@ -107,6 +110,7 @@ impl Needle {
         self.holds += later.holds;
         self.period_s = self.period_s.max(later.period_s);
         self.rate_noise_m_s = self.rate_noise_m_s.max(later.rate_noise_m_s);
+        self.slope_noise_m_s = self.slope_noise_m_s.max(later.slope_noise_m_s);
         self.two_fingered &= later.two_fingered;
     }
 }
@@ -155,7 +159,11 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     let at: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
     let numbers = stretches(&at, period_s, |i| rows[i].phase != rows[i - 1].phase || rows[i].hold != rows[i - 1].hold);
     rows.iter_mut().zip(numbers).for_each(|(row, number)| row.stretch = number);
-    let rate_noise_m_s = crate::signal::noise::white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>());
+    let rate_noise_m_s = white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>());
+    // Of a straight line through the window.
+    let half = half_width(&time) as f64;
+    let spread = half * (half + 1.0) * (2.0 * half + 1.0) / 3.0;
+    let slope_noise_m_s = white_noise(&own) / (spread.sqrt() * step_s.max(1e-9));
     let puncture = |i: usize| Puncture { recording: 0, time_s: time[i] - time[0], force_n: along.force_n[i] };
     let punctures = pushes.iter().filter_map(|p| p.puncture).map(puncture).collect();
     Ok(Needle {
@@ -166,6 +174,7 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
         two_fingered: along.two_fingered,
         stiffness_n_m: sheet.loading.stiffness_n_m,
         rate_noise_m_s,
+        slope_noise_m_s,
         punctures,
     })
 }

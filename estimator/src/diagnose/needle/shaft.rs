@@ -6,6 +6,7 @@ use crate::diagnose::atlas::View;
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::dictionary::Dictionary;
+use crate::diagnose::experiment::Imagined;
 use crate::diagnose::force::blur;
 use crate::diagnose::grid::Grid;
 use crate::diagnose::track::{self, Track};
@@ -35,57 +36,87 @@ pub struct Shaft {
     pub view: View,
     /// What the model without a cause has.
     pub model: &'static str,
+    /// Dry friction at a first look, N.
+    dry_n: f64,
 }
 
-/// Compares what may hold the shaft. `None` where the needle hardly moved in a hole.
-pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Option<Shaft>, EstimateError> {
-    // Where the way turns round within a filter's window the force is of both directions.
-    let turns = |r: &Row| r.rate_m_s.abs() < WINDOW_S * r.acceleration_m_s2.abs() + NOISES * needle.rate_noise_m_s;
-    let rows: Vec<Row> = needle.rows.iter().filter(|r| r.phase == Phase::Hole && !turns(r)).copied().collect();
-    if rows.len() < LEAST_ROWS {
-        return Ok(None);
+impl Shaft {
+    /// The columns on rows that were not measured yet.
+    pub fn imagined(&self, needle: &Needle, law: Option<&MembraneLaw>) -> Imagined {
+        let rows = rows(needle);
+        let track = seen(needle, &rows);
+        Imagined {
+            base: base(needle, &rows, law),
+            candidates: candidates((needle, &rows), &track, law, self.dry_n),
+            stretch: rows.iter().map(|r| r.stretch).collect(),
+            weight: vec![1.0; rows.len()],
+            period_s: needle.period_s,
+        }
     }
-    let mut track = track(needle, &rows);
+}
+
+/// Rows in the hole. Where the way turns round within a filter's window the force is of both directions.
+fn rows(needle: &Needle) -> Vec<Row> {
+    let turns = |r: &Row| r.rate_m_s.abs() < WINDOW_S * r.acceleration_m_s2.abs() + NOISES * needle.rate_noise_m_s;
+    needle.rows.iter().filter(|r| r.phase == Phase::Hole && !turns(r)).copied().collect()
+}
+
+/// The same as a track, as certain of its direction as it can be.
+fn seen(needle: &Needle, rows: &[Row]) -> Track {
+    let mut track = track(needle, rows);
     blur(&mut track);
+    track
+}
+
+/// What is held in every hold, the needle's mass, and a world's friction.
+fn base(needle: &Needle, rows: &[Row], law: Option<&MembraneLaw>) -> Vec<Vec<f64>> {
     let of = |f: &dyn Fn(usize) -> f64| (0..rows.len()).map(f).collect::<Vec<f64>>();
-    let y = of(&|i| rows[i].force_n);
     let mut base: Vec<Vec<f64>> = (0..needle.holds).map(|h| of(&|i| f64::from(u8::from(rows[i].hold == h)))).collect();
     if needle.two_fingered {
         // The needle's own mass; a tool's sensor sits behind none.
         base.push(of(&|i| rows[i].acceleration_m_s2));
     }
-    let offsets = base.len();
-    let direction = of(&|i| track.rows[i].motion.direction);
     if let Some(law) = law {
-        let friction = held(law, &rows);
+        let friction = held(law, rows);
         let stiffer = MembraneLaw { stiffness_n_m: (1.0 + RIM_SHARE) * law.stiffness_n_m, ..*law };
-        base.push(held(&stiffer, &rows).iter().zip(&friction).map(|(s, f)| s - f).collect());
+        base.push(held(&stiffer, rows).iter().zip(&friction).map(|(s, f)| s - f).collect());
         base.push(friction);
         base.push(of(&|i| rows[i].rate_m_s));
     }
-    let mut first = base.clone();
-    first.push(direction.clone());
-    let look = least_squares(&first, &y, None)?;
-    let dry = look.values[first.len() - 1].abs() + if law.is_some() { look.values[offsets + 1].abs() } else { 0.0 };
-    let resisting: Vec<f64> = direction.iter().map(|d| dry * d).collect();
-    let grid = Grid::coarse(&track);
+    base
+}
+
+fn candidates(
+    (needle, rows): (&Needle, &[Row]),
+    track: &Track,
+    law: Option<&MembraneLaw>,
+    dry_n: f64,
+) -> Vec<Candidate> {
+    let of = |f: &dyn Fn(usize) -> f64| (0..rows.len()).map(f).collect::<Vec<f64>>();
+    let direction = of(&|i| track.rows[i].motion.direction);
+    let resisting: Vec<f64> = direction.iter().map(|d| dry_n * d).collect();
+    let grid = Grid::coarse(track);
     let dictionary = Dictionary {
-        track: &track,
+        track,
         predicted: &resisting,
         resisting: &resisting,
-        dry: &vec![dry; direction.len()],
+        dry: &vec![dry_n; direction.len()],
         fixed: &[],
         without: &[],
         grid: &grid,
     };
-    let mut candidates: Vec<Candidate> =
-        dictionary.candidates().into_iter().filter(|c| POSSIBLE.contains(&c.id)).collect();
+    let possible = dictionary.candidates().into_iter().filter(|c| POSSIBLE.contains(&c.id));
+    // A rate is measured less well than a direction.
+    let with_noise = |c: Candidate| {
+        if c.id == "viscous-friction" { c.noisy(needle.slope_noise_m_s) } else { c }
+    };
+    let mut candidates: Vec<Candidate> = possible.map(with_noise).collect();
     if law.is_some() {
         // It bends before it slides already.
         candidates.retain(|c| !["hysteresis", "coulomb-friction", "viscous-friction"].contains(&c.id));
     }
     for push in 1..=rows.iter().map(|r| r.push).max().unwrap_or(0) {
-        let later = of(&|i| if rows[i].push >= push { dry * direction[i] } else { 0.0 });
+        let later = of(&|i| if rows[i].push >= push { dry_n * direction[i] } else { 0.0 });
         if rows.iter().any(|r| r.push < push) {
             let change = Candidate::one("friction-change", Kind::Plant, "relative change", "1", later);
             candidates.push(change.at("from insertion", (push + 1) as f64, "1"));
@@ -97,11 +128,31 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         let expression = Some(format!("cos({k} pi t/T)"));
         Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) }
     }));
+    candidates
+}
+
+/// Compares what may hold the shaft. `None` where the needle hardly moved in a hole.
+pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Option<Shaft>, EstimateError> {
+    let rows = rows(needle);
+    if rows.len() < LEAST_ROWS {
+        return Ok(None);
+    }
+    let track = seen(needle, &rows);
+    let y: Vec<f64> = rows.iter().map(|r| r.force_n).collect();
+    let base = base(needle, &rows, law);
+    let direction: Vec<f64> = track.rows.iter().map(|r| r.motion.direction).collect();
+    let mut first = base.clone();
+    first.push(direction.clone());
+    let look = least_squares(&first, &y, None)?;
+    // Of a world's columns the last but one is its friction.
+    let of_world = if law.is_some() { look.values[base.len() - 2].abs() } else { 0.0 };
+    let dry_n = look.values[first.len() - 1].abs() + of_world;
+    let candidates = candidates((needle, &rows), &track, law, dry_n);
     // Where the direction is a guess all of the friction is open.
     let floor_n = white_noise(&y);
     let weight = direction
         .iter()
-        .map(|d| (1.0 + dry * dry * (1.0 - d * d) / (floor_n * floor_n).max(1e-18)).powf(-0.5))
+        .map(|d| (1.0 + dry_n * dry_n * (1.0 - d * d) / (floor_n * floor_n).max(1e-18)).powf(-0.5))
         .collect();
     let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();
     let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
@@ -117,7 +168,7 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
     let study = channel.compare(threshold)?;
     let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, stretch };
-    Ok(Some(Shaft { compared, view: super::sheet::view(&rows), model }))
+    Ok(Some(Shaft { compared, view: super::sheet::view(&rows), model, dry_n }))
 }
 
 /// Friction of a world's hole along the measured way, N, drag left out.

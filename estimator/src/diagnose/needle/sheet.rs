@@ -5,6 +5,7 @@ use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
+use crate::diagnose::experiment::Imagined;
 use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
@@ -13,14 +14,37 @@ use haptics::law::object::MembraneLaw;
 /// Shares of the deepest insertion that may stay as a dent.
 const DENTS: [f64; 16] = [0.04, 0.07, 0.1, 0.13, 0.16, 0.19, 0.22, 0.25, 0.28, 0.32, 0.36, 0.4, 0.45, 0.5, 0.58, 0.66];
 
-/// Compares what the sheet may be beside a linear spring (or the law of a world), and what may be wrong with the force.
-pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<(Compared, View), EstimateError> {
+/// Rows of the sheet, and everything that could explain them.
+pub struct Columns {
+    rows: Vec<Row>,
+    floor_n: f64,
+    base: Vec<Vec<f64>>,
+    candidates: Vec<Candidate>,
+}
+
+impl Columns {
+    /// As rows that were not measured yet.
+    pub fn imagined(self, period_s: f64) -> Imagined {
+        Imagined {
+            stretch: self.rows.iter().map(|r| r.stretch).collect(),
+            weight: vec![1.0; self.rows.len()],
+            base: self.base,
+            candidates: self.candidates,
+            period_s,
+        }
+    }
+}
+
+fn touches(r: &Row) -> bool {
+    matches!(r.phase, Phase::Loading | Phase::Unloading) && r.depth_m > 0.0
+}
+
+/// Columns of what the sheet may be beside a linear spring (or the law of a world), and of what may be wrong with the force.
+pub fn columns(needle: &Needle, law: Option<&MembraneLaw>) -> Columns {
     let mut rows: Vec<Row> = needle.rows.iter().filter(|r| r.phase != Phase::Hole).copied().collect();
     let floor_n = white_noise(&rows.iter().map(|r| r.force_n).collect::<Vec<f64>>());
     shuffle(&mut rows);
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
-    let touches = |r: &Row| matches!(r.phase, Phase::Loading | Phase::Unloading) && r.depth_m > 0.0;
-    let pressed = |r: &Row| if touches(r) { r.depth_m } else { 0.0 };
     let is_held = |r: &Row| r.phase != Phase::Empty;
     let k = needle.stiffness_n_m;
     let elastic = |x: f64| law.map_or(k * x, |l| l.loading_n(x));
@@ -28,7 +52,7 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         (0..needle.holds).map(|h| of(&|r| f64::from(u8::from(is_held(r) && r.hold == h)))).collect();
     base.push(match law {
         Some(law) => of(&|r| if touches(r) { with_dent(law.give, r, &elastic) } else { 0.0 }),
-        None => of(&pressed),
+        None => of(&|r| if touches(r) { r.depth_m } else { 0.0 }),
     });
     if needle.two_fingered {
         // The needle's own mass; a tool's sensor sits behind none.
@@ -37,6 +61,19 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
     // Where the surface is, to first order: each recording found it by itself.
     let owned = |k: usize, r: &Row| f64::from(u8::from(r.recording == k));
     base.extend((0..needle.recordings).map(|k| of(&|r| if touches(r) { owned(k, r) } else { 0.0 })));
+    let candidates = candidates(needle, &rows, law, &elastic);
+    Columns { rows, floor_n, base, candidates }
+}
+
+fn candidates(
+    needle: &Needle,
+    rows: &[Row],
+    law: Option<&MembraneLaw>,
+    elastic: &dyn Fn(f64) -> f64,
+) -> Vec<Candidate> {
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let pressed = |r: &Row| if touches(r) { r.depth_m } else { 0.0 };
+    let owned = |k: usize, r: &Row| f64::from(u8::from(r.recording == k));
     let mut candidates = vec![
         Candidate::one("stiffness-hardening", Kind::Plant, "k3", "N/m³", of(&|r| pressed(r).powi(3))).positive(),
         Candidate::one("stiffness-hardening", Kind::Plant, "hertz", "N/m^1.5", of(&|r| pressed(r).powf(1.5)))
@@ -58,7 +95,7 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         if needle.recordings > 1 { drift.at("recording", (k + 1) as f64, "1") } else { drift }
     }));
     for dent in DENTS {
-        let less = of(&|r| if touches(r) { with_dent(dent, r, &elastic) - elastic(r.depth_m) } else { 0.0 });
+        let less = of(&|r| if touches(r) { with_dent(dent, r, elastic) - elastic(r.depth_m) } else { 0.0 });
         let cause = Candidate::one("hysteresis", Kind::Plant, "share", "1", less).positive();
         candidates.push(cause.at("dent", dent, "1"));
     }
@@ -76,6 +113,13 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * r.time_s / span).cos());
         term(&format!("cos({n} pi t/T)"), wave)
     }));
+    candidates
+}
+
+/// Compares them.
+pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<(Compared, View), EstimateError> {
+    let Columns { rows, floor_n, base, candidates } = columns(needle, law);
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let y = of(&|r| r.force_n);
     let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
     let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();

@@ -9,6 +9,7 @@ use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::{Candidate, Shape};
 use crate::diagnose::compare::{Channel, stretches};
+use crate::diagnose::experiment::Imagined;
 use crate::estimate::EstimateError;
 use haptics::law::{Effect, Kind, LocalResistance, Motion};
 
@@ -65,8 +66,7 @@ pub fn curve(
     let time: Vec<f64> = times.iter().map(|t| t.1).collect();
     let stretch = stretches(&time, period_s, |i| times[i].0 != times[i - 1].0 || points[i].side != points[i - 1].side);
     let of = |f: &dyn Fn(&Point) -> f64| points.iter().map(f).collect::<Vec<f64>>();
-    // Where the switch stands is open: it may have been moved.
-    let base = vec![of(&|p| direction(p.side) * p.slope_n_m)];
+    let base = base(&points);
     let candidates = candidates(&points, known, viscous);
     let along: Vec<bool> = (0..points.len()).map(|i| i % 2 == 0).collect();
     let channel = Channel {
@@ -88,6 +88,44 @@ pub fn curve(
     let recording = times.iter().map(|t| t.0).collect();
     let view = View { way: of(&|p| direction(p.side)), ..View::of(recording, over) };
     Ok(Some((Compared { study, channel, unit, floor, along, stretch }, view)))
+}
+
+/// Where the switch stands is open: it may have been moved.
+fn base(points: &[Point]) -> Vec<Vec<f64>> {
+    vec![points.iter().map(|p| direction(p.side) * p.slope_n_m).collect()]
+}
+
+/// Columns on throws that were not made yet: of each its side, its fastest speed, m/s, and its way, m.
+pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) -> Imagined {
+    let half = known.half_way_m();
+    let (mut points, mut stretch) = (Vec::new(), Vec::new());
+    for (number, (side, fast_m_s, way_m)) in throws.iter().enumerate() {
+        for (travel_m, speed_m_s) in pushed(*fast_m_s, *way_m, period_s) {
+            // A finger that begins before the knob lies on the other side of the middle.
+            let at_m = direction(*side) * (travel_m - 0.5 * way_m);
+            // Half way the knob leaves the finger.
+            if at_m.abs() > half || direction(*side) * at_m > 0.0 || known.bends_near(at_m, CORNER_M) {
+                continue;
+            }
+            let (asked_n, slope_n_m) = known.asked_n(at_m, *side);
+            points.push(Point { side: *side, at_m, speed_m_s, left_n: 0.0, asked_n, slope_n_m });
+            stretch.push(number);
+        }
+    }
+    let weight = vec![1.0; points.len()];
+    Imagined { base: base(&points), candidates: candidates(&points, known, false), stretch, weight, period_s }
+}
+
+/// Way and speed of a smooth movement, every `period_s`.
+pub fn pushed(fast_m_s: f64, way_m: f64, period_s: f64) -> impl Iterator<Item = (f64, f64)> {
+    /// Peak over mean speed.
+    const PEAK: f64 = 1.875;
+    let takes_s = PEAK * way_m / fast_m_s.max(1e-6);
+    (0..(takes_s / period_s) as usize).map(move |k| {
+        let u = k as f64 * period_s / takes_s;
+        let gone = way_m * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
+        (gone, fast_m_s * 16.0 * (u * (1.0 - u)).powi(2))
+    })
 }
 
 /// What a cause beside the world's curve is best seen against.

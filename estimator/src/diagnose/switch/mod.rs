@@ -4,10 +4,14 @@
 //! speed, on time or on the sensors can be told. With a world its curve is the model, and what it lacks is asked for as well.
 
 mod curve;
+mod experiment;
 mod model;
 mod push;
 mod rows;
+mod simulated;
 mod stop;
+
+pub use simulated::{extend, with_acts};
 
 use super::answer::{Beside, Compared, Found, Part, answer};
 use super::atlas::View;
@@ -16,7 +20,6 @@ use super::report::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotE
 use super::{Options, quality, threshold};
 use crate::estimate::EstimateError;
 use haptics::recording::Recording;
-use haptics::world::World;
 use model::Known;
 use push::Push;
 
@@ -71,7 +74,11 @@ pub fn switch(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let mut parts: Vec<Part<'_>> = vec![push.compared.part(&on_way, &plain, &Push::usual)];
     parts.extend(curve.as_ref().map(|(c, _)| c.part(&on_curve, &plain, &|_| None)));
     parts.extend(stop.as_ref().map(|(s, _)| s.part(&on_stop, &plain, &|_| None)));
-    let mut found = answer(&parts, beside, &next);
+    let known = options.world.as_ref().and_then(Known::of);
+    let asked = |open: &[Alternative]| {
+        experiment::propose(open, &seen, (&push, curve.as_ref().map(|c| &c.0), known.as_ref())).or_else(|| next(open))
+    };
+    let mut found = answer(&parts, beside, &asked);
     if options.atlas {
         let limit = threshold(seen.period_s);
         let channels = &mut found.atlas.channels;
@@ -79,6 +86,8 @@ pub fn switch(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         channels.extend(curve.as_ref().map(|(c, view)| c.atlas(view, limit, curve::best_seen)));
         channels.extend(stop.as_ref().map(|(s, view)| s.atlas(view, limit, stop::best_seen)));
     }
+    let compared = std::iter::once(&push.compared).chain(curve.iter().chain(stop.iter()).map(|(c, _)| c));
+    found.hypotheses = simulated::hypotheses(&compared.map(|c| &c.study).collect::<Vec<_>>());
     Ok(found)
 }
 
@@ -119,31 +128,4 @@ fn next(open: &[Alternative]) -> Option<NextExperiment> {
         expected_power: 0.8,
         experiment: None,
     })
-}
-
-/// What was found, put into a world.
-pub fn extend(world: &mut World, diagnosis: &Diagnosis) {
-    let Some(switch) = &mut world.switch else { return };
-    for cause in &diagnosis.causes {
-        let value = |name: &str| cause.parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
-        let points = &mut switch.curve.points;
-        match cause.id.as_str() {
-            "viscous-friction" => switch.damping_n_s_m += value("c").max(0.0),
-            "coulomb-friction" => points.iter_mut().for_each(|p| {
-                p.forward_n += value("Fc").max(0.0);
-                p.backward_n -= value("Fc").max(0.0);
-            }),
-            "friction-asymmetry" => points.iter_mut().for_each(|p| {
-                // Never below the other branch: a cycle gives no energy.
-                p.forward_n = (p.forward_n + value("dFc to the right")).max(p.backward_n);
-                p.backward_n = (p.backward_n - value("dFc to the left")).min(p.forward_n);
-            }),
-            "return-spring" => points.iter_mut().for_each(|p| {
-                let more = value("k") * p.at_m + value("f0");
-                p.forward_n += more;
-                p.backward_n += more;
-            }),
-            _ => {}
-        }
-    }
 }

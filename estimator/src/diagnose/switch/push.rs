@@ -6,6 +6,7 @@ use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
+use crate::diagnose::experiment::Imagined;
 use crate::diagnose::geometry::Study;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
@@ -32,6 +33,9 @@ pub struct Push {
     pub view: View,
     /// Rows of throws that took part, and what the found causes add to the force along the travel there, N.
     pub rows: Vec<(Row, f64)>,
+    curves: Vec<Curve>,
+    /// Forces of the curves at a first look, N.
+    forces_n: Vec<Vec<f64>>,
 }
 
 /// The place of the open curve, along the travel: rising in both directions.
@@ -145,10 +149,7 @@ pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
     }
     let curves = curves(&rows);
     let forces = first_look(&rows, &curves)?;
-    let mut base: Vec<Vec<f64>> = curves.iter().flat_map(|c| c.columns(&rows)).collect();
-    // The knob's mass is open, too: it falls over faster than the hand.
-    let of_mass = |r: &Row| if let Place::Push(side) = r.place { direction(side) * r.acceleration_m_s2 } else { 0.0 };
-    base.push(rows.iter().map(of_mass).collect());
+    let base = base(&rows, &curves);
     let y: Vec<f64> = rows.iter().map(force_n).collect();
     let candidates = candidates(seen, &rows, &curves, &forces);
     let testable: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
@@ -161,7 +162,16 @@ pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
     let is_push = |(r, _): &(Row, f64)| matches!(r.place, Place::Push(_));
     let kept = rows.into_iter().zip(found).filter(is_push).collect();
     let (channel, unit, floor) = ("force on the knob", "N", seen.noise_n);
-    Ok(Push { compared: Compared { study, channel, unit, floor, along, stretch }, view, rows: kept })
+    let compared = Compared { study, channel, unit, floor, along, stretch };
+    Ok(Push { compared, view, rows: kept, curves, forces_n: forces })
+}
+
+/// The curves of both directions. The knob's mass is open, too: it falls over faster than the hand.
+fn base(rows: &[Row], curves: &[Curve]) -> Vec<Vec<f64>> {
+    let mut base: Vec<Vec<f64>> = curves.iter().flat_map(|c| c.columns(rows)).collect();
+    let of_mass = |r: &Row| if let Place::Push(side) = r.place { direction(side) * r.acceleration_m_s2 } else { 0.0 };
+    base.push(rows.iter().map(of_mass).collect());
+    base
 }
 
 /// What the rows are seen against; fingers that touch nothing are sensors of their own.
@@ -260,6 +270,23 @@ fn sensors(rows: &[Row], found: &mut Vec<Candidate>) {
 }
 
 impl Push {
+    /// Columns on rows that were not measured yet.
+    pub fn imagined(&self, seen: &Seen) -> Imagined {
+        Imagined {
+            base: base(&seen.rows, &self.curves),
+            candidates: candidates(seen, &seen.rows, &self.curves, &self.forces_n),
+            stretch: seen.stretch.clone(),
+            weight: vec![1.0; seen.rows.len()],
+            period_s: seen.period_s,
+        }
+    }
+
+    /// Where along the travel the throws of a side were seen, m.
+    pub fn seen_m(&self, side: usize) -> Option<(f64, f64)> {
+        let curve = self.curves.iter().find(|c| c.side == side)?;
+        curve.places.first().copied().zip(curve.places.last().copied())
+    }
+
     /// What in the residual shows a cause.
     pub fn shows(found: &Found<'_>) -> String {
         let value = found.parameters.first().map_or(0.0, |p| p.value);

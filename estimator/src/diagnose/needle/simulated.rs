@@ -1,0 +1,146 @@
+//! What was found about a needle and its sheet, or could be there instead, put into a world.
+
+use super::shaft::Shaft;
+use crate::diagnose::answer::{Compared, parameter};
+use crate::diagnose::candidate::Candidate;
+use crate::diagnose::suspects::{Act, Hypothesis, SensorFault, Simulated, of_channels};
+use haptics::Vec2;
+use haptics::law::object::MembraneLaw;
+use haptics::world::World;
+
+/// A hole rubs less than this share of what pierces the sheet: the law knows no other.
+const LESS_THAN_PUNCTURE: f64 = 0.95;
+/// Largest dent that the law knows, as a share of the depth.
+const DEEPEST_DENT: f64 = 0.9;
+
+/// A sheet, or a hole, as the model came out: a world's, by a factor, or the plain one.
+struct Channel {
+    /// Name of its act.
+    name: &'static str,
+    /// Indices of the columns in the base, and the names of their values.
+    columns: Vec<(usize, &'static str)>,
+    two_fingered: bool,
+}
+
+impl Simulated for Channel {
+    fn base(&self, values: &[f64]) -> Vec<Act> {
+        let value =
+            |(k, name): &(usize, &'static str)| parameter(name, values.get(*k).copied().unwrap_or(0.0), 0.0, "");
+        vec![(self.name.to_owned(), self.columns.iter().map(value).collect())]
+    }
+
+    /// A pressed sheet knows no drag, a hole no change of its friction: none of that is in a world.
+    fn act(&self, candidate: &Candidate, values: &[f64]) -> Option<Act> {
+        let named = |name: &str| candidate.linear.first().is_some_and(|(n, _)| *n == name);
+        let known = match (self.name, candidate.id) {
+            ("sheet", "stiffness-hardening") => named("k3"),
+            ("sheet", "hysteresis") | ("hole", "coulomb-friction" | "viscous-friction" | "hysteresis") => true,
+            _ => false,
+        };
+        let linear =
+            candidate.linear.iter().zip(values).map(|((name, unit), value)| parameter(name, *value, 0.0, unit));
+        let searched = candidate.searched.iter().map(|s| parameter(s.name, s.value, 0.0, s.unit));
+        known.then(|| (format!("{}: {}", self.name, candidate.id), linear.chain(searched).collect()))
+    }
+
+    fn is_late(&self, _: &Candidate) -> bool {
+        false
+    }
+
+    /// Forces along the needle are pushes down, of both fingers together.
+    fn fault(&self, fault: SensorFault) -> SensorFault {
+        let share = if self.two_fingered { 0.5 } else { 1.0 };
+        let down = |along: f64| {
+            [Vec2::new(0.0, -share * along), Vec2::new(0.0, if self.two_fingered { -share * along } else { 0.0 })]
+        };
+        SensorFault {
+            offset_n: down(fault.offset_along),
+            drift_n_s: down(fault.drift_along_per_s),
+            offset_along: 0.0,
+            drift_along_per_s: 0.0,
+            ..fault
+        }
+    }
+}
+
+/// Everything that could stand in the place of what was found. `holds`: how many columns of the base say what is held.
+pub fn hypotheses(
+    (sheet, shaft): (&Compared, Option<&Shaft>),
+    (holds, two_fingered): (usize, bool),
+    has_law: bool,
+) -> Vec<Hypothesis> {
+    let of_sheet = vec![(holds, if has_law { "factor" } else { "k" })];
+    let first = holds + usize::from(two_fingered) + 1;
+    let of_hole = if has_law { vec![(first, "factor"), (first + 1, "c")] } else { Vec::new() };
+    let on_sheet = Channel { name: "sheet", columns: of_sheet, two_fingered };
+    let in_hole = Channel { name: "hole", columns: of_hole, two_fingered };
+    let mut all: Vec<(&_, &dyn Simulated)> = vec![(&sheet.study, &on_sheet)];
+    all.extend(shaft.map(|s| (&s.compared.study, &in_hole as &dyn Simulated)));
+    of_channels(&all)
+}
+
+/// The world with a sheet and a hole like that.
+pub fn with_acts(world: &World, acts: &[Act]) -> World {
+    let mut world = world.clone();
+    let Some(membrane) = &mut world.membrane else { return world };
+    let law = &mut membrane.law;
+    for (id, parameters) in acts {
+        let value = |name: &str| parameters.iter().find(|p| p.name == name).map(|p| p.value);
+        put(law, id, &value);
+    }
+    law.friction_n = law.friction_n.clamp(0.0, LESS_THAN_PUNCTURE * law.puncture_n);
+    law.give = law.give.clamp(0.0, DEEPEST_DENT);
+    world
+}
+
+fn put(law: &mut MembraneLaw, id: &str, value: &dyn Fn(&str) -> Option<f64>) {
+    let positive = |name: &str| value(name).filter(|v| *v > 0.0);
+    match id {
+        "sheet" => match (positive("k"), positive("factor")) {
+            (Some(k), _) => (law.stiffness_n_m, law.cubic_n_m3, law.give) = (k, 0.0, 0.0),
+            (None, Some(factor)) => {
+                law.stiffness_n_m *= factor;
+                law.cubic_n_m3 *= factor;
+            }
+            _ => {}
+        },
+        "sheet: stiffness-hardening" => law.cubic_n_m3 += positive("k3").unwrap_or(0.0),
+        "sheet: hysteresis" => law.give += positive("share").unwrap_or(0.0) * positive("dent").unwrap_or(0.0),
+        "hole" => {
+            // Without a world's friction nothing is held.
+            let factor = positive("factor");
+            law.friction_n *= factor.unwrap_or(0.0);
+            law.drag_n_s_m = factor.and(positive("c")).unwrap_or(0.0);
+        }
+        "hole: coulomb-friction" => law.friction_n += positive("Fc").unwrap_or(0.0),
+        "hole: viscous-friction" => law.drag_n_s_m += positive("c").unwrap_or(0.0),
+        // A rim that gives before the shaft slides is the law's own way of rubbing.
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::world::presets;
+
+    #[test]
+    fn a_sheet_is_what_it_came_out_at_and_a_hole_rubs_only_if_that_is_thought() {
+        let world = presets::needle();
+        let act = |id: &str, values: &[(&str, f64)]| -> Act {
+            (id.to_owned(), values.iter().map(|(name, value)| parameter(name, *value, 0.0, "")).collect())
+        };
+        let plain = [act("sheet", &[("k", 300.0)]), act("hole", &[])];
+        let law = |acts: &[Act]| with_acts(&world, acts).membrane.expect("still a sheet").law;
+        let found = law(&plain);
+        assert_eq!((found.stiffness_n_m, found.cubic_n_m3, found.give), (300.0, 0.0, 0.0));
+        assert_eq!((found.friction_n, found.drag_n_s_m, found.puncture_n), (0.0, 0.0, 1.5));
+        let rubs = law(&[plain.as_slice(), &[act("hole: coulomb-friction", &[("Fc", 0.2)])]].concat());
+        assert_eq!((rubs.friction_n, rubs.drag_n_s_m), (0.2, 0.0));
+        let dented = law(&[plain.as_slice(), &[act("sheet: hysteresis", &[("share", 0.9), ("dent", 0.3)])]].concat());
+        assert!((dented.give - 0.27).abs() < 1e-12);
+        let scaled = law(&[act("sheet", &[("factor", 1.1)]), act("hole", &[("factor", 2.0), ("c", 5.0)])]);
+        assert!((scaled.stiffness_n_m - 286.0).abs() < 1e-9 && (scaled.friction_n - 0.5).abs() < 1e-12);
+        with_acts(&world, &[act("hole: coulomb-friction", &[("Fc", 9.0)])]).check().expect("it can be stepped");
+    }
+}
