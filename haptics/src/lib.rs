@@ -9,6 +9,7 @@
 //! * [`device`]: where finger positions come from and forces go to.
 //! * [`teleop`]: the same with a slow line between operator and world.
 //! * [`recording`]: one log, in memory.
+//! * [`text_file`]: small files that others wrote, read with a bound.
 
 pub mod device;
 pub mod hand;
@@ -16,6 +17,7 @@ pub mod law;
 pub mod recording;
 pub mod servo;
 pub mod teleop;
+pub mod text_file;
 pub mod world;
 
 /// A point or vector of the plane: x to the right, y up.

@@ -58,3 +58,27 @@ fn nothing_graphical_below_the_app() {
         }
     }
 }
+
+/// Scripts that time our programs beside others' build them as examples: what they name must be there.
+#[test]
+fn what_the_benches_build_is_there() {
+    let folder = tests::workspace().join("benches");
+    let mut named = 0;
+    for script in std::fs::read_dir(folder)
+        .expect("benches")
+        .flatten()
+        .filter(|e| e.path().extension().is_some_and(|e| e == "py"))
+    {
+        let text = std::fs::read_to_string(script.path()).expect("text");
+        for after in text.split("\"--example\", \"").skip(1) {
+            let name = after.split('"').next().unwrap_or_default();
+            let found = ["haptics", "estimator", "app"].iter().any(|krate| {
+                let examples = tests::workspace().join(krate).join("examples");
+                examples.join(name).with_extension("rs").is_file() || examples.join(name).join("main.rs").is_file()
+            });
+            assert!(found, "{}: there is no example {name}", script.path().display());
+            named += 1;
+        }
+    }
+    assert!(named > 2, "{named} examples are named");
+}

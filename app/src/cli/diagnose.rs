@@ -81,7 +81,7 @@ impl Diagnose {
         let named_file = self.baseline.as_ref().map(PathBuf::from).filter(|b| b.extension().is_some());
         let world = match self.world.as_ref().or(named_file.as_ref()) {
             Some(path) => {
-                let text = std::fs::read_to_string(path)
+                let text = haptics::text_file::read(path)
                     .with_context(|| format!("the world could not be read: {}", path.display()))?;
                 Some(World::from_json(&text).with_context(|| format!("no world: {}", path.display()))?)
             }

@@ -41,7 +41,10 @@ impl History {
             return import(&mut store, from);
         }
         let query = Query { trainee: self.trainee.clone(), lesson: self.lesson.clone() };
-        let attempts = store.attempts(&query).map_err(|problem| anyhow!(problem))?;
+        let (attempts, problem) = store.attempts_and_problems(&query).map_err(|problem| anyhow!(problem))?;
+        if let Some(problem) = problem {
+            eprintln!("{problem}");
+        }
         let trainees = store.trainees().map_err(|problem| anyhow!(problem))?;
         if let Some(to) = &self.csv {
             let text = table::csv(&attempts).map_err(|problem| anyhow!(problem))?;

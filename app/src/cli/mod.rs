@@ -255,9 +255,14 @@ fn fail(error: &anyhow::Error) -> ExitCode {
     ExitCode::FAILURE
 }
 
+/// Without line breaks and what else would reach the terminal as an order: names of files may have anything in them.
+fn plain(text: &str) -> String {
+    haptics::text_file::one_line(text)
+}
+
 /// The error as one line: what, then why.
 fn sentence(error: &anyhow::Error) -> String {
-    let chain: Vec<String> = error.chain().map(|cause| cause.to_string().replace('\n', " ")).collect();
+    let chain: Vec<String> = error.chain().map(|cause| plain(&cause.to_string())).collect();
     let mut parts: Vec<&str> = Vec::new();
     for part in &chain {
         // Many causes repeat themselves in their parent's sentence.

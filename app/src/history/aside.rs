@@ -46,7 +46,7 @@ pub fn take_in(database: &Path, store: &mut Store) -> (usize, Vec<String>) {
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(waits).collect();
     paths.sort();
     for path in paths {
-        let read = std::fs::read_to_string(&path).map_err(|error| error.to_string());
+        let read = haptics::text_file::read(&path).map_err(|error| error.to_string());
         let attempt = read.and_then(|text| serde_json::from_str::<Attempt>(&text).map_err(|error| error.to_string()));
         match attempt {
             Err(error) => {

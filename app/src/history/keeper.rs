@@ -151,11 +151,13 @@ impl Keeper {
             }
             Request::Trainees => self.open(answer)?.trainees().map(Answer::Trainees),
             Request::Read(query) => {
-                let found = self.open(answer)?.attempts(&query)?;
+                let (found, problem) = self.open(answer)?.attempts_and_problems(&query)?;
+                problem.into_iter().map(Answer::Problem).for_each(answer);
                 Ok(Answer::Attempts(query, found))
             }
             Request::Export(to, query) => {
-                let found = self.open(answer)?.attempts(&query)?;
+                let (found, problem) = self.open(answer)?.attempts_and_problems(&query)?;
+                problem.into_iter().map(Answer::Problem).for_each(answer);
                 export(&to, &found)?;
                 Ok(Answer::Exported(to))
             }

@@ -39,7 +39,8 @@ impl Store {
 
     fn said(&self, error: &rusqlite::Error) -> String {
         let busy = error.sqlite_error_code() == Some(rusqlite::ErrorCode::DatabaseBusy);
-        let why = if busy { "another program holds it".to_owned() } else { error.to_string() };
+        let why =
+            if busy { "another program holds it".to_owned() } else { haptics::text_file::one_line(&error.to_string()) };
         format!("The history could not be written or read: {why}. File: {}.", self.path.display())
     }
 
@@ -95,21 +96,39 @@ impl Store {
         added.map(|rows| rows > 0).map_err(|error| self.said(&error))
     }
 
-    /// Attempts, the oldest first.
+    /// Attempts, the oldest first. One that cannot be read is left out; [`Store::attempts_and_problems`] says so.
     pub fn attempts(&self, query: &Query) -> Result<Vec<Attempt>, String> {
-        let rows = || -> rusqlite::Result<Vec<Attempt>> {
+        self.attempts_and_problems(query).map(|(attempts, _)| attempts)
+    }
+
+    /// Attempts, the oldest first, and a sentence if a damaged one had to be left out: the others can be looked at all the same.
+    pub fn attempts_and_problems(&self, query: &Query) -> Result<(Vec<Attempt>, Option<String>), String> {
+        let rows = || -> rusqlite::Result<(Vec<Attempt>, Option<String>)> {
             let mut asked = self.connection.prepare(
                 "SELECT trainees.name, lesson, conditions, began, duration_s, completed, score, meets_criterion, proficient, measures,
                     measures_version, grade_version, recording
                  FROM attempts JOIN trainees ON trainees.id = attempts.trainee
                  WHERE (?1 IS NULL OR trainees.name = ?1) AND (?2 IS NULL OR lesson = ?2)",
             )?;
-            asked.query_map(params![query.trainee, query.lesson], attempt)?.collect()
+            let mut rows = asked.query(params![query.trainee, query.lesson])?;
+            let (mut read, mut damaged) = (Vec::new(), Vec::new());
+            while let Some(row) = rows.next()? {
+                match attempt(row) {
+                    Ok(attempt) => read.push(attempt),
+                    Err(error) => damaged.push(error),
+                }
+            }
+            let problem = damaged.first().map(|first| {
+                let (count, why) = (damaged.len(), haptics::text_file::one_line(&first.to_string()));
+                let path = self.path.display();
+                format!("Of the history {count} attempts are damaged and left out ({why}); a copy may have them whole. File: {path}.")
+            });
+            Ok((read, problem))
         };
-        let mut rows = rows().map_err(|error| self.said(&error))?;
+        let (mut read, problem) = rows().map_err(|error| self.said(&error))?;
         // By the moment: as words, fractions of a second would come before whole ones.
-        rows.sort_by_key(|attempt| attempt.began);
-        Ok(rows)
+        read.sort_by_key(|attempt| attempt.began);
+        Ok((read, problem))
     }
 }
 

@@ -24,6 +24,7 @@ pub struct State {
     /// What is open.
     pub project: Project,
     /// The project file that it belongs to.
+    #[serde(with = "super::any_path")]
     pub project_path: Option<PathBuf>,
     /// Where panels stand.
     pub dock: Dock,
@@ -59,11 +60,7 @@ impl Autosave {
         let lock = File::create(folder.join("session.lock")).ok()?;
         lock.try_lock().ok()?;
         let path = folder.join("session.json");
-        // A file that cannot be read is as good as none.
-        let before: State = std::fs::read_to_string(&path)
-            .ok()
-            .and_then(|text| serde_json::from_str(&text).ok())
-            .unwrap_or_else(|| State { ended: true, ..State::default() });
+        let before = read(&path).unwrap_or_else(|| State { ended: true, ..State::default() });
         let (sender, receiver) = channel::<String>();
         let (complain, problems) = channel();
         let to = path.clone();
@@ -107,6 +104,20 @@ impl Autosave {
             let _ = write_whole(&self.path, &text);
         }
     }
+}
+
+/// What stands in the file. One that cannot be read is as good as none; it is put aside, because this window writes its own there.
+fn read(path: &Path) -> Option<State> {
+    let text = match haptics::text_file::read(path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return None,
+        read => read.ok(),
+    };
+    let state = text.and_then(|text| serde_json::from_str(&text).ok());
+    if state.is_none() {
+        // Where that is refused it is written over: the window has to go on.
+        let _ = std::fs::rename(path, path.with_extension("broken.json"));
+    }
+    state
 }
 
 fn state(session: &Session, dock: &Dock, toured: bool) -> State {
@@ -168,5 +179,7 @@ mod tests {
         std::fs::write(folder.path().join("session.json"), "{ broken").expect("written");
         let (_, before) = Autosave::begin(folder.path()).expect("begins");
         assert_eq!(before, State { ended: true, ..State::default() });
+        let aside = std::fs::read_to_string(folder.path().join("session.broken.json")).expect("put aside");
+        assert_eq!(aside, "{ broken", "somebody may find in it what was open");
     }
 }

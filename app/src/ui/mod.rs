@@ -7,6 +7,7 @@
 //! * [`screenshot`] draws any of it without a window, [`gallery`] all of it.
 
 pub mod actions;
+pub mod any_path;
 pub mod app;
 pub mod assistant;
 pub mod atlas;

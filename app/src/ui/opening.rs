@@ -51,7 +51,7 @@ pub fn kind_of(path: &Path) -> FileKind {
 
 /// True for JSON that says something about a log and nothing else.
 fn is_sidecar(path: &Path) -> bool {
-    let Ok(text) = std::fs::read_to_string(path) else { return false };
+    let Ok(text) = haptics::text_file::read(path) else { return false };
     let meta: Option<Meta> = serde_json::from_str(text.trim_start_matches('\u{feff}')).ok();
     meta.is_some_and(|meta| {
         meta != Meta { other: meta.other.clone(), ..Meta::default() } && World::from_json(&text).is_err()

@@ -8,6 +8,8 @@ use super::session::{Session, Workspace, sentence};
 use crate::video::VideoSource;
 use estimator::log::Watch;
 use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -20,9 +22,10 @@ const VERSION: u32 = 1;
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Source {
     /// The log.
+    #[serde(with = "super::any_path")]
     pub log: PathBuf,
     /// A sidecar that does not stand beside it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", with = "super::any_path")]
     pub meta: Option<PathBuf>,
 }
 
@@ -69,10 +72,12 @@ impl Project {
 
     /// Reads one; an error is a sentence.
     pub fn read(path: &Path) -> Result<Self, String> {
-        let text = std::fs::read_to_string(path)
+        let text = haptics::text_file::read(path)
             .map_err(|e| format!("The project cannot be read ({e}): {}", path.display()))?;
-        let mut project: Self = serde_json::from_str(&text)
-            .map_err(|e| format!("This is no project that can be read ({e}): {}", path.display()))?;
+        let mut project: Self = serde_json::from_str(&text).map_err(|e| {
+            let why = haptics::text_file::one_line(&e.to_string());
+            format!("This is no project that can be read ({why}): {}", path.display())
+        })?;
         if project.touchstone_project > VERSION {
             return Err(format!("This project was written by a newer version of the program: {}", path.display()));
         }
@@ -107,7 +112,7 @@ impl Project {
     }
 }
 
-/// Writes beside the file first, so that a crash leaves the old one or the new one.
+/// Writes beside the file first, so that a crash or a full disk leaves the old one or the new one.
 pub fn write_whole(path: &Path, text: &str) -> Result<(), String> {
     let failed = |e: std::io::Error| {
         format!("The file cannot be written ({e}); check the folder and its permissions: {}", path.display())
@@ -115,13 +120,20 @@ pub fn write_whole(path: &Path, text: &str) -> Result<(), String> {
     let mut beside = path.as_os_str().to_owned();
     beside.push(".part");
     let beside = PathBuf::from(beside);
-    std::fs::write(&beside, text).map_err(failed)?;
-    std::fs::rename(&beside, path).map_err(failed)
+    // On the disk before it takes the other's name: after a power cut there would be an empty file otherwise.
+    let written = File::create(&beside)
+        .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
+        .and_then(|()| std::fs::rename(&beside, path));
+    written.map_err(|error| {
+        // Half a file is of no use to anybody.
+        let _ = std::fs::remove_file(&beside);
+        failed(error)
+    })
 }
 
 /// Whether a JSON file is a project.
 pub fn is_project(path: &Path) -> bool {
-    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let text = haptics::text_file::read(path).unwrap_or_default();
     let value: Option<serde_json::Value> = serde_json::from_str(&text).ok();
     value.is_some_and(|v| v.get("touchstone_project").is_some())
 }

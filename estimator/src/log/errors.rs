@@ -1,5 +1,6 @@
 //! Why a log could not be read: one sentence each, the problem first and the path last.
 
+use haptics::text_file::one_line as plain;
 use std::path::PathBuf;
 
 /// What kept a log from being loaded. Nothing is half-loaded: there is a recording or there is one of these.
@@ -259,9 +260,4 @@ pub enum LogError {
 /// `row 3 (line 4)`, or without the line where the format has none.
 fn place(row: usize, line: u64) -> String {
     if line == 0 { format!("row {row}") } else { format!("row {row} (line {line})") }
-}
-
-/// Text out of a file, in one line: a quoted name may hold line ends, and a damaged one anything.
-fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

@@ -4,6 +4,7 @@ use super::errors::LogError;
 use super::units::{self, Unit};
 use haptics::recording::Meta;
 use serde_json::Value;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// Columns that are of no use without each other; a log that has one of a pair must have both.
@@ -102,14 +103,16 @@ struct Planner<'a> {
     meta: &'a Meta,
     path: &'a Path,
     plan: Plan,
+    /// Columns of the targets, by name: a table may have a hundred thousand.
+    taken: HashMap<String, usize>,
 }
 
 /// Decides what each column is.
 pub fn plan(headers: &[String], meta: &Meta, path: &Path) -> Result<Plan, LogError> {
     let empty = Plan { uses: vec![Use::Ignore; headers.len()], ..Plan::default() };
-    let mut planner = Planner { headers, meta, path, plan: empty };
+    let mut planner = Planner { headers, meta, path, plan: empty, taken: HashMap::new() };
     planner.refuse_repeated_headers()?;
-    let mapped = planner.take_mapping()?;
+    let mapped: HashSet<usize> = planner.take_mapping()?.into_iter().collect();
     for column in (0..headers.len()).filter(|c| !mapped.contains(c)) {
         planner.take_own_name(column)?;
     }
@@ -133,9 +136,10 @@ impl Planner<'_> {
     }
 
     fn refuse_repeated_headers(&self) -> Result<(), LogError> {
-        for (i, name) in self.headers.iter().enumerate().filter(|(_, n)| !n.is_empty()) {
-            if let Some(j) = self.headers[i + 1..].iter().position(|n| n == name) {
-                return Err(self.duplicate(name, i, i + 1 + j));
+        let mut known = HashMap::new();
+        for (column, name) in self.headers.iter().enumerate().filter(|(_, n)| !n.is_empty()) {
+            if let Some(first) = known.insert(name, column) {
+                return Err(self.duplicate(name, first, column));
             }
         }
         Ok(())
@@ -261,7 +265,7 @@ impl Planner<'_> {
     }
 
     fn mapped(&self, name: &str) -> bool {
-        self.plan.targets.iter().any(|t| t.name == name) && self.meta.columns.keys().any(|k| canonical(k) == name)
+        self.taken.contains_key(name) && self.meta.columns.keys().any(|k| canonical(k) == name)
             || name == "t_s" && self.plan.time.is_some()
     }
 
@@ -276,8 +280,7 @@ impl Planner<'_> {
             map.get(keys[0]).or_else(|| map.get(keys[1])).copied().unwrap_or(1.0)
         };
         let factor = factor * pick(&self.meta.scale) * pick(&self.meta.sign);
-        let first = self.plan.targets.iter().find(|t| t.name == name).map(|t| t.column);
-        if let Some(first) = first {
+        if let Some(&first) = self.taken.get(&name) {
             return Err(self.duplicate(&name, first, column));
         }
         if let Use::Number { factor: other, .. } = self.plan.uses[column]
@@ -289,6 +292,7 @@ impl Planner<'_> {
         if name == "t_s" {
             self.plan.time = Some(column);
         } else {
+            self.taken.insert(name.clone(), column);
             self.plan.targets.push(Target { name, unit, column });
         }
         Ok(())

@@ -16,7 +16,7 @@ pub fn path_for(log: &Path) -> PathBuf {
 /// Reads the sidecar `given`, else the one beside `log`, else an empty one.
 pub fn load(log: &Path, given: Option<&Path>) -> Result<Meta, LogError> {
     let path = given.map_or_else(|| path_for(log), Path::to_path_buf);
-    let text = match std::fs::read_to_string(&path) {
+    let text = match haptics::text_file::read(&path) {
         Ok(text) => text,
         Err(error) if given.is_none() && error.kind() == std::io::ErrorKind::NotFound => return Ok(Meta::default()),
         Err(error) if error.kind() == std::io::ErrorKind::InvalidData => {

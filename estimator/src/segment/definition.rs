@@ -147,7 +147,7 @@ impl Definition {
 
     /// Reads a task of a user's file.
     pub fn read(path: &Path) -> Result<Self, EstimateError> {
-        let text = std::fs::read_to_string(path).map_err(|error| {
+        let text = haptics::text_file::read(path).map_err(|error| {
             EstimateError::Other(format!("the task {} cannot be read: {error}; check its path", path.display()))
         })?;
         Self::parse(&text, &path.display().to_string())
@@ -156,6 +156,7 @@ impl Definition {
     /// Reads a task; `place` is named in errors.
     pub fn parse(text: &str, place: &str) -> Result<Self, EstimateError> {
         let task: Self = serde_json::from_str(text).map_err(|error| {
+            let error = haptics::text_file::one_line(&error.to_string());
             EstimateError::Other(format!(
                 "the task {place} is not understood: {error}; docs/tasks.md shows a whole one"
             ))
@@ -192,7 +193,10 @@ impl Definition {
     /// The task, when it can be used; `place` is named in the sentence that says why not.
     pub fn checked(self, place: &str) -> Result<Self, EstimateError> {
         match self.fault() {
-            Some(fault) => Err(EstimateError::Other(format!("the task {place} cannot be used: {fault}"))),
+            Some(fault) => {
+                let fault = haptics::text_file::one_line(&fault);
+                Err(EstimateError::Other(format!("the task {place} cannot be used: {fault}")))
+            }
             None => Ok(self),
         }
     }

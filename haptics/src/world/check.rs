@@ -68,7 +68,7 @@ pub enum WorldError {
     #[error("the world file has format {0}, this program reads up to {SCHEMA}; update the program")]
     NewerSchema(u32),
     /// Not a world at all.
-    #[error("the file is not a world: {0}")]
+    #[error("the file is not a world: {}", crate::text_file::one_line(&.0.to_string()))]
     Parse(#[from] serde_json::Error),
     /// The file could not be read.
     #[error("the world file could not be read ({0})")]

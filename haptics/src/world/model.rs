@@ -276,7 +276,7 @@ impl World {
 
     /// Reads and checks a world file.
     pub fn load(path: &std::path::Path) -> Result<Self, WorldError> {
-        Self::from_json(&std::fs::read_to_string(path)?)
+        Self::from_json(&crate::text_file::read(path)?)
     }
 
     /// The world as pretty JSON.

@@ -99,7 +99,7 @@ fn write_whole(meta: &Meta, sidecar: &Path) -> Result<(), LogError> {
 
 /// The sidecar that is there; an empty one when there is none.
 fn read_sidecar(path: &Path) -> Result<Meta, String> {
-    let text = match std::fs::read_to_string(path) {
+    let text = match haptics::text_file::read(path) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Meta::default()),
         Err(error) => return Err(format!("The sidecar cannot be read ({error}): {}", path.display())),

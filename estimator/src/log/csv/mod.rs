@@ -87,7 +87,10 @@ fn dialect(start: &[u8], path: &Path) -> Result<Dialect, LogError> {
     // A quoted name may hold line ends.
     let end = record_end(text, at, delimiter).unwrap_or(text.len());
     let header = &text[at..end];
-    if header.len() >= SNIFF_BYTES - 3 || std::str::from_utf8(header).is_err() {
+    if header.len() >= SNIFF_BYTES - 3 {
+        return Err(not_a_table("the first line has more than 64 KiB, too long for a header of column names"));
+    }
+    if std::str::from_utf8(header).is_err() {
         return Err(not_a_table("the first line is not a header of column names"));
     }
     let headers = names(header, delimiter);

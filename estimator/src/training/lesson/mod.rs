@@ -163,9 +163,11 @@ impl Lesson {
     /// # Errors
     /// One sentence that ends in the path.
     pub fn load(path: &Path) -> Result<Self, EstimateError> {
-        let at = |error: &dyn std::fmt::Display| wrong(format!("{error}: {}", path.display()));
-        let json = std::fs::read_to_string(path).map_err(|error| at(&error))?;
-        let text = std::fs::read_to_string(path.with_extension("md")).unwrap_or_default();
+        let at = |error: &dyn std::fmt::Display| {
+            wrong(format!("{}: {}", haptics::text_file::one_line(&error.to_string()), path.display()))
+        };
+        let json = haptics::text_file::read(path).map_err(|error| at(&error))?;
+        let text = haptics::text_file::read(&path.with_extension("md")).unwrap_or_default();
         Self::from_json(&json, &text).map_err(|error| at(&error))
     }
 

@@ -18,6 +18,11 @@ use triple_buffer::{Input, Output, triple_buffer};
 /// Without a new command for this long the board gets zero torque.
 pub const GUARD: Duration = Duration::from_millis(20);
 
+/// A board that is only late is waited for longer than this.
+const UNPLUGGED: Duration = Duration::from_micros(500);
+/// Between two questions to a line that has nobody at its other end.
+const REST: Duration = Duration::from_millis(5);
+
 /// What is known of a board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoardModel {
@@ -202,7 +207,12 @@ impl Worker {
                 Some(angles) if fresh => self.model.linkage.torques(angles, order.force_n),
                 _ => [0.0; 2],
             };
+            let asked = Instant::now();
             let heard = self.exchange(torques);
+            if heard == Err(Fault::Late) && asked.elapsed() < UNPLUGGED {
+                // A line without a device refuses at once, and would take a processor for itself.
+                std::thread::sleep(REST);
+            }
             let tip = heard.ok().and_then(|angles| self.model.linkage.tip(angles));
             let verdict = tip.map_or(Verdict::Refused, |tip_m| gate.judge(tip_m, Instant::now()));
             let believed = matches!(verdict, Verdict::Follows | Verdict::Begins);

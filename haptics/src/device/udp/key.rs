@@ -58,7 +58,7 @@ impl Key {
 
     /// A key from a file that holds 64 hexadecimal digits.
     pub fn load(path: &Path) -> Result<Self, KeyError> {
-        let text = std::fs::read_to_string(path)
+        let text = crate::text_file::read(path)
             .map_err(|e| KeyError::File { file: path.display().to_string(), reason: e.to_string() })?;
         Self::from_hex(&text)
     }
@@ -67,7 +67,7 @@ impl Key {
     /// first, a file that others on this machine may read (known on Unix only).
     pub fn doubts(path: &Path) -> Vec<String> {
         let mut doubts = Vec::new();
-        let digits = std::fs::read_to_string(path).unwrap_or_default();
+        let digits = crate::text_file::read(path).unwrap_or_default();
         let digits = digits.trim().as_bytes();
         if digits.first().is_some_and(|first| digits.iter().all(|digit| digit == first)) {
             doubts.push(format!(

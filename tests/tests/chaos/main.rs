@@ -1,0 +1,154 @@
+//! Chaos: what the world does to a program, drawn at random, for as long as one likes: devices that vanish and return, logs cut off
+//! anywhere, a full disk, clocks that jump, SIGKILL and restart, documents that somebody has spoiled, files of 5 GB, 10⁵ columns, names
+//! that nobody should choose. Nothing may be lost, nothing may panic, no force may come without fresh data, memory may not grow.
+//!
+//! A new seed every day, printed for replay: `TOUCHSTONE_SEED=20400`. Forty seconds by default; `TOUCHSTONE_CHAOS_SECONDS=600` is the
+//! issue's ten minutes. The work goes in laps, each of which does everything once in an order of its own; `TOUCHSTONE_CHAOS_ONLY=udp` does
+//! one part alone.
+
+mod boards;
+mod child;
+mod documents;
+mod force;
+mod full;
+mod huge;
+mod killed;
+mod logs;
+mod memory;
+mod mutate;
+mod names;
+mod udp;
+mod workbench;
+
+use memory::Memory;
+use rand::rngs::StdRng;
+use rand::seq::SliceRandom as _;
+use rand::{RngExt as _, SeedableRng as _};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
+
+#[global_allocator]
+static MEMORY: peak_alloc::PeakAlloc = peak_alloc::PeakAlloc;
+
+/// What panicked so far, on any thread of this process.
+static PANICS: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// So many laps at the least: one to fill pools and caches, and some to compare.
+const FEWEST_LAPS: usize = 3;
+
+/// What all parts share.
+struct Chaos {
+    rng: StdRng,
+    folder: PathBuf,
+    /// What was done, counted.
+    counts: BTreeMap<&'static str, u64>,
+}
+
+impl Chaos {
+    fn count(&mut self, what: &'static str, by: u64) {
+        *self.counts.entry(what).or_default() += by;
+    }
+
+    /// A new folder for one part's files.
+    fn scratch(&self) -> tempfile::TempDir {
+        tempfile::tempdir_in(&self.folder).expect("a temporary folder")
+    }
+}
+
+type Part = fn(&mut Chaos);
+
+const PARTS: [(&str, Part); 11] = [
+    ("logs", logs::cut_and_spoiled),
+    ("documents", documents::spoiled),
+    ("history", documents::spoiled_history),
+    ("workbench", workbench::jobs),
+    ("force", force::vanishing_and_jumping),
+    ("udp", udp::attacked),
+    ("boards", boards::unplugged),
+    ("killed", killed::and_restarted),
+    ("full disk", full::refuses),
+    ("huge", huge::refused_or_bounded),
+    ("names", names::hostile),
+];
+
+fn number(name: &str) -> Option<u64> {
+    std::env::var(name).ok().and_then(|text| text.parse().ok())
+}
+
+fn seed() -> u64 {
+    let today = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |time| time.as_secs() / 86_400);
+    number("TOUCHSTONE_SEED").unwrap_or_else(today)
+}
+
+/// The one part that was asked for.
+fn only() -> Option<String> {
+    std::env::var("TOUCHSTONE_CHAOS_ONLY").ok()
+}
+
+/// Notes every panic, also those that somebody catches.
+fn note_panics() {
+    std::panic::set_hook(Box::new(|info| {
+        eprintln!("{info}");
+        PANICS.lock().unwrap_or_else(PoisonError::into_inner).push(info.to_string());
+    }));
+}
+
+#[test]
+fn nothing_is_lost_nothing_panics_no_force_without_fresh_data_and_memory_stays_flat() {
+    if let Some(what) = std::env::var_os(child::WHAT) {
+        child::run(&what.to_string_lossy());
+        return;
+    }
+    let (seed, seconds) = (seed(), number("TOUCHSTONE_CHAOS_SECONDS").unwrap_or(40));
+    println!("chaos: TOUCHSTONE_SEED={seed} repeats it, for {seconds} s");
+    note_panics();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let rng = StdRng::seed_from_u64(seed);
+    let mut chaos = Chaos { rng, folder: folder.path().to_path_buf(), counts: BTreeMap::new() };
+    let (begun, mut laps, mut took_s) = (Instant::now(), Vec::new(), BTreeMap::new());
+    while laps.len() < FEWEST_LAPS || begun.elapsed().as_secs() < seconds {
+        lap(&mut chaos, seed, &mut took_s);
+        laps.push(Memory::now());
+    }
+    println!("{} laps in {:.0} s", laps.len(), begun.elapsed().as_secs_f64());
+    for (what, count) in &chaos.counts {
+        println!("  {count:>9} {what}");
+    }
+    for (part, seconds) in &took_s {
+        println!("  {seconds:>9.1} s {part}");
+    }
+    memory::must_be_flat(&laps);
+    if only().is_some() {
+        return;
+    }
+    for what in ["ticks with force", "ticks without fresh data", "sealed packets taken", "kills", "fits that answered"]
+    {
+        assert!(chaos.counts.get(what).is_some_and(|count| *count > 0), "there was something to lose: {what}");
+    }
+}
+
+/// Every part once; the part that fails is named with what repeats it.
+fn lap(chaos: &mut Chaos, seed: u64, took_s: &mut BTreeMap<&'static str, f64>) {
+    let mut parts = PARTS;
+    parts.shuffle(&mut chaos.rng);
+    let only = only();
+    for (name, part) in parts.into_iter().filter(|(name, _)| only.as_ref().is_none_or(|one| one == name)) {
+        let begun = Instant::now();
+        // Of its own, so that a part draws the same whatever the ones before it drew.
+        let own: u64 = chaos.rng.random();
+        let kept = std::mem::replace(&mut chaos.rng, StdRng::seed_from_u64(own));
+        part(chaos);
+        chaos.rng = kept;
+        *took_s.entry(name).or_default() += begun.elapsed().as_secs_f64();
+        let panics = std::mem::take(&mut *PANICS.lock().unwrap_or_else(PoisonError::into_inner));
+        assert!(panics.is_empty(), "{name}, TOUCHSTONE_SEED={seed}: {panics:#?}");
+    }
+}
+
+/// An error of ours: something to read on one line that names the file.
+fn must_be_a_sentence(error: &str, path: &Path) {
+    assert!(!error.trim().is_empty(), "nothing was said of {path:?}");
+    assert!(!error.contains(['\n', '\r', '\u{1b}', '\0']), "more than a line of text about {path:?}: {error:?}");
+}

@@ -1,0 +1,91 @@
+//! Spoils documents at random: bytes of any file, and the tree of a JSON document.
+
+use rand::RngExt as _;
+use rand::rngs::StdRng;
+use serde_json::Value;
+
+/// Cuts, flips, repeats, inserts or swaps bytes, once or several times.
+pub fn bytes(whole: &[u8], rng: &mut StdRng) -> Vec<u8> {
+    let mut spoiled = whole.to_vec();
+    for _ in 0..rng.random_range(1..4) {
+        if spoiled.is_empty() {
+            break;
+        }
+        let at = rng.random_range(0..spoiled.len());
+        let end = (at + rng.random_range(1..200)).min(spoiled.len());
+        match rng.random_range(0..6) {
+            // A program that was killed while it wrote, or a copy that ended early.
+            0 => spoiled.truncate(at),
+            1 => spoiled[at] ^= 1 << rng.random_range(0..8_u32),
+            2 => {
+                let again = spoiled[at..end].to_vec();
+                spoiled.splice(at..at, again);
+            }
+            3 => {
+                let noise: Vec<u8> = (at..end).map(|_| rng.random()).collect();
+                spoiled.splice(at..at, noise);
+            }
+            4 => {
+                spoiled.drain(at..end);
+            }
+            // What a disk gives back that lost a page.
+            _ => spoiled[at..end].fill(0),
+        }
+    }
+    spoiled
+}
+
+/// Changes one to three places of a JSON document to what nobody expects there.
+pub fn json(whole: &Value, rng: &mut StdRng) -> Value {
+    let mut spoiled = whole.clone();
+    for _ in 0..rng.random_range(1..4) {
+        let places = count(&spoiled);
+        let mut place = rng.random_range(0..places);
+        change(&mut spoiled, &mut place, rng);
+    }
+    spoiled
+}
+
+fn count(value: &Value) -> usize {
+    1 + match value {
+        Value::Array(items) => items.iter().map(count).sum(),
+        Value::Object(members) => members.values().map(count).sum(),
+        _ => 0,
+    }
+}
+
+/// Walks to the place of that number; true once it was changed.
+fn change(value: &mut Value, place: &mut usize, rng: &mut StdRng) -> bool {
+    if *place == 0 {
+        *value = strange(value, rng);
+        return true;
+    }
+    *place -= 1;
+    match value {
+        Value::Array(items) => items.iter_mut().any(|item| change(item, place, rng)),
+        Value::Object(members) => members.values_mut().any(|member| change(member, place, rng)),
+        _ => false,
+    }
+}
+
+fn strange(value: &Value, rng: &mut StdRng) -> Value {
+    const NUMBERS: [f64; 12] =
+        [0.0, -0.0, -1.0, 1e-300, 1e300, -1e300, 1e9, 1e-9, 0.5, 4_294_967_296.0, 9.007_199_254_740_993e15, 1e17];
+    match rng.random_range(0..9) {
+        0 => Value::Null,
+        1 => Value::Bool(rng.random()),
+        2 => "\u{202e}\n\0../../..".into(),
+        3 => Value::Array(vec![value.clone(); rng.random_range(0..40)]),
+        4 => serde_json::json!({ "": value }),
+        5 => nested(rng.random_range(1..100)),
+        // Most documents are numbers: most of what is strange in them, too.
+        _ => match value.as_f64() {
+            Some(number) if rng.random() => (number * rng.random_range(-3.0..30.0)).into(),
+            _ => NUMBERS[rng.random_range(0..NUMBERS.len())].into(),
+        },
+    }
+}
+
+fn nested(depth: usize) -> Value {
+    (0..depth).fold(Value::Null, |inner, _| Value::Array(vec![inner]))
+}

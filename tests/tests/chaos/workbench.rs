@@ -1,0 +1,91 @@
+//! The workbench without its window: spoiled logs and projects opened over each other, fits as jobs, cancelled and begun again, work kept
+//! on the way. At the end the good log still opens and is fitted.
+
+use crate::{Chaos, logs, must_be_a_sentence};
+use app::ui::autosave::{Autosave, State as Kept};
+use app::ui::dock::Dock;
+use app::ui::jobs::JobKind;
+use app::ui::project::Project;
+use app::ui::session::{Session, Tone};
+use rand::RngExt as _;
+use std::path::Path;
+use std::time::{Duration, Instant};
+use tests::workspace;
+
+/// Things that a user does a lap.
+const DEEDS: usize = 14;
+
+/// A frame without a picture.
+fn frame(ctx: &egui::Context, session: &mut Session) {
+    ctx.begin_pass(egui::RawInput::default());
+    session.poll(ctx);
+    // Nobody draws: what would go to a graphics card is let go.
+    ctx.end_pass().textures_delta.clear();
+}
+
+/// Frames until nothing is being done any more.
+fn settle(ctx: &egui::Context, session: &mut Session) {
+    let begun = Instant::now();
+    let mut quiet = 0;
+    while quiet < 3 {
+        assert!(begun.elapsed() < Duration::from_secs(120), "a job never ends: {:?}", session.jobs.progress());
+        frame(ctx, session);
+        quiet = if session.jobs.is_busy() { 0 } else { quiet + 1 };
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+fn take_messages(session: &mut Session, path: &Path) {
+    for banner in session.banners.drain(..) {
+        if banner.tone == Tone::Error {
+            must_be_a_sentence(&banner.text, path);
+        }
+    }
+}
+
+pub fn jobs(chaos: &mut Chaos) {
+    let folder = chaos.scratch();
+    let kept_in = folder.path().join("kept");
+    let (mut autosave, _) = Autosave::begin(&kept_in).expect("a folder of its own");
+    let (ctx, dock) = (egui::Context::default(), Dock::default());
+    let mut session = Session::new();
+    for number in 0..DEEDS {
+        let path = logs::spoil(folder.path(), &format!("log-{number}"), &mut chaos.rng);
+        match chaos.rng.random_range(0..6) {
+            0 => session.add_log(&ctx, &path),
+            1 => session.undo(),
+            2 => session.refit(&ctx),
+            3 => session.jobs.cancel(JobKind::Fit),
+            4 => spoiled_project(chaos, &mut session, &ctx, &path),
+            _ => session.open_any(&ctx, &path),
+        }
+        // Some are still at work when the next comes.
+        (0..chaos.rng.random_range(0..4)).for_each(|_| frame(&ctx, &mut session));
+        let _ = autosave.follow(&ctx, &session, &dock, true);
+        if chaos.rng.random_range(0..3) == 0 {
+            settle(&ctx, &mut session);
+        }
+        take_messages(&mut session, &path);
+        chaos.count("deeds at the workbench", 1);
+    }
+    settle(&ctx, &mut session);
+    let good = workspace().join("assets/recordings/crank.csv");
+    session.open(&ctx, &good);
+    settle(&ctx, &mut session);
+    assert!(session.analysis.is_some(), "after all that a good log is fitted: {:?}", session.fit_problem);
+    chaos.count("fits that answered", 1);
+    // Killed here: the lock goes, the file says what was open.
+    autosave.end(&session, &dock, true);
+    drop(autosave);
+    let (_, Kept { project, .. }) = Autosave::begin(&kept_in).expect("the next start");
+    assert_eq!(project, Project::of(&session), "what was open is found");
+}
+
+fn spoiled_project(chaos: &mut Chaos, session: &mut Session, ctx: &egui::Context, log: &Path) {
+    let path = log.with_extension("touchstone.json");
+    session.save_project_as(ctx, path.clone());
+    if let Ok(text) = std::fs::read(&path) {
+        std::fs::write(&path, crate::mutate::bytes(&text, &mut chaos.rng)).expect("writes");
+    }
+    session.open_project(ctx, &path);
+}
