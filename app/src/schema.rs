@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 /// Every command with a schema: the name of its file, and the schema.
 pub fn all() -> Vec<(&'static str, Value)> {
     vec![
+        ("bench", of::<cli::bench::table::Said>("bench")),
         ("info", one_or_several::<cli::info::Said>("info", true)),
         ("segment", one_or_several::<Segmentation>("segment", false)),
         ("fit", of::<cli::fit::Said<'_>>("fit")),

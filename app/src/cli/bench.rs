@@ -1,10 +1,16 @@
-//! `touchstone bench`. Here `bench servo`: how punctual the servo is on this machine, with and without pictures being drawn beside it.
+//! `touchstone bench`. Here `bench servo`: how punctual the servo is on this machine, with and without pictures being drawn beside it. Without
+//! a word behind it, every figure in one table (`whole`).
 
 mod blind;
 mod delay;
 mod frames;
+mod loglog;
 mod online;
+mod peers;
+mod scale;
+pub(crate) mod table;
 mod verdict;
+mod whole;
 
 use super::{ControlArgs, Output};
 use anyhow::Context;
@@ -30,11 +36,17 @@ const ROUND_S: f64 = 2.5;
 #[derive(Args)]
 pub struct Bench {
     #[command(subcommand)]
-    what: What,
+    what: Option<What>,
+    #[command(flatten)]
+    whole: whole::WholeBench,
 }
 
 #[derive(Subcommand)]
 enum What {
+    /// Every figure in one table, beside other programs where they are installed; the same without a word
+    All(whole::WholeBench),
+    /// How the work grows with samples, blocks and logs, on choice as a picture
+    Scale(scale::ScaleBench),
     /// Lateness, compute time, missed deadlines and stalls of the servo thread
     Servo(ServoBench),
     /// How often the diagnosis names what is hidden in generated recordings, and how often something where nothing is
@@ -74,20 +86,31 @@ fn parse_rate(text: &str) -> Result<RateChoice, String> {
 
 impl Bench {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
-        match &self.what {
-            What::Servo(bench) => bench.run(),
-            What::Online(bench) => bench.run(),
-            What::Blind(bench) => bench.run(),
-            What::Frames(bench) => bench.run(),
-            What::Delay(bench) => bench.run(),
+        match self.what.as_ref() {
+            None => self.whole.run(),
+            Some(what) => what.run(),
         }
     }
 
     #[cfg(test)]
     pub(super) fn passivity_control(&self) -> Option<f64> {
-        match &self.what {
+        match self.what.as_ref()? {
             What::Servo(bench) => bench.control.passivity_control,
-            What::Online(_) | What::Blind(_) | What::Frames(_) | What::Delay(_) => None,
+            _ => None,
+        }
+    }
+}
+
+impl What {
+    fn run(&self) -> anyhow::Result<Output> {
+        match self {
+            Self::All(bench) => bench.run(),
+            Self::Scale(bench) => bench.run(),
+            Self::Servo(bench) => bench.run(),
+            Self::Online(bench) => bench.run(),
+            Self::Blind(bench) => bench.run(),
+            Self::Frames(bench) => bench.run(),
+            Self::Delay(bench) => bench.run(),
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Exit codes: 0 done, 1 the input or the run failed, 2 wrong usage.
 
-mod bench;
+pub(crate) mod bench;
 pub(crate) mod convert;
 mod demo;
 mod device;

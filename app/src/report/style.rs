@@ -53,6 +53,11 @@ pub fn css() -> String {
     )
 }
 
+/// The variables of the colours alone, light and dark: for pictures that are no pages.
+pub fn colors() -> String {
+    format!("svg{{{}}}@media (prefers-color-scheme:dark){{svg{{{}}}}}", variables(false), variables(true))
+}
+
 fn variables(dark: bool) -> String {
     let p = Palette::of(dark);
     let mut text = String::new();

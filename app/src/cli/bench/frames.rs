@@ -23,16 +23,16 @@ const BUDGET_S: f64 = 8e-3;
 pub struct FramesBench {
     /// Samples of the log: the scripted operator's, over and over
     #[arg(long, default_value_t = 1_000_000)]
-    samples: usize,
+    pub(super) samples: usize,
     /// Size of the window in pixels
     #[arg(long, default_value = "1920x1080", value_parser = parse_size)]
-    size: [u32; 2],
+    pub(super) size: [u32; 2],
     /// Pictures that are drawn of each panel and movement
     #[arg(long, default_value_t = 60)]
-    pictures: usize,
+    pub(super) pictures: usize,
     /// Only the log's panels, without a fit and a replay: for logs that take minutes to replay
     #[arg(long)]
-    no_fit: bool,
+    pub(super) no_fit: bool,
 }
 
 impl FramesBench {
@@ -100,7 +100,7 @@ impl FramesBench {
 }
 
 /// The scripted operator does what there is to do.
-fn performance(name: &str, world: &World) -> Recording {
+pub(super) fn performance(name: &str, world: &World) -> Recording {
     let state = State::resting(world);
     let operator = ScriptedOperator::new(world, &state, Skill::default(), 1);
     let limits = Limits { max_force_n: operator.spec().max_force_n, ..Limits::default() };

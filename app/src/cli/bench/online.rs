@@ -22,7 +22,7 @@ const DT: f64 = 1e-3;
 pub struct OnlineBench {
     /// How often each task is performed
     #[arg(long, default_value_t = 5)]
-    rounds: u32,
+    pub(super) rounds: u32,
 }
 
 /// Costs in one world, s.

@@ -1,0 +1,152 @@
+//! Other programs on the same work in the same run: the scripts in `benches/`, which build our side from the sources that this program was made of.
+
+use super::table::{Figure, Peer, Wanted};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A script, what it measures, and how its rows become figures.
+struct Script {
+    file: &'static str,
+    figures: fn(&Value) -> Vec<Figure>,
+}
+
+const SCRIPTS: [Script; 4] = [
+    Script { file: "peers.py", figures: of_scenes },
+    Script { file: "logs.py", figures: of_logs },
+    Script { file: "hmm.py", figures: of_decoding },
+    Script { file: "refit.py", figures: of_refits },
+];
+
+/// Where the scripts are, if the sources are still there.
+fn folder() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../benches");
+    folder.is_dir().then_some(folder)
+}
+
+/// The Python to use: what `TOUCHSTONE_PYTHON` names, or `python3`.
+fn python() -> PathBuf {
+    std::env::var_os("TOUCHSTONE_PYTHON").map_or_else(|| "python3".into(), PathBuf::from)
+}
+
+/// Runs every script; what cannot be had is a sentence among `skipped`.
+pub(super) fn all(quick: bool, skipped: &mut Vec<String>) -> Vec<Figure> {
+    let Some(folder) = folder() else {
+        skipped.push("other programs: the scripts in benches/ are not there; build from the sources".to_owned());
+        return Vec::new();
+    };
+    let mut figures = Vec::new();
+    for script in &SCRIPTS {
+        match run(&folder.join(script.file), quick) {
+            Ok(said) => figures.extend((script.figures)(&said)),
+            Err(why) => skipped.push(format!("benches/{}: {why}", script.file)),
+        }
+    }
+    figures
+}
+
+/// What a script has written; the last line that it said where it did not.
+fn run(script: &Path, quick: bool) -> Result<Value, String> {
+    let out = tempfile::NamedTempFile::new().map_err(|error| error.to_string())?;
+    let mut command = Command::new(python());
+    command.arg(script).arg("--out").arg(out.path()).args(quick.then_some("--quick"));
+    let done = command.output().map_err(|error| format!("{} cannot be started ({error})", python().display()))?;
+    let text = std::fs::read_to_string(out.path()).unwrap_or_default();
+    serde_json::from_str(&text).map_err(|_| {
+        let said = [done.stdout, done.stderr].map(|bytes| String::from_utf8_lossy(&bytes).trim().to_owned()).join("\n");
+        said.trim().lines().last().unwrap_or("it said nothing").to_owned()
+    })
+}
+
+fn rows(said: &Value) -> impl Iterator<Item = &Value> {
+    said["rows"].as_array().map_or(&[][..], Vec::as_slice).iter()
+}
+
+fn figure(name: String, unit: &str, ours: f64, peer: (&str, f64), times: f64, least: Option<f64>) -> Figure {
+    let (name_of_peer, value) = (peer.0.to_owned(), peer.1);
+    let peer = Some(Peer { name: name_of_peer, value, times_as_fast: times });
+    Figure { wanted: least.map(Wanted::TimesAsFast), peer, ..Figure::new(name, ours, unit) }
+}
+
+fn of_scenes(said: &Value) -> Vec<Figure> {
+    let made = rows(said).filter(|row| row["mujoco_options"] == "default").filter_map(|row| {
+        let number = |key: &str| row[key].as_f64();
+        let label = row["label"].as_str()?;
+        let least = match row["scene"].as_str()? {
+            "pinch" => Some(12.0),
+            "crank" => Some(10.0),
+            _ => None,
+        };
+        let (ours, theirs) = (number("ours_best_ns")? * 1e-3, number("mujoco_best_ns")? * 1e-3);
+        Some(figure(format!("tick: {label}"), "µs", ours, ("MuJoCo", theirs), row["ratio"]["median"].as_f64()?, least))
+    });
+    made.collect()
+}
+
+fn of_logs(said: &Value) -> Vec<Figure> {
+    let made = rows(said).filter_map(|row| {
+        let (what, peer) = (row["what"].as_str()?, row["peer"].as_str()?);
+        let least = (peer == "polars").then_some(2.0);
+        let (ours, theirs) = (row["ours_s"].as_f64()?, row["peer_s"].as_f64()?);
+        Some(figure(format!("load: {what}"), "s", ours, (peer, theirs), row["ratio"].as_f64()?, least))
+    });
+    made.collect()
+}
+
+fn of_decoding(said: &Value) -> Vec<Figure> {
+    let made = rows(said).filter_map(|row| {
+        let median = |key: &str| -> Option<f64> {
+            let mut all: Vec<f64> = row[key].as_array()?.iter().filter_map(Value::as_f64).collect();
+            all.sort_by(f64::total_cmp);
+            all.get(all.len() / 2).copied()
+        };
+        let name = format!("decode {} samples, {} covariance", row["samples"], row["covariance"].as_str()?);
+        let (ours, theirs) = (median("ours_s")?, median("hmmlearn_s")?);
+        Some(figure(name, "s", ours, ("hmmlearn", theirs), row["ratio"].as_f64()?, None))
+    });
+    made.collect()
+}
+
+fn of_refits(said: &Value) -> Vec<Figure> {
+    let made = rows(said).filter_map(|row| {
+        let name = format!("refit a crank, {} samples", row["samples"]);
+        let (ours, theirs) = (row["refit_s"].as_f64()?, row["lm_s"].as_f64()?);
+        Some(figure(name, "s", ours, ("scipy lm", theirs), row["lm_ratio"].as_f64()?, None))
+    });
+    made.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn rows_of_every_script_become_figures() {
+        let scenes = json!({ "rows": [
+            { "label": "pinch", "scene": "pinch", "mujoco_options": "default", "ours_best_ns": 500.0, "mujoco_best_ns": 8000.0,
+              "ratio": { "median": 16.0 } },
+            { "label": "pinch, elliptic", "scene": "pinch", "mujoco_options": "cone", "ours_best_ns": 1.0, "mujoco_best_ns": 1.0 },
+        ] });
+        let made = of_scenes(&scenes);
+        assert_eq!(made.len(), 1, "one row a scene");
+        assert_eq!((made[0].value, made[0].is_kept()), (0.5, Some(true)));
+        let logs = json!({ "rows": [{ "what": "CSV", "peer": "polars", "ours_s": 1.0, "peer_s": 1.5, "ratio": 1.5 }] });
+        assert_eq!(of_logs(&logs)[0].is_kept(), Some(false));
+        let decoding = json!({ "rows": [{ "samples": 5, "covariance": "full", "ours_s": [2.0, 1.0, 3.0], "hmmlearn_s": [40.0], "ratio": 20.0 }] });
+        assert_eq!(of_decoding(&decoding)[0].value, 2.0);
+        let refits = json!({ "rows": [{ "samples": 5, "refit_s": 0.1, "lm_s": 1.0, "lm_ratio": 10.0 }] });
+        assert_eq!(of_refits(&refits)[0].peer.as_ref().map(|p| p.times_as_fast), Some(10.0));
+        assert!(of_refits(&json!({})).is_empty());
+    }
+
+    #[test]
+    fn every_script_is_there_and_one_that_is_not_is_a_sentence() {
+        let folder = folder().expect("the sources are here");
+        for script in &SCRIPTS {
+            assert!(folder.join(script.file).is_file(), "{}", script.file);
+        }
+        let why = run(&folder.join("no-such.py"), true).expect_err("it is not there");
+        assert!(!why.is_empty() && !why.contains('\n'), "{why}");
+    }
+}

@@ -1,0 +1,164 @@
+//! `touchstone bench scale`: how the work grows with what is given: samples of a log, blocks of a world, logs of a fleet.
+
+use super::frames::performance;
+use super::loglog::{self, Curve};
+use super::table::plain;
+use super::whole::{best_s, long};
+use crate::cli::{Output, progress};
+use clap::Args;
+use estimator::diagnose::{self, diagnose};
+use estimator::log::pyramid::Pyramid;
+use estimator::log::{load, write};
+use estimator::pipeline::{Options, analyse};
+use estimator::segment::{Method, segment_by};
+use haptics::Vec2;
+use haptics::recording::Recording;
+use haptics::world::{Block, Floor, Input, State, World, presets, step};
+use rayon::prelude::*;
+use serde_json::json;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// Storeys of a tower of blocks.
+const STOREYS: usize = 5;
+/// Ticks before blocks are at rest, and ticks that are timed.
+const SETTLING: usize = 2_000;
+const TICKS: usize = 1_000;
+
+/// Arguments of `bench scale`.
+#[derive(Args)]
+pub struct ScaleBench {
+    /// Up to 100 000 samples and 16 logs only
+    #[arg(long)]
+    quick: bool,
+    /// Draw the curves on logarithmic axes, as SVG
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// What is timed as samples grow.
+type Work = fn(&Recording) -> anyhow::Result<f64>;
+
+const WORKS: [(&str, Work); 6] = [
+    ("load CSV", |r| loading(r, "csv")),
+    ("load MCAP", |r| loading(r, "mcap")),
+    ("curves of a plot", |r| best_s(3, || Ok(r.channels.iter().map(|c| Pyramid::of(&c.values)).collect::<Vec<_>>()))),
+    ("segment", |r| best_s(1, || Ok(segment_by(Method::Threshold, r, None, None)?))),
+    ("fit", |r| best_s(1, || Ok(analyse(std::slice::from_ref(r), &Options::default())?))),
+    ("replay", |r| best_s(1, || Ok(estimator::simulate::simulate(&presets::crank(), r)?))),
+];
+
+fn loading(recording: &Recording, ending: &str) -> anyhow::Result<f64> {
+    let folder = tempfile::tempdir()?;
+    let path = folder.path().join("log").with_extension(ending);
+    write(std::slice::from_ref(recording), &path, &[])?;
+    best_s(2, || Ok(load(&path, None)?))
+}
+
+impl ScaleBench {
+    pub(super) fn run(&self) -> anyhow::Result<Output> {
+        let most = if self.quick { 5 } else { 7 };
+        let sizes: Vec<usize> = (3..=most).map(|power| 10_usize.pow(power)).collect();
+        let mut curves = progress::during("measuring samples", |share| by_samples(&sizes, |done| share.tell(done)))?;
+        curves.push(progress::during("measuring blocks", |_| by_blocks()));
+        curves.push(progress::during("measuring logs", |_| by_logs(if self.quick { 16 } else { 64 }))?);
+        let mut text = String::new();
+        for curve in &curves {
+            let _ = write!(text, "{:<18} {:<8}", curve.name, curve.of);
+            for (size, seconds) in &curve.points {
+                let _ = write!(text, " {size:>9}: {:>8} ms", plain(1e3 * seconds));
+            }
+            let _ = writeln!(text, "   grows as n^{:.2}", curve.exponent());
+        }
+        if let Some(out) = &self.out {
+            crate::ui::project::write_whole(out, &loglog::svg(&curves)).map_err(anyhow::Error::msg)?;
+            let _ = writeln!(text, "picture: {}", out.display());
+        }
+        let rows =
+            curves.iter().map(|c| json!({ "name": c.name, "of": c.of, "exponent": c.exponent(), "points": c.points }));
+        let json = json!({ "optimised": !cfg!(debug_assertions), "scale": rows.collect::<Vec<_>>() });
+        Ok(Output { text, json })
+    }
+}
+
+fn by_samples(sizes: &[usize], told: impl Fn(f64)) -> anyhow::Result<Vec<Curve>> {
+    let once = performance("crank", &presets::crank());
+    let mut curves: Vec<Curve> = WORKS.map(|(name, _)| Curve::new(name, "samples")).into();
+    for (k, size) in sizes.iter().enumerate() {
+        let recording = long(&once, *size);
+        for (curve, (_, work)) in curves.iter_mut().zip(&WORKS) {
+            // A second of a recording shows nothing that could be fitted: that is no figure.
+            if let Ok(seconds) = work(&recording) {
+                curve.points.push((*size, seconds));
+            }
+        }
+        told((k + 1) as f64 / sizes.len() as f64);
+    }
+    Ok(curves)
+}
+
+/// A tick of a world with blocks at rest in towers, the fingers away.
+fn by_blocks() -> Curve {
+    let mut curve = Curve::new("tick", "blocks");
+    for count in [1, 3, 10, 30, 100] {
+        let world = towers(count);
+        let away = [Vec2::new(-0.02, 0.2), Vec2::new(0.02, 0.2)];
+        let input = Input { tip_in_world: away, tip_velocity: [Vec2::zeros(); 2] };
+        let mut state = State::new(&world, away);
+        let mut ticks = |n: usize| (0..n).for_each(|_| step(&world, &mut state, &input, 1e-3));
+        ticks(SETTLING);
+        // Nothing in it can fail.
+        let took = best_s(3, || {
+            ticks(TICKS);
+            Ok(())
+        })
+        .unwrap_or(f64::NAN);
+        curve.points.push((count, took / TICKS as f64));
+    }
+    curve
+}
+
+fn towers(count: usize) -> World {
+    let mut world = World::empty("Towers");
+    world.floor = Some(Floor { height_m: 0.0, ..Floor::default() });
+    let place = |i: usize| ((i / STOREYS) as f64, (i % STOREYS) as f64);
+    world.blocks = (0..count)
+        .map(|i| {
+            let (tower, storey) = place(i);
+            Block::upright(&format!("block-{}", i + 1), 0.04, 0.02, 0.015, 0.03 * tower, 0.015 * storey)
+        })
+        .collect();
+    world
+}
+
+/// Diagnoses of several logs at the same time, on all processors.
+fn by_logs(most: usize) -> anyhow::Result<Curve> {
+    let log = performance("crank", &presets::crank());
+    let mut curve = Curve::new("diagnose", "logs");
+    for count in [1, 2, 4, 8, 16, 32, 64].into_iter().filter(|count| *count <= most) {
+        let all = vec![log.clone(); count];
+        let took = best_s(1, || {
+            let each = all.par_iter().map(|one| diagnose(std::slice::from_ref(one), &diagnose::Options::default()));
+            Ok(each.collect::<Result<Vec<_>, _>>()?)
+        })?;
+        curve.points.push((count, took));
+    }
+    Ok(curve)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_sizes_come_out_with_what_grows() {
+        let curves = by_samples(&[1_000, 10_000], |_| {}).expect("measured");
+        assert_eq!(curves.len(), WORKS.len());
+        let fitted = curves.iter().find(|c| c.name == "fit").expect("a curve");
+        assert!(fitted.points.iter().any(|(size, seconds)| *size == 10_000 && *seconds > 0.0), "{fitted:?}");
+        let blocks = by_blocks();
+        assert_eq!(blocks.points.len(), 5);
+        assert!(blocks.points[4].1 > blocks.points[0].1, "a hundred blocks cost more than one: {blocks:?}");
+        assert!(by_logs(2).expect("diagnosed").points.len() == 2);
+    }
+}
