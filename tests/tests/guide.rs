@@ -88,10 +88,10 @@ fn rewritten(page: &str, folder: &Path) -> (String, usize) {
             let found = said(command, folder);
             let found: Vec<&str> = found.lines().collect();
             let kept = if agrees(&wanted, &found) { &wanted } else { &found };
-            kept.iter().for_each(|line| {
+            for line in kept {
                 text += line;
                 text.push('\n');
-            });
+            }
             commands += 1;
         }
     }

@@ -93,7 +93,9 @@ mod on_unix {
     /// True when what was sent may be believed.
     fn answer(line: &mut TTYPort, mode: u8) -> bool {
         let mut reply = vec![5_u8];
-        POSE.iter().for_each(|angle| reply.extend(angle.to_le_bytes()));
+        for angle in POSE {
+            reply.extend(angle.to_le_bytes());
+        }
         match mode {
             SILENT => return false,
             NOISE => reply.iter_mut().for_each(|byte| *byte = 0xa7),

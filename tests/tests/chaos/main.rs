@@ -6,6 +6,9 @@
 //! issue's ten minutes. The work goes in laps, each of which does everything once in an order of its own; `TOUCHSTONE_CHAOS_ONLY=udp` does
 //! one part alone.
 
+// Names are hostile on purpose: printed as they are, a failure would be unreadable.
+#![allow(clippy::unnecessary_debug_formatting)]
+
 mod boards;
 mod child;
 mod documents;

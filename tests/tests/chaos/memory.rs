@@ -2,7 +2,7 @@
 
 use crate::MEMORY;
 
-/// What may come and go between laps: thread-local buffers, caches of the allocator and of SQLite, bytes.
+/// What may come and go between laps: thread-local buffers, caches of the allocator and the database, bytes.
 const SLACK: usize = 3 << 20;
 /// Pages that the allocator keeps for itself between laps, more or less of them after a table of 100 000 columns, bytes.
 const PAGES: usize = 96 << 20;

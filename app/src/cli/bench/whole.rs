@@ -26,6 +26,9 @@ pub struct WholeBench {
     no_peers: bool,
 }
 
+/// A part of the table.
+type Part = fn(WholeBench) -> anyhow::Result<Vec<Figure>>;
+
 /// The best of some rounds, s: what interrupts a round only makes it longer.
 pub(super) fn best_s<T>(rounds: usize, mut work: impl FnMut() -> anyhow::Result<T>) -> anyhow::Result<f64> {
     let mut best = f64::INFINITY;
@@ -61,7 +64,6 @@ impl WholeBench {
             figures: Vec::new(),
             skipped: Vec::new(),
         };
-        type Part = fn(WholeBench) -> anyhow::Result<Vec<Figure>>;
         let parts: [(&str, Part); 4] = [
             ("the servo", servo),
             ("what runs beside it", online),
