@@ -27,25 +27,59 @@ fn measured((case, _, again): &Twice) -> (Diagnosis, Validation) {
     (found, on.remove(0))
 }
 
-/// A name, how a case is made, and the share of what is left that must go at least. (Heavy blocks stick and slip under a soft hand: what
-/// that leaves is far more than a bias.)
-type Kind = (&'static str, fn(u64) -> Twice, f64);
+/// A name and how a case is made.
+type Kind = (&'static str, fn(u64) -> Twice);
 
 const HIDDEN: [Kind; 12] = [
-    ("blocks: pads", |s| blocks::twice(blocks::Kind::Pads, s), 0.3),
-    ("blocks: bias", |s| blocks::twice(blocks::Kind::Bias, s), 0.2),
-    ("blocks: gain", |s| blocks::twice(blocks::Kind::Gain, s), 0.2),
-    ("barrel: wall", |s| barrel::twice(barrel::Kind::Wall, s), 0.1),
-    ("barrel: drift", |s| barrel::twice(barrel::Kind::Drift, s), 0.2),
-    ("needle: hardening", |s| needle::twice(needle::Kind::Hardening, s), 0.2),
-    ("needle: shaft", |s| needle::twice(needle::Kind::Shaft, s), 0.2),
-    ("switch: viscous", |s| switch::twice(switch::Kind::Viscous, s), 0.2),
-    ("switch: friction (world)", |s| switch::twice(switch::Kind::Coulomb, s), 0.2),
-    ("slide: viscous", |s| slide::twice(slide::Kind::Viscous, s), 0.02),
-    ("slide: wet", |s| slide::twice(slide::Kind::Wet, s), 0.2),
-    ("slide: bias", |s| slide::twice(slide::Kind::Bias, s), 0.02),
+    ("blocks: pads", |s| blocks::twice(blocks::Kind::Pads, s)),
+    ("blocks: bias", |s| blocks::twice(blocks::Kind::Bias, s)),
+    ("blocks: gain", |s| blocks::twice(blocks::Kind::Gain, s)),
+    ("barrel: wall", |s| barrel::twice(barrel::Kind::Wall, s)),
+    ("barrel: drift", |s| barrel::twice(barrel::Kind::Drift, s)),
+    ("needle: hardening", |s| needle::twice(needle::Kind::Hardening, s)),
+    ("needle: shaft", |s| needle::twice(needle::Kind::Shaft, s)),
+    ("switch: viscous", |s| switch::twice(switch::Kind::Viscous, s)),
+    ("switch: friction (world)", |s| switch::twice(switch::Kind::Coulomb, s)),
+    ("slide: viscous", |s| slide::twice(slide::Kind::Viscous, s)),
+    ("slide: wet", |s| slide::twice(slide::Kind::Wet, s)),
+    ("slide: bias", |s| slide::twice(slide::Kind::Bias, s)),
 ];
 
+/// One case: its name, and what came of it.
+struct Held {
+    name: &'static str,
+    /// What was hidden has been named.
+    named: bool,
+    /// Share of the power left that goes on the other recording, and its 95 % interval.
+    share: f64,
+    interval: [f64; 2],
+}
+
+impl Held {
+    fn of((name, make): Kind, seed: u64) -> Self {
+        let made = make(seed);
+        let (found, on) = measured(&made);
+        let named = made.1.hidden.iter().all(|id| found.causes.iter().any(|c| c.id == *id));
+        let held = Self { name, named, share: on.share, interval: on.interval };
+        if !held.is_better() {
+            println!("{name} seed {seed}: named {named}, {on:?}");
+        }
+        held
+    }
+
+    /// What was hidden is named, and taking it in leaves less of another recording, beyond chance.
+    fn is_better(&self) -> bool {
+        self.named && self.interval[0] > 0.0
+    }
+
+    /// What was taken in leaves more of another recording, beyond chance.
+    fn is_worse(&self) -> bool {
+        self.interval[1] < 0.0
+    }
+}
+
+/// Of 1080 cases (thirty days' seeds) 21 were not better beyond chance, so that more than four of 36 come once in a thousand days; one was
+/// worse. How much goes depends on how large the effect is beside the noise, so that it is asked of the middle of all alone.
 #[test]
 fn what_is_found_holds_in_another_recording() {
     let seed = seed();
@@ -54,27 +88,22 @@ fn what_is_found_holds_in_another_recording() {
         .into_iter()
         .flat_map(|kind| (0..cases()).map(move |k| (kind, seed.wrapping_mul(577).wrapping_add(k))))
         .collect();
-    let held: Vec<(&str, f64, bool)> = jobs
-        .par_iter()
-        .with_max_len(1)
-        .map(|&((name, make, least), seed)| {
-            let made = make(seed);
-            let (found, on) = measured(&made);
-            let share = 1.0 - on.rms_after / on.rms_before;
-            let named = made.1.hidden.iter().all(|id| found.causes.iter().any(|c| c.id == *id));
-            if !named || share < least {
-                println!("{name} seed {seed}: named {named}, {on:?}");
-            }
-            (name, share, !named || share >= least)
-        })
-        .collect();
-    for (name, ..) in HIDDEN {
-        let mut shares: Vec<f64> = held.iter().filter(|h| h.0 == name).map(|h| h.1).collect();
-        shares.sort_by(f64::total_cmp);
-        println!("{name:26} median share of what is left that goes {:.2}", shares[shares.len() / 2]);
+    let held: Vec<Held> = jobs.par_iter().with_max_len(1).map(|&(kind, seed)| Held::of(kind, seed)).collect();
+    for (name, _) in HIDDEN {
+        let of: Vec<&Held> = held.iter().filter(|h| h.name == name).collect();
+        println!("{name:26} median share of what is left that goes {:.2}", median(of.iter().map(|h| h.share)));
+        assert!(of.iter().any(|h| h.is_better()), "{name}: nothing that was found holds");
     }
-    let misses = held.iter().filter(|h| !h.2).count();
-    assert!(10 * misses <= held.len(), "{misses} of {} did not hold", held.len());
+    let count = |is: fn(&Held) -> bool| held.iter().filter(|h| is(h)).count();
+    assert!(count(Held::is_better) * 9 >= held.len() * 8, "{} of {} hold", count(Held::is_better), held.len());
+    assert!(count(Held::is_worse) * 36 <= held.len(), "{} of {} are worse", count(Held::is_worse), held.len());
+    assert!(median(held.iter().map(|h| h.share)) > 0.7);
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
 }
 
 #[test]
