@@ -24,7 +24,12 @@ pub enum Shape {
     Spring { half: f64 },
     /// k, f0 and two cubics (about the middle, and half a range beside it) of a spring that hardens.
     Hardening { half: f64 },
+    /// k, c of something that gives way and damps: what pushes along with the motion is no damper.
+    Damped,
 }
+
+/// A damper of so many seconds times the stiffness, the wrong way round, may still be noise, s.
+const NEARLY_UNDAMPED_S: f64 = 0.1;
 
 impl Shape {
     fn admits(self, values: &[f64]) -> bool {
@@ -36,6 +41,7 @@ impl Shape {
                 let [k, f0, k3, place] = about_its_zero([k * half, *f0, here * cube, there * cube]);
                 k3 > 0.0 && k > -0.5 * k3 && place.abs() < RESTS_WITHIN && f0.abs() < 2.0 * (k.abs() + k3)
             }
+            (Self::Damped, [k, c]) => *c > -NEARLY_UNDAMPED_S * k,
             _ => true,
         }
     }
@@ -179,6 +185,12 @@ mod tests {
             let v = u - place;
             assert!((two - (k * v + f0 + k3 * v.powi(3))).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn what_pushes_along_is_no_damper() {
+        assert!(Shape::Damped.admits(&[12.0, 0.2]) && Shape::Damped.admits(&[12.0, -0.2]));
+        assert!(!Shape::Damped.admits(&[12.0, -6.8]));
     }
 
     #[test]

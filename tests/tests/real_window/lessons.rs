@@ -1,10 +1,12 @@
 //! Lessons in a real window: opened and begun by their names, done with a pointer that goes where a person's would, graded from their files.
 
-use crate::screen::{SCREEN, Screen, drawn, kept, start, until};
+use crate::screen::{Hand, SCREEN, Screen, drawn, kept, start, until};
 use app::ui::lessons::{Pointed, pointer_through};
 use app::ui::scene::Place;
 use app::ui::screenshot::trainer_place;
+use app::ui::theme;
 use estimator::training::lesson::Lesson;
+use haptics::Vec2;
 use serde_json::Value;
 use std::fs::DirEntry;
 use std::io::Write as _;
@@ -18,6 +20,17 @@ const EVERY: Duration = Duration::from_millis(33);
 /// What a key changes of the strength, and what the mouse begins with, N.
 const KEY_N: f64 = 0.2;
 const BEGINS_N: f64 = 1.5;
+/// A look at the picture, and how long one waits for it at most.
+const GLANCE: Duration = Duration::from_millis(250);
+const NEVER_STILL: Duration = Duration::from_secs(6);
+/// So many looks in a row with so few changed pixels in the scene are stillness.
+const STILL_PICTURES: usize = 2;
+const STILL_PIXELS: usize = 60;
+/// Columns and rows of the screen that show the scene.
+const SCENE: [std::ops::Range<usize>; 2] = [20..1140, 110..860];
+/// One step deeper into what shall give, m, and how many of them.
+const DEEPER_M: f64 = 0.5e-3;
+const DEEPER_STEPS: u32 = 16;
 /// A lesson is tried so often at most.
 const ATTEMPTS: usize = 3;
 /// Those that are done unless `TOUCHSTONE_LESSONS` names others, or `all`: together they press, carry, turn and answer.
@@ -58,30 +71,117 @@ fn recorded(home: &Path, since: SystemTime) -> Option<PathBuf> {
     all.find(|entry| is_log(entry) && is_new(entry)).map(|entry| entry.path())
 }
 
+/// A hand on the mouse that has its eyes on the picture: it closes, opens and presses only where nothing moves any more, as people wait
+/// for a program that is slow.
+struct Eyed<'a> {
+    screen: &'a Screen,
+    place: &'a Place,
+    hand: Hand,
+    down: bool,
+    strength_n: f64,
+}
+
+impl<'a> Eyed<'a> {
+    fn on(screen: &'a Screen, place: &'a Place, strength_n: f64) -> Self {
+        Self { screen, place, hand: screen.hand(), down: false, strength_n }
+    }
+
+    fn say(&mut self, words: &str) {
+        writeln!(self.hand.commands(), "{words}").expect("the pointer moves");
+    }
+
+    fn go_to(&mut self, at_m: Vec2) {
+        let at = self.place.at(at_m);
+        self.say(&format!("mousemove {:.0} {:.0}", at.x, at.y));
+    }
+
+    fn strengthen_to(&mut self, strength_n: f64) {
+        while (strength_n - self.strength_n).abs() > 0.5 * KEY_N + 1e-9 {
+            let way = (strength_n - self.strength_n).signum();
+            self.strength_n += way * KEY_N;
+            self.say(&format!("key {}", if way > 0.0 { "equal" } else { "minus" }));
+        }
+    }
+
+    /// Waits until the picture stands still, or is thought to, as far as a hand that trembles with its forces does.
+    fn wait_until_still(&self) {
+        let (mut before, mut still) = (self.screen.picture(), 0);
+        let begun = Instant::now();
+        while still < STILL_PICTURES && begun.elapsed() < NEVER_STILL {
+            std::thread::sleep(GLANCE);
+            let now = self.screen.picture();
+            let differs = |(a, b): &(&[u8; 3], &[u8; 3])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 24);
+            let moved = before[SCENE[1].clone()]
+                .iter()
+                .zip(&now[SCENE[1].clone()])
+                .map(|(a, b)| a[SCENE[0].clone()].iter().zip(&b[SCENE[0].clone()]).filter(differs).count())
+                .sum::<usize>();
+            still = if moved < STILL_PIXELS { still + 1 } else { 0 };
+            before = now;
+        }
+    }
+
+    /// The pointer's place and button at one moment of the way; true where it stopped to look.
+    fn follow(&mut self, pointed: &Pointed, pressed: bool) -> bool {
+        self.go_to(pointed.at_m);
+        let changes = pointed.pinches != self.down;
+        let gives = pointed.presses && !pressed;
+        if changes || gives {
+            self.wait_until_still();
+        }
+        if changes {
+            self.down = pointed.pinches;
+            self.say(if self.down { "mousedown 1" } else { "mouseup 1" });
+        }
+        if self.down {
+            self.strengthen_to(pointed.strength_n);
+        }
+        if changes {
+            self.wait_until_still();
+        }
+        if gives {
+            self.press(pointed.at_m);
+        }
+        changes || gives
+    }
+
+    /// Presses deeper, little by little, until the picture says that the goals are reached.
+    fn press(&mut self, from_m: Vec2) {
+        for step in 1..=DEEPER_STEPS {
+            if !is_recorded(self.screen) {
+                return;
+            }
+            self.go_to(from_m - Vec2::new(0.0, DEEPER_M * f64::from(step)));
+            self.wait_until_still();
+        }
+    }
+}
+
+/// The red dot beside the clock of an attempt.
+fn is_recorded(screen: &Screen) -> bool {
+    let [dark, light] = [true, false].map(|dark| theme::Palette::of(dark).danger.to_array());
+    let near = |p: &[u8; 3], of: [u8; 4]| p.iter().zip(of).all(|(a, b)| a.abs_diff(b) <= 12);
+    let rows = screen.picture();
+    rows[120..180].iter().flat_map(|row| &row[1160..1200]).any(|p| near(p, dark) || near(p, light))
+}
+
 /// Moves the pointer through a lesson in its own time; the strength that the mouse has in the end.
-fn point(screen: &Screen, place: &Place, way: &[Pointed], mut strength_n: f64) -> f64 {
-    let mut hand = screen.hand();
-    let mut say = |words: String| writeln!(hand.commands(), "{words}").expect("the pointer moves");
-    let (begun, mut down) = (Instant::now(), false);
-    for (k, pointed) in way.iter().enumerate() {
-        let at = place.at(pointed.at_m);
-        say(format!("mousemove {:.0} {:.0}", at.x, at.y));
-        if pointed.pinches != down {
-            down = pointed.pinches;
-            say(format!("{} 1", if down { "mousedown" } else { "mouseup" }));
+fn point(screen: &Screen, place: &Place, way: &[Pointed], strength_n: f64) -> f64 {
+    let mut eyed = Eyed::on(screen, place, strength_n);
+    let (mut next, mut pressed) = (Instant::now(), false);
+    for pointed in way {
+        if eyed.follow(pointed, pressed) {
+            next = Instant::now();
         }
-        while down && (pointed.strength_n - strength_n).abs() > 0.5 * KEY_N + 1e-9 {
-            let way = (pointed.strength_n - strength_n).signum();
-            strength_n += way * KEY_N;
-            say(format!("key {}", if way > 0.0 { "equal" } else { "minus" }));
-        }
+        pressed = pointed.presses;
+        next += EVERY;
         // A hand's own pace, not a wait for the program.
-        std::thread::sleep((EVERY * (k as u32 + 1)).saturating_sub(begun.elapsed()));
+        std::thread::sleep(next.saturating_duration_since(Instant::now()));
     }
-    if down {
-        say("mouseup 1".to_owned());
+    if eyed.down {
+        eyed.say("mouseup 1");
     }
-    strength_n
+    eyed.strength_n
 }
 
 fn graded(path: &Path) -> Option<Value> {

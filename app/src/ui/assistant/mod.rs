@@ -75,9 +75,12 @@ struct Said {
 
 /// Why nothing is said now, in a sentence; `None` while it is.
 pub fn silent(session: &Session) -> Option<&'static str> {
-    let testing =
-        session.lessons.open.as_ref().is_some_and(|open| matches!(open.phase, Phase::Testing | Phase::Asking));
-    testing.then_some("In a test you are on your own.")
+    match session.lessons.open.as_ref()?.phase {
+        Phase::Testing | Phase::Asking => Some("In a test you are on your own."),
+        // The world stands still behind what came of it.
+        Phase::Grading | Phase::Debrief(_) => Some("The attempt is over. It goes on with the next one."),
+        Phase::Brief | Phase::Watching | Phase::Practising => None,
+    }
 }
 
 fn said(session: &Session) -> Option<Said> {

@@ -64,6 +64,8 @@ pub struct Pointed {
     pub pinches: bool,
     /// How firmly, N.
     pub strength_n: f64,
+    /// It presses down with what it holds, until that gives.
+    pub presses: bool,
 }
 
 impl Pointed {
@@ -85,7 +87,7 @@ impl Pointed {
         let presses = pinches && point.tip_force_n[0].y + point.tip_force_n[1].y < -PULL_N;
         let deeper_m = if presses { UNTIL_IT_GIVES_M } else { 0.0 };
         let at_m = point.wanted_m() + Vec2::new(farther_m * push_n.signum(), -deeper_m);
-        Self { at_m, pinches, strength_n: point.grip_n().max(WEAKEST_N) }
+        Self { at_m, pinches, strength_n: point.grip_n().max(WEAKEST_N), presses }
     }
 }
 

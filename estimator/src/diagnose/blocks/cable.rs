@@ -1,7 +1,7 @@
 //! Cables and walls that a carried block may meet: tried all over the place, and refined where they explain most.
 
 use super::rows::{Place, Rows};
-use crate::diagnose::candidate::Candidate;
+use crate::diagnose::candidate::{Candidate, Shape};
 use crate::diagnose::geometry::Study;
 use crate::identify::linear::least_squares;
 use haptics::Vec2;
@@ -38,7 +38,8 @@ impl Field {
         let Tie([direction, nearness, taut]) = tie;
         let away = self.range_m / nearness.clamp(1.0 / FAR, 0.95);
         let anchor = self.middle + away * Vec2::new(direction.cos(), direction.sin());
-        (anchor, away + taut * self.range_m)
+        // A cable of negative length would pull from a distance on that no place can be at.
+        (anchor, (away + taut * self.range_m).max(0.0))
     }
 }
 
@@ -200,6 +201,7 @@ fn one(rows: &Rows<'_>, tied: usize, anchor: Vec2, length_m: f64) -> Candidate {
     let columns = vec![pull(rows, tied, anchor, length_m), damping];
     Candidate::several("added-constraint", Kind::Plant, columns, vec![("k", "N/m"), ("c", "N s/m")])
         .positive()
+        .shaped(Shape::Damped)
         .at("anchor x", anchor.x, "m")
         .at("anchor y", anchor.y, "m")
         .at("length", length_m, "m")

@@ -16,20 +16,31 @@ fn assets() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/lessons")
 }
 
-fn graded(lesson: &Lesson, level: &str, seed: u64) -> Grade {
+/// `150` is a line of 150 ms there and back, `150 model` the same with a model on this side; nothing is no line.
+fn line(named: &str) -> Delay {
+    let mut words = named.split_whitespace();
+    let Some(round_trip_ms) = words.next() else { return Delay::default() };
+    let round_trip_ms: f64 = round_trip_ms.parse().expect("milliseconds");
+    Delay::of(1e-3 * round_trip_ms, words.next() == Some("model"))
+}
+
+fn graded(lesson: &Lesson, level: &str, seed: u64, line: &Delay) -> Grade {
     let variant = seed as usize % lesson.variant_count();
     let skill = Skill::from_name(level).expect("a level");
-    let performance = perform::perform(lesson, variant, skill, seed).expect("performed");
+    let performance = perform::perform_over(lesson, variant, skill, seed, line).expect("performed");
     let answer = lesson.question.as_ref().map(|_| variant);
-    let attempted = Attempted { answer, ..Attempted::at(lesson, variant) };
+    let (delay_ms, predicted) = (1e3 * line.round_trip_s, line.predicted);
+    let attempted = Attempted { answer, delay_ms, predicted, ..Attempted::at(lesson, variant) };
     grade(lesson, &attempted, &performance.world, &performance.recording("attempt")).expect("graded")
 }
 
-/// `TOUCHSTONE_SEEDS=100` draws a hundred seeds for each lesson; `TOUCHSTONE_LESSON=id` looks at one lesson.
+/// `TOUCHSTONE_SEEDS=100` draws a hundred seeds for each lesson; `TOUCHSTONE_LESSON=id` looks at one lesson, and
+/// `TOUCHSTONE_LINE="150 model"` at what is done over a line.
 #[test]
 fn better_hands_get_better_scores_in_every_lesson() {
     let seeds = std::env::var("TOUCHSTONE_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(12_u64);
     let only = std::env::var("TOUCHSTONE_LESSON").ok();
+    let over = line(&std::env::var("TOUCHSTONE_LINE").unwrap_or_default());
     let first = std::env::var("TOUCHSTONE_FIRST_SEED").ok().and_then(|t| t.parse().ok()).unwrap_or(FIRST_SEED);
     let (lessons, problems) = library::of_folder(&assets());
     assert!(problems.is_empty(), "{problems:?}");
@@ -37,7 +48,7 @@ fn better_hands_get_better_scores_in_every_lesson() {
     for lesson in lessons.iter().filter(|l| only.as_ref().is_none_or(|only| *only == l.id)) {
         let grades: Vec<(u64, [Grade; 4])> = (first..first + seeds)
             .into_par_iter()
-            .map(|seed| (seed, LEVELS.map(|level| graded(lesson, level, seed))))
+            .map(|seed| (seed, LEVELS.map(|level| graded(lesson, level, seed, &over))))
             .collect();
         // An attempt that was not completed is below every other one.
         let value = |grade: &Grade| grade.score.unwrap_or(f64::NEG_INFINITY);
