@@ -25,7 +25,7 @@ pub fn find(name: &Path) -> anyhow::Result<World> {
 pub fn lacks(world: &World, task: Task) -> Option<&'static str> {
     let has_shape = |shape: Shape| world.blocks.iter().any(|block| block.shape == shape);
     let (there, what) = match task {
-        Task::BlockStack => (world.blocks.iter().any(|b| b.shape == Shape::Block && b.guide.is_none()), "blocks"),
+        Task::BlockStack => (world.blocks.iter().any(|b| b.shape.is_carried() && b.guide.is_none()), "blocks"),
         Task::Crank => (world.crank.is_some(), "crank"),
         Task::Needle => (world.membrane.is_some() && has_shape(Shape::Needle), "needle with a sheet to pierce"),
         Task::Barrel => (has_shape(Shape::Barrel), "barrel"),

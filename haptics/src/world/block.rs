@@ -53,11 +53,18 @@ pub enum Shape {
     Block,
     /// A barrel: a block that is drawn round.
     Barrel,
+    /// A paper cup: a block that is drawn round, open and tapering.
+    Cup,
     /// A needle, point down in the middle of its lower edge. The flat pads keep it upright, as they do the crank's handle.
     Needle,
 }
 
 impl Shape {
+    /// Whether it is carried about as it is, like a block: no barrel that is examined, no needle.
+    pub fn is_carried(self) -> bool {
+        matches!(self, Self::Block | Self::Cup)
+    }
+
     // serde hands over a reference.
     #[allow(clippy::trivially_copy_pass_by_ref)]
     fn is_block(&self) -> bool {

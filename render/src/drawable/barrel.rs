@@ -110,7 +110,8 @@ pub(super) fn drip_starts(half: Vec2) -> [Vec2; 3] {
     [[x, y], [left_x, left_y], [right_x, right_y]].map(|corner| Vec2::from(corner) * half)
 }
 
-fn crack(canvas: &mut Canvas<'_>, body: Body) {
+/// A crack in a round wall, in its lower half.
+pub(super) fn crack(canvas: &mut Canvas<'_>, body: Body) {
     let color = Color::rgb8(0x16, 0x18, 0x1C);
     let scale = |[x, y, width]: [f32; 3]| (Vec2::new(x, y) * body.half, width * body.half.x);
     let mut line = |(a, thick): (Vec2, f32), (b, thin): (Vec2, f32)| {

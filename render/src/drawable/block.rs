@@ -1,6 +1,6 @@
-//! Movable bodies: blocks are boxes with slightly rounded edges; barrels and needles have files of their own.
+//! Movable bodies: blocks are boxes with slightly rounded edges; barrels, cups and needles have files of their own.
 
-use super::{Canvas, HALF_DEPTH_M, barrel, needle};
+use super::{Canvas, HALF_DEPTH_M, barrel, cup, needle};
 use crate::Material;
 use crate::mesh::MeshKind;
 use crate::scene::{SceneView, SolidRef};
@@ -46,6 +46,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
         match block.shape {
             Shape::Block => draw_box(canvas, body),
             Shape::Barrel => barrel::draw(canvas, body, state.broken),
+            Shape::Cup => cup::draw(canvas, body, state.broken),
             // The pads keep it upright, whatever angle is stored.
             Shape::Needle => needle::draw(canvas, Body { turn: 0.0, ..body }),
         }

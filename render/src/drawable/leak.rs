@@ -41,13 +41,18 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
         if canvas.mode == Mode::Real {
             puddle(canvas, body, state.spilled_x_m as f32, share);
         }
-        if block.shape == Shape::Barrel && state.broken {
+        if is_round(block) && state.broken {
             streak(canvas, body, share);
         }
         if share < 1.0 {
             drop(canvas, (block, state), body, view.state.time_s);
         }
     }
+}
+
+/// Whose wall shows where it leaks.
+fn is_round(block: &Block) -> bool {
+    matches!(block.shape, Shape::Barrel | Shape::Cup)
 }
 
 /// Thin overlapping discs on the table, a darker rim below a lighter face.
@@ -90,7 +95,7 @@ fn streak(canvas: &mut Canvas<'_>, body: Body, share: f32) {
 fn drop(canvas: &mut Canvas<'_>, (block, state): (&Block, &BodyState), body: Body, time_s: f64) {
     let phase = (time_s / DROP_PERIOD_S).rem_euclid(1.0) as f32;
     let lowest = body.center.y - reach(body.half, body.turn).y;
-    let from = if block.shape == Shape::Barrel && state.broken {
+    let from = if is_round(block) && state.broken {
         on_front(body, Vec2::new(drip_starts(body.half)[0].x, -body.half.y), 0.0)
     } else {
         Vec3::new(body.center.x, lowest, 0.6 * body.half.x)

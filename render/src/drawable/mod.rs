@@ -6,6 +6,7 @@ mod block;
 mod cable;
 mod contact;
 mod crank;
+mod cup;
 mod force_field;
 mod guide;
 mod leak;

@@ -202,12 +202,13 @@ fn keys(ui: &Ui, trainer: &mut Trainer, frame_s: f64) {
         if step != Vec2::zeros() {
             trainer.pinch.move_by(step * KEY_SPEED_M_S * frame_s.min(0.1));
         }
-        if i.key_pressed(Key::Space) {
+        if i.num_presses(Key::Space) % 2 == 1 {
             trainer.pinch.latched = !trainer.pinch.latched;
         }
-        let firmer = i32::from(i.key_pressed(Key::Plus) || i.key_pressed(Key::Equals));
-        let change = firmer - i32::from(i.key_pressed(Key::Minus));
-        trainer.pinch.strengthen(0.2 * f64::from(change));
+        // Where pictures are rare, several presses come with one of them.
+        let times = |key: Key| i.num_presses(key) as f64;
+        let change = times(Key::Plus) + times(Key::Equals) - times(Key::Minus);
+        trainer.pinch.strengthen(0.2 * change);
     });
 }
 

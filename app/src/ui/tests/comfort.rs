@@ -175,3 +175,24 @@ fn what_was_chosen_is_remembered() {
     again.keep(folder.path(), false);
     assert_eq!(again.session.comfort, chosen);
 }
+
+/// Where pictures are rare, several presses come with one of them.
+#[test]
+fn keys_that_come_with_one_picture_all_count() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut harness = train_window(in_train(folder.path()));
+    focus(&mut harness, true);
+    let before_n = trainer(&mut harness).pinch.strength_n();
+    let press = |key: Key| {
+        [true, false].map(|pressed| {
+            let modifiers = Modifiers::NONE;
+            egui::Event::Key { key, physical_key: None, pressed, repeat: false, modifiers }
+        })
+    };
+    let keys = [Key::Minus, Key::Minus, Key::Minus, Key::Equals, Key::Space, Key::Space];
+    harness.input_mut().events.extend(keys.into_iter().flat_map(press));
+    harness.run_steps(2);
+    let pinch = &trainer(&mut harness).pinch;
+    assert!((before_n - pinch.strength_n() - 0.4).abs() < 1e-9, "{before_n} {}", pinch.strength_n());
+    assert!(!pinch.latched, "pressed twice: closed and open again");
+}

@@ -103,7 +103,7 @@ fn task_of(world: &World) -> Option<Parts> {
         let judged = parts.into_iter().filter(|j| j.measure != "rms_force_n").collect();
         return Some(("Throw the switch four times.".into(), vec![thrown, let_go], vec![act], judged));
     }
-    let carried: Vec<&Block> = world.blocks.iter().filter(|b| b.shape == Shape::Block && b.guide.is_none()).collect();
+    let carried: Vec<&Block> = world.blocks.iter().filter(|b| b.shape.is_carried() && b.guide.is_none()).collect();
     match carried.as_slice() {
         [] => world.blocks.iter().find(|b| b.shape == Shape::Barrel).map(|barrel| {
             let kind = goal::Kind::HoldUp { block: barrel.name.clone(), above_m: 0.004, for_s: 2.0 };
