@@ -4,7 +4,7 @@ use super::model::Known;
 use super::rows::{Place, Row, Seen, direction};
 use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::atlas::{Variable, View};
-use crate::diagnose::candidate::Candidate;
+use crate::diagnose::candidate::{Candidate, Shape};
 use crate::diagnose::compare::Channel;
 use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
@@ -15,6 +15,8 @@ const LEAST_ROWS: usize = 40;
 const ERRORS: f64 = 3.0;
 /// What no cause explains is at least so much, m: a knob lies a little differently each time.
 const STRANGE_M: f64 = 6e-5;
+/// Pads may lack so much of the give that the world has for them: ten times as stiff.
+const MOST_STIFFER: f64 = 0.9;
 
 /// Compares what may move the tip while it presses the knob against a stop. Nothing where that was hardly done.
 pub fn stop(seen: &Seen, known: Option<&Known<'_>>, threshold: f64) -> Result<Option<(Compared, View)>, EstimateError> {
@@ -41,7 +43,9 @@ pub fn stop(seen: &Seen, known: Option<&Known<'_>>, threshold: f64) -> Result<Op
         // Where the switch stands is open: it may have been moved.
         base.push(of(&|r| direction(side(r))));
         let least = ERRORS * known.give_error_m_n;
-        candidates.push(plant("pad-compliance", "give", "m/N", force).at_least(least));
+        // However stiff other pads are, they do not give less than nothing.
+        let shape = Shape::Share { least: -MOST_STIFFER / known.pad.spring.k1.max(1e-9), most: f64::INFINITY };
+        candidates.push(plant("pad-compliance", "give", "m/N", force).at_least(least).shaped(shape));
         for (wanted, name) in [(0, "right stop is nearer by"), (1, "left stop is nearer by")] {
             let nearer = on(wanted).iter().map(|v| -v).collect();
             let wall = plant("added-constraint", name, "m", nearer).positive();
