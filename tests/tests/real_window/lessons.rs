@@ -6,6 +6,7 @@ use app::ui::scene::Place;
 use app::ui::screenshot::trainer_place;
 use app::ui::theme;
 use estimator::training::lesson::Lesson;
+use estimator::training::lesson::goal::Kind;
 use haptics::Vec2;
 use serde_json::Value;
 use std::fs::DirEntry;
@@ -207,7 +208,10 @@ fn lessons_are_done_with_a_pointer_as_a_person_does_them() {
     for lesson in wanted() {
         command(&screen, &format!("Lesson: {}", lesson.title));
         screen.keep(&format!("lesson-{}-1-brief", lesson.id));
-        let way = pointer_through(&lesson, EVERY.as_secs_f64()).expect("a way");
+        let mut way = pointer_through(&lesson, EVERY.as_secs_f64()).expect("a way");
+        // What is only put down is not pressed on until it gives.
+        let gives = lesson.goals.iter().any(|goal| matches!(goal.kind, Kind::Pierced { .. }));
+        way.iter_mut().for_each(|pointed| pointed.presses &= gives);
         // A pointer that looks at nothing fails now and then, as people do.
         let mut grades = Vec::new();
         while grades.len() < ATTEMPTS && !grades.last().is_some_and(reached) {
