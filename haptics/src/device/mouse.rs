@@ -32,13 +32,16 @@ pub struct MouseDevice {
     spec: DeviceSpec,
     target: Output<MouseTarget>,
     pointer: Pointer,
+    /// Since the window told its goal last, s.
+    since_s: f64,
 }
 
 /// A mouse device whose fingers start at `start` and stay in `workspace`.
 pub fn mouse(start: MouseTarget, workspace: Workspace) -> (MouseHandle, MouseDevice) {
     let (input, output) = triple_buffer(&start);
     let pointer = Pointer::new(tips(start.center_in_world, start.aperture_m), workspace);
-    (MouseHandle { target: input }, MouseDevice { spec: Pointer::spec("Mouse"), target: output, pointer })
+    let device = MouseDevice { spec: Pointer::spec("Mouse"), target: output, pointer, since_s: 0.0 };
+    (MouseHandle { target: input }, device)
 }
 
 impl Device for MouseDevice {
@@ -47,6 +50,11 @@ impl Device for MouseDevice {
     }
 
     fn exchange(&mut self, command: &Command, dt_s: f64) -> Sample {
+        self.since_s += dt_s;
+        if self.target.updated() {
+            self.pointer.smooth_steps_of(self.since_s);
+            self.since_s = 0.0;
+        }
         let target = *self.target.read();
         let center = self.pointer.workspace().clamp(target.center_in_world);
         self.pointer.advance(tips(center, target.aperture_m), command.force_n, dt_s)
@@ -76,5 +84,34 @@ mod tests {
         let edge = workspace.center_m.x + workspace.radius_m;
         assert!((0.5 * (left.x + right.x) - edge).abs() < 1e-6, "stays in the workspace");
         assert!((right.x - left.x - (0.01 + 2.0 / 400.0)).abs() < 1e-6, "opened by force over stiffness");
+    }
+
+    /// The largest acceleration of a hand whose pointer goes at 50 mm/s, m/s², where the window tells it so many times a second.
+    fn jolt_m_s2(pictures_hz: f64) -> f64 {
+        let workspace = Hand::default().workspace;
+        let start = MouseTarget { center_in_world: workspace.center_m, aperture_m: 0.03 };
+        let (mut handle, mut device) = mouse(start, workspace);
+        let between = (1000.0 / pictures_hz) as usize;
+        let (mut most, mut before) = (0.0_f64, 0.0);
+        for tick in 0..600 {
+            if tick % between == 0 {
+                let way = Vec2::new(5e-5 * tick as f64, 0.0);
+                handle.set(MouseTarget { center_in_world: workspace.center_m + way, ..start });
+            }
+            let now = device.exchange(&Command::default(), 1e-3).tip_velocity[0].x;
+            // The first pictures tell it how often they come.
+            if tick > 3 * between {
+                most = most.max((now - before).abs() / 1e-3);
+            }
+            before = now;
+        }
+        most
+    }
+
+    /// A window on a slow driver moves the fingers in large steps: what they carry must not be thrown off by that.
+    #[test]
+    fn a_slow_window_does_not_jolt_the_hand() {
+        let (fast, slow) = (jolt_m_s2(60.0), jolt_m_s2(8.0));
+        assert!(slow < 1.6 * fast, "{slow} m/s² at 8 pictures a second, {fast} at 60");
     }
 }

@@ -6,6 +6,9 @@ use crate::hand::Workspace;
 
 /// Time constant that turns 60 Hz steps of an input device into a smooth motion, s.
 const SMOOTHING_S: f64 = 0.02;
+/// The same for slower steps, in steps, up to this, s: a hand that lags more would not be steered any more.
+const SMOOTHING_STEPS: f64 = 1.2;
+const MOST_SMOOTHING_S: f64 = 0.2;
 
 /// Largest force per finger that an input device without force feedback asks for, N.
 const MAX_FORCE_N: f64 = 8.0;
@@ -14,6 +17,7 @@ const MAX_FORCE_N: f64 = 8.0;
 #[derive(Clone, Debug)]
 pub(super) struct Pointer {
     smooth: [Vec2; 2],
+    smoothing_s: f64,
     workspace: Workspace,
     impedance: HandImpedance,
     position: [Vec2; 2],
@@ -25,6 +29,7 @@ impl Pointer {
     pub fn new(start: [Vec2; 2], workspace: Workspace) -> Self {
         Self {
             smooth: start,
+            smoothing_s: SMOOTHING_S,
             workspace,
             impedance: HandImpedance::default(),
             position: start,
@@ -44,10 +49,15 @@ impl Pointer {
         }
     }
 
+    /// Its goals come in steps of so many seconds. Windows that are drawn rarely move the fingers far at once.
+    pub fn smooth_steps_of(&mut self, step_s: f64) {
+        self.smoothing_s = (SMOOTHING_STEPS * step_s).clamp(SMOOTHING_S, MOST_SMOOTHING_S);
+    }
+
     /// Moves the tips by `dt_s` towards `goals` (m in the world) under `force_n` on the fingers, N. A goal that is not a number
     /// is taken as none: the finger keeps the one before.
     pub fn advance(&mut self, goals: [Vec2; 2], force_n: [Vec2; 2], dt_s: f64) -> Sample {
-        let blend = 1.0 - (-dt_s / SMOOTHING_S).exp();
+        let blend = 1.0 - (-dt_s / self.smoothing_s).exp();
         for finger in 0..2 {
             let before = self.smooth[finger];
             if goals[finger].x.is_finite() && goals[finger].y.is_finite() {

@@ -211,7 +211,9 @@ fn lessons_are_done_with_a_pointer_as_a_person_does_them() {
         let mut way = pointer_through(&lesson, EVERY.as_secs_f64()).expect("a way");
         // What is only put down is not pressed on until it gives.
         let gives = lesson.goals.iter().any(|goal| matches!(goal.kind, Kind::Pierced { .. }));
-        way.iter_mut().for_each(|pointed| pointed.presses &= gives);
+        for pointed in &mut way {
+            pointed.presses &= gives;
+        }
         // A pointer that looks at nothing fails now and then, as people do.
         let mut grades = Vec::new();
         while grades.len() < ATTEMPTS && !grades.last().is_some_and(reached) {
