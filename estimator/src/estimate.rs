@@ -176,6 +176,9 @@ pub enum EstimateError {
         /// Which recording.
         recording: String,
     },
+    /// Nobody waited for the result any more.
+    #[error("the work was ended before it was done")]
+    Ended,
     /// Something else, already a sentence.
     #[error("{0}")]
     Other(String),

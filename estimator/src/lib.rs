@@ -17,4 +17,5 @@ pub mod segment;
 pub mod signal;
 pub mod simulate;
 pub mod training;
+pub mod wanted;
 pub mod words;

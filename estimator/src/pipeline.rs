@@ -5,6 +5,7 @@ use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::identify::{barrel, block, crank, mechanism, needle, stated, switch};
 use crate::segment::score::score;
 use crate::segment::{Method, Segmentation, Thresholds, segment_by, task_of};
+use crate::wanted;
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
 use std::sync::OnceLock;
@@ -93,6 +94,7 @@ pub fn analyse_prepared(
         }
     }
     let world = calibrate::world(task, recordings, &fit, &segmentations);
+    wanted::look()?;
     Ok(Analysis { task, fit, segmentations, world })
 }
 
@@ -144,6 +146,8 @@ fn cranks(recordings: &[Recording], prepared: &Prepared, options: &Options) -> R
         made
     } else {
         let made = recordings.iter().map(crank::Prepared::of).collect::<Result<Vec<_>, _>>()?;
+        // They are kept for the next fit: only whole ones.
+        wanted::look()?;
         prepared.cranks.get_or_init(|| made)
     };
     let together = crank::refit_together(options.method, recordings, prepared, options.thresholds)?;

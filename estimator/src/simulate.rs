@@ -4,6 +4,7 @@ use crate::estimate::EstimateError;
 use crate::identify::{block, crank, mechanism};
 use crate::segment::task_of;
 use crate::signal::task::{TipSeries, is_two_fingered, task_signals};
+use crate::wanted;
 use haptics::Vec2;
 use haptics::law::Coordinate;
 use haptics::recording::{Channel, Recording, Task};
@@ -11,6 +12,8 @@ use haptics::world::{Input, Mechanism, Source, State, World, step};
 
 /// Longest step of the simulation, s: that of the usual servo.
 const STEP_S: f64 = 1e-3;
+/// The wish to end is looked at so often, samples.
+const LOOKS: usize = 500;
 
 /// Predicted forces at the recording's sample times.
 #[derive(Clone, Debug, PartialEq)]
@@ -161,10 +164,11 @@ fn play(world: &World, recording: &Recording) -> Result<[Vec<Vec2>; 2], Estimate
 pub fn walk(world: &World, recording: &Recording, see: impl FnMut(f64, &State)) -> Result<(), EstimateError> {
     let signals = task_signals(recording)?;
     walk_tips(world, &signals.time_s, &signals.tips, see);
-    Ok(())
+    wanted::look()
 }
 
-/// [`walk`] for fingers whose motion is known already: where both are at each time, s. Samples that one of the lists lacks are not walked.
+/// [`walk`] for fingers whose motion is known already: where both are at each time, s. Samples that one of the lists lacks are not walked,
+/// nor is the rest when nobody wants it any more ([`wanted`]).
 pub fn walk_tips(world: &World, time_s: &[f64], tips: &[TipSeries; 2], mut see: impl FnMut(f64, &State)) {
     let n = tips.iter().map(|tip| tip.position.len()).fold(time_s.len(), usize::min);
     if n == 0 {
@@ -174,6 +178,9 @@ pub fn walk_tips(world: &World, time_s: &[f64], tips: &[TipSeries; 2], mut see: 
     let mut state = State::new(world, [tip(0, 0), tip(1, 0)]);
     see(time_s[0], &state);
     for i in 1..n {
+        if i % LOOKS == 0 && !wanted::still() {
+            return;
+        }
         let gap_s = time_s[i] - time_s[i - 1];
         let parts = (gap_s / STEP_S).ceil().max(1.0) as usize;
         let tip_velocity = [0, 1].map(|finger| velocity(&tips[finger], i));

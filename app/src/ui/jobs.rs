@@ -12,6 +12,7 @@ use estimator::online::enough::Enough;
 use estimator::pipeline::Analysis;
 use estimator::segment::Segmentation;
 use estimator::simulate::Simulation;
+use estimator::wanted;
 use haptics::world::World;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -310,7 +311,7 @@ impl Jobs {
         self.running.push(Running { kind, generation, what, begun: Instant::now(), ticket: ticket.clone() });
         let (sender, ctx) = (self.sender.clone(), ctx.clone());
         let spawned = std::thread::Builder::new().name(format!("{kind:?}").to_lowercase()).spawn(move || {
-            let outcome = catch_unwind(AssertUnwindSafe(|| work(&ticket))).unwrap_or_else(|_| {
+            let outcome = catch_unwind(AssertUnwindSafe(|| done_if_wanted(kind, &ticket, work))).unwrap_or_else(|_| {
                 Outcome::Failed("An internal fault stopped this step; the rest of the program goes on.".to_owned())
             });
             // A closed window needs no answer.
@@ -375,6 +376,16 @@ impl Jobs {
     }
 }
 
+/// Does it, and ends early where the estimator looks whether it is still wanted. What writes a file is not ended by the next that does.
+fn done_if_wanted(kind: JobKind, ticket: &Ticket, work: impl FnOnce(&Ticket) -> Outcome) -> Outcome {
+    if matches!(kind, JobKind::Save | JobKind::Record) {
+        return work(ticket);
+    }
+    let asked = ticket.clone();
+    let wanted = move || !asked.cancelled().load(Ordering::Relaxed);
+    wanted::while_wanted(wanted, || work(ticket)).unwrap_or(Outcome::Cancelled)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -434,5 +445,21 @@ mod tests {
         jobs.cancel(JobKind::Load);
         heard.recv_timeout(Duration::from_secs(10)).expect("it ends");
         assert!(!jobs.is_busy() && jobs.progress().is_none() && jobs.poll().is_empty());
+    }
+
+    #[test]
+    fn a_cancelled_job_ends_in_the_loops_of_the_estimator_but_a_file_is_written() {
+        for (kind, ends) in [(JobKind::Fit, true), (JobKind::Save, false)] {
+            let mut jobs = Jobs::default();
+            let ((go, may_go), (told, heard)) = (channel(), channel());
+            jobs.start_watched(&egui::Context::default(), kind, "Working".to_owned(), move |_| {
+                may_go.recv().expect("the test goes on");
+                told.send(wanted::look().is_err()).expect("the test listens");
+                Outcome::Cancelled
+            });
+            jobs.cancel(kind);
+            go.send(()).expect("the job waits");
+            assert_eq!(heard.recv_timeout(Duration::from_secs(10)), Ok(ends), "{kind:?}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Baum–Welch: the model that explains a sequence best, near a prior.
 
 use super::{Chain, Covariance, Expectation, Gaussian, HmmError, Model, forward_backward};
+use crate::wanted;
 use nalgebra::DMatrix;
 
 /// What is believed before the data are seen, as if it had been seen in so many samples.
@@ -44,6 +45,10 @@ pub fn baum_welch(start: Model, values: &[f64], training: &Training) -> Result<T
     let mut model = start;
     let mut objective = Vec::new();
     for step in 0..=training.most_steps {
+        // Whoever asked for it looks, too: nothing of it is kept.
+        if !wanted::still() {
+            break;
+        }
         let expectation = forward_backward(&model.chain, &model.log_emissions(values, training.weight));
         let now = expectation.log_likelihood + training.prior.as_ref().map_or(0.0, |p| log_prior(&model, p));
         let gain = now - objective.last().copied().unwrap_or(f64::NEG_INFINITY);

@@ -5,6 +5,7 @@
 //! draw costs as much as its blocks, not as its rows.
 
 use super::linear::LinearFit;
+use crate::wanted;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -54,6 +55,9 @@ pub fn block_bootstrap_within(
     let mut values: Vec<DVector<f64>> = Vec::with_capacity(DRAWS);
     let mut total = vec![0.0; sums.width];
     for _ in 0..DRAWS {
+        if !wanted::still() {
+            return None;
+        }
         total.fill(0.0);
         for stretch in stretches.iter().filter(|s| !s.is_empty()) {
             for _ in 0..stretch.len().div_ceil(length_in(stretch)) {

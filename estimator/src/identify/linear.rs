@@ -7,6 +7,7 @@
 use super::influence::Solved;
 use super::long_run::inflation;
 use crate::estimate::EstimateError;
+use crate::wanted;
 use nalgebra::{DMatrix, DVector};
 
 /// Singular values below this share of the largest (columns scaled to 1) count as zero: the direction is not excited.
@@ -42,8 +43,9 @@ pub struct LinearFit {
 ///
 /// `columns`: p columns of n samples; `weights`: n numbers ≥ 0, inverse variances up to a factor (absent: all 1). A sample
 /// of zero weight takes no part. Degenerate: fewer weighted samples than columns is an error; a zero or dependent column is
-/// not, its parameter comes back as not identified.
+/// not, its parameter comes back as not identified. Every fit passes here: an unwanted one ends ([`wanted`]).
 pub fn least_squares(columns: &[Vec<f64>], rhs: &[f64], weights: Option<&[f64]>) -> Result<LinearFit, EstimateError> {
+    wanted::look()?;
     check(columns, rhs, weights)?;
     let (n, p) = (rhs.len(), columns.len());
     let root = |i: usize| weights.map_or(1.0, |w| w[i].max(0.0).sqrt());

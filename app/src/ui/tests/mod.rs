@@ -5,6 +5,7 @@ mod carry;
 mod check;
 mod comfort;
 pub mod diagnose;
+mod ended;
 mod experiment;
 mod layouts;
 mod legible;
