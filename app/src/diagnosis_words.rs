@@ -51,6 +51,29 @@ pub fn small(name: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }
 
+/// The name of a cause as one speaks of one: `an eccentric mass`, `Coulomb friction`, `the give of the pads`.
+pub fn one(id: &str) -> String {
+    /// What is not counted.
+    const STUFF: [&str; 7] = ["friction", "inertia", "drag", "backlash", "hysteresis", "cross-talk", "slip"];
+    /// What there is one of in any case: the fault is its size.
+    const OWN: [&str; 4] = ["give", "gain", "scale", "weight"];
+    let name = small(&title(id));
+    if law::cause(id).is_none() {
+        return name;
+    }
+    let of_what = name.split_once(" of ").or_else(|| name.split_once(" in ")).map_or(name.as_str(), |(what, _)| what);
+    let what = of_what.rsplit(' ').next().unwrap_or(of_what).to_lowercase();
+    if STUFF.contains(&what.as_str()) {
+        name
+    } else if OWN.contains(&of_what) {
+        format!("the {name}")
+    } else if name.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        format!("an {name}")
+    } else {
+        format!("a {name}")
+    }
+}
+
 fn joined(words: &[String]) -> String {
     match words {
         [] => "something".to_owned(),
@@ -81,6 +104,32 @@ pub fn gain_unit(cause: &Cause, diagnosis: &Diagnosis) -> (&'static str, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_cause_is_spoken_of_with_its_article() {
+        let spoken: Vec<String> = law::causes().map(|entry| one(entry.id)).collect();
+        for name in [
+            "an eccentric mass",
+            "a tilted plane",
+            "Coulomb friction",
+            "Stribeck friction",
+            "changing friction",
+            "a changing weight",
+            "the give of the pads",
+            "the gain of the force channel",
+            "cross-talk of the force axes",
+            "slip in the fingers",
+            "a delay between channels",
+            "an offset of a joint sensor",
+            "a loss at an impact",
+        ] {
+            assert!(spoken.iter().any(|s| s == name), "{name} is not in {spoken:?}");
+        }
+        assert_eq!(one("other:moves"), "something without a name");
+        let bare = |s: &&String| !["a ", "an ", "the "].iter().any(|article| s.starts_with(article));
+        let bare: Vec<&String> = spoken.iter().filter(bare).collect();
+        assert!(bare.len() <= 12, "only what is not counted goes without: {bare:?}");
+    }
 
     #[test]
     fn names_are_listed_as_in_a_sentence() {

@@ -218,8 +218,9 @@ impl App {
         }
         match progress.share {
             Some(share) => {
-                let text = RichText::new(format!("{:.0} %", 100.0 * share)).size(11.5);
-                ui.add(egui::ProgressBar::new(share as f32).desired_width(120.0).text(text));
+                let bar = egui::ProgressBar::new(share as f32).desired_width(120.0).desired_height(8.0);
+                ui.add(bar.fill(theme::palette(ui).accent));
+                ui.label(theme::caption(ui, format!("{:.0} %", 100.0 * share)));
             }
             None => drop(ui.add(egui::Spinner::new().size(16.0))),
         }

@@ -174,7 +174,7 @@ fn live(ui: &mut Ui, trainer: &Trainer) {
             pair(ui, "Force on you", tick.sent_force_n, 2, "N");
         });
         ui.add_space(space::XS);
-        fact(ui, "Age of the newest sample", short_time(snapshot.timing.sample_age_s));
+        fact(ui, "Age of the newest sample", trainer_timing::sample_age(snapshot.timing.sample_age_s));
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = space::M;
             light(ui, tick.flags.saturated, p.danger, "Saturated", "A force was clamped to the maximum");

@@ -86,7 +86,7 @@ fn going(ui: &mut Ui, guided: &Guided, trainer: &Trainer) {
     let text = format!("{} s left · {place} of {}", format::number(left_s, 0), guided.table.steps.len());
     ui.label(theme::caption(ui, text));
     let done = guided.time_s(trainer).unwrap_or_default() / guided.table.duration_s();
-    ui.add(ProgressBar::new(done as f32).desired_height(6.0));
+    ui.add(ProgressBar::new(done as f32).desired_height(6.0).fill(palette(ui).accent));
 }
 
 fn recorded(ui: &mut Ui, guided: &Guided, add: &mut bool, begin: &mut bool) {
@@ -139,15 +139,16 @@ fn rings(ui: &Ui, view: &SceneResponse, tips: [Vec2; 2], shown: &Rings) {
     let (color, halo) = (palette(ui).accent, palette(ui).card);
     let at = |point: Vec2| on_screen(ui, view, point);
     let ahead: Vec<Pos2> = shown.ahead.iter().map(|point| at(*point)).collect();
+    let places = beside(tips.map(at));
     // Legible over bright metal and dark ground alike.
     for (width, color) in [(6.0, halo), (2.5, color)] {
         painter.add(Shape::line(ahead.clone(), Stroke::new(width, color)));
-        for tip in tips {
-            painter.circle_stroke(at(tip), GHOST, Stroke::new(width, color));
+        for place in places {
+            painter.circle_stroke(place, GHOST, Stroke::new(width, color));
         }
     }
-    for tip in tips.into_iter().filter(|_| shown.holds) {
-        painter.circle_filled(at(tip), 0.45 * GHOST, color);
+    for place in places.into_iter().filter(|_| shown.holds) {
+        painter.circle_filled(place, 0.45 * GHOST, color);
     }
     let text = painter.layout_no_wrap(shown.word.to_owned(), egui::FontId::new(12.0, theme::semibold()), color);
     let middle = 0.5 * (tips[0] + tips[1]);
@@ -155,6 +156,14 @@ fn rings(ui: &Ui, view: &SceneResponse, tips: [Vec2; 2], shown: &Rings) {
     painter.rect_filled(egui::Rect::from_min_size(corner, text.size()).expand2(vec2(7.0, 3.0)), 9, halo);
     painter.galley(corner, text, color);
     ui.ctx().request_repaint();
+}
+
+/// Where the rings of two tips stand on the screen: a tip is the inner face of its pad, so that its ring lies outside of it and covers
+/// nothing of what is held.
+fn beside(tips: [Pos2; 2]) -> [Pos2; 2] {
+    let apart = tips[1] - tips[0];
+    let out = if apart.length() > 1.0 { apart.normalized() } else { egui::Vec2::X };
+    [tips[0] - GHOST * out, tips[1] + GHOST * out]
 }
 
 fn tips(goal: &HandGoal) -> [Vec2; 2] {
@@ -165,4 +174,22 @@ fn tips(goal: &HandGoal) -> [Vec2; 2] {
 fn on_screen(ui: &Ui, view: &SceneResponse, point_in_world: Vec2) -> Pos2 {
     let pixel = view.camera.pixel_of(point_in_world, view.size);
     view.rect.min + vec2(pixel.x, pixel.y) / ui.pixels_per_point()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::pos2;
+
+    #[test]
+    fn rings_touch_what_is_held_from_both_sides_and_never_each_other() {
+        for (left, right) in [(pos2(100.0, 50.0), pos2(127.0, 50.0)), (pos2(10.0, 10.0), pos2(10.0, 10.0))] {
+            let rings = beside([left, right]);
+            assert!(rings[0].distance(rings[1]) >= 2.0 * GHOST, "{rings:?}");
+            assert!((rings[0].distance(left) - GHOST).abs() < 1e-4 && (rings[1].distance(right) - GHOST).abs() < 1e-4);
+        }
+        // Seen from behind the left finger is on the right.
+        let behind = beside([pos2(60.0, 0.0), pos2(20.0, 0.0)]);
+        assert!(behind[0].x > 60.0 && behind[1].x < 20.0, "{behind:?}");
+    }
 }

@@ -2,7 +2,7 @@
 //! Train, loaded from a file.
 
 use super::motion_plan;
-use crate::diagnosis_words::{listed, small, title};
+use crate::diagnosis_words::{listed, one, small, title};
 use crate::experiment::{Outcome, Rehearsal};
 use crate::ui::diagnosing::is_mechanism;
 use crate::ui::experimenting::{ROUNDS, Stage};
@@ -87,7 +87,7 @@ fn in_train(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
             session.guide(&ctx, Stage::AsItStands);
         }
         for id in &next.separates {
-            if ui.button(format!("This one as if it had {}", indefinite(id))).clicked() {
+            if ui.button(format!("This one as if it had {}", one(id))).clicked() {
                 session.guide(&ctx, Stage::AsIf(id.clone()));
             }
         }
@@ -95,13 +95,6 @@ fn in_train(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
     response.on_hover_text(
         "With the device that moves the fingers: a target to follow, in words and in the picture; it is recorded",
     );
-}
-
-/// `an eccentric mass`.
-fn indefinite(id: &str) -> String {
-    let name = small(&title(id));
-    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-    format!("{article} {name}")
 }
 
 /// What came of the rehearsal.
@@ -132,7 +125,7 @@ fn object(ui: &mut Ui, outcome: &Outcome) -> bool {
     let mut add = false;
     let rounds = outcome.rounds.len();
     compact(ui, |ui| {
-        ui.label(RichText::new(format!("If it is {}", small(&title(&outcome.id)))).size(12.0));
+        ui.label(RichText::new(format!("If it is {}", one(&outcome.id))).size(12.0));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if rounds > 0 {
                 let link = ui.link("Add");

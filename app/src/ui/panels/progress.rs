@@ -17,7 +17,9 @@ use egui::{
 
 /// Height of the curve, points, and the room for its numbers.
 const CURVE: f32 = 240.0;
-const NUMBERS: [f32; 2] = [40.0, 20.0];
+const NUMBERS: [f32; 2] = [40.0, 36.0];
+/// Above the plot stands what its heights are, points.
+const NAME: f32 = 20.0;
 /// Radius of an attempt's mark, points.
 const MARK: f32 = 3.5;
 /// Height of a row of the table, points.
@@ -218,6 +220,10 @@ impl Axes {
             let text = format::number(mark.value, decimals(mark.step_size));
             painter.text(pos2(at.x - 6.0, at.y), Align2::RIGHT_CENTER, text, font.clone(), p.secondary);
         }
+        let above = self.plot.left_top() - vec2(0.0, 5.0);
+        painter.text(above, Align2::LEFT_BOTTOM, "Score", font.clone(), p.secondary);
+        let below = self.plot.center_bottom() + vec2(0.0, NUMBERS[1]);
+        painter.text(below, Align2::CENTER_BOTTOM, "Number of the attempt", font, p.secondary);
     }
 }
 
@@ -226,7 +232,7 @@ fn curve(ui: &mut Ui, learned: &Learned, expert: Option<f64>) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CURVE), Sense::hover());
     let spoken = format!("Scores of {} attempts, in their order", learned.tries.len());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &spoken));
-    let plot = Rect::from_min_max(rect.min + vec2(NUMBERS[0], 4.0), rect.max - vec2(4.0, NUMBERS[1]));
+    let plot = Rect::from_min_max(rect.min + vec2(NUMBERS[0], NAME), rect.max - vec2(4.0, NUMBERS[1]));
     let axes = Axes::of(plot, learned, expert);
     axes.draw(ui);
     let (p, inks) = (palette(ui), inks(ui));

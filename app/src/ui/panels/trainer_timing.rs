@@ -7,7 +7,7 @@ use crate::ui::widgets::{card, fact};
 use egui::{RichText, Ui, vec2};
 use haptics::servo::Snapshot;
 use haptics::servo::coupling::{Coupling, SOFTEST_N_M};
-use haptics::servo::timing::{Percentiles, RECENT_S};
+use haptics::servo::timing::{Percentiles, RECENT_S, Timing};
 
 /// The card beside the trainer's picture.
 pub fn timing(ui: &mut Ui, trainer: &Trainer) {
@@ -20,20 +20,11 @@ pub fn timing(ui: &mut Ui, trainer: &Trainer) {
         |ui| drop(ui.label(theme::caption(ui, rate)).on_hover_text(timing.rate.sentence())),
         |ui| {
             ui.spacing_mut().interact_size.y = 15.0;
-            egui::Grid::new("timing").num_columns(5).min_col_width(46.0).spacing(vec2(8.0, 3.0)).show(ui, |ui| {
-                // What is now, and what was ever: a stall while the window opened is no news an hour later.
-                let recent = &timing.recent;
-                head(ui, &format!("last {RECENT_S:.0} s"));
-                percentiles(ui, "Period", &recent.period);
-                percentiles(ui, "Lateness", &recent.lateness);
-                percentiles(ui, "Compute", &recent.compute);
-                percentiles(ui, "Force age", &recent.force_age);
-                head(ui, "since start");
-                percentiles(ui, "Period", &timing.period);
-                percentiles(ui, "Lateness", &timing.lateness);
-                percentiles(ui, "Compute", &timing.compute);
-                percentiles(ui, "Force age", &timing.force_age);
-            });
+            if was_timed(&timing.compute) {
+                table(ui, timing);
+            } else {
+                ui.label(theme::caption(ui, "No tick was timed yet: the figures come as soon as the servo runs."));
+            }
             ui.add_space(space::XS);
             facts(ui, snapshot);
             sentences(ui, trainer, snapshot);
@@ -41,13 +32,42 @@ pub fn timing(ui: &mut Ui, trainer: &Trainer) {
     );
 }
 
+fn table(ui: &mut Ui, timing: &Timing) {
+    egui::Grid::new("timing").num_columns(5).min_col_width(46.0).spacing(vec2(8.0, 3.0)).show(ui, |ui| {
+        // What is now, and what was ever: a stall while the window opened is no news an hour later.
+        let recent = &timing.recent;
+        head(ui, &format!("last {RECENT_S:.0} s"));
+        percentiles(ui, "Period", &recent.period);
+        percentiles(ui, "Lateness", &recent.lateness);
+        percentiles(ui, "Compute", &recent.compute);
+        percentiles(ui, "Force age", &recent.force_age);
+        head(ui, "since start");
+        percentiles(ui, "Period", &timing.period);
+        percentiles(ui, "Lateness", &timing.lateness);
+        percentiles(ui, "Compute", &timing.compute);
+        percentiles(ui, "Force age", &timing.force_age);
+    });
+}
+
+/// Whether anything was measured: no duration of a real clock is exactly nothing.
+fn was_timed(p: &Percentiles) -> bool {
+    p.max_s > 0.0
+}
+
+/// How old the newest sample of a device is, in words.
+pub fn sample_age(age_s: f64) -> String {
+    if age_s > 0.0 { format::short_time(age_s) } else { "new at this tick".to_owned() }
+}
+
 fn facts(ui: &mut Ui, snapshot: &Snapshot) {
     let timing = &snapshot.timing;
     let recent = &timing.recent;
-    let text =
-        format!("{} of {} ticks; since start {} of {}", recent.missed, recent.ticks, timing.missed, timing.ticks);
-    fact(ui, "Missed deadlines", text);
-    fact(ui, "Age of the newest sample", format::short_time(timing.sample_age_s));
+    if was_timed(&timing.compute) {
+        let text =
+            format!("{} of {} ticks; since start {} of {}", recent.missed, recent.ticks, timing.missed, timing.ticks);
+        fact(ui, "Missed deadlines", text);
+    }
+    fact(ui, "Age of the newest sample", sample_age(timing.sample_age_s));
 }
 
 fn sentences(ui: &mut Ui, trainer: &Trainer, snapshot: &Snapshot) {
@@ -92,7 +112,9 @@ fn head(ui: &mut Ui, span: &str) {
 fn percentiles(ui: &mut Ui, label: &str, p: &Percentiles) {
     ui.label(theme::caption(ui, label));
     for seconds in [p.p50_s, p.p99_s, p.p999_s, p.max_s] {
-        ui.label(RichText::new(format::short_time(seconds)).size(11.5));
+        // A pointer gets no force, so none has an age.
+        let text = if was_timed(p) { format::short_time(seconds) } else { "–".to_owned() };
+        ui.label(RichText::new(text).size(11.5));
     }
     ui.end_row();
 }

@@ -91,7 +91,7 @@ fn it_is_rehearsed_on_every_object_and_said_to_be_simulated() {
     let came_out: Vec<_> =
         rehearsal.outcomes.iter().flat_map(|o| o.rounds.iter().map(|r| (&o.id, &r.named, &r.open))).collect();
     assert!(all == 6 && right >= 5, "{right} of {all}: {came_out:?}");
-    for label in ["If it is eccentric mass", "If it is tilted plane"] {
+    for label in ["If it is an eccentric mass", "If it is a tilted plane"] {
         assert!(harness.query_by_label(label).is_some(), "{label}");
     }
     assert!(harness.query_by_label_contains("SIMULATED").is_some());
