@@ -54,6 +54,8 @@ fn an_attempts_grade_from_its_file_is_that_of_the_library_to_the_bit() {
         let own = grade(&lesson, &attempted, &world, &recording).expect("graded");
         let own: Value = serde_json::from_str(&serde_json::to_string(&own).expect("JSON")).expect("JSON");
         assert_eq!(told["measures"][0]["grade"], own, "{level}");
+        let (_, schema) = app::schema::all().into_iter().find(|(name, _)| *name == "score").expect("a schema");
+        assert_eq!(tests::schema::faults(&schema, &told), Vec::<String>::new());
         scores.push(own["score"].as_f64().expect("completed"));
         let text =
             String::from_utf8_lossy(&run(&["score", &file.display().to_string()], folder.path()).stdout).into_owned();

@@ -2,7 +2,7 @@
 //!
 //! `TOUCHSTONE_WRITE_SCHEMAS=1 cargo test -p tests --test schemas` writes the schemas anew after a type was changed.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -109,6 +109,83 @@ fn what_the_commands_print_is_what_the_schemas_say() {
     let record = ["record", "--task", "crank", "--operator", "scripted", "--seconds", "1", "--out", &file("made.csv")];
     holds("record", &record);
     holds("screenshot", &["screenshot", "--scene", "crank", "--size", "160x120", "--out", &file("scene.png")]);
+}
+
+#[test]
+fn so_it_is_with_what_trainees_are_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let (stack, crank, needle) = (asset("stack.csv"), asset("crank.csv"), file("needle.csv"));
+    let listed = holds("lessons", &["lessons"]);
+    let ids: Vec<&str> =
+        listed["lessons"].as_array().expect("lessons").iter().filter_map(|l| l["id"].as_str()).collect();
+    assert!(ids.len() >= 11, "{listed}");
+    for id in ids {
+        let lesson = holds("lesson", &["lessons", id]);
+        assert!(lesson["goals"].as_array().is_some_and(|goals| !goals.is_empty()), "{lesson}");
+    }
+    holds("record", &["record", "--task", "needle", "--out", &needle]);
+    for (log, world) in [(&stack, "stack"), (&crank, "crank"), (&needle, "needle")] {
+        let score = holds("score", &["score", log, "--world", world, "--definitions"]);
+        assert!(score["definitions"].as_array().is_some_and(|all| all.len() > 10), "{score}");
+    }
+    holds("score", &["score", &stack]);
+    // Enough attempts for a curve of practice, in two sittings.
+    let attempts: String = (0..12).map(attempt).collect();
+    let (lines, database) = (folder.path().join("attempts.jsonl"), file("history.sqlite"));
+    std::fs::write(&lines, attempts).expect("written");
+    let imported = holds("history-import", &["history", "--database", &database, "--import", text(&lines)]);
+    assert_eq!(imported["new"], 12);
+    let history = holds("history", &["history", "--database", &database]);
+    assert!(history["progress"][0]["curve"]["is_seen"] == true, "{history}");
+    holds("history", &["history", "--database", &database, "--trainee", "nobody"]);
+}
+
+/// A line for `history --import`, on one of two days.
+fn attempt(number: u32) -> String {
+    let n = f64::from(number);
+    let attempt = json!({
+        "trainee": "Ada", "lesson": "pinch", "conditions": { "delay_ms": 150.0, "predicted": true },
+        "began": format!("2026-11-{:02}T10:{:02}:00Z", 20 + number / 6, number % 6),
+        "duration_s": 20.0 + n, "completed": true, "score": 90.0 - 40.0 / (1.0 + n) + 0.1 * (5.0 * n).sin(),
+        "meets_criterion": number > 7, "proficient": number > 8,
+        "measures": { "hand": { "path_m": 0.1 * n } }, "measures_version": 1, "grade_version": 1,
+    });
+    attempt.to_string() + "\n"
+}
+
+#[test]
+fn so_it_is_with_devices_reports_and_pictures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let listed = holds("device-list", &["device", "list"]);
+    assert!(listed["devices"].as_array().is_some_and(|all| all.iter().any(|d| d["id"] == "mouse")), "{listed}");
+    let tested = holds("device-test", &["device", "test", "scripted", "--seconds", "0.5", "--rate", "500"]);
+    assert!(tested["checks"].as_array().is_some_and(|all| all.len() >= 3), "{tested}");
+    let (page, missing) = (file("report.html"), file("missing.csv"));
+    holds("report", &["report", &asset("crank.csv"), "--out", &page]);
+    // A log that cannot be read is a line of the answer, and the program says so in the end.
+    let mixed = ["report", &asset("crank.csv"), &missing, "--out", &page, "--json"];
+    let output = Command::new(touchstone()).args(mixed).output().expect("the program starts");
+    assert_eq!(output.status.code(), Some(1));
+    let said: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    let wrong = faults(&schemas()["report"], &said);
+    assert!(wrong.is_empty() && said["logs"][1].get("recordings").is_none(), "{wrong:#?} {said}");
+    holds("gallery", &["gallery", "--only", "parameters", "--out", &file("gallery")]);
+    let demo = holds("demo", &["demo", "--out", &file("demo")]);
+    assert_eq!(demo["recordings"].as_array().map(Vec::len), Some(2), "{demo}");
+}
+
+#[test]
+fn so_it_is_with_what_is_measured() {
+    holds("bench-servo", &["bench", "servo", "--seconds", "0.5", "--rate", "500", "--no-real-time"]);
+    holds("bench-frames", &["bench", "frames", "--samples", "20000", "--size", "640x480", "--pictures", "2"]);
+    holds("bench-online", &["bench", "online", "--rounds", "1"]);
+    holds("bench-delay", &["bench", "delay", "--seeds", "1", "--round-trips-ms", "0,500"]);
+    let blind = holds("bench-blind", &["bench", "blind", "--seed", "3", "--cases", "4"]);
+    assert_eq!(blind["cases"], 4, "{blind}");
+    let scale = holds("bench-scale", &["bench", "scale", "--quick"]);
+    assert!(scale["scale"].as_array().is_some_and(|all| all.len() == 8), "{scale}");
 }
 
 #[test]

@@ -1,13 +1,13 @@
 //! `touchstone bench`. Here `bench servo`: how punctual the servo is on this machine, with and without pictures being drawn beside it. Without
 //! a word behind it, every figure in one table (`whole`).
 
-mod blind;
-mod delay;
-mod frames;
+pub(crate) mod blind;
+pub(crate) mod delay;
+pub(crate) mod frames;
 mod loglog;
-mod online;
+pub(crate) mod online;
 mod peers;
-mod scale;
+pub(crate) mod scale;
 pub(crate) mod table;
 mod verdict;
 mod whole;
@@ -21,7 +21,8 @@ use haptics::servo::timing::{Percentiles, Timing};
 use haptics::servo::{Privileges, Servo, ServoConfig, Snapshot, Swap};
 use haptics::world::{World, presets};
 use render::{Headless, SceneView, ViewOptions};
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -84,6 +85,36 @@ fn parse_rate(text: &str) -> Result<RateChoice, String> {
     text.parse().map(RateChoice::Fixed).map_err(|_| format!("`{text}` is no rate; write a number in Hz or `auto`"))
 }
 
+/// What `bench servo --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said<'a> {
+    /// The servo's punctuality.
+    timing: &'a Timing,
+    /// Why it ran at this rate.
+    why: String,
+    /// About single stalls; null without any.
+    stalls: Option<String>,
+    /// What the system granted.
+    privileges: Privileges,
+    /// How often the guard made the device safe because the servo stood still.
+    guarded: u64,
+    /// How long was measured, s.
+    seconds: f64,
+    /// Pictures that were drawn beside it; null: none were asked for.
+    pictures: Option<u64>,
+    /// What drew them.
+    renderer: Option<&'a str>,
+    /// Most damping of the passivity controller, N s/m; null: it was off.
+    #[serde(rename = "passivity_control_N_s_m")]
+    passivity_control_n_s_m: Option<f64>,
+    /// Whether every limit is kept.
+    holds: bool,
+    /// The limits of this rate.
+    limits: [verdict::Held; 4],
+    /// The same for people.
+    verdict: &'a str,
+}
+
 impl Bench {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         match self.what.as_ref() {
@@ -140,7 +171,7 @@ impl ServoBench {
             (measured.frames, measured.renderer) = (Some(painter.frames()), Some(painter.adapter.clone()));
             painter.finish()?;
         }
-        Ok(report(&measured))
+        Ok(report(&measured)?)
     }
 
     /// The pinch scene under fingers that go round, close and open: contacts come and go as they do for a person.
@@ -183,7 +214,7 @@ impl ServoBench {
     }
 }
 
-fn report(m: &Measured) -> Output {
+fn report(m: &Measured) -> serde_json::Result<Output> {
     let t = &m.timing;
     let mut text = format!("Servo: {}\n  {}\n", t.rate.sentence(), m.privileges.sentence());
     let _ = writeln!(text, "  {} ticks of {:.0} µs in {:.1} s", t.ticks, 1e6 * t.period_s, m.wall_s);
@@ -208,21 +239,21 @@ fn report(m: &Measured) -> Output {
     let limits = verdict::limits(t);
     let verdict = verdict::sentence(&limits);
     let _ = writeln!(text, "  {verdict}");
-    let json = json!({
-        "timing": t,
-        "why": t.rate.sentence(),
-        "stalls": t.stall_sentence(),
-        "privileges": m.privileges,
-        "guarded": m.guarded,
-        "seconds": m.wall_s,
-        "pictures": m.frames,
-        "renderer": m.renderer,
-        "passivity_control_N_s_m": m.control,
-        "holds": limits.iter().all(verdict::Limit::is_kept),
-        "limits": limits.each_ref().map(verdict::Limit::json),
-        "verdict": verdict,
-    });
-    Output { text, json }
+    let said = Said {
+        timing: t,
+        why: t.rate.sentence(),
+        stalls: t.stall_sentence(),
+        privileges: m.privileges,
+        guarded: m.guarded,
+        seconds: m.wall_s,
+        pictures: m.frames,
+        renderer: m.renderer.as_deref(),
+        passivity_control_n_s_m: m.control,
+        holds: limits.iter().all(verdict::Limit::is_kept),
+        limits: limits.each_ref().map(verdict::Held::from),
+        verdict: &verdict,
+    };
+    Ok(Output { text, json: serde_json::to_value(&said)? })
 }
 
 fn percentiles(t: &Timing) -> [(&'static str, Percentiles); 4] {

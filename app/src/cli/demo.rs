@@ -5,10 +5,13 @@ use crate::report::Sheet;
 use crate::report::source::Source;
 use anyhow::Context;
 use clap::Args;
+use estimator::diagnose::Diagnosis;
+use estimator::estimate::Fit;
 use estimator::pipeline::{Analysis, Options, analyse};
 use haptics::recording::Recording;
 use haptics::world::World;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -19,6 +22,53 @@ pub struct Demo {
     /// Folder for recordings, worlds, predictions, pictures and the report
     #[arg(long, default_value = "demo-out")]
     out: PathBuf,
+}
+
+/// What `demo --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// The folder with everything.
+    out: PathBuf,
+    /// How long it took, s.
+    seconds: f64,
+    /// What came out of each recording.
+    recordings: Vec<Chain>,
+    /// The pictures that could be drawn.
+    pictures: Vec<PathBuf>,
+    /// The page about both.
+    report: PathBuf,
+}
+
+/// What came out of one recording.
+#[derive(JsonSchema, Serialize)]
+struct Chain {
+    /// Its name.
+    name: &'static str,
+    /// The recording.
+    log: PathBuf,
+    /// The calibrated world.
+    world: PathBuf,
+    /// The forces that this predicts for the recording's motion.
+    simulation: PathBuf,
+    /// The world with what the diagnosis found.
+    extended_world: PathBuf,
+    /// What was identified.
+    fit: Fit,
+    /// What the model of the thesis leaves, and why.
+    diagnosis: Diagnosis,
+    /// Root mean square of measured − predicted by channel, N.
+    residual_rms: Vec<(String, f64)>,
+    /// How many values lie within two of their errors of those it was recorded with.
+    within_two_errors: Hits,
+}
+
+/// A count out of all.
+#[derive(JsonSchema, Serialize)]
+struct Hits {
+    /// How many.
+    hits: usize,
+    /// Of so many.
+    of: usize,
 }
 
 /// A recording that travels with the program: made by the scripted operator in a world that the fit does not see.
@@ -76,12 +126,12 @@ impl Demo {
         let report = self.report(&mut text)?;
         let seconds = started.elapsed().as_secs_f64();
         let _ = writeln!(text, "\nDone in {seconds:.1} s; everything is in {}", self.out.display());
-        let json = json!({ "out": self.out, "seconds": seconds, "recordings": results, "pictures": pictures, "report": report });
-        Ok(Output { text, json })
+        let said = Said { out: self.out.clone(), seconds, recordings: results, pictures, report };
+        Ok(Output { text, json: serde_json::to_value(&said)? })
     }
 
     /// Log → segments → fit → world → simulation → diagnosis → extended world of one recording.
-    fn chain(&self, built_in: &BuiltIn, text: &mut String) -> anyhow::Result<Value> {
+    fn chain(&self, built_in: &BuiltIn, text: &mut String) -> anyhow::Result<Chain> {
         progress(&format!("{}: segment, fit, calibrate, simulate, diagnose, extend", built_in.title));
         let log = self.file(&format!("{}.csv", built_in.name));
         write(&log, built_in.csv)?;
@@ -105,14 +155,17 @@ impl Demo {
         }
         let within = compare(built_in, &analysis, text)?;
         let (diagnosis, extended) = self.diagnose(built_in, &recordings, text)?;
-        Ok(json!({
-            "diagnosis": diagnosis, "extended_world": extended,
-            "name": built_in.name,
-            "log": log, "world": world_file, "simulation": prediction,
-            "fit": analysis.fit,
-            "residual_rms": simulation.residual_rms,
-            "within_two_errors": within,
-        }))
+        Ok(Chain {
+            name: built_in.name,
+            log,
+            world: world_file,
+            simulation: prediction,
+            extended_world: extended,
+            fit: analysis.fit,
+            diagnosis,
+            residual_rms: simulation.residual_rms,
+            within_two_errors: within,
+        })
     }
 
     /// What the thesis's model leaves of the recording, and the world that has what was found.
@@ -121,7 +174,7 @@ impl Demo {
         built_in: &BuiltIn,
         recordings: &[Recording],
         text: &mut String,
-    ) -> anyhow::Result<(Value, PathBuf)> {
+    ) -> anyhow::Result<(Diagnosis, PathBuf)> {
         let options = estimator::diagnose::Options::default();
         let diagnosis = estimator::diagnose::diagnose(recordings, &options)?;
         let world = estimator::diagnose::extended_world(recordings, &options, &diagnosis)?;
@@ -130,7 +183,7 @@ impl Demo {
         for line in diagnose::describe(&diagnosis).lines() {
             let _ = writeln!(text, "  {line}");
         }
-        Ok((serde_json::to_value(&diagnosis)?, file))
+        Ok((diagnosis, file))
     }
 
     /// The pictures; without any Vulkan driver the demo goes on and says so.
@@ -181,7 +234,7 @@ impl Demo {
 }
 
 /// How many estimates lie within two of their errors of what the recording was made with.
-fn compare(built_in: &BuiltIn, analysis: &Analysis, text: &mut String) -> anyhow::Result<Value> {
+fn compare(built_in: &BuiltIn, analysis: &Analysis, text: &mut String) -> anyhow::Result<Hits> {
     let truth = World::from_json(built_in.truth)?;
     let (mut hits, mut all) = (0, 0);
     for (object, name, value) in true_values(&truth) {
@@ -192,7 +245,7 @@ fn compare(built_in: &BuiltIn, analysis: &Analysis, text: &mut String) -> anyhow
         }
     }
     let _ = writeln!(text, "  against the world it was recorded in: {hits} of {all} values within two of their errors");
-    Ok(json!({ "hits": hits, "of": all }))
+    Ok(Hits { hits, of: all })
 }
 
 fn progress(what: &str) {

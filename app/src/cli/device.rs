@@ -11,7 +11,9 @@ use haptics::device::haply;
 use haptics::servo::force_test::MOST_N;
 use haptics::servo::{Servo, ServoConfig, Swap, TickRecord};
 use haptics::world::{State, World, presets};
-use serde_json::{Value, json};
+pub(crate) use report::Said as Tested;
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
@@ -70,6 +72,28 @@ struct Test {
     control: ControlArgs,
 }
 
+/// What `device list --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Listed {
+    /// Devices that are built in or plugged in.
+    devices: Vec<OfDevice>,
+    /// Serial ports that a board could be behind.
+    serial_ports: Vec<String>,
+}
+
+/// A kind of device.
+#[derive(JsonSchema, Serialize)]
+struct OfDevice {
+    /// How `device test` names it.
+    id: String,
+    /// What it is, for people.
+    what: String,
+    /// Its figures; null where these are known only once it is opened.
+    spec: Option<report::Spec>,
+    /// What it can render; null where no force is felt.
+    limits: Option<report::Limits>,
+}
+
 impl Device {
     /// The report, and whether nothing failed outright.
     pub(super) fn run(&self) -> anyhow::Result<(Output, bool)> {
@@ -108,18 +132,14 @@ impl List {
         if let [left, right, ..] = ports.as_slice() {
             let _ = writeln!(text, "Try: touchstone device test haply:{left},{right}");
         }
-        let devices: Vec<Value> = kinds
-            .iter()
-            .map(|kind| {
-                json!({
-                    "id": kind.id,
-                    "what": kind.what,
-                    "spec": kind.spec.as_ref().map(report::spec_json),
-                    "limits": kind.spec.as_ref().map_or(Value::Null, |spec| report::limits(spec, period_s, 0.0)),
-                })
-            })
-            .collect();
-        Ok(Output { text, json: json!({ "devices": devices, "serial_ports": ports }) })
+        let devices = kinds.iter().map(|kind| OfDevice {
+            id: kind.id.to_string(),
+            what: kind.what.to_string(),
+            spec: kind.spec.as_ref().map(report::Spec::from),
+            limits: kind.spec.as_ref().and_then(|spec| report::limits(spec, period_s, 0.0)),
+        });
+        let listed = Listed { devices: devices.collect(), serial_ports: ports };
+        Ok(Output { text, json: serde_json::to_value(&listed)? })
     }
 }
 
@@ -166,7 +186,7 @@ impl Test {
             line_n_m: snapshot.line_n_m,
             coupling_n_m: snapshot.coupling.map(|coupling| coupling.stiffness_n_m),
         };
-        Ok((measured.report(), !measured.has_failed()))
+        Ok((measured.report()?, !measured.has_failed()))
     }
 
     fn behind_a_network(&self, opened: open::Opened, world: &World) -> anyhow::Result<open::Opened> {

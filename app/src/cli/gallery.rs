@@ -3,7 +3,8 @@
 use super::{Output, progress};
 use crate::ui::gallery;
 use clap::Args;
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::path::PathBuf;
 
 /// Arguments of `gallery`.
@@ -17,6 +18,17 @@ pub struct Gallery {
     only: Option<String>,
 }
 
+/// What `gallery --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// The folder.
+    out: PathBuf,
+    /// How many pictures were drawn.
+    pictures: usize,
+    /// Their size together.
+    bytes: usize,
+}
+
 impl Gallery {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         let only = self.only.as_deref();
@@ -25,6 +37,7 @@ impl Gallery {
         anyhow::ensure!(pictures > 0, "there is no picture whose name begins with `{}`", only.unwrap_or_default());
         let megabytes = bytes as f64 / 1e6;
         let text = format!("{pictures} pictures, {megabytes:.1} MB, in {}", self.out.display());
-        Ok(Output { text, json: json!({ "out": self.out, "pictures": pictures, "bytes": bytes }) })
+        let said = Said { out: self.out.clone(), pictures, bytes };
+        Ok(Output { text, json: serde_json::to_value(&said)? })
     }
 }

@@ -1,11 +1,12 @@
 //! `touchstone history`: who practised what, when, and how well.
 
 use super::Output;
-use crate::history::{self, Attempt, Query, Store, table};
+use crate::history::{self, Attempt, Conditions, Query, Store, table};
 use anyhow::{Context as _, anyhow};
 use clap::Args;
 use estimator::training::progress::{LearningCurve, Session, Try, proficient_at, sessions};
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::{BufRead as _, BufReader, Read, Write as _};
 use std::path::PathBuf;
@@ -31,6 +32,100 @@ pub struct History {
     database: Option<PathBuf>,
 }
 
+/// What `history --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// Everybody whom the history knows.
+    trainees: Vec<String>,
+    /// The attempts that were asked for, in their order.
+    attempts: Vec<Attempt>,
+    /// How these went on.
+    progress: Vec<Progress>,
+}
+
+/// What `history --import FILE --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Imported {
+    /// Attempts that were taken in.
+    new: usize,
+    /// Attempts that were known already.
+    known: usize,
+}
+
+/// How one trainee went on at one lesson under the same conditions.
+#[derive(JsonSchema, Serialize)]
+struct Progress {
+    /// Who.
+    trainee: String,
+    /// Id of the lesson.
+    lesson: String,
+    /// Under what.
+    conditions: Conditions,
+    /// How many, with and without a score.
+    attempts: usize,
+    /// After how many scored attempts the trainee was proficient; null: not yet.
+    proficient_after: Option<usize>,
+    /// Sittings, from the scores of their attempts.
+    sessions: Vec<Sitting>,
+    /// The power law of practice through the scores; null with too few.
+    curve: Option<Practice>,
+}
+
+/// One sitting.
+#[derive(JsonSchema, Serialize)]
+struct Sitting {
+    /// Scored attempts.
+    attempts: usize,
+    /// Mean score.
+    mean: f64,
+    /// Half of its 95 % interval; null with one attempt.
+    half_width: Option<f64>,
+}
+
+impl From<&Session> for Sitting {
+    fn from(s: &Session) -> Self {
+        Self { attempts: s.end - s.first, mean: s.mean, half_width: s.half_width }
+    }
+}
+
+/// The power law of practice.
+#[derive(JsonSchema, Serialize)]
+struct Practice {
+    /// What the score goes to after endless practice.
+    level: f64,
+    /// What the first attempt was off that; negative where scores rise.
+    gain: f64,
+    /// How fast.
+    exponent: f64,
+    /// Its 95 % interval.
+    exponent_interval: [f64; 2],
+    /// Standard deviation of single attempts about the curve.
+    scatter: f64,
+    /// Whether the scores changed at all, by an F test at 5 %.
+    is_seen: bool,
+    /// The curve at the last attempt.
+    now: f64,
+    /// Its 95 % interval.
+    now_interval: [f64; 2],
+}
+
+impl Practice {
+    fn of(scores: &[f64]) -> Option<Self> {
+        let c = LearningCurve::fit(scores)?;
+        let now = c.at(scores.len() as f64);
+        Some(Self {
+            level: c.level,
+            gain: c.gain,
+            exponent: c.exponent,
+            exponent_interval: c.exponent_interval,
+            scatter: c.scatter,
+            is_seen: c.is_seen,
+            now: now.value,
+            now_interval: now.interval,
+        })
+    }
+}
+
 impl History {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         let path = self.database.clone().or_else(history::of_user);
@@ -52,9 +147,8 @@ impl History {
         }
         let groups = groups(&attempts);
         let text = in_words(&trainees, &groups, self.csv.as_deref());
-        let progress: Vec<Value> = groups.iter().map(|group| progress(group)).collect();
-        let json = json!({ "trainees": trainees, "attempts": attempts, "progress": progress });
-        Ok(Output { text, json })
+        let progress = groups.iter().filter_map(|group| progress(group)).collect();
+        Ok(Output { text, json: serde_json::to_value(Said { trainees, progress, attempts })? })
     }
 }
 
@@ -76,24 +170,17 @@ fn tries(group: &[&Attempt]) -> Vec<Try> {
     group.iter().filter_map(|attempt| attempt.as_try()).collect()
 }
 
-fn progress(group: &[&Attempt]) -> Value {
-    let tries = tries(group);
-    let values: Vec<f64> = tries.iter().map(|t| t.value).collect();
-    let session = |s: &Session| json!({ "attempts": s.end - s.first, "mean": s.mean, "half_width": s.half_width });
-    let curve = LearningCurve::fit(&values).map(|c| {
-        json!({ "level": c.level, "gain": c.gain, "exponent": c.exponent, "exponent_interval": c.exponent_interval,
-            "scatter": c.scatter, "is_seen": c.is_seen, "now": c.at(values.len() as f64).value,
-            "now_interval": c.at(values.len() as f64).interval })
-    });
-    let first = group.first();
-    json!({
-        "trainee": first.map(|a| &a.trainee),
-        "lesson": first.map(|a| &a.lesson),
-        "conditions": first.map(|a| a.conditions),
-        "attempts": group.len(),
-        "proficient_after": proficient_at(&tries).map(|index| index + 1),
-        "sessions": sessions(&tries).iter().map(session).collect::<Vec<_>>(),
-        "curve": curve,
+fn progress(group: &[&Attempt]) -> Option<Progress> {
+    let (first, tries) = (group.first()?, tries(group));
+    let scores: Vec<f64> = tries.iter().map(|t| t.value).collect();
+    Some(Progress {
+        trainee: first.trainee.clone(),
+        lesson: first.lesson.clone(),
+        conditions: first.conditions,
+        attempts: group.len(),
+        proficient_after: proficient_at(&tries).map(|index| index + 1),
+        sessions: sessions(&tries).iter().map(Sitting::from).collect(),
+        curve: Practice::of(&scores),
     })
 }
 
@@ -164,5 +251,5 @@ fn import(store: &mut Store, from: &std::path::Path) -> anyhow::Result<Output> {
         let _ = writeln!(said, "kept {}", new + known).and_then(|()| said.flush());
     }
     let text = format!("{new} attempts taken in, {known} known already\n");
-    Ok(Output { text, json: json!({ "new": new, "known": known }) })
+    Ok(Output { text, json: serde_json::to_value(Imported { new, known })? })
 }

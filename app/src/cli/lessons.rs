@@ -3,7 +3,8 @@
 use super::Output;
 use clap::Args;
 use estimator::training::lesson::{Lesson, expert};
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -17,9 +18,41 @@ pub struct Lessons {
     measure_expert: bool,
 }
 
+/// What `lessons --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// Every lesson, in its place.
+    lessons: Vec<Entry>,
+    /// What could not be read, in sentences.
+    problems: Vec<String>,
+}
+
+/// A lesson in the list.
+#[derive(JsonSchema, Serialize)]
+struct Entry {
+    /// Its name in files and in the history.
+    id: String,
+    /// Its name for people.
+    title: String,
+    /// What it is about, in one sentence.
+    goal: String,
+    /// Where it stands in the list; equal places go by title.
+    place: u32,
+}
+
+/// What `lessons LESSON --json` prints: its file, and the text beside it.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct One {
+    /// As its file says.
+    #[serde(flatten)]
+    lesson: Lesson,
+    /// The text for people, Markdown.
+    text: String,
+}
+
 impl Lessons {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
-        let Some(name) = &self.lesson else { return Ok(list()) };
+        let Some(name) = &self.lesson else { return list() };
         let mut lesson = crate::lessons::find(name)?;
         if self.measure_expert {
             let path = Path::new(name);
@@ -33,11 +66,11 @@ impl Lessons {
                 super::progress::during("watching the expert over slow lines", |_| expert::over_lines(&lesson));
             std::fs::write(path, serde_json::to_string_pretty(&lesson)? + "\n")?;
         }
-        Ok(one(&lesson)?)
+        one(&lesson)
     }
 }
 
-fn list() -> Output {
+fn list() -> anyhow::Result<Output> {
     let (all, problems) = crate::lessons::all(crate::lessons::own_folder().as_deref());
     let mut text = String::new();
     for lesson in &all {
@@ -46,12 +79,11 @@ fn list() -> Output {
     for problem in &problems {
         let _ = writeln!(text, "not read: {problem}");
     }
-    let lessons: Vec<_> =
-        all.iter().map(|l| json!({ "id": l.id, "title": l.title, "goal": l.goal, "place": l.place })).collect();
-    Output { text, json: json!({ "lessons": lessons, "problems": problems }) }
+    let lessons = all.into_iter().map(|l| Entry { id: l.id, title: l.title, goal: l.goal, place: l.place }).collect();
+    Ok(Output { text, json: serde_json::to_value(Said { lessons, problems })? })
 }
 
-fn one(lesson: &Lesson) -> serde_json::Result<Output> {
+fn one(lesson: &Lesson) -> anyhow::Result<Output> {
     let mut text = format!("{}\n\n{}\n\n", lesson.title, lesson.text);
     for goal in &lesson.goals {
         let _ = writeln!(text, "goal: {}", goal.says);
@@ -72,7 +104,6 @@ fn one(lesson: &Lesson) -> serde_json::Result<Output> {
         let seconds = over.expert.measures.get("completed_s").map_or(f64::NAN, |s| s.mean);
         let _ = writeln!(text, "experts over {:.0} ms {model}: {seconds:.1} s", over.delay_ms);
     }
-    let mut json = serde_json::to_value(lesson)?;
-    json["text"] = json!(lesson.text);
-    Ok(Output { text, json })
+    let one = One { lesson: lesson.clone(), text: lesson.text.clone() };
+    Ok(Output { text, json: serde_json::to_value(&one)? })
 }

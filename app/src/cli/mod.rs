@@ -4,20 +4,20 @@
 
 pub(crate) mod bench;
 pub(crate) mod convert;
-mod demo;
-mod device;
+pub(crate) mod demo;
+pub(crate) mod device;
 pub(crate) mod diagnose;
 mod enough;
 pub(crate) mod export;
 pub(crate) mod fit;
-mod gallery;
-mod history;
+pub(crate) mod gallery;
+pub(crate) mod history;
 pub(crate) mod info;
-mod lessons;
+pub(crate) mod lessons;
 mod progress;
 pub(crate) mod record;
-mod report;
-mod score;
+pub(crate) mod report;
+pub(crate) mod score;
 pub(crate) mod screenshot;
 mod segment;
 pub(crate) mod simulate;

@@ -6,7 +6,10 @@ use crate::report::source::Source;
 use crate::report::{Provenance, Sheet, page};
 use anyhow::Context;
 use clap::Args;
-use serde_json::{Value, json};
+use estimator::diagnose::Verdict;
+use haptics::recording::Task;
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -28,6 +31,46 @@ pub struct Report {
     stated: Stated,
 }
 
+/// What `report --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// The page.
+    out: PathBuf,
+    /// The logs that it is about.
+    logs: Vec<OfLog>,
+}
+
+/// What came out of one log.
+#[derive(JsonSchema, Serialize)]
+struct OfLog {
+    /// The file.
+    log: String,
+    /// Its SHA-256; null where it could not be read.
+    sha256: Option<String>,
+    /// What could not be done, in sentences.
+    problems: Vec<String>,
+    /// What it contains, where it could be read.
+    #[serde(flatten)]
+    content: Option<Content>,
+}
+
+/// What a log that could be read contains.
+#[derive(JsonSchema, Serialize)]
+struct Content {
+    /// How many recordings it has.
+    recordings: usize,
+    /// What was done; null where that is not known.
+    task: Option<Task>,
+    /// Parameters that the fit looked for.
+    parameters: usize,
+    /// Those of them that it found.
+    identified: usize,
+    /// The diagnosis in one word; null without one.
+    verdict: Option<Verdict>,
+    /// What looks wrong in the log, in sentences.
+    warnings: Vec<String>,
+}
+
 impl Report {
     /// The second value is a sentence when a log could not be read: the page is written all the same.
     pub(super) fn run(&self) -> anyhow::Result<(Output, Option<String>)> {
@@ -39,7 +82,8 @@ impl Report {
             [one] => Some((*one).to_owned()),
             [first, rest @ ..] => Some(format!("{first} (and {} more logs could not be read)", rest.len())),
         };
-        Ok((Output { text: describe(&sheets, &self.out), json: to_json(&sheets, &self.out) }, problem))
+        let said = Said { out: self.out.clone(), logs: sheets.iter().map(one).collect() };
+        Ok((Output { text: describe(&sheets, &self.out), json: serde_json::to_value(&said)? }, problem))
     }
 
     fn sheet(&self, log: &Path) -> Sheet {
@@ -77,30 +121,22 @@ fn describe(sheets: &[Sheet], out: &Path) -> String {
     text
 }
 
-fn to_json(sheets: &[Sheet], out: &Path) -> Value {
-    let logs: Vec<Value> = sheets.iter().map(one).collect();
-    json!({ "out": out, "logs": logs })
-}
-
-fn one(sheet: &Sheet) -> Value {
-    let sha256 = sheet.source.log.digest.as_ref().ok().map(|(_, hash)| hash);
-    let log = sheet.source.log.path.to_string_lossy();
-    let content = match &sheet.content {
-        Ok(content) => content,
-        Err(why) => return json!({ "log": log, "sha256": sha256, "problems": [why] }),
+fn one(sheet: &Sheet) -> OfLog {
+    let sha256 = sheet.source.log.digest.as_ref().ok().map(|(_, hash)| hash.clone());
+    let log = sheet.source.log.path.to_string_lossy().into_owned();
+    let found = match &sheet.content {
+        Ok(found) => found,
+        Err(why) => return OfLog { log, sha256, problems: vec![why.clone()], content: None },
     };
-    let (identified, parameters) = content.identified();
-    let problems: Vec<&String> =
-        [content.analysis.as_ref().err(), content.diagnosis.as_ref().err()].into_iter().flatten().collect();
-    json!({
-        "log": log,
-        "sha256": sha256,
-        "recordings": content.recordings.len(),
-        "task": content.analysis.as_ref().ok().map(|a| a.task),
-        "parameters": parameters,
-        "identified": identified,
-        "verdict": content.diagnosis.as_ref().ok().map(|d| d.verdict),
-        "warnings": content.warnings(),
-        "problems": problems,
-    })
+    let (identified, parameters) = found.identified();
+    let problems = [found.analysis.as_ref().err(), found.diagnosis.as_ref().err()].into_iter().flatten().cloned();
+    let content = Content {
+        recordings: found.recordings.len(),
+        task: found.analysis.as_ref().ok().map(|a| a.task),
+        parameters,
+        identified,
+        verdict: found.diagnosis.as_ref().ok().map(|d| d.verdict),
+        warnings: found.warnings().into_iter().map(str::to_owned).collect(),
+    };
+    OfLog { log, sha256, problems: problems.collect(), content: Some(content) }
 }

@@ -10,7 +10,8 @@ use estimator::training::lesson::{Attempted, Grade, grade};
 use estimator::training::{Measures, measure};
 use haptics::recording::Recording;
 use haptics::world::World;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -32,6 +33,51 @@ pub struct Score {
     definitions: bool,
 }
 
+/// What `score --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// Name of the world that was touched; null without one.
+    world: Option<String>,
+    /// Of each recording in the log.
+    measures: Vec<Scored>,
+    /// How every measure is computed, with `--definitions`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    definitions: Option<Vec<Told>>,
+}
+
+/// One recording.
+#[derive(JsonSchema, Serialize)]
+struct Scored {
+    /// Its name.
+    name: String,
+    #[serde(flatten)]
+    measures: Measures,
+    /// Of an attempt at a lesson whose world is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    grade: Option<Grade>,
+}
+
+/// How a measure is computed.
+#[derive(Clone, JsonSchema, Serialize)]
+struct Told {
+    /// Its key in JSON.
+    key: &'static str,
+    /// Its name.
+    name: &'static str,
+    /// Its unit; empty without one.
+    unit: &'static str,
+    /// How it is computed.
+    text: &'static str,
+    /// Whether less of it is better; null where that depends on the task.
+    less_is_better: Option<bool>,
+}
+
+impl From<Definition> for Told {
+    fn from(d: Definition) -> Self {
+        Self { key: d.key, name: d.name, unit: d.unit, text: d.text, less_is_better: d.less_is_better }
+    }
+}
+
 fn parse_limit(text: &str) -> Result<f64, String> {
     let limit = text.parse().ok().filter(|limit: &f64| *limit > 0.0 && limit.is_finite());
     limit.ok_or_else(|| format!("`{text}` is no force; write a number above 0, in N"))
@@ -46,14 +92,13 @@ impl Score {
             let measures = super::progress::during("measuring", |_| measure(recording, world.as_ref(), self.limit_n))?;
             let _ = writeln!(text, "{}", recording.name);
             describe(&measures, &mut text);
-            let mut value = serde_json::to_value(&measures)?;
-            value["name"] = json!(recording.name);
+            let mut scored = Scored { name: recording.name.clone(), measures, grade: None };
             if let (Some(attempted), Some(world)) = (Attempted::of(recording)?, &world) {
                 let grade = grade_of(&attempted, world, recording)?;
                 describe_grade(&grade, &mut text);
-                value["grade"] = serde_json::to_value(&grade)?;
+                scored.grade = Some(grade);
             }
-            all.push(value);
+            all.push(scored);
         }
         if world.is_none() {
             text.push_str("No world is in the recording; name it with --world to have what became of its objects.\n");
@@ -63,15 +108,9 @@ impl Score {
                 let _ = writeln!(text, "{} ({}): {}", definition.name, definition.key, definition.text);
             }
         }
-        let world = world.map(|w| w.name);
-        let mut json = json!({ "world": world, "measures": all });
-        if self.definitions {
-            let told = ALL.map(|d| {
-                json!({ "key": d.key, "name": d.name, "unit": d.unit, "text": d.text, "less_is_better": d.less_is_better })
-            });
-            json["definitions"] = Value::from(told.to_vec());
-        }
-        Ok(Output { text, json })
+        let definitions = self.definitions.then(|| ALL.map(Told::from).to_vec());
+        let said = Said { world: world.map(|w| w.name), measures: all, definitions };
+        Ok(Output { text, json: serde_json::to_value(&said)? })
     }
 
     fn world(&self) -> anyhow::Result<Option<World>> {

@@ -17,12 +17,13 @@ pub use store::{Query, Store};
 
 use estimator::training::progress::Try;
 use jiff::Timestamp;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::PathBuf;
 
 /// Under what an attempt was made: only attempts under the same conditions are compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Conditions {
     /// Round trip of the line to the remote side, ms; 0: none.
@@ -32,7 +33,7 @@ pub struct Conditions {
 }
 
 /// An attempt at a lesson that is over.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Attempt {
     /// Name of the trainee.
     pub trainee: String,
@@ -42,6 +43,7 @@ pub struct Attempt {
     #[serde(default)]
     pub conditions: Conditions,
     /// When it began, UTC.
+    #[schemars(with = "String")]
     pub began: Timestamp,
     /// How long it took, s.
     pub duration_s: f64,

@@ -9,6 +9,7 @@ use crate::estimate::EstimateError;
 use crate::simulate::walk;
 use haptics::recording::Recording;
 use haptics::world::{State, World};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use blocks::{BlockMeasures, Drop, Slip, Stack};
@@ -17,7 +18,7 @@ pub use needle::NeedleMeasures;
 pub use switch::{SwitchMeasures, Watch as SwitchWatch};
 
 /// What happened to the things of a world.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize)]
 pub struct Course {
     /// Of blocks and barrels.
     #[serde(skip_serializing_if = "Option::is_none")]

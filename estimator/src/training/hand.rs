@@ -7,6 +7,7 @@ use crate::signal::filter::low_pass;
 use crate::signal::task::{TipSeries, is_two_fingered, task_signals, times, tip_series};
 use haptics::Vec2;
 use haptics::recording::Recording;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Motion is looked at up to here, Hz: above is tremor of sensors, which would lengthen every path.
@@ -19,7 +20,7 @@ const TOUCH_N: f64 = 0.05;
 const MOVING_M_S: f64 = 0.005;
 
 /// What can be said of the hand alone.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct HandMeasures {
     /// Length of the recording, s.
     pub duration_s: f64,

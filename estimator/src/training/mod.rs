@@ -17,13 +17,14 @@ use course::Course;
 use hand::HandMeasures;
 use haptics::recording::Recording;
 use haptics::world::World;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Version of the definitions: numbers of different versions are not compared.
 pub const VERSION: u32 = 1;
 
 /// Everything that was measured.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Measures {
     /// [`VERSION`].
     pub version: u32,

@@ -61,7 +61,7 @@ impl RateChoice {
 }
 
 /// What the self-test found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, schemars::JsonSchema, serde::Serialize)]
 pub struct Trial {
     /// Rate that was tried, Hz.
     pub rate_hz: f64,
@@ -83,7 +83,7 @@ impl Trial {
 }
 
 /// Why the servo runs at its rate.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, schemars::JsonSchema, serde::Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum RateReason {
     /// It was asked for.
@@ -101,7 +101,7 @@ pub enum RateReason {
 }
 
 /// The rate and how it came about.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, schemars::JsonSchema, serde::Serialize)]
 pub struct RateReport {
     /// Ticks a second.
     pub rate_hz: f64,

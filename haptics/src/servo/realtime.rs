@@ -6,7 +6,7 @@ use thread_priority::{
 };
 
 /// What the system granted to the servo thread.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, schemars::JsonSchema, serde::Serialize)]
 pub struct Privileges {
     /// Whether it was asked for.
     pub asked: bool,

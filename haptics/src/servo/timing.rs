@@ -15,7 +15,7 @@ use super::rate::RateReport;
 pub const STALL_S: f64 = 1e-3;
 
 /// How punctual the servo was in a stretch of time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, schemars::JsonSchema, serde::Serialize)]
 pub struct Figures {
     /// Length of the stretch, s: what has passed, up to [`RECENT_S`].
     pub seconds: f64,
@@ -38,7 +38,7 @@ pub struct Figures {
 }
 
 /// What the servo knows about its own timing, since the start unless it says otherwise.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, schemars::JsonSchema, serde::Serialize)]
 pub struct Timing {
     /// Ticks since the start, or since the rate changed.
     pub ticks: u64,

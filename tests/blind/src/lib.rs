@@ -41,7 +41,7 @@ pub use draw::{Bench, Spec};
 pub use effect::Effect;
 pub use follow::Experiments;
 pub use interval::Share;
-pub use json::json;
+pub use json::Said;
 pub use plan::Log;
 pub use score::{Figures, Row, ask};
 pub use sets::{Counts, Job, Set, battery, long};

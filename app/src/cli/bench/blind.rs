@@ -3,6 +3,8 @@
 use super::super::{Output, progress};
 use clap::Args;
 use estimator::diagnose::diagnose;
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
@@ -18,6 +20,19 @@ pub struct BlindBench {
     /// Only so many cases, spread over the battery: a first look
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     cases: Option<u64>,
+}
+
+/// What `bench blind --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// What repeats this battery.
+    seed: u64,
+    /// Whether it is the whole one.
+    whole: bool,
+    /// How long it took, generator included, s.
+    took_s: f64,
+    #[serde(flatten)]
+    counts: blind::Said,
 }
 
 impl BlindBench {
@@ -40,14 +55,13 @@ impl BlindBench {
             })
         });
         let took_s = begun.elapsed().as_secs_f64();
-        let mut json = blind::json(&rows);
-        (json["seed"], json["whole"], json["took_s"]) = (seed.into(), self.whole.into(), took_s.into());
         let text = format!(
             "{} cases, seed {seed}\n{}\n{took_s:.0} s in all, generator included\n",
             rows.len(),
             blind::report(&rows)
         );
-        Ok(Output { text, json })
+        let said = Said { seed, whole: self.whole, took_s, counts: blind::Said::of(&rows) };
+        Ok(Output { text, json: serde_json::to_value(&said)? })
     }
 }
 

@@ -13,7 +13,8 @@ use haptics::servo::{Loop, Swap};
 use haptics::teleop::{self, Delay, Ends};
 use haptics::world::{State, World, presets};
 use median::Median;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt::Write;
 
 /// Servo period, s.
@@ -43,6 +44,63 @@ pub struct DelayBench {
     /// How well the scripted operator does it: novice, intermediate, advanced or expert
     #[arg(long, default_value = "expert")]
     skill: String,
+}
+
+/// What `bench delay --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said<'a> {
+    /// Performances of each task on each line.
+    seeds: u32,
+    /// Level of the scripted operator.
+    skill: &'a str,
+    /// Most extra delay of a packet, s.
+    jitter_s: f64,
+    /// Share of the packets that is lost.
+    loss: f64,
+    /// Each task on each line.
+    delay: Vec<Compared>,
+    /// How far the model's masses are off, relative to the truth; null where nothing was carried with a model.
+    mass_off: Option<Off>,
+}
+
+/// One task on one line.
+#[derive(JsonSchema, Serialize)]
+struct Compared {
+    /// Its name.
+    task: &'static str,
+    /// There and back, s.
+    round_trip_s: f64,
+    /// Without a model.
+    without: Side,
+    /// With a model that answers at once.
+    with: Side,
+    /// Time with a model over time without one, seed by seed; null where none was done both ways.
+    ratio: Option<Median>,
+}
+
+/// All performances of one kind.
+#[derive(JsonSchema, Serialize)]
+struct Side {
+    /// How many were done.
+    done: usize,
+    /// Their times, s.
+    seconds: Option<Median>,
+    /// Blocks that were dropped.
+    drops: usize,
+    /// Largest force of a performance, N.
+    #[serde(rename = "peak_N")]
+    peak_n: Option<Median>,
+    /// Time of each seed, s; null where it was not done.
+    all_seconds: Vec<Option<f64>>,
+}
+
+/// How far masses are off: medians.
+#[derive(JsonSchema, Serialize)]
+struct Off {
+    /// At first.
+    guess: f64,
+    /// In the end.
+    learnt: f64,
 }
 
 /// One task.
@@ -93,7 +151,7 @@ impl DelayBench {
                 cells.push(progress::during(&what, |_| self.cell(task, line, skill))?);
             }
         }
-        Ok(Output { text: self.text(&cells), json: self.json(&cells) })
+        Ok(Output { text: self.text(&cells), json: serde_json::to_value(self.said(&cells))? })
     }
 
     fn line(&self, round_trip_ms: f64) -> Delay {
@@ -145,34 +203,34 @@ impl DelayBench {
         text
     }
 
-    fn json(&self, cells: &[Cell]) -> Value {
-        let row = |cell: &Cell| {
-            let side = |shown: &[Shown]| {
-                json!({
-                    "done": shown.iter().filter(|s| s.done).count(),
-                    "seconds": time_s(shown),
-                    "drops": shown.iter().map(|s| s.drops).sum::<usize>(),
-                    "peak_N": peak_n(shown),
-                    "all_seconds": shown.iter().map(|s| s.done.then_some(s.seconds)).collect::<Vec<_>>(),
-                })
-            };
-            json!({
-                "task": cell.task,
-                "round_trip_s": cell.round_trip_s,
-                "without": side(&cell.shown[0]),
-                "with": side(&cell.shown[1]),
-                "ratio": cell.ratio(),
-            })
-        };
-        let off = offs(cells).map(|[guess, learnt]| json!({ "guess": guess, "learnt": learnt }));
-        json!({
-            "seeds": self.seeds,
-            "skill": self.skill,
-            "jitter_s": 1e-3 * self.jitter_ms,
-            "loss": self.loss,
-            "delay": cells.iter().map(row).collect::<Vec<_>>(),
-            "mass_off": off,
-        })
+    fn said(&self, cells: &[Cell]) -> Said<'_> {
+        Said {
+            seeds: self.seeds,
+            skill: &self.skill,
+            jitter_s: 1e-3 * self.jitter_ms,
+            loss: self.loss,
+            delay: cells.iter().map(Compared::from).collect(),
+            mass_off: offs(cells).map(|[guess, learnt]| Off { guess, learnt }),
+        }
+    }
+}
+
+impl Side {
+    fn of(shown: &[Shown]) -> Self {
+        Self {
+            done: shown.iter().filter(|s| s.done).count(),
+            seconds: time_s(shown),
+            drops: shown.iter().map(|s| s.drops).sum(),
+            peak_n: peak_n(shown),
+            all_seconds: shown.iter().map(|s| s.done.then_some(s.seconds)).collect(),
+        }
+    }
+}
+
+impl From<&Cell> for Compared {
+    fn from(cell: &Cell) -> Self {
+        let [without, with] = cell.shown.each_ref().map(|shown| Side::of(shown));
+        Self { task: cell.task, round_trip_s: cell.round_trip_s, without, with, ratio: cell.ratio() }
     }
 }
 

@@ -10,7 +10,8 @@ use haptics::servo::recorder::{SensorModel, to_recording};
 use haptics::servo::safety::Limits;
 use haptics::servo::{Loop, Swap};
 use haptics::world::{State, World, presets};
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt::Write;
 
 /// Servo period, s.
@@ -35,6 +36,49 @@ pub struct FramesBench {
     pub(super) no_fit: bool,
 }
 
+/// What `bench frames --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// Samples of the log.
+    samples: usize,
+    /// Size of the window in pixels.
+    size: [u32; 2],
+    /// Processor time that a picture may take, s.
+    budget_s: f64,
+    /// Each panel's.
+    frames: Vec<OfPanel>,
+}
+
+/// Processor times of a panel's pictures, s: medians, and what 95 of 100 keep to.
+#[derive(JsonSchema, Serialize)]
+struct OfPanel {
+    /// Its name.
+    panel: &'static str,
+    /// While the recording plays.
+    playing_s: f64,
+    /// The same.
+    playing_p95_s: f64,
+    /// While a plot is zoomed.
+    zooming_s: f64,
+    /// The same.
+    zooming_p95_s: f64,
+    /// Triangles of a picture.
+    triangles: usize,
+}
+
+impl OfPanel {
+    fn of(panel: &'static str, c: &Costs) -> Self {
+        Self {
+            panel,
+            playing_s: c.playing.median_s,
+            playing_p95_s: c.playing.p95_s,
+            zooming_s: c.zooming.median_s,
+            zooming_p95_s: c.zooming.p95_s,
+            triangles: c.playing.triangles,
+        }
+    }
+}
+
 impl FramesBench {
     pub(super) fn run(&self) -> anyhow::Result<Output> {
         anyhow::ensure!(
@@ -56,16 +100,16 @@ impl FramesBench {
         };
         let measure = |loaded: &Loaded, s: &Subject| (s.name, loaded.measure(*s, self.size, self.pictures));
         let (asked, plain): (Vec<&Subject>, Vec<&Subject>) = subjects.iter().partition(|s| s.needs_answer());
-        let mut measured: Vec<(&str, Costs)> = plain.into_iter().map(|s| measure(&loaded, s)).collect();
+        let mut measured: Vec<(&'static str, Costs)> = plain.into_iter().map(|s| measure(&loaded, s)).collect();
         if !asked.is_empty() {
             let once = performance("crank, over and over", &askew_world());
             let loaded = Loaded::diagnosed(once, samples).map_err(anyhow::Error::msg)?;
             measured.extend(asked.into_iter().map(|s| measure(&loaded, s)));
         }
-        Ok(self.report(samples, &measured))
+        self.report(samples, &measured)
     }
 
-    fn report(&self, samples: usize, measured: &[(&str, Costs)]) -> Output {
+    fn report(&self, samples: usize, measured: &[(&'static str, Costs)]) -> anyhow::Result<Output> {
         let mut text = format!(
             "{samples} samples, {} × {} pixels, processor time of a picture in ms (budget {:.0})\n{:<16} {:>16} {:>16} {:>14} {:>10}\n",
             self.size[0],
@@ -90,12 +134,9 @@ impl FramesBench {
                 if over { "  over" } else { "" }
             );
         }
-        let rows = measured.iter().map(|(name, c)| {
-            json!({ "panel": name, "playing_s": c.playing.median_s, "playing_p95_s": c.playing.p95_s,
-                    "zooming_s": c.zooming.median_s, "zooming_p95_s": c.zooming.p95_s, "triangles": c.playing.triangles })
-        });
-        let rows: Vec<_> = rows.collect();
-        Output { text, json: json!({ "samples": samples, "size": self.size, "budget_s": BUDGET_S, "frames": rows }) }
+        let frames = measured.iter().map(|(name, costs)| OfPanel::of(name, costs)).collect();
+        let said = Said { samples, size: self.size, budget_s: BUDGET_S, frames };
+        Ok(Output { text, json: serde_json::to_value(&said)? })
     }
 }
 

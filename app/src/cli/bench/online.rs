@@ -10,7 +10,8 @@ use haptics::servo::recorder::{Rows, SensorModel};
 use haptics::servo::safety::Limits;
 use haptics::servo::{Loop, Swap};
 use haptics::world::{State, World, presets};
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt::Write;
 use std::time::Instant;
 
@@ -25,12 +26,27 @@ pub struct OnlineBench {
     pub(super) rounds: u32,
 }
 
-/// Costs in one world, s.
+/// What `bench online --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// Costs in each world.
+    online: [Cost; 2],
+}
+
+/// Costs in one world.
+#[derive(JsonSchema, Serialize)]
 struct Cost {
+    /// Its name.
     world: &'static str,
+    /// A tick of the servo, s.
     tick_s: f64,
+    /// A sample of the estimator, s.
     sample_s: f64,
+    /// The second over the first.
+    ratio: f64,
+    /// All that is known by then, asked for once, s.
     report_s: f64,
+    /// Samples that were given.
     samples: usize,
 }
 
@@ -53,15 +69,11 @@ impl OnlineBench {
                 c.world,
                 1e6 * c.tick_s,
                 1e6 * c.sample_s,
-                c.sample_s / c.tick_s,
+                c.ratio,
                 1e6 * c.report_s
             );
         }
-        let json = costs.iter().map(|c| {
-            json!({ "world": c.world, "tick_s": c.tick_s, "sample_s": c.sample_s, "ratio": c.sample_s / c.tick_s,
-                    "report_s": c.report_s, "samples": c.samples })
-        });
-        Ok(Output { text, json: json!({ "online": json.collect::<Vec<_>>() }) })
+        Ok(Output { text, json: serde_json::to_value(Said { online: costs })? })
     }
 
     /// The task by the scripted operator: first the servo's ticks, then the same ticks through the estimator.
@@ -91,6 +103,6 @@ impl OnlineBench {
         let report = online.report();
         let report_s = begun.elapsed().as_secs_f64();
         anyhow::ensure!(!report.parameters.is_empty(), "nothing was measured in the world {name}");
-        Ok(Cost { world: name, tick_s, sample_s, report_s, samples: pushed })
+        Ok(Cost { world: name, tick_s, sample_s, ratio: sample_s / tick_s, report_s, samples: pushed })
     }
 }

@@ -15,7 +15,8 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use haptics::world::{Block, Floor, Input, State, World, presets, step};
 use rayon::prelude::*;
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -36,6 +37,35 @@ pub struct ScaleBench {
     /// Draw the curves on logarithmic axes, as SVG
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+}
+
+/// What `bench scale --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said {
+    /// Whether this program was built with optimisation; figures of one without mean little.
+    optimised: bool,
+    /// How each kind of work grows.
+    scale: Vec<Grows>,
+}
+
+/// How one kind of work grows.
+#[derive(JsonSchema, Serialize)]
+struct Grows {
+    /// What is done.
+    name: &'static str,
+    /// What it is done to: `samples`, `blocks` or `logs`.
+    of: &'static str,
+    /// Seconds grow with this power of the size; null where too few sizes could be timed.
+    exponent: Option<f64>,
+    /// Sizes and seconds.
+    points: Vec<(usize, f64)>,
+}
+
+impl From<Curve> for Grows {
+    fn from(c: Curve) -> Self {
+        let exponent = Some(c.exponent()).filter(|exponent| exponent.is_finite());
+        Self { name: c.name, of: c.of, exponent, points: c.points }
+    }
 }
 
 /// What is timed as samples grow.
@@ -76,10 +106,8 @@ impl ScaleBench {
             crate::ui::project::write_whole(out, &loglog::svg(&curves)).map_err(anyhow::Error::msg)?;
             let _ = writeln!(text, "picture: {}", out.display());
         }
-        let rows =
-            curves.iter().map(|c| json!({ "name": c.name, "of": c.of, "exponent": c.exponent(), "points": c.points }));
-        let json = json!({ "optimised": !cfg!(debug_assertions), "scale": rows.collect::<Vec<_>>() });
-        Ok(Output { text, json })
+        let said = Said { optimised: !cfg!(debug_assertions), scale: curves.into_iter().map(Grows::from).collect() };
+        Ok(Output { text, json: serde_json::to_value(&said)? })
     }
 }
 

@@ -6,7 +6,8 @@
 use crate::ui::format::short_time;
 use haptics::servo::rate::{COMPUTE_SHARE, MISSED_SHARE};
 use haptics::servo::timing::Timing;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 /// Share of a period that 99 of 100 ticks may be late by: 50 µs at 4 kHz.
 pub const LATE_P99: f64 = 0.2;
@@ -20,6 +21,25 @@ pub struct Limit {
     measured: f64,
     most: f64,
     is_time: bool,
+}
+
+/// The same for programs.
+#[derive(JsonSchema, Serialize)]
+pub struct Held {
+    /// Its name.
+    limit: &'static str,
+    /// What may be: times in s, the missed deadlines as a share.
+    most: f64,
+    /// What was.
+    measured: f64,
+    /// Whether it is kept.
+    holds: bool,
+}
+
+impl From<&Limit> for Held {
+    fn from(limit: &Limit) -> Self {
+        Self { limit: limit.name, most: limit.most, measured: limit.measured, holds: limit.is_kept() }
+    }
 }
 
 /// Every limit of a rate.
@@ -59,11 +79,6 @@ impl Limit {
 
     fn kept_words(&self) -> String {
         format!("{} ≤ {}", self.what, short_time(self.most))
-    }
-
-    /// For programs: times in s, the missed deadlines as a share.
-    pub fn json(&self) -> Value {
-        json!({ "limit": self.name, "most": self.most, "measured": self.measured, "holds": self.is_kept() })
     }
 }
 

@@ -4,7 +4,7 @@ mod board;
 mod limits;
 mod push;
 
-pub use limits::{limit_sentence, limits};
+pub use limits::{Limits, limit_sentence, limits};
 
 use super::super::Output;
 use crate::ui::format::short_time;
@@ -14,7 +14,9 @@ use haptics::device::haply::Tally;
 use haptics::device::udp::{Refused, UdpMonitor};
 use haptics::servo::{Privileges, TickRecord, passivity, timing::Timing};
 use limits::line_sentence;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// A finger that moved less than this did not move, m.
@@ -22,16 +24,99 @@ const STILL_M: f64 = 0.5e-3;
 /// The watchdog has spoken after this, s.
 const WAIT_S: f64 = 0.1;
 
-/// A device's figures as JSON.
-pub fn spec_json(spec: &DeviceSpec) -> Value {
-    json!({
-        "name": spec.name,
-        "force_feedback": spec.force_feedback,
-        "max_force_N": spec.max_force_n,
-        "damping_N_s_m": spec.damping_n_s_m,
-        "coulomb_N": spec.coulomb_n,
-        "resolution_m": spec.resolution_m,
-    })
+/// What `device test --json` prints.
+#[derive(JsonSchema, Serialize)]
+pub(crate) struct Said<'a> {
+    /// Its name for people.
+    device: &'a str,
+    /// Its figures.
+    spec: Spec,
+    /// What it can render; null where no force is felt.
+    limits: Option<Limits>,
+    /// Stiffness of the coupling, N/m; null where the world is felt directly.
+    #[serde(rename = "coupling_N_m")]
+    coupling_n_m: Option<f64>,
+    /// Stiffness of the line with waves that it is behind, N/m; null without one.
+    #[serde(rename = "line_N_m")]
+    line_n_m: Option<f64>,
+    /// Ticks that were watched.
+    ticks: usize,
+    /// Those without force, because positions had stayed away for too long.
+    stale_ticks: usize,
+    /// Width and height of where the left and the right finger went, m.
+    range_m: [[f64; 2]; 2],
+    /// Largest force that was sent to a finger, N.
+    #[serde(rename = "largest_force_N")]
+    largest_force_n: f64,
+    /// Of a remote device; null otherwise.
+    packets: Option<Packets>,
+    /// Answers of the left and the right board; null without boards.
+    boards: Option<[board::Counts; 2]>,
+    /// The servo's punctuality.
+    timing: &'a Timing,
+    /// What the system granted.
+    privileges: Privileges,
+    /// Stiffness up to which the device is passive on its own, N/m.
+    #[serde(rename = "passive_stiffness_N_m")]
+    passive_stiffness_n_m: f64,
+    /// What was looked at.
+    checks: &'a [Check],
+    /// The first check that is not fine, or that nothing wrong was found.
+    verdict: &'a str,
+}
+
+/// A device's figures.
+#[derive(JsonSchema, Serialize)]
+pub struct Spec {
+    /// Its name for people.
+    name: String,
+    /// Whether forces are felt, not only shown.
+    force_feedback: bool,
+    /// Largest force of a finger, N.
+    #[serde(rename = "max_force_N")]
+    max_force_n: f64,
+    /// Physical damping of a finger, N s/m.
+    #[serde(rename = "damping_N_s_m")]
+    damping_n_s_m: f64,
+    /// Coulomb friction of a finger, N.
+    #[serde(rename = "coulomb_N")]
+    coulomb_n: f64,
+    /// Smallest step of a position, m.
+    resolution_m: f64,
+}
+
+impl From<&DeviceSpec> for Spec {
+    fn from(spec: &DeviceSpec) -> Self {
+        Self {
+            name: spec.name.clone(),
+            force_feedback: spec.force_feedback,
+            max_force_n: spec.max_force_n,
+            damping_n_s_m: spec.damping_n_s_m,
+            coulomb_n: spec.coulomb_n,
+            resolution_m: spec.resolution_m,
+        }
+    }
+}
+
+/// Packets of a remote device.
+#[derive(JsonSchema, Serialize)]
+struct Packets {
+    /// Where it was listened.
+    address: String,
+    /// Those that were taken.
+    accepted: u64,
+    /// Those that were not, by reason.
+    refused: BTreeMap<&'static str, u64>,
+}
+
+impl From<&UdpMonitor> for Packets {
+    fn from(packets: &UdpMonitor) -> Self {
+        Self {
+            address: packets.address().to_string(),
+            accepted: packets.accepted(),
+            refused: Refused::ALL.iter().map(|why| (why.words(), packets.refused(*why))).collect(),
+        }
+    }
 }
 
 /// What was measured.
@@ -61,11 +146,15 @@ pub struct Measured<'a> {
 }
 
 /// One thing that was looked at.
+#[derive(JsonSchema, Serialize)]
 struct Check {
+    /// What.
     name: &'static str,
+    /// Whether it is fine.
     ok: bool,
     /// Not only worth a look: the device does not work.
     failed: bool,
+    /// What was seen, for people.
     text: String,
 }
 
@@ -82,7 +171,7 @@ impl Check {
 
 impl Measured<'_> {
     /// Words and JSON.
-    pub fn report(&self) -> Output {
+    pub fn report(&self) -> serde_json::Result<Output> {
         let checks = self.checks();
         let verdict =
             checks.iter().find(|check| !check.ok).map_or("Nothing wrong was found.", |check| check.text.as_str());
@@ -103,7 +192,7 @@ impl Measured<'_> {
             let _ = writeln!(text, "  {} {}", if check.ok { "ok  " } else { "look" }, check.text);
         }
         let _ = writeln!(text, "  {verdict}");
-        Output { text, json: self.json(&checks, verdict) }
+        Ok(Output { text, json: serde_json::to_value(self.said(&checks, verdict))? })
     }
 
     /// Whether a check failed outright.
@@ -111,33 +200,26 @@ impl Measured<'_> {
         self.checks().iter().any(|check| check.failed)
     }
 
-    fn json(&self, checks: &[Check], verdict: &str) -> Value {
-        let checks: Vec<Value> =
-            checks.iter().map(|c| json!({ "name": c.name, "ok": c.ok, "failed": c.failed, "text": c.text })).collect();
-        let packets = self.packets.map(|packets| {
-            let refused: serde_json::Map<String, Value> =
-                Refused::ALL.iter().map(|why| (why.words().to_owned(), packets.refused(*why).into())).collect();
-            json!({ "address": packets.address().to_string(), "accepted": packets.accepted(), "refused": refused })
-        });
-        json!({
-            "device": self.spec.name,
-            "spec": spec_json(self.spec),
-            "limits": limits(self.spec, self.timing.period_s, self.delay_s),
-            "coupling_N_m": self.coupling_n_m,
-            "line_N_m": self.line_n_m,
-            "ticks": self.ticks.len(),
-            "stale_ticks": self.stale(),
-            "range_m": self.ranges().map(|range| [range.x, range.y]),
-            "largest_force_N": self.largest_force_n(),
-            "packets": packets,
-            "boards": self.answers.map(|tallies| tallies.each_ref().map(board::json)),
-            "timing": self.timing,
-            "privileges": self.privileges,
-            "passive_stiffness_N_m":
-                passivity::passive_stiffness(self.spec, 0.0, self.timing.period_s, self.delay_s),
-            "checks": checks,
-            "verdict": verdict,
-        })
+    fn said<'a>(&'a self, checks: &'a [Check], verdict: &'a str) -> Said<'a> {
+        let period_s = self.timing.period_s;
+        Said {
+            device: &self.spec.name,
+            spec: self.spec.into(),
+            limits: limits(self.spec, period_s, self.delay_s),
+            coupling_n_m: self.coupling_n_m,
+            line_n_m: self.line_n_m,
+            ticks: self.ticks.len(),
+            stale_ticks: self.stale(),
+            range_m: self.ranges().map(|range| [range.x, range.y]),
+            largest_force_n: self.largest_force_n(),
+            packets: self.packets.map(Packets::from),
+            boards: self.answers.map(|tallies| tallies.each_ref().map(board::Counts::from)),
+            timing: self.timing,
+            privileges: self.privileges,
+            passive_stiffness_n_m: passivity::passive_stiffness(self.spec, 0.0, period_s, self.delay_s),
+            checks,
+            verdict,
+        }
     }
 
     fn checks(&self) -> Vec<Check> {

@@ -1,6 +1,7 @@
 //! Carried, dropped, slipped and stacked blocks.
 
 use haptics::world::{Contact, State, Surface, World};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
 
@@ -12,7 +13,7 @@ pub const SLIP_M: f64 = 0.0005;
 const RESTING_M_S: f64 = 0.002;
 
 /// A block fell out of the hand.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Drop {
     /// Which, from 0.
     pub block: usize,
@@ -23,7 +24,7 @@ pub struct Drop {
 }
 
 /// A pad slid over a block that both fingers held.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Slip {
     /// Which block, from 0.
     pub block: usize,
@@ -36,7 +37,7 @@ pub struct Slip {
 }
 
 /// A block that rests on another one at the end.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Stack {
     /// Which, from 0.
     pub upper: usize,
@@ -49,7 +50,7 @@ pub struct Stack {
 }
 
 /// Of the blocks of a world.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize)]
 pub struct BlockMeasures {
     /// How often each was taken by both fingers.
     pub grasps: Vec<usize>,

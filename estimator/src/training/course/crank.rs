@@ -1,6 +1,7 @@
 //! A turned crank.
 
 use haptics::world::State;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -10,7 +11,7 @@ pub const REVERSAL_RAD: f64 = 0.05;
 const STANDING_RAD_S: f64 = 0.2;
 
 /// Of a crank.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize)]
 pub struct CrankMeasures {
     /// Angle gone through, both ways together, in turns.
     pub turns: f64,

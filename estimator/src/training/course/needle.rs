@@ -2,13 +2,14 @@
 
 use haptics::law::object::MembranePhase;
 use haptics::world::State;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// After the sheet gave way the needle has this long to stop, s.
 pub const OVERSHOOT_WINDOW_S: f64 = 0.5;
 
 /// A hole that was made.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Puncture {
     /// When the sheet gave way, s.
     pub time_s: f64,
@@ -23,7 +24,7 @@ pub struct Puncture {
 }
 
 /// Of a needle.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize)]
 pub struct NeedleMeasures {
     /// Holes in their order.
     pub punctures: Vec<Puncture>,

@@ -1,6 +1,7 @@
 //! A switch that is thrown.
 
 use haptics::world::{State, World};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A knob that is nearer to an end than this share of its way stands there.
@@ -9,7 +10,7 @@ const AT_AN_END: f64 = 0.1;
 const PUSHED: f64 = 1.0 / 3.0;
 
 /// Of a switch.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize)]
 pub struct SwitchMeasures {
     /// Times it went over from one side to the other.
     pub throws: usize,

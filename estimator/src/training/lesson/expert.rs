@@ -7,6 +7,7 @@ use crate::estimate::EstimateError;
 use crate::training::figures::figures;
 use haptics::device::Skill;
 use haptics::teleop::Delay;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -18,7 +19,7 @@ const FIRST_SEED: u64 = 0x0e59_e127;
 const FENCE: f64 = 1.5;
 
 /// Mean and standard deviation of something.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spread {
     /// Mean.
@@ -28,7 +29,7 @@ pub struct Spread {
 }
 
 /// What experts need.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Expert {
     /// Attempts that were completed, of those that were made.

@@ -2,6 +2,7 @@
 
 use haptics::Vec2;
 use haptics::world::{Contact, State, Surface, World};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -15,7 +16,7 @@ const GONE_S: f64 = 0.05;
 const RESTING_M_S: f64 = 0.002;
 
 /// A goal with the words that people read.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Goal {
     /// What to do, in a few words.
     pub says: String,
@@ -25,7 +26,7 @@ pub struct Goal {
 }
 
 /// What can be asked for. Forces are in N of each finger, lengths in m.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Kind {
     /// Both fingers press the table, neither less nor more than said, for some time.
@@ -100,7 +101,7 @@ pub enum Kind {
 }
 
 /// What must not happen.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Rule {
     /// What to keep to, in a few words.
     pub says: String,
@@ -110,7 +111,7 @@ pub struct Rule {
 }
 
 /// What can be forbidden.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(tag = "never", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Forbidden {
     /// A block's wall breaks.

@@ -10,6 +10,7 @@ use crate::training::figures::figures;
 use crate::training::{Measures, VERSION, hand};
 use haptics::recording::Recording;
 use haptics::world::World;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -24,7 +25,7 @@ const WORST: f64 = 25.0;
 const BEST: f64 = -2.0;
 
 /// A measure of an attempt beside that of experts.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Figure {
     /// Key of its definition.
     pub measure: String,
@@ -45,7 +46,7 @@ pub struct Figure {
 }
 
 /// A goal, and whether it was reached.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Reached {
     /// The goal's words.
     pub says: String,
@@ -54,7 +55,7 @@ pub struct Reached {
 }
 
 /// What an attempt is worth.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct Grade {
     /// [`GRADE_VERSION`].
     pub version: u32,

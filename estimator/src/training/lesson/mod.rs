@@ -21,6 +21,7 @@ use super::definitions::Definition;
 use crate::estimate::EstimateError;
 use haptics::device::Act;
 use haptics::world::{World, presets};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -28,7 +29,7 @@ use std::path::Path;
 pub const SCHEMA: u32 = 1;
 
 /// A lesson, as its file says.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lesson {
     /// Version of the format, [`SCHEMA`].
@@ -46,9 +47,11 @@ pub struct Lesson {
     pub world: Base,
     /// Changes of that world, as a JSON patch (RFC 6902).
     #[serde(default, skip_serializing_if = "is_empty")]
+    #[schemars(with = "Vec<serde_json::Value>")]
     pub changes: json_patch::Patch,
     /// Worlds of which each attempt draws one; each is a JSON patch of the world above. Empty: always the same.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(with = "Vec<Vec<serde_json::Value>>")]
     pub variants: Vec<json_patch::Patch>,
     /// A force of a finger above this is too large, N.
     pub limit_n: f64,
@@ -78,7 +81,7 @@ pub struct Lesson {
 }
 
 /// What experts need over a slow line.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Over {
     /// Round trip, ms.
@@ -95,17 +98,18 @@ fn is_empty(patch: &json_patch::Patch) -> bool {
 }
 
 /// The world that a lesson begins with.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Base {
     /// The name of a built-in world.
     Named(String),
     /// A world.
+    #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
     Whole(Box<World>),
 }
 
 /// One step of the demonstration.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Step {
     /// What is shown, in a few words.
     pub says: String,
@@ -115,7 +119,7 @@ pub struct Step {
 }
 
 /// One measure of a score.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Judged {
     /// Key of its definition.
@@ -125,7 +129,7 @@ pub struct Judged {
 }
 
 /// What is asked at the end of an attempt.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Question {
     /// The question.

@@ -5,6 +5,7 @@ use super::plan::{Goal, Job, Spin};
 use crate::Vec2;
 use crate::device::HandImpedance;
 use crate::world::{Block, Shape, State, World};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -18,7 +19,7 @@ const UNEVENNESS: f64 = 0.03;
 const RAMP_S: f64 = 0.6;
 
 /// One thing to do. Lengths are in m, forces in N of each finger, in the world's frame.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Act {
     /// Presses both fingers on the table for some time.

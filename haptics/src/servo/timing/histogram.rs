@@ -80,7 +80,7 @@ impl Histogram {
 }
 
 /// The usual four numbers of a distribution of durations, s.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, schemars::JsonSchema, serde::Serialize)]
 pub struct Percentiles {
     /// Median.
     pub p50_s: f64,

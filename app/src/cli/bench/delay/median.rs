@@ -1,9 +1,10 @@
 //! A median with an interval that assumes nothing about the distribution.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A median, and where it lies with 95 % at the least.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub(super) struct Median {
     /// The median.
     pub middle: f64,

@@ -3,7 +3,8 @@
 use super::Check;
 use crate::boards::{ADVICE, Answers};
 use haptics::device::haply::Tally;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 /// One check a board, left and right.
 pub fn checks(tallies: &[Tally; 2]) -> Vec<Check> {
@@ -16,17 +17,27 @@ fn check(side: &str, answers: Answers) -> Check {
     Check::new("answers", ok, format!("The {side} board: {}.{advice}", answers.sentence()))
 }
 
-/// The counts.
-pub fn json(tally: &Tally) -> Value {
-    let answers = Answers::from(tally);
-    let [late, foreign, impossible] = answers.faults;
-    json!({
-        "answers": answers.asked,
-        "lost_or_wrong": answers.lost_or_wrong(),
-        "late": late,
-        "wrong_id": foreign,
-        "impossible": impossible,
-    })
+/// Answers of a board.
+#[derive(JsonSchema, Serialize)]
+pub struct Counts {
+    /// Answers that were asked for.
+    answers: u64,
+    /// Those that did not come or were wrong: the three below together.
+    lost_or_wrong: u64,
+    /// Too late or cut short.
+    late: u64,
+    /// With a wrong id or no numbers.
+    wrong_id: u64,
+    /// Where no hand can be.
+    impossible: u64,
+}
+
+impl From<&Tally> for Counts {
+    fn from(tally: &Tally) -> Self {
+        let answers = Answers::from(tally);
+        let [late, wrong_id, impossible] = answers.faults;
+        Self { answers: answers.asked, lost_or_wrong: answers.lost_or_wrong(), late, wrong_id, impossible }
+    }
 }
 
 #[cfg(test)]

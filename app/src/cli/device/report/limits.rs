@@ -3,19 +3,32 @@
 use super::duration;
 use haptics::device::DeviceSpec;
 use haptics::servo::passivity;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// What a device can render.
+#[derive(Debug, JsonSchema, PartialEq, Serialize)]
+pub struct Limits {
+    /// At this rate.
+    rate_hz: f64,
+    /// Behind this delay one way.
+    delay_s: f64,
+    /// Stiffness up to which it is passive on its own, N/m.
+    #[serde(rename = "passive_stiffness_N_m")]
+    passive_stiffness_n_m: f64,
+    /// Damping up to which it is, N s/m.
+    #[serde(rename = "passive_damping_N_s_m")]
+    passive_damping_n_s_m: f64,
+}
 
 /// What a device can render at a period and behind the delay that it states, s: computed from its figures, never typed in.
-/// `null` where no force is felt.
-pub fn limits(spec: &DeviceSpec, period_s: f64, delay_s: f64) -> Value {
-    if !spec.force_feedback {
-        return Value::Null;
-    }
-    json!({
-        "rate_hz": 1.0 / period_s,
-        "delay_s": delay_s,
-        "passive_stiffness_N_m": passivity::passive_stiffness(spec, 0.0, period_s, delay_s),
-        "passive_damping_N_s_m": passivity::passive_damping(spec, period_s),
+/// Nothing where no force is felt.
+pub fn limits(spec: &DeviceSpec, period_s: f64, delay_s: f64) -> Option<Limits> {
+    spec.force_feedback.then(|| Limits {
+        rate_hz: 1.0 / period_s,
+        delay_s,
+        passive_stiffness_n_m: passivity::passive_stiffness(spec, 0.0, period_s, delay_s),
+        passive_damping_n_s_m: passivity::passive_damping(spec, period_s),
     })
 }
 
@@ -57,23 +70,20 @@ mod tests {
     #[test]
     fn limits_are_computed_and_absent_where_nothing_is_felt() {
         let boards = HaplyHand::two_boards();
-        assert!(
-            (limits(&boards, 1e-3, 0.0)["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 200.0).abs() < 1e-9
-        );
-        assert!(
-            (limits(&boards, 0.25e-3, 0.0)["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 800.0).abs() < 1e-9
-        );
+        let stiffness_n_m =
+            |period_s, delay_s| limits(&boards, period_s, delay_s).map_or(0.0, |l| l.passive_stiffness_n_m);
+        assert!((stiffness_n_m(1e-3, 0.0) - 200.0).abs() < 1e-9);
+        assert!((stiffness_n_m(0.25e-3, 0.0) - 800.0).abs() < 1e-9);
         // b/(T/2 + t_d): 0.1 N s/m over 10 ms.
-        let delayed = limits(&boards, 1e-3, 9.5e-3);
-        assert!((delayed["passive_stiffness_N_m"].as_f64().unwrap_or_default() - 10.0).abs() < 1e-9, "{delayed}");
+        assert!((stiffness_n_m(1e-3, 9.5e-3) - 10.0).abs() < 1e-9);
         assert!(
             limit_sentence(&boards, 1e-3, 9.5e-3).contains("10 N/m and 0.10 N s/m at 1000 Hz behind 10 ms of delay")
         );
         let (timing, waved) = (kilohertz(), DeviceSpec { damping_n_s_m: 5.0, ..boards.clone() });
-        let report = Measured { line_n_m: Some(20.0), ..measured(&waved, &timing, &[]) }.report();
+        let report = Measured { line_n_m: Some(20.0), ..measured(&waved, &timing, &[]) }.report().expect("JSON");
         assert!(report.text.contains("the line's own spring of 20 N/m") && !report.text.contains("passive up to"));
         assert_eq!(report.json["line_N_m"], 20.0);
         let shown = DeviceSpec { force_feedback: false, ..boards };
-        assert_eq!(limits(&shown, 1e-3, 0.0), Value::Null);
+        assert_eq!(limits(&shown, 1e-3, 0.0), None);
     }
 }
