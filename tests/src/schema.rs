@@ -89,7 +89,7 @@ fn within(root: &Value, schema: &Value, document: &Value, (at, around): Place<'_
                     Some(own) => hold(root, own, value, (&format!("{at}/{name}"), &[]), found),
                     // Objects with named members hold no others: ours are made of types.
                     None if schema.get("properties").is_some() && !is_known(name) => {
-                        found.push(format!("{at}: {name} is not known"))
+                        found.push(format!("{at}: {name} is not known"));
                     }
                     None => {}
                 }

@@ -48,7 +48,7 @@ impl Export {
         let exported = export(&world, self.to, self.fingers);
         anyhow::ensure!(
             !exported.bodies.is_empty(),
-            "nothing of the world {} has a counterpart in {}; export a world with blocks, a crank or a mechanism",
+            "nothing of the world {} has a counterpart in {}; export a world with blocks, a crank, a switch or a mechanism",
             self.world.display(),
             self.to.name()
         );

@@ -148,7 +148,7 @@ impl History {
         let groups = groups(&attempts);
         let text = in_words(&trainees, &groups, self.csv.as_deref());
         let progress = groups.iter().filter_map(|group| progress(group)).collect();
-        Ok(Output { text, json: serde_json::to_value(Said { trainees, progress, attempts })? })
+        Ok(Output { text, json: serde_json::to_value(Said { trainees, attempts, progress })? })
     }
 }
 

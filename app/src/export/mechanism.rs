@@ -1,11 +1,11 @@
-//! Cranks and mechanisms as one body on one joint.
+//! Cranks, switches and mechanisms as one body on one joint.
 
 use super::Fate;
 use super::frame::{Vec3, of_plane, of_space, turned, turning};
-use super::joint::{Laws, Seen, read, turns};
+use super::joint::{Coordinate, Laws, Seen, read, turns};
 use super::scene::{Body, Moves, Outline, Scene};
 use haptics::law::inertia;
-use haptics::world::{Crank, Mechanism, MechanismPath};
+use haptics::world::{Crank, Mechanism, MechanismPath, Switch};
 
 /// Of an arm whose length nobody measured, m.
 const SOME_ARM_M: f64 = 0.1;
@@ -31,6 +31,54 @@ pub fn add_crank(crank: &Crank, scene: &mut Scene) {
     if crank.constraint_stiffness_n_m.is_some() {
         scene.remark(&name, "constraint_stiffness_n_m", Fate::LeftOut, "the arm is rigid");
     }
+}
+
+/// A switch: its lever between its stops, with everything but the snap. Its knob goes to the right, which is clockwise.
+pub fn add_switch(switch: &Switch, scene: &mut Scene) {
+    let (lever_m, points) = (switch.lever_m, &switch.curve.points);
+    let name = scene.free_name("switch");
+    let ends = [points.first(), points.last()].map(|end| end.map(|point| point.at_m / lever_m));
+    let knob_m = Vec3::z() * lever_m;
+    scene.bodies.push(Body {
+        name: name.clone(),
+        origin_m: of_plane(switch.pivot_m),
+        mass_kg: switch.mass_kg,
+        middle_m: knob_m,
+        inertia_kg_m2: LEAST_SHARE * switch.mass_kg * lever_m * lever_m,
+        weighs: 1.0,
+        moves: Moves::Along(Coordinate {
+            turns: true,
+            axis: -turning(),
+            start: switch.start_m / lever_m,
+            damping: switch.damping_n_s_m * lever_m * lever_m,
+            dry: dry_n(switch) * lever_m,
+            spring: None,
+            range: ends,
+        }),
+        outline: Outline::Arm { handle_m: knob_m, axis: turning(), radius_m: switch.knob_radius_m },
+    });
+    scene.remark(&name, "mass, lever, damping", Fate::Kept, "a body on a hinge");
+    scene.remark(
+        &name,
+        "stops",
+        Fate::Approximate,
+        "at the ends of the captured curve, as hard as the program makes them",
+    );
+    scene.remark(&name, "friction", Fate::Approximate, "half of what lies between the two ways, the same everywhere");
+    let why = "joints have no force that pushes on beyond the middle; it stays where it is put";
+    scene.remark(&name, "snap", Fate::LeftOut, why);
+}
+
+/// What a switch's two ways differ by, from their middle, N: the mean over the way between its ends.
+fn dry_n(switch: &Switch) -> f64 {
+    let half_n = |at_m: f64| 0.5 * (switch.curve.force_n(at_m, 1.0) - switch.curve.force_n(at_m, 0.0));
+    // Straight between the points.
+    let pieces = switch.curve.points.windows(2).map(|pair| (pair[0].at_m, pair[1].at_m));
+    let (way_m, area) = pieces.fold((0.0, 0.0), |(way_m, area), (from_m, to_m)| {
+        let length_m = to_m - from_m;
+        (way_m + length_m, area + 0.5 * (half_n(from_m) + half_n(to_m)) * length_m)
+    });
+    if way_m > 0.0 { (area / way_m).max(0.0) } else { 0.0 }
 }
 
 /// A mechanism where its path lies, or at the origin: a slide along x, a hinge whose zero hangs.

@@ -306,10 +306,12 @@ fn hand(world: &World, scene: &mut Scene) -> Hand {
             ball.with("pos", numbers(&[side * TIP_RADIUS_M, 0.0, 0.0])).with("mass", TIP_KG),
         ));
         hand.pairs.extend(blocks(scene).map(|(body, contact)| pair(name, &body.name, contact.finger_friction)));
-        if let Some(crank) = &world.crank {
-            let arms = scene.bodies.iter().filter(|body| matches!(body.outline, Outline::Arm { .. }));
-            hand.pairs.extend(arms.map(|body| pair(name, &body.name, crank.finger_friction)));
-        }
+        // A crank comes before a switch, as in the scene.
+        let arms = scene.bodies.iter().filter(|body| matches!(body.outline, Outline::Arm { .. }));
+        let crank = world.crank.as_ref().map(|crank| crank.finger_friction);
+        let switch = world.switch.as_ref().map(|switch| switch.finger_friction);
+        let frictions = crank.into_iter().chain(switch);
+        hand.pairs.extend(arms.zip(frictions).map(|(body, friction)| pair(name, &body.name, friction)));
     }
     hand.pairs.push(Element::new("exclude").with("body1", "finger-1").with("body2", "finger-2"));
     hand.start = Element::new("key").with("name", "start").with("ctrl", numbers(&controls));

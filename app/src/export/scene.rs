@@ -147,13 +147,8 @@ pub fn of_world(world: &World) -> Scene {
     if world.membrane.is_some() {
         scene.remark("membrane", "all of it", Fate::LeftOut, "a sheet that gives and breaks is no body on a joint");
     }
-    if world.switch.is_some() {
-        scene.remark(
-            "switch",
-            "all of it",
-            Fate::LeftOut,
-            "a force with two branches over one way is no joint's spring",
-        );
+    if let Some(switch) = &world.switch {
+        mechanism::add_switch(switch, &mut scene);
     }
     if world.pad.slip.is_some() {
         scene.remark("pad", "fingertip-slip", Fate::LeftOut, "slips happen here when friction says so");

@@ -105,12 +105,48 @@ fn every_part_of_every_world_is_accounted_for() {
                 }
             }
             assert_eq!(world.membrane.is_some(), said("membrane", "all of it"));
-            assert_eq!(world.switch.is_some(), said("switch", "all of it"));
+            assert_eq!(world.switch.is_some(), said("switch", "snap") && said("switch", "stops"));
             for remark in exported.of(Fate::LeftOut).chain(exported.of(Fate::Approximate)) {
                 assert!(exported.text.contains(&remark.how.replace("--", "\u{2013}")), "the file says so: {remark:?}");
             }
         }
     }
+}
+
+#[test]
+fn a_switch_is_a_lever_between_its_stops() {
+    let world = presets::switch();
+    let switch = world.switch.as_ref().expect("a switch");
+    let lever_m = switch.lever_m;
+    let file = Read::of(&export(&world, Format::Mjcf, false).text);
+    let joint = file.all("joint").next().expect("a joint");
+    // To the right is clockwise for the viewer, who looks along y.
+    assert_eq!((joint["type"].as_str(), joint["axis"].as_str()), ("hinge", "0 1 0"));
+    let ends: Vec<f64> = joint["range"].split(' ').map(|end| end.parse().expect("a number")).collect();
+    let points = &switch.curve.points;
+    assert!(near(ends[0] * lever_m, points[0].at_m) && near(ends[1] * lever_m, points[points.len() - 1].at_m));
+    assert!(near(file.number("joint", "damping"), switch.damping_n_s_m * lever_m.powi(2)));
+    assert!(near(file.number("inertial", "mass"), switch.mass_kg));
+    assert_eq!(file.all("inertial").next().expect("a mass")["pos"], format!("0 0 {lever_m}"));
+    // Going to and fro costs what lies between the branches: twice the friction over twice the way.
+    let between_j: f64 = points
+        .windows(2)
+        .map(|p| {
+            let gap_n = |k: usize| p[k].forward_n - p[k].backward_n;
+            0.5 * (gap_n(0) + gap_n(1)) * (p[1].at_m - p[0].at_m)
+        })
+        .sum();
+    let friction_n_m = file.number("joint", "frictionloss");
+    assert!(near(2.0 * friction_n_m * (ends[1] - ends[0]), between_j), "{friction_n_m}");
+    for format in [Format::Urdf, Format::Sdf] {
+        assert_eq!(export(&world, format, false).bodies, ["switch"]);
+    }
+    // Fingers touch its knob with its own friction.
+    let touched = Read::of(&export(&world, Format::Mjcf, true).text);
+    let pairs: Vec<_> = touched.all("pair").filter(|pair| pair["geom2"] == "switch").collect();
+    assert!(
+        pairs.len() == 2 && pairs.iter().all(|pair| pair["friction"].starts_with(&switch.finger_friction.to_string()))
+    );
 }
 
 #[test]
