@@ -3,6 +3,7 @@
 //! [`Timetable`] says where the hand is wanted when, [`MotionPlan`] where the coordinate of a mechanism is that has no handle, [`perform`]
 //! lets the scripted operator do it, [`rehearse`] does so with every object that the diagnosis leaves open and asks again each time: what would come out, and how surely?
 
+mod along_path;
 mod captured;
 mod motion_plan;
 mod perform;

@@ -1,6 +1,7 @@
 //! An experiment on a mechanism that is driven directly: where its coordinate is wanted when. A person does it on the real machine after
 //! the plan, the scripted operator on simulated ones.
 
+use super::along_path::{PLACES, seen_by_tool};
 use super::perform::what_is_known;
 use super::sensing::see_along;
 use super::{SIMULATED, rehearse::Like};
@@ -9,7 +10,7 @@ use estimator::signal::noise::{white_noise, white_noise_under_fast_motion};
 use haptics::device::{Pull, PullSensor};
 use haptics::law::{Coordinate, EccentricMass, Effect, Inertia};
 use haptics::recording::Recording;
-use haptics::world::Mechanism;
+use haptics::world::{Mechanism, MechanismPath};
 use std::fmt::Write as _;
 
 /// It rests before and after, s, and comes to rest in this time: a machine that follows it must not be stopped hard.
@@ -56,17 +57,24 @@ impl MotionPlan {
         (self.asked.middle - self.asked.half_range, self.asked.middle + self.asked.half_range)
     }
 
-    /// As a table with the column names of logs.
+    /// As a table with the column names of logs: the coordinate over time.
     pub fn to_csv(&self, coordinate: Coordinate) -> String {
-        let name = match coordinate {
-            Coordinate::Linear => "q_m",
-            Coordinate::Angular => "q_rad",
-        };
-        let mut text = format!("t_s,{name}\n");
+        self.table(&names(coordinate)[..1], &|q| vec![q])
+    }
+
+    /// The same for a tool: its place over time, in the frame of its recording and in as many axes as that has.
+    pub fn places_to_csv(&self, path: &MechanismPath, is_planar: bool) -> String {
+        let axes = if is_planar { 2 } else { 3 };
+        self.table(&PLACES[..axes], &|q| path.point_m(q)[..axes].to_vec())
+    }
+
+    fn table(&self, names: &[&str], row: &dyn Fn(f64) -> Vec<f64>) -> String {
+        let mut text = format!("t_s,{}\n", names.join(","));
         for k in 0..=(self.duration_s() * FILE_HZ) as u32 {
             let time_s = f64::from(k) / FILE_HZ;
+            let numbers: Vec<String> = row(self.at(time_s)).iter().map(|value| format!("{value:.6}")).collect();
             // Writing into a string cannot fail.
-            let _ = writeln!(text, "{time_s:.3},{:.6}", self.at(time_s));
+            let _ = writeln!(text, "{time_s:.3},{}", numbers.join(","));
         }
         text
     }
@@ -82,10 +90,11 @@ impl MotionPlan {
         goes_on: &dyn Fn(f64) -> bool,
     ) -> Result<Option<Recording>, String> {
         let mechanism = suspect.world.mechanism.as_ref().ok_or("There is no mechanism in this world.")?;
-        if like.recording.channel(names(mechanism.coordinate)[0]).is_none() {
+        let by_tool = like.recording.channel(names(mechanism.coordinate)[0]).is_none();
+        if by_tool && mechanism.path.is_none() {
             return Err(
-                "A tool's path was recorded, not the mechanism's coordinate: it cannot be rehearsed. Do it on the real one and \
-                 load the recording."
+                "The tool's path is neither a line nor a circle, so it cannot be rehearsed. Do it on the real one and \
+                        load the recording."
                     .to_owned(),
             );
         }
@@ -99,11 +108,16 @@ impl MotionPlan {
             fast: self.asked.fast,
         };
         let Some(pulled) = pull.run(seed, goes_on)? else { return Ok(None) };
-        let sensor = sensor(like.recording, mechanism.coordinate);
+        // A tool has other sensors: their noise comes with them.
+        let sensor = if by_tool { PullSensor::default() } else { sensor(like.recording, mechanism.coordinate) };
         let name = format!("simulated, {about}");
         let mut recording = sensor.recording(&name, mechanism.coordinate, &pulled, seed);
         see_along(&mut recording, &suspect.fault);
+        if let Some(path) = mechanism.path.as_ref().filter(|_| by_tool) {
+            recording = seen_by_tool(&recording, path, like, seed);
+        }
         recording.meta.gravity_m_s2 = like.recording.meta.gravity_m_s2;
+        recording.meta.up.clone_from(&like.recording.meta.up);
         recording.meta.other.insert(SIMULATED.to_owned(), about.into());
         recording.meta.known.extend(what_is_known(&self.asked));
         if self.asked.added_weight_n > 0.0 {
@@ -179,6 +193,9 @@ mod tests {
         let text = plan.to_csv(Coordinate::Angular);
         assert!(text.starts_with("t_s,q_rad\n0.000,12.000000\n"));
         assert_eq!(text.lines().count(), 1 + 1 + (22.0 * FILE_HZ) as usize);
+        let path = MechanismPath::Prismatic { origin_m: [0.5, 1.0, -2.0], direction: [0.0, 0.0, 1.0] };
+        assert!(plan.places_to_csv(&path, true).starts_with("t_s,x_m,y_m\n0.000,0.500000,1.000000\n"));
+        assert!(plan.places_to_csv(&path, false).starts_with("t_s,x_m,y_m,z_m\n0.000,0.500000,1.000000,10.000000\n"));
         assert!(MotionPlan::new(&asked("carry-still")).is_err_and(|why| why.ends_with('.')));
     }
 }

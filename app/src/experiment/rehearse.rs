@@ -182,6 +182,11 @@ mod tests {
     use crate::ui::gallery::samples::leaking;
     use blind::{Bench, Effect, Log, Spec};
     use estimator::diagnose::{Options, SensorFault, Verdict, diagnose, suspects};
+    use haptics::recording::Channel;
+    use haptics::world::MechanismPath;
+    use rand::SeedableRng;
+    use rand::rngs::StdRng;
+    use rand_distr::{Distribution, Normal};
 
     /// A recording that leaves something open, with all that a rehearsal needs of it.
     struct Asked {
@@ -261,5 +266,50 @@ mod tests {
         let answer = asked.again(&real).expect("an answer");
         let settled = judged(&answer, "eccentric-mass", &asked.next.separates, real);
         assert!(settled.settled, "{:?} or {:?}", settled.named, settled.open);
+    }
+
+    /// The hinge of a generated recording, led by a tool on its handle in a level plane.
+    fn led_by_a_tool(along: &Recording, noise: [f64; 2], seed: u64) -> Recording {
+        const HANDLE_M: f64 = 0.25;
+        let mut rng = StdRng::seed_from_u64(seed);
+        let channel = |name: &str| along.channel(name).expect("a mechanism's column");
+        let (angle, torque) = (channel("q_rad"), channel("tau_Nm"));
+        let mut made = |name: &str, noise: f64, of: &dyn Fn(f64, f64) -> f64| {
+            let white = Normal::new(0.0, noise).expect("a spread");
+            let values = angle.iter().zip(torque).map(|(q, tau)| of(*q, *tau) + white.sample(&mut rng)).collect();
+            Channel { name: name.to_owned(), unit: String::new(), values }
+        };
+        // The hand also pulls outwards, and not always as hard: that is how one feels that there is a hinge.
+        let pull_n = |q: f64| 2.0 + (3.0 * q).sin();
+        let channels = vec![
+            made("x_m", noise[0], &|q, _| 0.4 + HANDLE_M * q.cos()),
+            made("y_m", noise[0], &|q, _| 0.1 + HANDLE_M * q.sin()),
+            made("fx_N", noise[1], &|q, tau| -tau / HANDLE_M * q.sin() + pull_n(q) * q.cos()),
+            made("fy_N", noise[1], &|q, tau| tau / HANDLE_M * q.cos() + pull_n(q) * q.sin()),
+        ];
+        let mut recording = Recording { channels, labels: None, ..along.clone() };
+        recording.meta.up = Some("none".to_owned());
+        recording
+    }
+
+    #[test]
+    fn what_a_tool_leads_along_its_path_is_rehearsed_as_the_tool_sees_it() {
+        let (mut case, _, object) = blind::case::make_with_object(&spec(Bench::Angular, 250.0), &[], 4);
+        let first = led_by_a_tool(&case.recordings.remove(0), [5e-6, 2e-3], 1);
+        let task = Some(Task::Mechanism);
+        let options = Options { task, baseline: Some("mass+viscous+coulomb".to_owned()), ..Options::default() };
+        let asked = Asked::of(first, options);
+        let ids: Vec<&str> = asked.next.separates.iter().map(String::as_str).collect();
+        asked.settles(asked.answer.noise_floor_n, &ids);
+        // The real object, led as the answer asks: its angle is counted from where the first recording began.
+        let suspect = asked.suspects.first().expect("a suspect");
+        let path = suspect.world.mechanism.as_ref().and_then(|m| m.path).expect("a circle");
+        let MechanismPath::Revolute { zero, axis, .. } = path else { panic!("a hinge turns: {path:?}") };
+        assert!(axis[2].abs() > 0.99, "{axis:?}");
+        let mut motion = asked.next.experiment.clone().expect("for a program");
+        motion.middle = axis[2].signum() * motion.middle + zero[1].atan2(zero[0]);
+        let real = led_by_a_tool(&object.perform(&motion, 9).expect("the hand knows the motion"), [5e-6, 2e-3], 2);
+        let answer = asked.again(&real).expect("an answer");
+        assert!(answer.causes.iter().any(|c| c.id == "eccentric-mass"), "{:?}", answer.causes);
     }
 }

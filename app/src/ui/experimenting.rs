@@ -12,6 +12,7 @@ use crate::recorder::folder;
 use estimator::diagnose::{self, Progress, Suspect};
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
+use haptics::world::MechanismPath;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -163,7 +164,10 @@ impl Session {
     /// Writes the plan of a mechanism's motion into the folder of recordings.
     pub fn save_motion_plan(&mut self, ctx: &egui::Context, plan: &MotionPlan, coordinate: Coordinate) {
         let Some(folder) = self.folder_of_recordings() else { return };
-        let text = plan.to_csv(coordinate);
+        let text = match self.path_of_tool() {
+            Some((path, is_planar)) => plan.places_to_csv(&path, is_planar),
+            None => plan.to_csv(coordinate),
+        };
         self.jobs.start(ctx, JobKind::Save, move || {
             let written = free_path(&folder, "plan").and_then(|path| {
                 let failed = |e| format!("The plan cannot be written ({e}): {}", path.display());
@@ -171,6 +175,16 @@ impl Session {
             });
             written.map_or_else(Outcome::Failed, Outcome::Saved)
         });
+    }
+
+    /// Where the tool went that was recorded, and whether in a plane; nothing where the coordinate itself was recorded.
+    pub fn path_of_tool(&self) -> Option<(MechanismPath, bool)> {
+        let recording = &self.recordings.first()?.recording;
+        if recording.channel("q_m").or(recording.channel("q_rad")).is_some() {
+            return None;
+        }
+        let path = self.analysis.as_ref()?.world.mechanism.as_ref()?.path?;
+        Some((path, recording.channel("z_m").is_none()))
     }
 
     fn folder_of_recordings(&mut self) -> Option<PathBuf> {

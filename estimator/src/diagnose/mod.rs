@@ -134,7 +134,7 @@ pub fn validate(
         let channels = match task_of(recording, options.task)? {
             Task::Crank => return along_a_crank(recording, diagnosis),
             Task::Mechanism => {
-                let mut track = sliding::track(recording, &quality::faults(recording).bad)?;
+                let mut track = sliding::track(recording, &quality::faults(recording).bad, None)?;
                 let Diagnosis { plain, effects, kept, .. } = diagnosis;
                 return Ok(validate::validate(&mut track, plain, effects, &[], kept));
             }
@@ -317,9 +317,9 @@ fn nothing() -> EstimateError {
 fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     let mut faults = Vec::new();
     let mut tracks = Vec::new();
-    for recording in recordings {
+    for (recording, path) in recordings.iter().zip(crate::identify::mechanism::paths(recordings)) {
         let found = quality::faults(recording);
-        let mut rows = sliding::track(recording, &found.bad)?;
+        let mut rows = sliding::track(recording, &found.bad, path.as_ref())?;
         rows.hung = vec![hung::Hung::on_mechanism(recording, rows.coordinate)];
         tracks.push(rows);
         faults.extend(found.causes);

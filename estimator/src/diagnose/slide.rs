@@ -109,7 +109,7 @@ fn track_of(recordings: &[Recording], world: Option<&World>) -> Result<(Track, V
         let sensed = quality::faults(recording);
         let mut slid = read(recording, world)?;
         slid.bad.iter_mut().zip(&sensed.bad).for_each(|(bad, sensed)| *bad |= sensed);
-        let mut rows = sliding::track(&slid.along, &slid.bad)?;
+        let mut rows = sliding::track(&slid.along, &slid.bad, None)?;
         load(&mut rows, &slid);
         tracks.push(rows);
         faults.extend(sensed.causes);

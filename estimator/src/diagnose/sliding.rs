@@ -13,6 +13,7 @@ use crate::signal::noise::{white_noise, white_noise_under_fast_motion};
 use haptics::Vec2;
 use haptics::law::{Coordinate, Motion};
 use haptics::recording::Recording;
+use haptics::world::MechanismPath;
 
 /// Shortest and longest block, s: nothing that a hand does is over within the longest.
 const SHORTEST_S: f64 = 0.02;
@@ -22,9 +23,9 @@ const GAP: f64 = 2.5;
 /// Fewer samples are no stretch, in blocks.
 const LEAST_BLOCKS: usize = 8;
 
-/// The rows of one recording. `bad`: samples that no sensor measured.
-pub fn track(recording: &Recording, bad: &[bool]) -> Result<Track, EstimateError> {
-    let raw = mechanism::raw(recording)?;
+/// The rows of one recording. `bad`: samples that no sensor measured; `path`: where a tool's coordinate is counted along, its own if none.
+pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) -> Result<Track, EstimateError> {
+    let raw = mechanism::raw(recording, path)?;
     let force = raw.force.as_ref().ok_or_else(|| {
         EstimateError::Other(format!(
             "{} has no force column: a diagnosis explains the force that a motion needs; record it, or map it in the sidecar",

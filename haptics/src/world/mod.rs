@@ -12,6 +12,7 @@ mod fixed;
 mod fixture;
 mod guide;
 mod label;
+mod mechanism_path;
 mod model;
 #[cfg(test)]
 mod parts_tests;
@@ -30,6 +31,7 @@ pub use fixed::{CUP_FLARE, SWITCH_BASE_HALF};
 pub use fixture::{Membrane, Switch};
 pub use guide::{Guide, Guided, MAX_GUIDE_POINTS};
 pub use label::true_label;
+pub use mechanism_path::MechanismPath;
 pub use model::*;
 pub use plane::Plane;
 pub use rect::Rect;

@@ -3,6 +3,7 @@
 use super::block::Block;
 use super::check::{self, WorldError, finite, not_negative, positive};
 use super::fixture::{Membrane, Switch};
+use super::mechanism_path::MechanismPath;
 use super::plane::Plane;
 use crate::Vec2;
 use crate::hand::Hand;
@@ -176,30 +177,6 @@ pub struct Mechanism {
     /// Speed within which the direction of motion is blurred, m/s or rad/s: the noise of the velocity it was fitted with.
     #[serde(default)]
     pub direction_blur: f64,
-}
-
-/// Where a mechanism's tool point can go, in the frame of its recording (3-D; z = 0 for planar recordings).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum MechanismPath {
-    /// Along a line.
-    Prismatic {
-        /// A point of the line, m.
-        origin_m: [f64; 3],
-        /// Unit vector of +s.
-        direction: [f64; 3],
-    },
-    /// About an axis.
-    Revolute {
-        /// Centre of the circle, m.
-        center_m: [f64; 3],
-        /// Unit vector of the axis; +θ is right-handed about it.
-        axis: [f64; 3],
-        /// Radius, m.
-        radius_m: f64,
-        /// Unit vector from the centre towards θ = 0.
-        zero: [f64; 3],
-    },
 }
 
 /// Where one number of the world comes from.

@@ -29,7 +29,11 @@ pub fn show(ui: &mut Ui, session: &mut Session, asked: &Experiment, coordinate: 
     ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     curve(ui, &plan, factor);
     let ctx = ui.ctx().clone();
-    let hint = "Writes time and coordinate as a CSV into the folder of recordings, for a machine that can follow it";
+    let hint = if session.path_of_tool().is_some() {
+        "Writes time and the tool's place as a CSV into the folder of recordings, for a machine that can follow it"
+    } else {
+        "Writes time and coordinate as a CSV into the folder of recordings, for a machine that can follow it"
+    };
     if ui.button("Save the plan").on_hover_text(hint).clicked() {
         session.save_motion_plan(&ctx, &plan, coordinate);
     }

@@ -38,11 +38,18 @@ use terms::{CLOCK_TOLERANCE, Known, Term};
 /// Share of each recording's end that the quality figures hold out.
 const HELD_OUT: f64 = 0.3;
 
-/// Coordinate and force of one recording, as recorded.
-pub fn raw(recording: &Recording) -> Result<Raw, EstimateError> {
-    let path =
-        if has_coordinate(recording) { None } else { constraints(std::slice::from_ref(recording)).1.pop().flatten() };
-    signals::raw(recording, path.as_ref())
+/// Coordinate and force of one recording, as recorded; of a tool's along `path`, or along its own where none is given.
+pub fn raw(recording: &Recording, path: Option<&MechanismPath>) -> Result<Raw, EstimateError> {
+    if has_coordinate(recording) || path.is_some() {
+        return signals::raw(recording, path);
+    }
+    signals::raw(recording, paths(std::slice::from_ref(recording)).pop().flatten().as_ref())
+}
+
+/// The path of every tool's recording: the first one's for all that keep to it, so that they have one coordinate. None where the
+/// coordinate itself was recorded.
+pub fn paths(recordings: &[Recording]) -> Vec<Option<MechanismPath>> {
+    if recordings.iter().all(has_coordinate) { vec![None; recordings.len()] } else { constraints(recordings).1 }
 }
 
 /// Fits one mechanism to all `recordings` of it together.
@@ -99,13 +106,17 @@ fn has_coordinate(recording: &Recording) -> bool {
     recording.channel("q_m").is_some() || recording.channel("q_rad").is_some()
 }
 
-/// The constraint of every tool path, and the path it gives.
+/// The constraint of every tool path, and the path it gives: see [`paths`].
 fn constraints(recordings: &[Recording]) -> (Vec<Constraint>, Vec<Option<MechanismPath>>) {
     let mut found = Vec::new();
     let mut paths = Vec::new();
+    let mut first: Option<(MechanismPath, &Recording)> = None;
     for recording in recordings {
         let constraint = constraint::detect_in(recording);
-        paths.push(constraint.as_ref().and_then(|c| path::from_constraint(c, recording)));
+        let shared = first.filter(|(path, like)| path::lies_on(recording, path, like)).map(|(path, _)| path);
+        let path = shared.or_else(|| path::from_constraint(constraint.as_ref()?, recording));
+        first = first.or_else(|| Some((path?, recording)));
+        paths.push(path);
         found.extend(constraint);
     }
     (found, paths)

@@ -78,6 +78,38 @@ pub fn from_constraint(constraint: &Constraint, recording: &Recording) -> Option
     }
 }
 
+/// A tool keeps to its path so much worse when the object is held again, as a factor and as a share of the path's extent.
+const WORSE: f64 = 3.0;
+const SPARE: f64 = 0.005;
+
+/// Whether a recording keeps to the path that was found in `like`: the same object in the same frame, so that one coordinate holds in both.
+pub fn lies_on(recording: &Recording, path: &MechanismPath, like: &Recording) -> bool {
+    let (Some(own), Some(others)) = (points(recording), points(like)) else { return false };
+    let extent_m = |axis: usize| {
+        let (low, high) = others.iter().fold((f64::MAX, f64::MIN), |(l, h), p| (l.min(p[axis]), h.max(p[axis])));
+        (high - low).max(0.0)
+    };
+    let extent_m = (0..3).map(|axis| extent_m(axis).powi(2)).sum::<f64>().sqrt();
+    // Written so that a number that is none is no yes.
+    beside_m(&own, path) <= WORSE * beside_m(&others, path) + SPARE * extent_m
+}
+
+/// Root mean square of the points' distances from a path, m.
+fn beside_m(points: &[Vector3<f64>], path: &MechanismPath) -> f64 {
+    let square = |p: &Vector3<f64>| match *path {
+        MechanismPath::Prismatic { origin_m, direction } => {
+            let (from, along) = (p - Vector3::from(origin_m), Vector3::from(direction));
+            (from - along * along.dot(&from)).norm_squared()
+        }
+        MechanismPath::Revolute { center_m, axis, radius_m, .. } => {
+            let (arm, axis) = (p - Vector3::from(center_m), Vector3::from(axis));
+            let aside = axis.dot(&arm);
+            ((arm - axis * aside).norm() - radius_m).powi(2) + aside * aside
+        }
+    };
+    (points.iter().map(square).sum::<f64>() / points.len().max(1) as f64).sqrt()
+}
+
 /// Coordinate and force of a recording along `path`.
 pub fn project(recording: &Recording, path: &MechanismPath) -> Result<Projected, EstimateError> {
     let points = points(recording).ok_or_else(|| EstimateError::MissingColumn {
@@ -162,5 +194,28 @@ mod tests {
         assert!((seen.position[199] - 199.0 * 0.06).abs() < 1e-9);
         assert!(seen.force.expect("a torque").iter().all(|t| (t - 0.6).abs() < 1e-12));
         assert!((seen.up_along.expect("up is y")[0] - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn another_recording_keeps_to_the_path_unless_the_object_or_the_frame_was_moved() {
+        let turned = |first: f64, shifted_m: f64, radius_m: f64| {
+            let channel = |name: &str, of: &dyn Fn(f64) -> f64| Channel {
+                name: name.to_owned(),
+                unit: "m".to_owned(),
+                values: (0..300).map(|i| of(first + 0.004 * f64::from(i))).collect(),
+            };
+            let channels = vec![
+                channel("x_m", &|a| shifted_m + radius_m * a.cos() + 2e-4 * (97.0 * a).sin()),
+                channel("y_m", &|a| radius_m * a.sin() + 2e-4 * (89.0 * a).cos()),
+            ];
+            Recording { channels, ..Recording::default() }
+        };
+        let like = turned(0.0, 0.0, 0.3);
+        let path =
+            MechanismPath::Revolute { center_m: [0.0; 3], axis: [0.0, 0.0, 1.0], radius_m: 0.3, zero: [1.0, 0.0, 0.0] };
+        assert!(lies_on(&turned(2.0, 0.0, 0.3), &path, &like), "elsewhere on the same circle");
+        assert!(!lies_on(&turned(0.0, 0.01, 0.3), &path, &like), "the frame was moved by a centimetre");
+        assert!(!lies_on(&turned(0.0, 0.0, 0.32), &path, &like), "the handle is another one");
+        assert!(!lies_on(&turned(0.0, f64::NAN, 0.3), &path, &like));
     }
 }
