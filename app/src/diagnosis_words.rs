@@ -19,16 +19,16 @@ pub fn headline(diagnosis: &Diagnosis) -> String {
 
 /// The answer in one line, about what was compared.
 pub fn headline_of(model: &str, diagnosis: &Diagnosis) -> String {
-    let names: Vec<String> = diagnosis.causes.iter().map(|c| title(&c.id)).collect();
+    let names: Vec<String> = diagnosis.causes.iter().map(|c| one(&c.id)).collect();
     match diagnosis.verdict {
         Verdict::None => "Nothing beyond the noise.".to_owned(),
         Verdict::Unexplained => "Something is there that no known cause explains.".to_owned(),
-        Verdict::Causes => format!("{model} misses {}.", listed(&names)),
+        Verdict::Causes => format!("{model} misses {}.", joined(&names)),
         Verdict::Ambiguous => {
             let either = |cause: &Cause| {
                 let others = diagnosis.alternatives.iter().filter(|a| a.instead_of == cause.id);
                 let all: Vec<String> =
-                    std::iter::once(&cause.id).chain(others.map(|a| &a.id)).map(|id| small(&title(id))).collect();
+                    std::iter::once(&cause.id).chain(others.map(|a| &a.id)).map(|id| one(id)).collect();
                 all.join(" or ")
             };
             let open: Vec<String> = diagnosis.causes.iter().map(either).collect();
@@ -82,6 +82,19 @@ fn joined(words: &[String]) -> String {
     }
 }
 
+/// A parameter's name as a formula has it: `A cos phi` → `A cos φ`.
+pub fn symbol(name: &str) -> String {
+    const LETTERS: [(&str, &str); 7] =
+        [("phi", "φ"), ("lambda", "λ"), ("delta", "δ"), ("tau", "τ"), ("kappa", "κ"), ("mu", "μ"), ("sigma", "σ")];
+    let letter = |word: &str| {
+        let end = word.trim_end_matches(|c: char| !c.is_alphabetic());
+        let found = LETTERS.iter().find(|(spelt, _)| *spelt == end);
+        found.map_or_else(|| word.to_owned(), |(spelt, letter)| word.replacen(spelt, letter, 1))
+    };
+    let spelt = name.replace('-', "−");
+    spelt.split_inclusive(|c: char| !c.is_alphabetic()).map(letter).collect()
+}
+
 /// Shown unit of the forces.
 pub fn force_unit(diagnosis: &Diagnosis) -> &'static str {
     if diagnosis.course.is_angular { "N·m" } else { "N" }
@@ -104,6 +117,12 @@ pub fn gain_unit(cause: &Cause, diagnosis: &Diagnosis) -> (&'static str, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn letters_that_are_spelt_out_become_letters_and_words_stay() {
+        let all = ["A cos phi", "A sin(-phi)", "lambda", "kappa_xy", "Fc", "maximum", "g - 1"].map(symbol);
+        assert_eq!(all, ["A cos φ", "A sin(−φ)", "λ", "κ_xy", "Fc", "maximum", "g − 1"]);
+    }
 
     #[test]
     fn a_cause_is_spoken_of_with_its_article() {

@@ -1,7 +1,7 @@
 //! What the simulation gets wrong: causes with their evidence and gain, what else they could be, what to record next.
 
 use super::failed;
-use crate::diagnosis_words::{force_unit, gain_unit, headline, listed, shown_unit, small, title};
+use crate::diagnosis_words::{force_unit, gain_unit, headline, listed, shown_unit, small, symbol, title};
 use crate::report::chart;
 use crate::report::collect::Content;
 use crate::ui::format;
@@ -76,7 +76,7 @@ fn calibrated(diagnosis: &Diagnosis) -> Markup {
 
 /// A parameter with its error and unit.
 fn value(p: &CauseParameter) -> String {
-    format!("{} = {} {}", p.name, with_power(p.value, p.std_error), shown_unit(&p.unit)).trim_end().to_owned()
+    format!("{} = {} {}", symbol(&p.name), with_power(p.value, p.std_error), shown_unit(&p.unit)).trim_end().to_owned()
 }
 
 /// `value ± error`; very large and very small ones with their power of ten.

@@ -6,7 +6,7 @@ use crate::ui::format;
 use crate::ui::jobs::JobKind;
 use crate::ui::scene;
 use crate::ui::screenshot::in_whole_window;
-use crate::ui::session::{Session, Workspace};
+use crate::ui::session::{Session, Tone, Workspace};
 use crate::ui::theme;
 use crate::ui::trainer::Clock;
 use anyhow::{Context as _, anyhow, bail};
@@ -48,7 +48,12 @@ pub fn walk(
 ) -> anyhow::Result<()> {
     let table = foreign_crank(folder)?;
     let mut walker = Walker { harness: window(size, dark, draw)?, draw };
-    let mut step = |walker: &mut Walker, name: &str| look(name, walker.picture()?);
+    let mut step = |walker: &mut Walker, name: &str| {
+        look(name, walker.picture()?)?;
+        // Who goes on as slowly as a person does not see these any more.
+        walker.harness.state_mut().session.banners.retain(|banner| banner.tone != Tone::Done);
+        anyhow::Ok(())
+    };
     walker.hover(&table);
     step(&mut walker, "drop")?;
     walker.drop_it(&table)?;

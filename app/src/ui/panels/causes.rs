@@ -1,6 +1,6 @@
 //! A cause that was found, as a card.
 
-use crate::diagnosis_words::{gain_unit, shown_unit, small, title};
+use crate::diagnosis_words::{gain_unit, shown_unit, small, symbol, title};
 use crate::ui::format;
 use crate::ui::session::sentence;
 use crate::ui::theme::{self, palette, space};
@@ -72,7 +72,7 @@ fn forward(ui: &mut Ui, rollout: &Rollout) {
 /// A parameter with its error.
 fn line(ui: &mut Ui, parameter: &CauseParameter) {
     compact(ui, |ui| {
-        ui.label(RichText::new(&parameter.name).color(palette(ui).secondary));
+        ui.label(RichText::new(symbol(&parameter.name)).color(palette(ui).secondary));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let (value, error) = format::with_error(parameter.value, Some(parameter.std_error));
             let error = error.map_or_else(String::new, |e| format!(" ± {e}"));

@@ -141,7 +141,7 @@ fn foot(ui: &mut Ui, open: &mut Rules) -> bool {
             let text = if open.draft == open.before && open.draft.like == Task::Needle {
                 "The first rule that holds names the state."
             } else if open.draft == open.before {
-                "+ above the threshold, 0 within, − below; none: any. The first that holds counts."
+                "+ above, 0 within, − below. The first that holds counts."
             } else {
                 "Changed; the states below follow. Refit for new numbers."
             };

@@ -188,7 +188,7 @@ fn what_cannot_be_told_apart_is_shown_with_the_recording_that_would() {
     let harness = window(session);
     assert!(
         harness
-            .query_by_label("The model misses eccentric mass or tilted plane: this recording cannot tell which.")
+            .query_by_label("The model misses an eccentric mass or a tilted plane: this recording cannot tell which.")
             .is_some()
     );
     assert!(harness.query_by_label("Record next").is_some());
