@@ -4,7 +4,7 @@ use crate::drawable;
 use crate::light::{KEY, KeyLight};
 use crate::mesh::MeshKind;
 use crate::scene::SceneView;
-use crate::shape::{Shadow, Solid, Stroke};
+use crate::shape::{Solid, Stroke};
 use crate::theme::Theme;
 use crate::{Camera, vec2};
 use bytemuck::{Pod, Zeroable};
@@ -44,8 +44,6 @@ pub struct DrawData {
     pub(crate) strokes: Vec<Stroke>,
     /// Lines in front of everything.
     pub(crate) overlay_strokes: Vec<Stroke>,
-    /// Dim places of the table, below what is close to it.
-    pub(crate) shadows: Vec<Shadow>,
 }
 
 /// The uniform buffer; see `common.wgsl`.
@@ -84,7 +82,6 @@ impl DrawData {
             solids: Vec::with_capacity(128),
             strokes: Vec::with_capacity(256),
             overlay_strokes: Vec::with_capacity(1024),
-            shadows: Vec::with_capacity(32),
         };
         drawable::draw_scene(&mut data, view);
         data.solids.retain(|(_, _, solid)| solid.is_finite());
@@ -102,9 +99,9 @@ impl DrawData {
         (self.globals.map_from_world, self.globals.map) = (light.map_from_world, light.measures);
     }
 
-    /// How many shapes there are: solids, strokes, shadows.
-    pub fn counts(&self) -> [usize; 3] {
-        [self.solids.len(), self.strokes.len() + self.overlay_strokes.len(), self.shadows.len()]
+    /// How many shapes there are: solids, strokes.
+    pub fn counts(&self) -> [usize; 2] {
+        [self.solids.len(), self.strokes.len() + self.overlay_strokes.len()]
     }
 }
 
@@ -130,7 +127,7 @@ fn globals(view: &SceneView<'_>, size: [u32; 2]) -> Globals {
         }),
         map_from_world: Mat4::IDENTITY,
         map: Vec4::ZERO,
-        key: KEY.extend(0.0),
+        key: KEY.extend(palette.shadow.alpha),
     }
 }
 

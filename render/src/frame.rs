@@ -23,7 +23,6 @@ pub struct Frame {
     pub(crate) solids: Instances,
     pub(crate) strokes: Instances,
     pub(crate) overlay_strokes: Instances,
-    pub(crate) shadows: Instances,
     /// Runs of solids that are drawn together.
     pub(crate) batches: Vec<(Layer, MeshKind, Range<u32>)>,
     pub(crate) size: [u32; 2],
@@ -47,7 +46,6 @@ impl Frame {
             solids: Instances::new(device, "solids", 24 << 10),
             strokes: Instances::new(device, "strokes", 16 << 10),
             overlay_strokes: Instances::new(device, "overlay strokes", 64 << 10),
-            shadows: Instances::new(device, "shadows", 1 << 10),
             batches: Vec::new(),
             size: [1, 1],
         }
@@ -61,7 +59,6 @@ impl Frame {
         self.solids.upload(device, queue, &solids);
         self.strokes.upload(device, queue, &data.strokes);
         self.overlay_strokes.upload(device, queue, &data.overlay_strokes);
-        self.shadows.upload(device, queue, &data.shadows);
         self.has_table = data.solids.iter().any(|(layer, _, _)| *layer == Layer::Table);
         let lit = Lit::of(data);
         // What was asked for and not drawn yet is still to be drawn.

@@ -12,6 +12,9 @@ pub(crate) const MAP_TEXELS: u32 = 512;
 /// Size of the table's light map, texels: twice as long as deep, as the table is.
 pub(crate) const TABLE_TEXELS: [u32; 2] = [384, 192];
 
+/// Size of the map of the sky over it, texels: that is never sharp.
+pub(crate) const SKY_TEXELS: [u32; 2] = [192, 96];
+
 /// Width of the light, as the tangent of half the angle that it is seen under: how fast shadows grow soft with distance.
 const SOFTNESS: f32 = 0.085;
 

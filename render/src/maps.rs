@@ -1,47 +1,85 @@
-//! One view's light maps: the depths that the key light sees, and what of it reaches the table.
+//! One view's light maps: the depths that the key light sees, and what of it reaches the table; how high things hang over the table, and
+//! what they leave it of the sky.
 
-use crate::light::{MAP_TEXELS, TABLE_TEXELS};
+use crate::light::{MAP_TEXELS, SKY_TEXELS, TABLE_TEXELS};
 use crate::pipeline::{Groups, MAP_FORMAT, TABLE_LIGHT_FORMAT};
 use crate::renderer::DEPTH_FORMAT;
 
 /// Textures and how the shaders read them.
 #[derive(Debug)]
 pub(crate) struct Maps {
-    nearest: wgpu::TextureView,
-    depth: wgpu::TextureView,
+    nearest: Depths,
+    undersides: Depths,
     table: wgpu::TextureView,
+    sky: wgpu::TextureView,
     pub(crate) nearest_group: wgpu::BindGroup,
+    pub(crate) undersides_group: wgpu::BindGroup,
     pub(crate) table_group: wgpu::BindGroup,
 }
 
+/// What is nearest at each place, and the buffer that finds it.
+#[derive(Debug)]
+struct Depths {
+    nearest: wgpu::TextureView,
+    depth: wgpu::TextureView,
+}
+
+const READ: wgpu::TextureUsages = wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::TEXTURE_BINDING);
+
 impl Maps {
     pub(crate) fn new(device: &wgpu::Device, groups: &Groups) -> Self {
-        let read = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-        let nearest = texture(device, [MAP_TEXELS; 2], MAP_FORMAT, read);
-        let table = texture(device, TABLE_TEXELS, TABLE_LIGHT_FORMAT, read);
+        let nearest = Depths::new(device, [MAP_TEXELS; 2]);
+        let undersides = Depths::new(device, TABLE_TEXELS);
+        let table = texture(device, TABLE_TEXELS, TABLE_LIGHT_FORMAT, READ);
+        let sky = texture(device, SKY_TEXELS, TABLE_LIGHT_FORMAT, READ);
         Self {
-            depth: texture(device, [MAP_TEXELS; 2], DEPTH_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
-            nearest_group: groups.map(device, &nearest),
-            table_group: groups.table_light(device, &table),
+            nearest_group: groups.map(device, &nearest.nearest),
+            undersides_group: groups.map(device, &undersides.nearest),
+            table_group: groups.table_light(device, &table, &sky),
             nearest,
+            undersides,
             table,
+            sky,
         }
     }
 
     /// Begins the pass that records depths from the key light; where nothing is, they are those of the far end.
     pub(crate) fn begin_cast<'e>(&self, encoder: &'e mut wgpu::CommandEncoder) -> wgpu::RenderPass<'e> {
+        self.nearest.begin(encoder, "shadow map")
+    }
+
+    /// Begins the pass that records how high the lowest thing hangs over the table.
+    pub(crate) fn begin_undersides<'e>(&self, encoder: &'e mut wgpu::CommandEncoder) -> wgpu::RenderPass<'e> {
+        self.undersides.begin(encoder, "undersides")
+    }
+
+    /// Begins the pass that lights the table.
+    pub(crate) fn begin_table<'e>(&self, encoder: &'e mut wgpu::CommandEncoder) -> wgpu::RenderPass<'e> {
+        begin(encoder, "table light", &self.table, wgpu::Color::WHITE, None)
+    }
+
+    /// Begins the pass that hides the sky from the table.
+    pub(crate) fn begin_sky<'e>(&self, encoder: &'e mut wgpu::CommandEncoder) -> wgpu::RenderPass<'e> {
+        begin(encoder, "sky", &self.sky, wgpu::Color::BLACK, None)
+    }
+}
+
+impl Depths {
+    fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
+        Self {
+            nearest: texture(device, size, MAP_FORMAT, READ),
+            depth: texture(device, size, DEPTH_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
+        }
+    }
+
+    fn begin<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, label: &str) -> wgpu::RenderPass<'e> {
         let depth = wgpu::RenderPassDepthStencilAttachment {
             view: &self.depth,
             depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard }),
             stencil_ops: None,
         };
         // Nothing there: farther away than anything.
-        begin(encoder, "shadow map", &self.nearest, wgpu::Color { r: 1e3, ..wgpu::Color::WHITE }, Some(depth))
-    }
-
-    /// Begins the pass that lights the table.
-    pub(crate) fn begin_table<'e>(&self, encoder: &'e mut wgpu::CommandEncoder) -> wgpu::RenderPass<'e> {
-        begin(encoder, "table light", &self.table, wgpu::Color::WHITE, None)
+        begin(encoder, label, &self.nearest, wgpu::Color { r: 1e3, ..wgpu::Color::WHITE }, Some(depth))
     }
 }
 

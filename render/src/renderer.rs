@@ -100,7 +100,22 @@ impl Renderer {
             pass.set_bind_group(1, &frame.maps.nearest_group, &[]);
             pass.set_pipeline(&self.pipelines.table_light);
             pass.draw(0..4, 0..1);
+            drop(pass);
+            self.sky(encoder, frame);
         }
+    }
+
+    /// Records what of the sky reaches the table.
+    fn sky(&self, encoder: &mut wgpu::CommandEncoder, frame: &Frame) {
+        let mut pass = frame.maps.begin_undersides(encoder);
+        pass.set_bind_group(0, &frame.bind_group, &[]);
+        self.draw_solids(&mut pass, frame, Layer::World, &self.pipelines.under);
+        drop(pass);
+        let mut pass = frame.maps.begin_sky(encoder);
+        pass.set_bind_group(0, &frame.bind_group, &[]);
+        pass.set_bind_group(1, &frame.maps.undersides_group, &[]);
+        pass.set_pipeline(&self.pipelines.sky);
+        pass.draw(0..4, 0..1);
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, frame: &Frame) {
@@ -113,7 +128,6 @@ impl Renderer {
         pass.draw(0..4, 0..BACKGROUND_CELLS);
         self.draw_solids(pass, frame, Layer::World, &self.pipelines.solid);
         self.draw_solids(pass, frame, Layer::Table, &self.pipelines.table);
-        frame.shadows.draw_quads(pass, &self.pipelines.shadow);
         frame.strokes.draw_quads(pass, &self.pipelines.stroke);
         self.draw_solids(pass, frame, Layer::Ghost, &self.pipelines.ghost_depth);
         self.draw_solids(pass, frame, Layer::Ghost, &self.pipelines.ghost);

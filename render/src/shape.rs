@@ -197,13 +197,3 @@ impl Stroke {
         bytemuck::cast_ref::<Self, [f32; 14]>(self).iter().all(|x| x.is_finite())
     }
 }
-
-/// A soft rectangular shadow on the table.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct Shadow {
-    /// Centre x, z and half extents x, z on the table, m.
-    pub center_and_half: [f32; 4],
-    /// Width of the soft edge, m, and opacity.
-    pub blur_and_alpha: [f32; 2],
-}

@@ -36,9 +36,6 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, body: Body, broken: bool) {
     if broken {
         crack(canvas, body);
     }
-    let reach = reach(body.half, body.turn);
-    let bottom = body.center.y - reach.y;
-    canvas.cast_shadow(Vec2::new(body.center.x, 0.0), Vec2::new(reach.x, 0.9 * radius), bottom, 1.0);
 }
 
 /// A ring or cylinder of the barrel between two heights in its own frame.

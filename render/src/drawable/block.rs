@@ -57,8 +57,6 @@ fn draw_box(canvas: &mut Canvas<'_>, body: Body) {
     let Body { center, half, turn, color, unlit } = body;
     let solid = Solid::rounded_box(lift(center, 0.0), half.extend(HALF_DEPTH_M), turn, EDGE_M, color);
     canvas.solid(MeshKind::Box, solid.gloss(0.22).of(Material::Wood).unlit(unlit));
-    let reach = reach(half, turn);
-    canvas.cast_shadow(Vec2::new(center.x, 0.0), Vec2::new(reach.x, HALF_DEPTH_M), center.y - reach.y, 1.0);
 }
 
 /// Half extents of the upright rectangle around a turned one.

@@ -63,7 +63,6 @@ fn eyelet(canvas: &mut Canvas<'_>, anchor: Vec2, depth: f32) {
     if let Some(top) = canvas.table_top_m.filter(|top| (anchor.y - top).abs() < 0.004) {
         let foot = Vec3::new(anchor.x, top + 0.0003, depth);
         canvas.solid(MeshKind::Plate, Solid::drum(foot, Vec2::splat(0.0044), 0.0003, 0.0, frame).gloss(0.4));
-        canvas.cast_shadow(Vec2::new(anchor.x, depth), Vec2::splat(0.004), top, 0.8);
     }
     let at = |i: u16| (anchor + RING_M * angle(f32::from(i) / 12.0)).extend(depth);
     for i in 0..12 {

@@ -31,7 +31,6 @@ fn stand(canvas: &mut Canvas<'_>, center: Vec2, radius: f32) {
     let frame = canvas.palette.frame;
     let foot = Vec2::new(center.x, top);
     canvas.solid(MeshKind::Plate, Solid::bar(foot, center, 0.3 * radius, [-0.024, DIAL_Z[0]], frame));
-    canvas.cast_shadow(Vec2::new(center.x, -0.020), Vec2::new(0.6 * radius, 0.005), top, 0.8);
 }
 
 /// A disc with ticks every 15°, longer every 45°.
@@ -79,5 +78,4 @@ fn draw_handle(canvas: &mut Canvas<'_>, handle: Vec2, width: f32, highlighted: b
     canvas.solid(MeshKind::Box, grip);
     let cap = [HALF_DEPTH_M - 0.0005, HALF_DEPTH_M + 0.0012];
     canvas.solid(MeshKind::Plate, Solid::disc(handle, 0.26 * width, cap, brass).gloss(0.8).of(Material::Polished));
-    canvas.cast_shadow(Vec2::new(handle.x, 0.0), Vec2::new(0.5 * width, HALF_DEPTH_M), handle.y - half.y, 0.7);
 }

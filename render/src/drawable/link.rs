@@ -45,9 +45,6 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
         couplers(canvas, &joints, outwards(finger));
         motor(canvas, &joints, accent);
         pins(canvas, &joints, accent);
-        let middle = 0.5 * (joints.elbow + joints.wrist);
-        let half = 0.5 * (joints.elbow - joints.wrist).abs();
-        canvas.cast_shadow(Vec2::new(middle.x, -0.004), Vec2::new(half.x, 0.004), middle.y, 0.35);
     }
     if canvas.mode == super::Mode::Real {
         rail(canvas, view);

@@ -111,8 +111,6 @@ fn back(canvas: &mut Canvas<'_>, sheet: &Sheet, holes: &[f32]) {
     for i in 0..RIM_STEPS {
         canvas.stroke(Stroke::line(rim(i), rim(i + 1), 1.4, canvas.palette.paper_cut));
     }
-    let flat = Vec2::new(sheet.radius, 0.5 * sheet.radius);
-    canvas.cast_shadow(Vec2::new(sheet.center.x, -0.5 * sheet.radius), flat, sheet.center.y, 1.0);
 }
 
 /// Heights of the wall's lower and upper end, if there is room for one.
@@ -127,8 +125,6 @@ fn wall(canvas: &mut Canvas<'_>, sheet: &Sheet) {
     let shade = canvas.palette.paper.mix(canvas.palette.frame, 0.30);
     let radii = [FLARE * sheet.radius, sheet.radius];
     canvas.solid(MeshKind::Shell, Solid::shell(sheet.center.x, radii, y, shade).gloss(0.05).of(Material::Paper));
-    let foot = Vec2::new(sheet.center.x, -0.5 * radii[0]);
-    canvas.cast_shadow(foot, Vec2::new(radii[0], 0.5 * radii[0]), y[0], 0.5);
 }
 
 /// The cut through the paper: wall, sheet with its dent, gaps with torn rims at the holes.

@@ -26,7 +26,7 @@ mod workspace;
 use crate::draw_data::{DrawData, Layer};
 use crate::mesh::MeshKind;
 use crate::scene::{FingerStyle, SceneView};
-use crate::shape::{Shadow, Solid, Stroke};
+use crate::shape::{Solid, Stroke};
 use crate::theme::{Color, ColorRole, Palette, Theme};
 use glam::{Vec2, Vec3};
 use haptics::world::State;
@@ -151,21 +151,6 @@ impl<'a> Canvas<'a> {
                 stroke = stroke.dashed(line.dash_m, i as f32 * arc);
             }
             if overlay { self.overlay_stroke(stroke) } else { self.stroke(stroke) }
-        }
-    }
-
-    /// The dimness that a solid makes on the table straight below it by keeping the sky away: its footprint is `half` (x, z)
-    /// about `center` (x, z), its underside `bottom_m` high; it fades with height. The key light's shadows are in its map.
-    fn cast_shadow(&mut self, center: Vec2, half: Vec2, bottom_m: f32, strength: f32) {
-        let Some(top) = self.table_top_m.filter(|_| self.mode == Mode::Real) else { return };
-        let height = (bottom_m - top).max(0.0);
-        let alpha = self.palette.shadow.alpha * strength;
-        let below = Shadow {
-            center_and_half: [center.x, center.y, half.x, half.y],
-            blur_and_alpha: [0.0022 + 0.22 * height, alpha / (1.0 + 40.0 * height)],
-        };
-        if below.center_and_half.iter().all(|x| x.is_finite()) {
-            self.data.shadows.push(below);
         }
     }
 }

@@ -34,7 +34,6 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, body: Body) {
     shaft(HUB + 0.005, SHOULDER, [0.72, 0.34], collar);
     shaft(SHOULDER + 0.005, POINT, [SHAFT, SHAFT], steel);
     shaft(POINT, 0.0, [SHAFT, 0.0], steel);
-    canvas.cast_shadow(Vec2::new(body.center.x, 0.0), Vec2::splat(0.8 * radius), tip.y, 0.6);
 }
 
 /// A ribbed cylinder as wide as the body, with a cap.

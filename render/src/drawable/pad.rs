@@ -45,9 +45,6 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
             MeshKind::Box,
             Solid::rounded_box(blade.0, blade.1, 0.0, 0.0007, steel).gloss(0.6).of(Material::Brushed),
         );
-
-        let middle = Vec2::new(tip.x + out * 0.5 * (FOAM_M + BLADE_M), 0.0);
-        canvas.cast_shadow(middle, Vec2::new(0.5 * (FOAM_M + BLADE_M), HALF_DEPTH_M), bottom, 0.8);
     }
 }
 

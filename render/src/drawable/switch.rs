@@ -47,7 +47,6 @@ fn housing(canvas: &mut Canvas<'_>, switch: &Switch) {
     let half = (BASE_HALF * size).extend(HALF_DEPTH_M);
     let center = at(pivot + Vec2::Y * half.y, 0.0);
     canvas.solid(MeshKind::Box, Solid::rounded_box(center, half, 0.0, 0.0014, frame).gloss(0.35));
-    canvas.cast_shadow(Vec2::new(pivot.x, 0.0), Vec2::new(half.x, half.z), pivot.y, 1.0);
     let mut drum = |radius: f32, low: f32, high: f32, color, gloss: f32| {
         let center = at(pivot + Vec2::Y * (top(switch) + 0.5 * (low + high)), 0.0);
         let drum = Solid::drum(center, Vec2::splat(radius), 0.5 * (high - low), 0.0, color);
@@ -133,5 +132,4 @@ fn lever(canvas: &mut Canvas<'_>, switch: &Switch, at_m: f64, highlighted: bool)
     let neck = Solid::cone(at(collar - 0.0012 * outwards, 0.0), at(collar + 0.0008 * outwards, 0.0), neck, color);
     canvas.solid(MeshKind::Cone, neck.gloss(0.5).unlit(unlit));
     canvas.solid(MeshKind::Ball, Solid::ball(at(knob, 0.0), radius, color).gloss(0.7).unlit(unlit));
-    canvas.cast_shadow(Vec2::new(knob.x, 0.0), Vec2::splat(0.8 * radius), knob.y - radius, 0.6);
 }

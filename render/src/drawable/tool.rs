@@ -26,5 +26,4 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, view: &SceneView<'_>) {
     rod([0.001, 0.034], 0.0011, steel, Material::Polished);
     rod([0.030, 0.037], 0.0026, accent, Material::Plain);
     rod([0.034, 0.075], 0.0042, frame, Material::Rubber);
-    canvas.cast_shadow(Vec2::new(tip.x, 0.0), Vec2::splat(0.6 * BALL_M), tip.y - BALL_M, 0.8);
 }

@@ -20,7 +20,7 @@ struct Globals {
     map_from_world: mat4x4<f32>,
     // Texels of the map's side, size of a texel (m), depth of its box (m), width of the light.
     map: vec4<f32>,
-    // Unit vector towards the key light.
+    // Unit vector towards the key light; w: how dark the table is where no sky is seen.
     key: vec4<f32>,
 };
 

@@ -1,4 +1,4 @@
-//! What the shaders can read beside their vertices: numbers of the scene, the shadow map, the table's light map.
+//! What the shaders can read beside their vertices: numbers of the scene, the shadow map or that of undersides, the table's light maps.
 
 /// Layouts of the bind groups, by number.
 #[derive(Debug)]
@@ -34,7 +34,7 @@ impl Groups {
             layouts: [
                 layout("globals", &[uniform], Stages::VERTEX_FRAGMENT),
                 layout("shadow map", &[texture(false)], Stages::FRAGMENT),
-                layout("table light", &[texture(true), sampler], Stages::FRAGMENT),
+                layout("table light", &[texture(true), sampler, texture(true)], Stages::FRAGMENT),
             ],
         }
     }
@@ -60,14 +60,20 @@ impl Groups {
     }
 
     /// Group 2.
-    pub(crate) fn table_light(&self, device: &wgpu::Device, light: &wgpu::TextureView) -> wgpu::BindGroup {
+    pub(crate) fn table_light(
+        &self,
+        device: &wgpu::Device,
+        light: &wgpu::TextureView,
+        sky: &wgpu::TextureView,
+    ) -> wgpu::BindGroup {
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("table light"),
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             ..wgpu::SamplerDescriptor::default()
         });
-        self.bind(device, 2, &[wgpu::BindingResource::TextureView(light), wgpu::BindingResource::Sampler(&sampler)])
+        let texture = wgpu::BindingResource::TextureView;
+        self.bind(device, 2, &[texture(light), wgpu::BindingResource::Sampler(&sampler), texture(sky)])
     }
 
     fn bind(&self, device: &wgpu::Device, group: usize, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {

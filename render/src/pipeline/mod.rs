@@ -4,7 +4,7 @@ mod groups;
 
 use crate::mesh::Vertex;
 use crate::renderer::DEPTH_FORMAT;
-use crate::shape::{Shadow, Solid, Stroke};
+use crate::shape::{Solid, Stroke};
 pub(crate) use groups::Groups;
 use wgpu::vertex_attr_array as attributes;
 
@@ -14,7 +14,7 @@ const MATERIAL: &str = include_str!("material.wgsl");
 const SOLID: &str = include_str!("solid.wgsl");
 const TABLE_LIGHT: &str = include_str!("table_light.wgsl");
 const STROKE: &str = include_str!("stroke.wgsl");
-const SHADOW: &str = include_str!("shadow.wgsl");
+const SKY: &str = include_str!("sky.wgsl");
 const BACKGROUND: &str = include_str!("background.wgsl");
 
 /// Every driver can draw into these and read them: one channel each.
@@ -28,12 +28,15 @@ pub(crate) struct Pipelines {
     pub cast: wgpu::RenderPipeline,
     /// What of the key light reaches the table.
     pub table_light: wgpu::RenderPipeline,
+    /// Solids as the table sees them: how high they hang.
+    pub under: wgpu::RenderPipeline,
+    /// How much of the sky they hide from it.
+    pub sky: wgpu::RenderPipeline,
     pub solid: wgpu::RenderPipeline,
     pub table: wgpu::RenderPipeline,
     /// Depth of translucent solids, so that only their nearest surface is seen.
     pub ghost_depth: wgpu::RenderPipeline,
     pub ghost: wgpu::RenderPipeline,
-    pub shadow: wgpu::RenderPipeline,
     pub stroke: wgpu::RenderPipeline,
     pub overlay_stroke: wgpu::RenderPipeline,
     pub background: wgpu::RenderPipeline,
@@ -90,7 +93,7 @@ impl Pipelines {
         let solid = make.module("solid", &format!("{KEY_LIGHT}\n{MATERIAL}\n{SOLID}"));
         let table_light = make.module("table light", &format!("{KEY_LIGHT}\n{TABLE_LIGHT}"));
         let stroke = make.module("stroke", STROKE);
-        let shadow = make.module("shadow", SHADOW);
+        let sky = make.module("sky", SKY);
         let background = make.module("background", BACKGROUND);
 
         let solid_buffers = [Some(vertex_layout()), Some(solid_layout())];
@@ -125,19 +128,18 @@ impl Pipelines {
         };
         Self {
             cast: make.pipeline(&cast(&opaque)),
-            table_light: make.pipeline(&table_light_spec(&opaque, &table_light)),
+            table_light: make.pipeline(&table_map(&opaque, &table_light, ["vs_table_light", "fs_table_light"])),
+            under: make.pipeline(&Spec {
+                label: "undersides",
+                vertex: "vs_under",
+                fragment: "fs_under",
+                ..cast(&opaque)
+            }),
+            sky: make.pipeline(&table_map(&opaque, &sky, ["vs_sky", "fs_sky"])),
             overlay: make.pipeline(&Spec { label: "overlay", fragment: "fs_overlay", ..opaque }),
             table: make.pipeline(&Spec { label: "table", fragment: "fs_table", ..opaque }),
             ghost_depth: make.pipeline(&ghost_depth(&opaque)),
             ghost: make.pipeline(&ghost(&opaque)),
-            shadow: make.pipeline(&Spec {
-                label: "shadow",
-                module: &shadow,
-                vertex: "vs_shadow",
-                fragment: "fs_shadow",
-                buffers: &[Some(shadow_layout())],
-                ..strokes
-            }),
             background: make.pipeline(&Spec {
                 label: "background",
                 module: &background,
@@ -173,12 +175,13 @@ fn cast<'a>(opaque: &Spec<'a>) -> Spec<'a> {
     }
 }
 
-fn table_light_spec<'a>(opaque: &Spec<'a>, module: &'a wgpu::ShaderModule) -> Spec<'a> {
+/// A map of the table's top.
+fn table_map<'a>(opaque: &Spec<'a>, module: &'a wgpu::ShaderModule, [vertex, fragment]: [&'a str; 2]) -> Spec<'a> {
     Spec {
-        label: "table light",
+        label: "table map",
         module,
-        vertex: "vs_table_light",
-        fragment: "fs_table_light",
+        vertex,
+        fragment,
         buffers: &[],
         topology: wgpu::PrimitiveTopology::TriangleStrip,
         into: Into { format: TABLE_LIGHT_FORMAT, samples: 1, groups: 2, depth: false },
@@ -278,11 +281,6 @@ fn stroke_layout() -> wgpu::VertexBufferLayout<'static> {
     layout::<Stroke>(wgpu::VertexStepMode::Instance, &ATTRIBUTES)
 }
 
-fn shadow_layout() -> wgpu::VertexBufferLayout<'static> {
-    const ATTRIBUTES: [wgpu::VertexAttribute; 2] = attributes![0 => Float32x4, 1 => Float32x2];
-    layout::<Shadow>(wgpu::VertexStepMode::Instance, &ATTRIBUTES)
-}
-
 fn layout<T>(
     step_mode: wgpu::VertexStepMode,
     attributes: &'static [wgpu::VertexAttribute],
@@ -303,7 +301,7 @@ mod tests {
             ("solid", solid.as_str()),
             ("table_light", &table_light),
             ("stroke", STROKE),
-            ("shadow", SHADOW),
+            ("sky", SKY),
             ("background", BACKGROUND),
         ];
         let scene = scene.map(|(name, source)| (name, format!("{COMMON}\n{source}")));

@@ -3,6 +3,8 @@
 // The table's light map.
 @group(2) @binding(0) var table_light: texture_2d<f32>;
 @group(2) @binding(1) var table_light_sampler: sampler;
+// How much of the sky is hidden from it.
+@group(2) @binding(2) var table_sky: texture_2d<f32>;
 
 struct SolidIn {
     @location(0) corner: vec3<f32>,
@@ -62,6 +64,32 @@ fn vs_cast(in: SolidIn) -> @builtin(position) vec4<f32> {
 @fragment
 fn fs_cast(@builtin(position) clip: vec4<f32>) -> @location(0) vec4<f32> {
     return vec4(clip.z, 0.0, 0.0, 0.0);
+}
+
+// What the underside map spans above the table, m.
+const UNDERSIDES: f32 = 1.0;
+
+struct UnderOut {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) height: f32,
+};
+
+// As the table sees it, looking straight up.
+@vertex
+fn vs_under(in: SolidIn) -> UnderOut {
+    let local = local_of(in);
+    let world = vec3(dot(in.row_x, local), dot(in.row_y, local), dot(in.row_z, local));
+    let place = (world.xz - vec2(0.0, globals.shadow.w)) / globals.table.zw;
+    var out: UnderOut;
+    // What reaches into the table stands on it.
+    out.height = max(world.y - globals.table.x, 0.0);
+    out.clip = vec4(place.x, -place.y, min(out.height / UNDERSIDES, 1.0), 1.0);
+    return out;
+}
+
+@fragment
+fn fs_under(in: UnderOut) -> @location(0) vec4<f32> {
+    return vec4(in.height, 0.0, 0.0, 0.0);
 }
 
 // A fill light from the right and a sky that is brighter than the ground join the key light.
@@ -149,5 +177,6 @@ fn fs_table(in: SolidOut) -> @location(0) vec4<f32> {
     let inside = clamp(margin * 250.0, 0.0, 1.0);
     let strength = globals.grid.a * lines * inside * clamp(in.normal.y * 4.0 - 3.0, 0.0, 1.0);
     let drawn = mix(lit, globals.grid.rgb * mix(0.75, 1.0, key_share), strength);
-    return vec4(to_target(drawn), 1.0);
+    let hidden = textureSampleLevel(table_sky, table_light_sampler, share, 0.0).x * clamp(in.normal.y, 0.0, 1.0);
+    return vec4(to_target(mix(drawn, globals.shadow.rgb, globals.key.w * hidden)), 1.0);
 }
