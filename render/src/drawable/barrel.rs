@@ -2,7 +2,7 @@
 //! how full it is can never be seen.
 
 use super::Canvas;
-use super::block::{Body, reach};
+use super::block::Body;
 use crate::mesh::MeshKind;
 use crate::shape::Solid;
 use crate::theme::Color;
@@ -29,7 +29,6 @@ const CRACK: [[f32; 3]; 7] = [
 const BRANCHES: [(usize, [f32; 2]); 3] = [(2, [0.05, -0.32]), (3, [0.50, -0.33]), (4, [0.11, -0.53])];
 
 pub(super) fn draw(canvas: &mut Canvas<'_>, body: Body, broken: bool) {
-    let radius = body.half.x;
     shell(canvas, body);
     lid(canvas, body);
     placard(canvas, body);

@@ -3,7 +3,7 @@
 
 use super::Canvas;
 use super::barrel::crack;
-use super::block::{Body, reach};
+use super::block::Body;
 use crate::Material;
 use crate::mesh::MeshKind;
 use crate::shape::Solid;

@@ -8,7 +8,7 @@ use crate::mesh::MeshKind;
 use crate::scene::SceneView;
 use crate::shape::Solid;
 use crate::theme::ColorRole;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use haptics::world::{State, Surface};
 
 /// Thickness of the foam at rest, m (thesis: 2 mm).

@@ -3,7 +3,7 @@
 use super::thresholds::{SHADE, UNTOUCHED};
 use super::{HEIGHT, WIDTH, bare, draw, headless};
 use haptics::Vec2;
-use haptics::world::{Block, State, World};
+use haptics::world::{Block, Shape, State, World};
 use image::RgbaImage;
 use render::{Camera, Theme, ViewOptions};
 
@@ -57,6 +57,32 @@ fn a_standing_cube_casts_its_shadow_away_from_the_key_light_and_nowhere_else() {
         assert!(found[..2].iter().all(|share| *share < SHADE), "in the shadow, {theme:?}: {found:?}");
         assert!(found[2..].iter().all(|share| (share - 1.0).abs() < UNTOUCHED), "in the light, {theme:?}: {found:?}");
     }
+}
+
+#[test]
+fn what_hides_the_sky_from_the_table_has_the_shape_of_the_thing() {
+    // A drum and a box of the same width, seen where the key light comes from: no shadow lies there.
+    let Some(mut headless) = headless() else { return };
+    let half_m = 0.014_f32;
+    let mut dimmed = |shape: Shape, place: [f32; 2]| {
+        let (mut world, _) = cube(0.0);
+        let width_m = 2.0 * f64::from(half_m);
+        world.blocks = vec![Block { shape, ..Block::upright("thing", 0.04, width_m, 0.03, 0.0, TABLE_M) }];
+        let state = State::new(&world, [Vec2::new(-0.09, 0.0), Vec2::new(0.09, 0.0)]);
+        let mut gone = state.clone();
+        gone.bodies[0].center_m.x = f64::NAN;
+        let options = from_above(Theme::Light);
+        let [with, without] = [&state, &gone].map(|state| draw(&mut headless, &world, state, &options));
+        let at = |picture: &RgbaImage| brightness(picture, &options, place[0], place[1]);
+        at(&with) / at(&without)
+    };
+    let beside = [-half_m - 0.0016, 0.0];
+    let corner = [-0.9 * half_m, 0.9 * half_m];
+    let drum = [dimmed(Shape::Barrel, beside), dimmed(Shape::Barrel, corner)];
+    assert!(drum[0] < 0.97, "close beside it the drum hides some of the sky: {drum:?}");
+    assert!(3.0 * (1.0 - drum[1]) < 1.0 - drum[0], "there is nothing of a drum in the corner of its box: {drum:?}");
+    let wall = dimmed(Shape::Block, beside);
+    assert!(wall < 0.97, "as beside a box: {wall}");
 }
 
 #[test]
