@@ -48,9 +48,9 @@ fn value(known: Known, factor: f64, unit: &str) -> String {
 pub(super) fn contents(guess: &Guess) -> String {
     match guess.kinds.as_slice() {
         [] => "Inside: nothing of the list is as dense".to_owned(),
-        [(name, p)] => format!("Inside: {name} ({} %)", percent(*p)),
+        [(name, p)] => format!("Inside: {name} ({}\u{a0}%)", percent(*p)),
         [(name, p), (other, q), ..] => {
-            format!("Inside: {name} ({} %), or {other} ({} %)", percent(*p), percent(*q))
+            format!("Inside: {name} ({}\u{a0}%), or {other} ({}\u{a0}%)", percent(*p), percent(*q))
         }
     }
 }

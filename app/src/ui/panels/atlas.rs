@@ -177,7 +177,9 @@ fn large(ui: &mut Ui, session: &mut Session, cell: &Cell, diagnosis: &Diagnosis)
         );
     }
     let score = format::number(cell.score, 0);
-    let mut says = format!("Alone it scores {score} (2 ln likelihood, its parameters paid).");
+    let mut says = format!(
+        "Alone it scores {score}: twice the log of how much likelier it makes the force, less what its parameters cost."
+    );
     if let Some(passed) = diagnosis.passed_over.iter().find(|passed| passed.id == cell.id) {
         says = format!("{says} {}", sentence(&passed.why));
     }

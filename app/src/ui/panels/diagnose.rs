@@ -135,7 +135,7 @@ fn suspects(ui: &mut Ui, session: &mut Session, answer: &Answer, sheet: &Sheet, 
         which(ui, session);
     });
     let text = "Means of what the model leaves, over the variable of each suspect, and what the suspect alone would take of it. The number is its \
-                evidence: 2 ln likelihood, its parameters paid.";
+                evidence: twice the log of how much likelier it makes the force, less what its parameters cost.";
     ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     ui.add_space(space::XS);
     super::atlas::show(ui, session, sheet, &answer.diagnosis);

@@ -20,6 +20,8 @@ const LEAST_NAME: f32 = 14.0;
 /// One line of the gutter.
 struct Entry<'a> {
     label: String,
+    /// Where the lines stand in two columns.
+    brief: Option<String>,
     hint: String,
     color: Color32,
     width: f32,
@@ -82,6 +84,7 @@ fn entries<'a>(ui: &Ui, input: &RowInput<'a>) -> Vec<Entry<'a>> {
         RowKind::Curves => {
             let traces = input.group.traces.iter().enumerate().map(|(t, trace)| Entry {
                 label: trace.label.clone(),
+                brief: None,
                 hint: trace.name.clone(),
                 color: theme::curve(dark, trace.role, trace.second),
                 width: 2.5,
@@ -106,6 +109,8 @@ fn entries<'a>(ui: &Ui, input: &RowInput<'a>) -> Vec<Entry<'a>> {
                     } else {
                         format!("− {model}")
                     },
+                    // What the words stand for is said in the plot of the force.
+                    brief: Some(format!("{}, {}", trace.label, &model[..3])),
                     hint: format!("{} measured less {model}", trace.name),
                     color: curve_color(input, curve, dark, p),
                     width: 2.5,
@@ -122,6 +127,7 @@ fn layers<'a>(ui: &Ui, input: &RowInput<'a>) -> Vec<Entry<'a>> {
     let inks = super::inks(ui);
     let entry = |label: &str, hint: &str, color, width, switch| Entry {
         label: label.to_owned(),
+        brief: None,
         hint: hint.to_owned(),
         color,
         width,
@@ -162,7 +168,8 @@ fn show(ui: &mut Ui, choice: &mut GroupChoice, input: &RowInput<'_>, entry: &Ent
             let words = if shown { p.secondary } else { p.faint };
             // The value comes first; the name takes what is left, and its end goes where that is too little.
             let room = right - ui.cursor().left() - value.size().x - ui.spacing().item_spacing.x;
-            let name = egui::Label::new(RichText::new(&entry.label).size(WORDS).color(words)).truncate();
+            let label = entry.brief.as_ref().filter(|_| narrow).unwrap_or(&entry.label);
+            let name = egui::Label::new(RichText::new(label).size(WORDS).color(words)).truncate();
             let size = vec2(room.max(0.0), LINE);
             ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
                 ui.set_min_size(size);
