@@ -21,12 +21,13 @@ pub fn seen_by_tool(along: &Recording, path: &MechanismPath, like: &Like<'_>, se
     };
     let course: Vec<(f64, f64)> = position.values.iter().copied().zip(drive.values.iter().copied()).collect();
     let mut channels = Vec::new();
-    for axis in 0..3 {
-        channels.extend(channel(PLACES[axis], "m", like, &mut rng, &|k| path.point_m(course[k].0)[axis], course.len()));
+    for (axis, name) in PLACES.iter().enumerate() {
+        let place = |k: usize| path.point_m(course[k].0)[axis];
+        channels.extend(channel(name, "m", like, &mut rng, &place, course.len()));
     }
-    for axis in 0..3 {
+    for (axis, name) in FORCES.iter().enumerate() {
         let force = |k: usize| path.force_n(course[k].0, course[k].1)[axis];
-        channels.extend(channel(FORCES[axis], "N", like, &mut rng, &force, course.len()));
+        channels.extend(channel(name, "N", like, &mut rng, &force, course.len()));
     }
     Recording { channels, ..along.clone() }
 }
