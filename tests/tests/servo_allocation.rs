@@ -9,6 +9,7 @@ use haptics::Vec2;
 use haptics::device::{Command, Device, DeviceSpec, Sample, ScriptedOperator, Skill};
 use haptics::servo::rate::{RateChoice, RateReason};
 use haptics::servo::{Servo, ServoConfig, Swap};
+use haptics::teleop::{self, Delay, Ends, ViewSource};
 use haptics::world::{State, World, presets};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -24,7 +25,7 @@ struct Count {
 }
 
 /// One entry a test: tests run side by side.
-static COUNTS: [Count; 4] = [const { Count { allocated: AtomicU64::new(0), freed: AtomicU64::new(0) } }; 4];
+static COUNTS: [Count; 8] = [const { Count { allocated: AtomicU64::new(0), freed: AtomicU64::new(0) } }; 8];
 
 thread_local! {
     /// The entry that counts for this thread.
@@ -127,20 +128,47 @@ struct Run {
 }
 
 fn start(entry: usize, rate: RateChoice) -> Run {
+    start_behind(entry, rate, |device, _| device)
+}
+
+/// The same with something between the operator and the servo.
+fn start_behind(
+    entry: usize,
+    rate: RateChoice,
+    put_before: impl FnOnce(Box<dyn Device>, &Swap) -> Box<dyn Device>,
+) -> Run {
     let world = presets::stacking();
     let inner = ScriptedOperator::new(&world, &State::resting(&world), Skill::default(), 1);
     let (orders, freed) = (Arc::new(Orders::default()), Arc::new(AtomicU64::new(u64::MAX)));
     let device = Watched { inner, entry, orders: Arc::clone(&orders), freed: Arc::clone(&freed) };
     let config = ServoConfig { rate, ..ServoConfig::default() };
-    let servo = Servo::start(Swap::new(world), Box::new(device), config).expect("a thread");
+    let swap = Swap::new(world);
+    let device = put_before(Box::new(device), &swap);
+    let servo = Servo::start(swap, device, config).expect("a thread");
     Run { servo, orders, freed, entry }
+}
+
+/// A slow, unsteady line before the device, and what is seen over it.
+fn over_a_line(entry: usize, round_trip_s: f64, predicted: bool) -> (Run, ViewSource) {
+    let mut seen = None;
+    let run = start_behind(entry, RateChoice::Fixed(1000.0), |device, swap| {
+        let guess = teleop::guess(&swap.world, 3);
+        let limits = ServoConfig::default().limits;
+        let (world, state) = (&swap.world, &swap.state);
+        let ends = Ends { world, state, guess: Some(&guess), limits, period_s: 1e-3, seed: 3 };
+        let delay = Delay { jitter_s: 0.02, loss: 0.05, ..Delay::of(round_trip_s, predicted) };
+        let (device, view) = teleop::connect(device, &ends, &delay).expect("a line");
+        seen = Some(view);
+        device
+    });
+    (run, seen.expect("connected"))
 }
 
 impl Run {
     /// Looks at the snapshots until the condition holds; the condition decides, the limit only ends a broken test.
     fn until(&mut self, mut done: impl FnMut(&mut Servo) -> bool) -> bool {
         let begun = Instant::now();
-        while begun.elapsed() < Duration::from_secs(20) {
+        while begun.elapsed() < Duration::from_mins(2) {
             if done(&mut self.servo) {
                 return true;
             }
@@ -230,6 +258,35 @@ fn a_servo_that_falls_back_to_a_lower_rate_allocates_and_frees_nothing() {
     let before = run.servo.newest().state.tick;
     assert!(run.until(|servo| servo.newest().state.tick > before + 500));
     assert_eq!(run.end(), (0, 0), "allocated until the end, freed while it ran");
+}
+
+#[test]
+fn a_hand_over_a_slow_line_lifts_a_block_on_the_real_thread_and_allocates_and_frees_nothing() {
+    const LIFTED_M: f64 = 5e-3;
+    let lines = [(4, 0.15, false), (5, 0.5, false), (6, 0.15, true), (7, 0.5, true)];
+    let lift = |(entry, round_trip_s, predicted): (usize, f64, bool)| {
+        let what = format!("{round_trip_s} s, model: {predicted}");
+        let (mut run, mut view) = over_a_line(entry, round_trip_s, predicted);
+        let starts = presets::stacking().blocks.iter().map(|block| block.start.center_m.y).collect::<Vec<_>>();
+        let rises = |state: &State| state.bodies.iter().zip(&starts).any(|(body, y)| body.center_m.y - y > LIFTED_M);
+        assert!(run.until(|servo| rises(&servo.newest().state)), "{what}: nothing is lifted at the far end");
+        // What is seen there is as late as the line is.
+        assert!(run.until(|_| rises(&view.newest().there)), "{what}: nobody sees it");
+        let age_s = view.newest().age_s;
+        assert!(age_s > 0.5 * round_trip_s && view.newest().predicted == predicted, "{what}: {age_s} s");
+        // An interruption at the far end leaves the hand without force, and the line goes on.
+        let stalls = run.servo.newest().timing.stalls;
+        run.orders.stall_ms.store(40, Ordering::Relaxed);
+        assert!(run.until(|servo| servo.newest().timing.stalls > stalls), "{what}: a stall is counted");
+        let before = run.servo.newest().state.tick;
+        assert!(run.until(|servo| servo.newest().state.tick > before + 500), "{what}: it goes on");
+        assert_eq!(run.end(), (0, 0), "{what}: allocated until the end, freed while it ran");
+    };
+    std::thread::scope(|threads| {
+        for line in lines {
+            threads.spawn(move || lift(line));
+        }
+    });
 }
 
 #[test]

@@ -9,7 +9,10 @@ use rand::{RngExt, SeedableRng};
 /// How far a guess is off at the most, relative to the truth: what people make of the look of a thing is of this order.
 pub const GUESS_OFF: f64 = 0.4;
 
-/// A guess of a world: masses, friction under the fingers and laws of the crank, each by a factor of its own between 1 − [`GUESS_OFF`]
+/// Salt of the guesses of walls: what was guessed before there were any stays as it was.
+const WALLS: u64 = 0x3c6e_f372_fe94_f82b;
+
+/// A guess of a world: masses, friction under the fingers, stiffness of walls and laws of the crank, each by a factor of its own between 1 − [`GUESS_OFF`]
 /// and 1 + [`GUESS_OFF`], drawn by the seed. A guess that could not be run is given up for the truth.
 pub fn guess(world: &World, seed: u64) -> World {
     let mut rng = StdRng::seed_from_u64(seed);
@@ -30,6 +33,10 @@ pub fn guess(world: &World, seed: u64) -> World {
                 *value *= off();
             }
         }
+    }
+    let mut rng = StdRng::seed_from_u64(seed ^ WALLS);
+    for wall in guessed.blocks.iter_mut().filter_map(|block| block.wall.as_mut()) {
+        wall.stiffness_n_m *= rng.random_range(1.0 - GUESS_OFF..1.0 + GUESS_OFF);
     }
     if guessed.check().is_ok() { guessed } else { world.clone() }
 }

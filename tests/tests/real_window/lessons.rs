@@ -35,7 +35,7 @@ const DEEPER_STEPS: u32 = 16;
 /// A lesson is tried so often at most.
 const ATTEMPTS: usize = 3;
 /// Those that are done unless `TOUCHSTONE_LESSONS` names others, or `all`: together they press, carry, turn and answer.
-const USUAL: [&str; 3] = ["lift-and-hold", "crank-even", "barrel"];
+const USUAL: [&str; 3] = ["stack-two", "crank-even", "barrel"];
 
 fn wanted() -> Vec<Lesson> {
     let named = std::env::var("TOUCHSTONE_LESSONS").unwrap_or_default();
@@ -166,11 +166,16 @@ fn is_recorded(screen: &Screen) -> bool {
     rows[120..180].iter().flat_map(|row| &row[1160..1200]).any(|p| near(p, dark) || near(p, light))
 }
 
-/// Moves the pointer through a lesson in its own time; the strength that the mouse has in the end.
-fn point(screen: &Screen, place: &Place, way: &[Pointed], strength_n: f64) -> f64 {
+/// Moves the pointer through a lesson in its own time, with a picture half-way; the strength that the mouse has in the end.
+fn point(screen: &Screen, place: &Place, way: &[Pointed], half_way: &str, strength_n: f64) -> f64 {
     let mut eyed = Eyed::on(screen, place, strength_n);
     let (mut next, mut pressed) = (Instant::now(), false);
-    for pointed in way {
+    for (k, pointed) in way.iter().enumerate() {
+        // What is held stays held.
+        if k == way.len() / 2 {
+            screen.keep(half_way);
+            next = Instant::now();
+        }
         if eyed.follow(pointed, pressed) {
             next = Instant::now();
         }
@@ -217,7 +222,7 @@ fn lessons_are_done_with_a_pointer_as_a_person_does_them() {
         // A pointer that looks at nothing fails now and then, as people do.
         let mut grades = Vec::new();
         while grades.len() < ATTEMPTS && !grades.last().is_some_and(reached) {
-            grades.push(attempt(&screen, (&home, &place), &lesson, &way, &mut strength_n));
+            grades.push(attempt(&screen, (&home, &place), &lesson, (&way, grades.len() + 1), &mut strength_n));
         }
         println!("{}: {} attempts, {}", lesson.id, grades.len(), grades.last().unwrap_or(&Value::Null));
         if !grades.last().is_some_and(reached) {
@@ -232,24 +237,23 @@ fn reached(grade: &Value) -> bool {
     grade["completed"] == true || grade["answered_rightly"] == false
 }
 
-/// Takes the test of the open lesson; its grade, nothing when it was not over.
+/// Takes the test of the open lesson for the `nth` time; its grade, nothing when it was not over.
 fn attempt(
     screen: &Screen,
     (home, place): (&Path, &Place),
     lesson: &Lesson,
-    way: &[Pointed],
+    (way, nth): (&[Pointed], usize),
     strength_n: &mut f64,
 ) -> Value {
     let begun = SystemTime::now();
     command(screen, "Take the lesson's test");
     let path = until("the recording", screen, || recorded(home, begun));
-    *strength_n = point(screen, place, &way[..way.len() / 2], *strength_n);
-    screen.keep(&format!("lesson-{}-2-test", lesson.id));
-    *strength_n = point(screen, place, &way[way.len() / 2..], *strength_n);
+    *strength_n = point(screen, place, way, &format!("lesson-{}-2-test", lesson.id), *strength_n);
     if let Some(question) = &lesson.question {
         screen.keep(&format!("lesson-{}-3-question", lesson.id));
         command(screen, &format!("Answer: {}", question.answers[0]));
     }
     screen.keep(&format!("lesson-{}-4-debrief", lesson.id));
+    Screen::keep_file(&path, &format!("lesson-{}-{nth}.mcap", lesson.id));
     graded(&path).unwrap_or_default()
 }

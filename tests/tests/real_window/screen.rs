@@ -17,6 +17,13 @@ const BAR: usize = 12;
 /// Software rendering on a busy machine takes its time.
 const PATIENCE: Duration = Duration::from_mins(3);
 
+/// Where what a person looks at afterwards is kept.
+fn looked_at() -> Option<PathBuf> {
+    let folder = std::env::temp_dir().join("touchstone-real-window");
+    fs::create_dir_all(&folder).ok()?;
+    Some(folder)
+}
+
 /// A screen that is written to a file.
 pub struct Screen {
     server: Child,
@@ -95,9 +102,15 @@ impl Screen {
         let size = [rows[0].len() as u32, rows.len() as u32];
         let bytes = rows.into_iter().flatten().flatten().collect();
         let Some(picture) = image::RgbImage::from_raw(size[0], size[1], bytes) else { return };
-        let folder = std::env::temp_dir().join("touchstone-real-window");
-        if fs::create_dir_all(&folder).is_ok() {
+        if let Some(folder) = looked_at() {
             let _ = picture.save(folder.join(format!("{name}.png")));
+        }
+    }
+
+    /// What was recorded, beside the pictures.
+    pub fn keep_file(path: &Path, name: &str) {
+        if let Some(folder) = looked_at() {
+            let _ = fs::copy(path, folder.join(name));
         }
     }
 

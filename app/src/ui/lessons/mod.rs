@@ -1,11 +1,13 @@
 //! Lessons in Train: watching an expert, practising, the test, and what came of it. No drawing here.
 
+mod ghost;
 mod kept;
 mod pointer;
 mod trace;
 
+pub use ghost::{Ghost, Wait};
 pub use pointer::{Pointed, pointer_through};
-pub use trace::{Trace, trace_of};
+pub use trace::{Point, Trace, trace_of};
 
 use super::jobs::{JobKind, Outcome};
 use super::session::{Session, Workspace, sentence};
@@ -59,6 +61,8 @@ pub struct Open {
     pub progress: Progress,
     /// How the expert did it.
     pub expert: Option<Arc<Trace>>,
+    /// Where the ghost is that goes along while practising.
+    pub ghost: Ghost,
     world: World,
     attempts: usize,
 }
@@ -112,6 +116,7 @@ impl Open {
             phase: Phase::Brief,
             progress,
             expert: None,
+            ghost: Ghost::default(),
             world,
             attempts: 0,
         })
@@ -137,6 +142,7 @@ impl Open {
         (trainer.operator, trainer.choice) = (operator, WorldChoice::File);
         trainer.restart()?;
         self.progress = Progress::live(&self.lesson, &self.world);
+        self.ghost = Ghost::default();
         Ok(())
     }
 
@@ -295,6 +301,11 @@ impl Session {
         }
         if matches!(open.phase, Phase::Practising | Phase::Testing) {
             open.progress.see(snapshot.state.time_s, &snapshot.state);
+        }
+        if let (Phase::Practising, Some(way)) = (&open.phase, &open.expert) {
+            let state = &snapshot.state;
+            let touches = state.tip_force_n.iter().any(|force| force.norm() > trace::TOUCH_N);
+            open.ghost.see(way, state.time_s, state.input.tip_in_world, touches);
         }
         true
     }

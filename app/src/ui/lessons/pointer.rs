@@ -101,3 +101,24 @@ pub fn pointer_through(lesson: &Lesson, every_s: f64) -> Result<Vec<Pointed>, St
     let at = |k: usize| trace.at(SLOWER * every_s * k as f64).map(|point| Pointed::of(point, pinch.opening_m()));
     Ok((0..=count).filter_map(at).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pointer_never_opens_or_closes_for_a_moment() {
+        const EVERY_S: f64 = 0.033;
+        /// Shorter than that nobody presses a button on purpose, s.
+        const SHORTEST_S: f64 = 0.2;
+        let (lessons, problems) = crate::lessons::all(None);
+        assert!(problems.is_empty(), "{problems:?}");
+        for lesson in lessons {
+            let way = pointer_through(&lesson, EVERY_S).expect("a way");
+            for part in way.chunk_by(|a, b| a.pinches == b.pinches) {
+                let lasts_s = EVERY_S * part.len() as f64;
+                assert!(lasts_s > SHORTEST_S, "{}: {lasts_s:.2} s", lesson.id);
+            }
+        }
+    }
+}

@@ -10,7 +10,7 @@ use haptics::recording::Recording;
 /// Points a second.
 const RATE_HZ: f64 = 30.0;
 /// A finger that presses more than this touches, N.
-const TOUCH_N: f64 = 0.05;
+pub(super) const TOUCH_N: f64 = 0.05;
 /// The expert of the ghost always does it the same way.
 const SEED: u64 = 7;
 
@@ -46,7 +46,7 @@ impl Trace {
 
     /// Middle between the tips, m.
     pub fn middles(&self) -> impl Iterator<Item = Vec2> {
-        self.points.iter().map(|p| 0.5 * (p.tips_in_world[0] + p.tips_in_world[1]))
+        self.points.iter().map(Point::middle_m)
     }
 
     fn push(&mut self, time_s: f64, tips_in_world: [Vec2; 2], tip_force_n: [Vec2; 2]) {
@@ -57,6 +57,11 @@ impl Trace {
 }
 
 impl Point {
+    /// Middle between the tips, m in the world.
+    pub fn middle_m(&self) -> Vec2 {
+        0.5 * (self.tips_in_world[0] + self.tips_in_world[1])
+    }
+
     /// True while something is touched.
     pub fn touches(&self) -> bool {
         self.tip_force_n.iter().any(|f| f.norm() > TOUCH_N)
@@ -71,7 +76,7 @@ impl Point {
     /// Where the middle between the fingers is wanted, m in the world: the arms' springs give by the force on them.
     pub fn wanted_m(&self) -> Vec2 {
         let give = (self.tip_force_n[0] + self.tip_force_n[1]) / (2.0 * HandImpedance::default().stiffness_n_m);
-        0.5 * (self.tips_in_world[0] + self.tips_in_world[1]) + give
+        self.middle_m() + give
     }
 }
 

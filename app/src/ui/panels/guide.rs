@@ -2,7 +2,7 @@
 
 use crate::ui::format;
 use crate::ui::guided::{Guided, Phase};
-use crate::ui::lessons;
+use crate::ui::lessons::{self, Point, Wait};
 use crate::ui::scene::SceneResponse;
 use crate::ui::session::{Session, sentence};
 use crate::ui::theme::{self, palette, space};
@@ -117,12 +117,18 @@ pub fn expert(ui: &Ui, view: &SceneResponse, session: &Session) {
     let lessons = &session.lessons;
     let Some(open) = lessons.open.as_deref().filter(|open| open.phase == lessons::Phase::Practising) else { return };
     let Some(trace) = open.expert.as_deref().filter(|_| !lessons.ghost_off) else { return };
-    let now_s = open.progress.running_s();
+    let now_s = open.ghost.time_s;
     let Some(point) = trace.at(now_s).filter(|_| now_s < trace.duration_s()) else { return };
-    let middle = |later_s: f64| trace.at(later_s).map(|p| 0.5 * (p.tips_in_world[0] + p.tips_in_world[1]));
+    let middle = |later_s: f64| trace.at(later_s).map(Point::middle_m);
     let ahead = (0..=AHEAD_STEPS).filter_map(|k| middle(now_s + AHEAD_S * f64::from(k) / f64::from(AHEAD_STEPS)));
     let holds = point.touches();
-    let word = if holds { "expert presses" } else { "expert" };
+    let word = match open.ghost.waits {
+        Some(Wait::Far) => "expert waits: come here",
+        Some(Wait::Touch) => "expert waits: press",
+        Some(Wait::LetGo) => "expert waits: let go",
+        None if holds => "expert presses",
+        None => "expert",
+    };
     rings(ui, view, point.tips_in_world, &Rings { ahead: ahead.collect(), holds, word });
 }
 

@@ -1,11 +1,12 @@
 //! The model at the operator's end, and what keeps it true: the far world's poses, bled in, and its forces, which tell what things
-//! weigh and how they turn.
+//! weigh, how they turn, and how they feel under the fingers.
 
 mod crank;
 mod past;
 mod poses;
 #[cfg(test)]
 mod tests;
+mod touch;
 mod weight;
 
 use super::album::PICTURE_S;
@@ -15,6 +16,7 @@ use crate::world::{State, World};
 use crank::CrankLaws;
 use past::Past;
 use poses::Poses;
+use touch::Touch;
 use weight::Weights;
 
 pub use weight::Weighed;
@@ -25,6 +27,7 @@ pub(super) struct Tutor {
     poses: Poses,
     weights: Weights,
     laws: CrankLaws,
+    touch: Touch,
 }
 
 impl Tutor {
@@ -35,6 +38,7 @@ impl Tutor {
             poses: Poses::new(state),
             weights: Weights::new(world),
             laws: CrankLaws::new(world),
+            touch: Touch::new(world),
         }
     }
 
@@ -45,6 +49,7 @@ impl Tutor {
         }
         self.weights.learn(far);
         self.laws.learn(far);
+        self.touch.learn(far);
     }
 
     /// Corrects the model by a little, after each of its ticks, and remembers it as it is now.
@@ -53,6 +58,7 @@ impl Tutor {
         self.poses.bleed(state, dt_s);
         self.weights.bleed(world, dt_s);
         self.laws.bleed(world, dt_s);
+        self.touch.bleed(world, dt_s);
         self.past.remember(now_s, state, self.poses.corrected());
     }
 

@@ -55,6 +55,8 @@ pub(super) struct Poses {
     now: Grasp,
     /// What is taken over as a whole at the next tick.
     discrete: Option<Discrete>,
+    /// With it: which walls are broken there, and what ran out of each, kg.
+    spilled: Vec<(bool, f64)>,
 }
 
 /// What has no place between two values.
@@ -72,6 +74,7 @@ impl Poses {
             touched: vec![false; state.bodies.len()],
             now: Grasp::default(),
             discrete: None,
+            spilled: vec![(false, 0.0); state.bodies.len()],
         }
     }
 
@@ -104,6 +107,9 @@ impl Poses {
         } else {
             self.wanted.switch_m = corrected_then.switch_m + far.switch.at_m - then.switch.at_m;
             self.discrete = Some(Discrete { membrane: far.membrane, branch: far.switch.branch });
+            for (spilled, body) in self.spilled.iter_mut().zip(&far.bodies) {
+                *spilled = (body.broken, body.leaked_kg);
+            }
         }
         if then.grasp.body.is_some() || far.grasp.body.is_some() || now.body.is_some() {
             self.discrete = None;
@@ -136,6 +142,9 @@ impl Poses {
         if let Some(Discrete { membrane, branch }) = self.discrete.take() {
             state.membrane = membrane;
             state.switch.branch = branch;
+            for (body, spilled) in state.bodies.iter_mut().zip(&self.spilled) {
+                (body.broken, body.leaked_kg) = *spilled;
+            }
         }
     }
 }
