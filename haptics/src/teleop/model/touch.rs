@@ -1,8 +1,8 @@
 //! How things feel under the far fingers: friction from what slips there or holds though it should slip, stiffness of a wall from how far
 //! it gives.
 //!
-//! One unknown each, with the guess as prior (a scalar Kalman filter). Coulomb: what slides has |F_t| = µ F_n, what does not has
-//! µ ≥ |F_t| / F_n. A wall in series with the pad: depth − pad(F_n) = F_n / k.
+//! One unknown each, with the guess as prior (a scalar Kalman filter). Coulomb: what slides has |Ft| = µ Fn, what does not has
+//! µ ≥ |Ft| / Fn. A wall in series with the pad: depth − pad(Fn) = Fn / k.
 
 use super::super::picture::Picture;
 use crate::Vec2;
