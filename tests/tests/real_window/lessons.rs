@@ -253,7 +253,9 @@ fn attempt(
         screen.keep(&format!("lesson-{}-3-question", lesson.id));
         command(screen, &format!("Answer: {}", question.answers[0]));
     }
-    screen.keep(&format!("lesson-{}-4-debrief", lesson.id));
     Screen::keep_file(&path, &format!("lesson-{}-{nth}.mcap", lesson.id));
-    graded(&path).unwrap_or_default()
+    let grade = graded(&path).unwrap_or_default();
+    // By now the window has graded it, too.
+    screen.keep(&format!("lesson-{}-4-debrief", lesson.id));
+    grade
 }
