@@ -312,7 +312,8 @@ impl Session {
         self.follow_experiment(ctx);
         self.follow_history();
         self.follow_lesson(ctx);
-        self.note_changes(ctx.input(|i| i.time));
+        let (now_s, held) = ctx.input(|i| (i.time, i.pointer.any_down()));
+        self.note_changes(now_s, held);
         self.follow_choice(ctx);
         self.follow_what_if(ctx);
     }

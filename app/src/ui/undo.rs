@@ -37,9 +37,9 @@ impl Default for Undo {
 }
 
 impl Session {
-    /// Notices what was changed; call once a frame.
-    pub fn note_changes(&mut self, now_s: f64) {
-        if !self.recordings.is_empty() {
+    /// Notices what was changed; call once a frame. What is dragged while a button is `held` is one change, however long one hesitates.
+    pub fn note_changes(&mut self, now_s: f64, held: bool) {
+        if !self.recordings.is_empty() && !held {
             let now = Undoable::of(self);
             self.undo.undoer.feed_state(now_s, &now);
         }
@@ -128,7 +128,7 @@ mod tests {
     /// Frames pass.
     fn wait(session: &mut Session, from_s: f64) -> f64 {
         for frame in 0..60 {
-            session.note_changes(from_s + f64::from(frame) / 30.0);
+            session.note_changes(from_s + f64::from(frame) / 30.0, false);
         }
         from_s + 2.0
     }
@@ -162,11 +162,28 @@ mod tests {
         for step in 0..100 {
             session.choice.only_s = Some((0.0, f64::from(step)));
             now += 0.02;
-            session.note_changes(now);
+            session.note_changes(now, true);
         }
         wait(&mut session, now);
         session.undo();
         assert_eq!(session.choice.only_s, None);
+    }
+
+    #[test]
+    fn a_drag_in_which_one_hesitates_or_that_is_drawn_slowly_is_one_change() {
+        let mut session = session();
+        let mut now = wait(&mut session, 0.0);
+        for step in 0..4 {
+            session.choice.only_s = Some((0.0, f64::from(step)));
+            for _ in 0..5 {
+                now += 0.4;
+                session.note_changes(now, true);
+            }
+        }
+        wait(&mut session, now);
+        session.undo();
+        assert_eq!(session.choice.only_s, None);
+        assert!(!session.can_undo());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Lessons in a real window: opened and begun by their names, done with a pointer that goes where a person's would, graded from their files.
 
-use crate::screen::{Hand, SCREEN, Screen, drawn, kept, start, until};
+use crate::screen::{Hand, SCREEN, Screen, command, drawn, kept, start, until};
 use app::ui::lessons::{Pointed, pointer_through};
 use app::ui::scene::Place;
 use app::ui::screenshot::trainer_place;
@@ -47,20 +47,6 @@ fn wanted() -> Vec<Lesson> {
     let (lessons, problems) = app::lessons::all(None);
     assert!(problems.is_empty(), "{problems:?}");
     lessons.into_iter().filter(is_wanted).collect()
-}
-
-/// Chooses a command by its name. Behind the list everything is darker, the program's name too.
-fn command(screen: &Screen, name: &str) {
-    /// A part of a colour as bright as words on the dark, or the paper around words on the light; behind a list it is half of that.
-    const BRIGHT: u8 = 0xD0;
-    let clear =
-        |screen: &Screen| screen.picture()[18..30].iter().flat_map(|row| &row[40..140]).flatten().any(|v| *v >= BRIGHT);
-    until("a window with nothing before it", screen, || clear(screen).then_some(()));
-    screen.xdotool(&["key", "ctrl+p"]);
-    until("the commands", screen, || (!clear(screen)).then_some(()));
-    screen.xdotool(&["type", "--delay", "25", name]);
-    screen.xdotool(&["key", "Return"]);
-    until("the end of the commands", screen, || clear(screen).then_some(()));
 }
 
 /// The recording that was written to since then; what is left of an attempt that was not over goes, and its name is free again.

@@ -1,12 +1,15 @@
-//! One real window under Xvfb, driven by a pointer and a keyboard that it does not know from a person's: a log is opened, a boundary
-//! dragged and put back, a diagnosis asked for by its name; the program is killed and goes on where it was.
+//! One real window under Xvfb, driven by a pointer and a keyboard that it does not know from a person's: a log is dropped on it, a boundary
+//! dragged and put back, a diagnosis asked for by its name, the model extended, felt before and after, and reported; the program is killed
+//! and goes on where it was.
 
+mod drop;
 mod lessons;
 mod screen;
 
 use app::ui::theme;
+use drop::drop_file;
 use estimator::segment::SystemState;
-use screen::{Screen, drawn, kept, start, until};
+use screen::{Screen, always_choose, command, drawn, kept, start, try_command, until};
 use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
@@ -43,8 +46,35 @@ fn drag(screen: &Screen, home: &Path, (left, right, y): (usize, usize, usize)) {
     until("the boundary", screen, || by_hand(home).then_some(()));
 }
 
+/// Extends the model once its causes are named, and takes the hand into what it is now and was before.
+fn extend_and_feel(screen: &Screen, home: &Path) {
+    until("the worlds before and after", screen, || {
+        screen.xdotool(&["key", "ctrl+e"]);
+        try_command(screen, "feel before and after").then_some(())
+    });
+    until("the trainer", screen, || (kept(home)["project"]["workspace"] == "train").then_some(()));
+    screen.keep("5-feel-after");
+    // What stands beside the workspaces says which world it is.
+    let named = |screen: &Screen| screen.picture()[14..36].iter().map(|row| row[520..900].to_vec()).collect::<Vec<_>>();
+    let after = named(screen);
+    screen.xdotool(&["key", "b"]);
+    until("the world before", screen, || (named(screen) != after).then_some(()));
+    screen.keep("5-feel-before");
+}
+
+/// Writes the report by its name in the list of commands.
+fn report(screen: &Screen, home: &Path) {
+    let page = home.join("report.html");
+    always_choose(home, &page);
+    command(screen, "write report");
+    until("the report", screen, || page.exists().then_some(()));
+    let text = std::fs::read_to_string(&page).expect("it can be read");
+    assert!(text.contains("</html>") && text.contains("blocks"), "{} letters", text.len());
+    screen.keep("5-report");
+}
+
 #[test]
-fn a_person_opens_drags_takes_back_diagnoses_and_survives_a_kill() {
+fn a_person_drops_drags_takes_back_diagnoses_extends_feels_reports_and_survives_a_kill() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let Some(screen) = Screen::or_skip(folder.path()) else { return };
     let home = folder.path().join("home");
@@ -68,10 +98,7 @@ fn a_person_opens_drags_takes_back_diagnoses_and_survives_a_kill() {
     screen.xdotool(&["key", "ctrl+2"]);
     until("Calibrate", &screen, || (kept(&home)["project"]["workspace"] == "calibrate").then_some(()));
 
-    // The path is typed: a portal for file dialogs is not there.
-    screen.xdotool(&["mousemove", "120", "114", "click", "1"]);
-    screen.xdotool(&["type", "--delay", "15", &log.to_string_lossy()]);
-    screen.xdotool(&["key", "Return"]);
+    drop_file(&screen, &log, [700, 500]);
     let recordings = |home: &Path| kept(home)["project"]["recordings"].as_array().map_or(0, Vec::len);
     until("the recording", &screen, || (recordings(&home) == 1).then_some(()));
     let states = until("the states", &screen, || screen.run_of(SystemState::HoldAboveGround));
@@ -82,16 +109,11 @@ fn a_person_opens_drags_takes_back_diagnoses_and_survives_a_kill() {
     screen.xdotool(&["key", "ctrl+z"]);
     until("the way back", &screen, || (!by_hand(&home)).then_some(()));
 
-    // Behind the list everything is darker.
-    let logo = |screen: &Screen| screen.picture()[24][80..140].to_vec();
-    let bright = logo(&screen);
-    screen.xdotool(&["key", "ctrl+p"]);
-    until("the commands", &screen, || (logo(&screen) != bright).then_some(()));
-    screen.keep("4-commands");
-    screen.xdotool(&["type", "--delay", "60", "diagnose"]);
-    screen.xdotool(&["key", "Return"]);
+    command(&screen, "diagnose");
     until("Diagnose", &screen, || (kept(&home)["project"]["workspace"] == "diagnose").then_some(()));
     screen.keep("5-diagnose");
+    extend_and_feel(&screen, &home);
+    report(&screen, &home);
 
     // `kill` sends SIGKILL: nothing is told, nothing can be tidied.
     drop(program);

@@ -64,6 +64,11 @@ impl Screen {
         screen
     }
 
+    /// Its name, as programs on it know it.
+    pub fn display(&self) -> &str {
+        &self.display
+    }
+
     pub fn xdotool(&self, arguments: &[&str]) {
         // What it waits for may never come.
         let status =
@@ -168,8 +173,29 @@ impl Drop for Program {
     }
 }
 
+/// A dialog program that always chooses the file named: what the window falls back to where no portal answers.
+pub fn always_choose(home: &Path, file: &Path) {
+    let dialog = dialogs(home).join("zenity");
+    fs::create_dir_all(dialogs(home)).expect("a folder");
+    fs::write(&dialog, format!("#!/bin/sh\necho '{}'\n", file.display())).expect("a script");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        fs::set_permissions(&dialog, fs::Permissions::from_mode(0o755)).expect("it may run");
+    }
+}
+
+fn dialogs(home: &Path) -> PathBuf {
+    home.join("dialogs")
+}
+
 pub fn start(screen: &Screen, home: &Path) -> Program {
     let mut program = Command::new(touchstone());
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let paths = std::iter::once(dialogs(home)).chain(std::env::split_paths(&path));
+    program.env("PATH", std::env::join_paths(paths).expect("names without colons"));
+    // No portal answers, whatever runs on this machine.
+    program.env("DBUS_SESSION_BUS_ADDRESS", "unix:path=/nonexistent").env_remove("XDG_RUNTIME_DIR");
     program.env("DISPLAY", &screen.display).env_remove("WAYLAND_DISPLAY");
     program.env("HOME", home).env("XDG_DATA_HOME", home.join("data")).env("XDG_CONFIG_HOME", home.join("config"));
     program.stdout(Stdio::null()).stderr(Stdio::null());
@@ -202,4 +228,36 @@ pub fn kept(home: &Path) -> Value {
 pub fn drawn(screen: &Screen) -> bool {
     let rows = screen.picture();
     rows.iter().flatten().any(|p| *p != rows[0][0])
+}
+
+/// Behind a list of commands everything is darker, the program's name too.
+fn dimmed(screen: &Screen) -> bool {
+    /// A part of a colour as bright as words on the dark, or the paper around words on the light; behind a list it is half of that.
+    const BRIGHT: u8 = 0xD0;
+    !screen.picture()[18..30].iter().flat_map(|row| &row[40..140]).flatten().any(|v| *v >= BRIGHT)
+}
+
+/// Chooses a command by its name.
+pub fn command(screen: &Screen, name: &str) {
+    until(&format!("the command {name}"), screen, || try_command(screen, name).then_some(()));
+}
+
+/// The same if it can be had now.
+pub fn try_command(screen: &Screen, name: &str) -> bool {
+    /// A list that has done what it was told is gone by then.
+    const LOOKS: u32 = 50;
+    until("a window with nothing before it", screen, || (!dimmed(screen)).then_some(()));
+    screen.xdotool(&["key", "ctrl+p"]);
+    until("the commands", screen, || dimmed(screen).then_some(()));
+    screen.keep("4-commands");
+    screen.xdotool(&["type", "--delay", "25", name]);
+    screen.xdotool(&["key", "Return"]);
+    for _ in 0..LOOKS {
+        if !dimmed(screen) {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    screen.xdotool(&["key", "Escape"]);
+    false
 }
