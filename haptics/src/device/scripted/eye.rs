@@ -23,6 +23,8 @@ pub(super) struct Frame {
     pub apart_m: f64,
     /// Force that both fingers press against each other, N.
     pub grip_n: f64,
+    /// Force that both fingers press down with, N.
+    pub down_n: f64,
     /// Centre, m, and angle, rad, of every block.
     pub bodies: [(Vec2, f64); MAX_BLOCKS],
 }
@@ -42,6 +44,7 @@ impl Eye {
             hand_m: Vec2::zeros(),
             apart_m: 0.0,
             grip_n: 0.0,
+            down_n: 0.0,
             bodies: [(Vec2::zeros(), 0.0); MAX_BLOCKS],
         };
         Self { frames: vec![nothing; FRAMES], newest: 0, delay_s: delay_s.clamp(0.0, LONGEST_DELAY_S) }
@@ -59,6 +62,7 @@ impl Eye {
         frame.hand_m = 0.5 * (left + right);
         frame.apart_m = right.x - left.x;
         frame.grip_n = state.tip_force_n[0].x.min(-state.tip_force_n[1].x);
+        frame.down_n = -(state.tip_force_n[0].y + state.tip_force_n[1].y);
         for (seen, body) in frame.bodies.iter_mut().zip(&state.bodies) {
             *seen = (body.center_m, body.angle_rad);
         }
