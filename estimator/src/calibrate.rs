@@ -7,7 +7,7 @@ use crate::constraint;
 use crate::estimate::{Fit, Parameter};
 use crate::identify::mechanism;
 use crate::segment::Segmentation;
-use crate::signal::task::{is_two_fingered, task_signals};
+use crate::signal::task::{Tip, is_two_fingered, task_signals};
 use haptics::Vec2;
 use haptics::law::object::MembraneLaw;
 use haptics::law::{CoulombFriction, Effect, Inertia, LoadFriction, ViscousFriction, Weight};
@@ -273,7 +273,11 @@ fn handle(recording: &Recording, segmentation: Option<&Segmentation>, center_m: 
     if !is_two_fingered(recording) {
         return fallback;
     }
-    let (Ok(signals), Some(segmentation)) = (task_signals(recording), segmentation) else { return fallback };
+    let fingers = || Some([Tip::of(recording, "1").ok()?, Tip::of(recording, "2").ok()?]);
+    let normal = || Some([recording.channel("fx1_N")?, recording.channel("fx2_N")?]);
+    let (Some([left, right]), Some([fx1, fx2]), Some(segmentation)) = (fingers(), normal(), segmentation) else {
+        return fallback;
+    };
     let held: Vec<usize> = segmentation
         .states
         .iter()
@@ -282,8 +286,8 @@ fn handle(recording: &Recording, segmentation: Option<&Segmentation>, center_m: 
         .collect();
     let Some(first) = held.first() else { return fallback };
     let n = held.len() as f64;
-    let width = held.iter().map(|i| signals.grip_width_m[*i]).sum::<f64>() / n;
-    let grip = held.iter().map(|i| signals.grip_force_n[*i]).sum::<f64>() / n;
-    let outward = signals.position[*first] - center_m;
+    let width = held.iter().map(|i| right.position(*i).x - left.position(*i).x).sum::<f64>() / n;
+    let grip = held.iter().map(|i| fx1[*i].min(-fx2[*i])).sum::<f64>() / n;
+    let outward = 0.5 * (left.position(*first) + right.position(*first)) - center_m;
     ((width + 2.0 * grip / pad_n_m).max(1e-3), outward.y.atan2(outward.x))
 }

@@ -23,7 +23,7 @@ use haptics::Vec2;
 use haptics::law::drive_forces;
 use haptics::recording::{Channel, Recording, Segment, Task};
 use haptics::world::Crank;
-use held::{Held, Smooth, held, smooth};
+use held::{Grasped, Held, Smooth, grasped, smooth};
 use motion::{Along, Rows, motions, motions_at};
 use report::{GripSignals, constraint, geometry_parameters, grip_parameters, warnings};
 use slipping::{slip_warning, without_slips};
@@ -57,10 +57,11 @@ pub fn fit_by(
     Ok((fit, seen.segmentation))
 }
 
-/// A segmentation, and what was asked for.
+/// A segmentation, what was asked for, and what is held by it.
 struct Segmented {
     asked: (Method, Option<Thresholds>, Vec<Segment>),
     found: Segmentation,
+    grasped: Arc<Grasped>,
 }
 
 /// What of a recording does not depend on how it is fitted: refits share it.
@@ -85,15 +86,16 @@ impl Prepared {
         method: Method,
         recording: &Recording,
         thresholds: Option<Thresholds>,
-    ) -> Result<Segmentation, EstimateError> {
+    ) -> Result<(Segmentation, Arc<Grasped>), EstimateError> {
         let mut kept = self.segmented.lock().unwrap_or_else(PoisonError::into_inner);
         let asked = (method, thresholds, recording.meta.segments.clone());
         if let Some(kept) = kept.as_ref().filter(|kept| kept.asked == asked) {
-            return Ok(kept.found.clone());
+            return Ok((kept.found.clone(), Arc::clone(&kept.grasped)));
         }
         let found = segment_by(method, recording, Some(Task::Crank), thresholds)?;
-        *kept = Some(Segmented { asked, found: found.clone() });
-        Ok(found)
+        let grasped = Arc::new(grasped(&self.smooth, &found));
+        *kept = Some(Segmented { asked, found: found.clone(), grasped: Arc::clone(&grasped) });
+        Ok((found, grasped))
     }
 }
 
@@ -113,8 +115,8 @@ fn see(
     prepared: &Prepared,
     thresholds: Option<Thresholds>,
 ) -> Result<Seen, EstimateError> {
-    let segmentation = prepared.segmentation(method, recording, thresholds)?;
-    let mut held = held(&prepared.smooth, &segmentation);
+    let (segmentation, grasped) = prepared.segmentation(method, recording, thresholds)?;
+    let mut held = Held::new(&grasped);
     if held.turning.len() < LEAST_SAMPLES {
         return Err(EstimateError::TooFewSamples {
             recording: recording.name.clone(),
@@ -178,7 +180,7 @@ fn describe(recording: &Recording, prepared: &Prepared, seen: &Seen) -> Result<F
 /// measured. Where nothing is held the prediction is the measured (free) force.
 pub fn needed_forces(crank: &Crank, recording: &Recording) -> Result<Vec<Channel>, EstimateError> {
     let segmentation = segment(recording, Some(Task::Crank), None)?;
-    let held = held(&Arc::new(smooth(recording)?), &segmentation);
+    let held = Held::new(&Arc::new(grasped(&Arc::new(smooth(recording)?), &segmentation)));
     let geometry = Geometry {
         center_m: crank.center_m,
         radius_m: crank.radius_m,
@@ -192,7 +194,7 @@ pub fn needed_forces(crank: &Crank, recording: &Recording) -> Result<Vec<Channel
     let needed = drive_forces(&crank.effects, &motions);
     let mut correction = vec![Vec2::zeros(); motions.len()];
     for i in &held.turning {
-        let outward = (held.position[*i] - crank.center_m).normalize();
+        let outward = (held.position()[*i] - crank.center_m).normalize();
         let along = Vec2::new(-outward.y, outward.x);
         correction[*i] = along * (needed[*i] - tangential[*i]);
     }

@@ -7,6 +7,7 @@
 
 use super::long_run::{inflation, long_run};
 use nalgebra::DMatrix;
+use std::ops::Range;
 
 /// The influences are summed in blocks down to about this many before the long-run variance is taken.
 const BLOCKS: usize = 192;
@@ -62,28 +63,100 @@ impl Solved<'_> {
         let block = (n / BLOCKS).max(1);
         let mut series = vec![vec![0.0; n.div_ceil(block)]; p];
         let (mut squares, mut fourths, mut power) = (vec![0.0; p], vec![0.0; p], vec![0.0; p]);
-        let (mut x, mut a) = (vec![0.0; p], vec![0.0; p]);
-        for i in 0..n {
-            let weight = self.weights.map_or(1.0, |w| w[i].max(0.0));
-            if weight == 0.0 {
-                continue;
-            }
-            for (x, (column, scale)) in x.iter_mut().zip(self.columns.iter().zip(self.scales)) {
-                *x = column[i] / scale;
-            }
-            for (j, a) in a.iter_mut().enumerate() {
-                *a = self.inverse.column(j).iter().zip(&x).map(|(m, x)| m * x).sum::<f64>() * weight;
-            }
-            let leverage: f64 = a.iter().zip(&x).map(|(a, x)| a * x).sum();
-            let residual = self.residuals[i] / (1.0 - leverage.clamp(0.0, LARGEST_LEVERAGE)).sqrt();
-            for j in 0..p {
-                series[j][i / block] += a[j] * residual;
-                power[j] += (a[j] * residual).powi(2);
-                squares[j] += a[j] * a[j];
-                fourths[j] += a[j].powi(4);
+        let mut lanes = Lanes { x: vec![[0.0; LANES]; p], a: vec![[0.0; LANES]; p], residual: [0.0; LANES] };
+        for first in (0..n).step_by(LANES) {
+            let end = (first + LANES).min(n);
+            self.fill(first..end, &mut lanes);
+            // Sums are added up sample by sample, whatever was computed side by side.
+            for (j, a) in lanes.a.iter().enumerate() {
+                for (i, (a, residual)) in (first..end).zip(a.iter().zip(&lanes.residual)) {
+                    let added = a * residual;
+                    series[j][i / block] += added;
+                    power[j] += added * added;
+                    squares[j] += a * a;
+                    fourths[j] += (a * a) * (a * a);
+                }
             }
         }
         let count = |j: usize| if fourths[j] > 0.0 { squares[j] * squares[j] / fourths[j] } else { n as f64 };
         Influence { samples: (0..p).map(count).collect(), series, power }
+    }
+
+    /// Scaled columns, influences and residuals of at most [`LANES`] samples. One of no weight has no influence.
+    fn fill(&self, samples: Range<usize>, lanes: &mut Lanes) {
+        let here = samples.len();
+        let mut weight = [1.0; LANES];
+        if let Some(weights) = self.weights {
+            weight.iter_mut().zip(&weights[samples.clone()]).for_each(|(to, w)| *to = w.max(0.0));
+        }
+        for (x, (column, scale)) in lanes.x.iter_mut().zip(self.columns.iter().zip(self.scales)) {
+            x.iter_mut().zip(&column[samples.clone()]).for_each(|(x, v)| *x = v / scale);
+        }
+        let mut leverage = [0.0; LANES];
+        for (j, a) in lanes.a.iter_mut().enumerate() {
+            *a = [0.0; LANES];
+            for (m, x) in self.inverse.column(j).iter().zip(&lanes.x) {
+                a.iter_mut().zip(x).for_each(|(a, x)| *a += m * x);
+            }
+            a.iter_mut().zip(&weight).for_each(|(a, w)| *a *= w);
+            leverage.iter_mut().zip(a.iter().zip(&lanes.x[j])).for_each(|(l, (a, x))| *l += a * x);
+        }
+        let residuals = lanes.residual[..here].iter_mut().zip(&self.residuals[samples]).zip(leverage);
+        residuals.for_each(|((to, r), leverage)| *to = r / (1.0 - leverage.clamp(0.0, LARGEST_LEVERAGE)).sqrt());
+    }
+}
+
+/// Samples that are computed side by side.
+const LANES: usize = 16;
+
+/// What [`Solved::fill`] makes of some samples: p scaled columns and influences, and the residuals with their leverage taken out.
+struct Lanes {
+    x: Vec<[f64; LANES]>,
+    a: Vec<[f64; LANES]>,
+    residual: [f64; LANES],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt as _, SeedableRng as _, rngs::StdRng};
+
+    /// The sums of the module's head, written out for one sample after the other.
+    fn written_out(solved: &Solved<'_>, j: usize) -> (f64, f64) {
+        let (mut sum, mut power) = (0.0, 0.0);
+        for i in 0..solved.residuals.len() {
+            let weight = solved.weights.map_or(1.0, |w| w[i].max(0.0));
+            let x = |k: usize| solved.columns[k][i] / solved.scales[k];
+            let p = solved.columns.len();
+            let a = |j: usize| weight * (0..p).map(|k| solved.inverse[(k, j)] * x(k)).sum::<f64>();
+            let leverage: f64 = (0..p).map(|k| a(k) * x(k)).sum();
+            let influence = a(j) * solved.residuals[i] / (1.0 - leverage.clamp(0.0, LARGEST_LEVERAGE)).sqrt();
+            sum += influence;
+            power += influence * influence;
+        }
+        (sum, power)
+    }
+
+    #[test]
+    fn influences_side_by_side_are_those_of_the_formula() {
+        let mut rng = StdRng::seed_from_u64(12);
+        for (n, weighted) in [(1, false), (15, true), (16, false), (17, true), (500, true), (1000, false)] {
+            let mut draw = |low: f64| -> Vec<f64> { (0..n).map(|_| rng.random_range(low..1.0)).collect() };
+            let columns = [draw(-1.0), draw(-1.0), draw(0.5)];
+            let residuals = draw(-1.0);
+            // A third of the samples takes no part.
+            let weights: Vec<f64> = draw(-0.5).into_iter().map(|w| w.max(0.0)).collect();
+            let inverse = DMatrix::from_fn(3, 3, |i, j| if i == j { 0.5 } else { 0.1 });
+            let weights = weighted.then_some(&weights[..]);
+            let (columns, scales) = (&columns[..], &[2.0, 3.0, 0.7][..]);
+            let solved = Solved { columns, scales, weights, residuals: &residuals, inverse: &inverse };
+            let found = solved.influence();
+            for j in 0..3 {
+                let (sum, power) = written_out(&solved, j);
+                let added: f64 = found.series[j].iter().sum();
+                assert!((added - sum).abs() < 1e-12 * f64::from(n), "{n}, {j}: {added} and {sum}");
+                assert!((found.power[j] / power - 1.0).abs() < 1e-12, "{n}, {j}: {} and {power}", found.power[j]);
+            }
+        }
     }
 }

@@ -45,6 +45,37 @@ pub struct LinearFit {
 /// of zero weight takes no part. Degenerate: fewer weighted samples than columns is an error; a zero or dependent column is
 /// not, its parameter comes back as not identified. Every fit passes here: an unwanted one ends ([`wanted`]).
 pub fn least_squares(columns: &[Vec<f64>], rhs: &[f64], weights: Option<&[f64]>) -> Result<LinearFit, EstimateError> {
+    Ok(least_squares_values(columns, rhs, weights)?.with_errors(columns, weights))
+}
+
+/// What [`least_squares`] finds, without the errors: telling those takes most of its time, and a search for a shape asks for them only
+/// at its end.
+#[derive(Clone, Debug)]
+pub struct Values {
+    /// As in [`LinearFit`].
+    pub values: Vec<f64>,
+    /// As in [`LinearFit`].
+    pub residuals: Vec<f64>,
+    /// As in [`LinearFit`].
+    pub condition: f64,
+    /// As in [`LinearFit`].
+    pub rms: f64,
+    /// As in [`LinearFit`].
+    pub identified: Vec<bool>,
+    /// Norms of the weighted columns.
+    scales: Vec<f64>,
+    /// Inverse of the normal matrix of the scaled columns.
+    inverse: DMatrix<f64>,
+    /// Samples of a weight above zero.
+    used: usize,
+}
+
+/// The values alone of [`least_squares`], to the bit.
+pub fn least_squares_values(
+    columns: &[Vec<f64>],
+    rhs: &[f64],
+    weights: Option<&[f64]>,
+) -> Result<Values, EstimateError> {
     wanted::look()?;
     check(columns, rhs, weights)?;
     let (n, p) = (rhs.len(), columns.len());
@@ -74,37 +105,46 @@ pub fn least_squares(columns: &[Vec<f64>], rhs: &[f64], weights: Option<&[f64]>)
     let weight = |i: usize| weights.map_or(1.0, |w| w[i].max(0.0));
     let weight_sum: f64 = (0..n).map(weight).sum();
     let rms = ((0..n).map(|i| weight(i) * residuals[i].powi(2)).sum::<f64>() / weight_sum).sqrt();
+    Ok(Values { values, residuals, condition, rms, identified, scales, inverse, used })
+}
 
-    let solved = Solved { columns, scales: &scales, weights, residuals: &residuals, inverse: &inverse };
-    let (mut covariance, correlation) = solved.covariance();
-    let effective_samples = (used as f64 / correlation).clamp(1.0, used as f64);
-    // Never below what independent samples would give: an estimate of the correlation from few of them scatters.
-    let freedom = (used as f64 - p as f64).max(1.0);
-    let variance = weight_sum_of_squares(&residuals, weights) / freedom * inflation(freedom);
-    let raise: Vec<f64> =
-        (0..p).map(|j| (inverse[(j, j)] * variance / covariance[(j, j)]).max(1.0).sqrt()).map(finite_or_one).collect();
-    for (i, j) in (0..p).flat_map(|i| (0..p).map(move |j| (i, j))) {
-        covariance[(i, j)] *= raise[i] * raise[j];
-    }
-    for (i, j) in (0..p).flat_map(|i| (0..p).map(move |j| (i, j))) {
-        covariance[(i, j)] /= scales[i] * scales[j];
-        if !(identified[i] && identified[j]) {
-            covariance[(i, j)] = if i == j { f64::INFINITY } else { 0.0 };
+impl Values {
+    /// The whole answer; `columns` and `weights` are those that the values came from.
+    #[must_use]
+    pub fn with_errors(self, columns: &[Vec<f64>], weights: Option<&[f64]>) -> LinearFit {
+        let Self { values, residuals, condition, rms, identified, scales, inverse, used } = self;
+        let p = columns.len();
+        let solved = Solved { columns, scales: &scales, weights, residuals: &residuals, inverse: &inverse };
+        let (mut covariance, correlation) = solved.covariance();
+        let effective_samples = (used as f64 / correlation).clamp(1.0, used as f64);
+        // Never below what independent samples would give: an estimate of the correlation from few of them scatters.
+        let freedom = (used as f64 - p as f64).max(1.0);
+        let variance = weight_sum_of_squares(&residuals, weights) / freedom * inflation(freedom);
+        let raise = |j: usize| (inverse[(j, j)] * variance / covariance[(j, j)]).max(1.0).sqrt();
+        let raise: Vec<f64> = (0..p).map(raise).map(finite_or_one).collect();
+        for (i, j) in (0..p).flat_map(|i| (0..p).map(move |j| (i, j))) {
+            covariance[(i, j)] *= raise[i] * raise[j];
+        }
+        for (i, j) in (0..p).flat_map(|i| (0..p).map(move |j| (i, j))) {
+            covariance[(i, j)] /= scales[i] * scales[j];
+            if !(identified[i] && identified[j]) {
+                covariance[(i, j)] = if i == j { f64::INFINITY } else { 0.0 };
+            }
+        }
+        let std_errors = (0..p).map(|j| covariance[(j, j)].max(0.0).sqrt()).collect();
+        let normal_inverse = DMatrix::from_fn(p, p, |i, j| inverse[(i, j)] / (scales[i] * scales[j]));
+        LinearFit {
+            values,
+            covariance,
+            std_errors,
+            residuals,
+            condition,
+            rms,
+            identified,
+            effective_samples,
+            normal_inverse,
         }
     }
-    let std_errors = (0..p).map(|j| covariance[(j, j)].max(0.0).sqrt()).collect();
-    let normal_inverse = DMatrix::from_fn(p, p, |i, j| inverse[(i, j)] / (scales[i] * scales[j]));
-    Ok(LinearFit {
-        values,
-        covariance,
-        std_errors,
-        residuals,
-        condition,
-        rms,
-        identified,
-        effective_samples,
-        normal_inverse,
-    })
 }
 
 /// The noise in the columns is known to about this share (a white level read from its upper band).

@@ -6,7 +6,7 @@
 //! it (Bayesian model averaging, Hoeting et al. 1999), and what they disagree about is part of the error.
 
 use super::bootstrap::block_bootstrap_within;
-use super::linear::{LinearFit, least_squares};
+use super::linear::{LinearFit, Values, least_squares_values};
 use crate::estimate::EstimateError;
 use crate::segment::threshold::percentile;
 use haptics::law::contact::{Cushion, Densification, ONSET, StiffnessHardening};
@@ -55,8 +55,15 @@ impl Grips {
         (0..self.objects()).map(held).chain([depth, self.rate.clone()]).collect()
     }
 
-    fn regress(&self, depth: Vec<f64>) -> Result<LinearFit, EstimateError> {
-        least_squares(&self.columns(depth), &self.width, None)
+    /// How deep a pad of 1 N/m is pressed that gives like `cushion` (none: a linear spring).
+    fn depth(&self, cushion: Option<&Cushion>) -> Vec<f64> {
+        cushion.map_or_else(|| self.force.clone(), |c| self.force.iter().map(|f| c.depth_m(*f)).collect())
+    }
+
+    /// What pads that give like `cushion` explain, and the columns of that.
+    fn regress(&self, cushion: Option<&Cushion>) -> Result<(Values, Vec<Vec<f64>>), EstimateError> {
+        let columns = self.columns(self.depth(cushion));
+        Ok((least_squares_values(&columns, &self.width, None)?, columns))
     }
 }
 
@@ -143,12 +150,23 @@ impl Bend {
 
 /// One way in which pads may give, with what speaks for it.
 struct Model {
-    fit: LinearFit,
+    fit: Values,
+    columns: Vec<Vec<f64>>,
     /// Logarithm of its probability before the recording, up to a constant.
     before: f64,
     bic: f64,
     bent: bool,
 }
+
+impl Model {
+    /// Logarithm of its probability, up to a constant.
+    fn score(&self) -> f64 {
+        self.before - 0.5 * self.bic
+    }
+}
+
+/// A model that is this many times less likely than the best one changes no digit of an average.
+const NO_DIGIT: f64 = 1e-20;
 
 /// Width and give of one hold; `None` when the force does not tell the give from the width.
 pub(super) fn width_over_force(grip: &Grip<'_>) -> Result<Option<PadFit>, EstimateError> {
@@ -171,12 +189,14 @@ pub(super) fn width_over_force(grip: &Grip<'_>) -> Result<Option<PadFit>, Estima
 
 /// The weighted answer of all models, with one give for all holds; `None` when the force does not tell the give from the widths.
 pub(super) fn widths_over_force(grips: &Grips) -> Result<Option<Pressed>, EstimateError> {
-    let line = grips.regress(grips.force.clone())?;
+    let (fit, columns) = grips.regress(None)?;
+    let line = fit.clone().with_errors(&columns, None);
     if !line.identified.iter().take(grips.objects() + 1).all(|i| *i) {
         return Ok(None);
     }
     let independent = line.effective_samples.max(2.0);
-    let mut models = vec![Model { bic: bic(&line, independent), fit: line, before: SIMPLER.ln(), bent: false }];
+    let resampled = block_bootstrap_within(&columns, &grips.width, None, &line, &grips.stretches);
+    let mut models = vec![Model { bic: bic(fit.rms, independent), fit, columns, before: SIMPLER.ln(), bent: false }];
     let (least_n, largest_n) =
         grips.force.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), f| (low.min(f.max(0.0)), high.max(*f)));
     if largest_n > 0.0 {
@@ -184,9 +204,7 @@ pub(super) fn widths_over_force(grips: &Grips) -> Result<Option<Pressed>, Estima
             models.extend(bent_models(grips, bend, bend.range(least_n, largest_n), independent)?);
         }
     }
-    let columns = grips.columns(grips.force.clone());
-    let resampled = block_bootstrap_within(&columns, &grips.width, None, &models[0].fit, &grips.stretches);
-    Ok(Some(average(&models, grips, resampled.as_deref())))
+    Ok(Some(average(models, grips, &line, resampled.as_deref())))
 }
 
 /// Stretches of about the usual grip and of squeezes beside it: where few squeezes show all of the give, every draw must have them.
@@ -219,9 +237,8 @@ fn bent_models(
         let share = ((to / from).ln() / (whole * TRIALS as f64)).ln();
         let trial = |k: usize| {
             let number = place(from, to, k);
-            let cushion = bend.cushion(number);
-            let fit = grips.regress(grips.force.iter().map(|f| cushion.depth_m(*f)).collect())?;
-            Ok((number, Model { bic: bic(&fit, independent), fit, before: share, bent: true }))
+            let (fit, columns) = grips.regress(Some(&bend.cushion(number)))?;
+            Ok((number, Model { bic: bic(fit.rms, independent), fit, columns, before: share, bent: true }))
         };
         (0..TRIALS).map(trial).collect()
     };
@@ -233,19 +250,18 @@ fn bent_models(
     Ok(outside.chain(row(from, to)?).map(|(_, model)| model).collect())
 }
 
-/// `resampled`: errors of the linear spring's columns by resampling. What bent pads have more of scatter, they have there, too.
-fn average(models: &[Model], grips: &Grips, resampled: Option<&[f64]>) -> Pressed {
-    let score = |m: &Model| m.before - 0.5 * m.bic;
-    let most = models.iter().map(score).fold(f64::NEG_INFINITY, f64::max);
-    let weights: Vec<f64> = models.iter().map(|m| (score(m) - most).exp()).collect();
-    let total: f64 = weights.iter().sum();
-    let part = |f: &dyn Fn(&Model) -> f64| models.iter().zip(&weights).map(|(m, w)| w * f(m)).sum::<f64>() / total;
+/// `line`: the linear spring's fit, and `resampled`: errors of its columns by resampling. What bent pads have more of scatter, they
+/// have there, too.
+fn average(models: Vec<Model>, grips: &Grips, line: &LinearFit, resampled: Option<&[f64]>) -> Pressed {
+    let likely = likely(models);
+    let total: f64 = likely.iter().map(|m| m.weight).sum();
+    let part = |f: &dyn Fn(&Likely) -> f64| likely.iter().map(|m| m.weight * f(m)).sum::<f64>() / total;
     let of = |column: usize| {
         let mean = part(&|m| m.fit.values[column]);
         let variance = part(&|m| m.fit.std_errors[column].powi(2) + (m.fit.values[column] - mean).powi(2));
         let apart = part(&|m| (m.fit.values[column] - mean).powi(2));
         let scatter = part(&|m| m.fit.std_errors[column].powi(2)).sqrt();
-        let drawn = resampled.map(|r| (r[column] * scatter / models[0].fit.std_errors[column]).hypot(apart.sqrt()));
+        let drawn = resampled.map(|r| (r[column] * scatter / line.std_errors[column]).hypot(apart.sqrt()));
         (mean, variance.sqrt(), drawn)
     };
     let rows = |object: usize| grips.held.iter().filter(|h| **h == object).count();
@@ -261,13 +277,30 @@ fn average(models: &[Model], grips: &Grips, resampled: Option<&[f64]>) -> Presse
         resampled: resampled.map(|r| 0.5 * r),
         rows: grips.width.len(),
     };
-    Pressed { widths: (0..grips.objects()).map(width).collect(), give, bent: part(&|m| f64::from(u8::from(m.bent))) }
+    let widths = (0..grips.objects()).map(width).collect();
+    Pressed { widths, give, bent: part(&|m| f64::from(u8::from(m.bent))) }
+}
+
+/// A model that counts.
+struct Likely {
+    /// Its probability, up to a factor.
+    weight: f64,
+    fit: LinearFit,
+    bent: bool,
+}
+
+/// The models that change a digit of an average. Errors cost more than values: only these are asked for theirs.
+fn likely(models: Vec<Model>) -> Vec<Likely> {
+    let most = models.iter().map(Model::score).fold(f64::NEG_INFINITY, f64::max);
+    let weighed = models.into_iter().map(|m| ((m.score() - most).exp(), m));
+    let of = |(weight, m): (f64, Model)| Likely { weight, fit: m.fit.with_errors(&m.columns, None), bent: m.bent };
+    weighed.filter(|(weight, _)| *weight > NO_DIGIT).map(of).collect()
 }
 
 /// BIC counted in independent samples: neighbours that repeat each other are no new evidence. The bend itself is averaged over,
 /// not counted.
-fn bic(fit: &LinearFit, independent: f64) -> f64 {
-    independent * (fit.rms * fit.rms).max(1e-300).ln()
+fn bic(rms: f64, independent: f64) -> f64 {
+    independent * (rms * rms).max(1e-300).ln()
 }
 
 #[cfg(test)]

@@ -96,6 +96,37 @@ pub fn times(recording: &Recording) -> Vec<f64> {
     recording.time_s.clone().unwrap_or_else(|| (0..recording.len()).map(|i| i as f64).collect())
 }
 
+/// Where one tip is, sample by sample: for those who need no series of it.
+pub struct Tip<'a> {
+    columns: [&'a [f64]; 2],
+    /// The finger whose angles the columns are; `None` where they are the tip's own.
+    finger: Option<Finger>,
+}
+
+impl<'a> Tip<'a> {
+    /// Of finger `"1"`, `"2"`, or of the single tool `""`.
+    pub fn of(recording: &'a Recording, finger: &str) -> Result<Self, EstimateError> {
+        let pair = |a: &str, b: &str| Some([recording.channel(a)?, recording.channel(b)?]);
+        if let Some(columns) = pair(&format!("x{finger}_m"), &format!("y{finger}_m")) {
+            return Ok(Self { columns, finger: None });
+        }
+        let columns = pair(&format!("qb{finger}_rad"), &format!("qt{finger}_rad"))
+            .ok_or_else(|| missing(recording, &format!("x{finger}_m")))?;
+        let geometry = recording.meta.hand().fingers[usize::from(finger == "2")];
+        Ok(Self { columns, finger: Some(geometry) })
+    }
+
+    /// In the world, m.
+    pub fn position(&self, sample: usize) -> Vec2 {
+        let [a, b] = self.columns.map(|c| c[sample]);
+        self.finger.map_or(Vec2::new(a, b), |f| f.tip_in_world(JointAngles { bottom_rad: a, top_rad: b }))
+    }
+
+    fn positions(&self) -> Vec<Vec2> {
+        (0..self.columns[0].len()).map(|i| self.position(i)).collect()
+    }
+}
+
 /// Tip series of finger `"1"`, `"2"`, or of the single tool `""`, from tip columns or joint angles.
 pub fn tip_series(recording: &Recording, finger: &str) -> Result<TipSeries, EstimateError> {
     let column = |name: String| recording.channel(&name);
@@ -103,18 +134,16 @@ pub fn tip_series(recording: &Recording, finger: &str) -> Result<TipSeries, Esti
     let zip = |(x, y): (&[f64], &[f64])| x.iter().zip(y).map(|(x, y)| Vec2::new(*x, *y)).collect::<Vec<_>>();
 
     let force = pair(format!("fx{finger}_N"), format!("fy{finger}_N")).map(zip);
-    if let Some(position) = pair(format!("x{finger}_m"), format!("y{finger}_m")).map(zip) {
+    let tip = Tip::of(recording, finger)?;
+    let position = tip.positions();
+    let Some(geometry) = tip.finger else {
         let measured = pair(format!("vx{finger}_m_s"), format!("vy{finger}_m_s")).map(zip);
         let velocity = measured.or_else(|| derived(recording, &position));
         return Ok(TipSeries { position, velocity, force });
-    }
-    let angles = pair(format!("qb{finger}_rad"), format!("qt{finger}_rad"))
-        .ok_or_else(|| missing(recording, &format!("x{finger}_m")))?;
-    let hand = recording.meta.hand();
-    let geometry = hand.fingers[usize::from(finger == "2")];
+    };
+    let [bottom, top] = tip.columns;
     let joints: Vec<JointAngles> =
-        angles.0.iter().zip(angles.1).map(|(b, t)| JointAngles { bottom_rad: *b, top_rad: *t }).collect();
-    let position: Vec<Vec2> = joints.iter().map(|q| geometry.tip_in_world(*q)).collect();
+        bottom.iter().zip(top).map(|(b, t)| JointAngles { bottom_rad: *b, top_rad: *t }).collect();
     let rates = pair(format!("dqb{finger}_rad_s"), format!("dqt{finger}_rad_s")).map(zip);
     let velocity = rates.map(|r| tip_velocities(&geometry, &joints, &r)).or_else(|| derived(recording, &position));
     Ok(TipSeries { position, velocity, force })

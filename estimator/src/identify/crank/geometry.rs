@@ -3,7 +3,7 @@
 use super::SIGNIFICANT;
 use super::held::Held;
 use crate::estimate::EstimateError;
-use crate::identify::linear::{LinearFit, least_squares};
+use crate::identify::linear::{Values, least_squares, least_squares_values};
 use crate::signal::task::half_width;
 use haptics::Vec2;
 
@@ -26,29 +26,33 @@ pub(super) struct Geometry {
 pub(super) fn geometry(held: &Held) -> Result<Geometry, EstimateError> {
     // Smoothed samples closer than half their window say nothing new.
     let rows: Vec<usize> = held.turning.iter().copied().step_by(half_width(&held.time_s)).collect();
-    let points: Vec<Vec2> = rows.iter().map(|i| held.position[*i]).collect();
+    let points: Vec<Vec2> = rows.iter().map(|i| held.position()[*i]).collect();
     let forces: Vec<Vec2> = rows.iter().map(|i| held.force[*i]).collect();
     let mut center = kasa(&points)?;
     let mut give = [true, true];
     let mut solved = None;
     for _ in 0..12 {
-        let (fit, columns) = radius_fit(&points, &forces, center, give)?;
+        let (fit, columns, places) = radius_fit(&points, &forces, center, give)?;
         let step = Vec2::new(fit.values[1], fit.values[2]);
         center += step;
         // A give stays in the fit even when it is small: leaving it out would hide what it does to the centre, because the
         // steady part of the load (the weight) moves the tips as a shifted centre would.
-        let keep = |k: usize| columns[k].is_some_and(|j| fit.identified[j]);
+        let keep = |k: usize| places[k].is_some_and(|j| fit.identified[j]);
         let next = [give[0] && keep(0), give[1] && keep(1)];
         let settled = step.norm() < 1e-9 && next == give;
         give = next;
-        solved = Some((fit, columns));
+        solved = Some((fit, columns, places));
         if settled {
             break;
         }
     }
-    let Some((fit, columns)) = solved else { return Err(EstimateError::Other("no circle was fitted".to_owned())) };
-    let value = |k: usize| columns[k].map_or(0.0, |j| fit.values[j]);
-    let error = |k: usize| columns[k].map_or(0.0, |j| fit.std_errors[j]);
+    let Some((fit, columns, places)) = solved else {
+        return Err(EstimateError::Other("no circle was fitted".to_owned()));
+    };
+    // Only the last step's errors are asked for.
+    let fit = fit.with_errors(&columns, None);
+    let value = |k: usize| places[k].map_or(0.0, |j| fit.values[j]);
+    let error = |k: usize| places[k].map_or(0.0, |j| fit.std_errors[j]);
     Ok(Geometry {
         center_m: center,
         radius_m: fit.values[0],
@@ -69,18 +73,15 @@ fn kasa(points: &[Vec2]) -> Result<Vec2, EstimateError> {
         vec![1.0; points.len()],
     ];
     let squares: Vec<f64> = points.iter().map(|p| (p - mean).norm_squared()).collect();
-    let fit = least_squares(&columns, &squares, None)?;
+    let fit = least_squares_values(&columns, &squares, None)?;
     Ok(mean + Vec2::new(fit.values[0], fit.values[1]))
 }
 
-/// Linearised radius residual at `center`: columns 1, cos θ, sin θ and the wanted gives. The second part of the answer says
-/// which column carries the give along x and along y.
-fn radius_fit(
-    points: &[Vec2],
-    forces: &[Vec2],
-    center: Vec2,
-    give: [bool; 2],
-) -> Result<(LinearFit, [Option<usize>; 2]), EstimateError> {
+/// A fit, its columns, and which of them carry the give along x and along y.
+type RadiusFit = (Values, Vec<Vec<f64>>, [Option<usize>; 2]);
+
+/// Linearised radius residual at `center`: columns 1, cos θ, sin θ and the wanted gives.
+fn radius_fit(points: &[Vec2], forces: &[Vec2], center: Vec2, give: [bool; 2]) -> Result<RadiusFit, EstimateError> {
     let outward: Vec<Vec2> = points.iter().map(|p| (p - center).normalize()).collect();
     let radius: Vec<f64> = points.iter().map(|p| (p - center).norm()).collect();
     let mut columns =
@@ -92,7 +93,7 @@ fn radius_fit(
             columns.push(outward.iter().zip(forces).map(|(n, f)| n[k] * f[k]).collect());
         }
     }
-    Ok((least_squares(&columns, &radius, None)?, place))
+    Ok((least_squares_values(&columns, &radius, None)?, columns, place))
 }
 
 /// Radial stiffness if the give is the same in all directions: r = R + Fn/k.

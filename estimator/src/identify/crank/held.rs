@@ -21,7 +21,7 @@ const LEAST_FREE_S: f64 = 0.25;
 pub(super) struct Smooth {
     pub(super) time_s: Vec<f64>,
     /// Mean of the tips, m.
-    position: Vec<Vec2>,
+    mean_of_tips: Vec<Vec2>,
     pub(super) velocity: Vec<Vec2>,
     /// Derivative of the velocity, m/s².
     pub(super) acceleration: Vec<Vec2>,
@@ -38,11 +38,9 @@ pub(super) struct Smooth {
     pub(super) resolution_n: f64,
 }
 
-/// The handle's motion and force while it is held.
-pub(super) struct Held {
+/// The handle's motion and force while it is held, with what the states say of them. Fits by the same states share it.
+pub(super) struct Grasped {
     smooth: Arc<Smooth>,
-    /// Mean of the tips, m; slips are taken out of it.
-    pub(super) position: Vec<Vec2>,
     /// Net force on the handle, N, bias taken out.
     pub(super) force: Vec<Vec2>,
     /// Samples that turn (the rest is held still or let go).
@@ -51,7 +49,7 @@ pub(super) struct Held {
     pub(super) bias_error_n: Option<f64>,
 }
 
-impl Deref for Held {
+impl Deref for Grasped {
     type Target = Smooth;
 
     fn deref(&self) -> &Smooth {
@@ -59,7 +57,39 @@ impl Deref for Held {
     }
 }
 
-pub(super) fn held(smooth: &Arc<Smooth>, segmentation: &Segmentation) -> Held {
+/// [`Grasped`], and the slips of one fit taken out.
+pub(super) struct Held {
+    grasped: Arc<Grasped>,
+    /// Positions without slips; `None` where there were none.
+    without_slips: Option<Vec<Vec2>>,
+}
+
+impl Held {
+    pub(super) fn new(grasped: &Arc<Grasped>) -> Self {
+        Self { grasped: Arc::clone(grasped), without_slips: None }
+    }
+
+    /// Mean of the tips, m; slips are taken out of it.
+    pub(super) fn position(&self) -> &[Vec2] {
+        self.without_slips.as_deref().unwrap_or(&self.grasped.smooth.mean_of_tips)
+    }
+
+    /// Takes a slip by `shift` out of the positions from `sample` on.
+    pub(super) fn move_back(&mut self, sample: usize, shift: Vec2) {
+        let positions = self.without_slips.get_or_insert_with(|| self.grasped.smooth.mean_of_tips.clone());
+        positions.iter_mut().skip(sample).for_each(|p| *p -= shift);
+    }
+}
+
+impl Deref for Held {
+    type Target = Grasped;
+
+    fn deref(&self) -> &Grasped {
+        &self.grasped
+    }
+}
+
+pub(super) fn grasped(smooth: &Arc<Smooth>, segmentation: &Segmentation) -> Grasped {
     let force = &smooth.measured_force;
     let free: Vec<usize> = segmentation
         .states
@@ -80,8 +110,7 @@ pub(super) fn held(smooth: &Arc<Smooth>, segmentation: &Segmentation) -> Held {
         .filter_map(|i| i.subtask.as_deref())
         .flat_map(|subtask| segmentation.samples_of(subtask))
         .collect();
-    Held {
-        position: smooth.position.clone(),
+    Grasped {
         force: smooth.filtered_force.iter().map(|f| f - bias).collect(),
         turning,
         bias_error_n,
@@ -135,7 +164,7 @@ pub(super) fn smooth(recording: &Recording) -> Result<Smooth, EstimateError> {
         velocity_noise,
         resolution_m: resolution(&position),
         resolution_n: resolution(&force),
-        position: position_smooth,
+        mean_of_tips: position_smooth,
         velocity: velocity_smooth,
         acceleration,
         measured_force: force,

@@ -2,15 +2,17 @@
 
 use super::frame::{Frame, Handled, LOW_PASS_HALF_S, blur};
 use super::geometry::Geometry;
-use super::held::Held;
+use super::held::{Grasped, Held};
 use super::laws::{LAWS, column};
+use haptics::Vec2;
 use haptics::law::Motion;
 use haptics::recording::Recording;
 use rayon::prelude::*;
 
 /// Turns the motion of a held handle into motion along its circle, sample by sample.
 pub(super) struct Along<'a> {
-    held: &'a Held,
+    held: &'a Grasped,
+    position: &'a [Vec2],
     frame: Frame,
 }
 
@@ -18,14 +20,18 @@ impl<'a> Along<'a> {
     pub(super) fn new(recording: &Recording, held: &'a Held, geometry: &'a Geometry) -> Self {
         let up = if recording.meta.up.as_deref() == Some("-y") { -1.0 } else { 1.0 };
         let (center_m, give_m_per_n) = (geometry.center_m, geometry.give_m_per_n);
-        Self { held, frame: Frame { center_m, give_m_per_n, up, blur_m_s: blur(held.velocity_noise) } }
+        Self {
+            held,
+            position: held.position(),
+            frame: Frame { center_m, give_m_per_n, up, blur_m_s: blur(held.velocity_noise) },
+        }
     }
 
     /// The motion (its position left out) and the tangential force, N, at a sample; they mean something while it is held.
     fn at(&self, i: usize) -> (Motion, f64) {
         let held = self.held;
         let handled = Handled {
-            position: held.position[i],
+            position: self.position[i],
             velocity: held.velocity[i],
             acceleration: held.acceleration[i],
             force: held.force[i],
@@ -52,7 +58,7 @@ pub(super) fn motions_at(
     let mut angle_before = 0.0;
     samples
         .map(|i| {
-            let outward = along.frame.outward(held.position[i], held.force[i]);
+            let outward = along.frame.outward(along.position[i], held.force[i]);
             let wrapped = outward.y.atan2(outward.x);
             let turns = ((angle_before - wrapped) / std::f64::consts::TAU).round();
             let angle = wrapped + turns * std::f64::consts::TAU;
@@ -81,7 +87,7 @@ fn half(time_s: &[f64]) -> usize {
 
 /// Samples a window apart whose whole window turns: elsewhere the equation does not hold, and rows closer than the filter's window
 /// share samples (parallel decimation).
-fn inside(held: &Held, half: usize) -> Vec<usize> {
+fn inside(held: &Grasped, half: usize) -> Vec<usize> {
     let samples = held.time_s.len();
     let mut turns = vec![0_u32; samples + 1];
     for i in &held.turning {

@@ -147,7 +147,7 @@ pub(super) fn constraint(
     let force = motions.iter().map(|m| m.normal_force_n - weight * angle(m).sin()).sum::<f64>() / motions.len() as f64;
     let (low, high) = motions.iter().map(angle).fold((f64::MAX, f64::MIN), |(low, high), a| (low.min(a), high.max(a)));
     let [ex, ey, er] = geometry.errors_m.map(|e| e.hypot(held.resolution_m));
-    let points: Vec<Vec2> = held.turning.iter().map(|i| held.position[*i]).collect();
+    let points: Vec<Vec2> = held.turning.iter().map(|i| held.position()[*i]).collect();
     let by_normals = normals_center(&points, THESIS_SAMPLES);
     let (rigid, yielding) = rigidity(geometry, parameters);
     let tested = existence(&existence_rows(recording, held));

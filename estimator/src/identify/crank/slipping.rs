@@ -26,7 +26,7 @@ pub(super) fn without_slips(held: &mut Held) -> Result<(Geometry, Vec<Slip>), Es
         }
         for slip in &found {
             let shift = Vec2::new(slip.displacement_m[0], slip.displacement_m[1]);
-            held.position.iter_mut().skip(slip.sample).for_each(|p| *p -= shift);
+            held.move_back(slip.sample, shift);
         }
         slips.extend(found);
         fitted = geometry(held)?;
@@ -39,7 +39,8 @@ pub(super) fn without_slips(held: &mut Held) -> Result<(Geometry, Vec<Slip>), Es
 fn find(held: &Held, geometry: &Geometry) -> Vec<Slip> {
     let stride = (4 * half_width(&held.time_s)).max(2 * CUBIC_HALF) + 1;
     let rows: Vec<usize> = held.turning.iter().copied().step_by(stride).collect();
-    let arm = |i: usize| held.position[i] - geometry.center_m;
+    let position = held.position();
+    let arm = |i: usize| position[i] - geometry.center_m;
     let outward: Vec<Vec2> = rows.iter().map(|&i| arm(i).normalize()).collect();
     let column =
         |of: &dyn Fn(usize, Vec2) -> f64| -> Vec<f64> { rows.iter().zip(&outward).map(|(&i, n)| of(i, *n)).collect() };
