@@ -3,12 +3,13 @@
 use super::actions::{self, Action};
 use super::autosave::{Autosave, State};
 use super::dock::{Dock, Panels};
+use super::icons::Icon;
 use super::palette::{self, CommandPalette};
 use super::session::{Session, Tone, Workspace};
 use super::theme::{self, space};
 use super::tour::{self, Tour};
 use super::trainer::WorldChoice;
-use super::widgets::segmented;
+use super::widgets::{icon_button, segmented};
 use super::{menu, messages, restore};
 use egui::{Align, CentralPanel, Frame, Layout, Margin, Panel as Side, RichText, Stroke, Ui};
 
@@ -172,15 +173,16 @@ impl App {
     fn tools(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
         let dark = ui.visuals().dark_mode;
-        if ui.button(if dark { "Light" } else { "Dark" }).on_hover_text("Switch the theme").clicked() {
+        let (icon, name) = if dark { (Icon::Light, "Light") } else { (Icon::Dark, "Dark") };
+        if icon_button(ui, icon, true, name).on_hover_text("Switch the theme").clicked() {
             Action::Theme.run(&ctx, self);
         }
         let free = self.session.mapping.is_none();
-        let open = ui.add_enabled(free, egui::Button::new("Open log …"));
+        let open = ui.add_enabled(free, egui::Button::new((Icon::Open, "Open log …")));
         if open.on_hover_text("Ctrl+O, or drop a file on the window").clicked() {
             Action::OpenLog.run(&ctx, self);
         }
-        let find = ui.add_enabled(free, egui::Button::new("Find …"));
+        let find = ui.add_enabled(free, egui::Button::new((Icon::Find, "Find …")));
         if find.on_hover_text("Every command by its name (Ctrl+P)").clicked() {
             Action::Palette.run(&ctx, self);
         }
@@ -194,10 +196,10 @@ impl App {
         if !undo && !redo || self.session.workspace == Workspace::Train {
             return;
         }
-        if ui.add_enabled(redo, egui::Button::new("Redo")).on_hover_text("Ctrl+Shift+Z").clicked() {
+        if icon_button(ui, Icon::Redo, redo, "Redo").on_hover_text("Redo (Ctrl+Shift+Z)").clicked() {
             self.session.redo();
         }
-        if ui.add_enabled(undo, egui::Button::new("Undo")).on_hover_text("Ctrl+Z").clicked() {
+        if icon_button(ui, Icon::Undo, undo, "Undo").on_hover_text("Undo (Ctrl+Z)").clicked() {
             self.session.undo();
         }
     }
@@ -213,7 +215,7 @@ impl App {
             return;
         };
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(100));
-        if ui.button("Cancel").on_hover_text(format!("End this: {}", progress.what)).clicked() {
+        if ui.button((Icon::Close, "Cancel")).on_hover_text(format!("End this: {}", progress.what)).clicked() {
             self.session.give_up(progress.kind);
         }
         match progress.share {

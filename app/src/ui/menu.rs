@@ -2,15 +2,16 @@
 
 use super::actions::{self, Action, Group};
 use super::app::App;
+use super::icons::{self, Icon};
 use super::theme::palette;
-use egui::{Button, RichText, ScrollArea, Ui};
+use egui::{Atom, Button, RichText, ScrollArea, Ui};
 
 /// Room for the bar above a menu, and for the edge of the window below, points.
 const ABOVE: f32 = 110.0;
 
 /// The button that opens it.
 pub fn button(ui: &mut Ui, app: &mut App) {
-    let response = ui.menu_button("Menu", |ui| {
+    let response = ui.menu_button((Icon::Menu, "Menu"), |ui| {
         ui.set_min_width(150.0);
         for group in Group::MENUS {
             ui.menu_button(group.title(), |ui| entries(ui, app, group));
@@ -32,7 +33,10 @@ fn all_of(ui: &mut Ui, app: &mut App, all: Vec<Action>) {
         let why = action.why_not(app);
         let on = action.is_on(app) == Some(true);
         let keys = RichText::new(actions::key_text(ui, &action)).size(11.0).color(palette(ui).secondary);
-        let entry = Button::new(action.title()).right_text(keys).selected(on);
+        let ink = palette(ui).secondary;
+        // Names stand below each other, with or without an icon before them.
+        let icon = action.icon().map_or_else(|| blank(icons::SIZE), |icon| icon.atom(icons::SIZE, Some(ink)));
+        let entry = Button::new((icon, action.title())).gap(8.0).right_text(keys).selected(on);
         let response = ui.add_enabled(why.is_none(), entry);
         let clicked = response.clicked();
         if let Some(why) = why {
@@ -44,4 +48,8 @@ fn all_of(ui: &mut Ui, app: &mut App, all: Vec<Action>) {
             ui.close();
         }
     }
+}
+
+fn blank(side: f32) -> Atom<'static> {
+    Atom { size: Some(egui::vec2(side, side)), ..Atom::default() }
 }

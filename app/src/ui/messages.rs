@@ -1,5 +1,6 @@
 //! Messages above the workspace.
 
+use super::icons::{self, Icon};
 use super::session::{Session, Tone};
 use super::theme::{self, palette};
 use egui::{Align, Align2, Area, Frame, Id, Layout, Margin, Order, Panel as Side, RichText, Stroke, Ui};
@@ -44,7 +45,11 @@ fn toasts(ui: &Ui, session: &Session) {
                 let fill = theme::mix(p.card, p.good, 0.16);
                 let frame = Frame::popup(ui.style()).fill(fill).stroke(Stroke::new(1.0, p.good)).corner_radius(8);
                 let shown = frame.inner_margin(Margin::symmetric(14, 8)).show(ui, |ui| {
-                    ui.add(egui::Label::new(RichText::new(&banner.text).color(p.text)).extend());
+                    ui.horizontal(|ui| {
+                        // In a column along the right edge lines go from right to left.
+                        ui.add(egui::Label::new(RichText::new(&banner.text).color(p.text)).extend());
+                        Icon::Good.show(ui, icons::SIZE, p.good);
+                    });
                 });
                 if !banner.hint.is_empty() {
                     shown.response.on_hover_text(&banner.hint);
@@ -71,7 +76,7 @@ pub fn strip(ui: &mut Ui, name: &str, count: usize, contents: impl FnOnce(&mut U
 /// One message; `buttons` come from the right.
 pub fn message(ui: &mut Ui, tone: Tone, text: &str, buttons: impl FnOnce(&mut Ui)) {
     let p = palette(ui);
-    let color = if tone == Tone::Error { p.danger } else { p.good };
+    let (mark, color) = if tone == Tone::Error { (Icon::Wrong, p.danger) } else { (Icon::Told, p.good) };
     let fill = theme::mix(p.card, color, 0.10);
     let frame = Frame::new().fill(fill).stroke(Stroke::new(1.0, color)).corner_radius(6);
     frame.inner_margin(Margin::symmetric(12, 6)).show(ui, |ui| {
@@ -79,6 +84,7 @@ pub fn message(ui: &mut Ui, tone: Tone, text: &str, buttons: impl FnOnce(&mut Ui
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 buttons(ui);
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    mark.show(ui, icons::SIZE, color);
                     ui.add(egui::Label::new(RichText::new(text).color(p.text)).wrap());
                 });
             });

@@ -3,7 +3,7 @@
 //! * [`session`] is what the window knows; [`jobs`] fill it in the background; [`trainer`] is the live world.
 //! * [`panels`] show and change it, one panel a file; [`app`] lays them out into the two workspaces.
 //! * [`mapping`] is the dialog that says what the columns of a foreign table mean.
-//! * [`scene`] brings the pictures in, [`plots`] the curves; [`theme`] is the one place for colours and sizes.
+//! * [`scene`] brings the pictures in, [`plots`] the curves; [`theme`] is the one place for colours and sizes, [`icons`] for icons.
 //! * [`screenshot`] draws any of it without a window, [`gallery`] all of it.
 
 pub mod actions;
@@ -26,6 +26,7 @@ pub mod format;
 pub mod frames;
 pub mod gallery;
 pub mod guided;
+pub mod icons;
 pub mod jobs;
 mod keys;
 pub mod learning;

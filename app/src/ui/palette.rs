@@ -2,6 +2,7 @@
 
 use super::actions::{self, Action};
 use super::app::App;
+use super::icons;
 use super::theme::{self, palette, space};
 use egui::{Align, Align2, Frame, Key, Layout, Modal, RichText, ScrollArea, Sense, TextEdit, Ui, vec2};
 
@@ -9,6 +10,8 @@ use egui::{Align, Align2, Frame, Key, Layout, Modal, RichText, ScrollArea, Sense
 const WIDTH: f32 = 520.0;
 /// Its height at most.
 const HEIGHT: f32 = 380.0;
+/// Width of the column with the names of the menus.
+const GROUP: f32 = 54.0;
 /// Height of a line.
 const LINE: f32 = 28.0;
 
@@ -122,7 +125,22 @@ fn line(ui: &mut Ui, app: &mut App, action: &Action, index: usize) -> bool {
         let right = why.map_or_else(|| actions::key_text(ui, action), str::to_owned);
         ui.label(RichText::new(right).size(11.0).color(p.secondary));
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-            ui.label(RichText::new(action.group().title()).size(11.0).color(p.faint));
+            let (place, _) = ui.allocate_exact_size(vec2(icons::SIZE, icons::SIZE), Sense::hover());
+            if let Some(icon) = action.icon() {
+                icon.paint(
+                    ui.painter(),
+                    place.center(),
+                    icons::SIZE,
+                    if why.is_none() { p.secondary } else { p.faint },
+                );
+            }
+            let group = RichText::new(action.group().title()).size(11.0).color(p.faint);
+            // Names stand below each other.
+            let column = vec2(GROUP, ui.available_height());
+            ui.allocate_ui_with_layout(column, Layout::left_to_right(Align::Center), |ui| {
+                ui.set_min_width(GROUP);
+                ui.label(group);
+            });
             let on = if action.is_on(app) == Some(true) { " · on" } else { "" };
             ui.add(egui::Label::new(RichText::new(title + on).color(ink)).truncate());
         });

@@ -2,30 +2,29 @@
 //! program left behind.
 
 use super::format;
+use super::icons::Icon;
 use super::jobs::{JobKind, Outcome};
 use super::mapping::name_of;
 use super::messages;
 use super::opening;
 use super::session::{Session, Tone};
-use super::theme::{self, palette};
-use super::widgets::primary_button;
+use super::theme;
+use super::widgets::{primary_button, recording_light, remark};
 use crate::recorder::{Status, folder};
-use egui::{RichText, Sense, Ui, vec2};
+use egui::Ui;
 use std::path::Path;
 
 /// The card beside the trainer's picture.
 pub fn controls(ui: &mut Ui, session: &mut Session) {
     let Some(status) = session.trainer.recording_status() else {
         ui.label(theme::caption(ui, "Keeps every tick, to measure the objects from."));
-        if primary_button(ui, true, "Record").on_hover_text(whereto(session)).clicked() {
+        if primary_button(ui, true, (Icon::Record, "Record")).on_hover_text(whereto(session)).clicked() {
             start(session);
         }
         return;
     };
-    let p = palette(ui);
     ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
-        ui.painter().circle_filled(rect.center(), 5.0, p.danger);
+        recording_light(ui);
         ui.label(theme::strong(format::clock(status.length_s)));
         let files = if status.files > 1 { format!(" in {} files", status.files) } else { String::new() };
         let size = ui.label(theme::caption(ui, format!("every tick is kept · {}{files}", megabytes(status.bytes))));
@@ -34,14 +33,14 @@ pub fn controls(ui: &mut Ui, session: &mut Session) {
         }
     });
     if let Some(text) = losses(&status) {
-        ui.label(RichText::new(text).size(11.5).color(p.caution));
+        remark(ui, Icon::Doubt, text);
     }
     ui.horizontal(|ui| {
-        if primary_button(ui, true, "Stop and calibrate").clicked() {
+        if primary_button(ui, true, (Icon::Stop, "Stop and calibrate")).clicked() {
             let ctx = ui.ctx().clone();
             stop_and_open(&ctx, session);
         }
-        if ui.button("Discard").on_hover_text("Ends the recording and removes its file").clicked() {
+        if ui.button((Icon::Remove, "Discard")).on_hover_text("Ends the recording and removes its file").clicked() {
             session.trainer.discard_recording();
         }
     });

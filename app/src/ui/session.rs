@@ -6,6 +6,7 @@ use super::diagnosing::Diagnosing;
 use super::experimenting::Experiments;
 pub use super::fit_choice::FitChoice;
 use super::fitting::Refits;
+use super::icons::Icon;
 use super::jobs::{JobKind, Jobs, Outcome, Replayed};
 use super::lessons::Lessons;
 use super::mapping::Mapping;
@@ -45,17 +46,26 @@ pub enum Workspace {
 }
 
 impl Workspace {
-    /// All of them: name, and what it is for.
-    pub const CHOICES: [(Self, &str, &str); 4] = [
-        (Self::Train, "Train", "Touch a virtual world (Ctrl+1)"),
-        (Self::Calibrate, "Calibrate", "Measure a real one from a log (Ctrl+2)"),
-        (Self::Diagnose, "Diagnose", "What the model gets wrong, and why (Ctrl+3)"),
-        (Self::Devices, "Devices", "What moves the fingers, and how well (Ctrl+4)"),
+    /// All of them: icon and name, and what it is for.
+    pub const CHOICES: [(Self, (Icon, &str), &str); 4] = [
+        (Self::Train, (Icon::Touch, "Train"), "Touch a virtual world (Ctrl+1)"),
+        (Self::Calibrate, (Icon::Calibrate, "Calibrate"), "Measure a real one from a log (Ctrl+2)"),
+        (Self::Diagnose, (Icon::Diagnose, "Diagnose"), "What the model gets wrong, and why (Ctrl+3)"),
+        (Self::Devices, (Icon::Device, "Devices"), "What moves the fingers, and how well (Ctrl+4)"),
     ];
 
     /// For people.
     pub fn title(self) -> &'static str {
-        Self::CHOICES.iter().find(|(w, ..)| *w == self).map_or("", |(_, title, _)| title)
+        self.face().1
+    }
+
+    /// For people who look.
+    pub fn icon(self) -> Icon {
+        self.face().0
+    }
+
+    fn face(self) -> (Icon, &'static str) {
+        Self::CHOICES.iter().find(|(w, ..)| *w == self).map_or((Icon::Panel, ""), |(_, face, _)| *face)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::app::App;
 use super::dock::Pane;
+use super::icons::Icon;
 use super::session::Workspace;
 use super::theme::{self, palette, space};
 use super::widgets::primary_button;
@@ -113,8 +114,9 @@ pub fn show(ui: &Ui, app: &mut App) {
             ui.add_space(space::M);
             ui.horizontal(|ui| {
                 let last = index + 1 == STEPS.len();
-                next = primary_button(ui, true, if last { "Done" } else { "Next" }).clicked();
-                back = index > 0 && ui.button("Back").clicked();
+                next =
+                    primary_button(ui, true, if last { (Icon::Good, "Done") } else { (Icon::Next, "Next") }).clicked();
+                back = index > 0 && ui.button((Icon::Back, "Back")).clicked();
                 leave = !last && ui.link("Leave").clicked();
                 ui.label(theme::caption(ui, format!("{} of {}", index + 1, STEPS.len())));
             });

@@ -1,7 +1,11 @@
 //! Small pieces that every panel is made of.
 
+use super::icons::{self, Face, Icon};
 use super::theme::{self, CARD_RADIUS, palette, space};
 use egui::{Align, Color32, CornerRadius, Frame, Layout, Margin, Response, RichText, Sense, Stroke, Ui, vec2};
+
+/// Side of the icon of an empty place, points.
+const LARGE_ICON: f32 = 30.0;
 
 /// A card: heading on the left, whatever `trailing` adds on the right, contents below.
 pub fn card<R>(ui: &mut Ui, heading: &str, trailing: impl FnOnce(&mut Ui), contents: impl FnOnce(&mut Ui) -> R) -> R {
@@ -52,7 +56,11 @@ pub fn call(response: &Response, name: &str) {
 }
 
 /// One of several, side by side.
-pub fn segmented<T: PartialEq + Copy>(ui: &mut Ui, value: &mut T, choices: &[(T, &str, &str)]) -> bool {
+pub fn segmented<'a, T: PartialEq + Copy, F: Into<Face<'a>> + Copy>(
+    ui: &mut Ui,
+    value: &mut T,
+    choices: &[(T, F, &str)],
+) -> bool {
     let p = palette(ui);
     let mut changed = false;
     Frame::new().fill(p.sunken).stroke(Stroke::new(1.0, p.border)).corner_radius(7).inner_margin(2).show(ui, |ui| {
@@ -61,18 +69,9 @@ pub fn segmented<T: PartialEq + Copy>(ui: &mut Ui, value: &mut T, choices: &[(T,
         let reversed = ui.layout().prefer_right_to_left();
         ui.horizontal(|ui| {
             for index in 0..choices.len() {
-                let (choice, label, hint) = &choices[if reversed { choices.len() - 1 - index } else { index }];
+                let (choice, face, hint) = &choices[if reversed { choices.len() - 1 - index } else { index }];
                 let on = *value == *choice;
-                let text = if on { theme::strong(*label) } else { RichText::new(*label).color(p.secondary) };
-                let fill = if on { p.raised } else { Color32::TRANSPARENT };
-                let edge = if on { Stroke::new(1.0, p.border) } else { Stroke::NONE };
-                let button =
-                    egui::Button::new(text).fill(fill).stroke(edge).corner_radius(5).min_size(vec2(64.0, 24.0));
-                let response = ui.add(button);
-                response.widget_info(|| egui::WidgetInfo::selected(egui::Role::RadioButton, true, on, *label));
-                let clicked =
-                    if hint.is_empty() { response.clicked() } else { response.on_hover_text(*hint).clicked() };
-                if clicked && !on {
+                if segment(ui, (*face).into(), hint, on).clicked() && !on {
                     *value = *choice;
                     changed = true;
                 }
@@ -82,18 +81,84 @@ pub fn segmented<T: PartialEq + Copy>(ui: &mut Ui, value: &mut T, choices: &[(T,
     changed
 }
 
-/// The one thing to do.
-pub fn primary_button(ui: &mut Ui, enabled: bool, text: &str) -> Response {
+/// One of them.
+fn segment(ui: &mut Ui, face: Face<'_>, hint: &str, on: bool) -> Response {
     let p = palette(ui);
-    let label = RichText::new(text).font(egui::FontId::new(13.0, theme::semibold())).color(p.on_accent);
-    ui.add_enabled(enabled, egui::Button::new(label).fill(p.accent).min_size(vec2(0.0, 28.0)))
+    let text = if on { theme::strong(face.words) } else { RichText::new(face.words).color(p.secondary) };
+    let fill = if on { p.raised } else { Color32::TRANSPARENT };
+    let edge = if on { Stroke::new(1.0, p.border) } else { Stroke::NONE };
+    let button = match face.icon {
+        Some(icon) => {
+            let color = if on { p.accent } else { p.secondary };
+            egui::Button::new((icon.atom(icons::SIZE, Some(color)), text)).gap(6.0)
+        }
+        None => egui::Button::new(text),
+    };
+    let response = ui.add(button.fill(fill).stroke(edge).corner_radius(5).min_size(vec2(64.0, 24.0)));
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::RadioButton, true, on, face.words));
+    if hint.is_empty() { response } else { response.on_hover_text(hint) }
+}
+
+/// The one thing to do.
+pub fn primary_button<'a>(ui: &mut Ui, enabled: bool, face: impl Into<Face<'a>>) -> Response {
+    let (p, face) = (palette(ui), face.into());
+    let label = RichText::new(face.words).font(egui::FontId::new(13.0, theme::semibold())).color(p.on_accent);
+    let button = match face.icon {
+        Some(icon) => egui::Button::new((icon.atom(icons::SIZE, Some(p.on_accent)), label)).gap(6.0),
+        None => egui::Button::new(label),
+    };
+    ui.add_enabled(enabled, button.fill(p.accent).min_size(vec2(0.0, 28.0)))
+}
+
+/// A button with its icon alone; `name` is what screen readers say and what stands under the pointer.
+pub fn icon_button(ui: &mut Ui, icon: Icon, enabled: bool, name: &str) -> Response {
+    framed_icon(ui, icon, enabled, name, true)
+}
+
+/// The same where there are many: its frame comes with the pointer.
+pub fn quiet_icon_button(ui: &mut Ui, icon: Icon, enabled: bool, name: &str) -> Response {
+    framed_icon(ui, icon, enabled, name, false)
+}
+
+fn framed_icon(ui: &mut Ui, icon: Icon, enabled: bool, name: &str, frame: bool) -> Response {
+    let side = ui.spacing().interact_size.y;
+    let inside = icons::SIZE.min(side - 4.0);
+    ui.scope(|ui| {
+        ui.spacing_mut().button_padding = vec2(0.5 * (side - inside), 0.0);
+        let response = ui.add_enabled(enabled, egui::Button::new(icon.atom(inside, None)).frame_when_inactive(frame));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, name));
+        response
+    })
+    .inner
+}
+
+/// A small mark with what it is about: a doubt, a mistake, something that is well.
+pub fn remark(ui: &mut Ui, mark: Icon, text: impl Into<String>) -> Response {
+    let p = palette(ui);
+    let color = match mark {
+        Icon::Wrong => p.danger,
+        Icon::Doubt => p.caution,
+        Icon::Good => p.good,
+        _ => p.secondary,
+    };
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        mark.show(ui, icons::SMALL, color);
+        ui.add(egui::Label::new(RichText::new(text.into()).size(12.0)).wrap())
+    })
+    .inner
 }
 
 /// What to do where there is nothing yet.
-pub fn empty_state(ui: &mut Ui, title: &str, text: &str, action: impl FnOnce(&mut Ui)) {
+pub fn empty_state<'a>(ui: &mut Ui, face: impl Into<Face<'a>>, text: &str, action: impl FnOnce(&mut Ui)) {
     let height = ui.available_height();
+    let Face { icon, words: title } = face.into();
     ui.vertical_centered(|ui| {
-        ui.add_space((0.5 * height - 60.0).max(space::M));
+        ui.add_space((0.5 * height - if icon.is_some() { 84.0 } else { 60.0 }).max(space::M));
+        if let Some(icon) = icon {
+            icon.show(ui, LARGE_ICON, palette(ui).faint);
+            ui.add_space(space::XS);
+        }
         ui.label(theme::title(title));
         ui.add_space(space::XS);
         ui.scope(|ui| {
@@ -121,6 +186,12 @@ pub fn light(ui: &mut Ui, on: bool, color: Color32, label: &str, hint: &str) -> 
     })
     .response
     .on_hover_text(hint)
+}
+
+/// The red light of what is being recorded.
+pub fn recording_light(ui: &mut Ui) {
+    let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
+    ui.painter().circle_filled(rect.center(), 5.0, palette(ui).danger);
 }
 
 /// A key as it is printed on the keyboard, and what it does.

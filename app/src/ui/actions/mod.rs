@@ -1,5 +1,6 @@
 //! Everything that can be done in the window, once: menus, keys, the command palette and tooltips take it from here.
 
+mod faces;
 mod list;
 mod run;
 

@@ -1,5 +1,6 @@
 //! The panels that can stand in the window.
 
+use crate::ui::icons::Icon;
 use crate::ui::panels::Panel as _;
 use crate::ui::panels::device_detail::DeviceDetail;
 use crate::ui::panels::devices::DeviceList;
@@ -75,6 +76,23 @@ impl Pane {
             Self::Diagnosis => "Diagnosis",
             Self::Devices => "Devices",
             Self::DeviceDetail => "Device",
+        }
+    }
+
+    /// For people who look.
+    pub fn icon(self) -> Icon {
+        match self {
+            Self::Recording => Icon::Fit,
+            Self::Scene => Icon::Scene,
+            Self::Log => Icon::Curves,
+            Self::Segments => Icon::States,
+            Self::Sensitivity => Icon::Sensitivity,
+            Self::Video => Icon::Video,
+            Self::Trainer => Icon::World,
+            Self::Progress => Icon::Progress,
+            Self::Diagnosis => Icon::Diagnose,
+            Self::Devices | Self::DeviceDetail => Icon::Device,
+            Self::Results | Self::TrainerSide | Self::Diagnose => Icon::Panel,
         }
     }
 

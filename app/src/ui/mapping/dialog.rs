@@ -1,10 +1,11 @@
 //! The dialog's frame: heading, columns on the left, preview on the right, what to do below.
 
 use super::{Mapping, name_of, options, plot, save, table};
+use crate::ui::icons::Icon;
 use crate::ui::jobs::JobKind;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{plain_card, primary_button, sheet};
+use crate::ui::widgets::{plain_card, primary_button, remark, sheet};
 use egui::{Align, CentralPanel, Frame, Key, Layout, Margin, Panel as Side, RichText, Ui};
 
 /// What the user has done with the dialog.
@@ -74,7 +75,7 @@ fn head(ui: &mut Ui, mapping: &Mapping) {
         ui.label(theme::caption(ui, format!("{} columns, {seen}{rows} rows", mapping.file.columns.len())));
     });
     if let Some(why) = &mapping.why {
-        ui.add(egui::Label::new(RichText::new(why).size(12.0).color(p.caution)).wrap());
+        remark(ui, Icon::Doubt, why);
     }
 }
 
@@ -85,14 +86,18 @@ fn foot(ui: &mut Ui, mapping: &mut Mapping, session: &Session) -> Option<Done> {
         let loads = matches!(mapping.preview.seen, Some(Ok(_)));
         let ready = loads && !saving && !mapping.preview.is_stale(&session.jobs);
         let hint = "A mapping is saved when the log can be read with it";
-        if primary_button(ui, ready, "Save sidecar and open").on_disabled_hover_text(hint).clicked() {
+        if primary_button(ui, ready, (Icon::Save, "Save sidecar and open")).on_disabled_hover_text(hint).clicked() {
             done = Some(Done::Save);
         }
         if ui.button("Cancel").on_hover_text("Changes nothing (Esc)").clicked() {
             done = Some(Done::Cancel);
         }
         ui.add_space(space::S);
-        if ui.button("Guess again").on_hover_text("From names, units and ranges, over what is chosen now").clicked() {
+        if ui
+            .button((Icon::Reload, "Guess again"))
+            .on_hover_text("From names, units and ranges, over what is chosen now")
+            .clicked()
+        {
             mapping.draft.guess();
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

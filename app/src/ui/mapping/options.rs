@@ -1,7 +1,9 @@
 //! What holds for the whole recording: task, axis, rate, selection, known values.
 
 use super::draft::{Draft, UP, task_words};
-use crate::ui::theme::{self, palette, space};
+use crate::ui::icons::Icon;
+use crate::ui::theme::{self, space};
+use crate::ui::widgets::{quiet_icon_button, remark};
 use egui::{ComboBox, DragValue, Role as Accessible, Ui, WidgetInfo};
 use haptics::recording::Task;
 use serde_json::Value;
@@ -51,7 +53,7 @@ pub fn options(ui: &mut Ui, draft: &mut Draft) {
     for (name, source) in strays {
         ui.horizontal(|ui| {
             let text = format!("The sidecar takes {name} from {source}, which the file does not have.");
-            ui.label(egui::RichText::new(text).size(11.5).color(palette(ui).caution));
+            remark(ui, Icon::Doubt, text);
             if ui.small_button("Forget it").clicked() {
                 draft.meta.columns.remove(&name);
             }
@@ -119,7 +121,7 @@ fn select(ui: &mut Ui, draft: &mut Draft) {
         if let Some(chosen) = choice(ui, &label, &now, &text(value), &all) {
             draft.meta.select.insert(column.clone(), chosen);
         }
-        if ui.small_button("×").on_hover_text("Take every row").clicked() {
+        if quiet_icon_button(ui, Icon::Close, true, "Take every row").on_hover_text("Take every row").clicked() {
             removed = Some(column.clone());
         }
     }
@@ -156,7 +158,7 @@ fn known(ui: &mut Ui, draft: &mut Draft) {
         ui.label(theme::caption(ui, name.as_str()));
         let speed = 0.01 * value.abs().max(1e-3);
         ui.add(DragValue::new(value).speed(speed).max_decimals(9));
-        if ui.small_button("×").on_hover_text("Estimate it").clicked() {
+        if quiet_icon_button(ui, Icon::Close, true, "Estimate it").on_hover_text("Estimate it").clicked() {
             removed = Some(name.clone());
         }
     }

@@ -3,11 +3,12 @@
 use super::Mapping;
 use super::preview::Seen;
 use crate::ui::format;
+use crate::ui::icons::Icon;
 use crate::ui::plots::{decimate, marks, time_axis, value_axis};
 use crate::ui::prepare::{Group, Prepared};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, mix, palette, space};
-use crate::ui::widgets::{fact, sheet};
+use crate::ui::widgets::{compact, fact, remark, sheet};
 use egui::{RichText, ScrollArea, Ui};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints};
 use haptics::Vec2;
@@ -30,7 +31,9 @@ pub fn preview(ui: &mut Ui, mapping: &mut Mapping, session: &Session) {
     let stale = mapping.preview.is_stale(&session.jobs);
     sheet(ui).inner_margin(space::M).show(ui, |ui| {
         ui.set_min_size(ui.available_size());
-        ui.horizontal(|ui| {
+        // As high as the headings of cards beside it.
+        compact(ui, |ui| {
+            ui.set_min_height(16.0);
             ui.label(theme::heading("Preview"));
             if stale {
                 ui.add(egui::Spinner::new().size(14.0));
@@ -40,7 +43,7 @@ pub fn preview(ui: &mut Ui, mapping: &mut Mapping, session: &Session) {
         match &mapping.preview.seen {
             None => {}
             Some(Err(problem)) => {
-                ui.add(egui::Label::new(RichText::new(problem).color(palette(ui).danger)).wrap());
+                remark(ui, Icon::Wrong, problem);
             }
             Some(Ok(seen)) => {
                 drawn(ui, &mut mapping.view, seen);
@@ -170,7 +173,6 @@ fn curves(ui: &mut Ui, prepared: &Prepared, group: &Group, height: f32) {
 
 /// What has come of it, what is missing, what is doubtful.
 fn verdict(ui: &mut Ui, seen: &Seen) {
-    let p = palette(ui);
     ui.add_space(space::XS);
     if let Some(first) = seen.recordings.first() {
         let recording = &first.recording;
@@ -185,18 +187,12 @@ fn verdict(ui: &mut Ui, seen: &Seen) {
     }
     ui.add_space(space::XS);
     ScrollArea::vertical().id_salt("mapping verdict").auto_shrink(false).show(ui, |ui| {
-        let line = |ui: &mut Ui, mark: &str, color, text: &str| {
-            ui.horizontal_top(|ui| {
-                ui.label(RichText::new(mark).size(9.0).color(color));
-                ui.add(egui::Label::new(RichText::new(text).size(12.0)).wrap());
-            });
-        };
         match &seen.missing {
-            Some(missing) => line(ui, "●", p.danger, missing),
-            None => line(ui, "●", p.good, "Nothing is missing: the log can be fitted."),
-        }
+            Some(missing) => remark(ui, Icon::Wrong, missing),
+            None => remark(ui, Icon::Good, "Nothing is missing: the log can be fitted."),
+        };
         for warning in &seen.warnings {
-            line(ui, "▲", p.caution, warning);
+            remark(ui, Icon::Doubt, warning);
         }
     });
 }

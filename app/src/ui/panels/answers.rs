@@ -1,10 +1,11 @@
 //! The devices page, right column: what came from the boards or over the network, and what was wrong with it.
 
 use crate::boards::{ADVICE, Answers};
-use crate::ui::theme::{self, palette};
+use crate::ui::icons::Icon;
+use crate::ui::theme;
 use crate::ui::trainer::{Steering, Trainer};
-use crate::ui::widgets::{fact, plain_card};
-use egui::{RichText, Ui};
+use crate::ui::widgets::{fact, plain_card, remark};
+use egui::Ui;
 use haptics::device::udp::{Refused, UdpMonitor};
 
 /// The card of the running device; nothing for those that cannot lose anything.
@@ -28,7 +29,7 @@ fn packets(ui: &mut Ui, monitor: &UdpMonitor) {
         }
         if monitor.refused(Refused::Seal) > 0 {
             let text = "Somebody sends with another key: give both sides the same file.";
-            ui.label(RichText::new(text).size(11.5).color(palette(ui).caution));
+            remark(ui, Icon::Doubt, text);
         }
     });
 }
@@ -37,9 +38,8 @@ fn packets(ui: &mut Ui, monitor: &UdpMonitor) {
 pub fn boards(ui: &mut Ui, both: [Answers; 2]) {
     plain_card(ui, "Answers of the boards", |ui| {
         for (side, answers) in ["Left", "Right"].into_iter().zip(both) {
-            let p = palette(ui);
-            let color = if answers.are_fine() { p.secondary } else { p.caution };
-            ui.label(RichText::new(format!("{side}: {}.", answers.sentence())).size(11.5).color(color));
+            let mark = if answers.are_fine() { Icon::Good } else { Icon::Doubt };
+            remark(ui, mark, format!("{side}: {}.", answers.sentence()));
         }
         if both.iter().any(|answers| !answers.are_fine()) {
             ui.label(theme::caption(ui, ADVICE));

@@ -3,6 +3,7 @@
 use crate::diagnosis_words::{listed, title};
 use crate::ui::atlas::{Cell, Line, Scale, Sheet};
 use crate::ui::format::{self, capitalised};
+use crate::ui::icons::Icon;
 use crate::ui::plots::{BAND_SIGMAS, decimals, inks, marks};
 use crate::ui::session::{Session, sentence};
 use crate::ui::theme::{self, Palette, palette, space};
@@ -158,7 +159,9 @@ fn lines(painter: &egui::Painter, lines: &[Line], at: &dyn Fn([f64; 2]) -> Pos2,
 fn large(ui: &mut Ui, session: &mut Session, cell: &Cell, diagnosis: &Diagnosis) {
     let p = palette(ui);
     compact(ui, |ui| {
-        if ui.link("← All suspects").clicked() || ui.input(|i| i.key_pressed(egui::Key::Escape)) {
+        if ui.add(egui::Button::new((Icon::Back, "All suspects")).small()).clicked()
+            || ui.input(|i| i.key_pressed(egui::Key::Escape))
+        {
             session.diagnosing.atlas_open = None;
         }
         ui.add_space(space::S);

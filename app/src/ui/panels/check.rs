@@ -4,10 +4,11 @@ use crate::diagnosis_words::{listed, shown_unit, title};
 use crate::ui::checking::{Checked, Holds, On, holds};
 use crate::ui::files;
 use crate::ui::format;
+use crate::ui::icons::Icon;
 use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, Palette, palette, space};
-use crate::ui::widgets::{bar, compact, plain_card};
+use crate::ui::widgets::{bar, compact, icon_button, plain_card, remark};
 use egui::{Align, Color32, Layout, RichText, TextEdit, Ui};
 use estimator::diagnose::{Diagnosis, Validation};
 use std::path::PathBuf;
@@ -39,7 +40,7 @@ fn ask(ui: &mut Ui, session: &mut Session) {
         let response = ui.add(field.desired_width(width));
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Recording to check on"));
         let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-        if ui.button("…").on_hover_text("Choose one or several files").clicked() {
+        if icon_button(ui, Icon::More, true, "Choose files").on_hover_text("Choose one or several files").clicked() {
             files::ask_many(&ctx, &mut session.jobs, Purpose::Check);
         }
         if busy {
@@ -75,11 +76,10 @@ fn left_out(ui: &mut Ui, session: &mut Session) {
 }
 
 fn result(ui: &mut Ui, checked: &Checked) {
-    let p = palette(ui);
     match &checked.found {
         Err(problem) => {
             ui.add(egui::Label::new(theme::strong(&checked.name)).truncate());
-            ui.add(egui::Label::new(RichText::new(problem).size(12.0).color(p.caution)).wrap());
+            remark(ui, Icon::Doubt, problem);
         }
         Ok(validation) => figures(ui, checked, validation),
     }

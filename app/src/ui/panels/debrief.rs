@@ -1,8 +1,9 @@
 //! What came of an attempt: the score, every judged measure beside the experts', the way of the hand beside an expert's.
 
+use crate::ui::icons::Icon;
 use crate::ui::lessons::{Debrief, Trace};
 use crate::ui::theme::{self, palette, role, space};
-use crate::ui::widgets::compact;
+use crate::ui::widgets::{compact, remark};
 use egui::{Align, Layout, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, vec2};
 use estimator::training::definitions::Definition;
 use estimator::training::lesson::advice::shown;
@@ -24,8 +25,7 @@ pub fn show(ui: &mut Ui, debrief: &Debrief, expert: Option<&Trace>) {
     ui.add(egui::Label::new(grade.advice.as_str()).wrap());
     ui.add_space(space::S);
     for missed in grade.goals.iter().chain(&grade.rules).filter(|goal| !goal.reached) {
-        let text = RichText::new(format!("✘  {}", missed.says)).size(12.0).color(palette(ui).danger);
-        ui.add(egui::Label::new(text).wrap());
+        remark(ui, Icon::Wrong, &missed.says);
     }
     for figure in &grade.figures {
         measure(ui, figure);

@@ -2,6 +2,7 @@
 
 use super::{Panel, trainer_timing};
 use crate::ui::format::{number, short_time};
+use crate::ui::icons::Icon;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::{Direction, HandDevice, Operator, Trainer, spec_sentences};
@@ -32,7 +33,7 @@ impl Panel for DeviceDetail {
         // Live values: the page is drawn like a film as long as it is open.
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(33));
         let Some(spec) = session.trainer.spec().cloned() else {
-            empty_state(ui, "No device is running", "Choose one on the left.", |_| {});
+            empty_state(ui, (Icon::Device, "No device is running"), "Choose one on the left.", |_| {});
             return;
         };
         if let Some(fault) = session.trainer.scene().and_then(|(snapshot, _)| snapshot.fault) {
@@ -211,7 +212,9 @@ fn force_test(ui: &mut Ui, trainer: &mut Trainer, spec: &DeviceSpec) {
         if trainer.trial.is_running() {
             let left = number(trainer.trial.left_s(), 1);
             ui.label(theme::caption(ui, format!("It pushes; {left} s are left. Let go or press Esc when in doubt.")));
-            if primary_button(ui, true, "Stop").clicked() || ui.input(|i| i.key_pressed(egui::Key::Escape)) {
+            if primary_button(ui, true, (Icon::Stop, "Stop")).clicked()
+                || ui.input(|i| i.key_pressed(egui::Key::Escape))
+            {
                 trainer.trial.abort();
             }
             return;

@@ -4,6 +4,7 @@ use super::Panel;
 use crate::ui::atlas::Sheet;
 use crate::ui::diagnosing::{Answer, StartFrom};
 use crate::ui::files;
+use crate::ui::icons::Icon;
 use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::plots::{Cloud, Residuals, cloud_plot, force_plot, has_directions, inks};
 use crate::ui::session::{Session, Workspace};
@@ -49,8 +50,8 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
     if session.recordings.is_empty() {
         let text = "Open a log, for example of a crank that was turned. What the simulation gets wrong about it, why, and what mending it gains \
                     appear here.";
-        empty_state(ui, "Nothing to diagnose yet", text, |ui| {
-            if primary_button(ui, true, "Open a log …").on_hover_text("Ctrl+O").clicked() {
+        empty_state(ui, (Icon::Diagnose, "Nothing to diagnose yet"), text, |ui| {
+            if primary_button(ui, true, (Icon::Open, "Open a log …")).on_hover_text("Ctrl+O").clicked() {
                 files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
             }
             if ui.link("or record one in Train").clicked() {
@@ -63,13 +64,13 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
         empty_state(ui, "Diagnosing …", text, |ui| {
             ui.add(egui::Spinner::new().size(20.0));
             ui.add_space(space::S);
-            if ui.button("Cancel").clicked() {
+            if ui.button((Icon::Close, "Cancel")).clicked() {
                 session.give_up(JobKind::Diagnose);
             }
         });
     } else if let Some(problem) = session.diagnosing.problem.clone() {
-        empty_state(ui, "This recording cannot be diagnosed", &problem, |ui| {
-            if primary_button(ui, true, "Open another log …").on_hover_text("Ctrl+O").clicked() {
+        empty_state(ui, (Icon::Doubt, "This recording cannot be diagnosed"), &problem, |ui| {
+            if primary_button(ui, true, (Icon::Open, "Open another log …")).on_hover_text("Ctrl+O").clicked() {
                 files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
             }
             ui.add_space(space::XS);
@@ -81,18 +82,18 @@ fn nothing(ui: &mut Ui, session: &mut Session) {
         });
     } else if session.diagnosing.answer.is_some() {
         let text = "This recording has no force along one coordinate to draw. The answer stands beside.";
-        empty_state(ui, "No curves here", text, |_| {});
+        empty_state(ui, (Icon::Curves, "No curves here"), text, |_| {});
     } else {
         let text = "The model is compared with what was measured. What it gets wrong is named, with its size, what mending it \
                     gains on data that took no part, and what else it could be.";
-        empty_state(ui, "What does the simulation get wrong?", text, |ui| begin(ui, session));
+        empty_state(ui, (Icon::Diagnose, "What does the simulation get wrong?"), text, |ui| begin(ui, session));
     }
 }
 
 /// The button, and the model to start from where there is a choice.
 fn begin(ui: &mut Ui, session: &mut Session) {
     start_from(ui, session);
-    if primary_button(ui, true, "Diagnose").clicked() {
+    if primary_button(ui, true, (Icon::Diagnose, "Diagnose")).clicked() {
         let ctx = ui.ctx().clone();
         session.diagnose(&ctx);
     }

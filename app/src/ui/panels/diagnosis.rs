@@ -6,11 +6,12 @@ use crate::diagnosis_words::{force_unit, headline, title};
 use crate::ui::diagnosing::Answer;
 use crate::ui::files;
 use crate::ui::format;
+use crate::ui::icons::{self, Icon};
 use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::plots::inks;
 use crate::ui::session::{Session, sentence};
 use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{bar, card, compact, plain_card, primary_button};
+use crate::ui::widgets::{bar, card, compact, plain_card, primary_button, remark};
 use egui::{Align, Color32, Layout, RichText, ScrollArea, Ui, vec2};
 use estimator::diagnose::Diagnosis;
 
@@ -103,13 +104,13 @@ fn extension(ui: &mut Ui, session: &mut Session, answer: &Answer) {
     let extended = session.diagnosing.worlds.is_some();
     plain_card(ui, "Extended model", |ui| {
         if let Some(problem) = session.diagnosing.worlds_problem.clone() {
-            ui.label(RichText::new(problem).size(12.0).color(palette(ui).caution));
+            remark(ui, Icon::Doubt, problem);
         }
         if !extended {
             ui.label(theme::caption(ui, "A world with the found laws in it, beside one with the model alone."));
             ui.add_space(space::XS);
             ui.horizontal(|ui| {
-                if primary_button(ui, !busy, "Extend the model").clicked() {
+                if primary_button(ui, !busy, (Icon::Extend, "Extend the model")).clicked() {
                     let ctx = ui.ctx().clone();
                     session.extend_model(&ctx);
                 }
@@ -134,7 +135,7 @@ fn before_after(ui: &mut Ui, d: &Diagnosis) {
         let inks = inks(ui);
         ui.spacing_mut().item_spacing.x = space::S;
         ui.label(theme::title(format!("{} {unit}", number(before))).color(inks.model));
-        ui.label(RichText::new("→").color(palette(ui).secondary));
+        Icon::Next.show(ui, icons::SIZE, palette(ui).secondary);
         ui.label(theme::title(format!("{} {unit}", number(after))).color(inks.extended));
     });
     let gone = 100.0 * (1.0 - (after / before.max(1e-12)).powi(2)).max(0.0);
@@ -146,13 +147,13 @@ fn before_after(ui: &mut Ui, d: &Diagnosis) {
 fn feel(ui: &mut Ui, session: &mut Session) {
     let comparison = session.comparison();
     ui.horizontal(|ui| {
-        if primary_button(ui, comparison.is_ok(), "Feel it in Train")
+        if primary_button(ui, comparison.is_ok(), (Icon::Feel, "Feel it in Train"))
             .on_hover_text("Switch between both worlds while you hold the object")
             .clicked()
         {
             session.feel();
         }
-        if ui.button("Save world …").on_hover_text("Writes the extended world as a file").clicked() {
+        if ui.button((Icon::Save, "Save world …")).on_hover_text("Writes the extended world as a file").clicked() {
             files::ask(ui.ctx(), &mut session.jobs, Purpose::SaveExtended);
         }
     });
@@ -189,10 +190,7 @@ fn warnings(ui: &mut Ui, diagnosis: &Diagnosis) {
     }
     plain_card(ui, "Warnings", |ui| {
         for warning in &diagnosis.warnings {
-            ui.horizontal_top(|ui| {
-                ui.label(RichText::new("▲").size(9.0).color(palette(ui).caution));
-                ui.add(egui::Label::new(RichText::new(sentence(warning)).size(12.0)).wrap());
-            });
+            remark(ui, Icon::Doubt, sentence(warning));
         }
     });
 }

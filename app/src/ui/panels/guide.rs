@@ -2,13 +2,14 @@
 
 use crate::ui::format;
 use crate::ui::guided::{Guided, Phase};
+use crate::ui::icons::Icon;
 use crate::ui::lessons::{self, Point, Wait};
 use crate::ui::scene::SceneResponse;
 use crate::ui::session::{Session, sentence};
 use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::Trainer;
-use crate::ui::widgets::primary_button;
-use egui::{Frame, Margin, Pos2, ProgressBar, RichText, Shape, Stroke, Ui, vec2};
+use crate::ui::widgets::{primary_button, remark};
+use egui::{Frame, Margin, Pos2, ProgressBar, Shape, Stroke, Ui, vec2};
 use haptics::Vec2;
 use haptics::device::HandGoal;
 
@@ -68,14 +69,14 @@ fn ready(ui: &mut Ui, guided: &Guided, begin: &mut bool) {
     ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     simulated(ui, guided);
     ui.add_space(space::XS);
-    *begin = primary_button(ui, true, "Begin").clicked();
+    *begin = primary_button(ui, true, (Icon::Play, "Begin")).clicked();
 }
 
 /// Says of what object this is, where that is made up.
 fn simulated(ui: &mut Ui, guided: &Guided) {
     if let Some(about) = &guided.about {
         let text = format!("A SIMULATED object, {about}: the recording will say so.");
-        ui.add(egui::Label::new(RichText::new(text).size(11.5).color(palette(ui).caution)).wrap());
+        remark(ui, Icon::Doubt, text);
     }
 }
 
@@ -94,8 +95,8 @@ fn recorded(ui: &mut Ui, guided: &Guided, add: &mut bool, begin: &mut bool) {
     simulated(ui, guided);
     ui.add_space(space::XS);
     ui.horizontal(|ui| {
-        *add = primary_button(ui, true, "Add to the diagnosis").clicked();
-        *begin = ui.button("Once more").clicked();
+        *add = primary_button(ui, true, (Icon::Add, "Add to the diagnosis")).clicked();
+        *begin = ui.button((Icon::Reset, "Once more")).clicked();
     });
 }
 

@@ -2,12 +2,13 @@
 
 use super::debrief;
 use crate::ui::dock::Pane;
+use crate::ui::icons::{self, Icon};
 use crate::ui::lessons::{Open, Phase};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{bar, card, compact, plain_card, primary_button};
+use crate::ui::widgets::{bar, card, compact, plain_card, primary_button, recording_light, remark};
 use crate::ui::{format, markdown};
-use egui::{Align, Color32, Layout, RichText, Sense, Ui, vec2};
+use egui::{Align, Color32, Layout, RichText, Ui, vec2};
 use estimator::training::lesson::{Lesson, Standing};
 use std::sync::Arc;
 
@@ -55,7 +56,7 @@ fn list(ui: &mut Ui, session: &Session) -> Option<Wish> {
             }
         }
         for problem in &session.lessons.problems {
-            ui.add(egui::Label::new(RichText::new(problem).size(11.5).color(palette(ui).danger)).wrap());
+            remark(ui, Icon::Wrong, problem);
         }
     });
     wish
@@ -114,7 +115,7 @@ fn brief(ui: &mut Ui, open: &Open) -> Option<Wish> {
     buttons(
         ui,
         &[("Watch", "The expert shows it", Wish::Watch), ("Practise", "Try it; nothing is recorded", Wish::Practise)],
-        Some(("Take the test", Wish::Test)),
+        Some(((Icon::Check, "Take the test"), Wish::Test)),
     )
 }
 
@@ -131,7 +132,7 @@ fn watching(ui: &mut Ui, open: &Open, step: Option<usize>, over: bool) -> Option
     buttons(
         ui,
         &[("Again", "Watch it once more", Wish::Watch), ("Back", "What the lesson is about", Wish::Back)],
-        Some(("Practise", Wish::Practise)),
+        Some(((Icon::Touch, "Practise"), Wish::Practise)),
     )
 }
 
@@ -149,7 +150,7 @@ fn practising(ui: &mut Ui, open: &Open, ghost_off: &mut bool) -> Option<Wish> {
             ("Start over", "Everything back to its place", Wish::Practise),
             ("Back", "What the lesson is about", Wish::Back),
         ],
-        Some(("Take the test", Wish::Test)),
+        Some(((Icon::Check, "Take the test"), Wish::Test)),
     )
 }
 
@@ -178,7 +179,7 @@ fn debriefed(ui: &mut Ui, shown: &crate::ui::lessons::Debrief, trainee: Option<&
     let mut wish = buttons(
         ui,
         &[("Practise", "Try it; nothing is recorded", Wish::Practise), ("Watch", "The expert shows it", Wish::Watch)],
-        Some(("Once more", Wish::Test)),
+        Some(((Icon::Reset, "Once more"), Wish::Test)),
     );
     let link = ui.link("Open its recording in Calibrate").on_hover_text(shown.path.display().to_string());
     if link.clicked() {
@@ -197,8 +198,7 @@ fn debriefed(ui: &mut Ui, shown: &crate::ui::lessons::Debrief, trainee: Option<&
 fn clock(ui: &mut Ui, open: &Open, at_most_s: Option<f64>) {
     compact(ui, |ui| {
         if at_most_s.is_some() {
-            let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
-            ui.painter().circle_filled(rect.center(), 5.0, palette(ui).danger);
+            recording_light(ui);
         }
         ui.label(theme::strong(format!("{} s", format::number(open.progress.running_s(), 1))));
         let what = at_most_s.map_or("practice, not recorded".to_owned(), |most| {
@@ -230,23 +230,17 @@ fn goals(ui: &mut Ui, open: &Open, running: bool) {
     }
 }
 
-/// A line with a round mark before it: filled once it is reached.
-fn mark(ui: &mut Ui, filled: bool, color: Color32, says: &str) {
+/// A line with a round mark before it: ticked once it is reached.
+fn mark(ui: &mut Ui, ticked: bool, color: Color32, says: &str) {
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 8.0;
-        let (rect, _) = ui.allocate_exact_size(vec2(12.0, 16.0), Sense::hover());
-        let at = rect.center();
-        if filled {
-            ui.painter().circle_filled(at, 5.0, color);
-        } else {
-            ui.painter().circle_stroke(at, 4.5, egui::Stroke::new(1.5, color));
-        }
+        if ticked { Icon::Good } else { Icon::Pending }.show(ui, icons::SIZE, color);
         ui.add(egui::Label::new(RichText::new(says).size(12.5)).wrap());
     });
 }
 
 /// The usual buttons, and the one thing to do on the right.
-fn buttons(ui: &mut Ui, usual: &[(&str, &str, Wish)], main: Option<(&str, Wish)>) -> Option<Wish> {
+fn buttons(ui: &mut Ui, usual: &[(&str, &str, Wish)], main: Option<((Icon, &str), Wish)>) -> Option<Wish> {
     let mut wish = None;
     ui.horizontal(|ui| {
         for (label, hint, what) in usual {

@@ -8,6 +8,7 @@ use super::transport::transport;
 use super::xy::xy_view;
 use crate::ui::files;
 use crate::ui::format::number;
+use crate::ui::icons::Icon;
 use crate::ui::jobs::Purpose;
 use crate::ui::plots::shift::Grasp;
 use crate::ui::plots::{
@@ -85,8 +86,8 @@ impl Place {
 fn nothing_loaded(ui: &mut Ui, session: &mut Session) {
     let text =
         "Open a log, drop a file on the window, or record one yourself. Its channels, states and forces appear here.";
-    empty_state(ui, "No recording yet", text, |ui| {
-        if primary_button(ui, true, "Open a log …").on_hover_text("Ctrl+O").clicked() {
+    empty_state(ui, (Icon::Curves, "No recording yet"), text, |ui| {
+        if primary_button(ui, true, (Icon::Open, "Open a log …")).on_hover_text("Ctrl+O").clicked() {
             files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
         }
         if ui.link("or record one in Train").clicked() {

@@ -2,6 +2,7 @@
 
 use crate::experiment::MotionPlan;
 use crate::ui::format;
+use crate::ui::icons::Icon;
 use crate::ui::plots::{decimals, marks};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette};
@@ -34,7 +35,7 @@ pub fn show(ui: &mut Ui, session: &mut Session, asked: &Experiment, coordinate: 
     } else {
         "Writes time and coordinate as a CSV into the folder of recordings, for a machine that can follow it"
     };
-    if ui.button("Save the plan").on_hover_text(hint).clicked() {
+    if ui.button((Icon::Save, "Save the plan")).on_hover_text(hint).clicked() {
         session.save_motion_plan(&ctx, &plan, coordinate);
     }
 }

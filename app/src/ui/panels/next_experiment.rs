@@ -8,10 +8,11 @@ use crate::ui::diagnosing::is_mechanism;
 use crate::ui::experimenting::{ROUNDS, Stage};
 use crate::ui::files;
 use crate::ui::format;
+use crate::ui::icons::Icon;
 use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::session::{Session, sentence};
 use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{bar, compact, plain_card, primary_button};
+use crate::ui::widgets::{bar, compact, icon_button, plain_card, primary_button, remark};
 use egui::{Align, Layout, RichText, TextEdit, Ui};
 use estimator::diagnose::{Diagnosis, NextExperiment};
 use haptics::law::Coordinate;
@@ -56,7 +57,7 @@ fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment, is_driven:
             "The scripted operator does it {ROUNDS} times on each object that is not excluded, and the question is asked again. The \
              objects are simulated: it shows what would come out, and is no measurement."
         );
-        if primary_button(ui, !busy, "Rehearse it").on_hover_text(hint).clicked() {
+        if primary_button(ui, !busy, (Icon::Rehearse, "Rehearse it")).on_hover_text(hint).clicked() {
             session.rehearse(&ctx);
         }
         if is_driven {
@@ -66,19 +67,21 @@ fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment, is_driven:
         } else {
             in_train(ui, session, next);
         }
-        if busy {
+    });
+    if session.jobs.is_running(JobKind::Rehearse) {
+        ui.horizontal(|ui| {
             ui.add(egui::Spinner::new().size(16.0));
             if ui.link("Cancel").clicked() {
                 session.give_up(JobKind::Rehearse);
             }
-        }
-    });
+        });
+    }
 }
 
 /// A menu of the objects that it can be done on in Train.
 fn in_train(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
     let ctx = ui.ctx().clone();
-    let by_hand = egui::Button::new("Do it in Train …");
+    let by_hand = egui::Button::new((Icon::Touch, "Do it in Train …"));
     let menu = egui::containers::menu::MenuButton::from_button(by_hand);
     let (response, _) = menu.ui(ui, |ui| {
         ui.set_max_width(280.0);
@@ -100,13 +103,13 @@ fn in_train(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
 /// What came of the rehearsal.
 fn rehearsal(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
     if let Some(problem) = &session.diagnosing.rehearsal_problem {
-        ui.add(egui::Label::new(RichText::new(problem).size(12.0).color(palette(ui).caution)).wrap());
+        remark(ui, Icon::Doubt, problem);
     }
     let Some(rehearsal) = session.diagnosing.rehearsal.clone() else { return };
     ui.add_space(space::XS);
     ui.separator();
     let note = "Rehearsed on SIMULATED objects: what would come out, no measurement.";
-    ui.add(egui::Label::new(RichText::new(note).size(11.5).color(palette(ui).caution)).wrap());
+    remark(ui, Icon::Doubt, note);
     let mut add = None;
     for (k, outcome) in rehearsal.outcomes.iter().enumerate() {
         if object(ui, outcome) {
@@ -143,7 +146,7 @@ fn object(ui: &mut Ui, outcome: &Outcome) -> bool {
         });
     });
     if let Some(problem) = &outcome.problem {
-        ui.add(egui::Label::new(RichText::new(problem).size(11.5).color(palette(ui).caution)).wrap());
+        remark(ui, Icon::Doubt, problem);
     }
     if rounds > 0 {
         let p = palette(ui);
@@ -181,7 +184,7 @@ fn load(ui: &mut Ui, session: &mut Session) {
         let response = ui.add(field.desired_width(width));
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Recording of the experiment"));
         let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-        if ui.button("…").on_hover_text("Choose a file").clicked() {
+        if icon_button(ui, Icon::More, true, "Choose a file").on_hover_text("Choose a file").clicked() {
             files::ask(&ctx, &mut session.jobs, Purpose::AddExperiment);
         }
         let path = session.experiments.path_field.trim().to_owned();
@@ -212,7 +215,7 @@ pub fn settled(ui: &mut Ui, session: &Session, diagnosis: &Diagnosis) {
                     several => format!("{} recordings are", several.len()),
                 }
             );
-            ui.add(egui::Label::new(RichText::new(text).size(12.0).color(palette(ui).caution)).wrap());
+            remark(ui, Icon::Doubt, text);
         });
     }
 }

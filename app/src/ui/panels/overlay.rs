@@ -1,9 +1,10 @@
 //! Recordings laid over the shown one: the menu that chooses them, and the legend with their shifts.
 
+use crate::ui::icons::{self, Icon};
 use crate::ui::jobs::JobKind;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, recording as color, space};
-use crate::ui::widgets::swatch;
+use crate::ui::widgets::{quiet_icon_button, swatch};
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{DragValue, PopupCloseBehavior, RichText, Ui};
 
@@ -16,7 +17,8 @@ pub fn overlay_menu(ui: &mut Ui, session: &mut Session) {
         return;
     }
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    let button = egui::Button::new(RichText::new("Overlay").size(11.5)).small();
+    let button =
+        egui::Button::new((Icon::Layers.atom(icons::SMALL, None), RichText::new("Overlay").size(11.5))).small();
     let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
         ui.set_min_width(220.0);
         for recording in 0..session.recordings.len() {
@@ -66,7 +68,11 @@ fn one(ui: &mut Ui, session: &mut Session, place: usize, recording: usize, clock
     }
     let running = session.jobs.is_running(JobKind::Align);
     let hint = "Shift it to where its forces (else its motion) are most like those of the shown recording";
-    if ui.add_enabled(!running, egui::Button::new("Align").small()).on_hover_text(hint).clicked() {
+    if ui
+        .add_enabled(!running, egui::Button::new((Icon::Align.atom(icons::SMALL, None), "Align")).small())
+        .on_hover_text(hint)
+        .clicked()
+    {
         let ctx = ui.ctx().clone();
         session.align(&ctx, recording);
     }
@@ -79,7 +85,7 @@ fn one(ui: &mut Ui, session: &mut Session, place: usize, recording: usize, clock
     if ui.add_enabled(known, button).on_hover_text(hint).on_disabled_hover_text(why).clicked() {
         session.align_by_contact(recording);
     }
-    if ui.small_button("×").on_hover_text("Take it away").clicked() {
+    if quiet_icon_button(ui, Icon::Close, true, "Take it away").on_hover_text("Take it away").clicked() {
         session.toggle_overlay(recording);
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::ui::fit_choice::Stated;
 use crate::ui::format::{self, Quantity};
+use crate::ui::icons::Icon;
 use crate::ui::session::Session;
 use crate::ui::teach;
 use crate::ui::theme::{self, palette, space};
@@ -119,9 +120,9 @@ fn state(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quantity: &Q
     };
     ui.label(theme::strong("Where its value comes from"));
     let choices = [
-        (Source::Estimated, "Estimate", "From this recording alone"),
-        (Source::Prior, "Prior", "From this recording and what was believed before, each by its error"),
-        (Source::Known, "Freeze", "Taken as known exactly; not estimated"),
+        (Source::Estimated, (Icon::Fit, "Estimate"), "From this recording alone"),
+        (Source::Prior, (Icon::Adjust, "Prior"), "From this recording and what was believed before, each by its error"),
+        (Source::Known, (Icon::Lock, "Freeze"), "Taken as known exactly; not estimated"),
     ];
     let mut source = before;
     if segmented(ui, &mut source, &choices) {

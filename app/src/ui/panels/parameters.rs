@@ -3,11 +3,12 @@
 use super::Panel;
 use crate::ui::fit_choice::Stated;
 use crate::ui::format;
+use crate::ui::icons::{self, Icon};
 use crate::ui::jobs::JobKind;
 use crate::ui::session::Session;
 use crate::ui::teach;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::card;
+use crate::ui::widgets::{card, remark};
 use egui::{Align, Layout, RichText, Ui};
 use egui_extras::{Column, TableBody, TableBuilder};
 use estimator::estimate::{Fit, Parameter};
@@ -125,7 +126,8 @@ fn line(body: &mut TableBody<'_>, session: &mut Session, parameter: &Parameter) 
             let p = palette(ui);
             let color = if shown.is_some() { p.secondary } else { p.faint };
             ui.add(egui::Label::new(RichText::new(name).color(color)).truncate());
-            if let Some(word) = stated {
+            if let Some((icon, word)) = stated {
+                icon.show(ui, icons::SMALL, p.accent);
                 ui.label(RichText::new(word).size(10.5).color(p.accent));
             }
         });
@@ -166,15 +168,15 @@ fn number(row: &mut egui_extras::TableRow<'_, '_>, text: &str, strong: bool) {
     });
 }
 
-/// A word beside parameters of which something is stated.
-fn is_stated(session: &Session, parameter: &Parameter) -> Option<&'static str> {
+/// An icon and a word beside parameters of which something is stated.
+fn is_stated(session: &Session, parameter: &Parameter) -> Option<(Icon, &'static str)> {
     let (stated, name) = (&session.choice.stated, Stated::name_of(parameter));
     if stated.known.contains_key(&name) {
-        Some("frozen")
+        Some((Icon::Lock, "frozen"))
     } else if stated.prior.contains_key(&name) {
-        Some("prior")
+        Some((Icon::Adjust, "prior"))
     } else {
-        stated.bounds.contains_key(&name).then_some("bounded")
+        stated.bounds.contains_key(&name).then_some((Icon::Adjust, "bounded"))
     }
 }
 
@@ -236,7 +238,7 @@ fn residual(ui: &mut Ui, session: &Session, simulation: &Simulation) {
         let text = format!(
             "The replay departs from the measured force by up to {number} {unit} RMS: this world does not hold all that was touched."
         );
-        ui.label(RichText::new(text).size(11.5).color(palette(ui).caution));
+        remark(ui, Icon::Doubt, text);
     } else {
         let text = format!("Measured minus simulated force: at most {number} {unit} RMS a channel.");
         ui.label(theme::caption(ui, text));

@@ -1,11 +1,12 @@
 //! The passivity observer's figure, and the switch of the controller.
 
 use crate::ui::format::number;
+use crate::ui::icons::Icon;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette};
+use crate::ui::theme;
 use crate::ui::trainer::USUAL_CONTROL_N_S_M;
-use crate::ui::widgets::{card, fact};
-use egui::{Align, Layout, RichText, Ui};
+use crate::ui::widgets::{card, fact, remark};
+use egui::{Align, Layout, Ui};
 
 const WHY: &str = "The observer always counts the energy that the world has taken in. When more was given out than taken in (below \
                    zero) the force on you can start to swing; the controller then brakes your fingers until it is back. It is off \
@@ -32,7 +33,7 @@ pub fn passivity(ui: &mut Ui, session: &mut Session) {
         fact(ui, "Energy taken in", format!("{} mJ", number(energy_j * 1e3, 1)));
         if energy_j < GIVEN_OUT_J {
             let text = "More was given out than taken in: the force on you may swing. The controller brakes it.";
-            ui.label(RichText::new(text).size(11.5).color(palette(ui).caution));
+            remark(ui, Icon::Doubt, text);
         }
         if before.is_some() {
             ui.add_enabled_ui(free, |ui| strength(ui, &mut most));

@@ -4,6 +4,7 @@ use super::Panel;
 use crate::history::Attempt;
 use crate::ui::files;
 use crate::ui::format;
+use crate::ui::icons::Icon;
 use crate::ui::jobs::Purpose;
 use crate::ui::learning::{Learned, Practised};
 use crate::ui::plots::{decimals, inks, marks};
@@ -48,7 +49,7 @@ impl Panel for ProgressPanel {
                     None => "Choose who practises, or add them: their attempts at lessons are kept and shown here."
                         .to_owned(),
                 };
-                empty_state(ui, "No attempts yet", &text, |_| {});
+                empty_state(ui, (Icon::Progress, "No attempts yet"), &text, |_| {});
                 return;
             }
             plain_card(ui, "Learning", |ui| learning(ui, session));
@@ -78,7 +79,7 @@ fn who(ui: &mut Ui, session: &mut Session) {
         call(&response, "Name of a new trainee");
         let entered = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
         let named = is_kept && !learning.name_field.trim().is_empty();
-        if ui.add_enabled(named, egui::Button::new("Add")).clicked() || (entered && named) {
+        if ui.add_enabled(named, egui::Button::new((Icon::Add, "Add"))).clicked() || (entered && named) {
             learning.add_trainee();
         }
     });

@@ -4,10 +4,11 @@ use super::Panel;
 use crate::ui::files;
 use crate::ui::fit_choice::Stated;
 use crate::ui::format;
+use crate::ui::icons::Icon;
 use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{call, fact, plain_card, primary_button};
+use crate::ui::widgets::{call, fact, icon_button, plain_card, primary_button};
 use egui::{ComboBox, DragValue, ScrollArea, TextEdit, Ui};
 use estimator::segment::{Method, Thresholds};
 use std::path::PathBuf;
@@ -38,16 +39,18 @@ impl Panel for RecordingPanel {
 }
 
 fn source(ui: &mut Ui, session: &mut Session) {
-    let field = TextEdit::singleline(&mut session.path_field)
-        .hint_text("Path of a log, then Enter")
-        .desired_width(f32::INFINITY);
-    let response = ui.add(field);
-    let enter = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
     let ctx = ui.ctx().clone();
-    ui.horizontal_wrapped(|ui| {
-        if ui.button("Open …").on_hover_text("Ctrl+O").clicked() {
+    let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
+    let layout = egui::Layout::right_to_left(egui::Align::Center);
+    let response = ui.allocate_ui_with_layout(size, layout, |ui| {
+        if icon_button(ui, Icon::Open, true, "Open …").on_hover_text("Open a log (Ctrl+O)").clicked() {
             files::ask(&ctx, &mut session.jobs, Purpose::OpenLog);
         }
+        let field = TextEdit::singleline(&mut session.path_field).hint_text("Path of a log, then Enter");
+        ui.add(field.desired_width(ui.available_width()))
+    });
+    let enter = response.inner.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+    ui.horizontal_wrapped(|ui| {
         let named = !session.path_field.trim().is_empty();
         if enter && named {
             let path = PathBuf::from(session.path_field.trim());
@@ -55,7 +58,7 @@ fn source(ui: &mut Ui, session: &mut Session) {
         }
         let named = named || session.path.is_some();
         let hint = "Say what the columns of this table mean; a sidecar remembers it";
-        if ui.add_enabled(named, egui::Button::new("Map columns …")).on_hover_text(hint).clicked() {
+        if ui.add_enabled(named, egui::Button::new((Icon::Columns, "Map columns …"))).on_hover_text(hint).clicked() {
             session.map_columns(&ctx, None);
         }
     });
@@ -116,7 +119,7 @@ fn fit(ui: &mut Ui, session: &mut Session) {
     ui.add_space(space::XS);
     ui.horizontal(|ui| {
         let text = if session.analysis.is_some() { "Refit" } else { "Fit" };
-        if primary_button(ui, !running, text).clicked() {
+        if primary_button(ui, !running, (Icon::Fit, text)).clicked() {
             let ctx = ui.ctx().clone();
             session.refit(&ctx);
         }
@@ -274,9 +277,8 @@ fn save_line(ui: &mut Ui, session: &mut Session, field: &mut String, purpose: Pu
     ui.add_enabled_ui(enabled, |ui| {
         let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let save = ui.button("Save");
-            save.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, does));
-            if ui.button("…").on_hover_text("Choose a place").clicked() {
+            let save = icon_button(ui, Icon::Save, enabled, does).on_hover_text(does);
+            if icon_button(ui, Icon::More, enabled, "Choose a place").on_hover_text("Choose a place").clicked() {
                 files::ask(ui.ctx(), &mut session.jobs, purpose);
             }
             let edit = ui.add(TextEdit::singleline(field).desired_width(ui.available_width()));

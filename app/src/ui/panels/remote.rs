@@ -1,11 +1,12 @@
 //! The devices page, left column: what has to be known of a remote device.
 
 use super::devices::{Choice, row};
+use crate::ui::icons::Icon;
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
+use crate::ui::theme::{self, space};
 use crate::ui::trainer::{HandDevice, Operator, Remote};
-use crate::ui::widgets::plain_card;
-use egui::{RichText, TextEdit, Ui, vec2};
+use crate::ui::widgets::{plain_card, remark};
+use egui::{TextEdit, Ui, vec2};
 use haptics::device::udp::{Key, PORT};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -34,13 +35,12 @@ impl RemoteCard {
             );
             let remote = session.trainer.settings.remote.clone();
             self.doubt(&remote.key);
-            let p = palette(ui);
             for doubt in &self.doubts {
-                ui.label(RichText::new(doubt).size(11.5).color(p.caution));
+                remark(ui, Icon::Doubt, doubt);
             }
             let problem = remote.problem();
             if let Some(problem) = &problem {
-                ui.label(RichText::new(problem).size(11.5).color(p.danger));
+                remark(ui, Icon::Wrong, problem);
             }
             ui.add_space(space::XS);
             let ready = match &problem {

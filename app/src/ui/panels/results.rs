@@ -3,10 +3,11 @@
 use super::Panel;
 use super::parameters::ParametersPanel;
 use crate::ui::format;
+use crate::ui::icons::{self, Icon};
 use crate::ui::plots::places;
 use crate::ui::session::{Session, Workspace, sentence};
 use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{card, plain_card, primary_button};
+use crate::ui::widgets::{card, plain_card, primary_button, remark};
 use egui::{RichText, ScrollArea, Ui};
 use estimator::estimate::{Constraint, ConstraintKind};
 
@@ -145,13 +146,10 @@ fn warnings(ui: &mut Ui, session: &mut Session) {
             ui.label(theme::caption(ui, "Nothing doubtful was found."));
         }
         for (text, places) in texts {
-            ui.horizontal_top(|ui| {
-                ui.label(RichText::new("▲").size(9.0).color(palette(ui).caution));
-                ui.vertical(|ui| {
-                    ui.spacing_mut().item_spacing.y = 2.0;
-                    ui.add(egui::Label::new(RichText::new(text).size(12.0)).wrap());
-                    jump = jump.or(go_there(ui, &places, session.cursor_s, prepared.clockless()));
-                });
+            ui.scope(|ui| {
+                ui.spacing_mut().item_spacing.y = 2.0;
+                remark(ui, Icon::Doubt, text);
+                jump = jump.or(go_there(ui, &places, session.cursor_s, prepared.clockless()));
             });
         }
     });
@@ -169,7 +167,12 @@ fn go_there(ui: &mut Ui, places: &[(f64, f64)], cursor_s: f64, clockless: bool) 
         1 => format!("Go to {at}"),
         n => format!("Go to {at} ({} of {n})", next + 1),
     };
-    ui.link(RichText::new(text).size(11.5)).clicked().then_some(*place)
+    ui.horizontal(|ui| {
+        // Below the words of the remark.
+        ui.add_space(icons::SMALL + 6.0 - ui.spacing().item_spacing.x);
+        ui.link(RichText::new(text).size(11.5)).clicked().then_some(*place)
+    })
+    .inner
 }
 
 fn diagnose(ui: &mut Ui, session: &mut Session) {
@@ -179,7 +182,7 @@ fn diagnose(ui: &mut Ui, session: &mut Session) {
     plain_card(ui, "What it gets wrong", |ui| {
         ui.label(theme::caption(ui, "A diagnosis names what the model misses, and measures what mending it gains."));
         ui.add_space(space::XS);
-        if ui.button("Diagnose …").on_hover_text("Ctrl+3").clicked() {
+        if ui.button((Icon::Diagnose, "Diagnose …")).on_hover_text("Ctrl+3").clicked() {
             session.workspace = Workspace::Diagnose;
             if session.diagnosing.answer.is_none() && session.diagnosing.problem.is_none() {
                 let ctx = ui.ctx().clone();
@@ -198,12 +201,12 @@ fn train_with_it(ui: &mut Ui, session: &mut Session) {
         ui.label(theme::caption(ui, "The virtual objects now have the measured properties."));
         ui.add_space(space::XS);
         ui.horizontal(|ui| {
-            if primary_button(ui, true, "Train in this world").clicked() {
+            if primary_button(ui, true, (Icon::Touch, "Train in this world")).clicked() {
                 session.train_calibrated = true;
                 session.workspace = Workspace::Train;
             }
             let hint = "A lesson in this world: shown, practised and tested, with experts of its own";
-            if ui.button("Practise on this").on_hover_text(hint).clicked() {
+            if ui.button((Icon::Lesson, "Practise on this")).on_hover_text(hint).clicked() {
                 let ctx = ui.ctx().clone();
                 session.practise_on_this(&ctx);
             }

@@ -4,11 +4,12 @@
 use super::Panel;
 use super::rules_table::{states, subtasks};
 use crate::ui::format;
+use crate::ui::icons::Icon;
 use crate::ui::rules::{self, Rules};
 use crate::ui::session::Session;
-use crate::ui::theme::{self, palette, space};
-use crate::ui::widgets::{card_with_head, primary_button};
-use egui::{DragValue, RichText, ScrollArea, TextEdit, Ui};
+use crate::ui::theme::{self, space};
+use crate::ui::widgets::{card_with_head, primary_button, remark};
+use egui::{DragValue, ScrollArea, TextEdit, Ui};
 use estimator::segment::definition::Definition;
 use haptics::recording::Task;
 
@@ -68,11 +69,11 @@ impl Panel for RulesPanel {
 
 fn head(ui: &mut Ui, draft: &Definition, before: &Definition) -> Asked {
     let mut asked = Asked::Nothing;
-    if ui.button("Close").on_hover_text("The rules stay as they are for this recording").clicked() {
+    if ui.button((Icon::Close, "Close")).on_hover_text("The rules stay as they are for this recording").clicked() {
         asked = Asked::Close;
     }
     if ui
-        .add_enabled(draft != before, egui::Button::new("Reset"))
+        .add_enabled(draft != before, egui::Button::new((Icon::Reset, "Reset")))
         .on_hover_text("Back to the rules as they were")
         .clicked()
     {
@@ -133,10 +134,9 @@ fn foot(ui: &mut Ui, open: &mut Rules) -> bool {
     ui.horizontal(|ui| {
         let usable = open.fault.is_none() && !open.name.trim().is_empty();
         ui.add(TextEdit::singleline(&mut open.name).desired_width(150.0).hint_text("Name of your task"));
-        save = primary_button(ui, usable, "Save as my task").clicked();
+        save = primary_button(ui, usable, (Icon::Save, "Save as my task")).clicked();
         if let Some(fault) = &open.fault {
-            let text = RichText::new(fault).size(12.0).color(palette(ui).danger);
-            ui.add(egui::Label::new(text).wrap());
+            remark(ui, Icon::Wrong, fault);
         } else {
             let text = if open.draft == open.before && open.draft.like == Task::Needle {
                 "The first rule that holds names the state."

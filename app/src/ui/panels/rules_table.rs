@@ -1,9 +1,10 @@
 //! The two tables of the rules: states with their signs, and subtasks with their states.
 
 use super::rules::parameter;
+use crate::ui::icons::Icon;
 use crate::ui::rules::Rules;
 use crate::ui::theme::{self, palette, space, state_color, state_name};
-use crate::ui::widgets::{call, swatch};
+use crate::ui::widgets::{call, quiet_icon_button, swatch};
 use egui::{Align, Button, Color32, ComboBox, Layout, RichText, Stroke, TextEdit, Ui, vec2};
 use egui_extras::{Column, TableBuilder, TableRow};
 use estimator::segment::SystemState;
@@ -115,7 +116,7 @@ pub fn states(ui: &mut Ui, open: &mut Rules) {
         None => {}
     }
     ui.add_space(space::XS);
-    if ui.button("Add a state").clicked() {
+    if ui.button((Icon::Add, "Add a state")).clicked() {
         open.add_state();
     }
 }
@@ -125,12 +126,16 @@ fn buttons(row: &mut TableRow<'_, '_>, index: usize, removable: bool, done: &mut
     row.col(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.spacing_mut().button_padding.x = 4.0;
-        let small = |text: &str, size| Button::new(RichText::new(text).size(size)).small().frame_when_inactive(false);
-        if ui.add_enabled(index > 0, small("▲", 10.0)).on_hover_text("Move up: rules are tried from the top").clicked()
+        ui.spacing_mut().interact_size.y = 20.0;
+        let up = format!("Move rule {} up", index + 1);
+        if quiet_icon_button(ui, Icon::Up, index > 0, &up)
+            .on_hover_text("Move up: rules are tried from the top")
+            .clicked()
         {
             *done = Some(Done::Up(index));
         }
-        if ui.add_enabled(removable, small("×", 15.0)).on_hover_text("Remove").clicked() {
+        let away = format!("Remove rule {}", index + 1);
+        if quiet_icon_button(ui, Icon::Close, removable, &away).on_hover_text("Remove").clicked() {
             *done = Some(Done::Gone(index));
         }
     });
@@ -291,7 +296,7 @@ fn group(ui: &mut Ui, open: &mut Rules, title: &str, steps: impl Fn(&mut Rules) 
             Some(Done::Gone(index)) => drop(steps(open).remove(index)),
             None => {}
         }
-        if ui.button("Add a subtask").clicked() {
+        if ui.button((Icon::Add, "Add a subtask")).clicked() {
             let state = open.draft.states.first().map_or(SystemState::FreeMotion, |rule| rule.state);
             let list = steps(open);
             let mut number = list.len() + 1;

@@ -1,6 +1,7 @@
 //! The recording in space: the hand follows the cursor, path, forces and constraints lie over it.
 
 use super::Panel;
+use crate::ui::icons::{self, Icon};
 use crate::ui::prepare::Prepared;
 use crate::ui::scene::{
     Legend, Likeness, Mechanism, Rig, SceneLayers, Wheel, camera_for, options_for, scene_view, scene_world,
@@ -45,7 +46,7 @@ impl Panel for ScenePanel {
             ui.set_min_size(ui.available_size());
             let Some(prepared) = session.prepared().cloned() else {
                 let text = "The recorded hand moves here, with its path, forces and the constraints that were found.";
-                empty_state(ui, "The recording in space", text, |_| {});
+                empty_state(ui, (Icon::Scene, "The recording in space"), text, |_| {});
                 return;
             };
             if prepared.tips.is_none() && prepared.tool.is_none() {
@@ -75,7 +76,7 @@ impl ScenePanel {
     fn one_coordinate(&mut self, ui: &mut Ui, session: &Session, prepared: &Arc<Prepared>) {
         let Some(mechanism) = Mechanism::of(prepared, session.cursor_s) else {
             let text = "This recording has no path: there is nothing to place in space.";
-            empty_state(ui, "Nothing to show in space", text, |_| {});
+            empty_state(ui, (Icon::Scene, "Nothing to show in space"), text, |_| {});
             return;
         };
         self.home(mechanism.camera, prepared);
@@ -161,7 +162,9 @@ fn layers(ui: &mut Ui, rect: Rect, session: &mut Session) {
         return;
     }
     let p = palette(&ui);
-    let button = egui::Button::new(RichText::new("Shown").size(11.5)).corner_radius(11).fill(p.card);
+    let button = egui::Button::new((Icon::Layers.atom(icons::SMALL, None), RichText::new("Shown").size(11.5)))
+        .corner_radius(11)
+        .fill(p.card);
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     MenuButton::from_button(button.stroke(Stroke::new(1.0, p.border))).config(config).ui(&mut ui, |ui| {
         for (label, hint, of) in SWITCHES {

@@ -4,6 +4,7 @@ use super::Panel;
 use super::boundaries;
 use super::rules::parameter;
 use crate::ui::format;
+use crate::ui::icons::Icon;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space, state_color, state_name};
 use crate::ui::widgets::{card, compact, empty_state, swatch};
@@ -46,7 +47,7 @@ impl Panel for SegmentsPanel {
                 if session.segmentation().is_none() {
                     empty_state(
                         ui,
-                        "No states yet",
+                        (Icon::States, "No states yet"),
                         "Open a recording; its states are told from motion and force.",
                         |_| {},
                     );

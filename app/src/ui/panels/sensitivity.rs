@@ -2,11 +2,12 @@
 
 use super::Panel;
 use crate::ui::format;
+use crate::ui::icons::Icon;
 use crate::ui::jobs::JobKind;
 use crate::ui::sensitivity::{CHANGE, Correlations, Effect};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, Palette, palette, space};
-use crate::ui::widgets::{bar, compact, empty_state, plain_card};
+use crate::ui::widgets::{bar, compact, empty_state, plain_card, remark};
 use egui::{Align, Align2, Color32, FontId, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 
 /// Side of a cell of the matrix, points: at most, and at least.
@@ -33,7 +34,7 @@ impl Panel for SensitivityPanel {
             } else {
                 "Once there is a fit, this shows how much the force depends on each of its parameters."
             };
-            empty_state(ui, if busy { "Looking …" } else { "Nothing fitted yet" }, text, |_| {});
+            empty_state(ui, (Icon::Sensitivity, if busy { "Looking …" } else { "Nothing fitted yet" }), text, |_| {});
             return;
         };
         ScrollArea::vertical().id_salt("sensitivity").auto_shrink(false).show(ui, |ui| {
@@ -91,7 +92,7 @@ fn together(ui: &mut Ui, groups: &[Correlations]) {
                     words(&group.names[j]).to_lowercase(),
                     format::number(*value, 2)
                 );
-                ui.label(RichText::new(text).size(11.5).color(palette(ui).caution));
+                remark(ui, Icon::Doubt, text);
             }
         }
     }

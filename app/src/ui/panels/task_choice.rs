@@ -2,6 +2,7 @@
 
 use crate::tasks::Chosen;
 use crate::ui::format;
+use crate::ui::icons::Icon;
 use crate::ui::rules::Rules;
 use crate::ui::session::{Session, sentence};
 use crate::ui::theme;
@@ -93,7 +94,7 @@ fn set(session: &mut Session, task: Option<Task>, own: Option<Arc<Definition>>) 
 fn edit(ui: &mut Ui, session: &mut Session) {
     let open = session.rules.is_some();
     let hint = "States, when they hold, their thresholds and what they show: look at them, change them, save them as a task of yours";
-    if ui.button(if open { "Close rules" } else { "Rules …" }).on_hover_text(hint).clicked() {
+    if ui.button((Icon::Rules, if open { "Close rules" } else { "Rules …" })).on_hover_text(hint).clicked() {
         session.rules = if open { None } else { Rules::open(session) };
     }
 }

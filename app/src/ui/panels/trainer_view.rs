@@ -2,6 +2,7 @@
 
 use super::{Panel, guide, lessons, marks, steering};
 use crate::ui::assistant;
+use crate::ui::icons::Icon;
 use crate::ui::scene::{Rig, SceneResponse, Wheel, scene_view};
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
@@ -72,7 +73,7 @@ impl Panel for TrainerView {
             let Some((snapshot, world)) = session.trainer.scene() else {
                 empty_state(
                     ui,
-                    "The servo is not running",
+                    (Icon::Doubt, "The servo is not running"),
                     "See the message above; then choose a world again.",
                     |_| {},
                 );

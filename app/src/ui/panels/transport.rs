@@ -1,10 +1,11 @@
 //! Play, pause, speed, and an overview of the whole recording to move in.
 
 use crate::ui::format;
+use crate::ui::icons::Icon;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space, state_color};
-use crate::ui::widgets::call;
-use egui::{Pos2, Rangef, Rect, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, vec2};
+use crate::ui::widgets::{call, icon_button};
+use egui::{Pos2, Rangef, Rect, Sense, Stroke, StrokeKind, Ui, UiBuilder, vec2};
 
 /// Playback speeds on offer.
 const SPEEDS: [f64; 5] = [0.1, 0.25, 0.5, 1.0, 2.0];
@@ -43,23 +44,10 @@ fn speed_text(speed: f64) -> String {
     format!("{speed} ×")
 }
 
-/// A triangle or two bars, drawn: no font needs to have them.
-pub fn play_button(ui: &mut Ui, playing: bool) -> egui::Response {
-    let (rect, response) = ui.allocate_exact_size(vec2(30.0, 28.0), Sense::click());
-    let hint = if playing { "Pause" } else { "Play" };
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, hint));
-    let visuals = ui.style().interact(&response);
-    ui.painter().rect_filled(rect, 6, visuals.weak_bg_fill);
-    let (c, ink) = (rect.center(), palette(ui).text);
-    if playing {
-        for x in [-4.0, 4.0] {
-            ui.painter().rect_filled(Rect::from_center_size(c + vec2(x, 0.0), vec2(3.5, 12.0)), 1, ink);
-        }
-    } else {
-        let points = vec![c + vec2(-4.0, -6.5), c + vec2(7.0, 0.0), c + vec2(-4.0, 6.5)];
-        ui.painter().add(Shape::convex_polygon(points, ink, Stroke::NONE));
-    }
-    response.on_hover_text(format!("{hint} (Space)"))
+/// Plays, or stops it.
+fn play_button(ui: &mut Ui, playing: bool) -> egui::Response {
+    let (icon, name) = if playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
+    icon_button(ui, icon, true, name).on_hover_text(format!("{name} (Space)"))
 }
 
 /// The whole recording in its states' colours, the visible part framed, the cursor as a handle.

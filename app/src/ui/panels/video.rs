@@ -3,12 +3,13 @@
 use super::Panel;
 use crate::ui::files;
 use crate::ui::format;
+use crate::ui::icons::Icon;
 use crate::ui::jobs::{JobKind, Purpose};
 use crate::ui::mapping::name_of;
 use crate::ui::session::Session;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::video::State;
-use crate::ui::widgets::{empty_state, primary_button, sheet};
+use crate::ui::widgets::{empty_state, primary_button, quiet_icon_button, sheet};
 use crate::video::Video;
 use egui::{
     Align, Align2, Color32, CornerRadius, DragValue, FontId, Layout, Margin, Rect, RichText, Sense, Slider, Ui, pos2,
@@ -59,25 +60,25 @@ fn none(ui: &mut Ui, session: &mut Session) {
     } else {
         "Open a log first; a video of the hand then runs here with the time cursor."
     };
-    empty_state(ui, "No video", text, |ui| {
-        if primary_button(ui, loaded, "Choose a video …").clicked() {
+    empty_state(ui, (Icon::Video, "No video"), text, |ui| {
+        if primary_button(ui, loaded, (Icon::Open, "Choose a video …")).clicked() {
             files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenVideo);
         }
     });
 }
 
 fn failed(ui: &mut Ui, session: &mut Session, problem: &str) {
-    empty_state(ui, "The video cannot be shown", problem, |ui| {
+    empty_state(ui, (Icon::Doubt, "The video cannot be shown"), problem, |ui| {
         ui.horizontal(|ui| {
             // Buttons in the middle of the line that the text stands on.
-            ui.add_space((0.5 * ui.available_width() - 140.0).max(0.0));
-            if ui.button("Try again").clicked() {
+            ui.add_space((0.5 * ui.available_width() - 170.0).max(0.0));
+            if ui.button((Icon::Reload, "Try again")).clicked() {
                 session.read_video_again();
             }
-            if ui.button("Choose another …").clicked() {
+            if ui.button((Icon::Open, "Choose another …")).clicked() {
                 files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenVideo);
             }
-            if ui.button("Take it away").clicked() {
+            if ui.button((Icon::Close, "Take it away")).clicked() {
                 session.forget_video();
             }
         });
@@ -180,7 +181,7 @@ fn place(ui: &mut Ui, session: &mut Session) {
     }
     let free = !session.jobs.is_running(JobKind::AlignVideo);
     let hint = "Shift it to where its pictures change when the recorded hand moves";
-    let align = ui.add_enabled(free, egui::Button::new("Align")).on_hover_text(hint);
+    let align = ui.add_enabled(free, egui::Button::new((Icon::Align, "Align"))).on_hover_text(hint);
     align.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, free, "Align video"));
     if align.clicked() {
         let ctx = ui.ctx().clone();
@@ -201,8 +202,7 @@ fn runner(ui: &mut Ui, session: &mut Session, video: &Video, mut at_s: f64) {
 fn facts(ui: &mut Ui, session: &mut Session, video: &Video) {
     let Some(file) = session.video_source().map(|s| s.file.clone()) else { return };
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        let away = ui.small_button("×").on_hover_text("Take the video away");
-        away.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Take the video away"));
+        let away = quiet_icon_button(ui, Icon::Close, true, "Take the video away").on_hover_text("Take the video away");
         if away.clicked() {
             session.forget_video();
         }

@@ -4,6 +4,7 @@ use super::markers::{self, Marked, error_of};
 use super::overlay::{follows_fingers, force_scale};
 use super::{Likeness, SceneLayers};
 use crate::ui::format::{number, significant};
+use crate::ui::icons::{self, Icon};
 use crate::ui::prepare::Prepared;
 use crate::ui::session::Session;
 use crate::ui::theme::{palette, role, space};
@@ -25,7 +26,8 @@ enum Mark {
     Dashes,
     Arrow,
     Ring,
-    None,
+    /// Nothing in the picture: it is only said.
+    Words,
 }
 
 struct Row {
@@ -112,7 +114,7 @@ fn draw_mark(ui: &mut Ui, mark: Mark, color: Color32) {
             painter.circle_stroke(rect.center(), 4.5, Stroke::new(1.4, color));
             painter.circle_filled(rect.center(), 1.6, color);
         }
-        Mark::None => {}
+        Mark::Words => Icon::Told.paint(painter, rect.center(), icons::SMALL, palette(ui).secondary),
     }
 }
 
@@ -161,7 +163,7 @@ fn of_replay(layers: SceneLayers, likeness: Option<&Likeness>) -> Vec<Row> {
     }
     let none = || {
         vec![Row::new(
-            Mark::None,
+            Mark::Words,
             ColorRole::Simulated,
             "No replay: the fit made no world that these fingers can touch",
         )]
@@ -202,12 +204,12 @@ fn of_constraint(marked: &Marked<'_>, cursor_s: f64) -> Vec<Row> {
         ConstraintKind::Membrane => {
             let text = phase_at(&constraint.phases, cursor_s).map(in_words).unwrap_or_default();
             let else_says = constraint.phases.iter().map(in_words).collect();
-            vec![Row { else_says, ..Row::new(Mark::None, ColorRole::Constraint, text) }]
+            vec![Row { else_says, ..Row::new(Mark::Words, ColorRole::Constraint, text) }]
         }
         ConstraintKind::Undecided if constraint.existence.is_some() => {
-            row(Mark::None, "Constraint: cannot be decided from this recording".to_owned())
+            row(Mark::Words, "Constraint: cannot be decided from this recording".to_owned())
         }
-        ConstraintKind::Screw => row(Mark::None, "Screw found: turning and sliding go together".to_owned()),
+        ConstraintKind::Screw => row(Mark::Words, "Screw found: turning and sliding go together".to_owned()),
         ConstraintKind::Free | ConstraintKind::Undecided => Vec::new(),
     }
 }

@@ -2,6 +2,7 @@
 //! the recording knows none. The rail is as long as the way that was recorded.
 
 use crate::ui::format;
+use crate::ui::plots::{decimals, marks};
 use crate::ui::prepare::Prepared;
 use crate::ui::theme::{self, palette, space};
 use egui::{Align2, FontId, Pos2, Rect, Ui};
@@ -18,8 +19,8 @@ const CARRIAGE_M: [f64; 2] = [0.014, 0.010];
 const ABOVE_TABLE_M: f64 = 0.018;
 /// Length of the arrow of the largest force, m.
 const ARROW_M: f64 = 0.022;
-/// Numbers along the rail.
-const NUMBERS: u8 = 4;
+/// About so many steps between the numbers along the rail.
+const NUMBERS: f64 = 5.0;
 
 /// One coordinate at the cursor.
 pub struct Mechanism {
@@ -69,10 +70,10 @@ impl Mechanism {
             body.center_m = at;
         }
         let along = Vec2::new(1.0, 0.0);
-        let numbers = (0..=NUMBERS).filter(|_| low < high).map(|k| {
-            let value = low + (high - low) * f64::from(k) / f64::from(NUMBERS);
-            let decimals = if high - low < 0.01 { 2 } else { 0 };
-            (Vec2::new(x_of(value), y - 0.009), format!("{} mm", format::number(1e3 * value, decimals)))
+        let round = if low < high { marks((1e3 * low, 1e3 * high), NUMBERS) } else { Vec::new() };
+        let numbers = round.into_iter().map(|mark| {
+            let text = format!("{} mm", format::number(mark.value, decimals(mark.step_size)));
+            (Vec2::new(x_of(1e-3 * mark.value), y - 0.009), text)
         });
         let above = at + Vec2::new(0.0, 0.5 * CARRIAGE_M[1] + 0.004);
         Self {
@@ -179,7 +180,9 @@ mod tests {
         let arrow = |t: f64| at(t).options.force_vectors[0].force_n;
         assert_eq!((arrow(0.0), arrow(2.0)), (Vec2::new(-1.0, 0.0), Vec2::new(0.5, 0.0)));
         let numbers = at(0.0).numbers;
-        assert_eq!((numbers[0].1.as_str(), numbers[4].1.as_str()), ("−200 mm", "400 mm"));
+        let said: Vec<&str> = numbers.iter().map(|(_, text)| text.as_str()).collect();
+        assert_eq!(said, ["−200 mm", "0 mm", "200 mm", "400 mm"]);
+        assert!((numbers[1].0.x + HALF_RAIL_M / 3.0).abs() < 1e-9, "zero is a third along");
     }
 
     #[test]

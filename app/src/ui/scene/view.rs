@@ -2,6 +2,7 @@
 
 use super::callback::{picture, pixels};
 use super::rig::Rig;
+use crate::ui::icons::{self, Icon};
 use crate::ui::theme::{self, palette};
 use egui::{Key, PointerButton, Rect, Response, Sense};
 use haptics::world::{State, World};
@@ -164,9 +165,14 @@ fn reset_button(ui: &mut egui::Ui, rect: Rect, rig: &mut Rig) {
         rig.go_home();
         return;
     }
-    let size = egui::vec2(92.0, 26.0);
+    let size = egui::vec2(106.0, 26.0);
     let at = Rect::from_min_size(rect.right_top() + egui::vec2(-size.x - 12.0, 12.0), size);
-    let button = egui::Button::new(theme::caption(ui, "Reset view")).fill(palette(ui).card);
+    let button = egui::Button::new((
+        Icon::Reset.atom(icons::SMALL, Some(palette(ui).secondary)),
+        theme::caption(ui, "Reset view"),
+    ))
+    .gap(5.0)
+    .fill(palette(ui).card);
     let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(at));
     if ui.put(at, button).on_hover_text("Key 0").clicked() {
         rig.go_home();

@@ -124,7 +124,7 @@ fn the_atlas_has_every_suspect_by_its_evidence_and_shows_one_large() {
     harness.run_steps(3);
     assert_eq!(harness.state().session.diagnosing.atlas_open.as_deref(), Some(sheet.cells[1].id.as_str()));
     assert!(harness.query_by_label_contains("Alone it scores").is_some());
-    harness.get_by_role_and_label(Role::Link, "← All suspects").click();
+    harness.get_by_role_and_label(Role::Button, "All suspects").click();
     harness.run_steps(3);
     assert!(harness.query_by_role_and_label(Role::Button, &second).is_some());
     harness.get_by_role_and_label(Role::Link, "Curves").click();

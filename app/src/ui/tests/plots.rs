@@ -255,7 +255,7 @@ fn another_recording_is_laid_over_and_aligned() {
     press(&mut harness, Role::Button, "First contact");
     let offset_s = harness.state().plots.overlaid[0].offset_s;
     assert!((offset_s + later_s).abs() < 0.05, "{offset_s} s by the first contact");
-    press(&mut harness, Role::Button, "×");
+    press(&mut harness, Role::Button, "Take it away");
     assert!(harness.state().plots.overlaid.is_empty());
 }
 
@@ -309,7 +309,8 @@ fn nothing_of_the_log_is_cut_where_there_is_little_room() {
         let mut harness = log(make());
         harness.set_size(egui::vec2(width, 520.0));
         harness.run_steps(4);
-        for label in ["Position", "Task signals", "Overlay", "Align", "First contact", "×", "Position menu"] {
+        for label in ["Position", "Task signals", "Overlay", "Align", "First contact", "Take it away", "Position menu"]
+        {
             let rect = harness.get_by_role_and_label(Role::Button, label).rect();
             assert!(rect.left() >= 0.0 && rect.right() <= width, "{label} at {width}: {rect:?}");
         }
