@@ -165,3 +165,27 @@ fn best_adapter(rank: impl Fn(wgpu::DeviceType) -> u8) -> Result<wgpu::Adapter, 
     }
     Err(RenderError::NoDriver)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::MapFormat;
+    use crate::scene::ViewOptions;
+    use haptics::world::{State, presets};
+
+    #[test]
+    fn maps_of_bytes_shade_as_those_of_numbers_do() {
+        let Ok(mut plain) = Headless::software() else { return };
+        let Ok(mut bytes) = Headless::software() else { return };
+        bytes.renderer = Renderer::with_maps(&bytes.device, FORMAT, SAMPLES, MapFormat::Bytes);
+        bytes.frame = bytes.renderer.frame(&bytes.device);
+        let world = presets::named("stack").expect("it is built in");
+        let (state, options) = (State::resting(&world), ViewOptions::default());
+        let view = SceneView { world: &world, state: &state, options: &options };
+        let [one, other] = [&mut plain, &mut bytes].map(|h| h.render(&view, 320, 240).expect("drawn"));
+        let differ = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 3;
+        let apart = one.as_raw().iter().zip(other.as_raw()).filter(|pair| differ(*pair)).count();
+        // A rounding decides at the rim of a shadow; that there are shadows at all is seen in the tests of pictures.
+        assert!(apart * 1000 < one.as_raw().len(), "{apart} of {}", one.as_raw().len());
+    }
+}

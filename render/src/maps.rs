@@ -2,7 +2,7 @@
 //! what they leave it of the sky.
 
 use crate::light::{MAP_TEXELS, SKY_TEXELS, TABLE_TEXELS};
-use crate::pipeline::{Groups, MAP_FORMAT, TABLE_LIGHT_FORMAT};
+use crate::pipeline::{Groups, TABLE_LIGHT_FORMAT};
 use crate::renderer::DEPTH_FORMAT;
 
 /// Textures and how the shaders read them.
@@ -28,8 +28,8 @@ const READ: wgpu::TextureUsages = wgpu::TextureUsages::RENDER_ATTACHMENT.union(w
 
 impl Maps {
     pub(crate) fn new(device: &wgpu::Device, groups: &Groups) -> Self {
-        let nearest = Depths::new(device, [MAP_TEXELS; 2]);
-        let undersides = Depths::new(device, TABLE_TEXELS);
+        let nearest = Depths::new(device, [MAP_TEXELS; 2], groups.map_format.texture());
+        let undersides = Depths::new(device, TABLE_TEXELS, groups.map_format.texture());
         let table = texture(device, TABLE_TEXELS, TABLE_LIGHT_FORMAT, READ);
         let sky = texture(device, SKY_TEXELS, TABLE_LIGHT_FORMAT, READ);
         Self {
@@ -65,9 +65,9 @@ impl Maps {
 }
 
 impl Depths {
-    fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
+    fn new(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat) -> Self {
         Self {
-            nearest: texture(device, size, MAP_FORMAT, READ),
+            nearest: texture(device, size, format, READ),
             depth: texture(device, size, DEPTH_FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
         }
     }

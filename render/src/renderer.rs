@@ -3,7 +3,7 @@
 use crate::draw_data::{DrawData, Layer};
 use crate::frame::Frame;
 use crate::mesh::MeshKind;
-use crate::pipeline::{Groups, Pipelines};
+use crate::pipeline::{Groups, MapFormat, Pipelines};
 use crate::scene::SceneView;
 use crate::target::TextureTarget;
 use wgpu::util::DeviceExt;
@@ -42,7 +42,17 @@ impl Renderer {
     ///
     /// Colours are written for direct display (gamma-encoded), as egui does: prefer `Rgba8Unorm`. sRGB formats work too.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, samples: u32) -> Self {
-        let groups = Groups::new(device);
+        Self::with_maps(device, format, samples, MapFormat::of(device))
+    }
+
+    /// The same with maps of a kind.
+    pub(crate) fn with_maps(
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        samples: u32,
+        map_format: MapFormat,
+    ) -> Self {
+        let groups = Groups::new(device, map_format);
         Self {
             pipelines: Pipelines::new(device, &groups, format, samples),
             meshes: MeshKind::ALL.iter().map(|kind| GpuMesh::new(device, *kind)).collect(),

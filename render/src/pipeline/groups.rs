@@ -1,13 +1,17 @@
 //! What the shaders can read beside their vertices: numbers of the scene, the shadow map or that of undersides, the table's light maps.
 
+use super::MapFormat;
+
 /// Layouts of the bind groups, by number.
 #[derive(Debug)]
 pub(crate) struct Groups {
     layouts: [wgpu::BindGroupLayout; 3],
+    /// What the maps in group 1 hold.
+    pub(crate) map_format: MapFormat,
 }
 
 impl Groups {
-    pub(crate) fn new(device: &wgpu::Device) -> Self {
+    pub(crate) fn new(device: &wgpu::Device, map_format: MapFormat) -> Self {
         use wgpu::ShaderStages as Stages;
         let uniform = wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
@@ -31,6 +35,7 @@ impl Groups {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
         };
         Self {
+            map_format,
             layouts: [
                 layout("globals", &[uniform], Stages::VERTEX_FRAGMENT),
                 layout("shadow map", &[texture(false)], Stages::FRAGMENT),

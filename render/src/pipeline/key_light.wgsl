@@ -9,7 +9,7 @@ fn map_place(world: vec3<f32>) -> vec3<f32> {
 
 fn nearest_at(texel: vec2<i32>) -> f32 {
     let last = i32(globals.map.x) - 1;
-    return textureLoad(nearest, clamp(texel, vec2(0), vec2(last)), 0).x;
+    return from_map(textureLoad(nearest, clamp(texel, vec2(0), vec2(last)), 0));
 }
 
 fn in_map(place: vec3<f32>) -> bool {
@@ -32,9 +32,9 @@ fn light_on_solid(world: vec3<f32>, normal: vec3<f32>) -> f32 {
     for (var row = 0; row < 3; row++) {
         let y = first.y + row;
         let depths = vec3(
-            textureLoad(nearest, vec2(first.x, y), 0).x,
-            textureLoad(nearest, vec2(first.x + 1, y), 0).x,
-            textureLoad(nearest, vec2(first.x + 2, y), 0).x,
+            from_map(textureLoad(nearest, vec2(first.x, y), 0)),
+            from_map(textureLoad(nearest, vec2(first.x + 1, y), 0)),
+            from_map(textureLoad(nearest, vec2(first.x + 2, y), 0)),
         );
         let weight = select(select(1.0, share.y, row == 2), 1.0 - share.y, row == 0);
         lit += select(vec3(0.0), vec3(weight), depths >= vec3(place.z));

@@ -1,11 +1,13 @@
 //! The pipelines: how each kind of shape becomes pixels. Shaders stand beside this file.
 
 mod groups;
+mod map_format;
 
 use crate::mesh::Vertex;
 use crate::renderer::DEPTH_FORMAT;
 use crate::shape::{Solid, Stroke};
 pub(crate) use groups::Groups;
+pub(crate) use map_format::MapFormat;
 use wgpu::vertex_attr_array as attributes;
 
 const COMMON: &str = include_str!("common.wgsl");
@@ -17,8 +19,7 @@ const STROKE: &str = include_str!("stroke.wgsl");
 const SKY: &str = include_str!("sky.wgsl");
 const BACKGROUND: &str = include_str!("background.wgsl");
 
-/// Every driver can draw into these and read them: one channel each.
-pub(crate) const MAP_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+/// Every driver can draw into these and read them.
 pub(crate) const TABLE_LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 /// All pipelines of a target format.
@@ -127,13 +128,13 @@ impl Pipelines {
             ..opaque
         };
         Self {
-            cast: make.pipeline(&cast(&opaque)),
+            cast: make.pipeline(&cast(&opaque, groups.map_format)),
             table_light: make.pipeline(&table_map(&opaque, &table_light, ["vs_table_light", "fs_table_light"])),
             under: make.pipeline(&Spec {
                 label: "undersides",
                 vertex: "vs_under",
                 fragment: "fs_under",
-                ..cast(&opaque)
+                ..cast(&opaque, groups.map_format)
             }),
             sky: make.pipeline(&table_map(&opaque, &sky, ["vs_sky", "fs_sky"])),
             overlay: make.pipeline(&Spec { label: "overlay", fragment: "fs_overlay", ..opaque }),
@@ -164,12 +165,12 @@ impl Pipelines {
 }
 
 /// The shadow map: thin sheets and open shells cast from both sides.
-fn cast<'a>(opaque: &Spec<'a>) -> Spec<'a> {
+fn cast<'a>(opaque: &Spec<'a>, map: MapFormat) -> Spec<'a> {
     Spec {
         label: "shadow map",
         vertex: "vs_cast",
         fragment: "fs_cast",
-        into: Into { format: MAP_FORMAT, samples: 1, groups: 1, depth: true },
+        into: Into { format: map.texture(), samples: 1, groups: 1, depth: true },
         culled: false,
         ..*opaque
     }
@@ -214,7 +215,7 @@ impl Maker<'_> {
     fn module(&self, label: &str, source: &str) -> wgpu::ShaderModule {
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(label),
-            source: wgpu::ShaderSource::Wgsl(format!("{COMMON}\n{source}").into()),
+            source: wgpu::ShaderSource::Wgsl(format!("{COMMON}\n{}\n{source}", self.groups.map_format.shader()).into()),
         })
     }
 
@@ -304,9 +305,10 @@ mod tests {
             ("sky", SKY),
             ("background", BACKGROUND),
         ];
-        let scene = scene.map(|(name, source)| (name, format!("{COMMON}\n{source}")));
+        let of = |map: MapFormat| scene.map(|(name, source)| (name, format!("{COMMON}\n{}\n{source}", map.shader())));
         let blit = ("blit", crate::blit::SHADER.to_owned());
-        for (name, source) in scene.into_iter().chain([blit]) {
+        let (float, bytes) = (of(MapFormat::Float), of(MapFormat::Bytes));
+        for (name, source) in float.into_iter().chain(bytes).chain([blit]) {
             let module = match naga::front::wgsl::parse_str(&source) {
                 Ok(module) => module,
                 Err(error) => panic!("{name}.wgsl: {}", error.emit_to_string(&source)),

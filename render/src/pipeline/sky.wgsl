@@ -34,7 +34,8 @@ fn height_at(share: vec2<f32>) -> f32 {
     if any(share < vec2(0.0)) || any(share >= vec2(1.0)) {
         return 1e3;
     }
-    return textureLoad(underside, vec2<i32>(share * size), 0).x;
+    // What it spans above the table is a metre.
+    return from_map(textureLoad(underside, vec2<i32>(share * size), 0));
 }
 
 // Share of the sky within a distance beside the vertical at a height, as a level place sees it (the form factor of a disc).

@@ -63,7 +63,7 @@ fn vs_cast(in: SolidIn) -> @builtin(position) vec4<f32> {
 
 @fragment
 fn fs_cast(@builtin(position) clip: vec4<f32>) -> @location(0) vec4<f32> {
-    return vec4(clip.z, 0.0, 0.0, 0.0);
+    return to_map(clip.z);
 }
 
 // What the underside map spans above the table, m.
@@ -89,7 +89,7 @@ fn vs_under(in: SolidIn) -> UnderOut {
 
 @fragment
 fn fs_under(in: UnderOut) -> @location(0) vec4<f32> {
-    return vec4(in.height, 0.0, 0.0, 0.0);
+    return to_map(in.height / UNDERSIDES);
 }
 
 // A fill light from the right and a sky that is brighter than the ground join the key light.
