@@ -26,6 +26,10 @@ pub struct Look {
     pub round: bool,
     /// What such a vessel weighs when it is empty, kg; absent: it is no vessel.
     pub empty_kg: Option<f64>,
+    /// What it is called, where the report cannot know: to that, whatever is carried is a block.
+    pub called: Option<&'static str>,
+    /// It meets what holds or bears it (a needle and its sheet), which would pass for its weight: that is not told.
+    pub borne: bool,
 }
 
 /// The object in the hand.
@@ -61,10 +65,11 @@ impl Held {
         let known =
             |name: &str| report.parameters.iter().find(|p| p.object == object && p.name == name).and_then(known);
         let (weight_n, width_m) = (known("weight_N"), known("width_m"));
+        let weight_n = weight_n.filter(|_| !look.borne);
         let leaks = report
             .leaks
             .iter()
-            .find(|(name, _)| *name == object)
+            .find(|(name, _)| *name == object && !look.borne)
             .filter(|(_, answer)| matches!(answer.verdict, Verdict::Leak | Verdict::Both));
         Some(Self {
             weight_n,
@@ -76,7 +81,7 @@ impl Held {
             }),
             contents: known("mass_kg").zip(width_m).and_then(|(mass, width)| contents(mass, width, look)),
             leaks_kg_s: leaks.and_then(|_| known("leak_kg_s")),
-            object,
+            object: look.called.map_or(object.clone(), str::to_owned),
         })
     }
 
@@ -122,7 +127,7 @@ mod tests {
 
     #[test]
     fn only_what_is_known_is_told() {
-        let look = Look { height_m: Some(0.046), round: true, empty_kg: Some(0.060) };
+        let look = Look { height_m: Some(0.046), round: true, empty_kg: Some(0.060), ..Look::default() };
         let full = Held::of(&report(0.060 + 0.0445), &look).expect("held");
         assert!(full.weight_n.is_some() && full.grip_stiffness_n_m.is_none() && full.leaks_kg_s.is_none());
         let guess = full.contents.expect("a density");
@@ -131,5 +136,13 @@ mod tests {
         assert_eq!(empty.kinds[0].0, "nothing or a gas", "{empty:?}");
         assert_eq!(Held::of(&report(0.1), &Look::default()).and_then(|h| h.contents), None, "no volume, no density");
         assert_eq!(Held::of(&Report::default(), &look), None);
+    }
+
+    #[test]
+    fn what_is_borne_by_a_sheet_has_its_name_and_no_weight() {
+        let look = Look { called: Some("needle"), borne: true, ..Look::default() };
+        let held = Held::of(&report(0.150), &look).expect("held");
+        assert_eq!(held.object, "needle");
+        assert!(held.weight_n.is_none() && held.leaks_kg_s.is_none() && held.width_m.is_some());
     }
 }

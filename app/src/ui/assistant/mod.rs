@@ -12,7 +12,7 @@ use super::trainer::Trainer;
 use estimator::assistant::{Held, Known, Load, Look, Warnings, collision, warnings};
 use estimator::online::{Pull, Report};
 use haptics::Vec2;
-use haptics::world::{Shape, State, World};
+use haptics::world::{Block, Shape, State, World};
 use serde::{Deserialize, Serialize};
 
 /// Parts of the assistant that are switched on.
@@ -121,6 +121,28 @@ fn look(world: &World, body: Option<usize>) -> Look {
         height_m: Some(block.height_m),
         round: block.shape == Shape::Barrel,
         empty_kg: block.content.map(|content| block.mass_kg - content.mass_kg),
+        called: called(block),
+        borne: block.shape == Shape::Needle,
+    }
+}
+
+/// What a needle is called: its sheet bears and pulls it, and its weight is not told.
+pub const NEEDLE: &str = "needle";
+
+/// What anybody sees that a thing is, where it is neither block nor barrel.
+fn called(block: &Block) -> Option<&'static str> {
+    match block.shape {
+        Shape::Needle => Some(NEEDLE),
+        Shape::Cup => Some("paper-cup"),
+        Shape::Block | Shape::Barrel => None,
+    }
+}
+
+/// The same for the only thing of a world; the estimator beside the servo knows no names.
+pub fn only_thing(world: &World) -> Option<&'static str> {
+    match world.blocks.as_slice() {
+        [only] => called(only),
+        _ => None,
     }
 }
 

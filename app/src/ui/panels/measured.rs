@@ -1,10 +1,12 @@
 //! What has been measured so far, and what is still missing: beside the servo, and for a loaded recording.
 
+use crate::ui::assistant::{NEEDLE, only_thing};
 use crate::ui::format;
+use crate::ui::icons::Icon;
 use crate::ui::session::{Session, sentence};
 use crate::ui::theme::{self, palette, space};
 use crate::ui::trainer::{Trainer, Watch, watched_task};
-use crate::ui::widgets::{bar, card, compact, plain_card, segmented};
+use crate::ui::widgets::{bar, card, compact, plain_card, remark, segmented};
 use egui::{Align, Layout, RichText, Ui};
 use estimator::estimate::Parameter;
 use estimator::online::enough::Enough;
@@ -16,7 +18,8 @@ const TOLD_S: f64 = 20.0;
 
 /// The card beside the trainer's picture.
 pub fn beside(ui: &mut Ui, trainer: &mut Trainer) {
-    let Some(task) = trainer.scene().map(|(_, world)| watched_task(world)) else { return };
+    let Some((_, world)) = trainer.scene() else { return };
+    let (task, called) = (watched_task(world), only_thing(world));
     let watch = &mut trainer.watch;
     let mut on = watch.on;
     let switch = |ui: &mut Ui| {
@@ -32,7 +35,7 @@ pub fn beside(ui: &mut Ui, trainer: &mut Trainer) {
             )));
         }
         (_, None) => drop(ui.label(theme::caption(ui, "Nothing yet: pick something up."))),
-        (_, Some(report)) => again = told(ui, watch, &report),
+        (_, Some(report)) => again = told(ui, watch, &report, called),
     });
     if again {
         watch.forget();
@@ -41,13 +44,13 @@ pub fn beside(ui: &mut Ui, trainer: &mut Trainer) {
 }
 
 /// True when it is to begin anew.
-fn told(ui: &mut Ui, watch: &mut Watch, report: &Report) -> bool {
+fn told(ui: &mut Ui, watch: &mut Watch, report: &Report, called: Option<&str>) -> bool {
     if report.enough.is_empty() {
         ui.label(theme::caption(ui, "Nothing yet: pick it up, carry it, let go; or turn the handle."));
         return false;
     }
-    rows(ui, &report.parameters, &report.enough);
-    notices(ui, report);
+    rows(ui, &report.parameters, &report.enough, called);
+    notices(ui, report, called);
     ui.add_space(space::XS);
     let mut again = false;
     compact(ui, |ui| {
@@ -65,17 +68,16 @@ fn told(ui: &mut Ui, watch: &mut Watch, report: &Report) -> bool {
     again
 }
 
-fn notices(ui: &mut Ui, report: &Report) {
-    let p = palette(ui);
-    let say = |ui: &mut Ui, text: String, color| {
+fn notices(ui: &mut Ui, report: &Report, called: Option<&str>) {
+    let say = |ui: &mut Ui, text: String, mark| {
         ui.add_space(space::XS);
-        ui.label(RichText::new(text).size(11.5).color(color));
+        remark(ui, mark, text);
     };
     if let Some(margin) = report.slip_margin {
         let share = format::number(100.0 * margin.max(0.0), 0);
-        say(ui, format!("{share} % of the shear that surely held is still free."), p.secondary);
+        say(ui, format!("{share} % of the shear that surely held is still free."), Icon::Told);
     }
-    for (object, answer) in &report.leaks {
+    for (object, answer) in report.leaks.iter().filter(|_| called != Some(NEEDLE)) {
         let word = match answer.verdict {
             Verdict::Leak => "It leaks",
             Verdict::SensorDrift => "The sensors drift",
@@ -83,10 +85,10 @@ fn notices(ui: &mut Ui, report: &Report) {
             Verdict::Steady | Verdict::CannotTell => "Leak or sensor drift: it cannot be told yet",
         };
         let advice = answer.motion.as_ref().map_or_else(String::new, |m| format!(" To tell: {m}."));
-        say(ui, format!("{}. {word}: {}.{advice}", format::object(object), answer.why), p.caution);
+        say(ui, format!("{}. {word}: {}.{advice}", format::object(object), answer.why), Icon::Doubt);
     }
     for event in report.events.iter().rev().filter(|e| report.time_s - e.noticed_s < TOLD_S).take(2) {
-        say(ui, event_words(event), p.caution);
+        say(ui, event_words(event), Icon::Doubt);
     }
 }
 
@@ -104,15 +106,17 @@ fn event_words(event: &Event) -> String {
     )
 }
 
-/// One block of lines an object: value ± error, a bar to the wanted accuracy, and the motion that is missing.
-pub fn rows(ui: &mut Ui, parameters: &[Parameter], all: &[Enough]) {
+/// One block of lines an object: value ± error, a bar to the wanted accuracy, and the motion that is missing. `called`: what it is, where
+/// the estimator takes it for a block.
+pub fn rows(ui: &mut Ui, parameters: &[Parameter], all: &[Enough], called: Option<&str>) {
     let mut object = "";
     // Mass is weight over gravity: one line is enough.
-    for enough in all.iter().filter(|e| e.name != "mass_kg") {
+    let told = |e: &&Enough| e.name != "mass_kg" && !(called == Some(NEEDLE) && e.name == "weight_N");
+    for enough in all.iter().filter(told) {
         if enough.object != object {
             object = &enough.object;
             ui.add_space(space::XS);
-            ui.label(theme::strong(format::object(object)));
+            ui.label(theme::strong(format::object(called.unwrap_or(object))));
         }
         let parameter = parameters.iter().find(|p| p.object == enough.object && p.name == enough.name);
         row(ui, enough, parameter);
@@ -172,6 +176,6 @@ pub fn of_recording(ui: &mut Ui, session: &Session) {
             format!("{done} of {} parameters are known as well as wanted.", session.enough.len()),
         ));
         let missing: Vec<Enough> = session.enough.iter().filter(|e| e.share < 1.0).cloned().collect();
-        rows(ui, &analysis.fit.parameters, &missing);
+        rows(ui, &analysis.fit.parameters, &missing, None);
     });
 }

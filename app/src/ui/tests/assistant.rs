@@ -55,6 +55,17 @@ fn a_barrel_is_weighed_its_contents_are_guessed_and_its_cable_is_drawn() {
 }
 
 #[test]
+fn a_needle_is_no_block_and_its_sheet_does_not_pass_for_its_weight() {
+    let mut harness = train_window(in_train(Operator::Scripted, WorldChoice::Needle));
+    until_said(&mut harness, "Grip to spare");
+    until_said(&mut harness, "Width");
+    let report = harness.state().session.trainer.watch.report().expect("measured");
+    assert!(report.held.is_some() && report.parameters.iter().any(|p| p.name == "weight_N"));
+    assert!(!says(&harness, "Block 1") && !says(&harness, "Weight"));
+    assert_eq!(harness.query_all_by_label("Needle").count(), 3, "the world's button, the plate, the card");
+}
+
+#[test]
 fn a_crank_shows_the_circle_that_was_found() {
     let mut harness = train_window(in_train(Operator::Scripted, WorldChoice::Crank));
     until_said(&mut harness, "It turns on a circle: radius");
