@@ -12,6 +12,54 @@ use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{compact, empty_state, primary_button, segmented, sheet};
 use egui::{Align, Color32, ComboBox, Layout, RichText, Sense, Stroke, Ui, vec2};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const NOTHING_YET: &str = "Nothing to diagnose yet";
+    pub const NOTHING_YET_MORE: &str = "Open a log, for example of a crank that was turned. What the simulation gets wrong \
+        about it, why, and what mending it gains appear here.";
+    pub const OPEN: &str = "Open a log …";
+    pub const OPEN_KEYS: &str = "Ctrl+O";
+    pub const RECORD_ONE: &str = "or record one in Train";
+    pub const BUSY: &str = "Diagnosing …";
+    pub const BUSY_MORE: &str = "The measured motion goes through the model; what is left of the force is compared with what \
+        every known cause would leave there.";
+    pub const CANCEL: &str = "Cancel";
+    pub const CANNOT: &str = "This recording cannot be diagnosed";
+    pub const OPEN_ANOTHER: &str = "Open another log …";
+    pub const AGAIN: &str = "Try again";
+    pub const NO_CURVES: &str = "No curves here";
+    pub const NO_CURVES_MORE: &str =
+        "This recording has no force along one coordinate to draw. The answer stands beside.";
+    pub const ASK: &str = "What does the simulation get wrong?";
+    pub const ASK_MORE: &str = "The model is compared with what was measured. What it gets wrong is named, with its size, what \
+        mending it gains on data that took no part, and what else it could be.";
+    pub const BEGIN: &str = "Diagnose";
+    pub const INERTIA: &str = "Inertia";
+    pub const INERTIA_MORE: &str = "Start from inertia alone: even friction must be found";
+    pub const VISCOUS: &str = "+ viscous";
+    pub const VISCOUS_MORE: &str = "Start from inertia and friction in proportion to speed";
+    pub const DRY: &str = "+ dry";
+    pub const DRY_MORE: &str = "Start from inertia, viscous and dry friction";
+    pub const ATLAS_HEADING: &str = "Left over against every suspect";
+    pub const ATLAS_MORE: &str = "Means of what the model leaves, over the variable of each suspect, and what the suspect \
+        alone would take of it. The number is its evidence: twice the log of how much likelier it makes the force, less what \
+        its parameters cost.";
+    pub const NAMED: &str = "named";
+    pub const SUSPECT_ALONE: &str = "suspect alone";
+    pub const LEFT_OVER: &str = "left over";
+    pub const TO_CURVES: &str = "Curves";
+    pub const TO_ATLAS: &str = "Atlas";
+    pub const SWITCH_MORE: &str = "Switches between the curves and what is left over against every suspect";
+    pub const FORCE_HEADING: &str = "Force along the motion";
+    pub const NOISE: &str = "± 2 σ of the noise";
+    pub const WITH_FOUND: &str = "with what was found";
+    pub const MODEL: &str = "model";
+    pub const MEASURED: &str = "measured";
+    pub const WAYS: &str = "— forwards  - - back";
+    pub const WAYS_MORE: &str = "Means over small ranges, by the direction of motion; points: before";
+    pub const WHICH: &str = "Recording of the curves";
+}
+
 /// Share of the height that the curve over time takes.
 const TIME_SHARE: f32 = 0.36;
 /// Width of the three models to start from.
@@ -48,52 +96,49 @@ impl Panel for DiagnosePanel {
 
 fn nothing(ui: &mut Ui, session: &mut Session) {
     if session.recordings.is_empty() {
-        let text = "Open a log, for example of a crank that was turned. What the simulation gets wrong about it, why, and what mending it gains \
-                    appear here.";
-        empty_state(ui, (Icon::Diagnose, "Nothing to diagnose yet"), text, |ui| {
-            if primary_button(ui, true, (Icon::Open, "Open a log …")).on_hover_text("Ctrl+O").clicked() {
+        let text = words::NOTHING_YET_MORE;
+        empty_state(ui, (Icon::Diagnose, words::NOTHING_YET), text, |ui| {
+            if primary_button(ui, true, (Icon::Open, words::OPEN)).on_hover_text(words::OPEN_KEYS).clicked() {
                 files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
             }
-            if ui.link("or record one in Train").clicked() {
+            if ui.link(words::RECORD_ONE).clicked() {
                 session.workspace = Workspace::Train;
             }
         });
     } else if session.jobs.is_running(JobKind::Diagnose) {
-        let text = "The measured motion goes through the model; what is left of the force is compared with what every known \
-                    cause would leave there.";
-        empty_state(ui, "Diagnosing …", text, |ui| {
+        let text = words::BUSY_MORE;
+        empty_state(ui, words::BUSY, text, |ui| {
             ui.add(egui::Spinner::new().size(20.0));
             ui.add_space(space::S);
-            if ui.button((Icon::Close, "Cancel")).clicked() {
+            if ui.button((Icon::Close, words::CANCEL)).clicked() {
                 session.give_up(JobKind::Diagnose);
             }
         });
     } else if let Some(problem) = session.diagnosing.problem.clone() {
-        empty_state(ui, (Icon::Doubt, "This recording cannot be diagnosed"), &problem, |ui| {
-            if primary_button(ui, true, (Icon::Open, "Open another log …")).on_hover_text("Ctrl+O").clicked() {
+        empty_state(ui, (Icon::Doubt, words::CANNOT), &problem, |ui| {
+            if primary_button(ui, true, (Icon::Open, words::OPEN_ANOTHER)).on_hover_text(words::OPEN_KEYS).clicked() {
                 files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
             }
             ui.add_space(space::XS);
             start_from(ui, session);
-            if ui.link("Try again").clicked() {
+            if ui.link(words::AGAIN).clicked() {
                 let ctx = ui.ctx().clone();
                 session.diagnose(&ctx);
             }
         });
     } else if session.diagnosing.answer.is_some() {
-        let text = "This recording has no force along one coordinate to draw. The answer stands beside.";
-        empty_state(ui, (Icon::Curves, "No curves here"), text, |_| {});
+        let text = words::NO_CURVES_MORE;
+        empty_state(ui, (Icon::Curves, words::NO_CURVES), text, |_| {});
     } else {
-        let text = "The model is compared with what was measured. What it gets wrong is named, with its size, what mending it \
-                    gains on data that took no part, and what else it could be.";
-        empty_state(ui, (Icon::Diagnose, "What does the simulation get wrong?"), text, |ui| begin(ui, session));
+        let text = words::ASK_MORE;
+        empty_state(ui, (Icon::Diagnose, words::ASK), text, |ui| begin(ui, session));
     }
 }
 
 /// The button, and the model to start from where there is a choice.
 fn begin(ui: &mut Ui, session: &mut Session) {
     start_from(ui, session);
-    if primary_button(ui, true, (Icon::Diagnose, "Diagnose")).clicked() {
+    if primary_button(ui, true, (Icon::Diagnose, words::BEGIN)).clicked() {
         let ctx = ui.ctx().clone();
         session.diagnose(&ctx);
     }
@@ -107,9 +152,9 @@ pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
         return false;
     }
     let choices = [
-        (StartFrom::Mass, "Inertia", "Start from inertia alone: even friction must be found"),
-        (StartFrom::Viscous, "+ viscous", "Start from inertia and friction in proportion to speed"),
-        (StartFrom::Coulomb, "+ dry", "Start from inertia, viscous and dry friction"),
+        (StartFrom::Mass, words::INERTIA, words::INERTIA_MORE),
+        (StartFrom::Viscous, words::VISCOUS, words::VISCOUS_MORE),
+        (StartFrom::Coulomb, words::DRY, words::DRY_MORE),
     ];
     let changed = ui
         .scope(|ui| {
@@ -124,19 +169,18 @@ pub(super) fn start_from(ui: &mut Ui, session: &mut Session) -> bool {
 /// The atlas with its heading.
 fn suspects(ui: &mut Ui, session: &mut Session, answer: &Answer, sheet: &Sheet, has_curves: bool) {
     ui.spacing_mut().item_spacing.y = space::XS;
-    head(ui, "Left over against every suspect", sheet.unit(), |ui| {
+    head(ui, words::ATLAS_HEADING, sheet.unit(), |ui| {
         let (p, inks) = (palette(ui), inks(ui));
         key(ui, inks.noise, 9.0, "± 2 σ");
-        key(ui, p.good, 2.0, "named");
-        key(ui, p.accent, 2.0, "suspect alone");
-        key(ui, inks.model, 2.0, "left over");
+        key(ui, p.good, 2.0, words::NAMED);
+        key(ui, p.accent, 2.0, words::SUSPECT_ALONE);
+        key(ui, inks.model, 2.0, words::LEFT_OVER);
         if has_curves {
             views(ui, session);
         }
         which(ui, session);
     });
-    let text = "Means of what the model leaves, over the variable of each suspect, and what the suspect alone would take of it. The number is its \
-                evidence: twice the log of how much likelier it makes the force, less what its parameters cost.";
+    let text = words::ATLAS_MORE;
     ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     ui.add_space(space::XS);
     super::atlas::show(ui, session, sheet, &answer.diagnosis);
@@ -144,8 +188,8 @@ fn suspects(ui: &mut Ui, session: &mut Session, answer: &Answer, sheet: &Sheet, 
 
 /// Curves or atlas.
 fn views(ui: &mut Ui, session: &mut Session) {
-    let text = if session.diagnosing.shows_atlas { "Curves" } else { "Atlas" };
-    let hint = "Switches between the curves and what is left over against every suspect";
+    let text = if session.diagnosing.shows_atlas { words::TO_CURVES } else { words::TO_ATLAS };
+    let hint = words::SWITCH_MORE;
     if ui.link(text).on_hover_text(hint).clicked() {
         session.diagnosing.shows_atlas = !session.diagnosing.shows_atlas;
     }
@@ -156,12 +200,12 @@ fn draw(ui: &mut Ui, session: &mut Session, curves: &Residuals, has_atlas: bool)
     let height = ui.available_height();
     let gap = space::S;
     ui.spacing_mut().item_spacing.y = 0.0;
-    head(ui, "Force along the motion", curves.unit, |ui| {
+    head(ui, words::FORCE_HEADING, curves.unit, |ui| {
         let inks = inks(ui);
-        key(ui, inks.noise, 9.0, "± 2 σ of the noise");
-        key(ui, inks.extended, 2.0, "with what was found");
-        key(ui, inks.model, 2.0, "model");
-        key(ui, inks.measured, 2.0, "measured");
+        key(ui, inks.noise, 9.0, words::NOISE);
+        key(ui, inks.extended, 2.0, words::WITH_FOUND);
+        key(ui, inks.model, 2.0, words::MODEL);
+        key(ui, inks.measured, 2.0, words::MEASURED);
         if has_atlas {
             views(ui, session);
         }
@@ -190,8 +234,8 @@ fn residual(ui: &mut Ui, height: f32, cloud: &Cloud, curves: &Residuals) {
     let units = format!("{} over {}", curves.unit, cloud.unit);
     head(ui, &format!("Left over against {}", cloud.title.to_lowercase()), &units, |ui| {
         if has_directions(cloud.suspect) && ui.available_width() > 90.0 {
-            let note = RichText::new("— forwards  - - back").size(10.5).color(palette(ui).faint);
-            ui.label(note).on_hover_text("Means over small ranges, by the direction of motion; points: before");
+            let note = RichText::new(words::WAYS).size(10.5).color(palette(ui).faint);
+            ui.label(note).on_hover_text(words::WAYS_MORE);
         }
     });
     cloud_plot(ui, height, cloud, curves);
@@ -212,7 +256,7 @@ fn which(ui: &mut Ui, session: &mut Session) {
             ui.selectable_value(&mut chosen, k, name(k));
         }
     });
-    let label = || egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Recording of the curves");
+    let label = || egui::WidgetInfo::labeled(egui::Role::ComboBox, true, words::WHICH);
     list.response.widget_info(label);
     if chosen != session.current {
         session.select(chosen);

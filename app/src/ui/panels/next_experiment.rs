@@ -18,6 +18,27 @@ use estimator::diagnose::{Diagnosis, NextExperiment};
 use haptics::law::Coordinate;
 use std::path::PathBuf;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const REHEARSE: &str = "Rehearse it";
+    pub const PLAN_MORE: &str = "The motion over time, to follow on the real machine. A mechanism that is driven directly has \
+        no handle for the fingers of Train.";
+    pub const PLAN: &str = "Plan of the motion";
+    pub const CANCEL: &str = "Cancel";
+    pub const IN_TRAIN: &str = "Do it in Train …";
+    pub const ON_WHICH: &str = "On which object?";
+    pub const AS_IT_STANDS: &str = "The world that stands in Train";
+    pub const IN_TRAIN_MORE: &str = "With the device that moves the fingers: a target to follow, in words and in the picture; \
+        it is recorded";
+    pub const SIMULATED: &str = "Rehearsed on SIMULATED objects: what would come out, no measurement.";
+    pub const ADD_MORE: &str =
+        "Saves the simulated recording and diagnoses it with the others, to see what it would settle";
+    pub const DID_IT: &str = "Did it on the real object? Add its recording:";
+    pub const PATH: &str = "Path of a log, then Enter";
+    pub const RECORDING: &str = "Recording of the experiment";
+    pub const CHOOSE: &str = "Choose a file";
+}
+
 /// The card under the causes.
 pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
     let Some(next) = &diagnosis.next_experiment else { return };
@@ -57,13 +78,12 @@ fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment, is_driven:
             "The scripted operator does it {ROUNDS} times on each object that is not excluded, and the question is asked again. The \
              objects are simulated: it shows what would come out, and is no measurement."
         );
-        if primary_button(ui, !busy, (Icon::Rehearse, "Rehearse it")).on_hover_text(hint).clicked() {
+        if primary_button(ui, !busy, (Icon::Rehearse, words::REHEARSE)).on_hover_text(hint).clicked() {
             session.rehearse(&ctx);
         }
         if is_driven {
-            let hint = "The motion over time, to follow on the real machine. A mechanism that is driven directly has no handle for the \
-                        fingers of Train.";
-            ui.toggle_value(&mut session.experiments.shows_plan, "Plan of the motion").on_hover_text(hint);
+            let hint = words::PLAN_MORE;
+            ui.toggle_value(&mut session.experiments.shows_plan, words::PLAN).on_hover_text(hint);
         } else {
             in_train(ui, session, next);
         }
@@ -71,7 +91,7 @@ fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment, is_driven:
     if session.jobs.is_running(JobKind::Rehearse) {
         ui.horizontal(|ui| {
             ui.add(egui::Spinner::new().size(16.0));
-            if ui.link("Cancel").clicked() {
+            if ui.link(words::CANCEL).clicked() {
                 session.give_up(JobKind::Rehearse);
             }
         });
@@ -81,12 +101,12 @@ fn perform(ui: &mut Ui, session: &mut Session, next: &NextExperiment, is_driven:
 /// A menu of the objects that it can be done on in Train.
 fn in_train(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
     let ctx = ui.ctx().clone();
-    let by_hand = egui::Button::new((Icon::Touch, "Do it in Train …"));
+    let by_hand = egui::Button::new((Icon::Touch, words::IN_TRAIN));
     let menu = egui::containers::menu::MenuButton::from_button(by_hand);
     let (response, _) = menu.ui(ui, |ui| {
         ui.set_max_width(280.0);
-        ui.label(theme::caption(ui, "On which object?"));
-        if ui.button("The world that stands in Train").clicked() {
+        ui.label(theme::caption(ui, words::ON_WHICH));
+        if ui.button(words::AS_IT_STANDS).clicked() {
             session.guide(&ctx, Stage::AsItStands);
         }
         for id in &next.separates {
@@ -95,9 +115,7 @@ fn in_train(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
             }
         }
     });
-    response.on_hover_text(
-        "With the device that moves the fingers: a target to follow, in words and in the picture; it is recorded",
-    );
+    response.on_hover_text(words::IN_TRAIN_MORE);
 }
 
 /// What came of the rehearsal.
@@ -108,7 +126,7 @@ fn rehearsal(ui: &mut Ui, session: &mut Session, next: &NextExperiment) {
     let Some(rehearsal) = session.diagnosing.rehearsal.clone() else { return };
     ui.add_space(space::XS);
     ui.separator();
-    let note = "Rehearsed on SIMULATED objects: what would come out, no measurement.";
+    let note = words::SIMULATED;
     remark(ui, Icon::Doubt, note);
     let mut add = None;
     for (k, outcome) in rehearsal.outcomes.iter().enumerate() {
@@ -135,11 +153,7 @@ fn object(ui: &mut Ui, outcome: &Outcome) -> bool {
                 link.widget_info(|| {
                     egui::WidgetInfo::labeled(egui::Role::Link, true, format!("Add simulated {}", outcome.id))
                 });
-                add = link
-                    .on_hover_text(
-                        "Saves the simulated recording and diagnoses it with the others, to see what it would settle",
-                    )
-                    .clicked();
+                add = link.on_hover_text(words::ADD_MORE).clicked();
                 let text = format!("{} of {rounds} settled", outcome.settled());
                 ui.label(theme::strong(text)).on_hover_text(came_out(outcome));
             }
@@ -176,15 +190,15 @@ fn summary(rehearsal: &Rehearsal, next: &NextExperiment) -> String {
 /// A recording that was made on the real object.
 fn load(ui: &mut Ui, session: &mut Session) {
     ui.add_space(space::XS);
-    ui.label(theme::caption(ui, "Did it on the real object? Add its recording:"));
+    ui.label(theme::caption(ui, words::DID_IT));
     let ctx = ui.ctx().clone();
     ui.horizontal(|ui| {
         let width = (ui.available_width() - 44.0).max(60.0);
-        let field = TextEdit::singleline(&mut session.experiments.path_field).hint_text("Path of a log, then Enter");
+        let field = TextEdit::singleline(&mut session.experiments.path_field).hint_text(words::PATH);
         let response = ui.add(field.desired_width(width));
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Recording of the experiment"));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, words::RECORDING));
         let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-        if icon_button(ui, Icon::More, true, "Choose a file").on_hover_text("Choose a file").clicked() {
+        if icon_button(ui, Icon::More, true, words::CHOOSE).on_hover_text(words::CHOOSE).clicked() {
             files::ask(&ctx, &mut session.jobs, Purpose::AddExperiment);
         }
         let path = session.experiments.path_field.trim().to_owned();

@@ -8,6 +8,20 @@ use crate::ui::widgets::{quiet_icon_button, swatch};
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{DragValue, PopupCloseBehavior, RichText, Ui};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const OVERLAY: &str = "Overlay";
+    pub const OVERLAY_MORE: &str = "Lay other recordings of this file over the shown one";
+    pub const SHIFT_MORE: &str = "What is added to its times: drag, or click and type";
+    pub const ALIGN_MORE: &str =
+        "Shift it to where its forces (else its motion) are most like those of the shown recording";
+    pub const ALIGN: &str = "Align";
+    pub const FIRST_CONTACT_MORE: &str = "Shift it so that its first contact is at that of the shown recording";
+    pub const FIRST_CONTACT_NOT: &str = "The states of both recordings must be known first: press Fit";
+    pub const FIRST_CONTACT: &str = "First contact";
+    pub const TAKE_AWAY: &str = "Take it away";
+}
+
 /// Longest name in the legend, letters.
 const LONGEST_NAME: usize = 22;
 
@@ -18,7 +32,7 @@ pub fn overlay_menu(ui: &mut Ui, session: &mut Session) {
     }
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let button =
-        egui::Button::new((Icon::Layers.atom(icons::SMALL, None), RichText::new("Overlay").size(11.5))).small();
+        egui::Button::new((Icon::Layers.atom(icons::SMALL, None), RichText::new(words::OVERLAY).size(11.5))).small();
     let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
         ui.set_min_width(220.0);
         for recording in 0..session.recordings.len() {
@@ -31,7 +45,7 @@ pub fn overlay_menu(ui: &mut Ui, session: &mut Session) {
             }
         }
     });
-    response.on_hover_text("Lay other recordings of this file over the shown one");
+    response.on_hover_text(words::OVERLAY_MORE);
 }
 
 /// One entry for each recording that lies over the shown one; nothing without any.
@@ -64,12 +78,12 @@ fn one(ui: &mut Ui, session: &mut Session, place: usize, recording: usize, clock
     if let Some(entry) = session.plots.overlaid.get_mut(place) {
         let (speed, decimals, unit) = if clockless { (1.0, 0, " samples") } else { (1e-3 * (last - first), 3, " s") };
         let drag = DragValue::new(&mut entry.offset_s).speed(speed.min(0.02)).max_decimals(decimals).suffix(unit);
-        ui.add(drag).on_hover_text("What is added to its times: drag, or click and type");
+        ui.add(drag).on_hover_text(words::SHIFT_MORE);
     }
     let running = session.jobs.is_running(JobKind::Align);
-    let hint = "Shift it to where its forces (else its motion) are most like those of the shown recording";
+    let hint = words::ALIGN_MORE;
     if ui
-        .add_enabled(!running, egui::Button::new((Icon::Align.atom(icons::SMALL, None), "Align")).small())
+        .add_enabled(!running, egui::Button::new((Icon::Align.atom(icons::SMALL, None), words::ALIGN)).small())
         .on_hover_text(hint)
         .clicked()
     {
@@ -77,15 +91,12 @@ fn one(ui: &mut Ui, session: &mut Session, place: usize, recording: usize, clock
         session.align(&ctx, recording);
     }
     let known = session.first_contact_s(recording).is_some() && session.first_contact_s(session.current).is_some();
-    let (hint, why) = (
-        "Shift it so that its first contact is at that of the shown recording",
-        "The states of both recordings must be known first: press Fit",
-    );
-    let button = egui::Button::new("First contact").small();
+    let (hint, why) = (words::FIRST_CONTACT_MORE, words::FIRST_CONTACT_NOT);
+    let button = egui::Button::new(words::FIRST_CONTACT).small();
     if ui.add_enabled(known, button).on_hover_text(hint).on_disabled_hover_text(why).clicked() {
         session.align_by_contact(recording);
     }
-    if quiet_icon_button(ui, Icon::Close, true, "Take it away").on_hover_text("Take it away").clicked() {
+    if quiet_icon_button(ui, Icon::Close, true, words::TAKE_AWAY).on_hover_text(words::TAKE_AWAY).clicked() {
         session.toggle_overlay(recording);
     }
 }

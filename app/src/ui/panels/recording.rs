@@ -13,6 +13,49 @@ use egui::{ComboBox, DragValue, ScrollArea, TextEdit, Ui};
 use estimator::segment::{Method, Thresholds};
 use std::path::PathBuf;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const OPEN: &str = "Open …";
+    pub const OPEN_MORE: &str = "Open a log (Ctrl+O)";
+    pub const PATH: &str = "Path of a log, then Enter";
+    pub const MAP: &str = "Map columns …";
+    pub const MAP_MORE: &str = "Say what the columns of this table mean; a sidecar remembers it";
+    pub const DROP: &str = "Drop a log, a world or a sidecar anywhere on the window; its columns can be mapped.";
+    pub const WHICH: &str = "Which recording";
+    pub const FITTING: &str = "Fitting …";
+    pub const CHANGED: &str = "settings changed";
+    pub const FOLLOW_SLOW: &str = "Fits of these recordings take too long for that: press Refit";
+    pub const FOLLOW_MORE: &str = "Every change is fitted at once; Ctrl+Z takes it back";
+    pub const FOLLOW: &str = "Follow every change";
+    pub const FITTED: &str = "Fitted";
+    pub const ALL: &str = "the whole recording";
+    pub const ONLY_SHOWN: &str = "Only what is shown";
+    pub const ONLY_SHOWN_MORE: &str = "Fit the part that the plots show";
+    pub const WHOLE: &str = "Whole recording";
+    pub const BY_HAND: &str = "States set by hand";
+    pub const FIND_AGAIN: &str = "Find them again";
+    pub const FORGET: &str = "Forget";
+    pub const STATES_BY: &str = "States by";
+    pub const RULES: &str = "Rules";
+    pub const HMM: &str = "Hidden Markov model";
+    pub const RULES_MORE: &str = "Thresholds above the noise, and the rules of the task";
+    pub const HMM_MORE: &str = "Starts from the rules and learns from the recording; every sample has a probability";
+    pub const THRESHOLDS: &str = "Thresholds by hand";
+    pub const THRESHOLDS_MORE: &str = "Automatic thresholds lie above the noise of this recording.";
+    pub const FORCE: &str = "Force ±";
+    pub const VELOCITY: &str = "Velocity ±";
+    pub const SAVE_LOG: &str = "Recording, with its sidecar";
+    pub const SAVE_WORLD: &str = "Calibrated world";
+    pub const SAVE_REPORT: &str = "Report of everything, one page";
+    pub const WHERE_REPORT: &str = "Where the report goes";
+    pub const WRITE_REPORT: &str = "Write report";
+    pub const WHERE_WORLD: &str = "Where the world goes";
+    pub const WRITE_WORLD: &str = "Save world";
+    pub const WHERE_LOG: &str = "Where the recording goes";
+    pub const WRITE_LOG: &str = "Save recording";
+    pub const CHOOSE: &str = "Choose a place";
+}
+
 /// The recording panel.
 #[derive(Default)]
 pub struct RecordingPanel {
@@ -43,10 +86,10 @@ fn source(ui: &mut Ui, session: &mut Session) {
     let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     let response = ui.allocate_ui_with_layout(size, layout, |ui| {
-        if icon_button(ui, Icon::Open, true, "Open …").on_hover_text("Open a log (Ctrl+O)").clicked() {
+        if icon_button(ui, Icon::Open, true, words::OPEN).on_hover_text(words::OPEN_MORE).clicked() {
             files::ask(&ctx, &mut session.jobs, Purpose::OpenLog);
         }
-        let field = TextEdit::singleline(&mut session.path_field).hint_text("Path of a log, then Enter");
+        let field = TextEdit::singleline(&mut session.path_field).hint_text(words::PATH);
         ui.add(field.desired_width(ui.available_width()))
     });
     let enter = response.inner.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
@@ -57,16 +100,13 @@ fn source(ui: &mut Ui, session: &mut Session) {
             session.open_any(&ctx, &path);
         }
         let named = named || session.path.is_some();
-        let hint = "Say what the columns of this table mean; a sidecar remembers it";
-        if ui.add_enabled(named, egui::Button::new((Icon::Columns, "Map columns …"))).on_hover_text(hint).clicked() {
+        let hint = words::MAP_MORE;
+        if ui.add_enabled(named, egui::Button::new((Icon::Columns, words::MAP))).on_hover_text(hint).clicked() {
             session.map_columns(&ctx, None);
         }
     });
     let Some(prepared) = session.prepared().cloned() else {
-        ui.label(theme::caption(
-            ui,
-            "Drop a log, a world or a sidecar anywhere on the window; its columns can be mapped.",
-        ));
+        ui.label(theme::caption(ui, words::DROP));
         return;
     };
     ui.add_space(space::XS);
@@ -103,7 +143,7 @@ fn choose_trial(ui: &mut Ui, session: &mut Session) {
                 ui.selectable_value(&mut chosen, index, name);
             }
         });
-    call(&list.response, "Which recording");
+    call(&list.response, words::WHICH);
     if chosen != session.current {
         session.select(chosen);
     }
@@ -125,20 +165,17 @@ fn fit(ui: &mut Ui, session: &mut Session) {
         }
         if running {
             ui.add(egui::Spinner::new().size(18.0));
-            ui.label(theme::caption(ui, "Fitting …"));
+            ui.label(theme::caption(ui, words::FITTING));
         } else if session.stale {
-            ui.label(egui::RichText::new("settings changed").size(11.5).color(palette(ui).caution));
+            ui.label(egui::RichText::new(words::CHANGED).size(11.5).color(palette(ui).caution));
         } else if let Some(took) = session.refits.took() {
             let text = format!("took {}", format::short_time(took.as_secs_f64()));
             ui.label(theme::caption(ui, text));
         }
     });
-    let hint = if session.analysis.is_some() && !session.refits.quick() {
-        "Fits of these recordings take too long for that: press Refit"
-    } else {
-        "Every change is fitted at once; Ctrl+Z takes it back"
-    };
-    ui.checkbox(&mut session.refits.live, "Follow every change").on_hover_text(hint);
+    let hint =
+        if session.analysis.is_some() && !session.refits.quick() { words::FOLLOW_SLOW } else { words::FOLLOW_MORE };
+    ui.checkbox(&mut session.refits.live, words::FOLLOW).on_hover_text(hint);
 }
 
 /// Which part of the recording is fitted.
@@ -146,9 +183,9 @@ fn part(ui: &mut Ui, session: &mut Session) {
     let Some(prepared) = session.prepared().filter(|p| !p.clockless()) else { return };
     let (whole, shown) = (prepared.span(), session.view_s);
     ui.horizontal_wrapped(|ui| {
-        ui.label(theme::caption(ui, "Fitted"));
+        ui.label(theme::caption(ui, words::FITTED));
         let words = match session.choice.only_s {
-            None => "the whole recording".to_owned(),
+            None => words::ALL.to_owned(),
             Some((from, to)) => format!("{} to {} s", format::number(from, 2), format::number(to, 2)),
         };
         ui.label(egui::RichText::new(words).size(12.0));
@@ -158,10 +195,10 @@ fn part(ui: &mut Ui, session: &mut Session) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        if zoomed && ui.link("Only what is shown").on_hover_text("Fit the part that the plots show").clicked() {
+        if zoomed && ui.link(words::ONLY_SHOWN).on_hover_text(words::ONLY_SHOWN_MORE).clicked() {
             session.choice.only_s = Some(shown);
         }
-        if session.choice.only_s.is_some() && ui.link("Whole recording").clicked() {
+        if session.choice.only_s.is_some() && ui.link(words::WHOLE).clicked() {
             session.choice.only_s = None;
         }
     });
@@ -171,8 +208,8 @@ fn part(ui: &mut Ui, session: &mut Session) {
 fn by_hand(ui: &mut Ui, session: &mut Session) {
     if session.choice.segments.contains_key(&session.current) {
         ui.horizontal_wrapped(|ui| {
-            ui.label(theme::caption(ui, "States set by hand"));
-            if ui.link("Find them again").clicked() {
+            ui.label(theme::caption(ui, words::BY_HAND));
+            if ui.link(words::FIND_AGAIN).clicked() {
                 let ctx = ui.ctx().clone();
                 session.forget_states(&ctx);
             }
@@ -183,7 +220,7 @@ fn by_hand(ui: &mut Ui, session: &mut Session) {
         ui.horizontal_wrapped(|ui| {
             let s = if stated == 1 { "" } else { "s" };
             ui.label(theme::caption(ui, format!("{stated} statement{s} about parameters")));
-            if ui.link("Forget").clicked() {
+            if ui.link(words::FORGET).clicked() {
                 session.choice.stated = Stated::default();
             }
         });
@@ -192,10 +229,10 @@ fn by_hand(ui: &mut Ui, session: &mut Session) {
 
 fn method(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
-        ui.label(theme::caption(ui, "States by"));
+        ui.label(theme::caption(ui, words::STATES_BY));
         let name = |method: Method| match method {
-            Method::Threshold => "Rules",
-            Method::Hmm => "Hidden Markov model",
+            Method::Threshold => words::RULES,
+            Method::Hmm => words::HMM,
         };
         let choice = &mut session.choice.method;
         let list = ComboBox::from_id_salt("method")
@@ -204,12 +241,10 @@ fn method(ui: &mut Ui, session: &mut Session) {
             .truncate()
             .show_ui(ui, |ui| {
                 ui.selectable_value(choice, Method::Threshold, name(Method::Threshold))
-                    .on_hover_text("Thresholds above the noise, and the rules of the task");
-                ui.selectable_value(choice, Method::Hmm, name(Method::Hmm)).on_hover_text(
-                    "Starts from the rules and learns from the recording; every sample has a probability",
-                );
+                    .on_hover_text(words::RULES_MORE);
+                ui.selectable_value(choice, Method::Hmm, name(Method::Hmm)).on_hover_text(words::HMM_MORE);
             });
-        call(&list.response, "States by");
+        call(&list.response, words::STATES_BY);
     });
 }
 
@@ -217,18 +252,18 @@ fn thresholds(ui: &mut Ui, session: &mut Session) {
     let used = session.segmentation().map(|s| s.thresholds);
     let default = used.unwrap_or(Thresholds { velocity_m_s: 0.05, force_n: 0.05 });
     let mut given = session.choice.thresholds.is_some();
-    let response = ui.checkbox(&mut given, "Thresholds by hand");
-    response.on_hover_text("Automatic thresholds lie above the noise of this recording.");
+    let response = ui.checkbox(&mut given, words::THRESHOLDS);
+    response.on_hover_text(words::THRESHOLDS_MORE);
     session.choice.thresholds = given.then(|| session.choice.thresholds.unwrap_or(default));
     if let Some(thresholds) = &mut session.choice.thresholds {
         ui.horizontal(|ui| {
-            ui.label(theme::caption(ui, "Force ±"));
+            ui.label(theme::caption(ui, words::FORCE));
             ui.add(
                 DragValue::new(&mut thresholds.force_n).range(0.001..=10.0).speed(0.002).suffix(" N").max_decimals(3),
             );
         });
         ui.horizontal(|ui| {
-            ui.label(theme::caption(ui, "Velocity ±"));
+            ui.label(theme::caption(ui, words::VELOCITY));
             let mut shown = thresholds.velocity_m_s * 1e3;
             ui.add(DragValue::new(&mut shown).range(0.1..=5_000.0).speed(0.5).suffix(" mm/s").max_decimals(1));
             thresholds.velocity_m_s = shown * 1e-3;
@@ -250,16 +285,16 @@ impl RecordingPanel {
             "world.json".clone_into(&mut self.world);
             "report.html".clone_into(&mut self.report);
         }
-        ui.label(theme::caption(ui, "Recording, with its sidecar"));
+        ui.label(theme::caption(ui, words::SAVE_LOG));
         if save_line(ui, session, &mut self.log, Purpose::SaveLog, true) {
             files::save_log(ui.ctx(), session, &self.log);
         }
-        ui.label(theme::caption(ui, "Calibrated world"));
+        ui.label(theme::caption(ui, words::SAVE_WORLD));
         let fitted = session.analysis.is_some();
         if save_line(ui, session, &mut self.world, Purpose::SaveWorld, fitted) {
             files::save_world(ui.ctx(), session, &self.world);
         }
-        ui.label(theme::caption(ui, "Report of everything, one page"));
+        ui.label(theme::caption(ui, words::SAVE_REPORT));
         let is_file = !session.sources.is_empty();
         if save_line(ui, session, &mut self.report, Purpose::SaveReport, is_file) {
             files::save_report(ui.ctx(), session, PathBuf::from(self.report.trim()));
@@ -270,15 +305,15 @@ impl RecordingPanel {
 /// A path field with `…` and `Save`; true when it is to be saved there.
 fn save_line(ui: &mut Ui, session: &mut Session, field: &mut String, purpose: Purpose, enabled: bool) -> bool {
     let (place, does) = match purpose {
-        Purpose::SaveReport => ("Where the report goes", "Write report"),
-        Purpose::SaveWorld => ("Where the world goes", "Save world"),
-        _ => ("Where the recording goes", "Save recording"),
+        Purpose::SaveReport => (words::WHERE_REPORT, words::WRITE_REPORT),
+        Purpose::SaveWorld => (words::WHERE_WORLD, words::WRITE_WORLD),
+        _ => (words::WHERE_LOG, words::WRITE_LOG),
     };
     ui.add_enabled_ui(enabled, |ui| {
         let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let save = icon_button(ui, Icon::Save, enabled, does).on_hover_text(does);
-            if icon_button(ui, Icon::More, enabled, "Choose a place").on_hover_text("Choose a place").clicked() {
+            if icon_button(ui, Icon::More, enabled, words::CHOOSE).on_hover_text(words::CHOOSE).clicked() {
                 files::ask(ui.ctx(), &mut session.jobs, purpose);
             }
             let edit = ui.add(TextEdit::singleline(field).desired_width(ui.available_width()));

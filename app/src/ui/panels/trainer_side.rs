@@ -12,6 +12,49 @@ use crate::ui::widgets::{card, card_with_head, compact, gauge, light, plain_card
 use egui::{Align, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui, vec2};
 use render::ColorRole;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const FREE: &str = "Free practice";
+    pub const FREE_MORE: &str = "Any world, any operator";
+    pub const LESSONS: &str = "Lessons";
+    pub const LESSONS_MORE: &str = "Tasks that are shown, practised and tested";
+    pub const START_OVER: &str = "Start over";
+    pub const START_OVER_MORE: &str = "Puts everything back where it started (N)";
+    pub const NO_FIT: &str = "Fit a recording in Calibrate first";
+    pub const NO_FILE: &str = "Open a world file first";
+    pub const BLOCKS: &str = "Two blocks";
+    pub const BLOCKS_MORE: &str = "The two wooden blocks of the thesis";
+    pub const CRANK: &str = "Crank";
+    pub const CRANK_MORE: &str = "A handle on an arm";
+    pub const NEEDLE: &str = "Needle";
+    pub const NEEDLE_MORE: &str = "Push it through the bottom of a paper cup, gently";
+    pub const BARREL: &str = "Barrel";
+    pub const BARREL_MORE: &str = "Heavy and on a cable; squeezed too hard, its wall breaks";
+    pub const SWITCH: &str = "Switch";
+    pub const SWITCH_MORE: &str = "Push its knob over and back";
+    pub const TABLE: &str = "Empty table";
+    pub const TABLE_MORE: &str = "Somewhere to try the fingers";
+    pub const CALIBRATED: &str = "Calibrated";
+    pub const CALIBRATED_MORE: &str = "The object that was measured from the log";
+    pub const FILE: &str = "From a file";
+    pub const FILE_MORE: &str = "A world file";
+    pub const OPEN: &str = "Open …";
+    pub const YOU: &str = "You";
+    pub const YOU_MORE: &str = "The device that is chosen on the Devices page";
+    pub const SCRIPTED: &str = "Scripted";
+    pub const SCRIPTED_MORE: &str = "Watch the task done by a scripted operator";
+    pub const DEVICES: &str = "Devices …";
+    pub const DEVICES_MORE: &str = "Choose and try what moves the fingers (Ctrl+4)";
+    pub const SATURATED: &str = "Saturated";
+    pub const SATURATED_MORE: &str = "A force was clamped to the maximum";
+    pub const SLEW: &str = "Slew";
+    pub const SLEW_MORE: &str = "A force was slowed down: it changed too fast";
+    pub const STALE: &str = "Stale";
+    pub const STALE_MORE: &str = "No fresh sample from the device: the force is zero";
+    pub const INVALID: &str = "Invalid";
+    pub const INVALID_MORE: &str = "A value was not a number and was refused";
+}
+
 /// Seconds that the running curve shows.
 const STRIP_S: f64 = 8.0;
 
@@ -29,10 +72,7 @@ impl Panel for TrainerSide {
         session.lessons.load();
         ScrollArea::vertical().id_salt("trainer side").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
-            let choices = [
-                (false, "Free practice", "Any world, any operator"),
-                (true, "Lessons", "Tasks that are shown, practised and tested"),
-            ];
+            let choices = [(false, words::FREE, words::FREE_MORE), (true, words::LESSONS, words::LESSONS_MORE)];
             ui.vertical_centered(|ui| segmented(ui, &mut session.lessons.shown, &choices));
             if session.lessons.shown {
                 super::lessons::side(ui, session);
@@ -64,19 +104,19 @@ fn world(ui: &mut Ui, session: &mut Session) {
     let (has_calibrated, has_file) = (session.trainer.calibrated.is_some(), session.trainer.file.is_some());
     let (mut chosen, mut again) = (None, false);
     let start_over = |ui: &mut Ui| {
-        again = ui.link("Start over").on_hover_text("Puts everything back where it started (N)").clicked();
+        again = ui.link(words::START_OVER).on_hover_text(words::START_OVER_MORE).clicked();
     };
-    let without_log = (!has_calibrated).then_some("Fit a recording in Calibrate first");
-    let without_file = (!has_file).then_some("Open a world file first");
+    let without_log = (!has_calibrated).then_some(words::NO_FIT);
+    let without_file = (!has_file).then_some(words::NO_FILE);
     let choices = [
-        (WorldChoice::Blocks, "Two blocks", "The two wooden blocks of the thesis", None),
-        (WorldChoice::Crank, "Crank", "A handle on an arm", None),
-        (WorldChoice::Needle, "Needle", "Push it through the bottom of a paper cup, gently", None),
-        (WorldChoice::Barrel, "Barrel", "Heavy and on a cable; squeezed too hard, its wall breaks", None),
-        (WorldChoice::Switch, "Switch", "Push its knob over and back", None),
-        (WorldChoice::Table, "Empty table", "Somewhere to try the fingers", None),
-        (WorldChoice::Calibrated, "Calibrated", "The object that was measured from the log", without_log),
-        (WorldChoice::File, "From a file", "A world file", without_file),
+        (WorldChoice::Blocks, words::BLOCKS, words::BLOCKS_MORE, None),
+        (WorldChoice::Crank, words::CRANK, words::CRANK_MORE, None),
+        (WorldChoice::Needle, words::NEEDLE, words::NEEDLE_MORE, None),
+        (WorldChoice::Barrel, words::BARREL, words::BARREL_MORE, None),
+        (WorldChoice::Switch, words::SWITCH, words::SWITCH_MORE, None),
+        (WorldChoice::Table, words::TABLE, words::TABLE_MORE, None),
+        (WorldChoice::Calibrated, words::CALIBRATED, words::CALIBRATED_MORE, without_log),
+        (WorldChoice::File, words::FILE, words::FILE_MORE, without_file),
     ];
     card(ui, "World", start_over, |ui| {
         for pair in choices.chunks(2) {
@@ -111,7 +151,7 @@ fn world_choice(
         let response = response.on_hover_text(hint).on_disabled_hover_text(missing.unwrap_or(hint));
         if choice == WorldChoice::File {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if ui.link("Open …").clicked() {
+                if ui.link(words::OPEN).clicked() {
                     files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenWorld);
                 }
             });
@@ -122,10 +162,8 @@ fn world_choice(
 
 fn operator(ui: &mut Ui, session: &mut Session) {
     let mut operator = session.trainer.operator;
-    let choices = [
-        (Operator::You, "You", "The device that is chosen on the Devices page"),
-        (Operator::Scripted, "Scripted", "Watch the task done by a scripted operator"),
-    ];
+    let choices =
+        [(Operator::You, words::YOU, words::YOU_MORE), (Operator::Scripted, words::SCRIPTED, words::SCRIPTED_MORE)];
     let mut changed = false;
     card_with_head(
         ui,
@@ -151,8 +189,7 @@ fn operator_state(ui: &mut Ui, session: &mut Session) {
             compact(ui, |ui| {
                 ui.label(theme::caption(ui, text));
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    if ui.link("Devices …").on_hover_text("Choose and try what moves the fingers (Ctrl+4)").clicked()
-                    {
+                    if ui.link(words::DEVICES).on_hover_text(words::DEVICES_MORE).clicked() {
                         session.workspace = Workspace::Devices;
                     }
                 });
@@ -186,10 +223,10 @@ fn forces(ui: &mut Ui, trainer: &Trainer) {
         ui.add_space(space::XS);
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = space::M;
-            light(ui, tick.flags.saturated, p.danger, "Saturated", "A force was clamped to the maximum");
-            light(ui, tick.flags.slewing, p.caution, "Slew", "A force was slowed down: it changed too fast");
-            light(ui, tick.flags.stale, p.danger, "Stale", "No fresh sample from the device: the force is zero");
-            light(ui, tick.flags.not_finite, p.danger, "Invalid", "A value was not a number and was refused");
+            light(ui, tick.flags.saturated, p.danger, words::SATURATED, words::SATURATED_MORE);
+            light(ui, tick.flags.slewing, p.caution, words::SLEW, words::SLEW_MORE);
+            light(ui, tick.flags.stale, p.danger, words::STALE, words::STALE_MORE);
+            light(ui, tick.flags.not_finite, p.danger, words::INVALID, words::INVALID_MORE);
         });
     });
 }

@@ -17,6 +17,34 @@ use egui::{
 };
 use std::sync::Arc;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const READING: &str = "Reading the video …";
+    pub const READING_MORE: &str = "Its pictures are kept, so that any moment is there at once.";
+    pub const NONE_MORE: &str = "Drop a video of the hand on the window, or choose one: it then runs with the time cursor. A \
+        video that has its log's name, or that the sidecar names, is found by itself.";
+    pub const NO_LOG: &str = "Open a log first; a video of the hand then runs here with the time cursor.";
+    pub const NONE: &str = "No video";
+    pub const CHOOSE: &str = "Choose a video …";
+    pub const FAILED: &str = "The video cannot be shown";
+    pub const AGAIN: &str = "Try again";
+    pub const CHOOSE_ANOTHER: &str = "Choose another …";
+    pub const TAKE_AWAY: &str = "Take it away";
+    pub const PICTURE: &str = "Video of the hand";
+    pub const BY_ITSELF_MORE: &str = "Look at the video by itself: find a moment that you recognise, put the time cursor where \
+        the recording shows it, and say that they belong together";
+    pub const BY_ITSELF: &str = "By itself";
+    pub const TOGETHER: &str = "They belong together";
+    pub const TOGETHER_MORE: &str = "This picture was taken at the time cursor";
+    pub const BEGINS: &str = "begins at";
+    pub const BEGINS_MORE: &str = "When its first picture was taken, on the recording's clock: drag, or click and type";
+    pub const ALIGN_MORE: &str = "Shift it to where its pictures change when the recorded hand moves";
+    pub const ALIGN: &str = "Align";
+    pub const ALIGN_SPOKEN: &str = "Align video";
+    pub const WHERE: &str = "Where in the video";
+    pub const REMOVE: &str = "Take the video away";
+}
+
 /// Room for the controls below the picture, points.
 const CONTROLS: f32 = 64.0;
 
@@ -36,14 +64,9 @@ impl Panel for VideoPanel {
             match session.video(&ctx) {
                 State::None => none(ui, session),
                 State::Reading => {
-                    empty_state(
-                        ui,
-                        "Reading the video …",
-                        "Its pictures are kept, so that any moment is there at once.",
-                        |ui| {
-                            ui.spinner();
-                        },
-                    );
+                    empty_state(ui, words::READING, words::READING_MORE, |ui| {
+                        ui.spinner();
+                    });
                 }
                 State::Failed(problem) => failed(ui, session, &problem),
                 State::There(video) => shown(ui, session, &video),
@@ -54,31 +77,26 @@ impl Panel for VideoPanel {
 
 fn none(ui: &mut Ui, session: &mut Session) {
     let loaded = session.prepared().is_some();
-    let text = if loaded {
-        "Drop a video of the hand on the window, or choose one: it then runs with the time cursor. A video that has its log's \
-         name, or that the sidecar names, is found by itself."
-    } else {
-        "Open a log first; a video of the hand then runs here with the time cursor."
-    };
-    empty_state(ui, (Icon::Video, "No video"), text, |ui| {
-        if primary_button(ui, loaded, (Icon::Open, "Choose a video …")).clicked() {
+    let text = if loaded { words::NONE_MORE } else { words::NO_LOG };
+    empty_state(ui, (Icon::Video, words::NONE), text, |ui| {
+        if primary_button(ui, loaded, (Icon::Open, words::CHOOSE)).clicked() {
             files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenVideo);
         }
     });
 }
 
 fn failed(ui: &mut Ui, session: &mut Session, problem: &str) {
-    empty_state(ui, (Icon::Doubt, "The video cannot be shown"), problem, |ui| {
+    empty_state(ui, (Icon::Doubt, words::FAILED), problem, |ui| {
         ui.horizontal(|ui| {
             // Buttons in the middle of the line that the text stands on.
             ui.add_space((0.5 * ui.available_width() - 170.0).max(0.0));
-            if ui.button((Icon::Reload, "Try again")).clicked() {
+            if ui.button((Icon::Reload, words::AGAIN)).clicked() {
                 session.read_video_again();
             }
-            if ui.button((Icon::Open, "Choose another …")).clicked() {
+            if ui.button((Icon::Open, words::CHOOSE_ANOTHER)).clicked() {
                 files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenVideo);
             }
-            if ui.button((Icon::Close, "Take it away")).clicked() {
+            if ui.button((Icon::Close, words::TAKE_AWAY)).clicked() {
                 session.forget_video();
             }
         });
@@ -115,7 +133,7 @@ fn picture(ui: &mut Ui, session: &mut Session, video: &Arc<Video>, room: Rect) {
         ui.painter().image(texture.id(), at, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), tint);
     }
     let response = ui.interact(room, ui.scope_id().with("video picture"), Sense::drag());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Video of the hand"));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, words::PICTURE));
     scrub(session, video, &response);
     if now.is_none() {
         let text = if time_s < 0.0 {
@@ -153,14 +171,13 @@ fn controls(ui: &mut Ui, session: &mut Session, video: &Video) {
     let loose = session.videos.loose_s;
     ui.horizontal(|ui| {
         let mut by_itself = loose.is_some();
-        let hint = "Look at the video by itself: find a moment that you recognise, put the time cursor where the recording shows \
-                    it, and say that they belong together";
-        if ui.checkbox(&mut by_itself, "By itself").on_hover_text(hint).changed() {
+        let hint = words::BY_ITSELF_MORE;
+        if ui.checkbox(&mut by_itself, words::BY_ITSELF).on_hover_text(hint).changed() {
             session.loosen_video(by_itself);
         }
         if loose.is_none() {
             place(ui, session);
-        } else if ui.button("They belong together").on_hover_text("This picture was taken at the time cursor").clicked() {
+        } else if ui.button(words::TOGETHER).on_hover_text(words::TOGETHER_MORE).clicked() {
             session.video_belongs_here();
         }
     });
@@ -173,16 +190,16 @@ fn controls(ui: &mut Ui, session: &mut Session, video: &Video) {
 /// Where the video lies in time.
 fn place(ui: &mut Ui, session: &mut Session) {
     let Some(mut begins_at_s) = session.video_source().map(|s| s.begins_at_s) else { return };
-    ui.label(theme::caption(ui, "begins at"));
+    ui.label(theme::caption(ui, words::BEGINS));
     let drag = DragValue::new(&mut begins_at_s).speed(0.02).max_decimals(3).suffix(" s");
-    let hint = "When its first picture was taken, on the recording's clock: drag, or click and type";
+    let hint = words::BEGINS_MORE;
     if ui.add(drag).on_hover_text(hint).changed() {
         session.shift_video(begins_at_s);
     }
     let free = !session.jobs.is_running(JobKind::AlignVideo);
-    let hint = "Shift it to where its pictures change when the recorded hand moves";
-    let align = ui.add_enabled(free, egui::Button::new((Icon::Align, "Align"))).on_hover_text(hint);
-    align.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, free, "Align video"));
+    let hint = words::ALIGN_MORE;
+    let align = ui.add_enabled(free, egui::Button::new((Icon::Align, words::ALIGN))).on_hover_text(hint);
+    align.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, free, words::ALIGN_SPOKEN));
     if align.clicked() {
         let ctx = ui.ctx().clone();
         session.align_video(&ctx);
@@ -194,7 +211,7 @@ fn runner(ui: &mut Ui, session: &mut Session, video: &Video, mut at_s: f64) {
     let step_s = 1.0 / video.rate_hz;
     ui.spacing_mut().slider_width = (ui.available_width() - 72.0).max(40.0);
     let slider = Slider::new(&mut at_s, 0.0..=(video.duration_s() - step_s).max(0.0));
-    if ui.add(slider.step_by(step_s).max_decimals(2).suffix(" s")).on_hover_text("Where in the video").changed() {
+    if ui.add(slider.step_by(step_s).max_decimals(2).suffix(" s")).on_hover_text(words::WHERE).changed() {
         session.videos.loose_s = Some(at_s);
     }
 }
@@ -202,7 +219,7 @@ fn runner(ui: &mut Ui, session: &mut Session, video: &Video, mut at_s: f64) {
 fn facts(ui: &mut Ui, session: &mut Session, video: &Video) {
     let Some(file) = session.video_source().map(|s| s.file.clone()) else { return };
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        let away = quiet_icon_button(ui, Icon::Close, true, "Take the video away").on_hover_text("Take the video away");
+        let away = quiet_icon_button(ui, Icon::Close, true, words::REMOVE).on_hover_text(words::REMOVE);
         if away.clicked() {
             session.forget_video();
         }
