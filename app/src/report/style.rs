@@ -53,17 +53,17 @@ pub fn css() -> String {
     )
 }
 
-/// The variables of the colours alone, light and dark: for pictures that are no pages.
-pub fn colors() -> String {
-    format!("svg{{{}}}@media (prefers-color-scheme:dark){{svg{{{}}}}}", variables(false), variables(true))
+/// A colour as pages and pictures write it.
+pub fn hex(color: Color32) -> String {
+    let [r, g, b, _] = color.to_array();
+    format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 fn variables(dark: bool) -> String {
     let p = Palette::of(dark);
     let mut text = String::new();
     let mut set = |name: &str, color: Color32| {
-        let [r, g, b, _] = color.to_array();
-        let _ = write!(text, "--{name}:#{r:02x}{g:02x}{b:02x};");
+        let _ = write!(text, "--{name}:{};", hex(color));
     };
     for (name, color) in [
         ("window", p.window),

@@ -1,7 +1,9 @@
 //! Curves on logarithmic axes, as a picture in SVG: what grows in proportion rises at 45°.
 
 use super::table::plain;
-use crate::report::style::colors;
+use crate::report::style::hex;
+use crate::ui::theme::{Palette, curve};
+use render::ColorRole;
 use std::fmt::Write as _;
 
 /// Seconds over a size.
@@ -48,12 +50,17 @@ pub(super) fn svg(curves: &[Curve]) -> String {
             kinds.push(curve.of);
         }
     }
+    // On a light sheet of its own, in plain colours: programs that know no variables of CSS draw those black.
+    let paper = Palette::of(false);
     let (width, height) = (kinds.len() as f64 * (LEFT + SIDE + LEGEND), TOP + SIDE + BOTTOM);
     let mut text = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"12\">\n<style>{}\
-         text{{fill:var(--text)}}.n{{fill:var(--secondary)}}.g{{stroke:var(--border)}}.l{{fill:none;stroke-width:2}}</style>\n\
-         <rect width=\"{width}\" height=\"{height}\" fill=\"var(--card)\"/>\n",
-        colors()
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"12\">\n<style>\
+         text{{fill:{}}}.n{{fill:{}}}.g{{stroke:{}}}.l{{fill:none;stroke-width:2}}</style>\n\
+         <rect width=\"{width}\" height=\"{height}\" rx=\"8\" fill=\"{}\"/>\n",
+        hex(paper.text),
+        hex(paper.secondary),
+        hex(paper.border),
+        hex(paper.card)
     );
     for (k, kind) in kinds.iter().enumerate() {
         let shown: Vec<&Curve> = curves.iter().filter(|c| c.of == *kind && !c.points.is_empty()).collect();
@@ -103,7 +110,7 @@ fn chart(text: &mut String, kind: &str, curves: &[&Curve]) {
         let points: Vec<(f64, f64)> =
             curve.points.iter().map(|p| (place(p.0 as f64, x), SIDE - place(p.1, y))).collect();
         let line: Vec<String> = points.iter().map(|(right, down)| format!("{right:.1} {down:.1}")).collect();
-        let color = format!("var(--block-{})", k % 6);
+        let color = color(k);
         let _ = writeln!(text, "<path class=\"l\" stroke=\"{color}\" d=\"M{}\"/>", line.join("L"));
         for (right, down) in &points {
             let _ = writeln!(text, "<circle cx=\"{right:.1}\" cy=\"{down:.1}\" r=\"3\" fill=\"{color}\"/>");
@@ -111,6 +118,11 @@ fn chart(text: &mut String, kind: &str, curves: &[&Curve]) {
         ends.push((points.last().map_or(0.0, |p| p.1), k));
     }
     legend(text, curves, ends);
+}
+
+/// Of a curve: the darker kind, for lines and dots on a light sheet.
+fn color(k: usize) -> String {
+    hex(curve(false, ColorRole::Block(k % 6), true))
 }
 
 /// Names beside the ends of their curves, apart from each other.
@@ -123,10 +135,10 @@ fn legend(text: &mut String, curves: &[&Curve], mut ends: Vec<(f64, usize)>) {
         free = at + LINE;
         let _ = writeln!(
             text,
-            "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"8\" height=\"8\" fill=\"var(--block-{})\"/><text x=\"{:.1}\" y=\"{:.1}\">{}</text>",
+            "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"8\" height=\"8\" fill=\"{}\"/><text x=\"{:.1}\" y=\"{:.1}\">{}</text>",
             SIDE + 10.0,
             at - 4.0,
-            k % 6,
+            color(k),
             SIDE + 22.0,
             at + 4.0,
             curves[k].name
@@ -155,6 +167,7 @@ mod tests {
         let curve = Curve { name: "all pairs", of: "things", points };
         assert!((curve.exponent() - 2.0).abs() < 1e-9);
         let text = svg(&[curve, Curve { name: "nothing", of: "things", points: Vec::new() }]);
+        assert!(!text.contains("var("), "plain colours: {text}");
         for part in ["all pairs", "time over things", "100 µs", "1 s", "</svg>"] {
             assert!(text.contains(part), "{part}: {text}");
         }
