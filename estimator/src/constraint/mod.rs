@@ -1,7 +1,7 @@
 //! Geometric constraints: what kind of joint a tool path shows, with an honest interval for its radius.
 
 mod carried;
-mod circle;
+pub(crate) mod circle;
 mod decide;
 pub mod existence;
 pub mod felt;

@@ -15,6 +15,7 @@ pub mod markov;
 pub mod motion;
 mod needle;
 mod numbers;
+pub(crate) mod resting;
 pub mod rules;
 pub mod score;
 pub mod shows;

@@ -166,19 +166,33 @@ fn derived(recording: &Recording, position: &[Vec2]) -> Option<Vec<Vec2>> {
 /// Half of the window in which forces and velocities are calmed before states are told from them, s.
 const CALM_HALF_S: f64 = 0.04;
 
-/// The signals with forces and velocities calmed for the segmentation: states last longer than the window, noise does not.
-pub fn calmed(signals: &TaskSignals) -> TaskSignals {
-    let time_s = &signals.time_s;
+/// Samples on either side of the window in which a recording is calmed.
+fn calm_half(time_s: &[f64]) -> usize {
     let n = time_s.len();
     let period_s = if n > 1 { (time_s[n - 1] - time_s[0]) / (n - 1) as f64 } else { 1.0 };
-    let half = ((CALM_HALF_S / period_s).round() as usize).min(n / 20);
+    ((CALM_HALF_S / period_s).round() as usize).min(n / 20)
+}
+
+fn calmed_by(series: &[Vec2], half: usize) -> Vec<Vec2> {
+    let axis = |pick: fn(&Vec2) -> f64| parabolic_mean(&series.iter().map(pick).collect::<Vec<_>>(), half);
+    axis(|v| v.x).into_iter().zip(axis(|v| v.y)).map(|(x, y)| Vec2::new(x, y)).collect()
+}
+
+/// A force or velocity calmed for the segmentation, as in [`calmed`].
+pub fn calmed_series(time_s: &[f64], series: &[Vec2]) -> Vec<Vec2> {
+    match calm_half(time_s) {
+        0 => series.to_vec(),
+        half => calmed_by(series, half),
+    }
+}
+
+/// The signals with forces and velocities calmed for the segmentation: states last longer than the window, noise does not.
+pub fn calmed(signals: &TaskSignals) -> TaskSignals {
+    let half = calm_half(&signals.time_s);
     if half == 0 {
         return signals.clone();
     }
-    let calm = |series: &[Vec2]| -> Vec<Vec2> {
-        let axis = |pick: fn(&Vec2) -> f64| parabolic_mean(&series.iter().map(pick).collect::<Vec<_>>(), half);
-        axis(|v| v.x).into_iter().zip(axis(|v| v.y)).map(|(x, y)| Vec2::new(x, y)).collect()
-    };
+    let calm = |series: &[Vec2]| calmed_by(series, half);
     let tips = [0, 1].map(|finger: usize| TipSeries {
         force: signals.tips[finger].force.as_deref().map(calm),
         velocity: signals.tips[finger].velocity.as_deref().map(calm),
