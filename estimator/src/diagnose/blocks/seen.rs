@@ -4,6 +4,7 @@ use crate::estimate::EstimateError;
 use crate::identify::block::{Blocks, MAIN, object};
 use crate::segment::threshold::percentile;
 use crate::segment::{Method, SystemState};
+use crate::signal::noise::white_noise;
 use crate::signal::task::{half_width, smooth};
 use haptics::recording::Recording;
 
@@ -17,6 +18,10 @@ const WHOLE: f64 = 0.75;
 const REST_M_S: f64 = 8e-3;
 const BEFORE: usize = 6;
 const OTHER_LIFT: f64 = 0.05;
+/// A lift is another one, or less than the whole, when the noise alone would hardly ever make the difference: so many standard deviations.
+const SURELY: f64 = 4.0;
+/// A weight that changes by less than this share in a carry is taken for one that does not.
+const LEAST_CHANGE: f64 = 0.1;
 /// A block that was just lifted swings behind its pads, s.
 const SWINGS_S: f64 = 0.12;
 /// The ground takes over a block within the first of these rows at either end of a carry; the lift of those up to the second is the
@@ -38,6 +43,8 @@ pub struct Seen<'a> {
     pub place: [Vec<f64>; 2],
     /// Time between rows that say something new, s.
     pub period_s: f64,
+    /// Standard deviation of the lift of one row by the sensors' noise, N.
+    lift_noise_n: f64,
 }
 
 impl<'a> Seen<'a> {
@@ -66,15 +73,28 @@ impl<'a> Seen<'a> {
             _ => 1.0,
         };
         let period_s = 2.0 * half_width(time) as f64 * step_s;
-        Ok(Self {
+        let mut seen = Self {
             velocity: [x.value, y.value],
             acceleration: [x.slope, y.slope],
             count,
             force,
             place,
             period_s,
+            lift_noise_n: 0.0,
             blocks,
-        })
+        };
+        seen.lift_noise_n = seen.lift_noise();
+        Ok(seen)
+    }
+
+    /// From where nothing is touched; where that never was, from the fast changes of the lift.
+    fn lift_noise(&self) -> f64 {
+        let free = self.free();
+        if free.len() < BEFORE {
+            return white_noise(&self.blocks.lift);
+        }
+        let squares: f64 = free.iter().map(|i| self.blocks.lift[*i].powi(2)).sum();
+        (squares / free.len() as f64).sqrt()
     }
 
     pub fn time_s(&self, i: usize) -> f64 {
@@ -96,17 +116,41 @@ impl<'a> Seen<'a> {
         let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return (Vec::new(), Vec::new()) };
         let (start, end) = (self.time_s(*first) + SWINGS_S, self.time_s(*last));
         let mut rows = self.every(samples.into_iter().filter(|i| (start..=end).contains(&self.time_s(*i))));
-        let mut lifts: Vec<f64> = rows.iter().map(|i| self.blocks.lift[*i]).collect();
         // A block that the ground takes over already at either end is no longer carried.
-        let least = WHOLE * percentile(&mut lifts, 0.5);
-        let light = |i: &usize| self.blocks.lift[*i] < least;
+        let usual = self.usual_lift(&rows);
+        let light = |i: &usize| {
+            let whole = usual(self.time_s(*i));
+            self.blocks.lift[*i] < (WHOLE * whole).min(whole - SURELY * self.lift_noise_n)
+        };
         let mut standing = rows.split_off(rows.iter().rposition(|i| !light(i)).map_or(0, |k| k + 1));
         rows.drain(..rows.iter().position(|i| !light(i)).unwrap_or(0));
         self.without_ends(&mut rows);
-        let put = self.put_down(&rows).unwrap_or(rows.len());
-        let mut still = rows.split_off(put);
+        let mut still = Vec::new();
+        if let Some((carried_until, stands_from)) = self.put_down(&rows) {
+            still = rows.split_off(stands_from);
+            rows.truncate(carried_until);
+        }
+        // What still comes down does not stand.
+        let lowered = |i: &usize| self.velocity[1][*i] < -REST_M_S;
+        standing.drain(..standing.iter().rposition(lowered).map_or(0, |k| k + 1));
         still.append(&mut standing);
         (rows, still)
+    }
+
+    /// Usual lift over the time of a carry, N: steady, or changing evenly where contents run out.
+    fn usual_lift(&self, rows: &[usize]) -> impl Fn(f64) -> f64 + use<> {
+        let middle =
+            |rows: &[usize]| percentile(&mut rows.iter().map(|i| self.blocks.lift[*i]).collect::<Vec<_>>(), 0.5);
+        let whole = middle(rows);
+        let (early, late) = rows.split_at(rows.len() / 2);
+        let (mut slope, mut start_s) = (0.0, 0.0);
+        if let ([first, ..], [.., last]) = (early, late) {
+            let (change, span_s) = (middle(late) - middle(early), self.time_s(*last) - self.time_s(*first));
+            if change.abs() > LEAST_CHANGE * whole.abs() && span_s > 0.0 {
+                (slope, start_s) = (2.0 * change / span_s, self.time_s(*first) + 0.5 * span_s);
+            }
+        }
+        move |time_s| whole + slope * (time_s - start_s)
     }
 
     /// What is heavy is lifted, and put down, in longer than a row: at both ends of a carry the ground may have a part of it.
@@ -124,8 +168,8 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// From which row on a block that was lowered rests, with another lift than in the air.
-    fn put_down(&self, rows: &[usize]) -> Option<usize> {
+    /// Up to which row a block that was lowered is carried, and from which on it rests, with another lift than in the air.
+    fn put_down(&self, rows: &[usize]) -> Option<(usize, usize)> {
         let speed = |i: usize| self.velocity[0][i].hypot(self.velocity[1][i]);
         let moved = rows.iter().rposition(|i| speed(*i) > REST_M_S)?;
         let from = moved + 1;
@@ -136,7 +180,12 @@ impl<'a> Seen<'a> {
         let lowered = before.iter().any(|i| self.velocity[1][*i] < -REST_M_S);
         let mean = |rows: &[usize]| rows.iter().map(|i| self.blocks.lift[*i]).sum::<f64>() / rows.len() as f64;
         let (carried, now) = (mean(before), mean(&rows[from..]));
-        (lowered && (now - carried).abs() > OTHER_LIFT * carried.abs()).then_some(from.saturating_sub(2))
+        let error = self.lift_noise_n * (1.0 / before.len() as f64 + 1.0 / (rows.len() - from) as f64).sqrt();
+        let other = (now - carried).abs() > (OTHER_LIFT * carried.abs()).max(SURELY * error);
+        // A block that hangs still over the ground is lowered slowly at last: it stands from where the lift is the new one.
+        let stands = |i: &usize| (self.blocks.lift[*i] - now).abs() < (self.blocks.lift[*i] - carried).abs();
+        let first = from + rows[from..].iter().position(stands)?;
+        (lowered && other).then_some((from.saturating_sub(2), first))
     }
 
     /// Rows in which a block is gripped.
@@ -181,3 +230,6 @@ impl<'a> Seen<'a> {
         self.known(number, "weight_N").or_else(|| Some(self.known(number, "mass_kg")? * gravity))
     }
 }
+
+#[cfg(test)]
+mod tests;
