@@ -3,15 +3,20 @@
 use crate::estimate::EstimateError;
 use crate::identify::{block, crank, mechanism};
 use crate::segment::task_of;
-use crate::signal::task::{TipSeries, is_two_fingered, task_signals};
+use crate::signal::task::{TipSeries, is_two_fingered, times, tip_series};
 use crate::wanted;
 use haptics::Vec2;
 use haptics::law::Coordinate;
+use haptics::law::object::MembraneHistory;
 use haptics::recording::{Channel, Recording, Task};
 use haptics::world::{Input, Mechanism, Source, State, World, step};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 /// Longest step of the simulation, s: that of the usual servo.
 const STEP_S: f64 = 1e-3;
+/// Longest way between two looks at what a sheet remembers, m.
+const STEP_M: f64 = 5e-5;
 /// The wish to end is looked at so often, samples.
 const LOOKS: usize = 500;
 
@@ -22,8 +27,55 @@ pub struct Simulation {
     pub time_s: Vec<f64>,
     /// Predicted channels, named like the measured ones (`fx1_N`, `f_N`, …).
     pub predicted: Vec<Channel>,
-    /// RMS of measured minus predicted by channel, where it was measured, in the channel's unit.
+    /// RMS of measured minus predicted by channel, where it was measured and something is predicted, in the channel's unit.
     pub residual_rms: Vec<(String, f64)>,
+    /// The part of the forces that laws predict, where that is not all of them.
+    pub part: Option<PredictedPart>,
+    /// What no law predicts and is taken from the recording: sentences.
+    pub inputs: Vec<String>,
+    /// What the sensors read while nothing is touched, by channel, N: the prediction there.
+    pub bias_n: Vec<(String, f64)>,
+}
+
+/// How well the part of the forces that a world's laws predict agrees with what was measured.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
+pub struct PredictedPart {
+    /// Which part it is.
+    pub what: String,
+    /// RMS of measured minus predicted, N; absent where no force was measured.
+    #[serde(rename = "rms_N")]
+    pub rms_n: Option<f64>,
+    /// Samples at which it is predicted.
+    pub samples: usize,
+}
+
+/// What laws say of a recorded motion that does not drive the world by itself.
+pub(crate) struct Needed {
+    pub(crate) channels: Vec<Channel>,
+    /// Whether a sample's forces are predicted; elsewhere they are the operator's own, as measured.
+    pub(crate) is_predicted: Vec<bool>,
+    pub(crate) part: PredictedPart,
+    pub(crate) inputs: Vec<String>,
+    pub(crate) bias_n: Vec<(String, f64)>,
+}
+
+/// What a sensor reads while nothing is touched: the mean of those samples, where it is no chance; else 0.
+pub(crate) fn resting_level(values: &[f64], free: &[usize]) -> f64 {
+    /// Standard errors of a mean of white noise; that of noise with a memory is some times larger.
+    const SURE: f64 = 10.0;
+    let count = free.len() as f64;
+    if count < 2.0 {
+        return 0.0;
+    }
+    let mean = free.iter().map(|i| values[*i]).sum::<f64>() / count;
+    let variance = free.iter().map(|i| (values[*i] - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    if mean.abs() > SURE * (variance / count).sqrt() { mean } else { 0.0 }
+}
+
+/// RMS of what is left at samples of which there is one at least.
+pub(crate) fn rms(left: impl Iterator<Item = f64>) -> Option<f64> {
+    let (square, count) = left.fold((0.0, 0_usize), |(sum, n), r| (sum + r * r, n + 1));
+    (count > 0).then(|| (square / count as f64).sqrt())
 }
 
 impl Simulation {
@@ -53,7 +105,8 @@ impl Simulation {
 ///
 /// Where the give of the pads was measured the world is stepped: the fingers go where they went and the world answers. Fingers
 /// that do not give cannot drive a world by their positions; there the laws say what the measured motion needs (along a crank's
-/// circle, or while a block is in the air), and the operator's own pull and grip, which no world can know, stay as measured.
+/// circle, or while a block is in the air), and the operator's own pull and grip, which no world can know, stay as measured
+/// ([`Simulation::inputs`] says so). Where nothing is touched nothing is felt but what the sensors read at rest.
 pub fn simulate(world: &World, recording: &Recording) -> Result<Simulation, EstimateError> {
     let task =
         task_of(recording, None).or_else(|error| world.mechanism.as_ref().map(|_| Task::Mechanism).ok_or(error))?;
@@ -73,18 +126,52 @@ pub fn simulate(world: &World, recording: &Recording) -> Result<Simulation, Esti
             Some(_) if is_two_fingered(recording) && pads_are_measured(world) => {
                 play(world, recording).map(|forces| assemble_tips(recording, &forces))
             }
-            Some(crank) => crank::needed_forces(crank, recording)
-                .map(|predicted| assemble(recording, predicted, |name| recording.channel(name).map(<[f64]>::to_vec))),
+            Some(crank) => crank::needed_forces(crank, recording).map(|needed| needed.beside(recording)),
             None => mismatch("no crank"),
         },
         Task::Needle if world.membrane.is_none() => mismatch("no membrane"),
         Task::Switch if world.switch.is_none() => mismatch("no switch"),
+        Task::Needle if !is_two_fingered(recording) => poke(world, recording),
         Task::Needle | Task::Switch => play(world, recording).map(|forces| assemble_tips(recording, &forces)),
         _ if world.blocks.is_empty() => mismatch("no blocks"),
         _ if pads_are_measured(world) => play(world, recording).map(|forces| assemble_tips(recording, &forces)),
-        _ => block::needed_forces(world, recording)
-            .map(|predicted| assemble(recording, predicted, |name| recording.channel(name).map(<[f64]>::to_vec))),
+        _ => block::needed_forces(world, recording).map(|needed| needed.beside(recording)),
     }
+}
+
+/// A single tool is the needle: what the sheet pushes back along it. One place of the sheet, as in the fit of such a recording.
+fn poke(world: &World, recording: &Recording) -> Result<Simulation, EstimateError> {
+    let TipSeries { position, velocity, .. } = tip_series(recording, "")?;
+    let (Some(sheet), Some(velocity)) = (&world.membrane, velocity) else {
+        return Err(EstimateError::Clockless {
+            what: "the sheet's drag on a needle".to_owned(),
+            recording: recording.name.clone(),
+        });
+    };
+    let mut history = MembraneHistory::default();
+    let mut values = Vec::with_capacity(position.len());
+    for i in 0..position.len() {
+        // What a place remembers is moved in steps as fine as the servo's way.
+        let from = position[i.saturating_sub(1)];
+        let parts = (((position[i] - from).norm() / STEP_M).ceil().max(1.0)) as usize;
+        let mut out_n = 0.0;
+        for part in 1..=parts {
+            let at = from + (position[i] - from) * (part as f64 / parts as f64);
+            let insertion_m = sheet.center_m.y - at.y;
+            out_n = if (at.x - sheet.center_m.x).abs() < sheet.half_width_m {
+                sheet.law.force_n(insertion_m, -velocity[i].y, &mut history)
+            } else {
+                0.0
+            };
+        }
+        values.push(-out_n);
+    }
+    let along = Channel { name: "fy_N".to_owned(), unit: "N".to_owned(), values };
+    let mut found = assemble(recording, vec![along], |name| recording.channel(name).map(<[f64]>::to_vec));
+    found.inputs.push(
+        "the force across the needle is the operator's own where its hole gives way: it is not predicted for a single tool".to_owned(),
+    );
+    Ok(found)
 }
 
 /// Whether the world's pads come from a measurement: assumed ones would turn micrometres into newtons.
@@ -132,6 +219,24 @@ fn assemble_tips(recording: &Recording, forces: &[Vec<Vec2>; 2]) -> Simulation {
     assemble(recording, predicted, |name| recording.channel(name).map(<[f64]>::to_vec))
 }
 
+impl Needed {
+    fn beside(self, recording: &Recording) -> Simulation {
+        let left = |channel: &Channel| {
+            let measured = recording.channel(&channel.name)?;
+            let both = measured.iter().zip(&channel.values).zip(&self.is_predicted);
+            Some((channel.name.clone(), rms(both.filter(|(_, predicted)| **predicted).map(|((m, p), _)| m - p))?))
+        };
+        Simulation {
+            time_s: times(recording),
+            residual_rms: self.channels.iter().filter_map(left).collect(),
+            predicted: self.channels,
+            part: Some(self.part),
+            inputs: self.inputs,
+            bias_n: self.bias_n,
+        }
+    }
+}
+
 fn assemble(recording: &Recording, predicted: Vec<Channel>, measured: impl Fn(&str) -> Option<Vec<f64>>) -> Simulation {
     let residual_rms = predicted
         .iter()
@@ -142,7 +247,7 @@ fn assemble(recording: &Recording, predicted: Vec<Channel>, measured: impl Fn(&s
             Some((channel.name.clone(), (square / n).sqrt()))
         })
         .collect();
-    Simulation { time_s: crate::signal::task::times(recording), predicted, residual_rms }
+    Simulation { time_s: times(recording), predicted, residual_rms, part: None, inputs: Vec::new(), bias_n: Vec::new() }
 }
 
 /// Moves the world's fingers as they were measured; the force of each tip on the environment at every sample, N.
@@ -162,8 +267,15 @@ fn play(world: &World, recording: &Recording) -> Result<[Vec<Vec2>; 2], Estimate
 /// # Errors
 /// Without two fingers.
 pub fn walk(world: &World, recording: &Recording, see: impl FnMut(f64, &State)) -> Result<(), EstimateError> {
-    let signals = task_signals(recording)?;
-    walk_tips(world, &signals.time_s, &signals.tips, see);
+    // The forces are what is asked for: the motion alone drives the world.
+    let tips = [tip_series(recording, "1")?, tip_series(recording, "2")?];
+    if tips.iter().any(|tip| tip.velocity.is_none()) {
+        return Err(EstimateError::Clockless {
+            what: "the motion of a world".to_owned(),
+            recording: recording.name.clone(),
+        });
+    }
+    walk_tips(world, &times(recording), &tips, see);
     wanted::look()
 }
 

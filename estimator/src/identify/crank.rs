@@ -10,21 +10,20 @@ mod geometry;
 mod held;
 pub mod laws;
 mod motion;
+mod needed;
 mod report;
 mod slipping;
 mod together;
 
 use crate::estimate::{Constraint, EstimateError, Fit, Slip};
-use crate::segment::{Method, Segmentation, Thresholds, segment, segment_by};
+use crate::segment::{Method, Segmentation, Thresholds, segment_by};
 use crate::signal::task::{half_width, is_two_fingered};
 use friction::{Friction, Sensed, friction, geometry_errors, heldout_quality};
 use geometry::Geometry;
-use haptics::Vec2;
-use haptics::law::drive_forces;
-use haptics::recording::{Channel, Recording, Segment, Task};
-use haptics::world::Crank;
+use haptics::recording::{Recording, Segment, Task};
 use held::{Grasped, Held, Smooth, grasped, smooth};
-use motion::{Along, Rows, motions, motions_at};
+use motion::{Along, Rows, motions_at};
+pub(crate) use needed::needed_forces;
 use report::{GripSignals, constraint, geometry_parameters, grip_parameters, warnings};
 use slipping::{slip_warning, without_slips};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -172,42 +171,4 @@ fn describe(recording: &Recording, prepared: &Prepared, seen: &Seen) -> Result<F
         correlated: vec![friction.correlated(&sensed, rows)],
         warnings,
     })
-}
-
-/// The forces that the measured motion of a crank needs, channels named as measured.
-///
-/// Along the circle the world's laws say what it takes; the pull along the arm and the grip are the operator's own and stay as
-/// measured. Where nothing is held the prediction is the measured (free) force.
-pub fn needed_forces(crank: &Crank, recording: &Recording) -> Result<Vec<Channel>, EstimateError> {
-    let segmentation = segment(recording, Some(Task::Crank), None)?;
-    let held = Held::new(&Arc::new(grasped(&Arc::new(smooth(recording)?), &segmentation)));
-    let geometry = Geometry {
-        center_m: crank.center_m,
-        radius_m: crank.radius_m,
-        give_m_per_n: Vec2::zeros(),
-        give_errors: Vec2::zeros(),
-        errors_m: [0.0; 3],
-        stiffness: None,
-        rms_m: 0.0,
-    };
-    let (motions, tangential) = motions(recording, &held, &geometry);
-    let needed = drive_forces(&crank.effects, &motions);
-    let mut correction = vec![Vec2::zeros(); motions.len()];
-    for i in &held.turning {
-        let outward = (held.position()[*i] - crank.center_m).normalize();
-        let along = Vec2::new(-outward.y, outward.x);
-        correction[*i] = along * (needed[*i] - tangential[*i]);
-    }
-    let fingers: &[&str] = if is_two_fingered(recording) { &["1", "2"] } else { &[""] };
-    let mut channels = Vec::new();
-    for finger in fingers {
-        for (axis, letter) in ["x", "y"].into_iter().enumerate() {
-            let name = format!("f{letter}{finger}_N");
-            let Some(measured) = recording.channel(&name) else { continue };
-            let share = |i: usize| correction[i][axis] / fingers.len() as f64;
-            let values = measured.iter().enumerate().map(|(i, force)| force + share(i)).collect();
-            channels.push(Channel { name, unit: "N".to_owned(), values });
-        }
-    }
-    Ok(channels)
 }

@@ -25,7 +25,7 @@ use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signa
 use give::{Give, pad_parameter};
 use haptics::Vec2;
 use haptics::recording::{Recording, Task};
-pub use needed::needed_forces;
+pub(crate) use needed::needed_forces;
 pub use together::{Together, fit_together};
 
 /// Relative error of a width whose pad compression could not be measured: the thesis's blocks came out 7 % too narrow.
