@@ -55,6 +55,7 @@ pub use suspects::{SensorFault, Suspect, suspects};
 pub use world::{Worlds, extended_world, worlds};
 
 use crate::estimate::EstimateError;
+use crate::log::NO_CLOCK;
 use crate::pipeline;
 use crate::segment::task_of;
 use force::Model;
@@ -93,6 +94,9 @@ pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Diagnosis
     let task = task_of(first, options.task)?;
     let mut found = of_task(task, recordings, options)?;
     several::settle(recordings, &mut found, &|some| of_task(task, some, options));
+    let clockless = recordings.iter().flat_map(|r| r.warnings.iter().filter(|w| w.kind == NO_CLOCK));
+    found.warnings.extend(clockless.map(|w| w.text.clone()));
+    found.warnings.dedup();
     Ok(found)
 }
 
@@ -341,7 +345,10 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
 }
 
 /// The laws of a baseline's name.
-fn named(name: &str) -> Result<Model, EstimateError> {
+///
+/// # Errors
+/// A part that is no law of a baseline, in a sentence.
+pub fn named(name: &str) -> Result<Model, EstimateError> {
     name.split('+')
         .map(|part| match part.trim() {
             "mass" | "inertia" => Ok(Effect::new(&Inertia, &[1.0])),

@@ -128,7 +128,7 @@ fn notes(plan: &Plan, table: &Table, headers: &[String], recording: &Recording) 
         let text = "the log has no clock (no t_s column, no rate_hz in the sidecar): paths and forces can be used; \
                     velocities, viscous friction, inertia and delays cannot be known"
             .to_owned();
-        notes.push(note("no-clock", None, text));
+        notes.push(note(super::NO_CLOCK, None, text));
     }
     notes
 }

@@ -58,7 +58,18 @@ pub fn foreign(start: &[u8]) -> Option<&'static str> {
         (b"\x28\xb5\x2f\xfd", "compressed with zstd; unpack it with `unzstd`"),
         (b"\x93NUMPY", "a NumPy array; write it as CSV with a header line of column names"),
     ];
-    KNOWN.iter().find(|(magic, _)| start.starts_with(magic)).map(|&(_, what)| what)
+    let known = KNOWN.iter().find(|(magic, _)| start.starts_with(magic)).map(|&(_, what)| what);
+    known.or_else(|| markup(start))
+}
+
+/// Text that is no table: no header begins with these.
+fn markup(start: &[u8]) -> Option<&'static str> {
+    let text = start.strip_prefix("\u{feff}".as_bytes()).unwrap_or(start).trim_ascii_start();
+    match text.first()? {
+        b'<' => Some("a web page or XML; save the table itself as CSV"),
+        b'{' | b'[' => Some("JSON; write it as CSV, with pandas for example, or as MCAP"),
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -78,5 +89,7 @@ mod tests {
     fn well_known_files_are_named() {
         assert!(foreign(b"MATLAB 5.0 MAT-file, Platform: GLNXA64").is_some_and(|what| what.contains("writetable")));
         assert!(foreign(b"t_s,q_m\n").is_none() && foreign(b"").is_none());
+        assert!(foreign(b"<!DOCTYPE html>\n<html>").is_some_and(|what| what.contains("web page")));
+        assert!(foreign(b"\n { \"t_s\": [0, 1] }").is_some_and(|what| what.starts_with("JSON")));
     }
 }

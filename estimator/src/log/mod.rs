@@ -34,6 +34,9 @@ pub use sidecar::{path_for as sidecar_path, write as write_meta, write_as_is as 
 pub use watch::Watch;
 pub use write::{Attachment, write, write_csv};
 
+/// The kind of the warning that a log has no clock.
+pub(crate) const NO_CLOCK: &str = "no-clock";
+
 use haptics::recording::{Meta, Recording, Warning};
 use raw::Raw;
 use std::path::Path;
