@@ -88,6 +88,10 @@ impl Diagnose {
             None => None,
         };
         let baseline = self.baseline.clone().filter(|_| world.is_none());
+        // Tasks with a model of their own do not look at it: a wrong word is told all the same.
+        if let Some(name) = &baseline {
+            estimator::diagnose::named(name)?;
+        }
         Ok(Options { baseline, world, ..Options::default() })
     }
 

@@ -2,6 +2,7 @@
 
 use super::{LogArgs, Output};
 use clap::Args;
+use estimator::simulate::PredictedPart;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -33,6 +34,14 @@ pub(crate) struct Said {
     columns: Vec<String>,
     /// Root mean square of measured minus predicted for each channel that was measured, in its unit.
     residual_rms: BTreeMap<String, f64>,
+    /// The part of the forces that the world's laws predict, and how well, where that is not all of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    predicted_part: Option<PredictedPart>,
+    /// What no law predicts and is as measured: sentences.
+    inputs: Vec<String>,
+    /// What each channel reads while nothing is touched, N: it is predicted there, where it is not zero.
+    #[serde(rename = "bias_N")]
+    bias_n: BTreeMap<String, f64>,
 }
 
 impl Simulate {
@@ -55,11 +64,24 @@ impl Simulate {
             let _ = writeln!(text, "  {name:<10} measured − predicted: {value:.4} RMS");
             residual_rms.insert(name.clone(), *value);
         }
+        if let Some(part) = &simulation.part {
+            let rms = part.rms_n.map_or_else(String::new, |rms| format!(", measured − predicted: {rms:.4} N RMS"));
+            let _ = writeln!(text, "  predicted: {} at {} samples{rms}", part.what, part.samples);
+        }
+        for (name, level) in &simulation.bias_n {
+            let _ = writeln!(text, "  {name} reads {level:.3} N while nothing is touched");
+        }
+        for input in &simulation.inputs {
+            let _ = writeln!(text, "  {input}");
+        }
         let said = Said {
             out: self.out.clone(),
             samples: simulation.time_s.len(),
             columns: simulation.predicted.iter().map(|column| column.name.clone()).collect(),
             residual_rms,
+            predicted_part: simulation.part,
+            inputs: simulation.inputs,
+            bias_n: simulation.bias_n.into_iter().collect(),
         };
         Ok(Output { text, json: serde_json::to_value(&said)? })
     }
