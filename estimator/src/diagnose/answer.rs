@@ -241,6 +241,8 @@ pub fn answer(
         plain: Vec::new(),
         effects: Vec::new(),
         atlas: Atlas::default(),
+        late_s: 0.0,
+        rest_s: None,
         hypotheses: Vec::new(),
     }
 }

@@ -83,6 +83,8 @@ pub struct Candidate {
     pub side: f64,
     /// Of a generic term that is no cause: its expression.
     pub expression: Option<String>,
+    /// The channel that it goes with, and that channel's unit.
+    pub channel: Option<(String, String)>,
 }
 
 impl Candidate {
@@ -101,6 +103,7 @@ impl Candidate {
             noise: 0.0,
             side: 0.0,
             expression: None,
+            channel: None,
         }
     }
 
@@ -125,6 +128,7 @@ impl Candidate {
             noise: 0.0,
             side: 0.0,
             expression: None,
+            channel: None,
         }
     }
 
@@ -145,6 +149,12 @@ impl Candidate {
     /// Whose parameters are like that.
     pub fn shaped(mut self, shape: Shape) -> Self {
         self.shape = shape;
+        self
+    }
+
+    /// That goes with a channel of the recording.
+    pub fn with(mut self, channel: (String, String)) -> Self {
+        self.channel = Some(channel);
         self
     }
 

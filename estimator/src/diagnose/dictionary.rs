@@ -16,6 +16,9 @@ const LEAST_BEHIND: f64 = 0.4;
 /// More than all of it is none of the two: another way or gap would be nearer.
 const MOST: f64 = 1.7;
 
+/// Ripples of fewer rows than this are averaged over each row.
+const SHORT_RIPPLE: f64 = 25.0;
+
 /// Shape of presliding that gives back along a straight line.
 const STRAIGHT: f64 = 0.5;
 
@@ -197,7 +200,12 @@ impl Dictionary<'_> {
 
     fn ripple(&self, all: &mut Vec<Candidate>, length: f64) {
         let units = self.units();
-        let column = |phase: f64| self.law_of_place(&PositionRipple, &[1.0, length, phase]);
+        // A short one changes within a row.
+        let short = length < SHORT_RIPPLE * self.track.quantile(0.9, |r| r.motion.velocity.abs()) * self.track.period_s;
+        let column = |phase: f64| {
+            let values = [1.0, length, phase];
+            if short { self.law(&PositionRipple, &values) } else { self.law_of_place(&PositionRipple, &values) }
+        };
         let columns = vec![column(0.0), column(-std::f64::consts::FRAC_PI_2)];
         let linear = vec![("A cos phi", units.force), ("A sin(-phi)", units.force)];
         let ripple = Candidate::several("position-ripple", Kind::Plant, columns, linear);
@@ -352,12 +360,27 @@ impl Dictionary<'_> {
             let step = Effect::new(&FrictionChange, &[0.0, 1.0, 0.0, start, 0.0]);
             all.push(change(of_dry(&step)).at("t0", start, "s"));
         }
+        // … or with what else was recorded, all of what resists or what is dry alone.
+        for (name, unit, values) in self.track.extras() {
+            let goes = |level: &dyn Fn(usize) -> f64| -> Vec<f64> {
+                let rows = self.track.rows.iter().enumerate();
+                rows.map(|(i, r)| if r.place == Place::Along { level(i) * values[i] } else { 0.0 }).collect()
+            };
+            let channel = (name, unit);
+            let dry = goes(&|i| self.dry[i] * self.track.rows[i].motion.direction);
+            all.push(change(dry).with(channel.clone()));
+            all.push(change(goes(&|i| self.resisting[i])).with(channel));
+        }
     }
 
     fn instrument(&self, all: &mut Vec<Candidate>) {
         let units = self.units();
-        for known in self.fixed {
-            all.push(Candidate::one("force-gain", Kind::Instrument, "g - 1", "1", known.clone()));
+        if let Some((first, others)) = self.fixed.split_first() {
+            let mut known = first.clone();
+            for other in others {
+                known.iter_mut().zip(other).for_each(|(sum, more)| *sum += more);
+            }
+            all.push(Candidate::one("force-gain", Kind::Instrument, "g - 1", "1", known));
         }
         let every = |of: &dyn Fn(&Row) -> f64| self.track.rows.iter().map(of).collect::<Vec<f64>>();
         if self.track.planar {

@@ -6,12 +6,13 @@ use super::course::course;
 use super::experiment::propose;
 use super::extend::{effects, plain, spring};
 use super::force::Model;
-use super::gain::{chi_square_tail, gain, rms, whiteness_p};
+use super::gain::{chi_square_tail, gain, gain_between, rms, whiteness_p};
 use super::geometry::Study;
 use super::kept::of_study;
 use super::passed_over::{passed_over, unsaid};
 use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, NotExcited, Verdict};
 use super::rollout::rollout;
+use super::searched::{Known, known};
 use super::select::{Chosen, Selection};
 use super::suspects::hypotheses;
 use super::track::{Place, Track};
@@ -25,6 +26,8 @@ const OPEN: f64 = 6.0;
 /// A cause of the noise's own size that would score less than this could not have been seen.
 const VISIBLE: f64 = 10.0;
 
+/// Who goes no larger a share of the way back goes one way: a hand trembles.
+const ONE_WAY: f64 = 0.02;
 /// Channels of slow recordings are not a whole sample apart by sampling alone, s.
 const LARGEST_SKEW_S: f64 = 2e-3;
 /// Clocks of two instruments differ by this, and what filters them: a force that is no later is no late force, s.
@@ -80,21 +83,20 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
     let mut causes = in_order(faults, found);
     let least = 1.0 / (1.0 + (0.5 * OPEN).exp());
     let open_ones: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > least).cloned().collect();
-    let open = !open_ones.is_empty();
     let verdict = match (causes.is_empty(), strange.is_some()) {
         (true, true) => Verdict::Unexplained,
         (true, false) => Verdict::None,
-        (false, _) if open => Verdict::Ambiguous,
+        (false, _) if !open_ones.is_empty() => Verdict::Ambiguous,
         (false, _) => Verdict::Causes,
     };
     if let Some((candidate, score)) = strange {
-        let expression = study.candidates[candidate].expression.clone().unwrap_or_default();
+        let expression = study.candidates[candidate].expression.as_deref().unwrap_or_default();
         warnings.push(format!(
             "something is left that no known cause explains: it goes with {expression} (score {score:.0})"
         ));
-        causes.push(unnamed(study, candidate, score, &expression));
+        causes.push(unnamed(study, candidate, score, floor));
     }
-    let not_excited = not_excited(study, &picks);
+    let not_excited = unseen(track, study, &causes, &alternatives);
     let passed_over = passed_over(study, &picks, UNEXPLAINED);
     Diagnosis {
         verdict,
@@ -112,6 +114,8 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         plain: plain(model, study),
         effects: effects(track, model, study),
         atlas: Atlas::default(),
+        late_s: 0.0,
+        rest_s: rest_s(study, &picks),
         hypotheses: hypotheses(track, model, study),
         course: course(track, study),
         kept: of_study(FORCE, study),
@@ -151,6 +155,17 @@ fn skew(study: &Study, k: usize, raw_period_s: f64) -> Option<f64> {
     (found.value.abs() - 2.0 * found.std_error <= most_s).then_some(found.value)
 }
 
+/// What a delay comes out at beside what was found, and its error, s.
+fn rest_s(study: &Study, picks: &[usize]) -> Option<[f64; 2]> {
+    let is_delay = |c: &usize| study.candidates[*c].id == "time-delay";
+    let delay = (0..study.candidates.len()).find(is_delay)?;
+    let others: Vec<usize> = picks.iter().copied().filter(|c| !is_delay(c)).collect();
+    let solved = study.system.solve(&[others.as_slice(), &[delay]].concat())?;
+    let last = solved.values.len() - 1;
+    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    Some([solved.values[last], (variance * solved.inverse[(last, last)]).sqrt()])
+}
+
 /// What no known cause explains: the generic term and its score.
 fn strange(study: &Study, picks: &[usize]) -> Option<(usize, f64)> {
     let selection = Selection {
@@ -170,8 +185,9 @@ fn cause(study: &Study, k: usize, floor: f64, channel: &str) -> Cause {
     let gain = gain(study, k, floor);
     let (title, equation) = entry.map_or((candidate.id, ""), |e| (e.title, e.equation));
     let unit = if channel == "path" { "m" } else { "N" };
+    let goes_with = candidate.channel.as_ref().map_or_else(String::new, |(name, _)| format!(" with {name}"));
     let evidence = format!(
-        "{title}: what the model leaves of the {channel} follows {equation}; on data held out it goes from {} to {} RMS (score \
+        "{title}: what the model leaves of the {channel} follows {equation}{goes_with}; on data held out it goes from {} to {} RMS (score \
          {:.0}, {:.0} would do)",
         amount(gain.heldout_rms_before, unit),
         amount(gain.heldout_rms_after, unit),
@@ -217,13 +233,23 @@ pub(super) fn parameters(study: &Study, k: usize) -> Vec<CauseParameter> {
             let (value, error) = (solved.values[first + i], (variance * solved.inverse[(first + i, first + i)]).sqrt());
             match picks[k].id {
                 // The stiffness is asked for, the give was found.
+                _ if picks[k].channel.is_some() => of_channel(picks[k], name, value, error),
                 "pad-compliance" => number("k", 1.0 / value.max(1e-12), error / (value * value).max(1e-24), "N/m"),
                 _ => number(name, value, error, unit),
             }
         })
         .collect();
-    found.extend(picks[k].searched.iter().map(|s| number(s.name, s.value, 0.0, s.unit)));
+    found.extend(picks[k].searched.iter().enumerate().map(|(which, searched)| {
+        let Known { value, std_error } = known(study, k, which);
+        number(searched.name, value, std_error, searched.unit)
+    }));
     found
+}
+
+/// What goes with a channel is so much for every unit of that.
+fn of_channel(candidate: &Candidate, name: &str, value: f64, std_error: f64) -> CauseParameter {
+    let (channel, unit) = candidate.channel.clone().unwrap_or_default();
+    number(&format!("{name} with {channel}"), value, std_error, &format!("1/{unit}"))
 }
 
 /// What a spring that hardens is for people: stiffness, force, hardening and place out of two cubics; errors to first order.
@@ -289,14 +315,39 @@ pub(super) fn rivals(study: &Study, chosen: &Chosen) -> Vec<Alternative> {
     found
 }
 
-fn unnamed(study: &Study, candidate: usize, score: f64, expression: &str) -> Cause {
+/// What goes with none of the laws, with its amplitudes and what it would be worth.
+fn unnamed(study: &Study, candidate: usize, score: f64, floor: f64) -> Cause {
+    let picks = study.picks();
+    let with: Vec<usize> = picks.iter().copied().chain([candidate]).collect();
+    let term = &study.candidates[candidate];
+    let expression = term.expression.as_deref().unwrap_or_default();
+    let mut parameters = Vec::new();
+    let mut odds = 1.0;
+    if let Some(solved) = study.system.solve(&with) {
+        let first = solved.values.len() - term.columns.len();
+        let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+        let names: &[&str] = if term.columns.len() == 2 { &["A cos phi", "A sin(-phi)"] } else { &["A"] };
+        parameters.extend(names.iter().zip(first..).map(|(name, i)| {
+            number(name, solved.values[i], (variance * solved.inverse[(i, i)]).sqrt(), term.linear[i - first].1)
+        }));
+        // Other terms that leave as little.
+        let others = (0..study.candidates.len()).filter(|c| study.candidates[*c].expression.is_some());
+        odds = others
+            .filter_map(|c| {
+                let other = study.system.solve(&[picks.as_slice(), &[c]].concat())?;
+                let more = study.candidates[c].cost - term.cost;
+                let behind = study.system.rows * (other.rss / solved.rss).ln() + more * study.system.rows.ln();
+                Some((-0.5 * behind).exp().min(1.0))
+            })
+            .sum();
+    }
     Cause {
         id: format!("other:{expression}"),
-        kind: study.candidates[candidate].kind,
-        parameters: Vec::new(),
-        p_value: chi_square_tail(score, study.candidates[candidate].cost),
-        posterior: 0.0,
-        gain: super::report::Gain::default(),
+        kind: term.kind,
+        parameters,
+        p_value: chi_square_tail(score, term.cost),
+        posterior: 1.0 / odds.max(1.0),
+        gain: gain_between(study, &picks, &with, floor),
         evidence: format!("what is left goes with {expression}; no known cause does so here"),
     }
 }
@@ -319,6 +370,32 @@ fn not_excited(study: &Study, picks: &[usize]) -> Vec<NotExcited> {
         }
     }
     found
+}
+
+/// What this recording could not have shown.
+fn unseen(track: &Track, study: &Study, causes: &[Cause], alternatives: &[Alternative]) -> Vec<NotExcited> {
+    let mut found = not_excited(study, &study.picks());
+    found.extend(without_reversals(track, causes, &found));
+    // What could stand in a cause's place was seen, if not told apart.
+    found.retain(|n| alternatives.iter().all(|a| a.id != n.id));
+    found
+}
+
+/// What happens at reversals alone, where there are none.
+fn without_reversals(track: &Track, causes: &[Cause], already: &[NotExcited]) -> Vec<NotExcited> {
+    let way = |side: f64| track.along().map(|i| (side * track.rows[i].motion.velocity).max(0.0)).sum::<f64>();
+    let (forward, backward) = (way(1.0), way(-1.0));
+    if forward.min(backward) > ONE_WAY * (forward + backward) {
+        return Vec::new();
+    }
+    let said = |id: &str| causes.iter().any(|c| c.id == id) || already.iter().any(|n| n.id == id);
+    let hidden = ["backlash", "hysteresis"].into_iter().filter(|id| !said(id));
+    hidden
+        .map(|id| NotExcited {
+            id: id.to_owned(),
+            why: "no reversal in the recording; move to and fro, also in short strokes".to_owned(),
+        })
+        .collect()
 }
 
 fn lower(text: &str) -> String {

@@ -116,6 +116,8 @@ fn effect(candidate: &Candidate, values: &[f64], track: &Track, [dry_n, weight_n
             let step_s = track.period_s;
             of(&MassChange, &[0.0, first / step_s, searched(0), step_s])
         }
+        // No law of a world knows what else was recorded.
+        "friction-change" if candidate.channel.is_some() => None,
         "friction-change" if candidate.searched.first().is_some_and(|s| s.name == "t0") => {
             of(&FrictionChange, &[0.0, first * dry_n, 0.0, searched(0)])
         }

@@ -3,6 +3,7 @@
 use super::candidate::{Candidate, Searched};
 use super::compare::whitening as whitening_of;
 use super::dictionary::Dictionary;
+use super::gain::gain;
 use super::generic::generic;
 use super::geometry::Study;
 use super::grid::Grid;
@@ -64,7 +65,24 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
         };
         made = compare(track, model, fixed, threshold, [&coarse, &fine], Some(before))?;
     }
+    leave_out_what_harms(&mut made);
     Ok(made)
+}
+
+/// By so much a cause must enlarge what is left to be harmful: a small one that is true, but known badly, may do a little.
+const HARMS: f64 = 1.05;
+
+/// A cause that makes more of an error for certain where it was not fitted is none, whatever it explains elsewhere.
+fn leave_out_what_harms(study: &mut Study) {
+    loop {
+        let harms = |k: &usize| {
+            let gain = gain(study, *k, 0.0);
+            gain.heldout_rms_after > HARMS * gain.heldout_rms_before && gain.interval[1] < 0.0
+        };
+        let Some(k) = (0..study.chosen.len()).rev().find(harms) else { return };
+        study.chosen.remove(k);
+        study.solved = study.system.solve(&study.picks());
+    }
 }
 
 /// The force across the motion without the faults of the sensor that were found.
@@ -78,6 +96,7 @@ fn correct_load(track: &mut Track, study: &Study) {
         faults.push((candidate, solved.values[at..end].to_vec()));
         at = end;
     }
+    let hangs_n = track.bearing_weight_n;
     for row in track.rows.iter_mut().filter(|r| r.place == Place::Along) {
         let outward = Vec2::new(row.along.y, -row.along.x);
         let mut force = row.force;
@@ -94,7 +113,7 @@ fn correct_load(track: &mut Track, study: &Study) {
                 _ => Vec2::zeros(),
             };
         }
-        row.motion.normal_force_n = force.dot(&outward);
+        row.motion.normal_force_n = force.dot(&outward) - hangs_n * row.up_outward();
     }
 }
 
@@ -117,11 +136,11 @@ fn compare(
     [coarse, fine]: [&Grid; 2],
     before: Option<Before>,
 ) -> Result<Study, EstimateError> {
-    let Asked { base, known, y } = asked(track, model, fixed);
+    let Asked { mut base, known, y } = asked(track, model, fixed);
     let Look { mut predicted, mut resisting, weight, slides: mut dry } = first_look(track, model, &base, &y)?;
     let laws = before.as_ref().and_then(|b| b.laws.as_deref());
     if let Some(laws) = laws.filter(|laws| friction_is_sound(model, laws)) {
-        (predicted, resisting) = (total(model, &base, laws, false), total(model, &base, laws, true));
+        (predicted, resisting) = (total(y.len(), model, &base, laws, false), total(y.len(), model, &base, laws, true));
         dry = (0..y.len()).map(|i| dry_level(track, model, laws, i)).collect();
     }
     let taken: Vec<&str> = model.iter().chain(fixed).map(|e| e.law().id()).collect();
@@ -132,6 +151,9 @@ fn compare(
     };
     let mut candidates = dictionary(coarse);
     candidates.extend(dictionary(fine).into_iter().filter(|c| !c.searched.is_empty()));
+    let losses = candidates.iter().filter(|c| ["hysteresis", "backlash"].contains(&c.id));
+    let losses: Vec<&[f64]> = losses.map(|c| c.columns[0].as_slice()).collect();
+    base.extend(stuck::creep(track, &y, &losses));
     candidates.extend(generic(track));
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
     let held = |row: &Row| match row.place {
@@ -185,6 +207,39 @@ pub fn plain_rms(track: &mut Track, model: &Model) -> Result<(f64, bool), Estima
         })
         .sum();
     Ok((fit.rms, resisting > 0.0))
+}
+
+/// So many standard errors below zero every one of mass, damping and dry friction must be for a force with the wrong sign.
+const SURELY_NEGATIVE: f64 = 6.0;
+
+/// Whether the laws of a model (all of them positive in anything that exists) come out with the wrong sign: none of them is positive for
+/// certain, and the strongest is negative beyond doubt, as is the work that the friction takes.
+pub fn drives(track: &Track, model: &Model) -> Result<bool, EstimateError> {
+    let mut track = track.clone();
+    blur(&mut track);
+    let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(&track, effect)).collect();
+    // What stands in the way of mass: a spring, gravity, a constant pull.
+    let beside: [&dyn Fn(&Row) -> f64; 4] =
+        [&|_| 1.0, &|r| r.motion.position, &|r| r.angle_rad.sin(), &|r| r.angle_rad.cos()];
+    let turns = track.coordinate == haptics::law::Coordinate::Angular;
+    for of in &beside[..if turns { 4 } else { 2 }] {
+        columns.push(track.rows.iter().map(|r| if r.place == Place::Along { of(r) } else { 0.0 }).collect());
+    }
+    let along: Vec<f64> =
+        track.rows.iter().map(|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }).collect();
+    let y: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
+    let fit = least_squares(&columns, &y, Some(&along))?;
+    let sizes: Vec<f64> = (0..model.len()).map(|k| fit.values[k] / fit.std_errors[k].max(1e-300)).collect();
+    let friction: f64 = (0..y.len())
+        .map(|i| {
+            let resists = model.iter().enumerate().filter(|(_, e)| is_resisting(e));
+            resists.map(|(k, _)| fit.values[k] * columns[k][i]).sum::<f64>() * track.rows[i].motion.direction
+        })
+        .sum();
+    let [mass, others @ ..] = sizes.as_slice() else { return Ok(false) };
+    // A force that only comes late drives, too, but needs no negative dry friction for that.
+    let negative = |s: &f64| *s < -SURELY_NEGATIVE;
+    Ok(friction < 0.0 && sizes.iter().all(|s| *s < SURELY_NEGATIVE) && (negative(mass) || others.iter().all(negative)))
 }
 
 /// The direction of motion, as certain as the velocity's noise and the clocks of the channels let it be.
@@ -319,7 +374,7 @@ fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Res
         fit = least_squares(&columns, y, Some(&squares))?;
     }
     let sum = |resists: bool| -> Vec<f64> {
-        let mut sum = total(model, base, &fit.values, resists);
+        let mut sum = total(y.len(), model, base, &fit.values, resists);
         for (column, value) in columns.iter().zip(&fit.values).skip(base.len()) {
             sum.iter_mut().zip(column).for_each(|(s, c)| *s += value * c);
         }
@@ -341,9 +396,9 @@ fn loads(track: &Track, model: &Model, fixed: &Model) -> Result<Vec<Option<Load>
     Ok((0..y.len()).map(load).collect())
 }
 
-/// What the model's laws add up to at these values, all of them or those that resist motion.
-fn total(model: &Model, base: &[Vec<f64>], values: &[f64], resists: bool) -> Vec<f64> {
-    let mut sum = vec![0.0; base.first().map_or(0, Vec::len)];
+/// What the model's laws add up to in all rows at these values, all of them or those that resist motion.
+fn total(rows: usize, model: &Model, base: &[Vec<f64>], values: &[f64], resists: bool) -> Vec<f64> {
+    let mut sum = vec![0.0; rows];
     for ((effect, column), value) in model.iter().zip(base).zip(values) {
         if !resists || is_resisting(effect) {
             sum.iter_mut().zip(column).for_each(|(s, c)| *s += value * c);

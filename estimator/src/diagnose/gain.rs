@@ -44,7 +44,12 @@ pub fn rms(study: &Study, picks: &[usize], along: &[bool]) -> (f64, f64) {
 pub fn gain(study: &Study, k: usize, floor: f64) -> Gain {
     let picks = study.picks();
     let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
-    let (before, after) = (left(study, &rest), left(study, &picks));
+    gain_between(study, &rest, &picks, floor)
+}
+
+/// The gain by some causes more.
+pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) -> Gain {
+    let (before, after) = (left(study, rest), left(study, picks));
     let parts = parts(study, &before, &after);
     let all: Vec<usize> = (0..parts.rows.len()).collect();
     let [b, a] = means(&parts, &all);

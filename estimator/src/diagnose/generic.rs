@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::track::{Place, Row, Track};
-use haptics::law::Kind;
+use haptics::law::{Coordinate, Kind};
 
 /// Waves round a turn, or over the range.
 const WAVES: u32 = 6;
@@ -15,6 +15,7 @@ type Factor<'a> = (&'a str, Box<dyn Fn(&Row) -> f64 + 'a>);
 /// All of them.
 pub fn generic(track: &Track) -> Vec<Candidate> {
     let mut all = Vec::new();
+    let force = if track.coordinate == Coordinate::Angular { "N m" } else { "N" };
     let fast = track.quantile(0.9, |r| r.motion.velocity.abs()).max(1e-12);
     let low = track.quantile(0.0, |r| r.angle_rad);
     let range = (track.quantile(1.0, |r| r.angle_rad) - low).max(1e-12);
@@ -36,24 +37,30 @@ pub fn generic(track: &Track) -> Vec<Candidate> {
                 column(track, &|r| (n * phase(r)).cos() * factor(r)),
                 column(track, &|r| (n * phase(r)).sin() * factor(r)),
             ];
-            all.push(term(format!("{name} cos({n} q + phi)"), columns));
+            all.push(term(format!("{name} cos({n} q + phi)"), columns, if *name == "Fn" { "1" } else { force }));
         }
     }
     for share in [0.2, 0.5, 0.8] {
         let bend = share * fast;
         let hinge = |r: &Row| (r.motion.velocity.abs() - bend).max(0.0) / fast * r.motion.direction;
-        all.push(term(format!("max(abs(v) - {bend:.3}, 0) sgn(v)"), vec![column(track, &hinge)]));
+        all.push(term(format!("max(abs(v) - {bend:.3}, 0) sgn(v)"), vec![column(track, &hinge)], force));
     }
     for k in 1..=SLOW {
         let wave = |r: &Row| (std::f64::consts::PI * f64::from(k) * r.motion.time_s / track.span_s.max(1e-9)).cos();
-        all.push(term(format!("cos({k} pi t/T)"), vec![column(track, &wave)]));
+        all.push(term(format!("cos({k} pi t/T)"), vec![column(track, &wave)], force));
+    }
+    for (name, unit, values) in track.extras() {
+        let rows = track.rows.iter().enumerate();
+        let column = rows.map(|(i, r)| if r.place == Place::Along { values[i] } else { 0.0 }).collect();
+        all.push(term(name.clone(), vec![column], force).with((name, unit)));
     }
     if track.planar {
         all.push(term(
             "Fn^2 sgn(v)".to_owned(),
             vec![column(track, &|r| r.motion.normal_force_n.powi(2) * r.motion.direction)],
+            "1/N",
         ));
-        all.push(term("Fn^2".to_owned(), vec![column(track, &|r| r.motion.normal_force_n.powi(2))]));
+        all.push(term("Fn^2".to_owned(), vec![column(track, &|r| r.motion.normal_force_n.powi(2))], "1/N"));
     }
     all
 }
@@ -62,7 +69,7 @@ fn column(track: &Track, of: &dyn Fn(&Row) -> f64) -> Vec<f64> {
     track.rows.iter().map(|r| if r.place == Place::Along { of(r) } else { 0.0 }).collect()
 }
 
-fn term(expression: String, columns: Vec<Vec<f64>>) -> Candidate {
-    let linear = columns.iter().map(|_| ("amplitude", "")).collect();
+fn term(expression: String, columns: Vec<Vec<f64>>, unit: &'static str) -> Candidate {
+    let linear = columns.iter().map(|_| ("amplitude", unit)).collect();
     Candidate { expression: Some(expression), ..Candidate::several("other", Kind::Plant, columns, linear) }
 }

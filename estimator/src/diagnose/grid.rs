@@ -5,7 +5,9 @@ use super::track::{Place, Track};
 use std::f64::consts::TAU;
 
 /// Ripples a turn (over the range, where nothing turns) that are tried.
-const RIPPLES: std::ops::RangeInclusive<u32> = 2..=12;
+const RIPPLES: std::ops::RangeInclusive<u32> = 2..=40;
+/// … as long as the fastest motion takes so many rows for one: a shorter one is smoothed away.
+const LEAST_ROWS_A_RIPPLE: f64 = 1.0;
 /// Places of a local resistance that are tried, and widths in shares of the range.
 const PLACES: usize = 24;
 const WIDTHS: [f64; 3] = [0.12, 0.2, 0.35];
@@ -91,7 +93,10 @@ impl Grid {
             felt,
             straight: Vec::new(),
             ways: WAYS.map(|share| share * scale).into_iter().filter(|way| *way > least).collect(),
-            ripples: RIPPLES.map(|n| turn.unwrap_or(range) / f64::from(n)).collect(),
+            ripples: RIPPLES
+                .map(|n| turn.unwrap_or(range) / f64::from(n))
+                .filter(|length| *length > LEAST_ROWS_A_RIPPLE * fast * track.period_s)
+                .collect(),
             places: places.flat_map(|p| WIDTHS.map(|w| (p, w * span))).collect(),
             turn: whole.unwrap_or(0.0),
             walls: walls.collect(),
@@ -133,8 +138,10 @@ impl Grid {
                     }
                 }
                 "position-ripple" if track.radius_m.is_none() => {
-                    grid.ripples
-                        .extend(times(value("lambda").unwrap_or(0.0), &[0.93, 0.96, 0.98, 1.0, 1.02, 1.04, 1.07]));
+                    grid.ripples.extend(times(
+                        value("lambda").unwrap_or(0.0),
+                        &[0.93, 0.96, 0.98, 0.99, 1.0, 1.01, 1.02, 1.04, 1.07],
+                    ));
                 }
                 "local-resistance" => {
                     let (Some(place), Some(width)) = (value("place"), value("width")) else { continue };

@@ -200,6 +200,8 @@ impl Signals {
             noise_is_measured,
             span_s: self.time_s.last().copied().unwrap_or(0.0),
             hung: vec![Hung::on_crank(recording)],
+            bearing_weight_n: 0.0,
+            extra: Vec::new(),
             rows,
             fine,
         })

@@ -5,6 +5,7 @@
 
 mod answer;
 pub mod atlas;
+mod bearing;
 mod blocks;
 mod candidate;
 mod compare;
@@ -14,6 +15,7 @@ mod driven;
 mod experiment;
 mod explain;
 mod extend;
+mod extra;
 mod fine;
 mod force;
 mod gain;
@@ -24,6 +26,7 @@ mod held_arm;
 mod hung;
 mod impact;
 mod kept;
+mod late;
 mod needle;
 mod passed_over;
 mod progress;
@@ -31,8 +34,10 @@ mod pulled;
 mod quality;
 pub mod report;
 mod rollout;
+mod searched;
 mod select;
 mod several;
+mod signs;
 mod slide;
 mod sliding;
 mod stuck;
@@ -59,7 +64,7 @@ use crate::log::NO_CLOCK;
 use crate::pipeline;
 use crate::segment::task_of;
 use force::Model;
-use haptics::law::{CoulombFriction, EccentricMass, Effect, Inertia, Law, LoadFriction, ViscousFriction, Weight};
+use haptics::law::{Coordinate, CoulombFriction, Effect, Inertia, Law, LoadFriction, ViscousFriction, Weight};
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
 use held_arm::Axes;
@@ -102,7 +107,10 @@ pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Diagnosis
 
 fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     match task {
-        Task::Crank => crank(recordings, options),
+        Task::Crank => {
+            let ask = |recordings: &[Recording]| crank(recordings, options);
+            Ok(late::undo(recordings, crank(recordings, options)?, &ask))
+        }
         Task::Mechanism => one_of_mechanisms(recordings, options),
         Task::BlockStack | Task::Barrel if slide::is_slid(recordings) => slide::slid(recordings, options),
         // A barrel is a block that is carried.
@@ -154,10 +162,11 @@ pub fn validate(
 }
 
 fn along_a_crank(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
+    let recording = &late::put_back(recording, diagnosis.late_s);
     let signals = held_arm::Signals::of(recording, &quality::faults(recording).bad)?;
     let path = signals.path(recording);
     let circle = geometry::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
-    let (rows, _) = upright(&signals, recording, &circle.arm)?;
+    let (rows, _) = signs::upright(&signals, recording, &circle.arm)?;
     let (mut track, _) = turned(&signals, recording, &circle, rows)?;
     // A weight that is stated is no part of what was fitted, and acts all the same.
     let known = known_weight(recording, &mut diagnosis.plain.clone());
@@ -178,17 +187,26 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
     let mut geometries = Vec::new();
     let mut faults = Vec::new();
     let mut first_link = false;
+    let mut scale = None;
     for (k, recording) in recordings.iter().enumerate() {
         options.progress.tell(0.4 * k as f64 / recordings.len() as f64)?;
         let found = quality::faults(recording);
+        let (upright, mirrored) = signs::of_crank(recording, &found.bad);
+        let recording = &upright;
+        faults.extend(mirrored);
         let signals = held_arm::Signals::of(recording, &found.bad)?;
         faults.extend(found.causes);
         let path = signals.path(recording);
         let circle = geometry::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
-        let (rows, mirrored) = upright(&signals, recording, &circle.arm)?;
+        let (rows, mirrored) = signs::upright(&signals, recording, &circle.arm)?;
         faults.extend(mirrored);
-        let (rows, bottom) = turned(&signals, recording, &circle, rows)?;
+        let (mut rows, bottom) = turned(&signals, recording, &circle, rows)?;
+        rows.extra = vec![extra::of(recording)];
         first_link |= bottom;
+        let known_m = recording.meta.known.get("radius_m").copied().filter(|r| r.is_finite() && *r > 0.0);
+        if scale.is_none() {
+            scale = known_m.and_then(|r| quality::scaled("radius", circle.too_large(r)?));
+        }
         tracks.push(rows);
         geometries.push(circle.study);
     }
@@ -200,13 +218,23 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
     let fixed = known_weight(&recordings[0], &mut model);
     let limit = threshold(track.period_s);
     options.progress.tell(0.4)?;
+    let bearing_n = bearing::load(&mut track, &model, &fixed)?;
     let study = force::study(&mut track, &model, &fixed, limit)?;
     options.progress.tell(0.8)?;
     let mut found = explain::explain(&track, &model, &study, &geometries, faults);
+    found.warnings.extend(bearing_n.map(|weight_n| {
+        format!("friction goes with the load on the bearing, {weight_n:.3} N of the handle's weight included, not with the fingers' pull alone")
+    }));
     if options.atlas {
         found.atlas = atlas::atlas(&track, &study, limit);
     }
     name_joint(&mut found, first_link);
+    if let Some(cause) = scale.filter(|scale: &Cause| found.causes.iter().all(|c| c.id != scale.id)) {
+        found.causes.insert(0, cause);
+        if found.verdict == Verdict::None {
+            found.verdict = Verdict::Causes;
+        }
+    }
     Ok(found)
 }
 
@@ -267,53 +295,6 @@ fn known_weight(recording: &Recording, model: &mut Model) -> Model {
     vec![Effect::new(&Weight, &[weight])]
 }
 
-/// How much better a mirrored axis must explain the force: left, of what the recorded one leaves.
-const MIRRORED_SHARE: f64 = 0.5;
-
-/// What leaves less than this many times the noise makes sense as it is.
-const PLAUSIBLE: f64 = 1.8;
-
-/// The rows, with an axis of the force mirrored back where that alone makes sense of them.
-fn upright(
-    signals: &held_arm::Signals,
-    recording: &Recording,
-    arm: &geometry::Arm,
-) -> Result<(track::Track, Option<Cause>), EstimateError> {
-    let as_recorded = signals.rows(recording, arm, Axes::PLAIN)?;
-    let mut model = plain_crank();
-    if hung::Hung::on_crank(recording).is_some() {
-        // On a tilted plane a hung weight acts out of phase, and in few strokes that may pass for friction that drives.
-        model.push(Effect::new(&EccentricMass, &[1.0, 0.0, arm.radius_m]));
-    }
-    let left = |track: &track::Track| force::plain_rms(&mut track.clone(), &model);
-    let (before, resists) = left(&as_recorded)?;
-    if resists && before < PLAUSIBLE * as_recorded.force_noise {
-        return Ok((as_recorded, None));
-    }
-    let mut best: Option<(f64, track::Track, &str)> = None;
-    let mirrored = |signs| Axes { swapped: false, signs };
-    let crossed = [
-        (mirrored([-1.0, 1.0]), "fx"),
-        (mirrored([1.0, -1.0]), "fy"),
-        (mirrored([-1.0, -1.0]), "fx and fy"),
-        (Axes { swapped: true, signs: [1.0; 2] }, "fx with fy"),
-    ];
-    for (axes, name) in crossed {
-        let track = signals.rows(recording, arm, axes)?;
-        let (after, resists) = left(&track)?;
-        let both = name == "fx and fy";
-        // Both at once change every sign and no size: only friction that drives tells.
-        let better = if both { resists && !left(&as_recorded)?.1 } else { resists && after < MIRRORED_SHARE * before };
-        if better && best.as_ref().is_none_or(|(least, ..)| after < *least) {
-            best = Some((after, track, name));
-        }
-    }
-    Ok(match best {
-        Some((after, track, name)) => (track, Some(quality::mirrored(name, after / before))),
-        None => (as_recorded, None),
-    })
-}
-
 fn nothing() -> EstimateError {
     EstimateError::Other("no recording was given; name at least one log".to_owned())
 }
@@ -323,25 +304,50 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     let mut tracks = Vec::new();
     for (recording, path) in recordings.iter().zip(crate::identify::mechanism::paths(recordings)) {
         let found = quality::faults(recording);
+        let (recording, mirrored_rate) = signs::with_rates_of_motion(recording);
+        let recording = recording.as_ref();
         let mut rows = sliding::track(recording, &found.bad, path.as_ref())?;
         rows.hung = vec![hung::Hung::on_mechanism(recording, rows.coordinate)];
+        rows.extra = vec![extra::of(recording)];
+        faults.extend(signs::of_mechanism(&mut rows, recording, mirrored_rate)?);
         tracks.push(rows);
         faults.extend(found.causes);
     }
     let mut track = track::join(tracks).ok_or_else(nothing)?;
-    let model = match (&options.world, options.baseline.as_deref()) {
+    let mut model: Model = match (&options.world, options.baseline.as_deref()) {
         (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),
         (None, name) => named(name.unwrap_or("mass+viscous+coulomb"))?,
     };
     let limit = threshold(track.period_s);
     options.progress.tell(0.4)?;
-    let study = force::study(&mut track, &model, &Model::new(), limit)?;
+    let fixed = known_laws(&recordings[0], track.coordinate, &mut model);
+    let study = force::study(&mut track, &model, &fixed, limit)?;
     options.progress.tell(0.8)?;
     let mut found = explain::explain(&track, &model, &study, &[], faults);
     if options.atlas {
         found.atlas = atlas::atlas(&track, &study, limit);
     }
     Ok(found)
+}
+
+/// Laws of a mechanism that the sidecar states are no part of what is fitted.
+fn known_laws(recording: &Recording, coordinate: Coordinate, model: &mut Model) -> Model {
+    let known = &recording.meta.known;
+    // The mass of a pendulum is not what it resists with.
+    let names = match coordinate {
+        Coordinate::Linear => ["mass_kg", "viscous_N_s_m", "coulomb_N"],
+        Coordinate::Angular => ["inertia_kg_m2", "viscous_Nm_s", "coulomb_Nm"],
+    };
+    let laws: [&'static dyn Law; 3] = [&Inertia, &ViscousFriction, &CoulombFriction];
+    let mut fixed = Model::new();
+    for (law, name) in laws.into_iter().zip(names) {
+        let Some(value) = known.get(name).copied().filter(|_| model.iter().any(|e| e.law().id() == law.id())) else {
+            continue;
+        };
+        model.retain(|e| e.law().id() != law.id());
+        fixed.push(Effect::new(law, &[value]));
+    }
+    fixed
 }
 
 /// The laws of a baseline's name.

@@ -136,3 +136,29 @@ pub fn backwards(which: &str) -> Cause {
     );
     Cause { evidence, ..mirrored(which, 1.0) }
 }
+
+/// A force along a coordinate with the wrong sign, as a cause.
+pub fn driving(which: &str) -> Cause {
+    let evidence = format!(
+        "as recorded {which} has mass and friction of the wrong sign: it would pull back what speeds up and drive what it should hold back"
+    );
+    Cause { evidence, ..mirrored(which, 1.0) }
+}
+
+/// A rate that goes against the differences of its own place, as a cause.
+pub fn against_motion(which: &str) -> Cause {
+    let evidence = format!("{which} goes against what the recorded places do; it is taken with the other sign");
+    Cause { evidence, ..mirrored(which, 1.0) }
+}
+
+/// So many standard errors, and at least this share, must lengths be off for a known one to say so.
+const SCALE_SIGMAS: f64 = 6.0;
+const LEAST_SCALE: f64 = 2e-3;
+
+/// Lengths that are off by a share (`epsilon` with its error) against one that is known, as a cause; nothing where they agree.
+pub fn scaled(known: &str, [epsilon, std_error]: [f64; 2]) -> Option<Cause> {
+    let off = epsilon.abs() > LEAST_SCALE.max(SCALE_SIGMAS * std_error);
+    let evidence = format!("the path is {:+.2} % off the known {known}", 100.0 * epsilon);
+    let parameter = CauseParameter { name: "epsilon".to_owned(), value: epsilon, std_error, unit: "1".to_owned() };
+    off.then(|| Cause { id: "length-scale".to_owned(), parameters: vec![parameter], evidence, ..mirrored(known, 1.0) })
+}

@@ -290,6 +290,12 @@ pub struct Diagnosis {
     /// What every suspect alone would take of the force; empty unless it was asked for, and for tasks without one coordinate.
     #[serde(skip)]
     pub atlas: Atlas,
+    /// By how much forces were put back before anything else was asked, s.
+    #[serde(skip)]
+    pub(super) late_s: f64,
+    /// The delay that is still left if there is one, significant or not, and its error, s.
+    #[serde(skip)]
+    pub(super) rest_s: Option<[f64; 2]>,
     /// What is not excluded, as laws: to rehearse experiments.
     #[serde(skip)]
     pub(super) hypotheses: Vec<Hypothesis>,

@@ -203,6 +203,8 @@ impl Made {
             noise_is_measured: false,
             span_s,
             hung: Vec::new(),
+            bearing_weight_n: 0.0,
+            extra: Vec::new(),
         }
     }
 }

@@ -30,6 +30,8 @@ const PRESSED: f64 = 3.5;
 const NEAR: usize = 2;
 /// Rows whose noise is one and the same.
 const ALIKE: f64 = 2.0;
+/// Creep is told from standing by so much, in 2 ln(likelihood).
+const CREEPS: f64 = 10.0;
 /// Steps in which a change of the load is followed.
 const PARTS: usize = 16;
 
@@ -171,6 +173,46 @@ fn fill(rows: &[Row], column: &mut [f64], way: &dyn Fn(&[Row]) -> Vec<f64>) {
         let mean = ways.iter().sum::<f64>() / ways.len() as f64;
         column[here].iter_mut().zip(&ways).for_each(|(c, w)| *c = scale * (w - mean));
     }
+}
+
+/// What creeps under a load instead of standing: friction whose sign is smooth, as simulators have it, F tanh(v/v₀), is passed at
+/// v₀ atanh(F/F₀). The way of each standstill at v₀ = 1.
+fn creeps(rows: &[Row], column: &mut [f64]) {
+    fill(rows, column, &|stretch| {
+        let mut way = 0.0;
+        let mut before: Option<(f64, f64)> = None;
+        stretch
+            .iter()
+            .map(|row| {
+                let Place::Stuck { share, .. } = row.place else { return way };
+                let speed = share.clamp(-BENT, BENT).atanh();
+                if let Some((time_s, was)) = before {
+                    way += 0.5 * (speed + was) * (row.motion.time_s - time_s);
+                }
+                before = Some((row.motion.time_s, speed));
+                way
+            })
+            .collect()
+    });
+}
+
+/// The column of creep where that alone tells the ways of the standstills better than everything that bends or has play does alone;
+/// a hand's load goes to and fro, so that the way and the load part.
+pub fn creep(track: &Track, y: &[f64], losses: &[&[f64]]) -> Option<Vec<f64>> {
+    let stuck: Vec<usize> = (0..y.len()).filter(|i| matches!(track.rows[*i].place, Place::Stuck { .. })).collect();
+    let mut column = vec![0.0; y.len()];
+    creeps(&track.rows, &mut column);
+    let product = |a: &[f64], b: &[f64]| stuck.iter().map(|i| a[*i] * b[*i]).sum::<f64>();
+    let told = |column: &[f64]| {
+        let (across, square) = (product(column, y), product(column, column));
+        if across > 0.0 && square > 0.0 { across * across / square } else { 0.0 }
+    };
+    let (all, by_creep) = (product(y, y), told(&column));
+    let most = losses.iter().map(|loss| told(loss)).fold(0.0, f64::max);
+    let left = (all - by_creep).max(1e-12 * all);
+    // Worth a parameter, and better than any of the others.
+    let worth = stuck.len() as f64 * (all / left).ln() > (stuck.len() as f64).ln() + CREEPS;
+    (by_creep > most && worth).then_some(column)
 }
 
 /// What bends before it slides gives this much under the loads. `law`: friction, stiffness and shape of the law of presliding.

@@ -1,5 +1,6 @@
 //! One or several recordings as rows of a regression: measured motion and force at a common, moderate rate.
 
+use super::extra::Extra;
 use super::hung::Hung;
 use haptics::Vec2;
 use haptics::law::{Coordinate, Motion};
@@ -86,6 +87,15 @@ pub struct Row {
     pub open: f64,
 }
 
+impl Row {
+    /// Upward part of the unit vector away from a crank's centre.
+    pub fn up_outward(&self) -> f64 {
+        // Gravity is along y, up or down.
+        let up = if self.along.y.abs() > 1e-9 { (self.motion.up_along / self.along.y).signum() } else { 1.0 };
+        -up * self.along.x
+    }
+}
+
 #[cfg(test)]
 impl Row {
     /// Nothing moves and nothing pushes.
@@ -135,9 +145,27 @@ pub struct Track {
     pub span_s: f64,
     /// What was hung on the object, recording by recording.
     pub hung: Vec<Option<Hung>>,
+    /// Weight that loads the bearing of a crank beside the fingers' pull, N; 0 unless the recording shows it.
+    pub bearing_weight_n: f64,
+    /// Slow channels beside motion and force, recording by recording.
+    pub extra: Vec<Vec<Extra>>,
 }
 
 impl Track {
+    /// Slow channels that every recording has: name, unit, and the value at each row less the mean.
+    pub fn extras(&self) -> Vec<(String, String, Vec<f64>)> {
+        let Some(first) = self.extra.first() else { return Vec::new() };
+        let find = |recording: usize, name: &str| self.extra.get(recording)?.iter().find(|e| e.name == name);
+        let values = |name: &str| -> Option<Vec<f64>> {
+            let values: Option<Vec<f64>> =
+                self.rows.iter().map(|row| Some(find(row.recording, name)?.at(row.motion.time_s))).collect();
+            let values = values?;
+            let mean = self.along().map(|i| values[i]).sum::<f64>() / self.along().count().max(1) as f64;
+            Some(values.iter().map(|v| v - mean).collect())
+        };
+        first.iter().filter_map(|e| Some((e.name.clone(), e.unit.clone(), values(&e.name)?))).collect()
+    }
+
     /// Indices of the rows along the motion.
     pub fn along(&self) -> impl Iterator<Item = usize> + '_ {
         self.rows.iter().enumerate().filter(|(_, r)| r.place == Place::Along).map(|(i, _)| i)
@@ -198,6 +226,8 @@ pub fn join(tracks: Vec<Track>) -> Option<Track> {
         joined.span_s = joined.span_s.max(track.span_s);
         joined.hung.resize(recordings, None);
         joined.hung.extend(track.hung);
+        joined.extra.resize(recordings, Vec::new());
+        joined.extra.extend(track.extra);
         joined.period_s = joined.period_s.max(track.period_s);
         joined.raw_period_s = joined.raw_period_s.max(track.raw_period_s);
         joined.rows.extend(track.rows.into_iter().map(shift));

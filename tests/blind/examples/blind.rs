@@ -5,6 +5,7 @@
 //! `cargo run --release -p blind --example blind -- --dump DIR N SEED` writes N cases as files, their truth in a folder apart.
 //! `cargo run --release -p blind --example blind -- --experiments [SEED [N]]` performs what answers ask for: N cases of every effect.
 //! `cargo run --release -p blind --example blind -- --one DIR ID [FORM [RATIO [RATE [SEED]]]]` writes one of a kind.
+//! `cargo run --release -p blind --example blind -- --again DIR SEED…` writes cases of whole batteries that a report names by their seeds.
 //! `cargo run --release -p blind --example blind -- --table [SEED]` makes every effect once and prints how large it came out.
 
 use blind::{Bench, Chance, Counts, Effect, Job, Log, Set, Spec, ask, battery, dump, long, make, report, score};
@@ -12,6 +13,9 @@ use estimator::diagnose::diagnose;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
+
+/// A battery counts its cases on from its seed times this.
+const BATTERY: u64 = 1_000_003;
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -26,10 +30,11 @@ fn main() -> ExitCode {
         ["--whole", rest @ ..] => ask_all(Counts::WHOLE, number(rest.first(), 1)),
         ["--experiments", rest @ ..] => experiments(number(rest.first(), 1), number(rest.get(1), 2)),
         ["--one", folder, id, rest @ ..] => one(Path::new(folder), id, rest),
+        ["--again", folder, seeds @ ..] => again(Path::new(folder), seeds),
         ["--table", rest @ ..] => table(number(rest.first(), 7)),
         _ => {
             eprintln!(
-                "blind --fast [SEED] | --whole [SEED] | --long [SEED] | --dump DIR [N [SEED]] | --one DIR ID … | --table [SEED]"
+                "blind --fast [SEED] | --whole [SEED] | --long [SEED] | --dump DIR [N [SEED]] | --one DIR ID … | --again DIR SEED… | --table [SEED]"
             );
             return ExitCode::from(2);
         }
@@ -106,6 +111,21 @@ fn one(folder: &Path, id: &str, rest: &[&str]) {
     let (case, truth) = job.make();
     if let Err(error) = dump::write(folder, id, &job, &case, &truth) {
         eprintln!("{} cannot be written: {error}", folder.display());
+    }
+}
+
+/// Writes cases of whole batteries by the seeds that a report names them by.
+fn again(folder: &Path, seeds: &[&str]) {
+    for seed in seeds.iter().filter_map(|text| text.parse::<u64>().ok()) {
+        let jobs = battery(Counts::WHOLE, seed / BATTERY);
+        let Some(job) = jobs.iter().find(|job| job.seed == seed) else {
+            eprintln!("{seed} is no case of a whole battery");
+            continue;
+        };
+        let (case, truth) = job.make();
+        if let Err(error) = dump::write(folder, &seed.to_string(), job, &case, &truth) {
+            eprintln!("{} cannot be written: {error}", folder.display());
+        }
     }
 }
 

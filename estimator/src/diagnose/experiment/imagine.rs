@@ -36,6 +36,8 @@ pub fn imagine(track: &Track, model: &Model, values: &[f64], excitation: &Excita
         fine: Vec::new(),
         span_s: asked.seconds + 2.0 * asked.free_s,
         hung: Vec::new(),
+        bearing_weight_n: 0.0,
+        extra: Vec::new(),
         ..track.clone()
     };
     blur(&mut imagined);

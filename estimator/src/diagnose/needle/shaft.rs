@@ -225,6 +225,8 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
         noise_is_measured: false,
         span_s: rows.last().map_or(0.0, |r| r.time_s) - start_s,
         hung: Vec::new(),
+        bearing_weight_n: 0.0,
+        extra: Vec::new(),
     }
 }
 

@@ -1,0 +1,107 @@
+//! Values that were searched for: how well the recording knows them, out of what their neighbours on the grid explain.
+
+use super::candidate::Candidate;
+use super::geometry::Study;
+
+/// Share of the distance between two tried values that remains of the error of the vertex.
+const OF_STEP: f64 = 0.1;
+/// Where a value has no neighbour on one side: share of the way to the other one that is its error.
+const AT_THE_END: f64 = 0.5;
+/// Share of a value that nothing was tried beside.
+const ALONE: f64 = 0.1;
+
+/// A searched value with one standard error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Known {
+    pub value: f64,
+    pub std_error: f64,
+}
+
+/// The `which`-th searched value of the k-th chosen cause: the vertex of −2 ln(likelihood) through it and its neighbours, all else solved
+/// anew beside each, and the error that its curvature there stands for.
+pub fn known(study: &Study, k: usize, which: usize) -> Known {
+    let picks = study.picks();
+    let own = &study.candidates[picks[k]];
+    let price = |candidate: usize| {
+        let mut with = picks.clone();
+        with[k] = candidate;
+        study.system.solve(&with).map(|solved| study.system.rows * solved.rss.max(1e-300).ln())
+    };
+    let value = |candidate: &Candidate| candidate.searched[which].value;
+    let tried: Vec<(f64, f64)> = (0..study.candidates.len())
+        .filter(|c| differs_in_one(own, &study.candidates[*c], which))
+        .filter_map(|c| Some((value(&study.candidates[c]), price(c)?)))
+        .collect();
+    let here = value(own);
+    let Some(least) = price(picks[k]) else { return alone(here) };
+    let nearest = |above: bool| {
+        let side = tried.iter().filter(|(v, _)| if above { *v > here } else { *v < here });
+        side.min_by(|a, b| (a.0 - here).abs().total_cmp(&(b.0 - here).abs())).copied()
+    };
+    let (below, above) = (nearest(false), nearest(true));
+    match (below, above) {
+        (Some(below), Some(above)) => vertex(below, (here, least), above),
+        (Some((other, _)), None) | (None, Some((other, _))) => {
+            Known { value: here, std_error: AT_THE_END * (other - here).abs() }
+        }
+        (None, None) => alone(here),
+    }
+}
+
+fn alone(value: f64) -> Known {
+    Known { value, std_error: ALONE * value.abs() }
+}
+
+/// The same cause with another value at one place.
+fn differs_in_one(own: &Candidate, other: &Candidate, which: usize) -> bool {
+    let same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs());
+    own.id == other.id
+        && own.linear == other.linear
+        && same(own.side, other.side)
+        && own.searched.len() == other.searched.len()
+        && own
+            .searched
+            .iter()
+            .zip(&other.searched)
+            .enumerate()
+            .all(|(i, (a, b))| a.name == b.name && (i == which) != same(a.value, b.value))
+}
+
+/// Lowest point of the parabola through three points, and the error that its curvature stands for.
+fn vertex(below: (f64, f64), here: (f64, f64), above: (f64, f64)) -> Known {
+    let (left, right) = (here.0 - below.0, above.0 - here.0);
+    let (down, up) = ((here.1 - below.1) / left, (above.1 - here.1) / right);
+    let curvature = 2.0 * (up - down) / (left + right);
+    let step = 0.5 * (left + right);
+    if curvature <= 0.0 || curvature.is_nan() {
+        return Known { value: here.0, std_error: step };
+    }
+    let slope = (down * right + up * left) / (left + right);
+    let away = (-slope / curvature).clamp(-0.5 * left, 0.5 * right);
+    // −2 ln(likelihood) rises by one within one standard error.
+    let std_error = (2.0 / curvature).sqrt().min(step).hypot(OF_STEP * step);
+    Known { value: here.0 + away, std_error }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_vertex_of_a_parabola_and_its_error_are_found_between_tried_values() {
+        let price = |v: f64| 7.0 + ((v - 0.312) / 0.02).powi(2);
+        let at = |v: f64| (v, price(v));
+        let known = vertex(at(0.25), at(0.30), at(0.36));
+        assert!((known.value - 0.312).abs() < 1e-9, "{known:?}");
+        assert!((known.std_error - 0.02_f64.hypot(0.1 * 0.055)).abs() < 1e-9, "{known:?}");
+    }
+
+    #[test]
+    fn what_the_neighbours_do_not_tell_is_known_to_a_step_at_best() {
+        let flat = vertex((1.0, 5.0), (2.0, 5.0), (4.0, 5.0));
+        assert_eq!(flat, Known { value: 2.0, std_error: 1.5 });
+        // A peak far below its neighbours lies no further from the best value than half way to them.
+        let steep = vertex((1.0, 500.0), (2.0, 5.0), (3.0, 400.0));
+        assert!(steep.value > 1.5 && steep.value < 2.5 && steep.std_error < 0.2, "{steep:?}");
+    }
+}

@@ -1,0 +1,239 @@
+//! Signs: channels that are mirrored, and axes that are swapped, put right before anything is asked of the model.
+
+use super::force;
+use super::geometry::{self, Arm};
+use super::held_arm::{Axes, Signals};
+use super::quality;
+use super::report::Cause;
+use super::track::Track;
+use super::{hung, named, plain_crank, threshold};
+use crate::estimate::EstimateError;
+use haptics::law::{EccentricMass, Effect};
+use haptics::recording::Recording;
+use std::borrow::Cow;
+
+/// Rates and what they are the rates of.
+const RATES: [(&str, &str); 12] = [
+    ("dq_m_s", "q_m"),
+    ("dq_rad_s", "q_rad"),
+    ("vx_m_s", "x_m"),
+    ("vy_m_s", "y_m"),
+    ("vx1_m_s", "x1_m"),
+    ("vy1_m_s", "y1_m"),
+    ("vx2_m_s", "x2_m"),
+    ("vy2_m_s", "y2_m"),
+    ("dqb_rad_s", "qb_rad"),
+    ("dqt_rad_s", "qt_rad"),
+    ("dqb1_rad_s", "qb1_rad"),
+    ("dqt1_rad_s", "qt1_rad"),
+];
+/// Differences are taken over about this, s.
+const WINDOW_S: f64 = 0.03;
+/// A rate that goes with the motion's like this, or worse, is mirrored.
+const AGAINST: f64 = -0.8;
+
+/// Channels that may each be mirrored alone where a recording makes no sense: a finger's axis, a joint.
+const ALONE: [&[&str]; 14] = [
+    &["fx1_N"],
+    &["fy1_N"],
+    &["fx2_N"],
+    &["fy2_N"],
+    &["fx1_N", "fy1_N"],
+    &["fx2_N", "fy2_N"],
+    &["qb_rad", "dqb_rad_s"],
+    &["qt_rad", "dqt_rad_s"],
+    &["qb1_rad", "dqb1_rad_s"],
+    &["qt1_rad", "dqt1_rad_s"],
+    &["qb2_rad", "dqb2_rad_s"],
+    &["qt2_rad", "dqt2_rad_s"],
+    &["x1_m", "vx1_m_s"],
+    &["y1_m", "vy1_m_s"],
+];
+/// What leaves less than this many times the noise is not searched for mirrored channels: causes leave as much.
+const SENSELESS: f64 = 4.0;
+
+/// A recording with a rate that goes against its motion put right, and the name of that rate.
+pub fn with_rates_of_motion(recording: &Recording) -> (Cow<'_, Recording>, Option<&'static str>) {
+    let against = RATES.iter().find(|(rate, of)| correlation(recording, rate, of).is_some_and(|c| c < AGAINST));
+    match against {
+        Some((rate, _)) => (Cow::Owned(mirrored(recording, &[rate])), Some(rate)),
+        None => (Cow::Borrowed(recording), None),
+    }
+}
+
+/// How a recorded rate goes with the differences of what it is the rate of.
+fn correlation(recording: &Recording, rate: &str, of: &str) -> Option<f64> {
+    let (rate, place) = (recording.channel(rate)?, recording.channel(of)?);
+    let time_s = recording.time_s.as_ref()?;
+    let n = time_s.len();
+    let period_s = (time_s.last()? - time_s.first()?) / n.max(2) as f64;
+    let half = ((0.5 * WINDOW_S / period_s).round() as usize).max(1);
+    let (mut across, mut of_rate, mut of_slope) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for i in (half..n.saturating_sub(half)).step_by(half) {
+        let slope = (place[i + half] - place[i - half]) / (time_s[i + half] - time_s[i - half]).max(1e-9);
+        let mean = rate[i - half..=i + half].iter().sum::<f64>() / (2 * half + 1) as f64;
+        if slope.is_finite() && mean.is_finite() {
+            across += slope * mean;
+            of_rate += mean * mean;
+            of_slope += slope * slope;
+        }
+    }
+    (of_rate > 0.0 && of_slope > 0.0).then(|| across / (of_rate * of_slope).sqrt())
+}
+
+/// The recording with some of its channels mirrored.
+fn mirrored(recording: &Recording, names: &[&str]) -> Recording {
+    let mut other = recording.clone();
+    for channel in other.channels.iter_mut().filter(|c| names.contains(&c.name.as_str())) {
+        channel.values.iter_mut().for_each(|v| *v = -*v);
+    }
+    other
+}
+
+/// What a crank's model leaves of a recording.
+struct Left {
+    /// Of the force, N.
+    rms: f64,
+    noise: f64,
+    /// Friction takes work.
+    resists: bool,
+    /// An axis of the force had to be mirrored, too.
+    more: bool,
+}
+
+/// A crank's recording with its channels put right, one by one; whole axes of the force are [`upright`]'s.
+pub fn of_crank<'a>(recording: &'a Recording, bad: &[bool]) -> (Cow<'a, Recording>, Option<Cause>) {
+    let (straight, rate) = with_rates_of_motion(recording);
+    let fault = rate.map(quality::against_motion);
+    let left = |recording: &Recording| -> Result<Left, EstimateError> {
+        let signals = Signals::of(recording, bad)?;
+        let path = signals.path(recording);
+        let circle = geometry::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
+        let (track, axis) = upright(&signals, recording, &circle.arm)?;
+        let (rms, resists) = force::plain_rms(&mut track.clone(), &model_of(recording, &circle.arm))?;
+        Ok(Left { rms, noise: track.force_noise, resists, more: axis.is_some() })
+    };
+    // What cannot even be looked at is told by what looks at it next.
+    let Ok(before) = left(&straight) else { return (straight, fault) };
+    if before.rms < SENSELESS * before.noise {
+        return (straight, fault);
+    }
+    let mut best: Option<(Left, Recording, &[&str])> = None;
+    for names in ALONE.iter().filter(|names| names.iter().any(|name| recording.channel(name).is_some())) {
+        let other = mirrored(&straight, names);
+        let Ok(after) = left(&other) else { continue };
+        // One mirrored channel is likelier than that and an axis of the force.
+        let better = |least: &Left| (after.more, after.rms) < (least.more, least.rms);
+        let sound = after.resists && after.rms < MIRRORED_SHARE * before.rms;
+        if sound && best.as_ref().is_none_or(|(least, ..)| better(least)) {
+            best = Some((after, other, names));
+        }
+    }
+    match best {
+        Some((after, other, names)) => {
+            // A joint's rate that was right goes with its angle: then only the angle was mirrored.
+            let name = if names[0].starts_with('f') { names.join(" and ") } else { names[0].to_owned() };
+            (Cow::Owned(other), Some(quality::mirrored(&name, after.rms / before.rms)))
+        }
+        None => (straight, fault),
+    }
+}
+
+/// A force whose sign is that of the hand on the mechanism's other side: with it mass and friction come out negative, and every one of them for
+/// certain. The rows have it mirrored back then.
+pub fn of_mechanism(
+    track: &mut Track,
+    recording: &Recording,
+    rate: Option<&str>,
+) -> Result<Option<Cause>, EstimateError> {
+    if !force::drives(track, &named("mass+viscous+coulomb")?)? {
+        return Ok(rate.map(quality::against_motion));
+    }
+    for row in &mut track.rows {
+        row.y = -row.y;
+        row.force = -row.force;
+        row.force_rate = -row.force_rate;
+    }
+    // A rate that went against the place, and a force that drives: it is the place that is mirrored.
+    let names: &[&str] = if rate.is_some() { &["q_m", "q_rad"] } else { &["f_N", "tau_Nm"] };
+    let name = names.iter().find(|name| recording.channel(name).is_some()).unwrap_or(&"the force");
+    Ok(Some(quality::driving(name)))
+}
+
+/// The thesis's crank, and what else a hung weight needs.
+fn model_of(recording: &Recording, arm: &Arm) -> force::Model {
+    let mut model = plain_crank();
+    if hung::Hung::on_crank(recording).is_some() {
+        // On a tilted plane a hung weight acts out of phase, and in few strokes that may pass for friction that drives.
+        model.push(Effect::new(&EccentricMass, &[1.0, 0.0, arm.radius_m]));
+    }
+    model
+}
+
+/// How much better a mirrored axis must explain the force: left, of what the recorded one leaves.
+const MIRRORED_SHARE: f64 = 0.5;
+
+/// What leaves less than this many times the noise makes sense as it is.
+const PLAUSIBLE: f64 = 1.8;
+
+/// The rows, with an axis of the force mirrored back where that alone makes sense of them.
+pub fn upright(signals: &Signals, recording: &Recording, arm: &Arm) -> Result<(Track, Option<Cause>), EstimateError> {
+    let as_recorded = signals.rows(recording, arm, Axes::PLAIN)?;
+    let model = model_of(recording, arm);
+    let left = |track: &Track| force::plain_rms(&mut track.clone(), &model);
+    let (before, resists) = left(&as_recorded)?;
+    if resists && before < PLAUSIBLE * as_recorded.force_noise {
+        return Ok((as_recorded, None));
+    }
+    let mut best: Option<(f64, Track, &str)> = None;
+    let mirrored = |signs| Axes { swapped: false, signs };
+    let crossed = [
+        (mirrored([-1.0, 1.0]), "fx"),
+        (mirrored([1.0, -1.0]), "fy"),
+        (mirrored([-1.0, -1.0]), "fx and fy"),
+        (Axes { swapped: true, signs: [1.0; 2] }, "fx with fy"),
+    ];
+    for (axes, name) in crossed {
+        let track = signals.rows(recording, arm, axes)?;
+        let (after, resists) = left(&track)?;
+        let both = name == "fx and fy";
+        // Both at once change every sign and no size: only friction that drives tells.
+        let better = if both { resists && !left(&as_recorded)?.1 } else { resists && after < MIRRORED_SHARE * before };
+        if better && best.as_ref().is_none_or(|(least, ..)| after < *least) {
+            best = Some((after, track, name));
+        }
+    }
+    Ok(match best {
+        Some((after, track, name)) => (track, Some(quality::mirrored(name, after / before))),
+        None => (as_recorded, None),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::recording::Channel;
+
+    #[test]
+    fn a_rate_against_its_motion_is_turned_and_noise_is_not() {
+        let time_s: Vec<f64> = (0..2000).map(|k| 0.005 * f64::from(k)).collect();
+        let channel = |name: &str, of: &dyn Fn(f64) -> f64| Channel {
+            name: name.to_owned(),
+            unit: String::new(),
+            values: time_s.iter().map(|t| of(*t)).collect(),
+        };
+        let noise = |t: f64| (t * 7_731.3).sin();
+        let place = channel("q_m", &|t| 0.1 * (2.0 * t).sin() + 1e-5 * noise(t));
+        let make = |rate: &dyn Fn(f64) -> f64| Recording {
+            time_s: Some(time_s.clone()),
+            channels: vec![place.clone(), channel("dq_m_s", rate)],
+            ..Recording::default()
+        };
+        let against = make(&|t| -0.2 * (2.0 * t).cos() + 0.02 * noise(t));
+        let (turned, rate) = with_rates_of_motion(&against);
+        assert_eq!(rate, Some("dq_m_s"));
+        assert!(correlation(&turned, "dq_m_s", "q_m").expect("both are there") > 0.9);
+        assert_eq!(with_rates_of_motion(&make(&|t| 0.2 * (2.0 * t).cos())).1, None);
+        assert_eq!(with_rates_of_motion(&make(&noise)).1, None);
+    }
+}
