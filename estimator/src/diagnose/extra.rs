@@ -10,6 +10,10 @@ const SLOW_SHARE: f64 = 0.6;
 /// Names of people's own marks.
 const MARKS: [&str; 3] = ["trial", "label", "state"];
 
+/// Quantities of motion, force and time.
+const FURTHER: [&str; 19] =
+    ["f", "fx", "fy", "fz", "tau", "q", "qb", "qt", "dq", "dqb", "dqt", "x", "y", "z", "v", "vx", "vy", "vz", "t"];
+
 /// A slow channel of one recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extra {
@@ -45,7 +49,8 @@ pub fn of(recording: &Recording) -> Vec<Extra> {
     let extra = |channel: &haptics::recording::Channel| {
         let mark = MARKS.iter().any(|mark| channel.name.starts_with(mark));
         // `fx_human_N`, `q_out_rad` are further forces and motions.
-        let further = ["f", "tau", "q", "dq", "x", "y", "z", "v", "t"].contains(&channel.name.split('_').next()?);
+        let quantity = channel.name.split('_').next()?.trim_end_matches(|c: char| c.is_ascii_digit());
+        let further = FURTHER.contains(&quantity);
         if mark || further || is_program_name(&channel.name) || channel.values.len() != time_s.len() {
             return None;
         }
