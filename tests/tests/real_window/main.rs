@@ -4,6 +4,7 @@
 
 mod drop;
 mod lessons;
+mod mapping;
 mod screen;
 
 use app::ui::theme;

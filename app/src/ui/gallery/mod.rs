@@ -1,5 +1,6 @@
 //! Every panel and every scene in light and dark: the pictures of `docs/gallery`, and what the tests of pictures look at.
 
+pub mod by_pointer;
 mod filmed;
 pub mod samples;
 mod small_png;

@@ -11,7 +11,7 @@ use crate::ui::theme;
 use crate::ui::trainer::Clock;
 use anyhow::{Context as _, anyhow, bail};
 use blind::{Bench, Effect, Log, Spec};
-use egui::{Event, Key, Modifiers, Role, pos2};
+use egui::{Event, Key, Modifiers, Pos2, Role, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::wgpu::WgpuTestRenderer;
@@ -47,7 +47,7 @@ pub fn walk(
     mut look: impl FnMut(&str, Option<image::RgbaImage>) -> anyhow::Result<()>,
 ) -> anyhow::Result<()> {
     let table = foreign_crank(folder)?;
-    let mut walker = Walker { harness: window(size, dark, draw)?, draw };
+    let mut walker = Walker::new(size, dark, draw)?;
     let mut step = |walker: &mut Walker, name: &str| {
         look(name, walker.picture()?)?;
         // Who goes on as slowly as a person does not see these any more.
@@ -76,7 +76,7 @@ pub fn walk(
 }
 
 /// A turned crank with a ripple that no model knows of, as another program writes it down.
-fn foreign_crank(folder: &Path) -> anyhow::Result<PathBuf> {
+pub(super) fn foreign_crank(folder: &Path) -> anyhow::Result<PathBuf> {
     let effects = vec![(Effect::Ripple, 0)];
     let spec = Spec { effects, ratio: 2.0, bench: Bench::OneFinger, log: Log::Mixed, rate_hz: 100.0, seconds: 15.0 };
     let made: Recording = blind::make(&spec, SEED).0.recordings.remove(0);
@@ -118,12 +118,19 @@ fn window(size: [u32; 2], dark: bool, draw: bool) -> anyhow::Result<Harness<'sta
     Ok(builder.renderer(WgpuTestRenderer::from_render_state(state)).build_ui_state(show, app))
 }
 
-struct Walker {
-    harness: Harness<'static, App>,
+/// Goes it.
+pub(super) struct Walker {
+    pub(super) harness: Harness<'static, App>,
     draw: bool,
+    /// Where it has clicked, points.
+    pub(super) clicked: Vec<Pos2>,
 }
 
 impl Walker {
+    pub(super) fn new(size: [u32; 2], dark: bool, draw: bool) -> anyhow::Result<Self> {
+        Ok(Self { harness: window(size, dark, draw)?, draw, clicked: Vec::new() })
+    }
+
     fn session(&self) -> &Session {
         &self.harness.state().session
     }
@@ -160,7 +167,9 @@ impl Walker {
 
     fn click(&mut self, role: Role, label: &str) -> anyhow::Result<()> {
         let node = self.harness.query_by_role_and_label(role, label);
-        node.with_context(|| format!("there is no `{label}` to click"))?.click();
+        let node = node.with_context(|| format!("there is no `{label}` to click"))?;
+        self.clicked.push(node.rect().center());
+        node.click();
         self.harness.run_steps(3);
         Ok(())
     }
@@ -173,6 +182,7 @@ impl Walker {
         // Long lists scroll.
         self.harness.run_steps(6);
         if let Some(node) = self.harness.query_all_by_label(entry).last() {
+            self.clicked.push(node.rect().center());
             node.click();
         }
         self.harness.run_steps(3);
@@ -185,7 +195,7 @@ impl Walker {
         self.harness.run_steps(2);
     }
 
-    fn drop_it(&mut self, path: &Path) -> anyhow::Result<()> {
+    pub(super) fn drop_it(&mut self, path: &Path) -> anyhow::Result<()> {
         self.harness.input_mut().hovered_files.clear();
         let ctx = self.harness.ctx.clone();
         self.harness.state_mut().session.open_dropped(&ctx, &[path.to_path_buf()]);
@@ -212,13 +222,13 @@ impl Walker {
         self.until("the preview", previewed)
     }
 
-    fn accept_mapping(&mut self) -> anyhow::Result<()> {
+    pub(super) fn accept_mapping(&mut self) -> anyhow::Result<()> {
         self.click(Role::Button, "Save sidecar and open")?;
         self.until("the fit", |s| s.mapping.is_none() && s.analysis.is_some())?;
         self.calm()
     }
 
-    fn drag_a_boundary(&mut self) -> anyhow::Result<()> {
+    pub(super) fn drag_a_boundary(&mut self) -> anyhow::Result<()> {
         let states = self.session().segmentation().context("there are no states")?.states.clone();
         let (index, first) =
             states.iter().enumerate().find(|(_, i)| i.t1 - i.t0 > 0.5).context("all states are short")?;
