@@ -8,6 +8,19 @@ use crate::ui::widgets::{fact, plain_card, remark};
 use egui::Ui;
 use haptics::device::udp::{Refused, UdpMonitor};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const PACKETS: &str = "Packets";
+    pub const LISTENS_AT: &str = "Listens at";
+    pub const SESSIONS_ASKED_FOR: &str = "Sessions asked for";
+    pub const TAKEN: &str = "Taken";
+    pub const REFUSED: &str = "Refused";
+    pub const SOMEBODY_SENDS_WITH_ANOTHER: &str = "Somebody sends with another key: give both sides the same file.";
+    pub const ANSWERS_OF_THE_BOARDS: &str = "Answers of the boards";
+    pub const LEFT: &str = "Left";
+    pub const RIGHT: &str = "Right";
+}
+
 /// The card of the running device; nothing for those that cannot lose anything.
 pub fn answers(ui: &mut Ui, trainer: &Trainer) {
     match &trainer.steering {
@@ -18,17 +31,17 @@ pub fn answers(ui: &mut Ui, trainer: &Trainer) {
 }
 
 fn packets(ui: &mut Ui, monitor: &UdpMonitor) {
-    plain_card(ui, "Packets", |ui| {
-        fact(ui, "Listens at", monitor.address().to_string());
-        fact(ui, "Sessions asked for", monitor.greeted().to_string());
-        fact(ui, "Taken", monitor.accepted().to_string());
+    plain_card(ui, words::PACKETS, |ui| {
+        fact(ui, words::LISTENS_AT, monitor.address().to_string());
+        fact(ui, words::SESSIONS_ASKED_FOR, monitor.greeted().to_string());
+        fact(ui, words::TAKEN, monitor.accepted().to_string());
         let refused: u64 = Refused::ALL.into_iter().map(|why| monitor.refused(why)).sum();
-        fact(ui, "Refused", refused.to_string());
+        fact(ui, words::REFUSED, refused.to_string());
         for why in Refused::ALL.into_iter().filter(|why| monitor.refused(*why) > 0) {
             fact(ui, &format!("   {}", why.words()), monitor.refused(why).to_string());
         }
         if monitor.refused(Refused::Seal) > 0 {
-            let text = "Somebody sends with another key: give both sides the same file.";
+            let text = words::SOMEBODY_SENDS_WITH_ANOTHER;
             remark(ui, Icon::Doubt, text);
         }
     });
@@ -36,8 +49,8 @@ fn packets(ui: &mut Ui, monitor: &UdpMonitor) {
 
 /// What two boards have answered, left and right.
 pub fn boards(ui: &mut Ui, both: [Answers; 2]) {
-    plain_card(ui, "Answers of the boards", |ui| {
-        for (side, answers) in ["Left", "Right"].into_iter().zip(both) {
+    plain_card(ui, words::ANSWERS_OF_THE_BOARDS, |ui| {
+        for (side, answers) in [words::LEFT, words::RIGHT].into_iter().zip(both) {
             let mark = if answers.are_fine() { Icon::Good } else { Icon::Doubt };
             remark(ui, mark, format!("{side}: {}.", answers.sentence()));
         }

@@ -15,6 +15,14 @@ use egui::{
 use estimator::diagnose::Diagnosis;
 use haptics::law;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const WAS_FOUND_IN_ANOTHER: &str = "was found in another way and has";
+    pub const WERE_FOUND_IN_OTHER: &str = "were found in other ways and have";
+    pub const ALL_SUSPECTS: &str = "All suspects";
+    pub const NOT_NAMED: &str = "not named";
+}
+
 /// Least size of a cell, points, and the room for its words.
 const CELL: [f32; 2] = [204.0, 132.0];
 const WORDS: f32 = 18.0;
@@ -70,7 +78,7 @@ fn without_picture(sheet: &Sheet, diagnosis: &Diagnosis) -> Option<String> {
     let unseen =
         diagnosis.causes.iter().filter(|c| law::cause(&c.id).is_some() && sheet.cells.iter().all(|s| s.id != c.id));
     let names: Vec<String> = unseen.map(|c| title(&c.id)).collect();
-    let what = if names.len() == 1 { "was found in another way and has" } else { "were found in other ways and have" };
+    let what = if names.len() == 1 { words::WAS_FOUND_IN_ANOTHER } else { words::WERE_FOUND_IN_OTHER };
     (!names.is_empty()).then(|| format!("{} {what} no picture here; the evidence stands beside.", listed(&names)))
 }
 
@@ -159,7 +167,7 @@ fn lines(painter: &egui::Painter, lines: &[Line], at: &dyn Fn([f64; 2]) -> Pos2,
 fn large(ui: &mut Ui, session: &mut Session, cell: &Cell, diagnosis: &Diagnosis) {
     let p = palette(ui);
     compact(ui, |ui| {
-        if ui.add(egui::Button::new((Icon::Back, "All suspects")).small()).clicked()
+        if ui.add(egui::Button::new((Icon::Back, words::ALL_SUSPECTS)).small()).clicked()
             || ui.input(|i| i.key_pressed(egui::Key::Escape))
         {
             session.diagnosing.atlas_open = None;
@@ -168,7 +176,7 @@ fn large(ui: &mut Ui, session: &mut Session, cell: &Cell, diagnosis: &Diagnosis)
         ui.label(theme::strong(&cell.title));
         ui.label(theme::caption(ui, format!("{} over {}, {}", cell.scale.unit, cell.variable, cell.unit)));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let note = if cell.named { "named" } else { "not named" };
+            let note = if cell.named { "named" } else { words::NOT_NAMED };
             ui.label(RichText::new(note).size(11.5).color(if cell.named { p.good } else { p.secondary }));
         });
     });

@@ -8,6 +8,17 @@ use crate::ui::widgets::swatch;
 use egui::{CursorIcon, Pos2, Rect, Response, Sense, Stroke, Ui, vec2};
 use estimator::segment::{Segmentation, SystemState};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const SET_BY_HAND: &str = "Set by hand";
+    pub const STATE: &str = "State";
+    pub const SUBTASK: &str = "Subtask";
+    pub const NONE: &str = "None";
+    pub const SPLIT: &str = "Split at the time cursor";
+    pub const SPLIT_NOT: &str = "Put the time cursor inside this state first";
+    pub const JOIN: &str = "Join with the next";
+}
+
 /// Points at which a boundary can be taken hold of, to either side.
 const GRASP: f32 = 4.0;
 
@@ -59,8 +70,8 @@ pub fn menu(response: &Response, segmentation: &Segmentation, index: usize, sess
     let cursor_s = session.cursor_s;
     response.context_menu(|ui| {
         let interval = &segmentation.states[index];
-        ui.label(theme::caption(ui, "Set by hand"));
-        ui.menu_button("State", |ui| {
+        ui.label(theme::caption(ui, words::SET_BY_HAND));
+        ui.menu_button(words::STATE, |ui| {
             for state in states(segmentation) {
                 let picked = ui
                     .horizontal(|ui| {
@@ -74,9 +85,9 @@ pub fn menu(response: &Response, segmentation: &Segmentation, index: usize, sess
                 }
             }
         });
-        ui.menu_button("Subtask", |ui| {
+        ui.menu_button(words::SUBTASK, |ui| {
             for subtask in subtasks(segmentation) {
-                let words = subtask.as_deref().map_or("None".to_owned(), format::object);
+                let words = subtask.as_deref().map_or(words::NONE.to_owned(), format::object);
                 if ui.selectable_label(subtask == interval.subtask, words).clicked() {
                     change = Some(Change::Subtask { interval: index, subtask });
                     ui.close();
@@ -84,13 +95,13 @@ pub fn menu(response: &Response, segmentation: &Segmentation, index: usize, sess
             }
         });
         let inside = cursor_s > interval.t0 && cursor_s < interval.t1;
-        let split = ui.add_enabled(inside, egui::Button::new("Split at the time cursor"));
-        if split.on_disabled_hover_text("Put the time cursor inside this state first").clicked() {
+        let split = ui.add_enabled(inside, egui::Button::new(words::SPLIT));
+        if split.on_disabled_hover_text(words::SPLIT_NOT).clicked() {
             change = Some(Change::Split { interval: index, at_s: cursor_s });
             ui.close();
         }
         let last = index + 1 >= segmentation.states.len();
-        if ui.add_enabled(!last, egui::Button::new("Join with the next")).clicked() {
+        if ui.add_enabled(!last, egui::Button::new(words::JOIN)).clicked() {
             change = Some(Change::Join { interval: index });
             ui.close();
         }

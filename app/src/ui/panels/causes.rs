@@ -9,6 +9,22 @@ use egui::{Align, Color32, Frame, Layout, Margin, Response, RichText, Stroke, Ui
 use estimator::diagnose::{Alternative, Cause, CauseParameter, Diagnosis, Rollout, RolloutOf};
 use haptics::law::{self, Kind};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const PROBABILITY_MORE: &str = "Probability among the causes that could stand in its place";
+    pub const IN_THE_WORLD: &str = "in the world";
+    pub const IN_THE_WORLD_MORE: &str = "The extended world has it";
+    pub const IN_THE_MEASUREMENT: &str = "in the measurement";
+    pub const IN_THE_MEASUREMENT_MORE: &str =
+        "A fault of the measurement: it corrects the recording and leaves the world alone";
+    pub const THE_MEASURED_FORCE: &str = "the measured force drives it";
+    pub const A_HAND_HOLDS: &str = "a hand holds on that wants to be where the handle was measured";
+    pub const EXPLAINS: &str = "Explains";
+    pub const EXPLAINS_MORE: &str =
+        "Share of what can be explained (down to the noise) on data that took no part, with its 95 % interval";
+    pub const WHAT_IS_LEFT: &str = "What is left goes with this, and no known cause does so here.";
+}
+
 /// True when an extended world differs by it.
 pub fn changes_the_world(cause: &Cause) -> bool {
     cause.kind == Kind::Plant && law::cause(&cause.id).is_some()
@@ -19,7 +35,7 @@ pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Diagnos
     let p = palette(ui);
     let chance = format!("{} %", format::number(100.0 * cause.posterior, 0));
     let trailing = |ui: &mut Ui| {
-        ui.label(theme::strong(chance)).on_hover_text("Probability among the causes that could stand in its place");
+        ui.label(theme::strong(chance)).on_hover_text(words::PROBABILITY_MORE);
     };
     card(ui, &format!("{rank}  {}", title(&cause.id)), trailing, |ui| {
         bar(ui, cause.posterior, 1.0, None, p.accent);
@@ -28,9 +44,10 @@ pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Diagnos
             ui.spacing_mut().item_spacing.x = space::XS;
             chip(ui, &cause.id, p.secondary).on_hover_ui(|ui| page(ui, &cause.id));
             match cause.kind {
-                Kind::Plant => chip(ui, "in the world", p.good).on_hover_text("The extended world has it"),
-                Kind::Instrument => chip(ui, "in the measurement", p.caution)
-                    .on_hover_text("A fault of the measurement: it corrects the recording and leaves the world alone"),
+                Kind::Plant => chip(ui, words::IN_THE_WORLD, p.good).on_hover_text(words::IN_THE_WORLD_MORE),
+                Kind::Instrument => {
+                    chip(ui, words::IN_THE_MEASUREMENT, p.caution).on_hover_text(words::IN_THE_MEASUREMENT_MORE)
+                }
             };
         });
         for parameter in &cause.parameters {
@@ -51,8 +68,8 @@ pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Diagnos
 fn forward(ui: &mut Ui, rollout: &Rollout) {
     let rms = |value: f64| format::significant(value, 2);
     let (what, how) = match rollout.of {
-        RolloutOf::Position => ("position", "the measured force drives it"),
-        RolloutOf::Force => ("force", "a hand holds on that wants to be where the handle was measured"),
+        RolloutOf::Position => ("position", words::THE_MEASURED_FORCE),
+        RolloutOf::Force => ("force", words::A_HAND_HOLDS),
     };
     let text = format!(
         "Run forward {} s, {what} is off by {} → {} {}",
@@ -93,15 +110,13 @@ fn gain(ui: &mut Ui, cause: &Cause, diagnosis: &Diagnosis) {
     let [low, high] = gain.interval;
     let unit = gain_unit(cause, diagnosis);
     compact(ui, |ui| {
-        ui.label(theme::caption(ui, "Explains"));
+        ui.label(theme::caption(ui, words::EXPLAINS));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let rms = |value: f64| format::significant(unit.1 * value, 2);
             let text = format!("{} → {} {} RMS", rms(gain.heldout_rms_before), rms(gain.heldout_rms_after), unit.0);
             ui.label(theme::caption(ui, text));
             let text = format!("{} % [{}, {}]", percent(gain.share_of_explainable), percent(low), percent(high));
-            ui.label(RichText::new(text).size(12.0)).on_hover_text(
-                "Share of what can be explained (down to the noise) on data that took no part, with its 95 % interval",
-            );
+            ui.label(RichText::new(text).size(12.0)).on_hover_text(words::EXPLAINS_MORE);
         });
     });
 }
@@ -135,7 +150,7 @@ pub(super) fn chip(ui: &mut Ui, text: &str, color: Color32) -> Response {
 fn page(ui: &mut Ui, id: &str) {
     ui.set_max_width(320.0);
     let Some(entry) = law::cause(id) else {
-        ui.label("What is left goes with this, and no known cause does so here.");
+        ui.label(words::WHAT_IS_LEFT);
         return;
     };
     ui.label(theme::strong(entry.title));

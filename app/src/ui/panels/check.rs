@@ -13,14 +13,32 @@ use egui::{Align, Color32, Layout, RichText, TextEdit, Ui};
 use estimator::diagnose::{Diagnosis, Validation};
 use std::path::PathBuf;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const CHECK_ON_OTHER_RECORDINGS: &str = "Check on other recordings";
+    pub const CHECK_ON_OTHER_RECORDINGS_MORE: &str =
+        "What was found is put to recordings of the same object that took no part; nothing is fitted to them.";
+    pub const PATH_OF_A_LOG: &str = "Path of a log, then Enter";
+    pub const RECORDING_TO_CHECK_ON: &str = "Recording to check on";
+    pub const CHOOSE_FILES: &str = "Choose files";
+    pub const CHOOSE_FILES_MORE: &str = "Choose one or several files";
+    pub const LEAVE_ONE_OUT: &str = "Leave an open one out …";
+    pub const LEAVE_ONE_OUT_MORE: &str =
+        "The others are diagnosed without it, and it is checked whether their answer holds for it";
+    pub const SHARE_MORE: &str = "Share of the left-over power that goes, with its 95 % interval from a bootstrap \
+        over pieces of the recording";
+    pub const HOLDS: &str = "It holds here, too.";
+    pub const CANNOT_BE_TOLD: &str = "Whether it holds here cannot be told.";
+    pub const DOES_NOT_HOLD: &str = "It does not hold here: the model alone does better.";
+}
+
 /// The card under the causes, where there is something to check.
 pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
     if diagnosis.causes.is_empty() {
         return;
     }
-    plain_card(ui, "Check on other recordings", |ui| {
-        let text =
-            "What was found is put to recordings of the same object that took no part; nothing is fitted to them.";
+    plain_card(ui, words::CHECK_ON_OTHER_RECORDINGS, |ui| {
+        let text = words::CHECK_ON_OTHER_RECORDINGS_MORE;
         ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
         ask(ui, session);
         left_out(ui, session);
@@ -36,11 +54,11 @@ fn ask(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         let busy = session.jobs.is_running(JobKind::Check);
         let width = (ui.available_width() - if busy { 68.0 } else { 44.0 }).max(60.0);
-        let field = TextEdit::singleline(&mut session.diagnosing.check_field).hint_text("Path of a log, then Enter");
+        let field = TextEdit::singleline(&mut session.diagnosing.check_field).hint_text(words::PATH_OF_A_LOG);
         let response = ui.add(field.desired_width(width));
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Recording to check on"));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, words::RECORDING_TO_CHECK_ON));
         let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-        if icon_button(ui, Icon::More, true, "Choose files").on_hover_text("Choose one or several files").clicked() {
+        if icon_button(ui, Icon::More, true, words::CHOOSE_FILES).on_hover_text(words::CHOOSE_FILES_MORE).clicked() {
             files::ask_many(&ctx, &mut session.jobs, Purpose::Check);
         }
         if busy {
@@ -60,7 +78,7 @@ fn left_out(ui: &mut Ui, session: &mut Session) {
     }
     let names: Vec<String> = session.recordings.iter().map(|p| p.recording.name.clone()).collect();
     let mut chosen = None;
-    ui.menu_button("Leave an open one out …", |ui| {
+    ui.menu_button(words::LEAVE_ONE_OUT, |ui| {
         for (k, name) in names.iter().enumerate() {
             if ui.button(name).clicked() {
                 chosen = Some(k);
@@ -68,7 +86,7 @@ fn left_out(ui: &mut Ui, session: &mut Session) {
         }
     })
     .response
-    .on_hover_text("The others are diagnosed without it, and it is checked whether their answer holds for it");
+    .on_hover_text(words::LEAVE_ONE_OUT_MORE);
     if let Some(k) = chosen {
         let ctx = ui.ctx().clone();
         session.check(&ctx, On::LeftOut(k));
@@ -106,9 +124,7 @@ fn figures(ui: &mut Ui, checked: &Checked, validation: &Validation) {
     } else {
         format!("The power that is left grows by {} % [{}, {}].", percent(-share), percent(-high), percent(-low))
     };
-    ui.add(egui::Label::new(theme::caption(ui, text)).wrap()).on_hover_text(
-        "Share of the left-over power that goes, with its 95 % interval from a bootstrap over pieces of the recording",
-    );
+    ui.add(egui::Label::new(theme::caption(ui, text)).wrap()).on_hover_text(words::SHARE_MORE);
     ui.add(egui::Label::new(RichText::new(words(verdict)).size(12.0).color(color(p, verdict))).wrap());
     if !validation.left_out.is_empty() {
         let names: Vec<String> = validation.left_out.iter().map(|id| title(id)).collect();
@@ -133,8 +149,8 @@ fn color(p: &Palette, verdict: Holds) -> Color32 {
 
 fn words(verdict: Holds) -> &'static str {
     match verdict {
-        Holds::Yes => "It holds here, too.",
-        Holds::Unclear => "Whether it holds here cannot be told.",
-        Holds::No => "It does not hold here: the model alone does better.",
+        Holds::Yes => words::HOLDS,
+        Holds::Unclear => words::CANNOT_BE_TOLD,
+        Holds::No => words::DOES_NOT_HOLD,
     }
 }

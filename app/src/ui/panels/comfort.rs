@@ -6,21 +6,30 @@ use crate::ui::trainer::Trainer;
 use crate::ui::widgets::{compact, plain_card};
 use egui::{Align2, Key, Modifiers, Rect, Sense, Ui, UiBuilder};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const COMFORT: &str = "Comfort";
+    pub const LEFT_HANDED: &str = "Left-handed";
+    pub const LEFT_HANDED_MORE: &str =
+        "Controls stand left of the picture; the right mouse button pinches, the left one turns the view";
+    pub const PAUSE_WHEN_THE_WINDOW: &str = "Pause when the window loses the focus";
+    pub const PAUSE_WHEN_THE_WINDOW_MORE: &str =
+        "The world stands still and the force goes until you go on; the time of a lesson does not count meanwhile";
+    pub const THIS_BUILD_IS_SILENT: &str =
+        "This build is silent: impacts flash. Build it with its feature “sound” to hear them.";
+    pub const MUTE: &str = "Mute";
+    pub const MUTE_MORE: &str = "No knocks, no scraping, no warning tone";
+    pub const HOW_LOUD_CONTACTS: &str = "How loud contacts, slips and warnings are";
+    pub const VOLUME: &str = "Volume";
+}
+
 /// Choices that are remembered.
 pub fn card(ui: &mut Ui, session: &mut Session) {
-    plain_card(ui, "Comfort", |ui| {
+    plain_card(ui, words::COMFORT, |ui| {
         let comfort = &mut session.comfort;
         let choices = [
-            (
-                &mut comfort.left_handed,
-                "Left-handed",
-                "Controls stand left of the picture; the right mouse button pinches, the left one turns the view",
-            ),
-            (
-                &mut comfort.pauses,
-                "Pause when the window loses the focus",
-                "The world stands still and the force goes until you go on; the time of a lesson does not count meanwhile",
-            ),
+            (&mut comfort.left_handed, words::LEFT_HANDED, words::LEFT_HANDED_MORE),
+            (&mut comfort.pauses, words::PAUSE_WHEN_THE_WINDOW, words::PAUSE_WHEN_THE_WINDOW_MORE),
         ];
         for (choice, label, hint) in choices {
             compact(ui, |ui| ui.checkbox(choice, label).on_hover_text(hint));
@@ -33,17 +42,16 @@ pub fn card(ui: &mut Ui, session: &mut Session) {
 fn sound(ui: &mut Ui, session: &mut Session) {
     let comfort = &mut session.comfort;
     if !cfg!(feature = "sound") {
-        let text = "This build is silent: impacts flash. Build it with its feature “sound” to hear them.";
+        let text = words::THIS_BUILD_IS_SILENT;
         ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
         return;
     }
     compact(ui, |ui| {
-        ui.checkbox(&mut comfort.muted, "Mute").on_hover_text("No knocks, no scraping, no warning tone");
+        ui.checkbox(&mut comfort.muted, words::MUTE).on_hover_text(words::MUTE_MORE);
         let mut percent = 100.0 * comfort.volume;
         let slider = egui::Slider::new(&mut percent, 0.0..=100.0).suffix(" %").fixed_decimals(0);
-        let response =
-            ui.add_enabled(!comfort.muted, slider).on_hover_text("How loud contacts, slips and warnings are");
-        response.widget_info(|| egui::WidgetInfo::slider(true, f64::from(percent), "Volume"));
+        let response = ui.add_enabled(!comfort.muted, slider).on_hover_text(words::HOW_LOUD_CONTACTS);
+        response.widget_info(|| egui::WidgetInfo::slider(true, f64::from(percent), words::VOLUME));
         if response.changed() {
             comfort.volume = percent / 100.0;
         }

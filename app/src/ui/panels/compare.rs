@@ -6,6 +6,23 @@ use crate::ui::trainer::WorldChoice;
 use crate::ui::widgets::{card_with_head, compact, key_hint, segmented};
 use egui::{Align, Key, Layout, Ui};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const BEFORE: &str = "A  before";
+    pub const BEFORE_MORE: &str = "The model alone";
+    pub const AFTER: &str = "B  after";
+    pub const AFTER_MORE: &str = "The model with what the diagnosis found";
+    pub const FEEL_IT: &str = "Feel it";
+    pub const THIS_IS_THE_MODEL_AS_IT_WAS: &str =
+        "This is the model as it was. Everything stays where it is when you switch.";
+    pub const THIS_IS_THE_MODEL_WITH_WHAT: &str =
+        "This is the model with what was found. Everything stays where it is when you switch.";
+    pub const CHOOSE_A_SIDE: &str = "Choose a side; from then on everything stays where it is when you switch.";
+    pub const SWITCHES_WHILE_YOU: &str = "switches while you hold it";
+    pub const CLOSE: &str = "Close";
+    pub const CLOSE_MORE: &str = "Back to the other worlds";
+}
+
 /// The card beside the trainer's picture, while there is something to compare.
 pub fn compare(ui: &mut Ui, session: &mut Session) {
     if session.trainer.compare.is_none() {
@@ -14,28 +31,26 @@ pub fn compare(ui: &mut Ui, session: &mut Session) {
     let shown = session.trainer.choice;
     let mut choice = shown;
     let choices = [
-        (WorldChoice::Before, "A  before", "The model alone"),
-        (WorldChoice::After, "B  after", "The model with what the diagnosis found"),
+        (WorldChoice::Before, words::BEFORE, words::BEFORE_MORE),
+        (WorldChoice::After, words::AFTER, words::AFTER_MORE),
     ];
     let (mut changed, mut closed) = (false, false);
     card_with_head(
         ui,
-        "Feel it",
+        words::FEEL_IT,
         30.0,
         |ui| changed = segmented(ui, &mut choice, &choices),
         |ui| {
             let text = match shown {
-                WorldChoice::Before => "This is the model as it was. Everything stays where it is when you switch.",
-                WorldChoice::After => {
-                    "This is the model with what was found. Everything stays where it is when you switch."
-                }
-                _ => "Choose a side; from then on everything stays where it is when you switch.",
+                WorldChoice::Before => words::THIS_IS_THE_MODEL_AS_IT_WAS,
+                WorldChoice::After => words::THIS_IS_THE_MODEL_WITH_WHAT,
+                _ => words::CHOOSE_A_SIDE,
             };
             ui.label(theme::caption(ui, text));
             compact(ui, |ui| {
-                key_hint(ui, "B", "switches while you hold it");
+                key_hint(ui, "B", words::SWITCHES_WHILE_YOU);
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    closed = ui.link("Close").on_hover_text("Back to the other worlds").clicked();
+                    closed = ui.link(words::CLOSE).on_hover_text(words::CLOSE_MORE).clicked();
                 });
             });
         },

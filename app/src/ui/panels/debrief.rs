@@ -11,6 +11,16 @@ use estimator::training::lesson::grade::{Figure, Grade};
 use haptics::Vec2;
 use render::ColorRole;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const NOT_COMPLETED: &str = "Not completed";
+    pub const SCALE_MORE: &str =
+        "100 is the experts' average; half of it for every five of their spreads that you are worse";
+    pub const OF_100: &str = "of 100, the experts' average";
+    pub const YOUR_WAY: &str = "your way";
+    pub const AN_EXPERTS: &str = "an expert's";
+}
+
 /// Height of the picture of both ways, points.
 const WAYS: f32 = 120.0;
 /// Where the experts' mean stands on a scale, and how many units the scale is long.
@@ -37,17 +47,15 @@ fn score(ui: &mut Ui, grade: &Grade) {
     let p = palette(ui);
     ui.horizontal(|ui| {
         let Some(score) = grade.score else {
-            ui.label(theme::title("Not completed"));
+            ui.label(theme::title(words::NOT_COMPLETED));
             return;
         };
         let color = if grade.meets_criterion { p.good } else { p.text };
         ui.label(RichText::new(format!("{score:.0}")).font(egui::FontId::new(38.0, theme::semibold())).color(color))
-            .on_hover_text(
-                "100 is the experts' average; half of it for every five of their spreads that you are worse",
-            );
+            .on_hover_text(words::SCALE_MORE);
         ui.vertical(|ui| {
             ui.add_space(space::XS);
-            ui.label(theme::caption(ui, "of 100, the experts' average"));
+            ui.label(theme::caption(ui, words::OF_100));
             let criterion = grade.score_criterion;
             let text = if grade.meets_criterion {
                 format!("Proficient: {criterion:.0} or more. Twice in a row counts.")
@@ -124,10 +132,10 @@ fn ways(ui: &mut Ui, own: &Trace, expert: Option<&Trace>) {
     }
     compact(ui, |ui| {
         crate::ui::widgets::swatch(ui, color);
-        ui.label(theme::caption(ui, "your way"));
+        ui.label(theme::caption(ui, words::YOUR_WAY));
         if expert.is_some() {
             crate::ui::widgets::swatch(ui, p.secondary.gamma_multiply(0.8));
-            ui.label(theme::caption(ui, "an expert's"));
+            ui.label(theme::caption(ui, words::AN_EXPERTS));
         }
     });
 }

@@ -8,6 +8,18 @@ use crate::ui::widgets::{card_with_head, fact, segmented};
 use egui::Ui;
 use haptics::teleop::{Delay, Weighed};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const DELAY: &str = "Delay";
+    pub const PRACTISE_OVER_A_SLOW: &str =
+        "Practise over a slow line: the world is far away, and what you see and feel of it comes late.";
+    pub const A_MODEL_OF_THE_FAR: &str =
+        "A model of the far world answers your hand at once, and learns from what comes back";
+    pub const PREDICTIVE_MODEL: &str = "Predictive model";
+    pub const UNSTEADY_LINE: &str = "Unsteady line";
+    pub const CARRIED_LAST: &str = "Carried last";
+}
+
 /// Round trips to choose from, s.
 const ROUND_TRIPS: [(f64, &str, &str); 3] = [
     (0.0, "None", "Your hand is where the world is"),
@@ -25,15 +37,14 @@ pub fn delay(ui: &mut Ui, session: &mut Session) {
     let free = !session.trainer.is_recording();
     card_with_head(
         ui,
-        "Delay",
+        words::DELAY,
         30.0,
         |ui| {
             ui.add_enabled_ui(free, |ui| round_trip(ui, &mut line));
         },
         |ui| {
             if before.is_none() {
-                let text =
-                    "Practise over a slow line: the world is far away, and what you see and feel of it comes late.";
+                let text = words::PRACTISE_OVER_A_SLOW;
                 ui.label(theme::caption(ui, text));
             } else {
                 ui.add_enabled_ui(free, |ui| choices(ui, &mut manner));
@@ -64,8 +75,8 @@ fn round_trip(ui: &mut Ui, wanted: &mut Delay) {
 
 fn choices(ui: &mut Ui, wanted: &mut Delay) {
     ui.horizontal(|ui| {
-        let model = "A model of the far world answers your hand at once, and learns from what comes back";
-        ui.checkbox(&mut wanted.predicted, "Predictive model").on_hover_text(model);
+        let model = words::A_MODEL_OF_THE_FAR;
+        ui.checkbox(&mut wanted.predicted, words::PREDICTIVE_MODEL).on_hover_text(model);
         let mut unsteady = wanted.jitter_s > 0.0 || wanted.loss > 0.0;
         let (jitter_s, loss) = UNSTEADY;
         let hint = format!(
@@ -73,7 +84,7 @@ fn choices(ui: &mut Ui, wanted: &mut Delay) {
             number(1e3 * jitter_s, 0),
             number(1e2 * loss, 0)
         );
-        if ui.checkbox(&mut unsteady, "Unsteady line").on_hover_text(hint).clicked() {
+        if ui.checkbox(&mut unsteady, words::UNSTEADY_LINE).on_hover_text(hint).clicked() {
             (wanted.jitter_s, wanted.loss) = if unsteady { UNSTEADY } else { (0.0, 0.0) };
         }
     });
@@ -91,7 +102,7 @@ fn shown(ui: &mut Ui, trainer: &Trainer) {
     ui.label(theme::caption(ui, text));
     if let (Some(weighed), Some((_, world))) = (view.weighed, trainer.scene()) {
         let gravity = world.gravity_m_s2;
-        fact(ui, "Carried last", weight_text(&weighed, gravity));
+        fact(ui, words::CARRIED_LAST, weight_text(&weighed, gravity));
     }
 }
 

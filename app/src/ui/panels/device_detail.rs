@@ -13,6 +13,54 @@ use haptics::device::DeviceSpec;
 use haptics::servo::force_test::MOST_N;
 use haptics::servo::{Snapshot, passivity};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const DEVICE: &str = "Device";
+    pub const NO_DEVICE_IS_RUNNING: &str = "No device is running";
+    pub const NO_DEVICE_IS_RUNNING_MORE: &str = "Choose one on the left.";
+    pub const SCRIPT_MORE: &str = "Does the task of the world like a person.";
+    pub const WHAT_IT_CAN_RENDER: &str = "What it can render";
+    pub const FORCE_NOT_FELT: &str =
+        "The force is shown and not felt: nothing can become unstable in the operator's hand, so no limit applies.";
+    pub const B_HALF_A_PERIOD: &str = "b / (half a period + delay)";
+    pub const TWO_B_A_PERIOD: &str = "2 b / period";
+    pub const STEPS_OF_THE_POSITION: &str = "; steps of the position allow 2 × friction / step";
+    pub const IT_RENDERS_THIS_WORLD: &str = "It renders this world directly.";
+    pub const THE_DEVICE_STATES: &str =
+        "The device states no damping of its own, so no wall and no damper is surely passive.";
+    pub const STIFFEST_PASSIVE_WALL: &str = "Stiffest passive wall";
+    pub const STRONGEST_PASSIVE_DAMPER: &str = "Strongest passive damper";
+    pub const STRONGEST_PASSIVE_DAMPER_MORE: &str =
+        "A virtual damper may take no more than the device's own damping b, nor more than friction × period / step.";
+    pub const WAVE_VARIABLES_KEEP: &str = "Wave variables keep the line stable behind its delay, and make it \
+        soft: it lies like a spring of b / delay one way between your fingers and everything you touch. b is the \
+        impedance of the waves, not the device's own damping.";
+    pub const STIFFEST_THAT_IS_FELT: &str = "Stiffest that is felt";
+    pub const NOW: &str = "Now";
+    pub const LEFT_FINGER: &str = "Left finger";
+    pub const RIGHT_FINGER: &str = "Right finger";
+    pub const POSITION: &str = "Position";
+    pub const VELOCITY: &str = "Velocity";
+    pub const FORCE_ON_YOU: &str = "Force on you";
+    pub const AGE_OF_THE_NEWEST: &str = "Age of the newest sample";
+    pub const SATURATED: &str = "Saturated";
+    pub const SATURATED_MORE: &str = "A force was clamped to the maximum";
+    pub const SLEW: &str = "Slew";
+    pub const SLEW_MORE: &str = "A force was slowed down: it changed too fast";
+    pub const STALE: &str = "Stale";
+    pub const STALE_MORE: &str = "No fresh sample from the device: the force is zero";
+    pub const INVALID: &str = "Invalid";
+    pub const INVALID_MORE: &str = "An impossible value was refused";
+    pub const FORCE_TEST: &str = "Force test";
+    pub const THIS_DEVICE_GIVES: &str = "This device gives nobody a force, so there is none to try.";
+    pub const OVER_A_SLOW: &str =
+        "Over a slow line a push would not be the device's own: choose no delay in Train first.";
+    pub const STOP: &str = "Stop";
+    pub const HOLD_THE_DEVICE: &str = "Hold the device loosely. It pushes both fingers softly in one direction \
+        for five seconds, in place of the world.";
+    pub const PUSH: &str = "Push";
+}
+
 /// From this width on there are two columns, points: the live values need half of it.
 const TWO_COLUMNS: f32 = 780.0;
 
@@ -22,7 +70,7 @@ pub struct DeviceDetail;
 
 impl Panel for DeviceDetail {
     fn title(&self) -> &'static str {
-        "Device"
+        words::DEVICE
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
@@ -33,7 +81,7 @@ impl Panel for DeviceDetail {
         // Live values: the page is drawn like a film as long as it is open.
         ui.ctx().request_repaint_after(std::time::Duration::from_millis(33));
         let Some(spec) = session.trainer.spec().cloned() else {
-            empty_state(ui, (Icon::Device, "No device is running"), "Choose one on the left.", |_| {});
+            empty_state(ui, (Icon::Device, words::NO_DEVICE_IS_RUNNING), words::NO_DEVICE_IS_RUNNING_MORE, |_| {});
             return;
         };
         if let Some(fault) = session.trainer.scene().and_then(|(snapshot, _)| snapshot.fault) {
@@ -84,7 +132,7 @@ fn about(ui: &mut Ui, session: &Session, spec: &DeviceSpec) {
         let trainer = &session.trainer;
         let what = match trainer.operator {
             Operator::You => trainer.hand.sentence(),
-            Operator::Scripted => "Does the task of the world like a person.",
+            Operator::Scripted => words::SCRIPT_MORE,
         };
         ui.label(theme::caption(ui, what));
         ui.add_space(space::XS);
@@ -97,7 +145,7 @@ fn about(ui: &mut Ui, session: &Session, spec: &DeviceSpec) {
 
 fn limits(ui: &mut Ui, trainer: &Trainer, spec: &DeviceSpec) {
     let Some((snapshot, _)) = trainer.scene() else { return };
-    plain_card(ui, "What it can render", |ui| {
+    plain_card(ui, words::WHAT_IT_CAN_RENDER, |ui| {
         for (value, sentence) in limit_sentences(spec, snapshot) {
             if let Some((label, value)) = value {
                 fact(ui, label, value);
@@ -113,17 +161,16 @@ type Limit = (Option<(&'static str, String)>, String);
 /// The limits at the actual rate, computed from the device's figures.
 fn limit_sentences(spec: &DeviceSpec, snapshot: &Snapshot) -> Vec<Limit> {
     if !spec.force_feedback {
-        let text =
-            "The force is shown and not felt: nothing can become unstable in the operator's hand, so no limit applies.";
+        let text = words::FORCE_NOT_FELT;
         return vec![(None, text.to_owned())];
     }
     let period_s = snapshot.timing.period_s;
     let hertz = number(snapshot.timing.rate.rate_hz, 0);
     let delay_s = snapshot.delay_s;
     let stiffness = passivity::passive_stiffness(spec, 0.0, period_s, delay_s);
-    let formula = if delay_s > 0.0 { "b / (half a period + delay)" } else { "2 b / period" };
+    let formula = if delay_s > 0.0 { words::B_HALF_A_PERIOD } else { words::TWO_B_A_PERIOD };
     let behind = if delay_s > 0.0 { format!(" and behind {} of delay", short_time(delay_s)) } else { String::new() };
-    let steps = if spec.resolution_m > 0.0 { "; steps of the position allow 2 × friction / step" } else { "" };
+    let steps = if spec.resolution_m > 0.0 { words::STEPS_OF_THE_POSITION } else { "" };
     let damper = passivity::passive_damping(spec, period_s);
     if let Some(line_n_m) = snapshot.line_n_m {
         return line_sentences(line_n_m, snapshot);
@@ -131,20 +178,19 @@ fn limit_sentences(spec: &DeviceSpec, snapshot: &Snapshot) -> Vec<Limit> {
     let felt = snapshot
         .coupling
         .as_ref()
-        .map_or_else(|| "It renders this world directly.".to_owned(), trainer_timing::coupling_sentence);
+        .map_or_else(|| words::IT_RENDERS_THIS_WORLD.to_owned(), trainer_timing::coupling_sentence);
     if spec.damping_n_s_m <= 0.0 {
-        let unknown = "The device states no damping of its own, so no wall and no damper is surely passive.";
+        let unknown = words::THE_DEVICE_STATES;
         return vec![(None, unknown.to_owned()), (None, felt)];
     }
     vec![
         (
-            Some(("Stiffest passive wall", format!("{} N/m", number(stiffness, 0)))),
+            Some((words::STIFFEST_PASSIVE_WALL, format!("{} N/m", number(stiffness, 0)))),
             format!("At {hertz} Hz{behind} nothing can draw energy out of a softer wall: {formula}{steps}."),
         ),
         (
-            Some(("Strongest passive damper", format!("{} N s/m", number(damper, 2)))),
-            "A virtual damper may take no more than the device's own damping b, nor more than friction × period / step."
-                .to_owned(),
+            Some((words::STRONGEST_PASSIVE_DAMPER, format!("{} N s/m", number(damper, 2)))),
+            words::STRONGEST_PASSIVE_DAMPER_MORE.to_owned(),
         ),
         (None, felt),
     ]
@@ -152,9 +198,9 @@ fn limit_sentences(spec: &DeviceSpec, snapshot: &Snapshot) -> Vec<Limit> {
 
 /// What is felt over a line with waves: b/d is in series with everything, however stiff the world may be at its end.
 fn line_sentences(line_n_m: f64, snapshot: &Snapshot) -> Vec<Limit> {
-    let text = "Wave variables keep the line stable behind its delay, and make it soft: it lies like a spring of b / delay one way \
-                between your fingers and everything you touch. b is the impedance of the waves, not the device's own damping.";
-    let mut said = vec![(Some(("Stiffest that is felt", format!("{} N/m", number(line_n_m, 0)))), text.to_owned())];
+    let text = words::WAVE_VARIABLES_KEEP;
+    let mut said =
+        vec![(Some((words::STIFFEST_THAT_IS_FELT, format!("{} N/m", number(line_n_m, 0)))), text.to_owned())];
     said.extend(snapshot.coupling.as_ref().map(|coupling| (None, trainer_timing::coupling_sentence(coupling))));
     said
 }
@@ -163,25 +209,25 @@ fn live(ui: &mut Ui, trainer: &Trainer) {
     let p = palette(ui);
     let Some((snapshot, _)) = trainer.scene() else { return };
     let tick = snapshot.tick;
-    plain_card(ui, "Now", |ui| {
+    plain_card(ui, words::NOW, |ui| {
         ui.spacing_mut().interact_size.y = 16.0;
         egui::Grid::new("live").num_columns(3).min_col_width(116.0).spacing(vec2(8.0, 4.0)).show(ui, |ui| {
-            for text in ["", "Left finger", "Right finger"] {
+            for text in ["", words::LEFT_FINGER, words::RIGHT_FINGER] {
                 ui.label(theme::caption(ui, text));
             }
             ui.end_row();
-            pair(ui, "Position", tick.device_in_world.map(|v| v * 1e3), 1, "mm");
-            pair(ui, "Velocity", tick.input.tip_velocity.map(|v| v * 1e3), 0, "mm/s");
-            pair(ui, "Force on you", tick.sent_force_n, 2, "N");
+            pair(ui, words::POSITION, tick.device_in_world.map(|v| v * 1e3), 1, "mm");
+            pair(ui, words::VELOCITY, tick.input.tip_velocity.map(|v| v * 1e3), 0, "mm/s");
+            pair(ui, words::FORCE_ON_YOU, tick.sent_force_n, 2, "N");
         });
         ui.add_space(space::XS);
-        fact(ui, "Age of the newest sample", trainer_timing::sample_age(snapshot.timing.sample_age_s));
+        fact(ui, words::AGE_OF_THE_NEWEST, trainer_timing::sample_age(snapshot.timing.sample_age_s));
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = space::M;
-            light(ui, tick.flags.saturated, p.danger, "Saturated", "A force was clamped to the maximum");
-            light(ui, tick.flags.slewing, p.caution, "Slew", "A force was slowed down: it changed too fast");
-            light(ui, tick.flags.stale, p.danger, "Stale", "No fresh sample from the device: the force is zero");
-            light(ui, tick.flags.not_finite, p.danger, "Invalid", "An impossible value was refused");
+            light(ui, tick.flags.saturated, p.danger, words::SATURATED, words::SATURATED_MORE);
+            light(ui, tick.flags.slewing, p.caution, words::SLEW, words::SLEW_MORE);
+            light(ui, tick.flags.stale, p.danger, words::STALE, words::STALE_MORE);
+            light(ui, tick.flags.not_finite, p.danger, words::INVALID, words::INVALID_MORE);
         });
     });
 }
@@ -196,35 +242,35 @@ fn pair(ui: &mut Ui, label: &str, values: [Vec2; 2], decimals: usize, unit: &str
 }
 
 fn force_test(ui: &mut Ui, trainer: &mut Trainer, spec: &DeviceSpec) {
-    plain_card(ui, "Force test", |ui| {
+    plain_card(ui, words::FORCE_TEST, |ui| {
         let somebody_feels = trainer.operator == Operator::You
             && matches!(trainer.hand, HandDevice::Haply(..) | HandDevice::Udp)
             && spec.force_feedback;
         if !somebody_feels {
-            ui.label(theme::caption(ui, "This device gives nobody a force, so there is none to try."));
+            ui.label(theme::caption(ui, words::THIS_DEVICE_GIVES));
             return;
         }
         if !trainer.delay().is_none() {
-            let text = "Over a slow line a push would not be the device's own: choose no delay in Train first.";
+            let text = words::OVER_A_SLOW;
             ui.label(theme::caption(ui, text));
             return;
         }
         if trainer.trial.is_running() {
             let left = number(trainer.trial.left_s(), 1);
             ui.label(theme::caption(ui, format!("It pushes; {left} s are left. Let go or press Esc when in doubt.")));
-            if primary_button(ui, true, (Icon::Stop, "Stop")).clicked()
+            if primary_button(ui, true, (Icon::Stop, words::STOP)).clicked()
                 || ui.input(|i| i.key_pressed(egui::Key::Escape))
             {
                 trainer.trial.abort();
             }
             return;
         }
-        let text = "Hold the device loosely. It pushes both fingers softly in one direction for five seconds, in place of the world.";
+        let text = words::HOLD_THE_DEVICE;
         ui.label(theme::caption(ui, text));
         segmented(ui, &mut trainer.trial.direction, &Direction::ALL);
         let most = MOST_N.min(spec.max_force_n);
         ui.add(Slider::new(&mut trainer.trial.newtons, 0.1..=most).suffix(" N").fixed_decimals(1));
-        if primary_button(ui, true, "Push").clicked() {
+        if primary_button(ui, true, words::PUSH).clicked() {
             trainer.trial.start();
         }
     });

@@ -11,6 +11,21 @@ use haptics::device::haply;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const DEVICES: &str = "Devices";
+    pub const BUILT_IN: &str = "Built in";
+    pub const OPEN_A_LOG: &str = "Open a log in Calibrate first.";
+    pub const NO_PORT_FOUND: &str = "no port found";
+    pub const ONE_PORT_FOUND: &str = "1 port found";
+    pub const HAPLY_2DIY_BOARDS: &str = "Haply 2DIY boards";
+    pub const TWO_BOARDS_MAKE: &str = "Two boards make two fingers. Plug them in over USB; on Linux your user \
+        must be in the group dialout. They are found by themselves.";
+    pub const SCRIPTED_OPERATOR: &str = "Scripted operator";
+    pub const SCRIPTED_OPERATOR_MORE: &str =
+        "Does the task of the world like a person: reaches, trembles, reacts late.";
+}
+
 /// Ports are looked for this often.
 const LOOK_AGAIN: Duration = Duration::from_secs(2);
 
@@ -31,7 +46,7 @@ pub(super) enum Choice {
 
 impl Panel for DeviceList {
     fn title(&self) -> &'static str {
-        "Devices"
+        words::DEVICES
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
@@ -39,7 +54,7 @@ impl Panel for DeviceList {
         let mut chosen = None;
         ScrollArea::vertical().id_salt("devices").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
-            plain_card(ui, "Built in", |ui| {
+            plain_card(ui, words::BUILT_IN, |ui| {
                 for hand in [HandDevice::Mouse, HandDevice::Touch, HandDevice::Keyboard] {
                     chosen = chosen.take().or(row(ui, session, Choice::Hand(hand), Ok(())));
                 }
@@ -48,7 +63,7 @@ impl Panel for DeviceList {
                     chosen = chosen.take().or(row(ui, session, Choice::Hand(HandDevice::Gamepad), Ok(())));
                 }
                 chosen = chosen.take().or(row(ui, session, Choice::Scripted, Ok(())));
-                let log = session.prepared().map(drop).ok_or("Open a log in Calibrate first.");
+                let log = session.prepared().map(drop).ok_or(words::OPEN_A_LOG);
                 chosen = chosen.take().or(row(ui, session, Choice::Hand(HandDevice::Replay), log));
             });
             chosen = chosen.take().or(self.boards(ui, session));
@@ -71,14 +86,14 @@ impl DeviceList {
 
     fn boards(&self, ui: &mut Ui, session: &Session) -> Option<Choice> {
         let found = match self.ports.len() {
-            0 => "no port found".to_owned(),
-            1 => "1 port found".to_owned(),
+            0 => words::NO_PORT_FOUND.to_owned(),
+            1 => words::ONE_PORT_FOUND.to_owned(),
             many => format!("{many} ports found"),
         };
         let mut chosen = None;
         card(
             ui,
-            "Haply 2DIY boards",
+            words::HAPLY_2DIY_BOARDS,
             |ui| drop(ui.label(theme::caption(ui, found))),
             |ui| {
                 // Any port may be the left board: both orders are offered.
@@ -89,8 +104,7 @@ impl DeviceList {
                     }
                 }
                 if self.ports.len() < 2 {
-                    let text = "Two boards make two fingers. Plug them in over USB; on Linux your user must be in the group \
-                                dialout. They are found by themselves.";
+                    let text = words::TWO_BOARDS_MAKE;
                     ui.label(theme::caption(ui, text));
                 }
             },
@@ -105,10 +119,7 @@ pub(super) fn row(ui: &mut Ui, session: &Session, choice: Choice, ready: Result<
     let trainer = &session.trainer;
     let (title, sentence) = match &choice {
         Choice::Hand(hand) => (hand.title(), hand.sentence()),
-        Choice::Scripted => (
-            "Scripted operator".to_owned(),
-            "Does the task of the world like a person: reaches, trembles, reacts late.",
-        ),
+        Choice::Scripted => (words::SCRIPTED_OPERATOR.to_owned(), words::SCRIPTED_OPERATOR_MORE),
     };
     let active = match &choice {
         Choice::Hand(hand) => trainer.operator == Operator::You && trainer.hand == *hand,

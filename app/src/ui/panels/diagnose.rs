@@ -73,7 +73,7 @@ pub struct DiagnosePanel;
 
 impl Panel for DiagnosePanel {
     fn title(&self) -> &'static str {
-        "Diagnose"
+        words::BEGIN
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {

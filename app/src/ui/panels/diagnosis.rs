@@ -15,13 +15,34 @@ use crate::ui::widgets::{bar, card, compact, plain_card, primary_button, remark}
 use egui::{Align, Color32, Layout, RichText, ScrollArea, Ui, vec2};
 use estimator::diagnose::Diagnosis;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const DIAGNOSIS: &str = "Diagnosis";
+    pub const AGAIN: &str = "Again";
+    pub const DIAGNOSE_ONCE_MORE: &str = "Diagnose once more";
+    pub const MODEL: &str = "Model";
+    pub const WITH_WHAT_WAS_FOUND: &str = "With what was found";
+    pub const NOISE: &str = "Noise";
+    pub const FORCE_LEFT_OVER: &str = "Force left over on data that chose and fitted nothing, RMS.";
+    pub const EXTENDED_MODEL: &str = "Extended model";
+    pub const A_WORLD_WITH_THE_FOUND: &str = "A world with the found laws in it, beside one with the model alone.";
+    pub const EXTEND_THE_MODEL: &str = "Extend the model";
+    pub const FEEL_IT_IN_TRAIN: &str = "Feel it in Train";
+    pub const FEEL_IT_IN_TRAIN_MORE: &str = "Switch between both worlds while you hold the object";
+    pub const SAVE_WORLD: &str = "Save world …";
+    pub const SAVE_WORLD_MORE: &str = "Writes the extended world as a file";
+    pub const COULD_NOT_HAVE: &str = "Could not have been seen here";
+    pub const THEY_ARE_NOT: &str = "They are not excluded: this motion does not show them.";
+    pub const WARNINGS: &str = "Warnings";
+}
+
 /// The right column of the diagnosis.
 #[derive(Default)]
 pub struct DiagnosisPanel;
 
 impl Panel for DiagnosisPanel {
     fn title(&self) -> &'static str {
-        "Diagnosis"
+        words::DIAGNOSIS
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
@@ -49,12 +70,12 @@ fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
     let busy = session.jobs.is_running(JobKind::Diagnose);
     card(
         ui,
-        "Diagnosis",
+        words::DIAGNOSIS,
         |ui| {
             if busy {
                 ui.add(egui::Spinner::new().size(14.0));
             } else {
-                again = ui.link("Again").on_hover_text("Diagnose once more").clicked();
+                again = ui.link(words::AGAIN).on_hover_text(words::DIAGNOSE_ONCE_MORE).clicked();
             }
         },
         |ui| {
@@ -63,12 +84,12 @@ fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
             changed = diagnose::start_from(ui, session);
             let (inks, most) = (inks(ui), d.baseline.heldout_rms_n.max(d.noise_floor_n).max(1e-12));
             let unit = force_unit(d);
-            level(ui, "Model", d.baseline.heldout_rms_n, most, unit, inks.model);
+            level(ui, words::MODEL, d.baseline.heldout_rms_n, most, unit, inks.model);
             if !d.causes.is_empty() {
-                level(ui, "With what was found", d.end.heldout_rms_n, most, unit, inks.extended);
+                level(ui, words::WITH_WHAT_WAS_FOUND, d.end.heldout_rms_n, most, unit, inks.extended);
             }
-            level(ui, "Noise", d.noise_floor_n, most, unit, palette(ui).faint);
-            ui.label(theme::caption(ui, "Force left over on data that chose and fitted nothing, RMS."));
+            level(ui, words::NOISE, d.noise_floor_n, most, unit, palette(ui).faint);
+            ui.label(theme::caption(ui, words::FORCE_LEFT_OVER));
         },
     );
     if again || changed {
@@ -102,15 +123,15 @@ fn extension(ui: &mut Ui, session: &mut Session, answer: &Answer) {
     }
     let busy = session.jobs.is_running(JobKind::Extend);
     let extended = session.diagnosing.worlds.is_some();
-    plain_card(ui, "Extended model", |ui| {
+    plain_card(ui, words::EXTENDED_MODEL, |ui| {
         if let Some(problem) = session.diagnosing.worlds_problem.clone() {
             remark(ui, Icon::Doubt, problem);
         }
         if !extended {
-            ui.label(theme::caption(ui, "A world with the found laws in it, beside one with the model alone."));
+            ui.label(theme::caption(ui, words::A_WORLD_WITH_THE_FOUND));
             ui.add_space(space::XS);
             ui.horizontal(|ui| {
-                if primary_button(ui, !busy, (Icon::Extend, "Extend the model")).clicked() {
+                if primary_button(ui, !busy, (Icon::Extend, words::EXTEND_THE_MODEL)).clicked() {
                     let ctx = ui.ctx().clone();
                     session.extend_model(&ctx);
                 }
@@ -147,13 +168,13 @@ fn before_after(ui: &mut Ui, d: &Diagnosis) {
 fn feel(ui: &mut Ui, session: &mut Session) {
     let comparison = session.comparison();
     ui.horizontal(|ui| {
-        if primary_button(ui, comparison.is_ok(), (Icon::Feel, "Feel it in Train"))
-            .on_hover_text("Switch between both worlds while you hold the object")
+        if primary_button(ui, comparison.is_ok(), (Icon::Feel, words::FEEL_IT_IN_TRAIN))
+            .on_hover_text(words::FEEL_IT_IN_TRAIN_MORE)
             .clicked()
         {
             session.feel();
         }
-        if ui.button((Icon::Save, "Save world …")).on_hover_text("Writes the extended world as a file").clicked() {
+        if ui.button((Icon::Save, words::SAVE_WORLD)).on_hover_text(words::SAVE_WORLD_MORE).clicked() {
             files::ask(ui.ctx(), &mut session.jobs, Purpose::SaveExtended);
         }
     });
@@ -170,7 +191,7 @@ fn hidden(ui: &mut Ui, diagnosis: &Diagnosis) {
     let count = diagnosis.not_excited.len();
     card(
         ui,
-        "Could not have been seen here",
+        words::COULD_NOT_HAVE,
         |ui| drop(ui.label(theme::caption(ui, count.to_string()))),
         |ui| {
             ui.horizontal_wrapped(|ui| {
@@ -179,7 +200,7 @@ fn hidden(ui: &mut Ui, diagnosis: &Diagnosis) {
                     causes::chip(ui, &title(&hidden.id), palette(ui).secondary).on_hover_text(sentence(&hidden.why));
                 }
             });
-            ui.label(theme::caption(ui, "They are not excluded: this motion does not show them."));
+            ui.label(theme::caption(ui, words::THEY_ARE_NOT));
         },
     );
 }
@@ -188,7 +209,7 @@ fn warnings(ui: &mut Ui, diagnosis: &Diagnosis) {
     if diagnosis.warnings.is_empty() {
         return;
     }
-    plain_card(ui, "Warnings", |ui| {
+    plain_card(ui, words::WARNINGS, |ui| {
         for warning in &diagnosis.warnings {
             remark(ui, Icon::Doubt, sentence(warning));
         }

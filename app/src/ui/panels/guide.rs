@@ -13,6 +13,21 @@ use egui::{Frame, Margin, Pos2, ProgressBar, Shape, Stroke, Ui, vec2};
 use haptics::Vec2;
 use haptics::device::HandGoal;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const EXPERIMENT: &str = "Experiment";
+    pub const THE_RECORDING_GETS: &str = "The recording gets its end …";
+    pub const LEAVE_THE_EXPERIMENT: &str = "Leave the experiment";
+    pub const BEGIN: &str = "Begin";
+    pub const RECORDED: &str = "Recorded.";
+    pub const ADD_TO_THE_DIAGNOSIS: &str = "Add to the diagnosis";
+    pub const ONCE_MORE: &str = "Once more";
+    pub const EXPERT_WAITS_COME_HERE: &str = "expert waits: come here";
+    pub const EXPERT_WAITS_PRESS: &str = "expert waits: press";
+    pub const EXPERT_WAITS_LET_GO: &str = "expert waits: let go";
+    pub const EXPERT_PRESSES: &str = "expert presses";
+}
+
 /// Width of the card, points.
 const WIDTH: f32 = 300.0;
 /// Radius of a ghost finger, points.
@@ -36,15 +51,15 @@ pub fn card(ui: &mut Ui, view: &SceneResponse, session: &mut Session) {
         frame.inner_margin(Margin::same(space::M as i8)).show(ui, |ui| {
             ui.set_width(WIDTH.min(view.rect.width() - 4.0 * space::M));
             let Some(guided) = &session.experiments.guided else { return };
-            ui.label(theme::caption(ui, "Experiment"));
+            ui.label(theme::caption(ui, words::EXPERIMENT));
             match &guided.phase {
                 Phase::Ready => ready(ui, guided, &mut begin),
                 Phase::Going(_) => going(ui, guided, &session.trainer),
-                Phase::Ending => drop(ui.label("The recording gets its end …")),
+                Phase::Ending => drop(ui.label(words::THE_RECORDING_GETS)),
                 Phase::Recorded(_) => recorded(ui, guided, &mut add, &mut begin),
             }
             ui.add_space(space::XS);
-            leave = ui.link("Leave the experiment").clicked();
+            leave = ui.link(words::LEAVE_THE_EXPERIMENT).clicked();
         });
     });
     let ctx = ui.ctx().clone();
@@ -69,7 +84,7 @@ fn ready(ui: &mut Ui, guided: &Guided, begin: &mut bool) {
     ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     simulated(ui, guided);
     ui.add_space(space::XS);
-    *begin = primary_button(ui, true, (Icon::Play, "Begin")).clicked();
+    *begin = primary_button(ui, true, (Icon::Play, words::BEGIN)).clicked();
 }
 
 /// Says of what object this is, where that is made up.
@@ -91,12 +106,12 @@ fn going(ui: &mut Ui, guided: &Guided, trainer: &Trainer) {
 }
 
 fn recorded(ui: &mut Ui, guided: &Guided, add: &mut bool, begin: &mut bool) {
-    ui.label(theme::strong("Recorded."));
+    ui.label(theme::strong(words::RECORDED));
     simulated(ui, guided);
     ui.add_space(space::XS);
     ui.horizontal(|ui| {
-        *add = primary_button(ui, true, (Icon::Add, "Add to the diagnosis")).clicked();
-        *begin = ui.button((Icon::Reset, "Once more")).clicked();
+        *add = primary_button(ui, true, (Icon::Add, words::ADD_TO_THE_DIAGNOSIS)).clicked();
+        *begin = ui.button((Icon::Reset, words::ONCE_MORE)).clicked();
     });
 }
 
@@ -124,10 +139,10 @@ pub fn expert(ui: &Ui, view: &SceneResponse, session: &Session) {
     let ahead = (0..=AHEAD_STEPS).filter_map(|k| middle(now_s + AHEAD_S * f64::from(k) / f64::from(AHEAD_STEPS)));
     let holds = point.touches();
     let word = match open.ghost.waits {
-        Some(Wait::Far) => "expert waits: come here",
-        Some(Wait::Touch) => "expert waits: press",
-        Some(Wait::LetGo) => "expert waits: let go",
-        None if holds => "expert presses",
+        Some(Wait::Far) => words::EXPERT_WAITS_COME_HERE,
+        Some(Wait::Touch) => words::EXPERT_WAITS_PRESS,
+        Some(Wait::LetGo) => words::EXPERT_WAITS_LET_GO,
+        None if holds => words::EXPERT_PRESSES,
         None => "expert",
     };
     rings(ui, view, point.tips_in_world, &Rings { ahead: ahead.collect(), holds, word });

@@ -8,6 +8,11 @@ use estimator::log::preview::{Curve, Preview};
 use estimator::log::pyramid::Band;
 use render::ColorRole;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const LOG: &str = "Log";
+}
+
 /// Least height of a curve, points; more columns than fit are counted in words.
 const LEAST_HEIGHT: f32 = 34.0;
 /// Width of the names on the left.
@@ -20,7 +25,7 @@ pub fn incoming(ui: &mut Ui, preview: &Preview, progress: &Progress) {
     let curves = preview.curves(((pixels as f64 * share) as usize).max(16));
     let samples = curves.iter().map(|c| c.samples).max().unwrap_or(0);
     ui.horizontal(|ui| {
-        ui.label(theme::heading("Log"));
+        ui.label(theme::heading(words::LOG));
         ui.add_space(space::S);
         let so_far = format!("{} samples so far; columns and units as in the file", format::grouped(samples));
         ui.label(theme::caption(ui, so_far));

@@ -12,6 +12,38 @@ use egui::{Align, Color32, Layout, RichText, Ui, vec2};
 use estimator::training::lesson::{Lesson, Standing};
 use std::sync::Arc;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const LESSONS: &str = "Lessons";
+    pub const LESSONS_MORE: &str = "From the first touch to the real task. Each is shown, practised and tested.";
+    pub const ALL_LESSONS: &str = "All lessons";
+    pub const LOOKING_AT_THE_RECORDING: &str = "Looking at the recording …";
+    pub const WATCH: &str = "Watch";
+    pub const WATCH_MORE: &str = "The expert shows it";
+    pub const PRACTISE: &str = "Practise";
+    pub const PRACTISE_MORE: &str = "Try it; nothing is recorded";
+    pub const TAKE_THE_TEST: &str = "Take the test";
+    pub const THAT_WAS_ALL: &str = "That was all.";
+    pub const AN_EXPERT_SHOWS_IT: &str = "An expert shows it:";
+    pub const AGAIN: &str = "Again";
+    pub const AGAIN_MORE: &str = "Watch it once more";
+    pub const BACK: &str = "Back";
+    pub const BACK_MORE: &str = "What the lesson is about";
+    pub const GHOST_OF_THE_EXPERTS: &str = "Ghost of the expert's fingers";
+    pub const GHOST_OF_THE_EXPERTS_MORE: &str = "Rings that go where an expert's fingers go";
+    pub const START_OVER: &str = "Start over";
+    pub const START_OVER_MORE: &str = "Everything back to its place";
+    pub const GIVE_UP: &str = "Give up";
+    pub const GIVE_UP_MORE: &str = "What was done until now is looked at";
+    pub const ONCE_MORE: &str = "Once more";
+    pub const OPEN_ITS_RECORDING: &str = "Open its recording in Calibrate";
+    pub const WHO_PRACTISES_ATTEMPTS: &str = "Who practises? Attempts are kept by name …";
+    pub const THE_PANEL_PROGRESS: &str = "The panel Progress: who practises, all attempts, the learning curve";
+    pub const PRACTICE_NOT_RECORDED: &str = "practice, not recorded";
+    pub const ALL_GOALS_REACHED: &str = "All goals reached.";
+    pub const ANSWER_THE_QUESTION: &str = "Answer the question on the right.";
+}
+
 /// What a click asks for.
 #[derive(Clone)]
 enum Wish {
@@ -47,8 +79,8 @@ pub fn side(ui: &mut Ui, session: &mut Session) {
 
 fn list(ui: &mut Ui, session: &Session) -> Option<Wish> {
     let mut wish = None;
-    plain_card(ui, "Lessons", |ui| {
-        ui.label(theme::caption(ui, "From the first touch to the real task. Each is shown, practised and tested."));
+    plain_card(ui, words::LESSONS, |ui| {
+        ui.label(theme::caption(ui, words::LESSONS_MORE));
         ui.add_space(space::XS);
         for (place, lesson) in session.lessons.all.iter().enumerate() {
             if row(ui, place + 1, lesson) {
@@ -77,7 +109,7 @@ fn open(ui: &mut Ui, session: &mut Session) -> Option<Wish> {
     let open = session.lessons.open.as_deref()?;
     let (trainer, mut ghost_off) = (&session.trainer, session.lessons.ghost_off);
     let all = |ui: &mut Ui| {
-        if ui.link("All lessons").clicked() {
+        if ui.link(words::ALL_LESSONS).clicked() {
             wish = Some(Wish::Close);
         }
     };
@@ -92,7 +124,7 @@ fn open(ui: &mut Ui, session: &mut Session) -> Option<Wish> {
             Phase::Grading => {
                 ui.horizontal(|ui| {
                     ui.spinner();
-                    ui.label("Looking at the recording …");
+                    ui.label(words::LOOKING_AT_THE_RECORDING);
                 });
                 None
             }
@@ -114,13 +146,13 @@ fn brief(ui: &mut Ui, open: &Open) -> Option<Wish> {
     ui.add_space(space::S);
     buttons(
         ui,
-        &[("Watch", "The expert shows it", Wish::Watch), ("Practise", "Try it; nothing is recorded", Wish::Practise)],
-        Some(((Icon::Check, "Take the test"), Wish::Test)),
+        &[(words::WATCH, words::WATCH_MORE, Wish::Watch), (words::PRACTISE, words::PRACTISE_MORE, Wish::Practise)],
+        Some(((Icon::Check, words::TAKE_THE_TEST), Wish::Test)),
     )
 }
 
 fn watching(ui: &mut Ui, open: &Open, step: Option<usize>, over: bool) -> Option<Wish> {
-    ui.label(theme::caption(ui, if over { "That was all." } else { "An expert shows it:" }));
+    ui.label(theme::caption(ui, if over { words::THAT_WAS_ALL } else { words::AN_EXPERT_SHOWS_IT }));
     for (place, shown) in open.lesson.demonstration.iter().enumerate() {
         let now = step == Some(place) && !over;
         let text = RichText::new(format!("{}  {}", place + 1, shown.says));
@@ -131,8 +163,8 @@ fn watching(ui: &mut Ui, open: &Open, step: Option<usize>, over: bool) -> Option
     ui.add_space(space::S);
     buttons(
         ui,
-        &[("Again", "Watch it once more", Wish::Watch), ("Back", "What the lesson is about", Wish::Back)],
-        Some(((Icon::Touch, "Practise"), Wish::Practise)),
+        &[(words::AGAIN, words::AGAIN_MORE, Wish::Watch), (words::BACK, words::BACK_MORE, Wish::Back)],
+        Some(((Icon::Touch, words::PRACTISE), Wish::Practise)),
     )
 }
 
@@ -140,17 +172,13 @@ fn practising(ui: &mut Ui, open: &Open, ghost_off: &mut bool) -> Option<Wish> {
     clock(ui, open, None);
     goals(ui, open, true);
     let mut ghost = !*ghost_off;
-    ui.checkbox(&mut ghost, "Ghost of the expert's fingers")
-        .on_hover_text("Rings that go where an expert's fingers go");
+    ui.checkbox(&mut ghost, words::GHOST_OF_THE_EXPERTS).on_hover_text(words::GHOST_OF_THE_EXPERTS_MORE);
     *ghost_off = !ghost;
     ui.add_space(space::S);
     buttons(
         ui,
-        &[
-            ("Start over", "Everything back to its place", Wish::Practise),
-            ("Back", "What the lesson is about", Wish::Back),
-        ],
-        Some(((Icon::Check, "Take the test"), Wish::Test)),
+        &[(words::START_OVER, words::START_OVER_MORE, Wish::Practise), (words::BACK, words::BACK_MORE, Wish::Back)],
+        Some(((Icon::Check, words::TAKE_THE_TEST), Wish::Test)),
     )
 }
 
@@ -158,7 +186,7 @@ fn testing(ui: &mut Ui, open: &Open) -> Option<Wish> {
     clock(ui, open, Some(open.lesson.at_most_s));
     goals(ui, open, true);
     ui.add_space(space::S);
-    buttons(ui, &[("Give up", "What was done until now is looked at", Wish::End(None))], None)
+    buttons(ui, &[(words::GIVE_UP, words::GIVE_UP_MORE, Wish::End(None))], None)
 }
 
 fn asking(ui: &mut Ui, open: &Open) -> Option<Wish> {
@@ -178,17 +206,16 @@ fn asking(ui: &mut Ui, open: &Open) -> Option<Wish> {
 fn debriefed(ui: &mut Ui, shown: &crate::ui::lessons::Debrief, trainee: Option<&str>) -> Option<Wish> {
     let mut wish = buttons(
         ui,
-        &[("Practise", "Try it; nothing is recorded", Wish::Practise), ("Watch", "The expert shows it", Wish::Watch)],
-        Some(((Icon::Reset, "Once more"), Wish::Test)),
+        &[(words::PRACTISE, words::PRACTISE_MORE, Wish::Practise), (words::WATCH, words::WATCH_MORE, Wish::Watch)],
+        Some(((Icon::Reset, words::ONCE_MORE), Wish::Test)),
     );
-    let link = ui.link("Open its recording in Calibrate").on_hover_text(shown.path.display().to_string());
+    let link = ui.link(words::OPEN_ITS_RECORDING).on_hover_text(shown.path.display().to_string());
     if link.clicked() {
         wish = Some(Wish::OpenLog(shown.path.clone()));
     }
-    let kept = trainee.map_or("Who practises? Attempts are kept by name …".to_owned(), |name| {
-        format!("Kept for {name}: see the progress …")
-    });
-    if ui.link(kept).on_hover_text("The panel Progress: who practises, all attempts, the learning curve").clicked() {
+    let kept =
+        trainee.map_or(words::WHO_PRACTISES_ATTEMPTS.to_owned(), |name| format!("Kept for {name}: see the progress …"));
+    if ui.link(kept).on_hover_text(words::THE_PANEL_PROGRESS).clicked() {
         wish = Some(Wish::Progress);
     }
     wish
@@ -201,13 +228,13 @@ fn clock(ui: &mut Ui, open: &Open, at_most_s: Option<f64>) {
             recording_light(ui);
         }
         ui.label(theme::strong(format!("{} s", format::number(open.progress.running_s(), 1))));
-        let what = at_most_s.map_or("practice, not recorded".to_owned(), |most| {
+        let what = at_most_s.map_or(words::PRACTICE_NOT_RECORDED.to_owned(), |most| {
             format!("recorded · {} s at the most", format::number(most, 0))
         });
         ui.label(theme::caption(ui, what));
     });
     if open.progress.is_completed() {
-        ui.label(RichText::new("All goals reached.").color(palette(ui).good));
+        ui.label(RichText::new(words::ALL_GOALS_REACHED).color(palette(ui).good));
     }
 }
 
@@ -272,10 +299,10 @@ pub fn hint(session: &Session) -> Option<String> {
                 return Some(format!("That went wrong: {}", broken.says));
             }
             let next = open.progress.standings().find(|(_, s)| !s.reached);
-            Some(next.map_or("All goals reached.".to_owned(), |(goal, _)| goal.says.clone()))
+            Some(next.map_or(words::ALL_GOALS_REACHED.to_owned(), |(goal, _)| goal.says.clone()))
         }
-        Phase::Asking => Some("Answer the question on the right.".to_owned()),
-        Phase::Grading => Some("Looking at the recording …".to_owned()),
+        Phase::Asking => Some(words::ANSWER_THE_QUESTION.to_owned()),
+        Phase::Grading => Some(words::LOOKING_AT_THE_RECORDING.to_owned()),
         Phase::Brief | Phase::Debrief(_) => Some(open.lesson.goal.clone()),
     }
 }

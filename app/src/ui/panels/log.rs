@@ -22,6 +22,23 @@ use crate::ui::widgets::{empty_state, primary_button, segmented, sheet};
 use egui::{Key, Modifiers, Rangef, RichText, ScrollArea, Stroke, Ui};
 use std::sync::Arc;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const LOG: &str = "Log";
+    pub const NO_RECORDING_YET_MORE: &str =
+        "Open a log, drop a file on the window, or record one yourself. Its channels, states and forces appear here.";
+    pub const NO_RECORDING_YET: &str = "No recording yet";
+    pub const OPEN: &str = "Open a log …";
+    pub const OPEN_KEYS: &str = "Ctrl+O";
+    pub const OR_RECORD_ONE: &str = "or record one in Train";
+    pub const TIME: &str = "Time";
+    pub const CURVES_OVER_TIME: &str = "Curves over time";
+    pub const XY_MORE: &str = "One signal against another";
+    pub const WHEEL_ZOOMS_RIGHT: &str = "wheel zooms · right drag moves · double click shows all";
+    pub const HIDE_THIS_PLOT: &str = "Hide this plot";
+    pub const SHOW_THIS_PLOT: &str = "Show this plot";
+}
+
 /// Least height of a plot, points.
 const LEAST_HEIGHT: f32 = 56.0;
 /// Height of the line with the name and the views.
@@ -40,7 +57,7 @@ pub struct LogPanel {
 
 impl Panel for LogPanel {
     fn title(&self) -> &'static str {
-        "Log"
+        words::LOG
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
@@ -84,13 +101,12 @@ impl Place {
 }
 
 fn nothing_loaded(ui: &mut Ui, session: &mut Session) {
-    let text =
-        "Open a log, drop a file on the window, or record one yourself. Its channels, states and forces appear here.";
-    empty_state(ui, (Icon::Curves, "No recording yet"), text, |ui| {
-        if primary_button(ui, true, (Icon::Open, "Open a log …")).on_hover_text("Ctrl+O").clicked() {
+    let text = words::NO_RECORDING_YET_MORE;
+    empty_state(ui, (Icon::Curves, words::NO_RECORDING_YET), text, |ui| {
+        if primary_button(ui, true, (Icon::Open, words::OPEN)).on_hover_text(words::OPEN_KEYS).clicked() {
             files::ask(ui.ctx(), &mut session.jobs, Purpose::OpenLog);
         }
-        if ui.link("or record one in Train").clicked() {
+        if ui.link(words::OR_RECORD_ONE).clicked() {
             session.workspace = Workspace::Train;
         }
     });
@@ -100,16 +116,16 @@ fn header(ui: &mut Ui, session: &mut Session, prepared: &Arc<Prepared>) {
     ui.horizontal_wrapped(|ui| {
         // As high as the tallest, so that the rest stands in its middle.
         ui.set_min_height(HEADER);
-        ui.label(theme::heading("Log"));
+        ui.label(theme::heading(words::LOG));
         ui.add_space(space::S);
-        let choices = [(LogView::Time, "Time", "Curves over time"), (LogView::Xy, "XY", "One signal against another")];
+        let choices = [(LogView::Time, words::TIME, words::CURVES_OVER_TIME), (LogView::Xy, "XY", words::XY_MORE)];
         segmented(ui, &mut session.plots.view, &choices);
         if session.plots.view == LogView::Time {
             chips(ui, &mut session.plots, prepared);
             overlay_menu(ui, session);
             if ui.available_size_before_wrap().x > 360.0 {
                 ui.add_space(space::L);
-                ui.label(theme::caption(ui, "wheel zooms · right drag moves · double click shows all"));
+                ui.label(theme::caption(ui, words::WHEEL_ZOOMS_RIGHT));
             }
         }
     });
@@ -124,7 +140,7 @@ fn chips(ui: &mut Ui, plots: &mut PlotChoices, prepared: &Prepared) {
         let text = RichText::new(&group.title).size(11.5).color(if on { p.text } else { p.faint });
         let button = egui::Button::new(text).corner_radius(12).small().fill(if on { p.raised } else { p.card });
         let response = ui.add(button.stroke(Stroke::new(1.0, p.border)));
-        if response.on_hover_text(if on { "Hide this plot" } else { "Show this plot" }).clicked() {
+        if response.on_hover_text(if on { words::HIDE_THIS_PLOT } else { words::SHOW_THIS_PLOT }).clicked() {
             plots.of(group).shown = Some(!on);
         }
     }

@@ -13,6 +13,34 @@ use estimator::online::enough::Enough;
 use estimator::online::leak::Verdict;
 use estimator::online::{Event, Report};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const ON: &str = "On";
+    pub const ON_MORE: &str = "Measure the object while it is handled";
+    pub const WHAT_THE_HAND: &str = "What the hand has measured so far";
+    pub const SWITCHED_OFF: &str = "Switched off.";
+    pub const BLOCKS_BARRELS_AND_CRANKS: &str =
+        "Blocks, barrels and cranks are measured while they are handled; this world has none.";
+    pub const NOTHING_YET_PICK: &str = "Nothing yet: pick something up.";
+    pub const NOTHING_YET_PICK_IT_UP: &str = "Nothing yet: pick it up, carry it, let go; or turn the handle.";
+    pub const ACCURACY: &str = "Accuracy";
+    pub const FORGET: &str = "Forget";
+    pub const FORGET_MORE: &str = "Begins to measure anew";
+    pub const COARSE: &str = "Coarse";
+    pub const COARSE_MORE: &str = "Three times the usual standard errors will do";
+    pub const USUAL: &str = "Usual";
+    pub const USUAL_MORE: &str = "1 % of weights, 0.5 % of widths, 5 % of frictions";
+    pub const FINE: &str = "Fine";
+    pub const FINE_MORE: &str = "A third of the usual standard errors";
+    pub const IT_LEAKS: &str = "It leaks";
+    pub const THE_SENSORS_DRIFT: &str = "The sensors drift";
+    pub const IT_LEAKS_AND_THE_SENSORS: &str = "It leaks, and the sensors drift";
+    pub const LEAK_OR_SENSOR: &str = "Leak or sensor drift: it cannot be told yet";
+    pub const NOT_SHOWN_YET: &str = "not shown yet";
+    pub const NO_WISH_YET: &str = "How well it must be known can be said once there is a value.";
+    pub const ENOUGH_DATA: &str = "Enough data?";
+}
+
 /// Changes are told for so long, s.
 const TOLD_S: f64 = 20.0;
 
@@ -23,18 +51,15 @@ pub fn beside(ui: &mut Ui, trainer: &mut Trainer) {
     let watch = &mut trainer.watch;
     let mut on = watch.on;
     let switch = |ui: &mut Ui| {
-        ui.checkbox(&mut on, "On").on_hover_text("Measure the object while it is handled");
+        ui.checkbox(&mut on, words::ON).on_hover_text(words::ON_MORE);
     };
     let mut again = false;
-    card(ui, "What the hand has measured so far", switch, |ui| match (task, watch.report()) {
-        _ if !watch.on => drop(ui.label(theme::caption(ui, "Switched off."))),
+    card(ui, words::WHAT_THE_HAND, switch, |ui| match (task, watch.report()) {
+        _ if !watch.on => drop(ui.label(theme::caption(ui, words::SWITCHED_OFF))),
         (None, _) => {
-            drop(ui.label(theme::caption(
-                ui,
-                "Blocks, barrels and cranks are measured while they are handled; this world has none.",
-            )));
+            drop(ui.label(theme::caption(ui, words::BLOCKS_BARRELS_AND_CRANKS)));
         }
-        (_, None) => drop(ui.label(theme::caption(ui, "Nothing yet: pick something up."))),
+        (_, None) => drop(ui.label(theme::caption(ui, words::NOTHING_YET_PICK))),
         (_, Some(report)) => again = told(ui, watch, &report, called),
     });
     if again {
@@ -46,7 +71,7 @@ pub fn beside(ui: &mut Ui, trainer: &mut Trainer) {
 /// True when it is to begin anew.
 fn told(ui: &mut Ui, watch: &mut Watch, report: &Report, called: Option<&str>) -> bool {
     if report.enough.is_empty() {
-        ui.label(theme::caption(ui, "Nothing yet: pick it up, carry it, let go; or turn the handle."));
+        ui.label(theme::caption(ui, words::NOTHING_YET_PICK_IT_UP));
         return false;
     }
     rows(ui, &report.parameters, &report.enough, called);
@@ -54,15 +79,15 @@ fn told(ui: &mut Ui, watch: &mut Watch, report: &Report, called: Option<&str>) -
     ui.add_space(space::XS);
     let mut again = false;
     compact(ui, |ui| {
-        ui.label(theme::caption(ui, "Accuracy"));
+        ui.label(theme::caption(ui, words::ACCURACY));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            again = ui.link("Forget").on_hover_text("Begins to measure anew").clicked();
+            again = ui.link(words::FORGET).on_hover_text(words::FORGET_MORE).clicked();
         });
     });
     let choices = [
-        (3.0, "Coarse", "Three times the usual standard errors will do"),
-        (1.0, "Usual", "1 % of weights, 0.5 % of widths, 5 % of frictions"),
-        (1.0 / 3.0, "Fine", "A third of the usual standard errors"),
+        (3.0, words::COARSE, words::COARSE_MORE),
+        (1.0, words::USUAL, words::USUAL_MORE),
+        (1.0 / 3.0, words::FINE, words::FINE_MORE),
     ];
     segmented(ui, &mut watch.coarser, &choices);
     again
@@ -79,10 +104,10 @@ fn notices(ui: &mut Ui, report: &Report, called: Option<&str>) {
     }
     for (object, answer) in report.leaks.iter().filter(|_| called != Some(NEEDLE)) {
         let word = match answer.verdict {
-            Verdict::Leak => "It leaks",
-            Verdict::SensorDrift => "The sensors drift",
-            Verdict::Both => "It leaks, and the sensors drift",
-            Verdict::Steady | Verdict::CannotTell => "Leak or sensor drift: it cannot be told yet",
+            Verdict::Leak => words::IT_LEAKS,
+            Verdict::SensorDrift => words::THE_SENSORS_DRIFT,
+            Verdict::Both => words::IT_LEAKS_AND_THE_SENSORS,
+            Verdict::Steady | Verdict::CannotTell => words::LEAK_OR_SENSOR,
         };
         let advice = answer.motion.as_ref().map_or_else(String::new, |m| format!(" To tell: {m}."));
         say(ui, format!("{}. {word}: {}.{advice}", format::object(object), answer.why), Icon::Doubt);
@@ -138,7 +163,7 @@ fn row(ui: &mut Ui, enough: &Enough, parameter: Option<&Parameter>) {
                     let error = error.map_or_else(String::new, |e| format!(" ± {e}"));
                     ui.label(RichText::new(format!("{value}{error} {}", quantity.unit)).size(12.0))
                 }
-                None => ui.label(RichText::new("not shown yet").size(12.0).italics().color(p.faint)),
+                None => ui.label(RichText::new(words::NOT_SHOWN_YET).size(12.0).italics().color(p.faint)),
             })
             .response
         });
@@ -162,7 +187,7 @@ fn wish(enough: &Enough, factor: f64, unit: &str) -> String {
                 format::significant(wanted * factor, 2)
             )
         }
-        None => "How well it must be known can be said once there is a value.".to_owned(),
+        None => words::NO_WISH_YET.to_owned(),
     }
 }
 
@@ -170,7 +195,7 @@ fn wish(enough: &Enough, factor: f64, unit: &str) -> String {
 pub fn of_recording(ui: &mut Ui, session: &Session) {
     let Some(analysis) = session.analysis.as_ref().filter(|_| !session.enough.is_empty()) else { return };
     let done = session.enough.iter().filter(|e| e.share >= 1.0).count();
-    plain_card(ui, "Enough data?", |ui| {
+    plain_card(ui, words::ENOUGH_DATA, |ui| {
         ui.label(theme::caption(
             ui,
             format!("{done} of {} parameters are known as well as wanted.", session.enough.len()),

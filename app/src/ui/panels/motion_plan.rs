@@ -10,6 +10,15 @@ use egui::{Align2, FontId, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
 use estimator::diagnose::Experiment;
 use haptics::law::Coordinate;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const SAVE_TOOL_MORE: &str =
+        "Writes time and the tool's place as a CSV into the folder of recordings, for a machine that can follow it";
+    pub const SAVE_COORDINATE_MORE: &str =
+        "Writes time and coordinate as a CSV into the folder of recordings, for a machine that can follow it";
+    pub const SAVE_THE_PLAN: &str = "Save the plan";
+}
+
 /// Height of the curve, and room for numbers left of it and below, points.
 const HEIGHT: f32 = 132.0;
 const NUMBERS: [f32; 2] = [40.0, 18.0];
@@ -30,12 +39,8 @@ pub fn show(ui: &mut Ui, session: &mut Session, asked: &Experiment, coordinate: 
     ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     curve(ui, &plan, factor);
     let ctx = ui.ctx().clone();
-    let hint = if session.path_of_tool().is_some() {
-        "Writes time and the tool's place as a CSV into the folder of recordings, for a machine that can follow it"
-    } else {
-        "Writes time and coordinate as a CSV into the folder of recordings, for a machine that can follow it"
-    };
-    if ui.button((Icon::Save, "Save the plan")).on_hover_text(hint).clicked() {
+    let hint = if session.path_of_tool().is_some() { words::SAVE_TOOL_MORE } else { words::SAVE_COORDINATE_MORE };
+    if ui.button((Icon::Save, words::SAVE_THE_PLAN)).on_hover_text(hint).clicked() {
         session.save_motion_plan(&ctx, &plan, coordinate);
     }
 }

@@ -37,12 +37,16 @@ mod words {
     pub const PATH: &str = "Path of a log, then Enter";
     pub const RECORDING: &str = "Recording of the experiment";
     pub const CHOOSE: &str = "Choose a file";
+    pub const RECORD_NEXT: &str = "Record next";
+    pub const ADD: &str = "Add";
+    pub const SETTLED: &str = "Settled";
+    pub const NOT_MEASURED: &str = "Not measured";
 }
 
 /// The card under the causes.
 pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
     let Some(next) = &diagnosis.next_experiment else { return };
-    plain_card(ui, "Record next", |ui| {
+    plain_card(ui, words::RECORD_NEXT, |ui| {
         ui.add(egui::Label::new(sentence(&next.motion)).wrap());
         let names: Vec<String> = next.separates.iter().map(|id| title(id)).collect();
         let power = format::number(100.0 * next.expected_power, 0);
@@ -149,7 +153,7 @@ fn object(ui: &mut Ui, outcome: &Outcome) -> bool {
         ui.label(RichText::new(format!("If it is {}", one(&outcome.id))).size(12.0));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if rounds > 0 {
-                let link = ui.link("Add");
+                let link = ui.link(words::ADD);
                 link.widget_info(|| {
                     egui::WidgetInfo::labeled(egui::Role::Link, true, format!("Add simulated {}", outcome.id))
                 });
@@ -211,7 +215,7 @@ fn load(ui: &mut Ui, session: &mut Session) {
 /// What a later recording settled, and which recordings were simulated: above the causes.
 pub fn settled(ui: &mut Ui, session: &Session, diagnosis: &Diagnosis) {
     if !diagnosis.settled.is_empty() {
-        plain_card(ui, "Settled", |ui| {
+        plain_card(ui, words::SETTLED, |ui| {
             for settled in &diagnosis.settled {
                 let text = format!("{}, not {}.", title(&settled.kept), small(&title(&settled.excluded)));
                 ui.add(egui::Label::new(theme::strong(text)).wrap());
@@ -221,7 +225,7 @@ pub fn settled(ui: &mut Ui, session: &Session, diagnosis: &Diagnosis) {
     }
     let simulated = session.simulated();
     if !simulated.is_empty() {
-        plain_card(ui, "Not measured", |ui| {
+        plain_card(ui, words::NOT_MEASURED, |ui| {
             let text = format!(
                 "{} simulated: this answer shows what the experiment would settle, and says nothing more about the real object.",
                 match simulated.as_slice() {

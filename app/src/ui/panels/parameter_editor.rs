@@ -12,6 +12,29 @@ use egui::{Align, DragValue, Layout, RichText, Slider, Ui};
 use estimator::estimate::Parameter;
 use haptics::recording::Prior;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const CLOSE: &str = "Close";
+    pub const NO_VALUE: &str = "It has no value that could be varied: state one below.";
+    pub const TRY_ANOTHER_VALUE: &str = "Try another value";
+    pub const ANOTHER_VALUE: &str = "Another value";
+    pub const ANOTHER_VALUE_AS_A_NUMBER: &str = "Another value, as a number";
+    pub const THE_SIMULATED_CURVES: &str = "The simulated curves and what is left over follow the slider.";
+    pub const REPLAYING: &str = "Replaying …";
+    pub const BACK_TO_THE_FITTED: &str = "Back to the fitted value";
+    pub const WHERE_ITS_VALUE: &str = "Where its value comes from";
+    pub const ESTIMATE: &str = "Estimate";
+    pub const ESTIMATE_MORE: &str = "From this recording alone";
+    pub const PRIOR: &str = "Prior";
+    pub const PRIOR_MORE: &str = "From this recording and what was believed before, each by its error";
+    pub const FREEZE: &str = "Freeze";
+    pub const FREEZE_MORE: &str = "Taken as known exactly; not estimated";
+    pub const VALUE: &str = "Value";
+    pub const MEAN: &str = "Mean";
+    pub const NOT_BELOW: &str = "Not below";
+    pub const NOT_ABOVE: &str = "Not above";
+}
+
 /// The slider goes so many standard errors to either side …
 const SIGMAS: f64 = 6.0;
 /// … or this share of the value, whichever is more.
@@ -33,7 +56,7 @@ pub fn selected(ui: &mut Ui, session: &mut Session) {
     let quantity = format::parameter(&parameter.name, parameter.value);
     let heading = format!("{} · {}", format::object(&parameter.object), quantity.label.to_lowercase());
     let mut close = false;
-    let leave = |ui: &mut Ui| close = ui.link("Close").clicked();
+    let leave = |ui: &mut Ui| close = ui.link(words::CLOSE).clicked();
     card(ui, &heading, leave, |ui| {
         if let Some(lesson) = teach::parameter(&parameter.name) {
             ui.label(theme::caption(ui, format!("{} {}", lesson.what, lesson.formula)));
@@ -51,10 +74,10 @@ pub fn selected(ui: &mut Ui, session: &mut Session) {
 fn try_another(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quantity: &Quantity) {
     let name = parameter.full_name();
     let Some(fitted) = parameter.value.filter(|_| parameter.identified) else {
-        ui.label(theme::caption(ui, "It has no value that could be varied: state one below."));
+        ui.label(theme::caption(ui, words::NO_VALUE));
         return;
     };
-    ui.label(theme::strong("Try another value"));
+    ui.label(theme::strong(words::TRY_ANOTHER_VALUE));
     let tried = session.what_if.values.get(&name).copied();
     let reach = (SIGMAS * parameter.std_error.unwrap_or(0.0)).max(SHARE * fitted.abs()).max(1e-9);
     let mut shown = tried.unwrap_or(fitted) * quantity.factor;
@@ -66,8 +89,8 @@ fn try_another(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quanti
         let slid = ui.add(slider.clamping(egui::SliderClamping::Never));
         let number = DragValue::new(&mut shown).speed(0.01 * reach * quantity.factor).max_decimals(digits);
         let typed = ui.add(number.suffix(format!(" {}", quantity.unit)));
-        call(&slid, "Another value");
-        call(&typed, "Another value, as a number");
+        call(&slid, words::ANOTHER_VALUE);
+        call(&typed, words::ANOTHER_VALUE_AS_A_NUMBER);
         if slid.changed() || typed.changed() {
             session.try_value(&name, Some(shown / quantity.factor));
         }
@@ -78,7 +101,7 @@ fn try_another(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quanti
 /// What the tried values leave of the force, beside what the fit leaves.
 fn outcome(ui: &mut Ui, session: &mut Session, here: bool) {
     if !session.what_if.is_on() {
-        ui.label(theme::caption(ui, "The simulated curves and what is left over follow the slider."));
+        ui.label(theme::caption(ui, words::THE_SIMULATED_CURVES));
         return;
     }
     let p = palette(ui);
@@ -95,11 +118,11 @@ fn outcome(ui: &mut Ui, session: &mut Session, here: bool) {
         );
         ui.label(RichText::new(words).size(11.5).color(color));
     } else {
-        ui.label(theme::caption(ui, "Replaying …"));
+        ui.label(theme::caption(ui, words::REPLAYING));
     }
     let several = session.what_if.values.len() - usize::from(here);
     compact(ui, |ui| {
-        if ui.link("Back to the fitted value").clicked() {
+        if ui.link(words::BACK_TO_THE_FITTED).clicked() {
             session.what_if.forget();
         }
         if several > 0 {
@@ -118,11 +141,11 @@ fn state(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quantity: &Q
     } else {
         Source::Estimated
     };
-    ui.label(theme::strong("Where its value comes from"));
+    ui.label(theme::strong(words::WHERE_ITS_VALUE));
     let choices = [
-        (Source::Estimated, (Icon::Fit, "Estimate"), "From this recording alone"),
-        (Source::Prior, (Icon::Adjust, "Prior"), "From this recording and what was believed before, each by its error"),
-        (Source::Known, (Icon::Lock, "Freeze"), "Taken as known exactly; not estimated"),
+        (Source::Estimated, (Icon::Fit, words::ESTIMATE), words::ESTIMATE_MORE),
+        (Source::Prior, (Icon::Adjust, words::PRIOR), words::PRIOR_MORE),
+        (Source::Known, (Icon::Lock, words::FREEZE), words::FREEZE_MORE),
     ];
     let mut source = before;
     if segmented(ui, &mut source, &choices) {
@@ -138,10 +161,10 @@ fn state(ui: &mut Ui, session: &mut Session, parameter: &Parameter, quantity: &Q
         }
     }
     if let Some(value) = stated.known.get_mut(&name) {
-        line(ui, "Value", quantity.unit, |ui| number(ui, value, quantity, None));
+        line(ui, words::VALUE, quantity.unit, |ui| number(ui, value, quantity, None));
     }
     if let Some(prior) = stated.prior.get_mut(&name) {
-        line(ui, "Mean", quantity.unit, |ui| number(ui, &mut prior.mean, quantity, None));
+        line(ui, words::MEAN, quantity.unit, |ui| number(ui, &mut prior.mean, quantity, None));
         line(ui, "± 1 σ", quantity.unit, |ui| number(ui, &mut prior.std, quantity, Some(1e-12)));
     }
     bounds(ui, stated, &name, parameter, quantity);
@@ -151,7 +174,8 @@ fn bounds(ui: &mut Ui, stated: &mut Stated, name: &str, parameter: &Parameter, q
     let mut pair = stated.bounds.get(name).copied().unwrap_or([None, None]);
     let value = parameter.value.unwrap_or(0.0);
     let reach = parameter.std_error.map_or(0.1 * value.abs(), |e| 3.0 * e).max(1e-9);
-    for (index, (words, start)) in [("Not below", value - reach), ("Not above", value + reach)].into_iter().enumerate()
+    for (index, (words, start)) in
+        [(words::NOT_BELOW, value - reach), (words::NOT_ABOVE, value + reach)].into_iter().enumerate()
     {
         compact(ui, |ui| {
             let mut on = pair[index].is_some();

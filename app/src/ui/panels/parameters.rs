@@ -14,6 +14,23 @@ use egui_extras::{Column, TableBody, TableBuilder};
 use estimator::estimate::{Fit, Parameter};
 use estimator::simulate::Simulation;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const PARAMETERS: &str = "Parameters";
+    pub const FITTING: &str = "Fitting …";
+    pub const FITTING_MORE: &str = "Segmenting the recording and estimating its parameters.";
+    pub const NO_FIT: &str = "No fit";
+    pub const NOTHING_MEASURED_YET: &str = "Nothing measured yet";
+    pub const NOTHING_MEASURED_YET_MORE: &str = "Weights, sizes and frictions with their errors appear here.";
+    pub const VALUE: &str = "Value";
+    pub const UNIT: &str = "Unit";
+    pub const NOT_SHOWN: &str = "not shown";
+    pub const HOW_IT_WAS_FOUND: &str = "How it was found";
+    pub const WHY_NO_VALUE: &str = "Why there is no value";
+    pub const CLICK_TO_TRY: &str = "Click to try another value or to state one.";
+    pub const REPLAYING_THE_MOTION: &str = "Replaying the motion through the fitted world …";
+}
+
 /// Height of a line.
 const LINE: f32 = 21.0;
 
@@ -23,7 +40,7 @@ pub struct ParametersPanel;
 
 impl Panel for ParametersPanel {
     fn title(&self) -> &'static str {
-        "Parameters"
+        words::PARAMETERS
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
@@ -32,7 +49,7 @@ impl Panel for ParametersPanel {
         let task = analysis.as_ref().map(|a| format::object(a.task.name()));
         card(
             ui,
-            "Parameters",
+            words::PARAMETERS,
             |ui| {
                 if busy {
                     ui.add(egui::Spinner::new().size(14.0));
@@ -54,9 +71,9 @@ impl Panel for ParametersPanel {
 /// Why there is no table yet.
 fn nothing(ui: &mut Ui, session: &Session, busy: bool) {
     let (title, text) = match (&session.fit_problem, busy) {
-        (_, true) => ("Fitting …", "Segmenting the recording and estimating its parameters."),
-        (Some(problem), _) => ("No fit", problem.as_str()),
-        _ => ("Nothing measured yet", "Weights, sizes and frictions with their errors appear here."),
+        (_, true) => (words::FITTING, words::FITTING_MORE),
+        (Some(problem), _) => (words::NO_FIT, problem.as_str()),
+        _ => (words::NOTHING_MEASURED_YET, words::NOTHING_MEASURED_YET_MORE),
     };
     ui.label(theme::strong(title));
     ui.label(theme::caption(ui, text));
@@ -82,13 +99,13 @@ fn table(ui: &mut Ui, session: &mut Session, fit: &Fit) {
         .column(Column::exact(42.0))
         .header(16.0, |mut header| {
             header.col(|_| {});
-            for text in ["Value", "± 1 σ"] {
+            for text in [words::VALUE, "± 1 σ"] {
                 header.col(|ui| {
                     ui.with_layout(right, |ui| ui.label(theme::caption(ui, text)));
                 });
             }
             header.col(|ui| {
-                ui.label(theme::caption(ui, "Unit"));
+                ui.label(theme::caption(ui, words::UNIT));
             });
         })
         .body(|mut body| {
@@ -141,7 +158,7 @@ fn line(body: &mut TableBody<'_>, session: &mut Session, parameter: &Parameter) 
             });
         } else {
             row.col(|ui| {
-                let text = RichText::new("not shown").size(12.0).italics().color(palette(ui).faint);
+                let text = RichText::new(words::NOT_SHOWN).size(12.0).italics().color(palette(ui).faint);
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     // Slanted letters lean out of their place.
                     ui.add_space(2.0);
@@ -190,10 +207,10 @@ fn explain(ui: &mut Ui, parameter: &Parameter) {
         }
         ui.add_space(space::XS);
     }
-    ui.label(theme::strong(if parameter.identified { "How it was found" } else { "Why there is no value" }));
+    ui.label(theme::strong(if parameter.identified { words::HOW_IT_WAS_FOUND } else { words::WHY_NO_VALUE }));
     ui.label(crate::ui::session::sentence(&parameter.how));
     ui.label(theme::caption(ui, format!("{} · {} samples", parameter.name, parameter.samples)));
-    ui.label(theme::caption(ui, "Click to try another value or to state one."));
+    ui.label(theme::caption(ui, words::CLICK_TO_TRY));
 }
 
 /// How well the model reproduces what was measured.
@@ -212,7 +229,7 @@ fn quality(ui: &mut Ui, session: &Session, fit: &Fit) {
     if let Some(simulation) = session.replay().and_then(|r| r.simulation.as_ref()) {
         residual(ui, session, simulation);
     } else if session.jobs.is_running(JobKind::Simulate) {
-        ui.label(theme::caption(ui, "Replaying the motion through the fitted world …"));
+        ui.label(theme::caption(ui, words::REPLAYING_THE_MOTION));
     }
 }
 

@@ -8,6 +8,19 @@ use crate::ui::trainer::USUAL_CONTROL_N_S_M;
 use crate::ui::widgets::{card, fact, remark};
 use egui::{Align, Layout, Ui};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const CONTROLLER: &str = "Controller";
+    pub const NOT_WHILE_A_RECORDING: &str = "Not while a recording runs.";
+    pub const PASSIVITY: &str = "Passivity";
+    pub const ENERGY_TAKEN_IN: &str = "Energy taken in";
+    pub const MORE_WAS_GIVEN: &str =
+        "More was given out than taken in: the force on you may swing. The controller brakes it.";
+    pub const BRAKES_WITH_AT_MOST: &str = "Brakes with at most, N s/m";
+    pub const BRAKES_WITH_AT_MOST_MORE: &str =
+        "The extra damping on each of your fingers; more takes the energy back sooner";
+}
+
 const WHY: &str = "The observer always counts the energy that the world has taken in. When more was given out than taken in (below \
                    zero) the force on you can start to swing; the controller then brakes your fingers until it is back. It is off \
                    unless you want it: it makes some contacts feel sticky.";
@@ -26,13 +39,13 @@ pub fn passivity(ui: &mut Ui, session: &mut Session) {
     // The servo starts anew, which would end a recording.
     let free = !session.trainer.is_recording();
     let switch = |ui: &mut Ui| {
-        let response = ui.add_enabled(free, egui::Checkbox::new(&mut on, "Controller"));
-        response.on_hover_text(WHY).on_disabled_hover_text("Not while a recording runs.");
+        let response = ui.add_enabled(free, egui::Checkbox::new(&mut on, words::CONTROLLER));
+        response.on_hover_text(WHY).on_disabled_hover_text(words::NOT_WHILE_A_RECORDING);
     };
-    card(ui, "Passivity", switch, |ui| {
-        fact(ui, "Energy taken in", format!("{} mJ", number(energy_j * 1e3, 1)));
+    card(ui, words::PASSIVITY, switch, |ui| {
+        fact(ui, words::ENERGY_TAKEN_IN, format!("{} mJ", number(energy_j * 1e3, 1)));
         if energy_j < GIVEN_OUT_J {
-            let text = "More was given out than taken in: the force on you may swing. The controller brakes it.";
+            let text = words::MORE_WAS_GIVEN;
             remark(ui, Icon::Doubt, text);
         }
         if before.is_some() {
@@ -49,10 +62,10 @@ pub fn passivity(ui: &mut Ui, session: &mut Session) {
 
 fn strength(ui: &mut Ui, most: &mut f64) {
     ui.horizontal(|ui| {
-        ui.label(theme::caption(ui, "Brakes with at most, N s/m"));
+        ui.label(theme::caption(ui, words::BRAKES_WITH_AT_MOST));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             for (label, value) in STRENGTHS.iter().rev() {
-                let hint = "The extra damping on each of your fingers; more takes the energy back sooner";
+                let hint = words::BRAKES_WITH_AT_MOST_MORE;
                 ui.selectable_value(most, *value, *label).on_hover_text(hint);
             }
         });

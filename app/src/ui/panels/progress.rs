@@ -16,6 +16,46 @@ use egui::{
     TextEdit, Ui, pos2, vec2,
 };
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const PROGRESS: &str = "Progress";
+    pub const WHO_PRACTISES: &str = "Who practises";
+    pub const CHOOSE_WHO_PRACTISES: &str =
+        "Choose who practises, or add them: their attempts at lessons are kept and shown here.";
+    pub const NO_ATTEMPTS_YET: &str = "No attempts yet";
+    pub const LEARNING: &str = "Learning";
+    pub const ATTEMPTS: &str = "Attempts";
+    pub const NOBODY_YET: &str = "Nobody yet";
+    pub const TRAINEE: &str = "Trainee";
+    pub const NEW_TRAINEE_HINT: &str = "Name of a new one";
+    pub const NEW_TRAINEE: &str = "Name of a new trainee";
+    pub const ADD: &str = "Add";
+    pub const NOTHING_IS_KEPT: &str = "Nothing is kept: the system names no folder for data. Set HOME or \
+        XDG_DATA_HOME, then start the program again.";
+    pub const NONE_OF_THESE: &str = "None of these attempts has a score.";
+    pub const LESSON: &str = "Lesson";
+    pub const CRITERION_MET: &str = "criterion met";
+    pub const MEAN_OF_A_SESSION: &str = "mean of a session";
+    pub const ONE_ATTEMPT: &str = "one attempt";
+    pub const THE_SCORES_DO: &str = "The scores do not change by more than chance would make them.";
+    pub const SIX_SCORES_OR_MORE: &str = "Six scores or more show a curve.";
+    pub const NOT_PROFICIENT_YET: &str = "Not proficient yet: that is the criterion met twice in a row.";
+    pub const SCORE: &str = "Score";
+    pub const NUMBER_OF_THE_ATTEMPT: &str = "Number of the attempt";
+    pub const ONE_ATTEMPT_ALONE: &str = "One attempt.";
+    pub const SAVE_AS_A_TABLE_MORE: &str = "All attempts of this trainee at every lesson, every measure a column";
+    pub const SAVE_AS_A_TABLE: &str = "Save as a table …";
+    pub const BEGUN: &str = "Begun";
+    pub const TOOK: &str = "Took";
+    pub const CRITERION: &str = "Criterion";
+    pub const RECORDING: &str = "Recording";
+    pub const NOT_COMPLETED: &str = "not completed";
+    pub const NOT_MET: &str = "not met";
+}
+
+/// How the time of an attempt is written.
+const DATE_FORMAT: &str = "%Y-%m-%d %H:%M UTC";
+
 /// Height of the curve, points, and the room for its numbers.
 const CURVE: f32 = 240.0;
 const NUMBERS: [f32; 2] = [40.0, 36.0];
@@ -34,26 +74,25 @@ pub struct ProgressPanel;
 
 impl Panel for ProgressPanel {
     fn title(&self) -> &'static str {
-        "Progress"
+        words::PROGRESS
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ScrollArea::vertical().id_salt("progress").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
-            plain_card(ui, "Who practises", |ui| who(ui, session));
+            plain_card(ui, words::WHO_PRACTISES, |ui| who(ui, session));
             if session.learning.attempts.is_empty() {
                 let text = match &session.learning.trainee {
                     Some(name) => {
                         format!("{name} has not attempted a lesson yet. What they do is kept and shown here.")
                     }
-                    None => "Choose who practises, or add them: their attempts at lessons are kept and shown here."
-                        .to_owned(),
+                    None => words::CHOOSE_WHO_PRACTISES.to_owned(),
                 };
-                empty_state(ui, (Icon::Progress, "No attempts yet"), &text, |_| {});
+                empty_state(ui, (Icon::Progress, words::NO_ATTEMPTS_YET), &text, |_| {});
                 return;
             }
-            plain_card(ui, "Learning", |ui| learning(ui, session));
-            plain_card(ui, "Attempts", |ui| attempts(ui, session));
+            plain_card(ui, words::LEARNING, |ui| learning(ui, session));
+            plain_card(ui, words::ATTEMPTS, |ui| attempts(ui, session));
         });
     }
 }
@@ -62,7 +101,7 @@ fn who(ui: &mut Ui, session: &mut Session) {
     let learning = &mut session.learning;
     let mut chosen = None;
     ui.horizontal_wrapped(|ui| {
-        let shown = learning.trainee.clone().unwrap_or_else(|| "Nobody yet".to_owned());
+        let shown = learning.trainee.clone().unwrap_or_else(|| words::NOBODY_YET.to_owned());
         let list = ComboBox::from_id_salt("trainee").selected_text(shown).width(180.0).truncate();
         let list = list.show_ui(ui, |ui| {
             for name in &learning.trainees {
@@ -71,15 +110,15 @@ fn who(ui: &mut Ui, session: &mut Session) {
                 }
             }
         });
-        call(&list.response, "Trainee");
+        call(&list.response, words::TRAINEE);
         ui.add_space(space::S);
         let is_kept = learning.is_kept();
-        let field = TextEdit::singleline(&mut learning.name_field).hint_text("Name of a new one");
+        let field = TextEdit::singleline(&mut learning.name_field).hint_text(words::NEW_TRAINEE_HINT);
         let response = ui.add_enabled(is_kept, field.desired_width(150.0));
-        call(&response, "Name of a new trainee");
+        call(&response, words::NEW_TRAINEE);
         let entered = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
         let named = is_kept && !learning.name_field.trim().is_empty();
-        if ui.add_enabled(named, egui::Button::new((Icon::Add, "Add"))).clicked() || (entered && named) {
+        if ui.add_enabled(named, egui::Button::new((Icon::Add, words::ADD))).clicked() || (entered && named) {
             learning.add_trainee();
         }
     });
@@ -87,7 +126,7 @@ fn who(ui: &mut Ui, session: &mut Session) {
         learning.choose(&name);
     }
     if !session.learning.is_kept() {
-        let text = "Nothing is kept: the system names no folder for data. Set HOME or XDG_DATA_HOME, then start the program again.";
+        let text = words::NOTHING_IS_KEPT;
         ui.add(egui::Label::new(theme::caption(ui, text)).wrap());
     }
 }
@@ -97,7 +136,7 @@ fn learning(ui: &mut Ui, session: &mut Session) {
     let learned = session.learning.learned.clone();
     let expert = session.learning.shown().and_then(|p| session.learning.experts.get(&p.lesson).copied());
     if learned.tries.is_empty() {
-        ui.label(theme::caption(ui, "None of these attempts has a score."));
+        ui.label(theme::caption(ui, words::NONE_OF_THESE));
         return;
     }
     ui.add_space(space::XS);
@@ -120,19 +159,19 @@ fn lessons(ui: &mut Ui, session: &mut Session) {
                 }
             }
         });
-        call(&list.response, "Lesson");
+        call(&list.response, words::LESSON);
     });
     if chosen.is_some() {
         session.learning.look_at(chosen);
     }
     let (p, model) = (palette(ui), inks(ui).model);
     ui.horizontal_wrapped(|ui| {
-        for (words, color) in [("attempt", model), ("criterion met", p.good)] {
+        for (words, color) in [("attempt", model), (words::CRITERION_MET, p.good)] {
             key(ui, words, |ui, rect| {
                 ui.painter().circle_filled(rect.center(), MARK, color);
             });
         }
-        key(ui, "mean of a session", |ui, rect| {
+        key(ui, words::MEAN_OF_A_SESSION, |ui, rect| {
             ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(1.5, p.secondary));
         });
     });
@@ -153,7 +192,7 @@ fn in_words(learned: &Learned) -> String {
     if let Some((first, last, mean, half)) = learned.sessions.last() {
         let half = half.map_or(String::new(), |half| format!(" ± {}", format::significant(half, 2)));
         let count = last + 1 - first;
-        let of = if count == 1 { "one attempt".to_owned() } else { format!("{count} attempts") };
+        let of = if count == 1 { words::ONE_ATTEMPT.to_owned() } else { format!("{count} attempts") };
         words.push(format!("Last session: {}{half} in {of} (mean, 95 % interval).", number(*mean)));
     }
     match &learned.curve {
@@ -164,12 +203,12 @@ fn in_words(learned: &Learned) -> String {
             format::significant(curve.exponent_interval[0], 2),
             format::significant(curve.exponent_interval[1], 2)
         )),
-        Some(_) => words.push("The scores do not change by more than chance would make them.".to_owned()),
-        None => words.push("Six scores or more show a curve.".to_owned()),
+        Some(_) => words.push(words::THE_SCORES_DO.to_owned()),
+        None => words.push(words::SIX_SCORES_OR_MORE.to_owned()),
     }
     words.push(match learned.proficient_at {
         Some(attempt) => format!("Proficient after attempt {attempt}: the criterion was met twice in a row."),
-        None => "Not proficient yet: that is the criterion met twice in a row.".to_owned(),
+        None => words::NOT_PROFICIENT_YET.to_owned(),
     });
     words.join(" ")
 }
@@ -222,9 +261,9 @@ impl Axes {
             painter.text(pos2(at.x - 6.0, at.y), Align2::RIGHT_CENTER, text, font.clone(), p.secondary);
         }
         let above = self.plot.left_top() - vec2(0.0, 5.0);
-        painter.text(above, Align2::LEFT_BOTTOM, "Score", font.clone(), p.secondary);
+        painter.text(above, Align2::LEFT_BOTTOM, words::SCORE, font.clone(), p.secondary);
         let below = self.plot.center_bottom() + vec2(0.0, NUMBERS[1]);
-        painter.text(below, Align2::CENTER_BOTTOM, "Number of the attempt", font, p.secondary);
+        painter.text(below, Align2::CENTER_BOTTOM, words::NUMBER_OF_THE_ATTEMPT, font, p.secondary);
     }
 }
 
@@ -296,16 +335,19 @@ fn hints(response: &egui::Response, learned: &Learned, axes: &Axes) {
 
 /// `2026-11-22 19:05 UTC`.
 fn when(attempt: &Attempt) -> String {
-    attempt.began.strftime("%Y-%m-%d %H:%M UTC").to_string()
+    attempt.began.strftime(DATE_FORMAT).to_string()
 }
 
 fn attempts(ui: &mut Ui, session: &mut Session) {
     compact(ui, |ui| {
         let all = session.learning.learned.attempts.len();
-        ui.label(theme::caption(ui, if all == 1 { "One attempt.".to_owned() } else { format!("{all} attempts.") }));
+        ui.label(theme::caption(
+            ui,
+            if all == 1 { words::ONE_ATTEMPT_ALONE.to_owned() } else { format!("{all} attempts.") },
+        ));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let hint = "All attempts of this trainee at every lesson, every measure a column";
-            if ui.link("Save as a table …").on_hover_text(hint).clicked() {
+            let hint = words::SAVE_AS_A_TABLE_MORE;
+            if ui.link(words::SAVE_AS_A_TABLE).on_hover_text(hint).clicked() {
                 files::ask(ui.ctx(), &mut session.jobs, Purpose::SaveHistory);
             }
         });
@@ -320,7 +362,7 @@ fn attempts(ui: &mut Ui, session: &mut Session) {
 
 fn table(ui: &mut Ui, rows: &[Attempt], p: &Palette) {
     Grid::new("attempts").num_columns(6).striped(true).spacing(vec2(space::L, space::XS)).show(ui, |ui| {
-        for name in ["", "Begun", "Took", "Score", "Criterion", "Recording"] {
+        for name in ["", words::BEGUN, words::TOOK, words::SCORE, words::CRITERION, words::RECORDING] {
             ui.label(theme::caption(ui, name));
         }
         ui.end_row();
@@ -331,9 +373,9 @@ fn table(ui: &mut Ui, rows: &[Attempt], p: &Palette) {
             let score = attempt.score.map_or_else(|| "–".to_owned(), |score| format::significant(score, 3));
             ui.label(RichText::new(score).size(12.0).strong());
             let (criterion, color) = match (attempt.completed, attempt.meets_criterion) {
-                (false, _) => ("not completed", p.caution),
+                (false, _) => (words::NOT_COMPLETED, p.caution),
                 (true, true) => ("met", p.good),
-                (true, false) => ("not met", p.secondary),
+                (true, false) => (words::NOT_MET, p.secondary),
             };
             ui.label(RichText::new(criterion).size(12.0).color(color));
             let file = attempt.recording.as_ref().map(|path| (crate::ui::mapping::name_of(path), path));

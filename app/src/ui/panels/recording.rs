@@ -54,6 +54,17 @@ mod words {
     pub const WHERE_LOG: &str = "Where the recording goes";
     pub const WRITE_LOG: &str = "Save recording";
     pub const CHOOSE: &str = "Choose a place";
+    pub const RECORDING: &str = "Recording";
+    pub const FIT: &str = "Fit";
+    pub const SAVE: &str = "Save";
+    pub const NAME: &str = "Name";
+    pub const LENGTH: &str = "Length";
+    pub const NO_CLOCK: &str = "no clock";
+    pub const SAMPLES: &str = "Samples";
+    pub const RATE: &str = "Rate";
+    pub const CHANNELS: &str = "Channels";
+    pub const VELOCITIES: &str = "Velocities";
+    pub const REFIT: &str = "Refit";
 }
 
 /// The recording panel.
@@ -66,16 +77,16 @@ pub struct RecordingPanel {
 
 impl Panel for RecordingPanel {
     fn title(&self) -> &'static str {
-        "Recording"
+        words::RECORDING
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         ScrollArea::vertical().id_salt("recording").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
-            plain_card(ui, "Recording", |ui| source(ui, session));
+            plain_card(ui, words::RECORDING, |ui| source(ui, session));
             if session.prepared().is_some() {
-                plain_card(ui, "Fit", |ui| fit(ui, session));
-                plain_card(ui, "Save", |ui| self.save(ui, session));
+                plain_card(ui, words::FIT, |ui| fit(ui, session));
+                plain_card(ui, words::SAVE, |ui| self.save(ui, session));
             }
         });
     }
@@ -114,16 +125,16 @@ fn source(ui: &mut Ui, session: &mut Session) {
     if session.recordings.len() > 1 {
         choose_trial(ui, session);
     } else {
-        fact(ui, "Name", recording.name.clone()).on_hover_text(whole_path(session));
+        fact(ui, words::NAME, recording.name.clone()).on_hover_text(whole_path(session));
     }
-    fact(ui, "Length", recording.duration_s().map_or_else(|| "no clock".to_owned(), |d| format!("{d:.1} s")));
-    fact(ui, "Samples", format::grouped(recording.len()));
+    fact(ui, words::LENGTH, recording.duration_s().map_or_else(|| words::NO_CLOCK.to_owned(), |d| format!("{d:.1} s")));
+    fact(ui, words::SAMPLES, format::grouped(recording.len()));
     if let Some(rate) = prepared.rate_hz {
-        fact(ui, "Rate", format!("{} Hz", format::significant(rate, 3)));
+        fact(ui, words::RATE, format!("{} Hz", format::significant(rate, 3)));
     }
-    fact(ui, "Channels", recording.channels.len().to_string());
+    fact(ui, words::CHANNELS, recording.channels.len().to_string());
     if let Some(from) = &prepared.velocity_from {
-        fact(ui, "Velocities", from.split(' ').next().unwrap_or_default().to_owned());
+        fact(ui, words::VELOCITIES, from.split(' ').next().unwrap_or_default().to_owned());
     }
 }
 
@@ -158,7 +169,7 @@ fn fit(ui: &mut Ui, session: &mut Session) {
     let running = session.jobs.is_running(JobKind::Fit);
     ui.add_space(space::XS);
     ui.horizontal(|ui| {
-        let text = if session.analysis.is_some() { "Refit" } else { "Fit" };
+        let text = if session.analysis.is_some() { words::REFIT } else { words::FIT };
         if primary_button(ui, !running, (Icon::Fit, text)).clicked() {
             let ctx = ui.ctx().clone();
             session.refit(&ctx);

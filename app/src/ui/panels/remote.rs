@@ -11,6 +11,29 @@ use haptics::device::udp::{Key, PORT};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const OVER_THE_NETWORK: &str = "Over the network";
+    pub const WAVE_VARIABLES: &str = "Wave variables";
+    pub const WAVE_VARIABLES_MORE: &str = "For long or jittering lines: contact stays stable, and is felt softer. \
+        The device's program must speak them too (docs/udp).";
+    pub const MEND_THE_FIELD: &str = "Mend the field above first.";
+    pub const NAME_THE_FILE: &str = "Name the file with the key first.";
+    pub const OPEN_AGAIN_WITH_THESE: &str = "Open again with these";
+    pub const KEY_FILE: &str = "Key file";
+    pub const KEY_FILE_MORE: &str = "A file with the shared key: 64 hexadecimal digits";
+    pub const LISTEN_AT: &str = "Listen at";
+    pub const LISTEN_AT_MORE: &str = "An address of this machine, with or without a port. To be reached from \
+        other machines: that of a network card";
+    pub const DAMPING: &str = "Damping, N s/m";
+    pub const NOT_KNOWN: &str = "not known";
+    pub const DAMPING_MORE: &str = "The device\'s own damping. The stiffness that it can feel safely is computed \
+        with it; leave it empty where you do not know it";
+    pub const ROUND_TRIP_MS: &str = "Round trip, ms";
+    pub const ROUND_TRIP_MS_MORE: &str =
+        "From here to the device and back. The longer, the softer the world has to be felt";
+}
+
 /// The key file is looked at this often.
 const LOOK_AGAIN: Duration = Duration::from_secs(2);
 
@@ -27,12 +50,10 @@ impl RemoteCard {
     /// Draws it; the choice when the device was asked for.
     pub(super) fn ui(&mut self, ui: &mut Ui, session: &mut Session) -> Option<Choice> {
         let mut chosen = None;
-        plain_card(ui, "Over the network", |ui| {
+        plain_card(ui, words::OVER_THE_NETWORK, |ui| {
             fields(ui, &mut session.trainer.settings.remote);
-            ui.checkbox(&mut session.trainer.settings.remote.waves, "Wave variables").on_hover_text(
-                "For long or jittering lines: contact stays stable, and is felt softer. The device's program must speak them too \
-                 (docs/udp).",
-            );
+            ui.checkbox(&mut session.trainer.settings.remote.waves, words::WAVE_VARIABLES)
+                .on_hover_text(words::WAVE_VARIABLES_MORE);
             let remote = session.trainer.settings.remote.clone();
             self.doubt(&remote.key);
             for doubt in &self.doubts {
@@ -44,8 +65,8 @@ impl RemoteCard {
             }
             ui.add_space(space::XS);
             let ready = match &problem {
-                Some(_) => Err("Mend the field above first."),
-                None if remote.key.trim().is_empty() => Err("Name the file with the key first."),
+                Some(_) => Err(words::MEND_THE_FIELD),
+                None if remote.key.trim().is_empty() => Err(words::NAME_THE_FILE),
                 None => Ok(()),
             };
             let choice = Choice::Hand(HandDevice::Udp);
@@ -53,7 +74,7 @@ impl RemoteCard {
             let trainer = &session.trainer;
             let runs = trainer.operator == Operator::You && trainer.hand == HandDevice::Udp;
             if runs && self.in_use.as_ref().is_some_and(|used| *used != remote) {
-                let again = egui::Button::new("Open again with these");
+                let again = egui::Button::new(words::OPEN_AGAIN_WITH_THESE);
                 if ui.add_enabled(ready.is_ok(), again).clicked() {
                     chosen = Some(choice);
                 }
@@ -79,26 +100,10 @@ impl RemoteCard {
 fn fields(ui: &mut Ui, remote: &mut Remote) {
     let address = format!("127.0.0.1:{PORT}");
     let lines: [(&mut String, &str, &str, &str); 4] = [
-        (&mut remote.key, "Key file", "/path/to/key", "A file with the shared key: 64 hexadecimal digits"),
-        (
-            &mut remote.address,
-            "Listen at",
-            &address,
-            "An address of this machine, with or without a port. To be reached from other machines: that of a network card",
-        ),
-        (
-            &mut remote.damping,
-            "Damping, N s/m",
-            "not known",
-            "The device\'s own damping. The stiffness that it can feel safely is computed with it; leave it empty where you do \
-             not know it",
-        ),
-        (
-            &mut remote.round_trip,
-            "Round trip, ms",
-            "0",
-            "From here to the device and back. The longer, the softer the world has to be felt",
-        ),
+        (&mut remote.key, words::KEY_FILE, "/path/to/key", words::KEY_FILE_MORE),
+        (&mut remote.address, words::LISTEN_AT, &address, words::LISTEN_AT_MORE),
+        (&mut remote.damping, words::DAMPING, words::NOT_KNOWN, words::DAMPING_MORE),
+        (&mut remote.round_trip, words::ROUND_TRIP_MS, "0", words::ROUND_TRIP_MS_MORE),
     ];
     egui::Grid::new("remote").num_columns(2).spacing(vec2(space::S, space::XS)).show(ui, |ui| {
         for (text, label, hint, tip) in lines {

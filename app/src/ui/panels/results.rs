@@ -11,6 +11,35 @@ use crate::ui::widgets::{card, plain_card, primary_button, remark};
 use egui::{RichText, ScrollArea, Ui};
 use estimator::estimate::{Constraint, ConstraintKind};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const RESULTS: &str = "Results";
+    pub const CONSTRAINTS: &str = "Constraints";
+    pub const TURNS_ABOUT_A_CENTRE: &str = "Turns about a centre";
+    pub const SLIDES_ALONG_A_LINE: &str = "Slides along a line";
+    pub const MOVES_FREELY: &str = "Moves freely";
+    pub const MEMBRANE: &str = "Membrane";
+    pub const HOLDS_ONE_WAY_ONLY: &str = "Holds one way only";
+    pub const FOLLOWS_A_PATH: &str = "Follows a path that is neither line nor circle";
+    pub const TURNS_AND_SLIDES: &str = "Turns and slides along its axis";
+    pub const UNDECIDED: &str = "Undecided";
+    pub const AS_RIGID_AS_HAND: &str = "As rigid as hand and sensors can tell";
+    pub const GIVES_WAY_MEASURABLY: &str = "Gives way measurably";
+    pub const WARNINGS: &str = "Warnings";
+    pub const NOTHING_DOUBTFUL_WAS_FOUND: &str = "Nothing doubtful was found.";
+    pub const WHAT_IT_GETS_WRONG: &str = "What it gets wrong";
+    pub const WHAT_IT_GETS_WRONG_MORE: &str =
+        "A diagnosis names what the model misses, and measures what mending it gains.";
+    pub const DIAGNOSE: &str = "Diagnose …";
+    pub const CTRL_3: &str = "Ctrl+3";
+    pub const CALIBRATED_WORLD: &str = "Calibrated world";
+    pub const CALIBRATED_WORLD_MORE: &str = "The virtual objects now have the measured properties.";
+    pub const TRAIN_IN_THIS_WORLD: &str = "Train in this world";
+    pub const PRACTISE_ON_THIS_MORE: &str =
+        "A lesson in this world: shown, practised and tested, with experts of its own";
+    pub const PRACTISE_ON_THIS: &str = "Practise on this";
+}
+
 /// The right column of the calibration.
 #[derive(Default)]
 pub struct ResultsPanel {
@@ -19,7 +48,7 @@ pub struct ResultsPanel {
 
 impl Panel for ResultsPanel {
     fn title(&self) -> &'static str {
-        "Results"
+        words::RESULTS
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
@@ -38,7 +67,7 @@ impl Panel for ResultsPanel {
 
 fn constraints(ui: &mut Ui, session: &Session) {
     let Some(analysis) = session.analysis.as_ref().filter(|a| !a.fit.constraints.is_empty()) else { return };
-    plain_card(ui, "Constraints", |ui| {
+    plain_card(ui, words::CONSTRAINTS, |ui| {
         for (index, constraint) in analysis.fit.constraints.iter().enumerate() {
             if index > 0 {
                 ui.separator();
@@ -68,14 +97,14 @@ fn heading(constraint: &Constraint) -> String {
 
 fn kind(kind: ConstraintKind) -> &'static str {
     match kind {
-        ConstraintKind::Revolute => "Turns about a centre",
-        ConstraintKind::Prismatic => "Slides along a line",
-        ConstraintKind::Free => "Moves freely",
-        ConstraintKind::Membrane => "Membrane",
-        ConstraintKind::Unilateral => "Holds one way only",
-        ConstraintKind::Spline => "Follows a path that is neither line nor circle",
-        ConstraintKind::Screw => "Turns and slides along its axis",
-        ConstraintKind::Undecided => "Undecided",
+        ConstraintKind::Revolute => words::TURNS_ABOUT_A_CENTRE,
+        ConstraintKind::Prismatic => words::SLIDES_ALONG_A_LINE,
+        ConstraintKind::Free => words::MOVES_FREELY,
+        ConstraintKind::Membrane => words::MEMBRANE,
+        ConstraintKind::Unilateral => words::HOLDS_ONE_WAY_ONLY,
+        ConstraintKind::Spline => words::FOLLOWS_A_PATH,
+        ConstraintKind::Screw => words::TURNS_AND_SLIDES,
+        ConstraintKind::Undecided => words::UNDECIDED,
     }
 }
 
@@ -110,8 +139,8 @@ fn facts(constraint: &Constraint) -> Vec<String> {
         facts.push(format!("Mean constraint force {} N outwards", format::number(force, 3)));
     }
     match constraint.rigid {
-        Some(true) => facts.push("As rigid as hand and sensors can tell".to_owned()),
-        Some(false) => facts.push("Gives way measurably".to_owned()),
+        Some(true) => facts.push(words::AS_RIGID_AS_HAND.to_owned()),
+        Some(false) => facts.push(words::GIVES_WAY_MEASURABLY.to_owned()),
         None => {}
     }
     facts.extend(crate::constraint_words(constraint).iter().map(|w| sentence(w)));
@@ -141,9 +170,9 @@ fn warnings(ui: &mut Ui, session: &mut Session) {
         }));
     };
     let mut jump = None;
-    card(ui, "Warnings", count, |ui| {
+    card(ui, words::WARNINGS, count, |ui| {
         if texts.is_empty() {
-            ui.label(theme::caption(ui, "Nothing doubtful was found."));
+            ui.label(theme::caption(ui, words::NOTHING_DOUBTFUL_WAS_FOUND));
         }
         for (text, places) in texts {
             ui.scope(|ui| {
@@ -179,10 +208,10 @@ fn diagnose(ui: &mut Ui, session: &mut Session) {
     if session.analysis.is_none() {
         return;
     }
-    plain_card(ui, "What it gets wrong", |ui| {
-        ui.label(theme::caption(ui, "A diagnosis names what the model misses, and measures what mending it gains."));
+    plain_card(ui, words::WHAT_IT_GETS_WRONG, |ui| {
+        ui.label(theme::caption(ui, words::WHAT_IT_GETS_WRONG_MORE));
         ui.add_space(space::XS);
-        if ui.button((Icon::Diagnose, "Diagnose …")).on_hover_text("Ctrl+3").clicked() {
+        if ui.button((Icon::Diagnose, words::DIAGNOSE)).on_hover_text(words::CTRL_3).clicked() {
             session.workspace = Workspace::Diagnose;
             if session.diagnosing.answer.is_none() && session.diagnosing.problem.is_none() {
                 let ctx = ui.ctx().clone();
@@ -197,16 +226,16 @@ fn train_with_it(ui: &mut Ui, session: &mut Session) {
     if analysis.world.blocks.is_empty() && analysis.world.crank.is_none() {
         return;
     }
-    plain_card(ui, "Calibrated world", |ui| {
-        ui.label(theme::caption(ui, "The virtual objects now have the measured properties."));
+    plain_card(ui, words::CALIBRATED_WORLD, |ui| {
+        ui.label(theme::caption(ui, words::CALIBRATED_WORLD_MORE));
         ui.add_space(space::XS);
         ui.horizontal(|ui| {
-            if primary_button(ui, true, (Icon::Touch, "Train in this world")).clicked() {
+            if primary_button(ui, true, (Icon::Touch, words::TRAIN_IN_THIS_WORLD)).clicked() {
                 session.train_calibrated = true;
                 session.workspace = Workspace::Train;
             }
-            let hint = "A lesson in this world: shown, practised and tested, with experts of its own";
-            if ui.button((Icon::Lesson, "Practise on this")).on_hover_text(hint).clicked() {
+            let hint = words::PRACTISE_ON_THIS_MORE;
+            if ui.button((Icon::Lesson, words::PRACTISE_ON_THIS)).on_hover_text(hint).clicked() {
                 let ctx = ui.ctx().clone();
                 session.practise_on_this(&ctx);
             }

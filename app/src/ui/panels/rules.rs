@@ -13,6 +13,28 @@ use egui::{DragValue, ScrollArea, TextEdit, Ui};
 use estimator::segment::definition::Definition;
 use haptics::recording::Task;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const RULES: &str = "Rules";
+    pub const CLOSE: &str = "Close";
+    pub const CLOSE_MORE: &str = "The rules stay as they are for this recording";
+    pub const RESET: &str = "Reset";
+    pub const RESET_MORE: &str = "Back to the rules as they were";
+    pub const BUILT_IN: &str = "built in";
+    pub const A_NEEDLES_PHASES: &str = "A needle's phases are told from its strokes; no threshold is needed.";
+    pub const WITHOUT_THE_TICK: &str = "Without the tick it is learned above the noise of every recording";
+    pub const FORCE: &str = "Force ±";
+    pub const VELOCITY: &str = "Velocity ±";
+    pub const ZERO_AGAIN_BELOW: &str = "zero again below";
+    pub const HYSTERESIS_MORE: &str = "Hysteresis: a signal counts as 0 again below this share of its threshold";
+    pub const NAME_OF_YOUR_TASK: &str = "Name of your task";
+    pub const SAVE_AS_MY_TASK: &str = "Save as my task";
+    pub const FIRST_RULE_COUNTS: &str = "The first rule that holds names the state.";
+    pub const SIGNS_MORE: &str = "+ above, 0 within, − below. The first that holds counts.";
+    pub const CHANGED_THE_STATES: &str = "Changed; the states below follow. Refit for new numbers.";
+    pub const FORCE_BIAS: &str = "Force bias";
+}
+
 /// Height of what stands below the tables: thresholds, name, and what is wrong.
 const FOOT: f32 = 94.0;
 
@@ -30,7 +52,7 @@ enum Asked {
 
 impl Panel for RulesPanel {
     fn title(&self) -> &'static str {
-        "Rules"
+        words::RULES
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
@@ -69,18 +91,18 @@ impl Panel for RulesPanel {
 
 fn head(ui: &mut Ui, draft: &Definition, before: &Definition) -> Asked {
     let mut asked = Asked::Nothing;
-    if ui.button((Icon::Close, "Close")).on_hover_text("The rules stay as they are for this recording").clicked() {
+    if ui.button((Icon::Close, words::CLOSE)).on_hover_text(words::CLOSE_MORE).clicked() {
         asked = Asked::Close;
     }
     if ui
-        .add_enabled(draft != before, egui::Button::new((Icon::Reset, "Reset")))
-        .on_hover_text("Back to the rules as they were")
+        .add_enabled(draft != before, egui::Button::new((Icon::Reset, words::RESET)))
+        .on_hover_text(words::RESET_MORE)
         .clicked()
     {
         asked = Asked::Reset;
     }
     let like = draft.like.name();
-    let text = if draft.name == like { "built in".to_owned() } else { format!("{}, like {like}", draft.name) };
+    let text = if draft.name == like { words::BUILT_IN.to_owned() } else { format!("{}, like {like}", draft.name) };
     ui.label(theme::caption(ui, text));
     asked
 }
@@ -94,7 +116,7 @@ fn reset(session: &mut Session) {
 /// Thresholds with hysteresis. A needle has none.
 fn thresholds(ui: &mut Ui, open: &mut Rules, session: &Session) {
     if open.draft.like == Task::Needle {
-        ui.label(theme::caption(ui, "A needle's phases are told from its strokes; no threshold is needed."));
+        ui.label(theme::caption(ui, words::A_NEEDLES_PHASES));
         return;
     }
     let used = session.segmentation().map(|s| s.thresholds);
@@ -102,8 +124,7 @@ fn thresholds(ui: &mut Ui, open: &mut Rules, session: &Session) {
     ui.horizontal(|ui| {
         let one = |ui: &mut Ui, label: &str, value: &mut Option<f64>, learned: f64, factor: f64, unit: &str| {
             let mut own = value.is_some();
-            ui.checkbox(&mut own, label)
-                .on_hover_text("Without the tick it is learned above the noise of every recording");
+            ui.checkbox(&mut own, label).on_hover_text(words::WITHOUT_THE_TICK);
             let mut shown = factor * value.unwrap_or(learned);
             let speed = 0.005 * shown.max(1e-3);
             let drag = DragValue::new(&mut shown).range(1e-3..=1e4).speed(speed).max_decimals(3);
@@ -112,14 +133,14 @@ fn thresholds(ui: &mut Ui, open: &mut Rules, session: &Session) {
         };
         let force = used.map_or(0.05, |t| t.force_n.max(1e-3));
         let velocity = used.map_or(0.05, |t| t.velocity_m_s.max(1e-6));
-        one(ui, "Force ±", &mut policy.force_n, force, 1.0, "N");
+        one(ui, words::FORCE, &mut policy.force_n, force, 1.0, "N");
         ui.add_space(space::S);
-        one(ui, "Velocity ±", &mut policy.velocity_m_s, velocity, 1e3, "mm/s");
+        one(ui, words::VELOCITY, &mut policy.velocity_m_s, velocity, 1e3, "mm/s");
         ui.add_space(space::S);
-        ui.label("zero again below");
+        ui.label(words::ZERO_AGAIN_BELOW);
         let mut percent = 100.0 * policy.leave;
         let drag = DragValue::new(&mut percent).range(5.0..=100.0).speed(0.5).max_decimals(0).suffix(" %");
-        ui.add(drag).on_hover_text("Hysteresis: a signal counts as 0 again below this share of its threshold");
+        ui.add(drag).on_hover_text(words::HYSTERESIS_MORE);
         // A value that nobody has touched stays as it is written.
         if (percent - 100.0 * policy.leave).abs() > 1e-9 {
             policy.leave = percent / 100.0;
@@ -133,17 +154,17 @@ fn foot(ui: &mut Ui, open: &mut Rules) -> bool {
     ui.add_space(space::XS);
     ui.horizontal(|ui| {
         let usable = open.fault.is_none() && !open.name.trim().is_empty();
-        ui.add(TextEdit::singleline(&mut open.name).desired_width(150.0).hint_text("Name of your task"));
-        save = primary_button(ui, usable, (Icon::Save, "Save as my task")).clicked();
+        ui.add(TextEdit::singleline(&mut open.name).desired_width(150.0).hint_text(words::NAME_OF_YOUR_TASK));
+        save = primary_button(ui, usable, (Icon::Save, words::SAVE_AS_MY_TASK)).clicked();
         if let Some(fault) = &open.fault {
             remark(ui, Icon::Wrong, fault);
         } else {
             let text = if open.draft == open.before && open.draft.like == Task::Needle {
-                "The first rule that holds names the state."
+                words::FIRST_RULE_COUNTS
             } else if open.draft == open.before {
-                "+ above, 0 within, − below. The first that holds counts."
+                words::SIGNS_MORE
             } else {
-                "Changed; the states below follow. Refit for new numbers."
+                words::CHANGED_THE_STATES
             };
             ui.add(egui::Label::new(theme::caption(ui, text)).truncate()).on_hover_text(text);
         }
@@ -153,5 +174,5 @@ fn foot(ui: &mut Ui, open: &mut Rules) -> bool {
 
 /// A parameter for the list of what a state shows.
 pub(super) fn parameter(name: &str) -> String {
-    if name == "force_bias" { "Force bias".to_owned() } else { format::parameter(name, None).label }
+    if name == "force_bias" { words::FORCE_BIAS.to_owned() } else { format::parameter(name, None).label }
 }

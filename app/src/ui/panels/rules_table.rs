@@ -12,6 +12,39 @@ use estimator::segment::definition::{Step, Subtasks, signals};
 use estimator::segment::shows;
 use haptics::recording::Task;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const TOUCH: &str = "Touch";
+    pub const TOUCH_MORE: &str = "Any force of a finger";
+    pub const PINCH: &str = "Pinch";
+    pub const PINCH_MORE: &str = "The force that pinches: the smaller of the two opposing ones";
+    pub const LIFT: &str = "Lift";
+    pub const LIFT_MORE: &str = "The force that lifts: the sum of the vertical forces";
+    pub const SIDEWAYS: &str = "Sideways";
+    pub const SIDEWAYS_MORE: &str = "Horizontal velocity of the grasp";
+    pub const UP_DOWN: &str = "Up, down";
+    pub const UP_DOWN_MORE: &str = "Vertical velocity of the grasp";
+    pub const LOAD: &str = "Load";
+    pub const LOAD_MORE: &str = "Grip, force of the tool, or push of a finger";
+    pub const SPEED: &str = "Speed";
+    pub const SPEED_MORE: &str = "Speed without its sign";
+    pub const PHASE: &str = "Phase";
+    pub const PHASE_MORE: &str = "The phase of the stroke";
+    pub const STATE: &str = "State";
+    pub const SHOWS: &str = "Shows";
+    pub const ADD_A_STATE: &str = "Add a state";
+    pub const MOVE_UP: &str = "Move up: rules are tried from the top";
+    pub const REMOVE: &str = "Remove";
+    pub const ONCE_AT_FIRST: &str = "Once, at first";
+    pub const FOR_EVERY_OBJECT: &str = "For every object";
+    pub const EACH: &str = "Each";
+    pub const MAY_FAIL: &str = "May fail";
+    pub const ADD_A_SUBTASK: &str = "Add a subtask";
+    pub const IN_ORDER: &str = "Subtasks in their expected order; {n} is the number of the object. “May fail”: one may have to \
+        begin the object again.";
+    pub const IN_ANY_ORDER: &str = "Subtasks: whenever the state lasts a while; {n} counts them.";
+}
+
 /// Height of a line.
 const LINE: f32 = 30.0;
 /// Where there is less room than this the table of states is drawn closely, points.
@@ -53,14 +86,14 @@ enum Done {
 /// A signal in words, and what it is.
 fn signal(name: &str) -> (&str, &str) {
     match name {
-        "contact" => ("Touch", "Any force of a finger"),
-        "grip" => ("Pinch", "The force that pinches: the smaller of the two opposing ones"),
-        "net_force_y" => ("Lift", "The force that lifts: the sum of the vertical forces"),
-        "velocity_x" => ("Sideways", "Horizontal velocity of the grasp"),
-        "velocity_y" => ("Up, down", "Vertical velocity of the grasp"),
-        "load" => ("Load", "Grip, force of the tool, or push of a finger"),
-        "speed" => ("Speed", "Speed without its sign"),
-        "phase" => ("Phase", "The phase of the stroke"),
+        "contact" => (words::TOUCH, words::TOUCH_MORE),
+        "grip" => (words::PINCH, words::PINCH_MORE),
+        "net_force_y" => (words::LIFT, words::LIFT_MORE),
+        "velocity_x" => (words::SIDEWAYS, words::SIDEWAYS_MORE),
+        "velocity_y" => (words::UP_DOWN, words::UP_DOWN_MORE),
+        "load" => (words::LOAD, words::LOAD_MORE),
+        "speed" => (words::SPEED, words::SPEED_MORE),
+        "phase" => (words::PHASE, words::PHASE_MORE),
         other => (other, ""),
     }
 }
@@ -84,12 +117,12 @@ pub fn states(ui: &mut Ui, open: &mut Rules) {
         .column(Column::remainder().clip(true).at_least(80.0))
         .column(Column::exact(widths.buttons))
         .header(18.0, |mut header| {
-            header.col(|ui| drop(ui.label(theme::caption(ui, "State"))));
+            header.col(|ui| drop(ui.label(theme::caption(ui, words::STATE))));
             for (name, _) in known {
                 let (label, hint) = signal(name);
                 header.col(|ui| drop(ui.label(theme::caption(ui, label)).on_hover_text(hint)));
             }
-            header.col(|ui| drop(ui.label(theme::caption(ui, "Shows"))));
+            header.col(|ui| drop(ui.label(theme::caption(ui, words::SHOWS))));
             header.col(|_| {});
         })
         .body(|mut body| {
@@ -116,7 +149,7 @@ pub fn states(ui: &mut Ui, open: &mut Rules) {
         None => {}
     }
     ui.add_space(space::XS);
-    if ui.button((Icon::Add, "Add a state")).clicked() {
+    if ui.button((Icon::Add, words::ADD_A_STATE)).clicked() {
         open.add_state();
     }
 }
@@ -128,14 +161,11 @@ fn buttons(row: &mut TableRow<'_, '_>, index: usize, removable: bool, done: &mut
         ui.spacing_mut().button_padding.x = 4.0;
         ui.spacing_mut().interact_size.y = 20.0;
         let up = format!("Move rule {} up", index + 1);
-        if quiet_icon_button(ui, Icon::Up, index > 0, &up)
-            .on_hover_text("Move up: rules are tried from the top")
-            .clicked()
-        {
+        if quiet_icon_button(ui, Icon::Up, index > 0, &up).on_hover_text(words::MOVE_UP).clicked() {
             *done = Some(Done::Up(index));
         }
         let away = format!("Remove rule {}", index + 1);
-        if quiet_icon_button(ui, Icon::Close, removable, &away).on_hover_text("Remove").clicked() {
+        if quiet_icon_button(ui, Icon::Close, removable, &away).on_hover_text(words::REMOVE).clicked() {
             *done = Some(Done::Gone(index));
         }
     });
@@ -234,23 +264,21 @@ pub fn subtasks(ui: &mut Ui, open: &mut Rules) {
     ui.separator();
     ui.add_space(space::XS);
     let ordered = matches!(open.draft.subtasks, Subtasks::Ordered(_));
-    let text = if ordered {
-        "Subtasks in their expected order; {n} is the number of the object. “May fail”: one may have to begin the object again."
-    } else {
-        "Subtasks: whenever the state lasts a while; {n} counts them."
-    };
+    let text = if ordered { words::IN_ORDER } else { words::IN_ANY_ORDER };
     ui.label(theme::caption(ui, text));
     ui.add_space(space::XS);
     if ordered {
-        group(ui, open, "Once, at first", |open| match &mut open.draft.subtasks {
+        group(ui, open, words::ONCE_AT_FIRST, |open| match &mut open.draft.subtasks {
             Subtasks::Ordered(ordered) => &mut ordered.first,
             Subtasks::Each(each) => &mut each.each,
         });
         ui.add_space(space::XS);
     }
-    group(ui, open, if ordered { "For every object" } else { "Each" }, |open| match &mut open.draft.subtasks {
-        Subtasks::Ordered(ordered) => &mut ordered.repeat,
-        Subtasks::Each(each) => &mut each.each,
+    group(ui, open, if ordered { words::FOR_EVERY_OBJECT } else { words::EACH }, |open| {
+        match &mut open.draft.subtasks {
+            Subtasks::Ordered(ordered) => &mut ordered.repeat,
+            Subtasks::Each(each) => &mut each.each,
+        }
     });
 }
 
@@ -269,7 +297,7 @@ fn group(ui: &mut Ui, open: &mut Rules, title: &str, steps: impl Fn(&mut Rules) 
             .column(Column::exact(60.0))
             .header(18.0, |mut header| {
                 header.col(|ui| drop(ui.label(theme::caption(ui, title))));
-                header.col(|ui| drop(ui.label(theme::caption(ui, "State"))));
+                header.col(|ui| drop(ui.label(theme::caption(ui, words::STATE))));
                 header.col(|_| {});
                 header.col(|_| {});
             })
@@ -284,7 +312,7 @@ fn group(ui: &mut Ui, open: &mut Rules, title: &str, steps: impl Fn(&mut Rules) 
                         row.col(|ui| state(ui, open, ("step", index), |open| &mut steps(open)[index].state));
                         row.col(|ui| {
                             if ordered {
-                                ui.checkbox(&mut steps(open)[index].retry, "May fail");
+                                ui.checkbox(&mut steps(open)[index].retry, words::MAY_FAIL);
                             }
                         });
                         buttons(&mut row, index, true, &mut done);
@@ -296,7 +324,7 @@ fn group(ui: &mut Ui, open: &mut Rules, title: &str, steps: impl Fn(&mut Rules) 
             Some(Done::Gone(index)) => drop(steps(open).remove(index)),
             None => {}
         }
-        if ui.button((Icon::Add, "Add a subtask")).clicked() {
+        if ui.button((Icon::Add, words::ADD_A_SUBTASK)).clicked() {
             let state = open.draft.states.first().map_or(SystemState::FreeMotion, |rule| rule.state);
             let list = steps(open);
             let mut number = list.len() + 1;

@@ -14,6 +14,17 @@ use egui::{PopupCloseBehavior, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
 use render::Camera;
 use std::sync::Arc;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const SCENE: &str = "Scene";
+    pub const THE_RECORDED_HAND: &str =
+        "The recorded hand moves here, with its path, forces and the constraints that were found.";
+    pub const THE_RECORDING_IN_SPACE: &str = "The recording in space";
+    pub const THIS_RECORDING_HAS: &str = "This recording has no path: there is nothing to place in space.";
+    pub const NOTHING_TO_SHOW: &str = "Nothing to show in space";
+    pub const SHOWN: &str = "Shown";
+}
+
 /// Narrower, the picture has no room for switches and legend, points.
 const WIDE: f32 = 420.0;
 /// Lower, it has no room for a legend, points.
@@ -38,15 +49,15 @@ impl Default for ScenePanel {
 
 impl Panel for ScenePanel {
     fn title(&self) -> &'static str {
-        "Scene"
+        words::SCENE
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         sheet(ui).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
             let Some(prepared) = session.prepared().cloned() else {
-                let text = "The recorded hand moves here, with its path, forces and the constraints that were found.";
-                empty_state(ui, (Icon::Scene, "The recording in space"), text, |_| {});
+                let text = words::THE_RECORDED_HAND;
+                empty_state(ui, (Icon::Scene, words::THE_RECORDING_IN_SPACE), text, |_| {});
                 return;
             };
             if prepared.tips.is_none() && prepared.tool.is_none() {
@@ -75,8 +86,8 @@ impl ScenePanel {
     /// A recording without a place in space.
     fn one_coordinate(&mut self, ui: &mut Ui, session: &Session, prepared: &Arc<Prepared>) {
         let Some(mechanism) = Mechanism::of(prepared, session.cursor_s) else {
-            let text = "This recording has no path: there is nothing to place in space.";
-            empty_state(ui, (Icon::Scene, "Nothing to show in space"), text, |_| {});
+            let text = words::THIS_RECORDING_HAS;
+            empty_state(ui, (Icon::Scene, words::NOTHING_TO_SHOW), text, |_| {});
             return;
         };
         self.home(mechanism.camera, prepared);
@@ -162,7 +173,7 @@ fn layers(ui: &mut Ui, rect: Rect, session: &mut Session) {
         return;
     }
     let p = palette(&ui);
-    let button = egui::Button::new((Icon::Layers.atom(icons::SMALL, None), RichText::new("Shown").size(11.5)))
+    let button = egui::Button::new((Icon::Layers.atom(icons::SMALL, None), RichText::new(words::SHOWN).size(11.5)))
         .corner_radius(11)
         .fill(p.card);
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);

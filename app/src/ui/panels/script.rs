@@ -8,16 +8,30 @@ use crate::ui::widgets::{call, compact};
 use egui::{Align, ComboBox, Layout, Ui};
 use haptics::device::Mistake;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const SKILL: &str = "Skill";
+    pub const MISTAKE: &str = "Mistake";
+    pub const NONE_IN_THIS_WORLD: &str = "none in this world";
+    pub const DONE: &str = "Done.";
+    pub const WORKS_LIKE_A_PERSON: &str = "Works and trembles like a person.";
+    pub const WATCH_AGAIN: &str = "Watch again";
+    pub const WATCH_AGAIN_MORE: &str = "Starts over with other small errors";
+    pub const SKILL_MORE: &str = "How well it does it";
+    pub const NONE: &str = "None";
+    pub const NO_MISTAKE_MORE: &str = "Does it as well as it can";
+}
+
 /// What stands in the operator's card while the script moves the fingers.
 pub fn script(ui: &mut Ui, session: &mut Session) {
     let before = session.trainer.script.clone();
     let possible = session.trainer.scene().map(|(_, world)| operator::mistakes_in(world)).unwrap_or_default();
     let mut wanted = before.clone();
-    labelled(ui, "Skill", |ui| level(ui, &mut wanted));
+    labelled(ui, words::SKILL, |ui| level(ui, &mut wanted));
     let none_here = possible.is_empty();
-    labelled(ui, "Mistake", |ui| {
+    labelled(ui, words::MISTAKE, |ui| {
         if none_here {
-            ui.label(theme::caption(ui, "none in this world"));
+            ui.label(theme::caption(ui, words::NONE_IN_THIS_WORLD));
         } else {
             mistake(ui, &mut wanted, &possible);
         }
@@ -26,10 +40,10 @@ pub fn script(ui: &mut Ui, session: &mut Session) {
     let mut again = wanted != before;
     session.trainer.script = wanted;
     compact(ui, |ui| {
-        let text = if over { "Done." } else { "Works and trembles like a person." };
+        let text = if over { words::DONE } else { words::WORKS_LIKE_A_PERSON };
         ui.label(theme::caption(ui, text));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            again |= ui.link("Watch again").on_hover_text("Starts over with other small errors").clicked();
+            again |= ui.link(words::WATCH_AGAIN).on_hover_text(words::WATCH_AGAIN_MORE).clicked();
         });
     });
     if again && let Err(problem) = session.trainer.restart() {
@@ -51,18 +65,18 @@ fn level(ui: &mut Ui, script: &mut Script) {
             ui.selectable_value(&mut script.level, name, shown).on_hover_text(hint);
         }
     });
-    call(&list.response, "How well it does it");
+    call(&list.response, words::SKILL_MORE);
 }
 
 fn mistake(ui: &mut Ui, script: &mut Script, possible: &[Mistake]) {
     let chosen = script.mistake.filter(|mistake| possible.contains(mistake));
-    let shown = chosen.map_or("None", |mistake| operator::mistake_words(mistake).0);
+    let shown = chosen.map_or(words::NONE, |mistake| operator::mistake_words(mistake).0);
     let list = ComboBox::from_id_salt("mistake").selected_text(shown).width(190.0).show_ui(ui, |ui| {
-        ui.selectable_value(&mut script.mistake, None, "None").on_hover_text("Does it as well as it can");
+        ui.selectable_value(&mut script.mistake, None, words::NONE).on_hover_text(words::NO_MISTAKE_MORE);
         for mistake in possible {
             let (shown, hint) = operator::mistake_words(*mistake);
             ui.selectable_value(&mut script.mistake, Some(*mistake), shown).on_hover_text(hint);
         }
     });
-    call(&list.response, "Mistake");
+    call(&list.response, words::MISTAKE);
 }

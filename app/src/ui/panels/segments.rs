@@ -14,6 +14,30 @@ use estimator::segment::score::Score;
 use estimator::segment::{Interval, Segmentation, SystemState};
 use std::ops::Range;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const SEGMENTS: &str = "Segments";
+    pub const STATES_AND_SUBTASKS: &str = "States and subtasks";
+    pub const NUMBERS_OF_STATES: &str = "1 free motion, 2 hold above ground, 3 hold on ground, x sliding, 0 none";
+    pub const NO_STATES_YET: &str = "No states yet";
+    pub const NO_STATES_YET_MORE: &str = "Open a recording; its states are told from motion and force.";
+    pub const STATES: &str = "States";
+    pub const FITTING: &str = "Fitting …";
+    pub const NO_STATES_THEY: &str = "No states: they are told from velocities, and this log has no clock.";
+    pub const NO_STATES_WERE: &str = "No states were told in this recording.";
+    pub const NO_STATES_THE_FIT: &str = "No states: the fit did not succeed.";
+    pub const SUBTASKS: &str = "Subtasks";
+    pub const MOVING: &str = "Moving";
+    pub const MEAN_PROBABILITY: &str = "mean probability";
+    pub const SAMPLES_SHOW_IT: &str = "of its samples show this state by themselves";
+    pub const AGAINST_THE_LABELS: &str = "Against the labels of this recording";
+    pub const LABELS_ARE_ONLY: &str = "Labels are only compared; nothing is estimated from them.";
+    pub const FROM: &str = "From";
+    pub const LENGTH: &str = "Length";
+    pub const STATE: &str = "State";
+    pub const SUBTASK: &str = "Subtask";
+}
+
 /// Height of the band.
 const BAND: f32 = 22.0;
 /// No word is as narrow as this.
@@ -29,28 +53,23 @@ pub struct SegmentsPanel;
 
 impl Panel for SegmentsPanel {
     fn title(&self) -> &'static str {
-        "Segments"
+        words::SEGMENTS
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
         let sequence = session.segmentation().map(Segmentation::sequence).unwrap_or_default();
         card(
             ui,
-            "States and subtasks",
+            words::STATES_AND_SUBTASKS,
             |ui| {
                 if !sequence.is_empty() {
                     ui.label(theme::caption(ui, format!("sequence {}", spaced(&sequence))))
-                        .on_hover_text("1 free motion, 2 hold above ground, 3 hold on ground, x sliding, 0 none");
+                        .on_hover_text(words::NUMBERS_OF_STATES);
                 }
             },
             |ui| {
                 if session.segmentation().is_none() {
-                    empty_state(
-                        ui,
-                        (Icon::States, "No states yet"),
-                        "Open a recording; its states are told from motion and force.",
-                        |_| {},
-                    );
+                    empty_state(ui, (Icon::States, words::NO_STATES_YET), words::NO_STATES_YET_MORE, |_| {});
                     return;
                 }
                 let left = ui.max_rect().left() + 76.0;
@@ -84,20 +103,20 @@ pub fn band(ui: &mut Ui, session: &mut Session, area: Rangef) {
         );
     };
     let band = Rect::from_x_y_ranges(area, rect.top()..=rect.top() + BAND);
-    label(band.center().y, "States");
+    label(band.center().y, words::STATES);
     ui.painter().rect_filled(band, 4, p.sunken);
     let Some(segmentation) = segmentation else {
         let clockless = session.prepared().is_some_and(|p| p.clockless());
         let text = match (busy, clockless, analysis.is_some()) {
-            (true, ..) => "Fitting …",
-            (_, true, _) => "No states: they are told from velocities, and this log has no clock.",
-            (_, _, true) => "No states were told in this recording.",
-            _ => "No states: the fit did not succeed.",
+            (true, ..) => words::FITTING,
+            (_, true, _) => words::NO_STATES_THEY,
+            (_, _, true) => words::NO_STATES_WERE,
+            _ => words::NO_STATES_THE_FIT,
         };
         ui.painter().text(band.center(), Align2::CENTER_CENTER, text, FontId::proportional(11.5), p.faint);
         return;
     };
-    label(band.bottom() + 2.0 + 0.5 * SUBTASKS, "Subtasks");
+    label(band.bottom() + 2.0 + 0.5 * SUBTASKS, words::SUBTASKS);
     draw_states(ui, session, segmentation, band);
     draw_subtasks(ui, session, segmentation, Rect::from_x_y_ranges(area, band.bottom() + 2.0..=rect.bottom()));
     legend(ui, segmentation, area.min - rect.left());
@@ -165,7 +184,7 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
 /// The state in words; what turns or slides is not known of every mechanism.
 /// What a state is called in a recording of this task.
 pub fn word(segmentation: &Segmentation, state: SystemState) -> &'static str {
-    if state == SystemState::Turning && segmentation.task != "crank" { "Moving" } else { state_name(state) }
+    if state == SystemState::Turning && segmentation.task != "crank" { words::MOVING } else { state_name(state) }
 }
 
 /// Text in a box when it fits.
@@ -192,7 +211,7 @@ fn tooltip(ui: &mut Ui, interval: &Interval, state: &str, shows: &[String], by_m
         ui.label(theme::caption(ui, format!("Shows: {}", words.join(", "))));
     }
     let share = format::number(100.0 * interval.probability, 0);
-    let text = if by_model { "mean probability" } else { "of its samples show this state by themselves" };
+    let text = if by_model { words::MEAN_PROBABILITY } else { words::SAMPLES_SHOW_IT };
     ui.label(theme::caption(ui, format!("{share} % {text}")));
 }
 
@@ -265,14 +284,14 @@ fn agreement(ui: &mut Ui, score: &Score) {
         return;
     }
     ui.label(theme::caption(ui, text)).on_hover_ui(|ui| {
-        ui.label(theme::strong("Against the labels of this recording"));
+        ui.label(theme::strong(words::AGAINST_THE_LABELS));
         let within = format::number(score.tolerance_s, 2);
         ui.label(theme::caption(ui, format!("{} labelled boundaries, found within {within} s", score.boundaries)));
         for (state, one) in &score.states {
             let f1 = format::number(one.f1, 3);
             ui.label(theme::caption(ui, format!("{}: F1 by samples {f1}", format::object(state))));
         }
-        ui.label(theme::caption(ui, "Labels are only compared; nothing is estimated from them."));
+        ui.label(theme::caption(ui, words::LABELS_ARE_ONLY));
     });
 }
 
@@ -298,7 +317,7 @@ fn intervals(ui: &mut Ui, session: &mut Session) {
         .column(Column::exact(state))
         .column(Column::remainder().clip(true))
         .header(LINE, |mut header| {
-            for text in ["", "From", "Length", "State", "Subtask"] {
+            for text in ["", words::FROM, words::LENGTH, words::STATE, words::SUBTASK] {
                 header.col(|ui| elided(ui, theme::caption(ui, text)));
             }
         })

@@ -10,6 +10,24 @@ use crate::ui::theme::{self, Palette, palette, space};
 use crate::ui::widgets::{bar, compact, empty_state, plain_card, remark};
 use egui::{Align, Align2, Color32, FontId, Layout, Pos2, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const SENSITIVITY: &str = "Sensitivity";
+    pub const LOOKING_MORE: &str = "Every parameter is changed a little, and the motion replayed.";
+    pub const NOTHING_FITTED_YET_MORE: &str =
+        "Once there is a fit, this shows how much the force depends on each of its parameters.";
+    pub const LOOKING: &str = "Looking …";
+    pub const NOTHING_FITTED_YET: &str = "Nothing fitted yet";
+    pub const WHAT_THE_FORCE: &str = "What the force depends on";
+    pub const WHAT_GOES_TOGETHER: &str = "What goes together";
+    pub const THE_REPLAY_OF_THIS_RECORDING: &str = "The replay of this recording does not depend on any of them.";
+    pub const EVERY_PARAMETER_OF_THIS_FIT: &str = "Every parameter of this fit was found by itself.";
+    pub const WHAT_GOES_TOGETHER_MORE: &str = "Where a cell is full, the recording shows only a mixture of the two.";
+    pub const ONE_LESS_THE_OTHER: &str = "one less the other";
+    pub const THEIR_SUM: &str = "their sum";
+    pub const COULOMB: &str = "Coulomb";
+}
+
 /// Side of a cell of the matrix, points: at most, and at least.
 const CELL: (f32, f32) = (34.0, 16.0);
 /// Two parameters that go together more than this can hardly be told apart.
@@ -21,7 +39,7 @@ pub struct SensitivityPanel;
 
 impl Panel for SensitivityPanel {
     fn title(&self) -> &'static str {
-        "Sensitivity"
+        words::SENSITIVITY
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
@@ -29,18 +47,19 @@ impl Panel for SensitivityPanel {
         session.want_sensitivity(&ctx);
         let Some(found) = session.sensitivity.clone().filter(|_| session.analysis.is_some()) else {
             let busy = session.jobs.is_running(JobKind::Sensitivity);
-            let text = if busy {
-                "Every parameter is changed a little, and the motion replayed."
-            } else {
-                "Once there is a fit, this shows how much the force depends on each of its parameters."
-            };
-            empty_state(ui, (Icon::Sensitivity, if busy { "Looking …" } else { "Nothing fitted yet" }), text, |_| {});
+            let text = if busy { words::LOOKING_MORE } else { words::NOTHING_FITTED_YET_MORE };
+            empty_state(
+                ui,
+                (Icon::Sensitivity, if busy { words::LOOKING } else { words::NOTHING_FITTED_YET }),
+                text,
+                |_| {},
+            );
             return;
         };
         ScrollArea::vertical().id_salt("sensitivity").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::S;
-            plain_card(ui, "What the force depends on", |ui| effects(ui, session, &found.effects));
-            plain_card(ui, "What goes together", |ui| together(ui, &found.groups));
+            plain_card(ui, words::WHAT_THE_FORCE, |ui| effects(ui, session, &found.effects));
+            plain_card(ui, words::WHAT_GOES_TOGETHER, |ui| together(ui, &found.groups));
         });
     }
 }
@@ -51,7 +70,7 @@ fn effects(ui: &mut Ui, session: &mut Session, effects: &[Effect]) {
     ui.label(theme::caption(ui, text));
     let most = effects.iter().map(|e| e.force_rms).fold(0.0, f64::max);
     if most <= 0.0 {
-        ui.label(theme::caption(ui, "The replay of this recording does not depend on any of them."));
+        ui.label(theme::caption(ui, words::THE_REPLAY_OF_THIS_RECORDING));
         return;
     }
     let p = palette(ui);
@@ -76,16 +95,16 @@ fn effects(ui: &mut Ui, session: &mut Session, effects: &[Effect]) {
 
 fn together(ui: &mut Ui, groups: &[Correlations]) {
     if groups.is_empty() {
-        ui.label(theme::caption(ui, "Every parameter of this fit was found by itself."));
+        ui.label(theme::caption(ui, words::EVERY_PARAMETER_OF_THIS_FIT));
         return;
     }
-    ui.label(theme::caption(ui, "Where a cell is full, the recording shows only a mixture of the two."));
+    ui.label(theme::caption(ui, words::WHAT_GOES_TOGETHER_MORE));
     for group in groups {
         ui.add_space(space::XS);
         matrix(ui, group);
         for (i, row) in group.values.iter().enumerate() {
             for (j, value) in row.iter().enumerate().skip(i + 1).filter(|(_, v)| v.abs() > ALIKE) {
-                let how = if *value > 0.0 { "one less the other" } else { "their sum" };
+                let how = if *value > 0.0 { words::ONE_LESS_THE_OTHER } else { words::THEIR_SUM };
                 let text = format!(
                     "{} and {} go together ({}): {how} is known far better than each.",
                     words(&group.names[i]),
@@ -140,6 +159,6 @@ fn color(p: &Palette, correlation: f64) -> Color32 {
 /// `block-1.weight_N` → `Block 1 weight`.
 fn words(full_name: &str) -> String {
     let Some((object, name)) = full_name.split_once('.') else { return full_name.to_owned() };
-    let label = format::parameter(name, None).label.to_lowercase().replace("coulomb", "Coulomb");
+    let label = format::parameter(name, None).label.to_lowercase().replace("coulomb", words::COULOMB);
     format!("{} {label}", format::object(object))
 }

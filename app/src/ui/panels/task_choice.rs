@@ -13,6 +13,16 @@ use estimator::segment::library;
 use haptics::recording::{Recording, Task};
 use std::sync::Arc;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const TASK: &str = "Task";
+    pub const YOURS: &str = "Yours";
+    pub const RULES_MORE: &str = "States, when they hold, their thresholds and what they show: look at them, \
+        change them, save them as a task of yours";
+    pub const CLOSE_RULES: &str = "Close rules";
+    pub const RULES: &str = "Rules …";
+}
+
 /// Tasks on offer.
 const TASKS: [Task; 5] = [Task::BlockStack, Task::Crank, Task::Needle, Task::Switch, Task::Mechanism];
 
@@ -27,7 +37,7 @@ enum Picked {
 pub fn task_choice(ui: &mut Ui, session: &mut Session) {
     let mut picked = None;
     ui.horizontal(|ui| {
-        ui.label(theme::caption(ui, "Task"));
+        ui.label(theme::caption(ui, words::TASK));
         let prepared = session.prepared().cloned();
         let told = prepared.as_ref().map_or("unknown".to_owned(), |p| told(&p.recording, p.task));
         let automatic = format!("Automatic ({told})");
@@ -54,7 +64,7 @@ pub fn task_choice(ui: &mut Ui, session: &mut Session) {
                 let own = library::folder().map(library::names).unwrap_or_default();
                 if !own.is_empty() {
                     ui.separator();
-                    ui.label(theme::caption(ui, "Yours"));
+                    ui.label(theme::caption(ui, words::YOURS));
                 }
                 for name in own {
                     let on = choice.own.as_ref().is_some_and(|task| task.name == name);
@@ -63,7 +73,7 @@ pub fn task_choice(ui: &mut Ui, session: &mut Session) {
                     }
                 }
             });
-        call(&list.response, "Task");
+        call(&list.response, words::TASK);
     });
     match picked {
         Some(Picked::Automatic) => set(session, None, None),
@@ -93,8 +103,8 @@ fn set(session: &mut Session, task: Option<Task>, own: Option<Arc<Definition>>) 
 /// Opens and closes the rules.
 fn edit(ui: &mut Ui, session: &mut Session) {
     let open = session.rules.is_some();
-    let hint = "States, when they hold, their thresholds and what they show: look at them, change them, save them as a task of yours";
-    if ui.button((Icon::Rules, if open { "Close rules" } else { "Rules …" })).on_hover_text(hint).clicked() {
+    let hint = words::RULES_MORE;
+    if ui.button((Icon::Rules, if open { words::CLOSE_RULES } else { words::RULES })).on_hover_text(hint).clicked() {
         session.rules = if open { None } else { Rules::open(session) };
     }
 }

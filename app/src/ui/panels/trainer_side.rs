@@ -53,6 +53,15 @@ mod words {
     pub const STALE_MORE: &str = "No fresh sample from the device: the force is zero";
     pub const INVALID: &str = "Invalid";
     pub const INVALID_MORE: &str = "A value was not a number and was refused";
+    pub const TRAINER_CONTROLS: &str = "Trainer controls";
+    pub const RECORDING: &str = "Recording";
+    pub const WORLD: &str = "World";
+    pub const OPERATOR: &str = "Operator";
+    pub const FORCES: &str = "Forces";
+    pub const LEFT_FINGER: &str = "Left finger";
+    pub const RIGHT_FINGER: &str = "Right finger";
+    pub const GRIP: &str = "Grip";
+    pub const NET_FORCE_UP: &str = "Net force, up";
 }
 
 /// Seconds that the running curve shows.
@@ -64,7 +73,7 @@ pub struct TrainerSide;
 
 impl Panel for TrainerSide {
     fn title(&self) -> &'static str {
-        "Trainer controls"
+        words::TRAINER_CONTROLS
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
@@ -80,7 +89,7 @@ impl Panel for TrainerSide {
                 super::compare::compare(ui, session);
                 world(ui, session);
                 operator(ui, session);
-                plain_card(ui, "Recording", |ui| recorder::controls(ui, session));
+                plain_card(ui, words::RECORDING, |ui| recorder::controls(ui, session));
             }
             forces(ui, &session.trainer);
             super::assistant::assistant(ui, session);
@@ -118,7 +127,7 @@ fn world(ui: &mut Ui, session: &mut Session) {
         (WorldChoice::Calibrated, words::CALIBRATED, words::CALIBRATED_MORE, without_log),
         (WorldChoice::File, words::FILE, words::FILE_MORE, without_file),
     ];
-    card(ui, "World", start_over, |ui| {
+    card(ui, words::WORLD, start_over, |ui| {
         for pair in choices.chunks(2) {
             ui.columns(pair.len(), |columns| {
                 for (ui, (choice, label, hint, missing)) in columns.iter_mut().zip(pair) {
@@ -167,7 +176,7 @@ fn operator(ui: &mut Ui, session: &mut Session) {
     let mut changed = false;
     card_with_head(
         ui,
-        "Operator",
+        words::OPERATOR,
         30.0,
         |ui| changed = segmented(ui, &mut operator, &choices),
         |ui| operator_state(ui, session),
@@ -206,18 +215,18 @@ fn forces(ui: &mut Ui, trainer: &Trainer) {
     let p = palette(ui);
     let Some(tick) = trainer.seen_tick() else { return };
     let limit = trainer.config().limits.max_force_n;
-    plain_card(ui, "Forces", |ui| {
+    plain_card(ui, words::FORCES, |ui| {
         let grip = tick.tip_force_n[0].x.min(-tick.tip_force_n[1].x).max(0.0);
         let lift = tick.tip_force_n[0].y + tick.tip_force_n[1].y;
         for (label, value, color) in [
-            ("Left finger", tick.tip_force_n[0].norm(), role(dark, ColorRole::Finger(0))),
-            ("Right finger", tick.tip_force_n[1].norm(), role(dark, ColorRole::Finger(1))),
-            ("Grip", grip, role(dark, ColorRole::Measured)),
+            (words::LEFT_FINGER, tick.tip_force_n[0].norm(), role(dark, ColorRole::Finger(0))),
+            (words::RIGHT_FINGER, tick.tip_force_n[1].norm(), role(dark, ColorRole::Finger(1))),
+            (words::GRIP, grip, role(dark, ColorRole::Measured)),
         ] {
             let over = value > limit;
             gauge(ui, label, value, 1.25 * limit, limit, if over { p.danger } else { color });
         }
-        measure(ui, "Net force, up", lift);
+        measure(ui, words::NET_FORCE_UP, lift);
         legend::gauges(ui, limit);
         strip(ui, &trainer.history, limit);
         ui.add_space(space::XS);

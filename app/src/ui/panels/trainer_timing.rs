@@ -9,6 +9,20 @@ use haptics::servo::Snapshot;
 use haptics::servo::coupling::{Coupling, SOFTEST_N_M};
 use haptics::servo::timing::{Percentiles, RECENT_S, Timing};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const TIMING: &str = "Timing";
+    pub const NO_TICK_WAS: &str = "No tick was timed yet: the figures come as soon as the servo runs.";
+    pub const PERIOD: &str = "Period";
+    pub const LATENESS: &str = "Lateness";
+    pub const COMPUTE: &str = "Compute";
+    pub const FORCE_AGE: &str = "Force age";
+    pub const SINCE_START: &str = "since start";
+    pub const NEW_AT_THIS_TICK: &str = "new at this tick";
+    pub const MISSED_DEADLINES: &str = "Missed deadlines";
+    pub const AGE_OF_THE_NEWEST: &str = "Age of the newest sample";
+}
+
 /// The card beside the trainer's picture.
 pub fn timing(ui: &mut Ui, trainer: &Trainer) {
     let Some((snapshot, _)) = trainer.scene() else { return };
@@ -16,14 +30,14 @@ pub fn timing(ui: &mut Ui, trainer: &Trainer) {
     let rate = format!("{} Hz", format::number(timing.rate.rate_hz, 0));
     card(
         ui,
-        "Timing",
+        words::TIMING,
         |ui| drop(ui.label(theme::caption(ui, rate)).on_hover_text(timing.rate.sentence())),
         |ui| {
             ui.spacing_mut().interact_size.y = 15.0;
             if was_timed(&timing.compute) {
                 table(ui, timing);
             } else {
-                ui.label(theme::caption(ui, "No tick was timed yet: the figures come as soon as the servo runs."));
+                ui.label(theme::caption(ui, words::NO_TICK_WAS));
             }
             ui.add_space(space::XS);
             facts(ui, snapshot);
@@ -37,15 +51,15 @@ fn table(ui: &mut Ui, timing: &Timing) {
         // What is now, and what was ever: a stall while the window opened is no news an hour later.
         let recent = &timing.recent;
         head(ui, &format!("last {RECENT_S:.0} s"));
-        percentiles(ui, "Period", &recent.period);
-        percentiles(ui, "Lateness", &recent.lateness);
-        percentiles(ui, "Compute", &recent.compute);
-        percentiles(ui, "Force age", &recent.force_age);
-        head(ui, "since start");
-        percentiles(ui, "Period", &timing.period);
-        percentiles(ui, "Lateness", &timing.lateness);
-        percentiles(ui, "Compute", &timing.compute);
-        percentiles(ui, "Force age", &timing.force_age);
+        percentiles(ui, words::PERIOD, &recent.period);
+        percentiles(ui, words::LATENESS, &recent.lateness);
+        percentiles(ui, words::COMPUTE, &recent.compute);
+        percentiles(ui, words::FORCE_AGE, &recent.force_age);
+        head(ui, words::SINCE_START);
+        percentiles(ui, words::PERIOD, &timing.period);
+        percentiles(ui, words::LATENESS, &timing.lateness);
+        percentiles(ui, words::COMPUTE, &timing.compute);
+        percentiles(ui, words::FORCE_AGE, &timing.force_age);
     });
 }
 
@@ -56,7 +70,7 @@ fn was_timed(p: &Percentiles) -> bool {
 
 /// How old the newest sample of a device is, in words.
 pub fn sample_age(age_s: f64) -> String {
-    if age_s > 0.0 { format::short_time(age_s) } else { "new at this tick".to_owned() }
+    if age_s > 0.0 { format::short_time(age_s) } else { words::NEW_AT_THIS_TICK.to_owned() }
 }
 
 fn facts(ui: &mut Ui, snapshot: &Snapshot) {
@@ -65,9 +79,9 @@ fn facts(ui: &mut Ui, snapshot: &Snapshot) {
     if was_timed(&timing.compute) {
         let text =
             format!("{} of {} ticks; since start {} of {}", recent.missed, recent.ticks, timing.missed, timing.ticks);
-        fact(ui, "Missed deadlines", text);
+        fact(ui, words::MISSED_DEADLINES, text);
     }
-    fact(ui, "Age of the newest sample", sample_age(timing.sample_age_s));
+    fact(ui, words::AGE_OF_THE_NEWEST, sample_age(timing.sample_age_s));
 }
 
 fn sentences(ui: &mut Ui, trainer: &Trainer, snapshot: &Snapshot) {

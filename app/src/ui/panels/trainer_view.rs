@@ -12,6 +12,43 @@ use egui::{Align, CursorIcon, Key, Rect, Ui, UiBuilder, pos2};
 use haptics::Vec2;
 use render::{Camera, ViewOptions};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const TRAINER: &str = "Trainer";
+    pub const NO_SERVO: &str = "The servo is not running";
+    pub const NO_SERVO_MORE: &str = "See the message above; then choose a world again.";
+    pub const MOUSE: &str = "Mouse";
+    pub const MOVES_THE_FINGERS: &str = "moves the fingers";
+    pub const RIGHT_BUTTON: &str = "Right button";
+    pub const WHEEL: &str = "Wheel";
+    pub const LEFT_DRAG: &str = "Left drag";
+    pub const TURNS_THE_VIEW: &str = "turns the view";
+    pub const STARTS_OVER: &str = "starts over";
+    pub const ARROWS: &str = "Arrows";
+    pub const SPACE: &str = "Space";
+    pub const PINCHES_AND_HOLDS: &str = "pinches and holds";
+    pub const LEFT_BUTTON: &str = "Left button";
+    pub const RIGHT_DRAG: &str = "Right drag";
+    pub const TWO_FINGERS: &str = "Two fingers";
+    pub const ON_THE_GLASS: &str = "on the glass are the two fingertips";
+    pub const TOGETHER: &str = "Together";
+    pub const BACKSPACE: &str = "Backspace";
+    pub const SHIFT: &str = "Shift";
+    #[cfg(feature = "gamepad")]
+    pub const LEFT_STICK: &str = "Left stick";
+    #[cfg(feature = "gamepad")]
+    pub const TRIGGERS: &str = "Triggers";
+    #[cfg(feature = "gamepad")]
+    pub const CLOSE_AND_OPEN: &str = "close and open";
+    pub const YOUR_DEVICE: &str = "Your device";
+    pub const CTRL_4: &str = "Ctrl 4";
+    pub const DEVICE_PAGE: &str = "device page";
+    pub const SCRIPT_DONE: &str = "The scripted operator is done.";
+    pub const SCRIPT_WORKS: &str = "The scripted operator at work";
+    pub const THE_REPLAY_IS_OVER: &str = "The replay is over.";
+    pub const REPLAY_OF_THE_OPEN: &str = "Replay of the open log";
+}
+
 /// Speed of the fingers under the arrow keys, m/s.
 const KEY_SPEED_M_S: f64 = 0.04;
 /// Newtons of pinch a point of scrolling.
@@ -44,7 +81,7 @@ fn home() -> Camera {
 
 impl Panel for TrainerView {
     fn title(&self) -> &'static str {
-        "Trainer"
+        words::TRAINER
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {
@@ -71,12 +108,7 @@ impl Panel for TrainerView {
         sheet(ui).show(ui, |ui| {
             ui.set_min_size(ui.available_size());
             let Some((snapshot, world)) = session.trainer.scene() else {
-                empty_state(
-                    ui,
-                    (Icon::Doubt, "The servo is not running"),
-                    "See the message above; then choose a world again.",
-                    |_| {},
-                );
+                empty_state(ui, (Icon::Doubt, words::NO_SERVO), words::NO_SERVO_MORE, |_| {});
                 return;
             };
             let limit = session.trainer.config().limits.max_force_n;
@@ -229,40 +261,44 @@ fn hints(ui: &mut Ui, rect: Rect, hand: &HandDevice, left_handed: bool) {
 fn hints_of(hand: &HandDevice, left_handed: bool) -> &'static [(&'static str, &'static str)] {
     match hand {
         HandDevice::Mouse if left_handed => &[
-            ("Mouse", "moves the fingers"),
-            ("Right button", "pinches"),
-            ("Wheel", "strength"),
-            ("Left drag", "turns the view"),
-            ("N", "starts over"),
-            ("Arrows", "move"),
-            ("Space", "pinches and holds"),
+            (words::MOUSE, words::MOVES_THE_FINGERS),
+            (words::RIGHT_BUTTON, "pinches"),
+            (words::WHEEL, "strength"),
+            (words::LEFT_DRAG, words::TURNS_THE_VIEW),
+            ("N", words::STARTS_OVER),
+            (words::ARROWS, "move"),
+            (words::SPACE, words::PINCHES_AND_HOLDS),
         ],
         HandDevice::Mouse => &[
-            ("Mouse", "moves the fingers"),
-            ("Left button", "pinches"),
-            ("Wheel", "strength"),
-            ("Right drag", "turns the view"),
-            ("N", "starts over"),
-            ("Arrows", "move"),
-            ("Space", "pinches and holds"),
+            (words::MOUSE, words::MOVES_THE_FINGERS),
+            (words::LEFT_BUTTON, "pinches"),
+            (words::WHEEL, "strength"),
+            (words::RIGHT_DRAG, words::TURNS_THE_VIEW),
+            ("N", words::STARTS_OVER),
+            (words::ARROWS, "move"),
+            (words::SPACE, words::PINCHES_AND_HOLDS),
         ],
-        HandDevice::Touch => &[("Two fingers", "on the glass are the two fingertips"), ("Together", "pinches")],
-        HandDevice::Keyboard => &[("Arrows", "move"), ("Space", "closes"), ("Backspace", "opens"), ("Shift", "slowly")],
+        HandDevice::Touch => &[(words::TWO_FINGERS, words::ON_THE_GLASS), (words::TOGETHER, "pinches")],
+        HandDevice::Keyboard => {
+            &[(words::ARROWS, "move"), (words::SPACE, "closes"), (words::BACKSPACE, "opens"), (words::SHIFT, "slowly")]
+        }
         HandDevice::Replay => &[],
         #[cfg(feature = "gamepad")]
-        HandDevice::Gamepad => &[("Left stick", "moves"), ("Triggers", "close and open")],
-        HandDevice::Haply(..) | HandDevice::Udp => {
-            &[("Your device", "moves the fingers"), ("Right drag", "turns the view"), ("Ctrl 4", "device page")]
-        }
+        HandDevice::Gamepad => &[(words::LEFT_STICK, "moves"), (words::TRIGGERS, words::CLOSE_AND_OPEN)],
+        HandDevice::Haply(..) | HandDevice::Udp => &[
+            (words::YOUR_DEVICE, words::MOVES_THE_FINGERS),
+            (words::RIGHT_DRAG, words::TURNS_THE_VIEW),
+            (words::CTRL_4, words::DEVICE_PAGE),
+        ],
     }
 }
 
 fn watching(trainer: &Trainer) -> &'static str {
     match (trainer.operator, trainer.performance_over()) {
-        (Operator::Scripted, true) => "The scripted operator is done.",
-        (Operator::Scripted, false) => "The scripted operator at work",
-        (Operator::You, true) => "The replay is over.",
-        (Operator::You, false) => "Replay of the open log",
+        (Operator::Scripted, true) => words::SCRIPT_DONE,
+        (Operator::Scripted, false) => words::SCRIPT_WORKS,
+        (Operator::You, true) => words::THE_REPLAY_IS_OVER,
+        (Operator::You, false) => words::REPLAY_OF_THE_OPEN,
     }
 }
 

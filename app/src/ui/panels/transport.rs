@@ -7,6 +7,14 @@ use crate::ui::theme::{self, palette, space, state_color};
 use crate::ui::widgets::{call, icon_button};
 use egui::{Pos2, Rangef, Rect, Sense, Stroke, StrokeKind, Ui, UiBuilder, vec2};
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const SPEED_OF_PLAYING: &str = "Speed of playing";
+    pub const PAUSE: &str = "Pause";
+    pub const PLAY: &str = "Play";
+    pub const TIME: &str = "Time";
+}
+
 /// Playback speeds on offer.
 const SPEEDS: [f64; 5] = [0.1, 0.25, 0.5, 1.0, 2.0];
 
@@ -34,7 +42,7 @@ pub fn transport(ui: &mut Ui, session: &mut Session, area: Rangef) {
                         ui.selectable_value(&mut session.speed, speed, speed_text(speed));
                     }
                 });
-            call(&list.response, "Speed of playing");
+            call(&list.response, words::SPEED_OF_PLAYING);
         },
     );
     overview(ui, session, Rect::from_x_y_ranges(area, rect.center().y - 7.0..=rect.center().y + 7.0));
@@ -46,7 +54,7 @@ fn speed_text(speed: f64) -> String {
 
 /// Plays, or stops it.
 fn play_button(ui: &mut Ui, playing: bool) -> egui::Response {
-    let (icon, name) = if playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
+    let (icon, name) = if playing { (Icon::Pause, words::PAUSE) } else { (Icon::Play, words::PLAY) };
     icon_button(ui, icon, true, name).on_hover_text(format!("{name} (Space)"))
 }
 
@@ -68,7 +76,7 @@ fn overview(ui: &mut Ui, session: &mut Session, rect: Rect) {
         ui.painter().rect_stroke(window, 3, Stroke::new(1.2, p.secondary), StrokeKind::Outside);
     }
     let response = ui.interact(rect.expand2(vec2(0.0, 6.0)), ui.scope_id().with("overview"), Sense::click_and_drag());
-    response.widget_info(|| egui::WidgetInfo::slider(true, session.cursor_s, "Time"));
+    response.widget_info(|| egui::WidgetInfo::slider(true, session.cursor_s, words::TIME));
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on()) {
         session.playing = false;
         session.seek(first + f64::from((at.x - rect.left()) / rect.width()) * (last - first));

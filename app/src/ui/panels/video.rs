@@ -43,6 +43,7 @@ mod words {
     pub const ALIGN_SPOKEN: &str = "Align video";
     pub const WHERE: &str = "Where in the video";
     pub const REMOVE: &str = "Take the video away";
+    pub const VIDEO: &str = "Video";
 }
 
 /// Room for the controls below the picture, points.
@@ -54,7 +55,7 @@ pub struct VideoPanel;
 
 impl Panel for VideoPanel {
     fn title(&self) -> &'static str {
-        "Video"
+        words::VIDEO
     }
 
     fn ui(&mut self, ui: &mut Ui, session: &mut Session) {

@@ -9,14 +9,26 @@ use egui::{Align, ComboBox, Layout, RichText, Ui};
 use estimator::diagnose::Diagnosis;
 use haptics::law;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const CARD: &str = "Why not …?";
+    pub const CHOOSE_A_CAUSE: &str = "Choose a cause";
+    pub const WHY_NOT: &str = "Why not";
+    pub const NOTHING_CHOSEN: &str = "Every cause that was not named has its reason.";
+    pub const ALONE: &str = "Alone";
+    pub const BESIDE_WHAT_WAS_FOUND: &str = "Beside what was found";
+    pub const SCORE_MORE: &str = "Score in units of 2 ln(likelihood); the mark is where a cause is named.";
+    pub const IT_IS_NOT_LOOKED: &str = "It is not looked for in recordings of this kind.";
+}
+
 /// The card under the causes.
 pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
     let mut others: Vec<&str> =
         law::causes().map(|c| c.id).filter(|id| diagnosis.causes.iter().all(|c| c.id != *id)).collect();
     others.sort_by_key(|id| title(id));
-    plain_card(ui, "Why not …?", |ui| {
+    plain_card(ui, words::CARD, |ui| {
         let asked = &mut session.diagnosing.asked_about;
-        let shown = asked.as_deref().map_or("Choose a cause".to_owned(), title);
+        let shown = asked.as_deref().map_or(words::CHOOSE_A_CAUSE.to_owned(), title);
         let list = ComboBox::from_id_salt("why not").width(ui.available_width() - 22.0).selected_text(shown);
         let list = list.show_ui(ui, |ui| {
             for id in others {
@@ -26,9 +38,9 @@ pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
                 }
             }
         });
-        list.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Why not"));
+        list.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, words::WHY_NOT));
         let Some(id) = asked.clone().filter(|id| diagnosis.causes.iter().all(|c| c.id != *id)) else {
-            ui.label(theme::caption(ui, "Every cause that was not named has its reason."));
+            ui.label(theme::caption(ui, words::NOTHING_CHOSEN));
             return;
         };
         ui.add_space(space::XS);
@@ -36,7 +48,7 @@ pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
         if let Some(passed) = diagnosis.passed_over.iter().find(|p| p.id == id) {
             let p = palette(ui);
             let most = passed.alone.max(passed.beside).max(passed.least);
-            for (label, score) in [("Alone", passed.alone), ("Beside what was found", passed.beside)] {
+            for (label, score) in [(words::ALONE, passed.alone), (words::BESIDE_WHAT_WAS_FOUND, passed.beside)] {
                 compact(ui, |ui| {
                     ui.label(theme::caption(ui, label));
                     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -45,7 +57,7 @@ pub fn card(ui: &mut Ui, session: &mut Session, diagnosis: &Diagnosis) {
                 });
                 bar(ui, score, most, Some(passed.least), if score < passed.least { p.faint } else { p.accent });
             }
-            ui.label(theme::caption(ui, "Score in units of 2 ln(likelihood); the mark is where a cause is named."));
+            ui.label(theme::caption(ui, words::SCORE_MORE));
         }
         if let Some(entry) = law::cause(&id) {
             ui.label(theme::caption(ui, format!("It would show as {}", small(entry.shows))));
@@ -65,7 +77,7 @@ fn reason(diagnosis: &Diagnosis, id: &str) -> String {
     }
     match diagnosis.passed_over.iter().find(|p| p.id == id) {
         Some(passed) => sentence(&passed.why),
-        None => "It is not looked for in recordings of this kind.".to_owned(),
+        None => words::IT_IS_NOT_LOOKED.to_owned(),
     }
 }
 

@@ -11,6 +11,18 @@ use estimator::segment::SystemState;
 use estimator::signal::transform::Transform;
 use std::sync::Arc;
 
+/// What this panel says; sentences with numbers in them stand where the numbers are.
+mod words {
+    pub const UPWARDS: &str = "Upwards";
+    pub const TO_THE_RIGHT: &str = "To the right";
+    pub const COLOUR: &str = "Colour";
+    pub const FROM_DARK_TO_BRIGHT: &str = "From dark to bright in the course of the visible time";
+    pub const BY_STATE: &str = "By state";
+    pub const THE_CONTACT_STATE: &str = "The contact state";
+    pub const BY_TIME: &str = "By time";
+    pub const COLOUR_FROM_DARK: &str = "Colour: from dark to bright in the course of the visible time.";
+}
+
 /// What can be made of a signal here.
 const TRANSFORMS: [Transform; 5] =
     [Transform::None, Transform::Derivative, Transform::SecondDerivative, Transform::Integral, Transform::MinusMean];
@@ -97,7 +109,7 @@ fn gutter(ui: &mut Ui, plots: &mut PlotChoices, sources: &Sources<'_>, cursor_s:
     ui.spacing_mut().item_spacing.y = 5.0;
     ui.add_space(2.0);
     let prepared = sources.prepared;
-    for (title, upwards) in [("Upwards", true), ("To the right", false)] {
+    for (title, upwards) in [(words::UPWARDS, true), (words::TO_THE_RIGHT, false)] {
         ui.label(theme::caption(ui, title));
         let axis = if upwards { &mut plots.xy.y } else { &mut plots.xy.x };
         if let Some(axis) = axis {
@@ -107,16 +119,17 @@ fn gutter(ui: &mut Ui, plots: &mut PlotChoices, sources: &Sources<'_>, cursor_s:
         ui.add_space(space::XS);
     }
     if sources.analysis.is_some() {
-        ui.label(theme::caption(ui, "Colour"));
-        let hint = "From dark to bright in the course of the visible time";
-        let choices = [(XyColor::State, "By state", "The contact state"), (XyColor::Time, "By time", hint)];
+        ui.label(theme::caption(ui, words::COLOUR));
+        let hint = words::FROM_DARK_TO_BRIGHT;
+        let choices =
+            [(XyColor::State, words::BY_STATE, words::THE_CONTACT_STATE), (XyColor::Time, words::BY_TIME, hint)];
         segmented(ui, &mut plots.xy.color, &choices);
         if plots.xy.color == XyColor::State {
             states(ui, sources);
         }
     } else {
         plots.xy.color = XyColor::Time;
-        ui.label(theme::caption(ui, "Colour: from dark to bright in the course of the visible time."));
+        ui.label(theme::caption(ui, words::COLOUR_FROM_DARK));
     }
 }
 

@@ -18,6 +18,7 @@ mod rules;
 mod scene;
 mod shifting;
 mod spoken;
+mod texts;
 mod thresholds;
 mod train;
 mod video;
