@@ -31,23 +31,33 @@ pub struct Refits {
     took: Option<Duration>,
     /// Whether the fit follows every change.
     pub live: bool,
+    /// … as long as it takes no longer than this.
+    pub at_once: Duration,
 }
 
 impl Default for Refits {
     fn default() -> Self {
-        Self { shared: Arc::default(), part_s: None, asked: None, begun: Instant::now(), took: None, live: true }
+        Self {
+            shared: Arc::default(),
+            part_s: None,
+            asked: None,
+            begun: Instant::now(),
+            took: None,
+            live: true,
+            at_once: AT_ONCE,
+        }
     }
 }
 
 impl Refits {
     /// For other recordings.
     pub fn forget(&mut self) {
-        *self = Self { live: self.live, ..Self::default() };
+        *self = Self { live: self.live, at_once: self.at_once, ..Self::default() };
     }
 
     /// True when fits of these recordings are quick enough to follow every change.
     pub fn quick(&self) -> bool {
-        self.took.is_some_and(|took| took < AT_ONCE)
+        self.took.is_some_and(|took| took < self.at_once)
     }
 
     /// How long the last fit took.
