@@ -10,6 +10,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Tick of both programs, s: fine, so that neither's steps are what differs.
 const STEP_S: f64 = 1.25e-4;
+/// Dry friction of the switch at its knob, N.
+const DRY_N: f64 = 0.15;
 /// Ticks between compared places.
 const EVERY: usize = 8;
 
@@ -55,6 +57,8 @@ pub fn compared() -> Option<Table> {
     let slope = slid_block(-0.25)?;
     let dropped = dropped_block()?;
     let lifted = lifted_block()?;
+    let led = led_switch(0.9)?;
+    let pressed = led_switch(1.06)?;
     let rows = vec![
         crank.row("crank, turned by the same force at its handle", ("angle", 0), "rad", 5e-3),
         swung.row("crank, let go", ("angle", 0), "rad", 1e-3),
@@ -63,6 +67,8 @@ pub fn compared() -> Option<Table> {
         slope.row("block, sent up a floor tilted by 0.25 rad", ("x", 0), "m", 0.5e-3),
         dropped.row("block, dropped by 5 mm until it lies", ("y", 1), "m", 0.3e-3),
         lifted.row("upper block, lifted by two fingers and put back", ("y", 1), "m", 0.6e-3),
+        led.row("switch without its snap, led to and fro by the same force at its knob", ("angle", 0), "rad", 5e-3),
+        pressed.row("the same, led against both stops", ("angle", 0), "rad", 20e-3),
     ];
     Some(Table { head: vec!["world and input", "coordinate", "way", "largest difference", "may be"], rows })
 }
@@ -132,6 +138,35 @@ fn turned_crank() -> Option<Course> {
         angles.push(vec![state.crank.angle_rad]);
     });
     let force = json!({ "body": "crank", "site": "crank-handle", "rows": forces });
+    let theirs = played(&world, (Format::Mjcf, false), &mut json!({ "at_s": times(angles.len()), "force": force }))?;
+    Some(Course { ours: thinned(&angles), theirs })
+}
+
+/// Two fingers lead the knob of our switch to and fro over a share of its way, from the middle; the force that they put on it moves
+/// MuJoCo's lever.
+fn led_switch(share: f64) -> Option<Course> {
+    let mut world = presets::switch();
+    let switch = world.switch.as_mut().expect("a switch");
+    // What MuJoCo has nothing for: a force that changes over the way. What lies between the two ways stays, the same everywhere.
+    switch.curve.points.iter_mut().for_each(|p| (p.forward_n, p.backward_n) = (DRY_N, -DRY_N));
+    switch.start_m = 0.0;
+    let knob = switch.clone();
+    let most_m = share * switch.curve.points.last().expect("an end").at_m;
+    let tips = move |t: f64| {
+        let way = reach(t, 0.3, 0.8) - 2.0 * reach(t, 1.0, 1.8) + reach(t, 2.0, 2.5);
+        let half = Vec2::new(knob.knob_radius_m + 0.003 * (1.0 - reach(t, 0.0, 0.2)) - 5e-4, 0.0);
+        let middle = knob.knob_in_world(most_m * way);
+        [middle - half, middle + half]
+    };
+    let (mut forces, mut angles) = (Vec::new(), Vec::new());
+    let mut state = State::new(&world, tips(0.0));
+    let lever_m = world.switch.as_ref().expect("a switch").lever_m;
+    stepped(&world, &mut state, 2.8, &tips, |state| {
+        let force = state.tip_force_n[0] + state.tip_force_n[1];
+        forces.push([force.x, force.y]);
+        angles.push(vec![state.switch.at_m / lever_m]);
+    });
+    let force = json!({ "body": "switch", "site": "switch-handle", "rows": forces });
     let theirs = played(&world, (Format::Mjcf, false), &mut json!({ "at_s": times(angles.len()), "force": force }))?;
     Some(Course { ours: thinned(&angles), theirs })
 }
