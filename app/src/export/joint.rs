@@ -27,6 +27,8 @@ pub struct Coordinate {
     pub spring: Option<(f64, f64)>,
     /// The least and the most place that it can go to.
     pub range: [Option<f64>; 2],
+    /// How hard its ends are, N/m or N m/rad, where that is known.
+    pub stop: Option<f64>,
 }
 
 /// What the laws of a coordinate say, along the file's coordinate.
@@ -65,6 +67,7 @@ pub fn read(effects: &[Effect], seen: &Seen<'_>, scene: &mut Scene) -> Laws {
         dry: 0.0,
         spring: None,
         range: [None, None],
+        stop: None,
     };
     let mut laws = Laws { inertia: 0.0, weight: [0.0; 2], joint };
     for effect in effects.iter().filter(|effect| effect.enabled) {

@@ -54,6 +54,7 @@ pub fn add_switch(switch: &Switch, scene: &mut Scene) {
             dry: dry_n(switch) * lever_m,
             spring: None,
             range: ends,
+            stop: Some(switch.curve.stop_n_m * lever_m * lever_m),
         }),
         outline: Outline::Arm { handle_m: knob_m, axis: turning(), radius_m: switch.knob_radius_m },
     });
@@ -62,7 +63,7 @@ pub fn add_switch(switch: &Switch, scene: &mut Scene) {
         &name,
         "stops",
         Fate::Approximate,
-        "at the ends of the captured curve, as hard as the program makes them",
+        "at the ends of the captured curve; how hard they are goes to MuJoCo only",
     );
     scene.remark(&name, "friction", Fate::Approximate, "half of what lies between the two ways, the same everywhere");
     let why = "joints have no force that pushes on beyond the middle; it stays where it is put";

@@ -26,6 +26,9 @@ const OTHER_FRICTION: &str = "0.005 0.0001 0.0001";
 /// MuJoCo's dry friction of joints creeps at rest and bends at slow speeds; so it does much less than by default.
 const STIFF_FRICTION: &str = "0.002 1";
 const FIRM_FRICTION: &str = "0.99 0.999 0.001";
+/// A known stop's: see `stop`; and the most that it may turn in a step, rad.
+const STOP_SHARE: f64 = 0.01;
+const STOP_PER_STEP: f64 = 0.5;
 
 /// The whole document.
 pub fn write(world: &World, scene: &mut Scene, fingers: bool) -> Element {
@@ -142,11 +145,26 @@ fn joints(of: &Body, angle_rad: f64) -> Vec<Element> {
             }
             all
         }
-        Moves::Along(along) => vec![along_one(named(""), along)],
+        Moves::Along(along) => vec![along_one(named(""), along, inertia_along(of, along))],
     }
 }
 
-fn along_one(joint: Element, along: &Coordinate) -> Element {
+/// What one coordinate has to speed up, kg or kg m².
+fn inertia_along(of: &Body, along: &Coordinate) -> f64 {
+    if along.turns { of.inertia_kg_m2 + of.mass_kg * of.middle_m.norm_squared() } else { of.mass_kg }
+}
+
+/// An end as a spring of known stiffness, damped by no more than the joint. A limit's own force is what is left of the free acceleration plus the share `d` of a spring's
+/// pull, which is scaled so that the
+/// share falls out; with a small one it is that spring (`STOP_SHARE` of the outer force is the error).
+fn stop(joint: Element, stiffness: f64, inertia: f64) -> Element {
+    let rate_1_s = (stiffness / inertia).sqrt().min(STOP_PER_STEP / STEP_S);
+    joint
+        .with("solreflimit", numbers(&[-rate_1_s.powi(2), 0.0]))
+        .with("solimplimit", numbers(&[STOP_SHARE, STOP_SHARE, 0.001]))
+}
+
+fn along_one(joint: Element, along: &Coordinate, inertia: f64) -> Element {
     let mut joint = joint
         .with("type", if along.turns { "hinge" } else { "slide" })
         .with("axis", numbers(along.axis.as_slice()))
@@ -162,6 +180,9 @@ fn along_one(joint: Element, along: &Coordinate) -> Element {
         // An open end is out of reach.
         let [low, high] = along.range;
         joint = joint.with("range", numbers(&[low.unwrap_or(-1e3), high.unwrap_or(1e3)]));
+        if let Some(stiffness) = along.stop {
+            joint = stop(joint, stiffness, inertia);
+        }
     }
     joint
 }

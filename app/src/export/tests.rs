@@ -127,6 +127,10 @@ fn a_switch_is_a_lever_between_its_stops() {
     assert!(near(ends[0] * lever_m, points[0].at_m) && near(ends[1] * lever_m, points[points.len() - 1].at_m));
     assert!(near(file.number("joint", "damping"), switch.damping_n_s_m * lever_m.powi(2)));
     assert!(near(file.number("inertial", "mass"), switch.mass_kg));
+    // A stop is a spring: stiffness over mass.
+    let of = |name: &str| -> f64 { joint[name].split(' ').next().and_then(|n| n.parse().ok()).expect("a number") };
+    let spring_1_s2 = -of("solreflimit");
+    assert!((spring_1_s2 * switch.mass_kg / switch.curve.stop_n_m - 1.0).abs() < 1e-3, "{spring_1_s2}");
     assert_eq!(file.all("inertial").next().expect("a mass")["pos"], format!("0 0 {lever_m}"));
     // Going to and fro costs what lies between the branches: twice the friction over twice the way.
     let between_j: f64 = points

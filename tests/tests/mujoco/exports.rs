@@ -4,14 +4,17 @@ use super::table::{Row, Table};
 use app::export::{Format, export};
 use haptics::Vec2;
 use haptics::law::{Law as _, LoadFriction};
-use haptics::world::{Input, State, World, presets, step};
+use haptics::world::{Input, State, Switch, World, presets, step};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Tick of both programs, s: fine, so that neither's steps are what differs.
 const STEP_S: f64 = 1.25e-4;
-/// Dry friction of the switch at its knob, N.
-const DRY_N: f64 = 0.15;
+/// Dry friction of the switch at its knob, N, over which way it turns round, m, and damping, N s/m: what moves a knob by a given force
+/// is mostly damping then; with little of it the smallest difference in friction is a long way.
+const DRY_N: f64 = 0.05;
+const REVERSAL_M: f64 = 0.02e-3;
+const DAMPING_N_S_M: f64 = 5.0;
 /// Ticks between compared places.
 const EVERY: usize = 8;
 
@@ -59,6 +62,7 @@ pub fn compared() -> Option<Table> {
     let lifted = lifted_block()?;
     let led = led_switch(0.9)?;
     let pressed = led_switch(1.06)?;
+    let fallen = fallen_switch()?;
     let rows = vec![
         crank.row("crank, turned by the same force at its handle", ("angle", 0), "rad", 5e-3),
         swung.row("crank, let go", ("angle", 0), "rad", 1e-3),
@@ -68,7 +72,8 @@ pub fn compared() -> Option<Table> {
         dropped.row("block, dropped by 5 mm until it lies", ("y", 1), "m", 0.3e-3),
         lifted.row("upper block, lifted by two fingers and put back", ("y", 1), "m", 0.6e-3),
         led.row("switch without its snap, led to and fro by the same force at its knob", ("angle", 0), "rad", 5e-3),
-        pressed.row("the same, led against both stops", ("angle", 0), "rad", 20e-3),
+        pressed.row("the same, led against both stops", ("angle", 0), "rad", 5e-3),
+        fallen.row("the same without friction, let go, falls against a stop", ("angle", 0), "rad", 15e-3),
     ];
     Some(Table { head: vec!["world and input", "coordinate", "way", "largest difference", "may be"], rows })
 }
@@ -142,16 +147,33 @@ fn turned_crank() -> Option<Course> {
     Some(Course { ours: thinned(&angles), theirs })
 }
 
+/// A switch without what MuJoCo has nothing for: a force that changes over the way. What lies between the two ways stays, the same
+/// everywhere.
+fn without_snap(dry_n: f64, damping_n_s_m: f64, start_m: f64) -> (World, Switch) {
+    let mut world = presets::switch();
+    let switch = world.switch.as_mut().expect("a switch");
+    switch.curve.points.iter_mut().for_each(|p| (p.forward_n, p.backward_n) = (dry_n, -dry_n));
+    switch.curve.reversal_m = REVERSAL_M;
+    (switch.damping_n_s_m, switch.start_m) = (damping_n_s_m, start_m);
+    let switch = switch.clone();
+    (world, switch)
+}
+
+/// Its lever, a little off the top, falls under its weight until a stop holds it.
+fn fallen_switch() -> Option<Course> {
+    let (world, switch) = without_snap(0.0, 0.3, 3e-3);
+    let mut angles = Vec::new();
+    let mut state = State::new(&world, away(0.0));
+    stepped(&world, &mut state, 1.0, &away, |state| angles.push(vec![state.switch.at_m / switch.lever_m]));
+    let theirs = played(&world, (Format::Mjcf, false), &mut json!({ "at_s": times(angles.len()) }))?;
+    Some(Course { ours: thinned(&angles), theirs })
+}
+
 /// Two fingers lead the knob of our switch to and fro over a share of its way, from the middle; the force that they put on it moves
 /// MuJoCo's lever.
 fn led_switch(share: f64) -> Option<Course> {
-    let mut world = presets::switch();
-    let switch = world.switch.as_mut().expect("a switch");
-    // What MuJoCo has nothing for: a force that changes over the way. What lies between the two ways stays, the same everywhere.
-    switch.curve.points.iter_mut().for_each(|p| (p.forward_n, p.backward_n) = (DRY_N, -DRY_N));
-    switch.start_m = 0.0;
-    let knob = switch.clone();
-    let most_m = share * switch.curve.points.last().expect("an end").at_m;
+    let (world, knob) = without_snap(DRY_N, DAMPING_N_S_M, 0.0);
+    let (lever_m, most_m) = (knob.lever_m, share * knob.curve.points.last().expect("an end").at_m);
     let tips = move |t: f64| {
         let way = reach(t, 0.3, 0.8) - 2.0 * reach(t, 1.0, 1.8) + reach(t, 2.0, 2.5);
         let half = Vec2::new(knob.knob_radius_m + 0.003 * (1.0 - reach(t, 0.0, 0.2)) - 5e-4, 0.0);
@@ -160,7 +182,6 @@ fn led_switch(share: f64) -> Option<Course> {
     };
     let (mut forces, mut angles) = (Vec::new(), Vec::new());
     let mut state = State::new(&world, tips(0.0));
-    let lever_m = world.switch.as_ref().expect("a switch").lever_m;
     stepped(&world, &mut state, 2.8, &tips, |state| {
         let force = state.tip_force_n[0] + state.tip_force_n[1];
         forces.push([force.x, force.y]);
