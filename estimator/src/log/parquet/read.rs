@@ -1,7 +1,8 @@
 //! Reading Parquet: every flat column of numbers or text.
 
 use super::column::{self, Meaning};
-use super::{SIDECAR, guard, one_line};
+use super::sums::Sums;
+use super::{SIDECAR, guard, is_index, one_line};
 use crate::log::errors::LogError;
 use crate::log::raw::{Cells, Raw};
 use crate::log::units;
@@ -39,8 +40,7 @@ fn whole(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Columns, LogError>
     let mut used = Vec::new();
     for (index, column) in schema.columns().iter().enumerate() {
         let name = column.path().string();
-        // pandas keeps an index without a name.
-        if name.starts_with("__index_level_") {
+        if is_index(&name) {
             continue;
         }
         match column::meaning(column) {
@@ -70,6 +70,9 @@ fn whole(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Columns, LogError>
     }
     let cancelled = || LogError::Cancelled { path: path.to_path_buf() };
     columns(&reader, &used, rows, &mut raw, watch).map_err(|why| why.map_or_else(cancelled, damaged))?;
+    if let Some(why) = Sums::fault(&facts, &raw) {
+        return Err(damaged(why));
+    }
     let carried = facts.key_value_metadata().and_then(|all| all.iter().find(|kv| kv.key == SIDECAR)?.value.clone());
     Ok((raw, carried, said))
 }

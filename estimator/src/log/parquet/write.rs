@@ -1,6 +1,7 @@
 //! Writing Parquet: one column of doubles a channel, text for trial and label, units and sidecar in the file's metadata.
 
-use super::{SIDECAR, UNITS, one_line};
+use super::sums::{Sum, Sums};
+use super::{CREATED_BY, SIDECAR, UNITS, one_line};
 use crate::log::errors::LogError;
 use crate::log::write::{Value, cell, columns, not_finite, portable_meta};
 use haptics::recording::Recording;
@@ -31,43 +32,49 @@ pub fn write(recordings: &[Recording], path: &Path) -> Result<(), LogError> {
 }
 
 fn table(recordings: &[Recording], columns: &[(String, bool)], file: File) -> Result<(), ParquetError> {
+    let facts = metadata(recordings);
     let properties = WriterProperties::builder()
         .set_compression(Compression::ZSTD(ZstdLevel::default()))
-        .set_created_by(concat!("touchstone ", env!("CARGO_PKG_VERSION")).to_owned())
-        .set_key_value_metadata(Some(metadata(recordings)))
+        .set_created_by(format!("{CREATED_BY}{}", env!("CARGO_PKG_VERSION")))
+        .set_key_value_metadata(Some(facts.clone()))
         .build();
+    let mut sums = vec![Sum::default(); columns.len()];
     let mut writer = SerializedFileWriter::new(file, schema(columns)?, Arc::new(properties))?;
     for recording in recordings {
         let mut first = 0;
         while first < recording.len() {
             let end = recording.len().min(first + BLOCK_ROWS);
             let mut group = writer.next_row_group()?;
-            for (column, (_, text)) in columns.iter().enumerate() {
-                block(&mut group, recording, column, *text, first..end)?;
+            for (column, ((_, text), sum)) in columns.iter().zip(&mut sums).enumerate() {
+                block(&mut group, recording, (column, *text), first..end, sum)?;
             }
             group.close()?;
             first = end;
         }
     }
+    let named = columns.iter().map(|(name, _)| name.as_str()).zip(sums);
+    writer.append_key_value_metadata(Sums::new(named, &facts).entry());
     writer.close().map(drop)
 }
 
 fn block(
     group: &mut SerializedRowGroupWriter<'_, File>,
     recording: &Recording,
-    column: usize,
-    text: bool,
+    (column, text): (usize, bool),
     rows: std::ops::Range<usize>,
+    sum: &mut Sum,
 ) -> Result<(), ParquetError> {
     let missing = || ParquetError::General("the schema has fewer columns than the recording".to_owned());
     let mut writer = group.next_column()?.ok_or_else(missing)?;
     if text {
         let value = |row| if let Value::Text(t) = cell(recording, column, row) { t } else { "" };
+        sum.texts(rows.clone().map(value));
         let values: Vec<ByteArray> = rows.map(|row| ByteArray::from(value(row))).collect();
         writer.typed::<ByteArrayType>().write_batch(&values, None, None)?;
     } else {
         let value = |row| if let Value::Number(v) = cell(recording, column, row) { v } else { 0.0 };
         let values: Vec<f64> = rows.map(value).collect();
+        sum.numbers(&values);
         writer.typed::<DoubleType>().write_batch(&values, None, None)?;
     }
     writer.close()
