@@ -180,6 +180,14 @@ impl Online {
         enough::judge(parameters, &self.problems(), &self.settings.wanted)
     }
 
+    /// Whether a crank's laws have rows; blocks are judged from the first sample on.
+    fn knows_something(&self) -> bool {
+        match &self.body {
+            Body::Blocks(_) => true,
+            Body::Crank(crank) => crank.has_rows(),
+        }
+    }
+
     fn problems(&self) -> Vec<Problem> {
         match &self.body {
             Body::Blocks(blocks) => blocks.problems(&self.sense),

@@ -1,7 +1,8 @@
 //! Recordings through the estimator that runs beside the servo.
 
-use super::enough::{Enough, Wanted, judge};
+use super::enough::{Enough, Wanted, crank_problems_of, judge};
 use super::filter::Sample;
+use super::sense::FREE_ROW_S;
 use super::{Online, Settings};
 use crate::estimate::{EstimateError, Fit};
 use crate::signal::task::task_signals;
@@ -47,13 +48,14 @@ pub fn replay(recordings: &[Recording], task: Task, settings: &Settings) -> Resu
 }
 
 /// What recordings of one object show of every parameter of their fit, and which motion is missing. Tasks without on-line estimates
-/// get shares and no motions.
+/// get the motion that shows a parameter, and no seconds.
 pub fn enough_for(recordings: &[Recording], task: Task, fit: &Fit, wanted: &Wanted) -> Vec<Enough> {
     let gravity_m_s2 = recordings.first().map_or(9.81, |r| r.meta.gravity());
     // A recording is judged as a whole: nothing of it is forgotten.
     let settings = Settings { memory_s: f64::INFINITY, gravity_m_s2, wanted: wanted.clone(), ..Settings::default() };
     match replay(recordings, task, &settings) {
-        Ok(online) => online.enough(&fit.parameters),
-        Err(_) => judge(&fit.parameters, &[], wanted),
+        Ok(online) if online.knows_something() => online.enough(&fit.parameters),
+        _ if task == Task::Crank => judge(&fit.parameters, &crank_problems_of(recordings, fit, FREE_ROW_S), wanted),
+        _ => judge(&fit.parameters, &[], wanted),
     }
 }

@@ -6,6 +6,7 @@ mod leaks;
 mod losses;
 mod missing;
 mod pulls;
+mod shown;
 
 use estimator::{identify, online};
 

@@ -101,6 +101,10 @@ impl Crank {
         report.events.extend_from_slice(&self.events);
     }
 
+    pub(super) fn has_rows(&self) -> bool {
+        self.circle.frame().is_some() && self.laws.fit().rows() > 0
+    }
+
     pub(super) fn problems(&self, sense: &Sense) -> Vec<Problem> {
         let bias_error = sense.lift_bias().map(|(_, error)| error);
         crank_problems(&self.circle, &self.laws, bias_error, sense.lift_noise_n(), FREE_ROW_S)

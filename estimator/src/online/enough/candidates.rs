@@ -133,24 +133,74 @@ pub(in super::super) fn crank_problems(
     bias_noise_n: f64,
     free_row_s: f64,
 ) -> Vec<Problem> {
-    vec![rubbing(circle, laws, bias_error, bias_noise_n, free_row_s), round(circle, laws)]
+    let (normal_n, pull_n, speed_m_s) = laws.usual();
+    let (information, variance) = collected(laws.fit());
+    let turned = Turned {
+        information,
+        variance,
+        seconds: laws.fit().rows() as f64 / Rubbing::rows_per_s(),
+        normal_n,
+        pull_n,
+        speed_m_s,
+        radius_m: circle.frame().map_or(0.02, |f| f.1),
+        bias_error,
+        bias_noise_n,
+        free_row_s,
+    };
+    let (information, variance) = collected(circle.fit());
+    let seconds = circle.fit().rows() as f64 / Found::rows_per_s();
+    let force_n = circle.usual_force_n();
+    vec![rubbing(&turned), round(&Round { information, variance, seconds, normal_n, force_n })]
+}
+
+/// What was seen of a crank's laws.
+pub(super) struct Turned {
+    /// Information of the laws' columns.
+    pub(super) information: DMatrix<f64>,
+    /// What rows are divided by to become information.
+    pub(super) variance: f64,
+    /// For so long, s.
+    pub(super) seconds: f64,
+    /// Mean normal force and mean size of it, N.
+    pub(super) normal_n: f64,
+    pub(super) pull_n: f64,
+    /// Mean speed, m/s.
+    pub(super) speed_m_s: f64,
+    pub(super) radius_m: f64,
+    /// Error of the bias, N, once it was seen, and its noise from row to row.
+    pub(super) bias_error: Option<f64>,
+    pub(super) bias_noise_n: f64,
+    /// Time between two rows in free motion, s.
+    pub(super) free_row_s: f64,
+}
+
+/// What was seen of its circle.
+pub(super) struct Round {
+    /// Information of radius, centre and give.
+    pub(super) information: DMatrix<f64>,
+    /// What rows are divided by to become information.
+    pub(super) variance: f64,
+    /// For so long, s.
+    pub(super) seconds: f64,
+    /// Mean normal force, and mean size of the force, N.
+    pub(super) normal_n: f64,
+    pub(super) force_n: f64,
 }
 
 /// One way of turning: time along it from 0 to 1 → speed over the usual one, acceleration over usual speed times 1/s, normal force, N.
 type Way<'a> = &'a dyn Fn(f64) -> (f64, f64, f64);
 
-fn rubbing(circle: &Found, laws: &Rubbing, bias_error: Option<f64>, bias_noise_n: f64, free_row_s: f64) -> Problem {
-    let (collected, variance) = collected(laws.fit());
-    let mut information = with_copy(&collected, WEIGHT);
+pub(super) fn rubbing(seen: &Turned) -> Problem {
+    let variance = seen.variance;
+    let mut information = with_copy(&seen.information, WEIGHT);
     let bias = NAMES.len();
-    if let Some(error) = bias_error {
+    if let Some(error) = seen.bias_error {
         information[(bias, bias)] += error.powi(-2);
     }
     let rows_per_s = Rubbing::rows_per_s();
-    let seconds = (laws.fit().rows() as f64 / rows_per_s).max(1.0 / rows_per_s);
-    let (normal, pull, speed) = laws.usual();
-    let (speed, pull) = (speed.max(0.01), pull.max(0.1));
-    let radius = circle.frame().map_or(0.02, |f| f.1);
+    let seconds = seen.seconds.max(1.0 / rows_per_s);
+    let (normal, radius) = (seen.normal_n, seen.radius_m);
+    let (speed, pull) = (seen.speed_m_s.max(0.01), seen.pull_n.max(0.1));
     let turn = |way: Way<'_>| {
         let row = |k: usize| {
             let phase = (k as f64 + 0.5) / STEPS as f64;
@@ -177,16 +227,16 @@ fn rubbing(circle: &Found, laws: &Rubbing, bias_error: Option<f64>, bias_noise_n
     let speeds = |phase: f64| [0.4, 1.0, 2.0][(phase * 6.0) as usize % 3];
     // About one and a half swings of the speed a second.
     let swing = |phase: f64| (TAU * 11.0 * phase).sin_cos();
-    let free_noise = if bias_noise_n > 0.0 { bias_noise_n } else { variance.sqrt() };
+    let free_noise = if seen.bias_noise_n > 0.0 { seen.bias_noise_n } else { variance.sqrt() };
     let mut let_go = DMatrix::zeros(bias + 1, bias + 1);
-    let_go[(bias, bias)] = 1.0 / (free_row_s * free_noise * free_noise);
+    let_go[(bias, bias)] = 1.0 / (seen.free_row_s * free_noise * free_noise);
     Problem {
         object: "crank".to_owned(),
         names: NAMES.iter().enumerate().map(|(k, name)| ((*name).to_owned(), k)).collect(),
         information,
         before: vec![10.0, 10.0, 100.0, 10.0, 10.0, 10.0],
         motions: vec![
-            (Motion::GoOn, with_copy(&(collected / seconds), WEIGHT)),
+            (Motion::GoOn, with_copy(&(&seen.information / seconds), WEIGHT)),
             (Motion::Reverse, turn(&|p| (way(p), 0.0, normal))),
             (Motion::OtherSpeeds, turn(&|p| (way(p) * speeds(p), 0.0, normal))),
             (
@@ -202,12 +252,11 @@ fn rubbing(circle: &Found, laws: &Rubbing, bias_error: Option<f64>, bias_noise_n
     }
 }
 
-fn round(circle: &Found, laws: &Rubbing) -> Problem {
-    let (information, variance) = collected(circle.fit());
+pub(super) fn round(seen: &Round) -> Problem {
+    let (information, variance) = (seen.information.clone(), seen.variance);
     let rows_per_s = Found::rows_per_s();
-    let seconds = (circle.fit().rows() as f64 / rows_per_s).max(1.0 / rows_per_s);
-    let (normal, _, _) = laws.usual();
-    let force = circle.usual_force_n().max(0.05);
+    let seconds = seen.seconds.max(1.0 / rows_per_s);
+    let (normal, force) = (seen.normal_n, seen.force_n.max(0.05));
     let turn = |radial: &dyn Fn(f64) -> f64, along: f64| {
         let row = |k: usize| {
             let phase = (k as f64 + 0.5) / STEPS as f64;

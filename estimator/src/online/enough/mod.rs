@@ -2,13 +2,17 @@
 //!
 //! What was collected is an information matrix (the inverse of the covariance, errors as reported). A candidate motion adds rows of its
 //! own a second, made by the same laws. The seconds that each of them needs for the wanted accuracy follow; the motion that is missing
-//! is the one that gets there clearly sooner than going on as before. Names of parameters decide nothing here. Where several are needed, the one that
-//! all of them together could least do without is named first.
+//! is the one that gets there clearly sooner than going on as before. Names of parameters decide nothing there. Where several are needed, the one that
+//! all of them together could least do without is named first. What has no such matrix gets the motion that its fit takes it from
+//! ([`usual`]), without seconds.
 
 mod candidates;
+mod recorded;
+mod usual;
 mod wanted;
 
 pub(super) use candidates::{block_problems, crank_problems};
+pub(super) use recorded::crank_problems_of;
 pub use wanted::Wanted;
 
 use crate::estimate::Parameter;
@@ -53,6 +57,38 @@ pub enum Motion {
     Accelerate,
     /// Pressed towards the centre and drawn from it.
     PushAndPull,
+    /// A block is set down, pressed, and lifted again.
+    SetDownAgain,
+    /// A needle through the sheet and out again.
+    PushThroughAndBack,
+    /// A needle to and fro in its hole.
+    MoveInTheHole,
+    /// A needle still, outside of the sheet.
+    HoldInTheAir,
+    /// A switch over and back, slowly.
+    ThrowSlowlyBothWays,
+    /// A switch pressed on at its ends.
+    PressOnBothStops,
+    /// A resting knob touched by one finger after the other.
+    TouchFromBothSides,
+    /// A switch thrown while both fingers hold it.
+    ThrowBetweenFingers,
+    /// A cable pulled until it holds.
+    PullTaut,
+    /// A taut cable pulled in other directions.
+    PullOtherWays,
+    /// A mechanism at several speeds.
+    MoveAtOtherSpeeds,
+    /// A mechanism faster and slower.
+    ChangeSpeed,
+    /// A mechanism slowly through everything it can reach.
+    SlowlyThroughAllAngles,
+    /// A tool along a surface.
+    SlideAlong,
+    /// A body thrown once more.
+    ThrowAgain,
+    /// Nothing that is done in such a recording.
+    NoMotion,
 }
 
 impl Motion {
@@ -70,6 +106,22 @@ impl Motion {
             Self::OtherSpeeds => "turn at other speeds, slowly and fast",
             Self::Accelerate => "speed up and slow down within a turn",
             Self::PushAndPull => "push towards the centre and pull away from it while turning",
+            Self::SetDownAgain => "set it down, let go, and lift it again, a few times",
+            Self::PushThroughAndBack => "push slowly until it goes through, pull out, and do it again at another place",
+            Self::MoveInTheHole => "once through, move on and back out at an even speed, a few times",
+            Self::HoldInTheAir => "hold it still in the air for some seconds, and let go of it once",
+            Self::ThrowSlowlyBothWays => "throw it slowly both ways, a few times",
+            Self::PressOnBothStops => "press gently on at both ends of its travel",
+            Self::TouchFromBothSides => "touch the resting knob from one side, leave it, then from the other",
+            Self::ThrowBetweenFingers => "hold it between both fingers and throw it, slowly and then quickly",
+            Self::PullTaut => "pull slowly until the cable holds, give way, and pull again",
+            Self::PullOtherWays => "keep the cable taut and move around, in other directions",
+            Self::MoveAtOtherSpeeds => "move it at several speeds, slowly and fast",
+            Self::ChangeSpeed => "speed it up and slow it down, as quickly as it allows",
+            Self::SlowlyThroughAllAngles => "move it slowly through all its angles, or hold it still at several",
+            Self::SlideAlong => "slide along the surface, to and fro, while pressing more and less",
+            Self::ThrowAgain => "throw it again, so that it slides farther",
+            Self::NoMotion => "no motion of such a recording shows it better; state it if it is known",
         }
     }
 }
@@ -159,12 +211,12 @@ pub(super) fn judge(parameters: &[Parameter], problems: &[Problem], wanted: &Wan
                 let column = problem.names.iter().find(|(name, _)| *name == parameter.name)?.1;
                 Some((problem, column))
             });
-            one(parameter, place, wanted)
+            one(parameter, parameters, place, wanted)
         })
         .collect()
 }
 
-fn one(parameter: &Parameter, place: Option<(&Problem, usize)>, wanted: &Wanted) -> Enough {
+fn one(parameter: &Parameter, all: &[Parameter], place: Option<(&Problem, usize)>, wanted: &Wanted) -> Enough {
     let std_error = parameter.std_error.filter(|_| parameter.identified);
     let goal = parameter.value.and_then(|value| wanted.absolute(&parameter.name, value));
     let share = match (goal, std_error) {
@@ -183,6 +235,9 @@ fn one(parameter: &Parameter, place: Option<(&Problem, usize)>, wanted: &Wanted)
     };
     if let (true, Some((problem, column))) = (share < 1.0, place) {
         (enough.more_seconds, enough.missing) = ahead(problem, column, std_error, goal);
+    }
+    if share < 1.0 && enough.more_seconds.is_none() && enough.missing.is_none() {
+        enough.missing = usual::shows(parameter, all).map(|motion| missing(motion, None));
     }
     enough
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 /// Relative standard errors that are wanted unless other ones are stated, and the size below which a value counts as that size: the
 /// accuracy of what is nearly zero is absolute.
-const USUAL: [(&str, f64, f64); 17] = [
+const USUAL: [(&str, f64, f64); 28] = [
     ("weight_N", 0.01, 0.02),
     ("mass_kg", 0.01, 0.002),
     ("width_m", 0.005, 0.005),
@@ -22,6 +22,17 @@ const USUAL: [(&str, f64, f64); 17] = [
     ("viscous_Nm_s", 0.05, 1e-3),
     ("coulomb_Nm", 0.05, 1e-3),
     ("gravity_moment_Nm", 0.02, 1e-3),
+    ("shaft_friction_N", 0.1, 0.05),
+    ("hardening_N_m3", 0.25, 1e5),
+    ("peak_force_N", 0.05, 0.1),
+    ("return_peak_force_N", 0.05, 0.1),
+    ("trough_force_N", 0.1, 0.1),
+    ("return_trough_force_N", 0.1, 0.1),
+    ("friction_N", 0.2, 0.05),
+    ("damping_N_s_m", 0.2, 0.2),
+    ("travel_m", 0.01, 0.005),
+    ("knob_width_m", 0.01, 0.005),
+    ("length_m", 0.05, 0.02),
 ];
 /// Positions are wanted to a share of this length, m, wherever the origin is.
 const LENGTH_M: f64 = 0.02;
