@@ -103,6 +103,12 @@ impl Session {
         self.analysis.as_ref().is_some_and(|a| decides(a.task)) && self.rules.is_none()
     }
 
+    /// True when the fit of the shown recording does not ask for its states; it can still be of a part.
+    pub fn fits_without_states(&self) -> bool {
+        let clocked = self.prepared().is_some_and(|p| !p.clockless());
+        clocked && self.analysis.as_ref().is_some_and(|a| !decides(a.task)) && self.rules.is_none()
+    }
+
     /// Sets states of the shown recording by hand.
     pub fn set_states(&mut self, change: &Change) {
         let (Some(found), Some(prepared)) = (self.segmentation(), self.prepared()) else { return };

@@ -44,7 +44,9 @@ pub fn parameter(name: &str, value: Option<f64>) -> Quantity {
         "g·cm²" if size >= 1e-2 => ("kg·m²", 1.0),
         other => (other, factor),
     };
-    Quantity { label: words(stem), unit, factor }
+    // A force, and no coefficient that a slip shows.
+    let label = if name == "friction_N" { "Friction".to_owned() } else { words(stem) };
+    Quantity { label, unit, factor }
 }
 
 /// How the samples of a channel with an SI unit are shown.
@@ -184,6 +186,8 @@ mod tests {
         );
         assert_eq!(parameter("constraint_stiffness_N_m", None).label, "Constraint stiffness");
         assert_eq!(parameter("friction_mu", Some(0.05)).unit, "");
+        let resistance = parameter("friction_N", Some(0.1));
+        assert_eq!((resistance.label.as_str(), resistance.unit), ("Friction", "N"));
         assert_eq!((parameter("leak_kg_s", None).unit, parameter("free_fall_m_s2", None).unit), ("g/s", "m/s²"));
     }
 

@@ -21,6 +21,8 @@ pub struct Rules {
     pub fault: Option<String>,
     /// Changed since it was last tried.
     pub untried: bool,
+    /// The rule that was added in the last picture, to be scrolled to.
+    pub added: Option<usize>,
 }
 
 impl Rules {
@@ -44,7 +46,7 @@ impl Rules {
     pub fn of(task: Definition) -> Self {
         let own = Task::from_name(&task.name).is_none();
         let name = if own { task.name.clone() } else { format!("my-{}", task.name) };
-        Self { before: task.clone(), draft: task, name, fault: None, untried: false }
+        Self { before: task.clone(), draft: task, name, fault: None, untried: false, added: None }
     }
 
     /// The states that the task's rules may name.
@@ -70,7 +72,9 @@ impl Rules {
         let when = first.map(|(name, values)| ((*name).to_owned(), values[0].to_owned())).into_iter().collect();
         let rule = StateRule { state, when, shows: Vec::new() };
         let always = self.draft.states.iter().position(|rule| rule.when.is_empty());
-        self.draft.states.insert(always.unwrap_or(self.draft.states.len()), rule);
+        let place = always.unwrap_or(self.draft.states.len());
+        self.draft.states.insert(place, rule);
+        self.added = Some(place);
     }
 
     /// Switches one value of a signal in a rule; a signal whose values are all off or all on may be anything.

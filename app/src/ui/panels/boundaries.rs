@@ -17,6 +17,10 @@ mod words {
     pub const SPLIT: &str = "Split at the time cursor";
     pub const SPLIT_NOT: &str = "Put the time cursor inside this state first";
     pub const JOIN: &str = "Join with the next";
+    pub const NO_STATES_TAKEN: &str = "The fit of this task takes no states: it finds its phases by itself.";
+    pub const ONLY_THIS: &str = "Fit only this stretch";
+    pub const ONLY_THIS_MORE: &str = "Leaves out what is before and after it";
+    pub const WHOLE: &str = "Fit the whole recording";
 }
 
 /// Points at which a boundary can be taken hold of, to either side.
@@ -62,6 +66,22 @@ fn mark(ui: &Ui, x: f32, band: Rect, held: bool) {
     let painter = ui.painter();
     painter.vline(x, band.y_range().expand(3.0), Stroke::new(2.0, ink));
     painter.circle(Pos2::new(x, band.center().y), 4.5, p.card, Stroke::new(2.0, ink));
+}
+
+/// What a right click on a state offers where the fit takes no states: to fit this stretch of the recording and no more.
+pub fn stretch_menu(response: &Response, stretch_s: (f64, f64), session: &mut Session) {
+    response.context_menu(|ui| {
+        ui.set_max_width(230.0);
+        ui.label(theme::caption(ui, words::NO_STATES_TAKEN));
+        if ui.button(words::ONLY_THIS).on_hover_text(words::ONLY_THIS_MORE).clicked() {
+            session.choice.only_s = Some(stretch_s);
+            ui.close();
+        }
+        if session.choice.only_s.is_some() && ui.button(words::WHOLE).clicked() {
+            session.choice.only_s = None;
+            ui.close();
+        }
+    });
 }
 
 /// What can be done with a state, on a right click; `at_s` is the time under the pointer.

@@ -18,7 +18,7 @@ mod words {
     pub const CHECK_ON_OTHER_RECORDINGS: &str = "Check on other recordings";
     pub const CHECK_ON_OTHER_RECORDINGS_MORE: &str =
         "What was found is put to recordings of the same object that took no part; nothing is fitted to them.";
-    pub const PATH_OF_A_LOG: &str = "Path of a log, then Enter";
+    pub const PATH_OF_A_LOG: &str = "Path, then Enter";
     pub const RECORDING_TO_CHECK_ON: &str = "Recording to check on";
     pub const CHOOSE_FILES: &str = "Choose files";
     pub const CHOOSE_FILES_MORE: &str = "Choose one or several files";

@@ -34,7 +34,7 @@ mod words {
     pub const ADD_MORE: &str =
         "Saves the simulated recording and diagnoses it with the others, to see what it would settle";
     pub const DID_IT: &str = "Did it on the real object? Add its recording:";
-    pub const PATH: &str = "Path of a log, then Enter";
+    pub const PATH: &str = "Path, then Enter";
     pub const RECORDING: &str = "Recording of the experiment";
     pub const CHOOSE: &str = "Choose a file";
     pub const RECORD_NEXT: &str = "Record next";

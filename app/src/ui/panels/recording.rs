@@ -17,7 +17,7 @@ use std::path::PathBuf;
 mod words {
     pub const OPEN: &str = "Open …";
     pub const OPEN_MORE: &str = "Open a log (Ctrl+O)";
-    pub const PATH: &str = "Path of a log, then Enter";
+    pub const PATH: &str = "Path, then Enter";
     pub const MAP: &str = "Map columns …";
     pub const MAP_MORE: &str = "Say what the columns of this table mean; a sidecar remembers it";
     pub const DROP: &str = "Drop a log, a world or a sidecar anywhere on the window; its columns can be mapped.";

@@ -15,6 +15,7 @@ use haptics::recording::Task;
 
 /// What this panel says; sentences with numbers in them stand where the numbers are.
 mod words {
+    pub const ADD_A_STATE: &str = "Add a state";
     pub const RULES: &str = "Rules";
     pub const CLOSE: &str = "Close";
     pub const CLOSE_MORE: &str = "The rules stay as they are for this recording";
@@ -48,6 +49,7 @@ enum Asked {
     Nothing,
     Close,
     Reset,
+    Add,
 }
 
 impl Panel for RulesPanel {
@@ -78,13 +80,16 @@ impl Panel for RulesPanel {
                 foot(ui, &mut open)
             },
         );
+        if asked == Asked::Add {
+            open.add_state();
+        }
         open.untried |= open.draft != seen;
         session.rules = Some(open);
         match asked {
             Asked::Close => session.rules = None,
             Asked::Reset => reset(session),
             Asked::Nothing if save => rules::save(ui.ctx(), session),
-            Asked::Nothing => {}
+            Asked::Nothing | Asked::Add => {}
         }
     }
 }
@@ -100,6 +105,10 @@ fn head(ui: &mut Ui, draft: &Definition, before: &Definition) -> Asked {
         .clicked()
     {
         asked = Asked::Reset;
+    }
+    // Here and not under the list, which scrolls.
+    if ui.button((Icon::Add, words::ADD_A_STATE)).clicked() {
+        asked = Asked::Add;
     }
     let like = draft.like.name();
     let text = if draft.name == like { words::BUILT_IN.to_owned() } else { format!("{}, like {like}", draft.name) };

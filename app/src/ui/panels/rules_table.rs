@@ -32,7 +32,6 @@ mod words {
     pub const PHASE_MORE: &str = "The phase of the stroke";
     pub const STATE: &str = "State";
     pub const SHOWS: &str = "Shows";
-    pub const ADD_A_STATE: &str = "Add a state";
     pub const MOVE_UP: &str = "Move up: rules are tried from the top";
     pub const REMOVE: &str = "Remove";
     pub const ONCE_AT_FIRST: &str = "Once, at first";
@@ -128,7 +127,12 @@ pub fn states(ui: &mut Ui, open: &mut Rules) {
         .body(|mut body| {
             for rule in 0..open.draft.states.len() {
                 body.row(LINE, |mut row| {
-                    row.col(|ui| state(ui, open, ("rule", rule), |open| &mut open.draft.states[rule].state));
+                    row.col(|ui| {
+                        state(ui, open, ("rule", rule), |open| &mut open.draft.states[rule].state);
+                        if open.added.take_if(|added| *added == rule).is_some() {
+                            ui.scroll_to_rect(ui.max_rect(), None);
+                        }
+                    });
                     for (name, values) in known {
                         row.col(|ui| {
                             if needle {
@@ -147,10 +151,6 @@ pub fn states(ui: &mut Ui, open: &mut Rules) {
         Some(Done::Up(rule)) => open.draft.states.swap(rule - 1, rule),
         Some(Done::Gone(rule)) => drop(open.draft.states.remove(rule)),
         None => {}
-    }
-    ui.add_space(space::XS);
-    if ui.button((Icon::Add, words::ADD_A_STATE)).clicked() {
-        open.add_state();
     }
 }
 

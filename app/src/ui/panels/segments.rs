@@ -36,6 +36,7 @@ mod words {
     pub const LENGTH: &str = "Length";
     pub const STATE: &str = "State";
     pub const SUBTASK: &str = "Subtask";
+    pub const NO_STATES_TAKEN: &str = "The fit of this task takes no states; a right click fits this stretch alone.";
 }
 
 /// Height of the band.
@@ -132,6 +133,7 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
     let dark = ui.visuals().dark_mode;
     let (mut seek, mut change) = (None, None);
     let can_be_set = session.states_can_be_set();
+    let fits_without_states = session.fits_without_states();
     let some_menu_is_open = egui::Popup::is_any_open(ui.ctx());
     for (index, interval) in segmentation.states.iter().enumerate() {
         let (left, right) = (x_of(session, band.x_range(), interval.t0), x_of(session, band.x_range(), interval.t1));
@@ -163,10 +165,17 @@ fn draw_states(ui: &mut Ui, session: &mut Session, segmentation: &Segmentation, 
         }
         if can_be_set {
             change = change.or(boundaries::menu(&response, segmentation, index, session));
+        } else if fits_without_states {
+            boundaries::stretch_menu(&response, (interval.t0, interval.t1), session);
         }
         let by_model = segmentation.posterior.is_some();
         let shows = segmentation.shows.get(interval.state.name()).map_or(&[][..], Vec::as_slice);
-        response.on_hover_ui(|ui| tooltip(ui, interval, word(segmentation, interval.state), shows, by_model));
+        response.on_hover_ui(|ui| {
+            tooltip(ui, interval, word(segmentation, interval.state), shows, by_model);
+            if fits_without_states {
+                ui.label(theme::caption(ui, words::NO_STATES_TAKEN));
+            }
+        });
     }
     if can_be_set {
         change = change.or(boundaries::handles(ui, session.view_s, segmentation, band));

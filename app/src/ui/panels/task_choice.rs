@@ -45,7 +45,8 @@ pub fn task_choice(ui: &mut Ui, session: &mut Session) {
         let text = match (&choice.own, choice.task) {
             (Some(own), _) => own.name.clone(),
             (None, Some(task)) => format::object(task.name()),
-            (None, None) => automatic.clone(),
+            // As short as the narrow card needs it.
+            (None, None) => format!("Auto: {told}"),
         };
         let list = ComboBox::from_id_salt("task")
             .width(ui.available_width() - 2.0 * ui.spacing().button_padding.x)

@@ -1,6 +1,6 @@
 //! The engineer's workbench: boundaries, other values, statements, undo, commands, panels that move, projects.
 
-use super::{CRANK, STACK, empty, harness, session, until, until_quiet};
+use super::{CRANK, STACK, cart, empty, harness, session, until, until_quiet};
 use crate::ui::actions::Action;
 use crate::ui::app::App;
 use crate::ui::dock::Pane;
@@ -66,6 +66,30 @@ fn a_dragged_boundary_moves_the_fit_and_undo_takes_it_back() {
     harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     settle(&mut harness);
     assert_eq!(weight(&harness, "block-1"), after);
+}
+
+#[test]
+fn a_stretch_of_a_mechanism_is_fitted_alone() {
+    let mut harness = window(cart());
+    let samples = |harness: &Harness<'_, App>| {
+        let fit = &harness.state().session.analysis.as_ref().expect("fitted").fit;
+        fit.parameter("mechanism", "mass_kg").expect("told").samples
+    };
+    let ctx = harness.ctx.clone();
+    harness.state_mut().session.refit(&ctx);
+    settle(&mut harness);
+    let (all, states) = (samples(&harness), harness.state().session.segmentation().expect("segmented").states.clone());
+    let longest = states.iter().max_by(|a, b| (a.t1 - a.t0).total_cmp(&(b.t1 - b.t0))).expect("it moves");
+    let place = states.iter().filter(|s| s.state == longest.state).position(|s| s.t0 == longest.t0).expect("it is one");
+    let word =
+        crate::ui::panels::segments::word(harness.state().session.segmentation().expect("segmented"), longest.state);
+    let shown: Vec<_> = harness.get_all_by_role_and_label(egui::Role::Button, word).collect();
+    shown[place].click_secondary();
+    harness.run_steps(2);
+    harness.get_by_label("Fit only this stretch").click();
+    settle(&mut harness);
+    assert_eq!(harness.state().session.choice.only_s, Some((longest.t0, longest.t1)));
+    assert!(samples(&harness) < all, "{} of {all}", samples(&harness));
 }
 
 #[test]
