@@ -243,6 +243,7 @@ pub fn answer(
         atlas: Atlas::default(),
         late_s: 0.0,
         rest_s: None,
+        guess_s: None,
         hypotheses: Vec::new(),
     }
 }

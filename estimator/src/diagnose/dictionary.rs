@@ -3,6 +3,7 @@
 use super::candidate::{Candidate, Searched, Shape};
 use super::grid::Grid;
 use super::track::{Place, Row, Track};
+use crate::signal::derive::savitzky_golay;
 use haptics::Vec2;
 use haptics::law::{
     AddedConstraint, Backlash, CoulombFriction, EccentricMass, Effect, ForceBias, ForceDrift, FrictionAsymmetry,
@@ -119,26 +120,45 @@ impl Dictionary<'_> {
     /// What a delay of the force by one second adds along the motion: the rate of the predicted force (the measured one's noise would
     /// explain itself), and the load that turns with the arm meanwhile.
     fn late(&self) -> Vec<f64> {
-        let (rows, n) = (&self.track.rows, self.track.rows.len());
-        (0..n)
-            .map(|i| {
-                if rows[i].place != Place::Along {
-                    return 0.0;
-                }
-                let before = if self.track.follows(i) { i - 1 } else { i };
-                let after = if i + 1 < n && self.track.follows(i + 1) { i + 1 } else { i };
-                let time_s = rows[after].motion.time_s - rows[before].motion.time_s;
-                if time_s <= 0.0 {
-                    return 0.0;
-                }
-                let turning = if self.track.planar {
-                    rows[i].motion.normal_force_n * rows[i].motion.velocity / self.track.radius_m.unwrap_or(1.0)
-                } else {
-                    0.0
-                };
-                -((self.predicted[after] - self.predicted[before]) / time_s + turning)
-            })
-            .collect()
+        let rows = &self.track.rows;
+        let radius = self.track.radius_m.unwrap_or(1.0);
+        let turning = |row: &Row| row.motion.normal_force_n * row.motion.velocity / radius;
+        let mut column = vec![0.0; rows.len()];
+        for range in self.pieces() {
+            for (i, rate) in range.clone().zip(self.rates(range)) {
+                column[i] = -(rate + if self.track.planar { turning(&rows[i]) } else { 0.0 });
+            }
+        }
+        column
+    }
+
+    /// Rows along the motion that follow each other without a gap.
+    fn pieces(&self) -> Vec<std::ops::Range<usize>> {
+        let mut pieces: Vec<std::ops::Range<usize>> = Vec::new();
+        for i in self.track.along() {
+            match pieces.last_mut() {
+                Some(piece) if piece.end == i && self.track.follows(i) => piece.end += 1,
+                _ => pieces.push(i..i + 1),
+            }
+        }
+        pieces
+    }
+
+    /// Rates of the predicted force, through the window that the acceleration was seen through: what that takes off an inertia's force would
+    /// otherwise pass for a delay.
+    fn rates(&self, range: std::ops::Range<usize>) -> Vec<f64> {
+        let time_s: Vec<f64> = self.track.rows[range.clone()].iter().map(|r| r.motion.time_s).collect();
+        let force = &self.predicted[range];
+        if let Some((half, order)) = self.track.slope {
+            return savitzky_golay(&time_s, force, half, order).first;
+        }
+        let last = force.len() - 1;
+        let rate = |k: usize| {
+            let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
+            let apart_s = time_s[after] - time_s[before];
+            if apart_s > 0.0 { (force[after] - force[before]) / apart_s } else { 0.0 }
+        };
+        (0..force.len()).map(rate).collect()
     }
 
     fn place(&self, all: &mut Vec<Candidate>) {
@@ -397,6 +417,10 @@ impl Dictionary<'_> {
             let id = "force-cross-axis";
             all.push(Candidate::one(id, Kind::Instrument, "kappa_xy", "1", cross(Vec2::x(), Vec2::y())));
             all.push(Candidate::one(id, Kind::Instrument, "kappa_yx", "1", cross(Vec2::y(), Vec2::x())));
+            // The whole sensor is turned: Fx − κ Fy and Fy + κ Fx.
+            let turned = every(&|r| r.along.y * r.force.x - r.along.x * r.force.y);
+            let turned = Candidate::one(id, Kind::Instrument, "kappa_turned", "rad", turned);
+            all.push(Candidate { cost: turned.cost + HARDLY, ..turned });
         } else {
             let held = |r: &Row, force: f64| if r.place == Place::Along { force } else { 0.0 };
             let bias = every(&|r| held(r, Effect::new(&ForceBias, &[1.0]).force(&r.motion)));
@@ -410,6 +434,9 @@ impl Dictionary<'_> {
         }
     }
 }
+
+/// Where the load keeps its sign a turned sensor and friction by direction are one and the same: the friction is said first then.
+const HARDLY: f64 = 0.02;
 
 /// The dry friction at each row if it slid in the positive direction, where all that is known is what resists.
 pub fn dry_of(track: &Track, resisting: &[f64]) -> Vec<f64> {

@@ -6,7 +6,7 @@ use super::course::course;
 use super::experiment::propose;
 use super::extend::{effects, plain, spring};
 use super::force::Model;
-use super::gain::{chi_square_tail, gain, gain_between, rms, whiteness_p};
+use super::gain::{chi_square_tail, gain, gain_between, rms, shows_beside, whiteness_p};
 use super::geometry::Study;
 use super::kept::of_study;
 use super::passed_over::{passed_over, unsaid};
@@ -56,10 +56,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
     let mut warnings = Vec::new();
     for (k, chosen) in study.chosen.iter().enumerate() {
         if let Some(skew_s) = skew(study, k, track.raw_period_s) {
-            warnings.push(format!(
-                "force and motion are {:.2} ms apart, no more than sampling and clocks make of it: it is taken out and not called a delay",
-                1e3 * skew_s
-            ));
+            warnings.push(apart(skew_s));
             continue;
         }
         let mut named = cause(study, k, floor, "force");
@@ -116,6 +113,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         atlas: Atlas::default(),
         late_s: 0.0,
         rest_s: rest_s(study, &picks),
+        guess_s: None,
         hypotheses: hypotheses(track, model, study),
         course: course(track, study),
         kept: of_study(FORCE, study),
@@ -155,6 +153,13 @@ fn skew(study: &Study, k: usize, raw_period_s: f64) -> Option<f64> {
     (found.value.abs() - 2.0 * found.std_error <= most_s).then_some(found.value)
 }
 
+fn apart(skew_s: f64) -> String {
+    let ms = 1e3 * skew_s;
+    format!(
+        "force and motion are {ms:.2} ms apart, no more than sampling and clocks make of it: it is taken out and not called a delay"
+    )
+}
+
 /// What a delay comes out at beside what was found, and its error, s.
 fn rest_s(study: &Study, picks: &[usize]) -> Option<[f64; 2]> {
     let is_delay = |c: &usize| study.candidates[*c].id == "time-delay";
@@ -185,9 +190,14 @@ fn cause(study: &Study, k: usize, floor: f64, channel: &str) -> Cause {
     let gain = gain(study, k, floor);
     let (title, equation) = entry.map_or((candidate.id, ""), |e| (e.title, e.equation));
     let unit = if channel == "path" { "m" } else { "N" };
+    let stands = if shows_beside(study, &[chosen.candidate]) {
+        " (and, in newtons, of how far it gives where it stands)"
+    } else {
+        ""
+    };
     let goes_with = candidate.channel.as_ref().map_or_else(String::new, |(name, _)| format!(" with {name}"));
     let evidence = format!(
-        "{title}: what the model leaves of the {channel} follows {equation}{goes_with}; on data held out it goes from {} to {} RMS (score \
+        "{title}: what the model leaves of the {channel} follows {equation}{goes_with}; on data held out it{stands} goes from {} to {} RMS (score \
          {:.0}, {:.0} would do)",
         amount(gain.heldout_rms_before, unit),
         amount(gain.heldout_rms_after, unit),

@@ -1,12 +1,19 @@
 //! Motion between the rows: calmed a little, thinned out or filled in.
 
 use super::track::Fine;
+use crate::signal::derive::savitzky_golay;
+use crate::signal::noise::white_noise;
 use haptics::Vec2;
 
 /// Points come at about this rate, Hz: a hand's motion is a straight line between them.
 pub const FINE_HZ: f64 = 400.0;
 /// Velocities are means over about this long, s.
 const CALM_S: f64 = 0.012;
+/// Over this window a parabola of the speed halves what trembles at 9 Hz. Shorter ones and higher orders leave more of it, and more noise:
+/// the first of these whose noise makes no more than [`NOISE_OF_ACCELERATION`] of the acceleration's power is taken. Rows on either side,
+/// order, and power of the slope's noise in the noise of one row's speed over a row's time (Savitzky & Golay 1964).
+const FINER: [(usize, usize, f64); 3] = [(2, 4, 0.903), (3, 4, 0.263), (4, 4, 0.114)];
+const NOISE_OF_ACCELERATION: f64 = 0.02;
 
 /// Weights of the calming, from the middle outwards; their sum over both sides is one.
 fn weights(period_s: f64) -> Vec<f64> {
@@ -52,5 +59,54 @@ pub fn between(a: &Fine, b: &Fine, part: f64) -> Fine {
         velocity: q * a.velocity + p * b.velocity,
         direction: 0.0,
         open: 0.0,
+    }
+}
+
+/// The acceleration of each row, as finely as the noise of the speed lets it be told, with its window and order.
+pub fn acceleration(time_s: &[f64], speed: &[f64], half: usize, period_s: f64) -> (Vec<f64>, (usize, usize)) {
+    let noise = (white_noise(speed) / period_s).powi(2);
+    for (finer, order, slope_noise) in FINER.into_iter().filter(|(finer, ..)| *finer <= half) {
+        let found = savitzky_golay(time_s, speed, finer, order).first;
+        let power = found.iter().map(|a| a * a).sum::<f64>() / found.len().max(1) as f64;
+        if slope_noise * noise < NOISE_OF_ACCELERATION * power {
+            return (found, (finer, order));
+        }
+    }
+    (savitzky_golay(time_s, speed, half, 2).first, (half, 2))
+}
+
+/// Where in a row of `every` samples its finer points lie, in samples after the first: evenly about the middle, as the row's force is.
+/// A point that is early on the average would pass for a force that is late.
+pub fn offsets(every: usize, period_s: f64) -> impl Iterator<Item = f64> {
+    let samples = every as f64;
+    let points = (samples * FINE_HZ * period_s).round().clamp(1.0, samples);
+    (0..points as usize).map(move |k| (k as f64 + 0.5) * samples / points - 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_lie_evenly_about_the_middle_of_their_row() {
+        for (every, rate_hz) in
+            [(1, 50.0), (1, 100.0), (3, 250.0), (5, 500.0), (10, 1000.0), (20, 2000.0), (40, 4000.0)]
+        {
+            let found: Vec<f64> = offsets(every, 1.0 / rate_hz).collect();
+            let mean = found.iter().sum::<f64>() / found.len() as f64;
+            let middle = 0.5 * (every as f64 - 1.0);
+            assert!((mean - middle).abs() < 1e-9, "{rate_hz} Hz: {found:?}");
+            assert!(found.iter().all(|o| (0.0..every as f64).contains(o)), "{rate_hz} Hz: {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_trembling_hand_keeps_its_acceleration_where_noise_lets_it() {
+        let time_s: Vec<f64> = (0..400).map(|k| 0.01 * f64::from(k)).collect();
+        let turns = std::f64::consts::TAU * 9.0;
+        let speed: Vec<f64> = time_s.iter().map(|t| (turns * t).sin() / turns).collect();
+        let (found, _) = acceleration(&time_s, &speed, 4, 0.01);
+        let power = |values: &[f64]| values[20..380].iter().map(|v| v * v).sum::<f64>() / 360.0;
+        assert!((power(&found) - 0.5).abs() < 0.04, "{}", power(&found));
     }
 }

@@ -107,6 +107,7 @@ fn correct_load(track: &mut Track, study: &Study) {
                 ("force-bias", _) => Vec2::new(values[0], values[1]),
                 ("force-drift", _) => Vec2::new(values[0], values[1]) * size(&ForceDrift),
                 ("force-cross-axis", "kappa_xy") => Vec2::new(values[0] * row.force.y, 0.0),
+                ("force-cross-axis", "kappa_turned") => Vec2::new(-row.force.y, row.force.x) * values[0],
                 ("force-cross-axis", _) => Vec2::new(0.0, values[0] * row.force.x),
                 ("force-gain", _) => row.force * (values[0] / (1.0 + values[0]).max(0.1)),
                 ("time-delay", _) => row.force_rate * -values[0],

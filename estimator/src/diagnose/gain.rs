@@ -47,10 +47,11 @@ pub fn gain(study: &Study, k: usize, floor: f64) -> Gain {
     gain_between(study, &rest, &picks, floor)
 }
 
-/// The gain by some causes more.
+/// The gain by some causes more. What shows while the object stands is tested there, too.
 pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) -> Gain {
     let (before, after) = (left(study, rest), left(study, picks));
-    let parts = parts(study, &before, &after);
+    let more: Vec<usize> = picks.iter().filter(|p| !rest.contains(p)).copied().collect();
+    let parts = parts(study, &before, &after, shows_beside(study, &more));
     let all: Vec<usize> = (0..parts.rows.len()).collect();
     let [b, a] = means(&parts, &all);
     let weight = mean_square_weight(study);
@@ -67,6 +68,13 @@ pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) 
         interval,
         rollout: None,
     }
+}
+
+/// Whether some of these causes show in the held-out rows that are not about the force.
+pub fn shows_beside(study: &Study, picks: &[usize]) -> bool {
+    let beside = |i: usize| matches!(study.system.uses[i], Use::Beside(_));
+    let shows = |column: &Vec<f64>| column.iter().enumerate().any(|(i, v)| beside(i) && *v != 0.0);
+    picks.iter().any(|p| study.candidates[*p].columns.iter().any(shows))
 }
 
 /// 95 % interval of a figure by drawing pieces with replacement; the draws are the same every time.
@@ -93,13 +101,17 @@ fn mean_square_weight(study: &Study) -> f64 {
     if n > 0 { sum / f64::from(n) } else { 1.0 }
 }
 
-fn parts(study: &Study, before: &[f64], after: &[f64]) -> Parts {
+fn parts(study: &Study, before: &[f64], after: &[f64], with_beside: bool) -> Parts {
     let locked: Vec<(usize, usize)> = study
         .system
         .uses
         .iter()
         .enumerate()
-        .filter_map(|(i, u)| if let Use::Locked(block) = u { Some((*block, i)) } else { None })
+        .filter_map(|(i, u)| match u {
+            Use::Locked(block) => Some((*block, i)),
+            Use::Beside(block) if with_beside => Some((*block, i)),
+            _ => None,
+        })
         .collect();
     let mut parts = Parts { before: Vec::new(), after: Vec::new(), rows: Vec::new() };
     for block in locked.chunk_by(|a, b| a.0 == b.0) {

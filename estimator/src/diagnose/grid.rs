@@ -1,6 +1,7 @@
 //! The values of what must be searched for: coarsely at first, then around what was found.
 
 use super::candidate::Candidate;
+use super::fine::FINE_HZ;
 use super::track::{Place, Track};
 use std::f64::consts::TAU;
 
@@ -18,8 +19,10 @@ const FALLING: [f64; 2] = [0.0, 1.0];
 /// Ways of presliding and half gaps, as shares of the range of positions.
 const WAYS: [f64; 14] =
     [0.00003, 0.00006, 0.00012, 0.00024, 0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.065, 0.13, 0.2];
-/// Shortest of these, in points of the motion at the usual speed.
-const STEPS: f64 = 0.25;
+/// Shortest of these that are felt at a reversal, in points of the motion at the usual speed (it is slower there).
+const STEPS: f64 = 0.06;
+/// Where a mass takes part, the filters of force and motion leave as much of every reversal themselves.
+const STEPS_OF_MASS: f64 = 0.25;
 /// Where the object was seen to stand, they are this many times the noise of its place at least.
 const SEEN: f64 = 0.5;
 /// Directions of a cable's anchor that are tried, and how much of the way round it is slack.
@@ -76,9 +79,10 @@ impl Grid {
         let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
         let turn = track.radius_m.map(|r| TAU * r);
         // What is shorter than the way between two points cannot be told from a reversal that lies between them.
-        let point_s = if track.fine.is_empty() { track.period_s } else { track.raw_period_s.min(track.period_s) };
+        let between_s = track.raw_period_s.max(1.0 / FINE_HZ).min(track.period_s);
+        let point_s = if track.fine.is_empty() { track.period_s } else { between_s };
         let stands = track.rows.iter().any(|r| matches!(r.place, Place::Stuck { .. }));
-        let felt = STEPS * point_s * fast;
+        let felt = if track.planar { STEPS } else { STEPS_OF_MASS } * point_s * fast;
         let least = if stands { (SEEN * track.position_noise).min(felt) } else { felt };
         let scale = track.radius_m.map_or(range, |r| range.min(2.0 * r));
         // On a crank a place comes again every turn.

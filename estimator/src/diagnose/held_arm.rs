@@ -1,6 +1,6 @@
 //! Rows out of a recording of a crank: positions and forces of whatever holds its handle.
 
-use super::fine::{FINE_HZ, calmed};
+use super::fine::{FINE_HZ, acceleration, calmed, offsets};
 use super::geometry::{Arm, Path, PathPoint};
 use super::hung::Hung;
 use super::track::{Fine, Place, Row, Span, Track};
@@ -76,6 +76,31 @@ struct RawMotion {
     calmed_to: f64,
     /// The velocity as recorded: its noise is read from it.
     as_recorded: Vec<Vec2>,
+}
+
+/// The motion at an instant between two samples.
+struct Between {
+    time_s: f64,
+    position: Vec2,
+    velocity: Vec2,
+    /// The nearest sample.
+    nearest: usize,
+}
+
+impl RawMotion {
+    /// `offset`: samples after the one of index `first`.
+    fn between(&self, first: usize, offset: f64) -> Between {
+        let last = self.time_s.len() - 1;
+        let whole = offset.max(0.0) as usize;
+        let (k, part) = ((first + whole).min(last), offset.max(0.0) - whole as f64);
+        let next = (k + 1).min(last);
+        Between {
+            time_s: self.time_s[k] + part * (self.time_s[next] - self.time_s[k]),
+            position: self.position[k] + (self.position[next] - self.position[k]) * part,
+            velocity: self.velocity[k] + (self.velocity[next] - self.velocity[k]) * part,
+            nearest: if part < 0.5 { k } else { next },
+        }
+    }
 }
 
 impl Signals {
@@ -170,8 +195,10 @@ impl Signals {
         let mut fine = Vec::new();
         let mut stretch_number = 0;
         let mut noise = Vec::new();
+        let mut slope = None;
         for range in stretches(&self.held) {
-            let mut made = self.stretch(range.clone(), stretch_number, arm, (up, axes));
+            let (mut made, finest) = self.stretch(range.clone(), stretch_number, arm, (up, axes));
+            slope = slope.max(Some(finest));
             noise.push(self.finely(range, arm, &mut made, &mut fine));
             rows.extend(made);
             stretch_number += 1;
@@ -201,13 +228,21 @@ impl Signals {
             span_s: self.time_s.last().copied().unwrap_or(0.0),
             hung: vec![Hung::on_crank(recording)],
             bearing_weight_n: 0.0,
+            slope,
             extra: Vec::new(),
             rows,
             fine,
         })
     }
 
-    fn stretch(&self, range: std::ops::Range<usize>, stretch: usize, arm: &Arm, (up, axes): (f64, Axes)) -> Vec<Row> {
+    /// The rows of a stretch, and the window and order of their acceleration.
+    fn stretch(
+        &self,
+        range: std::ops::Range<usize>,
+        stretch: usize,
+        arm: &Arm,
+        (up, axes): (f64, Axes),
+    ) -> (Vec<Row>, (usize, usize)) {
         let time = &self.time_s[range.clone()];
         let directions: Vec<(Vec2, Vec2)> = range
             .clone()
@@ -219,13 +254,13 @@ impl Signals {
         let speed: Vec<f64> =
             range.clone().zip(&directions).map(|(i, (_, along))| self.velocity[i].dot(along)).collect();
         let half = ((0.5 * ACCELERATION_WINDOW_S / self.period_s).round() as usize).max(2);
-        let acceleration = savitzky_golay(time, &speed, half, 2).first;
+        let (acceleration, slope) = acceleration(time, &speed, half, self.period_s);
         let axis = |pick: fn(&Vec2) -> f64| {
             savitzky_golay(time, &self.force[range.clone()].iter().map(pick).collect::<Vec<_>>(), half.min(3), 2).first
         };
         let (rate_x, rate_y) = (axis(|f| f.x), axis(|f| f.y));
         let mut before = 0.0_f64;
-        range
+        let rows = range
             .enumerate()
             .map(|(k, i)| {
                 let (outward, along) = directions[k];
@@ -255,7 +290,8 @@ impl Signals {
                     open: 0.0,
                 }
             })
-            .collect()
+            .collect();
+        (rows, slope)
     }
 
     /// The motion between the rows of a stretch; returns the noise of its velocity, m/s, and of one recorded place, m.
@@ -263,35 +299,33 @@ impl Signals {
         let number = fine.last().map_or(0, |f: &Fine| f.stretch + 1);
         let raw = &self.raw;
         // Recorded samples are thinned out, or filled in, to about the same rate.
-        let skip = (1.0 / (FINE_HZ * self.raw_period_s)).round().max(1.0) as usize;
         let fill = (FINE_HZ * self.raw_period_s).round().max(1.0) as usize;
         let mut recorded = Vec::with_capacity(range.len() * self.every);
         let mut places = Vec::with_capacity(range.len() * self.every);
         let mut angle = 0.0_f64;
         for (row, i) in rows.iter_mut().zip(range) {
-            for k in (i * self.every..(i + 1) * self.every).step_by(skip) {
-                let along_at = |k: usize| {
-                    let outward = arm.arm(i, raw.position[k]).normalize();
-                    (outward, Vec2::new(-outward.y, outward.x))
-                };
-                let (outward, along) = along_at(k);
+            for (k, offset) in offsets(self.every, self.raw_period_s).enumerate() {
+                let at = raw.between(i * self.every, offset);
+                let outward = arm.arm(i, at.position).normalize();
+                let along = Vec2::new(-outward.y, outward.x);
                 let wrapped = outward.y.atan2(outward.x);
                 let near = if fine.last().is_some_and(|f| f.stretch == number) { angle } else { row.angle_rad };
                 angle = wrapped + ((near - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU;
                 let point = Fine {
                     stretch: number,
-                    time_s: raw.time_s[k],
+                    time_s: at.time_s,
                     position: arm.radius_m * angle,
-                    velocity: raw.velocity[k].dot(&along),
+                    velocity: at.velocity.dot(&along),
                     direction: 0.0,
                     open: 0.0,
                 };
-                places.push(point.position);
-                recorded.push(raw.as_recorded[k].dot(&along));
+                // As it was recorded: between two samples there is less noise.
+                places.push(point.position + (raw.position[at.nearest] - at.position).dot(&along));
+                recorded.push(raw.as_recorded[at.nearest].dot(&along));
                 if let Some(before) = fine.last().copied().filter(|f| f.stretch == number) {
                     fine.extend((1..fill).map(|part| super::fine::between(&before, &point, part as f64 / fill as f64)));
                 }
-                if k == i * self.every {
+                if k == 0 {
                     row.span.start = fine.len();
                 }
                 fine.push(point);

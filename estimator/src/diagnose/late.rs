@@ -1,15 +1,19 @@
 //! A force that comes late by more than a row: a straight line in the delay is then no good, so the force is put back to when it was, by what
-//! was found, and all is asked again (Gauss and Newton's step with the recording itself).
+//! was found, and all is asked again (Gauss and Newton's step with the recording itself). A delay as long as what a hand does in a moment
+//! is not seen by that line at all: it is looked for by shifting the rows' forces against their motion ([`guess_s`]).
 
-use super::report::{Cause, Diagnosis, Verdict};
+use super::force::{Model, column};
+use super::generic::generic;
+use super::report::{Cause, CauseParameter, Diagnosis, Gain, Verdict};
+use super::track::{Place, Row, Track};
 use crate::estimate::EstimateError;
+use crate::identify::linear::least_squares;
 use crate::signal::derive::interpolate;
+use haptics::law::{CoulombFriction, Effect, Inertia, Kind};
 use haptics::recording::{Recording, Span};
 
 /// A delay up to this is as good as proportional, s.
-const LINEAR_S: f64 = 6e-3;
-/// What is less than this of it is settled, s.
-const SETTLED_S: f64 = 5e-4;
+const LINEAR_S: f64 = 3e-3;
 /// Most rounds.
 const ROUNDS: usize = 5;
 /// The cause.
@@ -21,20 +25,120 @@ pub fn undo(
     first: Diagnosis,
     ask: &dyn Fn(&[Recording]) -> Result<Diagnosis, EstimateError>,
 ) -> Diagnosis {
-    let Some(mut late_s) = delay_s(&first).filter(|tau| tau.abs() > LINEAR_S) else { return first };
+    let named_s = delay_s(&first);
+    let guess_s = first.guess_s.filter(|tau| tau.abs() > LINEAR_S);
+    let Some(mut late_s) = guess_s.or(named_s.filter(|tau| tau.abs() > LINEAR_S)) else { return first };
+    // Whole samples: between two of them a force is their mean, with less noise than the rest has.
+    let period_s = recordings.iter().filter_map(period_s).fold(0.0, f64::max);
+    let whole = |late_s: f64| if period_s > 0.0 { (late_s / period_s).round() * period_s } else { late_s };
     let mut found = None;
     for _ in 0..ROUNDS {
-        let back: Vec<Recording> = recordings.iter().map(|r| put_back(r, late_s)).collect();
+        let back_s = whole(late_s);
+        if back_s == 0.0 {
+            return first;
+        }
+        let back: Vec<Recording> = recordings.iter().map(|r| put_back(r, back_s)).collect();
         // Where nothing sensible is left the first answer stands.
         let Ok(now) = ask(&back) else { return first };
-        let more = now.rest_s.map_or(0.0, |[more, _]| more);
+        late_s = back_s + now.rest_s.map_or(0.0, |[more, _]| more);
         found = Some(now);
-        if more.abs() < SETTLED_S {
+        if whole(late_s) == back_s {
             break;
         }
-        late_s += more;
     }
-    found.map_or_else(|| first.clone(), |found| with_delay(found, &first, late_s))
+    // What was not named before must make it good.
+    let most = first.end.heldout_rms_n * if named_s.is_some() { AS_GOOD } else { BETTER };
+    let sure = |found: &Diagnosis| found.rest_s.is_none_or(|[_, error]| late_s.abs() > SURE * error);
+    match found.filter(|found| found.end.heldout_rms_n < most && (named_s.is_some() || sure(found))) {
+        Some(found) => with_delay(found, &first, late_s, whole(late_s)),
+        None => first,
+    }
+}
+
+/// Usual time between two samples, s.
+fn period_s(recording: &Recording) -> Option<f64> {
+    let time_s = recording.time_s.as_ref().filter(|t| t.len() > 2)?;
+    Some((time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64)
+}
+
+/// A delay that was not named at first is so many times its error at least.
+const SURE: f64 = 5.0;
+/// What is left with the forces put back, as a share of what was left before: at most this where the delay was named, …
+const AS_GOOD: f64 = 1.1;
+/// … and this where it was not.
+const BETTER: f64 = 0.95;
+/// Longest delay that is tried, s, both ways.
+const LONGEST_S: f64 = 0.09;
+/// Share of the plain model's power that a guess leaves at most, and 2 ln(likelihood) that it gains at least.
+const LEAVES: f64 = 0.85;
+const LIKELIER: f64 = 60.0;
+
+/// The delay with which a plain model, anything that goes with the place and anything slow leave least, if it is one that matters.
+/// Whole rows are tried, because a force between two rows is the mean of both, with half of the noise.
+pub fn guess_s(track: &Track, model: &Model) -> Option<f64> {
+    let most = (LONGEST_S / track.period_s) as isize;
+    let tried: Vec<(isize, f64, f64)> = (-most..=most)
+        .filter_map(|rows| {
+            let (power, count) = left(&earlier(track, rows), model)?;
+            Some((rows, power, count))
+        })
+        .collect();
+    let (_, plain, count) = *tried.iter().find(|(rows, ..)| *rows == 0)?;
+    let enough = tried.iter().filter(|(.., n)| *n > 0.5 * count);
+    let (best, power, _) = *enough.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    if power > LEAVES * plain || count * (plain / power).ln() < LIKELIER {
+        return None;
+    }
+    // The vertex of the parabola through the best and its neighbours.
+    let at = |rows: isize| tried.iter().find(|(r, ..)| *r == rows).map(|(_, power, _)| *power);
+    let between = match (at(best - 1), at(best + 1)) {
+        (Some(before), Some(after)) if before + after > 2.0 * power => {
+            (0.5 * (before - after) / (before + after - 2.0 * power)).clamp(-0.5, 0.5)
+        }
+        _ => 0.0,
+    };
+    Some((best as f64 + between) * track.period_s)
+}
+
+/// The rows along the motion with the forces of so many rows later.
+fn earlier(track: &Track, rows: isize) -> Track {
+    let along: Vec<&Row> = track.rows.iter().filter(|r| r.place == Place::Along).collect();
+    let mut moved = Vec::new();
+    for stretch in along.chunk_by(|a, b| a.stretch == b.stretch && a.recording == b.recording) {
+        for (k, row) in stretch.iter().enumerate() {
+            let Some(later) = k.checked_add_signed(rows).and_then(|k| stretch.get(k)) else { continue };
+            let mut row = **row;
+            if track.planar {
+                let outward = haptics::Vec2::new(row.along.y, -row.along.x);
+                row.motion.normal_force_n += (later.force - row.force).dot(&outward);
+                row.y = later.force.dot(&row.along);
+            } else {
+                row.y = later.y;
+            }
+            row.force = later.force;
+            moved.push(row);
+        }
+    }
+    Track { rows: moved, ..track.clone_without_rows() }
+}
+
+/// Power that is left a row, and rows.
+fn left(track: &Track, model: &Model) -> Option<(f64, f64)> {
+    let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
+    let has = |id: &str| model.iter().any(|e| e.law().id() == id);
+    for law in [&Inertia as &'static dyn haptics::law::Law, &CoulombFriction] {
+        if !has(law.id()) {
+            columns.push(column(track, &Effect::new(law, &[1.0])));
+        }
+    }
+    let of_place = |expression: &str| expression.starts_with("1 ") || expression.starts_with("cos(");
+    let terms = generic(track).into_iter().filter(|c| c.expression.as_deref().is_some_and(of_place));
+    columns.extend(terms.flat_map(|c| c.columns));
+    columns.push(vec![1.0; track.rows.len()]);
+    let weight: Vec<f64> = track.rows.iter().map(|r| r.motion.direction.powi(4)).collect();
+    let y: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
+    let fit = least_squares(&columns, &y, Some(&weight)).ok()?;
+    Some((fit.rms * fit.rms, y.len() as f64))
 }
 
 /// The delay that an answer names, s.
@@ -66,10 +170,11 @@ fn is_force(name: &str) -> bool {
     })
 }
 
-/// The answer about the recording as it should have been, with the delay that it has.
-fn with_delay(mut found: Diagnosis, first: &Diagnosis, late_s: f64) -> Diagnosis {
-    let Some(place) = first.causes.iter().position(|c| c.id == ID) else { return found };
-    let mut cause: Cause = first.causes[place].clone();
+/// The answer about the recording with its forces put back by `back_s`, with the delay that it has.
+fn with_delay(mut found: Diagnosis, first: &Diagnosis, late_s: f64, back_s: f64) -> Diagnosis {
+    let place = first.causes.iter().position(|c| c.id == ID);
+    let mut cause = place.map_or_else(|| unnamed_before(first, late_s), |place| first.causes[place].clone());
+    let place = place.unwrap_or(0);
     let error = found.rest_s.map(|[_, error]| error);
     if let Some(tau) = cause.parameters.first_mut() {
         tau.value = late_s;
@@ -91,8 +196,25 @@ fn with_delay(mut found: Diagnosis, first: &Diagnosis, late_s: f64) -> Diagnosis
         found.verdict = Verdict::Causes;
     }
     found.baseline = first.baseline.clone();
-    found.late_s = late_s;
+    found.late_s = back_s;
     found
+}
+
+/// A delay that the first answer did not name.
+fn unnamed_before(first: &Diagnosis, late_s: f64) -> Cause {
+    let parameter = CauseParameter { name: "tau".to_owned(), value: late_s, std_error: 0.0, unit: "s".to_owned() };
+    Cause {
+        id: ID.to_owned(),
+        kind: Kind::Instrument,
+        parameters: vec![parameter],
+        p_value: 0.0,
+        posterior: 1.0,
+        gain: Gain { heldout_rms_before: first.end.heldout_rms_n, ..Gain::default() },
+        evidence: format!(
+            "the force fits the motion of {:.0} ms before: everything was asked again with the force put back to then",
+            1e3 * late_s
+        ),
+    }
 }
 
 #[cfg(test)]

@@ -131,7 +131,8 @@ fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<Diag
     if driven::is_driven(recordings) {
         return driven::driven(recordings, options);
     }
-    mechanism(recordings, options)
+    let ask = |recordings: &[Recording]| mechanism(recordings, options);
+    Ok(late::undo(recordings, mechanism(recordings, options)?, &ask))
 }
 
 /// What was found, on other recordings of the same object: nothing is chosen there, and no cause is fitted. Faults of the sensors that
@@ -146,6 +147,7 @@ pub fn validate(
         let channels = match task_of(recording, options.task)? {
             Task::Crank => return along_a_crank(recording, diagnosis),
             Task::Mechanism => {
+                let recording = &late::put_back(recording, diagnosis.late_s);
                 let mut track = sliding::track(recording, &quality::faults(recording).bad, None)?;
                 let Diagnosis { plain, effects, kept, .. } = diagnosis;
                 return Ok(validate::validate(&mut track, plain, effects, &[], kept));
@@ -228,6 +230,7 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
     if options.atlas {
         found.atlas = atlas::atlas(&track, &study, limit);
     }
+    found.guess_s = late::guess_s(&track, &model);
     name_joint(&mut found, first_link);
     if let Some(cause) = scale.filter(|scale: &Cause| found.causes.iter().all(|c| c.id != scale.id)) {
         found.causes.insert(0, cause);
@@ -324,6 +327,7 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     let study = force::study(&mut track, &model, &fixed, limit)?;
     options.progress.tell(0.8)?;
     let mut found = explain::explain(&track, &model, &study, &[], faults);
+    found.guess_s = late::guess_s(&track, &model);
     if options.atlas {
         found.atlas = atlas::atlas(&track, &study, limit);
     }

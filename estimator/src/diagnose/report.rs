@@ -296,6 +296,9 @@ pub struct Diagnosis {
     /// The delay that is still left if there is one, significant or not, and its error, s.
     #[serde(skip)]
     pub(super) rest_s: Option<[f64; 2]>,
+    /// The delay with which a plain model leaves least, where that is so large that no straight line in it finds it, s.
+    #[serde(skip)]
+    pub(super) guess_s: Option<f64>,
     /// What is not excluded, as laws: to rehearse experiments.
     #[serde(skip)]
     pub(super) hypotheses: Vec<Hypothesis>,

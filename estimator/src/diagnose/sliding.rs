@@ -9,7 +9,7 @@ use super::track::{Fine, Place, Row, Span, Track};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use crate::identify::mechanism::{self, Raw};
-use crate::signal::noise::{white_noise, white_noise_under_fast_motion};
+use crate::signal::noise::{quantum, resolution_error, white_noise, white_noise_under_fast_motion};
 use haptics::Vec2;
 use haptics::law::{Coordinate, Motion};
 use haptics::recording::Recording;
@@ -53,10 +53,14 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
         }
         made
     };
-    let shortest = (SHORTEST_S / period_s).round().max(1.0) as usize;
-    let longest = ((LONGEST_S / period_s) as usize).max(shortest);
-    let mass = in_blocks(usize::midpoint(shortest, longest)).mass();
-    let block = (shortest..=longest).find(|block| quiet(&raw, force, period_s, *block, mass)).unwrap_or(longest);
+    // Whole numbers of the finer points, which then lie evenly about the middle of every hat.
+    let skip = skip(period_s);
+    let whole = |samples: f64| (samples / skip as f64).round().max(1.0) as usize * skip;
+    let shortest = whole(SHORTEST_S / period_s);
+    let longest = whole((LONGEST_S / period_s).floor()).max(shortest);
+    let mass = in_blocks(whole(0.5 * (shortest + longest) as f64)).mass();
+    let quiet = |block: &usize| quiet(&raw, force, period_s, *block, mass);
+    let block = (shortest..=longest).step_by(skip).find(quiet).unwrap_or(longest);
     let made = in_blocks(block);
     if made.rows.is_empty() {
         return Err(EstimateError::TooFewSamples {
@@ -67,6 +71,11 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
         });
     }
     Ok(made.track(&raw))
+}
+
+/// Every so many-th sample is one of the finer points.
+fn skip(period_s: f64) -> usize {
+    (1.0 / (FINE_HZ * period_s)).round().max(1.0) as usize
 }
 
 /// Whether the acceleration's noise makes no more of a force than the force's own noise, in blocks of this many samples.
@@ -100,8 +109,8 @@ fn slopes(raw: &Raw) -> Vec<f64> {
 struct Made {
     rows: Vec<Row>,
     fine: Vec<Fine>,
-    /// Of the velocity, the force and the position, one triple a stretch.
-    noises: Vec<[f64; 3]>,
+    /// Of the velocity, the force and the position, and what the position's steps hide however long it stands; one set a stretch.
+    noises: Vec<[f64; 4]>,
     period_s: f64,
     /// Samples a block.
     block: usize,
@@ -117,9 +126,15 @@ impl Made {
         let (calm, left) = calmed_line(&rate[range.clone()], self.period_s);
         // Rates of differences carry the noise of the positions once more.
         let position = white_noise_under_fast_motion(&raw.position[range.clone()]);
-        self.noises.push([left * white_noise(&rate[range.clone()]), white_noise(&force[range.clone()]), position]);
+        let hidden = resolution_error(quantum(&raw.position[range.clone()]), white_noise(&raw.position[range.clone()]));
+        self.noises.push([
+            left * white_noise(&rate[range.clone()]),
+            white_noise(&force[range.clone()]),
+            position,
+            hidden,
+        ]);
         let fill = (FINE_HZ * self.period_s).round().max(1.0) as usize;
-        let skip = (1.0 / (FINE_HZ * self.period_s)).round().max(1.0) as usize;
+        let skip = skip(self.period_s);
         let first_fine = self.fine.len();
         for (k, i) in range.clone().enumerate().step_by(skip) {
             let point = Fine {
@@ -198,12 +213,13 @@ impl Made {
             radius_m: (raw.coordinate == Coordinate::Angular).then_some(1.0),
             planar: false,
             velocity_noise: worst(0),
-            position_noise: averaged(self.block) * worst(2),
+            position_noise: (averaged(self.block) * worst(2)).hypot(worst(3)),
             force_noise: (averaged(self.block) * worst(1)).max(1e-12),
             noise_is_measured: false,
             span_s,
             hung: Vec::new(),
             bearing_weight_n: 0.0,
+            slope: None,
             extra: Vec::new(),
         }
     }

@@ -73,6 +73,7 @@ impl SensorFault {
                 ("force-drift", "ry") => self.drift_n_s[finger].y += half,
                 ("force-cross-axis", "kappa_xy") => self.cross[finger].x += value,
                 ("force-cross-axis", "kappa_yx") => self.cross[finger].y += value,
+                ("force-cross-axis", "kappa_turned") => self.cross[finger] += Vec2::new(-value, value),
                 ("force-gain", _) => self.gain_error = value,
                 ("time-delay", "tau") => self.delay_s = value,
                 _ => return false,

@@ -34,7 +34,7 @@ pub struct Rows<'a> {
 pub enum Held {
     /// It trains always.
     Never,
-    /// Folds test it. It is another quantity than the gain is about.
+    /// Folds test it. It is another quantity than the force: locked blocks test it for what it is about alone.
     ByFolds,
     /// Folds test it, and locked blocks.
     Fully,
@@ -49,6 +49,8 @@ pub enum Use {
     Fold(usize),
     /// Tests only; the number of its block.
     Locked(usize),
+    /// The same for a row of [`Held::ByFolds`]: only the gain of what such rows are about is tested by it.
+    Beside(usize),
     /// Beside a locked block.
     Guard,
 }
@@ -73,7 +75,7 @@ pub fn uses(rows: &Rows<'_>) -> Vec<Use> {
     for (k, &i) in testable.iter().enumerate() {
         let block = block_of(k);
         uses[i] = if locked(block) {
-            if rows.testable[i] == Held::Fully { Use::Locked(block) } else { Use::Guard }
+            if rows.testable[i] == Held::Fully { Use::Locked(block) } else { Use::Beside(block) }
         } else {
             let near = |other: Option<usize>| other.is_some_and(|j| j < testable.len() && locked(block_of(j)));
             if near(k.checked_sub(guard)) || near(Some(k + guard)) { Use::Guard } else { Use::Fold(fold_of[block]) }
@@ -217,7 +219,7 @@ impl System {
             folds.push((part, counted(&picked)));
         }
         // What is neither fitted nor tested needs no support.
-        let looked_at = pick(&|u| u != Use::Guard);
+        let looked_at = pick(&|u| !matches!(u, Use::Guard | Use::Beside(_)));
         let trained = looked_at.iter().filter(|i| !matches!(uses[**i], Use::Locked(_))).count();
         let energy = columns
             .iter()

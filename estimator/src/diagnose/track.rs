@@ -147,11 +147,20 @@ pub struct Track {
     pub hung: Vec<Option<Hung>>,
     /// Weight that loads the bearing of a crank beside the fingers' pull, N; 0 unless the recording shows it.
     pub bearing_weight_n: f64,
+    /// Rows on either side, and order, of the polynomials whose slopes the accelerations are; none where they are differences of means.
+    pub slope: Option<(usize, usize)>,
     /// Slow channels beside motion and force, recording by recording.
     pub extra: Vec<Vec<Extra>>,
 }
 
 impl Track {
+    /// Everything but the rows.
+    pub fn clone_without_rows(&self) -> Self {
+        let Self { fine, hung, extra, .. } = self;
+        let (rows, fine, hung, extra) = (Vec::new(), fine.clone(), hung.clone(), extra.clone());
+        Self { rows, fine, hung, extra, ..*self }
+    }
+
     /// Slow channels that every recording has: name, unit, and the value at each row less the mean.
     pub fn extras(&self) -> Vec<(String, String, Vec<f64>)> {
         let Some(first) = self.extra.first() else { return Vec::new() };
@@ -224,6 +233,7 @@ pub fn join(tracks: Vec<Track>) -> Option<Track> {
         joined.noise_is_measured &= track.noise_is_measured;
         joined.planar &= track.planar;
         joined.span_s = joined.span_s.max(track.span_s);
+        joined.slope = joined.slope.max(track.slope);
         joined.hung.resize(recordings, None);
         joined.hung.extend(track.hung);
         joined.extra.resize(recordings, Vec::new());

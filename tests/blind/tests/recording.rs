@@ -93,6 +93,40 @@ fn a_force_that_is_late_by_many_samples_is_put_back_by_all_of_it() {
 }
 
 #[test]
+fn a_mechanisms_force_that_is_late_by_many_samples_is_put_back_too() {
+    let mut case = plain(Bench::Linear, Log::Mixed, seed());
+    let samples = 20;
+    let values = values(&mut case.recordings[0], "f_N");
+    let before = values.clone();
+    (0..values.len()).for_each(|i| values[i] = before[i.saturating_sub(samples)]);
+    let found = answer(&case);
+    let (tau, late_s) = (&named(&found, "time-delay").parameters[0], samples as f64 / 500.0);
+    assert!((tau.value - late_s).abs() < 3e-3, "{late_s} s came out as {tau:?}");
+}
+
+#[test]
+fn a_sensor_that_is_turned_in_its_mount_is_one_of_the_answers() {
+    let mut case = plain(Bench::OneFinger, Log::Mixed, seed());
+    let recording = &mut case.recordings[0];
+    let (x, y) = (column(recording, "fx_N"), column(recording, "fy_N"));
+    let (sin, cos) = 0.08_f64.sin_cos();
+    *values(recording, "fx_N") = x.iter().zip(&y).map(|(x, y)| cos * x - sin * y).collect();
+    *values(recording, "fy_N") = x.iter().zip(&y).map(|(x, y)| sin * x + cos * y).collect();
+    let found = answer(&case);
+    let causes = found.causes.iter().map(|c| c.id.as_str());
+    let said: Vec<&str> = causes.chain(found.alternatives.iter().map(|a| a.id.as_str())).collect();
+    assert!(said.contains(&"force-cross-axis"), "{said:?}");
+}
+
+#[test]
+fn what_shows_where_the_object_stands_is_worth_something_there() {
+    let found = answer(&with(Bench::OneFinger, Log::Mixed, vec![(Effect::Hysteresis, 0)], seed()));
+    let gain = &named(&found, "hysteresis").gain;
+    assert!(gain.share_of_explainable > 0.1, "{gain:?}");
+    assert!(gain.heldout_rms_after < gain.heldout_rms_before, "{gain:?}");
+}
+
+#[test]
 fn what_slowly_changes_beside_the_motion_is_a_suspect_and_none_where_it_changes_nothing() {
     let mut case = plain(Bench::Linear, Log::Mixed, seed());
     let recording = &mut case.recordings[0];

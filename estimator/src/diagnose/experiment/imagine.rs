@@ -37,6 +37,7 @@ pub fn imagine(track: &Track, model: &Model, values: &[f64], excitation: &Excita
         span_s: asked.seconds + 2.0 * asked.free_s,
         hung: Vec::new(),
         bearing_weight_n: 0.0,
+        slope: None,
         extra: Vec::new(),
         ..track.clone()
     };

@@ -226,6 +226,7 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
         span_s: rows.last().map_or(0.0, |r| r.time_s) - start_s,
         hung: Vec::new(),
         bearing_weight_n: 0.0,
+        slope: None,
         extra: Vec::new(),
     }
 }
