@@ -195,14 +195,21 @@ fn simulate_mechanism(model: &Mechanism, recording: &Recording) -> Result<Simula
         )));
     }
     let (name, unit) = if angular { ("tau_Nm", "Nm") } else { ("f_N", "N") };
-    let values = mechanism::predict(model, recording)?;
+    let mechanism::Prediction { force: values, is_told } = mechanism::predict(model, recording)?;
     let measured = match recording.channel(name) {
         Some(measured) => Some(measured.to_vec()),
         None => mechanism::measured(model, recording)?,
     };
+    let left = measured.iter().flat_map(|measured| measured.iter().zip(&values).zip(&is_told));
+    let rms_n = rms(left.filter(|(_, told)| **told).map(|((m, p), _)| m - p));
+    let samples = is_told.iter().filter(|told| **told).count();
+    let part = (samples < is_told.len()).then(|| PredictedPart { what: MOVING.to_owned(), rms_n, samples });
     let channel = Channel { name: name.to_owned(), unit: unit.to_owned(), values };
-    Ok(assemble(recording, vec![channel], |_| measured.clone()))
+    Ok(Simulation { part, ..assemble(recording, vec![channel], |_| measured.clone()) })
 }
+
+/// The part of a mechanism's force that its laws predict.
+const MOVING: &str = "the force while it moves: where it stands, dry friction holds whatever it is loaded with";
 
 fn assemble_tips(recording: &Recording, forces: &[Vec<Vec2>; 2]) -> Simulation {
     let channel = |name: &str, finger: usize, pick: fn(&Vec2) -> f64| Channel {

@@ -408,6 +408,27 @@ fn without_reversals(track: &Track, causes: &[Cause], already: &[NotExcited]) ->
         .collect()
 }
 
+/// What no motion shows as long as nothing is known from elsewhere. `weight`, `length`: whether one is.
+pub fn without_known(found: &mut Diagnosis, weight: bool, length: bool) {
+    let hidden = [
+        ("force-gain", weight, "no weight is known; state one in the sidecar, or hang one on"),
+        (
+            "length-scale",
+            length,
+            "no length is known, so a factor of all lengths cannot show; state radius_m in the sidecar",
+        ),
+    ];
+    for (id, _, why) in hidden.into_iter().filter(|(_, known, _)| !known) {
+        let said = found.causes.iter().any(|c| c.id == id)
+            || found.alternatives.iter().any(|a| a.id == id)
+            || found.not_excited.iter().any(|n| n.id == id);
+        if !said {
+            found.not_excited.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
+            found.passed_over.retain(|p| p.id != id);
+        }
+    }
+}
+
 fn lower(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |c| c.to_lowercase().chain(letters).collect())

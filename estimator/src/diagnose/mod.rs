@@ -238,6 +238,8 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
             found.verdict = Verdict::Causes;
         }
     }
+    let is_known = |name: &str| recordings.iter().any(|r| r.meta.known.contains_key(name));
+    explain::without_known(&mut found, !fixed.is_empty() || is_known("added_weight_N"), is_known("radius_m"));
     Ok(found)
 }
 
@@ -328,6 +330,8 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     options.progress.tell(0.8)?;
     let mut found = explain::explain(&track, &model, &study, &[], faults);
     found.guess_s = late::guess_s(&track, &model);
+    let is_hung = track.hung.iter().any(Option::is_some);
+    explain::without_known(&mut found, !fixed.is_empty() || is_hung, true);
     if options.atlas {
         found.atlas = atlas::atlas(&track, &study, limit);
     }

@@ -200,6 +200,15 @@ fn laws_that_are_known_tell_the_gain_of_the_sensor() {
 }
 
 #[test]
+fn without_anything_known_a_gain_and_a_scale_were_not_excited() {
+    let found = answer(&plain(Bench::OneFinger, Log::Mixed, seed()));
+    for id in ["force-gain", "length-scale"] {
+        let hidden = found.not_excited.iter().find(|n| n.id == id);
+        assert!(hidden.is_some_and(|n| n.why.contains("known")), "{id}: {:?}", found.not_excited);
+    }
+}
+
+#[test]
 fn a_known_radius_tells_the_scale_of_the_lengths() {
     let mut case = plain(Bench::OneFinger, Log::Mixed, seed());
     let mut with_known = |radius_m: f64| {

@@ -20,7 +20,7 @@ mod transmission;
 mod world;
 
 pub use report::{OBJECT, PHASE};
-pub use world::{measured, path_of, predict, world};
+pub use world::{Prediction, measured, path_of, predict, world};
 
 use crate::constraint;
 use crate::estimate::{Constraint, EstimateError, Fit, Parameter, Quality};

@@ -342,7 +342,7 @@ fn a_fitted_world_predicts_the_force() {
     let recording = record(SLIDE, &PLAIN, two_tones, 4);
     let fit = fit(std::slice::from_ref(&recording)).expect("fits");
     let mechanism = world(&fit, &recording);
-    let force = predict(&mechanism, &recording).expect("predicts");
+    let force = predict(&mechanism, &recording).expect("predicts").force;
     let measured = recording.channel("f_N").expect("there");
     let n = force.len();
     assert_eq!(n, measured.len());
@@ -362,7 +362,7 @@ fn uneven_time_and_gaps_are_taken() {
     let fit = fit(std::slice::from_ref(&recording)).expect("fits");
     demand(&fit, "mass_kg", 3.0, 0.03);
     demand(&fit, "coulomb_N", 4.0, 0.03);
-    assert_eq!(predict(&world(&fit, &recording), &recording).expect("predicts").len(), recording.len());
+    assert_eq!(predict(&world(&fit, &recording), &recording).expect("predicts").force.len(), recording.len());
 }
 
 #[test]

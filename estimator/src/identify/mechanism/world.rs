@@ -54,10 +54,24 @@ fn effects(fit: &Fit) -> Vec<Effect> {
     effects
 }
 
+/// A direction of motion this certain is one.
+const MOVES: f64 = 0.99;
+
+/// What the laws say that a measured motion needs.
+pub struct Prediction {
+    /// Force at every sample, N or N m.
+    pub force: Vec<f64>,
+    /// Whether it is told there: where nothing moves, dry friction holds whatever it is loaded with.
+    pub is_told: Vec<bool>,
+}
+
 /// The force (N, or N m) that the mechanism needs at every sample of the recording's motion.
-pub fn predict(mechanism: &Mechanism, recording: &Recording) -> Result<Vec<f64>, EstimateError> {
+pub fn predict(mechanism: &Mechanism, recording: &Recording) -> Result<Prediction, EstimateError> {
     let raw = signals::raw(recording, mechanism.path.as_ref())?;
-    Ok(drive_forces(&mechanism.effects, &signals::motion(&raw, mechanism)))
+    let motion = signals::motion(&raw, mechanism);
+    let holds = mechanism.effects.iter().any(|e| e.law().is_dry());
+    let is_told = motion.iter().map(|m| !holds || m.direction.abs() > MOVES).collect();
+    Ok(Prediction { force: drive_forces(&mechanism.effects, &motion), is_told })
 }
 
 /// The measured force along the mechanism's coordinate, N or N m; `None` for a free motion.

@@ -119,10 +119,12 @@ impl Sheet {
         let seen: Vec<(f64, f64, f64)> = pushes
             .iter()
             .filter_map(|push| {
-                let at = push.puncture?;
-                let value = self.loading.force_n(depth(at));
+                let (at, fallen) = (push.puncture?, push.fallen?);
+                // A filter that force and place went through delays both: where the force has half fallen the place is that of the fall.
+                let half_m = 0.5 * (along.depth_m[fallen] + along.depth_m[fallen - 1]) - give * along.force_n[at];
+                let value = self.loading.force_n(half_m.max(depth(at)));
                 let before = self.loading.force_n(depth(at.saturating_sub(FALL_SAMPLES).max(push.samples.start)));
-                let place = (value - before) / 3.0_f64.sqrt();
+                let place = (value - before) / 12.0_f64.sqrt();
                 // The curve and the sample itself, which must agree.
                 let measured = along.force_n[at] - self.offset(push.hold);
                 let single = place.hypot(0.5 * (measured - value)).hypot(PLACE_NOISE * along.noise_n);
@@ -139,7 +141,7 @@ impl Sheet {
         let root = |of: &dyn Fn(&(f64, f64, f64)) -> f64| (seen.iter().map(|s| of(s).powi(2)).sum::<f64>() / n).sqrt();
         let (curve, single, spread) = (root(&|s| s.1), root(&|s| s.2), root(&|s| s.0 - mean));
         let error = curve.hypot(single.max(spread) / n.sqrt());
-        let how = format!("force on the loading curve at the last sample before it fell, {} time(s)", seen.len());
+        let how = format!("force on the loading curve where it fell, {} time(s)", seen.len());
         Parameter::identified(OBJECT, "puncture_force_N", mean, error, seen.len(), &how)
     }
 

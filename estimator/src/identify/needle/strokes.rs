@@ -14,8 +14,10 @@ const SAME_PLACE_M: f64 = 1e-3;
 pub const BEYOND_DENT_M: f64 = 1e-4;
 /// The needle is through when the force falls below this share of its peak …
 const FALLEN: f64 = 0.6;
-/// … while the needle has not been drawn back by more than this share of its depth.
+/// … while the needle has not been drawn back by more than this share of its depth in the sheet: a press that is let go falls with its depth.
 const DRAWN_BACK: f64 = 0.1;
+/// A force above this many times the noise is the sheet's.
+const TOUCHES: f64 = 8.0;
 /// Peaks below this share of the strongest force are no push.
 const PUSH_SHARE: f64 = 0.15;
 
@@ -30,6 +32,8 @@ pub struct Push {
     pub untouched_from_m: f64,
     /// The last sample before the force falls, when the needle goes through.
     pub puncture: Option<usize>,
+    /// The first sample after it has.
+    pub fallen: Option<usize>,
     /// The end of the whole stroke, one past its last sample.
     pub end: usize,
 }
@@ -63,10 +67,10 @@ pub fn pushes(along: &Along) -> Vec<Push> {
             if known.is_some_and(|k| places[k].punctured) {
                 continue;
             }
-            let puncture = puncture(along, &stroke, &force);
+            let (puncture, fallen) = puncture(along, &stroke, &force).unzip();
             let end = puncture.unwrap_or(peak) + 1;
             let untouched_from_m = known.map_or(f64::NEG_INFINITY, |k| places[k].deepest_m + BEYOND_DENT_M);
-            found.push(Push { hold, samples: stroke.start..end, untouched_from_m, puncture, end: stroke.end });
+            found.push(Push { hold, samples: stroke.start..end, untouched_from_m, puncture, fallen, end: stroke.end });
             let deepest_m = along.depth_m[stroke.start..stroke.end].iter().fold(f64::MIN, |a, b| a.max(*b));
             match known {
                 Some(k) => {
@@ -128,17 +132,22 @@ fn strokes(depth: &[f64], range: &Range<usize>, turn_m: f64) -> Vec<Range<usize>
     found
 }
 
-/// The last sample before the force falls although the needle goes on.
-fn puncture(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64) -> Option<usize> {
-    let start_m = along.depth_m[stroke.start];
-    let mut peak = stroke.start;
-    for i in stroke.clone() {
+/// The last sample before the force falls although the needle goes on, and the first one after.
+fn puncture(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64) -> Option<(usize, usize)> {
+    let touched = stroke.clone().find(|&i| force(i) > TOUCHES * along.noise_n)?;
+    let surface_m = along.depth_m[touched];
+    let mut peak = touched;
+    for i in touched..stroke.end {
         if force(i) > force(peak) {
             peak = i;
         }
-        let drawn_back = along.depth_m[peak] - along.depth_m[i] > DRAWN_BACK * (along.depth_m[peak] - start_m);
-        if force(peak) > 8.0 * along.noise_n && force(i) < FALLEN * force(peak) && !drawn_back {
-            return Some(peak);
+        let drawn_back = along.depth_m[peak] - along.depth_m[i] > DRAWN_BACK * (along.depth_m[peak] - surface_m);
+        if force(i) < FALLEN * force(peak) && !drawn_back {
+            return Some((peak, i));
+        }
+        // What was let go this far begins anew.
+        if force(i) < TOUCHES * along.noise_n {
+            peak = i;
         }
     }
     None
@@ -158,6 +167,48 @@ fn calmed(values: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A spring of 450 N/m from depth 0 on, pierced at `puncture_n`, with a way in.
+    fn pressed(depth_m: &[f64], puncture_n: f64) -> Along {
+        let mut pierced = false;
+        let force = |d: &f64| {
+            pierced |= 450.0 * d > puncture_n;
+            if pierced { 0.02 } else { 450.0 * d.max(0.0) }
+        };
+        let n = depth_m.len();
+        Along {
+            force_n: depth_m.iter().map(force).collect(),
+            depth_m: depth_m.to_vec(),
+            side_m: vec![0.0; n],
+            direction: haptics::Vec2::new(0.0, -1.0),
+            holds: std::iter::once(0..n).collect(),
+            give_m_n: (0.0, 0.0),
+            calm: 1,
+            noise_n: 0.005,
+            free_n: None,
+            two_fingered: false,
+        }
+    }
+
+    /// From 10 mm outside to 2.3 mm, back to 1 mm, and to 6 mm, in steps of 20 µm.
+    fn pressed_twice() -> Vec<f64> {
+        let legs = [(-10e-3, 2.3e-3), (2.3e-3, 1e-3), (1e-3, 6e-3)];
+        let leg = |(from, to): (f64, f64)| {
+            let steps = ((to - from).abs() / 2e-5).round();
+            (0..steps as usize).map(move |k| from + (to - from) * k as f64 / steps)
+        };
+        legs.into_iter().flat_map(leg).collect()
+    }
+
+    #[test]
+    fn a_press_that_is_let_go_is_no_puncture() {
+        let along = pressed(&pressed_twice(), 1.6);
+        let found = pushes(&along);
+        let forces: Vec<f64> = found.iter().filter_map(|p| p.puncture).map(|i| along.force_n[i]).collect();
+        assert_eq!(forces.len(), 1, "{found:?}");
+        assert!((forces[0] - 1.6).abs() < 0.02, "{forces:?}");
+        assert!(pushes(&pressed(&pressed_twice(), 9.0)).iter().all(|p| p.puncture.is_none()));
+    }
 
     #[test]
     fn strokes_run_from_outside_to_inside() {
