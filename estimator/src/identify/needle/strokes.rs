@@ -206,7 +206,8 @@ mod tests {
         let found = pushes(&along);
         let forces: Vec<f64> = found.iter().filter_map(|p| p.puncture).map(|i| along.force_n[i]).collect();
         assert_eq!(forces.len(), 1, "{found:?}");
-        assert!((forces[0] - 1.6).abs() < 0.02, "{forces:?}");
+        // Steps of 9 mN, of which the median of five takes some.
+        assert!((forces[0] - 1.6).abs() < 0.04, "{forces:?}");
         assert!(pushes(&pressed(&pressed_twice(), 9.0)).iter().all(|p| p.puncture.is_none()));
     }
 
