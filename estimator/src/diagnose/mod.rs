@@ -29,6 +29,7 @@ mod kept;
 mod late;
 mod needle;
 mod passed_over;
+mod pinched;
 mod progress;
 mod pulled;
 mod quality;
@@ -112,12 +113,37 @@ fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
             Ok(late::undo(recordings, crank(recordings, options)?, &ask))
         }
         Task::Mechanism => one_of_mechanisms(recordings, options),
+        _ => pinched(task, recordings, options),
+    }
+}
+
+/// What is held between two fingers, with mirrored axes put right.
+fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let mut faults = Vec::new();
+    let upright: Vec<Recording> = recordings
+        .iter()
+        .map(|recording| match pinched::upright(recording) {
+            Some((other, fault)) => {
+                faults.push(fault);
+                other
+            }
+            None => recording.clone(),
+        })
+        .collect();
+    let recordings = if faults.is_empty() { recordings } else { &upright };
+    let mut found = match task {
         Task::BlockStack | Task::Barrel if slide::is_slid(recordings) => slide::slid(recordings, options),
         // A barrel is a block that is carried.
         Task::BlockStack | Task::Barrel => blocks::blocks(recordings, options),
         Task::Needle => needle::needle(recordings, options),
-        Task::Switch => switch::switch(recordings, options),
+        _ => switch::switch(recordings, options),
+    }?;
+    faults.dedup_by(|a, b| a.evidence == b.evidence);
+    if !faults.is_empty() && found.verdict == Verdict::None {
+        found.verdict = Verdict::Causes;
     }
+    found.causes.splice(0..0, faults);
+    Ok(found)
 }
 
 /// Bodies that are thrown, paths without a clock, transmissions, and what moves along one coordinate.
@@ -143,6 +169,8 @@ pub fn validate(
     diagnosis: &Diagnosis,
 ) -> Result<Vec<Validation>, EstimateError> {
     let of = |recording: &Recording| {
+        let upright = pinched::upright(recording).map(|(other, _)| other);
+        let recording = upright.as_ref().unwrap_or(recording);
         let one = std::slice::from_ref(recording);
         let channels = match task_of(recording, options.task)? {
             Task::Crank => return along_a_crank(recording, diagnosis),

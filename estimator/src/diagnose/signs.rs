@@ -82,7 +82,7 @@ fn correlation(recording: &Recording, rate: &str, of: &str) -> Option<f64> {
 }
 
 /// The recording with some of its channels mirrored.
-fn mirrored(recording: &Recording, names: &[&str]) -> Recording {
+pub fn mirrored(recording: &Recording, names: &[&str]) -> Recording {
     let mut other = recording.clone();
     for channel in other.channels.iter_mut().filter(|c| names.contains(&c.name.as_str())) {
         channel.values.iter_mut().for_each(|v| *v = -*v);

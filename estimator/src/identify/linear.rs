@@ -148,7 +148,7 @@ impl Values {
 }
 
 /// The noise in the columns is known to about this share (a white level read from its upper band).
-const COLUMN_NOISE_UNCERTAINTY: f64 = 0.25;
+pub(super) const COLUMN_NOISE_UNCERTAINTY: f64 = 0.25;
 /// Columns whose noise makes up more than this share of what only they explain are not corrected: it would amplify errors.
 const CORRECTABLE: f64 = 0.5;
 
@@ -162,10 +162,10 @@ impl LinearFit {
     }
 
     /// Takes out the attenuation by noise in the columns (errors in variables, Fuller 1987, §2.2): the normal matrix is
-    /// larger than that of the true columns by `noise`, `Σ wᵢ E[eᵢ eᵢᵀ]`. A share of the correction joins the errors; where
-    /// the noise is too large to be taken out, the values stay and all of it does.
+    /// larger than that of the true columns by `noise`, `Σ wᵢ E[eᵢ eᵢᵀ]`, which is known to the share `known_to`. That share of the
+    /// correction joins the errors; where the noise is too large to be taken out, the values stay and all of it does.
     #[must_use]
-    pub fn without_attenuation(mut self, noise: &DMatrix<f64>) -> Self {
+    pub fn without_attenuation(mut self, noise: &DMatrix<f64>, known_to: f64) -> Self {
         let p = self.values.len();
         if noise.shape() != (p, p) || self.normal_inverse.shape() != (p, p) || !self.identified.iter().all(|i| *i) {
             return self;
@@ -176,7 +176,7 @@ impl LinearFit {
         let correctable = loss.trace().abs() < CORRECTABLE;
         let regained = if correctable { (DMatrix::identity(p, p) - &loss).try_inverse() } else { None };
         let (change, known_to) = match &regained {
-            Some(regained) => (regained * &values - &values, COLUMN_NOISE_UNCERTAINTY),
+            Some(regained) => (regained * &values - &values, known_to),
             None => (&loss * &values, 1.0),
         };
         if let Some(regained) = regained {
@@ -364,7 +364,7 @@ mod tests {
         let mut noise = DMatrix::zeros(2, 2);
         noise[(0, 0)] = f64::from(n) * 0.05_f64.powi(2);
         let first = plain.values[0];
-        let corrected = plain.without_attenuation(&noise);
+        let corrected = plain.without_attenuation(&noise, COLUMN_NOISE_UNCERTAINTY);
         for (value, (error, truth)) in corrected.values.iter().zip(corrected.std_errors.iter().zip([2.0, -1.0])) {
             assert!((value - truth).abs() < 2.5 * error && *error < 0.05, "{value} ± {error} against {truth}");
         }

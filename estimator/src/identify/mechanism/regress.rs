@@ -20,6 +20,8 @@ const SLOW_SHARE: f64 = 0.015;
 const ROUNDS: usize = 3;
 /// Half the longest stop that a filter hides, in periods of its cut-off.
 const UNSEEN_STOP: f64 = 0.4;
+/// How fast the envelope of the filter's answer decays, per period of its cut-off.
+const ENVELOPE: f64 = 4.5;
 /// The velocity must exceed its noise by this much to be a motion.
 const MOTION_RATIO: f64 = 2.0;
 
@@ -36,6 +38,8 @@ pub struct System {
     pub uncertainty: Vec<f64>,
     /// Filtered position of each sample, m or rad, and the noise of the motion there: how much the columns are off.
     pub motion: Vec<(f64, StateNoise)>,
+    /// To what share that noise is known.
+    pub noise_known_to: f64,
     /// Place of each sample in its recording, 0 … 1: for holding out the end.
     pub place: Vec<f64>,
 }
@@ -49,6 +53,7 @@ impl System {
             target: Vec::new(),
             uncertainty: Vec::new(),
             motion: Vec::new(),
+            noise_known_to: pieces.iter().map(Piece::noise_known_to).fold(0.0, f64::max),
             place: Vec::new(),
         };
         for piece in pieces {
@@ -82,7 +87,7 @@ impl System {
             let Some(weights) = weights.as_deref() else { break };
             fit = least_squares(&self.columns, &self.target, Some(weights))?;
         }
-        Ok(fit.without_attenuation(&self.column_noise(weights.as_deref())))
+        Ok(fit.without_attenuation(&self.column_noise(weights.as_deref()), self.noise_known_to))
     }
 
     /// What each sample counts after `fit`; `None` where no term depends on the direction.
@@ -136,6 +141,7 @@ impl System {
             target: pick(&self.target),
             uncertainty: pick(&self.uncertainty),
             motion: self.motion.iter().zip(kept).filter(|(_, k)| **k).map(|(m, _)| *m).collect(),
+            noise_known_to: self.noise_known_to,
             place: pick(&self.place),
         }
     }
@@ -174,10 +180,30 @@ fn direction_uncertainty(piece: &Piece) -> Vec<f64> {
         let slow = slow.hypot(UNSEEN_STOP * m.acceleration / piece.cutoff_hz).max(f64::MIN_POSITIVE);
         (1.0 + (m.velocity / slow).powi(2)).powi(-2)
     };
-    let stuck = piece.filter(&piece.motion.iter().map(sticking).collect::<Vec<f64>>());
+    let stuck = spread(&piece.motion.iter().map(sticking).collect::<Vec<f64>>(), piece.cutoff_hz * piece.period_s);
     let repeats = (1.0 / (piece.cutoff_hz * piece.period_s)).max(1.0);
     let by_noise = |m: &haptics::law::Motion| 1.0 - (m.velocity / blur(m)).tanh().powi(2);
     piece.motion.iter().zip(stuck).map(|(m, stuck)| by_noise(m).max(repeats * stuck * stuck)).collect()
+}
+
+/// What a filter of this cut-off (a share of the rate) may make of `values` at most: the envelope of its answer to an impulse, decaying to
+/// both sides. The answer itself rings, and where it passes through zero for one moment, that of the next is not.
+fn spread(values: &[f64], cutoff_share: f64) -> Vec<f64> {
+    let kept = (-ENVELOPE * cutoff_share).exp();
+    let before = decaying(values.iter(), kept);
+    let after = decaying(values.iter().rev(), kept);
+    let share = (1.0 - kept) / (1.0 + kept);
+    before.iter().zip(after.iter().rev()).zip(values).map(|((b, a), v)| share * (a + b - v)).collect()
+}
+
+/// Running sum of which every step keeps a share.
+fn decaying<'a>(values: impl Iterator<Item = &'a f64>, kept: f64) -> Vec<f64> {
+    values
+        .scan(0.0, |sum, v| {
+            *sum = kept * *sum + v;
+            Some(*sum)
+        })
+        .collect()
 }
 
 /// Which terms this motion can show, and why not the others.

@@ -2,8 +2,10 @@
 
 use super::even::Even;
 use crate::estimate::EstimateError;
+use crate::identify::linear::COLUMN_NOISE_UNCERTAINTY;
 use crate::signal::derive::{central_differences, stencil};
 use crate::signal::filter::{MAX_CUTOFF_SHARE, derivative_noise, edge_samples, low_pass};
+use crate::signal::noise::quantum;
 use haptics::law::{Coordinate, Motion};
 use haptics::recording::Recording;
 use haptics::world::{Mechanism, MechanismPath};
@@ -52,6 +54,18 @@ pub struct StateNoise {
     pub position_acceleration: f64,
 }
 
+impl StateNoise {
+    /// All variances times `factor`.
+    fn times(self, factor: f64) -> Self {
+        Self {
+            position: factor * self.position,
+            velocity: factor * self.velocity,
+            acceleration: factor * self.acceleration,
+            position_acceleration: factor * self.position_acceleration,
+        }
+    }
+}
+
 /// Filtered signals of one uninterrupted piece of a recording, evenly sampled.
 #[derive(Clone, Debug)]
 pub struct Piece {
@@ -69,8 +83,10 @@ pub struct Piece {
     pub cutoff_hz: f64,
     /// Standard deviation of the noise left on the velocity, m/s or rad/s.
     pub velocity_noise: f64,
-    /// Variances of the noise left on the motion.
+    /// Variances of the noise left on the motion, as expected.
     pub noise: StateNoise,
+    /// Share of that noise which comes from the resolution of the positions, 0 … 1.
+    pub from_resolution: f64,
     /// True when there is an acceleration that stands clear of its noise.
     pub accelerates: bool,
     /// Index of the first sample of this piece in the recording (nearest, when it was resampled).
@@ -80,6 +96,12 @@ pub struct Piece {
 }
 
 impl Piece {
+    /// To what share the noise of the motion is known. What rounding leaves in the band of the motion depends on how fast the steps pass:
+    /// between nothing and as much as white noise of that size.
+    pub fn noise_known_to(&self) -> f64 {
+        COLUMN_NOISE_UNCERTAINTY + 0.5 * self.from_resolution
+    }
+
     /// The same zero-phase filter that the force went through.
     pub fn filter(&self, values: &[f64]) -> Vec<f64> {
         low_pass(values, 1.0 / self.period_s, self.cutoff_hz)
@@ -189,6 +211,8 @@ fn piece(raw: &Raw, first: usize, end: usize, period: f64) -> Piece {
     let rate_hz = 1.0 / even.period_s;
 
     let choice = choose_cutoff(&position, even.noise(&raw.position[first..end]), rate_hz);
+    let rounding = quantum(&raw.position[first..end]).powi(2) / 12.0;
+    let from_resolution = (rounding / choice.position_noise.powi(2).max(f64::MIN_POSITIVE)).min(1.0);
     let derived = derive(&position, measured_rate.as_ref(), rate_hz, &choice);
     let up = raw.up_along.as_ref().map(|u| onto(u));
     let grid = &even.grid;
@@ -215,7 +239,8 @@ fn piece(raw: &Raw, first: usize, end: usize, period: f64) -> Piece {
         period_s: even.period_s,
         cutoff_hz: choice.cutoff_hz,
         velocity_noise,
-        noise: derived.noise,
+        noise: derived.noise.times(1.0 - 0.5 * from_resolution),
+        from_resolution,
         accelerates: choice.accelerates,
         first,
         start_s: grid[0],

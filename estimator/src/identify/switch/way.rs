@@ -3,7 +3,7 @@
 use super::signals::{Sample, Seen};
 use crate::estimate::EstimateError;
 use crate::identify::bootstrap::block_bootstrap;
-use crate::identify::linear::{LinearFit, least_squares};
+use crate::identify::linear::{COLUMN_NOISE_UNCERTAINTY, LinearFit, least_squares};
 use nalgebra::{DMatrix, DVector};
 
 /// Steps of the search for the peak, and of the golden section after it.
@@ -118,7 +118,7 @@ fn way_with(rows: &[Sample], noise: Option<[f64; 2]>) -> Result<Option<Way>, Est
         let mut power = DMatrix::zeros(count, count);
         (0..2).for_each(|k| power[(RATE + k, RATE + k)] = rows.len() as f64 * noise[k] * noise[k]);
         let before = around.std_errors.clone();
-        around = around.without_attenuation(&power);
+        around = around.without_attenuation(&power, COLUMN_NOISE_UNCERTAINTY);
         // What taking it out costs, it costs in either way.
         let costs = around.std_errors.iter().zip(before).map(|(after, before)| after / before);
         resampled.iter_mut().flatten().zip(costs).for_each(|(drawn, cost)| *drawn *= cost);
