@@ -241,6 +241,7 @@ pub fn answer(
         plain: Vec::new(),
         effects: Vec::new(),
         atlas: Atlas::default(),
+        along: None,
         late_s: 0.0,
         rest_s: None,
         guess_s: None,

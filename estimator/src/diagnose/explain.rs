@@ -111,6 +111,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         plain: plain(model, study),
         effects: effects(track, model, study),
         atlas: Atlas::default(),
+        along: None,
         late_s: 0.0,
         rest_s: rest_s(study, &picks),
         guess_s: None,

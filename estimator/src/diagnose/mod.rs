@@ -3,6 +3,7 @@
 //! Measured motion is put through the model; what remains of the force is compared with what every known cause would leave there.
 //! Method: named hypotheses, effective-variance weights, whitening, forward selection with swaps, a locked test part.
 
+mod along;
 mod answer;
 pub mod atlas;
 mod bearing;
@@ -176,7 +177,10 @@ pub fn validate(
             Task::Crank => return along_a_crank(recording, diagnosis),
             Task::Mechanism => {
                 let recording = &late::put_back(recording, diagnosis.late_s);
-                let mut track = sliding::track(recording, &quality::faults(recording).bad, None)?;
+                let along = diagnosis.along.ok_or_else(|| along::none(recording))?;
+                let path = along.path_of(recording)?;
+                let mut track = sliding::track(recording, &quality::faults(recording).bad, path.as_ref())?;
+                along.demand(track.coordinate, recording)?;
                 let Diagnosis { plain, effects, kept, .. } = diagnosis;
                 return Ok(validate::validate(&mut track, plain, effects, &[], kept));
             }
@@ -335,7 +339,8 @@ fn nothing() -> EstimateError {
 fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     let mut faults = Vec::new();
     let mut tracks = Vec::new();
-    for (recording, path) in recordings.iter().zip(crate::identify::mechanism::paths(recordings)) {
+    let paths = crate::identify::mechanism::paths(recordings);
+    for (recording, path) in recordings.iter().zip(&paths) {
         let found = quality::faults(recording);
         let (recording, mirrored_rate) = signs::with_rates_of_motion(recording);
         let recording = recording.as_ref();
@@ -357,6 +362,7 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     let study = force::study(&mut track, &model, &fixed, limit)?;
     options.progress.tell(0.8)?;
     let mut found = explain::explain(&track, &model, &study, &[], faults);
+    found.along = Some(along::Along::of(track.coordinate, recordings, &paths));
     found.guess_s = late::guess_s(&track, &model);
     let is_hung = track.hung.iter().any(Option::is_some);
     explain::without_known(&mut found, !fixed.is_empty() || is_hung, true);

@@ -1,5 +1,6 @@
 //! What a diagnosis answers. These types *are* the JSON of `touchstone diagnose --json`.
 
+use super::along::Along;
 use super::atlas::Atlas;
 use super::course::Course;
 use super::kept::Kept;
@@ -290,6 +291,9 @@ pub struct Diagnosis {
     /// What every suspect alone would take of the force; empty unless it was asked for, and for tasks without one coordinate.
     #[serde(skip)]
     pub atlas: Atlas,
+    /// The coordinate of a mechanism, for other recordings; none where there is not one coordinate.
+    #[serde(skip)]
+    pub(super) along: Option<Along>,
     /// By how much forces were put back before anything else was asked, s.
     #[serde(skip)]
     pub(super) late_s: f64,

@@ -5,6 +5,7 @@
 //! `cargo run --release -p blind --example blind -- --dump DIR N SEED` writes N cases as files, their truth in a folder apart.
 //! `cargo run --release -p blind --example blind -- --experiments [SEED [N]]` performs what answers ask for: N cases of every effect.
 //! `cargo run --release -p blind --example blind -- --one DIR ID [FORM [RATIO [RATE [SEED]]]]` writes one of a kind.
+//! `cargo run --release -p blind --example blind -- --only ID [SEED]` asks the cases of a whole battery in which one effect is hidden alone.
 //! `cargo run --release -p blind --example blind -- --again DIR SEED…` writes cases of whole batteries that a report names by their seeds.
 //! `cargo run --release -p blind --example blind -- --table [SEED]` makes every effect once and prints how large it came out.
 
@@ -30,11 +31,12 @@ fn main() -> ExitCode {
         ["--whole", rest @ ..] => ask_all(Counts::WHOLE, number(rest.first(), 1)),
         ["--experiments", rest @ ..] => experiments(number(rest.first(), 1), number(rest.get(1), 2)),
         ["--one", folder, id, rest @ ..] => one(Path::new(folder), id, rest),
+        ["--only", id, rest @ ..] => only(id, number(rest.first(), 1)),
         ["--again", folder, seeds @ ..] => again(Path::new(folder), seeds),
         ["--table", rest @ ..] => table(number(rest.first(), 7)),
         _ => {
             eprintln!(
-                "blind --fast [SEED] | --whole [SEED] | --long [SEED] | --dump DIR [N [SEED]] | --one DIR ID … | --again DIR SEED… | --table [SEED]"
+                "blind --fast [SEED] | --whole [SEED] | --long [SEED] | --dump DIR [N [SEED]] | --one DIR ID … | --only ID [SEED] | --again DIR SEED… | --table [SEED]"
             );
             return ExitCode::from(2);
         }
@@ -112,6 +114,24 @@ fn one(folder: &Path, id: &str, rest: &[&str]) {
     if let Err(error) = dump::write(folder, id, &job, &case, &truth) {
         eprintln!("{} cannot be written: {error}", folder.display());
     }
+}
+
+/// Asks where one effect is hidden alone, and prints every answer.
+fn only(id: &str, seed: u64) {
+    let Some(effect) = Effect::from_id(id) else {
+        eprintln!("{id} is none of the effects; `--table` lists them");
+        return;
+    };
+    let alone = |job: &Job| job.set == Set::Single && job.spec.effects.iter().all(|(hidden, _)| *hidden == effect);
+    let jobs: Vec<Job> = battery(Counts::WHOLE, seed).into_iter().filter(alone).collect();
+    let rows = ask(&jobs, &|recordings, options| diagnose(recordings, options).map_err(|e| e.to_string()));
+    for row in &rows {
+        let (bench, log) = (row.bench.name(), row.log.name());
+        println!("effect/noise {:4}, {bench}, {log}, {} Hz, seed {}: {}", row.ratio, row.rate_hz, row.seed, row.said());
+    }
+    let right = rows.iter().filter(|row| row.first_right()).count();
+    let in_set = rows.iter().filter(|row| row.set_right()).count();
+    println!("{right} of {} have {id} first, {in_set} among what cannot be told apart, seed {seed}", rows.len());
 }
 
 /// Writes cases of whole batteries by the seeds that a report names them by.

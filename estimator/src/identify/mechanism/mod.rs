@@ -6,6 +6,7 @@
 //! constraint only. Two angles with two torques are a chain of two links (`chain/`).
 
 mod chain;
+mod constant;
 mod even;
 mod free;
 mod gravity;
@@ -174,6 +175,9 @@ fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> R
     let coordinate = raws[0].coordinate;
     let base = [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset];
     let mut seen = shown(pieces, known, &base);
+    if let Some(nothing) = constant::told_nothing(raws, pieces, &seen, known) {
+        return Ok(nothing);
+    }
     let can_hang =
         coordinate == Coordinate::Angular && known.value(Term::GravitySine).is_none() && path::up(first).is_some();
     let gravity = if can_hang { Some(gravity::decide(pieces, &seen.fitted, known)?) } else { None };

@@ -82,16 +82,26 @@ pub fn from_constraint(constraint: &Constraint, recording: &Recording) -> Option
 const WORSE: f64 = 3.0;
 const SPARE: f64 = 0.005;
 
-/// Whether a recording keeps to the path that was found in `like`: the same object in the same frame, so that one coordinate holds in both.
-pub fn lies_on(recording: &Recording, path: &MechanismPath, like: &Recording) -> bool {
-    let (Some(own), Some(others)) = (points(recording), points(like)) else { return false };
+/// How far a recording of the same object in the same frame lies beside the path that was found in `like`, at most, m.
+pub fn spare_m(path: &MechanismPath, like: &Recording) -> Option<f64> {
+    let points = points(like)?;
     let extent_m = |axis: usize| {
-        let (low, high) = others.iter().fold((f64::MAX, f64::MIN), |(l, h), p| (l.min(p[axis]), h.max(p[axis])));
+        let (low, high) = points.iter().fold((f64::MAX, f64::MIN), |(l, h), p| (l.min(p[axis]), h.max(p[axis])));
         (high - low).max(0.0)
     };
     let extent_m = (0..3).map(|axis| extent_m(axis).powi(2)).sum::<f64>().sqrt();
+    Some(WORSE * beside_m(&points, path) + SPARE * extent_m)
+}
+
+/// Whether a recording keeps to a path within [`spare_m`], so that one coordinate holds in it and where the path was found.
+pub fn keeps_to(recording: &Recording, path: &MechanismPath, spare_m: f64) -> bool {
     // Written so that a number that is none is no yes.
-    beside_m(&own, path) <= WORSE * beside_m(&others, path) + SPARE * extent_m
+    points(recording).is_some_and(|own| beside_m(&own, path) <= spare_m)
+}
+
+/// Whether a recording keeps to the path that was found in `like`: the same object in the same frame.
+pub fn lies_on(recording: &Recording, path: &MechanismPath, like: &Recording) -> bool {
+    spare_m(path, like).is_some_and(|spare_m| keeps_to(recording, path, spare_m))
 }
 
 /// Root mean square of the points' distances from a path, m.

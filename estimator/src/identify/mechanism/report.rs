@@ -14,6 +14,8 @@ pub const PHASE: &str = "gravity_phase_rad";
 /// A value counts when its effect is known to better than this share of the force, or when it is this many errors from zero.
 const EFFECT_SHARE: f64 = 0.2;
 const CLEAR_T: f64 = 3.0;
+/// Everything has a mass: one whose 95 % interval holds none at all was not shown.
+const SOME_MASS_T: f64 = 1.96;
 
 /// What the report is made of.
 pub struct Material<'a> {
@@ -71,6 +73,14 @@ impl Material<'_> {
         if vague || !error.is_finite() {
             let why =
                 format!("its value is uncertain by {error:.3}, too much against the noise; excite it harder or longer");
+            return Parameter::unidentified(OBJECT, name, self.samples(), &why);
+        }
+        if term == Term::Inertia && value < SOME_MASS_T * error {
+            let why = if value < -SOME_MASS_T * error {
+                format!("it comes out at {value:.1e} ± {error:.1e}: check the sign of the force column")
+            } else {
+                format!("it comes out at {value:.1e} ± {error:.1e}, which may as well be none; accelerate harder")
+            };
             return Parameter::unidentified(OBJECT, name, self.samples(), &why);
         }
         let how = format!(

@@ -373,3 +373,46 @@ fn nothing_to_fit_is_one_sentence() {
     let short = record(SLIDE, &Setup { seconds: 0.02, ..PLAIN }, two_tones, 1);
     assert!(fit(&[short]).expect_err("ten samples").to_string().contains("only 10 usable samples"));
 }
+
+#[test]
+fn a_force_that_never_changes_shows_no_mass() {
+    let constant = |level: f64, extent_m: f64, seed: u64| {
+        let nothing = Truth { inertia: 0.0, viscous: 0.0, coulomb: 0.0, offset: level, gravity: 0.0 };
+        let quiet = Setup { force_noise: 0.0, position_noise: 0.01 * extent_m, ..PLAIN };
+        let mut made = record(nothing, &quiet, two_tones, seed);
+        made.channels[0].values.iter_mut().for_each(|q| *q *= extent_m);
+        made
+    };
+    for (seed, extent_m) in [(1, 1e-6), (2, 1e-3), (3, 1.0)] {
+        for level in [2.0, -0.3, 0.0] {
+            let made = constant(level, extent_m, seed);
+            let fit = fit(std::slice::from_ref(&made)).expect("fits");
+            for name in ["mass_kg", "viscous_N_s_m", "coulomb_N", "offset_N"] {
+                refuses(&fit, name, "the force is");
+            }
+            assert_eq!(fit.parameters.len(), 4, "{fit:?}");
+        }
+    }
+    // What is drawn by one force all the time moves as its mass tells, where nothing else is in the force.
+    let mut drawn = constant(2.0, 1.0, 4);
+    let time = drawn.time_s.clone().expect("a clock");
+    drawn.channels[0].values = time.iter().map(|t| 0.5 * (2.0 - 0.4) / 3.0 * t * t).collect();
+    drawn.meta.known = [("offset_N".to_owned(), 0.0), ("coulomb_N".to_owned(), 0.4)].into();
+    demand(&fit(&[drawn]).expect("fits"), "mass_kg", 3.0, 0.01);
+}
+
+#[test]
+fn a_mass_that_may_as_well_be_none_is_not_identified() {
+    let tiny = Truth { inertia: 1e-3, viscous: 0.0, coulomb: 0.0, offset: 2.0, gravity: 0.0 };
+    let hardly: Motion = |t| two_tones(t).map(|v| 1e-3 * v);
+    for seed in 0..6 {
+        let setup = Setup { position_noise: 1e-7, force_noise: 0.02, seconds: 6.0, ..PLAIN };
+        let fit = fit(&[record(tiny, &setup, hardly, seed)]).expect("fits");
+        let mass = fit.parameter(OBJECT, "mass_kg").expect("there");
+        assert!(!mass.identified || mass.value > mass.std_error, "{mass:?}");
+    }
+    let pushed = record(SLIDE, &PLAIN, two_tones, 7);
+    let mut mirrored = pushed;
+    mirrored.channels[1].values.iter_mut().for_each(|f| *f = -*f);
+    refuses(&fit(&[mirrored]).expect("fits"), "mass_kg", "check the sign");
+}

@@ -1,6 +1,7 @@
 //! Parquet in and out, through the file format itself (no Arrow).
 
 mod column;
+mod footer;
 mod guard;
 mod read;
 mod sums;

@@ -2,7 +2,7 @@
 
 use super::column::{self, Meaning};
 use super::sums::Sums;
-use super::{SIDECAR, guard, is_index, one_line};
+use super::{SIDECAR, footer, guard, is_index, one_line};
 use crate::log::errors::LogError;
 use crate::log::raw::{Cells, Raw};
 use crate::log::units;
@@ -32,7 +32,10 @@ pub fn read(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Columns, LogErr
 fn whole(path: &Path, size: u64, watch: &Watch<'_>) -> Result<Columns, LogError> {
     let damaged = |why: String| LogError::Damaged { format: "Parquet", why, path: path.to_path_buf() };
     let io = |error: std::io::Error| LogError::Io { reason: error.to_string(), path: path.to_path_buf() };
-    let file = File::open(path).map_err(io)?;
+    let mut file = File::open(path).map_err(io)?;
+    if let Some(why) = footer::fault(&mut file, size).map_err(io)? {
+        return Err(damaged(why));
+    }
     let reader = SerializedFileReader::new(file).map_err(|e| damaged(one_line(&e)))?;
     let facts = reader.metadata().file_metadata().clone();
     let schema = facts.schema_descr();
