@@ -147,8 +147,8 @@ fn estimator(wish: WholeBench) -> anyhow::Result<Vec<Figure>> {
         let again = best_s(rounds, || Ok(analyse_prepared(&recordings, &prepared, &options)?))?;
         let replay = best_s(rounds, || Ok(simulate(&analysis.world, &recordings[0])?))?;
         let name = |what: &str| format!("{what}, crank, {samples} samples");
-        figures.push(Figure::new(name("first fit"), 1e3 * first, "ms"));
-        figures.push(Figure::new(name("refit"), 1e3 * again, "ms"));
+        figures.push(Figure::new(name("states, fit and world, the first time"), 1e3 * first, "ms"));
+        figures.push(Figure::new(name("the same again, signals kept"), 1e3 * again, "ms"));
         figures.push(Figure::new(name("replay"), 1e3 * replay, "ms"));
     }
     let asked = [performance("askew", &askew_world())];
@@ -168,7 +168,7 @@ mod tests {
             "servo at 1000 Hz",
             "sample of the estimator",
             "picture of",
-            "first fit, crank, 10000 samples",
+            "states, fit and world, the first time, crank, 10000 samples",
             "diagnosis",
         ] {
             assert!(output.text.contains(part), "{part}: {}", output.text);
