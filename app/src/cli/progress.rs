@@ -1,12 +1,15 @@
-//! A word on standard error about what takes longer than a second: what it is, and how far or how long.
+//! A word on standard error about what takes longer than a second: what it is, and how far or how long. A terminal gets one every second;
+//! a file, where nobody waits and every line stays, only what changed, and the running time once a minute.
 
-use std::io::Write as _;
+use std::io::{IsTerminal as _, Write as _};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Nothing is said about work that is done sooner, and again after as long.
 const EVERY: Duration = Duration::from_secs(1);
+/// In a file the running time is told so often.
+const EVERY_KEPT: Duration = Duration::from_mins(1);
 
 /// How far a work has come, as far as it tells.
 #[derive(Clone, Debug, Default)]
@@ -18,32 +21,68 @@ impl Share {
         self.0.store((1e4 * share.clamp(0.0, 1.0)) as u32, Ordering::Relaxed);
     }
 
-    fn text(&self, since: Duration) -> String {
+    fn far(&self, since: Duration) -> Far {
         match self.0.load(Ordering::Relaxed) {
-            0 => format!("{} s", since.as_secs()),
-            done => format!("{} %", done / 100),
+            0 => Far::Time(since),
+            done => Far::Percent(done / 100),
+        }
+    }
+}
+
+/// How far, or how long where the work does not tell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Far {
+    Time(Duration),
+    Percent(u32),
+}
+
+impl Far {
+    fn text(self) -> String {
+        match self {
+            Self::Time(since) => format!("{} s", since.as_secs()),
+            Self::Percent(done) => format!("{done} %"),
+        }
+    }
+
+    /// Whether a file needs another line after `before`.
+    fn is_news_after(self, before: Option<Self>) -> bool {
+        match (before, self) {
+            (Some(Self::Time(before)), Self::Time(now)) => now.saturating_sub(before) >= EVERY_KEPT,
+            (before, now) => before != Some(now),
         }
     }
 }
 
 /// Does `work`, and says `what` is being done while it takes longer than a second.
 pub fn during<T>(what: &str, work: impl FnOnce(&Share) -> T) -> T {
-    watched(what, EVERY, &|line| drop(writeln!(std::io::stderr(), "{line}")), work)
+    let is_kept = !std::io::stderr().is_terminal();
+    watched(what, (EVERY, is_kept), &|line| drop(writeln!(std::io::stderr(), "{line}")), work)
 }
 
-fn watched<T>(what: &str, every: Duration, say: &(dyn Fn(&str) + Sync), work: impl FnOnce(&Share) -> T) -> T {
+/// Looks `every` so often; `is_kept`: says only what is news.
+fn watched<T>(
+    what: &str,
+    (every, is_kept): (Duration, bool),
+    say: &(dyn Fn(&str) + Sync),
+    work: impl FnOnce(&Share) -> T,
+) -> T {
     let (share, done, over) = (Share::default(), Mutex::new(false), Condvar::new());
     let begun = Instant::now();
     std::thread::scope(|scope| {
         let tell = || {
             let mut finished = done.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut said = None;
             loop {
                 let waited = over.wait_timeout_while(finished, every, |finished| !*finished);
                 finished = waited.unwrap_or_else(PoisonError::into_inner).0;
                 if *finished {
                     return;
                 }
-                say(&format!("… {what}: {}", share.text(begun.elapsed())));
+                let far = share.far(begun.elapsed());
+                if !is_kept || far.is_news_after(said) {
+                    say(&format!("… {what}: {}", far.text()));
+                    said = Some(far);
+                }
             }
         };
         // Without a thread there is no word, and the work is done all the same.
@@ -69,19 +108,36 @@ mod tests {
 
     #[test]
     fn long_work_is_told_about_and_short_work_is_not() {
-        let said = Mutex::new(Vec::new());
-        let say = |line: &str| said.lock().expect("one at a time").push(line.to_owned());
-        let brief = watched("reading x.csv", Duration::from_mins(1), &say, |_| 7);
-        assert!(brief == 7 && said.lock().expect("free").is_empty());
-        watched("reading x.csv", Duration::from_millis(5), &say, |share| {
-            while said.lock().expect("free").is_empty() {
-                std::thread::yield_now();
+        for is_kept in [false, true] {
+            let said = Mutex::new(Vec::new());
+            let say = |line: &str| said.lock().expect("one at a time").push(line.to_owned());
+            let brief = watched("reading x.csv", (Duration::from_mins(1), is_kept), &say, |_| 7);
+            assert!(brief == 7 && said.lock().expect("free").is_empty());
+            watched("reading x.csv", (Duration::from_millis(5), is_kept), &say, |share| {
+                while said.lock().expect("free").is_empty() {
+                    std::thread::yield_now();
+                }
+                share.tell(0.423);
+                while !said.lock().expect("free").iter().any(|line| line == "… reading x.csv: 42 %") {
+                    std::thread::yield_now();
+                }
+            });
+            assert_eq!(said.lock().expect("free")[0], "… reading x.csv: 0 s");
+        }
+    }
+
+    #[test]
+    fn a_file_gets_what_changed_and_the_time_once_a_minute() {
+        let seconds = |s: u64| Far::Time(Duration::from_secs(s));
+        let mut said: Option<Far> = None;
+        let mut lines = Vec::new();
+        let course = (1..=200).map(seconds).chain((0..100).map(|k| Far::Percent(10 + k / 50)));
+        for far in course {
+            if far.is_news_after(said) {
+                lines.push(far.text());
+                said = Some(far);
             }
-            share.tell(0.423);
-            while !said.lock().expect("free").iter().any(|line| line == "… reading x.csv: 42 %") {
-                std::thread::yield_now();
-            }
-        });
-        assert_eq!(said.lock().expect("free")[0], "… reading x.csv: 0 s");
+        }
+        assert_eq!(lines, ["1 s", "61 s", "121 s", "181 s", "10 %", "11 %"]);
     }
 }

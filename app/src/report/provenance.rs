@@ -7,7 +7,7 @@ use jiff::Timestamp;
 pub struct Provenance {
     /// The program's version.
     pub version: &'static str,
-    /// Revision of the sources, where the build knew it (`TOUCHSTONE_REVISION`).
+    /// Revision of the sources, where the build knew it: told (`TOUCHSTONE_REVISION`), or asked of git by a release build.
     pub revision: Option<&'static str>,
     /// System and processor that it was built for.
     pub platform: String,
@@ -53,8 +53,47 @@ fn quoted(argument: &str) -> String {
 }
 
 #[cfg(test)]
+#[path = "../../build/revision.rs"]
+mod revision;
+
+#[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
+    use std::process::Command;
+
+    /// False where there is no git.
+    fn git(folder: &Path, arguments: &[&str]) -> bool {
+        let who = ["-c", "user.name=Ada", "-c", "user.email=ada@example.org", "-c", "init.defaultBranch=main"];
+        let output = Command::new("git").arg("-C").arg(folder).args(who).args(arguments).output();
+        output.is_ok_and(|output| output.status.success())
+    }
+
+    #[test]
+    fn a_checkout_and_a_linked_worktree_know_their_revision() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (main, linked) = (folder.path().join("main"), folder.path().join("linked"));
+        std::fs::create_dir_all(main.join("inner")).expect("a folder");
+        if !git(&main, &["init", "--quiet"]) {
+            println!("skipped: there is no git");
+            return;
+        }
+        assert!(revision::of(&main).is_none(), "nothing was committed");
+        std::fs::write(main.join("inner/a"), "1").expect("written");
+        assert!(git(&main, &["add", "."]) && git(&main, &["commit", "--quiet", "--message", "One"]));
+        assert!(git(&main, &["worktree", "add", "--quiet", "-b", "other", linked.to_str().expect("a plain path")]));
+        let first = revision::of(&main).expect("a revision");
+        let noted = first.noted_in.as_deref().expect("git notes commits");
+        assert!(noted.ends_with("logs/HEAD") && noted.exists());
+        assert!(revision::of(&main.join("inner")).is_none(), "an archive within another project's checkout");
+        std::fs::write(linked.join("inner/a"), "2").expect("written");
+        let changed = revision::of(&linked).expect("a revision");
+        assert_eq!(changed.name, format!("{}-dirty", first.name));
+        assert!(git(&linked, &["commit", "--quiet", "--all", "--message", "Two"]));
+        let second = revision::of(&linked).expect("a revision");
+        assert!(second.name != first.name && !second.name.contains("dirty"), "{second:?}");
+        assert_ne!(second.noted_in, first.noted_in, "each has notes of its own");
+    }
 
     #[test]
     fn arguments_can_be_pasted() {

@@ -98,7 +98,7 @@ fn repeat(sheets: &[Sheet], provenance: &Provenance) -> Markup {
             div class="card" {
                 dl {
                     div { dt { "Program" } dd { "touchstone " (provenance.version) } }
-                    div { dt { "Revision of its sources" } dd class="mono" { (provenance.revision.unwrap_or("not recorded by this build")) } }
+                    div { dt { "Revision of its sources" } dd class="mono" { (provenance.revision.unwrap_or("not recorded by this build (a development build, or one without git)")) } }
                     div { dt { "Built for" } dd { (provenance.platform) } }
                     div { dt { "Date" } dd { (provenance.date) } }
                 }
