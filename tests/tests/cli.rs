@@ -232,6 +232,9 @@ fn diagnose_answers_as_the_contract_says_and_writes_a_world_that_can_be_felt() {
     assert!(validation[0]["rms_after"].as_f64() <= validation[0]["rms_before"].as_f64(), "{validation:?}");
     let verdict = result["verdict"].as_str().expect("a verdict");
     assert!(["causes", "none", "ambiguous", "unexplained"].contains(&verdict), "{verdict}");
+    let said = run(&["diagnose", &asset("crank.csv")]);
+    let words = String::from_utf8_lossy(&said.stdout).into_owned();
+    assert!(words.starts_with(&format!("verdict: {verdict}: ")), "the words say what the JSON says: {words}");
     for key in ["model", "rms_N", "heldout_rms_N", "whiteness_p"] {
         assert!(!result["baseline"][key].is_null(), "{key}");
     }

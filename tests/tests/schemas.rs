@@ -85,6 +85,44 @@ fn two_trials(folder: &Path) -> PathBuf {
     path
 }
 
+/// Paths of a tool, and what is said of their kind and of whether it is rigid: a door with forces across its path, a drawer without any, a
+/// stroke too short to tell.
+const PATHS: [(&str, &str, Value); 3] = [
+    ("door", "revolute", Value::Bool(true)),
+    ("drawer", "prismatic", Value::Null),
+    ("stroke", "undecided", Value::Null),
+];
+
+fn tool_path(folder: &Path, name: &str) -> PathBuf {
+    let mut random = 1_u64;
+    let mut noise = || {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        1e-4 * ((random >> 40) as f64 / f64::from(1 << 24) - 0.5)
+    };
+    let mut rows = String::from(if name == "door" { "t_s,x_m,y_m,fx_N,fy_N\n" } else { "t_s,x_m,y_m\n" });
+    for i in 0..3000 {
+        let t = f64::from(i) * 2e-3;
+        let turn = 0.5 * (1.0 - (2.0 * t).cos());
+        let (sin, cos) = turn.sin_cos();
+        let (x, y) = match name {
+            "door" => (0.3 * cos, 0.3 * sin),
+            "drawer" => (0.2 * turn, 0.1 * turn),
+            _ => (4e-3 * (0.3 * t).sin(), 1e-3 * (0.3 * t).cos()),
+        };
+        write!(rows, "{t:.3},{:.7},{:.7}", x + noise(), y + noise()).expect("memory can be written");
+        if name == "door" {
+            let across = 8.0 * (5.0 * t).sin();
+            let force = (across * cos - 2.0 * sin, across * sin + 2.0 * cos);
+            write!(rows, ",{:.4},{:.4}", force.0, force.1).expect("memory can be written");
+        }
+        rows.push('\n');
+    }
+    let path = folder.join(format!("{name}.csv"));
+    std::fs::write(&path, rows).expect("written");
+    std::fs::write(folder.join(format!("{name}.meta.json")), r#"{"task": "mechanism"}"#).expect("written");
+    path
+}
+
 #[test]
 fn what_the_commands_print_is_what_the_schemas_say() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -95,6 +133,12 @@ fn what_the_commands_print_is_what_the_schemas_say() {
         holds("info", &["info", log]);
         holds("fit", &["fit", log, "--out", &file("world.json")]);
         holds("diagnose", &["diagnose", log]);
+    }
+    for (name, kind, rigid) in PATHS {
+        let said = holds("fit", &["fit", text(&tool_path(folder.path(), name))]);
+        let constraint = &said["constraints"][0];
+        assert_eq!((constraint["kind"].as_str(), &constraint["rigid"]), (Some(kind), &rigid), "{constraint}");
+        assert!(constraint["std_error"].is_object() && constraint.get("rigid").is_some(), "{constraint}");
     }
     for method in ["threshold", "hmm"] {
         holds("segment", &["segment", &stack, "--method", method]);
@@ -251,5 +295,14 @@ fn the_contract_s_names_are_in_the_schemas() {
             names += 1;
         }
         assert!(names > 5, "{name}: {names} names");
+    }
+    // Every kind of a constraint and every verdict that the contract knows is one of the schema's.
+    for (name, key) in [("fit", "\"kind\":\""), ("diagnose", "\"verdict\": \"")] {
+        let (_, words) = contract.split_once(key).expect("a choice of words");
+        let words = words.split('"').next().unwrap_or_default();
+        for word in words.split('|') {
+            let known = format!("\"const\":\"{}\"", word.trim());
+            assert!(schemas[name].to_string().contains(&known), "{name}: the schema does not know `{word}`");
+        }
     }
 }

@@ -159,11 +159,12 @@ impl Diagnose {
 /// A diagnosis in words.
 pub(super) fn describe(diagnosis: &Diagnosis) -> String {
     let mut text = String::new();
+    // The word of the JSON first.
     let word = match diagnosis.verdict {
-        Verdict::Causes => "named",
-        Verdict::None => "nothing beyond the noise",
-        Verdict::Ambiguous => "this recording cannot tell which of several",
-        Verdict::Unexplained => "something that no known cause explains",
+        Verdict::Causes => "causes: each is named below",
+        Verdict::None => "none: nothing beyond the noise",
+        Verdict::Ambiguous => "ambiguous: this recording cannot tell which of several",
+        Verdict::Unexplained => "unexplained: something that no known cause explains",
     };
     let _ = writeln!(text, "verdict: {word}");
     let _ = writeln!(

@@ -4,7 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The kind of a geometric constraint.
+/// The kind of a geometric constraint. `screw` and `undecided` stand beside the kinds of the contract: nothing is called one of those on
+/// weak grounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ConstraintKind {
@@ -52,11 +53,12 @@ pub struct Constraint {
     /// Unit vector: of the axis (revolute), of the motion (prismatic).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub direction: Option<Vec<f64>>,
-    /// Stiffer than the manipulator and its sensors can tell.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Stiffer than the manipulator and its sensors can tell: `true`, `false` where it gives way, `null` where the recording cannot tell (no
+    /// force, a constant one, or too little of it).
+    #[serde(default)]
     pub rigid: Option<bool>,
-    /// Standard errors by name: `center_m` (one number, the larger axis), `radius_m`, `direction_rad`.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    /// Standard errors by name: `center_m` (one number, the larger axis), `radius_m`, `direction_rad`; empty where nothing was measured.
+    #[serde(default)]
     pub std_error: BTreeMap<String, f64>,
     /// Angle turned (revolute), rad.
     #[serde(default, skip_serializing_if = "Option::is_none")]

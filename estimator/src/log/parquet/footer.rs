@@ -19,7 +19,7 @@ pub fn fault(file: &mut File, size: u64) -> std::io::Result<Option<String>> {
         return Ok(None);
     }
     let mut tail = [0; TAIL_BYTES as usize];
-    file.seek(SeekFrom::End(-(TAIL_BYTES as i64)))?;
+    file.seek(SeekFrom::Start(size - TAIL_BYTES))?;
     file.read_exact(&mut tail)?;
     let [a, b, c, d, magic @ ..] = tail;
     let long = u64::from(u32::from_le_bytes([a, b, c, d]));
@@ -57,7 +57,7 @@ fn claims(footer: &[u8]) -> Result<(), String> {
 fn tree(columns: &[i64]) -> Result<(), String> {
     let mut open: Vec<i64> = Vec::new();
     for &children in columns {
-        if !(0..=columns.len() as i64).contains(&children) {
+        if !usize::try_from(children).is_ok_and(|parts| parts <= columns.len()) {
             return Err(format!("a group that claims {children} columns in a file of {}", columns.len()));
         }
         if let Some(left) = open.last_mut() {
@@ -114,7 +114,7 @@ impl Rest<'_> {
     /// A whole number with its sign in the last bit.
     fn whole(&mut self) -> Result<i64, String> {
         let coded = self.varint()?;
-        Ok((coded >> 1) as i64 ^ -((coded & 1) as i64))
+        Ok((coded >> 1).cast_signed() ^ -(coded & 1).cast_signed())
     }
 
     /// The kind of the next field, whose number goes on from `id`; none at the end of the structure.
