@@ -111,8 +111,8 @@ fn ours_are_the_published_parameters_but_for_the_bend() {
     let Some(recordings) = emps() else { return };
     assert!(recordings[0].warnings.is_empty(), "{:?}", recordings[0].warnings);
     let fit = mechanism::fit(&recordings).expect("fits");
-    // Samples within the filter's time of a reversal are slower than some 10 mm/s here (accelerations of 1 m/s², 10 ms).
-    let (all, moving) = (plain(&recordings[0], 4, 0.0), plain(&recordings[0], 4, 0.01));
+    // Samples within the filter's time of a reversal, its ringing included, are slower than some 15 mm/s here (accelerations of 1 m/s², 15 ms).
+    let (all, moving) = (plain(&recordings[0], 4, 0.0), plain(&recordings[0], 4, 0.015));
     for k in 0..4 {
         let (value, error) = found(&fit, NAMES[k]);
         let bend = moving[k] - all[k];
