@@ -12,6 +12,8 @@ type Picture = Vec<Vec<[u8; 3]>>;
 
 /// A list that opens or closes changes so many pixels, and more than a button does under the pointer.
 const LIST: usize = 1500;
+/// A tick that comes or goes changes more pixels than this.
+const TICK: usize = 8;
 
 fn at(place: Pos2) -> [String; 2] {
     [format!("{:.0}", place.x), format!("{:.0}", place.y)]
@@ -40,6 +42,25 @@ fn click(screen: &Screen, place: Pos2, what: &str) {
     screen.xdotool(&["click", "1"]);
     until(what, screen, || (differs(&screen.picture(), &before) > LIST).then_some(()));
     rest(screen, what);
+}
+
+/// Clicks a tick until it is another one: what is opened may still move it while it is fitted.
+fn untick(screen: &Screen, place: Pos2) {
+    let [x, y] = at(place);
+    screen.xdotool(&["mousemove", &x, &y]);
+    let part = |picture: &Picture| -> Picture {
+        let [column, row] = [place.x as usize - 6, place.y as usize - 6];
+        picture[row..row + 12].iter().map(|line| line[column..column + 12].to_vec()).collect()
+    };
+    until("the tick taken away", screen, || {
+        let before = part(&rest(screen, "the pointer at the tick"));
+        screen.xdotool(&["click", "1"]);
+        // A frame takes its time: without one in five seconds the click went elsewhere.
+        (0..50).find_map(|_| {
+            std::thread::sleep(std::time::Duration::from_millis(100));
+            (differs(&part(&screen.picture()), &before) > TICK).then_some(())
+        })
+    });
 }
 
 /// Pixels of a colour of the palette in a part of the screen.
@@ -96,10 +117,7 @@ fn a_person_maps_a_foreign_table_and_fits_again() {
     let states = until("the states", &screen, || screen.run_of(SystemState::Turning));
     screen.keep("8-opened");
 
-    let [x, y] = at(places.follow);
-    screen.xdotool(&["mousemove", &x, &y]);
-    rest(&screen, "the pointer at the tick");
-    screen.xdotool(&["click", "1"]);
+    untick(&screen, places.follow);
     drag(&screen, &home, states);
     assert!(by_hand(&home));
     // Beside the button stands in the colour of doubts that the settings changed, until it is pressed.
