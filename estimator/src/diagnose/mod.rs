@@ -120,18 +120,19 @@ fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
 
 /// What is held between two fingers, with mirrored axes put right.
 fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
-    let mut faults = Vec::new();
-    let upright: Vec<Recording> = recordings
-        .iter()
-        .map(|recording| match pinched::upright(recording) {
-            Some((other, fault)) => {
-                faults.push(fault);
-                other
-            }
-            None => recording.clone(),
-        })
-        .collect();
-    let recordings = if faults.is_empty() { recordings } else { &upright };
+    let looked_at: Vec<_> = recordings.iter().map(pinched::upright).collect();
+    // Nothing is copied where nothing is mirrored, which is nearly always.
+    let upright: Vec<Recording> = if looked_at.iter().any(Option::is_some) {
+        let pairs = looked_at.iter().zip(recordings);
+        pairs.map(|(other, recording)| other.as_ref().map_or(recording, |(other, _)| other).clone()).collect()
+    } else {
+        Vec::new()
+    };
+    let recordings = if upright.is_empty() { recordings } else { &upright };
+    let mut faults: Vec<Cause> = looked_at.into_iter().flatten().map(|(_, fault)| fault).collect();
+    // The same axis in several recordings is one fault.
+    let which = |fault: &Cause| fault.parameters.first().map(|p| p.name.clone());
+    faults.dedup_by(|a, b| which(a) == which(b));
     let mut found = match task {
         Task::BlockStack | Task::Barrel if slide::is_slid(recordings) => slide::slid(recordings, options),
         // A barrel is a block that is carried.
@@ -170,10 +171,12 @@ pub fn validate(
     diagnosis: &Diagnosis,
 ) -> Result<Vec<Validation>, EstimateError> {
     let of = |recording: &Recording| {
-        let upright = pinched::upright(recording).map(|(other, _)| other);
-        let recording = upright.as_ref().unwrap_or(recording);
+        let task = task_of(recording, options.task)?;
+        // Cranks and mechanisms have laws of their own for their signs.
+        let upright = if matches!(task, Task::Crank | Task::Mechanism) { None } else { pinched::upright(recording) };
+        let recording = upright.as_ref().map_or(recording, |(other, _)| other);
         let one = std::slice::from_ref(recording);
-        let channels = match task_of(recording, options.task)? {
+        let channels = match task {
             Task::Crank => return along_a_crank(recording, diagnosis),
             Task::Mechanism => {
                 let recording = &late::put_back(recording, diagnosis.late_s);

@@ -1,12 +1,13 @@
 //! A foreign table in a real window: dropped, its columns mapped with the pointer, a boundary dragged, and fitted again by the button.
 
-use crate::screen::{SCREEN, Screen, drawn, kept, start, until};
+use crate::screen::{SCREEN, Screen, drawn, kept, start, until, within};
 use crate::{by_hand, drag, drop::drop_file};
 use app::ui::gallery::by_pointer::{Places, places};
 use app::ui::theme::Palette;
 use egui::{Color32, Pos2, Rect};
 use estimator::segment::SystemState;
 use serde_json::Value;
+use std::time::Duration;
 
 type Picture = Vec<Vec<[u8; 3]>>;
 
@@ -56,10 +57,7 @@ fn untick(screen: &Screen, place: Pos2) {
         let before = part(&rest(screen, "the pointer at the tick"));
         screen.xdotool(&["click", "1"]);
         // A frame takes its time: without one in five seconds the click went elsewhere.
-        (0..50).find_map(|_| {
-            std::thread::sleep(std::time::Duration::from_millis(100));
-            (differs(&part(&screen.picture()), &before) > TICK).then_some(())
-        })
+        within(Duration::from_secs(5), || (differs(&part(&screen.picture()), &before) > TICK).then_some(()))
     });
 }
 

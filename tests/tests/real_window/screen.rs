@@ -205,15 +205,22 @@ pub fn start(screen: &Screen, home: &Path) -> Program {
     program
 }
 
-pub fn until<T>(what: &str, screen: &Screen, mut found: impl FnMut() -> Option<T>) -> T {
+pub fn until<T>(what: &str, screen: &Screen, found: impl FnMut() -> Option<T>) -> T {
+    within(PATIENCE, found).unwrap_or_else(|| {
+        screen.keep("too-late");
+        panic!("{what} did not come")
+    })
+}
+
+/// What is found before the time is over.
+pub fn within<T>(patience: Duration, mut found: impl FnMut() -> Option<T>) -> Option<T> {
     let begun = Instant::now();
     loop {
         if let Some(found) = found() {
-            return found;
+            return Some(found);
         }
-        if begun.elapsed() > PATIENCE {
-            screen.keep("too-late");
-            panic!("{what} did not come");
+        if begun.elapsed() > patience {
+            return None;
         }
         std::thread::sleep(Duration::from_millis(100));
     }

@@ -20,8 +20,9 @@ const SLOW_SHARE: f64 = 0.015;
 const ROUNDS: usize = 3;
 /// Half the longest stop that a filter hides, in periods of its cut-off.
 const UNSEEN_STOP: f64 = 0.4;
-/// How fast the envelope of the filter's answer decays, per period of its cut-off.
-const ENVELOPE: f64 = 4.5;
+/// How fast the reach of the filter decays, per period of its cut-off: between its main lobe and its ringing (2.4), where masses of generated
+/// recordings with many stops have no bias and the errors are least.
+const REACH: f64 = 4.5;
 /// The velocity must exceed its noise by this much to be a motion.
 const MOTION_RATIO: f64 = 2.0;
 
@@ -186,10 +187,10 @@ fn direction_uncertainty(piece: &Piece) -> Vec<f64> {
     piece.motion.iter().zip(stuck).map(|(m, stuck)| by_noise(m).max(repeats * stuck * stuck)).collect()
 }
 
-/// What a filter of this cut-off (a share of the rate) may make of `values` at most: the envelope of its answer to an impulse, decaying to
-/// both sides. The answer itself rings, and where it passes through zero for one moment, that of the next is not.
+/// How far a filter of this cut-off (a share of the rate) carries `values`, decaying to both sides without zeros: the filter's own answer rings,
+/// and where that of one moment passes through zero, that of the next does not.
 fn spread(values: &[f64], cutoff_share: f64) -> Vec<f64> {
-    let kept = (-ENVELOPE * cutoff_share).exp();
+    let kept = (-REACH * cutoff_share).exp();
     let before = decaying(values.iter(), kept);
     let after = decaying(values.iter().rev(), kept);
     let share = (1.0 - kept) / (1.0 + kept);
