@@ -140,7 +140,6 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
         Task::Needle => needle::needle(recordings, options),
         _ => switch::switch(recordings, options),
     }?;
-    faults.dedup_by(|a, b| a.evidence == b.evidence);
     if !faults.is_empty() && found.verdict == Verdict::None {
         found.verdict = Verdict::Causes;
     }

@@ -61,7 +61,7 @@ pub(crate) struct Said<'a> {
     passive_stiffness_n_m: f64,
     /// What was looked at.
     checks: &'a [Check],
-    /// The first check that is not fine, or that nothing wrong was found.
+    /// What failed, else the first check that is not fine, or that nothing wrong was found.
     verdict: &'a str,
 }
 
@@ -169,12 +169,17 @@ impl Check {
     }
 }
 
+/// A device that does not work says more than a machine that was busy meanwhile.
+fn verdict(checks: &[Check]) -> &str {
+    let failed = checks.iter().find(|check| check.failed);
+    failed.or_else(|| checks.iter().find(|check| !check.ok)).map_or("Nothing wrong was found.", |check| &check.text)
+}
+
 impl Measured<'_> {
     /// Words and JSON.
     pub fn report(&self) -> serde_json::Result<Output> {
         let checks = self.checks();
-        let verdict =
-            checks.iter().find(|check| !check.ok).map_or("Nothing wrong was found.", |check| check.text.as_str());
+        let verdict = verdict(&checks);
         let period_s = self.timing.period_s;
         let mut text = format!("{}\n", self.spec.name);
         let _ =
@@ -396,5 +401,16 @@ pub(super) mod tests {
         let (ok, text) = freshness(&[(20, fine), (700, stale)]);
         assert!(!ok && text.contains("No positions came") && text.contains("Plug it in."), "{text}");
         assert!(!freshness(&[]).0);
+    }
+
+    #[test]
+    fn what_does_not_work_is_said_before_that_the_machine_was_busy() {
+        let busy = Check::new("rate", false, "The machine is busy.".to_owned());
+        let silent = Check::failed("positions", "No positions came.".to_owned());
+        let fine = Check::new("motion", true, "It moved.".to_owned());
+        assert_eq!(verdict(&[busy, fine, silent]), "No positions came.");
+        let busy = Check::new("rate", false, "The machine is busy.".to_owned());
+        assert_eq!(verdict(&[Check::new("motion", true, "It moved.".to_owned()), busy]), "The machine is busy.");
+        assert_eq!(verdict(&[]), "Nothing wrong was found.");
     }
 }
