@@ -10,6 +10,7 @@ pub mod generate;
 pub mod handling;
 pub mod mechanisms;
 pub mod python;
+pub mod reaching;
 pub mod schema;
 pub mod tasks;
 

@@ -7,18 +7,18 @@ use haptics::recording::{Channel, Recording, Task};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
-const STEP_S: f64 = 2e-5;
+pub(crate) const STEP_S: f64 = 2e-5;
 const SECONDS: f64 = 12.0;
 
 /// One degree of freedom: what resists, in N and m, or N m and rad.
-struct Mechanism {
-    angular: bool,
-    inertia: f64,
-    viscous: f64,
-    coulomb: f64,
-    offset: f64,
+pub(crate) struct Mechanism {
+    pub(crate) angular: bool,
+    pub(crate) inertia: f64,
+    pub(crate) viscous: f64,
+    pub(crate) coulomb: f64,
+    pub(crate) offset: f64,
     /// Moment of gravity, times the sine of the coordinate.
-    gravity: f64,
+    pub(crate) gravity: f64,
 }
 
 /// Where a hand wants it: sines of several frequencies.
@@ -28,7 +28,7 @@ struct Hand {
     damping: f64,
 }
 
-fn gauss(rng: &mut StdRng) -> f64 {
+pub(crate) fn gauss(rng: &mut StdRng) -> f64 {
     (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0
 }
 
@@ -55,20 +55,28 @@ fn drawn(rng: &mut StdRng) -> (Mechanism, Hand) {
     (mechanism, hand)
 }
 
-/// Coordinate and driving force at `rate_hz`: the force is what the hand gives, so that friction may hold the mechanism still.
-fn moved(mechanism: &Mechanism, hand: &Hand, rate_hz: f64) -> Vec<(f64, f64)> {
-    let wanted = |t: f64| {
-        hand.parts
-            .iter()
-            .map(|(a, w, p)| (a * (w * t + p).sin(), a * w * (w * t + p).cos()))
-            .fold((0.0, 0.0), |s, x| (s.0 + x.0, s.1 + x.1))
-    };
-    let (mut q, mut v) = (wanted(0.0).0, 0.0_f64);
+impl Hand {
+    /// Where it wants to be, and how fast.
+    fn wanted(&self, t: f64) -> (f64, f64) {
+        let of = |(a, w, p): &(f64, f64, f64)| (a * (w * t + p).sin(), a * w * (w * t + p).cos());
+        self.parts.iter().map(of).fold((0.0, 0.0), |s, x| (s.0 + x.0, s.1 + x.1))
+    }
+}
+
+/// Coordinate and driving force at `rate_hz` for `steps` steps from `start` on: the force is what the hand gives at a step, place and
+/// speed, so that friction may hold the mechanism still.
+pub(crate) fn moved(
+    mechanism: &Mechanism,
+    start: f64,
+    steps: usize,
+    rate_hz: f64,
+    mut hand: impl FnMut(usize, f64, f64) -> f64,
+) -> Vec<(f64, f64)> {
+    let (mut q, mut v) = (start, 0.0_f64);
     let every = (1.0 / (rate_hz * STEP_S)).round() as usize;
     let mut seen = Vec::new();
-    for step in 0..(SECONDS / STEP_S) as usize {
-        let (place, rate) = wanted(step as f64 * STEP_S);
-        let drive = hand.stiffness * (place - q) + hand.damping * (rate - v);
+    for step in 0..steps {
+        let drive = hand(step, q, v);
         if step % every == 0 {
             seen.push((q, drive));
         }
@@ -82,12 +90,18 @@ fn moved(mechanism: &Mechanism, hand: &Hand, rate_hz: f64) -> Vec<(f64, f64)> {
     seen
 }
 
-fn recorded(mechanism: &Mechanism, motion: &[(f64, f64)], rate_hz: f64, level: f64, rng: &mut StdRng) -> Recording {
-    let (names, noises) =
-        if mechanism.angular { (["q_rad", "tau_Nm"], [1e-4, 0.004]) } else { (["q_m", "f_N"], [1e-5, 0.05]) };
+/// `noises`: of coordinate and force, one standard deviation.
+pub(crate) fn recorded(
+    mechanism: &Mechanism,
+    motion: &[(f64, f64)],
+    rate_hz: f64,
+    noises: [f64; 2],
+    rng: &mut StdRng,
+) -> Recording {
+    let names = if mechanism.angular { ["q_rad", "tau_Nm"] } else { ["q_m", "f_N"] };
     // Of an uncompensated quartz: 100 ppm.
     let clock = 1.0 + 1e-4 * gauss(rng);
-    let mut noisy = |value: f64, noise: f64| value + level * noise * gauss(rng);
+    let mut noisy = |value: f64, noise: f64| value + noise * gauss(rng);
     let values: Vec<[f64; 2]> = motion.iter().map(|(q, f)| [noisy(*q, noises[0]), noisy(*f, noises[1])]).collect();
     let channel = |k: usize| Channel {
         name: names[k].to_owned(),
@@ -109,16 +123,21 @@ pub fn mechanism_scores(seed: u64) -> Vec<Scores> {
     let mut rng = StdRng::seed_from_u64(seed.wrapping_mul(0xd6e8_feb8_6659_fd93));
     let (mechanism, hand) = drawn(&mut rng);
     let rate_hz = [200.0, 500.0, 1000.0][seed as usize % 3];
-    let motion = moved(&mechanism, &hand, rate_hz);
+    let drive = |step: usize, q: f64, v: f64| {
+        let (place, rate) = hand.wanted(step as f64 * STEP_S);
+        hand.stiffness * (place - q) + hand.damping * (rate - v)
+    };
+    let motion = moved(&mechanism, hand.wanted(0.0).0, (SECONDS / STEP_S) as usize, rate_hz, drive);
     let truth = truth(&mechanism);
+    let noises = if mechanism.angular { [1e-4, 0.004] } else { [1e-5, 0.05] };
     let mut fitted = |level: f64| {
-        let recording = recorded(&mechanism, &motion, rate_hz, level, &mut rng);
+        let recording = recorded(&mechanism, &motion, rate_hz, noises.map(|n| level * n), &mut rng);
         score(&analyse(std::slice::from_ref(&recording), &Options::default()).expect("it moves").fit, &truth)
     };
     LEVELS.map(&mut fitted).to_vec()
 }
 
-fn truth(mechanism: &Mechanism) -> Truth {
+pub(crate) fn truth(mechanism: &Mechanism) -> Truth {
     let names = if mechanism.angular {
         ["inertia_kg_m2", "viscous_Nm_s", "coulomb_Nm", "offset_Nm"]
     } else {

@@ -4,10 +4,10 @@
 //! circle (Künsch 1989; Politis & Romano 1992). A block's share of the normal equations is a difference of running sums, so that a
 //! draw costs as much as its blocks, not as its rows.
 
-use super::linear::LinearFit;
+use super::linear::{LinearFit, least_squares};
 use crate::wanted;
 use nalgebra::{DMatrix, DVector};
-use std::ops::Range;
+use std::ops::{Index, Range};
 
 /// Draws; the error of a standard error is then 4 %.
 const DRAWS: usize = 300;
@@ -15,18 +15,73 @@ const DRAWS: usize = 300;
 const TIMES: f64 = 4.0;
 /// … but there are no fewer than this many in the recording.
 const LEAST_BLOCKS: usize = 12;
+/// Most values of which a median is drawn.
+const MOST_OF_A_MEDIAN: usize = 2000;
+/// Fewer values say nothing of their scatter.
+const LEAST_OF_FEW: usize = 3;
+/// Where every draw begins: equal recordings give equal errors.
+const START: u64 = 0x9E37_79B9_7F4A_7C15;
+
+/// What the draws of a resampling say of p values: their covariance, and each one's standard error.
+#[derive(Clone, Debug)]
+pub struct Resampled {
+    covariance: DMatrix<f64>,
+    errors: Vec<f64>,
+}
+
+impl Resampled {
+    fn new(covariance: DMatrix<f64>) -> Self {
+        let errors = covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
+        Self { covariance, errors }
+    }
+
+    /// Standard errors, one a value.
+    pub fn errors(&self) -> &[f64] {
+        &self.errors
+    }
+
+    /// p × p, in the units of the values.
+    pub fn covariance(&self) -> &DMatrix<f64> {
+        &self.covariance
+    }
+
+    /// With what is not known of each value beside the draws, independent of them.
+    #[must_use]
+    pub fn widened(mut self, errors: &[f64]) -> Self {
+        for (j, error) in errors.iter().enumerate().take(self.errors.len()) {
+            self.covariance[(j, j)] += error * error;
+        }
+        Self::new(self.covariance)
+    }
+
+    /// With every value (and its error) so many times as large.
+    #[must_use]
+    pub fn scaled(self, by: &[f64]) -> Self {
+        let p = self.errors.len();
+        Self::new(DMatrix::from_fn(p, p, |i, j| by[i] * by[j] * self.covariance[(i, j)]))
+    }
+}
+
+impl Index<usize> for Resampled {
+    type Output = f64;
+
+    /// Standard error of a value.
+    fn index(&self, value: usize) -> &f64 {
+        &self.errors[value]
+    }
+}
 
 /// Standard error of each value of `fit` by a circular block bootstrap of its rows; `None` when they hold too few independent
 /// stretches, or when a value is not identified.
 ///
 /// `columns`: p columns of n samples, `rhs`: n, `weights`: n (absent: all 1), as the fit was made from. The draws are the same every
-/// time: equal recordings give equal errors.
+/// time.
 pub fn block_bootstrap(
     columns: &[Vec<f64>],
     rhs: &[f64],
     weights: Option<&[f64]>,
     fit: &LinearFit,
-) -> Option<Vec<f64>> {
+) -> Option<Resampled> {
     // One stretch, all of it.
     let whole = 0..rhs.len();
     block_bootstrap_within(columns, rhs, weights, fit, std::slice::from_ref(&whole))
@@ -42,16 +97,15 @@ pub fn block_bootstrap_within(
     weights: Option<&[f64]>,
     fit: &LinearFit,
     stretches: &[Range<usize>],
-) -> Option<Vec<f64>> {
+) -> Option<Resampled> {
     let (n, p) = (rhs.len(), columns.len());
     if n < 2 * LEAST_BLOCKS || p == 0 || !fit.identified.iter().all(|i| *i) {
         return None;
     }
-    let apart = (n as f64 / fit.effective_samples.max(1.0)).max(1.0);
-    let length = ((TIMES * apart).ceil() as usize).min(n / LEAST_BLOCKS).max(1);
+    let length = block_length(n, fit.effective_samples);
     let length_in = |s: &Range<usize>| length.min(s.len().div_ceil(2)).max(1);
     let sums = RunningSums::new(columns, rhs, weights);
-    let mut draw = Draws(0x9E37_79B9_7F4A_7C15);
+    let mut draw = Draws(START);
     let mut values: Vec<DVector<f64>> = Vec::with_capacity(DRAWS);
     let mut total = vec![0.0; sums.width];
     for _ in 0..DRAWS {
@@ -74,12 +128,66 @@ pub fn block_bootstrap_within(
     let drawn = stretches.iter().filter(|s| s.len() > 1);
     let (blocks, parts) = drawn.fold((0.0, 0.0), |(b, k), s| (b + s.len().div_ceil(length_in(s)) as f64, k + 1.0));
     let few = (blocks / (blocks - parts).max(1.0)).sqrt();
-    let error = |j: usize| {
-        let mean = values.iter().map(|v| v[j]).sum::<f64>() / count;
-        let variance = values.iter().map(|v| (v[j] - mean).powi(2)).sum::<f64>() / (count - 1.0);
-        variance.sqrt() * few / sums.scales[j]
+    let mean = values.iter().sum::<DVector<f64>>() / count;
+    let mut covariance = DMatrix::zeros(p, p);
+    for value in &values {
+        let off = value - &mean;
+        covariance += &off * off.transpose() / (count - 1.0);
+    }
+    let scale: Vec<f64> = sums.scales.iter().map(|s| few / s).collect();
+    Some(Resampled::new(covariance).scaled(&scale))
+}
+
+/// Standard error of the median of `values` by a circular block bootstrap; `None` when they hold too few independent stretches.
+///
+/// `values`: n in order of time; of many, evenly spaced ones are taken.
+pub fn median_error(values: &[f64]) -> Option<f64> {
+    let values: Vec<f64> = values.iter().copied().step_by(values.len().div_ceil(MOST_OF_A_MEDIAN).max(1)).collect();
+    let n = values.len();
+    if n < 2 * LEAST_BLOCKS {
+        return None;
+    }
+    let length = block_length(n, least_squares(&[vec![1.0; n]], &values, None).ok()?.effective_samples);
+    let mut draw = Draws(START);
+    let (mut drawn, mut medians) = (Vec::with_capacity(n + length), Vec::with_capacity(DRAWS));
+    for _ in 0..DRAWS {
+        drawn.clear();
+        while drawn.len() < n {
+            let first = draw.below(n);
+            drawn.extend((first..first + length).map(|i| values[i % n]));
+        }
+        drawn.truncate(n);
+        medians.push(*drawn.select_nth_unstable_by(n / 2, f64::total_cmp).1);
+    }
+    let blocks = n.div_ceil(length) as f64;
+    Some(spread(&medians) * (blocks / (blocks - 1.0)).sqrt())
+}
+
+/// Standard error of the median of `values` that do not depend on each other, by drawing them; `None` for fewer than three.
+pub fn median_error_of_few(values: &[f64]) -> Option<f64> {
+    let n = values.len();
+    if n < LEAST_OF_FEW {
+        return None;
+    }
+    let mut draw = Draws(START);
+    let median = |_| {
+        let mut drawn: Vec<f64> = (0..n).map(|_| values[draw.below(n)]).collect();
+        *drawn.select_nth_unstable_by(n / 2, f64::total_cmp).1
     };
-    Some((0..p).map(error).collect())
+    let medians: Vec<f64> = (0..DRAWS).map(median).collect();
+    Some(spread(&medians) * (n as f64 / (n as f64 - 1.0)).sqrt())
+}
+
+fn spread(values: &[f64]) -> f64 {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt()
+}
+
+/// Rows of a block among `n` rows that say as much as so many independent ones.
+fn block_length(n: usize, effective_samples: f64) -> usize {
+    let apart = (n as f64 / effective_samples.max(1.0)).max(1.0);
+    ((TIMES * apart).ceil() as usize).min(n / LEAST_BLOCKS).max(1)
 }
 
 /// Normal equations summed up to each row: the upper triangle of `XᵀWX` and `XᵀWy`, columns scaled to unit norm.
@@ -160,7 +268,6 @@ impl Draws {
 
 #[cfg(test)]
 mod tests {
-    use super::super::linear::least_squares;
     use super::*;
     use rand::{RngExt as _, SeedableRng as _, rngs::StdRng};
     use rand_distr::StandardNormal;
@@ -192,6 +299,55 @@ mod tests {
             // A block bootstrap is known to be a little short: 0.90 to 0.975 with a standard error of 0.013.
             assert!(held.iter().all(|h| (262..=296).contains(h)), "n {n} rho {rho}: {held:?}");
         }
+    }
+
+    #[test]
+    fn what_goes_together_is_drawn_together() {
+        let mut rng = StdRng::seed_from_u64(43);
+        // Level and slope of a line that is seen far from its zero.
+        let place: Vec<f64> = (0..800).map(|i| 2.0 + 0.001 * f64::from(i)).collect();
+        let columns = [vec![1.0; 800], place.clone()];
+        let rhs: Vec<f64> = place.iter().map(|x| 1.0 + 3.0 * x + 0.1 * rng.sample::<f64, _>(StandardNormal)).collect();
+        let fit = least_squares(&columns, &rhs, None).expect("solves");
+        let drawn = block_bootstrap(&columns, &rhs, None, &fit).expect("enough rows");
+        let together = |c: &DMatrix<f64>| c[(0, 1)] / (c[(0, 0)] * c[(1, 1)]).sqrt();
+        println!("{} by covariance, {} drawn", together(&fit.covariance), together(drawn.covariance()));
+        assert!(
+            together(drawn.covariance()) < -0.98
+                && (together(drawn.covariance()) - together(&fit.covariance)).abs() < 0.01
+        );
+        let wider = drawn.clone().widened(&[0.3, 0.0]);
+        assert!((wider[0] - drawn[0].hypot(0.3)).abs() < 1e-12 && (wider[1] - drawn[1]).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_error_of_a_median_is_that_of_its_scatter() {
+        let mut rng = StdRng::seed_from_u64(44);
+        for rho in [0.0, 0.8_f64] {
+            let (trials, mut held, mut medians, mut errors) = (300, 0, Vec::new(), 0.0);
+            for _ in 0..trials {
+                let mut state: f64 = rng.sample(StandardNormal);
+                let mut values: Vec<f64> = (0..600)
+                    .map(|_| {
+                        state = rho * state + (1.0 - rho * rho).sqrt() * rng.sample::<f64, _>(StandardNormal);
+                        state
+                    })
+                    .collect();
+                let error = median_error(&values).expect("enough");
+                let median = *values.select_nth_unstable_by(300, f64::total_cmp).1;
+                medians.push(median);
+                errors += error / f64::from(trials);
+                held += usize::from(median.abs() < 1.96 * error);
+            }
+            println!("rho {rho}: {held} of {trials} hold; {errors} stated, {} true", spread(&medians));
+            assert!((0.8..1.25).contains(&(errors / spread(&medians))) && (264..=298).contains(&held), "rho {rho}");
+        }
+        assert!(median_error(&[0.0; 10]).is_none() && median_error_of_few(&[1.0, 2.0]).is_none());
+        // The middle one of seven that scatter by one: 0.46 of it.
+        let mean = (0..400).map(|_| median_error_of_few(&[0; 7].map(|_| rng.sample(StandardNormal))).expect("seven"));
+        let mean = mean.sum::<f64>() / 400.0;
+        println!("of seven: {mean}");
+        assert!((0.38..0.62).contains(&mean), "{mean}");
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! end. Which of them holds, and how strongly, is rarely certain from one recording, so they are averaged by how well each explains
 //! it (Bayesian model averaging, Hoeting et al. 1999), and what they disagree about is part of the error.
 
-use super::bootstrap::block_bootstrap_within;
+use super::bootstrap::{Resampled, block_bootstrap_within};
 use super::linear::{LinearFit, Values, least_squares_values};
 use crate::estimate::EstimateError;
 use crate::segment::threshold::percentile;
@@ -204,7 +204,7 @@ pub(super) fn widths_over_force(grips: &Grips) -> Result<Option<Pressed>, Estima
             models.extend(bent_models(grips, bend, bend.range(least_n, largest_n), independent)?);
         }
     }
-    Ok(Some(average(models, grips, &line, resampled.as_deref())))
+    Ok(Some(average(models, grips, &line, resampled.as_ref().map(Resampled::errors))))
 }
 
 /// Stretches of about the usual grip and of squeezes beside it: where few squeezes show all of the give, every draw must have them.

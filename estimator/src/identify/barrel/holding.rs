@@ -2,11 +2,12 @@
 
 use super::cable::Cable;
 use super::pull::{GEOMETRY, Pull, STIFFNESS};
-use super::report::{Seen, Value};
+use super::report::{Seen, Value, error_of};
 use super::{CABLE, OBJECT};
 use crate::constraint::{Carry, carried};
 use crate::estimate::{Constraint, ConstraintKind, Parameter, Sided, Yielding};
 use haptics::Vec2;
+use nalgebra::DMatrix;
 
 /// Held above or below its middle, the barrel turns in the grip while it is pulled. Where that takes its middle is known to this share …
 const TURN_SHARE: f64 = 0.25;
@@ -14,6 +15,8 @@ const TURN_SHARE: f64 = 0.25;
 const SWINGS_M: f64 = 4e-5;
 /// … and to this way while the pull grows.
 const SWINGS_AS_PULLED_M: f64 = 1.4e-5;
+/// What shows only where the pull turns.
+const GEOMETRIC: [&str; 3] = ["anchor_x_m", "anchor_y_m", "length_m"];
 /// Stiffness of a hand whose give was not seen, N/m.
 const HAND_N_M: f64 = 1000.0;
 
@@ -27,7 +30,6 @@ impl Seen<'_> {
     }
 
     pub(super) fn cable(&self) -> Vec<Parameter> {
-        const GEOMETRIC: [&str; 3] = ["anchor_x_m", "anchor_y_m", "length_m"];
         if let Some(way_m) = self.taken.slipped_m {
             let why = format!(
                 "the barrel slid {:.2} mm in the grip while it was pulled: it was not where the fingers were; squeeze harder",
@@ -43,65 +45,84 @@ impl Seen<'_> {
             let why = "nothing but its weight pulled at it; move it farther, also upwards";
             return vec![self.missing(CABLE, "stiffness_N_m", why)];
         };
-        let errors = &self.taken.pull.around.std_errors;
-        let [angle, taut] = [errors[GEOMETRY], errors[GEOMETRY + 1].hypot(self.signals.resolution_m)];
-        let mut found = Vec::new();
-        let mut push = |name: &str, value: Option<Value>, how: &str| {
-            found.extend(value.map(|value| self.given(CABLE, name, value, how)));
-        };
-        let how = "rise of the pull beyond the place where it sets in";
-        push("stiffness_N_m", self.stiffness_n_m(), how);
-        let how = "direction in which it holds back, from the horizontal, where it was taut";
-        push("direction_rad", self.of_cable(angle, |_, c| Some(c.angle_rad)), how);
         let u = cable.away();
+        let mut found = Vec::new();
+        let mut push = |name: &str, own: &dyn Fn(&DMatrix<f64>) -> f64, of: &dyn Fn(&Cable) -> f64, how: &str| {
+            let value = |c: &DMatrix<f64>| self.of_cable(own(c), |_, cable| Some(of(cable)));
+            found.extend(self.of_covariance(name, value, how));
+        };
+        let taut = |c: &DMatrix<f64>| error_of(c, GEOMETRY + 1).hypot(self.signals.resolution_m);
+        let how = "direction in which it holds back, from the horizontal, where it was taut";
+        push("direction_rad", &|c| error_of(c, GEOMETRY), &|cable| cable.angle_rad, how);
         let how = "where it gets taut, straight away from where it is tied";
         for (name, k) in [("taut_x_m", 0), ("taut_y_m", 1)] {
-            let error = (taut * u[k]).hypot(self.signals.resolution_m);
-            push(name, self.of_cable(error, |_, c| Some((c.about_m + c.away() * c.taut_m)[k])), how);
+            let own = |c: &DMatrix<f64>| (taut(c) * u[k]).hypot(self.signals.resolution_m);
+            push(name, &own, &|cable| (cable.about_m + cable.away() * cable.taut_m)[k], how);
         }
+        let how = "rise of the pull beyond the place where it sets in";
+        found.extend(self.of_covariance("stiffness_N_m", |c| self.stiffness_by(c), how));
         let strongest = self.strongest_n();
-        let tension_error = strongest * errors[STIFFNESS] / self.taken.pull.values[STIFFNESS];
-        push(
-            "largest_tension_N",
-            Some((strongest, tension_error)),
-            "stiffness times the farthest way beyond that place",
-        );
-        let (Some(anchor), Some(length)) = (cable.anchor_m(), cable.length_m()) else {
-            let why = "the pull hardly turned: where it is tied, and so its length, stays open; move the barrel along an arc while \
-                       the cable is taut";
-            found.extend(GEOMETRIC.map(|name| self.missing(CABLE, name, why)));
-            return found;
+        let tension = |c: &DMatrix<f64>| {
+            Some((strongest, strongest * error_of(c, STIFFNESS) / self.taken.pull.values[STIFFNESS]))
         };
-        let [_, _, bend] = [0, 1, 2].map(|k| errors[GEOMETRY + k]);
-        let far = 1.0 / cable.bend_1_m;
-        // Along the pull the distance is uncertain, across it the direction.
-        let covariance = self.taken.pull.around.covariance[(GEOMETRY, GEOMETRY + 2)];
-        let across = Vec2::new(-u.y, u.x);
-        let model_m = SWINGS_M.hypot(TURN_SHARE * self.taken.turned_m);
-        let anchor_error = |k: usize| {
-            let (by_angle, by_bend) = (-across[k] * far, u[k] * far * far);
-            let square = (by_angle * angle).powi(2) + (by_bend * bend).powi(2) + 2.0 * by_angle * by_bend * covariance;
-            square.max(0.0).sqrt().hypot(self.signals.resolution_m).hypot(model_m)
-        };
-        let with = self.taken.pull.around.covariance[(GEOMETRY + 1, GEOMETRY + 2)];
-        let square = (far * far * bend).powi(2) + taut * taut - 2.0 * far * far * with;
-        let length_error = square.max(0.0).sqrt().hypot(model_m);
-        let how = "where the directions of its pull meet, for the middle of the grip";
-        let [x, y] = [0, 1].map(|k| self.of_cable(anchor_error(k), |_, c| c.anchor_m().map(|a| a[k])));
-        let length_of = self.of_cable(length_error, |_, c| c.length_m());
-        debug_assert!(anchor.iter().all(|v| v.is_finite()) && length.is_finite());
-        for (name, value) in GEOMETRIC.into_iter().zip([x, y, length_of]) {
-            let how = if name == "length_m" { "from there to where the pull sets in" } else { how };
-            found.extend(value.map(|value| self.given(CABLE, name, value, how)));
-        }
+        let how = "stiffness times the farthest way beyond that place";
+        found.extend(self.of_covariance("largest_tension_N", tension, how));
+        found.extend(self.tied(cable));
         found
     }
 
+    /// A parameter of the cable out of what a covariance of the pull's columns says of it.
+    fn of_covariance(&self, name: &str, of: impl Fn(&DMatrix<f64>) -> Option<Value>, how: &str) -> Option<Parameter> {
+        of(&self.taken.pull.around.covariance)?;
+        Some(self.given_by(CABLE, name, |c| of(c).unwrap_or_default(), how))
+    }
+
+    /// Where it is tied, and how long it is.
+    fn tied(&self, cable: &Cable) -> Vec<Parameter> {
+        if cable.anchor_m().is_none() {
+            let why = "the pull hardly turned: where it is tied, and so its length, stays open; move the barrel along an arc while \
+                       the cable is taut";
+            return GEOMETRIC.map(|name| self.missing(CABLE, name, why)).to_vec();
+        }
+        let (u, far) = (cable.away(), 1.0 / cable.bend_1_m);
+        // Along the pull the distance is uncertain, across it the direction.
+        let across = Vec2::new(-u.y, u.x);
+        let model_m = SWINGS_M.hypot(TURN_SHARE * self.taken.turned_m);
+        let anchor_error = |k: usize, c: &DMatrix<f64>| {
+            let (by_angle, by_bend) = (-across[k] * far, u[k] * far * far);
+            let square = (by_angle * error_of(c, GEOMETRY)).powi(2)
+                + (by_bend * error_of(c, GEOMETRY + 2)).powi(2)
+                + 2.0 * by_angle * by_bend * c[(GEOMETRY, GEOMETRY + 2)];
+            square.max(0.0).sqrt().hypot(self.signals.resolution_m).hypot(model_m)
+        };
+        let length_error = |c: &DMatrix<f64>| {
+            let taut = error_of(c, GEOMETRY + 1).hypot(self.signals.resolution_m);
+            let square = (far * far * error_of(c, GEOMETRY + 2)).powi(2) + taut * taut
+                - 2.0 * far * far * c[(GEOMETRY + 1, GEOMETRY + 2)];
+            square.max(0.0).sqrt().hypot(model_m)
+        };
+        let anchor = |k: usize| {
+            move |c: &DMatrix<f64>| self.of_cable(anchor_error(k, c), |_, cable| cable.anchor_m().map(|a| a[k]))
+        };
+        let length = |c: &DMatrix<f64>| self.of_cable(length_error(c), |_, cable| cable.length_m());
+        let how = "where the directions of its pull meet, for the middle of the grip";
+        let found = [
+            self.of_covariance(GEOMETRIC[0], anchor(0), how),
+            self.of_covariance(GEOMETRIC[1], anchor(1), how),
+            self.of_covariance(GEOMETRIC[2], length, "from there to where the pull sets in"),
+        ];
+        found.into_iter().flatten().collect()
+    }
+
     fn stiffness_n_m(&self) -> Option<Value> {
+        self.stiffness_by(&self.taken.pull.around.covariance)
+    }
+
+    fn stiffness_by(&self, covariance: &DMatrix<f64>) -> Option<Value> {
         let stiffness = self.taken.pull.values.get(STIFFNESS)?;
         let stretch_m = self.strongest_n() / stiffness;
         let model = stiffness * SWINGS_AS_PULLED_M.hypot(TURN_SHARE * self.taken.turned_m) / stretch_m;
-        let own = self.taken.pull.around.std_errors[STIFFNESS].hypot(model);
+        let own = error_of(covariance, STIFFNESS).hypot(model);
         self.of_cable(own, |p, _| Some(p.values[STIFFNESS]))
     }
 

@@ -2,6 +2,7 @@
 
 use super::cable::Cable;
 use crate::estimate::EstimateError;
+use crate::identify::bootstrap::{Resampled, block_bootstrap};
 use crate::identify::linear::{LinearFit, least_squares};
 use crate::wanted;
 use haptics::Vec2;
@@ -78,6 +79,8 @@ pub struct Pull {
     pub values: Vec<f64>,
     /// Linearised fit around the answer, with the errors of all of these.
     pub around: LinearFit,
+    /// The same errors by a block bootstrap of the rows; `None` where they are too few.
+    pub resampled: Option<Resampled>,
     /// Middle of the time, s.
     pub middle_s: f64,
     /// The cable, if one pulled.
@@ -86,8 +89,8 @@ pub struct Pull {
     pub taut: usize,
 }
 
-/// Columns: mass, growth, offset; stiffness, damping.
-const MASS: usize = 0;
+/// Columns: mass, growth, offset; stiffness, damping. Index of the mass.
+pub const MASS: usize = 0;
 /// Index of the growth of the mass.
 pub const GROWTH: usize = 1;
 /// Index of the cable's stiffness.
@@ -135,17 +138,20 @@ impl Pull {
     /// Values for a cable of given geometry, with errors that count the geometry's own.
     fn linear(rows: &Rows, cable: Option<Cable>) -> Result<Self, EstimateError> {
         let (columns, target) = columns(rows, cable.as_ref());
-        let fit = least_squares(&columns, &target, Some(&rows.weights()))?;
+        let weights = rows.weights();
+        let fit = least_squares(&columns, &target, Some(&weights))?;
         let middle_s = middle(&rows.time_s);
         let Some(cable) = cable else {
-            return Ok(Self { values: fit.values.clone(), around: fit, middle_s, cable: None, taut: 0 });
+            let resampled = block_bootstrap(&columns, &target, Some(&weights), &fit);
+            return Ok(Self { values: fit.values.clone(), around: fit, resampled, middle_s, cable: None, taut: 0 });
         };
         let mut all = columns;
         let angles = if cable.bend_1_m == 0.0 { 2 } else { 3 };
         all.extend((0..angles).map(|which| geometry_column(rows, &cable, &fit.values, which)));
-        let around = least_squares(&all, &target, Some(&rows.weights()))?;
+        let around = least_squares(&all, &target, Some(&weights))?;
+        let resampled = block_bootstrap(&all, &target, Some(&weights), &around);
         let taut = rows.place_m.iter().filter(|p| cable.stretch(**p).0 > 0.0).count();
-        Ok(Self { values: fit.values, around, middle_s, cable: Some(cable), taut })
+        Ok(Self { values: fit.values, around, resampled, middle_s, cable: Some(cable), taut })
     }
 }
 

@@ -1,7 +1,7 @@
 //! What the barrel's recording shows, in the words of a fit.
 
 use super::cable::Cable;
-use super::pull::{GROWTH, Pull, STIFFNESS};
+use super::pull::{GROWTH, MASS, Pull, STIFFNESS};
 use super::signals::Signals;
 use super::wall::Grip;
 use super::{OBJECT, Taken};
@@ -9,6 +9,7 @@ use crate::estimate::{Fit, Parameter};
 use crate::online::leak::{Series, Weighing, leak_or_drift};
 use haptics::Vec2;
 use haptics::recording::Recording;
+use nalgebra::DMatrix;
 
 /// Width of a barrel whose sides' give could not be measured: the thesis's blocks came out 7 % too narrow.
 const UNKNOWN_COMPRESSION: f64 = 0.07;
@@ -33,6 +34,11 @@ pub(super) struct Seen<'a> {
 
 pub(super) type Value = (f64, f64);
 
+/// Standard error of a column by a covariance.
+pub(super) fn error_of(covariance: &DMatrix<f64>, column: usize) -> f64 {
+    covariance[(column, column)].max(0.0).sqrt()
+}
+
 impl Seen<'_> {
     pub(super) fn report(&self) -> Fit {
         let mut parameters = self.weight();
@@ -55,6 +61,19 @@ impl Seen<'_> {
         }
     }
 
+    /// A value with its error by the fit's covariance, and beside it that by resampling: `of` gives both out of a covariance of the
+    /// pull's columns.
+    pub(super) fn given_by(
+        &self,
+        object: &str,
+        name: &str,
+        of: impl Fn(&DMatrix<f64>) -> Value,
+        how: &str,
+    ) -> Parameter {
+        let drawn = self.taken.pull.resampled.as_ref().map(|r| of(r.covariance()).1);
+        self.given(object, name, of(&self.taken.pull.around.covariance), how).with_bootstrap(drawn)
+    }
+
     pub(super) fn given(&self, object: &str, name: &str, (value, error): Value, how: &str) -> Parameter {
         Parameter::identified(object, name, value, error, self.taken.rows, how)
     }
@@ -65,20 +84,24 @@ impl Seen<'_> {
 
     /// Mass in the middle of the time that it hung, kg.
     fn mass_kg(&self) -> Value {
+        self.mass_by(&self.taken.pull.around.covariance)
+    }
+
+    fn mass_by(&self, covariance: &DMatrix<f64>) -> Value {
         let zero_kg = if self.gravity > 0.0 { self.taken.zero.error_n / self.gravity } else { f64::INFINITY };
         let change = |other: &Pull| other.values[0] - self.taken.pull.values[0];
         let pull_kg = if self.gravity > 0.0 { PULL_SHARE * self.strongest_n() / self.gravity } else { 0.0 };
-        let own = self.taken.pull.around.std_errors[0].hypot(zero_kg).hypot(pull_kg);
+        let own = error_of(covariance, MASS).hypot(zero_kg).hypot(pull_kg);
         (self.taken.pull.values[0], self.taken.others.iter().map(change).fold(own, f64::hypot))
     }
 
     fn weight(&self) -> Vec<Parameter> {
-        let (mass, error) = self.mass_kg();
+        let times = |by: f64| move |(mass, error): Value| (mass * by, error * by);
         let when = format!(" while it hung, at {:.2} s in the middle", self.taken.pull.middle_s);
         let how = format!("force of both fingers{when}, less accelerations, zero and the cable's pull");
         vec![
-            self.given(OBJECT, "weight_N", (mass * self.gravity, error * self.gravity), &how),
-            self.given(OBJECT, "mass_kg", (mass, error), "weight divided by gravity"),
+            self.given_by(OBJECT, "weight_N", |c| times(self.gravity)(self.mass_by(c)), &how),
+            self.given_by(OBJECT, "mass_kg", |c| self.mass_by(c), "weight divided by gravity"),
         ]
     }
 
@@ -125,7 +148,8 @@ impl Seen<'_> {
                 let left = give - 1.0 / pad_n_m;
                 if left > SEEN * error {
                     let how = "what pads of the stated stiffness leave of the give of the sides";
-                    self.given(OBJECT, WALL, stiffness(left), how)
+                    let drawn = sides.resampled.map(|(_, drawn)| drawn / (left * left));
+                    self.given(OBJECT, WALL, stiffness(left), how).with_bootstrap(drawn)
                 } else if left > -SEEN * error {
                     let least = 1.0 / (left + 2.0 * error);
                     let why = format!("the pads explain all of the give: the wall is stiffer than {least:.0} N/m");
@@ -149,23 +173,21 @@ impl Seen<'_> {
             return vec![self.missing(OBJECT, DENSITY, why)];
         };
         let volume = 0.25 * std::f64::consts::PI * width * width * height;
-        let over = |kg: f64| {
+        let over = |kg: f64, error: f64| {
             let density = kg / volume;
-            (density, density * (mass_error / kg).hypot(2.0 * width_error / width))
+            (density, density * (error / kg).hypot(2.0 * width_error / width))
         };
         let how = "mass over the volume of a cylinder of the measured width and the stated height";
-        let mut found = vec![self.given(OBJECT, DENSITY, over(mass), how)];
+        let density = |c: &DMatrix<f64>| over(mass, self.mass_by(c).1);
+        let mut found = vec![self.given_by(OBJECT, DENSITY, density, how)];
         if let Some(empty) = self.empty_kg {
             let content = mass - empty;
-            found.push(self.given(
-                OBJECT,
-                "content_mass_kg",
-                (content, mass_error),
-                "mass less the stated empty_mass_kg",
-            ));
+            let how = "mass less the stated empty_mass_kg";
+            found.push(self.given_by(OBJECT, "content_mass_kg", |c| (content, self.mass_by(c).1), how));
             if content > SEEN * mass_error {
                 let how = "mass of the contents over the volume of the whole barrel";
-                found.push(self.given(OBJECT, "content_density_kg_m3", over(content), how));
+                let density = |c: &DMatrix<f64>| over(content, self.mass_by(c).1);
+                found.push(self.given_by(OBJECT, "content_density_kg_m3", density, how));
             }
         }
         found
@@ -184,12 +206,14 @@ impl Seen<'_> {
         let value = drift / self.gravity - self.taken.pull.values[GROWTH];
         // From slack to taut and back within the time that it hung.
         let pull_n_s = PULL_SHARE * self.strongest_n() / self.hung_s();
-        let own = self.taken.pull.around.std_errors[GROWTH].hypot(drift_error.hypot(pull_n_s) / self.gravity);
-        let error =
-            self.taken.others.iter().map(|o| o.values[GROWTH] - self.taken.pull.values[GROWTH]).fold(own, f64::hypot);
+        let systematic = drift_error.hypot(pull_n_s) / self.gravity;
+        let change = |other: &Pull| other.values[GROWTH] - self.taken.pull.values[GROWTH];
+        let error = |c: &DMatrix<f64>| {
+            self.taken.others.iter().map(change).fold(error_of(c, GROWTH).hypot(systematic), f64::hypot)
+        };
         let words = self.verdict().unwrap_or_default();
         let how = format!("how its weight falls while it hangs, less the drift of the sensors' zero; {words}");
-        self.given(OBJECT, LEAK, (value, error), &how)
+        self.given_by(OBJECT, LEAK, |c| (value, error(c)), &how)
     }
 
     /// What the change of its weight is, in words: leak, drift, both, or nothing.

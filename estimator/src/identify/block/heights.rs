@@ -7,10 +7,13 @@
 //! with `G` the height of the grasp over the block's foot (one a carry), the load the lift less the block's weight, `s` the give of
 //! both pads in shear, `c` the give of one contact between blocks or floor and m blocks below: the load presses every contact
 //! under it, and the blocks below press those under them. The thesis took differences of mean heights, whose gives differ.
+//!
+//! Several recordings of the same blocks share heights and gives; grasps are each one's own. What was restacked in one recording and
+//! left alone in another is then known in both.
 
 use super::{Blocks, MAIN, object};
 use crate::estimate::{EstimateError, Parameter};
-use crate::identify::bootstrap::block_bootstrap_within;
+use crate::identify::bootstrap::{Resampled, block_bootstrap_within};
 use crate::identify::linear::{LinearFit, least_squares};
 use std::ops::Range;
 
@@ -52,37 +55,76 @@ struct Rows {
     stretches: Vec<Range<usize>>,
 }
 
-/// Heights of all blocks, and the stiffness of one pad in shear.
-pub(super) fn heights(blocks: &Blocks<'_>, weights_n: &[f64]) -> Result<Vec<Parameter>, EstimateError> {
-    let count = weights_n.len();
-    let rests = rests(blocks, count);
-    let rows = rows(blocks, &rests, weights_n);
+/// One recording of the blocks.
+pub(super) struct Stacked<'a> {
+    blocks: &'a Blocks<'a>,
+    weights_n: &'a [f64],
+    rests: Vec<Rest>,
+}
+
+impl<'a> Stacked<'a> {
+    pub(super) fn new(blocks: &'a Blocks<'a>, weights_n: &'a [f64]) -> Self {
+        Self { blocks, weights_n, rests: rests(blocks, weights_n.len().min(blocks.count())) }
+    }
+}
+
+/// Columns of the regression: grasp heights of every recording's carries, block heights, shear give, contact give.
+struct Columns {
+    /// First grasp of each recording.
+    grasps: Vec<usize>,
+    /// First block.
+    blocks: usize,
+    shear: usize,
+    contact: usize,
+}
+
+impl Columns {
+    fn of(seen: &[Stacked<'_>], count: usize) -> Self {
+        let mut blocks = 0;
+        let grasps = seen
+            .iter()
+            .map(|one| {
+                let first = blocks;
+                blocks += one.rests.len() / 2;
+                first
+            })
+            .collect();
+        Self { grasps, blocks, shear: blocks + count, contact: blocks + count + 1 }
+    }
+}
+
+/// Heights of all blocks, and the stiffness of one pad in shear, out of one or several recordings.
+pub(super) fn heights(seen: &[Stacked<'_>]) -> Result<Vec<Parameter>, EstimateError> {
+    let count = seen.iter().map(|one| one.weights_n.len()).max().unwrap_or(0);
+    let at = Columns::of(seen, count);
+    let rows = rows(seen, &at);
+    let rests = || seen.iter().flat_map(|one| &one.rests);
     let mut parameters = Vec::new();
     let shown = |rest: &Rest| rest.samples.len() >= LEAST_SAMPLES;
-    if !rests.iter().any(shown) || rows.height.len() <= rows.columns.len() {
+    if !rests().any(shown) || rows.height.len() <= rows.columns.len() {
         let why = "no block was held still on the ground";
         parameters.extend((1..=count).map(|n| Parameter::unidentified(&object(n), "height_m", 0, why)));
         parameters.push(Parameter::unidentified("pad", "shear_stiffness_N_m", 0, why));
         return Ok(parameters);
     }
-    let (fit, resampled) = with_prior(&rows, 2 * count + 1)?;
+    let (fit, resampled) = with_prior(&rows, at.contact)?;
     let resampled = |column: usize| resampled.as_ref().map(|r| r[column]);
-    let give = fit.values[2 * count + 1];
+    let give = fit.values[at.contact];
     // What it would change if the floor gave differently from the blocks.
     let shift: Vec<f64> = rows.floor.iter().map(|f| f * CONTACTS_DIFFER * give).collect();
     let floor = least_squares(&rows.columns, &shift, None)?;
     for number in 1..=count {
-        let column = count + number - 1;
-        let seen = rests.iter().filter(|r| r.below.contains(&(number - 1))).map(|r| r.samples.len()).sum::<usize>();
-        let samples = rests.iter().map(|r| r.samples.len()).sum::<usize>();
-        if seen < LEAST_SAMPLES || !fit.identified[column] {
+        let column = at.blocks + number - 1;
+        let below = rests().filter(|r| r.below.contains(&(number - 1))).map(|r| r.samples.len()).sum::<usize>();
+        let samples = rests().map(|r| r.samples.len()).sum::<usize>();
+        if below < LEAST_SAMPLES || !fit.identified[column] {
             let why =
                 "it was never clearly below a block that was carried to or from a known height; unstack and restack it";
-            parameters.push(Parameter::unidentified(&object(number), "height_m", seen, why));
+            parameters.push(Parameter::unidentified(&object(number), "height_m", below, why));
             continue;
         }
-        let tilt = tilt(blocks, &rests, number - 1);
-        let systematic = floor.values[column].hypot(tilt).hypot(blocks.resolution_m);
+        let resolution_m = seen.iter().map(|one| one.blocks.resolution_m).fold(0.0, f64::max);
+        let systematic = floor.values[column].hypot(tilt(seen, number - 1)).hypot(resolution_m);
         let error = fit.std_errors[column].hypot(systematic);
         let drawn = resampled(column).map(|r| r.hypot(systematic));
         let how = format!(
@@ -93,7 +135,7 @@ pub(super) fn heights(blocks: &Blocks<'_>, weights_n: &[f64]) -> Result<Vec<Para
         let found = Parameter::identified(&object(number), "height_m", fit.values[column], error, samples, &how);
         parameters.push(found.with_bootstrap(drawn));
     }
-    parameters.push(shear_stiffness(&fit, &floor, 2 * count, rows.height.len(), resampled(2 * count)));
+    parameters.push(shear_stiffness(&fit, &floor, at.shear, rows.height.len(), resampled(at.shear)));
     Ok(parameters)
 }
 
@@ -157,34 +199,34 @@ pub(crate) fn rests(blocks: &Blocks<'_>, count: usize) -> Vec<Rest> {
         .collect()
 }
 
-/// Columns: grasp heights, block heights, shear give, contact give.
-fn rows(blocks: &Blocks<'_>, rests: &[Rest], weights_n: &[f64]) -> Rows {
-    let count = weights_n.len();
-    let mut rows =
-        Rows { columns: vec![Vec::new(); 2 * count + 2], height: Vec::new(), floor: Vec::new(), stretches: Vec::new() };
-    for rest in rests.iter().filter(|r| r.samples.len() >= LEAST_SAMPLES) {
-        let standing: f64 = rest.below.iter().map(|j| weights_n[*j]).sum();
-        let pressed: f64 = rest.below.iter().enumerate().map(|(level, j)| weights_n[*j] * (level + 1) as f64).sum();
-        let first = rows.height.len();
-        for i in blocks.rows(&rest.samples) {
-            let load = blocks.lift[i] - weights_n[rest.carry];
-            for k in 0..count {
-                rows.columns[k].push(f64::from(u8::from(k == rest.carry)));
-                rows.columns[count + k].push(f64::from(u8::from(rest.below.contains(&k))));
+fn rows(seen: &[Stacked<'_>], at: &Columns) -> Rows {
+    let columns = vec![Vec::new(); at.contact + 1];
+    let mut rows = Rows { columns, height: Vec::new(), floor: Vec::new(), stretches: Vec::new() };
+    for (Stacked { blocks, weights_n, rests }, grasp) in seen.iter().zip(&at.grasps) {
+        for rest in rests.iter().filter(|r| r.samples.len() >= LEAST_SAMPLES) {
+            let standing: f64 = rest.below.iter().map(|j| weights_n[*j]).sum();
+            let pressed: f64 = rest.below.iter().enumerate().map(|(level, j)| weights_n[*j] * (level + 1) as f64).sum();
+            let first = rows.height.len();
+            for i in blocks.rows(&rest.samples) {
+                let load = blocks.lift[i] - weights_n[rest.carry];
+                rows.columns.iter_mut().for_each(|column| column.push(0.0));
+                let mut set = |column: usize, value: f64| rows.columns[column][rows.height.len()] = value;
+                set(grasp + rest.carry, 1.0);
+                rest.below.iter().for_each(|k| set(at.blocks + k, 1.0));
+                set(at.shear, load);
+                set(at.contact, (rest.below.len() + 1) as f64 * load - pressed);
+                rows.floor.push(load - standing);
+                rows.height.push(blocks.height[i]);
             }
-            rows.columns[2 * count].push(load);
-            rows.columns[2 * count + 1].push((rest.below.len() + 1) as f64 * load - pressed);
-            rows.floor.push(load - standing);
-            rows.height.push(blocks.height[i]);
+            rows.stretches.push(first..rows.height.len());
         }
-        rows.stretches.push(first..rows.height.len());
     }
     rows
 }
 
 /// The regression with what is known of a contact beforehand: one more row that asks the column for zero, as strongly as
 /// [`GIVE_BEFORE`] weighs against the noise of the rows. Its errors by resampling within each rest come with it.
-fn with_prior(rows: &Rows, contact: usize) -> Result<(LinearFit, Option<Vec<f64>>), EstimateError> {
+fn with_prior(rows: &Rows, contact: usize) -> Result<(LinearFit, Option<Resampled>), EstimateError> {
     let alone = least_squares(&rows.columns, &rows.height, None)?;
     let mut columns = rows.columns.clone();
     for (j, column) in columns.iter_mut().enumerate() {
@@ -200,13 +242,17 @@ fn with_prior(rows: &Rows, contact: usize) -> Result<(LinearFit, Option<Vec<f64>
 }
 
 /// Error by blocks that turn between the pads: when one finger slips and the other does not, the grip's middle moves by half of
-/// it, one way or the other; the largest of the carries that show this height, m.
-fn tilt(blocks: &Blocks<'_>, rests: &[Rest], block: usize) -> f64 {
+/// it, one way or the other; the largest of the carries that show this height in a recording, in the mean of the recordings, m.
+fn tilt(seen: &[Stacked<'_>], block: usize) -> f64 {
     let shows = |pair: &[Rest]| pair.iter().any(|r| r.below.contains(&block));
     let even = 3.0_f64.sqrt();
-    rests
-        .chunks(2)
-        .filter(|pair| shows(pair) && pair.iter().all(|r| !r.samples.is_empty()))
-        .map(|pair| blocks.finger_disagreement(&pair[0].samples, &pair[1].samples) / even)
-        .fold(0.0, f64::max)
+    let largest = |one: &Stacked<'_>| {
+        let pairs = one.rests.chunks(2).filter(|pair| shows(pair) && pair.iter().all(|r| !r.samples.is_empty()));
+        pairs
+            .map(|pair| one.blocks.finger_disagreement(&pair[0].samples, &pair[1].samples) / even)
+            .max_by(f64::total_cmp)
+    };
+    let all: Vec<f64> = seen.iter().filter_map(largest).collect();
+    // They turned this way in one and that way in another.
+    all.iter().fold(0.0, |sum: f64, tilt| sum.hypot(*tilt)) / all.len().max(1) as f64
 }

@@ -25,6 +25,7 @@ use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signa
 use give::{Give, pad_parameter};
 use haptics::Vec2;
 use haptics::recording::{Recording, Task};
+use heights::Stacked;
 pub(crate) use needed::needed_forces;
 pub use together::{Together, fit_together};
 
@@ -96,7 +97,7 @@ fn describe(blocks: &Blocks<'_>) -> Result<Fit, EstimateError> {
     }
     parameters.extend(match blocks.unshown("height_m") {
         Some(why) => (1..=count).map(|n| Parameter::unidentified(&object(n), "height_m", 0, &why)).collect(),
-        None => heights::heights(blocks, &weights_n)?,
+        None => heights::heights(&[Stacked::new(blocks, &weights_n)])?,
     });
     parameters.push(blocks.pad_stiffness(count));
     let masses_kg: Vec<f64> = weights_n.iter().map(|w| w / recording.meta.gravity()).collect();
@@ -384,6 +385,7 @@ impl<'a> Blocks<'a> {
                     slip.at_s
                 );
                 Parameter::identified(&name, "friction", slip.coefficient, slip.error, slip.samples, &how)
+                    .with_bootstrap(slip.resampled)
             }
             None => Parameter::unidentified(
                 &name,

@@ -7,6 +7,7 @@
 //! below one that was held without a slip is friction.
 
 use super::Blocks;
+use crate::identify::bootstrap::block_bootstrap;
 use crate::identify::linear::least_squares;
 
 /// Length of the windows that are looked at, and their distance, s.
@@ -29,6 +30,8 @@ const ONSET_S: f64 = 0.1;
 pub(super) struct Slip {
     pub(super) coefficient: f64,
     pub(super) error: f64,
+    /// The error by resampling; `None` where the onset is too short.
+    pub(super) resampled: Option<f64>,
     pub(super) samples: usize,
     /// When the first one began, s.
     pub(super) at_s: f64,
@@ -80,7 +83,14 @@ pub(super) fn slip(blocks: &Blocks<'_>, first: usize, end: usize, held: Held) ->
     // A bias that is known to b shifts the ratio by b over the pinch.
     let bias = blocks.bias_error() * fit.values[0].hypot(1.0) / usual_n;
     let samples = shear.len();
-    Some(Slip { coefficient: fit.values[0], error: fit.std_errors[0].hypot(bias), samples, at_s })
+    let drawn = block_bootstrap(std::slice::from_ref(&normal), &shear, None, &fit);
+    Some(Slip {
+        coefficient: fit.values[0],
+        error: fit.std_errors[0].hypot(bias),
+        resampled: drawn.map(|drawn| drawn[0].hypot(bias)),
+        samples,
+        at_s,
+    })
 }
 
 /// Size of the shear and normal force of a finger, N.

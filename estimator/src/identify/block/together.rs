@@ -1,10 +1,11 @@
-//! Several recordings of the same blocks: weights, widths and the pads' give are shared, so all recordings' rows go into one
-//! regression each; the zero of the force sensors is each recording's own.
+//! Several recordings of the same blocks: weights, widths, heights and the pads' give are shared, so all recordings' rows go into one
+//! regression each; the zero of the force sensors and where blocks were grasped is each recording's own.
 //!
-//! Averaging the single fits is not the same: a recording that began with the blocks in hand does not show its zero, and one with an
-//! even grip not its widths; beside another one of the same blocks both do.
+//! Averaging the single fits is not the same: a recording that began with the blocks in hand does not show its zero, one with an
+//! even grip not its widths, one in which a block was not stood on not its height; beside another one of the same blocks all do.
 
-use super::{Blocks, MAIN, describe, mean_and_spread, object, weight_and_mass};
+use super::heights::Stacked;
+use super::{Blocks, MAIN, describe, heights, mean_and_spread, object, weight_and_mass};
 use crate::estimate::{Correlated, EstimateError, Fit, Parameter};
 use crate::identify::bootstrap::block_bootstrap_within;
 use crate::identify::pads::{Grip, Grips, widths_over_force};
@@ -25,7 +26,7 @@ pub struct Together {
     pub fits: Vec<Fit>,
     /// In the order of the recordings.
     pub segmentations: Vec<Segmentation>,
-    /// Weights, masses, widths and the stiffness of the pads.
+    /// Weights, masses, widths, heights and the stiffness of the pads.
     pub shared: Vec<Parameter>,
     /// How the errors of weights and masses go together.
     pub correlated: Vec<Correlated>,
@@ -41,6 +42,7 @@ pub fn fit_together(
     let fits = seen.iter().map(describe).collect::<Result<Vec<_>, _>>()?;
     let mut shared = weights(&seen)?;
     shared.extend(widths(&seen)?);
+    shared.extend(heights_of(&seen, &fits)?);
     for parameter in shared.iter_mut().filter(|p| p.identified) {
         parameter.how = format!("{}, {} recordings in one regression", parameter.how, recordings.len());
     }
@@ -129,6 +131,18 @@ fn weights(seen: &[Blocks<'_>]) -> Result<Vec<Parameter>, EstimateError> {
         }
     }
     Ok(found)
+}
+
+/// Heights of all blocks and the pads' stiffness in shear; nothing where a task's file hides them.
+fn heights_of(seen: &[Blocks<'_>], fits: &[Fit]) -> Result<Vec<Parameter>, EstimateError> {
+    if seen.iter().any(|blocks| blocks.unshown("height_m").is_some()) {
+        return Ok(Vec::new());
+    }
+    let weight = |fit: &Fit, n: usize| fit.parameter(&object(n), "weight_N").and_then(|p| p.value).unwrap_or(0.0);
+    let weights_n: Vec<Vec<f64>> =
+        seen.iter().zip(fits).map(|(b, fit)| (1..=b.count()).map(|n| weight(fit, n)).collect()).collect();
+    let stacked: Vec<Stacked<'_>> = seen.iter().zip(&weights_n).map(|(b, w)| Stacked::new(b, w)).collect();
+    Ok(heights::heights(&stacked)?.into_iter().filter(|p| p.identified).collect())
 }
 
 /// Widths of all blocks at no grip, with one give of the pads for all holds.

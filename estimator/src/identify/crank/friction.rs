@@ -6,7 +6,7 @@ use super::held::Held;
 use super::laws::{COULOMB, FRICTION, INERTIA, LAWS, NAMES, WEIGHT, missing_motion};
 use super::motion::{Along, Rows};
 use crate::estimate::{Correlated, EstimateError, Parameter, Quality};
-use crate::identify::bootstrap::block_bootstrap;
+use crate::identify::bootstrap::{Resampled, block_bootstrap};
 use crate::identify::linear::LinearFit;
 use crate::identify::robust::robust;
 use haptics::Vec2;
@@ -124,7 +124,7 @@ impl Friction {
     }
 
     /// Errors of the columns' parameters by resampling the rows.
-    fn bootstrap(&self, rows: &Rows) -> Option<Vec<f64>> {
+    fn bootstrap(&self, rows: &Rows) -> Option<Resampled> {
         let (columns, rest) = system(rows, &self.used, &self.known);
         block_bootstrap(&columns, &rest, Some(&rows.weights), &self.fit)
     }

@@ -3,6 +3,7 @@
 use super::SIGNIFICANT;
 use super::held::Held;
 use crate::estimate::EstimateError;
+use crate::identify::bootstrap::block_bootstrap;
 use crate::identify::linear::{Values, least_squares, least_squares_values};
 use crate::signal::task::half_width;
 use haptics::Vec2;
@@ -17,9 +18,26 @@ pub(super) struct Geometry {
     pub(super) give_errors: Vec2,
     /// Standard errors of centre x, centre y, radius, m.
     pub(super) errors_m: [f64; 3],
-    /// Radial stiffness from one common give and its standard error, N/m.
-    pub(super) stiffness: Option<(f64, f64)>,
+    /// The errors of centre, radius and gives by resampling; `None` where the turning is too short.
+    pub(super) resampled: Option<Drawn>,
+    /// Radial stiffness from one common give.
+    pub(super) stiffness: Option<Stiffness>,
     pub(super) rms_m: f64,
+}
+
+/// Standard errors by resampling, as in [`Geometry`].
+#[derive(Clone, Copy)]
+pub(super) struct Drawn {
+    pub(super) errors_m: [f64; 3],
+    pub(super) give_errors: Vec2,
+}
+
+/// Radial stiffness, N/m, with its standard error by covariance and by resampling.
+#[derive(Clone, Copy)]
+pub(super) struct Stiffness {
+    pub(super) n_m: f64,
+    pub(super) error: f64,
+    pub(super) resampled: Option<f64>,
 }
 
 /// Circle through the positions: Kåsa's linear fit as a start, then Gauss–Newton on the radius residual with the pads' give.
@@ -51,6 +69,8 @@ pub(super) fn geometry(held: &Held) -> Result<Geometry, EstimateError> {
     };
     // Only the last step's errors are asked for.
     let fit = fit.with_errors(&columns, None);
+    let radius: Vec<f64> = points.iter().map(|p| (p - center).norm()).collect();
+    let drawn = block_bootstrap(&columns, &radius, None, &fit);
     let value = |k: usize| places[k].map_or(0.0, |j| fit.values[j]);
     let error = |k: usize| places[k].map_or(0.0, |j| fit.std_errors[j]);
     Ok(Geometry {
@@ -59,6 +79,10 @@ pub(super) fn geometry(held: &Held) -> Result<Geometry, EstimateError> {
         give_m_per_n: Vec2::new(value(0), value(1)),
         give_errors: Vec2::new(error(0), error(1)),
         errors_m: [fit.std_errors[1], fit.std_errors[2], fit.std_errors[0]],
+        resampled: drawn.map(|drawn| {
+            let give = |k: usize| places[k].map_or(0.0, |j| drawn[j]);
+            Drawn { errors_m: [drawn[1], drawn[2], drawn[0]], give_errors: Vec2::new(give(0), give(1)) }
+        }),
         stiffness: common_stiffness(&points, &forces, center)?,
         rms_m: fit.rms,
     })
@@ -97,7 +121,7 @@ fn radius_fit(points: &[Vec2], forces: &[Vec2], center: Vec2, give: [bool; 2]) -
 }
 
 /// Radial stiffness if the give is the same in all directions: r = R + Fn/k.
-fn common_stiffness(points: &[Vec2], forces: &[Vec2], center: Vec2) -> Result<Option<(f64, f64)>, EstimateError> {
+fn common_stiffness(points: &[Vec2], forces: &[Vec2], center: Vec2) -> Result<Option<Stiffness>, EstimateError> {
     let outward: Vec<Vec2> = points.iter().map(|p| (p - center).normalize()).collect();
     let radius: Vec<f64> = points.iter().map(|p| (p - center).norm()).collect();
     let columns = vec![
@@ -108,5 +132,10 @@ fn common_stiffness(points: &[Vec2], forces: &[Vec2], center: Vec2) -> Result<Op
     ];
     let fit = least_squares(&columns, &radius, None)?;
     let (give, error) = (fit.values[3], fit.std_errors[3]);
-    Ok((fit.identified[3] && give > SIGNIFICANT * error).then(|| (1.0 / give, error / (give * give))))
+    let of = |error: f64| error / (give * give);
+    Ok((fit.identified[3] && give > SIGNIFICANT * error).then(|| Stiffness {
+        n_m: 1.0 / give,
+        error: of(error),
+        resampled: block_bootstrap(&columns, &radius, None, &fit).map(|drawn| of(drawn[3])),
+    }))
 }

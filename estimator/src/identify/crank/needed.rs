@@ -38,6 +38,7 @@ pub(crate) fn needed_forces(crank: &Crank, recording: &Recording) -> Result<Need
         give_m_per_n: Vec2::zeros(),
         give_errors: Vec2::zeros(),
         errors_m: [0.0; 3],
+        resampled: None,
         stiffness: None,
         rms_m: 0.0,
     };

@@ -2,7 +2,7 @@
 
 use super::SIGNIFICANT;
 use super::friction::Friction;
-use super::geometry::Geometry;
+use super::geometry::{Drawn, Geometry};
 use super::held::{Held, Smooth};
 use super::laws::WEIGHT;
 use crate::constraint::existence::{Rows, existence, sentence};
@@ -22,41 +22,26 @@ pub(super) fn geometry_parameters(held: &Held, geometry: &Geometry) -> Vec<Param
     let samples = held.turning.len();
     let how = "circle through the handle's positions, the give of the pads taken out";
     let with_resolution = |error: f64| error.hypot(held.resolution_m);
+    let place = |name: &str, value: f64, k: usize| {
+        let drawn = geometry.resampled.map(|drawn| with_resolution(drawn.errors_m[k]));
+        Parameter::identified("crank", name, value, with_resolution(geometry.errors_m[k]), samples, how)
+            .with_bootstrap(drawn)
+    };
     let mut parameters = vec![
-        Parameter::identified(
-            "crank",
-            "radius_m",
-            geometry.radius_m,
-            with_resolution(geometry.errors_m[2]),
-            samples,
-            how,
-        ),
-        Parameter::identified(
-            "crank",
-            "center_x_m",
-            geometry.center_m.x,
-            with_resolution(geometry.errors_m[0]),
-            samples,
-            how,
-        ),
-        Parameter::identified(
-            "crank",
-            "center_y_m",
-            geometry.center_m.y,
-            with_resolution(geometry.errors_m[1]),
-            samples,
-            how,
-        ),
+        place("radius_m", geometry.radius_m, 2),
+        place("center_x_m", geometry.center_m.x, 0),
+        place("center_y_m", geometry.center_m.y, 1),
     ];
     parameters.push(match geometry.stiffness {
-        Some((stiffness, error)) => Parameter::identified(
+        Some(found) => Parameter::identified(
             "crank",
             "constraint_stiffness_N_m",
-            stiffness,
-            error,
+            found.n_m,
+            found.error,
             samples,
             "growth of the radius with the outward force: arm, bearing and pads in series",
-        ),
+        )
+        .with_bootstrap(found.resampled),
         None => Parameter::unidentified(
             "crank",
             "constraint_stiffness_N_m",
@@ -104,6 +89,11 @@ pub(super) fn grip_parameters(
     let pads = width_over_force(&Grip { width: &widths, force: &forces, rate: &rates })?;
     let samples = held.turning.len();
     let mut parameters = Vec::new();
+    // Two pads side by side carry the handle.
+    let by_radius = |name: &str, give: f64, error: f64, drawn: fn(&Drawn) -> f64| {
+        let drawn = geometry.resampled.as_ref().map(|d| 2.0 * drawn(d) / (2.0 * give).powi(2));
+        stiffness(name, 2.0 * give, 2.0 * error, samples).with_bootstrap(drawn)
+    };
     if let Some(pads) = pads.filter(|p| p.give_m_per_n > SIGNIFICANT * p.give_error) {
         let how = "distance of the tips while turning, extrapolated to zero grip force";
         let error = pads.width_error_m.hypot(held.resolution_m);
@@ -117,10 +107,10 @@ pub(super) fn grip_parameters(
         let why = "the grip was too even to tell the handle's width from the pads' give";
         parameters.push(Parameter::unidentified("crank", "handle_width_m", samples, why));
         let (give, error) = (geometry.give_m_per_n.x, geometry.give_errors.x);
-        parameters.push(stiffness("stiffness_N_m", 2.0 * give, 2.0 * error, samples));
+        parameters.push(by_radius("stiffness_N_m", give, error, |drawn| drawn.give_errors.x));
     }
     let (give, error) = (geometry.give_m_per_n.y, geometry.give_errors.y);
-    parameters.push(stiffness("shear_stiffness_N_m", 2.0 * give, 2.0 * error, samples));
+    parameters.push(by_radius("shear_stiffness_N_m", give, error, |drawn| drawn.give_errors.y));
     Ok(parameters)
 }
 

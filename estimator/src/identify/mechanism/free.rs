@@ -2,10 +2,11 @@
 //! known parameter gives all of them their size.
 
 use super::regress::{System, shown};
-use super::report;
+use super::report::{OBJECT, PHASE, push_known};
 use super::signals::{Piece, Raw};
 use super::terms::{CLOCK_TOLERANCE, Known, Term};
 use crate::estimate::{EstimateError, Fit, Parameter};
+use crate::identify::bootstrap::block_bootstrap;
 use crate::identify::linear::{LinearFit, least_squares};
 use haptics::law::Coordinate;
 
@@ -23,6 +24,8 @@ const RATIO_NAMES: [(Term, &str, &str); 4] = [
 struct Ratios {
     terms: Vec<Term>,
     fit: LinearFit,
+    /// Errors by resampling, in the order of the terms.
+    drawn: Option<Vec<f64>>,
 }
 
 impl Ratios {
@@ -32,48 +35,64 @@ impl Ratios {
         let by_clock = value * CLOCK_TOLERANCE * term.powers_of_time();
         self.fit.identified[i].then(|| (value, self.fit.std_errors[i].hypot(by_clock)))
     }
+
+    /// The same ratios with the errors by resampling in place of those by covariance.
+    fn resampled(mut self) -> Option<Self> {
+        self.fit.std_errors = self.drawn.take()?;
+        Some(self)
+    }
 }
 
 /// Fits a free motion. The acceleration carries the most noise, so it is the left-hand side and not a regressor.
 pub fn fit(raws: &[Raw], pieces: &[Piece], known: &Known) -> Result<Fit, EstimateError> {
     let coordinate = raws[0].coordinate;
-    let mut result = Fit { task: "mechanism".to_owned(), ..Fit::default() };
     let samples = pieces.iter().map(|p| p.usable.iter().filter(|u| **u).count()).sum();
     let mut ratios = ratios(pieces, known, coordinate)?;
     if ratios.fit.identified.iter().all(|i| *i)
         && let Some(refined) = super::swing::refine(raws, pieces, &ratios.terms, &ratios.fit.values)
     {
-        ratios.fit = refined;
+        (ratios.fit, ratios.drawn) = refined;
     }
-    let scale = scale(&ratios, known);
+    let mut result = report(&ratios, known, coordinate, samples);
+    if let Some(resampled) = ratios.resampled() {
+        // The errors go the same way through everything that is made of the ratios.
+        let drawn = report(&resampled, known, coordinate, samples).parameters;
+        let taken = std::mem::take(&mut result.parameters).into_iter().zip(drawn);
+        result.parameters = taken.map(|(p, d)| if p.samples > 0 { p.with_bootstrap(d.std_error) } else { p }).collect();
+    }
+    Ok(result)
+}
+
+fn report(ratios: &Ratios, known: &Known, coordinate: Coordinate, samples: usize) -> Fit {
+    let mut result = Fit { task: "mechanism".to_owned(), ..Fit::default() };
+    let scale = scale(ratios, known);
     let Some((inertia, relative_error)) = scale else {
-        unscaled(&mut result, &ratios, coordinate, samples);
-        return Ok(result);
+        unscaled(&mut result, ratios, coordinate, samples);
+        return result;
     };
     let name = |t: Term| t.name(coordinate);
     if known.value(Term::Inertia).is_none() {
         let how = "free motion: the known gravity moment over the measured ratio of the two";
-        let value =
-            Parameter::identified(report::OBJECT, name(Term::Inertia), inertia, inertia * relative_error, samples, how);
+        let value = Parameter::identified(OBJECT, name(Term::Inertia), inertia, inertia * relative_error, samples, how);
         result.parameters.push(value);
     }
     for term in [Term::Viscous, Term::Coulomb] {
         let Some((ratio, error)) = ratios.get(term) else {
             let why = "the free motion does not show it apart from the other terms";
-            result.parameters.push(Parameter::unidentified(report::OBJECT, name(term), samples, why));
+            result.parameters.push(Parameter::unidentified(OBJECT, name(term), samples, why));
             continue;
         };
         let (value, error) = (ratio * inertia, inertia * error.hypot(ratio * relative_error));
         let how = "free motion: ratio to the inertia, which the known parameter gives its size";
-        result.parameters.push(Parameter::identified(report::OBJECT, name(term), value, error, samples, how));
+        result.parameters.push(Parameter::identified(OBJECT, name(term), value, error, samples, how));
     }
-    gravity(&mut result, &ratios, known, inertia, relative_error, samples);
-    report::push_known(&mut result, known, coordinate);
+    gravity(&mut result, ratios, known, inertia, relative_error, samples);
+    push_known(&mut result, known, coordinate);
     result.warnings.push(
         "there is no force column: the mechanism is taken to move freely, and every value rests on what the sidecar calls known"
             .to_owned(),
     );
-    Ok(result)
+    result
 }
 
 /// The regression −a = Σ ratio × regressor over all pieces.
@@ -94,7 +113,9 @@ fn ratios(pieces: &[Piece], known: &Known, coordinate: Coordinate) -> Result<Rat
             fit.identified[i] = false;
         }
     }
-    Ok(Ratios { terms: system.terms, fit })
+    let weights = system.weights(&fit);
+    let drawn = block_bootstrap(&system.columns, &system.target, weights.as_deref(), &fit);
+    Ok(Ratios { terms: system.terms, fit, drawn: drawn.map(|drawn| drawn.errors().to_vec()) })
 }
 
 /// True when the acceleration points back to a rest position: worth asking for gravity.
@@ -134,7 +155,7 @@ fn gravity(result: &mut Fit, ratios: &Ratios, known: &Known, inertia: f64, relat
         let error = inertia * a_error.hypot(ratio * relative_error);
         let how = "free motion: ratio to the inertia, which the known parameter gives its size";
         result.parameters.push(Parameter::identified(
-            report::OBJECT,
+            OBJECT,
             "gravity_moment_Nm",
             ratio * inertia,
             error,
@@ -144,14 +165,7 @@ fn gravity(result: &mut Fit, ratios: &Ratios, known: &Known, inertia: f64, relat
     }
     let phase = (-b).atan2(a);
     let how = "angle at which the mechanism hangs at rest, in the recording's coordinate";
-    let parameter = Parameter::identified(
-        report::OBJECT,
-        report::PHASE,
-        phase,
-        b_error / ratio.max(f64::MIN_POSITIVE),
-        samples,
-        how,
-    );
+    let parameter = Parameter::identified(OBJECT, PHASE, phase, b_error / ratio.max(f64::MIN_POSITIVE), samples, how);
     result.parameters.push(parameter);
     if phase.abs() > 3.0 * b_error / ratio && phase.abs() > 0.01 {
         result.warnings.push(format!(
@@ -164,14 +178,14 @@ fn gravity(result: &mut Fit, ratios: &Ratios, known: &Known, inertia: f64, relat
 fn unscaled(result: &mut Fit, ratios: &Ratios, coordinate: Coordinate, samples: usize) {
     let why = "a free motion shows only ratios; state one parameter under \"known\" in the sidecar, or record a force";
     for term in [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset] {
-        result.parameters.push(Parameter::unidentified(report::OBJECT, term.name(coordinate), samples, why));
+        result.parameters.push(Parameter::unidentified(OBJECT, term.name(coordinate), samples, why));
     }
     let mut said = Vec::new();
     for (term, angular, linear) in RATIO_NAMES {
         let name = if coordinate == Coordinate::Angular { angular } else { linear };
         let Some((value, error)) = ratios.get(term) else { continue };
         let how = "free motion: ratio to the inertia";
-        result.parameters.push(Parameter::identified(report::OBJECT, name, value, error, samples, how));
+        result.parameters.push(Parameter::identified(OBJECT, name, value, error, samples, how));
         said.push(format!("{name} {value:.4} ± {error:.2}"));
     }
     result.warnings.push(format!(

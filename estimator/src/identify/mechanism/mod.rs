@@ -203,7 +203,7 @@ fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> R
         effect: &effect,
         force_rms: rms(&system.target),
         known,
-        resampled: resampled.as_deref(),
+        resampled: resampled.as_ref(),
         gravity: gravity.as_ref(),
     };
     material.push(&mut result);

@@ -4,8 +4,10 @@ use super::gravity::Gravity;
 use super::regress::Shown;
 use super::terms::{Known, Term};
 use crate::estimate::{Correlated, Fit, Parameter};
+use crate::identify::bootstrap::Resampled;
 use crate::identify::linear::LinearFit;
 use haptics::law::Coordinate;
+use nalgebra::DMatrix;
 
 /// The object's name in the results.
 pub const OBJECT: &str = "mechanism";
@@ -34,7 +36,7 @@ pub struct Material<'a> {
     /// What the sidecar states.
     pub known: &'a Known,
     /// Errors by resampling, in the order of the columns.
-    pub resampled: Option<&'a [f64]>,
+    pub resampled: Option<&'a Resampled>,
     /// What was decided about gravity; `None` where it cannot act.
     pub gravity: Option<&'a Gravity>,
 }
@@ -87,8 +89,7 @@ impl Material<'_> {
             "least squares over the whole motion, zero-phase filtered signals, {:.0} independent samples",
             self.fit.effective_samples
         );
-        Parameter::identified(OBJECT, name, value, error, self.samples(), &how)
-            .with_bootstrap(self.resampled.map(|errors| errors[i]))
+        Parameter::identified(OBJECT, name, value, error, self.samples(), &how).with_bootstrap(self.drawn(i))
     }
 
     /// How the errors of the fitted terms go together.
@@ -118,7 +119,11 @@ impl Material<'_> {
         let how = format!("all constant resistance {what} together: this motion cannot split it");
         let parameter =
             Parameter::identified(OBJECT, name, self.fit.values[i], self.fit.std_errors[i], self.samples(), &how);
-        result.parameters.push(parameter);
+        result.parameters.push(parameter.with_bootstrap(self.drawn(i)));
+    }
+
+    fn drawn(&self, column: usize) -> Option<f64> {
+        self.resampled.map(|drawn| drawn[column])
     }
 
     fn push_gravity(&self, result: &mut Fit) {
@@ -132,20 +137,23 @@ impl Material<'_> {
             }
         };
         let Some(i) = self.index(Term::GravitySine) else { return };
-        let (a, a_error) = (self.fit.values[i], self.fit.std_errors[i]);
         let cosine = self.index(Term::GravityCosine).filter(|_| terms.contains(&Term::GravityCosine));
-        let (b, b_error) = cosine.map_or((0.0, 0.0), |j| (self.fit.values[j], self.fit.std_errors[j]));
+        let (a, b) = (self.fit.values[i], cosine.map_or(0.0, |j| self.fit.values[j]));
         let moment = a.hypot(b).max(f64::MIN_POSITIVE);
         // First-order propagation through √(a² + b²) and atan2, the correlation of the two included.
-        let covariance = cosine.map_or(0.0, |j| self.fit.covariance[(i, j)]);
-        let along = (a * a_error).powi(2) + (b * b_error).powi(2) + 2.0 * a * b * covariance;
-        let across = (b * a_error).powi(2) + (a * b_error).powi(2) - 2.0 * a * b * covariance;
+        let errors = |c: &DMatrix<f64>| {
+            let (aa, bb, ab) = (c[(i, i)], cosine.map_or(0.0, |j| c[(j, j)]), cosine.map_or(0.0, |j| c[(i, j)]));
+            let along = a * a * aa + b * b * bb + 2.0 * a * b * ab;
+            let across = b * b * aa + a * a * bb - 2.0 * a * b * ab;
+            (along.max(0.0).sqrt() / moment, across.max(0.0).sqrt() / (moment * moment))
+        };
+        let (stated, drawn) = (errors(&self.fit.covariance), self.resampled.map(|drawn| errors(drawn.covariance())));
         let how = "least squares: the part of the force that follows the sine of the angle";
-        let error = along.max(0.0).sqrt() / moment;
-        result.parameters.push(Parameter::identified(OBJECT, name, moment, error, self.samples(), how));
-        let (phase, error) = ((-b).atan2(a), across.max(0.0).sqrt() / (moment * moment));
+        let found = Parameter::identified(OBJECT, name, moment, stated.0, self.samples(), how);
+        result.parameters.push(found.with_bootstrap(drawn.map(|d| d.0)));
         let how = "angle at which the mechanism hangs at rest, in the recording's coordinate";
-        result.parameters.push(Parameter::identified(OBJECT, PHASE, phase, error, self.samples(), how));
+        let found = Parameter::identified(OBJECT, PHASE, (-b).atan2(a), stated.1, self.samples(), how);
+        result.parameters.push(found.with_bootstrap(drawn.map(|d| d.1)));
     }
 }
 

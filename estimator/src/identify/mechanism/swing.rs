@@ -3,8 +3,10 @@
 
 use super::signals::{Piece, Raw};
 use super::terms::Term;
+use crate::identify::bootstrap::block_bootstrap_within;
 use crate::identify::linear::{LinearFit, least_squares};
 use haptics::law::{Effect, Inertia, MAX_PARAMETERS, Motion, step_coordinate};
+use std::ops::Range;
 
 /// Most pieces that are integrated together: each brings two starting values.
 const MAX_PIECES: usize = 6;
@@ -23,9 +25,9 @@ struct Run {
     start: [f64; 2],
 }
 
-/// Refined ratios to the inertia, in the order of `terms`, as a fit with its covariance; `None` when the integration does not
+/// Refined ratios to the inertia, in the order of `terms`, as a fit with its covariance, and their errors by resampling; `None` when the integration does not
 /// follow the record better than the start, or not well.
-pub fn refine(raws: &[Raw], pieces: &[Piece], terms: &[Term], ratios: &[f64]) -> Option<LinearFit> {
+pub fn refine(raws: &[Raw], pieces: &[Piece], terms: &[Term], ratios: &[f64]) -> Option<(LinearFit, Option<Vec<f64>>)> {
     let runs = runs(raws, pieces)?;
     let p = terms.len();
     let mut values: Vec<f64> = ratios.to_vec();
@@ -47,7 +49,7 @@ pub fn refine(raws: &[Raw], pieces: &[Piece], terms: &[Term], ratios: &[f64]) ->
             let left = residual(&trial);
             (power(&left) < power(&now)).then_some((trial, left))
         });
-        fit = Some(step);
+        fit = Some((step, columns));
         let Some((trial, left)) = better else { break };
         let done = power(&left) > (1.0 - 1e-9) * power(&now);
         (values, now) = (trial, left);
@@ -57,14 +59,20 @@ pub fn refine(raws: &[Raw], pieces: &[Piece], terms: &[Term], ratios: &[f64]) ->
     }
     let size = power(&runs.iter().flat_map(|r| centred(&r.position)).collect::<Vec<f64>>());
     let follows = power(&now) < ACCEPTED_SHARE * ACCEPTED_SHARE * size && power(&now) <= start_power;
-    let mut fit = fit.filter(|_| follows)?;
+    let (mut fit, columns) = fit.filter(|_| follows)?;
+    let mut stretches = Vec::new();
+    for run in &runs {
+        let first = stretches.last().map_or(0, |s: &Range<usize>| s.end);
+        stretches.push(first..first + run.position.len());
+    }
+    let drawn = block_bootstrap_within(&columns, &now, None, &fit, &stretches);
     fit.values = values[..p].to_vec();
     fit.std_errors.truncate(p);
     fit.identified.truncate(p);
     fit.covariance = fit.covariance.view((0, 0), (p, p)).into_owned();
     fit.rms = (power(&now) / now.len().max(1) as f64).sqrt();
     fit.residuals = now;
-    Some(fit)
+    Some((fit, drawn.map(|drawn| drawn.errors()[..p].to_vec())))
 }
 
 fn centred(values: &[f64]) -> Vec<f64> {

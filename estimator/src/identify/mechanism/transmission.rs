@@ -5,7 +5,8 @@
 //! Half the gap is searched, everything else is linear.
 
 use crate::estimate::Parameter;
-use crate::identify::linear::{LinearFit, least_squares};
+use crate::identify::bootstrap::block_bootstrap;
+use crate::identify::linear::least_squares;
 use haptics::recording::Recording;
 
 /// The object's name.
@@ -26,11 +27,19 @@ const REVERSALS: usize = 2;
 /// A value counts as seen from so many standard errors on.
 const SEEN: f64 = 3.0;
 
-/// One recording's answer: value and error of each parameter.
+/// A value with its standard error by covariance and by resampling.
+#[derive(Clone, Copy)]
+struct Value {
+    best: f64,
+    error: f64,
+    resampled: Option<f64>,
+}
+
+/// One recording's answer.
 struct Found {
-    ratio: (f64, f64),
-    gap: (f64, f64),
-    give: Option<(f64, f64)>,
+    ratio: Value,
+    gap: Value,
+    give: Option<Value>,
     rms: f64,
     samples: usize,
 }
@@ -54,10 +63,10 @@ pub(super) fn parameters(recordings: &[Recording]) -> Vec<Parameter> {
     };
     let used = found.iter().map(|f| f.samples).sum();
     let mut all = Vec::new();
-    let mut push = |name: &str, values: Vec<(f64, f64)>, text: &str| {
-        if let Some((value, error)) = together(&values) {
+    let mut push = |name: &str, values: Vec<Value>, text: &str| {
+        if let Some(Value { best: value, error, resampled }) = together(&values) {
             all.push(if error * SEEN < value.abs() {
-                Parameter::identified(OBJECT, name, value, error, used, &how(text))
+                Parameter::identified(OBJECT, name, value, error, used, &how(text)).with_bootstrap(resampled)
             } else {
                 let why = format!("{value:.2e} ± {error:.2e} {unit} cannot be told from none");
                 Parameter::unidentified(OBJECT, name, used, &why)
@@ -75,22 +84,24 @@ fn load(unit: &str) -> &'static str {
 }
 
 /// Mean by the errors; where the recordings disagree, the error of their scatter.
-fn together(values: &[(f64, f64)]) -> Option<(f64, f64)> {
+fn together(values: &[Value]) -> Option<Value> {
     if values.is_empty() {
         return None;
     }
     let weight = |e: f64| e.max(1e-300).powi(-2);
-    let sum: f64 = values.iter().map(|v| weight(v.1)).sum();
-    let mean = values.iter().map(|v| v.0 * weight(v.1)).sum::<f64>() / sum;
+    let sum: f64 = values.iter().map(|v| weight(v.error)).sum();
+    let mean = values.iter().map(|v| v.best * weight(v.error)).sum::<f64>() / sum;
     let n = values.len() as f64;
-    let plain = values.iter().map(|v| v.0).sum::<f64>() / n;
-    let scatter = (values.iter().map(|v| (v.0 - plain).powi(2)).sum::<f64>() / (n * (n - 1.0)).max(1.0)).sqrt();
+    let plain = values.iter().map(|v| v.best).sum::<f64>() / n;
+    let scatter = (values.iter().map(|v| (v.best - plain).powi(2)).sum::<f64>() / (n * (n - 1.0)).max(1.0)).sqrt();
     if n > 1.0 && scatter > sum.powf(-0.5) {
         // Recordings that differ by more than their errors count alike.
         let few = crate::identify::long_run::inflation(n - 1.0).sqrt();
-        return Some((plain, scatter * few));
+        return Some(Value { best: plain, error: scatter * few, resampled: None });
     }
-    Some((mean, sum.powf(-0.5)))
+    // The same weighted mean with each one's own resampled error.
+    let drawn: Option<f64> = values.iter().map(|v| Some((v.resampled? * weight(v.error)).powi(2))).sum();
+    Some(Value { best: mean, error: sum.powf(-0.5), resampled: drawn.map(|drawn| drawn.sqrt() / sum) })
 }
 
 fn one(recording: &Recording) -> Option<Found> {
@@ -106,15 +117,16 @@ fn one(recording: &Recording) -> Option<Found> {
     let first = (SETTLING * input.len() as f64) as usize;
     let rows: Vec<usize> = (first..input.len()).step_by(stride).collect();
     let target: Vec<f64> = rows.iter().map(|&i| output[i]).collect();
-    let solve = |half: f64, slope: bool| -> Option<LinearFit> {
+    let columns = |half: f64, slope: bool| {
         let (place, side) = play(input, half);
         let mut columns = vec![vec![1.0; rows.len()], rows.iter().map(|&i| place[i]).collect()];
         columns.extend(load.map(|f| rows.iter().map(|&i| f[i]).collect()));
         if slope {
             columns.push(rows.iter().map(|&i| side[i]).collect());
         }
-        least_squares(&columns, &target, None).ok()
+        columns
     };
+    let solve = |half: f64, slope: bool| least_squares(&columns(half, slope), &target, None).ok();
     let cost = |half: f64| solve(half, false).map_or(f64::INFINITY, |f| f.rms);
     let step = LARGEST * way / TRIES as f64;
     let coarse = (0..=TRIES).map(|k| k as f64 * step).min_by(|a, b| cost(*a).total_cmp(&cost(*b)))?;
@@ -128,9 +140,15 @@ fn one(recording: &Recording) -> Option<Found> {
     let fit = solve(half, true)?;
     let last = fit.values.len() - 1;
     // The output moves by −ratio · side a unit of half gap.
-    let ratio = (fit.values[1], fit.std_errors[1]);
-    let gap = (2.0 * half, 2.0 * fit.std_errors[last] / ratio.0.abs().max(1e-12));
-    let give = load.map(|_| (fit.values[2], fit.std_errors[2]));
+    let drawn = block_bootstrap(&columns(half, true), &target, None, &fit);
+    let of = |best: f64, column: usize, by: f64| Value {
+        best,
+        error: fit.std_errors[column] * by,
+        resampled: drawn.as_ref().map(|drawn| drawn[column] * by),
+    };
+    let ratio = of(fit.values[1], 1, 1.0);
+    let gap = of(2.0 * half, last, 2.0 / ratio.best.abs().max(1e-12));
+    let give = load.map(|_| of(fit.values[2], 2, 1.0));
     Some(Found { ratio, gap, give, rms: fit.rms, samples: rows.len() })
 }
 

@@ -4,7 +4,7 @@
 //! [`MembraneLaw::loading_n`](haptics::law::object::MembraneLaw::loading_n).
 
 use crate::estimate::EstimateError;
-use crate::identify::bootstrap::block_bootstrap;
+use crate::identify::bootstrap::{Resampled, block_bootstrap};
 use crate::identify::linear::{LinearFit, least_squares};
 use haptics::law::object::MembraneLaw;
 use nalgebra::{DMatrix, DVector};
@@ -39,7 +39,7 @@ pub struct Loading {
     /// Linearised fit around the answer: offsets, stiffness, (hardening,) surface.
     pub around: LinearFit,
     /// The errors of these by a block bootstrap of the samples; `None` where they are too few.
-    pub resampled: Option<Vec<f64>>,
+    pub resampled: Option<Resampled>,
 }
 
 impl Loading {
@@ -63,8 +63,17 @@ impl Loading {
         self.around.values.len() - 1
     }
 
-    /// Standard error of [`Self::force_n`], N.
+    /// Standard error of [`Self::force_n`], N, by the fit's covariance.
     pub fn force_error_n(&self, depth_m: f64) -> f64 {
+        self.force_error_by(&self.around.covariance, depth_m)
+    }
+
+    /// The same by resampling.
+    pub fn force_resampled_n(&self, depth_m: f64) -> Option<f64> {
+        Some(self.force_error_by(self.resampled.as_ref()?.covariance(), depth_m))
+    }
+
+    fn force_error_by(&self, covariance: &DMatrix<f64>, depth_m: f64) -> f64 {
         let x = (depth_m - self.surface_m).max(0.0);
         let mut gradient = DVector::zeros(self.around.values.len());
         gradient[self.stiffness_at()] = x;
@@ -72,7 +81,7 @@ impl Loading {
             gradient[self.stiffness_at() + 1] = x.powi(3);
         }
         gradient[self.surface_at()] = -self.law().stiffness_n_m(x);
-        (gradient.transpose() * &self.around.covariance * gradient)[(0, 0)].max(0.0).sqrt()
+        (gradient.transpose() * covariance * gradient)[(0, 0)].max(0.0).sqrt()
     }
 }
 
@@ -89,7 +98,7 @@ pub fn fit(points: &[Point], holds: usize) -> Result<Loading, EstimateError> {
     errors[straight.surface_at()] = 0.5 * (whole.surface_m - straight.surface_m);
     if errors.iter().all(|e| e.is_finite()) {
         straight.around.widen(&errors);
-        straight.resampled.iter_mut().flatten().zip(&errors).for_each(|(drawn, error)| *drawn = drawn.hypot(*error));
+        straight.resampled = straight.resampled.map(|drawn| drawn.widened(&errors));
     }
     Ok(straight)
 }

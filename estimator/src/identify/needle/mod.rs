@@ -4,6 +4,7 @@
 //! pierced a hole. Two fingers measure their tips, not the needle between their pads: the pads' give is read from how the grip's
 //! width follows its force, and what is not known of it joins the errors.
 
+mod beyond;
 mod channels;
 pub(crate) mod loading;
 mod phases;
@@ -16,19 +17,13 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use loading::{Loading, Point};
 use signals::Along;
-use strokes::{Push, quiet_force};
+use strokes::Push;
 
 /// The object's name in the results.
 pub const OBJECT: &str = "needle";
 
 /// What geometry and log leave unknown of a place, m: seats, resolution.
 const PLACE_ERROR_M: f64 = 1e-5;
-/// A sheet is pierced between two samples; the force of so many samples before the fall is uncertain.
-const FALL_SAMPLES: usize = 3;
-/// The place of a puncture on the curve is as uncertain as this share of the force's noise.
-const PLACE_NOISE: f64 = 0.5;
-/// Drag, and a hole that is not the same both ways, as a share of the friction.
-const HOLE_SHARE: f64 = 0.05;
 /// Stiffness of a hand whose pads' give is not seen, N/m.
 const HAND_N_M: f64 = 1000.0;
 /// Samples are averaged to points where that leaves at least so many.
@@ -113,38 +108,6 @@ impl Sheet {
         found
     }
 
-    fn puncture(&self, along: &Along, pushes: &[Push]) -> Parameter {
-        let give = along.give_m_n.0;
-        let depth = |i: usize| along.depth_m[i] - give * along.force_n[i];
-        let seen: Vec<(f64, f64, f64)> = pushes
-            .iter()
-            .filter_map(|push| {
-                let (at, fallen) = (push.puncture?, push.fallen?);
-                // A filter that force and place went through delays both: where the force has half fallen the place is that of the fall.
-                let half_m = 0.5 * (along.depth_m[fallen] + along.depth_m[fallen - 1]) - give * along.force_n[at];
-                let value = self.loading.force_n(half_m.max(depth(at)));
-                let before = self.loading.force_n(depth(at.saturating_sub(FALL_SAMPLES).max(push.samples.start)));
-                let place = (value - before) / 12.0_f64.sqrt();
-                // The curve and the sample itself, which must agree.
-                let measured = along.force_n[at] - self.offset(push.hold);
-                let single = place.hypot(0.5 * (measured - value)).hypot(PLACE_NOISE * along.noise_n);
-                Some((value, self.loading.force_error_n(depth(at)), single))
-            })
-            .collect();
-        if seen.is_empty() {
-            let why = "the needle never went through: no force fell while it was pushed on";
-            return Parameter::unidentified(OBJECT, "puncture_force_N", self.samples, why);
-        }
-        let n = seen.len() as f64;
-        let mean = seen.iter().map(|s| s.0).sum::<f64>() / n;
-        // The curve is one for all punctures; the rest is each one's own.
-        let root = |of: &dyn Fn(&(f64, f64, f64)) -> f64| (seen.iter().map(|s| of(s).powi(2)).sum::<f64>() / n).sqrt();
-        let (curve, single, spread) = (root(&|s| s.1), root(&|s| s.2), root(&|s| s.0 - mean));
-        let error = curve.hypot(single.max(spread) / n.sqrt());
-        let how = format!("force on the loading curve where it fell, {} time(s)", seen.len());
-        Parameter::identified(OBJECT, "puncture_force_N", mean, error, seen.len(), &how)
-    }
-
     fn offset(&self, hold: usize) -> f64 {
         self.holds.iter().position(|h| *h == hold).map_or(0.0, |k| self.loading.offset_n[k])
     }
@@ -169,52 +132,6 @@ impl Sheet {
         let how = format!("{axis} of {point} where the force begins to rise");
         let resampled = self.resampled(self.loading.surface_at(), PLACE_ERROR_M, |l| l.surface_m);
         Parameter::identified(OBJECT, "surface_position_m", value, error, self.samples, &how).with_bootstrap(resampled)
-    }
-
-    /// Half the difference between going in and drawing out of a hole.
-    fn friction(&self, along: &Along, pushes: &[Push]) -> Option<Parameter> {
-        let beyond = self.loading.surface_m + 5e-4;
-        let (mut inwards, mut outwards) = (Vec::new(), Vec::new());
-        for push in pushes {
-            let Some(at) = push.puncture else { continue };
-            let hold = along.holds[push.hold].clone();
-            let offset = self.offset(push.hold);
-            // From one twentieth of a second of samples on, the sheet has sprung back.
-            let settled = (at + (push.end - at) / 3).min(push.end);
-            inwards.extend((settled..push.end).map(|i| along.force_n[i] - offset));
-            let out = (push.end..hold.end).take_while(|&i| along.depth_m[i] > beyond);
-            let deepest = along.depth_m[push.end - 1];
-            outwards.extend(out.filter(|&i| along.depth_m[i] < deepest - 1e-3).map(|i| along.force_n[i] - offset));
-        }
-        let median = |values: &mut Vec<f64>| {
-            values.sort_by(f64::total_cmp);
-            values.get(values.len() / 2).copied()
-        };
-        let samples = inwards.len() + outwards.len();
-        let (inwards, outwards) = (median(&mut inwards)?, median(&mut outwards)?);
-        let value = 0.5 * (inwards - outwards);
-        // In and out need not be alike: their mean beside zero is what is not understood.
-        let error = (0.25 * (inwards + outwards).abs())
-            .hypot(HOLE_SHARE * value)
-            .hypot(along.noise_n / (samples as f64).sqrt());
-        let how = "half the difference of the forces in the hole on the way in and on the way out";
-        (value > 0.0).then(|| Parameter::identified(OBJECT, "shaft_friction_N", value, error, samples, how))
-    }
-
-    fn weight(&self, along: &Along, recording: &Recording) -> Option<Parameter> {
-        if !along.two_fingered || along.direction.y.abs() < 0.9 || recording.meta.gravity() <= 0.0 {
-            return None;
-        }
-        let how = "force that holds the needle outside the sheet, less that of empty hands";
-        let Some((zero, zero_error)) = along.free_n else {
-            let why = "the needle was held all the time: a bias of the force sensors would pass for weight; start with free motion";
-            return Some(Parameter::unidentified(OBJECT, "weight_N", self.samples, why));
-        };
-        let outside = quiet_force(along);
-        let value = (outside - zero) / along.direction.y;
-        let level = (outside - self.loading.offset_n[0]).hypot(0.08 * along.noise_n);
-        let error = level.hypot(self.loading.around.std_errors[0]).hypot(zero_error);
-        Some(Parameter::identified(OBJECT, "weight_N", value, error, self.samples, how))
     }
 
     /// The sheet beside the hand that pressed it.

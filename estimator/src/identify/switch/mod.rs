@@ -12,8 +12,10 @@ mod signals;
 mod way;
 
 use crate::estimate::{EstimateError, Fit, Parameter};
+use crate::identify::bootstrap::{Resampled, median_error_of_few};
 use crate::identify::pads::EVEN;
 use haptics::recording::Recording;
+use nalgebra::DMatrix;
 use reading::Reading;
 use signals::Signals;
 use way::{Stop, Way};
@@ -73,6 +75,8 @@ struct Curves {
     stops: [Option<Stop>; 2],
     /// Width of the knob between the tips, m.
     width_m: Option<f64>,
+    /// The error of that median by resampling the throws, m; `None` for fewer than three.
+    width_resampled_m: Option<f64>,
     /// How well its place at rest is known, m.
     resting_m: f64,
 }
@@ -99,6 +103,7 @@ impl Curves {
             resting_m: RESTING_M.hypot(UNSEEN_TOUCH * signals.touch_n / rise).hypot(STEP_SHARE * signals.step_m),
             stops: [way::stop(&seen[0])?, way::stop(&seen[1])?],
             width_m: signals.width_m(reading.give_m_n),
+            width_resampled_m: median_error_of_few(&signals.widths_m(reading.give_m_n)),
         })
     }
 
@@ -146,13 +151,23 @@ impl Curves {
 
     /// Half of what both directions ask for in the middle between the places where their forces vanish: friction, N.
     fn friction_n(&self) -> Option<(f64, f64)> {
+        self.friction_by(|way| Some(&way.around.covariance))
+    }
+
+    /// The same with its error by resampling.
+    fn friction_resampled_n(&self) -> Option<(f64, f64)> {
+        self.friction_by(|way| way.resampled.as_ref().map(Resampled::covariance))
+    }
+
+    fn friction_by(&self, covariance: impl Fn(&Way) -> Option<&DMatrix<f64>>) -> Option<(f64, f64)> {
         let ([Some(there), Some(back)], Some(_)) = (&self.ways, self.width_m) else { return None };
         let gone = |w: &Way| w.values[3] - w.values[0] / w.values[2];
         let middle = 0.5 * (gone(there) - gone(back));
-        let forces = [there.falling_n(middle), back.falling_n(-middle)];
+        let error = |way: &Way, at_m: f64| Some(way.falling_error_n(at_m, covariance(way)?));
+        let errors = error(there, middle)?.hypot(error(back, -middle)?);
         let slope = 0.5 * (there.values[2] + back.values[2]).abs();
-        let error = 0.5 * forces[0].1.hypot(forces[1].1).hypot(slope * self.resting_m);
-        Some((0.5 * (forces[0].0 + forces[1].0), error))
+        let value = 0.5 * (there.falling_n(middle) + back.falling_n(-middle));
+        Some((value, 0.5 * errors.hypot(slope * self.resting_m)))
     }
 }
 

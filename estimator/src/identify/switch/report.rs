@@ -65,24 +65,29 @@ impl Captured {
         let drawn = |c: &Curves, side: usize| c.stops[side].as_ref()?.end_resampled_m;
         let travel_drawn = |c: &Curves| Some(drawn(c, 0)?.hypot(drawn(c, 1)?).hypot(1.5_f64.sqrt() * c.resting_m));
         let falling_n = self.curves.ways.iter().flatten().map(|w| w.unmodelled_n[1]).fold(0.0, f64::max);
-        let friction = self.with_errors(falling_n.hypot(self.zero_error_n), Curves::friction_n);
-        let width = self.with_errors(TOUCHED_M, |c| Some((c.width_m?, c.resting_m)));
+        let friction_own = falling_n.hypot(self.zero_error_n);
+        let friction = self.with_errors(friction_own, Curves::friction_n);
+        let friction = self.parameter(
+            "friction_N",
+            friction,
+            "half of what both directions ask for together where the knob falls over",
+            "friction shows only between a throw there and one back; this recording has one direction",
+        );
+        let width_of = |c: &Curves| Some((c.width_m?, c.resting_m));
+        let width = self.parameter(
+            "knob_width_m",
+            self.with_errors(TOUCHED_M, width_of),
+            "between the fingers when one leaves the knob at rest and the other meets it",
+            "no finger met the knob where the other one had left it; throw it there and back",
+        );
+        // A touch is seen late in every throw alike: throws do not show it.
+        let width_drawn = |c: &Curves| Some(c.width_resampled_m?.hypot(c.resting_m));
         vec![
             end(0, "right_end_position_m"),
             end(1, "left_end_position_m"),
             self.with_bootstrap(travel, TOUCHED_M, Curves::travel_m, travel_drawn),
-            self.parameter(
-                "friction_N",
-                friction,
-                "half of what both directions ask for together where the knob falls over",
-                "friction shows only between a throw there and one back; this recording has one direction",
-            ),
-            self.parameter(
-                "knob_width_m",
-                width,
-                "between the fingers when one leaves the knob at rest and the other meets it",
-                "no finger met the knob where the other one had left it; throw it there and back",
-            ),
+            self.with_bootstrap(friction, friction_own, Curves::friction_n, |c| Some(c.friction_resampled_n()?.1)),
+            self.with_bootstrap(width, TOUCHED_M, width_of, width_drawn),
         ]
     }
 

@@ -205,6 +205,13 @@ impl Signals {
 
     /// Distance of the tips between leaving the knob at rest and meeting it from the other side, m: about the knob's width.
     pub fn width_m(&self, give_m_n: f64) -> Option<f64> {
+        let mut found = self.widths_m(give_m_n);
+        found.sort_by(f64::total_cmp);
+        found.get(found.len() / 2).copied()
+    }
+
+    /// The same for every pair of throws, m.
+    pub fn widths_m(&self, give_m_n: f64) -> Vec<f64> {
         let [left, right] = &self.fingers;
         let place = |f: &Finger, i: usize| f.x_m[i] - give_m_n * f.force[i].x;
         let mut found = Vec::new();
@@ -218,8 +225,7 @@ impl Signals {
             let Some(last) = (lost..=met.max(lost)).rev().find(pressed) else { continue };
             found.push((place(new, met) - place(old, last)).abs());
         }
-        found.sort_by(f64::total_cmp);
-        found.get(found.len() / 2).copied()
+        found
     }
 }
 

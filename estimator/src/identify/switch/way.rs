@@ -2,7 +2,7 @@
 
 use super::signals::{Sample, Seen};
 use crate::estimate::EstimateError;
-use crate::identify::bootstrap::block_bootstrap;
+use crate::identify::bootstrap::{Resampled, block_bootstrap};
 use crate::identify::linear::{COLUMN_NOISE_UNCERTAINTY, LinearFit, least_squares};
 use nalgebra::{DMatrix, DVector};
 
@@ -31,7 +31,7 @@ pub struct Way {
     /// Linearised fit around the answer.
     pub around: LinearFit,
     /// The errors of force, slopes and place by a block bootstrap of the samples; `None` where they are too few.
-    pub resampled: Option<Vec<f64>>,
+    pub resampled: Option<Resampled>,
     /// What the knob's own motion may add to the force at the peak and while it falls over, N, where it could not be fitted.
     pub unmodelled_n: [f64; 2],
     /// Samples that took part.
@@ -55,15 +55,18 @@ impl Way {
         Self { unmodelled_n: [MOVING_N, FALLING_N], ..self }
     }
 
-    /// Force at a place on the falling side, N, and its error.
-    pub fn falling_n(&self, at_m: f64) -> (f64, f64) {
+    /// Force at a place on the falling side, N.
+    pub fn falling_n(&self, at_m: f64) -> f64 {
         let [peak_n, _, fall, place_m] = self.values;
-        let x = at_m - place_m;
-        let gradient = [1.0, 0.0, x, -fall];
-        let c = &self.around.covariance;
-        let variance: f64 =
-            (0..4).flat_map(|i| (0..4).map(move |j| (i, j))).map(|(i, j)| gradient[i] * gradient[j] * c[(i, j)]).sum();
-        (peak_n + fall * x, variance.max(0.0).sqrt())
+        peak_n + fall * (at_m - place_m)
+    }
+
+    /// Its standard error, N, with this covariance of the columns of `around`.
+    pub fn falling_error_n(&self, at_m: f64, covariance: &DMatrix<f64>) -> f64 {
+        let gradient = [1.0, 0.0, at_m - self.values[3], -self.values[2]];
+        let pairs = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
+        let variance: f64 = pairs.map(|(i, j)| gradient[i] * gradient[j] * covariance[(i, j)]).sum();
+        variance.max(0.0).sqrt()
     }
 }
 
@@ -120,8 +123,8 @@ fn way_with(rows: &[Sample], noise: Option<[f64; 2]>) -> Result<Option<Way>, Est
         let before = around.std_errors.clone();
         around = around.without_attenuation(&power, COLUMN_NOISE_UNCERTAINTY);
         // What taking it out costs, it costs in either way.
-        let costs = around.std_errors.iter().zip(before).map(|(after, before)| after / before);
-        resampled.iter_mut().flatten().zip(costs).for_each(|(drawn, cost)| *drawn *= cost);
+        let costs: Vec<f64> = around.std_errors.iter().zip(before).map(|(after, before)| after / before).collect();
+        resampled = resampled.map(|drawn| drawn.scaled(&costs));
         values = [around.values[0], around.values[1], around.values[2], place + around.values[3]];
     }
     let seen = around.identified.iter().all(|i| *i) && values[1] > 0.0 && values[2] < 0.0;
