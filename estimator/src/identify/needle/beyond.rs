@@ -1,18 +1,20 @@
 //! What a needle shows beyond the loading curve: the force at which it goes through, the drag of the hole, its own weight.
 
 use super::signals::Along;
-use super::strokes::{Push, quiet, quiet_force};
+use super::strokes::Push;
 use super::{OBJECT, Sheet};
 use crate::estimate::Parameter;
 use crate::identify::bootstrap::median_error;
 use haptics::recording::Recording;
 
 /// A sheet is pierced between two samples; the force of so many samples before the fall is uncertain.
-const FALL_SAMPLES: usize = 3;
+const FALL_SAMPLES: usize = 1;
 /// The place of a puncture on the curve is as uncertain as this share of the force's noise.
 const PLACE_NOISE: f64 = 0.5;
 /// Drag, and a hole that is not the same both ways, as a share of the friction.
 const HOLE_SHARE: f64 = 0.05;
+/// The level of the force on the way to the sheet is known to this share of its noise at best.
+const LEVEL_NOISE: f64 = 0.08;
 
 /// One going through, all in N: the force, the errors that the curve gives it by covariance and by resampling, and its own.
 struct Through {
@@ -99,12 +101,11 @@ impl Sheet {
             let why = "the needle was held all the time: a bias of the force sensors would pass for weight; start with free motion";
             return Some(Parameter::unidentified(OBJECT, "weight_N", self.samples, why));
         };
-        let outside = quiet_force(along);
-        let value = (outside - zero) / along.direction.y;
-        let level = (outside - self.loading.offset_n[0]).hypot(0.08 * along.noise_n).hypot(zero_error);
+        // On its way to the sheet: where it is picked up or put down, something else carries a part of it.
+        let value = (self.loading.offset_n[0] - zero) / along.direction.y;
+        let level = (LEVEL_NOISE * along.noise_n).hypot(zero_error);
         let error = level.hypot(self.loading.around.std_errors[0]);
-        let offset = self.loading.resampled.as_ref().map(|r| r[0]);
-        let drawn = offset.zip(median_error(&quiet(along))).map(|(offset, outside)| level.hypot(offset).hypot(outside));
+        let drawn = self.loading.resampled.as_ref().map(|drawn| level.hypot(drawn[0]));
         Some(Parameter::identified(OBJECT, "weight_N", value, error, self.samples, how).with_bootstrap(drawn))
     }
 }

@@ -86,17 +86,12 @@ pub fn pushes(along: &Along) -> Vec<Push> {
 
 /// Force while the needle is held and touches nothing: the median of the outer third of the motion.
 pub fn quiet_force(along: &Along) -> f64 {
-    let mut quiet = quiet(along);
-    quiet.sort_by(f64::total_cmp);
-    quiet.get(quiet.len() / 2).copied().unwrap_or(0.0)
-}
-
-/// The forces of that third, N, in order of time.
-pub fn quiet(along: &Along) -> Vec<f64> {
     let (low, high) = extremes(&along.depth_m, &along.holds);
     let outer = low + (high - low) / 3.0;
     let held = along.holds.iter().flat_map(Clone::clone);
-    held.filter(|&i| along.depth_m[i] < outer).map(|i| along.force_n[i]).collect()
+    let mut quiet: Vec<f64> = held.filter(|&i| along.depth_m[i] < outer).map(|i| along.force_n[i]).collect();
+    quiet.sort_by(f64::total_cmp);
+    quiet.get(quiet.len() / 2).copied().unwrap_or(0.0)
 }
 
 fn extremes(depth: &[f64], holds: &[Range<usize>]) -> (f64, f64) {
