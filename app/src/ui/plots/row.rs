@@ -6,13 +6,14 @@ use super::curves::{Curve, Drawn, Layer, NOISE_SWITCH};
 use super::decimate::{Columns, decimate_in};
 use super::doubts::shade;
 use super::gutter::gutter;
+use super::line::ThinnedLine;
 use super::react::react;
 use super::residual_plot::{BAND_SIGMAS, inks};
 use super::shift::Grasp;
 use crate::ui::prepare::{Group, Prepared};
 use crate::ui::theme::{self, Palette, palette};
 use egui::{Color32, Pos2, Rangef, Rect, Sense, Stroke, Ui, UiBuilder, vec2};
-use egui_plot::{FilledArea, Line, PlotBounds, PlotPoint, PlotPoints, PlotTransform, PlotUi, Span};
+use egui_plot::{FilledArea, PlotBounds, PlotPoint, PlotTransform, PlotUi, Span};
 use estimator::segment::Segmentation;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -231,10 +232,9 @@ fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, show_nois
             bands(plot, cache, input, ink);
         }
         for (place, curve) in input.drawn.curves.iter().enumerate() {
-            let line = Line::new("", PlotPoints::Borrowed(cache.points(input, place)));
             let color = curve_color(input, curve, dark, p);
             let more = if input.grasped.is_some_and(|g| curve.layer == Layer::Other(g)) { GRASPED } else { 0.0 };
-            plot.line(line.color(color).width(width(curve.layer) + more).allow_hover(false));
+            plot.add(ThinnedLine::new(cache.points(input, place), width(curve.layer) + more, color));
         }
     });
     let doubt = shade(ui, &response.transform, input.prepared, input.group);
