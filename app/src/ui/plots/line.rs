@@ -4,7 +4,7 @@
 //! here each is found once, and multiplied.
 
 use egui::epaint::{BandPoint, BandShape};
-use egui::{Color32, Pos2, Rangef, Rect, Shape, Stroke, Ui, pos2};
+use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, pos2};
 use egui_plot::{PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotPoint, PlotTransform};
 use std::ops::RangeInclusive;
 
@@ -95,7 +95,9 @@ fn visible(places: &[Pos2], clip: Rect) -> impl Iterator<Item = &[Pos2]> {
     let runs = std::iter::from_fn(move || {
         let is_seen = |k: usize| {
             let (a, b) = (places[k], places[k + 1]);
-            a.is_finite() && b.is_finite() && clip.intersects(Rect::from_two_pos(a, b))
+            // Nearly all lie inside with an end.
+            (clip.contains(a) && b.is_finite())
+                || (a.is_finite() && b.is_finite() && clip.intersects(Rect::from_two_pos(a, b)))
         };
         let lines = places.len().saturating_sub(1);
         let first = (at..lines).find(|k| is_seen(*k))?;
@@ -117,26 +119,25 @@ fn shape(run: &[Pos2], stroke: Stroke) -> Shape {
     Shape::line(run.to_vec(), stroke)
 }
 
-/// From the lowest to the highest point of each column, and half the line's width to either side.
+/// From the lowest to the highest point of each column, and half the line's width to either side; all points are numbers.
 fn columns(run: &[Pos2], width: f32) -> Vec<BandPoint> {
     let mut columns: Vec<BandPoint> = Vec::with_capacity(run.len());
-    for &place in run {
-        match columns.last_mut() {
-            Some(last) if last.is_finite() && place.is_finite() && place.x - last.x <= COLUMN => {
-                last.y = Rangef::new(last.y.min.min(place.y), last.y.max.max(place.y));
-            }
-            _ => columns.push(BandPoint::new(place.x, place.y..=place.y)),
+    let Some((first, others)) = run.split_first() else { return columns };
+    let reach = 0.5 * width;
+    let band = |x: f32, low: f32, high: f32| BandPoint::new(x, low - reach..=high + reach);
+    // The first column stands where it begins, the others in their middle.
+    let (mut x, mut low, mut high, mut middle) = (first.x, first.y, first.y, 0.0);
+    for place in others {
+        if place.x - x <= COLUMN {
+            low = if place.y < low { place.y } else { low };
+            high = if place.y > high { place.y } else { high };
+        } else {
+            columns.push(band(x + middle, low, high));
+            (x, low, high, middle) = (place.x, place.y, place.y, 0.5 * COLUMN);
         }
     }
-    for column in columns.iter_mut().skip(1) {
-        column.x += 0.5 * COLUMN;
-    }
-    if let (Some(column), Some(place)) = (columns.last_mut(), run.last()) {
-        column.x = place.x;
-    }
-    for column in &mut columns {
-        column.y = Rangef::new(column.y.min - 0.5 * width, column.y.max + 0.5 * width);
-    }
+    // … and the last one where it ends.
+    columns.push(band(run[run.len() - 1].x, low, high));
     columns
 }
 

@@ -268,8 +268,10 @@ fn y_range(cache: &PlotCache, input: &RowInput<'_>, show_noise: bool) -> (f64, f
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let counts = |curve: &&Curve| !matches!(curve.layer, Layer::Simulated | Layer::Extended);
     for (place, _) in input.drawn.curves.iter().enumerate().filter(|(_, c)| counts(c)) {
+        // Compared, not `min` and `max`: there are tens of thousands of them.
         for point in cache.points(input, place).iter().filter(|p| p.y.is_finite()) {
-            (low, high) = (low.min(point.y), high.max(point.y));
+            low = if point.y < low { point.y } else { low };
+            high = if point.y > high { point.y } else { high };
         }
     }
     if input.kind == RowKind::LeftOver && show_noise {
