@@ -1,6 +1,6 @@
 //! What a diagnosis says, in words: the same for the window and the report.
 
-use estimator::diagnose::{Cause, Diagnosis, Verdict};
+use estimator::diagnose::{Cause, CauseParameter, Diagnosis, Verdict};
 use haptics::law;
 
 /// What a cause is called.
@@ -95,6 +95,21 @@ pub fn symbol(name: &str) -> String {
     spelt.split_inclusive(|c: char| !c.is_alphabetic()).map(letter).collect()
 }
 
+/// What a parameter says that is no quantity: which axes point the other way, or are swapped.
+pub fn said_in_words(parameter: &CauseParameter) -> Option<String> {
+    let which = parameter.name.strip_prefix("which: ")?;
+    Some(match which.split_once(" with ") {
+        Some((one, other)) => format!("{one} and {other} are swapped"),
+        None if which.contains(" and ") => format!("{which} point the other way"),
+        None => format!("{which} points the other way"),
+    })
+}
+
+/// Shown unit of what was compared.
+pub fn compared_unit(diagnosis: &Diagnosis) -> String {
+    diagnosis.baseline.unit.as_deref().map_or_else(|| force_unit(diagnosis).to_owned(), shown_unit)
+}
+
 /// Shown unit of the forces.
 pub fn force_unit(diagnosis: &Diagnosis) -> &'static str {
     if diagnosis.course.is_angular { "N·m" } else { "N" }
@@ -106,17 +121,29 @@ pub fn shown_unit(unit: &str) -> String {
 }
 
 /// Shown unit of what a cause's gain is counted in, and its factor from SI.
-pub fn gain_unit(cause: &Cause, diagnosis: &Diagnosis) -> (&'static str, f64) {
-    match (cause.evidence.contains("of the path"), diagnosis.course.is_angular) {
-        (true, _) => ("mm", 1e3),
-        (false, true) => ("N·m", 1.0),
-        (false, false) => ("N", 1.0),
+pub fn gain_unit(cause: &Cause, diagnosis: &Diagnosis) -> (String, f64) {
+    match cause.gain.unit.as_deref() {
+        Some("m") => ("mm".to_owned(), 1e3),
+        Some(unit) => (shown_unit(unit), 1.0),
+        None => (force_unit(diagnosis).to_owned(), 1.0),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn axes_that_point_the_other_way_are_said_and_quantities_are_not() {
+        let said = |name: &str| {
+            let parameter = CauseParameter { name: name.to_owned(), value: -1.0, std_error: 0.0, unit: "1".to_owned() };
+            said_in_words(&parameter)
+        };
+        assert_eq!(said("which: fx1_N").as_deref(), Some("fx1_N points the other way"));
+        assert_eq!(said("which: fx and fy").as_deref(), Some("fx and fy point the other way"));
+        assert_eq!(said("which: fx with fy").as_deref(), Some("fx and fy are swapped"));
+        assert_eq!(said("mu"), None);
+    }
 
     #[test]
     fn letters_that_are_spelt_out_become_letters_and_words_stay() {

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 /// Every command with a schema: the name of its file, and the schema.
 pub fn all() -> Vec<(&'static str, Value)> {
     vec![
-        ("bench", of::<cli::bench::table::Said>("bench")),
+        ("bench", of::<cli::bench::table::Said>("bench, bench diagnosis")),
         ("bench-blind", of::<cli::bench::blind::Said>("bench blind")),
         ("bench-delay", of::<cli::bench::delay::Said<'_>>("bench delay")),
         ("bench-frames", of::<cli::bench::frames::Said>("bench frames")),

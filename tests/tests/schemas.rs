@@ -225,6 +225,7 @@ fn so_it_is_with_what_is_measured() {
     holds("bench-servo", &["bench", "servo", "--seconds", "0.5", "--rate", "500", "--no-real-time"]);
     holds("bench-frames", &["bench", "frames", "--samples", "20000", "--size", "640x480", "--pictures", "2"]);
     holds("bench-online", &["bench", "online", "--rounds", "1"]);
+    holds("bench", &["bench", "diagnosis", "--quick"]);
     holds("bench-delay", &["bench", "delay", "--seeds", "1", "--round-trips-ms", "0,500"]);
     let blind = holds("bench-blind", &["bench", "blind", "--seed", "3", "--cases", "4"]);
     assert_eq!(blind["cases"], 4, "{blind}");

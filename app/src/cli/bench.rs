@@ -3,6 +3,7 @@
 
 pub(crate) mod blind;
 pub(crate) mod delay;
+mod diagnosis;
 pub(crate) mod frames;
 mod loglog;
 pub(crate) mod online;
@@ -52,6 +53,8 @@ enum What {
     Servo(ServoBench),
     /// How often the diagnosis names what is hidden in generated recordings, and how often something where nothing is
     Blind(blind::BlindBench),
+    /// How long diagnoses of a minute at 1 kHz take
+    Diagnosis(diagnosis::DiagnosisBench),
     /// What a picture of each panel costs the processor, with a long log
     Frames(frames::FramesBench),
     /// How long tasks take over a slow line, with and without a model that answers at once (simulated time)
@@ -140,6 +143,7 @@ impl What {
             Self::Servo(bench) => bench.run(),
             Self::Online(bench) => bench.run(),
             Self::Blind(bench) => bench.run(),
+            Self::Diagnosis(bench) => bench.run(),
             Self::Frames(bench) => bench.run(),
             Self::Delay(bench) => bench.run(),
         }

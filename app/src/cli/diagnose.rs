@@ -3,11 +3,13 @@
 pub(crate) mod fleet;
 
 use super::{LogArgs, Output};
+use crate::diagnosis_words::said_in_words;
 use crate::tasks::Chosen;
 use anyhow::Context;
 use clap::Args;
 use estimator::diagnose::{
-    Cause, Diagnosis, Options, Progress, RolloutOf, Verdict, diagnose, extended_world, validate,
+    Baseline, Cause, CauseParameter, Diagnosis, Options, Progress, RolloutOf, Verdict, diagnose, extended_world,
+    validate,
 };
 use estimator::words::amount;
 use haptics::world::World;
@@ -167,14 +169,7 @@ pub(super) fn describe(diagnosis: &Diagnosis) -> String {
         Verdict::Unexplained => "unexplained: something that no known cause explains",
     };
     let _ = writeln!(text, "verdict: {word}");
-    let _ = writeln!(
-        text,
-        "  model {}: {:.4} unexplained on held-out data, noise floor {:.4}, with what was found {:.4}",
-        diagnosis.baseline.model,
-        diagnosis.baseline.heldout_rms_n,
-        diagnosis.noise_floor_n,
-        diagnosis.end.heldout_rms_n
-    );
+    let _ = writeln!(text, "  {}", model_line(diagnosis));
     for cause in &diagnosis.causes {
         let _ = writeln!(text, "  {}", cause_line(cause));
     }
@@ -208,7 +203,8 @@ pub(super) fn describe(diagnosis: &Diagnosis) -> String {
     for (k, other) in diagnosis.validation.iter().enumerate() {
         let (before, after) = (other.rms_before, other.rms_after);
         let of = other.of.as_ref().map_or(String::new(), |of| format!(" of the {of}"));
-        let unit = other.unit.as_deref();
+        // What has one coordinate is compared in the unit of the first recordings.
+        let unit = other.unit.as_deref().or(diagnosis.baseline.unit.as_deref());
         let said = |value: f64| unit.map_or_else(|| format!("{value:.4}"), |unit| amount(value, unit));
         let [low, high] = other.interval.map(|share| 100.0 * share);
         let _ = write!(
@@ -232,12 +228,25 @@ pub(super) fn describe(diagnosis: &Diagnosis) -> String {
     text
 }
 
+/// What was compared, and how much of it is left.
+fn model_line(diagnosis: &Diagnosis) -> String {
+    let Baseline { model, heldout_rms_n, of, unit, .. } = &diagnosis.baseline;
+    let Some(unit) = unit else { return format!("model {model}: there was nothing to compare it with") };
+    let of = of.as_ref().map_or_else(String::new, |of| format!(" of the {of}"));
+    let [left, floor, end] =
+        [*heldout_rms_n, diagnosis.noise_floor_n, diagnosis.end.heldout_rms_n].map(|rms| amount(rms, unit));
+    format!("model {model}: {left}{of} unexplained on held-out data, noise floor {floor}, with what was found {end}")
+}
+
+fn parameter(p: &CauseParameter) -> String {
+    said_in_words(p).unwrap_or_else(|| {
+        let unit = if p.unit == "1" { "" } else { &p.unit };
+        format!("{} {} {unit}", p.name, super::table::with_error(p.value, p.std_error)).trim_end().to_owned()
+    })
+}
+
 fn cause_line(cause: &Cause) -> String {
-    let parameters: Vec<String> = cause
-        .parameters
-        .iter()
-        .map(|p| format!("{} {} {}", p.name, super::table::with_error(p.value, p.std_error), p.unit))
-        .collect();
+    let parameters: Vec<String> = cause.parameters.iter().map(parameter).collect();
     let forward = cause.gain.rollout.as_ref().map_or_else(String::new, |r| {
         let what = if r.of == RolloutOf::Position { "position" } else { "force" };
         format!(
@@ -248,5 +257,7 @@ fn cause_line(cause: &Cause) -> String {
             amount(r.rms_before, &r.unit)
         )
     });
-    format!("{}: {}; {}{forward}", cause.id, parameters.join(", "), cause.evidence)
+    // A gap in the clock has no parameters.
+    let parameters = if parameters.is_empty() { String::new() } else { format!("{}; ", parameters.join(", ")) };
+    format!("{}: {parameters}{}{forward}", cause.id, cause.evidence)
 }

@@ -81,7 +81,7 @@ pub struct Part<'a> {
 impl Part<'_> {
     fn cause(&self, k: usize, chosen: &Chosen) -> Cause {
         let candidate = &self.study.candidates[chosen.candidate];
-        let gain = gain(self.study, k, self.floor);
+        let gain = Gain { unit: Some(self.unit.to_owned()), ..gain(self.study, k, self.floor) };
         let parameters = (self.states)(candidate, parameters(self.study, k));
         let shown = (self.shows)(&Found { candidate, parameters: &parameters });
         let held_out = if gain.heldout_rms_before > 0.0 {
@@ -225,7 +225,14 @@ pub fn answer(
     let (end, _, end_white) = figures(&picks);
     Diagnosis {
         verdict,
-        baseline: Baseline { model, rms_n: train, heldout_rms_n: heldout, whiteness_p: white },
+        baseline: Baseline {
+            model,
+            rms_n: train,
+            heldout_rms_n: heldout,
+            whiteness_p: white,
+            of: first.map(|p| p.channel.to_owned()),
+            unit: first.map(|p| p.unit.to_owned()),
+        },
         noise_floor_n: first.map_or(0.0, |p| p.floor),
         next_experiment: next(&open),
         causes,

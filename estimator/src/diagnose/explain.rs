@@ -10,7 +10,7 @@ use super::gain::{chi_square_tail, gain, gain_between, rms, shows_beside, whiten
 use super::geometry::Study;
 use super::kept::of_study;
 use super::passed_over::{passed_over, unsaid};
-use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, NotExcited, Verdict};
+use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NotExcited, Verdict};
 use super::rollout::rollout;
 use super::searched::{Known, known};
 use super::select::{Chosen, Selection};
@@ -47,6 +47,7 @@ pub(super) const TWINS: [(&str, &str, &str); 1] = [(
 pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study], faults: Vec<Cause>) -> Diagnosis {
     let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
+    let unit = if track.coordinate == Coordinate::Angular { "N m" } else { "N" };
     let picks = study.picks();
     let (heldout, train) = rms(study, &[], &along);
     let (end, end_train) = rms(study, &picks, &along);
@@ -59,7 +60,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
             warnings.push(apart(skew_s));
             continue;
         }
-        let mut named = cause(study, k, floor, "force");
+        let mut named = cause(study, k, floor, ("force", unit));
         named.gain.rollout = rollout(track, model, study, k);
         if let Some(parameters) = of_hardening_spring(track, study, k) {
             named.parameters = parameters;
@@ -71,7 +72,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         for (k, chosen) in geometry.chosen.iter().enumerate() {
             let id = geometry.candidates[chosen.candidate].id;
             if found.iter().all(|(_, c)| c.id != id) {
-                found.push((chosen.score, cause(geometry, k, 0.0, "path")));
+                found.push((chosen.score, cause(geometry, k, 0.0, ("path", "m"))));
                 alternatives.extend(rivals(geometry, chosen));
             }
         }
@@ -86,12 +87,10 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         (false, _) if !open_ones.is_empty() => Verdict::Ambiguous,
         (false, _) => Verdict::Causes,
     };
-    if let Some((candidate, score)) = strange {
-        let expression = study.candidates[candidate].expression.as_deref().unwrap_or_default();
-        warnings.push(format!(
-            "something is left that no known cause explains: it goes with {expression} (score {score:.0})"
-        ));
-        causes.push(unnamed(study, candidate, score, floor));
+    if let Some(strange) = strange {
+        let (left, warning) = unnamed(study, strange, (floor, unit));
+        causes.push(left);
+        warnings.push(warning);
     }
     let not_excited = unseen(track, study, &causes, &alternatives);
     let passed_over = passed_over(study, &picks, UNEXPLAINED);
@@ -102,6 +101,8 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
             rms_n: train,
             heldout_rms_n: heldout,
             whiteness_p: whiteness_p(study, &[], &stretch),
+            of: None,
+            unit: Some(unit.to_owned()),
         },
         noise_floor_n: floor,
         passed_over: unsaid(passed_over, &causes, &alternatives, &not_excited),
@@ -184,13 +185,12 @@ fn strange(study: &Study, picks: &[usize]) -> Option<(usize, f64)> {
     selection.unexplained(picks).filter(|(_, score)| *score > UNEXPLAINED)
 }
 
-fn cause(study: &Study, k: usize, floor: f64, channel: &str) -> Cause {
+fn cause(study: &Study, k: usize, floor: f64, (channel, unit): (&str, &str)) -> Cause {
     let chosen = &study.chosen[k];
     let candidate = &study.candidates[chosen.candidate];
     let entry = entries().find(|e| e.id == candidate.id);
-    let gain = gain(study, k, floor);
+    let gain = Gain { unit: Some(unit.to_owned()), ..gain(study, k, floor) };
     let (title, equation) = entry.map_or((candidate.id, ""), |e| (e.title, e.equation));
-    let unit = if channel == "path" { "m" } else { "N" };
     let stands = if shows_beside(study, &[chosen.candidate]) {
         " (and, in newtons, of how far it gives where it stands)"
     } else {
@@ -327,7 +327,7 @@ pub(super) fn rivals(study: &Study, chosen: &Chosen) -> Vec<Alternative> {
 }
 
 /// What goes with none of the laws, with its amplitudes and what it would be worth.
-fn unnamed(study: &Study, candidate: usize, score: f64, floor: f64) -> Cause {
+fn unnamed(study: &Study, (candidate, score): (usize, f64), (floor, unit): (f64, &str)) -> (Cause, String) {
     let picks = study.picks();
     let with: Vec<usize> = picks.iter().copied().chain([candidate]).collect();
     let term = &study.candidates[candidate];
@@ -352,15 +352,18 @@ fn unnamed(study: &Study, candidate: usize, score: f64, floor: f64) -> Cause {
             })
             .sum();
     }
-    Cause {
+    let cause = Cause {
         id: format!("other:{expression}"),
         kind: term.kind,
         parameters,
         p_value: chi_square_tail(score, term.cost),
         posterior: 1.0 / odds.max(1.0),
-        gain: gain_between(study, &picks, &with, floor),
+        gain: Gain { unit: Some(unit.to_owned()), ..gain_between(study, &picks, &with, floor) },
         evidence: format!("what is left goes with {expression}; no known cause does so here"),
-    }
+    };
+    let warning =
+        format!("something is left that no known cause explains: it goes with {expression} (score {score:.0})");
+    (cause, warning)
 }
 
 /// Causes that, at the size of the noise, this motion would hide.

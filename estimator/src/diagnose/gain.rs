@@ -66,6 +66,7 @@ pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) 
         heldout_rms_after: a.sqrt(),
         share_of_explainable: share(b, a),
         interval,
+        unit: None,
         rollout: None,
     }
 }

@@ -209,7 +209,11 @@ fn unnamed_before(first: &Diagnosis, late_s: f64) -> Cause {
         parameters: vec![parameter],
         p_value: 0.0,
         posterior: 1.0,
-        gain: Gain { heldout_rms_before: first.end.heldout_rms_n, ..Gain::default() },
+        gain: Gain {
+            heldout_rms_before: first.end.heldout_rms_n,
+            unit: first.baseline.unit.clone(),
+            ..Gain::default()
+        },
         evidence: format!(
             "the force fits the motion of {:.0} ms before: everything was asked again with the force put back to then",
             1e3 * late_s

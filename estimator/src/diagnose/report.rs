@@ -36,6 +36,12 @@ pub struct Baseline {
     pub heldout_rms_n: f64,
     /// Probability of residuals at least so correlated if they were white (Ljung & Box 1978).
     pub whiteness_p: f64,
+    /// Which channel these figures, the noise floor and the final ones are of, where there are several, …
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of: Option<String>,
+    /// … and their unit; nothing where nothing was compared.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
 }
 
 /// A parameter of a cause.
@@ -54,7 +60,7 @@ pub struct CauseParameter {
 /// What an extension is worth on data that took part in nothing.
 #[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Gain {
-    /// Unexplained force without the cause (all others in), N or N m.
+    /// What is unexplained without the cause (all others in): force, or what `unit` says.
     pub heldout_rms_before: f64,
     /// … and with it.
     pub heldout_rms_after: f64,
@@ -62,6 +68,9 @@ pub struct Gain {
     pub share_of_explainable: f64,
     /// 95 % interval of that share, by a block bootstrap.
     pub interval: [f64; 2],
+    /// Unit of what is unexplained; nothing where nothing was held out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
     /// What it is worth when the model runs on its own over short windows, where that could be done.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rollout: Option<Rollout>,

@@ -18,8 +18,18 @@ impl Band {
     /// Of nothing: joins with anything to that.
     const NONE: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY };
 
+    // Compared here and below, not `min` and `max`: bands hold numbers only, and each of these is one instruction.
     fn with(self, other: Self) -> Self {
-        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+        let low = if other.low < self.low { other.low } else { self.low };
+        let high = if other.high > self.high { other.high } else { self.high };
+        Self { low, high }
+    }
+
+    /// Of several together. Two at a time: a comparison does not wait for the one before.
+    fn together(bands: &[Self]) -> Self {
+        let (pairs, rest) = bands.as_chunks::<2>();
+        let [even, odd] = pairs.iter().fold([Self::NONE; 2], |[even, odd], [a, b]| [even.with(*a), odd.with(*b)]);
+        rest.iter().fold(even.with(odd), |all, b| all.with(*b))
     }
 
     /// Of these values; of none, one that joins with anything.
@@ -34,9 +44,8 @@ impl Band {
                 highs[k] = if v > highs[k] { v } else { highs[k] };
             }
         }
-        let low = lows.iter().chain(rest).fold(f64::INFINITY, |low, &v| low.min(v));
-        let high = highs.iter().chain(rest).fold(f64::NEG_INFINITY, |high, &v| high.max(v));
-        Self { low, high }
+        let whole = (lows.into_iter().zip(highs)).fold(Self::NONE, |all, (low, high)| all.with(Self { low, high }));
+        rest.iter().fold(whole, |all, &v| all.with(Self { low: v, high: v }))
     }
 }
 
@@ -133,10 +142,11 @@ impl Pyramid {
         for blocks in &self.levels {
             let (upper_first, upper_end) = (first.div_ceil(FAN), end / FAN);
             if upper_first >= upper_end {
-                return Some(blocks[first..end].iter().fold(band, |all, &b| all.with(b)));
+                return Some(band.with(Band::together(&blocks[first..end])));
             }
-            let edges = blocks[first..upper_first * FAN].iter().chain(&blocks[upper_end * FAN..end]);
-            band = edges.fold(band, |all, &b| all.with(b));
+            for edge in [first..upper_first * FAN, upper_end * FAN..end] {
+                band = band.with(Band::together(&blocks[edge]));
+            }
             (first, end) = (upper_first, upper_end);
         }
         Some(band)

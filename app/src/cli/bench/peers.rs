@@ -107,13 +107,27 @@ fn of_decoding(said: &Value) -> Vec<Figure> {
     made.collect()
 }
 
+/// What a refit may take, s: (least samples, most). A log of 10 s at 1 kHz has the stricter bound.
+const REFIT_S: [(f64, f64); 2] = [(50_000.0, 20e-3), (0.0, 16e-3)];
+
+/// A refit against its own bound, and beside each method of scipy's: the ratio is asked of the large log only.
 fn of_refits(said: &Value) -> Vec<Figure> {
-    let made = rows(said).filter_map(|row| {
-        let name = format!("refit a crank, {} samples", row["samples"]);
-        let (ours, theirs) = (row["refit_s"].as_f64()?, row["lm_s"].as_f64()?);
-        Some(figure(name, "s", ours, ("scipy lm", theirs), row["lm_ratio"].as_f64()?, None))
-    });
-    made.collect()
+    let mut made = Vec::new();
+    for row in rows(said) {
+        let (Some(samples), Some(ours)) = (row["samples"].as_f64(), row["refit_s"].as_f64()) else { continue };
+        let name = format!("refit a crank, {samples} samples");
+        let most = REFIT_S.iter().find(|(least, _)| samples >= *least).map(|(_, most)| Wanted::AtMost(*most));
+        made.push(Figure { wanted: most, ..Figure::new(name.clone(), ours, "s") });
+        let least = (samples >= REFIT_S[0].0).then_some(50.0);
+        for (key, peer) in [("lm", "scipy lm"), ("trf", "scipy trf")] {
+            let (Some(theirs), Some(times)) = (row[format!("{key}_s")].as_f64(), row[format!("{key}_ratio")].as_f64())
+            else {
+                continue;
+            };
+            made.push(figure(format!("{name}, beside {key}"), "s", ours, (peer, theirs), times, least));
+        }
+    }
+    made
 }
 
 #[cfg(test)]
@@ -135,8 +149,13 @@ mod tests {
         assert_eq!(of_logs(&logs)[0].is_kept(), Some(false));
         let decoding = json!({ "rows": [{ "samples": 5, "covariance": "full", "ours_s": [2.0, 1.0, 3.0], "hmmlearn_s": [40.0], "ratio": 20.0 }] });
         assert_eq!(of_decoding(&decoding)[0].value, 2.0);
-        let refits = json!({ "rows": [{ "samples": 5, "refit_s": 0.1, "lm_s": 1.0, "lm_ratio": 10.0 }] });
-        assert_eq!(of_refits(&refits)[0].peer.as_ref().map(|p| p.times_as_fast), Some(10.0));
+        let refits = json!({ "rows": [
+            { "samples": 10_000, "refit_s": 0.017, "lm_s": 0.17, "lm_ratio": 10.0, "trf_s": 1.7, "trf_ratio": 100.0 },
+            { "samples": 100_000, "refit_s": 0.017, "lm_s": 0.17, "lm_ratio": 10.0, "trf_s": 1.7, "trf_ratio": 100.0 },
+        ] });
+        let kept: Vec<Option<bool>> = of_refits(&refits).iter().map(Figure::is_kept).collect();
+        let wanted = [Some(false), None, None, Some(true), Some(false), Some(true)];
+        assert_eq!(kept, wanted, "16 ms of a log of 10 s; 20 ms and 50 times of a large one");
         assert!(of_refits(&json!({})).is_empty());
     }
 

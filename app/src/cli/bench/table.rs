@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
 
-/// What `bench` prints without a word behind it.
+/// What `bench` prints without a word behind it, and `bench diagnosis`.
 #[derive(Debug, JsonSchema, Serialize)]
 pub(crate) struct Said {
     /// Whether it was the short run.
@@ -100,6 +100,12 @@ pub(super) fn plain(value: f64) -> String {
 }
 
 impl Said {
+    /// Of this program on this machine, nothing skipped.
+    pub fn of(quick: bool, figures: Vec<Figure>) -> Self {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        Self { quick, optimised: !cfg!(debug_assertions), cores, figures, skipped: Vec::new() }
+    }
+
     /// For people.
     pub fn in_words(&self) -> String {
         let mut text = String::new();

@@ -1,5 +1,6 @@
 //! `touchstone bench` alone: every figure that is named anywhere, in one table.
 
+use super::diagnosis::DiagnosisBench;
 use super::frames::{FramesBench, performance};
 use super::online::OnlineBench;
 use super::table::{Figure, Said, Wanted};
@@ -57,18 +58,13 @@ pub(super) fn long(once: &Recording, samples: usize) -> Recording {
 
 impl WholeBench {
     pub(super) fn run(self) -> anyhow::Result<Output> {
-        let mut said = Said {
-            quick: self.quick,
-            optimised: !cfg!(debug_assertions),
-            cores: std::thread::available_parallelism().map_or(1, usize::from),
-            figures: Vec::new(),
-            skipped: Vec::new(),
-        };
-        let parts: [(&str, Part); 4] = [
+        let mut said = Said::of(self.quick, Vec::new());
+        let parts: [(&str, Part); 5] = [
             ("the servo", servo),
             ("what runs beside it", online),
             ("the window", frames),
             ("the estimator", estimator),
+            ("diagnoses of a minute", diagnoses),
         ];
         for (what, part) in parts {
             // One that cannot be measured here costs its own rows only.
@@ -157,6 +153,10 @@ fn estimator(wish: WholeBench) -> anyhow::Result<Vec<Figure>> {
     Ok(figures)
 }
 
+fn diagnoses(wish: WholeBench) -> anyhow::Result<Vec<Figure>> {
+    DiagnosisBench { quick: wish.quick, seed: 1 }.figures(|_| ())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -170,6 +170,7 @@ mod tests {
             "picture of",
             "states, fit and world, the first time, crank, 10000 samples",
             "diagnosis",
+            "diagnosis of 60 s at 1 kHz: crank, nothing hidden",
         ] {
             assert!(output.text.contains(part), "{part}: {}", output.text);
         }

@@ -1,7 +1,9 @@
 //! What the simulation gets wrong: causes with their evidence and gain, what else they could be, what to record next.
 
 use super::failed;
-use crate::diagnosis_words::{force_unit, gain_unit, headline, listed, shown_unit, small, symbol, title};
+use crate::diagnosis_words::{
+    compared_unit, gain_unit, headline, listed, said_in_words, shown_unit, small, symbol, title,
+};
 use crate::report::chart;
 use crate::report::collect::Content;
 use crate::ui::format;
@@ -76,6 +78,9 @@ fn calibrated(diagnosis: &Diagnosis) -> Markup {
 
 /// A parameter with its error and unit.
 fn value(p: &CauseParameter) -> String {
+    if let Some(said) = said_in_words(p) {
+        return said;
+    }
     format!("{} = {} {}", symbol(&p.name), with_power(p.value, p.std_error), shown_unit(&p.unit)).trim_end().to_owned()
 }
 
@@ -112,7 +117,7 @@ fn percent(share: f64) -> String {
 
 /// What is left before and after, and the noise, as bars of one scale.
 fn levels(diagnosis: &Diagnosis) -> Markup {
-    let unit = force_unit(diagnosis);
+    let unit = compared_unit(diagnosis);
     let (before, after, noise) =
         (diagnosis.baseline.heldout_rms_n, diagnosis.end.heldout_rms_n, diagnosis.noise_floor_n);
     let most = before.max(after).max(noise);

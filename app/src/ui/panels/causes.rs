@@ -1,6 +1,6 @@
 //! A cause that was found, as a card.
 
-use crate::diagnosis_words::{gain_unit, shown_unit, small, symbol, title};
+use crate::diagnosis_words::{gain_unit, said_in_words, shown_unit, small, symbol, title};
 use crate::ui::format;
 use crate::ui::session::sentence;
 use crate::ui::theme::{self, palette, space};
@@ -88,6 +88,10 @@ fn forward(ui: &mut Ui, rollout: &Rollout) {
 
 /// A parameter with its error.
 fn line(ui: &mut Ui, parameter: &CauseParameter) {
+    if let Some(said) = said_in_words(parameter) {
+        ui.label(theme::strong(said));
+        return;
+    }
     compact(ui, |ui| {
         ui.label(RichText::new(symbol(&parameter.name)).color(palette(ui).secondary));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

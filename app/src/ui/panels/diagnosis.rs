@@ -2,7 +2,7 @@
 
 use super::Panel;
 use super::{causes, check, diagnose, next_experiment, why_not};
-use crate::diagnosis_words::{force_unit, headline, title};
+use crate::diagnosis_words::{compared_unit, headline, title};
 use crate::ui::diagnosing::Answer;
 use crate::ui::files;
 use crate::ui::format;
@@ -83,7 +83,7 @@ fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
             ui.add_space(space::XS);
             changed = diagnose::start_from(ui, session);
             let (inks, most) = (inks(ui), d.baseline.heldout_rms_n.max(d.noise_floor_n).max(1e-12));
-            let unit = force_unit(d);
+            let unit = &compared_unit(d);
             level(ui, words::MODEL, d.baseline.heldout_rms_n, most, unit, inks.model);
             if !d.causes.is_empty() {
                 level(ui, words::WITH_WHAT_WAS_FOUND, d.end.heldout_rms_n, most, unit, inks.extended);
@@ -149,7 +149,7 @@ fn extension(ui: &mut Ui, session: &mut Session, answer: &Answer) {
 
 /// The gain of the whole extension.
 fn before_after(ui: &mut Ui, d: &Diagnosis) {
-    let unit = force_unit(d);
+    let unit = compared_unit(d);
     let number = |value: f64| format::significant(value, 3);
     let (before, after) = (d.baseline.heldout_rms_n, d.end.heldout_rms_n);
     ui.horizontal(|ui| {

@@ -8,6 +8,7 @@ mod derived;
 mod doubts;
 mod gutter;
 mod levels;
+mod line;
 mod noise;
 mod react;
 mod residual_plot;

@@ -6,13 +6,14 @@ use super::curves::{Curve, Drawn, Layer, NOISE_SWITCH};
 use super::decimate::{Columns, decimate_in};
 use super::doubts::shade;
 use super::gutter::gutter;
+use super::line::ThinnedLine;
 use super::react::react;
 use super::residual_plot::{BAND_SIGMAS, inks};
 use super::shift::Grasp;
 use crate::ui::prepare::{Group, Prepared};
 use crate::ui::theme::{self, Palette, palette};
 use egui::{Color32, Pos2, Rangef, Rect, Sense, Stroke, Ui, UiBuilder, vec2};
-use egui_plot::{FilledArea, Line, PlotBounds, PlotPoint, PlotPoints, PlotTransform, PlotUi, Span};
+use egui_plot::{FilledArea, PlotBounds, PlotPoint, PlotTransform, PlotUi, Span};
 use estimator::segment::Segmentation;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -231,10 +232,9 @@ fn draw_plot(ui: &mut Ui, cache: &mut PlotCache, input: &RowInput<'_>, show_nois
             bands(plot, cache, input, ink);
         }
         for (place, curve) in input.drawn.curves.iter().enumerate() {
-            let line = Line::new("", PlotPoints::Borrowed(cache.points(input, place)));
             let color = curve_color(input, curve, dark, p);
             let more = if input.grasped.is_some_and(|g| curve.layer == Layer::Other(g)) { GRASPED } else { 0.0 };
-            plot.line(line.color(color).width(width(curve.layer) + more).allow_hover(false));
+            plot.add(ThinnedLine::new(cache.points(input, place), width(curve.layer) + more, color));
         }
     });
     let doubt = shade(ui, &response.transform, input.prepared, input.group);
@@ -268,8 +268,10 @@ fn y_range(cache: &PlotCache, input: &RowInput<'_>, show_noise: bool) -> (f64, f
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let counts = |curve: &&Curve| !matches!(curve.layer, Layer::Simulated | Layer::Extended);
     for (place, _) in input.drawn.curves.iter().enumerate().filter(|(_, c)| counts(c)) {
+        // Compared, not `min` and `max`: there are tens of thousands of them.
         for point in cache.points(input, place).iter().filter(|p| p.y.is_finite()) {
-            (low, high) = (low.min(point.y), high.max(point.y));
+            low = if point.y < low { point.y } else { low };
+            high = if point.y > high { point.y } else { high };
         }
     }
     if input.kind == RowKind::LeftOver && show_noise {
