@@ -133,14 +133,14 @@ pub fn whiten(values: &[f64], rows: &Rows<'_>, coefficients: &[f64]) -> Vec<f64>
     let weighted = |i: usize| values[i] * rows.weight[i];
     let mut out = vec![0.0; values.len()];
     let mut since = 0;
-    for i in 0..values.len() {
+    for (i, whitened) in out.iter_mut().enumerate() {
         since = if i > 0 && rows.stretch[i] == rows.stretch[i - 1] { since + 1 } else { 0 };
         // Without its whole past a row is left out.
         if since < coefficients.len() {
             continue;
         }
         let past: f64 = coefficients.iter().enumerate().map(|(k, a)| a * weighted(i - k - 1)).sum();
-        out[i] = weighted(i) - past;
+        *whitened = weighted(i) - past;
     }
     out
 }
