@@ -3,31 +3,21 @@
 use super::fine::{FINE_HZ, acceleration, calmed, offsets};
 use super::geometry::{Arm, Path, PathPoint};
 use super::hung::Hung;
+use super::rests::held_and_free;
 use super::track::{Fine, Place, Row, Span, Track};
 use crate::estimate::EstimateError;
-use crate::segment::{SystemState, segment};
 use crate::signal::derive::savitzky_golay;
 use crate::signal::noise::{white_noise, white_noise_under_fast_motion};
 use crate::signal::task::{is_two_fingered, task_signals, times, tip_series};
 use haptics::Vec2;
 use haptics::hand::JointAngles;
 use haptics::law::{Coordinate, Motion};
-use haptics::recording::{Recording, Task};
+use haptics::recording::Recording;
 
 /// Rows come at about this rate, Hz: nothing that a hand does is faster than half of it.
 const ROW_HZ: f64 = 100.0;
-/// Held samples so close to a change between free and held belong to neither, s …
-const MARGIN_S: f64 = 0.06;
-/// … and free ones.
-const GROWING_S: f64 = 0.25;
-/// Free rests shorter than this may be zero crossings of the force, s.
-const LEAST_FREE_S: f64 = 0.25;
 /// Window of the acceleration, s.
 const ACCELERATION_WINDOW_S: f64 = 0.09;
-/// A rest whose force spreads this many times as much as in the quietest one is none.
-const WANDERS: f64 = 2.5;
-/// Samples of a rest whose unrest says how quiet nothing is.
-const TELLING: usize = 24;
 /// Fewer rows carry no diagnosis.
 const LEAST_ROWS: usize = 60;
 
@@ -405,60 +395,4 @@ fn raw(recording: &Recording) -> Result<Raw, EstimateError> {
         recording: recording.name.clone(),
     })?;
     Ok((tip.position, velocity, force))
-}
-
-/// Which samples are surely held, and which surely free.
-fn held_and_free(
-    recording: &Recording,
-    time_s: &[f64],
-    force: &[Vec2],
-) -> Result<(Vec<bool>, Vec<bool>), EstimateError> {
-    let segmentation = segment(recording, Some(Task::Crank), None)?;
-    let n = time_s.len();
-    let mut free = vec![false; n];
-    let rests: Vec<std::ops::Range<usize>> = segmentation
-        .states
-        .iter()
-        .filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= LEAST_FREE_S)
-        .map(|i| i.first..i.end)
-        .collect();
-    let unrest: Vec<f64> = rests.iter().map(|r| spread(&force[r.clone()])).collect();
-    // A few samples may be quiet by luck.
-    let quietest = |least: usize| {
-        let long = rests.iter().zip(&unrest).filter(|(r, _)| r.len() >= least);
-        long.map(|(_, unrest)| *unrest).fold(f64::INFINITY, f64::min)
-    };
-    let quietest = Some(quietest(TELLING)).filter(|q| q.is_finite()).unwrap_or_else(|| quietest(0));
-    for (range, unrest) in rests.iter().zip(&unrest) {
-        // A hand that holds lightly for a while is not away: its force wanders.
-        if *unrest <= WANDERS * quietest {
-            free[range.clone()].fill(true);
-        }
-    }
-    let period_s = if n > 1 { (time_s[n - 1] - time_s[0]) / (n - 1) as f64 } else { 1.0 };
-    let samples = |s: f64| (s / period_s).ceil() as usize;
-    let margin = samples(MARGIN_S);
-    let mut near = vec![false; n];
-    let mut surely_free = free.clone();
-    for interval in rests.iter().filter(|i| free[i.start]) {
-        // A grasp grows out of nothing: its beginning is still below every threshold.
-        let growing = samples(GROWING_S).min((interval.end - interval.start) / 3);
-        if interval.start > 0 {
-            near[interval.start.saturating_sub(margin)..interval.start].fill(true);
-            surely_free[interval.start..interval.start + growing].fill(false);
-        }
-        if interval.end < n {
-            near[interval.end..(interval.end + margin).min(n)].fill(true);
-            surely_free[interval.end - growing..interval.end].fill(false);
-        }
-    }
-    let held = (0..n).map(|i| !free[i] && !near[i]).collect();
-    Ok((held, surely_free))
-}
-
-/// Spread of the middle of a rest, N: its ends may belong to a grasp.
-fn spread(force: &[Vec2]) -> f64 {
-    let middle = &force[force.len() / 3..(2 * force.len()).div_ceil(3)];
-    let mean = middle.iter().sum::<Vec2>() / middle.len().max(1) as f64;
-    (middle.iter().map(|f| (f - mean).norm_squared()).sum::<f64>() / middle.len().max(1) as f64).sqrt()
 }

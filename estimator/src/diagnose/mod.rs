@@ -35,6 +35,7 @@ mod progress;
 mod pulled;
 mod quality;
 pub mod report;
+mod rests;
 mod rollout;
 mod searched;
 mod select;

@@ -264,6 +264,10 @@ impl Selection<'_> {
             } else {
                 return;
             }
+            // What was searched for beside another cause may be impossible without it, and its neighbour on the grid not.
+            if !self.price(chosen).is_finite() {
+                self.swap(chosen);
+            }
         }
     }
 

@@ -1,0 +1,143 @@
+//! When the hand is on a crank's handle, and when nothing is touched.
+
+use crate::estimate::EstimateError;
+use crate::segment::{SystemState, segment};
+use haptics::Vec2;
+use haptics::recording::{Recording, Task};
+
+/// Held samples so close to a change between free and held belong to neither, s …
+const MARGIN_S: f64 = 0.06;
+/// … and free ones.
+const GROWING_S: f64 = 0.25;
+/// Free rests shorter than this may be zero crossings of the force, s.
+const LEAST_FREE_S: f64 = 0.25;
+/// A rest whose force spreads this many times as much as in the quietest one is none.
+const WANDERS: f64 = 2.5;
+/// A rest is followed outwards from its middle in pieces of this length, s, and of so many samples at least.
+const PIECE_S: f64 = 0.05;
+const LEAST_PIECE: usize = 4;
+/// Samples of a rest whose unrest says how quiet nothing is.
+const TELLING: usize = 24;
+
+/// Which samples are surely held, and which surely free.
+pub fn held_and_free(
+    recording: &Recording,
+    time_s: &[f64],
+    force: &[Vec2],
+) -> Result<(Vec<bool>, Vec<bool>), EstimateError> {
+    let segmentation = segment(recording, Some(Task::Crank), None)?;
+    let n = time_s.len();
+    let mut free = vec![false; n];
+    let rests: Vec<std::ops::Range<usize>> = segmentation
+        .states
+        .iter()
+        .filter(|i| i.state == SystemState::FreeMotion && i.t1 - i.t0 >= LEAST_FREE_S)
+        .map(|i| i.first..i.end)
+        .collect();
+    let unrest: Vec<f64> = rests
+        .iter()
+        .map(|r| {
+            let middle = &force[middle(r)];
+            off(middle, mean(middle))
+        })
+        .collect();
+    // A few samples may be quiet by luck.
+    let quietest = |least: usize| {
+        let long = rests.iter().zip(&unrest).filter(|(r, _)| r.len() >= least);
+        long.map(|(_, unrest)| *unrest).fold(f64::INFINITY, f64::min)
+    };
+    let quietest = Some(quietest(TELLING)).filter(|q| q.is_finite()).unwrap_or_else(|| quietest(0));
+    for (range, unrest) in rests.iter().zip(&unrest) {
+        // A hand that holds lightly for a while is not away: its force wanders.
+        if *unrest <= WANDERS * quietest {
+            free[range.clone()].fill(true);
+        }
+    }
+    let period_s = if n > 1 { (time_s[n - 1] - time_s[0]) / (n - 1) as f64 } else { 1.0 };
+    let samples = |s: f64| (s / period_s).ceil() as usize;
+    let (margin, piece) = (samples(MARGIN_S), samples(PIECE_S).max(LEAST_PIECE));
+    let mut near = vec![false; n];
+    let mut surely_free = free.clone();
+    for interval in rests.iter().filter(|i| free[i.start]) {
+        // A grasp grows out of nothing: its beginning is still below every threshold.
+        let growing = samples(GROWING_S).min((interval.end - interval.start) / 3);
+        if interval.start > 0 {
+            near[interval.start.saturating_sub(margin)..interval.start].fill(true);
+            surely_free[interval.start..interval.start + growing].fill(false);
+        }
+        if interval.end < n {
+            near[interval.end..(interval.end + margin).min(n)].fill(true);
+            surely_free[interval.end - growing..interval.end].fill(false);
+        }
+        // What is left out here is neither free nor surely held.
+        let quiet = quiet(force, interval.clone(), piece, WANDERS * quietest);
+        surely_free[interval.start..quiet.start].fill(false);
+        surely_free[quiet.end..interval.end].fill(false);
+    }
+    let held = (0..n).map(|i| !free[i] && !near[i]).collect();
+    Ok((held, surely_free))
+}
+
+/// The middle of a rest: its ends may belong to a grasp.
+fn middle(rest: &std::ops::Range<usize>) -> std::ops::Range<usize> {
+    let len = rest.len();
+    rest.start + len / 3..rest.start + (2 * len).div_ceil(3)
+}
+
+fn mean(force: &[Vec2]) -> Vec2 {
+    force.iter().sum::<Vec2>() / force.len().max(1) as f64
+}
+
+/// How far forces are from a mean, N, root mean square.
+fn off(force: &[Vec2], mean: Vec2) -> f64 {
+    (force.iter().map(|f| (f - mean).norm_squared()).sum::<f64>() / force.len().max(1) as f64).sqrt()
+}
+
+/// What of a rest is as quiet as its middle, piece by piece outwards from there. A hand that holds on already, or still, may stay below
+/// every threshold for a while; a few such rows among the free ones, which weigh fully, pass for their noise and hide all that is smaller.
+fn quiet(force: &[Vec2], rest: std::ops::Range<usize>, piece: usize, most_n: f64) -> std::ops::Range<usize> {
+    let std::ops::Range { mut start, mut end } = middle(&rest);
+    let level = mean(&force[start..end]);
+    let is_quiet = |from: usize, to: usize| off(&force[from..to], level) <= most_n;
+    while start > rest.start {
+        let from = start.saturating_sub(piece).max(rest.start);
+        if !is_quiet(from, start) {
+            break;
+        }
+        start = from;
+    }
+    while end < rest.end {
+        let to = (end + piece).min(rest.end);
+        if !is_quiet(end, to) {
+            break;
+        }
+        end = to;
+    }
+    start..end
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Noise of 0.01 N in both axes: two waves that no piece is a multiple of.
+    fn noise(k: usize) -> Vec2 {
+        let x = k as f64;
+        0.014 * Vec2::new((2.7 * x).sin(), (1.9 * x + 0.4).sin())
+    }
+
+    #[test]
+    fn a_rest_ends_where_a_hand_is_felt() {
+        // The hand lets go during the first twentieth, and holds on lightly in the last.
+        let of = |k: usize| match k {
+            0..20 => noise(k) + Vec2::new(0.1 - 0.005 * k as f64, 0.0),
+            380.. => noise(k) + Vec2::new(0.0, -0.08),
+            _ => noise(k),
+        };
+        let force: Vec<Vec2> = (0..400).map(of).collect();
+        let all = quiet(&force, 0..400, 10, 2.5 * 0.014);
+        assert!((10..=20).contains(&all.start) && all.end == 380 - (380 - 267) % 10, "{all:?}");
+        let still: Vec<Vec2> = (0..400).map(noise).collect();
+        assert_eq!(quiet(&still, 0..400, 10, 2.5 * 0.014), 0..400);
+    }
+}
