@@ -71,6 +71,35 @@ pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) 
     }
 }
 
+/// What the k-th of the chosen causes, all others in, takes off on the rows that neither chose nor fitted it, in 2 ln(likelihood) of the whitened
+/// rows: below zero, it makes more of an error than it takes. `stretch`: of each row.
+pub fn confirmed(study: &Study, k: usize, stretch: &[usize]) -> f64 {
+    let picks = study.picks();
+    let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
+    let white = |picks: &[usize]| whitened(&left(study, picks), stretch, &study.system.coefficients);
+    let (before, after) = (white(&rest), white(&picks));
+    let over = |wanted: &dyn Fn(Use) -> bool, of: &dyn Fn(f64, f64) -> f64| {
+        let rows = study.system.uses.iter().zip(before.iter().zip(&after)).filter(|(used, _)| wanted(**used));
+        rows.filter_map(|(_, (b, a))| Some(of((*b)?, (*a)?))).fold((0.0, 0.0), |(s, n), v| (s + v, n + 1.0))
+    };
+    let (power, rows) = over(&|u| matches!(u, Use::Fold(_)), &|_, a| a * a);
+    let (gained, _) = over(&|u| matches!(u, Use::Locked(_) | Use::Beside(_)), &|b, a| b * b - a * a);
+    // As large as the noise in the rows that train.
+    if power > 0.0 { gained * rows / power } else { 0.0 }
+}
+
+/// Rows after the noise's own autoregression; `None` where a stretch is too young for it.
+fn whitened(values: &[f64], stretch: &[usize], coefficients: &[f64]) -> Vec<Option<f64>> {
+    let mut since = 0;
+    (0..values.len())
+        .map(|i| {
+            since = if i > 0 && stretch[i] == stretch[i - 1] { since + 1 } else { 0 };
+            let past = || coefficients.iter().enumerate().map(|(k, c)| c * values[i - k - 1]).sum::<f64>();
+            (since >= coefficients.len()).then(|| values[i] - past())
+        })
+        .collect()
+}
+
 /// Whether some of these causes show in the held-out rows that are not about the force.
 pub fn shows_beside(study: &Study, picks: &[usize]) -> bool {
     let beside = |i: usize| matches!(study.system.uses[i], Use::Beside(_));
@@ -133,16 +162,8 @@ fn means(parts: &Parts, picked: &[usize]) -> [f64; 2] {
 
 /// Probability that white residuals would be at least as correlated (Ljung & Box 1978), after the noise's own autoregression.
 pub fn whiteness_p(study: &Study, picks: &[usize], stretch: &[usize]) -> f64 {
-    let residual = left(study, picks);
-    let a = &study.system.coefficients;
-    let mut white = Vec::new();
-    let mut since = 0;
-    for i in 0..residual.len() {
-        since = if i > 0 && stretch[i] == stretch[i - 1] { since + 1 } else { 0 };
-        if since >= a.len() {
-            white.push(residual[i] - a.iter().enumerate().map(|(k, c)| c * residual[i - k - 1]).sum::<f64>());
-        }
-    }
+    let white: Vec<f64> =
+        whitened(&left(study, picks), stretch, &study.system.coefficients).into_iter().flatten().collect();
     let n = white.len() as f64;
     let power: f64 = white.iter().map(|v| v * v).sum();
     if white.len() < 3 * LAGS || power <= 0.0 {
