@@ -112,13 +112,14 @@ impl Said {
         if !self.optimised {
             text.push_str("This is no release build: its figures say nothing about speed.\n");
         }
-        let _ = writeln!(text, "{:<58} {:>9} {:<12} {:<16} {:>9}  beside", "", "ours", "", "wanted", "times");
+        let wide = self.figures.iter().map(|figure| figure.name.chars().count()).max().unwrap_or(0);
+        let _ = writeln!(text, "{:<wide$} {:>9} {:<12} {:<16} {:>9}  beside", "", "ours", "", "wanted", "times");
         for figure in &self.figures {
             let (times, beside) = figure.peer.as_ref().map_or_else(Default::default, |peer| {
                 (format!("{:.1}", peer.times_as_fast), format!("{} {}", peer.name, plain(peer.value)))
             });
             let line = format!(
-                "{:<58} {:>9} {:<12} {:<16} {times:>9}  {beside}",
+                "{:<wide$} {:>9} {:<12} {:<16} {times:>9}  {beside}",
                 figure.name,
                 plain(figure.value),
                 figure.unit,
