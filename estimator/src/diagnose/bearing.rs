@@ -4,7 +4,7 @@
 use super::force::{Model, blur, column};
 use super::track::{Place, Row, Track};
 use crate::estimate::EstimateError;
-use crate::identify::linear::least_squares;
+use crate::identify::linear::least_squares_values;
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, Law, LoadFriction, Weight};
 
@@ -57,7 +57,7 @@ fn plain(track: &Track, model: &Model, fixed: &Model) -> Result<(f64, f64), Esti
         track.rows.iter().enumerate().map(|(i, r)| r.y - known.iter().map(|k| k[i]).sum::<f64>()).collect();
     let coulomb = Effect::new(&CoulombFriction, &[1.0]);
     let weighed: Vec<Effect> = model.iter().copied().chain([coulomb]).collect();
-    let fit = least_squares(&of(&weighed), &y, Some(&along))?;
+    let fit = least_squares_values(&of(&weighed), &y, Some(&along))?;
     let found = weighed.iter().zip(&fit.values).filter(|(e, _)| is_weight(e));
     let known_n: f64 = fixed.iter().filter(|e| is_weight(e)).map(|e| e.values[0]).sum();
     let weight_n = known_n + found.map(|(e, share)| e.values[0] * share).sum::<f64>();
@@ -69,7 +69,7 @@ fn plain(track: &Track, model: &Model, fixed: &Model) -> Result<(f64, f64), Esti
     for of in beside {
         columns.push(track.rows.iter().map(|r| if r.place == Place::Along { of(r) } else { 0.0 }).collect());
     }
-    Ok((least_squares(&columns, &y, Some(&along))?.rms, weight_n))
+    Ok((least_squares_values(&columns, &y, Some(&along))?.rms, weight_n))
 }
 
 /// Takes what the sensors say where nothing is touched out of the load: a bias across the motion looks like a weight.

@@ -1,6 +1,7 @@
 //! The causes that act in the force, as columns over the rows of a track: each out of its law in `haptics::law`.
 
 use super::candidate::{Candidate, Searched, Shape};
+use super::columns::Columns;
 use super::grid::Grid;
 use super::track::{Place, Row, Track};
 use crate::signal::derive::savitzky_golay;
@@ -38,6 +39,8 @@ pub struct Dictionary<'a> {
     pub without: &'a [&'a str],
     /// The values that are tried.
     pub grid: &'a Grid,
+    /// What was made before on this track.
+    pub columns: &'a Columns,
 }
 
 /// Units of a force, a coordinate and their mixtures.
@@ -75,12 +78,12 @@ impl Dictionary<'_> {
 
     /// The force of a law with these values, in the rows along the motion.
     fn law(&self, law: &'static dyn Law, values: &[f64]) -> Vec<f64> {
-        super::force::column(self.track, &Effect::new(law, values))
+        self.columns.of(self.track, &Effect::new(law, values))
     }
 
     /// The same of a law of the place, and of the direction at most in proportion.
     fn law_of_place(&self, law: &'static dyn Law, values: &[f64]) -> Vec<f64> {
-        super::force::column_of_place(self.track, &Effect::new(law, values))
+        self.columns.of_place(self.track, &Effect::new(law, values))
     }
 
     /// The unit of a parameter as the law's page has it.
@@ -166,7 +169,9 @@ impl Dictionary<'_> {
             self.gravity(all, radius);
             all.extend(super::hung::tilt(self.track));
         }
-        self.grid.ripples.iter().for_each(|length| self.ripple(all, *length));
+        // A short one changes within a row.
+        let short = SHORT_RIPPLE * self.track.quantile(0.9, |r| r.motion.velocity.abs()) * self.track.period_s;
+        self.grid.ripples.iter().for_each(|length| self.ripple(all, *length, *length < short));
         self.springs(all);
         self.local(all);
         self.walls(all);
@@ -218,13 +223,11 @@ impl Dictionary<'_> {
         }
     }
 
-    fn ripple(&self, all: &mut Vec<Candidate>, length: f64) {
+    fn ripple(&self, all: &mut Vec<Candidate>, length: f64, is_short: bool) {
         let units = self.units();
-        // A short one changes within a row.
-        let short = length < SHORT_RIPPLE * self.track.quantile(0.9, |r| r.motion.velocity.abs()) * self.track.period_s;
         let column = |phase: f64| {
             let values = [1.0, length, phase];
-            if short { self.law(&PositionRipple, &values) } else { self.law_of_place(&PositionRipple, &values) }
+            if is_short { self.law(&PositionRipple, &values) } else { self.law_of_place(&PositionRipple, &values) }
         };
         let columns = vec![column(0.0), column(-std::f64::consts::FRAC_PI_2)];
         let linear = vec![("A cos phi", units.force), ("A sin(-phi)", units.force)];
@@ -298,12 +301,24 @@ impl Dictionary<'_> {
         values: &[f64],
         of: &dyn Fn(&Motion, &Memory, &[f64; MAX_PARAMETERS]) -> f64,
     ) -> Vec<f64> {
-        let mut padded = [0.0; MAX_PARAMETERS];
-        padded[..values.len()].copy_from_slice(values);
+        self.columns.remembered(law, values, || {
+            let mut padded = [0.0; MAX_PARAMETERS];
+            padded[..values.len()].copy_from_slice(values);
+            if self.track.fine.is_empty() {
+                self.remembered_by_rows(law, &padded, of)
+            } else {
+                self.remembered_finely(law, &padded, of)
+            }
+        })
+    }
+
+    fn remembered_finely(
+        &self,
+        law: &'static dyn Law,
+        padded: &[f64; MAX_PARAMETERS],
+        of: &dyn Fn(&Motion, &Memory, &[f64; MAX_PARAMETERS]) -> f64,
+    ) -> Vec<f64> {
         let track = self.track;
-        if track.fine.is_empty() {
-            return self.remembered_by_rows(law, &padded, of);
-        }
         let mut memory = Memory::default();
         let mut felt = Vec::with_capacity(track.fine.len());
         for (k, point) in track.fine.iter().enumerate() {
@@ -318,11 +333,11 @@ impl Dictionary<'_> {
                 // The mean speed between two points.
                 Some(before) => {
                     let mean = motion(0.5 * (before.velocity + point.velocity));
-                    law.advance(&mean, &padded, &mut memory, point.time_s - before.time_s);
+                    law.advance(&mean, padded, &mut memory, point.time_s - before.time_s);
                 }
                 None => memory = Memory::default(),
             }
-            felt.push(of(&motion(point.velocity), &memory, &padded));
+            felt.push(of(&motion(point.velocity), &memory, padded));
         }
         self.column(&|row| row.span.weights().map(|(k, weight)| weight * felt[k]).sum())
     }
@@ -369,7 +384,7 @@ impl Dictionary<'_> {
         }
         // Friction that grows or falls in proportion to the model's own, slowly or at once.
         let of_dry = |effect: &Effect| -> Vec<f64> {
-            super::force::column(self.track, effect).iter().zip(self.dry).map(|(w, d)| w * d).collect()
+            self.columns.of(self.track, effect).iter().zip(self.dry).map(|(w, d)| w * d).collect()
         };
         let change = |column| Candidate::one("friction-change", Kind::Plant, "relative change", "1", column);
         for tau in self.grid.warming.iter().copied() {

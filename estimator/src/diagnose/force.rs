@@ -1,6 +1,7 @@
 //! The force that the motion needs: what the model leaves of it, and which causes explain that.
 
 use super::candidate::{Candidate, Searched};
+use super::columns::Columns;
 use super::compare::whitening as whitening_of;
 use super::dictionary::Dictionary;
 use super::gain::{confirmed, gain};
@@ -13,7 +14,7 @@ use super::stuck::{self, Load};
 use super::system::{Held, Rows, System};
 use super::track::{Place, Row, Track};
 use crate::estimate::EstimateError;
-use crate::identify::linear::least_squares;
+use crate::identify::linear::{least_squares, least_squares_values};
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, ViscousFriction};
 
@@ -48,7 +49,8 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
     let loads = loads(track, model, fixed)?;
     stuck::add(track, &loads);
     let coarse = Grid::coarse(track);
-    let mut made = compare(track, model, fixed, threshold, [&coarse, &Grid::default()], None)?;
+    let mut known = Known { columns: Columns::default(), generic: generic(track) };
+    let mut made = compare(track, (model, fixed), &known, threshold, [&coarse, &Grid::default()], None)?;
     for round in 0..REFINEMENTS {
         // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of them.
         if made.chosen.len() <= round {
@@ -57,13 +59,16 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
         let found: Vec<&Candidate> = made.chosen.iter().map(|c| &made.candidates[c.candidate]).collect();
         let fine = Grid::around(&found, track, 1.0 / (1 + round) as f64);
         // The load on the friction is what the sensor told, rid of what is now known of the sensor.
-        correct_load(track, &made);
+        if correct_load(track, &made) {
+            known.columns.forget_loads();
+            known.generic = generic(track);
+        }
         let before = Before {
             laws: made.solved.as_ref().map(|s| s.values[..made.base.len()].to_vec()),
             found: found.into_iter().map(|c| (c.id, c.searched.clone())).collect(),
             whitening: made.system.coefficients,
         };
-        made = compare(track, model, fixed, threshold, [&coarse, &fine], Some(before))?;
+        made = compare(track, (model, fixed), &known, threshold, [&coarse, &fine], Some(before))?;
     }
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
     leave_out_what_harms(&mut made, &stretch, CONFIRMED * threshold);
@@ -94,9 +99,9 @@ fn leave_out_what_harms(study: &mut Study, stretch: &[usize], sure: f64) {
     }
 }
 
-/// The force across the motion without the faults of the sensor that were found.
-fn correct_load(track: &mut Track, study: &Study) {
-    let Some(solved) = study.solved.as_ref().filter(|_| track.planar) else { return };
+/// The force across the motion without the faults of the sensor that were found; whether that changes anything.
+fn correct_load(track: &mut Track, study: &Study) -> bool {
+    let Some(solved) = study.solved.as_ref().filter(|_| track.planar) else { return false };
     let mut faults: Vec<(&Candidate, Vec<f64>)> = Vec::new();
     let mut at = study.base.len();
     for chosen in &study.chosen {
@@ -106,6 +111,7 @@ fn correct_load(track: &mut Track, study: &Study) {
         at = end;
     }
     let hangs_n = track.bearing_weight_n;
+    let mut changes = false;
     for row in track.rows.iter_mut().filter(|r| r.place == Place::Along) {
         let outward = Vec2::new(row.along.y, -row.along.x);
         let mut force = row.force;
@@ -123,8 +129,17 @@ fn correct_load(track: &mut Track, study: &Study) {
                 _ => Vec2::zeros(),
             };
         }
-        row.motion.normal_force_n = force.dot(&outward) - hangs_n * row.up_outward();
+        let load_n = force.dot(&outward) - hangs_n * row.up_outward();
+        changes |= load_n.to_bits() != row.motion.normal_force_n.to_bits();
+        row.motion.normal_force_n = load_n;
     }
+    changes
+}
+
+/// What every round is made of.
+struct Known {
+    columns: Columns,
+    generic: Vec<Candidate>,
 }
 
 /// What a round knows of the one before.
@@ -137,11 +152,11 @@ struct Before {
     whitening: Vec<f64>,
 }
 
-/// One round.
+/// One round: laws that are fitted, and those of which everything is known.
 fn compare(
     track: &Track,
-    model: &Model,
-    fixed: &Model,
+    (model, fixed): (&Model, &Model),
+    made: &Known,
     threshold: f64,
     [coarse, fine]: [&Grid; 2],
     before: Option<Before>,
@@ -157,14 +172,15 @@ fn compare(
     let dictionary = |grid| {
         let without = &taken;
         let (predicted, resisting, dry) = (&predicted, &resisting, &dry);
-        Dictionary { track, predicted, resisting, dry, fixed: &known, without, grid }.candidates()
+        let columns = &made.columns;
+        Dictionary { track, predicted, resisting, dry, fixed: &known, without, grid, columns }.candidates()
     };
     let mut candidates = dictionary(coarse);
     candidates.extend(dictionary(fine).into_iter().filter(|c| !c.searched.is_empty()));
     let losses = candidates.iter().filter(|c| ["hysteresis", "backlash"].contains(&c.id));
     let losses: Vec<&[f64]> = losses.map(|c| c.columns[0].as_slice()).collect();
     base.extend(stuck::creep(track, &y, &losses));
-    candidates.extend(generic(track));
+    candidates.extend(made.generic.iter().cloned());
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
     let held = |row: &Row| match row.place {
         Place::Along => Held::Fully,
@@ -207,7 +223,7 @@ pub fn plain_rms(track: &mut Track, model: &Model) -> Result<(f64, bool), Estima
     let along: Vec<f64> =
         track.rows.iter().map(|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }).collect();
     let y: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
-    let fit = least_squares(&columns, &y, Some(&along))?;
+    let fit = least_squares_values(&columns, &y, Some(&along))?;
     let resisting: f64 = (0..y.len())
         .map(|i| {
             let parts =
@@ -363,7 +379,7 @@ fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Res
     }
     let along: Vec<f64> = track.rows.iter().map(|r| f64::from(u8::from(r.place == Place::Along))).collect();
     let mut weight = along.clone();
-    let mut fit = least_squares(&columns, y, Some(&weight))?;
+    let mut fit = least_squares_values(&columns, y, Some(&weight))?;
     let dry = |values: &[f64], i: usize| -> f64 {
         dry_level(track, model, values, i) + if has_dry { 0.0 } else { values[base.len()].abs() }
     };
@@ -381,7 +397,7 @@ fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Res
             })
             .collect();
         let squares: Vec<f64> = weight.iter().zip(&along).map(|(w, a)| w * w * a).collect();
-        fit = least_squares(&columns, y, Some(&squares))?;
+        fit = least_squares_values(&columns, y, Some(&squares))?;
     }
     let sum = |resists: bool| -> Vec<f64> {
         let mut sum = total(y.len(), model, base, &fit.values, resists);

@@ -30,13 +30,13 @@ pub fn generic(track: &Track) -> Vec<Candidate> {
     if track.planar {
         factors.push(("Fn", Box::new(|r: &Row| r.motion.normal_force_n)));
     }
+    let wave = |n: u32, of: fn(f64) -> f64| column(track, &|r| of(f64::from(n) * phase(r)));
+    let waves: Vec<[Vec<f64>; 2]> = (1..=WAVES).map(|n| [wave(n, f64::cos), wave(n, f64::sin)]).collect();
     for (name, factor) in &factors {
-        for n in 1..=WAVES {
-            let n = f64::from(n);
-            let columns = vec![
-                column(track, &|r| (n * phase(r)).cos() * factor(r)),
-                column(track, &|r| (n * phase(r)).sin() * factor(r)),
-            ];
+        let factor = column(track, factor);
+        for (n, waves) in (1..).zip(&waves) {
+            let times = |wave: &Vec<f64>| wave.iter().zip(&factor).map(|(w, f)| w * f).collect();
+            let columns = waves.iter().map(times).collect();
             all.push(term(format!("{name} cos({n} q + phi)"), columns, if *name == "Fn" { "1" } else { force }));
         }
     }

@@ -5,11 +5,11 @@
 use super::force::{Model, column};
 use super::generic::generic;
 use super::report::{Cause, CauseParameter, Diagnosis, Gain, Verdict};
-use super::track::{Place, Row, Track};
+use super::system::{gram, solve};
+use super::track::{Row, Track};
 use crate::estimate::EstimateError;
-use crate::identify::linear::least_squares;
 use crate::signal::derive::interpolate;
-use haptics::law::{CoulombFriction, Effect, Inertia, Kind};
+use haptics::law::{CoulombFriction, Effect, Inertia, Kind, Law};
 use haptics::recording::{Recording, Span};
 
 /// A delay up to this is as good as proportional, s.
@@ -77,9 +77,10 @@ const LIKELIER: f64 = 60.0;
 /// Whole rows are tried, because a force between two rows is the mean of both, with half of the noise.
 pub fn guess_s(track: &Track, model: &Model) -> Option<f64> {
     let most = (LONGEST_S / track.period_s) as isize;
+    let moved = Moved::of(track, model);
     let tried: Vec<(isize, f64, f64)> = (-most..=most)
         .filter_map(|rows| {
-            let (power, count) = left(&earlier(track, rows), model)?;
+            let (power, count) = moved.left(rows)?;
             Some((rows, power, count))
         })
         .collect();
@@ -100,45 +101,74 @@ pub fn guess_s(track: &Track, model: &Model) -> Option<f64> {
     Some((best as f64 + between) * track.period_s)
 }
 
-/// The rows along the motion with the forces of so many rows later.
-fn earlier(track: &Track, rows: isize) -> Track {
-    let along: Vec<&Row> = track.rows.iter().filter(|r| r.place == Place::Along).collect();
-    let mut moved = Vec::new();
-    for stretch in along.chunk_by(|a, b| a.stretch == b.stretch && a.recording == b.recording) {
-        for (k, row) in stretch.iter().enumerate() {
-            let Some(later) = k.checked_add_signed(rows).and_then(|k| stretch.get(k)) else { continue };
-            let mut row = **row;
-            if track.planar {
-                let outward = haptics::Vec2::new(row.along.y, -row.along.x);
-                row.motion.normal_force_n += (later.force - row.force).dot(&outward);
-                row.y = later.force.dot(&row.along);
-            } else {
-                row.y = later.y;
-            }
-            row.force = later.force;
-            moved.push(row);
-        }
-    }
-    Track { rows: moved, ..track.clone_without_rows() }
+/// Rows along the motion whose forces are to be moved against it.
+struct Moved<'a> {
+    track: &'a Track,
+    /// Indices of the rows.
+    rows: Vec<usize>,
+    /// Laws that go with the load, which moves with the force.
+    loads: Vec<Effect>,
+    /// What goes with the motion alone, one entry a row of the track.
+    motion: Vec<Vec<f64>>,
 }
 
-/// Power that is left a row, and rows.
-fn left(track: &Track, model: &Model) -> Option<(f64, f64)> {
-    let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
-    let has = |id: &str| model.iter().any(|e| e.law().id() == id);
-    for law in [&Inertia as &'static dyn haptics::law::Law, &CoulombFriction] {
-        if !has(law.id()) {
-            columns.push(column(track, &Effect::new(law, &[1.0])));
-        }
+impl<'a> Moved<'a> {
+    fn of(track: &'a Track, model: &Model) -> Self {
+        let has = |id: &str| model.iter().any(|e| e.law().id() == id);
+        let missing = [&Inertia as &'static dyn Law, &CoulombFriction].into_iter().filter(|law| !has(law.id()));
+        let laws = model.iter().copied().chain(missing.map(|law| Effect::new(law, &[1.0])));
+        let (loads, others): (Vec<Effect>, Vec<Effect>) = laws.partition(|e| e.law().feels_load());
+        let mut motion: Vec<Vec<f64>> = others.iter().map(|effect| column(track, effect)).collect();
+        let of_place = |expression: &str| expression.starts_with("1 ") || expression.starts_with("cos(");
+        let terms = generic(track).into_iter().filter(|c| c.expression.as_deref().is_some_and(of_place));
+        motion.extend(terms.flat_map(|c| c.columns));
+        motion.push(vec![1.0; track.rows.len()]);
+        Self { track, rows: track.along().collect(), loads, motion }
     }
-    let of_place = |expression: &str| expression.starts_with("1 ") || expression.starts_with("cos(");
-    let terms = generic(track).into_iter().filter(|c| c.expression.as_deref().is_some_and(of_place));
-    columns.extend(terms.flat_map(|c| c.columns));
-    columns.push(vec![1.0; track.rows.len()]);
-    let weight: Vec<f64> = track.rows.iter().map(|r| r.motion.direction.powi(4)).collect();
-    let y: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
-    let fit = least_squares(&columns, &y, Some(&weight)).ok()?;
-    Some((fit.rms * fit.rms, y.len() as f64))
+
+    /// The rows with the forces of so many rows later, and which they were.
+    fn later(&self, by: isize) -> (Vec<Row>, Vec<usize>) {
+        let of = |i: &usize| &self.track.rows[*i];
+        let (mut moved, mut picked) = (Vec::new(), Vec::new());
+        let together = |a: &usize, b: &usize| of(a).stretch == of(b).stretch && of(a).recording == of(b).recording;
+        for stretch in self.rows.chunk_by(together) {
+            for (k, i) in stretch.iter().enumerate() {
+                let Some(later) = k.checked_add_signed(by).and_then(|k| stretch.get(k)).map(of) else { continue };
+                let mut row = *of(i);
+                if self.track.planar {
+                    let outward = haptics::Vec2::new(row.along.y, -row.along.x);
+                    row.motion.normal_force_n += (later.force - row.force).dot(&outward);
+                    row.y = later.force.dot(&row.along);
+                } else {
+                    row.y = later.y;
+                }
+                moved.push(row);
+                picked.push(*i);
+            }
+        }
+        (moved, picked)
+    }
+
+    /// Power that is left a row with the forces of so many rows later, and rows.
+    fn left(&self, by: isize) -> Option<(f64, f64)> {
+        let (moved, picked) = self.later(by);
+        // What the sign's guess is worth, squared: its fourth power weighs the squares.
+        let root: Vec<f64> = moved.iter().map(|row| row.motion.direction.powi(2)).collect();
+        let weighted = |column: &mut dyn Iterator<Item = f64>| -> Vec<f64> {
+            column.zip(&root).map(|(value, root)| value * root).collect()
+        };
+        let mut columns: Vec<Vec<f64>> =
+            self.motion.iter().map(|of| weighted(&mut picked.iter().map(|i| of[*i]))).collect();
+        for law in &self.loads {
+            columns.push(weighted(&mut moved.iter().map(|row| self.track.mean(row, &|m| law.force(m)))));
+        }
+        let target = columns.len();
+        columns.push(weighted(&mut moved.iter().map(|row| row.y)));
+        let all: Vec<usize> = (0..moved.len()).collect();
+        let fit = solve(&gram(&columns, &all), &(0..target).collect::<Vec<_>>(), target)?;
+        let weight: f64 = root.iter().map(|root| root * root).sum();
+        (moved.len() > target && weight > 0.0).then(|| (fit.rss / weight, moved.len() as f64))
+    }
 }
 
 /// The delay that an answer names, s.

@@ -9,6 +9,7 @@ pub mod atlas;
 mod bearing;
 mod blocks;
 mod candidate;
+mod columns;
 mod compare;
 pub mod course;
 mod dictionary;
@@ -200,10 +201,7 @@ pub fn validate(
 
 fn along_a_crank(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
     let recording = &late::put_back(recording, diagnosis.late_s);
-    let signals = held_arm::Signals::of(recording, &quality::faults(recording).bad)?;
-    let path = signals.path(recording);
-    let circle = geometry::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
-    let (rows, _) = signs::upright(&signals, recording, &circle.arm)?;
+    let signs::Looked { signals, circle, rows, .. } = signs::Looked::at(recording, &quality::faults(recording).bad)?;
     let (mut track, _) = turned(&signals, recording, &circle, rows)?;
     // A weight that is stated is no part of what was fitted, and acts all the same.
     let known = known_weight(recording, &mut diagnosis.plain.clone());
@@ -228,15 +226,12 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
     for (k, recording) in recordings.iter().enumerate() {
         options.progress.tell(0.4 * k as f64 / recordings.len() as f64)?;
         let found = quality::faults(recording);
-        let (upright, mirrored) = signs::of_crank(recording, &found.bad);
+        let (upright, mirrored, looked) = signs::of_crank(recording, &found.bad)?;
         let recording = &upright;
+        let signs::Looked { signals, circle, rows, axis } = looked;
         faults.extend(mirrored);
-        let signals = held_arm::Signals::of(recording, &found.bad)?;
         faults.extend(found.causes);
-        let path = signals.path(recording);
-        let circle = geometry::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
-        let (rows, mirrored) = signs::upright(&signals, recording, &circle.arm)?;
-        faults.extend(mirrored);
+        faults.extend(axis);
         let (mut rows, bottom) = turned(&signals, recording, &circle, rows)?;
         rows.extra = vec![extra::of(recording)];
         first_link |= bottom;

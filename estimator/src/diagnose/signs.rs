@@ -1,7 +1,7 @@
 //! Signs: channels that are mirrored, and axes that are swapped, put right before anything is asked of the model.
 
 use super::force;
-use super::geometry::{self, Arm};
+use super::geometry::{self, Arm, Geometry};
 use super::held_arm::{Axes, Signals};
 use super::quality;
 use super::report::Cause;
@@ -90,53 +90,71 @@ pub fn mirrored(recording: &Recording, names: &[&str]) -> Recording {
     other
 }
 
-/// What a crank's model leaves of a recording.
-struct Left {
-    /// Of the force, N.
-    rms: f64,
-    noise: f64,
-    /// Friction takes work.
-    resists: bool,
-    /// An axis of the force had to be mirrored, too.
-    more: bool,
+/// A crank's recording as it is asked about.
+pub struct Looked {
+    pub signals: Signals,
+    /// The path of the handle.
+    pub circle: Geometry,
+    /// Along it, the force's axes upright.
+    pub rows: Track,
+    /// The axis that had to be mirrored for that.
+    pub axis: Option<Cause>,
 }
 
-/// A crank's recording with its channels put right, one by one; whole axes of the force are [`upright`]'s.
-pub fn of_crank<'a>(recording: &'a Recording, bad: &[bool]) -> (Cow<'a, Recording>, Option<Cause>) {
-    let (straight, rate) = with_rates_of_motion(recording);
-    let fault = rate.map(quality::against_motion);
-    let left = |recording: &Recording| -> Result<Left, EstimateError> {
+impl Looked {
+    /// `bad`: samples that no sensor measured.
+    ///
+    /// # Errors
+    /// Missing columns, too little that is held, a path that is no circle: in a sentence.
+    pub fn at(recording: &Recording, bad: &[bool]) -> Result<Self, EstimateError> {
         let signals = Signals::of(recording, bad)?;
         let path = signals.path(recording);
         let circle = geometry::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
-        let (track, axis) = upright(&signals, recording, &circle.arm)?;
-        let (rms, resists) = force::plain_rms(&mut track.clone(), &model_of(recording, &circle.arm))?;
-        Ok(Left { rms, noise: track.force_noise, resists, more: axis.is_some() })
-    };
-    // What cannot even be looked at is told by what looks at it next.
-    let Ok(before) = left(&straight) else { return (straight, fault) };
-    if before.rms < SENSELESS * before.noise {
-        return (straight, fault);
+        let (rows, axis) = upright(&signals, recording, &circle.arm)?;
+        Ok(Self { signals, circle, rows, axis })
     }
-    let mut best: Option<(Left, Recording, &[&str])> = None;
+
+    /// What a crank's model leaves of the force, N, and whether friction takes work.
+    fn left(&self, recording: &Recording) -> Result<(f64, bool), EstimateError> {
+        force::plain_rms(&mut self.rows.clone(), &model_of(recording, &self.circle.arm))
+    }
+}
+
+/// A crank's recording with its channels put right, one by one, and what it looks like then; whole axes of the force are [`upright`]'s.
+///
+/// # Errors
+/// As [`Looked::at`].
+pub fn of_crank<'a>(
+    recording: &'a Recording,
+    bad: &[bool],
+) -> Result<(Cow<'a, Recording>, Option<Cause>, Looked), EstimateError> {
+    let (straight, rate) = with_rates_of_motion(recording);
+    let fault = rate.map(quality::against_motion);
+    let looked = Looked::at(&straight, bad)?;
+    let (before, _) = looked.left(&straight)?;
+    if before < SENSELESS * looked.rows.force_noise {
+        return Ok((straight, fault, looked));
+    }
+    let mut best: Option<(f64, Looked, Recording, &[&str])> = None;
     for names in ALONE.iter().filter(|names| names.iter().any(|name| recording.channel(name).is_some())) {
         let other = mirrored(&straight, names);
-        let Ok(after) = left(&other) else { continue };
+        let Ok(looked) = Looked::at(&other, bad) else { continue };
+        let Ok((after, resists)) = looked.left(&other) else { continue };
         // One mirrored channel is likelier than that and an axis of the force.
-        let better = |least: &Left| (after.more, after.rms) < (least.more, least.rms);
-        let sound = after.resists && after.rms < MIRRORED_SHARE * before.rms;
-        if sound && best.as_ref().is_none_or(|(least, ..)| better(least)) {
-            best = Some((after, other, names));
+        let better = |(least, held): (f64, &Looked)| (looked.axis.is_some(), after) < (held.axis.is_some(), least);
+        let sound = resists && after < MIRRORED_SHARE * before;
+        if sound && best.as_ref().is_none_or(|(least, held, ..)| better((*least, held))) {
+            best = Some((after, looked, other, names));
         }
     }
-    match best {
-        Some((after, other, names)) => {
+    Ok(match best {
+        Some((after, looked, other, names)) => {
             // A joint's rate that was right goes with its angle: then only the angle was mirrored.
             let name = if names[0].starts_with('f') { names.join(" and ") } else { names[0].to_owned() };
-            (Cow::Owned(other), Some(quality::mirrored(&name, after.rms / before.rms)))
+            (Cow::Owned(other), Some(quality::mirrored(&name, after / before)), looked)
         }
-        None => (straight, fault),
-    }
+        None => (straight, fault, looked),
+    })
 }
 
 /// A force whose sign is that of the hand on the mechanism's other side: with it mass and friction come out negative, and every one of them for

@@ -289,7 +289,7 @@ impl System {
 
 /// Products of all columns with each other, summed over the picked rows. As products of matrices, not column by column: several times as
 /// fast. Tile by tile, which stay in the cache, and on one side of the diagonal only: the other is the same.
-fn gram(columns: &[Vec<f64>], picked: &[usize]) -> DMatrix<f64> {
+pub fn gram(columns: &[Vec<f64>], picked: &[usize]) -> DMatrix<f64> {
     let count = columns.len();
     let mut gram = DMatrix::zeros(count, count);
     let mut tile = DMatrix::zeros(TILE + LEAST_TILE, count);

@@ -116,6 +116,31 @@ impl Row {
     }
 }
 
+#[cfg(test)]
+impl Track {
+    /// These rows, 10 ms apart, of something that moves along a line.
+    pub fn of_rows(rows: Vec<Row>) -> Self {
+        Self {
+            rows,
+            fine: Vec::new(),
+            period_s: 0.01,
+            raw_period_s: 0.01,
+            coordinate: Coordinate::Linear,
+            radius_m: None,
+            planar: false,
+            velocity_noise: 0.0,
+            position_noise: 0.0,
+            force_noise: 1e-3,
+            noise_is_measured: false,
+            span_s: 1.0,
+            hung: Vec::new(),
+            bearing_weight_n: 0.0,
+            slope: None,
+            extra: Vec::new(),
+        }
+    }
+}
+
 /// Rows and what is known of their noise.
 #[derive(Clone, Debug)]
 pub struct Track {
@@ -154,13 +179,6 @@ pub struct Track {
 }
 
 impl Track {
-    /// Everything but the rows.
-    pub fn clone_without_rows(&self) -> Self {
-        let Self { fine, hung, extra, .. } = self;
-        let (rows, fine, hung, extra) = (Vec::new(), fine.clone(), hung.clone(), extra.clone());
-        Self { rows, fine, hung, extra, ..*self }
-    }
-
     /// Slow channels that every recording has: name, unit, and the value at each row less the mean.
     pub fn extras(&self) -> Vec<(String, String, Vec<f64>)> {
         let Some(first) = self.extra.first() else { return Vec::new() };

@@ -1,5 +1,6 @@
 //! What the extension is worth on other recordings: nothing is fitted to them.
 
+use super::columns::Columns;
 use super::dictionary::{Dictionary, dry_of};
 use super::force::{blur, column};
 use super::gain::bootstrap;
@@ -70,8 +71,9 @@ fn faults(track: &Track, predicted: &[f64], known: &[Effect], kept: &[Kept], lef
     let grid = Grid::coarse(track);
     let fixed: Vec<Vec<f64>> = known.iter().map(|e| column(track, e)).collect();
     let (resisting, dry) = (predicted, &dry_of(track, predicted));
+    let columns = &Columns::default();
     let dictionary =
-        Dictionary { track, predicted, resisting, dry, fixed: &fixed, without: &[], grid: &grid }.candidates();
+        Dictionary { track, predicted, resisting, dry, fixed: &fixed, without: &[], grid: &grid, columns }.candidates();
     for fault in of_sensors {
         match fault.column(&dictionary) {
             Some(column) => sum.iter_mut().zip(column).for_each(|(s, c)| *s += c),

@@ -2,6 +2,9 @@
 
 use super::correlate::correlate;
 use nalgebra::{DMatrix, DVector};
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::rc::Rc;
 
 /// Steps that differ by this share of one are the same.
 const SAME_STEP: f64 = 1e-3;
@@ -33,19 +36,18 @@ pub fn savitzky_golay(time_s: &[f64], values: &[f64], half_width: usize, order: 
         return out;
     };
     // Even sampling: the weights depend only on the place within the window, and inside they are always the same.
-    let grid: Vec<f64> = (0..window).map(|k| k as f64).collect();
     let whole = if window == 2 * half_width + 1 { n - half_width } else { half_width };
     let inside = half_width..whole;
     for i in (0..n).filter(|i| !inside.contains(i)) {
         let first = i.saturating_sub(half_width).min(n - window);
-        let rows = local_weights(&grid, (i - first) as f64, order);
+        let rows = even_weights(window, i - first, order);
         put(&mut out, i, &rows, &values[first..first + window], period);
     }
     if !inside.is_empty() {
-        let rows = local_weights(&grid, half_width as f64, order);
+        let rows = even_weights(window, half_width, order);
         let scales = [1.0, 1.0 / period, 1.0 / (period * period)];
         let series = [&mut out.value, &mut out.first, &mut out.second];
-        for ((out, row), scale) in series.into_iter().zip(&rows).zip(scales) {
+        for ((out, row), scale) in series.into_iter().zip(rows.iter()).zip(scales) {
             for (to, sum) in out[inside.clone()].iter_mut().zip(correlate(&values[..n], row)) {
                 *to = sum * scale;
             }
@@ -80,6 +82,27 @@ fn put(out: &mut Derivatives, i: usize, rows: &[Vec<f64>; 3], values: &[f64], pe
     out.value[i] = dot(&rows[0]);
     out.first[i] = dot(&rows[1]) / period;
     out.second[i] = dot(&rows[2]) / (period * period);
+}
+
+/// Weights of value, slope and curvature, one a sample of the window.
+type Weights = Rc<[Vec<f64>; 3]>;
+
+/// [`local_weights`] at the sample of index `place` of `window` even ones, a period of 1 apart. Those of short windows are kept: a recording of
+/// many short stretches asks for the same ones at both ends of each, and making them takes longer than all the rest.
+fn even_weights(window: usize, place: usize, order: usize) -> Weights {
+    /// All places of all shorter windows are a few hundred kilobytes for each order.
+    const KEPT: usize = 32;
+    thread_local! {
+        static KNOWN: RefCell<HashMap<[usize; 3], Weights>> = RefCell::new(HashMap::new());
+    }
+    let make = || {
+        let grid: Vec<f64> = (0..window).map(|k| k as f64).collect();
+        Rc::new(local_weights(&grid, place as f64, order))
+    };
+    if window > KEPT {
+        return make();
+    }
+    KNOWN.with_borrow_mut(|known| known.entry([window, place, order.min(window)]).or_insert_with(make).clone())
 }
 
 /// Weights that give value, slope and curvature at `at` of the least-squares polynomial through samples at `time`.

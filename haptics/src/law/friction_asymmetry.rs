@@ -35,6 +35,10 @@ impl Law for FrictionAsymmetry {
         Role::Dry
     }
 
+    fn feels_load(&self) -> bool {
+        true
+    }
+
     fn regressor(&self, motion: &Motion, columns: &mut [f64; MAX_PARAMETERS]) {
         let moving = motion.direction.abs();
         columns[0] = moving;

@@ -31,6 +31,10 @@ impl Law for LoadFriction {
         Role::Dry
     }
 
+    fn feels_load(&self) -> bool {
+        true
+    }
+
     fn regressor(&self, motion: &Motion, columns: &mut [f64; MAX_PARAMETERS]) {
         columns[0] = motion.normal_force_n.abs() * motion.direction;
     }

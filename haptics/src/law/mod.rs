@@ -142,6 +142,10 @@ pub trait Law: Sync {
     fn is_dry(&self) -> bool {
         matches!(self.role(), Role::Dry | Role::Presliding)
     }
+    /// True when the force goes with [`Motion::normal_force_n`].
+    fn feels_load(&self) -> bool {
+        false
+    }
     /// True when the law has a memory that [`Law::advance`] moves.
     fn remembers(&self) -> bool {
         false

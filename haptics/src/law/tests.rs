@@ -61,6 +61,25 @@ fn linear_means_linear_and_the_columns_sum_to_the_force() {
 }
 
 #[test]
+fn what_goes_with_the_load_says_so() {
+    let at = |position: f64, normal_force_n: f64| Motion {
+        time_s: 7.0,
+        position,
+        velocity: -0.04,
+        acceleration: 0.3,
+        direction: -1.0,
+        normal_force_n,
+        up_along: 0.6,
+    };
+    for law in CATALOGUE {
+        let effect = Effect::new(law, &[0.3, 0.2, 0.1, 0.05, 0.4]);
+        let goes = |place: f64| (effect.force(&at(place, 1.5)) - effect.force(&at(place, -4.0))).abs() > 1e-12;
+        let places = || (-20..20).map(|k| 0.01 * f64::from(k));
+        assert_eq!(places().any(goes), law.feels_load(), "{}", law.id());
+    }
+}
+
+#[test]
 fn stribeck_holds_at_rest_without_creep_and_breaks_away() {
     let effects =
         [Effect::new(&Inertia, &[0.1]), Effect::new(&CoulombFriction, &[0.3]), Effect::new(&Stribeck, &[0.5, 0.01])];

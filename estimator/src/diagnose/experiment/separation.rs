@@ -1,6 +1,7 @@
 //! How well a motion would tell two causes apart.
 
 use super::super::candidate::Candidate;
+use super::super::columns::Columns;
 use super::super::dictionary::{Dictionary, dry_of};
 use super::super::force::{Model, column};
 use super::super::geometry::Study;
@@ -38,6 +39,7 @@ impl Imagined {
             fixed: &[],
             without: &taken,
             grid: &grid,
+            columns: &Columns::default(),
         }
         .candidates();
         let variance = variance(study).unwrap_or(1.0);

@@ -4,6 +4,7 @@ use super::rows::{Needle, Phase, Row};
 use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::atlas::View;
 use crate::diagnose::candidate::Candidate;
+use crate::diagnose::columns::Columns;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::dictionary::Dictionary;
 use crate::diagnose::experiment::Imagined;
@@ -104,6 +105,7 @@ fn candidates(
         fixed: &[],
         without: &[],
         grid: &grid,
+        columns: &Columns::default(),
     };
     let possible = dictionary.candidates().into_iter().filter(|c| POSSIBLE.contains(&c.id));
     // A rate is measured less well than a direction.
