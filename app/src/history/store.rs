@@ -28,7 +28,10 @@ pub struct Store {
 impl Store {
     /// Opens the file, or makes it.
     pub fn open(path: &Path) -> Result<Self, String> {
-        let refused = |why: &str| format!("The history cannot be opened: {why}. File: {}.", path.display());
+        // A damaged schema is quoted as it stands, lines and all.
+        let refused = |why: &str| {
+            format!("The history cannot be opened: {}. File: {}.", haptics::text_file::one_line(why), path.display())
+        };
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(|error| refused(&error.to_string()))?;
         }

@@ -123,6 +123,22 @@ fn a_newer_file_is_refused_and_left_as_it_is() {
     assert_eq!(still, 999);
 }
 
+#[test]
+fn a_damaged_table_of_several_lines_is_told_in_one_sentence() {
+    let (_folder, path) = folder();
+    drop(Store::open(&path).expect("made"));
+    let file = Connection::open(&path).expect("opened");
+    file.execute_batch(
+        "PRAGMA writable_schema = ON;
+        UPDATE sqlite_schema SET sql = replace(sql, 'created TEXT', 'created [TEXT') WHERE name = 'trainees';",
+    )
+    .expect("written");
+    drop(file);
+    let refused =
+        Store::open(&path).err().or_else(|| Store::open(&path).ok()?.trainees().err()).expect("it is damaged");
+    assert!(refused.contains("trainees") && !refused.contains('\n'), "{refused:?}");
+}
+
 /// What the thread answers, as it comes.
 fn started(path: &Path) -> (History, Receiver<()>) {
     let (woken, wakes) = channel();

@@ -246,7 +246,7 @@ impl eframe::App for App {
     }
 
     fn on_exit(&mut self) {
-        if let Some(autosave) = &self.autosave {
+        if let Some(autosave) = &mut self.autosave {
             autosave.end(&self.session, &self.dock, self.tour.seen);
         }
     }

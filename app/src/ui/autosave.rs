@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Between two looks for changes.
@@ -42,8 +43,8 @@ pub struct State {
 
 /// Keeps the state of one window.
 pub struct Autosave {
-    /// Work for the thread that writes, and what went wrong there.
-    sender: Sender<String>,
+    /// Who writes, and what went wrong there.
+    writer: Option<Writer>,
     problems: Receiver<String>,
     path: PathBuf,
     /// What was written last.
@@ -51,6 +52,12 @@ pub struct Autosave {
     next: Instant,
     /// Locked as long as the window is open.
     _lock: File,
+}
+
+/// The thread that writes, with work for it.
+struct Writer {
+    sender: Sender<String>,
+    thread: JoinHandle<()>,
 }
 
 impl Autosave {
@@ -72,9 +79,10 @@ impl Autosave {
                 }
             }
         };
-        std::thread::Builder::new().name("autosave".to_owned()).spawn(writer).ok()?;
+        let thread = std::thread::Builder::new().name("autosave".to_owned()).spawn(writer).ok()?;
+        let writer = Some(Writer { sender, thread });
         let last = State { ended: true, ..State::default() };
-        Some((Self { sender, problems, path, last, next: Instant::now(), _lock: lock }, before))
+        Some((Self { writer, problems, path, last, next: Instant::now(), _lock: lock }, before))
     }
 
     /// Writes what has changed, now and then; call once a frame. What went wrong the last time comes back, in a sentence.
@@ -91,18 +99,34 @@ impl Autosave {
             && let Ok(text) = serde_json::to_string(&state)
         {
             // The thread lives as long as this; without it there is nothing to be done.
-            let _ = self.sender.send(text);
+            let _ = self.writer.as_ref().map(|writer| writer.sender.send(text));
             self.last = state;
         }
         self.problems.try_recv().ok()
     }
 
-    /// The window is closed by the user: written at once.
-    pub fn end(&self, session: &Session, dock: &Dock, toured: bool) {
+    /// The window is closed by the user: written at once, after all that was still to be written. An older state would come last otherwise.
+    pub fn end(&mut self, session: &Session, dock: &Dock, toured: bool) {
+        self.finish();
         let state = State { ended: true, ..state(session, dock, toured) };
         if let Ok(text) = serde_json::to_string(&state) {
             let _ = write_whole(&self.path, &text);
         }
+    }
+
+    /// Waits until everything is written that the thread was given.
+    fn finish(&mut self) {
+        if let Some(Writer { sender, thread }) = self.writer.take() {
+            drop(sender);
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Drop for Autosave {
+    /// What was given to the thread is on the disk before another window may have the folder.
+    fn drop(&mut self) {
+        self.finish();
     }
 }
 
@@ -166,8 +190,22 @@ mod tests {
         assert!(Autosave::begin(folder.path()).is_none(), "a second window keeps out");
         // As after a kill: the lock is gone, the file says that the program still runs.
         drop(autosave);
-        let (autosave, before) = Autosave::begin(folder.path()).expect("begins again");
+        let (mut autosave, before) = Autosave::begin(folder.path()).expect("begins again");
         assert!(!before.ended && before.project == found.project);
+        autosave.end(&session, &dock, true);
+        drop(autosave);
+        assert!(Autosave::begin(folder.path()).expect("begins").1.ended);
+    }
+
+    #[test]
+    fn the_end_is_what_is_written_last_however_much_waits() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (mut autosave, _) = Autosave::begin(folder.path()).expect("begins");
+        let (session, dock) = (Session::new(), Dock::default());
+        let open = serde_json::to_string(&State { ended: false, ..state(&session, &dock, true) }).expect("a state");
+        for _ in 0..200 {
+            autosave.writer.as_ref().expect("it writes").sender.send(open.clone()).expect("it lives");
+        }
         autosave.end(&session, &dock, true);
         drop(autosave);
         assert!(Autosave::begin(folder.path()).expect("begins").1.ended);

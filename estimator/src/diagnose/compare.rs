@@ -3,7 +3,8 @@
 use super::candidate::Candidate;
 use super::geometry::{Study, residual};
 use super::select::Selection;
-use super::system::{Held, Rows, System, solve, uses, whitener};
+use super::system::{Held, Rows, System, solve, uses};
+use super::white::whitener;
 use crate::estimate::EstimateError;
 
 /// What whitening is learnt from keeps this much of the generic terms' strength out.

@@ -1,6 +1,6 @@
 //! The force that the motion needs: what the model leaves of it, and which causes explain that.
 
-use super::candidate::{Candidate, Searched};
+use super::candidate::Candidate;
 use super::columns::Columns;
 use super::compare::whitening as whitening_of;
 use super::dictionary::Dictionary;
@@ -63,12 +63,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
             known.columns.forget_loads();
             known.generic = generic(track);
         }
-        let before = Before {
-            laws: made.solved.as_ref().map(|s| s.values[..made.base.len()].to_vec()),
-            found: found.into_iter().map(|c| (c.id, c.searched.clone())).collect(),
-            whitening: made.system.coefficients,
-        };
-        made = compare(track, (model, fixed), &known, threshold, [&coarse, &fine], Some(before))?;
+        made = compare(track, (model, fixed), &known, threshold, [&coarse, &fine], Some(made))?;
     }
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
     leave_out_what_harms(&mut made, &stretch, CONFIRMED * threshold);
@@ -142,28 +137,20 @@ struct Known {
     generic: Vec<Candidate>,
 }
 
-/// What a round knows of the one before.
-struct Before {
-    /// What the model's laws came out at beside what was found.
-    laws: Option<Vec<f64>>,
-    /// What was found: causes and their searched values.
-    found: Vec<(&'static str, Vec<Searched>)>,
-    /// Learnt then, when the same things together left the same.
-    whitening: Vec<f64>,
-}
-
-/// One round: laws that are fitted, and those of which everything is known.
+/// One round: laws that are fitted, and those of which everything is known. `before`: the round before, whose whitening stays (the same
+/// things together left the same).
 fn compare(
     track: &Track,
     (model, fixed): (&Model, &Model),
     made: &Known,
     threshold: f64,
     [coarse, fine]: [&Grid; 2],
-    before: Option<Before>,
+    before: Option<Study>,
 ) -> Result<Study, EstimateError> {
     let Asked { mut base, known, y } = asked(track, model, fixed);
     let Look { mut predicted, mut resisting, weight, slides: mut dry } = first_look(track, model, &base, &y)?;
-    let laws = before.as_ref().and_then(|b| b.laws.as_deref());
+    // What the model's laws came out at beside what was found.
+    let laws = before.as_ref().and_then(|b| Some(&b.solved.as_ref()?.values[..b.base.len()]));
     if let Some(laws) = laws.filter(|laws| friction_is_sound(model, laws)) {
         (predicted, resisting) = (total(y.len(), model, &base, laws, false), total(y.len(), model, &base, laws, true));
         dry = (0..y.len()).map(|i| dry_level(track, model, laws, i)).collect();
@@ -200,14 +187,13 @@ fn compare(
         period_s: track.period_s,
     };
     let has_dry = model.iter().any(|e| e.law().is_dry());
-    let place = |(id, searched): &(&'static str, Vec<Searched>)| {
-        candidates.iter().position(|c| c.id == *id && c.is_near(searched))
+    let place = |found: &Candidate| candidates.iter().position(|c| c.id == found.id && c.is_near(&found.searched));
+    let found = before.iter().flat_map(|b| b.chosen.iter().map(|c| &b.candidates[c.candidate]));
+    let start: Vec<usize> = found.filter_map(place).collect();
+    let system = match before {
+        Some(before) => System::after(before, &base, &candidates, &rows),
+        None => System::new(&base, &candidates, &rows, whitening_of(&base, &candidates, &rows, threshold)?),
     };
-    let (start, coefficients) = match before {
-        Some(before) => (before.found.iter().filter_map(place).collect(), before.whitening),
-        None => (Vec::new(), whitening_of(&base, &candidates, &rows, threshold)?),
-    };
-    let system = System::new(&base, &candidates, &rows, coefficients);
     let chosen =
         Selection { system: &system, candidates: &candidates, threshold, dry: has_dry, one_loss: true }.run(&start);
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();

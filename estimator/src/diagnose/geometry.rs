@@ -2,7 +2,8 @@
 
 use super::candidate::Candidate;
 use super::select::{Chosen, Selection};
-use super::system::{Held, Rows, Solved, System, solve, uses, whitener};
+use super::system::{Held, Rows, Solved, System, solve, uses};
+use super::white::whitener;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::Vec2;

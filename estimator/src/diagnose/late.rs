@@ -4,8 +4,9 @@
 
 use super::force::{Model, column};
 use super::generic::generic;
+use super::products::gram;
 use super::report::{Cause, CauseParameter, Diagnosis, Gain, Verdict};
-use super::system::{gram, solve};
+use super::system::solve;
 use super::track::{Row, Track};
 use crate::estimate::EstimateError;
 use crate::signal::derive::interpolate;

@@ -32,6 +32,7 @@ mod late;
 mod needle;
 mod passed_over;
 mod pinched;
+mod products;
 mod progress;
 mod pulled;
 mod quality;
@@ -50,6 +51,7 @@ mod switch;
 mod system;
 mod track;
 mod validate;
+mod white;
 mod world;
 
 pub use report::{

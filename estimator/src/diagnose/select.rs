@@ -96,17 +96,17 @@ impl Selection<'_> {
         if !self.dry && is(&OF_DRY_FRICTION) && !is(&DRY_FRICTION) {
             return f64::INFINITY;
         }
-        let Some(solved) = self.system.solve(chosen) else { return f64::INFINITY };
+        let Some((values, rss)) = self.system.least(chosen) else { return f64::INFINITY };
         let mut at = self.system.base;
         for c in chosen {
             let candidate = &self.candidates[*c];
             let end = at + candidate.columns.len();
-            if !candidate.admits(&solved.values[at..end]) {
+            if !candidate.admits(&values[at..end]) {
                 return f64::INFINITY;
             }
             at = end;
         }
-        self.paid(chosen, solved.rss)
+        self.paid(chosen, rss)
     }
 
     fn paid(&self, chosen: &[usize], rss: f64) -> f64 {
@@ -116,7 +116,7 @@ impl Selection<'_> {
 
     /// The same whatever the signs.
     fn plain_price(&self, chosen: &[usize]) -> Option<f64> {
-        Some(self.paid(chosen, self.system.solve(chosen)?.rss))
+        Some(self.paid(chosen, self.system.least(chosen)?.1))
     }
 
     /// Whether a generic term in the k-th cause's place explains more, its own search paid: its name is then a guess.

@@ -1,10 +1,12 @@
 //! Whitened normal equations of all columns, block by block: every fit, comparison and cross-validation is then a small solve.
 
 use super::candidate::Candidate;
-use nalgebra::{DMatrix, DVector};
+use super::geometry::Study;
+use super::products::{self, gram};
+use super::white::Whitening;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use std::collections::HashMap;
 
-/// Highest order of the whitening autoregression.
-const LARGEST_ORDER: usize = 6;
 /// Rows of a block are this many at least, and there are this many blocks at most.
 const LEAST_BLOCK: usize = 12;
 const MOST_BLOCKS: usize = 20;
@@ -12,11 +14,6 @@ const MOST_BLOCKS: usize = 20;
 const LOCKED_EVERY: usize = 4;
 /// Rows so close to a locked block take no part, s.
 const GUARD_S: f64 = 0.1;
-/// Rows that are multiplied at a time (a block of the product's own, so that sums are what they were), and the fewest: a handful would be
-/// multiplied in another way. Columns at a time.
-const TILE: usize = 256;
-const LEAST_TILE: usize = 8;
-const PANEL: usize = 64;
 /// Folds of the cross-validation.
 pub const FOLDS: usize = 5;
 
@@ -89,73 +86,6 @@ pub fn uses(rows: &Rows<'_>) -> Vec<Use> {
     uses
 }
 
-/// Autoregression that whitens a residual: coefficients of the lags from 1 on, chosen by BIC.
-pub fn whitener(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> Vec<f64> {
-    let trains = |i: usize| matches!(used[i], Use::Always | Use::Fold(_));
-    let mut lags = [0.0; LARGEST_ORDER + 1];
-    let mut count = 0.0_f64;
-    for i in 0..residual.len() {
-        if !trains(i) {
-            continue;
-        }
-        count += 1.0;
-        for (lag, sum) in lags.iter_mut().enumerate() {
-            if i >= lag && rows.stretch[i - lag] == rows.stretch[i] && trains(i - lag) {
-                *sum += residual[i] * residual[i - lag];
-            }
-        }
-    }
-    if lags[0] <= 0.0 || count < 40.0 {
-        return Vec::new();
-    }
-    // Levinson's recursion.
-    let (mut coefficients, mut innovation): (Vec<f64>, f64) = (Vec::new(), lags[0]);
-    let mut best = (count * innovation.ln(), Vec::new());
-    for order in 1..lags.len() {
-        let predicted: f64 = coefficients.iter().zip(lags[1..order].iter().rev()).map(|(a, r)| a * r).sum();
-        let reflection = ((lags[order] - predicted) / innovation).clamp(-0.999, 0.999);
-        let before = coefficients.clone();
-        for (a, b) in coefficients.iter_mut().zip(before.iter().rev()) {
-            *a -= reflection * b;
-        }
-        coefficients.push(reflection);
-        innovation *= 1.0 - reflection * reflection;
-        let bic = count * innovation.ln() + order as f64 * count.ln();
-        if bic < best.0 {
-            best = (bic, coefficients.clone());
-        }
-    }
-    best.1
-}
-
-/// A column through weights and whitening. The first rows of a stretch, whose past is unknown, are scaled to the same noise.
-pub fn whiten(values: &[f64], rows: &Rows<'_>, coefficients: &[f64]) -> Vec<f64> {
-    let weighted = |i: usize| values[i] * rows.weight[i];
-    let mut out = vec![0.0; values.len()];
-    let mut since = 0;
-    for (i, whitened) in out.iter_mut().enumerate() {
-        since = if i > 0 && rows.stretch[i] == rows.stretch[i - 1] { since + 1 } else { 0 };
-        // Without its whole past a row is left out.
-        if since < coefficients.len() {
-            continue;
-        }
-        let past: f64 = coefficients.iter().enumerate().map(|(k, a)| a * weighted(i - k - 1)).sum();
-        *whitened = weighted(i) - past;
-    }
-    out
-}
-
-/// Rows that whitening leaves something of.
-fn whole(rows: &Rows<'_>, order: usize) -> Vec<bool> {
-    let mut since = 0;
-    (0..rows.y.len())
-        .map(|i| {
-            since = if i > 0 && rows.stretch[i] == rows.stretch[i - 1] { since + 1 } else { 0 };
-            since >= order
-        })
-        .collect()
-}
-
 /// Normal equations of all columns and the target, which is the last one.
 pub struct System {
     /// Of the rows that train.
@@ -170,6 +100,37 @@ pub struct System {
     pub uses: Vec<Use>,
     /// Mean square of each column over all rows, for the support guard.
     energy: Vec<(f64, f64)>,
+    /// Products over the rows that train always.
+    always: DMatrix<f64>,
+    /// All columns, for the products with those of a later system.
+    whitened: Vec<Vec<f64>>,
+}
+
+/// What a system takes from an earlier one.
+struct Known {
+    system: System,
+    /// Which of its columns each one is.
+    from: Vec<Option<usize>>,
+}
+
+/// All columns in the order of a system, the target last.
+fn columns_of<'a>(base: &'a [Vec<f64>], candidates: &'a [Candidate], y: &'a [f64]) -> Vec<&'a [f64]> {
+    let of_candidates = candidates.iter().flat_map(|c| &c.columns);
+    base.iter().chain(of_candidates).map(Vec::as_slice).chain([y]).collect()
+}
+
+/// Which of the columns in `had` each one is, to the bit; each of them stands for one at most.
+fn origins(columns: &[&[f64]], had: &[&[f64]]) -> Vec<Option<usize>> {
+    let mark = |column: &[f64]| column.iter().fold(0_u64, |sum, v| sum.wrapping_add(v.to_bits()));
+    let mut marks: HashMap<u64, Vec<usize>> = HashMap::new();
+    had.iter().enumerate().for_each(|(h, column)| marks.entry(mark(column)).or_default().push(h));
+    let same = |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());
+    let mut origin = |column: &&[f64]| {
+        let marked = marks.get_mut(&mark(column))?;
+        let place = marked.iter().position(|h| same(column, had[*h]))?;
+        Some(marked.swap_remove(place))
+    };
+    columns.iter().map(&mut origin).collect()
 }
 
 /// A solved subset of the columns.
@@ -185,35 +146,56 @@ pub struct Solved {
 
 impl System {
     pub fn new(base: &[Vec<f64>], candidates: &[Candidate], rows: &Rows<'_>, coefficients: Vec<f64>) -> Self {
+        Self::build(columns_of(base, candidates, rows.y), (base.len(), candidates), rows, coefficients, None)
+    }
+
+    /// Another one of the same rows as `before`, whitened alike: products of columns that were there already are taken from it.
+    pub fn after(before: Study, base: &[Vec<f64>], candidates: &[Candidate], rows: &Rows<'_>) -> Self {
+        let columns = columns_of(base, candidates, rows.y);
+        let Study { system, candidates: had, base: had_base, y: had_y, weight, .. } = before;
+        let coefficients = system.coefficients.clone();
+        let known = (weight == rows.weight && system.uses == uses(rows))
+            .then(|| Known { from: origins(&columns, &columns_of(&had_base, &had, &had_y)), system });
+        Self::build(columns, (base.len(), candidates), rows, coefficients, known)
+    }
+
+    fn build(
+        columns: Vec<&[f64]>,
+        (base, candidates): (usize, &[Candidate]),
+        rows: &Rows<'_>,
+        coefficients: Vec<f64>,
+        known: Option<Known>,
+    ) -> Self {
         let uses = uses(rows);
-        let whole = whole(rows, coefficients.len());
-        let mut columns: Vec<Vec<f64>> = Vec::new();
+        let white = Whitening::new(rows.stretch, rows.weight, &coefficients);
+        let whole = white.leaves();
         let mut places = Vec::new();
-        let mut push = |values: &[f64]| columns.push(whiten(values, rows, &coefficients));
-        for column in base {
-            push(column);
-        }
-        let mut at = base.len();
+        let mut at = base;
         for candidate in candidates {
-            for column in &candidate.columns {
-                push(column);
-            }
             places.push(at..at + candidate.columns.len());
             at += candidate.columns.len();
         }
-        push(rows.y);
+        let (from, mut had) = known.map_or_else(|| (vec![None; columns.len()], None), |k| (k.from, Some(k.system)));
+        let mut taken = |c: usize| Some(std::mem::take(&mut had.as_mut()?.whitened[from[c]?]));
+        let columns: Vec<Vec<f64>> =
+            columns.into_iter().enumerate().map(|(c, values)| taken(c).unwrap_or_else(|| white.of(values))).collect();
         let pick = |wanted: &dyn Fn(Use) -> bool| -> Vec<usize> {
             (0..rows.y.len()).filter(|i| whole[*i] && wanted(uses[*i])).collect()
         };
+        let products = |part: &dyn Fn(&System) -> &DMatrix<f64>, picked: &[usize]| match &had {
+            Some(had) => products::more(&columns, picked, part(had), &from),
+            None => gram(&columns, picked),
+        };
         // A row of little weight is less than one observation: it leaves as little as it says.
         let counted = |picked: &[usize]| picked.iter().map(|i| rows.weight[*i].powi(2)).sum::<f64>();
-        let always = pick(&|u| u == Use::Always);
-        let mut train = gram(&columns, &always);
-        let mut count = counted(&always);
+        let picked = pick(&|u| u == Use::Always);
+        let always = products(&|had| &had.always, &picked);
+        let mut train = always.clone();
+        let mut count = counted(&picked);
         let mut folds = Vec::new();
         for fold in 0..FOLDS {
             let picked = pick(&|u| u == Use::Fold(fold));
-            let part = gram(&columns, &picked);
+            let part = products(&|had| &had.folds[fold].0, &picked);
             train += &part;
             count += counted(&picked);
             folds.push((part, counted(&picked)));
@@ -229,7 +211,7 @@ impl System {
                 (train[(c, c)] / (trained.max(1) as f64), all)
             })
             .collect();
-        Self { train, rows: count, folds, places, base: base.len(), coefficients, uses, energy }
+        Self { train, rows: count, folds, places, base, coefficients, uses, energy, always, whitened: columns }
     }
 
     fn target(&self) -> usize {
@@ -252,6 +234,13 @@ impl System {
     /// Least squares on the rows that train.
     pub fn solve(&self, chosen: &[usize]) -> Option<Solved> {
         solve(&self.train, &self.columns(chosen), self.target())
+    }
+
+    /// The values and the sum of the squared residuals alone of [`Self::solve`].
+    pub fn least(&self, chosen: &[usize]) -> Option<(Vec<f64>, f64)> {
+        let columns = self.columns(chosen);
+        let (values, rss, _) = scaled(&self.train, &columns, self.target())?;
+        Some((values, rss))
     }
 
     /// The sum of squared errors on every fold by a fit to all the others.
@@ -287,36 +276,23 @@ impl System {
     }
 }
 
-/// Products of all columns with each other, summed over the picked rows. As products of matrices, not column by column: several times as
-/// fast. Tile by tile, which stay in the cache, and on one side of the diagonal only: the other is the same.
-pub fn gram(columns: &[Vec<f64>], picked: &[usize]) -> DMatrix<f64> {
-    let count = columns.len();
-    let mut gram = DMatrix::zeros(count, count);
-    let mut tile = DMatrix::zeros(TILE + LEAST_TILE, count);
-    let panels = count.div_ceil(PANEL).max(1);
-    let mut rest = picked;
-    while !rest.is_empty() {
-        let (rows, later) = rest.split_at(if rest.len() < TILE + LEAST_TILE { rest.len() } else { TILE });
-        rest = later;
-        for (mut tile, column) in tile.column_iter_mut().zip(columns) {
-            for (value, row) in tile.iter_mut().zip(rows) {
-                *value = column[*row];
-            }
-        }
-        let across = tile.rows(0, rows.len()).transpose();
-        for panel in 0..panels {
-            let (first, end) = (panel * count / panels, (panel + 1) * count / panels);
-            let part = tile.view((0, first), (rows.len(), end - first));
-            let below = &across.rows(first, count - first);
-            gram.view_mut((first, first), (count - first, end - first)).gemm(1.0, below, &part, 1.0);
-        }
-    }
-    gram.fill_upper_triangle_with_lower_triangle();
-    gram
+/// Least squares of column `target` on `columns`, out of a matrix of all products.
+pub fn solve(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<Solved> {
+    let (values, rss, Scaled { cholesky, scale }) = scaled(gram, columns, target)?;
+    let (p, inverse) = (columns.len(), cholesky.inverse());
+    let inverse = DMatrix::from_fn(p, p, |i, j| inverse[(i, j)] / (scale[i] * scale[j]));
+    Some(Solved { columns: columns.to_vec(), values, inverse, rss })
 }
 
-/// Least squares of column `target` on `columns`, out of a matrix of all products. A breath of ridge keeps equal columns apart.
-pub fn solve(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<Solved> {
+/// Normal equations of columns of the same size, factored.
+struct Scaled {
+    cholesky: Cholesky<f64, Dyn>,
+    /// Size of each column.
+    scale: Vec<f64>,
+}
+
+/// The values of [`solve`], the sum of the squared residuals, and what the values' errors come from. A breath of ridge keeps equal columns apart.
+fn scaled(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<(Vec<f64>, f64, Scaled)> {
     const RIDGE: f64 = 1e-10;
     let p = columns.len();
     let scale: Vec<f64> =
@@ -326,12 +302,10 @@ pub fn solve(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<So
     });
     let right = DVector::from_fn(p, |i, _| gram[(columns[i], target)] / scale[i]);
     let cholesky = normal.cholesky()?;
-    let scaled = cholesky.solve(&right);
-    let inverse = cholesky.inverse();
-    let values: Vec<f64> = (0..p).map(|i| scaled[i] / scale[i]).collect();
+    let found = cholesky.solve(&right);
+    let values: Vec<f64> = (0..p).map(|i| found[i] / scale[i]).collect();
     let rss = squares(gram, columns, &values, target).max(1e-12 * gram[(target, target)]);
-    let inverse = DMatrix::from_fn(p, p, |i, j| inverse[(i, j)] / (scale[i] * scale[j]));
-    Some(Solved { columns: columns.to_vec(), values, inverse, rss })
+    Some((values, rss, Scaled { cholesky, scale }))
 }
 
 /// Σ (y − Σ value × column)².
@@ -344,27 +318,4 @@ fn squares(gram: &DMatrix<f64>, columns: &[usize], values: &[f64], target: usize
         }
     }
     sum.max(0.0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn products_in_tiles_are_those_of_whole_columns() {
-        let wave = |c: usize, i: usize| (0.37 * (i * (c + 1)) as f64).sin() + 0.01 * c as f64;
-        for (count, rows) in [(1, 5), (3, 700), (70, 256), (150, 263), (64, 264), (130, 1000), (7, 0)] {
-            let columns: Vec<Vec<f64>> = (0..count).map(|c| (0..2 * rows).map(|i| wave(c, i)).collect()).collect();
-            // Every other row.
-            let picked: Vec<usize> = (0..rows).map(|r| 2 * r).collect();
-            let found = gram(&columns, &picked);
-            for i in 0..count {
-                for j in 0..count {
-                    let sum: f64 = picked.iter().map(|r| columns[i][*r] * columns[j][*r]).sum();
-                    assert!((found[(i, j)] - sum).abs() < 1e-9 * (1.0 + rows as f64), "{count} {rows}: {i} {j}");
-                    assert_eq!(found[(i, j)].to_bits(), found[(j, i)].to_bits());
-                }
-            }
-        }
-    }
 }

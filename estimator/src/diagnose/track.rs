@@ -204,8 +204,8 @@ impl Track {
         if values.is_empty() {
             return 0.0;
         }
-        values.sort_by(f64::total_cmp);
-        values[((values.len() - 1) as f64 * share).round() as usize]
+        let place = ((values.len() - 1) as f64 * share).round() as usize;
+        *values.select_nth_unstable_by(place, f64::total_cmp).1
     }
 
     /// The mean over a row of what depends on motion.

@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 /// Steps that differ by this share of one are the same.
 const SAME_STEP: f64 = 1e-3;
-/// Columns whose parts of their own are this small depend on each other.
+/// A polynomial this small on the samples is nought there.
 const SINGULAR: f64 = 1e-12;
 
 /// Value and first two derivatives of a signal, one a sample.
@@ -105,38 +105,44 @@ fn even_weights(window: usize, place: usize, order: usize) -> Weights {
     KNOWN.with_borrow_mut(|known| known.entry([window, place, order.min(window)]).or_insert_with(make).clone())
 }
 
-/// Weights that give value, slope and curvature at `at` of the least-squares polynomial through samples at `time`.
+/// Weights that give value, slope and curvature at `at` of the least-squares polynomial through samples at `time`, built of polynomials that
+/// are orthogonal on these samples (Forsythe 1957). Where times coincide the order is as high as the others allow.
 fn local_weights(time: &[f64], at: f64, order: usize) -> [Vec<f64>; 3] {
     let n = time.len();
-    let order = order.min(n.saturating_sub(1));
     // Scaled so that the powers stay near 1.
     let reach = time.iter().map(|t| (t - at).abs()).fold(0.0, f64::max);
     let reach = if reach > 0.0 { reach } else { 1.0 };
-    let powers = DMatrix::from_fn(n, order + 1, |i, j| power((time[i] - at) / reach, j));
-    let pseudo = pseudo_inverse(powers);
-    let row = |k: usize, factor: f64| -> Vec<f64> {
-        if k > order { vec![0.0; n] } else { pseudo.row(k).iter().map(|w| w * factor).collect() }
-    };
-    [row(0, 1.0), row(1, 1.0 / reach), row(2, 2.0 / (reach * reach))]
-}
-
-/// (AᵀA)⁻¹Aᵀ by QR; by singular values where columns depend on each other.
-fn pseudo_inverse(tall: DMatrix<f64>) -> DMatrix<f64> {
-    let (rows, columns) = tall.shape();
-    let qr = tall.clone().qr();
-    let (q, r) = (qr.q(), qr.r());
-    let diagonal = r.diagonal().abs();
-    let by_qr = (rows >= columns && diagonal.min() > SINGULAR * diagonal.max())
-        .then(|| r.solve_upper_triangular(&q.transpose()))
-        .flatten();
-    by_qr.unwrap_or_else(|| {
-        tall.svd(true, true).pseudo_inverse(SINGULAR).unwrap_or_else(|_| DMatrix::zeros(columns, rows))
-    })
-}
-
-/// x to a small whole power.
-fn power(x: f64, exponent: usize) -> f64 {
-    (0..exponent).fold(1.0, |product, _| product * x)
+    let x: Vec<f64> = time.iter().map(|t| (t - at) / reach).collect();
+    let mut weights = [0; 3].map(|_| vec![0.0; n]);
+    // The polynomial of one order on the samples, and the one before; value, slope and curvature of both where they are asked for.
+    let (mut now, mut before) = (vec![1.0; n], vec![0.0; n]);
+    let (mut here, mut behind) = ([1.0, 0.0, 0.0], [0.0; 3]);
+    let mut square_before = f64::INFINITY;
+    for _ in 0..=order.min(n.saturating_sub(1)) {
+        let square: f64 = now.iter().map(|p| p * p).sum();
+        if square <= SINGULAR * SINGULAR * n as f64 {
+            break;
+        }
+        for (weights, here) in weights.iter_mut().zip(here) {
+            weights.iter_mut().zip(&now).for_each(|(weight, p)| *weight += here / square * p);
+        }
+        let middle = x.iter().zip(&now).map(|(x, p)| x * p * p).sum::<f64>() / square;
+        let back = square / square_before;
+        for ((x, now), before) in x.iter().zip(&mut now).zip(&mut before) {
+            let next = (x - middle) * *now - back * *before;
+            *before = std::mem::replace(now, next);
+        }
+        let of = |k: usize, more: f64| more - middle * here[k] - back * behind[k];
+        let next = [of(0, 0.0), of(1, here[0]), of(2, 2.0 * here[1])];
+        behind = std::mem::replace(&mut here, next);
+        square_before = square;
+    }
+    for (weights, scale) in weights.iter_mut().zip([1.0, 1.0 / reach, 1.0 / (reach * reach)]) {
+        for weight in weights {
+            *weight *= scale;
+        }
+    }
+    weights
 }
 
 /// The sampling period when the steps agree within 0.1 % of it, else `None`.
@@ -252,7 +258,7 @@ pub fn interpolate_cubic(time_s: &[f64], values: &[f64], wanted: &[f64]) -> Vec<
 pub fn polynomial(x: &[f64], y: &[f64], order: usize) -> Vec<f64> {
     let n = x.len().min(y.len());
     let order = order.min(n.saturating_sub(1));
-    let powers = DMatrix::from_fn(n, order + 1, |i, j| power(x[i], j));
+    let powers = DMatrix::from_fn(n, order + 1, |i, j| (0..j).fold(1.0, |product, _| product * x[i]));
     let target = DVector::from_fn(n, |i, _| y[i]);
     powers.svd(true, true).solve(&target, 1e-12).map_or_else(|_| vec![0.0; order + 1], |c| c.iter().copied().collect())
 }

@@ -168,7 +168,7 @@ fn what_was_chosen_is_remembered() {
     app.keep(folder.path(), false);
     app.session.comfort.left_handed = true;
     app.session.comfort.muted = true;
-    app.autosave.as_ref().expect("kept").end(&app.session, &app.dock, true);
+    app.autosave.as_mut().expect("kept").end(&app.session, &app.dock, true);
     let chosen = app.session.comfort;
     drop(app);
     let mut again = App::new(empty());

@@ -81,7 +81,7 @@ fn they_are_kept_for_the_next_start() {
     app.keep(folder.path(), false);
     app.dock.toggle(AT, Pane::Scene);
     assert!(app.dock.save_as(AT, "curves only"));
-    let kept: Autosave = app.autosave.take().expect("kept");
+    let mut kept: Autosave = app.autosave.take().expect("kept");
     kept.end(&app.session, &app.dock, true);
     drop((kept, app));
     let mut next = App::new(super::empty());

@@ -6,8 +6,8 @@ use super::super::dictionary::{Dictionary, dry_of};
 use super::super::force::{Model, column};
 use super::super::geometry::Study;
 use super::super::grid::Grid;
-use super::super::system::{Held, Rows, whiten};
 use super::super::track::Track;
+use super::super::white::Whitening;
 use nalgebra::{DMatrix, DVector};
 
 /// Rows of a motion that was not made yet, as a channel would see them.
@@ -19,8 +19,6 @@ pub struct Imagined {
     pub stretch: Vec<usize>,
     /// What each row's noise is smaller by.
     pub weight: Vec<f64>,
-    /// Time between rows, s.
-    pub period_s: f64,
 }
 
 impl Imagined {
@@ -49,7 +47,6 @@ impl Imagined {
             stretch: track.rows.iter().map(|r| r.stretch).collect(),
             // Where the direction is a guess, so is all of the friction.
             weight: track.rows.iter().map(|r| (1.0 + r.y * r.y * r.open / variance).powf(-0.5)).collect(),
-            period_s: track.period_s,
         }
     }
 }
@@ -79,29 +76,19 @@ struct Eye<'a> {
     on: &'a Imagined,
     /// The model's own columns, whitened.
     base: Vec<Vec<f64>>,
-    coefficients: &'a [f64],
+    white: Whitening<'a>,
     variance: f64,
 }
 
 impl<'a> Eye<'a> {
     fn new(on: &'a Imagined, study: &'a Study) -> Option<Self> {
-        let mut eye =
-            Self { on, base: Vec::new(), coefficients: &study.system.coefficients, variance: variance(study)? };
-        eye.base = on.base.iter().map(|column| eye.white(column)).collect();
-        Some(eye)
-    }
-
-    fn white(&self, column: &[f64]) -> Vec<f64> {
-        let (testable, time_s) = (vec![Held::Never; column.len()], vec![0.0; column.len()]);
-        let rows = Rows {
-            y: column,
-            stretch: &self.on.stretch,
-            testable: &testable,
-            time_s: &time_s,
-            weight: &self.on.weight,
-            period_s: self.on.period_s,
-        };
-        whiten(column, &rows, self.coefficients)
+        let white = Whitening::new(&on.stretch, &on.weight, &study.system.coefficients);
+        Some(Self {
+            on,
+            base: on.base.iter().map(|column| white.of(column)).collect(),
+            white,
+            variance: variance(study)?,
+        })
     }
 
     /// What of the k-th of `picks`, as large as it came out, model and `other` could not imitate.
@@ -115,10 +102,10 @@ impl<'a> Eye<'a> {
             sum.iter_mut().zip(c).for_each(|(s, x)| *s += v * x);
             sum
         });
-        let effect = self.white(&effect);
+        let effect = self.white.of(&effect);
         let rivals = self.on.candidates.iter().filter(|c| c.id == other);
         let left = rivals.map(|rival| {
-            let rival: Vec<Vec<f64>> = rival.columns.iter().map(|c| self.white(c)).collect();
+            let rival: Vec<Vec<f64>> = rival.columns.iter().map(|c| self.white.of(c)).collect();
             unexplained(&effect, self.base.iter().chain(&rival)) / self.variance
         });
         left.min_by(f64::total_cmp)

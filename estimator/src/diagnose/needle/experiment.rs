@@ -30,7 +30,7 @@ pub fn propose(
     for count in INSERTIONS {
         let (asked, motion) = asked(needle, count)?;
         let imagined = imagine(needle, &motion, asked.free_s);
-        let on_sheet = sheet::columns(&imagined, law).imagined(needle.period_s);
+        let on_sheet = sheet::columns(&imagined, law).imagined();
         let on_shaft = shaft.map(|s| (s, s.imagined(&imagined, law)));
         let seen = |a: &Alternative| {
             let pair = (a.instead_of.as_str(), a.id.as_str());

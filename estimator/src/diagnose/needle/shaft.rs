@@ -51,7 +51,6 @@ impl Shaft {
             candidates: candidates((needle, &rows), &track, law, self.dry_n),
             stretch: rows.iter().map(|r| r.stretch).collect(),
             weight: vec![1.0; rows.len()],
-            period_s: needle.period_s,
         }
     }
 }

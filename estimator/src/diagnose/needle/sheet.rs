@@ -24,13 +24,12 @@ pub struct Columns {
 
 impl Columns {
     /// As rows that were not measured yet.
-    pub fn imagined(self, period_s: f64) -> Imagined {
+    pub fn imagined(self) -> Imagined {
         Imagined {
             stretch: self.rows.iter().map(|r| r.stretch).collect(),
             weight: vec![1.0; self.rows.len()],
             base: self.base,
             candidates: self.candidates,
-            period_s,
         }
     }
 }

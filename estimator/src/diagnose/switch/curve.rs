@@ -113,7 +113,7 @@ pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) 
         }
     }
     let weight = vec![1.0; points.len()];
-    Imagined { base: base(&points), candidates: candidates(&points, known, false), stretch, weight, period_s }
+    Imagined { base: base(&points), candidates: candidates(&points, known, false), stretch, weight }
 }
 
 /// Way and speed of a smooth movement, every `period_s`.

@@ -277,7 +277,6 @@ impl Push {
             candidates: candidates(seen, &seen.rows, &self.curves, &self.forces_n),
             stretch: seen.stretch.clone(),
             weight: vec![1.0; seen.rows.len()],
-            period_s: seen.period_s,
         }
     }
 

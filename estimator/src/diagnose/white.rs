@@ -1,0 +1,118 @@
+//! Noise of one row that goes on into the next: learnt as an autoregression, and taken out of every column.
+
+use super::system::{Rows, Use};
+use std::ops::Range;
+
+/// Highest order of the whitening autoregression.
+const LARGEST_ORDER: usize = 6;
+
+/// Autoregression that whitens a residual: coefficients of the lags from 1 on, chosen by BIC.
+pub fn whitener(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> Vec<f64> {
+    let trains = |i: usize| matches!(used[i], Use::Always | Use::Fold(_));
+    let mut lags = [0.0; LARGEST_ORDER + 1];
+    let mut count = 0.0_f64;
+    for i in 0..residual.len() {
+        if !trains(i) {
+            continue;
+        }
+        count += 1.0;
+        for (lag, sum) in lags.iter_mut().enumerate() {
+            if i >= lag && rows.stretch[i - lag] == rows.stretch[i] && trains(i - lag) {
+                *sum += residual[i] * residual[i - lag];
+            }
+        }
+    }
+    if lags[0] <= 0.0 || count < 40.0 {
+        return Vec::new();
+    }
+    // Levinson's recursion.
+    let (mut coefficients, mut innovation): (Vec<f64>, f64) = (Vec::new(), lags[0]);
+    let mut best = (count * innovation.ln(), Vec::new());
+    for order in 1..lags.len() {
+        let predicted: f64 = coefficients.iter().zip(lags[1..order].iter().rev()).map(|(a, r)| a * r).sum();
+        let reflection = ((lags[order] - predicted) / innovation).clamp(-0.999, 0.999);
+        let before = coefficients.clone();
+        for (a, b) in coefficients.iter_mut().zip(before.iter().rev()) {
+            *a -= reflection * b;
+        }
+        coefficients.push(reflection);
+        innovation *= 1.0 - reflection * reflection;
+        let bic = count * innovation.ln() + order as f64 * count.ln();
+        if bic < best.0 {
+            best = (bic, coefficients.clone());
+        }
+    }
+    best.1
+}
+
+/// Takes columns through weights and an autoregression. A row without its whole past is left out: it comes out as nought.
+pub struct Whitening<'a> {
+    weight: &'a [f64],
+    coefficients: &'a [f64],
+    /// Rows with their whole past.
+    whole: Vec<Range<usize>>,
+}
+
+impl<'a> Whitening<'a> {
+    /// `stretch`: rows of one number follow each other without a gap. `weight`: what each row's noise is smaller by. `coefficients`: of the
+    /// lags from 1 on.
+    pub fn new(stretch: &[usize], weight: &'a [f64], coefficients: &'a [f64]) -> Self {
+        let mut whole = Vec::new();
+        let mut first = 0;
+        for rows in stretch.chunk_by(|a, b| a == b) {
+            let end = first + rows.len();
+            if rows.len() > coefficients.len() {
+                whole.push(first + coefficients.len()..end);
+            }
+            first = end;
+        }
+        Self { weight, coefficients, whole }
+    }
+
+    /// Whether something is left of each row.
+    pub fn leaves(&self) -> Vec<bool> {
+        let mut leaves = vec![false; self.weight.len()];
+        self.whole.iter().for_each(|range| leaves[range.clone()].fill(true));
+        leaves
+    }
+
+    /// One column, an entry a row.
+    pub fn of(&self, values: &[f64]) -> Vec<f64> {
+        let weighted: Vec<f64> = values.iter().zip(self.weight).map(|(value, weight)| value * weight).collect();
+        if self.coefficients.is_empty() {
+            return weighted;
+        }
+        let mut out = vec![0.0; values.len()];
+        for range in &self.whole {
+            let white = &mut out[range.clone()];
+            white.copy_from_slice(&weighted[range.clone()]);
+            for (lag, coefficient) in (1..).zip(self.coefficients) {
+                let past = &weighted[range.start - lag..range.end - lag];
+                white.iter_mut().zip(past).for_each(|(white, past)| *white -= coefficient * past);
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_stretch_is_whitened_by_its_own_past_and_its_first_rows_are_left_out() {
+        let weight = [1.0, 1.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
+        let values = [1.0, 2.0, 4.0, 8.0, 5.0, 6.0, 3.0, 3.0, 9.0];
+        let stretch = [0, 0, 0, 0, 1, 1, 2, 2, 2];
+        let coefficients = [0.5, 0.25];
+        let white = Whitening::new(&stretch, &weight, &coefficients);
+        assert_eq!(white.leaves(), [false, false, true, true, false, false, false, false, true]);
+        assert_eq!(
+            white.of(&values),
+            [0.0, 0.0, 2.0 - 1.0 - 0.25, 8.0 - 1.0 - 0.5, 0.0, 0.0, 0.0, 0.0, 9.0 - 1.5 - 0.75]
+        );
+        let plain = Whitening::new(&stretch, &weight, &[]);
+        assert!(plain.leaves().iter().all(|leaves| *leaves));
+        assert_eq!(plain.of(&values)[..4], [1.0, 2.0, 2.0, 8.0]);
+    }
+}
