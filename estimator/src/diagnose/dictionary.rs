@@ -7,7 +7,7 @@ use super::track::{Place, Row, Track};
 use crate::signal::derive::savitzky_golay;
 use haptics::Vec2;
 use haptics::law::{
-    AddedConstraint, Backlash, CoulombFriction, EccentricMass, Effect, ForceBias, ForceDrift, FrictionAsymmetry,
+    AddedConstraint, Backlash, Cable, CoulombFriction, EccentricMass, Effect, ForceBias, ForceDrift, FrictionAsymmetry,
     FrictionChange, Hysteresis, Inertia, Kind, Law, LoadFriction, LocalPush, LocalResistance, MAX_PARAMETERS,
     MassChange, Memory, Motion, PositionRipple, QuadraticDrag, ReturnSpring, Stribeck, ViscousFriction, Weight,
 };
@@ -208,13 +208,7 @@ impl Dictionary<'_> {
         }
         let (Some(radius), true) = (self.track.radius_m, self.track.planar) else { return };
         for (direction, rest, reach) in self.grid.cables.iter().copied() {
-            let anchor = reach * radius * Vec2::new(direction.cos(), direction.sin());
-            let pull = self.column(&|row| {
-                let arm = radius * Vec2::new(row.along.y, -row.along.x);
-                let away = arm - anchor;
-                let length = away.norm();
-                AddedConstraint::cable_n(1.0, rest, length) * away.dot(&row.along) / length.max(1e-12)
-            });
+            let pull = self.law_of_place(&Cable, &[1.0, rest, direction, reach * radius, radius]);
             let cable = Candidate::one("added-constraint", Kind::Plant, "k", "N/m", pull).positive();
             let mut cable = cable.at("anchor direction", direction, "rad").at("rest length", rest, "m");
             // How far away the anchor is hardly shows.

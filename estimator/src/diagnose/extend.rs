@@ -6,9 +6,9 @@ use super::geometry::Study;
 use super::system::Solved;
 use super::track::Track;
 use haptics::law::{
-    AddedConstraint, Backlash, CoulombFriction, EccentricMass, Effect, FrictionAsymmetry, FrictionChange, GravityTilt,
-    Hysteresis, Inertia, Kind, Law, LoadFriction, LocalPush, LocalResistance, MassChange, Motion, PositionRipple,
-    QuadraticDrag, ReturnSpring, Role, Stribeck, ViscousFriction,
+    AddedConstraint, Backlash, Cable, CoulombFriction, EccentricMass, Effect, FrictionAsymmetry, FrictionChange,
+    GravityTilt, Hysteresis, Inertia, Kind, Law, LoadFriction, LocalPush, LocalResistance, MassChange, Motion,
+    PositionRipple, QuadraticDrag, ReturnSpring, Role, Stribeck, ViscousFriction,
 };
 
 /// The model's laws refitted beside the chosen causes, and the plant causes among these as laws of their own. Instruments' faults are
@@ -106,6 +106,9 @@ fn effect(candidate: &Candidate, values: &[f64], track: &Track, [dry_n, weight_n
             let turn = if radius > 0.0 { std::f64::consts::TAU * radius } else { 0.0 };
             let values = [first, searched(0), searched(1), turn];
             if named("P") { of(&LocalPush, &values) } else { of(&LocalResistance, &values) }
+        }
+        "added-constraint" if candidate.searched.len() == 3 => {
+            of(&Cable, &[first, searched(1), searched(0), searched(2), radius])
         }
         "added-constraint" => of(&AddedConstraint, &[first, searched(0), candidate.side]),
         "hysteresis" => of(&Hysteresis, &[first * dry_n, first * dry_n / searched(0).max(1e-12), searched(1)]),

@@ -10,6 +10,7 @@
 
 mod added_constraint;
 mod backlash;
+mod cable;
 pub mod contact;
 mod coordinate;
 mod coulomb_friction;
@@ -42,6 +43,7 @@ mod weight;
 
 pub use added_constraint::AddedConstraint;
 pub use backlash::Backlash;
+pub use cable::Cable;
 pub use coordinate::{
     Resistance, advance, drive_force, drive_force_with, drive_forces, explicit_stiffness, inertia, resistance,
     resistance_with, step_coordinate, step_coordinate_with,
@@ -176,7 +178,7 @@ pub trait Law: Sync {
 }
 
 /// Every law of a coordinate, in the order it is shown.
-pub static CATALOGUE: [&dyn Law; 21] = [
+pub static CATALOGUE: [&dyn Law; 22] = [
     &Weight,
     &Inertia,
     &CoulombFriction,
@@ -196,6 +198,7 @@ pub static CATALOGUE: [&dyn Law; 21] = [
     &MassChange,
     &FrictionChange,
     &AddedConstraint,
+    &Cable,
     &ForceBias,
     &ForceDrift,
 ];
@@ -210,10 +213,10 @@ pub fn entries() -> impl Iterator<Item = &'static Entry> {
     CATALOGUE.iter().map(|law| law.entry()).chain(contact::ENTRIES.iter().copied()).chain(&instrument::ENTRIES)
 }
 
-/// The pages of everything that a diagnosis can name; what only models are made of (the weight, and the push that goes by the name of
-/// `local-resistance`) is left out.
+/// The pages of everything that a diagnosis can name; what only models are made of (the weight, the push that goes by the name of
+/// `local-resistance`, and the cable by that of `added-constraint`) is left out.
 pub fn causes() -> impl Iterator<Item = &'static Entry> {
-    entries().filter(|entry| ![Weight.id(), LocalPush.id()].contains(&entry.id))
+    entries().filter(|entry| ![Weight.id(), LocalPush.id(), Cable.id()].contains(&entry.id))
 }
 
 /// The page of the cause with this id.

@@ -1,0 +1,59 @@
+//! What a diagnosis puts into the world is what it found: run forward, the extended laws must gain by every cause that a world has a law for.
+//!
+//! `TOUCHSTONE_SEED=20400 cargo test -p blind --test forward` repeats a day.
+
+use blind::{Bench, Effect, Log, Spec, make, score};
+use estimator::diagnose::diagnose;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// Draws of each; one that is not named (or has hardly a gain) says nothing.
+const DRAWS: u64 = 3;
+/// Some held-out pieces are too short or too slow to show it (one in thirty): share of all that gain at least.
+const MOST: f64 = 0.85;
+
+/// What a world has a law for that acts at once.
+const RUN: [(Bench, Effect); 15] = [
+    (Bench::OneFinger, Effect::Asymmetry),
+    (Bench::OneFinger, Effect::Coulomb),
+    (Bench::OneFinger, Effect::Stribeck),
+    (Bench::OneFinger, Effect::Drag),
+    (Bench::OneFinger, Effect::Eccentric),
+    (Bench::OneFinger, Effect::Ripple),
+    (Bench::OneFinger, Effect::Spring),
+    (Bench::OneFinger, Effect::Local),
+    (Bench::OneFinger, Effect::Leak),
+    (Bench::OneFinger, Effect::Cable),
+    (Bench::Linear, Effect::Viscous),
+    (Bench::Linear, Effect::Drag),
+    (Bench::Linear, Effect::Local),
+    (Bench::Linear, Effect::Ripple),
+    (Bench::Angular, Effect::Spring),
+];
+
+#[test]
+fn what_was_found_gains_when_the_extended_laws_run_on_their_own() {
+    let today = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |time| time.as_secs() / 86_400);
+    let seed = std::env::var("TOUCHSTONE_SEED").ok().and_then(|text| text.parse().ok()).unwrap_or_else(today);
+    println!("TOUCHSTONE_SEED={seed}");
+    let (mut failed, mut all) = (Vec::new(), (0, 0));
+    for (bench, effect) in RUN {
+        let (mut asked, mut gained) = (0, 0);
+        for draw in 0..DRAWS {
+            let effects = vec![(effect, effect.forms_on(bench.is_crank()).start)];
+            let spec = Spec { effects, ratio: 2.0, bench, log: Log::Mixed, rate_hz: 250.0, seconds: 25.0 };
+            let (case, _) = make(&spec, seed.wrapping_mul(DRAWS) + draw);
+            let found = diagnose(&case.recordings, &score::options(&case)).expect("it can be diagnosed");
+            let clear = |gain: &estimator::diagnose::Gain| gain.share_of_explainable > 0.5;
+            let Some(cause) = found.causes.iter().find(|c| c.id == effect.id() && clear(&c.gain)) else { continue };
+            asked += 1;
+            gained += u32::from(cause.gain.rollout.as_ref().is_some_and(|rollout| rollout.share > 0.2));
+        }
+        println!("{} {}: {gained} of {asked}", bench.name(), effect.id());
+        all = (all.0 + asked, all.1 + gained);
+        if asked > 1 && gained == 0 {
+            failed.push(format!("{} {}", bench.name(), effect.id()));
+        }
+    }
+    assert!(failed.is_empty(), "{failed:?} never gain");
+    assert!(f64::from(all.1) > MOST * f64::from(all.0) && all.0 > 30, "{} of {} gain", all.1, all.0);
+}
