@@ -100,6 +100,9 @@ impl Laws {
             self.joint.damping += seen.arm * at(Motion { velocity: 1.0, direction: 1.0, ..Motion::default() });
             return (Fate::Kept, "the joint's damping".to_owned());
         }
+        if effect.law().feels_load() {
+            return (Fate::LeftOut, why_not(effect.law().entry()));
+        }
         if id == CoulombFriction.id() || effect.role() == Role::Presliding {
             // Faster than anything moves: what such friction comes to in the end.
             self.joint.dry += at(Motion { velocity: 1e3, direction: 1.0, ..Motion::default() }).max(0.0);

@@ -7,8 +7,8 @@ use super::system::Solved;
 use super::track::Track;
 use haptics::law::{
     AddedConstraint, Backlash, Cable, CoulombFriction, EccentricMass, Effect, FrictionAsymmetry, FrictionChange,
-    GravityTilt, Hysteresis, Inertia, Kind, Law, LoadFriction, LocalPush, LocalResistance, MassChange, Motion,
-    PositionRipple, QuadraticDrag, ReturnSpring, Role, Stribeck, ViscousFriction,
+    GravityTilt, Hysteresis, Inertia, Kind, Law, LoadFriction, LoadFrictionChange, LoadHysteresis, LocalPush,
+    LocalResistance, MassChange, Motion, PositionRipple, QuadraticDrag, ReturnSpring, Role, Stribeck, ViscousFriction,
 };
 
 /// The model's laws refitted beside the chosen causes, and the plant causes among these as laws of their own. Instruments' faults are
@@ -33,13 +33,7 @@ pub fn effects_of(
 /// The laws, and whether every plant cause is among them.
 fn made(track: &Track, model: &Model, study: &Study, picks: &[usize], solved: &Solved) -> (Vec<Effect>, bool) {
     let mut found: Vec<Effect> = model.iter().zip(&solved.values).map(|(e, share)| scaled(e, *share)).collect();
-    let usual = Motion {
-        direction: 1.0,
-        normal_force_n: track.quantile(0.5, |r| r.motion.normal_force_n.abs()),
-        ..Motion::default()
-    };
-    let level = |laws: &[Effect]| laws.iter().filter(|e| e.law().is_dry()).map(|e| e.force(&usual)).sum::<f64>().abs();
-    let dry_n = level(&found);
+    let dry = Dry::of(&found);
     let weight_n = found.iter().filter(|e| e.role() == Role::Gravity).map(|e| e.values[0]).sum::<f64>();
     let (mut at, mut is_whole) = (study.base.len(), true);
     for candidate in picks.iter().map(|p| &study.candidates[*p]) {
@@ -48,12 +42,54 @@ fn made(track: &Track, model: &Model, study: &Study, picks: &[usize], solved: &S
             // What bends before it slides is taken from what slides at once.
             found.iter_mut().filter(|e| e.law().is_dry()).for_each(|e| *e = scaled(e, (1.0 - values[0]).max(0.0)));
         }
-        let law = effect(candidate, values, track, [dry_n, weight_n]);
-        is_whole &= law.is_some() || candidate.kind == Kind::Instrument;
-        found.extend(law);
+        let laws = match dry.law(candidate, values) {
+            laws if laws.is_empty() => effect(candidate, values, track, weight_n).into_iter().collect(),
+            laws => laws,
+        };
+        is_whole &= !laws.is_empty() || candidate.kind == Kind::Instrument;
+        found.extend(laws);
         at += candidate.columns.len();
     }
     (found, is_whole)
+}
+
+/// The dry friction of a model: the same everywhere, N or N m, and in proportion to the load.
+struct Dry {
+    level_n: f64,
+    mu: f64,
+}
+
+impl Dry {
+    fn of(laws: &[Effect]) -> Self {
+        let at = |normal_force_n: f64| {
+            let motion = Motion { direction: 1.0, normal_force_n, ..Motion::default() };
+            laws.iter().filter(|e| e.law().is_dry()).map(|e| e.force(&motion)).sum::<f64>()
+        };
+        Self { level_n: at(0.0).max(0.0), mu: (at(1.0) - at(0.0)).max(0.0) }
+    }
+
+    /// A cause that is a share of the dry friction, as laws: of either part that there is. None for other causes.
+    fn law(&self, candidate: &Candidate, values: &[f64]) -> Vec<Effect> {
+        let (share, searched) = (values[0], |k: usize| candidate.searched.get(k).map_or(0.0, |s| s.value));
+        let starts = candidate.searched.first().is_some_and(|s| s.name == "t0");
+        let course = if starts { [0.0, searched(0)] } else { [searched(0), 0.0] };
+        let changes = |of: f64| [0.0, share * of, course[0], course[1]];
+        let (level, mu) = match candidate.id {
+            "hysteresis" => {
+                let (level, way) = (share * self.level_n, searched(0).max(1e-12));
+                let everywhere = Effect::new(&Hysteresis, &[level, level / way, searched(1)]);
+                (everywhere, Effect::new(&LoadHysteresis, &[share * self.mu, way, searched(1)]))
+            }
+            // No law of a world knows what else was recorded.
+            "friction-change" if candidate.channel.is_none() => (
+                Effect::new(&FrictionChange, &changes(self.level_n)),
+                Effect::new(&LoadFrictionChange, &changes(self.mu)),
+            ),
+            _ => return Vec::new(),
+        };
+        let parts = [(level, self.level_n), (mu, self.mu)];
+        parts.into_iter().filter(|(_, size)| *size > 0.0).map(|(law, _)| law).collect()
+    }
 }
 
 /// The model's laws fitted without any cause.
@@ -73,8 +109,8 @@ fn scaled(effect: &Effect, share: f64) -> Effect {
     scaled
 }
 
-/// A plant cause of the force as a law. `dry_n`, `weight_n`: usual dry friction and weight of the model, N or N m.
-fn effect(candidate: &Candidate, values: &[f64], track: &Track, [dry_n, weight_n]: [f64; 2]) -> Option<Effect> {
+/// A plant cause of the force as a law, but for a share of the dry friction. `weight_n`: weight of the model, N or N m.
+fn effect(candidate: &Candidate, values: &[f64], track: &Track, weight_n: f64) -> Option<Effect> {
     if candidate.kind != Kind::Plant {
         return None;
     }
@@ -111,7 +147,6 @@ fn effect(candidate: &Candidate, values: &[f64], track: &Track, [dry_n, weight_n
             of(&Cable, &[first, searched(1), searched(0), searched(2), radius])
         }
         "added-constraint" => of(&AddedConstraint, &[first, searched(0), candidate.side]),
-        "hysteresis" => of(&Hysteresis, &[first * dry_n, first * dry_n / searched(0).max(1e-12), searched(1)]),
         "backlash" => of(&Backlash, &[searched(0)]),
         "mass-change" if named("rate") => of(&MassChange, &[0.0, first, 0.0, 0.0, searched(0)]),
         "mass-change" => {
@@ -119,12 +154,6 @@ fn effect(candidate: &Candidate, values: &[f64], track: &Track, [dry_n, weight_n
             let step_s = track.period_s;
             of(&MassChange, &[0.0, first / step_s, searched(0), step_s])
         }
-        // No law of a world knows what else was recorded.
-        "friction-change" if candidate.channel.is_some() => None,
-        "friction-change" if candidate.searched.first().is_some_and(|s| s.name == "t0") => {
-            of(&FrictionChange, &[0.0, first * dry_n, 0.0, searched(0)])
-        }
-        "friction-change" => of(&FrictionChange, &[0.0, first * dry_n, searched(0)]),
         _ => None,
     }
 }
@@ -137,4 +166,35 @@ pub fn spring(values: &[f64], track: &Track) -> [f64; 4] {
     let at = |k: usize| values.get(k).copied().unwrap_or(0.0);
     let [k, f0, k3, place] = about_its_zero([at(0) * half, at(1), at(2) * cube, at(3) * cube]);
     [k / half, f0, k3 / cube, middle + place * half]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_of_friction_that_goes_with_the_load_goes_with_it() {
+        let model = [
+            Effect::new(&CoulombFriction, &[0.1]),
+            Effect::new(&LoadFriction, &[0.2]),
+            Effect::new(&ViscousFriction, &[3.0]),
+        ];
+        let at = |time_s: f64| Motion { time_s, direction: 1.0, normal_force_n: -5.0, ..Motion::default() };
+        let total = |laws: &[Effect], time_s: f64| laws.iter().map(|e| e.force(&at(time_s))).sum::<f64>();
+        let bends = Candidate::one("hysteresis", Kind::Plant, "share", "1", Vec::new()).at("way", 1e-4, "m");
+        let laws = Dry::of(&model).law(&bends, &[0.8]);
+        assert!(laws.len() == 2 && (total(&laws, 0.0) - 0.8 * (0.1 + 0.2 * 5.0)).abs() < 1e-12, "{laws:?}");
+        // Under another load the same share.
+        let loaded = Dry::of(&model[1..2]).law(&bends, &[0.8]);
+        assert!(loaded.len() == 1 && (total(&loaded, 0.0) - 0.8).abs() < 1e-12, "{loaded:?}");
+        let change = || Candidate::one("friction-change", Kind::Plant, "relative change", "1", Vec::new());
+        let laws = Dry::of(&model).law(&change().at("t0", 8.0, "s"), &[0.5]);
+        assert!(total(&laws, 7.9) == 0.0 && (total(&laws, 8.1) - 0.5 * 1.1).abs() < 1e-12, "{laws:?}");
+        let warms = Dry::of(&model).law(&change().at("tau", 8.0, "s"), &[-0.5]);
+        assert!((total(&warms, 8.0) + 0.5 * 1.1 * (1.0 - (-1.0_f64).exp())).abs() < 1e-12, "{warms:?}");
+        let channel = ("temperature_degC".to_owned(), "degC".to_owned());
+        assert!(Dry::of(&model).law(&change().with(channel), &[0.5]).is_empty(), "no world has a temperature");
+        let other = Candidate::one("stribeck", Kind::Plant, "Fs", "N", Vec::new());
+        assert!(Dry::of(&model).law(&other, &[0.5]).is_empty());
+    }
 }

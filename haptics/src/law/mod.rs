@@ -26,6 +26,8 @@ mod hysteresis;
 mod inertia;
 mod instrument;
 mod load_friction;
+mod load_friction_change;
+mod load_hysteresis;
 mod local_push;
 mod local_resistance;
 mod mass_change;
@@ -60,6 +62,8 @@ pub use gravity_tilt::GravityTilt;
 pub use hysteresis::Hysteresis;
 pub use inertia::Inertia;
 pub use load_friction::LoadFriction;
+pub use load_friction_change::LoadFrictionChange;
+pub use load_hysteresis::LoadHysteresis;
 pub use local_push::LocalPush;
 pub use local_resistance::LocalResistance;
 pub use mass_change::MassChange;
@@ -178,7 +182,7 @@ pub trait Law: Sync {
 }
 
 /// Every law of a coordinate, in the order it is shown.
-pub static CATALOGUE: [&dyn Law; 22] = [
+pub static CATALOGUE: [&dyn Law; 24] = [
     &Weight,
     &Inertia,
     &CoulombFriction,
@@ -199,6 +203,8 @@ pub static CATALOGUE: [&dyn Law; 22] = [
     &FrictionChange,
     &AddedConstraint,
     &Cable,
+    &LoadHysteresis,
+    &LoadFrictionChange,
     &ForceBias,
     &ForceDrift,
 ];
@@ -214,9 +220,10 @@ pub fn entries() -> impl Iterator<Item = &'static Entry> {
 }
 
 /// The pages of everything that a diagnosis can name; what only models are made of (the weight, the push that goes by the name of
-/// `local-resistance`, and the cable by that of `added-constraint`) is left out.
+/// `local-resistance`, the cable by that of `added-constraint`, and what goes with a load by that of what does not) is left out.
 pub fn causes() -> impl Iterator<Item = &'static Entry> {
-    entries().filter(|entry| ![Weight.id(), LocalPush.id(), Cable.id()].contains(&entry.id))
+    let models: [&dyn Law; 5] = [&Weight, &LocalPush, &Cable, &LoadHysteresis, &LoadFrictionChange];
+    entries().filter(move |entry| models.iter().all(|law| law.id() != entry.id))
 }
 
 /// The page of the cause with this id.
