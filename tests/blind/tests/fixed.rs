@@ -19,3 +19,10 @@ fn a_bend_as_short_as_the_noise_of_the_way_is_not_felt() {
         assert!(named(case).is_empty(), "{case}: {:?}", named(case));
     }
 }
+
+/// A spring or an eccentric mass keeps the plain model from telling which of two angles is wrong; the other one then turns all forces.
+#[test]
+fn a_wrong_angle_of_one_link_is_no_turned_sensor() {
+    assert_eq!(named(2424008204), ["joint-offset", "return-spring"]);
+    assert_eq!(named(2424008218), ["joint-offset", "eccentric-mass"]);
+}
