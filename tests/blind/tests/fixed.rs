@@ -26,3 +26,13 @@ fn a_wrong_angle_of_one_link_is_no_turned_sensor() {
     assert_eq!(named(2424008204), ["joint-offset", "return-spring"]);
     assert_eq!(named(2424008218), ["joint-offset", "eccentric-mass"]);
 }
+
+/// A drift of the sensor and a weight that is lost, or a bias and friction by direction, each as large as one likes, take each other back.
+#[test]
+fn two_causes_that_take_each_other_back_are_not_named() {
+    for case in [2424007559, 2525007692] {
+        assert!(named(case).is_empty(), "{case}: {:?}", named(case));
+    }
+    assert_eq!(named(2424008105), ["inertia"]);
+    assert_eq!(named(2424008295), ["coulomb-friction", "return-spring"]);
+}
