@@ -36,3 +36,17 @@ fn two_causes_that_take_each_other_back_are_not_named() {
     assert_eq!(named(2424008105), ["inertia"]);
     assert_eq!(named(2424008295), ["coulomb-friction", "return-spring"]);
 }
+
+/// What is weak must show where it was not fitted, too (`gain::confirmed`).
+#[test]
+fn what_is_weak_and_shows_nowhere_else_is_not_named() {
+    for case in [2424007340, 2424007782] {
+        assert!(named(case).is_empty(), "{case}: {:?}", named(case));
+    }
+}
+
+/// Its searched value was found beside a cause that is pruned, and is impossible without that one; a neighbour on the grid is not.
+#[test]
+fn a_cause_that_was_searched_for_beside_a_pruned_one_is_searched_for_again() {
+    assert_eq!(named(2222007313), ["hysteresis"]);
+}
