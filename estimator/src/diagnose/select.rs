@@ -299,18 +299,20 @@ impl Selection<'_> {
         let single = |o: usize| count(k) == 1 && count(o) == 1;
         let as_one = |o: usize| single(o) && covariance(k, o).powi(2) > AS_ONE * covariance(k, k) * covariance(o, o);
         let taken_back = |o: usize| {
-            let weaker = self.power(&solved, own(k)).min(self.power(&solved, own(o)));
-            self.power(&solved, own(k).chain(own(o))) < TAKEN_BACK * weaker
+            let [one, other] = [k, o].map(|k| own(k).collect::<Vec<usize>>());
+            let weaker = self.power(&solved, &one).min(self.power(&solved, &other));
+            self.power(&solved, &[one, other].concat()) < TAKEN_BACK * weaker
         };
         let left = |k: usize| self.plain_price(&without(chosen, k)).unwrap_or(f64::INFINITY);
         (0..chosen.len()).filter(|o| *o != k).any(|o| (as_one(o) || taken_back(o)) && left(k) < left(o))
     }
 
     /// Sum over the rows that train of the squares of what these columns of a solution add up to.
-    fn power(&self, solved: &Solved, which: impl Iterator<Item = usize> + Clone) -> f64 {
-        let product = |i: usize, j: usize| self.system.train[(solved.columns[i], solved.columns[j])];
-        let (across, values) = (which.clone(), &solved.values);
-        across.map(|i| which.clone().map(|j| values[i] * values[j] * product(i, j)).sum::<f64>()).sum()
+    fn power(&self, solved: &Solved, which: &[usize]) -> f64 {
+        let part = |i: usize, j: usize| {
+            solved.values[i] * solved.values[j] * self.system.train[(solved.columns[i], solved.columns[j])]
+        };
+        which.iter().map(|i| which.iter().map(|j| part(*i, *j)).sum::<f64>()).sum()
     }
 
     /// Whether held-out folds gain by the k-th cause.
