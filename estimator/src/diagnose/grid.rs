@@ -23,6 +23,9 @@ const WAYS: [f64; 14] =
 const STEPS: f64 = 0.06;
 /// Where a mass takes part, the filters of force and motion leave as much of every reversal themselves.
 const STEPS_OF_MASS: f64 = 0.25;
+/// … and on a crank, whose way is the sum of its joints' noisy rates, that are this many times the noise of that sum within a row: it alone
+/// builds a shorter bend up and takes it back, which makes friction smaller wherever the handle sticks, as the noise of the speed does.
+const STEPS_OF_NOISE: f64 = 3.0;
 /// Where the object was seen to stand, they are this many times the noise of its place at least.
 const SEEN: f64 = 0.5;
 /// Directions of a cable's anchor that are tried, and how much of the way round it is slack.
@@ -82,7 +85,11 @@ impl Grid {
         let between_s = track.raw_period_s.max(1.0 / FINE_HZ).min(track.period_s);
         let point_s = if track.fine.is_empty() { track.period_s } else { between_s };
         let stands = track.rows.iter().any(|r| matches!(r.place, Place::Stuck { .. }));
-        let felt = if track.planar { STEPS } else { STEPS_OF_MASS } * point_s * fast;
+        let felt = if track.planar {
+            (STEPS * point_s * fast).max(STEPS_OF_NOISE * track.velocity_noise * track.period_s)
+        } else {
+            STEPS_OF_MASS * point_s * fast
+        };
         let least = if stands { (SEEN * track.position_noise).min(felt) } else { felt };
         let scale = track.radius_m.map_or(range, |r| range.min(2.0 * r));
         // On a crank a place comes again every turn.

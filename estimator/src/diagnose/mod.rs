@@ -204,7 +204,7 @@ pub fn validate(
 fn along_a_crank(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
     let recording = &late::put_back(recording, diagnosis.late_s);
     let signs::Looked { signals, circle, rows, .. } = signs::Looked::at(recording, &quality::faults(recording).bad)?;
-    let (mut track, _) = turned(&signals, recording, &circle, rows)?;
+    let mut track = turned(&signals, recording, &circle, rows)?.rows;
     // A weight that is stated is no part of what was fitted, and acts all the same.
     let known = known_weight(recording, &mut diagnosis.plain.clone());
     let with_known = |effects: &[Effect]| -> Model {
@@ -223,6 +223,7 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
     let mut tracks = Vec::new();
     let mut geometries = Vec::new();
     let mut faults = Vec::new();
+    let mut swapped = Vec::new();
     let mut first_link = false;
     let mut scale = None;
     for (k, recording) in recordings.iter().enumerate() {
@@ -234,9 +235,11 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
         faults.extend(mirrored);
         faults.extend(found.causes);
         faults.extend(axis);
-        let (mut rows, bottom) = turned(&signals, recording, &circle, rows)?;
+        let Turned { mut rows, other, by_first } = turned(&signals, recording, &circle, rows)?;
         rows.extra = vec![extra::of(recording)];
-        first_link |= bottom;
+        first_link |= by_first;
+        // The same recording with the other link's angle wrong.
+        swapped.push(other.map(|other| track::Track { extra: rows.extra.clone(), ..other }));
         let known_m = recording.meta.known.get("radius_m").copied().filter(|r| r.is_finite() && *r > 0.0);
         if scale.is_none() {
             scale = known_m.and_then(|r| quality::scaled("radius", circle.too_large(r)?));
@@ -244,6 +247,10 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
         tracks.push(rows);
         geometries.push(circle.study);
     }
+    let other = swapped.iter().any(Option::is_some).then(|| {
+        let either = swapped.iter().zip(&tracks).map(|(other, rows)| other.as_ref().unwrap_or(rows).clone());
+        track::join(either.collect())
+    });
     let mut track = track::join(tracks).ok_or_else(nothing)?;
     let mut model: Model = match &options.world {
         Some(world) => world.crank.as_ref().map(|c| c.effects.clone()).unwrap_or_default(),
@@ -252,8 +259,17 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
     let fixed = known_weight(&recordings[0], &mut model);
     let limit = threshold(track.period_s);
     options.progress.tell(0.4)?;
-    let bearing_n = bearing::load(&mut track, &model, &fixed)?;
-    let study = force::study(&mut track, &model, &fixed, limit)?;
+    let look = |track: &mut track::Track| -> Result<_, EstimateError> {
+        Ok((bearing::load(track, &model, &fixed)?, force::study(track, &model, &fixed, limit)?))
+    };
+    let (mut bearing_n, mut study) = look(&mut track)?;
+    // Whose angle is wrong was asked of the plain model, which something hidden may have kept from telling.
+    if let Some(mut other) = other.flatten().filter(|_| is_turned(&study)) {
+        let (other_n, again) = look(&mut other)?;
+        if !is_turned(&again) {
+            (track, bearing_n, study, first_link) = (other, other_n, again, !first_link);
+        }
+    }
     options.progress.tell(0.8)?;
     let mut found = explain::explain(&track, &model, &study, &geometries, faults);
     found.warnings.extend(bearing_n.map(|weight_n| {
@@ -278,14 +294,24 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
 /// How much more likely the force must be when the first link's angle is wrong, not the second's (2 ln likelihood).
 const TURNED: f64 = 10.0;
 
+/// Rows of a crank whose path shows that an angle of the finger is wrong.
+struct Turned {
+    /// With that link's angle put right which is the likelier one.
+    rows: track::Track,
+    /// With the other one's; nothing where no angle is wrong.
+    other: Option<track::Track>,
+    /// Whether the likelier one is the first.
+    by_first: bool,
+}
+
 /// An offset of the first link's angle bends the path as the opposite offset of the second one does, and turns all of it: the circle is
-/// the same, the force then has another direction beside it. True when that is so.
+/// the same, the force then has another direction beside it.
 fn turned(
     signals: &held_arm::Signals,
     recording: &Recording,
     circle: &geometry::Geometry,
     rows: track::Track,
-) -> Result<(track::Track, bool), EstimateError> {
+) -> Result<Turned, EstimateError> {
     let study = &circle.study;
     let mut at = study.base.len();
     let mut offset = None;
@@ -296,14 +322,21 @@ fn turned(
         }
         at += candidate.columns.len();
     }
-    let Some(turn_rad) = offset else { return Ok((rows, false)) };
+    let Some(turn_rad) = offset else { return Ok(Turned { rows, other: None, by_first: false }) };
     let arm = geometry::Arm { turn_rad, ..circle.arm.clone() };
     let other = signals.rows(recording, &arm, Axes::PLAIN)?;
     let model = plain_crank();
     let (before, _) = force::plain_rms(&mut rows.clone(), &model)?;
     let (after, _) = force::plain_rms(&mut other.clone(), &model)?;
     let likelier = 2.0 * rows.along().count() as f64 * (before / after.max(1e-300)).ln();
-    Ok(if likelier > TURNED { (other, true) } else { (rows, false) })
+    let by_first = likelier > TURNED;
+    let (rows, other) = if by_first { (other, rows) } else { (rows, other) };
+    Ok(Turned { rows, other: Some(other), by_first })
+}
+
+/// Whether the forces seem to be turned against the motion.
+fn is_turned(study: &geometry::Study) -> bool {
+    study.chosen.iter().any(|c| study.candidates[c.candidate].id == "force-cross-axis")
 }
 
 /// Says whose angle is wrong.

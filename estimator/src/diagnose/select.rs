@@ -1,7 +1,7 @@
 //! Which causes the recording asks for: forward with a look ahead, swaps, pruning.
 
 use super::candidate::Candidate;
-use super::system::System;
+use super::system::{Solved, System};
 
 /// Most causes at once.
 const MOST_CAUSES: usize = 4;
@@ -70,6 +70,8 @@ const REMAINDER: f64 = 0.12;
 
 /// Squared correlation of two causes' estimates from which on they are one.
 const AS_ONE: f64 = 0.99;
+/// Two causes that leave less than this share of the weaker one's mean square between them take each other back.
+const TAKEN_BACK: f64 = 0.1;
 
 /// What a curve is over.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -285,16 +287,32 @@ impl Selection<'_> {
     }
 
     /// Whether a cause and a better one are nearly the same in this recording: what they say is then in their difference alone, each as
-    /// large as one likes and taken back by the other.
+    /// large as one likes and taken back by the other. So it is where they need not be the same to take each other back.
     fn pulls_against(&self, chosen: &[usize], k: usize) -> bool {
-        let single = |k: usize| self.candidates[chosen[k]].columns.len() == 1;
-        let Some(solved) = self.system.solve(chosen).filter(|_| single(k)) else { return false };
-        let at =
-            |k: usize| self.system.base + chosen[..k].iter().map(|c| self.candidates[*c].columns.len()).sum::<usize>();
-        let covariance = |a: usize, b: usize| solved.inverse[(at(a), at(b))];
-        let as_one = |o: usize| covariance(k, o).powi(2) > AS_ONE * covariance(k, k) * covariance(o, o);
+        let count = |k: usize| self.candidates[chosen[k]].columns.len();
+        let Some(solved) = self.system.solve(chosen) else { return false };
+        let own = |k: usize| {
+            let first = self.system.base + (0..k).map(count).sum::<usize>();
+            first..first + count(k)
+        };
+        let covariance = |a: usize, b: usize| solved.inverse[(own(a).start, own(b).start)];
+        let single = |o: usize| count(k) == 1 && count(o) == 1;
+        let as_one = |o: usize| single(o) && covariance(k, o).powi(2) > AS_ONE * covariance(k, k) * covariance(o, o);
+        let taken_back = |o: usize| {
+            let [one, other] = [k, o].map(|k| own(k).collect::<Vec<usize>>());
+            let weaker = self.power(&solved, &one).min(self.power(&solved, &other));
+            self.power(&solved, &[one, other].concat()) < TAKEN_BACK * weaker
+        };
         let left = |k: usize| self.plain_price(&without(chosen, k)).unwrap_or(f64::INFINITY);
-        (0..chosen.len()).filter(|o| *o != k && single(*o)).any(|o| as_one(o) && left(k) < left(o))
+        (0..chosen.len()).filter(|o| *o != k).any(|o| (as_one(o) || taken_back(o)) && left(k) < left(o))
+    }
+
+    /// Sum over the rows that train of the squares of what these columns of a solution add up to.
+    fn power(&self, solved: &Solved, which: &[usize]) -> f64 {
+        let part = |i: usize, j: usize| {
+            solved.values[i] * solved.values[j] * self.system.train[(solved.columns[i], solved.columns[j])]
+        };
+        which.iter().map(|i| which.iter().map(|j| part(*i, *j)).sum::<f64>()).sum()
     }
 
     /// Whether held-out folds gain by the k-th cause.

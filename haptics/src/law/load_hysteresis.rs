@@ -81,7 +81,7 @@ mod tests {
         let mut memory = [0.0; 2];
         LoadHysteresis.advance(&at(5.0), &values, &mut memory, 1.0);
         let bent = 1.0 - (-1.0_f64).exp();
-        for load_n in [5.0, -2.0] {
+        for load_n in [5.0_f64, -2.0] {
             let slides = 0.2 * load_n.abs();
             assert!((LoadHysteresis.force(&at(load_n), &values) - slides).abs() < 1e-12);
             assert!((LoadHysteresis.force_with(&at(load_n), &values, &memory) - slides * bent).abs() < 1e-12);

@@ -90,7 +90,8 @@ pub fn saturated(recording: &Recording, channel: &Channel, profile: &Profile) ->
         return None;
     }
     let share = if matches!(channel.unit.as_str(), "V" | "A") { SWITCHED_SHARE } else { SATURATED_SHARE };
-    let both = [(1.0, profile.high), (-1.0, -profile.low)].map(|(side, top)| rail(&channel.values, side, top, share));
+    let both =
+        [(1.0, profile.high), (-1.0, -profile.low)].map(|(side, top)| rail(recording, channel, (side, top), share));
     let mut spans: Vec<Span> = both.into_iter().flatten().flatten().collect();
     let first = *spans.iter().min_by_key(|s| s.first)?;
     spans.sort_by_key(|s| s.first);
@@ -105,28 +106,21 @@ pub fn saturated(recording: &Recording, channel: &Channel, profile: &Profile) ->
     Some(about("saturation", channel, spans, text))
 }
 
-/// Spans where `side`·value is exactly `top`, the largest, when they are too many for chance.
-fn rail(values: &[f64], side: f64, top: f64, share: f64) -> Option<Vec<Span>> {
-    let count = |level: f64| values.iter().filter(|&&v| side * v == level).count();
-    let at_top = count(top);
+/// Spans where `side`·value is exactly `top`, the largest, when they are too many for chance: in this channel on this side, or in all
+/// that stop at the very same value.
+fn rail(recording: &Recording, channel: &Channel, (side, top): (f64, f64), share: f64) -> Option<Vec<Span>> {
+    let values = &channel.values;
+    let own: [(&[f64], f64); 1] = [(values, side)];
+    let at_top = count(&own, top);
     // A channel whose extreme is zero has an end, not a rail; most of the record at one value is stuck or switched.
-    if top == 0.0 || at_top < PLATEAU_SAMPLES || at_top as f64 > share * values.len() as f64 {
+    if top == 0.0 || at_top == 0 || at_top as f64 > share * values.len() as f64 {
         return None;
     }
-    let mut levels = vec![top];
-    for _ in 0..NEXT_VALUES {
-        let below = levels[levels.len() - 1];
-        levels.push(values.iter().map(|v| side * v).filter(|&v| v < below).fold(f64::NEG_INFINITY, f64::max));
-    }
-    let next: Vec<f64> = levels[1..].iter().map(|level| count(*level) as f64).collect();
-    let most = next.iter().copied().fold(0.0, f64::max);
-    let mean = next.iter().sum::<f64>() / next.len() as f64;
-    let step = (levels[1] - levels[NEXT_VALUES]) / (NEXT_VALUES - 1) as f64;
-    let noisy = white_noise(values) > NOISY_STEPS * step;
-    let many = at_top as f64;
-    let stands_out = noisy && many > NOISY_EXCESS * most && many > mean + EXCESS_SIGMAS * mean.sqrt();
-    if many < PLATEAU_EXCESS * most && !stands_out {
-        return None;
+    if !piles_up(&own, top) {
+        let all = stopping_at(recording, channel, top);
+        if all.len() < 2 || !piles_up(&all, top) {
+            return None;
+        }
     }
     let mut spans: Vec<Span> = Vec::new();
     for i in (0..values.len()).filter(|&i| side * values[i] == top) {
@@ -136,6 +130,42 @@ fn rail(values: &[f64], side: f64, top: f64, share: f64) -> Option<Vec<Span>> {
         }
     }
     Some(spans)
+}
+
+/// Samples at exactly a level on these sides of these channels.
+fn count(sides: &[(&[f64], f64)], level: f64) -> usize {
+    sides.iter().map(|(values, side)| values.iter().filter(|&&v| side * v == level).count()).sum()
+}
+
+/// Sides of the channels in the same unit that reach exactly as far as `top`: sensors of one kind have the same limit to both sides.
+fn stopping_at<'a>(recording: &'a Recording, channel: &Channel, top: f64) -> Vec<(&'a [f64], f64)> {
+    let same = recording.channels.iter().filter(|c| c.unit == channel.unit);
+    let sides = same.flat_map(|c| [1.0, -1.0].map(|side| (c.values.as_slice(), side)));
+    sides.filter(|(values, side)| values.iter().map(|v| side * v).fold(f64::NEG_INFINITY, f64::max) == top).collect()
+}
+
+/// Whether more samples stand at exactly `top`, the largest on these sides, than chance puts there.
+fn piles_up(sides: &[(&[f64], f64)], top: f64) -> bool {
+    let at_top = count(sides, top);
+    if at_top < PLATEAU_SAMPLES {
+        return false;
+    }
+    let below = |level: f64| {
+        let all = sides.iter().flat_map(|(values, side)| values.iter().map(move |v| side * v));
+        all.filter(|&v| v < level).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let mut levels = vec![top];
+    for _ in 0..NEXT_VALUES {
+        levels.push(below(levels[levels.len() - 1]));
+    }
+    let next: Vec<f64> = levels[1..].iter().map(|level| count(sides, *level) as f64).collect();
+    let most = next.iter().copied().fold(0.0, f64::max);
+    let mean = next.iter().sum::<f64>() / next.len() as f64;
+    let step = (levels[1] - levels[NEXT_VALUES]) / (NEXT_VALUES - 1) as f64;
+    let noisy = sides.iter().all(|(values, _)| white_noise(values) > NOISY_STEPS * step);
+    let many = at_top as f64;
+    let stands_out = noisy && many > NOISY_EXCESS * most && many > mean + EXCESS_SIGMAS * mean.sqrt();
+    many >= PLATEAU_EXCESS * most || stands_out
 }
 
 /// Channels whose quantum is large against the usual range of all channels in their unit.

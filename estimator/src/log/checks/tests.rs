@@ -94,3 +94,27 @@ fn a_clipped_force_is_saturated_and_a_quantised_one_is_not() {
     let coarse: Vec<f64> = wave(1000).into_iter().map(|v| (v * 20.0).round() / 20.0).collect();
     assert!(warnings(&recording(time, vec![channel("f_N", coarse)])).is_empty());
 }
+
+#[test]
+fn a_limit_that_two_sensors_reach_on_both_sides_is_seen_in_all_of_them_together() {
+    let time: Vec<f64> = (0..2000).map(|i| f64::from(i) * 1e-3).collect();
+    // A slow force with a steep stroke wherever `strokes` says so: up to its side of ±2 N, and held there for so many samples.
+    let force = |strokes: &[(usize, f64, usize)]| {
+        let mut values: Vec<f64> = wave(2000).iter().map(|v| 0.4 * v).collect();
+        for (k, (at, side, held)) in strokes.iter().enumerate() {
+            let flank = 1.2 + 0.01 * k as f64;
+            values[*at] = side * flank;
+            values[at + 1..=at + held].fill(2.0 * side);
+            values[at + held + 1] = side * (flank + 0.005);
+        }
+        values
+    };
+    let saturated = |along: &[(usize, f64, usize)], across: &[(usize, f64, usize)]| {
+        let channels = vec![channel("fx_N", force(along)), channel("fy_N", force(across))];
+        let found = warnings(&recording(time.clone(), channels));
+        found.into_iter().filter(|w| w.kind == "saturation").filter_map(|w| w.column).collect::<Vec<_>>()
+    };
+    // Three, three and two samples: too few on any one side.
+    assert_eq!(saturated(&[(300, 1.0, 3), (900, -1.0, 3)], &[(1300, 1.0, 2)]), ["fx_N", "fy_N"]);
+    assert!(saturated(&[(300, 1.0, 3), (900, -1.0, 3)], &[]).is_empty());
+}
