@@ -19,7 +19,7 @@ static ENTRY: Entry = Entry {
     mimics: "Backlash mimics it at one load, a delay or a smoothing filter at one speed.",
     reveals: "Small strokes and reversals under different loads reveal it.",
     parameters: &[
-        ParameterSpec::linear("mu", "1", "1", POSITIVE),
+        ParameterSpec::nonlinear("mu", "1", "1", POSITIVE),
         ParameterSpec::nonlinear("way", "m", "rad", POSITIVE),
         ParameterSpec::nonlinear("shape", "1", "1", (0.0, 1.0)),
     ],
