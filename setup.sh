@@ -94,7 +94,10 @@ have_headers() {
 # installed besides; without them those tests are skipped, with a word.
 setup_python() {
   [ -z "${TOUCHSTONE_PYTHON:-}" ] || return 0
-  command -v python3 >/dev/null 2>&1 || return 0
+  if ! command -v python3 >/dev/null 2>&1; then
+    echo "There is no python3 here: tests beside MuJoCo and of the Python example are skipped." >&2
+    return 0
+  fi
   environment=${CARGO_TARGET_DIR:-target}/python
   [ ! -e "$environment/ready" ] || return 0
   echo "Installing MuJoCo and matplotlib for the tests, into $environment." >&2

@@ -1,6 +1,8 @@
 //! What a diagnosis says, in words: the same for the window and the report.
 
-use estimator::diagnose::{Cause, CauseParameter, Diagnosis, Verdict};
+use crate::ui::theme::state_name;
+use estimator::diagnose::{Cause, CauseParameter, Diagnosis, Residual, Verdict};
+use estimator::segment::SystemState;
 use haptics::law;
 
 /// What a cause is called.
@@ -108,6 +110,24 @@ pub fn said_in_words(parameter: &CauseParameter) -> Option<String> {
 /// Shown unit of what was compared.
 pub fn compared_unit(diagnosis: &Diagnosis) -> String {
     diagnosis.baseline.unit.as_deref().map_or_else(|| force_unit(diagnosis).to_owned(), shown_unit)
+}
+
+/// A state within a sentence.
+pub fn state_in_words(state: SystemState) -> String {
+    if state == SystemState::NoState { "in between".to_owned() } else { small(state_name(state)) }
+}
+
+/// Shown unit of what is left of one channel in its states, and its factor from SI.
+pub fn residual_unit(left: &[&Residual]) -> (String, f64) {
+    /// Less than this in all states is told in thousandths.
+    const SMALL: f64 = 0.1;
+    let most = left.iter().flat_map(|l| [l.rms_before, l.noise_floor.unwrap_or(0.0)]).fold(0.0, f64::max);
+    match left.first().map_or("", |l| l.unit.as_str()) {
+        "m" if most < 1e-3 * SMALL => ("µm".to_owned(), 1e6),
+        "m" => ("mm".to_owned(), 1e3),
+        unit if unit.starts_with('N') && most < SMALL => (format!("m{}", shown_unit(unit)), 1e3),
+        unit => (shown_unit(unit), 1.0),
+    }
 }
 
 /// Shown unit of the forces.

@@ -2,6 +2,27 @@
 //!
 //! `log` reads, `signal` derives, `segment` says what was happening when, `identify` and `constraint` estimate, `calibrate`
 //! writes a world, `simulate` replays the measured motion through it. Every stage is a plain function between plain types.
+//!
+//! From a log to parameters with errors, and to what the model gets wrong:
+//!
+//! ```
+//! use estimator::{diagnose, log, pipeline, simulate};
+//! use std::path::Path;
+//!
+//! let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/recordings");
+//! let recordings = log::load(&folder.join("crank.csv"), None)?;
+//! let analysis = pipeline::analyse(&recordings, &pipeline::Options::default())?;
+//! let radius = analysis.fit.parameters.iter().find(|p| p.name == "radius_m").expect("a crank has one");
+//! assert!(radius.identified && radius.std_error.is_some_and(|error| error < 1e-4));
+//!
+//! // The measured motion through the world that came out of it: what forces would have been felt.
+//! let replayed = simulate::simulate(&analysis.world, &recordings[0])?;
+//! assert!(replayed.residual_rms.iter().all(|(_, left_n)| *left_n < 0.1));
+//!
+//! let found = diagnose::diagnose(&recordings, &diagnose::Options::default())?;
+//! assert!(found.causes.iter().any(|cause| cause.id == "coulomb-friction"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod assistant;
 pub mod calibrate;

@@ -21,12 +21,12 @@ pub fn output_of(script: &str, arguments: &[&str]) -> Option<String> {
     let program = program();
     let path = workspace().join(script);
     let Ok(output) = Command::new(&program).arg(&path).args(arguments).output() else {
-        println!("skipped: {} cannot be started", program.display());
+        crate::skipped(&format!("{} cannot be started", program.display()));
         return None;
     };
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     if said.starts_with("skipped:") {
-        println!("{}", said.trim());
+        crate::skipped(said.trim_start_matches("skipped:").trim());
         return None;
     }
     assert!(output.status.success(), "{script}: {}", String::from_utf8_lossy(&output.stderr));

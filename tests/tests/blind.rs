@@ -1,7 +1,7 @@
 //! The blind battery in a minute: what is hidden must be named, and nothing where nothing is.
 //!
 //! A new seed every day, printed for replay: `TOUCHSTONE_SEED=20400 cargo test -p tests --test blind`. The whole battery is
-//! `touchstone bench blind --whole`. Demands leave room for the luck of few cases: a test fails when so few hits
+//! `touchstone bench blind`. Demands leave room for the luck of few cases: a test fails when so few hits
 //! would come up once in ten thousand days if the program were as good as demanded. What is demanded here is what the program reaches
 //! so far; what it should reach stands in `docs/diagnosis.md`.
 

@@ -139,7 +139,7 @@ fn demo_runs_the_whole_chain() {
         assert!(folder.path().join(file).is_file(), "{file}");
     }
     if result["pictures"].as_array().is_none_or(Vec::is_empty) {
-        println!("skipped: no Vulkan driver for pictures");
+        tests::skipped("no Vulkan driver for pictures");
     }
 }
 
@@ -149,7 +149,7 @@ fn screenshot_draws_the_scene() {
     let out = text(&folder.path().join("scene.png"));
     let output = run(&["screenshot", "--scene", "stack", "--size", "320x200", "--out", &out]);
     if String::from_utf8_lossy(&output.stderr).contains("mesa-vulkan-drivers") {
-        println!("skipped: no Vulkan driver");
+        tests::skipped("no Vulkan driver");
         return;
     }
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -108,7 +108,7 @@ fn without_rights(program: &Path) -> Command {
 #[test]
 fn a_servo_that_is_refused_real_time_and_locked_memory_works_and_says_so() {
     if !has("prlimit") {
-        println!("skipped: there is no prlimit here");
+        tests::skipped("there is no prlimit here");
         return;
     }
     let program = std::env::current_exe().expect("this program has a place");

@@ -256,7 +256,9 @@ fn a_fleet_prints_lines_as_the_schema_says_and_goes_on_where_it_was() {
         assert_eq!(line.get("error").is_some(), line["file"] == text(&bad), "{line}");
     }
     let before = read();
-    assert!(run(&logs).1.contains("3 stood there already") && read() == before);
+    let (code, said) = run(&logs);
+    assert!(said.contains("3 stood there already (1 of them failed then)") && read() == before, "{said}");
+    assert_eq!(code, Some(1), "what failed then has not been put right");
     // What was cut off when a run was killed is done again.
     std::fs::write(&lines, &before[..before.len() - 40]).expect("written");
     assert!(run(&logs).1.contains("2 stood there already"));
@@ -280,7 +282,7 @@ fn wrong_documents_are_refused() {
 #[test]
 fn the_contract_s_names_are_in_the_schemas() {
     let Ok(contract) = std::fs::read_to_string(workspace().join("../shared/spec/command-line.md")) else {
-        println!("skipped: ../shared/spec/command-line.md is not here");
+        tests::skipped("../shared/spec/command-line.md is not here");
         return;
     };
     let schemas = schemas();

@@ -92,7 +92,7 @@ fn python(monitor: &UdpMonitor, key: &Path, seconds: &str, more: &[&str]) -> Chi
 #[test]
 fn the_python_client_feels_the_table() {
     if !has("python3") {
-        println!("skipped: there is no python3 here");
+        tests::skipped("there is no python3 here");
         return;
     }
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -104,7 +104,7 @@ fn the_python_client_feels_the_table() {
 #[test]
 fn the_python_client_leans_on_the_table_by_waves_over_a_slow_network() {
     if !has("python3") {
-        println!("skipped: there is no python3 here");
+        tests::skipped("there is no python3 here");
         return;
     }
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -124,7 +124,7 @@ fn the_python_client_leans_on_the_table_by_waves_over_a_slow_network() {
 #[test]
 fn a_client_with_another_key_gets_no_answer() {
     if !has("python3") {
-        println!("skipped: there is no python3 here");
+        tests::skipped("there is no python3 here");
         return;
     }
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -147,7 +147,7 @@ fn a_client_with_another_key_gets_no_answer() {
 #[cfg(unix)]
 fn the_c_client_compiles_without_warnings_and_feels_the_table() {
     if !has("cc") {
-        println!("skipped: there is no C compiler here");
+        tests::skipped("there is no C compiler here");
         return;
     }
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -3,13 +3,13 @@
 pub(crate) mod fleet;
 
 use super::{LogArgs, Output};
-use crate::diagnosis_words::said_in_words;
+use crate::diagnosis_words::{said_in_words, state_in_words};
 use crate::tasks::Chosen;
 use anyhow::Context;
 use clap::Args;
 use estimator::diagnose::{
-    Baseline, Cause, CauseParameter, Diagnosis, Options, Progress, RolloutOf, Verdict, diagnose, extended_world,
-    validate,
+    Baseline, Cause, CauseParameter, Diagnosis, Options, Progress, Residual, RolloutOf, Verdict, diagnose,
+    extended_world, validate,
 };
 use estimator::words::amount;
 use haptics::world::World;
@@ -126,9 +126,12 @@ impl Diagnose {
             };
             run.through(&mut out)
         })?;
-        let fleet::Tally { done, failed, kept } = tally;
+        let fleet::Tally { done, failed, kept, failed_before } = tally;
         // Standard output is for the lines alone.
-        eprintln!("{done} diagnosed, {kept} stood there already, {failed} failed");
+        let then = if failed_before > 0 { format!(" ({failed_before} of them failed then)") } else { String::new() };
+        eprintln!("{done} diagnosed, {kept} stood there already{then}, {failed} failed");
+        // A run that was begun again has not put right what failed.
+        let failed = failed + failed_before;
         Ok((failed > 0)
             .then(|| format!("{failed} of {} logs could not be diagnosed; their lines say why", self.logs.len())))
     }
@@ -143,9 +146,12 @@ impl Diagnose {
         Ok(serde_json::to_value(diagnose(&recordings, options)?)?)
     }
 
-    /// Version and options: another answer may be expected when they change.
+    /// Version, revision of the sources where the build knows it, and options: another answer may be expected when they change.
     fn asked(&self, options: &Options) -> String {
         let mut asked = format!("touchstone {}", env!("CARGO_PKG_VERSION"));
+        if let Some(revision) = crate::report::provenance::revision() {
+            let _ = write!(asked, " ({revision})");
+        }
         let mut add = |name: &str, value: Option<String>| {
             if let Some(value) = value {
                 let _ = write!(asked, " --{name} {value}");
@@ -170,6 +176,9 @@ pub(super) fn describe(diagnosis: &Diagnosis) -> String {
     };
     let _ = writeln!(text, "verdict: {word}");
     let _ = writeln!(text, "  {}", model_line(diagnosis));
+    for left in &diagnosis.residuals {
+        let _ = writeln!(text, "    {}", residual_line(left));
+    }
     for cause in &diagnosis.causes {
         let _ = writeln!(text, "  {}", cause_line(cause));
     }
@@ -226,6 +235,14 @@ pub(super) fn describe(diagnosis: &Diagnosis) -> String {
         let _ = writeln!(text, "  ! {warning}");
     }
     text
+}
+
+/// What is left of a channel in a state.
+fn residual_line(left: &Residual) -> String {
+    let [before, after] = [left.rms_before, left.rms_after].map(|rms| amount(rms, &left.unit));
+    let noise = left.noise_floor.map_or_else(String::new, |noise| format!(", noise {}", amount(noise, &left.unit)));
+    let state = state_in_words(left.state);
+    format!("{}, {state}: {before} left, {after} with what was found{noise} ({} rows)", left.channel, left.rows)
 }
 
 /// What was compared, and how much of it is left.

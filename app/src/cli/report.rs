@@ -113,7 +113,9 @@ fn describe(sheets: &[Sheet], out: &Path) -> String {
         let _ = match &sheet.content {
             Ok(content) => {
                 let (found, all) = content.identified();
-                writeln!(text, "  {}: {found} of {all} parameters", sheet.source.name())
+                let why = content.analysis.as_ref().err();
+                let why = why.map_or_else(String::new, |why| format!("; the fit did not succeed: {why}"));
+                writeln!(text, "  {}: {found} of {all} parameters{why}", sheet.source.name())
             }
             Err(_) => writeln!(text, "  {}: could not be read", sheet.source.name()),
         };

@@ -31,12 +31,17 @@ impl Provenance {
         let at = fixed.and_then(|s| Timestamp::from_second(s).ok()).unwrap_or_else(Timestamp::now);
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            revision: option_env!("TOUCHSTONE_REVISION").filter(|r| !r.is_empty()),
+            revision: revision(),
             platform: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
             command,
             date: date(at),
         }
     }
+}
+
+/// Revision of the sources, as in [`Provenance::revision`].
+pub fn revision() -> Option<&'static str> {
+    option_env!("TOUCHSTONE_REVISION").filter(|r| !r.is_empty())
 }
 
 fn date(at: Timestamp) -> String {
@@ -54,7 +59,7 @@ fn quoted(argument: &str) -> String {
 
 #[cfg(test)]
 #[path = "../../build/revision.rs"]
-mod revision;
+mod of_checkout;
 
 #[cfg(test)]
 mod tests {
@@ -78,19 +83,19 @@ mod tests {
             println!("skipped: there is no git");
             return;
         }
-        assert!(revision::of(&main).is_none(), "nothing was committed");
+        assert!(of_checkout::of(&main).is_none(), "nothing was committed");
         std::fs::write(main.join("inner/a"), "1").expect("written");
         assert!(git(&main, &["add", "."]) && git(&main, &["commit", "--quiet", "--message", "One"]));
         assert!(git(&main, &["worktree", "add", "--quiet", "-b", "other", linked.to_str().expect("a plain path")]));
-        let first = revision::of(&main).expect("a revision");
+        let first = of_checkout::of(&main).expect("a revision");
         let noted = first.noted_in.as_deref().expect("git notes commits");
         assert!(noted.ends_with("logs/HEAD") && noted.exists());
-        assert!(revision::of(&main.join("inner")).is_none(), "an archive within another project's checkout");
+        assert!(of_checkout::of(&main.join("inner")).is_none(), "an archive within another project's checkout");
         std::fs::write(linked.join("inner/a"), "2").expect("written");
-        let changed = revision::of(&linked).expect("a revision");
+        let changed = of_checkout::of(&linked).expect("a revision");
         assert_eq!(changed.name, format!("{}-dirty", first.name));
         assert!(git(&linked, &["commit", "--quiet", "--all", "--message", "Two"]));
-        let second = revision::of(&linked).expect("a revision");
+        let second = of_checkout::of(&linked).expect("a revision");
         assert!(second.name != first.name && !second.name.contains("dirty"), "{second:?}");
         assert_ne!(second.noted_in, first.noted_in, "each has notes of its own");
     }

@@ -18,6 +18,8 @@ const SUFFIXES: &[(&str, &str, f64)] = &[
     ("_kg_m2", "g·cm²", 1e7),
     ("_kg_m3", "kg/m³", 1.0),
     ("_kg_s", "g/s", 1e3),
+    ("_kg_m", "kg·m", 1.0),
+    ("_rad_Nm", "°/N·m", 180.0 / std::f64::consts::PI),
     ("_N_s_m", "N·s/m", 1.0),
     ("_N_m3", "N/mm³", 1e-9),
     ("_Nm_s", "N·m·s", 1.0),

@@ -12,7 +12,9 @@ use super::report::{
     Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, PassedOver,
     Verdict,
 };
+use super::residuals::{Residual, residuals};
 use super::select::{Chosen, Selection};
+use crate::segment::SystemState;
 use crate::words::amount;
 
 /// A generic term above this score means that something is left that no known cause explains.
@@ -50,13 +52,15 @@ pub struct Compared {
     /// Rows that are held out in turn, and their stretches.
     pub along: Vec<bool>,
     pub stretch: Vec<usize>,
+    /// The state of every row.
+    pub state: Vec<SystemState>,
 }
 
 impl Compared {
     /// As a part of the answer.
     pub fn part<'a>(&'a self, shows: Shows<'a>, states: States<'a>, usual: Usual<'a>) -> Part<'a> {
-        let Self { study, channel, unit, floor, along, stretch } = self;
-        Part { study, channel, unit, floor: *floor, along, stretch, shows, states, usual }
+        let Self { study, channel, unit, floor, along, stretch, state } = self;
+        Part { study, channel, unit, floor: *floor, along, stretch, state, shows, states, usual }
     }
 }
 
@@ -73,6 +77,8 @@ pub struct Part<'a> {
     /// Rows that are held out in turn, and their stretches.
     pub along: &'a [bool],
     pub stretch: &'a [usize],
+    /// The state of every row.
+    pub state: &'a [SystemState],
     pub shows: Shows<'a>,
     pub states: States<'a>,
     pub usual: Usual<'a>,
@@ -104,6 +110,11 @@ impl Part<'_> {
             gain,
             evidence,
         }
+    }
+
+    /// What the channel leaves in every state.
+    fn residuals(&self) -> Vec<Residual> {
+        residuals(self.study, (self.unit, Some(self.floor)), &|i| Some((self.channel, self.state[i])))
     }
 
     /// The strongest generic term that is left, with its score.
@@ -234,6 +245,7 @@ pub fn answer(
             unit: first.map(|p| p.unit.to_owned()),
         },
         noise_floor_n: first.map_or(0.0, |p| p.floor),
+        residuals: parts.iter().flat_map(Part::residuals).collect(),
         next_experiment: next(&open),
         causes,
         alternatives,

@@ -1,7 +1,8 @@
 //! What loads a crank's bearing: the pull of the fingers alone (thesis, eq. 5.2), or that and the weight of the handle, which hangs on the same
 //! bearing. The recording decides.
 
-use super::force::{Model, blur, column};
+use super::blur::blur;
+use super::force::{Model, column};
 use super::track::{Place, Row, Track};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares_values;

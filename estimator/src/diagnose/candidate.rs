@@ -24,6 +24,8 @@ pub enum Shape {
     Spring { half: f64 },
     /// k, f0 and two cubics (about the middle, and half a range beside it) of a spring that hardens.
     Hardening { half: f64 },
+    /// k and k3 of a spring that hardens about a place that was searched for.
+    Stiffening,
     /// k, c of something that gives way and damps: what pushes along with the motion is no damper.
     Damped,
 }
@@ -41,6 +43,7 @@ impl Shape {
                 let [k, f0, k3, place] = about_its_zero([k * half, *f0, here * cube, there * cube]);
                 k3 > 0.0 && k > -0.5 * k3 && place.abs() < RESTS_WITHIN && f0.abs() < 2.0 * (k.abs() + k3)
             }
+            (Self::Stiffening, [k, k3]) => *k > 0.0 && *k3 > 0.0,
             (Self::Damped, [k, c]) => *c > -NEARLY_UNDAMPED_S * k,
             _ => true,
         }

@@ -197,6 +197,13 @@ impl Dictionary<'_> {
             let cubic = self.plain(&ReturnSpring, &[0.0, 0.0, 1.0, rest], 2).positive();
             all.push(cubic.at("q0", rest, self.unit(&ReturnSpring, 3)));
         }
+        // Near it, where it is at rest there is no force: one parameter less than two cubics have.
+        for rest in self.grid.hardening.iter().copied() {
+            let columns = vec![column(&[1.0, 0.0, 0.0, rest]), column(&[0.0, 0.0, 1.0, rest])];
+            let linear = vec![("k", self.unit(&ReturnSpring, 0)), ("k3", self.unit(&ReturnSpring, 2))];
+            let stiff = Candidate::several("return-spring", Kind::Plant, columns, linear).shaped(Shape::Stiffening);
+            all.push(stiff.at("q0", rest, self.unit(&ReturnSpring, 3)));
+        }
     }
 
     /// Walls that leave a good part of the motion alone (else a spring explains as much), and cables to a place beside the arm.

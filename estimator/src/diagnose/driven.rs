@@ -9,6 +9,7 @@ use super::geometry::Study;
 use super::report::{CauseParameter, Diagnosis, NotExcited};
 use super::{Options, quality, threshold};
 use crate::estimate::EstimateError;
+use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
 use crate::signal::task::smooth;
 use haptics::law::Kind;
@@ -73,6 +74,7 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let time: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
     let stretch = stretches(&time, period_s, |i| rows[i].recording != rows[i - 1].recording);
     let along = vec![true; rows.len()];
+    let state = vec![SystemState::Turning; rows.len()];
     let way = way(&rows, names, &stretch, period_s)?;
     let force = force(&rows, names, &stretch, period_s)?;
     if force.is_none() {
@@ -100,6 +102,7 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         floor,
         along: &along,
         stretch: &stretch,
+        state: &state,
         shows: &shown,
         states: &states,
         usual: &|_| None,

@@ -11,6 +11,7 @@ use super::geometry::Study;
 use super::kept::of_study;
 use super::passed_over::{passed_over, unsaid};
 use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NotExcited, Verdict};
+use super::residuals;
 use super::rollout::rollout;
 use super::searched::{Known, known};
 use super::select::{Chosen, Selection};
@@ -105,6 +106,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
             unit: Some(unit.to_owned()),
         },
         noise_floor_n: floor,
+        residuals: residuals::of_crank_or_mechanism(track, study, geometries, (unit, floor)),
         passed_over: unsaid(passed_over, &causes, &alternatives, &not_excited),
         not_excited,
         validation: Vec::new(),

@@ -137,6 +137,9 @@ fn effect(candidate: &Candidate, values: &[f64], track: &Track, weight_n: f64) -
             of(&PositionRipple, &[cosine.hypot(sine), searched(0), (-sine).atan2(cosine)])
         }
         "return-spring" if named("k3") => of(&ReturnSpring, &[0.0, 0.0, first, searched(0)]),
+        "return-spring" if !candidate.searched.is_empty() => {
+            of(&ReturnSpring, &[first, 0.0, values.get(1).copied().unwrap_or(0.0), searched(0)])
+        }
         "return-spring" => of(&ReturnSpring, &spring(values, track)),
         "local-resistance" => {
             let turn = if radius > 0.0 { std::f64::consts::TAU * radius } else { 0.0 };

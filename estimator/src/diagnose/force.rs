@@ -1,5 +1,6 @@
 //! The force that the motion needs: what the model leaves of it, and which causes explain that.
 
+use super::blur::{TOGETHER, blur, blurred};
 use super::candidate::Candidate;
 use super::columns::Columns;
 use super::compare::whitening as whitening_of;
@@ -16,26 +17,10 @@ use super::track::{Place, Row, Track};
 use crate::estimate::EstimateError;
 use crate::identify::linear::{least_squares, least_squares_values};
 use haptics::Vec2;
-use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, ViscousFriction};
+use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, Stribeck, ViscousFriction};
 
-/// The sign of a velocity is blurred over this share of the usual speed at least.
-const BLUR: f64 = 0.008;
-/// … over this one where a mass takes part, whose force jumps with the friction's.
-const BLUR_OF_MASS: f64 = 0.02;
-/// A reversal lies anywhere between two rows: standard deviation of its place, in rows, with some room.
-const SKEW: f64 = 0.5;
 /// Rows no longer than this are short for what depends on the place, s.
 const SHORT_S: f64 = 0.015;
-/// The clocks of force and motion differ by about this, s.
-const CLOCKS_S: f64 = 1e-3;
-/// What moves no faster than this many times what the sign is blurred over may as well stick: its friction is anything.
-const STICKS: f64 = 1.0;
-/// Rows that stick stick together: so many of them count as one. (The rows of a mechanism overlap, and none of them sticks alone.)
-const TOGETHER: f64 = 3.0;
-/// A row whose friction is open by more than this stands.
-const STANDS: f64 = 0.4;
-/// Share of the friction's square that stays open in a row with a reversal in it whose place is known.
-const REVERSAL: f64 = 0.05;
 
 /// Most rounds in which searched values and the sensor's faults are settled.
 const REFINEMENTS: usize = 2;
@@ -49,7 +34,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
     let loads = loads(track, model, fixed)?;
     stuck::add(track, &loads);
     let coarse = Grid::coarse(track);
-    let mut known = Known { columns: Columns::default(), generic: generic(track) };
+    let mut known = Known { columns: Columns::default(), generic: generic(track), is_sharp: false };
     let mut made = compare(track, (model, fixed), &known, threshold, [&coarse, &Grid::default()], None)?;
     for round in 0..REFINEMENTS {
         // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of them.
@@ -64,6 +49,18 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
             known.generic = generic(track);
         }
         made = compare(track, (model, fixed), &known, threshold, [&coarse, &fine], Some(made))?;
+    }
+    // How wide the direction of a mechanism is blurred is a guess. Where it is too wide, the friction of everything slow comes out too small,
+    // which passes for friction that rises there.
+    let rises = |study: &Study| study.chosen.iter().any(|c| study.candidates[c.candidate].id == Stribeck.id());
+    if !track.planar && rises(&made) {
+        known.is_sharp = true;
+        let found: Vec<&Candidate> = made.chosen.iter().map(|c| &made.candidates[c.candidate]).collect();
+        let fine = Grid::around(&found, track, 1.0);
+        let sharp = compare(track, (model, fixed), &known, threshold, [&coarse, &fine], None)?;
+        if !rises(&sharp) {
+            made = sharp;
+        }
     }
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
     leave_out_what_harms(&mut made, &stretch, CONFIRMED * threshold);
@@ -135,6 +132,8 @@ fn correct_load(track: &mut Track, study: &Study) -> bool {
 struct Known {
     columns: Columns,
     generic: Vec<Candidate>,
+    /// How wide the direction is blurred is open, too.
+    is_sharp: bool,
 }
 
 /// One round: laws that are fitted, and those of which everything is known. `before`: the round before, whose whitening stays (the same
@@ -167,6 +166,7 @@ fn compare(
     let losses = candidates.iter().filter(|c| ["hysteresis", "backlash"].contains(&c.id));
     let losses: Vec<&[f64]> = losses.map(|c| c.columns[0].as_slice()).collect();
     base.extend(stuck::creep(track, &y, &losses));
+    base.extend(made.is_sharp.then(|| blurred(track, &dry)));
     candidates.extend(made.generic.iter().cloned());
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
     let held = |row: &Row| match row.place {
@@ -252,58 +252,6 @@ pub fn drives(track: &Track, model: &Model) -> Result<bool, EstimateError> {
     // A force that only comes late drives, too, but needs no negative dry friction for that.
     let negative = |s: &f64| *s < -SURELY_NEGATIVE;
     Ok(friction < 0.0 && sizes.iter().all(|s| *s < SURELY_NEGATIVE) && (negative(mass) || others.iter().all(negative)))
-}
-
-/// The direction of motion, as certain as the velocity's noise and the clocks of the channels let it be.
-pub fn blur(track: &mut Track) {
-    let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
-    let (noise, period_s) = (track.velocity_noise, track.period_s);
-    let together = if track.planar { TOGETHER } else { 1.0 };
-    let share = if track.planar { BLUR } else { BLUR_OF_MASS };
-    let width = |skew: f64| 1.2 * (share * fast).hypot(noise).hypot(skew).max(1e-12);
-    for k in 0..track.fine.len() {
-        let next =
-            if k + 1 < track.fine.len() && track.fine[k + 1].stretch == track.fine[k].stretch { k + 1 } else { k };
-        let before = if k > 0 && track.fine[k - 1].stretch == track.fine[k].stretch { k - 1 } else { k };
-        let apart_s = (track.fine[next].time_s - track.fine[before].time_s).max(1e-9);
-        let acceleration = (track.fine[next].velocity - track.fine[before].velocity) / apart_s;
-        let share = track.fine[k].velocity / width(CLOCKS_S * acceleration);
-        track.fine[k].direction = share.tanh();
-        track.fine[k].open = 1.0 - (share / STICKS).tanh().powi(2);
-    }
-    for row in track.rows.iter_mut().filter(|r| r.place == Place::Along) {
-        if row.span.len == 0 {
-            let share = row.motion.velocity / width(SKEW * row.motion.acceleration * period_s);
-            row.motion.direction = share.tanh();
-            row.open = 1.0 - (share / STICKS).tanh().powi(2);
-            continue;
-        }
-        let (mut sum, mut open) = (0.0, 0.0);
-        for (k, weight) in row.span.weights() {
-            sum += weight * track.fine[k].direction;
-            open += weight * track.fine[k].open;
-        }
-        row.motion.direction = sum;
-        // Where in the row a reversal lies is known up to what the channels' clocks and filters differ by.
-        row.open = open + REVERSAL / together * (1.0 - sum * sum - open).max(0.0);
-    }
-    stand_together(track, together);
-}
-
-/// Rows that stand one after the other are one observation: a hand holds on to the same load meanwhile. `together`: how many of them are
-/// taken for one already.
-fn stand_together(track: &mut Track, together: f64) {
-    let stands = |row: &Row| row.place == Place::Along && row.open > STANDS;
-    let mut first = 0;
-    while first < track.rows.len() {
-        let mut end = first + 1;
-        while end < track.rows.len() && stands(&track.rows[first]) && stands(&track.rows[end]) && track.follows(end) {
-            end += 1;
-        }
-        let more = ((end - first) as f64 / together).max(1.0);
-        track.rows[first..end].iter_mut().filter(|r| r.open > STANDS).for_each(|r| r.open *= more);
-        first = end;
-    }
 }
 
 /// The force of a law of the place, and of the direction at most in proportion, like [`column`]: within a short row it is as good as straight.

@@ -11,8 +11,12 @@ use haptics::law::Kind;
 
 /// Starts of a slip that are tried.
 const SLIP_STARTS: usize = 24;
-/// Rounds of the linearised circle fit.
+/// When a creep of the grasp begins, and for how long it goes on, in shares of the recording.
+const CREEP_STARTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
+const CREEPS: [f64; 3] = [0.25, 0.5, 1.0];
+/// Rounds of the linearised circle fit, and those after which the time of a slip is known well enough.
 const ROUNDS: usize = 8;
+const CLOSER: usize = 4;
 
 /// One held sample.
 pub struct PathPoint {
@@ -34,6 +38,13 @@ pub struct Path {
     pub period_s: f64,
     /// Two pads hold the handle: their give belongs to the model.
     pub two_fingered: bool,
+}
+
+impl Path {
+    fn span_s(&self) -> f64 {
+        let ends = self.points.first().zip(self.points.last());
+        ends.map_or(0.0, |(first, last)| last.time_s - first.time_s)
+    }
 }
 
 /// The circle that the handle follows.
@@ -107,8 +118,11 @@ pub fn geometry(path: &Path, signals: usize, threshold: f64) -> Result<Geometry,
     let mut bent = vec![Displaced::default(); path.points.len()];
     let mut radius_m = 0.0;
     let mut study = None;
+    let coarse = Course::coarse(path);
+    let mut courses = coarse.clone();
+    let mut step_s = path.span_s() / SLIP_STARTS as f64;
     for round in 0..ROUNDS {
-        let made = compare(path, center_m, &bent, threshold)?;
+        let made = compare(path, (center_m, &bent), &courses, threshold)?;
         let Some(solved) = &made.solved else {
             return Err(EstimateError::Other("no circle fits the handle's path".to_owned()));
         };
@@ -116,7 +130,12 @@ pub fn geometry(path: &Path, signals: usize, threshold: f64) -> Result<Geometry,
         let step = Vec2::new(solved.values[1], solved.values[2]);
         center_m += step;
         bent = corrections(path, &made, &mut shift_m, center_m);
-        let settled = step.norm() < 1e-8;
+        // Slips that were found are looked for more and more closely.
+        step_s *= 0.5;
+        let found = made.chosen.iter().map(|c| &made.candidates[c.candidate]).filter(|c| c.id == "fingertip-slip");
+        let finer: Vec<Course> = found.flat_map(|c| Course::of(c).around(step_s)).collect();
+        let settled = step.norm() < 1e-8 && (finer.is_empty() || round > CLOSER);
+        courses = [coarse.as_slice(), &finer].concat();
         study = Some(made);
         if settled && round > 1 {
             break;
@@ -135,7 +154,12 @@ fn circle(points: &[Vec2]) -> Result<Vec2, EstimateError> {
     Ok(mean + Vec2::new(fit.values[0], fit.values[1]))
 }
 
-fn compare(path: &Path, center_m: Vec2, bent: &[Displaced], threshold: f64) -> Result<Study, EstimateError> {
+fn compare(
+    path: &Path,
+    (center_m, bent): (Vec2, &[Displaced]),
+    courses: &[Course],
+    threshold: f64,
+) -> Result<Study, EstimateError> {
     let arms: Vec<Vec2> = path.points.iter().map(|p| p.position - center_m).collect();
     let outward: Vec<Vec2> = arms.iter().map(Vec2::normalize).collect();
     // What is known of the displacement enters as it is, and stays in the target as its columns can take it.
@@ -147,7 +171,7 @@ fn compare(path: &Path, center_m: Vec2, bent: &[Displaced], threshold: f64) -> R
         base.push(column(&|i| outward[i].x * path.points[i].force.x));
         base.push(column(&|i| outward[i].y * path.points[i].force.y));
     }
-    let candidates = candidates(path, &outward);
+    let candidates = candidates(path, &outward, courses);
     let stretch: Vec<usize> = path.points.iter().map(|p| p.stretch).collect();
     let (testable, weight) = (vec![Held::Fully; y.len()], vec![1.0; y.len()]);
     let time_s: Vec<f64> = path.points.iter().map(|p| p.time_s).collect();
@@ -181,7 +205,7 @@ pub fn residual(y: &[f64], base: &[Vec<f64>], candidates: &[Candidate], picks: &
     (0..y.len()).map(|i| y[i] - columns.iter().zip(&solved.values).map(|(c, v)| c[i] * v).sum::<f64>()).collect()
 }
 
-fn candidates(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
+fn candidates(path: &Path, outward: &[Vec2], courses: &[Course]) -> Vec<Candidate> {
     let points = &path.points;
     let column = |f: &dyn Fn(usize) -> f64| (0..points.len()).map(f).collect::<Vec<f64>>();
     let mut found = Vec::new();
@@ -194,15 +218,57 @@ fn candidates(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
         found.push(Candidate::one("joint-offset", Kind::Instrument, "delta", "rad", of(0)));
         found.push(Candidate::one("length-scale", Kind::Instrument, "link_error", "m", of(1)));
     }
-    let (first, last) = (points.first().map_or(0.0, |p| p.time_s), points.last().map_or(0.0, |p| p.time_s));
-    for k in 1..SLIP_STARTS {
-        let start = first + (last - first) * k as f64 / SLIP_STARTS as f64;
-        let after = |i: usize| f64::from(u8::from(points[i].time_s >= start));
-        let columns = vec![column(&|i| after(i) * outward[i].x), column(&|i| after(i) * outward[i].y)];
+    found.extend(courses.iter().map(|course| {
+        let columns = vec![
+            column(&|i| course.gone(points[i].time_s) * outward[i].x),
+            column(&|i| course.gone(points[i].time_s) * outward[i].y),
+        ];
         let slip = Candidate::several("fingertip-slip", Kind::Plant, columns, vec![("dx", "m"), ("dy", "m")]);
-        found.push(slip.at("time", start, "s"));
-    }
+        let slip = slip.at("time", course.start_s, "s");
+        course.duration_s.map_or_else(|| slip.clone(), |duration_s| slip.clone().at("duration", duration_s, "s"))
+    }));
     found
+}
+
+/// When a grasp slips, and for how long it creeps; at once without a duration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Course {
+    start_s: f64,
+    duration_s: Option<f64>,
+}
+
+impl Course {
+    fn of(slip: &Candidate) -> Self {
+        Self { start_s: slip.searched[0].value, duration_s: slip.searched.get(1).map(|d| d.value) }
+    }
+
+    /// Share of the way that is behind it.
+    fn gone(self, time_s: f64) -> f64 {
+        let since_s = time_s - self.start_s;
+        self.duration_s.map_or(f64::from(u8::from(since_s >= 0.0)), |d| (since_s / d.max(1e-12)).clamp(0.0, 1.0))
+    }
+
+    /// What is tried at first. A grasp that creeps looks like a centre that wanders.
+    fn coarse(path: &Path) -> Vec<Self> {
+        let first = path.points.first().map_or(0.0, |p| p.time_s);
+        let span_s = path.span_s();
+        let slips = (1..SLIP_STARTS)
+            .map(|k| Self { start_s: first + span_s * k as f64 / SLIP_STARTS as f64, duration_s: None });
+        let creeps = CREEP_STARTS
+            .iter()
+            .flat_map(|start| CREEPS.map(|d| Self { start_s: first + span_s * start, duration_s: Some(span_s * d) }));
+        slips.chain(creeps).collect()
+    }
+
+    /// What lies around one that was found, and itself.
+    fn around(self, step_s: f64) -> Vec<Self> {
+        let starts = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|s| self.start_s + s * step_s);
+        let Some(duration_s) = self.duration_s else {
+            return starts.map(|start_s| Self { start_s, duration_s: None }).to_vec();
+        };
+        let lasts = [-1.0, 0.0, 1.0].map(|s| duration_s + 2.0 * s * step_s).into_iter().filter(|d| *d > step_s);
+        lasts.flat_map(|d| starts.map(|start_s| Self { start_s, duration_s: Some(d) })).collect()
+    }
 }
 
 /// What the found causes displaced the positions by.
@@ -226,8 +292,8 @@ fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2)
                     joint[0] * value
                 }
                 ("length-scale", Some(joint)) => joint[1] * value,
-                ("fingertip-slip", _) if point.time_s >= candidate.searched[0].value => {
-                    Vec2::new(value, solved.values[at + 1])
+                ("fingertip-slip", _) => {
+                    Vec2::new(value, solved.values[at + 1]) * Course::of(candidate).gone(point.time_s)
                 }
                 _ => Vec2::zeros(),
             };

@@ -39,6 +39,8 @@ const WALLS: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 /// Places of rest of a spring that hardens: so many, up to so many half ranges from the middle.
 const RESTS: u32 = 13;
 const RESTS_WITHIN: f64 = 1.5;
+/// … and so many where the linear part of it shows.
+const FINER_RESTS: u32 = 25;
 /// Times in which friction changes, in shares of the recording, …
 const WARMING: [f64; 4] = [0.1, 0.3, 1.0, 3.0];
 /// … in which a drift or a leak dies away, …
@@ -68,9 +70,17 @@ pub struct Grid {
     pub cables: Vec<(f64, f64, f64)>,
     /// Places of rest.
     pub rests: Vec<f64>,
+    /// The same of a spring whose linear part shows, too: tried where something of its kind was found.
+    pub hardening: Vec<f64>,
     pub warming: Vec<f64>,
     pub settling: Vec<f64>,
     pub starts: Vec<f64>,
+}
+
+/// Places of rest of a spring, evenly about the middle of a range.
+fn rests(count: u32, (low, high): (f64, f64)) -> Vec<f64> {
+    let share = |k: u32| 2.0 * f64::from(k) / f64::from(count - 1) - 1.0;
+    (0..count).map(|k| 0.5 * (low + high + RESTS_WITHIN * (high - low) * share(k))).collect()
 }
 
 impl Grid {
@@ -114,9 +124,8 @@ impl Grid {
             cables: (0..CABLES)
                 .flat_map(|k| SLACK.map(|s| (TAU * f64::from(k) / f64::from(CABLES), rest(s), REACH)))
                 .collect(),
-            rests: (0..RESTS)
-                .map(|k| 0.5 * (low + high + RESTS_WITHIN * range * (2.0 * f64::from(k) / f64::from(RESTS - 1) - 1.0)))
-                .collect(),
+            rests: rests(RESTS, (low, high)),
+            hardening: Vec::new(),
             warming: WARMING.map(|share| share * track.span_s).to_vec(),
             settling: SETTLING.map(|share| share * track.span_s).to_vec(),
             starts: (1..STARTS).map(|k| track.span_s * f64::from(k) / f64::from(STARTS)).collect(),
@@ -127,7 +136,8 @@ impl Grid {
     pub fn around(found: &[&Candidate], track: &Track, step: f64) -> Self {
         let coarse = Self::coarse(track);
         let mut grid = Self { turn: coarse.turn, felt: coarse.felt, ..Self::default() };
-        let range = track.quantile(1.0, |r| r.motion.position) - track.quantile(0.0, |r| r.motion.position);
+        let (low, high) = (track.quantile(0.0, |r| r.motion.position), track.quantile(1.0, |r| r.motion.position));
+        let range = high - low;
         let span = if grid.turn > 0.0 { grid.turn } else { range };
         let radius = track.radius_m.unwrap_or(0.0);
         for candidate in found {
@@ -162,6 +172,8 @@ impl Grid {
                     }
                 }
                 "added-constraint" => {
+                    // A wall and a spring that hardens are alike.
+                    grid.hardening = rests(FINER_RESTS, (low, high));
                     if let (Some(direction), Some(rest)) = (value("anchor direction"), value("rest length")) {
                         let found = value("anchor distance").map_or(REACH, |d| d / radius.max(1e-12));
                         for turn in [-0.6, -0.3, 0.0, 0.3, 0.6].map(|s| s * step * TAU / f64::from(CABLES)) {
@@ -178,7 +190,9 @@ impl Grid {
                         grid.walls.extend(places.map(|place| (place, candidate.side)));
                     }
                 }
+                "return-spring" if candidate.columns.len() == 2 && candidate.searched.is_empty() => {}
                 "return-spring" => {
+                    grid.hardening = rests(FINER_RESTS, (low, high));
                     let apart = step * RESTS_WITHIN * range / f64::from(RESTS - 1);
                     let rest = value("q0").into_iter();
                     grid.rests.extend(rest.flat_map(|q0| [-0.67, -0.33, 0.0, 0.33, 0.67].map(|s| q0 + s * apart)));

@@ -8,6 +8,7 @@ mod answer;
 pub mod atlas;
 mod bearing;
 mod blocks;
+mod blur;
 mod candidate;
 mod columns;
 mod compare;
@@ -37,6 +38,7 @@ mod progress;
 mod pulled;
 mod quality;
 pub mod report;
+mod residuals;
 mod rests;
 mod rollout;
 mod searched;
@@ -58,6 +60,7 @@ pub use report::{
     Alternative, Baseline, Cause, CauseParameter, Diagnosis, Experiment, Final, Gain, NextExperiment, NotExcited,
     PassedOver, Rollout, RolloutOf, Settled, Validation, Verdict,
 };
+pub use residuals::Residual;
 
 pub use course::Course;
 pub use experiment::{Insertions, Stroke, Strokes, Throw, Throws};

@@ -11,6 +11,7 @@ use super::{Options, THRESHOLD, quality};
 use crate::constraint::detect_in;
 use crate::estimate::{ConstraintKind, EstimateError};
 use crate::identify::mechanism::path::{self, from_constraint, project};
+use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
 use haptics::law::{Effect, Kind, Law, LocalResistance, Motion, ReturnSpring};
 use haptics::recording::Recording;
@@ -104,6 +105,7 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let holds = |n: usize| (vec![true; n], vec![0_usize; n]);
     let (one, other) = (holds(along.0.y.len()), holds(second.as_ref().map_or(0, |s| s.0.y.len())));
     let stretch: Vec<usize> = rows.iter().map(|r| r.recording).collect();
+    let state = vec![SystemState::Turning; one.0.len().max(other.0.len())];
     let part = |study, channel, unit, floor, along, stretch, shows| Part {
         study,
         channel,
@@ -111,6 +113,7 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         floor,
         along,
         stretch,
+        state: &state,
         shows,
         states: &plain,
         usual: &|_| None,

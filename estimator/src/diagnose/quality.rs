@@ -93,7 +93,11 @@ fn cause(id: &str, warning: &Warning, recording: &Recording) -> Cause {
         ("force-saturation", Some(span), Some(channel)) => {
             vec![number("F_max", channel.values[span.first].abs(), &channel.unit)]
         }
-        (_, Some(span), _) => vec![number("from", time(span.first), "s"), number("to", time(span.end), "s")],
+        (_, Some(span), _) => {
+            // Without a clock they are numbers of samples.
+            let unit = if recording.time_s.is_some() { "s" } else { "samples" };
+            vec![number("from", time(span.first), unit), number("to", time(span.end), unit)]
+        }
         _ => Vec::new(),
     };
     Cause {

@@ -4,6 +4,7 @@ use super::along::Along;
 use super::atlas::Atlas;
 use super::course::Course;
 use super::kept::Kept;
+use super::residuals::Residual;
 use super::suspects::Hypothesis;
 use haptics::law::{Effect, Kind};
 use schemars::JsonSchema;
@@ -262,6 +263,9 @@ pub struct Diagnosis {
     /// Noise of the force, N or N m, from where nothing touches, or from what is too fast to be mechanical.
     #[serde(rename = "noise_floor_N")]
     pub noise_floor_n: f64,
+    /// What the model leaves in every channel and state, without and with what was found, beside the noise.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub residuals: Vec<Residual>,
     /// Strongest first.
     pub causes: Vec<Cause>,
     /// What else it could be.

@@ -7,8 +7,8 @@ use super::geometry::Study;
 const OF_STEP: f64 = 0.1;
 /// Where a value has no neighbour on one side: share of the way to the other one that is its error.
 const AT_THE_END: f64 = 0.5;
-/// Share of a value that nothing was tried beside.
-const ALONE: f64 = 0.1;
+/// Share of a value that nothing was tried beside: all that is known is that something there explains it.
+const ALONE: f64 = 1.0;
 
 /// A searched value with one standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,9 @@
 //! What the extension is worth on other recordings: nothing is fitted to them.
 
+use super::blur::blur;
 use super::columns::Columns;
 use super::dictionary::{Dictionary, dry_of};
-use super::force::{blur, column};
+use super::force::column;
 use super::gain::bootstrap;
 use super::grid::Grid;
 use super::kept::Kept;

@@ -4,6 +4,16 @@
 //! integrated by the servo ([`crate::world`]), summed by the replay, put into a fit as regressor columns by the estimator and
 //! proposed by the diagnosis. Ids are those of `spec/causes.md`.
 //!
+//! ```
+//! use haptics::law::{CoulombFriction, Effect, Motion, ViscousFriction};
+//!
+//! // 0.2 N of dry friction and 3 N s/m against 0.1 m/s.
+//! let laws = [Effect::new(&CoulombFriction, &[0.2]), Effect::new(&ViscousFriction, &[3.0])];
+//! let motion = Motion { velocity: 0.1, direction: 1.0, ..Motion::default() };
+//! let force_n: f64 = laws.iter().map(|law| law.force(&motion)).sum();
+//! assert!((force_n - 0.5).abs() < 1e-12);
+//! ```
+//!
 //! Adding a law: one file here, one line in [`CATALOGUE`], one one-effect test in its file, one recovery test in `tests/`.
 //! Laws of contacts, which act on no coordinate, are in [`contact`], those of captured objects in [`object`]; every cause, law or
 //! not, is in [`entries`].

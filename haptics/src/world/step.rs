@@ -21,6 +21,22 @@ use crate::law::{AddedConstraint, explicit_stiffness};
 ///
 /// The tick is divided into as many equal parts as the stiffest contact needs; the fingers move evenly through them. The tip
 /// forces in the state are those of the tick's last part. The same inputs give the same bits, on any thread.
+///
+/// ```
+/// use haptics::Vec2;
+/// use haptics::world::{Input, State, presets, step};
+///
+/// let world = presets::stacking();
+/// // Two fingers far above the table, which do not move: the blocks stay where they are.
+/// let tips = [Vec2::new(-0.05, 0.05), Vec2::new(0.05, 0.05)];
+/// let mut state = State::new(&world, tips);
+/// let before = state.bodies.clone();
+/// for _ in 0..1000 {
+///     step(&world, &mut state, &Input { tip_in_world: tips, tip_velocity: [Vec2::zeros(); 2] }, 1e-3);
+/// }
+/// let moved_m = state.bodies.iter().zip(&before).map(|(a, b)| (a.center_m - b.center_m).norm()).fold(0.0, f64::max);
+/// assert!(moved_m < 1e-4 && state.tip_force_n.iter().all(|force| force.norm() == 0.0));
+/// ```
 pub fn step(world: &World, state: &mut State, input: &Input, dt_s: f64) {
     collide(world, state, input, dt_s);
     let parts = parts_of(world, dt_s, state.scratch.deepest_pad_m);

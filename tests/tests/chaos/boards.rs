@@ -5,7 +5,7 @@ use crate::Chaos;
 
 #[cfg(not(unix))]
 pub fn unplugged(_: &mut Chaos) {
-    println!("skipped: emulated boards need pseudo-terminals");
+    tests::skipped("emulated boards need pseudo-terminals");
 }
 
 #[cfg(unix)]

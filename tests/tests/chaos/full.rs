@@ -28,7 +28,7 @@ pub fn refuses(chaos: &mut Chaos) {
         .status()
         .is_ok_and(|status| status.success());
     if !can_mount {
-        println!("skipped: a disk of its own for the test needs `unshare` and user namespaces");
+        tests::skipped("a disk of its own for the test needs `unshare` and user namespaces");
         return;
     }
     let before = format!("mount -t tmpfs -o size={DISK} none \"$TOUCHSTONE_CHAOS_FOLDER\" &&");

@@ -9,7 +9,7 @@ use estimator::diagnose::Diagnosis;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::{BufRead as _, BufReader, Read as _, Seek as _, SeekFrom, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -54,6 +54,19 @@ pub struct Tally {
     pub failed: usize,
     /// Logs whose lines stood there already.
     pub kept: usize,
+    /// Those of them whose lines say why there is no result.
+    pub failed_before: usize,
+}
+
+/// The lines that stand already, and whether each says why there is no result.
+pub type Standing = HashMap<Key, bool>;
+
+/// A line as it is read again.
+#[derive(Deserialize)]
+struct Read {
+    #[serde(flatten)]
+    key: Key,
+    error: Option<String>,
 }
 
 impl Key {
@@ -71,19 +84,20 @@ impl Key {
 }
 
 /// The lines that stand in a file; those that were cut off when a run was killed count as missing.
-pub fn standing(path: &Path) -> anyhow::Result<HashSet<Key>> {
+pub fn standing(path: &Path) -> anyhow::Result<Standing> {
     let file = match File::open(path) {
         Ok(file) => file,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(HashSet::new()),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Standing::new()),
         Err(error) => {
             return Err(error).with_context(|| format!("the results so far cannot be read: {}", path.display()));
         }
     };
-    let mut keys = HashSet::new();
+    let mut keys = Standing::new();
     for line in BufReader::new(file).split(b'\n') {
         let line = line.with_context(|| format!("the results so far cannot be read: {}", path.display()))?;
         // What could not be read then may be readable now.
-        keys.extend(serde_json::from_slice::<Key>(&line).ok().filter(|key| key.sha256.is_some()));
+        let read = serde_json::from_slice::<Read>(&line).ok().filter(|read| read.key.sha256.is_some());
+        keys.extend(read.map(|read| (read.key, read.error.is_some())));
     }
     Ok(keys)
 }
@@ -109,7 +123,7 @@ pub struct Run<'a> {
     /// How many at the same time, at least one.
     pub jobs: usize,
     /// Lines that stand already.
-    pub standing: &'a HashSet<Key>,
+    pub standing: &'a Standing,
     /// Names a log as it lies there.
     pub key: &'a (dyn Fn(&Path) -> Key + Sync),
     /// Diagnoses one log.
@@ -125,11 +139,14 @@ impl Run<'_> {
         let next = AtomicUsize::new(0);
         let take_turns = || {
             while let Some(log) = self.logs.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let line = self.line(log);
+                let key = (self.key)(log);
+                let stands = self.standing.get(&key).copied();
+                let line = stands.is_none().then(|| self.line(log, key));
                 let mut shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
                 let (out, tally, broken) = &mut *shared;
                 let Some(line) = line else {
                     tally.kept += 1;
+                    tally.failed_before += usize::from(stands == Some(true));
                     (self.told)(tally.done + tally.failed + tally.kept);
                     continue;
                 };
@@ -156,12 +173,8 @@ impl Run<'_> {
         }
     }
 
-    /// A log's line; `None` where it stands already.
-    fn line(&self, log: &Path) -> Option<Line> {
-        let key = (self.key)(log);
-        if self.standing.contains(&key) {
-            return None;
-        }
+    /// A log's line.
+    fn line(&self, log: &Path, key: Key) -> Line {
         // What the work was building is dropped with a panic: nobody sees it half made.
         let made = catch_unwind(AssertUnwindSafe(|| (self.work)(log)));
         let (result, error) = match made {
@@ -169,7 +182,7 @@ impl Run<'_> {
             Ok(Err(error)) => (None, Some(super::super::sentence(&error))),
             Err(panic) => (None, Some(fault(panic.as_ref()))),
         };
-        Some(Line { key, result, error })
+        Line { key, result, error }
     }
 }
 
@@ -209,7 +222,7 @@ mod tests {
         }
 
         /// Runs over the files and gives the lines back, in the order of the files.
-        fn run(&self, names: &[&str], jobs: usize, standing: &HashSet<Key>) -> (Tally, Vec<Value>) {
+        fn run(&self, names: &[&str], jobs: usize, standing: &Standing) -> (Tally, Vec<Value>) {
             let logs: Vec<PathBuf> = names.iter().map(|name| self.path(name)).collect();
             let mut out = Vec::new();
             let run = Run { logs: &logs, jobs, standing, key: &key, work: &work, told: &|_| {} };
@@ -239,8 +252,8 @@ mod tests {
     fn bad_files_and_panics_are_lines_and_the_others_go_on() {
         let folder = Folder::of(&[("a", "one"), ("b", "panic"), ("c", "bad"), ("e", "three")]);
         for jobs in [1, 3, 64] {
-            let (tally, lines) = folder.run(&["a", "b", "c", "d", "e"], jobs, &HashSet::new());
-            assert_eq!(tally, Tally { done: 2, failed: 3, kept: 0 });
+            let (tally, lines) = folder.run(&["a", "b", "c", "d", "e"], jobs, &Standing::new());
+            assert_eq!(tally, Tally { done: 2, failed: 3, ..Tally::default() });
             assert_eq!((&lines[0]["result"]["length"], &lines[4]["result"]["length"]), (&json!(3), &json!(5)));
             assert!(lines[1]["error"].as_str().is_some_and(|e| e.contains("fault") && e.contains("the file says so")));
             assert_eq!(lines[2]["error"], "it is bad");
@@ -257,15 +270,15 @@ mod tests {
         let folder = Folder::of(&[("a", "one"), ("b", "bad"), ("a.meta.json", "{}")]);
         let out = folder.path("out.jsonl");
         let names = ["a", "b", "none"];
-        let (_, lines) = folder.run(&names, 2, &HashSet::new());
+        let (_, lines) = folder.run(&names, 2, &Standing::new());
         let text: Vec<String> = lines.iter().map(Value::to_string).collect();
         // The last line was cut off by a kill.
         std::fs::write(&out, format!("{}\n{}\n{}", text[0], text[1], &text[0][..20])).expect("written");
         let kept = standing(&out).expect("readable");
-        assert_eq!(folder.run(&names, 2, &kept).0, Tally { done: 0, failed: 1, kept: 2 });
+        assert_eq!(folder.run(&names, 2, &kept).0, Tally { done: 0, failed: 1, kept: 2, failed_before: 1 });
         // Another sidecar, another log.
         std::fs::write(folder.path("a.meta.json"), "{ }").expect("written");
-        assert_eq!(folder.run(&names, 2, &kept).0, Tally { done: 1, failed: 1, kept: 1 });
+        assert_eq!(folder.run(&names, 2, &kept).0, Tally { done: 1, failed: 1, kept: 1, failed_before: 1 });
         append_to(&out).and_then(|mut file| Ok(writeln!(file, "{}", text[1])?)).expect("appended");
         let whole = std::fs::read_to_string(&out).expect("readable");
         assert_eq!(whole.lines().count(), 4, "the cut line stands alone: {whole}");
@@ -290,7 +303,7 @@ mod tests {
             asked.fetch_add(1, Ordering::Relaxed);
             work(log)
         };
-        let run = Run { logs: &logs, jobs: 2, standing: &HashSet::new(), key: &key, work: &counted, told: &|_| {} };
+        let run = Run { logs: &logs, jobs: 2, standing: &Standing::new(), key: &key, work: &counted, told: &|_| {} };
         let error = run.through(&mut Full).expect_err("nothing can be written");
         assert!(format!("{error:#}").contains("cannot be written") && asked.load(Ordering::Relaxed) < 5);
     }

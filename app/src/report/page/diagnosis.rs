@@ -2,7 +2,8 @@
 
 use super::failed;
 use crate::diagnosis_words::{
-    compared_unit, gain_unit, headline, listed, said_in_words, shown_unit, small, symbol, title,
+    compared_unit, gain_unit, headline, listed, residual_unit, said_in_words, shown_unit, small, state_in_words,
+    symbol, title,
 };
 use crate::report::chart;
 use crate::report::collect::Content;
@@ -37,6 +38,7 @@ fn answer(content: &Content, diagnosis: &Diagnosis) -> Markup {
         p class="verdict" { (headline(diagnosis)) }
         p class="muted" { "Compared with the plain model of the task: " (words(&diagnosis.baseline.model)) "." }
         (levels(diagnosis))
+        (by_state(diagnosis))
         @for (rank, cause) in diagnosis.causes.iter().enumerate() { (card(rank + 1, cause, diagnosis)) }
         @for settled in &diagnosis.settled {
             p { "Settled by " (settled.by) ": " (title(&settled.kept)) ", not " (title(&settled.excluded)) ". " (sentence(&settled.why)) }
@@ -138,6 +140,34 @@ fn levels(diagnosis: &Diagnosis) -> Markup {
                 (level("Noise", noise, "faint"))
             }
             p class="muted small" { "Force left over on data that chose and fitted nothing, root mean square." }
+        }
+    }
+}
+
+/// What is left in every channel and state.
+fn by_state(diagnosis: &Diagnosis) -> Markup {
+    let all = &diagnosis.residuals;
+    html! {
+        @if all.len() > 1 {
+            table {
+                thead { tr {
+                    th { "Left over" } th { "State" } th class="number" { "Model" }
+                    @if !diagnosis.causes.is_empty() { th class="number" { "With what was found" } }
+                    th class="number" { "Noise" }
+                } }
+                tbody { @for left in all {
+                    @let (unit, factor) = residual_unit(&[left]);
+                    @let shown = |rms: f64| format!("{} {unit}", format::significant(rms * factor, 3));
+                    tr {
+                        td { (format::capitalised(&left.channel)) }
+                        td { (state_in_words(left.state)) }
+                        td class="number" { (shown(left.rms_before)) }
+                        @if !diagnosis.causes.is_empty() { td class="number" { (shown(left.rms_after)) } }
+                        td class="number" { (left.noise_floor.map_or("–".to_owned(), shown)) }
+                    }
+                } }
+            }
+            p class="muted small" { "Root mean square over all rows of the state, each as far as it is trusted: the direction of what hardly moves is a guess." }
         }
     }
 }

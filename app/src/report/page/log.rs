@@ -1,15 +1,18 @@
 //! The section of one log.
 
 use super::{diagnosis, recording, replay, results, unknown};
-use crate::diagnosis_words::headline_of;
+use crate::diagnosis_words::{headline_of, small};
 use crate::report::Sheet;
 use crate::report::collect::Content;
 use crate::ui::format;
 use crate::ui::session::sentence;
 use estimator::diagnose::{Diagnosis, Verdict};
+use estimator::estimate::{Constraint, ConstraintKind};
 use haptics::recording::Task;
 use maud::{Markup, html};
 
+/// So many doubts of a fit are summed up; all of them stand below.
+const MOST_DOUBTS: usize = 3;
 /// What a diagnosis starts from when nothing else is stated.
 const PLAIN: &str = "The plain model of the task";
 
@@ -69,7 +72,8 @@ fn summary(content: &Content) -> Markup {
                         @else { (found) " of " (all) " parameters were measured; what is missing for the others stands below." }
                     }
                 }
-                @if let Some(text) = agreement(content) { li class="good" { (text) } }
+                @if let Some((text, is_good)) = agreement(content) { li class=(if is_good { "good" } else { "warning" }) { (text) } }
+                @if let Some(text) = held_by(content) { li { (text) } }
                 @if let Ok(diagnosis) = &content.diagnosis {
                     li { (headline_of(PLAIN, diagnosis)) }
                 }
@@ -77,7 +81,9 @@ fn summary(content: &Content) -> Markup {
                     li class=(if diagnosis.verdict == Verdict::None { "good" } else { "" }) { (of_world(diagnosis)) }
                 }
                 @if let Err(why) = &content.analysis { li class="warning" { "The fit did not succeed: " (sentence(why)) } }
+                @for warning in doubts(content).iter().take(MOST_DOUBTS) { li class="warning" { "The fit warns: " (sentence(warning)) } }
                 @match content.warnings().len() {
+                    0 if !doubts(content).is_empty() => {}
                     0 => li class="good" { "Nothing in the data looks wrong." },
                     1 => li class="warning" { "One warning about the quality of the data." },
                     n => li class="warning" { (n) " warnings about the quality of the data." },
@@ -98,15 +104,43 @@ pub fn of_world(diagnosis: &Diagnosis) -> String {
     }
 }
 
-/// How well force that the fit did not see is met.
-fn agreement(content: &Content) -> Option<String> {
+/// What the fit itself says against its answer.
+fn doubts(content: &Content) -> &[String] {
+    content.analysis.as_ref().map_or(&[], |analysis| &analysis.fit.warnings)
+}
+
+/// What holds the thing that was moved, in one sentence; nothing where that was not asked, or not told.
+fn held_by(content: &Content) -> Option<String> {
+    let told = |c: &&Constraint| !matches!(c.kind, ConstraintKind::Free | ConstraintKind::Undecided);
+    let all = &content.analysis.as_ref().ok()?.fit.constraints;
+    let held: Vec<&Constraint> = all.iter().filter(told).collect();
+    let first = held.first()?;
+    let kinds = held.iter().all(|c| c.kind == first.kind).then(|| small(results::title(first.kind)))?;
+    Some(match (all.len(), first.radius_m) {
+        (1, Some(radius_m)) => {
+            let error = first.std_error.get("radius_m").map(|e| 1e3 * e);
+            let (radius, error) = format::with_error(1e3 * radius_m, error);
+            let error = error.map_or_else(String::new, |e| format!(" ± {e}"));
+            format!("What was moved is held by {kinds}, {radius}{error} mm away.")
+        }
+        (1, None) => format!("What was moved is held by {kinds}."),
+        (n, _) => format!("In {} of {n} recordings what was moved is held by {kinds}.", held.len()),
+    })
+}
+
+/// A model that misses more than this of the force, in %, does not meet it.
+const MEETS: f64 = 10.0;
+
+/// How well force that the fit did not see is met, and whether that is well.
+fn agreement(content: &Content) -> Option<(String, bool)> {
     let quality = content.analysis.as_ref().ok()?.fit.quality.as_ref()?;
     let (share, off) = (100.0 * quality.heldout_share, 100.0 * quality.heldout_relative);
     off.is_finite().then(|| {
-        format!(
+        let text = format!(
             "The fitted model meets the force on the {} % of the recording that it was not fitted to within {} %.",
             format::number(share, 0),
             format::significant(off, 2)
-        )
+        );
+        (text, off < MEETS)
     })
 }

@@ -77,7 +77,7 @@ fn line(number: usize, sheet: &Sheet) -> Markup {
     let (found, all) = content.identified();
     html! {
         tr {
-            td { (link) }
+            td class="log-name" { (link) }
             td class="task" { (content.analysis.as_ref().map_or("–", |a| a.task.name())) }
             td class="number" { (recording::length(content)) }
             td class="number" { @if all > 0 { (found) " of " (all) } @else { "–" } }

@@ -119,7 +119,7 @@ fn kinds(all: &[Constraint]) -> Markup {
     html! { p class="muted" { "Of all " (all.len()) " recordings: " (words.join(", ")) "." } }
 }
 
-fn title(kind: ConstraintKind) -> &'static str {
+pub fn title(kind: ConstraintKind) -> &'static str {
     match kind {
         ConstraintKind::Revolute => "A hinge: turning about a fixed axis",
         ConstraintKind::Prismatic => "A slide: moving along a fixed line",

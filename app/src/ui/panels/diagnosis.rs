@@ -2,7 +2,7 @@
 
 use super::Panel;
 use super::{causes, check, diagnose, next_experiment, why_not};
-use crate::diagnosis_words::{compared_unit, headline, title};
+use crate::diagnosis_words::{compared_unit, headline, residual_unit, title};
 use crate::ui::diagnosing::Answer;
 use crate::ui::files;
 use crate::ui::format;
@@ -13,7 +13,7 @@ use crate::ui::session::{Session, sentence};
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, card, compact, plain_card, primary_button, remark};
 use egui::{Align, Color32, Layout, RichText, ScrollArea, Ui, vec2};
-use estimator::diagnose::Diagnosis;
+use estimator::diagnose::{Diagnosis, Residual};
 
 /// What this panel says; sentences with numbers in them stand where the numbers are.
 mod words {
@@ -24,6 +24,8 @@ mod words {
     pub const WITH_WHAT_WAS_FOUND: &str = "With what was found";
     pub const NOISE: &str = "Noise";
     pub const FORCE_LEFT_OVER: &str = "Force left over on data that chose and fitted nothing, RMS.";
+    pub const LEFT_OVER_BY_STATE: &str = "Left over, state by state";
+    pub const FOUND: &str = "Found";
     pub const EXTENDED_MODEL: &str = "Extended model";
     pub const A_WORLD_WITH_THE_FOUND: &str = "A world with the found laws in it, beside one with the model alone.";
     pub const EXTEND_THE_MODEL: &str = "Extend the model";
@@ -56,6 +58,7 @@ impl Panel for DiagnosisPanel {
             for (k, cause) in answer.diagnosis.causes.iter().enumerate() {
                 causes::cause(ui, k + 1, cause, &answer.diagnosis);
             }
+            by_state(ui, &answer.diagnosis);
             check::card(ui, session, &answer.diagnosis);
             why_not::card(ui, session, &answer.diagnosis);
             hidden(ui, &answer.diagnosis);
@@ -96,6 +99,53 @@ fn verdict(ui: &mut Ui, session: &mut Session, answer: &Answer) {
         let ctx = ui.ctx().clone();
         session.diagnose(&ctx);
     }
+}
+
+/// What is left in every channel and state, beside the noise.
+fn by_state(ui: &mut Ui, diagnosis: &Diagnosis) {
+    let all = &diagnosis.residuals;
+    if all.len() < 2 {
+        return;
+    }
+    let found = !diagnosis.causes.is_empty();
+    let mut channels: Vec<&str> = all.iter().map(|left| left.channel.as_str()).collect();
+    channels.dedup();
+    plain_card(ui, words::LEFT_OVER_BY_STATE, |ui| {
+        for (k, channel) in channels.into_iter().enumerate() {
+            let own: Vec<&Residual> = all.iter().filter(|left| left.channel == channel).collect();
+            let (unit, factor) = residual_unit(&own);
+            let heads = if k > 0 { ["", "", ""] } else { [words::MODEL, words::FOUND, words::NOISE] };
+            let heads = heads.map(|head| theme::caption(ui, if head == words::FOUND && !found { "" } else { head }));
+            let name = theme::caption(ui, &format!("{}, {unit}", format::capitalised(channel)));
+            figures(ui, name, heads);
+            for left in own {
+                let shown = |rms: f64| RichText::new(format::significant(rms * factor, 3)).size(12.0);
+                let after = if found { shown(left.rms_after) } else { RichText::new("") };
+                let noise = left.noise_floor.map_or_else(|| RichText::new("–"), shown);
+                figures(
+                    ui,
+                    RichText::new(theme::state_name(left.state)).size(12.0),
+                    [shown(left.rms_before), after, noise],
+                );
+            }
+        }
+    });
+}
+
+/// A name and three numbers in one line, which stand below each other.
+fn figures(ui: &mut Ui, name: RichText, numbers: [RichText; 3]) {
+    const NUMBER: f32 = 46.0;
+    compact(ui, |ui| {
+        ui.label(name);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            for number in numbers.into_iter().rev() {
+                ui.allocate_ui_with_layout(vec2(NUMBER, 16.0), Layout::right_to_left(Align::Center), |ui| {
+                    ui.set_min_width(NUMBER);
+                    ui.label(number);
+                });
+            }
+        });
+    });
 }
 
 /// A name, a bar and a number in one line.

@@ -12,6 +12,7 @@ use crate::diagnose::geometry::Study;
 use crate::diagnose::report::CauseParameter;
 use crate::estimate::EstimateError;
 use crate::identify::block::object;
+use crate::segment::SystemState;
 use haptics::world::World;
 
 /// The comparison and what its words need.
@@ -73,11 +74,13 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     let of = |row: &Row| if let Place::Carried { number, .. } = row.place { number } else { 0 };
     let numbers: Vec<usize> = rows.all.iter().map(of).collect();
     let cable_errors = errors(&rows, &study, &|column| touched(&numbers, column));
-    let along = rows.all.iter().map(is_carried).collect();
+    let along: Vec<bool> = rows.all.iter().map(is_carried).collect();
+    let of_carried = |c: &bool| if *c { SystemState::HoldAboveGround } else { SystemState::FreeMotion };
+    let state = along.iter().map(of_carried).collect();
     let longest_s = longest_s(&rows);
     let channel = "net force on carried blocks";
     let view = view(&rows);
-    let compared = Compared { study, channel, unit: "N", floor, along, stretch: rows.stretch };
+    let compared = Compared { study, channel, unit: "N", floor, along, stretch: rows.stretch, state };
     let weighed = (1..=known.len()).filter(|k| known[k - 1].is_none()).collect();
     Ok(Carry { compared, longest_s, cable_errors, numbers, weighed, view })
 }

@@ -8,6 +8,7 @@ use crate::diagnose::compare::{Channel, stretches};
 use crate::diagnose::report::CauseParameter;
 use crate::estimate::EstimateError;
 use crate::identify::block::object;
+use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 use haptics::law::contact::{Cushion, Densification, ONSET, StiffnessHardening};
@@ -39,6 +40,7 @@ struct Rows {
     width_m: Vec<f64>,
     grip_n: Vec<f64>,
     rate_m_s: Vec<f64>,
+    state: Vec<SystemState>,
     stretch: Vec<usize>,
 }
 
@@ -50,6 +52,7 @@ fn rows(seen: &[Seen<'_>]) -> Rows {
         width_m: Vec::new(),
         grip_n: Vec::new(),
         rate_m_s: Vec::new(),
+        state: Vec::new(),
         stretch: Vec::new(),
     };
     let mut owner = Vec::new();
@@ -62,6 +65,7 @@ fn rows(seen: &[Seen<'_>]) -> Rows {
                 rows.width_m.push(one.blocks.width[i]);
                 rows.grip_n.push(one.blocks.grip[i]);
                 rows.rate_m_s.push(one.blocks.width_rate[i]);
+                rows.state.push(one.state(i));
                 owner.push((k, number));
             }
         }
@@ -121,8 +125,8 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     };
     let study = channel.compare(threshold)?;
     let along = vec![true; n];
-    let compared =
-        Compared { study, channel: "distance of the tips", unit: "m", floor: floor_m, along, stretch: rows.stretch };
+    let (channel, stretch, state) = ("distance of the tips", rows.stretch, rows.state);
+    let compared = Compared { study, channel, unit: "m", floor: floor_m, along, stretch, state };
     let view = View::of(rows.recording, vec![(Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)]);
     Ok(Some(Grasp { compared, view, means, modelled }))
 }

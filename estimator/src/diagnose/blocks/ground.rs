@@ -9,6 +9,7 @@ use crate::diagnose::report::CauseParameter;
 use crate::estimate::EstimateError;
 use crate::identify::block::heights::{Rest, rests};
 use crate::identify::block::object;
+use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 use haptics::world::World;
@@ -110,7 +111,15 @@ pub fn ground(
     let floor_m = white_noise(&rows.height_m);
     let study = channel.compare(threshold)?;
     let channel = "height of the grip over the ground";
-    let compared = Compared { study, channel, unit: "m", floor: floor_m, along, stretch };
+    let compared = Compared {
+        study,
+        channel,
+        unit: "m",
+        floor: floor_m,
+        along,
+        stretch,
+        state: vec![SystemState::HoldOnGround; n],
+    };
     let view = View {
         recording: rows.stand.iter().map(|s| stands[*s].recording).collect(),
         // One rest is no continuation of another: each has a height of its own.

@@ -193,6 +193,12 @@ impl<'a> Seen<'a> {
         self.every(self.blocks.shown("width_m", number).into_iter())
     }
 
+    /// The state of a row.
+    pub fn state(&self, i: usize) -> SystemState {
+        let states = &self.blocks.segmentation.states;
+        states.get(states.partition_point(|s| s.end <= i)).map_or(SystemState::NoState, |s| s.state)
+    }
+
     /// Rows of free motion.
     pub fn free(&self) -> Vec<usize> {
         let states = self.blocks.segmentation.states.iter();

@@ -1,6 +1,7 @@
 //! Rows of a motion that was not made yet: the model's own forces on it.
 
-use super::super::force::{Model, blur, column};
+use super::super::blur::blur;
+use super::super::force::{Model, column};
 use super::super::track::{Place, Row, Span, Track};
 use super::library::Excitation;
 use super::strokes::Course;

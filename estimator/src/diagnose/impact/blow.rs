@@ -10,6 +10,7 @@ use crate::estimate::EstimateError;
 use crate::identify::tossed::Tossed;
 use crate::identify::tossed::flight::LEAST;
 use crate::identify::tossed::pose::Track;
+use crate::segment::SystemState;
 use haptics::law::Kind;
 use nalgebra::{DVector, Vector3};
 use std::ops::Range;
@@ -65,7 +66,9 @@ pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option
     let along = vec![true; n];
     // A throw has one blow: all of them are seen together, over the speed that they came with.
     let view = View::of(Vec::new(), vec![(Variable::Velocity, pairs.iter().map(|(before, _)| -before).collect())]);
-    Ok(Some((Compared { study, channel: "speed after impacts", unit: "m/s", floor, along, stretch }, view)))
+    // A blow is none of a segmentation's states.
+    let (channel, state) = ("speed after impacts", vec![SystemState::NoState; n]);
+    Ok(Some((Compared { study, channel, unit: "m/s", floor, along, stretch, state }, view)))
 }
 
 /// What a cause in the impacts is best seen against.

@@ -8,6 +8,7 @@ use crate::diagnose::compare::Channel;
 use crate::diagnose::report::CauseParameter;
 use crate::estimate::EstimateError;
 use crate::identify::tossed::Tossed;
+use crate::segment::SystemState;
 use crate::signal::derive::polynomial;
 use haptics::law::Kind;
 use nalgebra::{DVector, Vector3};
@@ -72,7 +73,8 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, Estim
     let over = vec![(Variable::Time, each(|w| &w.time_s)), (Variable::Velocity, each(|w| &w.speed_m_s))];
     // A single slide is short: all of them are seen together.
     let view = View::of(Vec::new(), over);
-    Ok(Some((Compared { study, channel: "way of the slides", unit: "m", floor, along, stretch }, view)))
+    let (channel, state) = ("way of the slides", vec![SystemState::SlidingOnGround; n]);
+    Ok(Some((Compared { study, channel, unit: "m", floor, along, stretch, state }, view)))
 }
 
 /// What a cause in the slides is best seen against.

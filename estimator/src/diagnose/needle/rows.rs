@@ -5,6 +5,7 @@ use crate::estimate::EstimateError;
 use crate::identify::needle::Sheet;
 use crate::identify::needle::signals::{Along, along};
 use crate::identify::needle::strokes::{BEYOND_DENT_M, Push, pushes};
+use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
 use crate::signal::task::{half_width, smooth, times};
 use haptics::recording::Recording;
@@ -59,6 +60,19 @@ pub struct Row {
     /// Deepest so far at this place, m.
     pub deepest_m: f64,
     pub stretch: usize,
+}
+
+impl Row {
+    /// The state that a segmentation would call it.
+    pub fn state(&self) -> SystemState {
+        match self.phase {
+            Phase::Empty | Phase::Outside => SystemState::FreeMotion,
+            Phase::Loading => SystemState::Insertion,
+            Phase::Unloading => SystemState::Extraction,
+            Phase::Hole if self.rate_m_s < 0.0 => SystemState::Extraction,
+            Phase::Hole => SystemState::Penetration,
+        }
+    }
 }
 
 /// Where a sheet gave way.

@@ -3,12 +3,12 @@
 use super::rows::{Needle, Phase, Row};
 use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::atlas::View;
+use crate::diagnose::blur::blur;
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::columns::Columns;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::dictionary::Dictionary;
 use crate::diagnose::experiment::Imagined;
-use crate::diagnose::force::blur;
 use crate::diagnose::grid::Grid;
 use crate::diagnose::track::{self, Track};
 use crate::estimate::EstimateError;
@@ -157,6 +157,7 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         .collect();
     let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();
     let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
+    let state = rows.iter().map(Row::state).collect();
     let channel = Channel {
         y,
         base,
@@ -168,7 +169,7 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
     };
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
     let study = channel.compare(threshold)?;
-    let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, stretch };
+    let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, stretch, state };
     Ok(Some(Shaft { compared, view: super::sheet::view(&rows), model, dry_n }))
 }
 

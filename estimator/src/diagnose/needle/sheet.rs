@@ -133,8 +133,8 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         period_s: needle.period_s,
     };
     let study = channel.compare(threshold)?;
-    let compared =
-        Compared { study, channel: "force outside and on the sheet", unit: "N", floor: floor_n, along, stretch };
+    let (channel, state) = ("force outside and on the sheet", rows.iter().map(Row::state).collect());
+    let compared = Compared { study, channel, unit: "N", floor: floor_n, along, stretch, state };
     let view = View {
         // What presses the sheet says nothing of empty fingers.
         sensor: rows.iter().map(|r| usize::from(touches(r))).collect(),

@@ -11,6 +11,7 @@ use crate::diagnose::candidate::{Candidate, Shape};
 use crate::diagnose::compare::{Channel, stretches};
 use crate::diagnose::experiment::Imagined;
 use crate::estimate::EstimateError;
+use crate::segment::SystemState;
 use haptics::law::{Effect, Kind, LocalResistance, Motion};
 
 /// Least size of what is named, in errors of the world.
@@ -85,9 +86,10 @@ pub fn curve(
         (Variable::Velocity, of(&|p| p.speed_m_s)),
         (Variable::Force, of(&|p| p.asked_n)),
     ];
+    let state = vec![SystemState::Turning; points.len()];
     let recording = times.iter().map(|t| t.0).collect();
     let view = View { way: of(&|p| direction(p.side)), ..View::of(recording, over) };
-    Ok(Some((Compared { study, channel, unit, floor, along, stretch }, view)))
+    Ok(Some((Compared { study, channel, unit, floor, along, stretch, state }, view)))
 }
 
 /// Where the switch stands is open: it may have been moved.

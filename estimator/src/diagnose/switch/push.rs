@@ -158,11 +158,12 @@ pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
     let study = channel.compare(threshold)?;
     let found = of_found(&study, rows.len());
     let along = rows.iter().map(|r| matches!(r.place, Place::Push(_))).collect();
+    let state = rows.iter().map(Row::state).collect();
     let view = view(&rows);
     let is_push = |(r, _): &(Row, f64)| matches!(r.place, Place::Push(_));
     let kept = rows.into_iter().zip(found).filter(is_push).collect();
     let (channel, unit, floor) = ("force on the knob", "N", seen.noise_n);
-    let compared = Compared { study, channel, unit, floor, along, stretch };
+    let compared = Compared { study, channel, unit, floor, along, stretch, state };
     Ok(Push { compared, view, rows: kept, curves, forces_n: forces })
 }
 

@@ -2,6 +2,7 @@
 
 use crate::diagnose::compare::stretches;
 use crate::estimate::EstimateError;
+use crate::segment::SystemState;
 use crate::segment::threshold::percentile;
 use crate::signal::noise::white_noise;
 use crate::signal::task::{TipSeries, is_two_fingered, tip_series};
@@ -56,6 +57,17 @@ pub struct Row {
     pub force: Vec2,
     /// Force of the finger without its zero, N.
     pub above_zero: Vec2,
+}
+
+impl Row {
+    /// The state that a segmentation would call it.
+    pub fn state(&self) -> SystemState {
+        match self.place {
+            Place::Push(_) => SystemState::Turning,
+            Place::Stop(_) => SystemState::Holding,
+            Place::Free(..) => SystemState::FreeMotion,
+        }
+    }
 }
 
 /// All rows of some recordings of one switch.

@@ -7,6 +7,7 @@ use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::{Candidate, Shape};
 use crate::diagnose::compare::Channel;
 use crate::estimate::EstimateError;
+use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 
@@ -81,7 +82,8 @@ pub fn stop(seen: &Seen, known: Option<&Known<'_>>, threshold: f64) -> Result<Op
     // The two stops are places of their own.
     let view =
         View { sensor: rows.iter().map(side).collect(), ..View::of(rows.iter().map(|r| r.recording).collect(), over) };
-    Ok(Some((Compared { study, channel: "place of the tip on the stop", unit: "m", floor, along, stretch }, view)))
+    let (channel, state) = ("place of the tip on the stop", vec![SystemState::Holding; rows.len()]);
+    Ok(Some((Compared { study, channel, unit: "m", floor, along, stretch, state }, view)))
 }
 
 /// What a cause on the stops is best seen against: how hard the knob is pressed.

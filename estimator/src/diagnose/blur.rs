@@ -1,0 +1,80 @@
+//! The direction of motion, which a noisy velocity tells less and less the slower it is.
+
+use super::track::{Place, Row, Track};
+
+/// The sign of a velocity is blurred over this share of the usual speed at least.
+const BLUR: f64 = 0.008;
+/// … over this one where a mass takes part, whose force jumps with the friction's.
+const BLUR_OF_MASS: f64 = 0.02;
+/// A reversal lies anywhere between two rows: standard deviation of its place, in rows, with some room.
+const SKEW: f64 = 0.5;
+/// The clocks of force and motion differ by about this, s.
+const CLOCKS_S: f64 = 1e-3;
+/// What moves no faster than this many times what the sign is blurred over may as well stick: its friction is anything.
+const STICKS: f64 = 1.0;
+/// Rows that stick stick together: so many of them count as one. (The rows of a mechanism overlap, and none of them sticks alone.)
+pub const TOGETHER: f64 = 3.0;
+/// A row whose friction is open by more than this stands.
+pub const STANDS: f64 = 0.4;
+/// Share of the friction's square that stays open in a row with a reversal in it whose place is known.
+const REVERSAL: f64 = 0.05;
+
+/// The direction of motion, as certain as the velocity's noise and the clocks of the channels let it be.
+pub fn blur(track: &mut Track) {
+    let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
+    let (noise, period_s) = (track.velocity_noise, track.period_s);
+    let together = if track.planar { TOGETHER } else { 1.0 };
+    let share = if track.planar { BLUR } else { BLUR_OF_MASS };
+    let width = |skew: f64| 1.2 * (share * fast).hypot(noise).hypot(skew).max(1e-12);
+    for k in 0..track.fine.len() {
+        let next =
+            if k + 1 < track.fine.len() && track.fine[k + 1].stretch == track.fine[k].stretch { k + 1 } else { k };
+        let before = if k > 0 && track.fine[k - 1].stretch == track.fine[k].stretch { k - 1 } else { k };
+        let apart_s = (track.fine[next].time_s - track.fine[before].time_s).max(1e-9);
+        let acceleration = (track.fine[next].velocity - track.fine[before].velocity) / apart_s;
+        let share = track.fine[k].velocity / width(CLOCKS_S * acceleration);
+        track.fine[k].direction = share.tanh();
+        track.fine[k].open = 1.0 - (share / STICKS).tanh().powi(2);
+    }
+    for row in track.rows.iter_mut().filter(|r| r.place == Place::Along) {
+        if row.span.len == 0 {
+            let share = row.motion.velocity / width(SKEW * row.motion.acceleration * period_s);
+            row.motion.direction = share.tanh();
+            row.open = 1.0 - (share / STICKS).tanh().powi(2);
+            continue;
+        }
+        let (mut sum, mut open) = (0.0, 0.0);
+        for (k, weight) in row.span.weights() {
+            sum += weight * track.fine[k].direction;
+            open += weight * track.fine[k].open;
+        }
+        row.motion.direction = sum;
+        // Where in the row a reversal lies is known up to what the channels' clocks and filters differ by.
+        row.open = open + REVERSAL / together * (1.0 - sum * sum - open).max(0.0);
+    }
+    stand_together(track, together);
+}
+
+/// What the blur of the direction takes off the dry friction (`dry`, by row) where the velocity is certain.
+pub fn blurred(track: &Track, dry: &[f64]) -> Vec<f64> {
+    let of = |(row, dry): (&Row, &f64)| {
+        if row.place == Place::Along { dry * track.mean(row, &|m| m.velocity.signum() - m.direction) } else { 0.0 }
+    };
+    track.rows.iter().zip(dry).map(of).collect()
+}
+
+/// Rows that stand one after the other are one observation: a hand holds on to the same load meanwhile. `together`: how many of them are
+/// taken for one already.
+fn stand_together(track: &mut Track, together: f64) {
+    let stands = |row: &Row| row.place == Place::Along && row.open > STANDS;
+    let mut first = 0;
+    while first < track.rows.len() {
+        let mut end = first + 1;
+        while end < track.rows.len() && stands(&track.rows[first]) && stands(&track.rows[end]) && track.follows(end) {
+            end += 1;
+        }
+        let more = ((end - first) as f64 / together).max(1.0);
+        track.rows[first..end].iter_mut().filter(|r| r.open > STANDS).for_each(|r| r.open *= more);
+        first = end;
+    }
+}
