@@ -70,28 +70,37 @@ fn drawers_are_no_circles() {
     assert!(found.causes.iter().all(|c| c.id == "channel-fault"), "{:?}", found.causes);
 }
 
-const DAVINCI: &str = r#"{"columns":{"trial":"run","q_rad":"spindle_angle_rad","q_out_rad":"jaw_side_angle_rad","tau_Nm":"spindle_torque_Nm"},"sign":{"q_out_rad":-1,"tau_Nm":-1}}"#;
+const DAVINCI: &str = r#"{"columns":{"trial":"run","q_rad":"spindle_angle_rad","q_out_rad":"jaw_side_angle_rad","tau_Nm":"spindle_torque_Nm"}SIGN}"#;
 
-/// Lost motion between spindle and jaw, give under the jaw's load, Coulomb friction of the spindle. The torque cell counts the other way.
+/// Lost motion between spindle and jaw, give under the jaw's load, Coulomb friction of the spindle. The jaw's encoder and the torque cell count
+/// the other way as released; whether a sidecar says so or not, the same is found, and the torque's sign is named where it was left.
 #[test]
 fn the_surgical_tool_is_diagnosed_with_lost_motion_give_and_coulomb_friction() {
-    let Some(recordings) = load("davinci_tool/tool_runs.csv", DAVINCI) else { return };
-    let runs: Vec<Recording> = recordings
-        .iter()
-        .map(|r| {
-            let first = r.time_s.as_ref().expect("a clock").partition_point(|t| *t < 6.0);
-            r.slice(Span { first, end: r.len() })
-        })
-        .collect();
-    let found = diagnosed(&runs);
-    let coulomb = cause(&found, "coulomb-friction");
-    assert!(
-        (0.02..0.08).contains(&coulomb.parameters[0].value) && coulomb.gain.share_of_explainable > 0.7,
-        "{coulomb:?}"
-    );
-    let lost = cause(&found, "backlash");
-    let gap = 2.0 * lost.parameters.iter().find(|p| p.name == "delta").expect("a gap").value;
-    assert!((0.02..0.08).contains(&gap), "{gap}");
-    assert!(cause(&found, "pad-compliance").parameters[0].value > 0.0);
-    assert!(found.end.heldout_rms_n < 0.35 * found.baseline.heldout_rms_n, "{:?} {:?}", found.baseline, found.end);
+    for (sign, is_left) in [
+        (r#","sign":{"q_out_rad":-1,"tau_Nm":-1}"#, false),
+        (r#","sign":{"q_out_rad":-1}"#, true),
+        (r#","sign":{"tau_Nm":-1}"#, false),
+        ("", true),
+    ] {
+        let Some(recordings) = load("davinci_tool/tool_runs.csv", &DAVINCI.replace("SIGN", sign)) else { return };
+        let runs: Vec<Recording> = recordings
+            .iter()
+            .map(|r| {
+                let first = r.time_s.as_ref().expect("a clock").partition_point(|t| *t < 6.0);
+                r.slice(Span { first, end: r.len() })
+            })
+            .collect();
+        let found = diagnosed(&runs);
+        let coulomb = cause(&found, "coulomb-friction");
+        assert!(
+            (0.02..0.08).contains(&coulomb.parameters[0].value) && coulomb.gain.share_of_explainable > 0.7,
+            "{coulomb:?}"
+        );
+        let lost = cause(&found, "backlash");
+        let gap = 2.0 * lost.parameters.iter().find(|p| p.name == "delta").expect("a gap").value;
+        assert!((0.02..0.08).contains(&gap), "{gap}");
+        assert!(cause(&found, "pad-compliance").parameters[0].value > 0.0);
+        assert!(found.end.heldout_rms_n < 0.35 * found.baseline.heldout_rms_n, "{:?} {:?}", found.baseline, found.end);
+        assert_eq!(found.causes.iter().any(|c| c.id == "axis-sign"), is_left, "{sign}");
+    }
 }

@@ -3,7 +3,7 @@
 use super::atlas::Atlas;
 use super::candidate::Candidate;
 use super::course::Course;
-use super::explain::{p_value, parameters, rivals};
+use super::explain::{p_value, parameters, rivals, unnamed};
 use super::gain::{gain, rms, whiteness_p};
 use super::geometry::Study;
 use super::kept::of_study;
@@ -87,18 +87,18 @@ pub struct Part<'a> {
 impl Part<'_> {
     fn cause(&self, k: usize, chosen: &Chosen) -> Cause {
         let candidate = &self.study.candidates[chosen.candidate];
-        let gain = Gain { unit: Some(self.unit.to_owned()), ..gain(self.study, k, self.floor) };
+        let gain = self.in_its_unit(gain(self.study, k, self.floor));
         let parameters = (self.states)(candidate, parameters(self.study, k));
         let shown = (self.shows)(&Found { candidate, parameters: &parameters });
-        let held_out = if gain.heldout_rms_before > 0.0 {
+        let held_out = if let Some(why) = &gain.no_share {
+            why.clone()
+        } else {
             format!(
                 "on data held out the {} that is left goes from {} to {} RMS",
                 self.channel,
                 amount(gain.heldout_rms_before, self.unit),
                 amount(gain.heldout_rms_after, self.unit)
             )
-        } else {
-            "there were too few rows to hold any out".to_owned()
         };
         let evidence = format!("{shown}; {held_out} (score {:.0})", chosen.score);
         Cause {
@@ -115,6 +115,25 @@ impl Part<'_> {
     /// What the channel leaves in every state.
     fn residuals(&self) -> Vec<Residual> {
         residuals(self.study, (self.unit, Some(self.floor)), &|i| Some((self.channel, self.state[i])))
+    }
+
+    /// Nothing has a unit where nothing was held out.
+    fn in_its_unit(&self, gain: Gain) -> Gain {
+        let unit = (gain.heldout_rms_before > 0.0).then(|| self.unit.to_owned());
+        Gain { unit, ..gain }
+    }
+
+    /// The strongest generic term that is left, as a cause without a name, and what is said of it.
+    fn unnamed(&self) -> Option<(Cause, String)> {
+        let (candidate, score) = self.strange()?;
+        let (cause, _) = unnamed(self.study, (candidate, score), (self.floor, self.unit));
+        let expression = cause.id.trim_start_matches("other:").to_owned();
+        let channel = self.channel;
+        let warning = format!(
+            "something is left of the {channel} that no known cause explains: it goes with {expression} (score {score:.0})"
+        );
+        let evidence = format!("what is left of the {channel} goes with {expression}; no known cause does so here");
+        Some((Cause { evidence, gain: self.in_its_unit(cause.gain), ..cause }, warning))
     }
 
     /// The strongest generic term that is left, with its score.
@@ -161,25 +180,6 @@ pub struct Beside {
     pub warnings: Vec<String>,
 }
 
-/// What is left of a channel and has no name: channel, term, score, kind.
-fn unnamed(
-    (channel, expression, score, kind): (&str, String, f64, haptics::law::Kind),
-    warnings: &mut Vec<String>,
-) -> Cause {
-    warnings.push(format!(
-        "something is left of the {channel} that no known cause explains: it goes with {expression} (score {score:.0})"
-    ));
-    Cause {
-        id: format!("other:{expression}"),
-        kind,
-        parameters: Vec::new(),
-        p_value: super::gain::chi_square_tail(score, 1.0),
-        posterior: 0.0,
-        gain: Gain::default(),
-        evidence: format!("what is left of the {channel} goes with {expression}; no known cause does so here"),
-    }
-}
-
 /// The answer of several channels; the first one's figures stand for baseline and end.
 pub fn answer(
     parts: &[Part<'_>],
@@ -204,10 +204,7 @@ pub fn answer(
             found.push((chosen.score, cause));
             alternatives.extend(rivals(part.study, chosen));
         }
-        if let Some((candidate, score)) = part.strange() {
-            let expression = part.study.candidates[candidate].expression.clone().unwrap_or_default();
-            strange.push((part.channel, expression, score, part.study.candidates[candidate].kind));
-        }
+        strange.extend(part.unnamed());
         part.not_excited(&mut not_excited);
         join(&mut passed, passed_over(part.study, &part.study.picks(), UNEXPLAINED));
     }
@@ -223,7 +220,10 @@ pub fn answer(
         _ if open.is_empty() => Verdict::Causes,
         _ => Verdict::Ambiguous,
     };
-    causes.extend(strange.into_iter().map(|left| unnamed(left, &mut warnings)));
+    for (cause, warning) in strange {
+        causes.push(cause);
+        warnings.push(warning);
+    }
     let first = parts.first();
     let figures = |picks: &[usize]| {
         first.map_or((0.0, 0.0, 1.0), |part| {

@@ -88,6 +88,8 @@ pub struct Candidate {
     pub expression: Option<String>,
     /// The channel that it goes with, and that channel's unit.
     pub channel: Option<(String, String)>,
+    /// The part of the recording that its values were searched in: a time in another part is no neighbour.
+    pub part: usize,
 }
 
 impl Candidate {
@@ -107,6 +109,7 @@ impl Candidate {
             side: 0.0,
             expression: None,
             channel: None,
+            part: 0,
         }
     }
 
@@ -132,6 +135,7 @@ impl Candidate {
             side: 0.0,
             expression: None,
             channel: None,
+            part: 0,
         }
     }
 
@@ -158,6 +162,12 @@ impl Candidate {
     /// That goes with a channel of the recording.
     pub fn with(mut self, channel: (String, String)) -> Self {
         self.channel = Some(channel);
+        self
+    }
+
+    /// That was searched for in this part of the recording.
+    pub fn within(mut self, part: usize) -> Self {
+        self.part = part;
         self
     }
 

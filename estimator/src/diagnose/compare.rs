@@ -1,9 +1,11 @@
 //! One channel of a residual that is no force along one coordinate: what the model leaves of it, and which causes explain that.
 
 use super::candidate::Candidate;
+use super::force::{CONFIRMED, leave_out_what_harms};
+use super::gain::is_tested;
 use super::geometry::{Study, residual};
 use super::select::Selection;
-use super::system::{Held, Rows, System, solve, uses};
+use super::system::{Held, Rows, System, Use, solve, uses};
 use super::white::whitener;
 use crate::estimate::EstimateError;
 
@@ -30,7 +32,14 @@ pub struct Channel {
 
 impl Channel {
     /// Compares all candidates. `threshold`: least score of a cause.
-    pub fn compare(mut self, threshold: f64) -> Result<Study, EstimateError> {
+    pub fn compare(self, threshold: f64) -> Result<Study, EstimateError> {
+        // The rows are in the order of their times already.
+        let order: Vec<f64> = (0..self.y.len()).map(|i| i as f64).collect();
+        self.compare_in(&order, threshold)
+    }
+
+    /// The same with rows held out together that follow each other in this order.
+    pub fn compare_in(mut self, order: &[f64], threshold: f64) -> Result<Study, EstimateError> {
         let seen = |c: &Candidate| {
             c.columns.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| x.abs() > 1e-12))
         };
@@ -41,16 +50,19 @@ impl Channel {
         }
         let Self { y, base, candidates, stretch, testable, weight, period_s } = self;
         let testable: Vec<Held> = testable.iter().map(|t| if *t { Held::Fully } else { Held::Never }).collect();
-        // The rows are in the order of their times already.
-        let order: Vec<f64> = (0..y.len()).map(|i| i as f64).collect();
-        let rows = Rows { y: &y, stretch: &stretch, testable: &testable, time_s: &order, weight: &weight, period_s };
+        let rows = Rows { y: &y, stretch: &stretch, testable: &testable, time_s: order, weight: &weight, period_s };
         let coefficients = whitening(&base, &candidates, &rows, threshold)?;
         let system = System::new(&base, &candidates, &rows, coefficients);
         let chosen =
             Selection { system: &system, candidates: &candidates, threshold, dry: true, one_loss: false }.run(&[]);
         let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
         let solved = system.solve(&picks);
-        Ok(Study { candidates, chosen, system, solved, y, base, weight })
+        let mut made = Study { candidates, chosen, system, solved, y, base, weight };
+        // Where too little is there to hold any out, nothing can be asked of it.
+        if made.system.uses.iter().any(|u| matches!(u, Use::Locked(_))) {
+            leave_out_what_harms(&mut made, &stretch, CONFIRMED * threshold, &|study, k| is_tested(study, k, &stretch));
+        }
+        Ok(made)
     }
 }
 
@@ -91,3 +103,6 @@ pub fn stretches(time_s: &[f64], period_s: f64, new: impl Fn(usize) -> bool) -> 
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests;

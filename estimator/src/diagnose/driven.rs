@@ -22,6 +22,11 @@ const GAPS: [f64; 14] =
     [0.003, 0.005, 0.0075, 0.01, 0.0125, 0.015, 0.018, 0.022, 0.027, 0.033, 0.042, 0.055, 0.075, 0.1];
 /// The sign of a speed is blurred over this share of the usual one.
 const BLUR: f64 = 0.05;
+/// The work of the input is looked at in so many equal parts of a recording.
+const PARTS: usize = 10;
+/// It is taken and not given for certain when its mean is so many standard errors below zero, and so in nearly all of the parts.
+const SURELY: f64 = 6.0;
+const NEARLY_ALL: f64 = 0.9;
 
 /// One row.
 #[derive(Clone, Copy, Debug)]
@@ -64,12 +69,13 @@ pub fn is_driven(recordings: &[Recording]) -> bool {
 /// Diagnoses recordings of one transmission.
 pub fn driven(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     let Some(names) = recordings.first().and_then(columns) else { return Err(super::nothing()) };
-    let rows: Vec<Row> = recordings.iter().enumerate().flat_map(|(k, r)| rows(r, k, names)).collect();
+    let mut rows: Vec<Row> = recordings.iter().enumerate().flat_map(|(k, r)| rows(r, k, names)).collect();
     let mut beside = Beside {
         model: "rigid transmission+input without friction".to_owned(),
         causes: recordings.first().map(|r| quality::faults(r).causes).unwrap_or_default(),
         ..Beside::default()
     };
+    turn(&mut rows, names, &mut beside);
     let period_s = 1.0 / ROW_HZ;
     let time: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
     let stretch = stretches(&time, period_s, |i| rows[i].recording != rows[i - 1].recording);
@@ -124,6 +130,38 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         found.atlas.channels = named.iter().map(of).collect();
     }
     Ok(found)
+}
+
+/// Counts the output the way the input goes, and the force as what drives the input. Gears and cables may run either way, which is no fault; but
+/// nothing that only rubs and gives gives work back for good.
+fn turn(rows: &mut [Row], names: &Columns, beside: &mut Beside) {
+    let (mut ratio, mut work) = (0.0, Vec::new());
+    for own in rows.chunk_by(|a, b| a.recording == b.recording) {
+        let mean = |of: &dyn Fn(&Row) -> f64| own.iter().map(of).sum::<f64>() / own.len() as f64;
+        // About the means: zeros of sensors differ.
+        let (input, output) = (mean(&|r| r.input), mean(&|r| r.output));
+        ratio += own.iter().map(|r| (r.input - input) * (r.output - output)).sum::<f64>();
+        let force = mean(&|r| r.force.unwrap_or(0.0));
+        let parts = own.chunks(own.len().div_ceil(PARTS));
+        work.extend(parts.map(|part| part.iter().map(|r| (r.force.unwrap_or(0.0) - force) * r.rate).sum::<f64>()));
+    }
+    if ratio < 0.0 {
+        rows.iter_mut().for_each(|r| r.output = -r.output);
+        beside
+            .warnings
+            .push(format!("{} runs against {}: it is counted the other way round", names.output, names.input));
+    }
+    if rows.iter().any(|r| r.force.is_none()) {
+        return;
+    }
+    let n = work.len() as f64;
+    let mean = work.iter().sum::<f64>() / n;
+    let error = (work.iter().map(|w| (w - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0) / n).sqrt();
+    let taken = work.iter().filter(|w| **w < 0.0).count() as f64;
+    if work.len() >= PARTS && mean < -SURELY * error && taken > NEARLY_ALL * n {
+        rows.iter_mut().for_each(|r| r.force = r.force.map(|f| -f));
+        beside.causes.push(quality::backwards(names.force));
+    }
 }
 
 /// What the rows of both channels are seen against.

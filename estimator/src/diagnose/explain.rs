@@ -329,7 +329,7 @@ pub(super) fn rivals(study: &Study, chosen: &Chosen) -> Vec<Alternative> {
 }
 
 /// What goes with none of the laws, with its amplitudes and what it would be worth.
-fn unnamed(study: &Study, (candidate, score): (usize, f64), (floor, unit): (f64, &str)) -> (Cause, String) {
+pub(super) fn unnamed(study: &Study, (candidate, score): (usize, f64), (floor, unit): (f64, &str)) -> (Cause, String) {
     let picks = study.picks();
     let with: Vec<usize> = picks.iter().copied().chain([candidate]).collect();
     let term = &study.candidates[candidate];

@@ -63,7 +63,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
         }
     }
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
-    leave_out_what_harms(&mut made, &stretch, CONFIRMED * threshold);
+    leave_out_what_harms(&mut made, &stretch, CONFIRMED * threshold, &|_, _| true);
     Ok(made)
 }
 
@@ -71,19 +71,19 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
 const HARMS: f64 = 1.05;
 
 /// A cause that scores less than this many times what is asked for must show on the locked blocks, too …
-const CONFIRMED: f64 = 2.5;
+pub const CONFIRMED: f64 = 2.5;
 /// … by more than this in 2 ln(likelihood): what is true is worth a third of its score there, what was searched for among noise as much less
 /// than nothing.
 const SHOWN: f64 = 1.0;
 
 /// A cause that makes more of an error for certain where it was not fitted is none, whatever it explains elsewhere; nor is one that scores
-/// less than `sure` and shows nothing there. `stretch`: of each row.
-fn leave_out_what_harms(study: &mut Study, stretch: &[usize], sure: f64) {
+/// less than `sure` and shows nothing there, where it is `tested`. `stretch`: of each row.
+pub fn leave_out_what_harms(study: &mut Study, stretch: &[usize], sure: f64, tested: &dyn Fn(&Study, usize) -> bool) {
     loop {
         let harms = |k: &usize| {
             let gain = gain(study, *k, 0.0);
             let worse = gain.heldout_rms_after > HARMS * gain.heldout_rms_before && gain.interval[1] < 0.0;
-            worse || study.chosen[*k].score < sure && confirmed(study, *k, stretch) < SHOWN
+            worse || study.chosen[*k].score < sure && tested(study, *k) && confirmed(study, *k, stretch) < SHOWN
         };
         let Some(k) = (0..study.chosen.len()).rev().find(harms) else { return };
         study.chosen.remove(k);

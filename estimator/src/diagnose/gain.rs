@@ -12,10 +12,18 @@ const PARTS: usize = 4;
 /// Lags of the test for whiteness.
 const LAGS: usize = 10;
 
-/// Sums of squares over parts of the locked blocks: before, after, and rows.
+/// What a cause changes on the rows that were held out must be so much in 2 ln(likelihood) for them to speak for or against it: what is true gains as
+/// much there, give or take twice its root.
+const TESTED: f64 = 3.0;
+/// Less than this share of the power that is left is no more than the noise of it.
+const LEAST_SHARE: f64 = 1e-3;
+
+/// Sums of squares over parts of the locked blocks, and rows.
 struct Parts {
     before: Vec<f64>,
     after: Vec<f64>,
+    /// Squares of what the two differ by.
+    changed: Vec<f64>,
     rows: Vec<f64>,
 }
 
@@ -52,28 +60,43 @@ pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) 
     let (before, after) = (left(study, rest), left(study, picks));
     let more: Vec<usize> = picks.iter().filter(|p| !rest.contains(p)).copied().collect();
     let parts = parts(study, &before, &after, shows_beside(study, &more));
+    if parts.rows.is_empty() {
+        return Gain { no_share: Some("there were too few rows to hold any out".to_owned()), ..Gain::default() };
+    }
     let all: Vec<usize> = (0..parts.rows.len()).collect();
     let [b, a] = means(&parts, &all);
-    let weight = mean_square_weight(study);
-    let share = |b: f64, a: f64| ((b - a) / (b - floor * floor * weight).max(1e-3 * b)).min(1.0);
+    // The noise is no more than what is left in the end, whatever was measured of it elsewhere.
+    let noise = (floor * floor * mean_square_weight(study)).min(a);
+    let least = b - noise;
+    let measured = Gain { heldout_rms_before: b.sqrt(), heldout_rms_after: a.sqrt(), ..Gain::default() };
+    if parts.changed.iter().sum::<f64>() < TESTED * a.min(b) {
+        return Gain { no_share: Some("nothing that was held out could show it".to_owned()), ..measured };
+    }
+    if least < LEAST_SHARE * b {
+        return Gain { no_share: Some("what was held out is left with no more than its noise".to_owned()), ..measured };
+    }
+    let share = |b: f64, a: f64| ((b - a) / (b - noise).max(LEAST_SHARE * b)).min(1.0);
     let shares = |drawn: &[usize]| {
         let [b, a] = means(&parts, drawn);
         share(b, a)
     };
     let interval = bootstrap(all.len(), DRAWS, &shares);
-    Gain {
-        heldout_rms_before: b.sqrt(),
-        heldout_rms_after: a.sqrt(),
-        share_of_explainable: share(b, a),
-        interval,
-        unit: None,
-        rollout: None,
-    }
+    Gain { share_of_explainable: share(b, a), interval, ..measured }
 }
 
 /// What the k-th of the chosen causes, all others in, takes off on the rows that neither chose nor fitted it, in 2 ln(likelihood) of the whitened
 /// rows: below zero, it makes more of an error than it takes. `stretch`: of each row.
 pub fn confirmed(study: &Study, k: usize, stretch: &[usize]) -> f64 {
+    held_out(study, k, stretch, &|before, after| before * before - after * after)
+}
+
+/// Whether those rows could speak for or against it.
+pub fn is_tested(study: &Study, k: usize, stretch: &[usize]) -> bool {
+    held_out(study, k, stretch, &|before, after| (before - after).powi(2)) > TESTED
+}
+
+/// Sum over the held-out, whitened rows of something about what is left without and with the k-th of the chosen causes, all others in; noise is one.
+fn held_out(study: &Study, k: usize, stretch: &[usize], of: &dyn Fn(f64, f64) -> f64) -> f64 {
     let picks = study.picks();
     let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
     let white = |picks: &[usize]| whitened(&left(study, picks), stretch, &study.system.coefficients);
@@ -83,9 +106,9 @@ pub fn confirmed(study: &Study, k: usize, stretch: &[usize]) -> f64 {
         rows.filter_map(|(_, (b, a))| Some(of((*b)?, (*a)?))).fold((0.0, 0.0), |(s, n), v| (s + v, n + 1.0))
     };
     let (power, rows) = over(&|u| matches!(u, Use::Fold(_)), &|_, a| a * a);
-    let (gained, _) = over(&|u| matches!(u, Use::Locked(_) | Use::Beside(_)), &|b, a| b * b - a * a);
+    let (sum, _) = over(&|u| matches!(u, Use::Locked(_) | Use::Beside(_)), of);
     // As large as the noise in the rows that train.
-    if power > 0.0 { gained * rows / power } else { 0.0 }
+    if power > 0.0 { sum * rows / power } else { 0.0 }
 }
 
 /// Rows after the noise's own autoregression; `None` where a stretch is too young for it.
@@ -143,11 +166,12 @@ fn parts(study: &Study, before: &[f64], after: &[f64], with_beside: bool) -> Par
             _ => None,
         })
         .collect();
-    let mut parts = Parts { before: Vec::new(), after: Vec::new(), rows: Vec::new() };
+    let mut parts = Parts { before: Vec::new(), after: Vec::new(), changed: Vec::new(), rows: Vec::new() };
     for block in locked.chunk_by(|a, b| a.0 == b.0) {
         for part in block.chunks(block.len().div_ceil(PARTS).max(1)) {
             parts.before.push(part.iter().map(|(_, i)| before[*i].powi(2)).sum());
             parts.after.push(part.iter().map(|(_, i)| after[*i].powi(2)).sum());
+            parts.changed.push(part.iter().map(|(_, i)| (before[*i] - after[*i]).powi(2)).sum());
             parts.rows.push(part.len() as f64);
         }
     }

@@ -135,8 +135,10 @@ pub fn mirrored(which: &str, better: f64) -> Cause {
 
 /// Forces that are those on the hand, as a cause: they take work from the one who moves the mechanism, all the way.
 pub fn backwards(which: &str) -> Cause {
+    let (act, they) = if which.contains(" and ") { ("act", "they are forces") } else { ("acts", "it is the force") };
+    let taken = if which.contains(" and ") { "are" } else { "is" };
     let evidence = format!(
-        "{which} act against the motion all the way: they are forces on the hand and not on what it moves, and are taken with the other sign"
+        "{which} {act} against the motion all the way: {they} on the hand and not on what it moves, and {taken} taken with the other sign"
     );
     Cause { evidence, ..mirrored(which, 1.0) }
 }

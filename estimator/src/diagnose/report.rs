@@ -69,6 +69,9 @@ pub struct Gain {
     pub share_of_explainable: f64,
     /// 95 % interval of that share, by a block bootstrap.
     pub interval: [f64; 2],
+    /// Why there is no share, where share and interval are 0 for that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_share: Option<String>,
     /// Unit of what is unexplained; nothing where nothing was held out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,

@@ -21,31 +21,66 @@ pub struct Known {
 /// anew beside each, and the error that its curvature there stands for.
 pub fn known(study: &Study, k: usize, which: usize) -> Known {
     let picks = study.picks();
-    let own = &study.candidates[picks[k]];
     let price = |candidate: usize| {
         let mut with = picks.clone();
         with[k] = candidate;
         study.system.solve(&with).map(|solved| study.system.rows * solved.rss.max(1e-300).ln())
     };
-    let value = |candidate: &Candidate| candidate.searched[which].value;
-    let tried: Vec<(f64, f64)> = (0..study.candidates.len())
-        .filter(|c| differs_in_one(own, &study.candidates[*c], which))
-        .filter_map(|c| Some((value(&study.candidates[c]), price(c)?)))
-        .collect();
-    let here = value(own);
+    let value = |candidate: usize| study.candidates[candidate].searched[which].value;
+    let tried = |candidate: Option<usize>| candidate.and_then(|c| Some((value(c), price(c)?)));
+    let here = value(picks[k]);
     let Some(least) = price(picks[k]) else { return alone(here) };
-    let nearest = |above: bool| {
-        let side = tried.iter().filter(|(v, _)| if above { *v > here } else { *v < here });
-        side.min_by(|a, b| (a.0 - here).abs().total_cmp(&(b.0 - here).abs())).copied()
-    };
-    let (below, above) = (nearest(false), nearest(true));
-    match (below, above) {
+    match neighbours(study, picks[k], which).map(tried).into() {
         (Some(below), Some(above)) => vertex(below, (here, least), above),
         (Some((other, _)), None) | (None, Some((other, _))) => {
             Known { value: here, std_error: AT_THE_END * (other - here).abs() }
         }
         (None, None) => alone(here),
     }
+}
+
+/// What is unknown of the searched values leaves unknown of the first fitted one of the k-th chosen cause: a slip that began earlier went further. By
+/// its slope over the neighbours, and by what comes out at all other tried values, as likely as they are.
+pub fn carried_over(study: &Study, k: usize) -> f64 {
+    let picks = study.picks();
+    let own = &study.candidates[picks[k]];
+    let first = study.system.base + picks[..k].iter().map(|p| study.candidates[*p].columns.len()).sum::<usize>();
+    let fitted = |candidate: usize| {
+        let mut with = picks.clone();
+        with[k] = candidate;
+        study.system.least(&with).map(|(values, rss)| (values[first], study.system.rows * rss.max(1e-300).ln()))
+    };
+    let Some((best, least)) = fitted(picks[k]) else { return 0.0 };
+    let of = |which: usize| {
+        let value = |candidate: usize| study.candidates[candidate].searched[which].value;
+        let [below, above] = neighbours(study, picks[k], which).map(|c| c.unwrap_or(picks[k]));
+        let slope = (fitted(above)?.0 - fitted(below)?.0) / (value(above) - value(below));
+        slope.is_finite().then(|| slope * known(study, k, which).std_error)
+    };
+    let by_slope = (0..own.searched.len()).filter_map(of).fold(0.0, f64::hypot);
+    let alike = |c: &Candidate| c.id == own.id && c.part == own.part && c.linear == own.linear;
+    let others = (0..study.candidates.len()).filter(|c| alike(&study.candidates[*c])).filter_map(fitted);
+    let (mut weights, mut squares) = (0.0, 0.0);
+    for (value, price) in others {
+        let weight = (-0.5 * (price - least)).min(0.0).exp();
+        weights += weight;
+        squares += weight * (value - best).powi(2);
+    }
+    by_slope.hypot((squares / weights.max(1e-300)).sqrt())
+}
+
+/// The candidates with the next smaller and the next larger of one searched value, all others being the same.
+fn neighbours(study: &Study, own: usize, which: usize) -> [Option<usize>; 2] {
+    let value = |candidate: usize| study.candidates[candidate].searched[which].value;
+    let here = value(own);
+    let beside = || {
+        let all = 0..study.candidates.len();
+        all.filter(|c| differs_in_one(&study.candidates[own], &study.candidates[*c], which))
+    };
+    [
+        beside().filter(|c| value(*c) < here).max_by(|a, b| value(*a).total_cmp(&value(*b))),
+        beside().filter(|c| value(*c) > here).min_by(|a, b| value(*a).total_cmp(&value(*b))),
+    ]
 }
 
 fn alone(value: f64) -> Known {
@@ -57,6 +92,7 @@ fn differs_in_one(own: &Candidate, other: &Candidate, which: usize) -> bool {
     let same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs());
     own.id == other.id
         && own.linear == other.linear
+        && own.part == other.part
         && same(own.side, other.side)
         && own.searched.len() == other.searched.len()
         && own
@@ -86,6 +122,16 @@ fn vertex(below: (f64, f64), here: (f64, f64), above: (f64, f64)) -> Known {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use haptics::law::Kind;
+
+    #[test]
+    fn a_time_in_another_part_of_the_recording_is_no_neighbour() {
+        let slip = |t0: f64, part: usize| {
+            Candidate::one("fingertip-slip", Kind::Plant, "dy", "m", vec![0.0]).at("t0", t0, "s").within(part)
+        };
+        assert!(differs_in_one(&slip(7.4, 1), &slip(7.5, 1), 0));
+        assert!(!differs_in_one(&slip(7.4, 1), &slip(4.0, 0), 0));
+    }
 
     #[test]
     fn the_vertex_of_a_parabola_and_its_error_are_found_between_tried_values() {

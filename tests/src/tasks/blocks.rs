@@ -283,7 +283,7 @@ fn hide(
 fn slip(kind: Kind, world: &mut World, truth: &mut Truth, (skill, seed): (Skill, u64), chance: &mut Chance) {
     let done = perform(world, skill, seed);
     let (label, share) =
-        if kind == Kind::AirSlip { ("hold-above-ground", (0.2, 0.8)) } else { ("hold-on-ground", (0.25, 0.6)) };
+        if kind == Kind::AirSlip { ("hold-above-ground", (0.2, 0.8)) } else { ("hold-on-ground", (0.0, 0.6)) };
     let spans = spans(&done, label);
     // On the ground: when the first block has been put down.
     let (from, to) = if kind == Kind::AirSlip { spans[0] } else { spans[1] };
@@ -294,11 +294,40 @@ fn slip(kind: Kind, world: &mut World, truth: &mut Truth, (skill, seed): (Skill,
         duration_s: chance.between(0.0, 0.2),
     };
     world.pad.slip = Some(slip);
-    if kind == Kind::GroundSlip && lifts_off(world, skill, seed, to) {
-        // The other way round the fingers press the block down as they slip.
-        world.pad.slip = Some(FingertipSlip { way_m: -slip.way_m, ..slip });
-    }
+    let lifts = kind == Kind::GroundSlip && lifts_off(world, skill, seed, to);
+    // The other way round the fingers press the block down as they slip.
+    let way = if lifts { -way } else { way };
+    world.pad.slip = Some(FingertipSlip { way_m: Vec2::new(0.0, way), ..slip });
     truth.hidden = vec!["fingertip-slip"];
+    if kind == Kind::GroundSlip {
+        // A slip at once may be said to begin anywhere between two rows, one that takes a while where it is under way.
+        truth.near = vec![("t0", slip.t0_s, 0.1), ("dy", way, 0.15 * way.abs())];
+    }
+}
+
+/// A carry of stacked blocks, in the record of which the tips go on by `way_m` over a tenth of a second, `since_s` after the first block has been
+/// put down, until it is let go; and when that begins, s.
+pub fn slipped(seed: u64, since_s: f64, way_m: f64) -> (Recording, f64) {
+    const LENGTH_S: f64 = 0.1;
+    let mut chance = Chance::new(seed, 78);
+    let (world, _) = stacking_world(seed);
+    let done = perform(&world, Skill { wander: 2.0, ..Skill::default() }, seed);
+    let (touches, lets_go) = spans(&done, "hold-on-ground")[1];
+    let mut recording = look(&world, &done.ticks, 1, &Instruments::default(), Task::BlockStack, &mut chance);
+    let time_s = recording.time_s.clone().unwrap_or_default();
+    let begins = touches + since_s;
+    for channel in &mut recording.channels {
+        let (is_place, is_rate) = (channel.name.starts_with('y'), channel.name.starts_with("vy"));
+        for (value, t) in channel.values.iter_mut().zip(&time_s).filter(|(_, t)| (begins..lets_go).contains(*t)) {
+            let share = (t - begins) / LENGTH_S;
+            if is_place {
+                *value += way_m * share.min(1.0);
+            } else if is_rate && share < 1.0 {
+                *value += way_m / LENGTH_S;
+            }
+        }
+    }
+    (recording, begins)
 }
 
 /// From where the first block starts it is carried to the right: the cable gets taut on the way.

@@ -36,4 +36,6 @@ pub struct Truth {
     pub equals: Vec<&'static str>,
     /// Parameter of the hidden cause, with its true value.
     pub value: Option<(&'static str, f64)>,
+    /// Parameters that must come out right for the answer to be right: name, true value, and how far off one may be.
+    pub near: Vec<(&'static str, f64, f64)>,
 }

@@ -2,7 +2,7 @@
 
 use super::{Case, Truth};
 use blind::Share;
-use estimator::diagnose::{Diagnosis, Verdict, diagnose};
+use estimator::diagnose::{Cause, Diagnosis, Verdict, diagnose};
 use std::fmt::Write;
 
 /// One case, asked.
@@ -31,8 +31,26 @@ impl Row {
         ids.filter(|id| !self.truth.besides.contains(id) || self.truth.hidden.contains(id)).collect()
     }
 
-    /// Everything hidden is named, or what nobody could tell from it.
+    /// Everything hidden is named, or what nobody could tell from it, and comes out as it must.
     pub fn right(&self) -> bool {
+        self.is_named() && self.misses().is_empty()
+    }
+
+    /// What does not come out as it must: name, truth, answer.
+    fn misses(&self) -> Vec<(&'static str, f64, Option<f64>)> {
+        let Ok(answer) = &self.answer else { return Vec::new() };
+        let of = |name: &str| {
+            let hidden = answer.causes.iter().filter(|c| self.truth.hidden.contains(&c.id.as_str()));
+            hidden.flat_map(|c| &c.parameters).find(|p| p.name == name).map(|p| p.value)
+        };
+        let near = self.truth.near.iter().map(|(name, truth, within)| (*name, *truth, of(name), *within));
+        near.filter(|(_, truth, found, within)| found.is_none_or(|f| (f - truth).abs() > *within))
+            .map(|(name, truth, found, _)| (name, truth, found))
+            .collect()
+    }
+
+    /// Everything hidden is named, or what nobody could tell from it.
+    fn is_named(&self) -> bool {
         let named = self.named();
         let one = |id: &&str| named.contains(id) || self.truth.equals.iter().any(|e| named.contains(e));
         self.truth.hidden.iter().all(one)
@@ -78,14 +96,22 @@ impl Row {
             Ok(a) => format!(
                 "{:?} {:?} or {:?}",
                 a.verdict,
-                a.causes.iter().map(|c| c.id.as_str()).collect::<Vec<_>>(),
+                a.causes.iter().map(said).collect::<Vec<_>>(),
                 a.alternatives.iter().map(|c| c.id.as_str()).collect::<Vec<_>>()
             ),
             Err(sentence) => sentence.clone(),
         };
         let off = self.off().map_or(String::new(), |(r, s)| format!(" off {:+.1} % = {s:+.1} errors", 100.0 * r));
-        format!("{} seed {}: hidden {:?}: {answer}{off}", self.kind, self.seed, self.truth.hidden)
+        let misses = if self.is_named() { self.misses() } else { Vec::new() };
+        let misses = if misses.is_empty() { String::new() } else { format!(" not {misses:?}") };
+        format!("{} seed {}: hidden {:?}: {answer}{off}{misses}", self.kind, self.seed, self.truth.hidden)
     }
+}
+
+/// A cause with what it comes out at, for people.
+fn said(cause: &Cause) -> String {
+    let parameters: Vec<String> = cause.parameters.iter().map(|p| format!("{} {:.3e}", p.name, p.value)).collect();
+    format!("{} {}", cause.id, parameters.join(" "))
 }
 
 /// A table: kind, right, in the set, spurious, verdict.

@@ -211,7 +211,7 @@ fn gain(cause: &Cause, diagnosis: &Diagnosis) -> Markup {
     let ((unit, factor), [low, high]) = (gain_unit(cause, diagnosis), gain.interval);
     let rms = |value: f64| format::significant(value, 2);
     html! {
-        @if gain.heldout_rms_before > 0.0 {
+        @if gain.heldout_rms_before > 0.0 && gain.no_share.is_none() {
             p class="muted small" {
                 "Explains " (percent(gain.share_of_explainable)) " of what can be explained, on data that took no part (95 % interval "
                 (format::number(100.0 * low, 0)) " … " (format::number(100.0 * high, 0)) " %)"

@@ -119,6 +119,10 @@ fn gain(ui: &mut Ui, cause: &Cause, diagnosis: &Diagnosis) {
             let rms = |value: f64| format::significant(unit.1 * value, 2);
             let text = format!("{} → {} {} RMS", rms(gain.heldout_rms_before), rms(gain.heldout_rms_after), unit.0);
             ui.label(theme::caption(ui, text));
+            if let Some(why) = &gain.no_share {
+                ui.label(RichText::new("–").size(12.0)).on_hover_text(sentence(why));
+                return;
+            }
             let text = format!("{} % [{}, {}]", percent(gain.share_of_explainable), percent(low), percent(high));
             ui.label(RichText::new(text).size(12.0)).on_hover_text(words::EXPLAINS_MORE);
         });

@@ -1,16 +1,19 @@
 //! Height of the grip while a held block stands on something: give of the pads under the load, and slips of the fingers.
 
 use super::seen::Seen;
+use super::slips::slips;
 use crate::diagnose::answer::{Compared, Found, parameter};
 use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::{Channel, stretches};
 use crate::diagnose::report::CauseParameter;
+use crate::diagnose::searched::carried_over;
 use crate::estimate::EstimateError;
 use crate::identify::block::heights::{Rest, rests};
 use crate::identify::block::object;
 use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
+use crate::signal::task::half_width;
 use haptics::law::Kind;
 use haptics::world::World;
 
@@ -18,11 +21,13 @@ use haptics::world::World;
 const LEAST_ROWS: usize = 8;
 /// Fewer rows in all cannot be held out in turn.
 const LEAST_IN_ALL: usize = 50;
-/// Starts of a slip that are tried in every rest, and how long it may take, s.
-const STARTS: usize = 10;
-const LENGTHS_S: [f64; 3] = [0.0, 0.1, 0.3];
-/// Of so many rows one may be held out: every rest is seen while it is fitted, from its beginning to its end.
+/// Of so many rows one may be held out: every rest is seen while it is fitted, from its beginning to its end. The first ones never are: when a slip
+/// at the very contact began shows in nothing else.
 const HELD_OUT: usize = 2;
+const FIRST: usize = 4;
+/// So many rows that may be held out make a block of them, and there are so many blocks at most: as the comparison counts.
+const BLOCK: usize = 12;
+const MOST_BLOCKS: usize = 20;
 
 /// One end of a carry.
 pub struct Stand {
@@ -34,6 +39,9 @@ pub struct Stand {
     pub below: Vec<usize>,
     pub first: usize,
     pub end: usize,
+    /// From when it stands, s; and from when plain means of its height are taken.
+    pub from_s: f64,
+    pub plain_from_s: f64,
     /// Samples of it.
     pub samples: Vec<usize>,
 }
@@ -47,13 +55,18 @@ pub struct Ground {
     rows: Rows,
 }
 
-struct Rows {
-    stand: Vec<usize>,
-    time_s: Vec<f64>,
-    height_m: Vec<f64>,
+#[derive(Default)]
+pub struct Rows {
+    pub stand: Vec<usize>,
+    pub time_s: Vec<f64>,
+    pub height_m: Vec<f64>,
     lift_n: Vec<f64>,
+    /// Its rate, N/s.
+    lift_rate: Vec<f64>,
     /// Largest shear over normal force of a finger.
     ratio: Vec<f64>,
+    /// Half of the window that the heights are means over, s.
+    pub half_s: f64,
 }
 
 /// Compares what may move the grip while a held block stands. `cross`: what each finger's vertical force has of its horizontal one. `None` where no block was held still on anything for long enough.
@@ -63,8 +76,8 @@ pub fn ground(
     cross: [f64; 2],
     threshold: f64,
 ) -> Result<Option<Ground>, EstimateError> {
-    let mut rows =
-        Rows { stand: Vec::new(), time_s: Vec::new(), height_m: Vec::new(), lift_n: Vec::new(), ratio: Vec::new() };
+    let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
+    let mut rows = Rows { half_s: 0.5 * period_s, ..Rows::default() };
     let mut stands = Vec::new();
     for (recording, one) in seen.iter().enumerate() {
         for (k, rest) in rests(&one.blocks, one.count).into_iter().enumerate() {
@@ -79,6 +92,9 @@ pub fn ground(
     let mut base: Vec<Vec<f64>> = (0..stands.len()).map(|s| of(&|i| f64::from(u8::from(rows.stand[i] == s)))).collect();
     let give = rows.lift_n.clone();
     let contact = of(&|i| (stands[rows.stand[i]].below.len() + 1) as f64 * rows.lift_n[i]);
+    // Pads damp and forces come a little late: both show while the load goes over to the ground, and neither is a cause of its own.
+    base.push(rows.lift_rate.clone());
+    let model = [base.as_slice(), &[give.clone(), contact.clone()]].concat();
     let mut candidates = Vec::new();
     if world.is_some() {
         base.extend([give, contact]);
@@ -87,18 +103,16 @@ pub fn ground(
         candidates.push(cause(vec![give.clone()], vec![("give", "m/N")]));
         candidates.push(cause(vec![give, contact], vec![("give", "m/N"), ("give of a contact", "m/N")]));
     }
-    for (s, stand) in stands.iter().enumerate() {
-        slips(&rows, s, (stand.first, stand.end), &mut candidates);
-    }
+    slips(&rows, &stands, &model, &mut candidates);
     let span = rows.time_s.iter().copied().fold(0.0, f64::max).max(1e-9);
     candidates.extend((1..=3).map(|k| {
         let wave = of(&|i| (std::f64::consts::PI * f64::from(k) * rows.time_s[i] / span).cos());
         let expression = Some(format!("cos({k} pi t/T)"));
         Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) }
     }));
-    let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
     let stretch = stretches(&rows.time_s, period_s, |i| rows.stand[i] != rows.stand[i - 1]);
-    let along: Vec<bool> = (0..n).map(|i| i % HELD_OUT == 0).collect();
+    let since = |i: usize| i - stands[rows.stand[i]].first;
+    let along: Vec<bool> = (0..n).map(|i| since(i) >= FIRST && since(i) % HELD_OUT == 0).collect();
     let channel = Channel {
         y: rows.height_m.clone(),
         base,
@@ -109,7 +123,7 @@ pub fn ground(
         period_s,
     };
     let floor_m = white_noise(&rows.height_m);
-    let study = channel.compare(threshold)?;
+    let study = channel.compare_in(&spread(&along), threshold)?;
     let channel = "height of the grip over the ground";
     let compared = Compared {
         study,
@@ -131,6 +145,17 @@ pub fn ground(
     Ok(Some(Ground { compared, view, stands, rows }))
 }
 
+/// The order in which rows are held out together: blocks of rows from all over the rests. What a slip is worth shows on rows before and after it,
+/// and a rest is shorter than a block of rows that follow each other.
+fn spread(along: &[bool]) -> Vec<f64> {
+    let blocks = (along.iter().filter(|t| **t).count() / BLOCK).clamp(1, MOST_BLOCKS);
+    let before = along.iter().scan(0, |count, testable| {
+        *count += usize::from(*testable);
+        Some(*count)
+    });
+    before.enumerate().map(|(i, count)| ((count % blocks) * along.len() + i) as f64).collect()
+}
+
 /// What a cause in the height of the grip is best seen against.
 pub fn best_seen(id: &str) -> Variable {
     if id == "pad-compliance" { Variable::Lift } else { Variable::Time }
@@ -143,12 +168,18 @@ fn add(
     (recording, placed): (usize, bool),
     (rest, cross): (&Rest, [f64; 2]),
 ) {
-    let mut samples = if placed { one.standing(rest.carry + 1) } else { Vec::new() };
-    samples.extend(&rest.samples);
+    let begins_s = rest.samples.first().map(|i| one.time_s(*i));
+    let (from_s, samples) =
+        if placed { one.put(rest.carry + 1, &rest.samples) } else { (begins_s.unwrap_or(0.0), rest.samples.clone()) };
     let picked = one.every(samples.into_iter());
     if picked.len() < LEAST_ROWS {
         return;
     }
+    let half = half_width(&one.blocks.signals.time_s);
+    let lift_rate = |i: usize| {
+        let (before, after) = (i.saturating_sub(half), (i + half).min(one.blocks.lift.len() - 1));
+        (one.blocks.lift[after] - one.blocks.lift[before]) / (one.time_s(after) - one.time_s(before)).max(1e-9)
+    };
     let first = rows.stand.len();
     for i in &picked {
         rows.stand.push(stands.len());
@@ -156,6 +187,7 @@ fn add(
         rows.height_m.push(one.blocks.height[*i]);
         let side = |f: usize| one.force[f][0][*i] - one.blocks.levels.bias_n[f].x;
         rows.lift_n.push(one.blocks.lift[*i] - cross[0] * side(0) - cross[1] * side(1));
+        rows.lift_rate.push(lift_rate(*i));
         let ratio = |f: usize| {
             let bias = one.blocks.levels.bias_n[f];
             (one.force[f][1][*i] - bias.y).abs() / (one.force[f][0][*i] - bias.x).abs().max(0.1)
@@ -170,36 +202,28 @@ fn add(
         below,
         first,
         end: rows.stand.len(),
+        from_s,
+        plain_from_s: begins_s.unwrap_or(from_s),
         samples: rest.samples.clone(),
     });
-}
-
-fn slips(rows: &Rows, stand: usize, (first, end): (usize, usize), found: &mut Vec<Candidate>) {
-    let (from, to) = (rows.time_s[first], rows.time_s[end - 1]);
-    for k in 1..=STARTS {
-        let start = from + (to - from) * k as f64 / (STARTS + 1) as f64;
-        for length in LENGTHS_S {
-            let share = |t: f64| {
-                if length > 0.0 { ((t - start) / length).clamp(0.0, 1.0) } else { f64::from(u8::from(t >= start)) }
-            };
-            let column = (0..rows.stand.len())
-                .map(|i| if rows.stand[i] == stand { share(rows.time_s[i]) } else { 0.0 })
-                .collect();
-            let slip = Candidate::one("fingertip-slip", Kind::Plant, "dy", "m", column).at("t0", start, "s");
-            found.push(slip.at("duration", length, "s"));
-        }
-    }
 }
 
 impl Ground {
     /// Which rest a time belongs to.
     fn stand_at(&self, time_s: f64) -> Option<&Stand> {
-        self.stands.iter().find(|s| (self.rows.time_s[s.first]..=self.rows.time_s[s.end - 1]).contains(&time_s))
+        self.stands.iter().find(|s| (s.from_s - self.rows.half_s..=self.rows.time_s[s.end - 1]).contains(&time_s))
     }
 
     /// For the answer.
-    pub fn states(candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+    pub fn states(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         match candidate.id {
+            "fingertip-slip" => {
+                let study = &self.compared.study;
+                let own = study.picks().iter().position(|p| study.candidates[*p].id == candidate.id);
+                let when = own.map_or(0.0, |k| carried_over(study, k));
+                found.iter_mut().take(1).for_each(|way| way.std_error = way.std_error.hypot(when));
+                found
+            }
             // Two pads side by side; the give of one is twice what the pair's is, so its stiffness half.
             "pad-compliance" => {
                 found.iter().take(1).map(|p| parameter("k_shear", 0.5 * p.value, 0.5 * p.std_error, "N/m")).collect()
@@ -221,8 +245,9 @@ impl Ground {
         let near = (stand.first..stand.end).filter(|i| (self.rows.time_s[*i] - at).abs() < 0.15);
         let ratio = near.map(|i| self.rows.ratio[i]).fold(0.0, f64::max);
         // A plain mean over the rest has the shift for as long as it lasts.
-        let after = (stand.first..stand.end).filter(|i| self.rows.time_s[*i] >= at).count();
-        let mean_off = value * after as f64 / (stand.end - stand.first) as f64;
+        let plain = (stand.first..stand.end).map(|i| self.rows.time_s[i]).filter(|t| *t >= stand.plain_from_s);
+        let (rows, after) = plain.fold((0_u32, 0_u32), |(n, after), t| (n + 1, after + u32::from(t >= at)));
+        let mean_off = value * f64::from(after) / f64::from(rows.max(1));
         let wrong: Vec<String> = stand.below.iter().map(|b| object(*b)).collect();
         let wrong = if wrong.is_empty() { "what it was taken from".to_owned() } else { wrong.join(" and ") };
         format!(

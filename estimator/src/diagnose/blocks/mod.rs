@@ -13,6 +13,7 @@ mod moved;
 mod rows;
 mod seen;
 mod simulated;
+mod slips;
 
 pub use simulated::{extend, with_acts};
 
@@ -56,12 +57,11 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let carry_usual = |c: &Candidate| carry.usual(c);
     let grasp_shows = |f: &Found<'_>| grasp.as_ref().map(|g| g.shows(f)).unwrap_or_default();
     let grasp_states = |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &grasp { g.states(c, p) } else { p };
+    let ground_states = |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &ground { g.states(c, p) } else { p };
     let ground_shows = |f: &Found<'_>| ground.as_ref().map(|g| g.shows(f)).unwrap_or_default();
     let mut parts: Vec<Part<'_>> = vec![carry.compared.part(&Carry::shows, &carry_states, &carry_usual)];
     parts.extend(grasp.as_ref().map(|g| g.compared.part(&grasp_shows, &grasp_states, &grasp::Grasp::usual)));
-    parts.extend(
-        ground.as_ref().map(|g| g.compared.part(&ground_shows, &ground::Ground::states, &ground::Ground::usual)),
-    );
+    parts.extend(ground.as_ref().map(|g| g.compared.part(&ground_shows, &ground_states, &ground::Ground::usual)));
     let mut found = answer(&parts, beside, &|open| experiment::propose(open, &carry, &seen).or_else(|| next(open)));
     if options.atlas {
         let limit = limit(&seen);

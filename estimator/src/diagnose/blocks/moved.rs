@@ -59,6 +59,7 @@ pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause>
             heldout_rms_after: error,
             share_of_explainable: share,
             interval: [1.0 - (2.0 * error / way).powi(2), 1.0],
+            no_share: None,
             unit: Some("m".to_owned()),
             rollout: None,
         },

@@ -106,22 +106,14 @@ impl<'a> Seen<'a> {
         self.carried_and_standing(number).0
     }
 
-    /// Rows at the end of a carry in which the block stands already, although the lift is still upwards.
-    pub fn standing(&self, number: usize) -> Vec<usize> {
-        self.carried_and_standing(number).1
-    }
-
+    /// The same with the rows at its end in which the block stands already, although the lift is still upwards.
     fn carried_and_standing(&self, number: usize) -> (Vec<usize>, Vec<usize>) {
         let samples = self.blocks.shown(MAIN, number);
         let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return (Vec::new(), Vec::new()) };
         let (start, end) = (self.time_s(*first) + SWINGS_S, self.time_s(*last));
         let mut rows = self.every(samples.into_iter().filter(|i| (start..=end).contains(&self.time_s(*i))));
         // A block that the ground takes over already at either end is no longer carried.
-        let usual = self.usual_lift(&rows);
-        let light = |i: &usize| {
-            let whole = usual(self.time_s(*i));
-            self.blocks.lift[*i] < (WHOLE * whole).min(whole - SURELY * self.lift_noise_n)
-        };
+        let light = self.light(&rows);
         let mut standing = rows.split_off(rows.iter().rposition(|i| !light(i)).map_or(0, |k| k + 1));
         rows.drain(..rows.iter().position(|i| !light(i)).unwrap_or(0));
         self.without_ends(&mut rows);
@@ -130,11 +122,34 @@ impl<'a> Seen<'a> {
             still = rows.split_off(stands_from);
             rows.truncate(carried_until);
         }
-        // What still comes down does not stand.
-        let lowered = |i: &usize| self.velocity[1][*i] < -REST_M_S;
-        standing.drain(..standing.iter().rposition(lowered).map_or(0, |k| k + 1));
         still.append(&mut standing);
         (rows, still)
+    }
+
+    /// Whether the lift of a sample is less than all of what is carried in `rows`.
+    fn light(&self, rows: &[usize]) -> impl Fn(&usize) -> bool + use<'_, 'a> {
+        let usual = self.usual_lift(rows);
+        move |i| {
+            let whole = usual(self.time_s(*i));
+            self.blocks.lift[*i] < (WHOLE * whole).min(whole - SURELY * self.lift_noise_n)
+        }
+    }
+
+    /// Samples in which a block stands after its carry, and the time from which it does: when the load has begun to go over to what is below. The
+    /// fingers may come down further then, by the give of their pads or in a slip, and nothing else but the load tells that from lowering.
+    /// `rest`: samples in which it is known to stand.
+    pub fn put(&self, number: usize, rest: &[usize]) -> (f64, Vec<usize>) {
+        let (carried, standing) = self.carried_and_standing(number);
+        let Some(first) = rest.first().into_iter().chain(standing.first()).min().copied() else {
+            return (0.0, Vec::new());
+        };
+        let known = rest.first().copied().or_else(|| Some(standing.last()? + 1)).unwrap_or(first);
+        let (least, light) = (carried.last().map_or(first, |last| last + 1), self.light(&carried));
+        let from = (least..first).rev().take_while(light).last().unwrap_or(first);
+        // The filter looks this far back into the air.
+        let settled = if from < known { from + half_width(&self.blocks.signals.time_s) } else { from };
+        let rest = rest.iter().copied().filter(|i| *i >= settled);
+        (self.time_s(from), (settled..known).chain(rest).collect())
     }
 
     /// Usual lift over the time of a carry, N: steady, or changing evenly where contents run out.

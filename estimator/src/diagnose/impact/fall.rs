@@ -97,6 +97,7 @@ fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
         heldout_rms_after: (sum[1] / sum[3].max(1.0)).sqrt(),
         share_of_explainable: all,
         interval: [all - 1.96 * spread, (all + 1.96 * spread).min(1.0)],
+        no_share: None,
         unit: Some("m".to_owned()),
         rollout: None,
     }

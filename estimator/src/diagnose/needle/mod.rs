@@ -122,8 +122,11 @@ fn punctures(seen: &Needle, names: &[&str]) -> Option<Cause> {
         kind: Kind::Plant,
         parameters: vec![parameter("from", first.force_n, error, "N"), parameter("to", last.force_n, error, "N")],
         p_value: chi_square_tail(scatter, n - 1.0),
-        posterior: 0.0,
-        gain: Gain::default(),
+        posterior: 1.0,
+        gain: Gain {
+            no_share: Some("each puncture is one observation: none was held out".to_owned()),
+            ..Gain::default()
+        },
         evidence: format!(
             "the sheet was pierced at {} and at {}; one sheet has one puncture force",
             told(first),

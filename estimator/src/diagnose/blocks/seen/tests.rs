@@ -56,7 +56,28 @@ fn recording(seed: u64, kept_n: f64, leak_n_s: f64) -> Recording {
 /// Times of the rows in which the block is said to stand at the end of its carry.
 fn standing_s(recording: &Recording) -> Vec<f64> {
     let seen = Seen::of(recording).expect("a carried block");
-    seen.standing(1).into_iter().map(|i| seen.time_s(i)).collect()
+    let (_, standing) = seen.put(1, &[]);
+    standing.into_iter().map(|i| seen.time_s(i)).collect()
+}
+
+/// What goes down on after touchdown is no longer lowered: a slip, or pads that give under the load.
+#[test]
+fn a_block_stands_from_when_the_load_goes_over_and_not_from_when_the_fingers_stop() {
+    let mut recording = recording(3, 0.0, 0.0);
+    let time_s = recording.time_s.clone().expect("a clock");
+    for channel in recording.channels.iter_mut().filter(|c| c.name.starts_with('y')) {
+        channel
+            .values
+            .iter_mut()
+            .zip(&time_s)
+            .for_each(|(y, t)| *y -= 2e-3 * reach(*t, TOUCHDOWN_S, TOUCHDOWN_S + 0.2));
+    }
+    let seen = Seen::of(&recording).expect("a carried block");
+    let rest: Vec<usize> =
+        (0..time_s.len()).filter(|i| (TOUCHDOWN_S + 0.5..TOUCHDOWN_S + 1.5).contains(&time_s[*i])).collect();
+    let (from_s, samples) = seen.put(1, &rest);
+    assert!((TOUCHDOWN_S..TOUCHDOWN_S + 0.08).contains(&from_s), "{from_s}");
+    assert!(seen.time_s(samples[0]) < TOUCHDOWN_S + 0.1 && samples.ends_with(&rest), "{}", seen.time_s(samples[0]));
 }
 
 #[test]

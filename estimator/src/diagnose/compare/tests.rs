@@ -1,0 +1,106 @@
+//! Channels with a cause in them, with one that is there only where it is fitted, and with one that has no name.
+
+use super::Channel;
+use crate::diagnose::answer::{Beside, Compared, answer};
+use crate::diagnose::candidate::Candidate;
+use crate::diagnose::gain::gain;
+use crate::diagnose::geometry::Study;
+use crate::diagnose::system::Use;
+use haptics::law::Kind;
+use rand::{RngExt as _, SeedableRng as _};
+use std::f64::consts::TAU;
+
+const ROWS: usize = 480;
+const NOISE: f64 = 0.1;
+const THRESHOLD: f64 = 20.0;
+
+fn noise(seed: u64) -> Vec<f64> {
+    let mut rng = rand::rngs::StdRng::seed_from_u64(seed);
+    let mut normal = move || {
+        let (a, b): (f64, f64) = (rng.random_range(1e-12..1.0), rng.random());
+        NOISE * (-2.0 * a.ln()).sqrt() * (TAU * b).cos()
+    };
+    (0..ROWS).map(|_| normal()).collect()
+}
+
+/// To and fro, as a direction of motion does.
+fn to_and_fro() -> Vec<f64> {
+    (0..ROWS).map(|i| if i / 7 % 2 == 0 { 1.0 } else { -1.0 }).collect()
+}
+
+fn compared(y: Vec<f64>, candidates: Vec<Candidate>) -> Study {
+    let channel = Channel {
+        y,
+        base: vec![vec![1.0; ROWS]],
+        candidates,
+        stretch: vec![0; ROWS],
+        testable: vec![true; ROWS],
+        weight: vec![1.0; ROWS],
+        period_s: 0.02,
+    };
+    channel.compare(THRESHOLD).expect("a constant fits")
+}
+
+fn cause() -> Candidate {
+    Candidate::one("coulomb-friction", Kind::Plant, "Fc", "N", to_and_fro())
+}
+
+/// `locked`: how large it is where nothing is fitted.
+fn with(size: f64, locked: f64, seed: u64) -> Vec<f64> {
+    let uses = compared(noise(seed), vec![cause()]).system.uses;
+    let here = |i: usize| if matches!(uses[i], Use::Locked(_)) { locked } else { size };
+    noise(seed).iter().zip(to_and_fro()).enumerate().map(|(i, (n, c))| n + here(i) * c).collect()
+}
+
+#[test]
+fn what_makes_more_of_an_error_where_it_was_not_fitted_is_no_cause() {
+    for seed in 0..4 {
+        let there = compared(with(0.05, 0.05, seed), vec![cause()]);
+        assert_eq!(there.picks(), [0], "seed {seed}");
+        let not_there = compared(with(0.05, -0.05, seed), vec![cause()]);
+        assert!(not_there.picks().is_empty(), "seed {seed}: {:?}", not_there.chosen);
+    }
+}
+
+#[test]
+fn a_floor_above_what_is_left_makes_no_share_certain() {
+    let study = compared(with(0.08, 0.08, 1), vec![cause()]);
+    let true_floor = gain(&study, 0, 0.9 * NOISE);
+    // Measured where more was going on than noise.
+    let high = gain(&study, 0, 1.5 * NOISE);
+    for gain in [&true_floor, &high] {
+        assert!(gain.no_share.is_none() && (0.4..=1.0).contains(&gain.share_of_explainable), "{gain:?}");
+        assert!(gain.interval[0] < 0.999 && gain.interval[0] > 0.0, "{gain:?}");
+    }
+}
+
+#[test]
+fn what_no_held_out_row_could_show_has_no_share() {
+    let uses = compared(noise(2), vec![cause()]).system.uses;
+    let mut late = to_and_fro();
+    late.iter_mut().zip(&uses).filter(|(_, u)| matches!(u, Use::Locked(_))).for_each(|(c, _)| *c = 0.0);
+    let y: Vec<f64> = noise(2).iter().zip(&late).map(|(n, c)| n + 0.2 * c).collect();
+    let only_fitted = Candidate::one("coulomb-friction", Kind::Plant, "Fc", "N", late);
+    let study = compared(y, vec![only_fitted]);
+    // Not asked, it is not refuted either.
+    assert_eq!(study.picks(), [0]);
+    let gain = gain(&study, 0, NOISE);
+    assert!(gain.no_share.is_some() && gain.share_of_explainable == 0.0 && gain.interval == [0.0; 2], "{gain:?}");
+}
+
+#[test]
+fn what_has_no_name_has_a_gain_and_a_size() {
+    let wave: Vec<f64> = (0..ROWS).map(|i| (0.05 * i as f64).cos()).collect();
+    let y: Vec<f64> = noise(3).iter().zip(&wave).map(|(n, c)| n + 0.1 * c).collect();
+    let expression = Some("cos(0.05 i)".to_owned());
+    let strange = Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) };
+    let study = compared(y, vec![strange]);
+    let (along, stretch) = (vec![true; ROWS], vec![0; ROWS]);
+    let compared = Compared { study, channel: "something", unit: "N", floor: NOISE, along, stretch };
+    let part = compared.part(&|_| String::new(), &|_, found| found, &|_| None);
+    let found = answer(&[part], Beside::default(), &|_| None);
+    let [cause] = found.causes.as_slice() else { panic!("{:?}", found.causes) };
+    assert!(cause.gain.share_of_explainable > 0.5 && cause.gain.unit.as_deref() == Some("N"), "{cause:?}");
+    assert!(cause.posterior > 0.9 && (cause.parameters[0].value - 0.1).abs() < 0.03, "{cause:?}");
+    assert!(cause.evidence.contains("something"), "{}", cause.evidence);
+}
