@@ -66,7 +66,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
         made = compare(track, (model, fixed), &known, threshold, [&coarse, &fine], Some(made))?;
     }
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
-    leave_out_what_harms(&mut made, &stretch, CONFIRMED * threshold);
+    leave_out_what_harms(&mut made, &stretch, threshold);
     Ok(made)
 }
 
@@ -80,8 +80,9 @@ const CONFIRMED: f64 = 2.5;
 const SHOWN: f64 = 1.0;
 
 /// A cause that makes more of an error for certain where it was not fitted is none, whatever it explains elsewhere; nor is one that scores
-/// less than `sure` and shows nothing there. `stretch`: of each row.
-fn leave_out_what_harms(study: &mut Study, stretch: &[usize], sure: f64) {
+/// little and shows nothing there. `stretch`: of each row. `threshold`: least score of a cause.
+pub fn leave_out_what_harms(study: &mut Study, stretch: &[usize], threshold: f64) {
+    let sure = CONFIRMED * threshold;
     loop {
         let harms = |k: &usize| {
             let gain = gain(study, *k, 0.0);
