@@ -10,6 +10,7 @@ use super::geometry::Study;
 use super::grid::Grid;
 use super::hung;
 use super::select::Selection;
+use super::starts::to_refine;
 use super::stuck::{self, Load};
 use super::system::{Held, Rows, System};
 use super::track::{Place, Row, Track};
@@ -48,6 +49,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
     blur(track);
     let loads = loads(track, model, fixed)?;
     stuck::add(track, &loads);
+    let has_dry = model.iter().any(|e| e.law().is_dry());
     let coarse = Grid::coarse(track);
     let mut known = Known { columns: Columns::default(), generic: generic(track) };
     let mut made = compare(track, (model, fixed), &known, threshold, [&coarse, &Grid::default()], None)?;
@@ -56,8 +58,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
         if made.chosen.len() <= round {
             break;
         }
-        let found: Vec<&Candidate> = made.chosen.iter().map(|c| &made.candidates[c.candidate]).collect();
-        let fine = Grid::around(&found, track, 1.0 / (1 + round) as f64);
+        let fine = Grid::around(&to_refine(&made, threshold, has_dry), track, 1.0 / (1 + round) as f64);
         // The load on the friction is what the sensor told, rid of what is now known of the sensor.
         if correct_load(track, &made) {
             known.columns.forget_loads();
