@@ -1,7 +1,7 @@
 //! One channel of a residual that is no force along one coordinate: what the model leaves of it, and which causes explain that.
 
 use super::candidate::Candidate;
-use super::force::{CONFIRMED, leave_out_what_harms};
+use super::force::leave_out_what_harms;
 use super::gain::is_tested;
 use super::geometry::{Study, residual};
 use super::select::Selection;
@@ -60,7 +60,7 @@ impl Channel {
         let mut made = Study { candidates, chosen, system, solved, y, base, weight };
         // Where too little is there to hold any out, nothing can be asked of it.
         if made.system.uses.iter().any(|u| matches!(u, Use::Locked(_))) {
-            leave_out_what_harms(&mut made, &stretch, CONFIRMED * threshold, &|study, k| is_tested(study, k, &stretch));
+            leave_out_what_harms(&mut made, &stretch, threshold, &|study, k| is_tested(study, k, &stretch));
         }
         Ok(made)
     }

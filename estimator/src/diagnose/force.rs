@@ -11,6 +11,7 @@ use super::geometry::Study;
 use super::grid::Grid;
 use super::hung;
 use super::select::Selection;
+use super::starts::to_refine;
 use super::stuck::{self, Load};
 use super::system::{Held, Rows, System};
 use super::track::{Place, Row, Track};
@@ -33,6 +34,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
     blur(track);
     let loads = loads(track, model, fixed)?;
     stuck::add(track, &loads);
+    let has_dry = model.iter().any(|e| e.law().is_dry());
     let coarse = Grid::coarse(track);
     let mut known = Known { columns: Columns::default(), generic: generic(track), is_sharp: false };
     let mut made = compare(track, (model, fixed), &known, threshold, [&coarse, &Grid::default()], None)?;
@@ -41,8 +43,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
         if made.chosen.len() <= round {
             break;
         }
-        let found: Vec<&Candidate> = made.chosen.iter().map(|c| &made.candidates[c.candidate]).collect();
-        let fine = Grid::around(&found, track, 1.0 / (1 + round) as f64);
+        let fine = Grid::around(&to_refine(&made, threshold, has_dry), track, 1.0 / (1 + round) as f64);
         // The load on the friction is what the sensor told, rid of what is now known of the sensor.
         if correct_load(track, &made) {
             known.columns.forget_loads();
@@ -63,7 +64,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
         }
     }
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
-    leave_out_what_harms(&mut made, &stretch, CONFIRMED * threshold, &|_, _| true);
+    leave_out_what_harms(&mut made, &stretch, threshold, &|_, _| true);
     Ok(made)
 }
 
@@ -71,14 +72,20 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
 const HARMS: f64 = 1.05;
 
 /// A cause that scores less than this many times what is asked for must show on the locked blocks, too …
-pub const CONFIRMED: f64 = 2.5;
+const CONFIRMED: f64 = 2.5;
 /// … by more than this in 2 ln(likelihood): what is true is worth a third of its score there, what was searched for among noise as much less
 /// than nothing.
 const SHOWN: f64 = 1.0;
 
 /// A cause that makes more of an error for certain where it was not fitted is none, whatever it explains elsewhere; nor is one that scores
-/// less than `sure` and shows nothing there, where it is `tested`. `stretch`: of each row.
-pub fn leave_out_what_harms(study: &mut Study, stretch: &[usize], sure: f64, tested: &dyn Fn(&Study, usize) -> bool) {
+/// little and shows nothing there, where it is `tested`. `stretch`: of each row. `threshold`: least score of a cause.
+pub fn leave_out_what_harms(
+    study: &mut Study,
+    stretch: &[usize],
+    threshold: f64,
+    tested: &dyn Fn(&Study, usize) -> bool,
+) {
+    let sure = CONFIRMED * threshold;
     loop {
         let harms = |k: &usize| {
             let gain = gain(study, *k, 0.0);

@@ -1,6 +1,7 @@
 //! The path before the force: centre and radius of a crank, and the causes that distort the circle.
 
 use super::candidate::Candidate;
+use super::force::leave_out_what_harms;
 use super::select::{Chosen, Selection};
 use super::system::{Held, Rows, Solved, System, solve, uses};
 use super::white::whitener;
@@ -196,7 +197,10 @@ fn compare(
     let chosen = Selection { system: &system, candidates: &candidates, threshold, dry: true, one_loss: false }.run(&[]);
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
     let solved = system.solve(&picks);
-    Ok(Study { candidates, chosen, system, solved, y, base, weight })
+    let mut study = Study { candidates, chosen, system, solved, y, base, weight };
+    // What a line misses of pads that harden, or one slip of two, looks like another cause, weakly, where it was fitted.
+    leave_out_what_harms(&mut study, &stretch, threshold, &|_, _| true);
+    Ok(study)
 }
 
 /// What is left of `y`.

@@ -47,6 +47,7 @@ mod several;
 mod signs;
 mod slide;
 mod sliding;
+mod starts;
 mod stuck;
 mod suspects;
 mod switch;

@@ -1,6 +1,7 @@
 //! Which causes the recording asks for: forward with a look ahead, swaps, pruning.
 
 use super::candidate::Candidate;
+use super::starts::MANY;
 use super::system::{Solved, System};
 
 /// Most causes at once.
@@ -84,7 +85,7 @@ enum Over {
 }
 
 /// What is lost at a reversal.
-const LOST_MOTION: [&str; 2] = ["hysteresis", "backlash"];
+pub const LOST_MOTION: [&str; 2] = ["hysteresis", "backlash"];
 
 /// Causes that are a change of dry friction, and mean nothing without it.
 const OF_DRY_FRICTION: [&str; 3] = ["stribeck", "hysteresis", "friction-change"];
@@ -93,7 +94,7 @@ const DRY_FRICTION: [&str; 2] = ["coulomb-friction", "load-friction"];
 
 impl Selection<'_> {
     /// N ln(RSS) plus what its parameters cost; smaller is better. Infinite where a parameter has an impossible sign.
-    fn price(&self, chosen: &[usize]) -> f64 {
+    pub(super) fn price(&self, chosen: &[usize]) -> f64 {
         let is = |all: &[&str]| chosen.iter().any(|c| all.contains(&self.candidates[*c].id));
         if !self.dry && is(&OF_DRY_FRICTION) && !is(&DRY_FRICTION) {
             return f64::INFINITY;
@@ -138,7 +139,7 @@ impl Selection<'_> {
     }
 
     /// Candidates that may join the chosen ones: supported, and of another cause.
-    fn open<'b>(&'b self, chosen: &'b [usize]) -> impl Iterator<Item = usize> + 'b {
+    pub(super) fn open<'b>(&'b self, chosen: &'b [usize]) -> impl Iterator<Item = usize> + 'b {
         (0..self.candidates.len())
             .filter(|c| self.candidates[*c].expression.is_none() && self.system.supported(*c))
             .filter(|c| chosen.iter().all(|o| !self.excludes(self.candidates[*o].id, self.candidates[*c].id)))
@@ -188,6 +189,15 @@ impl Selection<'_> {
                 chosen = going_on;
             }
         }
+        // One step at a time may have led where no step leads out of.
+        if chosen.len() > MANY
+            && let Some(pair) = self.pair()
+        {
+            let sparser = self.settled(pair, is_fine);
+            if self.price(&sparser) < self.price(&chosen) {
+                chosen = sparser;
+            }
+        }
         self.describe(&chosen)
     }
 
@@ -231,7 +241,7 @@ impl Selection<'_> {
         }
     }
 
-    fn swap(&self, chosen: &mut [usize]) {
+    pub(super) fn swap(&self, chosen: &mut [usize]) {
         for _ in 0..SWAP_ROUNDS {
             let mut changed = false;
             for k in 0..chosen.len() {

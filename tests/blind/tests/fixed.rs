@@ -50,3 +50,25 @@ fn what_is_weak_and_shows_nowhere_else_is_not_named() {
 fn a_cause_that_was_searched_for_beside_a_pruned_one_is_searched_for_again() {
     assert_eq!(named((2222, 7313)), ["hysteresis"]);
 }
+
+/// Half a step of the coarse grid of gaps costs more than what a bend of another way misses; beside another cause that decided.
+#[test]
+fn play_is_told_from_a_bend_where_both_were_searched_for_as_closely() {
+    assert_eq!(named((2929, 9783)), ["backlash", "mass-change"]);
+    assert_eq!(named((2929, 9864)), ["pad-compliance", "backlash"]);
+}
+
+/// The search goes forward one cause at a time; a cable must be searched for more closely before it and a tilt are better than four others.
+#[test]
+fn two_causes_are_found_where_one_after_the_other_leads_to_four() {
+    assert_eq!(named((2525, 8598)), ["return-spring", "position-ripple"]);
+    // A tilt is an exact equal of an eccentric mass.
+    assert_eq!(named((2525, 8498)), ["eccentric-mass", "added-constraint"]);
+}
+
+/// What a line misses of pads that harden, or one slip of two, is neither a slip nor a wrong length: it shows on no other blocks.
+#[test]
+fn a_weak_cause_of_the_path_shows_where_it_was_not_fitted() {
+    assert_eq!(named((2929, 9781)), ["pad-compliance", "added-constraint"]);
+    assert_eq!(named((2929, 9562)), ["fingertip-slip"]);
+}

@@ -1,0 +1,64 @@
+//! Other beginnings of a search: what goes forward one cause at a time may end where no single step leads out.
+
+use super::candidate::Candidate;
+use super::geometry::Study;
+use super::select::{LOST_MOTION, Selection};
+
+/// So many of the causes that explain most alone are tried as the first of two.
+const FIRST: usize = 6;
+/// More causes than this are many: beside a wrong first one, it takes several to say what two do.
+pub const MANY: usize = 2;
+
+impl Selection<'_> {
+    /// The best two causes together: the strongest of each kind with what stands best beside it, then each looked for anew beside the other.
+    pub fn pair(&self) -> Option<Vec<usize>> {
+        let mut alone: Vec<(f64, usize)> = self.open(&[]).map(|c| (self.price(&[c]), c)).collect();
+        alone.retain(|(price, _)| price.is_finite());
+        alone.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut firsts: Vec<usize> = Vec::new();
+        for (_, c) in alone {
+            if firsts.len() < FIRST && firsts.iter().all(|f| self.candidates[*f].id != self.candidates[c].id) {
+                firsts.push(c);
+            }
+        }
+        let beside = |first: usize| {
+            let pairs = self.open(&[first]).map(|c| (self.price(&[first, c]), c)).collect::<Vec<_>>();
+            let (price, second) = pairs.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+            price.is_finite().then(|| (price, vec![first, second]))
+        };
+        let best = firsts.into_iter().filter_map(beside).min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map(|(_, mut pair)| {
+            self.swap(&mut pair);
+            pair
+        })
+    }
+
+    /// What must be searched for more closely before it can be compared with what was chosen, which will be: of play and of a bend the
+    /// one that was not chosen (half a step of the coarse grid is more than they differ by), and the best two causes where many were.
+    fn left_behind(&self, chosen: &[usize]) -> Vec<usize> {
+        let is_loss = |c: &usize| LOST_MOTION.contains(&self.candidates[*c].id);
+        let mut others = Vec::new();
+        if let Some(k) = chosen.iter().position(&is_loss) {
+            let rest: Vec<usize> = chosen.iter().copied().filter(|c| *c != chosen[k]).collect();
+            let other = |c: &usize| is_loss(c) && self.candidates[*c].id != self.candidates[chosen[k]].id;
+            let price = |c: usize| self.price(&[rest.as_slice(), &[c]].concat());
+            let priced = self.open(&rest).filter(other).map(|c| (price(c), c)).collect::<Vec<_>>();
+            let best = priced.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+            others.extend(best.filter(|(price, _)| price.is_finite()).map(|(_, c)| c));
+        }
+        if chosen.len() > MANY {
+            others.extend(self.pair().unwrap_or_default());
+        }
+        others.retain(|c| !chosen.contains(c));
+        others
+    }
+}
+
+/// The candidates around which the next round searches: those that were chosen, and what else may turn out better once it is searched
+/// for as closely.
+pub fn to_refine(study: &Study, threshold: f64, dry: bool) -> Vec<&Candidate> {
+    let Study { system, candidates, .. } = study;
+    let picks = study.picks();
+    let others = Selection { system, candidates, threshold, dry, one_loss: true }.left_behind(&picks);
+    picks.iter().chain(&others).map(|c| &candidates[*c]).collect()
+}
