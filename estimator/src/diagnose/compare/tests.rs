@@ -6,6 +6,7 @@ use crate::diagnose::candidate::Candidate;
 use crate::diagnose::gain::gain;
 use crate::diagnose::geometry::Study;
 use crate::diagnose::system::Use;
+use crate::segment::SystemState;
 use haptics::law::Kind;
 use rand::{RngExt as _, SeedableRng as _};
 use std::f64::consts::TAU;
@@ -96,7 +97,8 @@ fn what_has_no_name_has_a_gain_and_a_size() {
     let strange = Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) };
     let study = compared(y, vec![strange]);
     let (along, stretch) = (vec![true; ROWS], vec![0; ROWS]);
-    let compared = Compared { study, channel: "something", unit: "N", floor: NOISE, along, stretch };
+    let state = vec![SystemState::Turning; along.len()];
+    let compared = Compared { study, channel: "something", unit: "N", floor: NOISE, along, stretch, state };
     let part = compared.part(&|_| String::new(), &|_, found| found, &|_| None);
     let found = answer(&[part], Beside::default(), &|_| None);
     let [cause] = found.causes.as_slice() else { panic!("{:?}", found.causes) };
