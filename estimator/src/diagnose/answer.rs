@@ -244,7 +244,8 @@ pub fn answer(
             of: first.map(|p| p.channel.to_owned()),
             unit: first.map(|p| p.unit.to_owned()),
         },
-        noise_floor_n: first.map_or(0.0, |p| p.floor),
+        // What is left in the end has the noise in it.
+        noise_floor_n: first.map_or(0.0, |p| if end > 0.0 { p.floor.min(end) } else { p.floor }),
         residuals: parts.iter().flat_map(Part::residuals).collect(),
         next_experiment: next(&open),
         causes,

@@ -1,5 +1,6 @@
 //! Height of the grip while a held block stands on something: give of the pads under the load, and slips of the fingers.
 
+use super::moved::LEAST_M;
 use super::seen::Seen;
 use super::slips::slips;
 use crate::diagnose::answer::{Compared, Found, parameter};
@@ -169,8 +170,11 @@ fn add(
     (rest, cross): (&Rest, [f64; 2]),
 ) {
     let begins_s = rest.samples.first().map(|i| one.time_s(*i));
-    let (from_s, samples) =
-        if placed { one.put(rest.carry + 1, &rest.samples) } else { (begins_s.unwrap_or(0.0), rest.samples.clone()) };
+    let (from_s, samples) = if placed {
+        one.put(rest.carry + 1, &rest.samples, cross)
+    } else {
+        (begins_s.unwrap_or(0.0), rest.samples.clone())
+    };
     let picked = one.every(samples.into_iter());
     if picked.len() < LEAST_ROWS {
         return;
@@ -263,7 +267,7 @@ impl Ground {
     pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
         match candidate.id {
             "fingertip-slip" => {
-                Some((2e-4, "blocks were not held on the ground for long enough to see the fingers move on"))
+                Some((LEAST_M, "blocks were not held on the ground for long enough to see the fingers move on"))
             }
             "pad-compliance" => {
                 Some((1.0 / 8000.0, "the load hardly varied while a held block stood; press and lift while it stands"))

@@ -11,7 +11,7 @@ use haptics::law::Kind;
 use haptics::world::World;
 
 /// Less than this is how blocks turn in the grasp and how flat they are, m.
-const LEAST_M: f64 = 3e-4;
+pub const LEAST_M: f64 = 3e-4;
 /// So many standard errors make a slip.
 const ERRORS: f64 = 5.0;
 /// A height of a world that does not say how well it is known, as a share.

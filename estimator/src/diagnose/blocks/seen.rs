@@ -113,7 +113,7 @@ impl<'a> Seen<'a> {
         let (start, end) = (self.time_s(*first) + SWINGS_S, self.time_s(*last));
         let mut rows = self.every(samples.into_iter().filter(|i| (start..=end).contains(&self.time_s(*i))));
         // A block that the ground takes over already at either end is no longer carried.
-        let light = self.light(&rows);
+        let light = self.light(&rows, [0.0; 2]);
         let mut standing = rows.split_off(rows.iter().rposition(|i| !light(i)).map_or(0, |k| k + 1));
         rows.drain(..rows.iter().position(|i| !light(i)).unwrap_or(0));
         self.without_ends(&mut rows);
@@ -126,25 +126,31 @@ impl<'a> Seen<'a> {
         (rows, still)
     }
 
-    /// Whether the lift of a sample is less than all of what is carried in `rows`.
-    fn light(&self, rows: &[usize]) -> impl Fn(&usize) -> bool + use<'_, 'a> {
-        let usual = self.usual_lift(rows);
+    /// Whether the lift of a sample is less than all of what is carried in `rows`. `cross`: what each finger's vertical force has of its horizontal one.
+    fn light(&self, rows: &[usize], cross: [f64; 2]) -> impl Fn(&usize) -> bool + use<'_, 'a> {
+        let lift =
+            move |i: usize| self.blocks.lift[i] - cross[0] * self.force[0][0][i] - cross[1] * self.force[1][0][i];
+        let usual = self.usual_lift(rows, &lift);
         move |i| {
             let whole = usual(self.time_s(*i));
-            self.blocks.lift[*i] < (WHOLE * whole).min(whole - SURELY * self.lift_noise_n)
+            lift(*i) < (WHOLE * whole).min(whole - SURELY * self.lift_noise_n)
         }
     }
 
     /// Samples in which a block stands after its carry, and the time from which it does: when the load has begun to go over to what is below. The
     /// fingers may come down further then, by the give of their pads or in a slip, and nothing else but the load tells that from lowering.
-    /// `rest`: samples in which it is known to stand.
-    pub fn put(&self, number: usize, rest: &[usize]) -> (f64, Vec<usize>) {
-        let (carried, standing) = self.carried_and_standing(number);
+    /// `rest`: samples in which it is known to stand; `cross`: as found.
+    pub fn put(&self, number: usize, rest: &[usize], cross: [f64; 2]) -> (f64, Vec<usize>) {
+        let (carried, mut standing) = self.carried_and_standing(number);
+        if cross != [0.0; 2] && !rest.is_empty() {
+            // With some of the grip in it, the recorded lift falls as the grip does, on the ground or not.
+            standing.clear();
+        }
         let Some(first) = rest.first().into_iter().chain(standing.first()).min().copied() else {
             return (0.0, Vec::new());
         };
         let known = rest.first().copied().or_else(|| Some(standing.last()? + 1)).unwrap_or(first);
-        let (least, light) = (carried.last().map_or(first, |last| last + 1), self.light(&carried));
+        let (least, light) = (carried.last().map_or(first, |last| last + 1), self.light(&carried, cross));
         let from = (least..first).rev().take_while(light).last().unwrap_or(first);
         // The filter looks this far back into the air.
         let settled = if from < known { from + half_width(&self.blocks.signals.time_s) } else { from };
@@ -153,9 +159,8 @@ impl<'a> Seen<'a> {
     }
 
     /// Usual lift over the time of a carry, N: steady, or changing evenly where contents run out.
-    fn usual_lift(&self, rows: &[usize]) -> impl Fn(f64) -> f64 + use<> {
-        let middle =
-            |rows: &[usize]| percentile(&mut rows.iter().map(|i| self.blocks.lift[*i]).collect::<Vec<_>>(), 0.5);
+    fn usual_lift(&self, rows: &[usize], lift: &dyn Fn(usize) -> f64) -> impl Fn(f64) -> f64 + use<> {
+        let middle = |rows: &[usize]| percentile(&mut rows.iter().map(|i| lift(*i)).collect::<Vec<_>>(), 0.5);
         let whole = middle(rows);
         let (early, late) = rows.split_at(rows.len() / 2);
         let (mut slope, mut start_s) = (0.0, 0.0);

@@ -1,6 +1,7 @@
 //! Where a slip of the fingers on a standing block is looked for: first everywhere by plain least squares, then closely around the best place.
 
 use super::ground::{Rows, Stand};
+use super::moved::LEAST_M;
 use crate::diagnose::candidate::Candidate;
 use haptics::law::Kind;
 use std::ops::Range;
@@ -10,16 +11,17 @@ const STARTS: usize = 10;
 /// How long a slip may take, s: those that are asked about in every rest, …
 const LENGTHS_S: [f64; 3] = [0.0, 0.1, 0.3];
 /// … and those of the search for the best place.
-const SEARCHED_S: [f64; 8] = [0.0, 0.02, 0.05, 0.08, 0.12, 0.17, 0.23, 0.3];
+const SEARCHED_S: [f64; 9] = [0.0, 0.02, 0.05, 0.08, 0.1, 0.13, 0.17, 0.23, 0.3];
 /// Most starts of that search in one rest.
 const MOST_STARTS: usize = 60;
+/// The best place is approached in so many rounds, each with steps of this share of those before.
+const ROUNDS: usize = 8;
+const SHRINKS: f64 = 0.6;
 /// Around the best place: shares of a row's time, and of the duration.
-const STEPS: [f64; 5] = [-0.4, -0.2, 0.0, 0.2, 0.4];
-const SHARES: [f64; 5] = [0.7, 0.85, 1.0, 1.18, 1.4];
+const STEPS: [f64; 5] = [-0.4, -0.15, 0.0, 0.15, 0.4];
+const SHARES: [f64; 5] = [0.75, 0.9, 1.0, 1.1, 1.33];
 /// A slip of no duration is tried beside such ones, s.
 const SHORT_S: [f64; 3] = [0.0, 0.01, 0.02];
-/// Pads creep and blocks turn between them by less than this while they stand, m: no slip, and no error of a height either.
-const LEAST_M: f64 = 1e-4;
 /// So much of a slip must fall between the first and the last row of its rest: of one of which less is seen, anything could be said.
 const SEEN: f64 = 0.3;
 /// Less than this share of a column beside the model's own says nothing.
@@ -79,27 +81,38 @@ fn best(rows: &Rows, stands: &[Stand], model: &[Vec<f64>]) -> Option<Slip> {
         let share = dot(unit, &left, 0..left.len());
         left.iter_mut().zip(unit).for_each(|(l, u)| *l -= share * u);
     }
-    let mut best: Option<(f64, Slip)> = None;
-    for (k, stand) in stands.iter().enumerate() {
-        let range = stand.first..stand.end;
-        for start_s in starts(rows, stand, MOST_STARTS) {
-            for length_s in SEARCHED_S {
-                let slip = Slip { stand: k, start_s, length_s };
-                let column: Vec<f64> = range.clone().map(|i| rows.slipped(i, slip)).collect();
-                if !is_seen(&column) {
-                    continue;
-                }
-                let along = |of: &[f64]| column.iter().zip(&of[range.clone()]).map(|(c, v)| c * v).sum::<f64>();
-                let whole = column.iter().map(|c| c * c).sum::<f64>();
-                let beside = whole - own.iter().map(|unit| along(unit).powi(2)).sum::<f64>();
-                let taken = along(&left).powi(2) / beside;
-                if beside > OWN * whole && best.is_none_or(|(most, _)| taken > most) {
-                    best = Some((taken, slip));
-                }
-            }
+    let taken = |slip: Slip| {
+        let range = stands[slip.stand].first..stands[slip.stand].end;
+        let column: Vec<f64> = range.clone().map(|i| rows.slipped(i, slip)).collect();
+        let along = |of: &[f64]| column.iter().zip(&of[range.clone()]).map(|(c, v)| c * v).sum::<f64>();
+        let whole = column.iter().map(|c| c * c).sum::<f64>();
+        let beside = whole - own.iter().map(|unit| along(unit).powi(2)).sum::<f64>();
+        (is_seen(&column) && beside > OWN * whole).then(|| (along(&left).powi(2) / beside, slip))
+    };
+    let most = |slips: Vec<Slip>| slips.into_iter().filter_map(&taken).max_by(|a, b| a.0.total_cmp(&b.0));
+    let everywhere = stands.iter().enumerate().flat_map(|(stand, at)| {
+        let starts = starts(rows, at, MOST_STARTS);
+        starts.into_iter().flat_map(move |start_s| SEARCHED_S.map(|length_s| Slip { stand, start_s, length_s }))
+    });
+    let (mut held, mut best) = most(everywhere.collect())?;
+    let mut step = 1.0;
+    for _ in 0..ROUNDS {
+        if let Some((more, better)) = most(about(rows, &stands[best.stand], best, step)).filter(|(m, _)| *m > held) {
+            (held, best) = (more, better);
         }
+        step *= SHRINKS;
     }
-    best.map(|(_, slip)| slip)
+    Some(best)
+}
+
+/// Slips that begin a little earlier or later and take a little more or less time.
+fn about(rows: &Rows, stand: &Stand, slip: Slip, step: f64) -> Vec<Slip> {
+    let last_s = rows.time_s[stand.end - 1];
+    let starts =
+        [-1.0, 0.0, 1.0].map(|s| (slip.start_s + s * step * rows.half_s).clamp(stand.from_s - rows.half_s, last_s));
+    let lengths = [-0.3, 0.0, 0.3].map(|s| (slip.length_s * (1.0 + s * step)).max(0.0));
+    let with = |start_s: f64| lengths.map(|length_s| Slip { start_s, length_s, ..slip });
+    starts.into_iter().flat_map(with).collect()
 }
 
 fn around(rows: &Rows, stand: &Stand, best: Slip) -> Vec<Slip> {

@@ -56,7 +56,7 @@ fn recording(seed: u64, kept_n: f64, leak_n_s: f64) -> Recording {
 /// Times of the rows in which the block is said to stand at the end of its carry.
 fn standing_s(recording: &Recording) -> Vec<f64> {
     let seen = Seen::of(recording).expect("a carried block");
-    let (_, standing) = seen.put(1, &[]);
+    let (_, standing) = seen.put(1, &[], [0.0; 2]);
     standing.into_iter().map(|i| seen.time_s(i)).collect()
 }
 
@@ -75,7 +75,7 @@ fn a_block_stands_from_when_the_load_goes_over_and_not_from_when_the_fingers_sto
     let seen = Seen::of(&recording).expect("a carried block");
     let rest: Vec<usize> =
         (0..time_s.len()).filter(|i| (TOUCHDOWN_S + 0.5..TOUCHDOWN_S + 1.5).contains(&time_s[*i])).collect();
-    let (from_s, samples) = seen.put(1, &rest);
+    let (from_s, samples) = seen.put(1, &rest, [0.0; 2]);
     assert!((TOUCHDOWN_S..TOUCHDOWN_S + 0.08).contains(&from_s), "{from_s}");
     assert!(seen.time_s(samples[0]) < TOUCHDOWN_S + 0.1 && samples.ends_with(&rest), "{}", seen.time_s(samples[0]));
 }
