@@ -142,11 +142,13 @@ fn turn(rows: &mut [Row], names: &Columns, beside: &mut Beside) {
         let (input, output) = (mean(&|r| r.input), mean(&|r| r.output));
         ratio += own.iter().map(|r| (r.input - input) * (r.output - output)).sum::<f64>();
         let force = mean(&|r| r.force.unwrap_or(0.0));
-        let parts = own.chunks(own.len().div_ceil(PARTS));
+        let parts = own.chunks(own.len().div_ceil(PARTS).max(1));
         work.extend(parts.map(|part| part.iter().map(|r| (r.force.unwrap_or(0.0) - force) * r.rate).sum::<f64>()));
     }
     if ratio < 0.0 {
-        rows.iter_mut().for_each(|r| r.output = -r.output);
+        for row in rows.iter_mut() {
+            row.output = -row.output;
+        }
         beside
             .warnings
             .push(format!("{} runs against {}: it is counted the other way round", names.output, names.input));
@@ -159,7 +161,9 @@ fn turn(rows: &mut [Row], names: &Columns, beside: &mut Beside) {
     let error = (work.iter().map(|w| (w - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0) / n).sqrt();
     let taken = work.iter().filter(|w| **w < 0.0).count() as f64;
     if work.len() >= PARTS && mean < -SURELY * error && taken > NEARLY_ALL * n {
-        rows.iter_mut().for_each(|r| r.force = r.force.map(|f| -f));
+        for row in rows.iter_mut() {
+            row.force = row.force.map(|f| -f);
+        }
         beside.causes.push(quality::backwards(names.force));
     }
 }

@@ -54,8 +54,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
     let (end, end_train) = rms(study, &picks, &along);
     let floor = if track.noise_is_measured { track.force_noise } else { end_train.min(end) };
     let mut found: Vec<(f64, Cause)> = Vec::new();
-    let mut alternatives = Vec::new();
-    let mut warnings = Vec::new();
+    let (mut alternatives, mut warnings) = (Vec::new(), Vec::new());
     for (k, chosen) in study.chosen.iter().enumerate() {
         if let Some(skew_s) = skew(study, k, track.raw_period_s) {
             warnings.push(apart(skew_s));

@@ -56,8 +56,7 @@ pub fn is_pulled(recordings: &[Recording]) -> bool {
 
 /// Diagnoses paths of one mechanism.
 pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
-    let mut rows = Vec::new();
-    let mut kinds = Vec::new();
+    let (mut rows, mut kinds) = (Vec::new(), Vec::new());
     let mut beside = Beside::default();
     for (k, recording) in recordings.iter().enumerate() {
         let Some(found) = detect_in(recording) else { continue };

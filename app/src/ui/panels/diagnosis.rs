@@ -116,7 +116,7 @@ fn by_state(ui: &mut Ui, diagnosis: &Diagnosis) {
             let (unit, factor) = residual_unit(&own);
             let heads = if k > 0 { ["", "", ""] } else { [words::MODEL, words::FOUND, words::NOISE] };
             let heads = heads.map(|head| theme::caption(ui, if head == words::FOUND && !found { "" } else { head }));
-            let name = theme::caption(ui, &format!("{}, {unit}", format::capitalised(channel)));
+            let name = theme::caption(ui, format!("{}, {unit}", format::capitalised(channel)));
             figures(ui, name, heads);
             for left in own {
                 let shown = |rms: f64| RichText::new(format::significant(rms * factor, 3)).size(12.0);

@@ -162,7 +162,9 @@ fn orthonormal(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
         }
         let left = dot(&unit, &unit, 0..n);
         if left > 1e-12 * size {
-            unit.iter_mut().for_each(|u| *u /= left.sqrt());
+            for u in &mut unit {
+                *u /= left.sqrt();
+            }
             found.push(unit);
         }
     }
