@@ -15,9 +15,11 @@ const SLIP_STARTS: usize = 24;
 /// When a creep of the grasp begins, and for how long it goes on, in shares of the recording.
 const CREEP_STARTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 const CREEPS: [f64; 3] = [0.25, 0.5, 1.0];
+/// How much farther apart they are than slips.
+const CREEPS_APART: f64 = 4.0;
 /// Rounds of the linearised circle fit, and those after which the time of a slip is known well enough.
 const ROUNDS: usize = 8;
-const CLOSER: usize = 4;
+const CLOSER: usize = 5;
 
 /// One held sample.
 pub struct PathPoint {
@@ -266,11 +268,13 @@ impl Course {
 
     /// What lies around one that was found, and itself.
     fn around(self, step_s: f64) -> Vec<Self> {
-        let starts = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|s| self.start_s + s * step_s);
+        // Creeps were tried farther apart.
+        let wide_s = if self.duration_s.is_some() { CREEPS_APART * step_s } else { step_s };
+        let starts = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|s| self.start_s + s * wide_s);
         let Some(duration_s) = self.duration_s else {
             return starts.map(|start_s| Self { start_s, duration_s: None }).to_vec();
         };
-        let lasts = [-1.0, 0.0, 1.0].map(|s| duration_s + 2.0 * s * step_s).into_iter().filter(|d| *d > step_s);
+        let lasts = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|s| duration_s + s * wide_s).into_iter().filter(|d| *d > step_s);
         lasts.flat_map(|d| starts.map(|start_s| Self { start_s, duration_s: Some(d) })).collect()
     }
 }
