@@ -275,7 +275,10 @@ impl Course {
             return starts.map(|start_s| Self { start_s, duration_s: None }).to_vec();
         };
         let lasts = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|s| duration_s + s * wide_s).into_iter().filter(|d| *d > step_s);
-        lasts.flat_map(|d| starts.map(|start_s| Self { start_s, duration_s: Some(d) })).collect()
+        // What looked like a creep may have gone at once in the middle of it.
+        let middle_s = self.start_s + 0.5 * duration_s;
+        let at_once = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|s| Self { start_s: middle_s + s * wide_s, duration_s: None });
+        lasts.flat_map(|d| starts.map(|start_s| Self { start_s, duration_s: Some(d) })).chain(at_once).collect()
     }
 }
 
