@@ -22,6 +22,12 @@ use haptics::law::{Coordinate, Law, ReturnSpring, entries};
 
 /// A generic term above this score means that something is left that no known cause explains.
 const UNEXPLAINED: f64 = 20.0;
+/// What is left in the end is never so many times the noise of the force where the model is right, whatever the noise of the motion adds to it: where that
+/// noise was seen, and where it is told by how fast it changes …
+const MUCH: f64 = 1.6;
+const MUCH_UNSEEN: f64 = 8.0;
+/// … and it is no noise if it would be so white by chance.
+const SURELY_NOT_WHITE: f64 = 1e-12;
 /// A rival nearer than this leaves the cause open: its probability is then above a twentieth.
 const OPEN: f64 = 6.0;
 /// A cause of the noise's own size that would score less than this could not have been seen.
@@ -29,8 +35,10 @@ const VISIBLE: f64 = 10.0;
 
 /// Who goes no larger a share of the way back goes one way: a hand trembles.
 const ONE_WAY: f64 = 0.02;
-/// Channels of slow recordings are not a whole sample apart by sampling alone, s.
+/// Channels are a whole sample apart by sampling alone as long as that is no longer than this, s, …
 const LARGEST_SKEW_S: f64 = 2e-3;
+/// … and a command that is held until the next sample acts half of that later than when it is recorded: this share of a sample with some room.
+const HELD_COMMAND: f64 = 0.7;
 /// Clocks of two instruments differ by this, and what filters them: a force that is no later is no late force, s.
 const CLOCKS_DIFFER_S: f64 = 3e-4;
 
@@ -56,7 +64,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
     let mut found: Vec<(f64, Cause)> = Vec::new();
     let (mut alternatives, mut warnings) = (Vec::new(), Vec::new());
     for (k, chosen) in study.chosen.iter().enumerate() {
-        if let Some(skew_s) = skew(study, k, track.raw_period_s) {
+        if let Some(skew_s) = skew(study, k, track) {
             warnings.push(apart(skew_s));
             continue;
         }
@@ -91,6 +99,17 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         let (left, warning) = unnamed(study, strange, (floor, unit));
         causes.push(left);
         warnings.push(warning);
+    }
+    let mut verdict = verdict;
+    let white = whiteness_p(study, &picks, &stretch);
+    let much = if track.noise_is_measured { MUCH } else { MUCH_UNSEEN };
+    if causes.is_empty() && end > much * track.force_noise && white < SURELY_NOT_WHITE {
+        verdict = Verdict::Unexplained;
+        warnings.push(format!(
+            "{} are left, {:.0} times the noise of the force, and go with nothing that was tried",
+            amount(end, unit),
+            end / track.force_noise
+        ));
     }
     let not_excited = unseen(track, study, &causes, &alternatives);
     let passed_over = passed_over(study, &picks, UNEXPLAINED);
@@ -146,13 +165,16 @@ fn in_order(faults: Vec<Cause>, found: Vec<(f64, Cause)>) -> Vec<Cause> {
 
 /// The time between force and motion when it is no more than what sampling itself can make of it, s: a commanded force is recorded when
 /// it is given and acts in the sample after. A force that comes late is late as soon as clocks do not differ by as much.
-fn skew(study: &Study, k: usize, raw_period_s: f64) -> Option<f64> {
+fn skew(study: &Study, k: usize, track: &Track) -> Option<f64> {
     if study.candidates[study.chosen[k].candidate].id != "time-delay" {
         return None;
     }
     let delay = parameters(study, k);
     let found = delay.first()?;
-    let most_s = if found.value < 0.0 { raw_period_s.min(LARGEST_SKEW_S) } else { CLOCKS_DIFFER_S };
+    // A hand's force is measured, a motor's is usually what it was told.
+    let held_s = if track.planar { 0.0 } else { HELD_COMMAND * track.raw_period_s };
+    let ahead_s = track.raw_period_s.min(LARGEST_SKEW_S).max(held_s);
+    let most_s = if found.value < 0.0 { ahead_s } else { CLOCKS_DIFFER_S };
     (found.value.abs() - 2.0 * found.std_error <= most_s).then_some(found.value)
 }
 
@@ -197,10 +219,18 @@ fn cause(study: &Study, k: usize, floor: f64, (channel, unit): (&str, &str)) -> 
     } else {
         ""
     };
+    let link = if candidate.id == "length-scale"
+        && candidate.linear.first().is_some_and(|(n, _)| n.starts_with("link_error"))
+    {
+        "; the length is that of the first link (an error of the second link's, as large and the other way round, makes the same path but for the size of \
+         the circle)"
+    } else {
+        ""
+    };
     let goes_with = candidate.channel.as_ref().map_or_else(String::new, |(name, _)| format!(" with {name}"));
     let evidence = format!(
         "{title}: what the model leaves of the {channel} follows {equation}{goes_with}; on data held out it{stands} goes from {} to {} RMS (score \
-         {:.0}, {:.0} would do)",
+         {:.0}, {:.0} would do){link}",
         amount(gain.heldout_rms_before, unit),
         amount(gain.heldout_rms_after, unit),
         chosen.score,
@@ -365,6 +395,20 @@ pub(super) fn unnamed(study: &Study, (candidate, score): (usize, f64), (floor, u
     let warning =
         format!("something is left that no known cause explains: it goes with {expression} (score {score:.0})");
     (cause, warning)
+}
+
+/// What is left of paths that no known cause explains, one comparison, term and score a path.
+pub fn add_of_path(found: &mut Diagnosis, strange: &[(Study, usize, f64)]) {
+    for (study, term, score) in strange.iter().filter(|(.., score)| *score > UNEXPLAINED) {
+        let (cause, warning) = unnamed(study, (*term, *score), (0.0, "m"));
+        if found.causes.iter().all(|c| c.id != cause.id) {
+            found.causes.push(cause);
+            found.warnings.push(warning);
+        }
+        if found.verdict == Verdict::None {
+            found.verdict = Verdict::Unexplained;
+        }
+    }
 }
 
 /// Causes that, at the size of the noise, this motion would hide.

@@ -7,7 +7,7 @@ use super::compare::whitening as whitening_of;
 use super::dictionary::Dictionary;
 use super::gain::{confirmed, gain};
 use super::generic::generic;
-use super::geometry::Study;
+use super::geometry::{Study, residual};
 use super::grid::Grid;
 use super::hung;
 use super::select::Selection;
@@ -36,7 +36,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
     stuck::add(track, &loads);
     let has_dry = model.iter().any(|e| e.law().is_dry());
     let coarse = Grid::coarse(track);
-    let mut known = Known { columns: Columns::default(), generic: generic(track), is_sharp: false };
+    let mut known = Known { columns: Columns::default(), generic: generic(track), is_sharp: false, noise: None };
     let mut made = compare(track, (model, fixed), &known, threshold, [&coarse, &Grid::default()], None)?;
     for round in 0..REFINEMENTS {
         // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of them.
@@ -44,6 +44,10 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
             break;
         }
         let fine = Grid::around(&to_refine(&made, threshold, has_dry), track, 1.0 / (1 + round) as f64);
+        known.noise = match (known.noise, calmer(track, &made)) {
+            (Some(before), Some(now)) if (now / before).ln().abs() < SAME_NOISE => Some(before),
+            (before, now) => now.or(before),
+        };
         // The load on the friction is what the sensor told, rid of what is now known of the sensor.
         if correct_load(track, &made) {
             known.columns.forget_loads();
@@ -66,6 +70,30 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
     leave_out_what_harms(&mut made, &stretch, threshold, &|_, _| true);
     Ok(made)
+}
+
+/// What the causes leave must be less than this share of what the model leaves for the rows' weights to be asked for again.
+const CALMER: f64 = 0.7;
+/// Noises that differ by less than this factor's logarithm are one.
+const SAME_NOISE: f64 = 0.2;
+
+/// The noise of the rows along the motion as what was found leaves it, where nothing else tells it and it is much less than the model leaves: what is hidden
+/// passes for noise at first, beside which a direction that is a guess weighs nothing.
+fn calmer(track: &Track, made: &Study) -> Option<f64> {
+    if track.noise_is_measured {
+        return None;
+    }
+    let left = |picks: &[usize]| -> Option<f64> {
+        let solved = made.system.solve(picks)?;
+        let left = residual(&made.y, &made.base, &made.candidates, picks, &solved);
+        let (sum, rows) = track.along().fold((0.0, 0.0), |(sum, rows), i| {
+            let weight = made.weight[i].powi(2);
+            (sum + weight * left[i].powi(2), rows + weight)
+        });
+        Some((sum / f64::max(rows, 1e-12)).sqrt())
+    };
+    let (model, found) = (left(&[])?, left(&made.picks())?);
+    (found < CALMER * model).then_some(found)
 }
 
 /// By so much a cause must enlarge what is left to be harmful: a small one that is true, but known badly, may do a little.
@@ -141,6 +169,8 @@ struct Known {
     generic: Vec<Candidate>,
     /// How wide the direction is blurred is open, too.
     is_sharp: bool,
+    /// The noise of the rows along the motion, N or N m; what a plain fit leaves where nothing better is known.
+    noise: Option<f64>,
 }
 
 /// One round: laws that are fitted, and those of which everything is known. `before`: the round before, whose whitening stays (the same
@@ -154,7 +184,8 @@ fn compare(
     before: Option<Study>,
 ) -> Result<Study, EstimateError> {
     let Asked { mut base, known, y } = asked(track, model, fixed);
-    let Look { mut predicted, mut resisting, weight, slides: mut dry } = first_look(track, model, &base, &y)?;
+    let Look { mut predicted, mut resisting, weight, slides: mut dry } =
+        first_look(track, model, (&base, &y), made.noise)?;
     // What the model's laws came out at beside what was found.
     let laws = before.as_ref().and_then(|b| Some(&b.solved.as_ref()?.values[..b.base.len()]));
     if let Some(laws) = laws.filter(|laws| friction_is_sound(model, laws)) {
@@ -198,8 +229,9 @@ fn compare(
     let found = before.iter().flat_map(|b| b.chosen.iter().map(|c| &b.candidates[c.candidate]));
     let start: Vec<usize> = found.filter_map(place).collect();
     let system = match before {
-        Some(before) => System::after(before, &base, &candidates, &rows),
-        None => System::new(&base, &candidates, &rows, whitening_of(&base, &candidates, &rows, threshold)?),
+        // Rows of other weights leave another noise.
+        Some(before) if before.weight == weight => System::after(before, &base, &candidates, &rows),
+        _ => System::new(&base, &candidates, &rows, whitening_of(&base, &candidates, &rows, threshold)?),
     };
     let chosen =
         Selection { system: &system, candidates: &candidates, threshold, dry: has_dry, one_loss: true }.run(&start);
@@ -306,8 +338,13 @@ struct Look {
 }
 
 /// A first plain fit: what the model predicts, the resisting part of it, how much each row can be trusted where the direction is a
-/// guess (effective variance, Orear 1982), and the dry friction of each row if it slid.
-fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Result<Look, EstimateError> {
+/// guess (effective variance, Orear 1982), and the dry friction of each row if it slid. `noise`: of a row, where it is known.
+fn first_look(
+    track: &Track,
+    model: &Model,
+    (base, y): (&[Vec<f64>], &[f64]),
+    noise: Option<f64>,
+) -> Result<Look, EstimateError> {
     let mut columns = base.to_vec();
     let together = if track.planar { TOGETHER } else { 1.0 };
     let has = |law: &dyn Law| model.iter().any(|e| e.law().id() == law.id());
@@ -325,7 +362,8 @@ fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Res
         dry_level(track, model, values, i) + if has_dry { 0.0 } else { values[base.len()].abs() }
     };
     for _ in 0..2 {
-        let noise = if track.noise_is_measured { track.force_noise } else { fit.rms.max(track.force_noise) };
+        let noise =
+            if track.noise_is_measured { track.force_noise } else { noise.unwrap_or(fit.rms).max(track.force_noise) };
         weight = (0..y.len())
             .map(|i| {
                 let row = &track.rows[i];
@@ -354,7 +392,7 @@ fn first_look(track: &Track, model: &Model, base: &[Vec<f64>], y: &[f64]) -> Res
 /// What the friction holds in each row along the motion, as far as a plain fit tells.
 fn loads(track: &Track, model: &Model, fixed: &Model) -> Result<Vec<Option<Load>>, EstimateError> {
     let Asked { base, y, .. } = asked(track, model, fixed);
-    let Look { predicted, resisting, slides, .. } = first_look(track, model, &base, &y)?;
+    let Look { predicted, resisting, slides, .. } = first_look(track, model, (&base, &y), None)?;
     let load = |i: usize| {
         let friction = slides[i];
         let held = y[i] - (predicted[i] - resisting[i]);

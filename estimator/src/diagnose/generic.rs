@@ -30,6 +30,8 @@ pub fn generic(track: &Track) -> Vec<Candidate> {
     if track.planar {
         factors.push(("Fn", Box::new(|r: &Row| r.motion.normal_force_n)));
     }
+    // Along a line the waves are counted over the range.
+    let turns = if track.radius_m.is_some() { String::new() } else { format!("2 pi/{range:.3} ") };
     let wave = |n: u32, of: fn(f64) -> f64| column(track, &|r| of(f64::from(n) * phase(r)));
     let waves: Vec<[Vec<f64>; 2]> = (1..=WAVES).map(|n| [wave(n, f64::cos), wave(n, f64::sin)]).collect();
     for (name, factor) in &factors {
@@ -37,7 +39,7 @@ pub fn generic(track: &Track) -> Vec<Candidate> {
         for (n, waves) in (1..).zip(&waves) {
             let times = |wave: &Vec<f64>| wave.iter().zip(&factor).map(|(w, f)| w * f).collect();
             let columns = waves.iter().map(times).collect();
-            all.push(term(format!("{name} cos({n} q + phi)"), columns, if *name == "Fn" { "1" } else { force }));
+            all.push(term(format!("{name} cos({n} {turns}q + phi)"), columns, if *name == "Fn" { "1" } else { force }));
         }
     }
     for share in [0.2, 0.5, 0.8] {

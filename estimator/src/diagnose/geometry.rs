@@ -7,9 +7,21 @@ use super::system::{Held, Rows, Solved, System, solve, uses};
 use super::white::whitener;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
+use crate::signal::noise::white_noise;
 use haptics::Vec2;
 use haptics::law::Kind;
 
+/// A grasp that moves on the handle; the parameter of one that moves along the arm.
+const SLIP: &str = "fingertip-slip";
+const OUTWARD: &str = "dr";
+/// Parameters of a finger's joint and first link, of one finger and of two.
+const OF_THE_FINGER: [&str; 2] = ["delta", "link_error"];
+const OF_FINGERS: [[&str; 2]; 2] = [["delta1", "link_error1"], ["delta2", "link_error2"]];
+/// Generic waves round a turn, and slow ones over the recording.
+const WAVES: u32 = 4;
+const SLOW: u32 = 4;
+/// A path that is off its circle by more than this many times its noise should have a reason.
+const STRANGE: f64 = 2.0;
 /// Starts of a slip that are tried.
 const SLIP_STARTS: usize = 24;
 /// When a creep of the grasp begins, and for how long it goes on, in shares of the recording.
@@ -17,6 +29,12 @@ const CREEP_STARTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 const CREEPS: [f64; 3] = [0.25, 0.5, 1.0];
 /// How much farther apart they are than slips.
 const CREEPS_APART: f64 = 4.0;
+/// A jump is looked for at so many times, this part of the rows away from the ends, and must gain so much in 2 ln(likelihood) of white rows.
+const JUMPS: usize = 240;
+const JUMP_MARGIN: usize = 50;
+const JUMPED: f64 = 100.0;
+/// A breath of ridge keeps equal columns apart.
+const JUMP_RIDGE: f64 = 1e-9;
 /// Rounds of the linearised circle fit, and those after which the time of a slip is known well enough.
 const ROUNDS: usize = 8;
 const CLOSER: usize = 5;
@@ -29,8 +47,8 @@ pub struct PathPoint {
     pub time_s: f64,
     pub position: Vec2,
     pub force: Vec2,
-    /// ∂tip/∂(top joint angle) and ∂tip/∂(length of the first link), where joints were recorded.
-    pub joint: Option<[Vec2; 2]>,
+    /// ∂position/∂(top joint angle) and ∂position/∂(length of the first link) of each finger, where joints were recorded.
+    pub joints: [Option<[Vec2; 2]>; 2],
     /// A mean of points on an arc lies inside it by this over the radius, m².
     pub inside_m2: f64,
 }
@@ -121,7 +139,8 @@ pub fn geometry(path: &Path, signals: usize, threshold: f64) -> Result<Geometry,
     let mut bent = vec![Displaced::default(); path.points.len()];
     let mut radius_m = 0.0;
     let mut study = None;
-    let coarse = Course::coarse(path);
+    let mut coarse = Course::coarse(path);
+    coarse.extend(jump(path, center_m));
     let mut courses = coarse.clone();
     let mut step_s = path.span_s() / SLIP_STARTS as f64;
     for round in 0..ROUNDS {
@@ -135,7 +154,7 @@ pub fn geometry(path: &Path, signals: usize, threshold: f64) -> Result<Geometry,
         bent = corrections(path, &made, &mut shift_m, center_m);
         // Slips that were found are looked for more and more closely.
         step_s *= 0.5;
-        let found = made.chosen.iter().map(|c| &made.candidates[c.candidate]).filter(|c| c.id == "fingertip-slip");
+        let found = made.chosen.iter().map(|c| &made.candidates[c.candidate]).filter(|c| c.id == SLIP);
         let finer: Vec<Course> = found.flat_map(|c| Course::of(c).around(step_s)).collect();
         let settled = step.norm() < 1e-8 && (finer.is_empty() || round > CLOSER);
         courses = [coarse.as_slice(), &finer].concat();
@@ -155,6 +174,53 @@ fn circle(points: &[Vec2]) -> Result<Vec2, EstimateError> {
     let columns = [column(&|p| 2.0 * p.x), column(&|p| 2.0 * p.y), vec![1.0; points.len()]];
     let fit = least_squares(&columns, &column(&|p| p.norm_squared()), None)?;
     Ok(mean + Vec2::new(fit.values[0], fit.values[1]))
+}
+
+/// When the grasp jumped, if it did once and by much: two circles of one radius, before and after, leave least. A slip that is large beside the noise is
+/// not seen by comparing one here and there: what is left between its time and the tried one looks like a noise with a memory, beside which no slip
+/// is better than another.
+fn jump(path: &Path, center_m: Vec2) -> Option<Course> {
+    let outward = |p: &PathPoint| (p.position - center_m).normalize();
+    let row = |p: &PathPoint| {
+        let out = outward(p);
+        [1.0, out.x, out.y, (p.position - center_m).norm()]
+    };
+    let products = |p: &PathPoint| {
+        let row = nalgebra::Vector4::from(row(p));
+        row * row.transpose()
+    };
+    let whole: nalgebra::Matrix4<f64> = path.points.iter().map(products).sum();
+    // Columns: 1, out x, out y before and after; out x, out y, 1 after; the distance.
+    let left = |after: &nalgebra::Matrix4<f64>| -> Option<f64> {
+        let part = |i: usize, j: usize| match (i / 3, j / 3) {
+            (0, 0) => whole[(i, j)],
+            _ => after[(i % 3, j % 3)],
+        };
+        let right = nalgebra::Vector6::from_fn(|i, _| if i < 3 { whole[(i, 3)] } else { after[(i % 3, 3)] });
+        let normal = nalgebra::Matrix6::from_fn(|i, j| part(i, j) * if i == j { 1.0 + JUMP_RIDGE } else { 1.0 });
+        let solved = normal.cholesky()?.solve(&right);
+        Some(whole[(3, 3)] - solved.dot(&right))
+    };
+    let n = path.points.len();
+    let every = n.div_ceil(JUMPS).max(1);
+    let mut after = whole;
+    let mut best: Option<(f64, usize)> = None;
+    for (k, point) in path.points.iter().enumerate() {
+        let inside = k * JUMP_MARGIN > n && (n - k) * JUMP_MARGIN > n;
+        if k % every == 0
+            && inside
+            && let Some(left) = left(&after)
+            && best.is_none_or(|(least, _)| left < least)
+        {
+            best = Some((left, k));
+        }
+        after -= products(point);
+    }
+    let (least, k) = best?;
+    let right = whole.fixed_view::<3, 1>(0, 3).into_owned();
+    let plain = whole[(3, 3)] - whole.fixed_view::<3, 3>(0, 0).into_owned().cholesky()?.solve(&right).dot(&right);
+    let much = n as f64 * (plain / least.max(1e-300)).ln();
+    (much > JUMPED).then(|| Course { start_s: path.points[k].time_s, duration_s: None })
 }
 
 fn compare(
@@ -219,21 +285,89 @@ fn candidates(path: &Path, outward: &[Vec2], courses: &[Course]) -> Vec<Candidat
         let normal = column(&|i| outward[i].dot(&points[i].force));
         found.push(Candidate::one("pad-compliance", Kind::Plant, "give", "m/N", normal).positive());
     }
-    if points.iter().all(|p| p.joint.is_some()) {
-        let of = |k: usize| column(&|i| points[i].joint.map_or(0.0, |j| outward[i].dot(&j[k])));
-        found.push(Candidate::one("joint-offset", Kind::Instrument, "delta", "rad", of(0)));
-        found.push(Candidate::one("length-scale", Kind::Instrument, "link_error", "m", of(1)));
+    let names = if path.two_fingered { OF_FINGERS.as_slice() } else { &[OF_THE_FINGER] };
+    for (finger, [delta, link_error]) in names.iter().enumerate() {
+        if points.iter().all(|p| p.joints[finger].is_some()) {
+            let of = |k: usize| column(&|i| points[i].joints[finger].map_or(0.0, |j| outward[i].dot(&j[k])));
+            found.push(Candidate::one("joint-offset", Kind::Instrument, delta, "rad", of(0)));
+            found.push(Candidate::one("length-scale", Kind::Instrument, link_error, "m", of(1)));
+        }
     }
-    found.extend(courses.iter().map(|course| {
-        let columns = vec![
-            column(&|i| course.gone(points[i].time_s) * outward[i].x),
-            column(&|i| course.gone(points[i].time_s) * outward[i].y),
-        ];
-        let slip = Candidate::several("fingertip-slip", Kind::Plant, columns, vec![("dx", "m"), ("dy", "m")]);
-        let slip = slip.at("time", course.start_s, "s");
-        course.duration_s.map_or_else(|| slip.clone(), |duration_s| slip.clone().at("duration", duration_s, "s"))
-    }));
+    for course in courses {
+        let gone = |of: &dyn Fn(usize) -> f64| column(&|i| course.gone(points[i].time_s) * of(i));
+        let dated = |slip: Candidate| {
+            let slip = slip.at("time", course.start_s, "s");
+            match course.duration_s {
+                Some(duration_s) => slip.at("duration", duration_s, "s"),
+                None => slip,
+            }
+        };
+        // The grasp moves over a handle that keeps its direction, or along the arm of one that turns with it.
+        let columns = vec![gone(&|i| outward[i].x), gone(&|i| outward[i].y)];
+        let across = Candidate::several(SLIP, Kind::Plant, columns, vec![("dx", "m"), ("dy", "m")]);
+        found.extend([across, Candidate::one(SLIP, Kind::Plant, OUTWARD, "m", gone(&|_| 1.0))].map(dated));
+    }
     found
+}
+
+/// What is left of a path that no known cause explains: waves round the turn (a circle has none beyond its centre's) and slow changes.
+fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
+    let angle = |i: usize| outward[i].y.atan2(outward[i].x);
+    let column = |of: &dyn Fn(usize) -> f64| (0..path.points.len()).map(of).collect::<Vec<f64>>();
+    let term = |expression: String, columns: Vec<Vec<f64>>| {
+        let linear = columns.iter().map(|_| ("amplitude", "m")).collect();
+        Candidate { expression: Some(expression), ..Candidate::several("other", Kind::Plant, columns, linear) }
+    };
+    let waves = (2..=WAVES).map(|n| {
+        let wave = |of: fn(f64) -> f64| column(&|i| of(f64::from(n) * angle(i)));
+        term(format!("cos({n} theta + phi) of the path"), vec![wave(f64::cos), wave(f64::sin)])
+    });
+    let (start_s, span_s) = (path.points.first().map_or(0.0, |p| p.time_s), path.span_s().max(1e-9));
+    let slow = (1..=SLOW).map(|k| {
+        let wave = |i: usize| (std::f64::consts::PI * f64::from(k) * (path.points[i].time_s - start_s) / span_s).cos();
+        term(format!("cos({k} pi t/T) of the path"), vec![column(&wave)])
+    });
+    waves.chain(slow).collect()
+}
+
+/// What is left of the path beside the causes that were found, if it is much more than the noise and goes with something: the generic term, its score
+/// and the comparison with it in place.
+pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<(Study, usize, f64)> {
+    let picks = study.picks();
+    let solved = study.solved.as_ref()?;
+    let left = residual(&study.y, &study.base, &study.candidates, &picks, solved);
+    let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len().max(1) as f64).sqrt();
+    if rms < STRANGE * white_noise(&study.y) {
+        return None;
+    }
+    let outward: Vec<Vec2> = path.points.iter().map(|p| (p.position - arm.center_m).normalize()).collect();
+    let candidates: Vec<Candidate> =
+        picks.iter().map(|p| study.candidates[*p].clone()).chain(generic(path, &outward)).collect();
+    let chosen = study.chosen.iter().enumerate().map(|(k, c)| Chosen { candidate: k, rivals: Vec::new(), ..c.clone() });
+    let chosen: Vec<Chosen> = chosen.collect();
+    let made = |candidates: Vec<Candidate>| -> Option<(Study, usize, f64)> {
+        let stretch: Vec<usize> = path.points.iter().map(|p| p.stretch).collect();
+        let testable = vec![Held::Fully; study.y.len()];
+        let time_s: Vec<f64> = path.points.iter().map(|p| p.time_s).collect();
+        let rows = Rows {
+            y: &study.y,
+            stretch: &stretch,
+            testable: &testable,
+            time_s: &time_s,
+            weight: &study.weight,
+            period_s: path.period_s,
+        };
+        let coefficients = study.system.coefficients.clone();
+        let system = System::new(&study.base, &candidates, &rows, coefficients);
+        let picks: Vec<usize> = (0..chosen.len()).collect();
+        let selection =
+            Selection { system: &system, candidates: &candidates, threshold: 0.0, dry: true, one_loss: false };
+        let (term, score) = selection.unexplained(&picks)?;
+        let solved = system.solve(&picks);
+        let (y, base, weight) = (study.y.clone(), study.base.clone(), study.weight.clone());
+        Some((Study { candidates, chosen, system, solved, y, base, weight }, term, score))
+    };
+    made(candidates)
 }
 
 /// When a grasp slips, and for how long it creeps; at once without a duration.
@@ -282,6 +416,11 @@ impl Course {
     }
 }
 
+/// Which finger a cause of the joints is about.
+fn finger(candidate: &Candidate) -> usize {
+    usize::from(candidate.linear.first().is_some_and(|(name, _)| name.ends_with('2')))
+}
+
 /// What the found causes displaced the positions by.
 fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2) -> Vec<Displaced> {
     shift_m.fill(Vec2::zeros());
@@ -295,17 +434,18 @@ fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2)
         for chosen in &study.chosen {
             let candidate = &study.candidates[chosen.candidate];
             let value = solved.values[at];
-            shift += match (candidate.id, point.joint) {
+            shift += match (candidate.id, point.joints[finger(candidate)]) {
                 ("pad-compliance", _) => outward * (value * outward.dot(&point.force)),
                 ("joint-offset", Some(joint)) => {
                     // The second link turns about its joint: on an arc, not along its tangent.
-                    bow += Vec2::new(joint[0].y, -joint[0].x) * (value.cos() - 1.0) + joint[0] * (value.sin() - value);
+                    bow += Vec2::new(joint[0].y, -joint[0].x) * (1.0 - value.cos()) + joint[0] * (value.sin() - value);
                     joint[0] * value
                 }
                 ("length-scale", Some(joint)) => joint[1] * value,
-                ("fingertip-slip", _) => {
-                    Vec2::new(value, solved.values[at + 1]) * Course::of(candidate).gone(point.time_s)
+                (SLIP, _) if candidate.columns.len() == 1 => {
+                    outward * (value * Course::of(candidate).gone(point.time_s))
                 }
+                (SLIP, _) => Vec2::new(value, solved.values[at + 1]) * Course::of(candidate).gone(point.time_s),
                 _ => Vec2::zeros(),
             };
             at += candidate.columns.len();

@@ -27,8 +27,10 @@ pub struct Signals {
     pub position: Vec<Vec2>,
     pub velocity: Vec<Vec2>,
     pub force: Vec<Vec2>,
-    /// Joint angles of a single finger, where they were recorded.
-    pub joints: Option<Vec<JointAngles>>,
+    /// Whether two fingers hold the handle, whose places are means of both tips.
+    pub two_fingered: bool,
+    /// Joint angles of each finger, where they were recorded.
+    joints: [Option<Vec<JointAngles>>; 2],
     pub held: Vec<bool>,
     pub free: Vec<bool>,
     pub period_s: f64,
@@ -115,15 +117,15 @@ impl Signals {
         let all = |flags: &[bool]| -> Vec<bool> {
             (0..groups).map(|g| flags[g * every..(g + 1) * every].iter().all(|f| *f)).collect()
         };
-        let joints = match (recording.channel("qb_rad"), recording.channel("qt_rad")) {
-            (Some(bottom), Some(top)) => Some(
-                number(bottom)
-                    .into_iter()
-                    .zip(number(top))
-                    .map(|(bottom_rad, top_rad)| JointAngles { bottom_rad, top_rad })
-                    .collect(),
-            ),
-            _ => None,
+        let angles = |bottom: &str, top: &str| -> Option<Vec<JointAngles>> {
+            let pairs = number(recording.channel(bottom)?).into_iter().zip(number(recording.channel(top)?));
+            Some(pairs.map(|(bottom_rad, top_rad)| JointAngles { bottom_rad, top_rad }).collect())
+        };
+        let two_fingered = is_two_fingered(recording);
+        let joints = if two_fingered {
+            [angles("qb1_rad", "qt1_rad"), angles("qb2_rad", "qt2_rad")]
+        } else {
+            [angles("qb_rad", "qt_rad"), None]
         };
         let (calm, calmed_to) = calmed(&velocity, period_s);
         Ok(Self {
@@ -132,6 +134,7 @@ impl Signals {
             position: mean(&position),
             velocity: mean(&velocity),
             force: mean(&force),
+            two_fingered,
             joints,
             held: all(&held),
             free: all(&free),
@@ -149,7 +152,10 @@ impl Signals {
 
     /// The path of the handle, for the geometry.
     pub fn path(&self, recording: &Recording) -> Path {
-        let finger = recording.meta.hand().fingers[0];
+        let fingers = recording.meta.hand().fingers;
+        let two_fingered = self.two_fingered;
+        // The place is the mean of both tips.
+        let share = if two_fingered { 0.5 } else { 1.0 };
         let stretches = stretches(&self.held);
         let spread_s2 = self.raw_period_s.powi(2) * (self.every * self.every - 1) as f64 / 24.0;
         let points = stretches
@@ -157,24 +163,25 @@ impl Signals {
             .enumerate()
             .flat_map(|(stretch, range)| range.clone().map(move |i| (stretch, i)))
             .map(|(stretch, i)| {
-                let joint = self.joints.as_ref().map(|q| {
-                    let jacobian = finger.jacobian(q[i]);
-                    let length = Vec2::new(q[i].bottom_rad.cos(), q[i].bottom_rad.sin());
-                    [Vec2::new(jacobian[(0, 1)], jacobian[(1, 1)]), length]
-                });
+                let joint = |finger: usize| {
+                    let q = self.joints[finger].as_ref()?[i];
+                    let jacobian = fingers[finger].jacobian(q);
+                    let length = Vec2::new(q.bottom_rad.cos(), q.bottom_rad.sin());
+                    Some([Vec2::new(jacobian[(0, 1)], jacobian[(1, 1)]), length].map(|v| share * v))
+                };
                 PathPoint {
                     index: i,
                     stretch,
                     time_s: self.time_s[i],
                     position: self.position[i],
                     force: self.force[i],
-                    joint,
+                    joints: [joint(0), joint(1)],
                     // The radius times half the variance of the angle within the row.
                     inside_m2: self.velocity[i].norm_squared() * spread_s2,
                 }
             })
             .collect();
-        Path { points, period_s: self.period_s, two_fingered: is_two_fingered(recording) }
+        Path { points, period_s: self.period_s, two_fingered }
     }
 
     /// The rows along the circle of `arm`, then the free ones.

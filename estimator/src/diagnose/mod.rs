@@ -225,10 +225,10 @@ fn threshold(period_s: f64) -> f64 {
 
 fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     let mut tracks = Vec::new();
-    let mut geometries = Vec::new();
+    let (mut geometries, mut strange) = (Vec::new(), Vec::new());
     let mut faults = Vec::new();
     let mut swapped = Vec::new();
-    let mut first_link = false;
+    let mut link = None;
     let mut scale = None;
     for (k, recording) in recordings.iter().enumerate() {
         options.progress.tell(0.4 * k as f64 / recordings.len() as f64)?;
@@ -239,9 +239,9 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
         faults.extend(mirrored);
         faults.extend(found.causes);
         faults.extend(axis);
-        let Turned { mut rows, other, by_first } = turned(&signals, recording, &circle, rows)?;
+        let Turned { mut rows, other, link: of_this } = turned(&signals, recording, &circle, rows)?;
         rows.extra = vec![extra::of(recording)];
-        first_link |= by_first;
+        link = link.or(of_this);
         // The same recording with the other link's angle wrong.
         swapped.push(other.map(|other| track::Track { extra: rows.extra.clone(), ..other }));
         let known_m = recording.meta.known.get("radius_m").copied().filter(|r| r.is_finite() && *r > 0.0);
@@ -249,6 +249,7 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
             scale = known_m.and_then(|r| quality::scaled("radius", circle.too_large(r)?));
         }
         tracks.push(rows);
+        strange.extend(geometry::unexplained(&signals.path(recording), &circle.arm, &circle.study));
         geometries.push(circle.study);
     }
     let other = swapped.iter().any(Option::is_some).then(|| {
@@ -271,7 +272,8 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
     if let Some(mut other) = other.flatten().filter(|_| is_turned(&study)) {
         let (other_n, again) = look(&mut other)?;
         if !is_turned(&again) {
-            (track, bearing_n, study, first_link) = (other, other_n, again, !first_link);
+            let swapped = if link == Some(Link::First) { Link::Second } else { Link::First };
+            (track, bearing_n, study, link) = (other, other_n, again, Some(swapped));
         }
     }
     options.progress.tell(0.8)?;
@@ -279,11 +281,12 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
     found.warnings.extend(bearing_n.map(|weight_n| {
         format!("friction goes with the load on the bearing, {weight_n:.3} N of the handle's weight included, not with the fingers' pull alone")
     }));
+    explain::add_of_path(&mut found, &strange);
     if options.atlas {
         found.atlas = atlas::atlas(&track, &study, limit);
     }
     found.guess_s = late::guess_s(&track, &model);
-    name_joint(&mut found, first_link);
+    name_joint(&mut found, link);
     if let Some(cause) = scale.filter(|scale: &Cause| found.causes.iter().all(|c| c.id != scale.id)) {
         found.causes.insert(0, cause);
         if found.verdict == Verdict::None {
@@ -304,8 +307,15 @@ struct Turned {
     rows: track::Track,
     /// With the other one's; nothing where no angle is wrong.
     other: Option<track::Track>,
-    /// Whether the likelier one is the first.
-    by_first: bool,
+    /// Which is the likelier one; none where the forces do not tell.
+    link: Option<Link>,
+}
+
+/// A link of a finger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Link {
+    First,
+    Second,
 }
 
 /// An offset of the first link's angle bends the path as the opposite offset of the second one does, and turns all of it: the circle is
@@ -326,16 +336,20 @@ fn turned(
         }
         at += candidate.columns.len();
     }
-    let Some(turn_rad) = offset else { return Ok(Turned { rows, other: None, by_first: false }) };
+    // With two fingers it is one of two arms: the handle's own is not turned.
+    let Some(turn_rad) = offset.filter(|_| !signals.two_fingered) else {
+        return Ok(Turned { rows, other: None, link: None });
+    };
     let arm = geometry::Arm { turn_rad, ..circle.arm.clone() };
     let other = signals.rows(recording, &arm, Axes::PLAIN)?;
     let model = plain_crank();
     let (before, _) = force::plain_rms(&mut rows.clone(), &model)?;
     let (after, _) = force::plain_rms(&mut other.clone(), &model)?;
     let likelier = 2.0 * rows.along().count() as f64 * (before / after.max(1e-300)).ln();
-    let by_first = likelier > TURNED;
-    let (rows, other) = if by_first { (other, rows) } else { (rows, other) };
-    Ok(Turned { rows, other: Some(other), by_first })
+    let link =
+        if likelier.abs() < TURNED { None } else { Some(if likelier > 0.0 { Link::First } else { Link::Second }) };
+    let (rows, other) = if link == Some(Link::First) { (other, rows) } else { (rows, other) };
+    Ok(Turned { rows, other: Some(other), link })
 }
 
 /// Whether the forces seem to be turned against the motion.
@@ -343,14 +357,19 @@ fn is_turned(study: &geometry::Study) -> bool {
     study.chosen.iter().any(|c| study.candidates[c.candidate].id == "force-cross-axis")
 }
 
-/// Says whose angle is wrong.
-fn name_joint(found: &mut Diagnosis, first_link: bool) {
-    let Some(cause) = found.causes.iter_mut().find(|c| c.id == "joint-offset") else { return };
-    let link = if first_link { "first" } else { "second" };
-    cause.evidence += "; it is the angle of the ";
-    cause.evidence += link;
-    cause.evidence += " link";
-    if first_link {
+/// Says whose angle is wrong, as far as that shows.
+fn name_joint(found: &mut Diagnosis, link: Option<Link>) {
+    // Of two fingers it is said which of them, and the path shows no more.
+    let of_the_finger = |c: &&mut Cause| c.id == "joint-offset" && c.parameters.iter().any(|p| p.name == "delta");
+    let Some(cause) = found.causes.iter_mut().find(of_the_finger) else { return };
+    cause.evidence += match link {
+        Some(Link::First) => "; it is the angle of the first link",
+        Some(Link::Second) => "; it is the angle of the second link",
+        None => {
+            "; the first link's angle being off by the opposite makes the same path, and the forces do not tell the two apart"
+        }
+    };
+    if link == Some(Link::First) {
         cause.parameters.iter_mut().for_each(|p| p.value = -p.value);
     }
 }

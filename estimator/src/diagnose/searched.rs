@@ -2,6 +2,7 @@
 
 use super::candidate::Candidate;
 use super::geometry::Study;
+use haptics::law::{Law, PositionRipple};
 
 /// Share of the distance between two tried values that remains of the error of the vertex.
 const OF_STEP: f64 = 0.1;
@@ -30,6 +31,9 @@ pub fn known(study: &Study, k: usize, which: usize) -> Known {
     let tried = |candidate: Option<usize>| candidate.and_then(|c| Some((value(c), price(c)?)));
     let here = value(picks[k]);
     let Some(least) = price(picks[k]) else { return alone(here) };
+    if study.candidates[picks[k]].id == PositionRipple.id() {
+        return wave(neighbours(study, picks[k], which).map(tried), (here, least));
+    }
     match neighbours(study, picks[k], which).map(tried).into() {
         (Some(below), Some(above)) => vertex(below, (here, least), above),
         (Some((other, _)), None) | (None, Some((other, _))) => {
@@ -81,6 +85,18 @@ fn neighbours(study: &Study, own: usize, which: usize) -> [Option<usize>; 2] {
         beside().filter(|c| value(*c) < here).max_by(|a, b| value(*a).total_cmp(&value(*b))),
         beside().filter(|c| value(*c) > here).min_by(|a, b| value(*a).total_cmp(&value(*b))),
     ]
+}
+
+/// The same of a wave's length. Waves are alike by their number over the motion, not by their length, and those that are a whole wave more or less over
+/// it explain nothing at all: no parabola goes through these.
+fn wave([below, above]: [Option<(f64, f64)>; 2], (here, least): (f64, f64)) -> Known {
+    let number = |(length, price): (f64, f64)| (1.0 / length, price);
+    let (Some(below), Some(above)) = (below.map(number), above.map(number)) else {
+        return Known { value: here, std_error: OF_STEP * here };
+    };
+    // The shorter wave has the larger number.
+    let known = vertex(above, number((here, least)), below);
+    Known { value: 1.0 / known.value, std_error: here * here * known.std_error }
 }
 
 fn alone(value: f64) -> Known {
@@ -140,6 +156,15 @@ mod tests {
         let known = vertex(at(0.25), at(0.30), at(0.36));
         assert!((known.value - 0.312).abs() < 1e-9, "{known:?}");
         assert!((known.std_error - 0.02_f64.hypot(0.1 * 0.055)).abs() < 1e-9, "{known:?}");
+    }
+
+    #[test]
+    fn a_wave_that_is_a_whole_number_of_a_turn_is_that_number() {
+        let turn = 0.126;
+        let length = |n: f64| turn / n;
+        // Two, three and four waves a turn where there are three.
+        let known = wave([Some((length(4.0), 900.0)), Some((length(2.0), 900.0))], (length(3.0), 200.0));
+        assert!((known.value - length(3.0)).abs() < 1e-9 && known.std_error < 0.05 * length(3.0), "{known:?}");
     }
 
     #[test]

@@ -12,6 +12,8 @@ const SWAP_ROUNDS: usize = 3;
 const CLEAR_T: f64 = 2.0;
 /// A cause that changes the folds' errors by less than this share was not tested by them.
 const UNTESTED: f64 = 1e-8;
+/// Folds that lose less than this share of a cause's score do not speak against it.
+const SPARED: f64 = 0.05;
 /// Causes that could stand in each other's place within this score are not told apart.
 pub const AMBIGUOUS: f64 = 10.0;
 
@@ -74,6 +76,9 @@ const AS_ONE: f64 = 0.99;
 /// Two causes that leave less than this share of the weaker one's mean square between them take each other back.
 const TAKEN_BACK: f64 = 0.1;
 
+/// … unless both together score this many times what is asked for.
+const SURE: f64 = 10.0;
+
 /// What a curve is over.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Over {
@@ -122,7 +127,8 @@ impl Selection<'_> {
         Some(self.paid(chosen, self.system.least(chosen)?.1))
     }
 
-    /// Whether a generic term in the k-th cause's place explains more, its own search paid: its name is then a guess.
+    /// Whether a generic term in the k-th cause's place explains more, its own search paid, by as much as what its curve may miss: its name
+    /// is then a guess. What a strong cause misses by little, by a bend that the model lacks, is left beside it.
     fn outdone(&self, chosen: &[usize], k: usize) -> bool {
         let rest = without(chosen, k);
         let generic: Vec<usize> = (0..self.candidates.len())
@@ -130,7 +136,9 @@ impl Selection<'_> {
             .collect();
         let search = 2.0 * (generic.len().max(1) as f64).ln();
         let whole = self.price(chosen);
-        generic.iter().any(|c| self.price(&[rest.as_slice(), &[*c]].concat()) + search < whole - AMBIGUOUS)
+        let score = self.plain_price(&rest).map_or(0.0, |less| less - whole);
+        let more = search + (REMAINDER * score).max(AMBIGUOUS);
+        generic.iter().any(|c| self.price(&[rest.as_slice(), &[*c]].concat()) < whole - more)
     }
 
     /// Whether two causes cannot stand side by side.
@@ -314,7 +322,12 @@ impl Selection<'_> {
             self.power(&solved, &[one, other].concat()) < TAKEN_BACK * weaker
         };
         let left = |k: usize| self.plain_price(&without(chosen, k)).unwrap_or(f64::INFINITY);
-        (0..chosen.len()).filter(|o| *o != k).any(|o| (as_one(o) || taken_back(o)) && left(k) < left(o))
+        // What both together explain beyond doubt is there, even where it is little beside what either of them makes.
+        let sure = |o: usize| {
+            let rest: Vec<usize> = chosen.iter().copied().filter(|c| *c != chosen[k] && *c != chosen[o]).collect();
+            self.plain_price(&rest).is_some_and(|less| less - self.price(chosen) > SURE * self.threshold)
+        };
+        (0..chosen.len()).filter(|o| *o != k).any(|o| (as_one(o) || taken_back(o) && !sure(o)) && left(k) < left(o))
     }
 
     /// Sum over the rows that train of the squares of what these columns of a solution add up to.
@@ -336,10 +349,18 @@ impl Selection<'_> {
         let better = less.iter().zip(&with).filter(|(l, w)| w < l).count();
         // What only rows tell that are never held out (a bias beside gravity: what is free) makes no difference to the folds.
         let gain = before - after;
-        if gain.abs() < UNTESTED * before {
+        if gain.abs() < UNTESTED * before || self.is_spared(chosen, k, (before, after)) {
             return self.clear(chosen, k);
         }
         gain > 0.0 && (self.clear(chosen, k) || 5 * better >= 4 * with.len())
+    }
+
+    /// Whether what the folds lose by the k-th cause is nothing beside what it explains: they hardly show it, and rows that are never held out do.
+    fn is_spared(&self, chosen: &[usize], k: usize, (before, after): (f64, f64)) -> bool {
+        let tested: f64 = self.system.folds.iter().map(|(_, rows)| rows).sum();
+        let lost = tested * (after / before.max(1e-300)).max(1e-300).ln();
+        let score = self.plain_price(&without(chosen, k)).map_or(0.0, |less| less - self.price(chosen));
+        (0.0..SPARED * score).contains(&lost)
     }
 
     fn clear(&self, chosen: &[usize], k: usize) -> bool {

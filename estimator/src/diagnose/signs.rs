@@ -6,7 +6,7 @@ use super::held_arm::{Axes, Signals};
 use super::quality;
 use super::report::Cause;
 use super::track::Track;
-use super::{hung, named, plain_crank, threshold};
+use super::{named, plain_crank, threshold};
 use crate::estimate::EstimateError;
 use haptics::law::{EccentricMass, Effect};
 use haptics::recording::Recording;
@@ -115,8 +115,8 @@ impl Looked {
     }
 
     /// What a crank's model leaves of the force, N, and whether friction takes work.
-    fn left(&self, recording: &Recording) -> Result<(f64, bool), EstimateError> {
-        force::plain_rms(&mut self.rows.clone(), &model_of(recording, &self.circle.arm))
+    fn left(&self) -> Result<(f64, bool), EstimateError> {
+        force::plain_rms(&mut self.rows.clone(), &model_of(&self.circle.arm))
     }
 }
 
@@ -131,7 +131,7 @@ pub fn of_crank<'a>(
     let (straight, rate) = with_rates_of_motion(recording);
     let fault = rate.map(quality::against_motion);
     let looked = Looked::at(&straight, bad)?;
-    let (before, _) = looked.left(&straight)?;
+    let (before, _) = looked.left()?;
     if before < SENSELESS * looked.rows.force_noise {
         return Ok((straight, fault, looked));
     }
@@ -139,10 +139,10 @@ pub fn of_crank<'a>(
     for names in ALONE.iter().filter(|names| names.iter().any(|name| recording.channel(name).is_some())) {
         let other = mirrored(&straight, names);
         let Ok(looked) = Looked::at(&other, bad) else { continue };
-        let Ok((after, resists)) = looked.left(&other) else { continue };
+        let Ok((after, resists)) = looked.left() else { continue };
         // One mirrored channel is likelier than that and an axis of the force.
         let better = |(least, held): (f64, &Looked)| (looked.axis.is_some(), after) < (held.axis.is_some(), least);
-        let sound = resists && after < MIRRORED_SHARE * before;
+        let sound = resists && after < MIRRORED_SHARE * before && makes_sense((before, after), &looked.rows);
         if sound && best.as_ref().is_none_or(|(least, held, ..)| better((*least, held))) {
             best = Some((after, looked, other, names));
         }
@@ -178,18 +178,25 @@ pub fn of_mechanism(
     Ok(Some(quality::driving(name)))
 }
 
-/// The thesis's crank, and what else a hung weight needs.
-fn model_of(recording: &Recording, arm: &Arm) -> force::Model {
+/// The thesis's crank, and gravity out of phase: a mass off the axis, or a weight that hangs on a tilted plane, may pass in few strokes for friction
+/// that drives, and leaves as much as a mirrored axis does.
+fn model_of(arm: &Arm) -> force::Model {
     let mut model = plain_crank();
-    if hung::Hung::on_crank(recording).is_some() {
-        // On a tilted plane a hung weight acts out of phase, and in few strokes that may pass for friction that drives.
-        model.push(Effect::new(&EccentricMass, &[1.0, 0.0, arm.radius_m]));
-    }
+    model.push(Effect::new(&EccentricMass, &[1.0, 0.0, arm.radius_m]));
     model
 }
 
 /// How much better a mirrored axis must explain the force: left, of what the recorded one leaves.
 const MIRRORED_SHARE: f64 = 0.5;
+
+/// … and it leaves no more than this many times the noise, where that was seen, or this share of what was left: an effect that is large beside the
+/// noise is made smaller by many a change of sign.
+const SENSE: f64 = 4.0;
+const NEARLY_ALL: f64 = 0.1;
+
+fn makes_sense((before, after): (f64, f64), track: &Track) -> bool {
+    !track.noise_is_measured || after < SENSE * track.force_noise || after < NEARLY_ALL * before
+}
 
 /// What leaves less than this many times the noise makes sense as it is.
 const PLAUSIBLE: f64 = 1.8;
@@ -197,7 +204,7 @@ const PLAUSIBLE: f64 = 1.8;
 /// The rows, with an axis of the force mirrored back where that alone makes sense of them.
 pub fn upright(signals: &Signals, recording: &Recording, arm: &Arm) -> Result<(Track, Option<Cause>), EstimateError> {
     let as_recorded = signals.rows(recording, arm, Axes::PLAIN)?;
-    let model = model_of(recording, arm);
+    let model = model_of(arm);
     let left = |track: &Track| force::plain_rms(&mut track.clone(), &model);
     let (before, resists) = left(&as_recorded)?;
     if resists && before < PLAUSIBLE * as_recorded.force_noise {
@@ -216,7 +223,11 @@ pub fn upright(signals: &Signals, recording: &Recording, arm: &Arm) -> Result<(T
         let (after, resists) = left(&track)?;
         let both = name == "fx and fy";
         // Both at once change every sign and no size: only friction that drives tells.
-        let better = if both { resists && !left(&as_recorded)?.1 } else { resists && after < MIRRORED_SHARE * before };
+        let better = if both {
+            resists && !left(&as_recorded)?.1
+        } else {
+            resists && after < MIRRORED_SHARE * before && makes_sense((before, after), &track)
+        };
         if better && best.as_ref().is_none_or(|(least, ..)| after < *least) {
             best = Some((after, track, name));
         }

@@ -146,11 +146,11 @@ impl Load {
         };
         // Half of the threshold is no bias that would be taken for a contact, whatever else it is.
         let Some(rest) = Resting::of(time_s, force_n, position_m, 0.5 * simple.force_n) else { return simple };
-        if rest.bias_n.norm() + CLEAR_OF_NOISE * rest.noise_n <= simple.force_n {
+        if rest.farthest_n() + CLEAR_OF_NOISE * rest.noise_n <= simple.force_n {
             return simple;
         }
         let calm = calmed_series(time_s, force_n);
-        let values: Vec<f64> = calm.iter().map(|f| (f - rest.bias_n).norm()).collect();
+        let values: Vec<f64> = calm.iter().zip(time_s).map(|(f, t)| (f - rest.bias_at(*t)).norm()).collect();
         let usual_n = percentile(&mut values.clone(), 0.95);
         let mut warnings = Vec::new();
         if rest.bias_n.norm() > (2.0 * rest.noise_n).max(0.005) {
@@ -159,9 +159,15 @@ impl Load {
                 rest.bias_n.x, rest.bias_n.y
             ));
         }
+        if rest.drifts() {
+            warnings.push(format!(
+                "the force of the tool rests elsewhere at other times, up to {:.3} N from zero: its sensor drifts, which is taken into account here",
+                rest.farthest_n()
+            ));
+        }
         Self {
             values,
-            force_n: (NOISE_MULTIPLE * rest.noise_of(&calm)).max(LOAD_SHARE * usual_n),
+            force_n: (NOISE_MULTIPLE * rest.noise_of(time_s, &calm)).max(LOAD_SHARE * usual_n),
             leave: NOISY_LEAVE,
             least_change_s: LEAST_CHANGE_S,
             warnings,

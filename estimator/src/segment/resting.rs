@@ -8,6 +8,7 @@ use super::threshold::percentile;
 use crate::constraint::circle;
 use crate::signal::noise::quantum;
 use haptics::Vec2;
+use std::ops::Range;
 
 /// Length of the pieces of a recording that are compared with each other, s and samples.
 const PIECE_S: f64 = 0.25;
@@ -37,6 +38,8 @@ pub struct Resting {
     pub noise_n: f64,
     /// Samples that were taken as free motion, in order.
     pub free: Vec<usize>,
+    /// When the force rested, s, and at what, N, one rest after the other: two and more where the sensor drifts, else none.
+    drift: Vec<(f64, Vec2)>,
 }
 
 /// A piece of the recording.
@@ -76,10 +79,66 @@ impl Resting {
                 && small
                 && (found.bias_n.norm() <= certain_n || is_off_circle(&found.free, force_n, found.bias_n, position_m))
             {
-                return Some(found);
+                let rests = found.drifted(&pieces, noise_n, LARGEST_BIAS * usual_n, (force_n, position_m));
+                return Some(found.drifting(rests, time_s, force_n));
             }
         }
         None
+    }
+
+    /// Rests at which the force stands still elsewhere: at other times, off the circle, and no farther from here than `most_n`.
+    fn drifted(
+        &self,
+        pieces: &[Piece],
+        noise_n: f64,
+        most_n: f64,
+        (force_n, position_m): (&[Vec2], &[Vec2]),
+    ) -> Vec<Range<usize>> {
+        let is_here = |p: &Piece| self.free.binary_search(&p.first).is_ok();
+        let rests =
+            |p: &Piece| p.scatter_n <= STILL * noise_n && (p.mean_n - self.bias_n).norm() <= most_n && !is_here(p);
+        let follows = |a: &Piece, b: &Piece| rests(a) && rests(b) && (a.mean_n - b.mean_n).norm() <= NEAR * noise_n;
+        let runs = pieces.chunk_by(follows).filter(|run| run.len() >= LEAST_PIECES && rests(&run[0]));
+        let spans = runs.map(|run| run[0].first..run[run.len() - 1].end);
+        spans
+            .filter(|span| is_off_circle(&span.clone().collect::<Vec<_>>(), force_n, self.bias_n, position_m))
+            .collect()
+    }
+
+    /// The same with further rests of a sensor that drifts.
+    fn drifting(mut self, rests: Vec<Range<usize>>, time_s: &[f64], force_n: &[Vec2]) -> Self {
+        if rests.is_empty() {
+            return self;
+        }
+        self.free.extend(rests.into_iter().flatten());
+        self.free.sort_unstable();
+        let mean = |run: &[usize]| {
+            let count = run.len() as f64;
+            let when_s = run.iter().map(|i| time_s[*i]).sum::<f64>() / count;
+            (when_s, run.iter().map(|i| force_n[*i]).sum::<Vec2>() / count)
+        };
+        self.drift = self.free.chunk_by(|a, b| a + 1 == *b).map(mean).collect();
+        self
+    }
+
+    /// The force at rest at a time, N: in between of what it was before and is afterwards where the sensor drifts.
+    pub fn bias_at(&self, time_s: f64) -> Vec2 {
+        let next = self.drift.partition_point(|(t, _)| *t < time_s);
+        match (next.checked_sub(1).and_then(|k| self.drift.get(k)), self.drift.get(next)) {
+            (Some((t0, before)), Some((t1, after))) => before.lerp(after, (time_s - t0) / (t1 - t0).max(1e-12)),
+            (Some((_, level)), None) | (None, Some((_, level))) => *level,
+            (None, None) => self.bias_n,
+        }
+    }
+
+    /// How far the force at rest is from zero at most, N.
+    pub fn farthest_n(&self) -> f64 {
+        self.drift.iter().map(|(_, level)| level.norm()).fold(self.bias_n.norm(), f64::max)
+    }
+
+    /// Whether it is another one at other times.
+    pub fn drifts(&self) -> bool {
+        !self.drift.is_empty()
     }
 
     fn from(members: &[&Piece], force_n: &[Vec2]) -> Self {
@@ -88,12 +147,12 @@ impl Resting {
         let count = free.len().max(1) as f64;
         let bias_n = free.iter().map(|i| force_n[*i]).sum::<Vec2>() / count;
         let squares: f64 = free.iter().map(|i| (force_n[*i] - bias_n).norm_squared()).sum();
-        Self { bias_n, noise_n: (0.5 * squares / count).sqrt(), free }
+        Self { bias_n, noise_n: (0.5 * squares / count).sqrt(), free, drift: Vec::new() }
     }
 
     /// Standard deviation of a component of another series (the calmed force) over the same samples, N.
-    pub fn noise_of(&self, force_n: &[Vec2]) -> f64 {
-        let squares: f64 = self.free.iter().map(|i| (force_n[*i] - self.bias_n).norm_squared()).sum();
+    pub fn noise_of(&self, time_s: &[f64], force_n: &[Vec2]) -> f64 {
+        let squares: f64 = self.free.iter().map(|i| (force_n[*i] - self.bias_at(time_s[*i])).norm_squared()).sum();
         (0.5 * squares / self.free.len().max(1) as f64).sqrt()
     }
 }
