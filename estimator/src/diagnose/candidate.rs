@@ -18,8 +18,9 @@ const RESTS_WITHIN: f64 = 3.0;
 pub enum Shape {
     /// Anything.
     Any,
-    /// The share of the friction that a law takes over: the law is about all of it; what sticks and slips looks like a part.
-    Share { least: f64, most: f64 },
+    /// The share of the friction that a law takes over: the law is about all of it; what sticks and slips looks like a part, which is believed below
+    /// `whole` only where it explains much.
+    Share { least: f64, whole: f64, most: f64 },
     /// k, f0 of a spring that is at rest somewhere near: a force that is the same everywhere is none. `half`: half the range.
     Spring { half: f64 },
     /// k, f0 and two cubics (about the middle, and half a range beside it) of a spring that hardens.
@@ -36,7 +37,7 @@ const NEARLY_UNDAMPED_S: f64 = 0.1;
 impl Shape {
     fn admits(self, values: &[f64]) -> bool {
         match (self, values) {
-            (Self::Share { least, most }, [share, ..]) => *share > least && *share < most,
+            (Self::Share { least, most, .. }, [share, ..]) => *share > least && *share < most,
             (Self::Spring { half }, [k, f0]) => *k > 0.0 && f0.abs() < RESTS_WITHIN * k * half,
             (Self::Hardening { half }, [k, f0, here, there]) => {
                 let cube = half.powi(3);
@@ -48,7 +49,18 @@ impl Shape {
             _ => true,
         }
     }
+
+    /// What its parameters cost beside their number, in 2 ln(likelihood).
+    fn doubt(self, values: &[f64]) -> f64 {
+        match (self, values) {
+            (Self::Share { whole, .. }, [share, ..]) if *share < whole => PARTLY,
+            _ => 0.0,
+        }
+    }
 }
+
+/// What a part of the friction must explain more than all of it.
+const PARTLY: f64 = 30.0;
 
 /// k u + f0 + here u³ + there (u − 1)³ as k (u − place) + f0 + k3 (u − place)³: k, f0, k3 and the place.
 pub fn about_its_zero([k, f0, here, there]: [f64; 4]) -> [f64; 4] {
@@ -188,6 +200,11 @@ impl Candidate {
         self.sign * values[0] >= 0.0 && values[0].abs() >= self.least && self.shape.admits(values)
     }
 
+    /// What makes its name doubtful, in 2 ln(likelihood).
+    pub fn doubt(&self, values: &[f64]) -> f64 {
+        self.shape.doubt(values)
+    }
+
     /// Whose first parameter is positive.
     pub fn positive(mut self) -> Self {
         self.sign = 1.0;
@@ -208,6 +225,13 @@ mod tests {
             let v = u - place;
             assert!((two - (k * v + f0 + k3 * v.powi(3))).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn a_part_of_the_friction_that_bends_is_doubtful() {
+        let share = Shape::Share { least: 0.3, whole: 0.65, most: 1.7 };
+        assert!(share.admits(&[0.4]) && share.doubt(&[0.4]) > 0.0 && share.doubt(&[0.9]) == 0.0);
+        assert!(!share.admits(&[0.2]) && !share.admits(&[1.8]));
     }
 
     #[test]

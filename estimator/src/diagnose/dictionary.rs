@@ -12,8 +12,9 @@ use haptics::law::{
     MassChange, Memory, Motion, PositionRipple, QuadraticDrag, ReturnSpring, Stribeck, ViscousFriction, Weight,
 };
 
-/// Least share of the friction that bends before it slides, and of the force that lies behind a gap.
-const LEAST_BENT: f64 = 0.65;
+/// Least share of the friction that bends before it slides, and the least that passes for all of it; least share of the force that lies behind a gap.
+const LEAST_BENT: f64 = 0.3;
+const ALL_BENT: f64 = 0.65;
 const LEAST_BEHIND: f64 = 0.4;
 /// More than all of it is none of the two: another way or gap would be nearer.
 const MOST: f64 = 1.7;
@@ -290,7 +291,7 @@ impl Dictionary<'_> {
                 let mut column: Vec<f64> = gap.iter().zip(behind).map(|(g, f)| -felt * g * f).collect();
                 super::stuck::plays(self.track, way, whole, &mut column);
                 let backlash = Candidate::one("backlash", Kind::Plant, "share", "1", column);
-                let backlash = backlash.shaped(Shape::Share { least: LEAST_BEHIND, most: MOST });
+                let backlash = backlash.shaped(Shape::Share { least: LEAST_BEHIND, whole: LEAST_BEHIND, most: MOST });
                 all.push(backlash.at("delta", way, units.length));
             }
         }
@@ -304,7 +305,7 @@ impl Dictionary<'_> {
         let mut column: Vec<f64> = bent.iter().zip(self.dry).map(|(b, d)| felt * b * d).collect();
         super::stuck::bends(&self.track.rows, &values, &mut column);
         let hysteresis = Candidate::one("hysteresis", Kind::Plant, "share", "1", column);
-        hysteresis.shaped(Shape::Share { least: LEAST_BENT, most: MOST }).at("way", way, self.units().length)
+        hysteresis.shaped(Shape::Share { least: LEAST_BENT, whole: ALL_BENT, most: MOST }).at("way", way, self.units().length)
     }
 
     /// A column of a law with memory, which starts anew at every stretch and lives between the rows.

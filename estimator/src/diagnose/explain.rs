@@ -119,11 +119,14 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
             model: model.iter().map(|e| e.law().id()).collect::<Vec<_>>().join("+"),
             rms_n: train,
             heldout_rms_n: heldout,
+            rms_nm: None,
+            heldout_rms_nm: None,
             whiteness_p: whiteness_p(study, &[], &stretch),
             of: None,
             unit: Some(unit.to_owned()),
         },
         noise_floor_n: floor,
+        noise_floor_nm: None,
         residuals: residuals::of_crank_or_mechanism(track, study, geometries, (unit, floor)),
         passed_over: unsaid(passed_over, &causes, &alternatives, &not_excited),
         not_excited,
@@ -142,7 +145,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         causes,
         alternatives,
         next_experiment: propose(track, model, study, &open_ones),
-        end: Final { heldout_rms_n: end, whiteness_p: whiteness_p(study, &picks, &stretch) },
+        end: Final { heldout_rms_n: end, heldout_rms_nm: None, whiteness_p: whiteness_p(study, &picks, &stretch) },
         warnings,
     }
 }

@@ -112,7 +112,7 @@ pub fn diagnose(recordings: &[Recording], options: &Options) -> Result<Diagnosis
     let clockless = recordings.iter().flat_map(|r| r.warnings.iter().filter(|w| w.kind == NO_CLOCK));
     found.warnings.extend(clockless.map(|w| w.text.clone()));
     found.warnings.dedup();
-    Ok(found)
+    Ok(found.named_by_unit())
 }
 
 fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {

@@ -35,6 +35,12 @@ pub struct Baseline {
     /// The same on the blocks that took part in nothing.
     #[serde(rename = "heldout_rms_N")]
     pub heldout_rms_n: f64,
+    /// Both once more by their unit's name, where they are torques.
+    #[serde(rename = "rms_Nm", default, skip_serializing_if = "Option::is_none")]
+    pub rms_nm: Option<f64>,
+    #[serde(rename = "heldout_rms_Nm", default, skip_serializing_if = "Option::is_none")]
+    #[allow(missing_docs)] // said above
+    pub heldout_rms_nm: Option<f64>,
     /// Probability of residuals at least so correlated if they were white (Ljung & Box 1978).
     pub whiteness_p: f64,
     /// Which channel these figures, the noise floor and the final ones are of, where there are several, …
@@ -252,6 +258,9 @@ pub struct Final {
     /// Unexplained force on the blocks that took part in nothing, N or N m.
     #[serde(rename = "heldout_rms_N")]
     pub heldout_rms_n: f64,
+    /// The same by its unit's name, where it is a torque.
+    #[serde(rename = "heldout_rms_Nm", default, skip_serializing_if = "Option::is_none")]
+    pub heldout_rms_nm: Option<f64>,
     /// As in [`Baseline::whiteness_p`].
     pub whiteness_p: f64,
 }
@@ -266,6 +275,9 @@ pub struct Diagnosis {
     /// Noise of the force, N or N m, from where nothing touches, or from what is too fast to be mechanical.
     #[serde(rename = "noise_floor_N")]
     pub noise_floor_n: f64,
+    /// The same by its unit's name, where it is a torque.
+    #[serde(rename = "noise_floor_Nm", default, skip_serializing_if = "Option::is_none")]
+    pub noise_floor_nm: Option<f64>,
     /// What the model leaves in every channel and state, without and with what was found, beside the noise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub residuals: Vec<Residual>,
@@ -322,4 +334,18 @@ pub struct Diagnosis {
     /// What is not excluded, as laws: to rehearse experiments.
     #[serde(skip)]
     pub(super) hypotheses: Vec<Hypothesis>,
+}
+
+impl Diagnosis {
+    /// With the figures of the force by the name of their unit, too, where that is N m (the contract's suffix of a mechanism in torque).
+    #[must_use]
+    pub fn named_by_unit(mut self) -> Self {
+        if self.baseline.unit.as_deref() == Some("N m") {
+            self.baseline.rms_nm = Some(self.baseline.rms_n);
+            self.baseline.heldout_rms_nm = Some(self.baseline.heldout_rms_n);
+            self.noise_floor_nm = Some(self.noise_floor_n);
+            self.end.heldout_rms_nm = Some(self.end.heldout_rms_n);
+        }
+        self
+    }
 }

@@ -4,8 +4,9 @@ use super::candidate::Candidate;
 use super::starts::MANY;
 use super::system::{Solved, System};
 
-/// Most causes at once.
+/// Most causes at once, and so many more where the model has no friction of its own, which is then two of them.
 const MOST_CAUSES: usize = 4;
+const FRICTIONS: usize = 2;
 /// Rounds of swapping after each addition.
 const SWAP_ROUNDS: usize = 3;
 /// A cause whose t-value is below this must improve nearly every fold.
@@ -77,7 +78,7 @@ const AS_ONE: f64 = 0.99;
 const TAKEN_BACK: f64 = 0.1;
 
 /// … unless both together score this many times what is asked for.
-const SURE: f64 = 10.0;
+pub(super) const SURE: f64 = 10.0;
 
 /// What a curve is over.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -98,6 +99,11 @@ const OF_DRY_FRICTION: [&str; 3] = ["stribeck", "hysteresis", "friction-change"]
 const DRY_FRICTION: [&str; 2] = ["coulomb-friction", "load-friction"];
 
 impl Selection<'_> {
+    /// Most causes at once.
+    pub(super) fn most(&self) -> usize {
+        if self.dry { MOST_CAUSES } else { MOST_CAUSES + FRICTIONS }
+    }
+
     /// N ln(RSS) plus what its parameters cost; smaller is better. Infinite where a parameter has an impossible sign.
     pub(super) fn price(&self, chosen: &[usize]) -> f64 {
         let is = |all: &[&str]| chosen.iter().any(|c| all.contains(&self.candidates[*c].id));
@@ -105,16 +111,17 @@ impl Selection<'_> {
             return f64::INFINITY;
         }
         let Some((values, rss)) = self.system.least(chosen) else { return f64::INFINITY };
-        let mut at = self.system.base;
+        let (mut at, mut doubt) = (self.system.base, 0.0);
         for c in chosen {
             let candidate = &self.candidates[*c];
             let end = at + candidate.columns.len();
             if !candidate.admits(&values[at..end]) {
                 return f64::INFINITY;
             }
+            doubt += candidate.doubt(&values[at..end]);
             at = end;
         }
-        self.paid(chosen, rss)
+        self.paid(chosen, rss) + doubt
     }
 
     fn paid(&self, chosen: &[usize], rss: f64) -> f64 {
@@ -156,7 +163,7 @@ impl Selection<'_> {
     /// The best few, whether they earn their place or not: what the whitening must not swallow.
     pub fn greedy(&self) -> Vec<usize> {
         let mut chosen: Vec<usize> = Vec::new();
-        for _ in 0..MOST_CAUSES {
+        for _ in 0..self.most() {
             let price = |c: &usize| self.price(&[chosen.as_slice(), &[*c]].concat());
             match self.open(&chosen).min_by(|a, b| price(a).total_cmp(&price(b))) {
                 Some(best) if price(&best).is_finite() => chosen.push(best),
@@ -206,12 +213,19 @@ impl Selection<'_> {
                 chosen = sparser;
             }
         }
+        // Two that take each other back for the most part are found by neither of them alone.
+        if let Some(pair) = self.pair_beside(&chosen) {
+            let more = self.settled([chosen.as_slice(), &pair].concat(), is_fine);
+            if self.price(&more) < self.price(&chosen) {
+                chosen = more;
+            }
+        }
         self.describe(&chosen)
     }
 
     /// What stands of a search that starts with `chosen`; `merges`: one is put in the place of two.
     fn settled(&self, mut chosen: Vec<usize>, merges: bool) -> Vec<usize> {
-        while chosen.len() < MOST_CAUSES {
+        while chosen.len() < self.most() {
             let price = |c: &usize| self.price(&[chosen.as_slice(), &[*c]].concat());
             let Some(best) = self.open(&chosen).min_by(|a, b| price(a).total_cmp(&price(b))) else { break };
             if !price(&best).is_finite() {

@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::geometry::Study;
-use super::select::{LOST_MOTION, Selection};
+use super::select::{LOST_MOTION, SURE, Selection};
 
 /// So many of the causes that explain most alone are tried as the first of two.
 const FIRST: usize = 6;
@@ -31,6 +31,27 @@ impl Selection<'_> {
             self.swap(&mut pair);
             pair
         })
+    }
+
+    /// The best two more causes beside the chosen ones, each kind as it explains most alone, if they explain something beyond doubt together.
+    pub fn pair_beside(&self, chosen: &[usize]) -> Option<Vec<usize>> {
+        if chosen.len() + 2 > self.most() {
+            return None;
+        }
+        let with = |more: &[usize]| self.price(&[chosen, more].concat());
+        let mut kinds: Vec<(f64, usize)> = Vec::new();
+        for c in self.open(chosen) {
+            let price = with(&[c]);
+            match kinds.iter_mut().find(|(_, k)| self.candidates[*k].id == self.candidates[c].id) {
+                Some(best) if price < best.0 => *best = (price, c),
+                Some(_) => {}
+                None => kinds.push((price, c)),
+            }
+        }
+        let pairs = (1..kinds.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+        let priced = pairs.map(|(a, b)| vec![kinds[a].1, kinds[b].1]).map(|pair| (with(&pair), pair));
+        let (price, pair) = priced.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (price < with(&[]) - SURE * self.threshold).then_some(pair)
     }
 
     /// What must be searched for more closely before it can be compared with what was chosen, which will be: of play and of a bend the
