@@ -266,6 +266,7 @@ pub fn answer(
         atlas: Atlas::default(),
         along: None,
         late_s: 0.0,
+        skew_s: 0.0,
         rest_s: None,
         guess_s: None,
         hypotheses: Vec::new(),

@@ -305,7 +305,11 @@ impl Dictionary<'_> {
         let mut column: Vec<f64> = bent.iter().zip(self.dry).map(|(b, d)| felt * b * d).collect();
         super::stuck::bends(&self.track.rows, &values, &mut column);
         let hysteresis = Candidate::one("hysteresis", Kind::Plant, "share", "1", column);
-        hysteresis.shaped(Shape::Share { least: LEAST_BENT, whole: ALL_BENT, most: MOST }).at("way", way, self.units().length)
+        hysteresis.shaped(Shape::Share { least: LEAST_BENT, whole: ALL_BENT, most: MOST }).at(
+            "way",
+            way,
+            self.units().length,
+        )
     }
 
     /// A column of a law with memory, which starts anew at every stretch and lives between the rows.

@@ -137,6 +137,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         atlas: Atlas::default(),
         along: None,
         late_s: 0.0,
+        skew_s: 0.0,
         rest_s: rest_s(study, &picks),
         guess_s: None,
         hypotheses: hypotheses(track, model, study),
@@ -181,10 +182,19 @@ fn skew(study: &Study, k: usize, track: &Track) -> Option<f64> {
     (found.value.abs() - 2.0 * found.std_error <= most_s).then_some(found.value)
 }
 
-fn apart(skew_s: f64) -> String {
+/// The same of whatever was chosen.
+pub fn skewed_s(study: &Study, track: &Track) -> Option<f64> {
+    (0..study.chosen.len()).find_map(|k| skew(study, k, track))
+}
+
+/// How that begins.
+pub const APART: &str = "force and motion are ";
+
+/// In words.
+pub fn apart(skew_s: f64) -> String {
     let ms = 1e3 * skew_s;
     format!(
-        "force and motion are {ms:.2} ms apart, no more than sampling and clocks make of it: it is taken out and not called a delay"
+        "{APART}{ms:.2} ms apart, no more than sampling and clocks make of it: it is taken out and not called a delay"
     )
 }
 

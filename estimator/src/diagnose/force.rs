@@ -56,14 +56,20 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
         made = compare(track, (model, fixed), &known, threshold, [&coarse, &fine], Some(made))?;
     }
     // How wide the direction of a mechanism is blurred is a guess. Where it is too wide, the friction of everything slow comes out too small,
-    // which passes for friction that rises there.
+    // which passes for friction that rises there, or for a bend that no law has.
     let rises = |study: &Study| study.chosen.iter().any(|c| study.candidates[c.candidate].id == Stribeck.id());
-    if !track.planar && rises(&made) {
+    let bends = |study: &Study| {
+        let Study { system, candidates, .. } = study;
+        let selection = Selection { system, candidates, threshold, dry: true, one_loss: false };
+        selection.unexplained(&study.picks()).is_some_and(|(_, score)| score > threshold)
+    };
+    let (rose, bent) = (rises(&made), !track.planar && bends(&made));
+    if !track.planar && (rose || bent) {
         known.is_sharp = true;
         let found: Vec<&Candidate> = made.chosen.iter().map(|c| &made.candidates[c.candidate]).collect();
         let fine = Grid::around(&found, track, 1.0);
         let sharp = compare(track, (model, fixed), &known, threshold, [&coarse, &fine], None)?;
-        if !rises(&sharp) {
+        if rose && !rises(&sharp) || bent && !bends(&sharp) {
             made = sharp;
         }
     }

@@ -1,13 +1,13 @@
 //! The path before the force: centre and radius of a crank, and the causes that distort the circle.
 
 use super::candidate::Candidate;
+use super::courses::{Course, SLIP_STARTS, jump};
 use super::force::leave_out_what_harms;
 use super::select::{Chosen, Selection};
 use super::system::{Held, Rows, Solved, System, solve, uses};
 use super::white::whitener;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
-use crate::signal::noise::white_noise;
 use haptics::Vec2;
 use haptics::law::Kind;
 
@@ -17,24 +17,6 @@ const OUTWARD: &str = "dr";
 /// Parameters of a finger's joint and first link, of one finger and of two.
 const OF_THE_FINGER: [&str; 2] = ["delta", "link_error"];
 const OF_FINGERS: [[&str; 2]; 2] = [["delta1", "link_error1"], ["delta2", "link_error2"]];
-/// Generic waves round a turn, and slow ones over the recording.
-const WAVES: u32 = 4;
-const SLOW: u32 = 4;
-/// A path that is off its circle by more than this many times its noise should have a reason.
-const STRANGE: f64 = 2.0;
-/// Starts of a slip that are tried.
-const SLIP_STARTS: usize = 24;
-/// When a creep of the grasp begins, and for how long it goes on, in shares of the recording.
-const CREEP_STARTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
-const CREEPS: [f64; 3] = [0.25, 0.5, 1.0];
-/// How much farther apart they are than slips.
-const CREEPS_APART: f64 = 4.0;
-/// A jump is looked for at so many times, this part of the rows away from the ends, and must gain so much in 2 ln(likelihood) of white rows.
-const JUMPS: usize = 240;
-const JUMP_MARGIN: usize = 50;
-const JUMPED: f64 = 100.0;
-/// A breath of ridge keeps equal columns apart.
-const JUMP_RIDGE: f64 = 1e-9;
 /// Rounds of the linearised circle fit, and those after which the time of a slip is known well enough.
 const ROUNDS: usize = 8;
 const CLOSER: usize = 5;
@@ -62,7 +44,7 @@ pub struct Path {
 }
 
 impl Path {
-    fn span_s(&self) -> f64 {
+    pub fn span_s(&self) -> f64 {
         let ends = self.points.first().zip(self.points.last());
         ends.map_or(0.0, |(first, last)| last.time_s - first.time_s)
     }
@@ -176,53 +158,6 @@ fn circle(points: &[Vec2]) -> Result<Vec2, EstimateError> {
     Ok(mean + Vec2::new(fit.values[0], fit.values[1]))
 }
 
-/// When the grasp jumped, if it did once and by much: two circles of one radius, before and after, leave least. A slip that is large beside the noise is
-/// not seen by comparing one here and there: what is left between its time and the tried one looks like a noise with a memory, beside which no slip
-/// is better than another.
-fn jump(path: &Path, center_m: Vec2) -> Option<Course> {
-    let outward = |p: &PathPoint| (p.position - center_m).normalize();
-    let row = |p: &PathPoint| {
-        let out = outward(p);
-        [1.0, out.x, out.y, (p.position - center_m).norm()]
-    };
-    let products = |p: &PathPoint| {
-        let row = nalgebra::Vector4::from(row(p));
-        row * row.transpose()
-    };
-    let whole: nalgebra::Matrix4<f64> = path.points.iter().map(products).sum();
-    // Columns: 1, out x, out y before and after; out x, out y, 1 after; the distance.
-    let left = |after: &nalgebra::Matrix4<f64>| -> Option<f64> {
-        let part = |i: usize, j: usize| match (i / 3, j / 3) {
-            (0, 0) => whole[(i, j)],
-            _ => after[(i % 3, j % 3)],
-        };
-        let right = nalgebra::Vector6::from_fn(|i, _| if i < 3 { whole[(i, 3)] } else { after[(i % 3, 3)] });
-        let normal = nalgebra::Matrix6::from_fn(|i, j| part(i, j) * if i == j { 1.0 + JUMP_RIDGE } else { 1.0 });
-        let solved = normal.cholesky()?.solve(&right);
-        Some(whole[(3, 3)] - solved.dot(&right))
-    };
-    let n = path.points.len();
-    let every = n.div_ceil(JUMPS).max(1);
-    let mut after = whole;
-    let mut best: Option<(f64, usize)> = None;
-    for (k, point) in path.points.iter().enumerate() {
-        let inside = k * JUMP_MARGIN > n && (n - k) * JUMP_MARGIN > n;
-        if k % every == 0
-            && inside
-            && let Some(left) = left(&after)
-            && best.is_none_or(|(least, _)| left < least)
-        {
-            best = Some((left, k));
-        }
-        after -= products(point);
-    }
-    let (least, k) = best?;
-    let right = whole.fixed_view::<3, 1>(0, 3).into_owned();
-    let plain = whole[(3, 3)] - whole.fixed_view::<3, 3>(0, 0).into_owned().cholesky()?.solve(&right).dot(&right);
-    let much = n as f64 * (plain / least.max(1e-300)).ln();
-    (much > JUMPED).then(|| Course { start_s: path.points[k].time_s, duration_s: None })
-}
-
 fn compare(
     path: &Path,
     (center_m, bent): (Vec2, &[Displaced]),
@@ -308,112 +243,6 @@ fn candidates(path: &Path, outward: &[Vec2], courses: &[Course]) -> Vec<Candidat
         found.extend([across, Candidate::one(SLIP, Kind::Plant, OUTWARD, "m", gone(&|_| 1.0))].map(dated));
     }
     found
-}
-
-/// What is left of a path that no known cause explains: waves round the turn (a circle has none beyond its centre's) and slow changes.
-fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
-    let angle = |i: usize| outward[i].y.atan2(outward[i].x);
-    let column = |of: &dyn Fn(usize) -> f64| (0..path.points.len()).map(of).collect::<Vec<f64>>();
-    let term = |expression: String, columns: Vec<Vec<f64>>| {
-        let linear = columns.iter().map(|_| ("amplitude", "m")).collect();
-        Candidate { expression: Some(expression), ..Candidate::several("other", Kind::Plant, columns, linear) }
-    };
-    let waves = (2..=WAVES).map(|n| {
-        let wave = |of: fn(f64) -> f64| column(&|i| of(f64::from(n) * angle(i)));
-        term(format!("cos({n} theta + phi) of the path"), vec![wave(f64::cos), wave(f64::sin)])
-    });
-    let (start_s, span_s) = (path.points.first().map_or(0.0, |p| p.time_s), path.span_s().max(1e-9));
-    let slow = (1..=SLOW).map(|k| {
-        let wave = |i: usize| (std::f64::consts::PI * f64::from(k) * (path.points[i].time_s - start_s) / span_s).cos();
-        term(format!("cos({k} pi t/T) of the path"), vec![column(&wave)])
-    });
-    waves.chain(slow).collect()
-}
-
-/// What is left of the path beside the causes that were found, if it is much more than the noise and goes with something: the generic term, its score
-/// and the comparison with it in place.
-pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<(Study, usize, f64)> {
-    let picks = study.picks();
-    let solved = study.solved.as_ref()?;
-    let left = residual(&study.y, &study.base, &study.candidates, &picks, solved);
-    let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len().max(1) as f64).sqrt();
-    if rms < STRANGE * white_noise(&study.y) {
-        return None;
-    }
-    let outward: Vec<Vec2> = path.points.iter().map(|p| (p.position - arm.center_m).normalize()).collect();
-    let candidates: Vec<Candidate> =
-        picks.iter().map(|p| study.candidates[*p].clone()).chain(generic(path, &outward)).collect();
-    let chosen = study.chosen.iter().enumerate().map(|(k, c)| Chosen { candidate: k, rivals: Vec::new(), ..c.clone() });
-    let chosen: Vec<Chosen> = chosen.collect();
-    let made = |candidates: Vec<Candidate>| -> Option<(Study, usize, f64)> {
-        let stretch: Vec<usize> = path.points.iter().map(|p| p.stretch).collect();
-        let testable = vec![Held::Fully; study.y.len()];
-        let time_s: Vec<f64> = path.points.iter().map(|p| p.time_s).collect();
-        let rows = Rows {
-            y: &study.y,
-            stretch: &stretch,
-            testable: &testable,
-            time_s: &time_s,
-            weight: &study.weight,
-            period_s: path.period_s,
-        };
-        let coefficients = study.system.coefficients.clone();
-        let system = System::new(&study.base, &candidates, &rows, coefficients);
-        let picks: Vec<usize> = (0..chosen.len()).collect();
-        let selection =
-            Selection { system: &system, candidates: &candidates, threshold: 0.0, dry: true, one_loss: false };
-        let (term, score) = selection.unexplained(&picks)?;
-        let solved = system.solve(&picks);
-        let (y, base, weight) = (study.y.clone(), study.base.clone(), study.weight.clone());
-        Some((Study { candidates, chosen, system, solved, y, base, weight }, term, score))
-    };
-    made(candidates)
-}
-
-/// When a grasp slips, and for how long it creeps; at once without a duration.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Course {
-    start_s: f64,
-    duration_s: Option<f64>,
-}
-
-impl Course {
-    fn of(slip: &Candidate) -> Self {
-        Self { start_s: slip.searched[0].value, duration_s: slip.searched.get(1).map(|d| d.value) }
-    }
-
-    /// Share of the way that is behind it.
-    fn gone(self, time_s: f64) -> f64 {
-        let since_s = time_s - self.start_s;
-        self.duration_s.map_or(f64::from(u8::from(since_s >= 0.0)), |d| (since_s / d.max(1e-12)).clamp(0.0, 1.0))
-    }
-
-    /// What is tried at first. A grasp that creeps looks like a centre that wanders.
-    fn coarse(path: &Path) -> Vec<Self> {
-        let first = path.points.first().map_or(0.0, |p| p.time_s);
-        let span_s = path.span_s();
-        let slips = (1..SLIP_STARTS)
-            .map(|k| Self { start_s: first + span_s * k as f64 / SLIP_STARTS as f64, duration_s: None });
-        let creeps = CREEP_STARTS
-            .iter()
-            .flat_map(|start| CREEPS.map(|d| Self { start_s: first + span_s * start, duration_s: Some(span_s * d) }));
-        slips.chain(creeps).collect()
-    }
-
-    /// What lies around one that was found, and itself.
-    fn around(self, step_s: f64) -> Vec<Self> {
-        // Creeps were tried farther apart.
-        let wide_s = if self.duration_s.is_some() { CREEPS_APART * step_s } else { step_s };
-        let starts = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|s| self.start_s + s * wide_s);
-        let Some(duration_s) = self.duration_s else {
-            return starts.map(|start_s| Self { start_s, duration_s: None }).to_vec();
-        };
-        let lasts = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|s| duration_s + s * wide_s).into_iter().filter(|d| *d > step_s);
-        // What looked like a creep may have gone at once in the middle of it.
-        let middle_s = self.start_s + 0.5 * duration_s;
-        let at_once = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|s| Self { start_s: middle_s + s * wide_s, duration_s: None });
-        lasts.flat_map(|d| starts.map(|start_s| Self { start_s, duration_s: Some(d) })).chain(at_once).collect()
-    }
 }
 
 /// Which finger a cause of the joints is about.

@@ -9,7 +9,7 @@ use super::report::{Cause, CauseParameter, Diagnosis, Gain, Verdict};
 use super::system::solve;
 use super::track::{Row, Track};
 use crate::estimate::EstimateError;
-use crate::signal::derive::interpolate;
+use crate::signal::derive::{interpolate, interpolate_cubic};
 use haptics::law::{CoulombFriction, Effect, Inertia, Kind, Law};
 use haptics::recording::{Recording, Span};
 
@@ -192,6 +192,22 @@ pub fn put_back(recording: &Recording, late_s: f64) -> Recording {
         channel.values = interpolate(time_s, &channel.values, &later);
     }
     moved.slice(Span { first, end: last + 1 })
+}
+
+/// The recording with its motion as it was when the force was read that is recorded beside it: the force comes late by `apart_s`, a part of a sample. (A
+/// force between two samples has less noise than the others; a place hardly has any.)
+pub fn motion_apart(recording: &Recording, apart_s: f64) -> Recording {
+    let mut moved = recording.clone();
+    let Some(time_s) = recording.time_s.as_ref().filter(|t| t.len() > 2 && apart_s != 0.0) else { return moved };
+    let then: Vec<f64> = time_s.iter().map(|t| t - apart_s).collect();
+    for channel in moved.channels.iter_mut().filter(|c| is_motion(&c.name)) {
+        channel.values = interpolate_cubic(time_s, &channel.values, &then);
+    }
+    moved
+}
+
+fn is_motion(name: &str) -> bool {
+    name.split('_').next().is_some_and(|quantity| ["q", "dq", "x", "y", "z", "vx", "vy", "vz"].contains(&quantity))
 }
 
 fn is_force(name: &str) -> bool {

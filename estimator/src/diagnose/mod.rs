@@ -13,6 +13,7 @@ mod candidate;
 mod columns;
 mod compare;
 pub mod course;
+mod courses;
 mod dictionary;
 mod driven;
 mod experiment;
@@ -48,6 +49,7 @@ mod signs;
 mod slide;
 mod sliding;
 mod starts;
+mod strange_path;
 mod stuck;
 mod suspects;
 mod switch;
@@ -157,6 +159,12 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
 
 /// Bodies that are thrown, paths without a clock, transmissions, and what moves along one coordinate.
 fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    if let Some(chain) = recordings.iter().find(|r| crate::identify::mechanism::is_chain(r)) {
+        return Err(EstimateError::Other(format!(
+            "{} is of a chain of two joints, which cannot be diagnosed yet; `touchstone fit` tells its inertias, moments and frictions",
+            chain.name
+        )));
+    }
     if let Some(thrown) = impact::impact(recordings, options) {
         return thrown;
     }
@@ -186,7 +194,7 @@ pub fn validate(
         let channels = match task {
             Task::Crank => return along_a_crank(recording, diagnosis),
             Task::Mechanism => {
-                let recording = &late::put_back(recording, diagnosis.late_s);
+                let recording = &late::motion_apart(&late::put_back(recording, diagnosis.late_s), diagnosis.skew_s);
                 let along = diagnosis.along.ok_or_else(|| along::none(recording))?;
                 let path = along.path_of(recording)?;
                 let mut track = sliding::track(recording, &quality::faults(recording).bad, path.as_ref())?;
@@ -225,7 +233,7 @@ fn threshold(period_s: f64) -> f64 {
 
 fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     let mut tracks = Vec::new();
-    let (mut geometries, mut strange) = (Vec::new(), Vec::new());
+    let (mut geometries, mut strange, mut short) = (Vec::new(), Vec::new(), Vec::new());
     let mut faults = Vec::new();
     let mut swapped = Vec::new();
     let mut link = None;
@@ -249,7 +257,9 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
             scale = known_m.and_then(|r| quality::scaled("radius", circle.too_large(r)?));
         }
         tracks.push(rows);
-        strange.extend(geometry::unexplained(&signals.path(recording), &circle.arm, &circle.study));
+        let path = signals.path(recording);
+        strange.extend(strange_path::unexplained(&path, &circle.arm, &circle.study));
+        short.extend(strange_path::short_arc(&path, &circle.arm, &circle.study));
         geometries.push(circle.study);
     }
     let other = swapped.iter().any(Option::is_some).then(|| {
@@ -282,6 +292,7 @@ fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Estim
         format!("friction goes with the load on the bearing, {weight_n:.3} N of the handle's weight included, not with the fingers' pull alone")
     }));
     explain::add_of_path(&mut found, &strange);
+    found.warnings.extend(short);
     if options.atlas {
         found.atlas = atlas::atlas(&track, &study, limit);
     }
@@ -393,6 +404,31 @@ fn nothing() -> EstimateError {
 }
 
 fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let (mut found, mut rest_s) = mechanism_as_it_is(recordings, options)?;
+    // What is no delay, a part of a sample, is taken out of the motion itself: a stiff loop's force changes too fast for a straight line, which
+    // says too much of it.
+    for _ in 0..CLOSER {
+        let Some(more_s) = rest_s else { break };
+        let skew_s = found.skew_s + OF_SKEW * more_s;
+        let together: Vec<Recording> = recordings.iter().map(|r| late::motion_apart(r, skew_s)).collect();
+        let Ok((mut again, rest)) = mechanism_as_it_is(&together, options) else { break };
+        if again.causes.iter().any(|c| c.id == "time-delay") || again.end.heldout_rms_n > found.end.heldout_rms_n {
+            break;
+        }
+        again.skew_s = skew_s;
+        again.warnings.retain(|w| !w.starts_with(explain::APART));
+        again.warnings.push(explain::apart(skew_s));
+        (found, rest_s) = (again, rest);
+    }
+    Ok(found)
+}
+
+/// Rounds in which a skew of force and motion is taken out, and the share of what a straight line says of it.
+const CLOSER: usize = 2;
+const OF_SKEW: f64 = 0.7;
+
+/// The answer, and by what part of a sample force and motion are apart, s.
+fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Diagnosis, Option<f64>), EstimateError> {
     let mut faults = Vec::new();
     let mut tracks = Vec::new();
     let paths = crate::identify::mechanism::paths(recordings);
@@ -425,7 +461,8 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     if options.atlas {
         found.atlas = atlas::atlas(&track, &study, limit);
     }
-    Ok(found)
+    let skew_s = explain::skewed_s(&study, &track);
+    Ok((found, skew_s))
 }
 
 /// Laws of a mechanism that the sidecar states are no part of what is fitted.

@@ -325,6 +325,9 @@ pub struct Diagnosis {
     /// By how much forces were put back before anything else was asked, s.
     #[serde(skip)]
     pub(super) late_s: f64,
+    /// By what part of a sample its forces are apart from its motion, which is taken out and not called a delay, s.
+    #[serde(skip)]
+    pub skew_s: f64,
     /// The delay that is still left if there is one, significant or not, and its error, s.
     #[serde(skip)]
     pub(super) rest_s: Option<[f64; 2]>,

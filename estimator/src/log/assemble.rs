@@ -120,7 +120,8 @@ fn notes(plan: &Plan, table: &Table, headers: &[String], recording: &Recording) 
         let text = format!("the column `{name}` has no value in some rows and is not used");
         notes.push(note("text-column", Some(name), text));
     }
-    if !recording.channels.iter().any(|c| units::is_program_name(&c.name)) {
+    let is_known = recording.channels.iter().any(|c| units::is_program_name(&c.name));
+    if !is_known && !crate::identify::mechanism::is_chain(recording) {
         let text = "no column has a name that the program knows; map them with \"columns\" in the sidecar".to_owned();
         notes.push(note("no-known-column", None, text));
     }

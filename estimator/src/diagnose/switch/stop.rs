@@ -45,7 +45,11 @@ pub fn stop(seen: &Seen, known: Option<&Known<'_>>, threshold: f64) -> Result<Op
         base.push(of(&|r| direction(side(r))));
         let least = ERRORS * known.give_error_m_n;
         // However stiff other pads are, they do not give less than nothing.
-        let shape = Shape::Share { least: -MOST_STIFFER / known.pad.spring.k1.max(1e-9), most: f64::INFINITY };
+        let shape = Shape::Share {
+            least: -MOST_STIFFER / known.pad.spring.k1.max(1e-9),
+            whole: f64::NEG_INFINITY,
+            most: f64::INFINITY,
+        };
         candidates.push(plant("pad-compliance", "give", "m/N", force).at_least(least).shaped(shape));
         for (wanted, name) in [(0, "right stop is nearer by"), (1, "left stop is nearer by")] {
             let nearer = on(wanted).iter().map(|v| -v).collect();

@@ -20,6 +20,7 @@ mod terms;
 mod transmission;
 mod world;
 
+pub use chain::is_chain;
 pub use report::{OBJECT, PHASE};
 pub use world::{Prediction, measured, path_of, predict, world};
 
@@ -58,7 +59,7 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
     let first = recordings
         .first()
         .ok_or_else(|| EstimateError::Other("no recording was given; name at least one log".to_owned()))?;
-    if recordings.iter().all(chain::is_chain) {
+    if recordings.iter().all(is_chain) {
         return chain::fit(recordings);
     }
     if let Some(thrown) = super::tossed::fit(recordings) {

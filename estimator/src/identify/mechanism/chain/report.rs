@@ -81,8 +81,15 @@ impl Seen<'_> {
         let [a, b] = [COUPLING, MOMENT].map(|k| fit.std_errors[k] / fit.values[k]);
         let both = fit.covariance[(COUPLING, MOMENT)] / (fit.values[COUPLING] * fit.values[MOMENT]);
         let own = value.abs() * (a * a + b * b - 2.0 * both).max(0.0).sqrt();
+        let error = self.error(own, &length);
+        // A quotient of two numbers of which the lower one is next to nothing is anything.
+        if value <= CLEAR_T * error {
+            let why =
+                format!("it is uncertain by {error:.2e} m: gravity hardly pulls at the second link in this plane");
+            return Parameter::unidentified(OBJECT, NAME, samples, &why);
+        }
         let how = "coupling over the second link's gravity moment";
-        Parameter::identified(OBJECT, NAME, value, self.error(own, &length), samples, how)
+        Parameter::identified(OBJECT, NAME, value, error, samples, how)
     }
 
     /// A sentence about the filter, with how far the answers hang on it.

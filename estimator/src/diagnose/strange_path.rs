@@ -1,0 +1,108 @@
+//! What is left of a crank's path that no known cause explains, and an arc that is too short to tell its circle.
+
+use super::candidate::Candidate;
+use super::geometry::{Arm, Path, Study, residual};
+use super::select::{Chosen, Selection};
+use super::system::{Held, Rows, System};
+use crate::signal::noise::white_noise;
+use haptics::Vec2;
+use haptics::law::Kind;
+
+/// Generic waves round a turn, and slow ones over the recording.
+const WAVES: u32 = 4;
+const SLOW: u32 = 4;
+/// A path that is off its circle by more than this many times its noise should have a reason.
+const STRANGE: f64 = 2.0;
+/// An arc whose bulge is no more than this many times the noise of one place, or whose radius is known to no better than this share, is short.
+const BULGE: f64 = 12.0;
+const UNSURE: f64 = 0.05;
+
+/// What is left of a path that no known cause explains: waves round the turn (a circle has none beyond its centre's) and slow changes.
+fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
+    let angle = |i: usize| outward[i].y.atan2(outward[i].x);
+    let column = |of: &dyn Fn(usize) -> f64| (0..path.points.len()).map(of).collect::<Vec<f64>>();
+    let term = |expression: String, columns: Vec<Vec<f64>>| {
+        let linear = columns.iter().map(|_| ("amplitude", "m")).collect();
+        Candidate { expression: Some(expression), ..Candidate::several("other", Kind::Plant, columns, linear) }
+    };
+    let waves = (2..=WAVES).map(|n| {
+        let wave = |of: fn(f64) -> f64| column(&|i| of(f64::from(n) * angle(i)));
+        term(format!("cos({n} theta + phi) of the path"), vec![wave(f64::cos), wave(f64::sin)])
+    });
+    let (start_s, span_s) = (path.points.first().map_or(0.0, |p| p.time_s), path.span_s().max(1e-9));
+    let slow = (1..=SLOW).map(|k| {
+        let wave = |i: usize| (std::f64::consts::PI * f64::from(k) * (path.points[i].time_s - start_s) / span_s).cos();
+        term(format!("cos({k} pi t/T) of the path"), vec![column(&wave)])
+    });
+    waves.chain(slow).collect()
+}
+
+/// What is left of the path beside the causes that were found, if it is much more than the noise and goes with something: the generic term, its score
+/// and the comparison with it in place.
+pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<(Study, usize, f64)> {
+    let picks = study.picks();
+    let solved = study.solved.as_ref()?;
+    let left = residual(&study.y, &study.base, &study.candidates, &picks, solved);
+    let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len().max(1) as f64).sqrt();
+    if rms < STRANGE * white_noise(&study.y) {
+        return None;
+    }
+    let outward: Vec<Vec2> = path.points.iter().map(|p| (p.position - arm.center_m).normalize()).collect();
+    let candidates: Vec<Candidate> =
+        picks.iter().map(|p| study.candidates[*p].clone()).chain(generic(path, &outward)).collect();
+    let chosen = study.chosen.iter().enumerate().map(|(k, c)| Chosen { candidate: k, rivals: Vec::new(), ..c.clone() });
+    let chosen: Vec<Chosen> = chosen.collect();
+    let made = |candidates: Vec<Candidate>| -> Option<(Study, usize, f64)> {
+        let stretch: Vec<usize> = path.points.iter().map(|p| p.stretch).collect();
+        let testable = vec![Held::Fully; study.y.len()];
+        let time_s: Vec<f64> = path.points.iter().map(|p| p.time_s).collect();
+        let rows = Rows {
+            y: &study.y,
+            stretch: &stretch,
+            testable: &testable,
+            time_s: &time_s,
+            weight: &study.weight,
+            period_s: path.period_s,
+        };
+        let coefficients = study.system.coefficients.clone();
+        let system = System::new(&study.base, &candidates, &rows, coefficients);
+        let picks: Vec<usize> = (0..chosen.len()).collect();
+        let selection =
+            Selection { system: &system, candidates: &candidates, threshold: 0.0, dry: true, one_loss: false };
+        let (term, score) = selection.unexplained(&picks)?;
+        let solved = system.solve(&picks);
+        let (y, base, weight) = (study.y.clone(), study.base.clone(), study.weight.clone());
+        Some((Study { candidates, chosen, system, solved, y, base, weight }, term, score))
+    };
+    made(candidates)
+}
+
+/// Where an arc is too short against the noise of its places to tell its circle well: in a sentence. A centre that is read from less and less of a slow
+/// motion wanders by just that.
+pub fn short_arc(path: &Path, arm: &Arm, study: &Study) -> Option<String> {
+    let solved = study.solved.as_ref()?;
+    let mut before = 0.0_f64;
+    let angles = path.points.iter().map(|point| {
+        let arm = arm.arm(point.index, point.position);
+        let wrapped = arm.y.atan2(arm.x);
+        before = wrapped + ((before - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+        before
+    });
+    let [low, high] = angles.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], a| [l.min(a), h.max(a)]);
+    let arc_rad = (high - low).min(std::f64::consts::TAU);
+    let bulge_m = arm.radius_m * (1.0 - (0.5 * arc_rad).cos());
+    let noise_m = white_noise(&study.y);
+    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    let error_m = (variance * solved.inverse[(0, 0)]).sqrt();
+    (bulge_m < BULGE * noise_m || error_m > UNSURE * arm.radius_m).then(|| {
+        format!(
+            "the handle went over {:.0}° only, an arc that bulges by {:.2} mm where one place is known to {:.3} mm: the radius is {:.1} mm give or take {:.1}, and \
+             a circle may well come out too small; a centre that seems to wander in so slow or short a motion need not move: turn further",
+            arc_rad.to_degrees(),
+            1e3 * bulge_m,
+            1e3 * noise_m,
+            1e3 * arm.radius_m,
+            1e3 * error_m
+        )
+    })
+}
