@@ -5,10 +5,12 @@
 
 use blind::Share;
 use estimator::diagnose::{Options, Verdict, diagnose};
+use estimator::identify::block;
 use haptics::recording::{Recording, Span};
 use rayon::prelude::*;
 use std::sync::OnceLock;
 use std::time::{SystemTime, UNIX_EPOCH};
+use tests::generate::stacking_world;
 use tests::tasks::score::{Row, ask, table};
 use tests::tasks::{barrel, blocks, needle, slide, switch, throw};
 
@@ -182,6 +184,42 @@ fn a_slip_on_the_ground_is_dated_and_measured_from_the_very_contact_on() {
         let found = diagnose(&[recording], &Options::default()).expect("blocks were carried");
         assert!(found.causes.iter().all(|c| c.id != "fingertip-slip"), "seed {seed}: {:?}", found.causes);
     }
+}
+
+/// The same slips put the height of the block below off; the fit takes them out, says so, and knows by how much that is unsure.
+#[test]
+fn a_height_that_a_slip_put_off_is_put_right_by_the_fit() {
+    const WAY_M: f64 = -1.4e-3;
+    let cases: Vec<(u64, f64)> = (11..17).flat_map(|seed| [0.0, 0.05, 0.1].map(|s| (seed, s))).collect();
+    let told: Vec<(u64, f64, f64, bool)> = cases
+        .par_iter()
+        .map(|&(seed, since_s)| {
+            let (recording, _) = blocks::slipped(seed, since_s, WAY_M);
+            let (fit, _) = block::fit(&recording, None).expect("blocks were carried");
+            let (_, truth) = stacking_world(seed);
+            let height_m = truth[&("block-2".to_owned(), "height_m".to_owned())];
+            let found = fit.parameter("block-2", "height_m").expect("a height");
+            let off = (found.value.expect("a value") - height_m) / found.std_error.expect("an error");
+            (seed, since_s, off, fit.warnings.iter().any(|w| w.contains("the grip slipped on block-1")))
+        })
+        .collect();
+    assert!(told.iter().all(|(.., off, warned)| off.abs() < 4.0 && *warned), "{told:#?}");
+    for seed in 11..17 {
+        let (recording, _) = blocks::slipped(seed, 0.0, 0.0);
+        let (fit, _) = block::fit(&recording, None).expect("blocks were carried");
+        assert!(fit.warnings.iter().all(|w| !w.contains("slipped")), "seed {seed}: {:?}", fit.warnings);
+    }
+}
+
+/// Baseline and end are of the channel in which the strongest cause was found.
+#[test]
+fn figures_are_those_of_the_channel_of_the_strongest_cause() {
+    let (case, _) = needle::make(needle::Kind::Shaft, 3);
+    let found = diagnose(&case.recordings, &case.options).expect("a needle was pushed in");
+    let cause = found.causes.first().expect("a cause");
+    assert_eq!((cause.id.as_str(), found.baseline.of.as_deref()), ("coulomb-friction", Some("force on the shaft")));
+    assert!((found.baseline.heldout_rms_n - cause.gain.heldout_rms_before).abs() < 0.05 * found.baseline.heldout_rms_n);
+    assert!((found.end.heldout_rms_n - cause.gain.heldout_rms_after).abs() < 0.05 * found.end.heldout_rms_n);
 }
 
 /// What cannot be diagnosed is said in one sentence.

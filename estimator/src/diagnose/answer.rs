@@ -94,7 +94,8 @@ impl Part<'_> {
             why.clone()
         } else {
             format!(
-                "on data held out the {} that is left goes from {} to {} RMS",
+                "on data held out{} the {} that is left goes from {} to {} RMS",
+                if gain.in_turn { " of the fit in turn" } else { "" },
                 self.channel,
                 amount(gain.heldout_rms_before, self.unit),
                 amount(gain.heldout_rms_after, self.unit)
@@ -127,6 +128,10 @@ impl Part<'_> {
     fn unnamed(&self) -> Option<(Cause, String)> {
         let (candidate, score) = self.strange()?;
         let (cause, _) = unnamed(self.study, (candidate, score), (self.floor, self.unit));
+        // What takes nothing off data held out is no more left of the channel than its noise.
+        if cause.gain.no_share.is_none() && cause.gain.share_of_explainable <= 0.0 {
+            return None;
+        }
         let expression = cause.id.trim_start_matches("other:").to_owned();
         let channel = self.channel;
         let warning = format!(
@@ -180,7 +185,14 @@ pub struct Beside {
     pub warnings: Vec<String>,
 }
 
-/// The answer of several channels; the first one's figures stand for baseline and end.
+/// The channel that baseline and end are told of: that of the strongest cause, the first one where there is none.
+fn told<'a, 'b>(parts: &'b [Part<'a>]) -> Option<&'b Part<'a>> {
+    let strongest = |part: &Part<'_>| part.study.chosen.iter().map(|c| c.score).fold(0.0, f64::max);
+    // Of equals the last one would be taken.
+    parts.iter().rev().max_by(|a, b| strongest(a).total_cmp(&strongest(b)))
+}
+
+/// The answer of several channels.
 pub fn answer(
     parts: &[Part<'_>],
     beside: Beside,
@@ -224,15 +236,15 @@ pub fn answer(
         causes.push(cause);
         warnings.push(warning);
     }
-    let first = parts.first();
+    let told = told(parts);
     let figures = |picks: &[usize]| {
-        first.map_or((0.0, 0.0, 1.0), |part| {
+        told.map_or((0.0, 0.0, 1.0), |part| {
             let (heldout, train) = rms(part.study, picks, part.along);
             (heldout, train, whiteness_p(part.study, picks, part.stretch))
         })
     };
     let (heldout, train, white) = figures(&[]);
-    let picks = first.map(|p| p.study.picks()).unwrap_or_default();
+    let picks = told.map(|p| p.study.picks()).unwrap_or_default();
     let (end, _, end_white) = figures(&picks);
     Diagnosis {
         verdict,
@@ -243,11 +255,11 @@ pub fn answer(
             rms_nm: None,
             heldout_rms_nm: None,
             whiteness_p: white,
-            of: first.map(|p| p.channel.to_owned()),
-            unit: first.map(|p| p.unit.to_owned()),
+            of: told.map(|p| p.channel.to_owned()),
+            unit: told.map(|p| p.unit.to_owned()),
         },
         // What is left in the end has the noise in it.
-        noise_floor_n: first.map_or(0.0, |p| if end > 0.0 { p.floor.min(end) } else { p.floor }),
+        noise_floor_n: told.map_or(0.0, |p| if end > 0.0 { p.floor.min(end) } else { p.floor }),
         noise_floor_nm: None,
         residuals: parts.iter().flat_map(Part::residuals).collect(),
         next_experiment: next(&open),

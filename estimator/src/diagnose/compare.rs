@@ -1,11 +1,11 @@
 //! One channel of a residual that is no force along one coordinate: what the model leaves of it, and which causes explain that.
 
 use super::candidate::Candidate;
-use super::force::leave_out_what_harms;
-use super::gain::is_tested;
+use super::force::{CONFIRMED, SHOWN};
+use super::gain::{confirmed, gain, holds_out, is_tested};
 use super::geometry::{Study, residual};
 use super::select::Selection;
-use super::system::{Held, Rows, System, Use, solve, uses};
+use super::system::{Held, Rows, System, solve, uses};
 use super::white::whitener;
 use crate::estimate::EstimateError;
 
@@ -58,11 +58,28 @@ impl Channel {
         let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
         let solved = system.solve(&picks);
         let mut made = Study { candidates, chosen, system, solved, y, base, weight };
-        // Where too little is there to hold any out, nothing can be asked of it.
-        if made.system.uses.iter().any(|u| matches!(u, Use::Locked(_))) {
-            leave_out_what_harms(&mut made, &stretch, threshold, &|study, k| is_tested(study, k, &stretch));
-        }
+        leave_out_what_is_unsure(&mut made, &stretch, threshold);
         Ok(made)
+    }
+}
+
+/// Nothing is named that takes nothing off rows which were not fitted, where such rows could show it. Where too few rows are there to keep any out of
+/// the choice, they are left out of the fit in turn, and a cause must be beyond doubt, because it was chosen by all of them.
+fn leave_out_what_is_unsure(study: &mut Study, stretch: &[usize], threshold: f64) {
+    loop {
+        let is_unsure = |k: &usize| {
+            let gain = gain(study, *k, 0.0);
+            let gains_nothing = gain.no_share.is_none() && gain.heldout_rms_after >= gain.heldout_rms_before;
+            let is_doubtful = if holds_out(study) {
+                is_tested(study, *k, stretch) && confirmed(study, *k, stretch) < SHOWN
+            } else {
+                study.chosen[*k].score < CONFIRMED * threshold
+            };
+            gains_nothing || is_doubtful
+        };
+        let Some(k) = (0..study.chosen.len()).rev().find(is_unsure) else { return };
+        study.chosen.remove(k);
+        study.solved = study.system.solve(&study.picks());
     }
 }
 

@@ -106,10 +106,10 @@ fn calmer(track: &Track, made: &Study) -> Option<f64> {
 const HARMS: f64 = 1.05;
 
 /// A cause that scores less than this many times what is asked for must show on the locked blocks, too …
-const CONFIRMED: f64 = 2.5;
+pub const CONFIRMED: f64 = 2.5;
 /// … by more than this in 2 ln(likelihood): what is true is worth a third of its score there, what was searched for among noise as much less
 /// than nothing.
-const SHOWN: f64 = 1.0;
+pub const SHOWN: f64 = 1.0;
 
 /// A cause that makes more of an error for certain where it was not fitted is none, whatever it explains elsewhere; nor is one that scores
 /// little and shows nothing there, where it is `tested`. `stretch`: of each row. `threshold`: least score of a cause.
@@ -121,15 +121,20 @@ pub fn leave_out_what_harms(
 ) {
     let sure = CONFIRMED * threshold;
     loop {
-        let harms = |k: &usize| {
-            let gain = gain(study, *k, 0.0);
-            let worse = gain.heldout_rms_after > HARMS * gain.heldout_rms_before && gain.interval[1] < 0.0;
-            worse || study.chosen[*k].score < sure && tested(study, *k) && confirmed(study, *k, stretch) < SHOWN
+        let unsure = |k: &usize| {
+            harms(study, *k)
+                || study.chosen[*k].score < sure && tested(study, *k) && confirmed(study, *k, stretch) < SHOWN
         };
-        let Some(k) = (0..study.chosen.len()).rev().find(harms) else { return };
+        let Some(k) = (0..study.chosen.len()).rev().find(unsure) else { return };
         study.chosen.remove(k);
         study.solved = study.system.solve(&study.picks());
     }
+}
+
+/// Whether the k-th of the chosen causes makes more of an error for certain where it was not fitted.
+fn harms(study: &Study, k: usize) -> bool {
+    let gain = gain(study, k, 0.0);
+    gain.heldout_rms_after > HARMS * gain.heldout_rms_before && gain.interval[1] < 0.0
 }
 
 /// The force across the motion without the faults of the sensor that were found; whether that changes anything.

@@ -2,7 +2,7 @@
 
 use super::geometry::{Study, residual};
 use super::report::Gain;
-use super::system::Use;
+use super::system::{Use, solve};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Draws of the bootstrap over locked blocks.
@@ -19,6 +19,7 @@ const TESTED: f64 = 3.0;
 const LEAST_SHARE: f64 = 1e-3;
 
 /// Sums of squares over parts of the locked blocks, and rows.
+#[derive(Default)]
 struct Parts {
     before: Vec<f64>,
     after: Vec<f64>,
@@ -57,9 +58,13 @@ pub fn gain(study: &Study, k: usize, floor: f64) -> Gain {
 
 /// The gain by some causes more. What shows while the object stands is tested there, too.
 pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) -> Gain {
-    let (before, after) = (left(study, rest), left(study, picks));
     let more: Vec<usize> = picks.iter().filter(|p| !rest.contains(p)).copied().collect();
-    let parts = parts(study, &before, &after, shows_beside(study, &more));
+    let in_turn = !holds_out(study);
+    let parts = if in_turn {
+        parts_in_turn(study, rest, picks)
+    } else {
+        parts(study, &left(study, rest), &left(study, picks), shows_beside(study, &more))
+    };
     if parts.rows.is_empty() {
         return Gain { no_share: Some("there were too few rows to hold any out".to_owned()), ..Gain::default() };
     }
@@ -68,7 +73,7 @@ pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) 
     // The noise is no more than what is left in the end, whatever was measured of it elsewhere.
     let noise = (floor * floor * mean_square_weight(study)).min(a);
     let least = b - noise;
-    let measured = Gain { heldout_rms_before: b.sqrt(), heldout_rms_after: a.sqrt(), ..Gain::default() };
+    let measured = Gain { heldout_rms_before: b.sqrt(), heldout_rms_after: a.sqrt(), in_turn, ..Gain::default() };
     if parts.changed.iter().sum::<f64>() < TESTED * a.min(b) {
         return Gain { no_share: Some("nothing that was held out could show it".to_owned()), ..measured };
     }
@@ -82,6 +87,29 @@ pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) 
     };
     let interval = bootstrap(all.len(), DRAWS, &shares);
     Gain { share_of_explainable: share(b, a), interval, ..measured }
+}
+
+/// Whether rows were kept out of the choice and the fit. A short recording has too few for that.
+pub fn holds_out(study: &Study) -> bool {
+    study.system.uses.iter().any(|u| matches!(u, Use::Locked(_)))
+}
+
+/// Each fold as a fit to all other rows leaves it: what can be said where nothing could be kept out of the choice.
+fn parts_in_turn(study: &Study, rest: &[usize], picks: &[usize]) -> Parts {
+    let mut parts = Parts::default();
+    for (fold, (products, rows)) in study.system.folds.iter().enumerate().filter(|(_, (_, rows))| *rows > 0.0) {
+        let others = &study.system.train - products;
+        let left = |picks: &[usize]| {
+            let solved = solve(&others, &study.system.columns(picks), others.ncols() - 1)?;
+            let plain = residual(&study.y, &study.base, &study.candidates, picks, &solved);
+            Some(plain.iter().zip(&study.weight).map(|(r, w)| r * w).collect::<Vec<f64>>())
+        };
+        let (Some(before), Some(after)) = (left(rest), left(picks)) else { continue };
+        let own: Vec<usize> = (0..before.len()).filter(|i| study.system.uses[*i] == Use::Fold(fold)).collect();
+        let pieces = PARTS.min(*rows as usize).max(1);
+        own.chunks(own.len().div_ceil(pieces).max(1)).for_each(|part| parts.add(part, &before, &after));
+    }
+    parts
 }
 
 /// What the k-th of the chosen causes, all others in, takes off on the rows that neither chose nor fitted it, in 2 ln(likelihood) of the whitened
@@ -149,7 +177,8 @@ pub fn bootstrap(pieces: usize, draws: usize, figure: &dyn Fn(&[usize]) -> f64) 
 }
 
 fn mean_square_weight(study: &Study) -> f64 {
-    let locked = (0..study.weight.len()).filter(|i| matches!(study.system.uses[*i], Use::Locked(_)));
+    let is_held_out = |u: Use| if holds_out(study) { matches!(u, Use::Locked(_)) } else { matches!(u, Use::Fold(_)) };
+    let locked = (0..study.weight.len()).filter(|i| is_held_out(study.system.uses[*i]));
     let (sum, n) = locked.fold((0.0, 0_u32), |(s, n), i| (s + study.weight[i].powi(2), n + 1));
     if n > 0 { sum / f64::from(n) } else { 1.0 }
 }
@@ -166,16 +195,23 @@ fn parts(study: &Study, before: &[f64], after: &[f64], with_beside: bool) -> Par
             _ => None,
         })
         .collect();
-    let mut parts = Parts { before: Vec::new(), after: Vec::new(), changed: Vec::new(), rows: Vec::new() };
+    let mut parts = Parts::default();
     for block in locked.chunk_by(|a, b| a.0 == b.0) {
-        for part in block.chunks(block.len().div_ceil(PARTS).max(1)) {
-            parts.before.push(part.iter().map(|(_, i)| before[*i].powi(2)).sum());
-            parts.after.push(part.iter().map(|(_, i)| after[*i].powi(2)).sum());
-            parts.changed.push(part.iter().map(|(_, i)| (before[*i] - after[*i]).powi(2)).sum());
-            parts.rows.push(part.len() as f64);
-        }
+        let rows: Vec<usize> = block.iter().map(|(_, i)| *i).collect();
+        rows.chunks(rows.len().div_ceil(PARTS).max(1)).for_each(|part| parts.add(part, before, after));
     }
     parts
+}
+
+impl Parts {
+    /// One more part: these rows, as they are left without the cause and with it.
+    fn add(&mut self, rows: &[usize], before: &[f64], after: &[f64]) {
+        let sum = |of: &dyn Fn(usize) -> f64| rows.iter().map(|i| of(*i).powi(2)).sum::<f64>();
+        self.before.push(sum(&|i| before[i]));
+        self.after.push(sum(&|i| after[i]));
+        self.changed.push(sum(&|i| before[i] - after[i]));
+        self.rows.push(rows.len() as f64);
+    }
 }
 
 fn means(parts: &Parts, picked: &[usize]) -> [f64; 2] {

@@ -78,6 +78,9 @@ pub struct Gain {
     /// Why there is no share, where share and interval are 0 for that.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_share: Option<String>,
+    /// True where too few rows were there to keep any out of the choice: each was then left out of the fit in turn, but not of the choice.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub in_turn: bool,
     /// Unit of what is unexplained; nothing where nothing was held out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,

@@ -1,17 +1,16 @@
 //! Height of the grip while a held block stands on something: give of the pads under the load, and slips of the fingers.
 
-use super::moved::LEAST_M;
 use super::seen::Seen;
-use super::slips::slips;
+use super::slips::{slips, ways};
 use crate::diagnose::answer::{Compared, Found, parameter};
 use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::{Channel, stretches};
 use crate::diagnose::report::CauseParameter;
-use crate::diagnose::searched::carried_over;
 use crate::estimate::EstimateError;
 use crate::identify::block::heights::{Rest, rests};
 use crate::identify::block::object;
+use crate::identify::block::slipping::{LEAST_M, may_stand};
 use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
 use crate::signal::task::half_width;
@@ -21,7 +20,7 @@ use haptics::world::World;
 /// Fewer rows of a rest show nothing.
 const LEAST_ROWS: usize = 8;
 /// Fewer rows in all cannot be held out in turn.
-const LEAST_IN_ALL: usize = 50;
+const LEAST_IN_ALL: usize = 24;
 /// Of so many rows one may be held out: every rest is seen while it is fitted, from its beginning to its end. The first ones never are: when a slip
 /// at the very contact began shows in nothing else.
 const HELD_OUT: usize = 2;
@@ -54,6 +53,8 @@ pub struct Ground {
     pub view: View,
     pub stands: Vec<Stand>,
     rows: Rows,
+    /// Each slip's time, s, and its way and the error of that with its time open, m.
+    ways: Vec<[f64; 3]>,
 }
 
 #[derive(Default)]
@@ -125,6 +126,7 @@ pub fn ground(
     };
     let floor_m = white_noise(&rows.height_m);
     let study = channel.compare_in(&spread(&along), threshold)?;
+    let ways = ways(&rows, &stands, &model, &study);
     let channel = "height of the grip over the ground";
     let compared = Compared {
         study,
@@ -143,7 +145,7 @@ pub fn ground(
         way: Vec::new(),
         is_angular: false,
     };
-    Ok(Some(Ground { compared, view, stands, rows }))
+    Ok(Some(Ground { compared, view, stands, rows, ways }))
 }
 
 /// The order in which rows are held out together: blocks of rows from all over the rests. What a slip is worth shows on rows before and after it,
@@ -176,7 +178,7 @@ fn add(
         (begins_s.unwrap_or(0.0), rest.samples.clone())
     };
     let picked = one.every(samples.into_iter());
-    if picked.len() < LEAST_ROWS {
+    if picked.len() < LEAST_ROWS || !may_stand(picked.iter().map(|i| one.blocks.height[*i])) {
         return;
     }
     let half = half_width(&one.blocks.signals.time_s);
@@ -222,10 +224,11 @@ impl Ground {
     pub fn states(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         match candidate.id {
             "fingertip-slip" => {
-                let study = &self.compared.study;
-                let own = study.picks().iter().position(|p| study.candidates[*p].id == candidate.id);
-                let when = own.map_or(0.0, |k| carried_over(study, k));
-                found.iter_mut().take(1).for_each(|way| way.std_error = way.std_error.hypot(when));
+                let at = candidate.searched.iter().find(|s| s.name == "t0").map(|s| s.value);
+                let open = self.ways.iter().find(|[t0, ..]| Some(*t0) == at);
+                for (way, [_, way_m, error_m]) in found.iter_mut().zip(open) {
+                    (way.value, way.std_error) = (*way_m, way.std_error.hypot(*error_m));
+                }
                 found
             }
             // Two pads side by side; the give of one is twice what the pair's is, so its stiffness half.

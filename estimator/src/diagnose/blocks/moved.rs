@@ -7,11 +7,10 @@ use crate::diagnose::answer::parameter;
 use crate::diagnose::gain::chi_square_tail;
 use crate::diagnose::report::{Cause, Gain};
 use crate::identify::block::object;
+use crate::identify::block::slipping::LEAST_M;
 use haptics::law::Kind;
 use haptics::world::World;
 
-/// Less than this is how blocks turn in the grasp and how flat they are, m.
-pub const LEAST_M: f64 = 3e-4;
 /// So many standard errors make a slip.
 const ERRORS: f64 = 5.0;
 /// A height of a world that does not say how well it is known, as a share.
@@ -60,6 +59,7 @@ pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause>
             share_of_explainable: share,
             interval: [1.0 - (2.0 * error / way).powi(2), 1.0],
             no_share: None,
+            in_turn: false,
             unit: Some("m".to_owned()),
             rollout: None,
         },

@@ -1,8 +1,8 @@
 //! What a diagnosis looks at in a recording of carried blocks: states from the pipeline, all channels through one filter.
 
 use crate::estimate::EstimateError;
+use crate::identify::block::landing::{stands_from, usual_lift};
 use crate::identify::block::{Blocks, MAIN, object};
-use crate::segment::threshold::percentile;
 use crate::segment::{Method, SystemState};
 use crate::signal::noise::white_noise;
 use crate::signal::task::{half_width, smooth};
@@ -20,8 +20,6 @@ const BEFORE: usize = 6;
 const OTHER_LIFT: f64 = 0.05;
 /// A lift is another one, or less than the whole, when the noise alone would hardly ever make the difference: so many standard deviations.
 const SURELY: f64 = 4.0;
-/// A weight that changes by less than this share in a carry is taken for one that does not.
-const LEAST_CHANGE: f64 = 0.1;
 /// A block that was just lifted swings behind its pads, s.
 const SWINGS_S: f64 = 0.12;
 /// The ground takes over a block within the first of these rows at either end of a carry; the lift of those up to the second is the
@@ -128,13 +126,17 @@ impl<'a> Seen<'a> {
 
     /// Whether the lift of a sample is less than all of what is carried in `rows`. `cross`: what each finger's vertical force has of its horizontal one.
     fn light(&self, rows: &[usize], cross: [f64; 2]) -> impl Fn(&usize) -> bool + use<'_, 'a> {
-        let lift =
-            move |i: usize| self.blocks.lift[i] - cross[0] * self.force[0][0][i] - cross[1] * self.force[1][0][i];
-        let usual = self.usual_lift(rows, &lift);
+        let lift = self.lift_without(cross);
+        let usual = usual_lift(&self.blocks.signals.time_s, rows, &lift);
         move |i| {
             let whole = usual(self.time_s(*i));
             lift(*i) < (WHOLE * whole).min(whole - SURELY * self.lift_noise_n)
         }
+    }
+
+    /// Lift of a sample without what each finger's vertical force has of its horizontal one.
+    fn lift_without(&self, cross: [f64; 2]) -> impl Fn(usize) -> f64 + use<'_, 'a> {
+        move |i| self.blocks.lift[i] - cross[0] * self.force[0][0][i] - cross[1] * self.force[1][0][i]
     }
 
     /// Samples in which a block stands after its carry, and the time from which it does: when the load has begun to go over to what is below. The
@@ -150,27 +152,14 @@ impl<'a> Seen<'a> {
             return (0.0, Vec::new());
         };
         let known = rest.first().copied().or_else(|| Some(standing.last()? + 1)).unwrap_or(first);
-        let (least, light) = (carried.last().map_or(first, |last| last + 1), self.light(&carried, cross));
-        let from = (least..first).rev().take_while(light).last().unwrap_or(first);
+        // Not before the middle of the carry; without a break from there on.
+        let least = carried.get(carried.len() / 2).map_or(first, |middle| *middle).min(first);
+        let lift = self.lift_without(cross);
+        let from = stands_from(&self.blocks, &carried, least..first, &lift);
         // The filter looks this far back into the air.
         let settled = if from < known { from + half_width(&self.blocks.signals.time_s) } else { from };
         let rest = rest.iter().copied().filter(|i| *i >= settled);
         (self.time_s(from), (settled..known).chain(rest).collect())
-    }
-
-    /// Usual lift over the time of a carry, N: steady, or changing evenly where contents run out.
-    fn usual_lift(&self, rows: &[usize], lift: &dyn Fn(usize) -> f64) -> impl Fn(f64) -> f64 + use<> {
-        let middle = |rows: &[usize]| percentile(&mut rows.iter().map(|i| lift(*i)).collect::<Vec<_>>(), 0.5);
-        let whole = middle(rows);
-        let (early, late) = rows.split_at(rows.len() / 2);
-        let (mut slope, mut start_s) = (0.0, 0.0);
-        if let ([first, ..], [.., last]) = (early, late) {
-            let (change, span_s) = (middle(late) - middle(early), self.time_s(*last) - self.time_s(*first));
-            if change.abs() > LEAST_CHANGE * whole.abs() && span_s > 0.0 {
-                (slope, start_s) = (2.0 * change / span_s, self.time_s(*first) + 0.5 * span_s);
-            }
-        }
-        move |time_s| whole + slope * (time_s - start_s)
     }
 
     /// What is heavy is lifted, and put down, in longer than a row: at both ends of a carry the ground may have a part of it.

@@ -3,7 +3,7 @@
 use super::Channel;
 use crate::diagnose::answer::{Beside, Compared, answer};
 use crate::diagnose::candidate::Candidate;
-use crate::diagnose::gain::gain;
+use crate::diagnose::gain::{gain, holds_out};
 use crate::diagnose::geometry::Study;
 use crate::diagnose::system::Use;
 use crate::segment::SystemState;
@@ -105,4 +105,35 @@ fn what_has_no_name_has_a_gain_and_a_size() {
     assert!(cause.gain.share_of_explainable > 0.5 && cause.gain.unit.as_deref() == Some("N"), "{cause:?}");
     assert!(cause.posterior > 0.9 && (cause.parameters[0].value - 0.1).abs() < 0.03, "{cause:?}");
     assert!(cause.evidence.contains("something"), "{}", cause.evidence);
+}
+
+/// The first rows of the same, too few to keep any out of the choice.
+fn short(size: f64, seed: u64) -> Study {
+    const FEW: usize = 44;
+    let (noise, column) = (noise(seed), to_and_fro());
+    let channel = Channel {
+        y: noise.iter().zip(&column).map(|(n, c)| n + size * c).take(FEW).collect(),
+        base: vec![vec![1.0; FEW]],
+        candidates: vec![Candidate::one("coulomb-friction", Kind::Plant, "Fc", "N", column[..FEW].to_vec())],
+        stretch: vec![0; FEW],
+        testable: vec![true; FEW],
+        weight: vec![1.0; FEW],
+        period_s: 0.02,
+    };
+    channel.compare(THRESHOLD).expect("a constant fits")
+}
+
+#[test]
+fn where_nothing_can_be_kept_out_of_the_choice_a_cause_must_be_beyond_doubt() {
+    for seed in 0..12 {
+        let found = short(0.3, seed);
+        assert!(!holds_out(&found) && found.picks() == [0], "seed {seed}");
+        let worth = gain(&found, 0, NOISE);
+        assert!(
+            worth.in_turn && worth.share_of_explainable > 0.8 && worth.no_share.is_none(),
+            "seed {seed}: {worth:?}"
+        );
+        let small = short(0.08, seed);
+        assert!(small.chosen.iter().all(|c| c.score >= 2.5 * THRESHOLD), "seed {seed}: {:?}", small.chosen);
+    }
 }

@@ -98,6 +98,7 @@ fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
         share_of_explainable: all,
         interval: [all - 1.96 * spread, (all + 1.96 * spread).min(1.0)],
         no_share: None,
+        in_turn: false,
         unit: Some("m".to_owned()),
         rollout: None,
     }

@@ -116,6 +116,7 @@ fn imagine(needle: &Needle, motion: &Insertions, free_s: f64) -> Needle {
             time_s,
             depth_m: depth,
             rate_m_s: rate,
+            side_m: 0.0,
             acceleration_m_s2: 4.0 * (after - 2.0 * depth + before) / (period_s * period_s),
             force_n: 0.0,
             phase,

@@ -22,7 +22,7 @@ use rows::{Needle, Puncture};
 
 /// Punctures whose forces scatter by more than this (χ², beside what freedom costs) are not of one sheet.
 const UNEVEN: f64 = 25.0;
-/// A puncture force is known within this share: it lies between two samples.
+/// Puncture forces of one sheet are the same within this share.
 const PUNCTURE_SHARE: f64 = 0.03;
 
 /// Diagnoses recordings of one needle and one sheet, all together.
@@ -42,7 +42,7 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         warnings: left_out,
         ..Beside::default()
     };
-    beside.causes.extend(punctures(&seen, &names));
+    beside.causes.extend(punctures(&seen, &names, &|p| sheet::level_n(&sheet.study, p)));
     if shaft.is_none() {
         let why = "the needle hardly moved in a hole; push it through and draw it out";
         let ids = ["coulomb-friction", "friction-change", "viscous-friction"];
@@ -103,16 +103,19 @@ fn joined(recordings: &[Recording]) -> Result<(Needle, Vec<&str>, Vec<String>), 
     }
 }
 
-/// Puncture forces that differ from one insertion to the next: no law of the catalogue has that. `names`: of the recordings.
-fn punctures(seen: &Needle, names: &[&str]) -> Option<Cause> {
+/// Puncture forces that differ from one insertion to the next: no law of the catalogue has that. `names`: of the recordings; `level_n`: what the
+/// sensor reads at a puncture without the sheet.
+fn punctures(seen: &Needle, names: &[&str], level_n: &dyn Fn(&Puncture) -> f64) -> Option<Cause> {
     let n = seen.punctures.len() as f64;
-    let mean = seen.punctures.iter().map(|p| p.force_n).sum::<f64>() / n;
-    let error = PUNCTURE_SHARE * mean;
-    let scatter: f64 = seen.punctures.iter().map(|p| ((p.force_n - mean) / error).powi(2)).sum();
+    let all: Vec<Puncture> =
+        seen.punctures.iter().map(|p| Puncture { force_n: p.force_n - level_n(p), ..*p }).collect();
+    let mean = all.iter().map(|p| p.force_n).sum::<f64>() / n;
+    let error = |p: &Puncture| (PUNCTURE_SHARE * mean).hypot(p.error_n);
+    let scatter: f64 = all.iter().map(|p| ((p.force_n - mean) / error(p)).powi(2)).sum();
     if n < 2.0 || scatter < UNEVEN {
         return None;
     }
-    let (first, last) = (seen.punctures.first()?, seen.punctures.last()?);
+    let (first, last) = (all.first()?, all.last()?);
     let told = |p: &Puncture| {
         let within = names.get(p.recording).filter(|_| names.len() > 1).map_or(String::new(), |n| format!(" of {n}"));
         format!("{:.2} N at {:.1} s{within}", p.force_n, p.time_s)
@@ -120,7 +123,10 @@ fn punctures(seen: &Needle, names: &[&str]) -> Option<Cause> {
     Some(Cause {
         id: "other:puncture force over time".to_owned(),
         kind: Kind::Plant,
-        parameters: vec![parameter("from", first.force_n, error, "N"), parameter("to", last.force_n, error, "N")],
+        parameters: vec![
+            parameter("from", first.force_n, error(first), "N"),
+            parameter("to", last.force_n, error(last), "N"),
+        ],
         p_value: chi_square_tail(scatter, n - 1.0),
         posterior: 1.0,
         gain: Gain {
@@ -148,3 +154,6 @@ fn next(open: &[Alternative]) -> Option<NextExperiment> {
         experiment: None,
     })
 }
+
+#[cfg(test)]
+mod tests;

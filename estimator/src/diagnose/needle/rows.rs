@@ -52,6 +52,8 @@ pub struct Row {
     pub depth_m: f64,
     pub rate_m_s: f64,
     pub acceleration_m_s2: f64,
+    /// Way across the needle, m: another place of the sheet.
+    pub side_m: f64,
     pub force_n: f64,
     pub phase: Phase,
     /// Which hold (grip) and which place of the sheet.
@@ -82,6 +84,10 @@ pub struct Puncture {
     pub recording: usize,
     pub time_s: f64,
     pub force_n: f64,
+    /// What it may be off, N: it lies between two samples, and they are noisy.
+    pub error_n: f64,
+    /// Which hold it belongs to.
+    pub hold: usize,
 }
 
 /// A recording of a needle, or several of the same needle and sheet.
@@ -117,7 +123,8 @@ impl Needle {
             stretch: stretch + row.stretch,
             ..row
         }));
-        self.punctures.extend(later.punctures.into_iter().map(|p| Puncture { recording, ..p }));
+        let holds = self.holds;
+        self.punctures.extend(later.punctures.into_iter().map(|p| Puncture { recording, hold: holds + p.hold, ..p }));
         let weight = self.recordings as f64;
         self.stiffness_n_m = (weight * self.stiffness_n_m + later.stiffness_n_m) / (weight + 1.0);
         self.recordings += 1;
@@ -161,6 +168,7 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
             depth_m: depth.value[i] - surface_m,
             rate_m_s: depth.slope[i],
             acceleration_m_s2: acceleration[i],
+            side_m: along.side_m[i],
             force_n: force.value[i],
             phase,
             hold,
@@ -178,8 +186,12 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     let half = half_width(&time) as f64;
     let spread = half * (half + 1.0) * (2.0 * half + 1.0) / 3.0;
     let slope_noise_m_s = white_noise(&own) / (spread.sqrt() * step_s.max(1e-9));
-    let puncture = |i: usize| Puncture { recording: 0, time_s: time[i] - time[0], force_n: along.force_n[i] };
-    let punctures = pushes.iter().filter_map(|p| p.puncture).map(puncture).collect();
+    let punctures = pushes.iter().filter_map(|p| Some((p, p.puncture?))).map(|(push, i)| {
+        let step_n = sheet.loading.stiffness_n_m * (depth.slope[i] * step_s).abs();
+        let (time_s, force_n) = (time[i] - time[0], along.force_n[i]);
+        Puncture { recording: 0, time_s, force_n, error_n: step_n.hypot(along.noise_n), hold: push.hold }
+    });
+    let punctures = punctures.collect();
     Ok(Needle {
         rows,
         recordings: 1,

@@ -1,16 +1,24 @@
 //! The sheet before it is pierced, and the sensors: force over depth against a spring that is the same at every depth.
 
-use super::rows::{Needle, Phase, Row};
+use super::rows::{Needle, Phase, Puncture, Row};
 use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::experiment::Imagined;
+use crate::diagnose::geometry::Study;
 use crate::estimate::EstimateError;
+use crate::identify::linear::{least_squares, least_squares_values};
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 use haptics::law::object::MembraneLaw;
 
+/// Rows follow each other within so many of their distances.
+const NEXT: f64 = 1.5;
+/// Pushes within this of each other, m, are at one place of the sheet.
+const OTHER_PLACE_M: f64 = 5e-4;
+/// A sheet lies askew when it does so by this many standard errors.
+const CLEARLY_ASKEW: f64 = 3.0;
 /// Shares of the deepest insertion that may stay as a dent.
 const DENTS: [f64; 16] = [0.04, 0.07, 0.1, 0.13, 0.16, 0.19, 0.22, 0.25, 0.28, 0.32, 0.36, 0.4, 0.45, 0.5, 0.58, 0.66];
 
@@ -34,6 +42,39 @@ impl Columns {
     }
 }
 
+/// Puts depths right by how the sheet of a recording lies across the needle's way, where that is clear: the way is known from forces, within a few
+/// thousandths, and no sheet is square to it, so that each place is met a little elsewhere. Each is pushed at its own speed, which would pass for drag.
+fn square(needle: &Needle, recording: usize, rows: &mut [Row]) {
+    let met = |r: &Row| r.recording == recording && touches(r);
+    let sides = rows.iter().filter(|r| met(r)).map(|r| r.side_m);
+    let (low, high) = sides.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), s| (l.min(s), h.max(s)));
+    let middle_m = 0.5 * (low + high);
+    if high - low > OTHER_PLACE_M
+        && let Some(slope) = slope_across(needle, rows.iter().filter(|r| r.recording == recording), middle_m)
+    {
+        for row in rows.iter_mut().filter(|r| met(r)) {
+            let nearer_m = slope * (row.side_m - middle_m);
+            (row.depth_m, row.deepest_m) = (row.depth_m - nearer_m, row.deepest_m - nearer_m);
+        }
+    }
+}
+
+/// How much farther the sheet is met a metre across the needle's way; `None` where that is no more than its error.
+fn slope_across<'a>(needle: &Needle, rows: impl Iterator<Item = &'a Row>, middle_m: f64) -> Option<f64> {
+    let rows: Vec<&Row> = rows.filter(|r| r.phase != Phase::Unloading).collect();
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(|r| f(r)).collect::<Vec<f64>>();
+    let pressed = |of: &dyn Fn(&Row) -> f64, r: &Row| if touches(r) { of(r) } else { 0.0 };
+    let k = needle.stiffness_n_m;
+    let mut columns = vec![of(&|r| pressed(&|r| -k * (r.side_m - middle_m), r))];
+    columns.push(of(&|r| pressed(&|_| 1.0, r)));
+    columns.push(of(&|r| pressed(&|r| r.depth_m, r)));
+    columns.push(of(&|r| pressed(&|r| r.depth_m.powi(3), r)));
+    columns.push(of(&|r| r.time_s - r.start_s));
+    columns.extend((0..needle.holds).map(|h| of(&|r| f64::from(u8::from(r.phase != Phase::Empty && r.hold == h)))));
+    let fit = least_squares(&columns, &of(&|r| r.force_n), None).ok()?;
+    (fit.identified[0] && fit.values[0].abs() > CLEARLY_ASKEW * fit.std_errors[0]).then_some(fit.values[0])
+}
+
 fn touches(r: &Row) -> bool {
     matches!(r.phase, Phase::Loading | Phase::Unloading) && r.depth_m > 0.0
 }
@@ -42,6 +83,7 @@ fn touches(r: &Row) -> bool {
 pub fn columns(needle: &Needle, law: Option<&MembraneLaw>) -> Columns {
     let mut rows: Vec<Row> = needle.rows.iter().filter(|r| r.phase != Phase::Hole).copied().collect();
     let floor_n = white_noise(&rows.iter().map(|r| r.force_n).collect::<Vec<f64>>());
+    (0..needle.recordings).for_each(|recording| square(needle, recording, &mut rows));
     shuffle(&mut rows);
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let is_held = |r: &Row| r.phase != Phase::Empty;
@@ -122,7 +164,7 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
     let y = of(&|r| r.force_n);
     let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
     let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();
-    let weight = vec![1.0; y.len()];
+    let weight = vec![said_by_a_row(needle, &rows, &base, &candidates)?; y.len()];
     let channel = Channel {
         y,
         base,
@@ -141,6 +183,62 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         ..view(&rows)
     };
     Ok((compared, view))
+}
+
+/// What a row's noise is smaller by for the comparison: rows are dealt out, so that noise that goes on from one to the next is not taken out of
+/// them, and each says less than its own (1 where it is white). Learnt outside of the sheet, from what slow changes leave.
+fn said_by_a_row(
+    needle: &Needle,
+    rows: &[Row],
+    base: &[Vec<f64>],
+    candidates: &[Candidate],
+) -> Result<f64, EstimateError> {
+    /// So many standard errors of a correlation are no chance.
+    const CLEAR: f64 = 3.0;
+    let free: Vec<usize> = (0..rows.len()).filter(|i| !touches(&rows[*i])).collect();
+    let slow = candidates.iter().filter(|c| c.id == "force-drift" || c.expression.is_some());
+    let here = |column: &Vec<f64>| free.iter().map(|i| column[*i]).collect::<Vec<f64>>();
+    let mut columns: Vec<Vec<f64>> = base.iter().chain(slow.flat_map(|c| &c.columns)).map(here).collect();
+    columns.retain(|column| column.iter().any(|v| *v != 0.0));
+    let y: Vec<f64> = free.iter().map(|i| rows[*i].force_n).collect();
+    if y.len() < 2 * columns.len() {
+        return Ok(1.0);
+    }
+    let fit = least_squares_values(&columns, &y, None)?;
+    let left = |k: usize| y[k] - columns.iter().zip(&fit.values).map(|(c, v)| c[k] * v).sum::<f64>();
+    let mut in_time: Vec<(f64, f64)> = free.iter().enumerate().map(|(k, i)| (rows[*i].time_s, left(k))).collect();
+    in_time.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Correlation of rows so many apart, and of how many pairs.
+    let correlation = |lag: usize| {
+        let near = |run: &&[(f64, f64)]| run[lag].0 - run[0].0 < (lag as f64 + NEXT - 1.0) * needle.period_s;
+        let pairs = in_time.windows(lag + 1).filter(near).map(|run| (run[0].1, run[lag].1));
+        let sums = pairs.fold((0.0, 0.0, 0.0_f64), |(product, square, n), (a, b)| {
+            (product + a * b, square + 0.5 * (a * a + b * b), n + 1.0)
+        });
+        (if sums.1 > 0.0 { sums.0 / sums.1 } else { 0.0 }, sums.2)
+    };
+    let ((first, pairs), (second, _)) = (correlation(1), correlation(2));
+    // What a mean over many rows is worse by: white noise beside such that dies away by one share from row to row.
+    let share = (second / first.max(1e-9)).clamp(first.clamp(0.0, 0.95), 0.95);
+    let is_clear = first * pairs.sqrt() > CLEAR;
+    Ok(if is_clear { (1.0 + 2.0 * first / (1.0 - share)).powf(-0.5) } else { 1.0 })
+}
+
+/// What the sensor reads at a puncture without the sheet, N: what is held, and the faults of the sensor that were found.
+pub fn level_n(study: &Study, at: &Puncture) -> f64 {
+    let Some(solved) = &study.solved else { return 0.0 };
+    let mut level = solved.values[at.hold];
+    let mut place = study.base.len();
+    for candidate in study.picks().into_iter().map(|p| &study.candidates[p]) {
+        let own = candidate.searched.iter().all(|s| s.name != "recording" || s.value == (at.recording + 1) as f64);
+        level += match candidate.id {
+            "force-bias" => solved.values[place],
+            "force-drift" if own => solved.values[place] * at.time_s,
+            _ => 0.0,
+        };
+        place += candidate.columns.len();
+    }
+    level
 }
 
 /// What rows of a needle are seen against.

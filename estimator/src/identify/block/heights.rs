@@ -11,6 +11,7 @@
 //! Several recordings of the same blocks share heights and gives; grasps are each one's own. What was restacked in one recording and
 //! left alone in another is then known in both.
 
+use super::slipped::{Slipped, slips};
 use super::{Blocks, MAIN, object};
 use crate::estimate::{EstimateError, Parameter};
 use crate::identify::bootstrap::{Resampled, block_bootstrap_within};
@@ -51,6 +52,8 @@ struct Rows {
     height: Vec<f64>,
     /// What the height changes by when the floor's contact gives 1 m/N more than the others.
     floor: Vec<f64>,
+    /// What the height may be off by what was taken out for slips, m.
+    slipped: Vec<f64>,
     /// Rows of each rest.
     stretches: Vec<Range<usize>>,
 }
@@ -60,11 +63,19 @@ pub(super) struct Stacked<'a> {
     blocks: &'a Blocks<'a>,
     weights_n: &'a [f64],
     rests: Vec<Rest>,
+    slips: Vec<Slipped>,
 }
 
 impl<'a> Stacked<'a> {
     pub(super) fn new(blocks: &'a Blocks<'a>, weights_n: &'a [f64]) -> Self {
-        Self { blocks, weights_n, rests: rests(blocks, weights_n.len().min(blocks.count())) }
+        let rests = rests(blocks, weights_n.len().min(blocks.count()));
+        let slips = slips(blocks, &rests);
+        Self { blocks, weights_n, rests, slips }
+    }
+
+    /// What of the heights was put right.
+    pub(super) fn warnings(&self) -> impl Iterator<Item = String> {
+        self.slips.iter().map(|slip| slip.told(&self.blocks.recording.name, &self.rests[slip.rest]))
     }
 }
 
@@ -113,6 +124,7 @@ pub(super) fn heights(seen: &[Stacked<'_>]) -> Result<Vec<Parameter>, EstimateEr
     // What it would change if the floor gave differently from the blocks.
     let shift: Vec<f64> = rows.floor.iter().map(|f| f * CONTACTS_DIFFER * give).collect();
     let floor = least_squares(&rows.columns, &shift, None)?;
+    let slipped = least_squares(&rows.columns, &rows.slipped, None)?;
     for number in 1..=count {
         let column = at.blocks + number - 1;
         let below = rests().filter(|r| r.below.contains(&(number - 1))).map(|r| r.samples.len()).sum::<usize>();
@@ -125,6 +137,7 @@ pub(super) fn heights(seen: &[Stacked<'_>]) -> Result<Vec<Parameter>, EstimateEr
         }
         let resolution_m = seen.iter().map(|one| one.blocks.resolution_m).fold(0.0, f64::max);
         let systematic = floor.values[column].hypot(tilt(seen, number - 1)).hypot(resolution_m);
+        let systematic = systematic.hypot(slipped.values[column]);
         let error = fit.std_errors[column].hypot(systematic);
         let drawn = resampled(column).map(|r| r.hypot(systematic));
         let how = format!(
@@ -201,9 +214,10 @@ pub(crate) fn rests(blocks: &Blocks<'_>, count: usize) -> Vec<Rest> {
 
 fn rows(seen: &[Stacked<'_>], at: &Columns) -> Rows {
     let columns = vec![Vec::new(); at.contact + 1];
-    let mut rows = Rows { columns, height: Vec::new(), floor: Vec::new(), stretches: Vec::new() };
-    for (Stacked { blocks, weights_n, rests }, grasp) in seen.iter().zip(&at.grasps) {
-        for rest in rests.iter().filter(|r| r.samples.len() >= LEAST_SAMPLES) {
+    let mut rows = Rows { columns, height: Vec::new(), floor: Vec::new(), slipped: Vec::new(), stretches: Vec::new() };
+    for (Stacked { blocks, weights_n, rests, slips }, grasp) in seen.iter().zip(&at.grasps) {
+        for (number, rest) in rests.iter().enumerate().filter(|(_, r)| r.samples.len() >= LEAST_SAMPLES) {
+            let slip = slips.iter().find(|slip| slip.rest == number);
             let standing: f64 = rest.below.iter().map(|j| weights_n[*j]).sum();
             let pressed: f64 = rest.below.iter().enumerate().map(|(level, j)| weights_n[*j] * (level + 1) as f64).sum();
             let first = rows.height.len();
@@ -216,7 +230,9 @@ fn rows(seen: &[Stacked<'_>], at: &Columns) -> Rows {
                 set(at.shear, load);
                 set(at.contact, (rest.below.len() + 1) as f64 * load - pressed);
                 rows.floor.push(load - standing);
-                rows.height.push(blocks.height[i]);
+                let (correction, error) = slip.map_or((0.0, 0.0), |s| s.correction_m(blocks.signals.time_s[i]));
+                rows.height.push(blocks.height[i] + correction);
+                rows.slipped.push(error);
             }
             rows.stretches.push(first..rows.height.len());
         }

@@ -6,9 +6,12 @@
 
 mod give;
 pub(crate) mod heights;
+pub(crate) mod landing;
 mod leak;
 mod needed;
 mod slip;
+mod slipped;
+pub(crate) mod slipping;
 mod together;
 
 use super::bootstrap::block_bootstrap;
@@ -88,6 +91,7 @@ fn describe(blocks: &Blocks<'_>) -> Result<Fit, EstimateError> {
     let mut parameters = Vec::new();
     let mut weights_n = Vec::new();
     let mut correlated = Vec::new();
+    let mut warnings = blocks.segmentation.warnings.clone();
     for number in 1..=count {
         let weight = blocks.weight(number)?;
         correlated.extend(weight_and_mass(&weight[0], &weight[1]));
@@ -97,7 +101,11 @@ fn describe(blocks: &Blocks<'_>) -> Result<Fit, EstimateError> {
     }
     parameters.extend(match blocks.unshown("height_m") {
         Some(why) => (1..=count).map(|n| Parameter::unidentified(&object(n), "height_m", 0, &why)).collect(),
-        None => heights::heights(&[Stacked::new(blocks, &weights_n)])?,
+        None => {
+            let stacked = [Stacked::new(blocks, &weights_n)];
+            warnings.extend(stacked[0].warnings());
+            heights::heights(&stacked)?
+        }
     });
     parameters.push(blocks.pad_stiffness(count));
     let masses_kg: Vec<f64> = weights_n.iter().map(|w| w / recording.meta.gravity()).collect();
@@ -112,7 +120,7 @@ fn describe(blocks: &Blocks<'_>) -> Result<Fit, EstimateError> {
         parameters,
         constraints: (1..=count).filter_map(|number| blocks.constraint(number)).collect(),
         correlated,
-        warnings: blocks.segmentation.warnings.clone(),
+        warnings,
         ..Fit::default()
     })
 }

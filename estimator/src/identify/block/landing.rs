@@ -1,0 +1,85 @@
+//! When a carried block stands again: the load goes over from the fingers to what is below. Nothing but the load tells what the fingers do from
+//! then on (pads that give, a slip of the grip) from lowering, so the earlier it is seen the better.
+
+use super::Blocks;
+use crate::segment::threshold::percentile;
+use std::ops::Range;
+
+/// A weight that changes by less than this share in a carry is taken for one that does not.
+const LEAST_CHANGE: f64 = 0.1;
+/// The ground takes a part of the load when this share of the weight is missing from the lift …
+const LEAST_SHARE: f64 = 0.05;
+/// … and as many standard deviations of what is off while the block is carried.
+const CLEARLY: f64 = 3.0;
+/// From there the load is followed until half of the weight is gone over, or for this time, s; the line through it says when it began …
+const HALF: f64 = 0.5;
+const RISE_S: f64 = 0.2;
+/// … by this much before at most, s.
+const BEFORE_S: f64 = 0.06;
+
+/// Usual lift over the time of a carry, N: steady, or changing evenly where contents run out. `rows`: samples in which the block is carried.
+pub(crate) fn usual_lift(time_s: &[f64], rows: &[usize], lift_n: &dyn Fn(usize) -> f64) -> impl Fn(f64) -> f64 + use<> {
+    let middle = |rows: &[usize]| percentile(&mut rows.iter().map(|i| lift_n(*i)).collect::<Vec<_>>(), 0.5);
+    let whole = middle(rows);
+    let (early, late) = rows.split_at(rows.len() / 2);
+    let (mut slope, mut start_s) = (0.0, 0.0);
+    if let ([first, ..], [.., last]) = (early, late) {
+        let (change, span_s) = (middle(late) - middle(early), time_s[*last] - time_s[*first]);
+        if change.abs() > LEAST_CHANGE * whole.abs() && span_s > 0.0 {
+            (slope, start_s) = (2.0 * change / span_s, time_s[*first] + 0.5 * span_s);
+        }
+    }
+    move |time_s| whole + slope * (time_s - start_s)
+}
+
+/// The first sample of `within` from which on, up to its end, the lift is less than what the block asks for: it stands from there on. The end of
+/// `within` where that is not so at its last sample. `carried`: rows in which the block is carried; `lift_n`: of every sample.
+pub(crate) fn stands_from(
+    blocks: &Blocks<'_>,
+    carried: &[usize],
+    within: Range<usize>,
+    lift_n: &dyn Fn(usize) -> f64,
+) -> usize {
+    if carried.is_empty() {
+        return within.end;
+    }
+    let time_s = &blocks.signals.time_s;
+    let usual = usual_lift(time_s, carried, lift_n);
+    let gravity = blocks.recording.meta.gravity().max(1e-9);
+    let usual = |i: usize| usual(time_s[i]);
+    // What falls asks for less, the block between its pads and what slips on it alike: it counts where that is the smaller doubt.
+    let falls = |i: usize| usual(i) * blocks.acceleration_y[i].min(0.0) / gravity;
+    let missing = |i: usize| usual(i) - lift_n(i);
+    let limit = |off: &dyn Fn(usize) -> f64| {
+        let mut all: Vec<f64> = carried.iter().map(|i| off(*i)).collect();
+        // Half of what two thirds lie within: a few rows at the ends may stand already.
+        0.5 * CLEARLY * (percentile(&mut all, 0.84) - percentile(&mut all, 0.16))
+    };
+    let plain_n = limit(&missing);
+    let moving_n = limit(&|i| missing(i) + usual(i) * blocks.acceleration_y[i] / gravity);
+    let stands = |i: &usize| {
+        let (plain, least) = (missing(*i), LEAST_SHARE * usual(*i));
+        plain > plain_n.max(least) || plain + falls(*i) > moving_n.max(least)
+    };
+    let (least, end) = (within.start, within.end);
+    let clear = within.rev().take_while(stands).last().unwrap_or(end);
+    if clear == end {
+        return end;
+    }
+    let rises = |i: &usize| missing(*i) < HALF * usual(*i) && time_s[*i] - time_s[clear] < RISE_S;
+    let rise = (clear..time_s.len()).take_while(rises);
+    let begins_s = begin(&rise.map(|i| (time_s[i], missing(i))).collect::<Vec<_>>());
+    let begins_s = begins_s.map_or(time_s[clear], |s| s.clamp(time_s[clear] - BEFORE_S, time_s[clear]));
+    time_s[..clear].partition_point(|t| *t < begins_s).max(least)
+}
+
+/// Where a straight line through the points, time and load, is zero: where the load began before it rose out of the noise. `None` where it does not
+/// rise.
+fn begin(points: &[(f64, f64)]) -> Option<f64> {
+    let n = points.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
+    let (time, load) = (mean(|p| p.0), mean(|p| p.1));
+    let rising: f64 = points.iter().map(|(t, l)| (t - time) * (l - load)).sum();
+    let spread: f64 = points.iter().map(|(t, _)| (t - time).powi(2)).sum();
+    (points.len() > 2 && rising > 0.0).then(|| time - load * spread / rising)
+}
