@@ -72,7 +72,8 @@ pub(super) fn course(track: &Track, study: &Study) -> Course {
         angle_rad: row.angle_rad,
         velocity: row.motion.velocity,
         normal_force_n: row.motion.normal_force_n,
-        measured: row.y,
+        // What moves freely needs what its mass needs, and nothing else is measured.
+        measured: if track.freely.is_some() { study.y[i] } else { row.y },
         left_before: before[i],
         left_after: after[i],
         weight: study.weight[i],

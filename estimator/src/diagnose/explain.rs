@@ -6,6 +6,7 @@ use super::course::course;
 use super::experiment::propose;
 use super::extend::{effects, plain, spring};
 use super::force::Model;
+use super::free;
 use super::gain::{chi_square_tail, gain, gain_between, rms, shows_beside, whiteness_p};
 use super::geometry::Study;
 use super::kept::of_study;
@@ -48,7 +49,7 @@ pub(super) const TWINS: [(&str, &str, &str); 1] = [(
 pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study], faults: Vec<Cause>) -> Diagnosis {
     let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
-    let unit = if track.coordinate == Coordinate::Angular { "N m" } else { "N" };
+    let unit = track.force_unit();
     let picks = study.picks();
     let (heldout, train) = rms(study, &[], &along);
     let (end, end_train) = rms(study, &picks, &along);
@@ -60,7 +61,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
             warnings.push(apart(skew_s));
             continue;
         }
-        let mut named = cause(study, k, floor, ("force", unit));
+        let mut named = cause(study, k, floor, (if track.freely.is_some() { "motion" } else { "force" }, unit));
         named.gain.rollout = rollout(track, model, study, k);
         if let Some(parameters) = of_hardening_spring(track, study, k) {
             named.parameters = parameters;
@@ -110,11 +111,12 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         not_excited,
         validation: Vec::new(),
         settled: Vec::new(),
-        plain: plain(model, study),
+        plain: plain(track, model, study),
         effects: effects(track, model, study),
         atlas: Atlas::default(),
         along: None,
         late_s: 0.0,
+        per_inertia: track.freely.is_some_and(|free| !free.is_known),
         rest_s: rest_s(study, &picks),
         guess_s: None,
         hypotheses: hypotheses(track, model, study),
@@ -122,7 +124,10 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         kept: of_study(FORCE, study),
         causes,
         alternatives,
-        next_experiment: propose(track, model, study, &open_ones),
+        next_experiment: match track.freely {
+            Some(_) => free::next(&open_ones),
+            None => propose(track, model, study, &open_ones),
+        },
         end: Final { heldout_rms_n: end, whiteness_p: whiteness_p(study, &picks, &stretch) },
         warnings,
     }

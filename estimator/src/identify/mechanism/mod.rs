@@ -20,6 +20,7 @@ mod terms;
 mod transmission;
 mod world;
 
+pub use free::{Stated, stated};
 pub use report::{OBJECT, PHASE};
 pub use world::{Prediction, measured, path_of, predict, world};
 
