@@ -132,12 +132,12 @@ pub fn residual_unit(left: &[&Residual]) -> (String, f64) {
 
 /// Shown unit of the forces.
 pub fn force_unit(diagnosis: &Diagnosis) -> &'static str {
-    if diagnosis.course.is_angular { "N·m" } else { "N" }
+    diagnosis.course.force_unit()
 }
 
 /// `N s/m` → `N·s/m`; nothing for a pure number.
 pub fn shown_unit(unit: &str) -> String {
-    if unit == "1" { String::new() } else { unit.replace("Nm", "N·m").replace(' ', "·") }
+    if unit == "1" { String::new() } else { unit.replace("Nm", "N·m").replace("m2", "m²").replace(' ', "·") }
 }
 
 /// Shown unit of what a cause's gain is counted in, and its factor from SI.

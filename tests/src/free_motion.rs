@@ -168,7 +168,19 @@ impl Case {
         like.step = if draw(1.0, 3.0) > 2.0 { draw(2e-5, 4e-4) } else { 1e-7 };
         like.rate_noise = like.rate_noise.map(|_| speed * draw(0.001, 0.02));
         like.known = if draw(1.0, 3.0) > 2.0 { vec![("mass_kg".to_owned(), inertia)] } else { Vec::new() };
-        Self { is_angular: false, inertia, moment: 0.0, viscous, dry, hidden, size, more, zero_rad: 0.0, start: [0.0, speed], ..like }
+        Self {
+            is_angular: false,
+            inertia,
+            moment: 0.0,
+            viscous,
+            dry,
+            hidden,
+            size,
+            more,
+            zero_rad: 0.0,
+            start: [0.0, speed],
+            ..like
+        }
     }
 
     /// Friction that holds, in this place and time, at the slowest speed.
@@ -192,7 +204,7 @@ impl Case {
             Hidden::Drag => self.size * v * v.abs(),
             Hidden::Spring => self.size * (q - if self.is_angular { 0.0 } else { self.more }),
             Hidden::Ripple => self.size * (std::f64::consts::TAU * q / self.more + 1.0).sin(),
-            Hidden::Wall if q > self.more => (self.size * (q - self.more) + 0.001 * self.size * v).max(0.0),
+            Hidden::Wall if q > self.more => (self.size * (q - self.more) + 0.0002 * self.size * v).max(0.0),
             Hidden::Tilt => self.inertia * 9.81 * self.size.sin(),
             _ => 0.0,
         };
@@ -200,30 +212,39 @@ impl Case {
     }
 
     fn rate(&self, state: [f64; 2], side: f64, time_s: f64) -> [f64; 2] {
-        let dry = if side == 0.0 { 0.0 } else { side * self.dry_at([state[0], side * state[1].abs().max(1e-12)], time_s) };
+        let dry =
+            if side == 0.0 { 0.0 } else { side * self.dry_at([state[0], side * state[1].abs().max(1e-12)], time_s) };
         [state[1], (self.pull(state) - dry) / self.inertia]
     }
 
-    /// One step of the integrator.
+    /// One step of the integrator; what turns round on the way stops there and is asked whether it sticks.
     fn step(&self, state: [f64; 2], time_s: f64) -> [f64; 2] {
         let h = 1.0 / STEPS_HZ;
+        let next = self.part(state, time_s, h);
+        if next[1] * state[1] >= 0.0 {
+            return next;
+        }
+        let before_s = h * state[1].abs() / (state[1].abs() + next[1].abs());
+        let turned = self.part(state, time_s, before_s);
+        self.part([turned[0], 0.0], time_s + before_s, h - before_s)
+    }
+
+    /// A part of a step in which nothing turns round.
+    fn part(&self, state: [f64; 2], time_s: f64, h: f64) -> [f64; 2] {
         let mut side = state[1].signum();
         if state[1] == 0.0 {
             let pull = self.pull(state);
-            let holds = self.dry_at([state[0], 1e-12 * pull.signum()], time_s);
-            if pull.abs() <= holds {
+            side = pull.signum();
+            if pull.abs() <= self.dry_at([state[0], 1e-12 * side], time_s) {
                 return state;
             }
-            side = pull.signum();
         }
         let at = |k: [f64; 2], by: f64| [state[0] + by * k[0], state[1] + by * k[1]];
         let k1 = self.rate(state, side, time_s);
         let k2 = self.rate(at(k1, 0.5 * h), side, time_s);
         let k3 = self.rate(at(k2, 0.5 * h), side, time_s);
         let k4 = self.rate(at(k3, h), side, time_s);
-        let next: [f64; 2] = std::array::from_fn(|i| state[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]));
-        // What turns round stops on the way, and is asked again whether it sticks.
-        if next[1] * side < 0.0 { [next[0], 0.0] } else { next }
+        std::array::from_fn(|i| state[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]))
     }
 
     /// As it is recorded.
@@ -246,8 +267,10 @@ impl Case {
             }
             state = self.step(state, now_s);
         }
-        let names = if self.is_angular { [("q_rad", "rad"), ("dq_rad_s", "rad/s")] } else { [("q_m", "m"), ("dq_m_s", "m/s")] };
-        let channel = |(name, unit): (&str, &str), values| Channel { name: name.to_owned(), unit: unit.to_owned(), values };
+        let names =
+            if self.is_angular { [("q_rad", "rad"), ("dq_rad_s", "rad/s")] } else { [("q_m", "m"), ("dq_m_s", "m/s")] };
+        let channel =
+            |(name, unit): (&str, &str), values| Channel { name: name.to_owned(), unit: unit.to_owned(), values };
         let mut channels = vec![channel(names[0], place)];
         if self.rate_noise.is_some() {
             channels.push(channel(names[1], rate));

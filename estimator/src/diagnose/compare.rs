@@ -50,7 +50,15 @@ impl Channel {
         }
         let Self { y, base, candidates, stretch, testable, weight, period_s } = self;
         let testable: Vec<Held> = testable.iter().map(|t| if *t { Held::Fully } else { Held::Never }).collect();
-        let rows = Rows { y: &y, stretch: &stretch, testable: &testable, time_s: order, weight: &weight, period_s, noise: Noise::Any };
+        let rows = Rows {
+            y: &y,
+            stretch: &stretch,
+            testable: &testable,
+            time_s: order,
+            weight: &weight,
+            period_s,
+            noise: Noise::Any,
+        };
         let coefficients = whitening(&base, &candidates, &rows, threshold)?;
         let system = System::new(&base, &candidates, &rows, coefficients);
         let chosen =

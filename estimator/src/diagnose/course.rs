@@ -56,6 +56,22 @@ pub struct Course {
     pub is_angular: bool,
     /// True when the force across the motion was measured.
     pub has_normal_force: bool,
+    /// True when nothing but the motion was measured: the force is then what the laws must give for it.
+    pub is_free: bool,
+    /// True when forces are per unit of inertia.
+    pub per_inertia: bool,
+}
+
+impl Course {
+    /// Unit of the forces, as people write it.
+    pub fn force_unit(&self) -> &'static str {
+        match (self.is_angular, self.per_inertia) {
+            (true, false) => "N·m",
+            (false, false) => "N",
+            (true, true) => "N·m/(kg·m²)",
+            (false, true) => "N/kg",
+        }
+    }
 }
 
 /// The rows along the motion with what the model leaves of them, without and with what was chosen.
@@ -85,5 +101,7 @@ pub(super) fn course(track: &Track, study: &Study) -> Course {
         turns: track.radius_m.is_some(),
         is_angular: track.coordinate == haptics::law::Coordinate::Angular,
         has_normal_force: track.planar,
+        is_free: track.freely.is_some(),
+        per_inertia: track.freely.is_some_and(|free| !free.is_known),
     }
 }

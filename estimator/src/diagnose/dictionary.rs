@@ -63,7 +63,8 @@ impl Dictionary<'_> {
         self.instrument(&mut all);
         all.retain(|c| !self.without.contains(&c.id));
         if self.track.freely.is_some() {
-            all.retain(|c| free::can_show(c.id));
+            let both_ways = free::goes_both_ways(self.track);
+            all.retain(|c| free::can_show(c.id, both_ways));
         }
         all.retain(|c| c.columns.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| *x != 0.0)));
         all

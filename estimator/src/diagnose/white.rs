@@ -6,8 +6,8 @@ use std::ops::Range;
 /// Highest order of the whitening autoregression of what a force leaves.
 const LARGEST_ORDER: usize = 6;
 /// … and of differences of what was measured, whose noise goes on over many rows, in rows and as a share of all of them.
-const ORDER_OF_DIFFERENCES: usize = 16;
-const SHARE_OF_DIFFERENCES: usize = 20;
+const ORDER_OF_DIFFERENCES: usize = 24;
+const SHARE_OF_DIFFERENCES: usize = 12;
 
 /// What the noise of the rows is like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -27,6 +27,8 @@ use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 pub(super) use rows::track;
 
+/// What goes no larger a share of its way back goes one way.
+const ONE_WAY: f64 = 0.02;
 /// What swings goes back at least this share of its way …
 const BACK: f64 = 0.1;
 /// … and gravity of any phase then explains so much of its acceleration's power at least.
@@ -63,9 +65,24 @@ pub(super) fn is_free(recordings: &[Recording], paths: &[Option<MechanismPath>])
     Ok(driven.iter().all(|d| !d))
 }
 
-/// Whether a free motion can show a cause at all.
-pub(super) fn can_show(id: &str) -> bool {
-    !WITH_A_FORCE.contains(&id)
+/// Causes that are friction, or its course with the speed, in what goes one way and slows down.
+const WITH_BOTH_WAYS: [&str; 3] = ["friction-asymmetry", "gravity-tilt", "friction-change"];
+
+/// Whether a free motion can show a cause at all. `both_ways`: whether it goes both ways.
+pub(super) fn can_show(id: &str, both_ways: bool) -> bool {
+    !WITH_A_FORCE.contains(&id) && (both_ways || !WITH_BOTH_WAYS.contains(&id))
+}
+
+/// Ways forward and backward.
+fn ways(track: &Track) -> [f64; 2] {
+    let way = |side: f64| track.along().map(|i| (side * track.rows[i].motion.velocity).max(0.0)).sum::<f64>();
+    [way(1.0), way(-1.0)]
+}
+
+/// Whether it goes both ways.
+pub(super) fn goes_both_ways(track: &Track) -> bool {
+    let [forward, backward] = ways(track);
+    forward.min(backward) > ONE_WAY * (forward + backward)
 }
 
 /// The answer of one object's free motions. `paths`: as in [`is_free`].
@@ -98,7 +115,7 @@ pub(super) fn diagnose(
     options.progress.tell(0.8)?;
     let mut found = explain(&track, &model, &study, &[], faults);
     found.along = Some(Along::of(track.coordinate, recordings, paths));
-    words::put_right(&mut found, &track, scale);
+    words::put_right(&mut found, &track, scale, goes_both_ways(&track));
     if options.atlas {
         found.atlas = atlas::atlas(&track, &study, limit);
     }
@@ -149,14 +166,13 @@ fn gravity(track: &Track, first: &Recording) -> Model {
 /// Whether it goes to and fro, and gravity explains how.
 fn swings(track: &Track) -> bool {
     let along = |of: &dyn Fn(&Row) -> f64| -> Vec<f64> { track.along().map(|i| of(&track.rows[i])).collect() };
-    let speed = along(&|r| r.motion.velocity);
-    let way = |side: f64| speed.iter().map(|v| (side * v).max(0.0)).sum::<f64>();
-    let (forward, backward) = (way(1.0), way(-1.0));
+    let [forward, backward] = ways(track);
     let acceleration = along(&|r| r.motion.acceleration);
     let mean = |of: &dyn Fn(f64) -> f64| along(&|r| track.mean(r, &|m| of(m.position)));
-    let columns = [mean(&f64::sin), mean(&f64::cos), vec![1.0; speed.len()]];
+    let columns = [mean(&f64::sin), mean(&f64::cos), vec![1.0; acceleration.len()]];
     let power = acceleration.iter().map(|a| a * a).sum::<f64>() / acceleration.len().max(1) as f64;
-    let explains = least_squares(&columns, &acceleration, None).is_ok_and(|fit| fit.rms * fit.rms < (1.0 - SWINGS) * power);
+    let explains =
+        least_squares(&columns, &acceleration, None).is_ok_and(|fit| fit.rms * fit.rms < (1.0 - SWINGS) * power);
     explains && forward.min(backward) > BACK * (forward + backward)
 }
 
@@ -176,8 +192,7 @@ pub(super) enum Scale {
 /// Sets the inertia where it is stated, or says which known parameter will tell it.
 fn scale_of(track: &mut Track, first: &Recording, model: &mut Model, options: &Options) -> Scale {
     let laws = options.world.as_ref().and_then(|w| w.mechanism.as_ref()).map(|m| m.effects.as_slice());
-    let of_world: f64 =
-        laws.into_iter().flatten().filter(|e| e.role() == Role::Inertia).map(|e| e.values[0]).sum();
+    let of_world: f64 = laws.into_iter().flatten().filter(|e| e.role() == Role::Inertia).map(|e| e.values[0]).sum();
     let stated = mechanism::stated(&first.meta, track.coordinate);
     let of_sidecar = stated.iter().find_map(|s| if let Stated::Inertia(value) = s { Some(*value) } else { None });
     if let Some(inertia) = Some(of_world).into_iter().chain(of_sidecar).find(|inertia| *inertia > 0.0) {

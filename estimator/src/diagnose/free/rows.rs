@@ -20,9 +20,9 @@ use std::ops::Range;
 const SHORTEST_S: f64 = 0.02;
 const LONGEST_S: f64 = 0.1;
 /// … but no longer than this share of a radian of the swing: what happens at a place or a reversal would be smeared.
-const LONGEST_RAD: f64 = 0.35;
+const LONGEST_RAD: f64 = 0.3;
 /// Noise of the acceleration as a share of the acceleration itself, from which on a block need not be longer.
-const QUIET: f64 = 0.005;
+const QUIET: f64 = 0.01;
 /// A rate is used where it makes less than this share of the noise: what was derived from the places, perhaps late, is no better than they are.
 const RATE_BETTER: f64 = 0.3;
 /// A longer step between two samples ends a stretch, in usual steps.
@@ -34,6 +34,9 @@ const ROUNDED: f64 = 0.03;
 /// Order, and least samples on either side, of the polynomials that follow the motion between the rows.
 const ORDER: usize = 4;
 const LEAST_HALF: usize = 3;
+/// What moves no faster, and speeds up no more, than so many times the noise for so many rows stands.
+const STANDS: f64 = 3.0;
+const STANDING_ROWS: usize = 3;
 /// Over this long accelerations are told for a first look, s.
 const ROUGH_S: f64 = 0.06;
 
@@ -144,18 +147,25 @@ impl Plan {
         let by_place = |block: usize| {
             let length_s = block as f64 * period_s;
             // What was rounded is as many observations as steps that it passes.
-            let steps = if hidden > 0.3 * position_noise { 2.0 * speed * length_s / hidden.max(1e-300) } else { f64::MAX };
+            let steps =
+                if hidden > 0.3 * position_noise { 2.0 * speed * length_s / hidden.max(1e-300) } else { f64::MAX };
             6.0_f64.sqrt() * position_noise / ((block as f64).min(steps.max(1.0)).sqrt() * length_s * length_s)
         };
-        let by_rate = |block: usize| {
-            rate_noise.map(|noise| (2.0 / block as f64).sqrt() * noise / (block as f64 * period_s))
-        };
+        let by_rate =
+            |block: usize| rate_noise.map(|noise| (2.0 / block as f64).sqrt() * noise / (block as f64 * period_s));
         let shortest_quiet = |noise: &dyn Fn(usize) -> f64| {
             (shortest..=longest).step_by(step).find(|b| noise(*b) < QUIET * acceleration).unwrap_or(longest)
         };
         let block = shortest_quiet(&by_place);
-        let mut plan =
-            Self { period_s, block, by_rate: false, acceleration_noise: by_place(block), position_noise, hidden, rate_noise };
+        let mut plan = Self {
+            period_s,
+            block,
+            by_rate: false,
+            acceleration_noise: by_place(block),
+            position_noise,
+            hidden,
+            rate_noise,
+        };
         if by_rate(block).is_some_and(|noise| noise < RATE_BETTER * by_place(block)) {
             let noise = |block: usize| by_rate(block).unwrap_or(f64::MAX);
             plan = Self { block: shortest_quiet(&noise), by_rate: true, ..plan };
@@ -166,7 +176,7 @@ impl Plan {
 
     /// Samples on either side that follow the motion between the rows.
     fn half(&self) -> usize {
-        self.block.max(LEAST_HALF)
+        (self.block / 2).max(LEAST_HALF)
     }
 
     /// Noise of the rate and of the place between the rows.
@@ -283,12 +293,13 @@ impl Made {
     }
 
     fn track(self, raw: &Raw, plan: &Plan, gravity_m_s2: f64) -> Track {
-        let Self { mut rows, mut fine } = self;
+        let Self { rows, mut fine } = self;
         let start_s = raw.time_s[0];
+        let [velocity_noise, position_noise] = plan.noise_between();
+        let mut rows = moving(rows, [velocity_noise, plan.acceleration_noise]);
         rows.iter_mut().for_each(|row| row.motion.time_s -= start_s);
         fine.iter_mut().for_each(|point| point.time_s -= start_s);
         let span_s = rows.last().map_or(0.0, |r| r.motion.time_s) - rows.first().map_or(0.0, |r| r.motion.time_s);
-        let [velocity_noise, position_noise] = plan.noise_between();
         Track {
             rows,
             fine,
@@ -309,6 +320,25 @@ impl Made {
             freely: Some(Freely { inertia: 1.0, relative_error: 0.0, is_known: false, gravity_m_s2, known: [None; 2] }),
         }
     }
+}
+
+/// The rows without those in which it stands, of which friction explains anything; what follows each other has one number again. `noise`: of
+/// velocity and acceleration.
+fn moving(rows: Vec<Row>, noise: [f64; 2]) -> Vec<Row> {
+    let still =
+        |row: &Row| row.motion.velocity.abs() < STANDS * noise[0] && row.motion.acceleration.abs() < STANDS * noise[1];
+    let (mut moving, mut number) = (Vec::with_capacity(rows.len()), 0);
+    for stretch in rows.chunk_by(|a, b| a.stretch == b.stretch) {
+        for part in stretch.chunk_by(|a, b| still(a) == still(b)) {
+            if still(&part[0]) && part.len() >= STANDING_ROWS {
+                number += 1;
+            } else {
+                moving.extend(part.iter().map(|row| Row { stretch: number, ..*row }));
+            }
+        }
+        number += 1;
+    }
+    moving
 }
 
 /// Mean over a block from sample `from` on, one neighbour on either side at hand: the trapezoidal rule with its first correction (Euler and

@@ -12,7 +12,7 @@ const SETTLES: f64 = 0.85;
 const HIDDEN: [&str; 2] = ["force-gain", "force-bias"];
 
 /// Puts right what was said as of a driven motion.
-pub fn put_right(found: &mut Diagnosis, track: &Track, scale: Scale) {
+pub fn put_right(found: &mut Diagnosis, track: &Track, scale: Scale, both_ways: bool) {
     let Some(free) = track.freely else { return };
     let angular = track.coordinate == Coordinate::Angular;
     found.baseline.model = model_name(&found.baseline.model);
@@ -34,6 +34,14 @@ pub fn put_right(found: &mut Diagnosis, track: &Track, scale: Scale) {
         id: id.to_owned(),
         why: "the recording has no force column, so there is no force sensor whose gain or bias could show".to_owned(),
     }));
+    if !both_ways {
+        found.not_excited.extend(super::WITH_BOTH_WAYS.map(|id| NotExcited {
+            id: id.to_owned(),
+            why: "it goes one way only and slows down, which is then the same as friction, or as friction that changes with speed; let it \
+                  go the other way, too"
+                .to_owned(),
+        }));
+    }
     found.warnings.insert(0, of_scale(&free, scale, angular));
 }
 
@@ -65,7 +73,9 @@ fn of_scale(free: &Freely, scale: Scale, angular: bool) -> String {
     let inertia = free.inertia;
     match scale {
         Scale::Stated => {
-            format!("there is no force column: the motion is taken to be free, with the stated {what} of {inertia:.4} {unit}")
+            format!(
+                "there is no force column: the motion is taken to be free, with the stated {what} of {inertia:.4} {unit}"
+            )
         }
         Scale::ByRatio(by) => format!(
             "there is no force column: the motion is taken to be free, and the known {} gives a {what} of {inertia:.4} {unit} ± {:.2} % \
@@ -122,7 +132,10 @@ mod tests {
 
     #[test]
     fn a_model_names_each_term_once() {
-        assert_eq!(model_name("eccentric-mass+eccentric-mass+viscous-friction"), "inertia+eccentric-mass+viscous-friction");
+        assert_eq!(
+            model_name("eccentric-mass+eccentric-mass+viscous-friction"),
+            "inertia+eccentric-mass+viscous-friction"
+        );
         assert_eq!(model_name(""), "inertia");
     }
 }
