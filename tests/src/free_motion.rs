@@ -151,7 +151,7 @@ impl Case {
             Hidden::Drag => (size * draw(0.5, 2.0) * dry / (speed * speed), 0.0),
             Hidden::Spring => (inertia * draw(3.0, 9.0_f64).powi(2), draw(0.01, 0.2)),
             Hidden::Stribeck => (size * draw(0.7, 1.5) * dry, draw(0.1, 0.3) * speed),
-            Hidden::Place => (size * draw(1.0, 3.0) * dry, draw(0.2, 0.5) * way),
+            Hidden::Place => (size * draw(1.0, 3.0) * dry, draw(0.1, 0.25) * way),
             Hidden::Ripple => (size * draw(0.2, 0.6) * dry, draw(0.05, 0.1) * way),
             Hidden::Tilt => (size * draw(0.02, 0.06), 0.0),
             Hidden::Viscous => (viscous, 0.0),

@@ -1,5 +1,8 @@
 //! Diagnoses of what moves without a force column: pendulums, carts, masses on springs. The generator (`tests/src/free_motion.rs`) has an
 //! integrator, forms and sensors of its own.
+//!
+//! `TOUCHSTONE_TASK_CASES=40 cargo test --release -p tests --test free_motion -- --ignored --nocapture` prints the figures of
+//! `docs/diagnosis.md`.
 
 use estimator::diagnose::{Diagnosis, Options, Verdict, diagnose, extended_world, validate};
 use haptics::law::Role;
@@ -163,4 +166,56 @@ fn driven_and_free_recordings_are_asked_apart() {
     driven.channels.push(Channel { name: "tau_Nm".to_owned(), unit: "N m".to_owned(), values });
     let said = diagnose(&[free, driven], &Options::default()).expect_err("two kinds").to_string();
     assert!(said.contains("some recordings have a force column"), "{said}");
+}
+
+/// How a case is made out of a seed, what is hidden and how large that is.
+type Make = fn(u64, Hidden, f64) -> Case;
+
+#[test]
+#[ignore = "many cases, whose figures are printed"]
+fn figures() {
+    let count = std::env::var("TOUCHSTONE_TASK_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(10_u64);
+    let makes: [(&str, Make); 2] = [("pendulum", Case::pendulum), ("cart", Case::cart)];
+    let of_pendulums = [
+        (Hidden::Nothing, None, ""),
+        (Hidden::Viscous, Some("mass"), "viscous-friction"),
+        (Hidden::Coulomb, Some("mass+viscous"), "coulomb-friction"),
+        (Hidden::Drag, None, "quadratic-drag"),
+        (Hidden::Spring, None, "return-spring"),
+        (Hidden::Stribeck, None, "stribeck"),
+        (Hidden::Change, None, "friction-change"),
+        (Hidden::Place, None, "local-resistance"),
+        (Hidden::Ripple, None, "position-ripple"),
+        (Hidden::Wall, None, "added-constraint"),
+        (Hidden::Tilt, None, "gravity-tilt"),
+    ];
+    for (object, make) in makes {
+        for (hidden, baseline, id) in of_pendulums {
+            let cart = object == "cart";
+            if cart && matches!(hidden, Hidden::Wall | Hidden::Change) || !cart && hidden == Hidden::Tilt {
+                continue;
+            }
+            for size in if hidden == Hidden::Nothing { vec![0.0] } else { vec![1.0, 4.0] } {
+                let answers: Vec<Diagnosis> = (7000..7000 + count)
+                    .into_par_iter()
+                    .map(|seed| asked(&make(seed, hidden, size).recording(), baseline))
+                    .collect();
+                let is = |of: &dyn Fn(&Diagnosis) -> bool| answers.iter().filter(|found| of(found)).count();
+                let silent = is(&|found| found.verdict == Verdict::None);
+                let named = is(&|found| found.causes.iter().any(|c| c.id == id));
+                let within = is(&|found| {
+                    found.causes.iter().any(|c| c.id == id) || found.alternatives.iter().any(|a| a.id == id)
+                });
+                let own = |c: &str| c == id || baseline.is_some() && c == "coulomb-friction";
+                let others = is(&|found| found.causes.iter().any(|c| !own(&c.id)));
+                println!(
+                    "{object} {hidden:?} {size}: silent {silent}, named {named}, within {within}, beside {others}, of {count}"
+                );
+                assert!(
+                    hidden != Hidden::Nothing || 50 * (count as usize - silent) <= count as usize,
+                    "nulls must stay silent"
+                );
+            }
+        }
+    }
 }

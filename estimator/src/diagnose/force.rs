@@ -10,7 +10,7 @@ use super::generic::generic;
 use super::geometry::Study;
 use super::grid::Grid;
 use super::hung;
-use super::select::Selection;
+use super::select::{Chosen, Selection};
 use super::starts::to_refine;
 use super::stuck::{self, Load};
 use super::system::{Held, Rows, System};
@@ -26,6 +26,8 @@ const SHORT_S: f64 = 0.015;
 
 /// Most rounds in which searched values and the sensor's faults are settled.
 const REFINEMENTS: usize = 2;
+/// … and of a free motion, whose noise is less where it swings.
+const REFINEMENTS_OF_FREE: usize = 5;
 
 /// The model to start from: laws with their non-linear values.
 pub type Model = Vec<Effect>;
@@ -42,12 +44,17 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
     let coarse = Grid::coarse(track);
     let mut known = Known { columns: Columns::default(), generic: generic(track), is_sharp: false };
     let mut made = compare(track, (model, fixed), &known, threshold, [&coarse, &Grid::default()], None)?;
-    for round in 0..REFINEMENTS {
-        // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of them.
-        if made.chosen.len() <= round {
+    let is_free = track.freely.is_some();
+    for round in 0..if is_free { REFINEMENTS_OF_FREE } else { REFINEMENTS } {
+        // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of them. The long means of a
+        // free motion show so much more of a place that one alone is not near enough either.
+        let searched = |c: &Chosen| !made.candidates[c.candidate].searched.is_empty();
+        let enough = if is_free { round > 0 && !made.chosen.iter().any(searched) } else { made.chosen.len() <= round };
+        if made.chosen.is_empty() || enough {
             break;
         }
-        let fine = Grid::around(&to_refine(&made, threshold, has_dry), track, 1.0 / (1 + round) as f64);
+        let step = if is_free { 0.5_f64.powf(round as f64) } else { 1.0 / (1 + round) as f64 };
+        let fine = Grid::around(&to_refine(&made, threshold, has_dry), track, step);
         // The load on the friction is what the sensor told, rid of what is now known of the sensor.
         if correct_load(track, &made) {
             known.columns.forget_loads();
