@@ -137,7 +137,7 @@ pub fn force_unit(diagnosis: &Diagnosis) -> &'static str {
 
 /// `N s/m` → `N·s/m`; nothing for a pure number.
 pub fn shown_unit(unit: &str) -> String {
-    if unit == "1" { String::new() } else { unit.replace("Nm", "N·m").replace("m2", "m²").replace(' ', "·") }
+    if unit == "1" { String::new() } else { unit.replace("Nm", "N·m").replace(' ', "·") }
 }
 
 /// Shown unit of what a cause's gain is counted in, and its factor from SI.

@@ -69,9 +69,11 @@ pub struct Case {
     pub seconds: f64,
     /// Hz
     pub rate_hz: f64,
-    /// White noise of the place, its steps, and noise of the recorded rate, if one is.
+    /// White noise of the place, …
     pub noise: f64,
+    /// … its steps, …
     pub step: f64,
+    /// … and noise of the recorded rate, if one is.
     pub rate_noise: Option<f64>,
     /// What the sidecar knows.
     pub known: Vec<(String, f64)>,

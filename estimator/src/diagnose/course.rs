@@ -68,8 +68,8 @@ impl Course {
         match (self.is_angular, self.per_inertia) {
             (true, false) => "N·m",
             (false, false) => "N",
-            (true, true) => "N·m/(kg·m²)",
-            (false, true) => "N/kg",
+            (true, true) => "rad/s²",
+            (false, true) => "m/s²",
         }
     }
 }

@@ -253,8 +253,8 @@ impl Track {
         match (self.coordinate, per_inertia) {
             (Coordinate::Angular, false) => "N m",
             (Coordinate::Linear, false) => "N",
-            (Coordinate::Angular, true) => "N m/(kg m2)",
-            (Coordinate::Linear, true) => "N/kg",
+            (Coordinate::Angular, true) => "rad/s²",
+            (Coordinate::Linear, true) => "m/s²",
         }
     }
 

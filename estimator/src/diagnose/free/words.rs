@@ -20,7 +20,7 @@ pub fn put_right(found: &mut Diagnosis, track: &Track, scale: Scale, both_ways: 
         if parameter.unit.starts_with('N') {
             parameter.std_error = parameter.std_error.hypot(parameter.value * free.relative_error);
             if !free.is_known {
-                parameter.unit = per_inertia(&parameter.unit, angular);
+                parameter.unit = per_inertia(&parameter.unit).to_owned();
             }
         }
     }
@@ -56,14 +56,21 @@ fn model_name(terms: &str) -> String {
     names.join("+")
 }
 
-/// `N m s` as `N m s/(kg m2)`, `N s/m` as `N s/(m kg)`.
-fn per_inertia(unit: &str, angular: bool) -> String {
-    let inertia = if angular { "kg m2" } else { "kg" };
-    match unit.split_once('/') {
-        Some((above, below)) => format!("{above}/({} {inertia})", below.trim_matches(['(', ')'])),
-        None if angular => format!("{unit}/({inertia})"),
-        None => format!("{unit}/{inertia}"),
-    }
+/// A unit of the laws per kg m² or kg.
+fn per_inertia(unit: &str) -> &str {
+    const UNITS: [(&str, &str); 10] = [
+        ("N m", "rad/s²"),
+        ("N m s", "1/s"),
+        ("N m s²", "1/rad"),
+        ("N m/rad", "1/s²"),
+        ("N m/rad³", "1/(rad² s²)"),
+        ("N", "m/s²"),
+        ("N s/m", "1/s"),
+        ("N s²/m²", "1/m"),
+        ("N/m", "1/s²"),
+        ("N/m³", "1/(m² s²)"),
+    ];
+    UNITS.iter().find(|(of, _)| *of == unit).map_or(unit, |(_, per)| per)
 }
 
 /// Where the size of all values comes from.
@@ -120,14 +127,20 @@ pub fn next(open: &[Alternative]) -> Option<NextExperiment> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::can_show;
     use super::*;
+    use haptics::law::entries;
 
     #[test]
     fn units_are_per_unit_of_inertia() {
-        assert_eq!(per_inertia("N m", true), "N m/(kg m2)");
-        assert_eq!(per_inertia("N s/m", false), "N s/(m kg)");
-        assert_eq!(per_inertia("N", false), "N/kg");
-        assert_eq!(per_inertia("N m s", true), "N m s/(kg m2)");
+        assert_eq!(per_inertia("N m"), "rad/s²");
+        // Every law that a free motion can show has its units in the table.
+        let laws = entries().filter(|e| can_show(e.id, true));
+        for spec in laws.flat_map(|e| e.parameters) {
+            for unit in [spec.unit, spec.unit_angular] {
+                assert!(!per_inertia(unit).starts_with('N'), "{unit} of {}", spec.name);
+            }
+        }
     }
 
     #[test]
