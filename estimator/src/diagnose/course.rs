@@ -56,16 +56,31 @@ pub struct Course {
     pub is_angular: bool,
     /// True when the force across the motion was measured.
     pub has_normal_force: bool,
-    /// True when nothing but the motion was measured: the force is then what the laws must give for it.
-    pub is_free: bool,
-    /// True when forces are per unit of inertia.
-    pub per_inertia: bool,
+    /// Where the forces come from.
+    pub source: Source,
+}
+
+/// Where the forces of a course come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Source {
+    /// They were measured.
+    #[default]
+    Sensor,
+    /// Nothing but the motion was measured: they are what the laws must give for it.
+    Motion,
+    /// The same, per unit of inertia.
+    MotionPerInertia,
 }
 
 impl Course {
+    /// Whether nothing but the motion was measured.
+    pub fn is_free(&self) -> bool {
+        self.source != Source::Sensor
+    }
+
     /// Unit of the forces, as people write it.
     pub fn force_unit(&self) -> &'static str {
-        match (self.is_angular, self.per_inertia) {
+        match (self.is_angular, self.source == Source::MotionPerInertia) {
             (true, false) => "N·m",
             (false, false) => "N",
             (true, true) => "rad/s²",
@@ -101,7 +116,8 @@ pub(super) fn course(track: &Track, study: &Study) -> Course {
         turns: track.radius_m.is_some(),
         is_angular: track.coordinate == haptics::law::Coordinate::Angular,
         has_normal_force: track.planar,
-        is_free: track.freely.is_some(),
-        per_inertia: track.freely.is_some_and(|free| !free.is_known),
+        source: track
+            .freely
+            .map_or(Source::Sensor, |free| if free.is_known { Source::Motion } else { Source::MotionPerInertia }),
     }
 }

@@ -103,7 +103,7 @@ impl Residuals {
         variables.push(Suspect::Time);
         Self {
             unit: course.force_unit(),
-            is_free: course.is_free,
+            is_free: course.is_free(),
             measured: curve(&rows, false, &|i| i.measured),
             modelled: curve(&sure, true, &Instant::simulated_before),
             extended: curve(&sure, true, &Instant::simulated_after),

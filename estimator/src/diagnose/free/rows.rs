@@ -250,12 +250,11 @@ impl Made {
         let length_s = block as f64 * plan.period_s;
         for b in 0..((n - 3) / block + 1).saturating_sub(reach) {
             let start = 1 + b * block;
-            let acceleration = match piece.rate.as_ref().filter(|_| plan.by_rate) {
-                Some(rate) => (mean(rate, start + block, block) - mean(rate, start, block)) / length_s,
-                None => {
-                    let place = |k: usize| mean(&piece.position, start + k * block, block);
-                    (place(2) - 2.0 * place(1) + place(0)) / (length_s * length_s)
-                }
+            let acceleration = if let Some(rate) = piece.rate.as_ref().filter(|_| plan.by_rate) {
+                (mean(rate, start + block, block) - mean(rate, start, block)) / length_s
+            } else {
+                let place = |k: usize| mean(&piece.position, start + k * block, block);
+                (place(2) - 2.0 * place(1) + place(0)) / (length_s * length_s)
             };
             let span = Span {
                 start: first_fine + per(b * block),
@@ -296,9 +295,13 @@ impl Made {
         let Self { rows, mut fine } = self;
         let start_s = raw.time_s[0];
         let [velocity_noise, position_noise] = plan.noise_between();
-        let mut rows = moving(rows, [velocity_noise, plan.acceleration_noise]);
-        rows.iter_mut().for_each(|row| row.motion.time_s -= start_s);
-        fine.iter_mut().for_each(|point| point.time_s -= start_s);
+        let mut rows = moving(&rows, [velocity_noise, plan.acceleration_noise]);
+        for row in &mut rows {
+            row.motion.time_s -= start_s;
+        }
+        for point in &mut fine {
+            point.time_s -= start_s;
+        }
         let span_s = rows.last().map_or(0.0, |r| r.motion.time_s) - rows.first().map_or(0.0, |r| r.motion.time_s);
         Track {
             rows,
@@ -324,7 +327,7 @@ impl Made {
 
 /// The rows without those in which it stands, of which friction explains anything; what follows each other has one number again. `noise`: of
 /// velocity and acceleration.
-fn moving(rows: Vec<Row>, noise: [f64; 2]) -> Vec<Row> {
+fn moving(rows: &[Row], noise: [f64; 2]) -> Vec<Row> {
     let still =
         |row: &Row| row.motion.velocity.abs() < STANDS * noise[0] && row.motion.acceleration.abs() < STANDS * noise[1];
     let (mut moving, mut number) = (Vec::with_capacity(rows.len()), 0);
