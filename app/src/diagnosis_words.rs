@@ -132,7 +132,7 @@ pub fn residual_unit(left: &[&Residual]) -> (String, f64) {
 
 /// Shown unit of the forces.
 pub fn force_unit(diagnosis: &Diagnosis) -> &'static str {
-    if diagnosis.course.is_angular { "N·m" } else { "N" }
+    diagnosis.course.force_unit()
 }
 
 /// `N s/m` → `N·s/m`; nothing for a pure number.

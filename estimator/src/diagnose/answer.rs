@@ -277,6 +277,7 @@ pub fn answer(
         effects: Vec::new(),
         atlas: Atlas::default(),
         along: None,
+        per_inertia: false,
         late_s: 0.0,
         skew_s: 0.0,
         rest_s: None,

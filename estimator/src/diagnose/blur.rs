@@ -6,6 +6,8 @@ use super::track::{Place, Row, Track};
 const BLUR: f64 = 0.008;
 /// … over this one where a mass takes part, whose force jumps with the friction's.
 const BLUR_OF_MASS: f64 = 0.02;
+/// … and over this one where there is no force whose clock could differ.
+const BLUR_OF_FREE: f64 = 0.004;
 /// A reversal lies anywhere between two rows: standard deviation of its place, in rows, with some room.
 const SKEW: f64 = 0.5;
 /// The clocks of force and motion differ by about this, s.
@@ -24,7 +26,11 @@ pub fn blur(track: &mut Track) {
     let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
     let (noise, period_s) = (track.velocity_noise, track.period_s);
     let together = if track.planar { TOGETHER } else { 1.0 };
-    let share = if track.planar { BLUR } else { BLUR_OF_MASS };
+    let (share, clocks_s) = match (track.freely, track.planar) {
+        (Some(_), _) => (BLUR_OF_FREE, 0.0),
+        (None, true) => (BLUR, CLOCKS_S),
+        (None, false) => (BLUR_OF_MASS, CLOCKS_S),
+    };
     let width = |skew: f64| 1.2 * (share * fast).hypot(noise).hypot(skew).max(1e-12);
     for k in 0..track.fine.len() {
         let next =
@@ -32,7 +38,7 @@ pub fn blur(track: &mut Track) {
         let before = if k > 0 && track.fine[k - 1].stretch == track.fine[k].stretch { k - 1 } else { k };
         let apart_s = (track.fine[next].time_s - track.fine[before].time_s).max(1e-9);
         let acceleration = (track.fine[next].velocity - track.fine[before].velocity) / apart_s;
-        let share = track.fine[k].velocity / width(CLOCKS_S * acceleration);
+        let share = track.fine[k].velocity / width(clocks_s * acceleration);
         track.fine[k].direction = share.tanh();
         track.fine[k].open = 1.0 - (share / STICKS).tanh().powi(2);
     }

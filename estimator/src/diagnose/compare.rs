@@ -6,7 +6,7 @@ use super::gain::{confirmed, gain, holds_out, is_tested};
 use super::geometry::{Study, residual};
 use super::select::Selection;
 use super::system::{Held, Rows, System, solve, uses};
-use super::white::whitener;
+use super::white::{Noise, whitener};
 use crate::estimate::EstimateError;
 
 /// What whitening is learnt from keeps this much of the generic terms' strength out.
@@ -50,7 +50,15 @@ impl Channel {
         }
         let Self { y, base, candidates, stretch, testable, weight, period_s } = self;
         let testable: Vec<Held> = testable.iter().map(|t| if *t { Held::Fully } else { Held::Never }).collect();
-        let rows = Rows { y: &y, stretch: &stretch, testable: &testable, time_s: order, weight: &weight, period_s };
+        let rows = Rows {
+            y: &y,
+            stretch: &stretch,
+            testable: &testable,
+            time_s: order,
+            weight: &weight,
+            period_s,
+            noise: Noise::Any,
+        };
         let coefficients = whitening(&base, &candidates, &rows, threshold)?;
         let system = System::new(&base, &candidates, &rows, coefficients);
         let chosen =

@@ -56,6 +56,37 @@ pub struct Course {
     pub is_angular: bool,
     /// True when the force across the motion was measured.
     pub has_normal_force: bool,
+    /// Where the forces come from.
+    pub source: Source,
+}
+
+/// Where the forces of a course come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Source {
+    /// They were measured.
+    #[default]
+    Sensor,
+    /// Nothing but the motion was measured: they are what the laws must give for it.
+    Motion,
+    /// The same, per unit of inertia.
+    MotionPerInertia,
+}
+
+impl Course {
+    /// Whether nothing but the motion was measured.
+    pub fn is_free(&self) -> bool {
+        self.source != Source::Sensor
+    }
+
+    /// Unit of the forces, as people write it.
+    pub fn force_unit(&self) -> &'static str {
+        match (self.is_angular, self.source == Source::MotionPerInertia) {
+            (true, false) => "N·m",
+            (false, false) => "N",
+            (true, true) => "rad/s²",
+            (false, true) => "m/s²",
+        }
+    }
 }
 
 /// The rows along the motion with what the model leaves of them, without and with what was chosen.
@@ -72,7 +103,8 @@ pub(super) fn course(track: &Track, study: &Study) -> Course {
         angle_rad: row.angle_rad,
         velocity: row.motion.velocity,
         normal_force_n: row.motion.normal_force_n,
-        measured: row.y,
+        // What moves freely needs what its mass needs, and nothing else is measured.
+        measured: if track.freely.is_some() { study.y[i] } else { row.y },
         left_before: before[i],
         left_after: after[i],
         weight: study.weight[i],
@@ -84,5 +116,8 @@ pub(super) fn course(track: &Track, study: &Study) -> Course {
         turns: track.radius_m.is_some(),
         is_angular: track.coordinate == haptics::law::Coordinate::Angular,
         has_normal_force: track.planar,
+        source: track
+            .freely
+            .map_or(Source::Sensor, |free| if free.is_known { Source::Motion } else { Source::MotionPerInertia }),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::candidate::{Candidate, Searched, Shape};
 use super::columns::Columns;
+use super::free;
 use super::grid::Grid;
 use super::track::{Place, Row, Track};
 use crate::signal::derive::savitzky_golay;
@@ -62,6 +63,10 @@ impl Dictionary<'_> {
         self.time(&mut all);
         self.instrument(&mut all);
         all.retain(|c| !self.without.contains(&c.id));
+        if self.track.freely.is_some() {
+            let both_ways = free::goes_both_ways(self.track);
+            all.retain(|c| free::can_show(c.id, both_ways));
+        }
         all.retain(|c| c.columns.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| *x != 0.0)));
         all
     }
@@ -182,6 +187,7 @@ impl Dictionary<'_> {
             self.gravity(all, radius);
             all.extend(super::hung::tilt(self.track));
         }
+        all.extend(free::tilt(self.track));
         // A short one changes within a row.
         let short = SHORT_RIPPLE * self.track.quantile(0.9, |r| r.motion.velocity.abs()) * self.track.period_s;
         self.grid.ripples.iter().for_each(|length| self.ripple(all, *length, *length < short));

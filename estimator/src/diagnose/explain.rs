@@ -6,11 +6,14 @@ use super::course::course;
 use super::experiment::propose;
 use super::extend::{effects, plain, spring};
 use super::force::Model;
+use super::free;
 use super::gain::{chi_square_tail, gain, gain_between, rms, shows_beside, whiteness_p};
 use super::geometry::Study;
 use super::kept::of_study;
 use super::passed_over::{passed_over, unsaid};
-use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NotExcited, Verdict};
+use super::report::{
+    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, Verdict,
+};
 use super::residuals;
 use super::rollout::rollout;
 use super::searched::{Known, known};
@@ -56,19 +59,18 @@ pub(super) const TWINS: [(&str, &str, &str); 1] = [(
 pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study], faults: Vec<Cause>) -> Diagnosis {
     let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
     let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
-    let unit = if track.coordinate == Coordinate::Angular { "N m" } else { "N" };
+    let unit = track.force_unit();
     let picks = study.picks();
     let (heldout, train) = rms(study, &[], &along);
     let (end, end_train) = rms(study, &picks, &along);
     let floor = if track.noise_is_measured { track.force_noise } else { end_train.min(end) };
-    let mut found: Vec<(f64, Cause)> = Vec::new();
-    let (mut alternatives, mut warnings) = (Vec::new(), Vec::new());
+    let (mut found, mut alternatives, mut warnings) = (Vec::<(f64, Cause)>::new(), Vec::new(), Vec::new());
     for (k, chosen) in study.chosen.iter().enumerate() {
         if let Some(skew_s) = skew(study, k, track) {
             warnings.push(apart(skew_s));
             continue;
         }
-        let mut named = cause(study, k, floor, ("force", unit));
+        let mut named = cause(study, k, floor, (channel(track), unit));
         named.gain.rollout = rollout(track, model, study, k);
         if let Some(parameters) = of_hardening_spring(track, study, k) {
             named.parameters = parameters;
@@ -132,12 +134,13 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         not_excited,
         validation: Vec::new(),
         settled: Vec::new(),
-        plain: plain(model, study),
+        plain: plain(track, model, study),
         effects: effects(track, model, study),
         atlas: Atlas::default(),
         along: None,
         late_s: 0.0,
         skew_s: 0.0,
+        per_inertia: track.freely.is_some_and(|free| !free.is_known),
         rest_s: rest_s(study, &picks),
         guess_s: None,
         hypotheses: hypotheses(track, model, study),
@@ -145,10 +148,20 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         kept: of_study(FORCE, study),
         causes,
         alternatives,
-        next_experiment: propose(track, model, study, &open_ones),
+        next_experiment: next(track, model, study, &open_ones),
         end: Final { heldout_rms_n: end, heldout_rms_nm: None, whiteness_p: whiteness_p(study, &picks, &stretch) },
         warnings,
     }
+}
+
+/// What the comparison is of, in words.
+fn channel(track: &Track) -> &'static str {
+    if track.freely.is_some() { "motion" } else { "force" }
+}
+
+/// What to record next, if anything is `open`.
+fn next(track: &Track, model: &Model, study: &Study, open: &[Alternative]) -> Option<NextExperiment> {
+    if track.freely.is_some() { free::next(open) } else { propose(track, model, study, open) }
 }
 
 /// Faults first; causes of the force in the order in which they were found, those of the path where their score puts them.

@@ -2,6 +2,7 @@
 
 use super::candidate::{Candidate, about_its_zero};
 use super::force::Model;
+use super::free;
 use super::geometry::Study;
 use super::system::Solved;
 use super::track::Track;
@@ -50,7 +51,7 @@ fn made(track: &Track, model: &Model, study: &Study, picks: &[usize], solved: &S
         found.extend(laws);
         at += candidate.columns.len();
     }
-    (found, is_whole)
+    (free::whole(track, found), is_whole)
 }
 
 /// The dry friction of a model: the same everywhere, N or N m, and in proportion to the load.
@@ -93,9 +94,9 @@ impl Dry {
 }
 
 /// The model's laws fitted without any cause.
-pub fn plain(model: &Model, study: &Study) -> Vec<Effect> {
+pub fn plain(track: &Track, model: &Model, study: &Study) -> Vec<Effect> {
     let Some(solved) = study.system.solve(&[]) else { return model.clone() };
-    model.iter().zip(&solved.values).map(|(e, share)| scaled(e, *share)).collect()
+    free::whole(track, model.iter().zip(&solved.values).map(|(e, share)| scaled(e, *share)).collect())
 }
 
 /// A law whose linear parameters all change by one factor.
@@ -131,6 +132,7 @@ fn effect(candidate: &Candidate, values: &[f64], track: &Track, weight_n: f64) -
         "inertia" => of(&Inertia, &[first]),
         "eccentric-mass" => of(&EccentricMass, &[first, values.get(1).copied().unwrap_or(0.0), radius]),
         "gravity-tilt" if track.planar && weight_n > 0.0 => of(&GravityTilt, &[weight_n, first, radius]),
+        "gravity-tilt" => free::tilted(track, first),
         "position-ripple" => {
             let (cosine, sine) = (first, values.get(1).copied().unwrap_or(0.0));
             // cos(x − π/2) is the sine's column.

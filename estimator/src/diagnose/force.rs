@@ -10,21 +10,24 @@ use super::generic::generic;
 use super::geometry::{Study, residual};
 use super::grid::Grid;
 use super::hung;
-use super::select::Selection;
+use super::select::{Chosen, Selection};
 use super::starts::to_refine;
 use super::stuck::{self, Load};
 use super::system::{Held, Rows, System};
 use super::track::{Place, Row, Track};
+use super::white::Noise;
 use crate::estimate::EstimateError;
 use crate::identify::linear::{least_squares, least_squares_values};
 use haptics::Vec2;
-use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, Stribeck, ViscousFriction};
+use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, Memory, Stribeck, ViscousFriction};
 
 /// Rows no longer than this are short for what depends on the place, s.
 const SHORT_S: f64 = 0.015;
 
 /// Most rounds in which searched values and the sensor's faults are settled.
 const REFINEMENTS: usize = 2;
+/// … and of a free motion, whose noise is less where it swings.
+const REFINEMENTS_OF_FREE: usize = 5;
 
 /// The model to start from: laws with their non-linear values.
 pub type Model = Vec<Effect>;
@@ -33,17 +36,25 @@ pub type Model = Vec<Effect>;
 pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) -> Result<Study, EstimateError> {
     blur(track);
     let loads = loads(track, model, fixed)?;
-    stuck::add(track, &loads);
+    // Without a force nothing tells a standstill under load from one without.
+    if track.freely.is_none() {
+        stuck::add(track, &loads);
+    }
     let has_dry = model.iter().any(|e| e.law().is_dry());
     let coarse = Grid::coarse(track);
     let mut known = Known { columns: Columns::default(), generic: generic(track), is_sharp: false, noise: None };
     let mut made = compare(track, (model, fixed), &known, threshold, [&coarse, &Grid::default()], None)?;
-    for round in 0..REFINEMENTS {
-        // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of them.
-        if made.chosen.len() <= round {
+    let is_free = track.freely.is_some();
+    for round in 0..if is_free { REFINEMENTS_OF_FREE } else { REFINEMENTS } {
+        // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of them. The long means of a
+        // free motion show so much more of a place that one alone is not near enough either.
+        let searched = |c: &Chosen| !made.candidates[c.candidate].searched.is_empty();
+        let enough = if is_free { round > 0 && !made.chosen.iter().any(searched) } else { made.chosen.len() <= round };
+        if made.chosen.is_empty() || enough {
             break;
         }
-        let fine = Grid::around(&to_refine(&made, threshold, has_dry), track, 1.0 / (1 + round) as f64);
+        let step = if is_free { 0.5_f64.powf(round as f64) } else { 1.0 / (1 + round) as f64 };
+        let fine = Grid::around(&to_refine(&made, threshold, has_dry), track, step);
         known.noise = match (known.noise, calmer(track, &made)) {
             (Some(before), Some(now)) if (now / before).ln().abs() < SAME_NOISE => Some(before),
             (before, now) => now.or(before),
@@ -234,6 +245,7 @@ fn compare(
         time_s: &time_s,
         weight: &weight,
         period_s: track.period_s,
+        noise: if track.freely.is_some() { Noise::OfDifferences } else { Noise::Any },
     };
     let has_dry = model.iter().any(|e| e.law().is_dry());
     let place = |found: &Candidate| candidates.iter().position(|c| c.id == found.id && c.is_near(&found.searched));
@@ -317,6 +329,32 @@ pub fn column_of_place(track: &Track, effect: &Effect) -> Vec<f64> {
 pub fn column(track: &Track, effect: &Effect) -> Vec<f64> {
     let of = |row: &Row| if row.place == Place::Along { track.mean(row, &|m| effect.force(m)) } else { 0.0 };
     track.rows.iter().map(of).collect()
+}
+
+/// What the laws need along every row, each law a mean over the row; what they remember starts anew at every stretch.
+pub fn needed(track: &Track, effects: &[Effect]) -> Vec<f64> {
+    let mut sum = vec![0.0; track.rows.len()];
+    for effect in effects {
+        let own = if effect.remembers() { remembered(track, effect) } else { column(track, effect) };
+        sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+    }
+    sum
+}
+
+/// The force of a law with a memory, row by row.
+fn remembered(track: &Track, effect: &Effect) -> Vec<f64> {
+    let rows = &track.rows;
+    let mut memory = Memory::default();
+    let mut force = |i: usize| {
+        if track.follows(i) {
+            let step_s = rows[i].motion.time_s - rows[i - 1].motion.time_s;
+            effect.law().advance(&rows[i].motion, &effect.values, &mut memory, step_s);
+        } else {
+            memory = Memory::default();
+        }
+        effect.force_with(&rows[i].motion, &memory)
+    };
+    (0..rows.len()).map(&mut force).collect()
 }
 
 /// What a fit is asked for.

@@ -68,7 +68,10 @@ pub fn generic(track: &Track) -> Vec<Candidate> {
 }
 
 fn column(track: &Track, of: &dyn Fn(&Row) -> f64) -> Vec<f64> {
-    track.rows.iter().map(|r| if r.place == Place::Along { of(r) } else { 0.0 }).collect()
+    // The noise of a place in the middle of a row of a free motion is that of its acceleration: a mean is taken, as of the laws.
+    let mean = |row: &Row| track.mean(row, &|m| of(&Row { motion: *m, angle_rad: m.position, ..*row }));
+    let value = |row: &Row| if track.freely.is_some() { mean(row) } else { of(row) };
+    track.rows.iter().map(|r| if r.place == Place::Along { value(r) } else { 0.0 }).collect()
 }
 
 fn term(expression: String, columns: Vec<Vec<f64>>, unit: &'static str) -> Candidate {

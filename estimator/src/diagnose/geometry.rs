@@ -5,7 +5,7 @@ use super::courses::{Course, SLIP_STARTS, jump};
 use super::force::leave_out_what_harms;
 use super::select::{Chosen, Selection};
 use super::system::{Held, Rows, Solved, System, solve, uses};
-use super::white::whitener;
+use super::white::{Noise, whitener};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::Vec2;
@@ -186,6 +186,7 @@ fn compare(
         time_s: &time_s,
         weight: &weight,
         period_s: path.period_s,
+        noise: Noise::Any,
     };
     // The whitening must not swallow what it is to leave: it comes from the residual of everything together.
     let unwhitened = System::new(&base, &candidates, &rows, Vec::new());

@@ -83,6 +83,13 @@ fn rests(count: u32, (low, high): (f64, f64)) -> Vec<f64> {
     (0..count).map(|k| 0.5 * (low + high + RESTS_WITHIN * (high - low) * share(k))).collect()
 }
 
+/// Ripples of what swings freely that are shorter than any of a turn: it goes through them slowly wherever it turns round.
+fn shorter(track: &Track, range: f64) -> impl Iterator<Item = f64> {
+    let longest =
+        if track.freely.is_some() { track.radius_m.unwrap_or(0.0) * TAU / f64::from(*RIPPLES.end()) } else { 0.0 };
+    RIPPLES.map(move |n| range / f64::from(n)).filter(move |length| *length < longest)
+}
+
 impl Grid {
     /// What is tried first.
     pub fn coarse(track: &Track) -> Self {
@@ -116,6 +123,7 @@ impl Grid {
             ways: WAYS.map(|share| share * scale).into_iter().filter(|way| *way > least).collect(),
             ripples: RIPPLES
                 .map(|n| turn.unwrap_or(range) / f64::from(n))
+                .chain(shorter(track, range))
                 .filter(|length| *length > LEAST_ROWS_A_RIPPLE * fast * track.period_s)
                 .collect(),
             places: places.flat_map(|p| WIDTHS.map(|w| (p, w * span))).collect(),
@@ -158,7 +166,7 @@ impl Grid {
                         grid.straight.extend(times(way, &[0.62, 0.79, 1.0, 1.26, 1.6]));
                     }
                 }
-                "position-ripple" if track.radius_m.is_none() => {
+                "position-ripple" if track.radius_m.is_none() || track.freely.is_some() => {
                     grid.ripples.extend(times(
                         value("lambda").unwrap_or(0.0),
                         &[0.93, 0.96, 0.98, 0.99, 1.0, 1.01, 1.02, 1.04, 1.07],

@@ -227,6 +227,7 @@ impl Signals {
             bearing_weight_n: 0.0,
             slope,
             extra: Vec::new(),
+            freely: None,
             rows,
             fine,
         })

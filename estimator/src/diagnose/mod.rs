@@ -22,6 +22,7 @@ mod extend;
 mod extra;
 mod fine;
 mod force;
+mod free;
 mod gain;
 mod generic;
 mod geometry;
@@ -197,7 +198,7 @@ pub fn validate(
                 let recording = &late::motion_apart(&late::put_back(recording, diagnosis.late_s), diagnosis.skew_s);
                 let along = diagnosis.along.ok_or_else(|| along::none(recording))?;
                 let path = along.path_of(recording)?;
-                let mut track = sliding::track(recording, &quality::faults(recording).bad, path.as_ref())?;
+                let mut track = track_of(recording, path.as_ref(), diagnosis)?;
                 along.demand(track.coordinate, recording)?;
                 let Diagnosis { plain, effects, kept, .. } = diagnosis;
                 return Ok(validate::validate(&mut track, plain, effects, &[], kept));
@@ -211,6 +212,26 @@ pub fn validate(
         kept::measure(&diagnosis.kept, &order, &channels)
     };
     recordings.iter().map(of).collect()
+}
+
+/// Rows of a recording on which a mechanism's answer is measured, driven or free.
+fn track_of(
+    recording: &Recording,
+    path: Option<&haptics::world::MechanismPath>,
+    diagnosis: &Diagnosis,
+) -> Result<track::Track, EstimateError> {
+    let bad = quality::faults(recording).bad;
+    if crate::identify::mechanism::raw(recording, path)?.force.is_some() {
+        if diagnosis.per_inertia {
+            return Err(EstimateError::Other(format!(
+                "{} has a force column, and what was diagnosed is known per unit of inertia only: state the inertia, or what tells it, \
+                 under \"known\" in the sidecar",
+                recording.name
+            )));
+        }
+        return sliding::track(recording, &bad, path);
+    }
+    free::track(recording, &bad, path)
 }
 
 fn along_a_crank(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
@@ -432,6 +453,9 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Di
     let mut faults = Vec::new();
     let mut tracks = Vec::new();
     let paths = crate::identify::mechanism::paths(recordings);
+    if free::is_free(recordings, &paths)? {
+        return Ok((free::diagnose(recordings, &paths, options)?, None));
+    }
     for (recording, path) in recordings.iter().zip(&paths) {
         let found = quality::faults(recording);
         let (recording, mirrored_rate) = signs::with_rates_of_motion(recording);

@@ -325,6 +325,9 @@ pub struct Diagnosis {
     /// The coordinate of a mechanism, for other recordings; none where there is not one coordinate.
     #[serde(skip)]
     pub(super) along: Option<Along>,
+    /// Whether all forces are per unit of inertia, as in a free motion of which nothing is known.
+    #[serde(skip)]
+    pub(super) per_inertia: bool,
     /// By how much forces were put back before anything else was asked, s.
     #[serde(skip)]
     pub(super) late_s: f64,

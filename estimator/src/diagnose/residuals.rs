@@ -75,6 +75,8 @@ fn of_force(track: &Track, study: &Study, unit: &str, floor: f64) -> Vec<Residua
     let state = |i: usize| {
         let row = &track.rows[i];
         match row.place {
+            // Nothing holds what moves freely.
+            Place::Along if track.freely.is_some() => Some(("force that the motion needs", SystemState::FreeMotion)),
             Place::Along if row.open > STANDS => Some(("force along the motion", SystemState::Holding)),
             Place::Along => Some(("force along the motion", SystemState::Turning)),
             Place::FreeX => Some(("horizontal force", SystemState::FreeMotion)),

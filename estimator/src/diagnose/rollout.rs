@@ -5,7 +5,7 @@
 //! laws are stepped by the integrator of the servo's worlds.
 
 use super::extend::effects_of;
-use super::force::Model;
+use super::force::{self, Model};
 use super::geometry::Study;
 use super::report::{Rollout, RolloutOf};
 use super::system::Use;
@@ -86,7 +86,8 @@ fn side(track: &Track, model: &Model, study: &Study, picks: &[usize]) -> Option<
     let solved = study.system.solve(picks)?;
     let effects = effects_of(track, model, study, picks, &solved)?;
     let left = super::geometry::residual(&study.y, &study.base, &study.candidates, picks, &solved);
-    let mut drive = study.y.clone();
+    // Nothing drives what moves freely, and what its mass needs stands on the other side.
+    let mut drive = if track.freely.is_some() { vec![0.0; study.y.len()] } else { study.y.clone() };
     let mut at = study.base.len();
     for candidate in picks.iter().map(|p| &study.candidates[*p]) {
         for (column, value) in candidate.columns.iter().zip(&solved.values[at..]) {
@@ -104,7 +105,10 @@ fn faithful(track: &Track, study: &Study, side: &Side, other: &Side) -> bool {
     let (mut off, mut worth) = (0.0, 0.0);
     for stretch in stretches(track) {
         let motions: Vec<Motion> = track.rows[stretch.clone()].iter().map(|r| r.motion).collect();
-        let needed = drive_forces(&side.effects, &motions);
+        let needed = match track.freely {
+            Some(_) => force::needed(track, &side.effects)[stretch.clone()].to_vec(),
+            None => drive_forces(&side.effects, &motions),
+        };
         for (i, needed) in stretch.zip(needed) {
             if study.weight[i] > TRUSTED && track.rows[i].motion.direction.abs() > TRUSTED {
                 off += (side.drive[i] - side.left[i] - needed).powi(2);

@@ -5,7 +5,7 @@
 //! mean acceleration with these weights is exactly the difference of the two blocks' mean velocities.
 
 use super::fine::{FINE_HZ, between, calmed_line};
-use super::track::{Fine, Place, Row, Span, Track};
+use super::track::{Fine, Place, Row, Span, Track, Weighing};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use crate::identify::mechanism::{self, Raw};
@@ -180,7 +180,7 @@ impl Made {
                 force: Vec2::new(y, 0.0),
                 force_rate: Vec2::new((mean(force, middle) - mean(force, before)) / half_s, 0.0),
                 y,
-                span: Span { start, len: end - start, hat: true },
+                span: Span { start, len: end - start, weighing: Weighing::Hat },
                 open: 0.0,
             });
         }
@@ -221,6 +221,7 @@ impl Made {
             bearing_weight_n: 0.0,
             slope: None,
             extra: Vec::new(),
+            freely: None,
         }
     }
 }

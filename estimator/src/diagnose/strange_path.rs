@@ -4,6 +4,7 @@ use super::candidate::Candidate;
 use super::geometry::{Arm, Path, Study, residual};
 use super::select::{Chosen, Selection};
 use super::system::{Held, Rows, System};
+use super::white::Noise;
 use crate::signal::noise::white_noise;
 use haptics::Vec2;
 use haptics::law::Kind;
@@ -63,6 +64,7 @@ pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<(Study, usiz
             time_s: &time_s,
             weight: &study.weight,
             period_s: path.period_s,
+            noise: Noise::Any,
         };
         let coefficients = study.system.coefficients.clone();
         let system = System::new(&study.base, &candidates, &rows, coefficients);

@@ -3,7 +3,7 @@
 use super::candidate::Candidate;
 use super::geometry::Study;
 use super::products::{self, gram};
-use super::white::Whitening;
+use super::white::{Noise, Whitening};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::collections::HashMap;
 
@@ -29,6 +29,8 @@ pub struct Rows<'a> {
     /// Weight of each row, 0 … 1: what its noise is smaller by.
     pub weight: &'a [f64],
     pub period_s: f64,
+    /// What their noise is like.
+    pub noise: Noise,
 }
 
 /// Whether a row may be held out.

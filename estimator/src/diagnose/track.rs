@@ -3,7 +3,7 @@
 use super::extra::Extra;
 use super::hung::Hung;
 use haptics::Vec2;
-use haptics::law::{Coordinate, Motion};
+use haptics::law::{Coordinate, Effect, Motion};
 
 /// What a row's force is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,15 +46,46 @@ pub struct Fine {
 pub struct Span {
     pub start: usize,
     pub len: usize,
-    /// Points in the middle count more, evenly less towards both ends; all the same otherwise.
-    pub hat: bool,
+    /// How much each of them counts.
+    pub weighing: Weighing,
+}
+
+/// How the points of a row are weighed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Weighing {
+    /// All the same.
+    #[default]
+    Even,
+    /// Points in the middle count more, evenly less towards both ends.
+    Hat,
+    /// A hat whose first and last points count nothing: exactly what a difference of two mean rates has.
+    Tent,
+    /// Three arcs of a parabola whose first and last points count nothing: exactly what a second difference of three mean places has.
+    Bell,
+}
+
+impl Weighing {
+    /// Weight of point `k` of `len`, up to a factor.
+    fn of(self, k: usize, len: usize) -> f64 {
+        let middle = 0.5 * len as f64;
+        // From 0 at the first point to `knots` at the last one.
+        let along = |knots: f64| knots * k as f64 / (len.max(2) - 1) as f64;
+        match self {
+            Self::Even => 1.0,
+            Self::Hat => middle - (k as f64 + 0.5 - middle).abs(),
+            Self::Tent => 1.0 - (along(2.0) - 1.0).abs(),
+            Self::Bell => {
+                let aside = (along(3.0) - 1.5).abs();
+                if aside < 0.5 { 0.75 - aside * aside } else { 0.5 * (1.5 - aside).powi(2) }
+            }
+        }
+    }
 }
 
 impl Span {
     /// Indices and weights, which sum to one.
     pub fn weights(self) -> impl Iterator<Item = (usize, f64)> {
-        let middle = 0.5 * self.len as f64;
-        let raw = move |k: usize| if self.hat { middle - (k as f64 + 0.5 - middle).abs() } else { 1.0 };
+        let raw = move |k: usize| self.weighing.of(k, self.len);
         let sum: f64 = (0..self.len).map(raw).sum();
         (0..self.len).map(move |k| (self.start + k, raw(k) / sum))
     }
@@ -137,6 +168,7 @@ impl Track {
             bearing_weight_n: 0.0,
             slope: None,
             extra: Vec::new(),
+            freely: None,
         }
     }
 }
@@ -176,6 +208,23 @@ pub struct Track {
     pub slope: Option<(usize, usize)>,
     /// Slow channels beside motion and force, recording by recording.
     pub extra: Vec<Vec<Extra>>,
+    /// What moves without any force from outside, as in a recording without a force column.
+    pub freely: Option<Freely>,
+}
+
+/// What moves freely, whose laws must add up to nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Freely {
+    /// Mass or moment of inertia, kg or kg m²; 1 where nothing tells it.
+    pub inertia: f64,
+    /// One standard error of that, as a share.
+    pub relative_error: f64,
+    /// Whether something told it: otherwise all forces are per unit of inertia.
+    pub is_known: bool,
+    /// Acceleration of gravity, m/s².
+    pub gravity_m_s2: f64,
+    /// Friction that is stated.
+    pub known: [Option<Effect>; 2],
 }
 
 impl Track {
@@ -196,6 +245,17 @@ impl Track {
     /// Indices of the rows along the motion.
     pub fn along(&self) -> impl Iterator<Item = usize> + '_ {
         self.rows.iter().enumerate().filter(|(_, r)| r.place == Place::Along).map(|(i, _)| i)
+    }
+
+    /// Unit of the force along the motion; of a free motion of unknown inertia, of a force per unit of it.
+    pub fn force_unit(&self) -> &'static str {
+        let per_inertia = self.freely.is_some_and(|free| !free.is_known);
+        match (self.coordinate, per_inertia) {
+            (Coordinate::Angular, false) => "N m",
+            (Coordinate::Linear, false) => "N",
+            (Coordinate::Angular, true) => "rad/s²",
+            (Coordinate::Linear, true) => "m/s²",
+        }
     }
 
     /// A quantile (0 … 1) of a quantity over the rows along the motion.

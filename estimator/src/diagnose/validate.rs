@@ -3,7 +3,7 @@
 use super::blur::blur;
 use super::columns::Columns;
 use super::dictionary::{Dictionary, dry_of};
-use super::force::column;
+use super::force::{column, needed};
 use super::gain::bootstrap;
 use super::grid::Grid;
 use super::kept::Kept;
@@ -87,7 +87,8 @@ fn faults(track: &Track, predicted: &[f64], known: &[Effect], kept: &[Kept], lef
 /// Unexplained force before and after on another recording. Rows around reversals, whose direction is a guess, count little.
 pub fn validate(track: &mut Track, before: &[Effect], after: &[Effect], known: &[Effect], kept: &[Kept]) -> Validation {
     blur(track);
-    let (without, mut with) = (predicted(track, before), predicted(track, after));
+    let of: &dyn Fn(&Track, &[Effect]) -> Vec<f64> = if track.freely.is_some() { &needed } else { &predicted };
+    let (without, mut with) = (of(track, before), of(track, after));
     let mut left_out = Vec::new();
     let sensed = faults(track, &with, known, kept, &mut left_out);
     with.iter_mut().zip(sensed).for_each(|(w, s)| *w += s);

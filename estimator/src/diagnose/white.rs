@@ -3,11 +3,26 @@
 use super::system::{Rows, Use};
 use std::ops::Range;
 
-/// Highest order of the whitening autoregression.
+/// Highest order of the whitening autoregression of what a force leaves.
 const LARGEST_ORDER: usize = 6;
+/// … and of differences of what was measured, whose noise goes on over many rows, in rows and as a share of all of them.
+const ORDER_OF_DIFFERENCES: usize = 24;
+const SHARE_OF_DIFFERENCES: usize = 12;
+
+/// What the noise of the rows is like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Noise {
+    /// Nothing is known of it.
+    Any,
+    /// It is that of first or second differences of what has white noise, beside some that is white.
+    OfDifferences,
+}
 
 /// Autoregression that whitens a residual: coefficients of the lags from 1 on, chosen by BIC.
 pub fn whitener(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> Vec<f64> {
+    if rows.noise == Noise::OfDifferences {
+        return whitener_of_differences(residual, rows, used);
+    }
     let trains = |i: usize| matches!(used[i], Use::Always | Use::Fold(_));
     let mut lags = [0.0; LARGEST_ORDER + 1];
     let mut count = 0.0_f64;
@@ -25,9 +40,19 @@ pub fn whitener(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> Vec<f64> {
     if lags[0] <= 0.0 || count < 40.0 {
         return Vec::new();
     }
-    // Levinson's recursion.
+    let mut best = (count * lags[0].ln(), Vec::new());
+    levinson(&lags, &mut |coefficients, innovation| {
+        let bic = count * innovation.ln() + coefficients.len() as f64 * count.ln();
+        if bic < best.0 {
+            best = (bic, coefficients.to_vec());
+        }
+    });
+    best.1
+}
+
+/// Levinson's recursion: hands out the coefficients of every order from 1 on, with what they leave of the power.
+fn levinson(lags: &[f64], tell: &mut dyn FnMut(&[f64], f64)) {
     let (mut coefficients, mut innovation): (Vec<f64>, f64) = (Vec::new(), lags[0]);
-    let mut best = (count * innovation.ln(), Vec::new());
     for order in 1..lags.len() {
         let predicted: f64 = coefficients.iter().zip(lags[1..order].iter().rev()).map(|(a, r)| a * r).sum();
         let reflection = ((lags[order] - predicted) / innovation).clamp(-0.999, 0.999);
@@ -37,9 +62,36 @@ pub fn whitener(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> Vec<f64> {
         }
         coefficients.push(reflection);
         innovation *= 1.0 - reflection * reflection;
-        let bic = count * innovation.ln() + order as f64 * count.ln();
-        if bic < best.0 {
-            best = (bic, coefficients.clone());
+        tell(&coefficients, innovation);
+    }
+}
+
+/// How much more than white noise there is beside that of the differences, as shares of the latter's.
+const WHITE_BESIDE: [f64; 8] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 100.0];
+/// A place that swings by itself is taken back by its own noise in proportion: second differences plus so much of the noise itself.
+const TAKEN_BACK: [f64; 7] = [0.0, 0.01, 0.03, 0.06, 0.1, 0.2, 0.4];
+
+/// Autoregression of what differences of white noise leave: the one of its kind that leaves least. One estimated from few rows would fill up
+/// the gap that the noise has at low frequencies, where everything that swings is.
+fn whitener_of_differences(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> Vec<f64> {
+    let order = (residual.len() / SHARE_OF_DIFFERENCES).min(ORDER_OF_DIFFERENCES);
+    let second = TAKEN_BACK.map(|back| vec![1.0, back - 2.0, 1.0]);
+    let kinds = second.into_iter().chain([vec![1.0, -1.0]]);
+    let flat = vec![1.0; residual.len()];
+    let mut best: (f64, Vec<f64>) = (f64::INFINITY, Vec::new());
+    for (weights, white) in kinds.flat_map(|weights| WHITE_BESIDE.map(|white| (weights.clone(), white))) {
+        let mut lags = vec![0.0; order + 1];
+        for (lag, sum) in lags.iter_mut().enumerate() {
+            *sum = weights.iter().skip(lag).zip(&weights).map(|(a, b)| a * b).sum();
+        }
+        lags[0] *= 1.0 + white;
+        let mut coefficients = Vec::new();
+        levinson(&lags, &mut |found, _| coefficients = found.to_vec());
+        let left = Whitening::new(rows.stretch, &flat, &coefficients).of(residual);
+        let trains = (0..left.len()).filter(|i| matches!(used[*i], Use::Always | Use::Fold(_)));
+        let power: f64 = trains.map(|i| left[i] * left[i]).sum();
+        if power < best.0 {
+            best = (power, coefficients);
         }
     }
     best.1

@@ -51,6 +51,7 @@ mod words {
     pub const TO_ATLAS: &str = "Atlas";
     pub const SWITCH_MORE: &str = "Switches between the curves and what is left over against every suspect";
     pub const FORCE_HEADING: &str = "Force along the motion";
+    pub const FREE_HEADING: &str = "Force that the free motion needs";
     pub const NOISE: &str = "± 2 σ of the noise";
     pub const WITH_FOUND: &str = "with what was found";
     pub const MODEL: &str = "model";
@@ -200,7 +201,8 @@ fn draw(ui: &mut Ui, session: &mut Session, curves: &Residuals, has_atlas: bool)
     let height = ui.available_height();
     let gap = space::S;
     ui.spacing_mut().item_spacing.y = 0.0;
-    head(ui, words::FORCE_HEADING, curves.unit, |ui| {
+    let heading = if curves.is_free { words::FREE_HEADING } else { words::FORCE_HEADING };
+    head(ui, heading, curves.unit, |ui| {
         let inks = inks(ui);
         key(ui, inks.noise, 9.0, words::NOISE);
         key(ui, inks.extended, 2.0, words::WITH_FOUND);

@@ -58,6 +58,8 @@ pub struct Cloud {
 pub struct Residuals {
     /// Shown unit of the force.
     pub unit: &'static str,
+    /// Whether that is what a free motion needs, not what a sensor told.
+    pub is_free: bool,
     /// Measured force, in stretches without a gap.
     pub measured: Vec<Vec<PlotPoint>>,
     /// The model's.
@@ -100,7 +102,8 @@ impl Residuals {
         }
         variables.push(Suspect::Time);
         Self {
-            unit: if course.is_angular { "N·m" } else { "N" },
+            unit: course.force_unit(),
+            is_free: course.is_free(),
             measured: curve(&rows, false, &|i| i.measured),
             modelled: curve(&sure, true, &Instant::simulated_before),
             extended: curve(&sure, true, &Instant::simulated_after),

@@ -40,6 +40,7 @@ pub fn imagine(track: &Track, model: &Model, values: &[f64], excitation: &Excita
         bearing_weight_n: 0.0,
         slope: None,
         extra: Vec::new(),
+        freely: None,
         ..track.clone()
     };
     blur(&mut imagined);

@@ -230,6 +230,7 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
         bearing_weight_n: 0.0,
         slope: None,
         extra: Vec::new(),
+        freely: None,
     }
 }
 

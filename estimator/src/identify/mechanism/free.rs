@@ -9,6 +9,7 @@ use crate::estimate::{EstimateError, Fit, Parameter};
 use crate::identify::bootstrap::block_bootstrap;
 use crate::identify::linear::{LinearFit, least_squares};
 use haptics::law::Coordinate;
+use haptics::recording::Meta;
 
 /// Relative error of the integration that the refinement rests on.
 const INTEGRATION_ERROR: f64 = 2e-5;
@@ -41,6 +42,32 @@ impl Ratios {
         self.fit.std_errors = self.drawn.take()?;
         Some(self)
     }
+}
+
+/// A known parameter that gives all of a free motion's values their size: its value in SI units, for a gravity moment the whole of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stated {
+    /// Mass or moment of inertia, kg or kg m².
+    Inertia(f64),
+    /// Gravity moment, N m.
+    Gravity(f64),
+    /// Viscous friction, N s/m or N m s.
+    Viscous(f64),
+    /// Coulomb friction, N or N m.
+    Coulomb(f64),
+}
+
+/// What a sidecar states of a free motion's scale, what tells most first.
+pub fn stated(meta: &Meta, coordinate: Coordinate) -> Vec<Stated> {
+    let known = Known::from_meta(meta, coordinate);
+    let moment = known.value(Term::GravitySine).map(|a| a.hypot(known.value(Term::GravityCosine).unwrap_or(0.0)));
+    let all = [
+        known.value(Term::Inertia).map(Stated::Inertia),
+        moment.map(Stated::Gravity),
+        known.value(Term::Viscous).map(Stated::Viscous),
+        known.value(Term::Coulomb).map(Stated::Coulomb),
+    ];
+    all.into_iter().flatten().collect()
 }
 
 /// Fits a free motion. The acceleration carries the most noise, so it is the left-hand side and not a regressor.

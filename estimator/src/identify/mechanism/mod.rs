@@ -21,6 +21,7 @@ mod transmission;
 mod world;
 
 pub use chain::is_chain;
+pub use free::{Stated, stated};
 pub use report::{OBJECT, PHASE};
 pub use world::{Prediction, measured, path_of, predict, world};
 

@@ -1,0 +1,283 @@
+//! What moves without a force column: nothing drives it, so its laws and its inertia must add up to nothing.
+//!
+//! The rows are those of a mechanism with a force of zero and a known inertia: what the laws must give is then minus what the mass needs,
+//! −I a. The acceleration carries the most noise, so it stands on that side alone. Only ratios to the inertia show; what the sidecar (or the
+//! world) knows gives them their size, as in a fit (`identify/mechanism/free.rs`). All values are proportional to the inertia.
+
+mod rows;
+mod words;
+
+pub(super) use words::next;
+
+use super::along::Along;
+use super::candidate::Candidate;
+use super::explain::explain;
+use super::force::{self, Model};
+use super::geometry::Study;
+use super::report::Diagnosis;
+use super::track::{Freely, Row, Track, join};
+use super::{Options, atlas, known_laws, named, nothing, quality, signs, threshold};
+use crate::estimate::EstimateError;
+use crate::identify::linear::least_squares;
+use crate::identify::mechanism::{self, Stated, raw};
+use haptics::law::{
+    Coordinate, CoulombFriction, EccentricMass, Effect, GravityTilt, Inertia, Kind, Law, Role, ViscousFriction,
+};
+use haptics::recording::Recording;
+use haptics::world::MechanismPath;
+pub(super) use rows::track;
+
+/// What goes no larger a share of its way back goes one way.
+const ONE_WAY: f64 = 0.02;
+/// What swings goes back at least this share of its way …
+const BACK: f64 = 0.1;
+/// … and gravity of any phase then explains so much of its acceleration's power at least.
+const SWINGS: f64 = 0.5;
+/// A known parameter gives the scale where its ratio to the inertia is so many standard errors.
+const CLEAR: f64 = 3.0;
+/// Causes that only a force sensor shows, or only a force that drives.
+const WITH_A_FORCE: [&str; 9] = [
+    "force-bias",
+    "force-drift",
+    "force-gain",
+    "force-cross-axis",
+    "force-saturation",
+    "time-delay",
+    "inertia",
+    "mass-change",
+    "backlash",
+];
+
+/// Whether no recording has a force along its coordinate. `paths`: of tools whose coordinate is counted along one.
+///
+/// # Errors
+/// Recordings of both kinds, or without coordinate or clock: in a sentence.
+pub(super) fn is_free(recordings: &[Recording], paths: &[Option<MechanismPath>]) -> Result<bool, EstimateError> {
+    let mut driven = Vec::new();
+    for (recording, path) in recordings.iter().zip(paths) {
+        driven.push(raw(recording, path.as_ref())?.force.is_some());
+    }
+    if driven.iter().any(|d| *d) && driven.iter().any(|d| !d) {
+        let text = "some recordings have a force column and others do not; diagnose the driven and the free ones apart, \
+                    and give the others as --validate";
+        return Err(EstimateError::Other(text.to_owned()));
+    }
+    Ok(driven.iter().all(|d| !d))
+}
+
+/// Causes that are friction, or its course with the speed, in what goes one way and slows down.
+const WITH_BOTH_WAYS: [&str; 3] = ["friction-asymmetry", "gravity-tilt", "friction-change"];
+
+/// Whether a free motion can show a cause at all. `both_ways`: whether it goes both ways.
+pub(super) fn can_show(id: &str, both_ways: bool) -> bool {
+    !WITH_A_FORCE.contains(&id) && (both_ways || !WITH_BOTH_WAYS.contains(&id))
+}
+
+/// Ways forward and backward.
+fn ways(track: &Track) -> [f64; 2] {
+    let way = |side: f64| track.along().map(|i| (side * track.rows[i].motion.velocity).max(0.0)).sum::<f64>();
+    [way(1.0), way(-1.0)]
+}
+
+/// Whether it goes both ways.
+pub(super) fn goes_both_ways(track: &Track) -> bool {
+    let [forward, backward] = ways(track);
+    forward.min(backward) > ONE_WAY * (forward + backward)
+}
+
+/// The answer of one object's free motions. `paths`: as in [`is_free`].
+pub(super) fn diagnose(
+    recordings: &[Recording],
+    paths: &[Option<MechanismPath>],
+    options: &Options,
+) -> Result<Diagnosis, EstimateError> {
+    let (mut track, faults) = tracks(recordings, paths)?;
+    let first = &recordings[0];
+    let mut model = model(&track, first, options)?;
+    let limit = threshold(track.period_s);
+    options.progress.tell(0.4)?;
+    let mut scale = scale_of(&mut track, first, &mut model, options);
+    let fixed = fixed(&track);
+    let mut study = force::study(&mut track, &model, &fixed, limit)?;
+    options.progress.tell(0.6)?;
+    if let Scale::ByRatio(stated) = scale {
+        // Beside what was found: a hidden spring would pass for gravity.
+        match inertia_by(stated, &model, &study) {
+            Some((inertia, relative_error)) => {
+                set(&mut track, inertia, relative_error);
+                keep_known(&mut track, first, &mut model, Some(stated));
+                let fixed = self::fixed(&track);
+                study = force::study(&mut track, &model, &fixed, limit)?;
+            }
+            None => scale = Scale::Hidden,
+        }
+    }
+    options.progress.tell(0.8)?;
+    let mut found = explain(&track, &model, &study, &[], faults);
+    found.along = Some(Along::of(track.coordinate, recordings, paths));
+    words::put_right(&mut found, &track, scale, goes_both_ways(&track));
+    if options.atlas {
+        found.atlas = atlas::atlas(&track, &study, limit);
+    }
+    Ok(found)
+}
+
+/// The rows of all recordings, and what is wrong with their samples.
+fn tracks(
+    recordings: &[Recording],
+    paths: &[Option<MechanismPath>],
+) -> Result<(Track, Vec<super::Cause>), EstimateError> {
+    let (mut tracks, mut faults) = (Vec::new(), Vec::new());
+    for (recording, path) in recordings.iter().zip(paths) {
+        let found = quality::faults(recording);
+        let (recording, mirrored_rate) = signs::with_rates_of_motion(recording);
+        let mut rows = track(recording.as_ref(), &found.bad, path.as_ref())?;
+        rows.extra = vec![super::extra::of(recording.as_ref())];
+        faults.extend(mirrored_rate.map(quality::against_motion));
+        faults.extend(found.causes);
+        tracks.push(rows);
+    }
+    Ok((join(tracks).ok_or_else(nothing)?, faults))
+}
+
+/// The laws to start from, without the inertia.
+fn model(track: &Track, first: &Recording, options: &Options) -> Result<Model, EstimateError> {
+    let mut model: Model = match (&options.world, options.baseline.as_deref()) {
+        (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),
+        (None, name) => {
+            let mut laws = gravity(track, first);
+            laws.extend(named(name.unwrap_or("mass+viscous+coulomb"))?);
+            laws
+        }
+    };
+    model.retain(|e| e.role() != Role::Inertia);
+    Ok(model)
+}
+
+/// Gravity of any phase for an angle that swings: it need not be measured from hanging.
+fn gravity(track: &Track, first: &Recording) -> Model {
+    let is_known = mechanism::stated(&first.meta, track.coordinate).iter().any(|s| matches!(s, Stated::Gravity(_)));
+    if track.coordinate == Coordinate::Linear || !(is_known || swings(track)) {
+        return Model::new();
+    }
+    [[1.0, 0.0], [0.0, 1.0]].map(|values| Effect::new(&EccentricMass, &values)).to_vec()
+}
+
+/// Whether it goes to and fro, and gravity explains how.
+fn swings(track: &Track) -> bool {
+    let along = |of: &dyn Fn(&Row) -> f64| -> Vec<f64> { track.along().map(|i| of(&track.rows[i])).collect() };
+    let [forward, backward] = ways(track);
+    let acceleration = along(&|r| r.motion.acceleration);
+    let mean = |of: &dyn Fn(f64) -> f64| along(&|r| track.mean(r, &|m| of(m.position)));
+    let columns = [mean(&f64::sin), mean(&f64::cos), vec![1.0; acceleration.len()]];
+    let power = acceleration.iter().map(|a| a * a).sum::<f64>() / acceleration.len().max(1) as f64;
+    let explains =
+        least_squares(&columns, &acceleration, None).is_ok_and(|fit| fit.rms * fit.rms < (1.0 - SWINGS) * power);
+    explains && forward.min(backward) > BACK * (forward + backward)
+}
+
+/// Where the inertia comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Scale {
+    /// The world or the sidecar states it.
+    Stated,
+    /// A parameter is known whose ratio to it shows.
+    ByRatio(Stated),
+    /// Such a parameter is known, but its ratio to the inertia does not show, or it is no part of the model.
+    Hidden,
+    /// Nothing is known.
+    Nothing,
+}
+
+/// Sets the inertia where it is stated, or says which known parameter will tell it.
+fn scale_of(track: &mut Track, first: &Recording, model: &mut Model, options: &Options) -> Scale {
+    let laws = options.world.as_ref().and_then(|w| w.mechanism.as_ref()).map(|m| m.effects.as_slice());
+    let of_world: f64 = laws.into_iter().flatten().filter(|e| e.role() == Role::Inertia).map(|e| e.values[0]).sum();
+    let stated = mechanism::stated(&first.meta, track.coordinate);
+    let of_sidecar = stated.iter().find_map(|s| if let Stated::Inertia(value) = s { Some(*value) } else { None });
+    if let Some(inertia) = Some(of_world).into_iter().chain(of_sidecar).find(|inertia| *inertia > 0.0) {
+        set(track, inertia, 0.0);
+        keep_known(track, first, model, None);
+        return Scale::Stated;
+    }
+    let in_model = |law: &dyn Law| model.iter().any(|e| e.law().id() == law.id());
+    let shows = |s: &&Stated| in_model(law_of(**s));
+    match (stated.iter().find(shows), stated.is_empty()) {
+        (Some(by), _) => Scale::ByRatio(*by),
+        (None, false) => Scale::Hidden,
+        (None, true) => Scale::Nothing,
+    }
+}
+
+fn law_of(stated: Stated) -> &'static dyn Law {
+    match stated {
+        Stated::Inertia(_) => &Inertia,
+        Stated::Gravity(_) => &EccentricMass,
+        Stated::Viscous(_) => &ViscousFriction,
+        Stated::Coulomb(_) => &CoulombFriction,
+    }
+}
+
+fn set(track: &mut Track, inertia: f64, relative_error: f64) {
+    let Some(free) = &mut track.freely else { return };
+    track.force_noise *= inertia / free.inertia;
+    (free.inertia, free.relative_error, free.is_known) = (inertia, relative_error, true);
+}
+
+/// Friction that the sidecar knows is no part of what is fitted, unless it gave the inertia.
+fn keep_known(track: &mut Track, first: &Recording, model: &mut Model, gave: Option<Stated>) {
+    let had = model.clone();
+    let known = known_laws(first, track.coordinate, model);
+    let spared = gave.map(|by| law_of(by).id());
+    let is_spared = |e: &&Effect| Some(e.law().id()) == spared;
+    model.extend(had.iter().filter(is_spared).filter(|e| known.iter().any(|k| k.law().id() == e.law().id())));
+    let Some(free) = &mut track.freely else { return };
+    let mut kept = known.iter().filter(|e| !is_spared(e)).copied();
+    free.known = [kept.next(), kept.next()];
+}
+
+/// What is known of the forces: that of the mass, and friction that the sidecar states.
+fn fixed(track: &Track) -> Model {
+    let Some(free) = track.freely else { return Model::new() };
+    std::iter::once(Effect::new(&Inertia, &[free.inertia])).chain(free.known.into_iter().flatten()).collect()
+}
+
+/// Inertia out of a known parameter and its value per unit of inertia, and one standard error of it as a share.
+fn inertia_by(stated: Stated, model: &Model, study: &Study) -> Option<(f64, f64)> {
+    let (Stated::Inertia(known) | Stated::Gravity(known) | Stated::Viscous(known) | Stated::Coulomb(known)) = stated;
+    let solved = study.solved.as_ref()?;
+    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    let of: Vec<usize> = (0..model.len()).filter(|k| model[*k].law().id() == law_of(stated).id()).collect();
+    let ratio = of.iter().map(|k| solved.values[*k].powi(2)).sum::<f64>().sqrt();
+    let pairs = of.iter().flat_map(|a| of.iter().map(move |b| (*a, *b)));
+    let spread: f64 = pairs.map(|(a, b)| solved.values[a] * solved.values[b] * solved.inverse[(a, b)]).sum();
+    let error = (variance * spread.max(0.0)).sqrt() / ratio.max(1e-300);
+    (ratio > CLEAR * error).then(|| (known / ratio, error / ratio))
+}
+
+/// A slope under what moves along a line: the sine of its angle. None where something turns or is driven.
+pub(super) fn tilt(track: &Track) -> Option<Candidate> {
+    let free = track.freely.filter(|_| track.coordinate == Coordinate::Linear)?;
+    let pull = free.inertia * free.gravity_m_s2;
+    Some(Candidate::one(GravityTilt.id(), Kind::Plant, "angle", "rad", vec![pull; track.rows.len()]))
+}
+
+/// The law of such a slope. `sine`: of its angle.
+pub(super) fn tilted(track: &Track, sine: f64) -> Option<Effect> {
+    let free = track.freely?;
+    Some(Effect::new(&GravityTilt, &[free.inertia * free.gravity_m_s2, sine.clamp(-1.0, 1.0).asin(), 0.0]))
+}
+
+/// The laws of what moves freely as a world has them: with its inertia and what is known, and gravity of both phases as one law.
+pub(super) fn whole(track: &Track, laws: Vec<Effect>) -> Vec<Effect> {
+    let Some(Freely { inertia, known, .. }) = track.freely else { return laws };
+    let mut all = vec![Effect::new(&Inertia, &[inertia])];
+    for law in laws.into_iter().chain(known.into_iter().flatten()) {
+        let pulls = |e: &Effect| e.law().id() == EccentricMass.id() && e.values[2] == law.values[2];
+        match all.iter_mut().find(|e| pulls(e) && pulls(&law)) {
+            Some(gravity) => (0..2).for_each(|k| gravity.values[k] += law.values[k]),
+            None => all.push(law),
+        }
+    }
+    all
+}
