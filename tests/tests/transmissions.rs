@@ -84,6 +84,104 @@ fn value(found: &Diagnosis, id: &str, name: &str) -> f64 {
     cause.parameters.iter().find(|p| p.name == name).unwrap_or_else(|| panic!("{name}: {cause:?}")).value
 }
 
+/// An input on paper: two sines, seen in steps. The output stays behind by an exact gap, a give and a delay; the force has the load, dry friction and a
+/// little drag. `loads`: dry loads of the runs, N m.
+fn on_paper(seed: u64, hidden: &OnPaper, loads: &[f64]) -> Vec<Recording> {
+    let run = |(k, load): (usize, &f64)| {
+        let mut noise = Noise((seed + 31 * k as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+        let (slow, phase) = (0.15 + 0.2 * noise.uniform(), TAU * noise.uniform());
+        let input = |t: f64| 0.45 * (TAU * slow * t + phase).sin() + 0.1 * (2.7 * TAU * slow * t).sin();
+        let (mut place, mut columns) = (input(0.0), vec![Vec::new(); 4]);
+        let mut time_s = Vec::new();
+        for i in 0..4000 {
+            let t = 0.005 * f64::from(i);
+            let (q, rate) = (input(t), (input(t + 1e-5) - input(t - 1e-5)) / 2e-5);
+            place = place.clamp(q - hidden.half_gap, q + hidden.half_gap);
+            let turning = rate.signum();
+            let late = if hidden.late_s > 0.0 { input(t - hidden.late_s) } else { place };
+            let step = |v: f64, size: f64| (v / size).round() * size;
+            time_s.push(t);
+            let exact = [
+                step(q, 1.5e-4),
+                step(hidden.ratio * late, 2e-4),
+                load * (turning + 0.3) + hidden.dry * turning + 2e-3 * rate + 1e-3 * noise.normal(),
+                load * (turning + 0.3) + 5e-4 * noise.normal(),
+            ];
+            columns.iter_mut().zip(exact).for_each(|(c, v)| c.push(v));
+        }
+        let names = ["q_rad", "q_out_rad", "tau_Nm", "jaw_torque_Nm"];
+        let channel = |(name, values): (&str, Vec<f64>)| Channel { name: name.to_owned(), unit: String::new(), values };
+        Recording {
+            name: format!("run {k}"),
+            time_s: Some(time_s),
+            channels: names.into_iter().zip(columns).map(channel).collect(),
+            ..Recording::default()
+        }
+    };
+    loads.iter().enumerate().map(run).collect()
+}
+
+struct OnPaper {
+    half_gap: f64,
+    ratio: f64,
+    late_s: f64,
+    dry: f64,
+}
+
+fn found_on_paper(seed: u64, hidden: &OnPaper, loads: &[f64]) -> Diagnosis {
+    let found = diagnose(&on_paper(seed, hidden, loads), &Options::default()).expect("runs");
+    for cause in &found.causes {
+        println!("{seed} {}: {:?}", cause.id, cause.parameters);
+    }
+    found
+}
+
+#[test]
+fn an_exact_gap_is_all_of_the_lost_motion_and_brings_nothing_with_it() {
+    for (seed, ratio) in [(1, 1.0), (2, 0.914), (3, 1.0)] {
+        let hidden = OnPaper { half_gap: 0.025, ratio, late_s: 0.0, dry: 0.0 };
+        let found = found_on_paper(seed, &hidden, &[0.02, 0.03, 0.045]);
+        let (share, half) = (value(&found, "backlash", "share"), value(&found, "backlash", "delta"));
+        assert!((share - 1.0).abs() < 0.02 && (half / hidden.half_gap - 1.0).abs() < 0.01, "{seed}: {share} {half}");
+        let beside = ["hysteresis", "pad-compliance", "time-delay"];
+        assert!(beside.iter().all(|id| named(&found, id).is_none()), "{seed}: {:?}", found.causes);
+    }
+}
+
+#[test]
+fn a_delay_does_not_go_with_the_ratio_and_none_is_made_up() {
+    for (seed, late_s) in [(4, 0.03), (5, 0.0)] {
+        let hidden = OnPaper { half_gap: 0.0, ratio: 0.914, late_s, dry: 0.0 };
+        let found = found_on_paper(seed, &hidden, &[0.02, 0.03, 0.045]);
+        if late_s == 0.0 {
+            assert!(named(&found, "time-delay").is_none() && named(&found, "backlash").is_none(), "{:?}", found.causes);
+        } else {
+            let tau = value(&found, "time-delay", "tau");
+            assert!((tau / late_s - 1.0).abs() < 0.03, "{tau}");
+        }
+    }
+}
+
+#[test]
+fn dry_friction_beside_a_load_that_turns_round_with_the_motion_is_right_or_said_to_be_open() {
+    for seed in 6..9 {
+        let hidden = OnPaper { half_gap: 0.0, ratio: 1.0, late_s: 0.0, dry: 0.04 };
+        // Unlike loads tell them apart.
+        let found = found_on_paper(seed, &hidden, &[0.02, 0.03, 0.045]);
+        let dry = value(&found, "coulomb-friction", "Fc");
+        assert!((dry / hidden.dry - 1.0).abs() < 0.05, "{seed}: {dry}");
+        // One load does not.
+        let found = found_on_paper(seed, &hidden, &[0.03]);
+        if let Some(dry) = named(&found, "coulomb-friction") {
+            let fc = &dry.parameters[0];
+            assert!((fc.value - hidden.dry).abs() < 2.0 * fc.std_error, "{seed}: {fc:?}");
+            assert!(found.alternatives.iter().any(|a| a.instead_of == "coulomb-friction"), "{:?}", found.alternatives);
+        } else {
+            assert!(found.not_excited.iter().any(|n| n.id == "coulomb-friction"), "{:?}", found.not_excited);
+        }
+    }
+}
+
 #[test]
 fn the_same_is_found_whichever_way_the_sensors_count() {
     let hidden = Hidden { gap: 0.02, stiffness: 12.0, dry: 0.05 };

@@ -4,13 +4,16 @@ use super::candidate::Candidate;
 use super::force::{CONFIRMED, SHOWN};
 use super::gain::{confirmed, gain, holds_out, is_tested};
 use super::geometry::{Study, residual};
-use super::select::Selection;
+use super::select::{DRY_FRICTION, OF_DRY_FRICTION, Selection};
 use super::system::{Held, Rows, System, solve, uses};
 use super::white::{Noise, whitener};
 use crate::estimate::EstimateError;
 
-/// What whitening is learnt from keeps this much of the generic terms' strength out.
+/// What whitening is learnt from keeps this much of the generic terms' strength out, and of what a cause has of its own: kept out of all of it, what
+/// is nearly the model's would be given to the model, and the difference left over.
 const RIDGE: f64 = 1e-2;
+/// A cause that has less of its own than this has nothing.
+const LEAST_OWN: f64 = 1e-4;
 
 /// Rows of one channel with everything that could explain them.
 pub struct Channel {
@@ -35,11 +38,21 @@ impl Channel {
     pub fn compare(self, threshold: f64) -> Result<Study, EstimateError> {
         // The rows are in the order of their times already.
         let order: Vec<f64> = (0..self.y.len()).map(|i| i as f64).collect();
-        self.compare_in(&order, threshold)
+        self.chosen(&order, threshold, true)
+    }
+
+    /// The same where the model has no dry friction: what bends or lifts it is then asked for beside it only.
+    pub fn compare_without_friction(self, threshold: f64) -> Result<Study, EstimateError> {
+        let order: Vec<f64> = (0..self.y.len()).map(|i| i as f64).collect();
+        self.chosen(&order, threshold, false)
     }
 
     /// The same with rows held out together that follow each other in this order.
-    pub fn compare_in(mut self, order: &[f64], threshold: f64) -> Result<Study, EstimateError> {
+    pub fn compare_in(self, order: &[f64], threshold: f64) -> Result<Study, EstimateError> {
+        self.chosen(order, threshold, true)
+    }
+
+    fn chosen(mut self, order: &[f64], threshold: f64, dry: bool) -> Result<Study, EstimateError> {
         let seen = |c: &Candidate| {
             c.columns.iter().all(|v| v.iter().all(|x| x.is_finite()) && v.iter().any(|x| x.abs() > 1e-12))
         };
@@ -61,12 +74,19 @@ impl Channel {
         };
         let coefficients = whitening(&base, &candidates, &rows, threshold)?;
         let system = System::new(&base, &candidates, &rows, coefficients);
-        let chosen =
-            Selection { system: &system, candidates: &candidates, threshold, dry: true, one_loss: false }.run(&[]);
+        let chosen = Selection { system: &system, candidates: &candidates, threshold, dry, one_loss: false }.run(&[]);
         let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
         let solved = system.solve(&picks);
         let mut made = Study { candidates, chosen, system, solved, y, base, weight };
         leave_out_what_is_unsure(&mut made, &stretch, threshold);
+        leave_out_what_cannot_be(&mut made);
+        if !dry && lifts_nothing(&made) {
+            // The dry friction that it was found beside went: nothing of the kind was there.
+            let Study { y, base, mut candidates, weight, .. } = made;
+            candidates.retain(|c| !OF_DRY_FRICTION.contains(&c.id));
+            let testable = testable.iter().map(|held| *held != Held::Never).collect();
+            return Self { y, base, candidates, stretch, testable, weight, period_s }.chosen(order, threshold, dry);
+        }
         Ok(made)
     }
 }
@@ -91,6 +111,30 @@ fn leave_out_what_is_unsure(study: &mut Study, stretch: &[usize], threshold: f64
     }
 }
 
+/// Whether a change of dry friction was chosen without any.
+fn lifts_nothing(study: &Study) -> bool {
+    let is = |all: &[&str]| study.picks().iter().any(|c| all.contains(&study.candidates[*c].id));
+    is(&OF_DRY_FRICTION) && !is(&DRY_FRICTION)
+}
+
+/// What stood beside a cause that went may be left with a size that its name does not allow.
+fn leave_out_what_cannot_be(study: &mut Study) {
+    let impossible = |study: &Study| {
+        let values = &study.solved.as_ref()?.values;
+        let mut at = study.system.base;
+        study.chosen.iter().position(|chosen| {
+            let candidate = &study.candidates[chosen.candidate];
+            let own = at..at + candidate.columns.len();
+            at = own.end;
+            !candidate.admits(&values[own])
+        })
+    };
+    while let Some(k) = impossible(study) {
+        study.chosen.remove(k);
+        study.solved = study.system.solve(&study.picks());
+    }
+}
+
 /// The autoregression of what everything together leaves: learnt from the model's residual it would swallow the causes.
 pub fn whitening(
     base: &[Vec<f64>],
@@ -100,12 +144,20 @@ pub fn whitening(
 ) -> Result<Vec<f64>, EstimateError> {
     let rough = System::new(base, candidates, rows, Vec::new());
     let mut used = Selection { system: &rough, candidates, threshold, dry: true, one_loss: false }.greedy();
+    let causes = used.clone();
+    let own = |k: &usize| {
+        let others: Vec<usize> = causes.iter().filter(|c| *c != k).copied().collect();
+        rough.distinct(*k, &others).max(LEAST_OWN)
+    };
+    let mut kept_out: Vec<f64> =
+        causes.iter().flat_map(|k| vec![RIDGE * own(k); candidates[*k].columns.len()]).collect();
     used.extend((0..candidates.len()).filter(|c| candidates[*c].expression.is_some()));
     let columns = rough.columns(&used);
     let target = rough.train.ncols() - 1;
     let mut ridged = rough.train.clone();
-    for column in &columns[rough.base..] {
-        ridged[(*column, *column)] *= 1.0 + RIDGE;
+    kept_out.resize(columns.len() - rough.base, RIDGE);
+    for (column, share) in columns[rough.base..].iter().zip(&kept_out) {
+        ridged[(*column, *column)] *= 1.0 + share;
     }
     let solved = solve(&ridged, &columns, target)
         .ok_or_else(|| EstimateError::Other("the model could not be fitted to the recording".to_owned()))?;

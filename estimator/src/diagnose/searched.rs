@@ -43,6 +43,36 @@ pub fn known(study: &Study, k: usize, which: usize) -> Known {
     }
 }
 
+/// What is unknown of the searched values leaves unknown of the first fitted one of the k-th chosen cause: a wider gap takes a smaller share. By
+/// its slope over the neighbours, and by what comes out at all other tried values, as likely as they are.
+pub fn carried_over(study: &Study, k: usize) -> f64 {
+    let picks = study.picks();
+    let own = &study.candidates[picks[k]];
+    let first = study.system.base + picks[..k].iter().map(|p| study.candidates[*p].columns.len()).sum::<usize>();
+    let fitted = |candidate: usize| {
+        let mut with = picks.clone();
+        with[k] = candidate;
+        study.system.least(&with).map(|(values, rss)| (values[first], study.system.rows * rss.max(1e-300).ln()))
+    };
+    let Some((best, least)) = fitted(picks[k]) else { return 0.0 };
+    let of = |which: usize| {
+        let value = |candidate: usize| study.candidates[candidate].searched[which].value;
+        let [below, above] = neighbours(study, picks[k], which).map(|c| c.unwrap_or(picks[k]));
+        let slope = (fitted(above)?.0 - fitted(below)?.0) / (value(above) - value(below));
+        slope.is_finite().then(|| slope * known(study, k, which).std_error)
+    };
+    let by_slope = (0..own.searched.len()).filter_map(of).fold(0.0, f64::hypot);
+    let alike = |c: &Candidate| c.id == own.id && c.part == own.part && c.linear == own.linear;
+    let others = (0..study.candidates.len()).filter(|c| alike(&study.candidates[*c])).filter_map(fitted);
+    let (mut weights, mut squares) = (0.0, 0.0);
+    for (value, price) in others {
+        let weight = (-0.5 * (price - least)).min(0.0).exp();
+        weights += weight;
+        squares += weight * (value - best).powi(2);
+    }
+    by_slope.hypot((squares / weights.max(1e-300)).sqrt())
+}
+
 /// The candidates with the next smaller and the next larger of one searched value, all others being the same.
 fn neighbours(study: &Study, own: usize, which: usize) -> [Option<usize>; 2] {
     let value = |candidate: usize| study.candidates[candidate].searched[which].value;

@@ -94,9 +94,9 @@ enum Over {
 pub const LOST_MOTION: [&str; 2] = ["hysteresis", "backlash"];
 
 /// Causes that are a change of dry friction, and mean nothing without it.
-const OF_DRY_FRICTION: [&str; 3] = ["stribeck", "hysteresis", "friction-change"];
+pub(super) const OF_DRY_FRICTION: [&str; 3] = ["stribeck", "hysteresis", "friction-change"];
 /// Causes that are dry friction.
-const DRY_FRICTION: [&str; 2] = ["coulomb-friction", "load-friction"];
+pub(super) const DRY_FRICTION: [&str; 2] = ["coulomb-friction", "load-friction"];
 
 impl Selection<'_> {
     /// Most causes at once.

@@ -9,6 +9,8 @@ use std::collections::HashMap;
 
 /// Rows of a block are this many at least, and there are this many blocks at most.
 const LEAST_BLOCK: usize = 12;
+/// The same of rows of which none follows on another.
+const LEAST_ALONE: usize = 3;
 const MOST_BLOCKS: usize = 20;
 /// Every so many-th block is locked: it takes part in the gain only.
 const LOCKED_EVERY: usize = 4;
@@ -63,8 +65,10 @@ pub enum Use {
 pub fn uses(rows: &Rows<'_>) -> Vec<Use> {
     let mut testable: Vec<usize> = (0..rows.y.len()).filter(|i| rows.testable[*i] != Held::Never).collect();
     testable.sort_by(|a, b| rows.time_s[*a].total_cmp(&rows.time_s[*b]));
-    let blocks = (testable.len() / LEAST_BLOCK).clamp(1, MOST_BLOCKS);
-    let guard = (GUARD_S / rows.period_s).round().max(1.0) as usize;
+    // What stands by itself (a blow, not a sample of a motion) has nothing in common with what is beside it.
+    let is_alone = rows.stretch.windows(2).all(|pair| pair[0] != pair[1]);
+    let blocks = (testable.len() / if is_alone { LEAST_ALONE } else { LEAST_BLOCK }).clamp(1, MOST_BLOCKS);
+    let guard = if is_alone { 0 } else { (GUARD_S / rows.period_s).round().max(1.0) as usize };
     let block_of = |k: usize| k * blocks / testable.len();
     let locked = |block: usize| blocks >= LOCKED_EVERY && block % LOCKED_EVERY == LOCKED_EVERY - 1;
     let mut uses = vec![Use::Always; rows.y.len()];

@@ -285,8 +285,13 @@ pub fn half_width(time_s: &[f64]) -> usize {
 pub fn smooth(time_s: &[f64], values: &[f64]) -> Smoothed {
     let half = half_width(time_s);
     let slope = savitzky_golay(time_s, values, half, 1).first;
-    let value = parabolic_mean(values, half);
+    let value = smooth_value(time_s, values);
     Smoothed { value, slope }
+}
+
+/// The value of [`smooth`] alone.
+pub fn smooth_value(time_s: &[f64], values: &[f64]) -> Vec<f64> {
+    parabolic_mean(values, half_width(time_s))
 }
 
 /// True when velocities were recorded, not derived.

@@ -97,11 +97,35 @@ struct World {
     noise_m: f64,
 }
 
-const RATE_HZ: f64 = 150.0;
-const PARTS: usize = 80;
+/// How the throws are looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight {
+    /// Samples a second.
+    pub rate_hz: f64,
+    /// How many.
+    pub throws: usize,
+    /// White noise of every number of the orientation.
+    pub turn_noise: f64,
+}
+
+impl Default for Sight {
+    fn default() -> Self {
+        Self { rate_hz: 150.0, throws: 130, turn_noise: 0.0 }
+    }
+}
+
+/// Steps of the integration a second, about.
+const STEPS_HZ: f64 = 12_000.0;
+/// How long a throw is followed, s.
+const LONG_S: f64 = 110.0 / 150.0;
 
 /// A case of a kind.
 pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
+    seen(kind, seed, &Sight::default())
+}
+
+/// The same, looked at in another way.
+pub fn seen(kind: Kind, seed: u64, sight: &Sight) -> (Case, Truth) {
     let mut chance = Chance::new(seed, 79);
     let mut world = World {
         scale: 1.0,
@@ -135,13 +159,15 @@ pub fn make(kind: Kind, seed: u64) -> (Case, Truth) {
             truth.value = Some(("e", world.restitution));
         }
     }
-    let recordings = (0..130).map(|k| throw(&world, k % 2 == 0, k, &mut chance)).collect();
+    let recordings = (0..sight.throws).map(|k| throw(&world, sight, k, &mut chance)).collect();
     (Case { recordings, options: Options::default() }, truth)
 }
 
 /// One throw: it comes down on a corner, or flat and slides out.
-fn throw(world: &World, tumbles: bool, trial: usize, chance: &mut Chance) -> Recording {
-    let part = 1.0 / (RATE_HZ * PARTS as f64);
+fn throw(world: &World, sight: &Sight, trial: usize, chance: &mut Chance) -> Recording {
+    let tumbles = trial % 2 == 0;
+    let parts = (STEPS_HZ / sight.rate_hz).round() as usize;
+    let part = 1.0 / (sight.rate_hz * parts as f64);
     let mut place = V([0.0, 0.1, chance.between(0.2, 0.4)]);
     let mut speed = V([chance.between(-1.5, 1.5), chance.between(0.6, 1.6) * chance.sign(), chance.between(-0.4, 0.6)]);
     let mut q = [1.0, 0.0, 0.0, 0.0];
@@ -155,11 +181,15 @@ fn throw(world: &World, tumbles: bool, trial: usize, chance: &mut Chance) -> Rec
     }
     let mut flat = false;
     let mut rows: Vec<[f64; 7]> = Vec::new();
-    for _ in 0..110 {
+    for _ in 0..(LONG_S * sight.rate_hz).round() as usize {
         let seen = place * world.scale;
         let shaken: [f64; 3] = std::array::from_fn(|k| seen.0[k] + world.noise_m * chance.normal());
-        rows.push([shaken[0], shaken[1], shaken[2], q[0], q[1], q[2], q[3]]);
-        for _ in 0..PARTS {
+        let mut told = q;
+        if sight.turn_noise > 0.0 {
+            told.iter_mut().for_each(|v| *v += sight.turn_noise * chance.normal());
+        }
+        rows.push([shaken[0], shaken[1], shaken[2], told[0], told[1], told[2], told[3]]);
+        for _ in 0..parts {
             if flat {
                 let now = speed.norm();
                 let slower = (now - (world.mu * 9.81 + world.drag_per_s * now) * part).max(0.0);
@@ -187,7 +217,7 @@ fn throw(world: &World, tumbles: bool, trial: usize, chance: &mut Chance) -> Rec
     meta.known.insert("half_width_m".to_owned(), world.half_m);
     Recording {
         name: format!("throw {trial}"),
-        time_s: Some((0..rows.len()).map(|i| i as f64 / RATE_HZ).collect()),
+        time_s: Some((0..rows.len()).map(|i| i as f64 / sight.rate_hz).collect()),
         channels: names.iter().enumerate().map(|(k, (name, unit))| channel(k, name, unit)).collect(),
         meta,
         ..Recording::default()

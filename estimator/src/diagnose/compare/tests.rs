@@ -137,3 +137,69 @@ fn where_nothing_can_be_kept_out_of_the_choice_a_cause_must_be_beyond_doubt() {
         assert!(small.chosen.iter().all(|c| c.score >= 2.5 * THRESHOLD), "seed {seed}: {:?}", small.chosen);
     }
 }
+
+/// Friction that rises near rest is a change of friction: without any, a falling-off and a rising curve would together pass for a constant.
+#[test]
+fn what_lifts_dry_friction_is_not_asked_for_where_there_is_none() {
+    let speed = |i: usize| 0.3 + 0.25 * (i as f64 / 40.0).sin();
+    let lifted = |share: f64| (0..ROWS).map(|i| share * (-(speed(i) / 0.5).powi(2)).exp()).collect::<Vec<f64>>();
+    let asked = |is_dry: bool| {
+        let channel = Channel {
+            y: lifted(1.0).iter().zip(noise(3)).map(|(a, b)| a + b).collect(),
+            base: Vec::new(),
+            candidates: vec![Candidate::one("stribeck", Kind::Plant, "dmu", "1", lifted(1.0)).positive()],
+            stretch: vec![0; ROWS],
+            testable: vec![true; ROWS],
+            weight: vec![1.0; ROWS],
+            period_s: 0.02,
+        };
+        if is_dry { channel.compare(THRESHOLD) } else { channel.compare_without_friction(THRESHOLD) }
+    };
+    assert_eq!(asked(true).expect("a curve").picks(), [0]);
+    assert!(asked(false).expect("a curve").picks().is_empty());
+}
+
+/// A law that is nearly the model's own must not be given to the model where the whitening is learnt.
+#[test]
+fn a_cause_beside_a_term_of_the_model_that_is_nearly_the_same_keeps_its_size() {
+    let direction = to_and_fro();
+    let slow = |i: usize| if i < ROWS / 2 { 0.9 } else { 1.1 };
+    let load: Vec<f64> = direction.iter().enumerate().map(|(i, d)| slow(i) * d).collect();
+    let channel = Channel {
+        y: load.iter().zip(&direction).zip(noise(5)).map(|((l, d), n)| 10.0 * l + 10.0 * d + n).collect(),
+        base: vec![load],
+        candidates: vec![Candidate::one("coulomb-friction", Kind::Plant, "Fc", "N", direction).positive()],
+        stretch: vec![0; ROWS],
+        testable: vec![true; ROWS],
+        weight: vec![1.0; ROWS],
+        period_s: 0.02,
+    };
+    let study = channel.compare(THRESHOLD).expect("two terms");
+    let strongest = study.system.coefficients.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+    assert!(study.picks() == [0] && strongest < 0.3, "{:?}", study.system.coefficients);
+}
+
+/// Observations that stand by themselves are held out by threes and need no rows between them and what trains.
+#[test]
+fn a_dozen_of_single_observations_can_be_tested() {
+    let n = 16;
+    let channel = Channel {
+        y: (0..n).map(|i| if i % 2 == 0 { 2.0 } else { 1.0 } + 0.1 * noise(7)[i]).collect(),
+        base: Vec::new(),
+        candidates: vec![Candidate::one(
+            "velocity-loss",
+            Kind::Plant,
+            "e",
+            "1",
+            (0..n).map(|i| if i % 2 == 0 { 2.0 } else { 1.0 }).collect(),
+        )],
+        stretch: (0..n).collect(),
+        testable: vec![true; n],
+        weight: vec![1.0; n],
+        period_s: 1.0,
+    };
+    let study = channel.compare(THRESHOLD).expect("a line");
+    assert_eq!(study.picks(), [0]);
+    let locked = study.system.uses.iter().filter(|u| matches!(u, Use::Locked(_))).count();
+    assert!(locked > 0 && study.system.uses.iter().all(|u| *u != Use::Guard), "{:?}", study.system.uses);
+}

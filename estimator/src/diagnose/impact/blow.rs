@@ -8,37 +8,55 @@ use crate::diagnose::compare::Channel;
 use crate::diagnose::report::CauseParameter;
 use crate::estimate::EstimateError;
 use crate::identify::tossed::Tossed;
-use crate::identify::tossed::flight::LEAST;
+use crate::identify::tossed::flight::least;
 use crate::identify::tossed::pose::Track;
 use crate::segment::SystemState;
 use haptics::law::Kind;
-use nalgebra::{DVector, Vector3};
+use nalgebra::{DVector, Rotation3, Vector3};
 use std::ops::Range;
 
-/// Samples before and after a blow that are looked at, at most, and those that must be free after it.
-const BEFORE: usize = 8;
-const LEAST_AFTER: usize = 3;
-/// A velocity that changes by this much within a sample is a blow, by that much still is one; less than the last is free fall, m/s.
+/// Time before and after a blow that is looked at, at most, s.
+const BESIDE_S: f64 = 0.054;
+/// Changes of the velocity are told over so much on either side, s.
+const REACH_S: f64 = 0.0068;
+/// A velocity that changes by this much there is a blow, by that much still is one; less than the last is free fall, m/s.
 const BLOW_M_S: f64 = 0.15;
 const STILL_M_S: f64 = 0.10;
 const FREE_M_S: f64 = 0.06;
+/// Two velocities that differ by less do not tell when they met, m/s.
+const SAME_M_S: f64 = 0.1;
 /// A second corner within this height hits at the same time, in half widths.
 const TOGETHER: f64 = 0.1;
 /// A slower blow tells nothing, m/s.
 const SLOW_M_S: f64 = 0.4;
 /// Fewer blows show nothing.
-const LEAST_BLOWS: usize = 24;
+const LEAST_BLOWS: usize = 8;
+/// A blow that is so many times as far from what blows usually leave as they scatter was two: a second corner hit before the next sample.
+const TWO: f64 = 4.0;
+/// Scatter of a normal over its median size.
+const OVER_MEDIAN: f64 = 1.4826;
+/// Where between two samples the ground lets go is not seen: the share of a step that it may push on for (an even spread's standard deviation).
+const UNSEEN: f64 = 0.29;
 /// Score that makes a cause.
 pub const THRESHOLD: f64 = 20.0;
 
-/// Compares what impacts leave of the speed. `restitution`: that of the model. `None` where too few blows are clear.
-pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option<(Compared, View)>, EstimateError> {
+/// Compares what impacts leave of the speed. `restitution`: that of the model. `None` where too few blows are clear. The number is the error of a
+/// restitution that no scatter shows: the ground may push on behind a blow, the more of it the longer the time between samples.
+pub fn blow(
+    seen: &Tossed,
+    half_width_m: f64,
+    restitution: f64,
+) -> Result<Option<(Compared, View, f64)>, EstimateError> {
     let pairs: Vec<(f64, f64)> =
         seen.tracks.iter().filter_map(|t| corner(t, half_width_m, seen.fall.down_m_s2)).collect();
     if pairs.len() < LEAST_BLOWS {
         return Ok(None);
     }
+    let pairs = without_second_blows(pairs);
     let n = pairs.len();
+    let speed = (pairs.iter().map(|(before, _)| before * before).sum::<f64>() / n as f64).sqrt();
+    let step_s = seen.tracks.iter().map(Track::step_s).sum::<f64>() / seen.tracks.len() as f64;
+    let pushed = UNSEEN * seen.fall.down_m_s2 * step_s / speed;
     let y: Vec<f64> = pairs.iter().map(|(before, after)| after + restitution * before).collect();
     let column: Vec<f64> = pairs.iter().map(|(before, _)| -before).collect();
     let lost = Candidate::one("velocity-loss", Kind::Plant, "change of e", "1", column);
@@ -68,7 +86,19 @@ pub fn blow(seen: &Tossed, half_width_m: f64, restitution: f64) -> Result<Option
     let view = View::of(Vec::new(), vec![(Variable::Velocity, pairs.iter().map(|(before, _)| -before).collect())]);
     // A blow is none of a segmentation's states.
     let (channel, state) = ("speed after impacts", vec![SystemState::NoState; n]);
-    Ok(Some((Compared { study, channel, unit: "m/s", floor, along, stretch, state }, view)))
+    Ok(Some((Compared { study, channel, unit: "m/s", floor, along, stretch, state }, view, pushed)))
+}
+
+/// Pairs of speeds before and after, but those that are far off the rest.
+fn without_second_blows(pairs: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    let median = |values: &mut Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
+    };
+    let kept = median(&mut pairs.iter().map(|(before, after)| after / before).collect());
+    let off = |(before, after): &(f64, f64)| (after - kept * before).abs();
+    let most = TWO * OVER_MEDIAN * median(&mut pairs.iter().map(off).collect());
+    pairs.into_iter().filter(|pair| off(pair) <= most).collect()
 }
 
 /// What a cause in the impacts is best seen against.
@@ -79,18 +109,21 @@ pub fn best_seen(_: &str) -> Variable {
 /// Velocity upwards of the corner that hits first, before and after, m/s.
 fn corner(track: &Track, half_m: f64, fall_m_s2: f64) -> Option<(f64, f64)> {
     let turned = track.turned.as_ref()?;
-    let (hit, after) = around(track, fall_m_s2)?;
-    let at_s = track.time_s[hit];
-    let before = hit.saturating_sub(BEFORE)..hit;
-    let rate = |range: &Range<usize>| {
+    let Beside { hit, before, after, reach } = around(track, fall_m_s2)?;
+    let (falls, rises) = (free(track, &before, fall_m_s2)?, free(track, &after, fall_m_s2)?);
+    let at_s = track.time_s[hit] + met(&falls, &rises, track.time_s[hit], track.step_s(), reach);
+    let spin = |range: &Range<usize>| {
         let (a, b) = (range.start, range.end - 1);
         (turned[b] * turned[a].inverse()).scaled_axis() / (track.time_s[b] - track.time_s[a])
     };
-    let (spin, spin_after) = (rate(&(hit - LEAST / 2..hit)), rate(&after));
+    let (spin_before, spin_after) = (spin(&before), spin(&after));
+    // A cube turns evenly in flight: so it came to the ground.
+    let last = before.end - 1;
+    let pose = Rotation3::from_scaled_axis(spin_before * (at_s - track.time_s[last])) * turned[last];
     let mut corners: Vec<Vector3<f64>> = (0..8_u32)
         .map(|k| {
             let sign = |bit: u32| if k >> bit & 1 == 1 { half_m } else { -half_m };
-            turned[hit] * Vector3::new(sign(0), sign(1), sign(2))
+            pose * Vector3::new(sign(0), sign(1), sign(2))
         })
         .collect();
     corners.sort_by(|a, b| a.z.total_cmp(&b.z));
@@ -98,47 +131,92 @@ fn corner(track: &Track, half_m: f64, fall_m_s2: f64) -> Option<(f64, f64)> {
     if corners[1].z - arm.z < TOGETHER * half_m {
         return None;
     }
-    let up = |range: &Range<usize>, spin: Vector3<f64>| Some(rise(track, range, at_s, fall_m_s2)? + spin.cross(&arm).z);
-    let (down, rebound) = (up(&before, spin)?, up(&after, spin_after)?);
+    let up = |of: &Free, spin: Vector3<f64>| of.rise_m_s(at_s, fall_m_s2) + spin.cross(&arm).z;
+    let (down, rebound) = (up(&falls, spin_before), up(&rises, spin_after));
     (down < -SLOW_M_S).then_some((down, rebound))
 }
 
-/// The sample of the first blow, and the free flight after it.
-fn around(track: &Track, fall_m_s2: f64) -> Option<(usize, Range<usize>)> {
-    let n = track.points.len();
-    if n < LEAST + 4 {
+/// Where a first blow is, and the free flight on either side of it.
+struct Beside {
+    hit: usize,
+    before: Range<usize>,
+    after: Range<usize>,
+    /// Samples over which it was told.
+    reach: usize,
+}
+
+/// `None` without a blow, or without a moment of free flight behind it.
+fn around(track: &Track, fall_m_s2: f64) -> Option<Beside> {
+    let (points, time) = (&track.points, &track.time_s);
+    let (n, least, reach) = (points.len(), least(track), track.steps(REACH_S));
+    if n < least + 4 * reach {
         return None;
     }
     // Change of the velocity at a sample beyond what falling makes, m/s.
     let kick = |i: usize| {
-        let (a, b) = (track.time_s[i] - track.time_s[i - 1], track.time_s[i + 1] - track.time_s[i]);
-        let change = (track.points[i + 1] - track.points[i]) / b - (track.points[i] - track.points[i - 1]) / a;
+        let (a, b) = (time[i] - time[i - reach], time[i + reach] - time[i]);
+        let change = (points[i + reach] - points[i]) / b - (points[i] - points[i - reach]) / a;
         (change + Vector3::new(0.0, 0.0, fall_m_s2 * 0.5 * (a + b))).norm()
     };
-    let mut first: Vec<f64> = (1..LEAST).map(kick).collect();
+    let mut first: Vec<f64> = (reach..least).map(kick).collect();
     first.sort_by(f64::total_cmp);
     // What the tracker's noise makes of free flight.
-    let noise = first[first.len() / 2];
-    let hit = (1..n - 1).find(|i| kick(*i) > BLOW_M_S.max(4.0 * noise))?;
-    let over = (hit + 1..n - 1).find(|i| kick(*i) < STILL_M_S.max(3.0 * noise))?;
-    let free = (over..n - 1).take_while(|i| kick(*i) < FREE_M_S.max(2.5 * noise)).count();
-    (hit >= LEAST && free >= LEAST_AFTER).then(|| (hit, over..(over + free + 1).min(over + BEFORE)))
+    let noise = first.get(first.len() / 2)?;
+    let hit = (reach..n - reach).find(|i| kick(*i) > BLOW_M_S.max(4.0 * noise))?;
+    let over = (hit + 1..n - reach).find(|i| kick(*i) < STILL_M_S.max(3.0 * noise))?;
+    let free = (over..n - reach).take_while(|i| kick(*i) < FREE_M_S.max(2.5 * noise)).count();
+    let beside = track.steps(BESIDE_S).max(4);
+    (hit >= least && free > 0).then(|| Beside {
+        hit,
+        before: hit.saturating_sub(beside)..hit,
+        after: over..(over + free + reach).min(over + beside),
+        reach,
+    })
 }
 
-/// Speed upwards of the middle at a time, from samples that fall freely, m/s.
-fn rise(track: &Track, range: &Range<usize>, at_s: f64, fall_m_s2: f64) -> Option<f64> {
-    let n = range.len();
-    let since = |i: usize| track.time_s[range.start + i] - at_s;
-    let own = powers(n, 2, since);
-    let place = DVector::from_fn(n, |i, _| track.points[range.start + i].z + 0.5 * fall_m_s2 * since(i).powi(2));
+/// When two free flights met, s after `at_s`: a blow changes the velocity, not the place.
+fn met(falls: &Free, rises: &Free, at_s: f64, step_s: f64, reach: usize) -> f64 {
+    let faster = falls.speed_m_s - rises.speed_m_s;
+    if faster.abs() < SAME_M_S {
+        return 0.0;
+    }
+    let since = (rises.at_zero_m() - falls.at_zero_m()) / faster;
+    // Where it was told.
+    (since - at_s).clamp(-step_s, 2.0 * reach as f64 * step_s)
+}
+
+/// A free flight's height: a straight line beside the fall from rest at time zero.
+struct Free {
+    /// Time and height of a point of that line, s and m.
+    point: (f64, f64),
+    speed_m_s: f64,
+}
+
+impl Free {
+    fn at_zero_m(&self) -> f64 {
+        self.point.1 - self.speed_m_s * self.point.0
+    }
+
+    fn rise_m_s(&self, at_s: f64, fall_m_s2: f64) -> f64 {
+        self.speed_m_s - fall_m_s2 * at_s
+    }
+}
+
+/// The free flight of the middle in these samples.
+fn free(track: &Track, range: &Range<usize>, fall_m_s2: f64) -> Option<Free> {
+    let time = &track.time_s[range.clone()];
+    let middle_s = time.iter().sum::<f64>() / time.len().max(1) as f64;
+    let own = powers(time.len(), 2, |i| time[i] - middle_s);
+    let place =
+        DVector::from_fn(time.len(), |i, _| track.points[range.start + i].z + 0.5 * fall_m_s2 * time[i].powi(2));
     let solved = own.pseudo_inverse(1e-12).ok()? * place;
-    Some(solved[1])
+    Some(Free { point: (middle_s, solved[0]), speed_m_s: solved[1] })
 }
 
-/// The restitution out of its change against the model.
-pub fn states(candidate: &Candidate, found: &[CauseParameter]) -> Vec<CauseParameter> {
+/// The restitution out of its change against the model. `pushed`: its error beside that of the scatter.
+pub fn states(candidate: &Candidate, found: &[CauseParameter], pushed: f64) -> Vec<CauseParameter> {
     let model = candidate.searched.first().map_or(1.0, |s| s.value);
-    found.first().map(|p| parameter("e", model + p.value, p.std_error, "1")).into_iter().collect()
+    found.first().map(|p| parameter("e", model + p.value, p.std_error.hypot(pushed), "1")).into_iter().collect()
 }
 
 /// What in the residual shows a cause.

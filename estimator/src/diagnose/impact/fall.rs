@@ -5,7 +5,7 @@ use crate::diagnose::answer::parameter;
 use crate::diagnose::gain::chi_square_tail;
 use crate::diagnose::report::{Alternative, Cause, Gain};
 use crate::identify::tossed::Tossed;
-use crate::identify::tossed::flight::{Fall, LEAST, end};
+use crate::identify::tossed::flight::{Fall, end, least};
 use crate::identify::tossed::pose::Track;
 use haptics::law::Kind;
 use nalgebra::DVector;
@@ -58,6 +58,28 @@ pub fn scale(seen: &Tossed, gravity_m_s2: f64) -> Option<(Cause, Alternative)> {
     Some((cause, other))
 }
 
+/// Root mean squares of what is left of the heights of all flights: by gravity, by their common fall, and by each one's own, m.
+pub fn left_m(seen: &Tossed, gravity_m_s2: f64) -> [f64; 3] {
+    let falls = [Some(gravity_m_s2), Some(seen.fall.down_m_s2), None];
+    let flights = seen.tracks.iter().map(|t| (t, end(t))).filter(|(t, n)| *n >= least(t));
+    let all: Vec<[f64; 4]> = flights
+        .map(|(track, n)| {
+            let [by_gravity, in_common, own] = falls.map(|down| left(track, n, down));
+            [by_gravity, in_common, own, n as f64]
+        })
+        .collect();
+    let sum = without_hidden_blows(all).iter().fold([0.0; 4], |a, s| std::array::from_fn(|k| a[k] + s[k]));
+    [0, 1, 2].map(|k| (sum[k] / sum[3].max(1.0)).sqrt())
+}
+
+/// Flights with a blow that was not seen say nothing: they stray from their own parabolas (third; rows last) far more than others do.
+fn without_hidden_blows(squares: Vec<[f64; 4]>) -> Vec<[f64; 4]> {
+    let mut own: Vec<f64> = squares.iter().map(|s| s[2] / s[3]).collect();
+    own.sort_by(f64::total_cmp);
+    let usual = 9.0 * own.get(own.len() / 2).copied().unwrap_or(f64::INFINITY);
+    squares.into_iter().filter(|s| s[2] / s[3] <= usual).collect()
+}
+
 /// Heights of flights that took no part, by gravity and by the acceleration of the others.
 fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
     let (mut others, mut tested) = (Vec::new(), Vec::new());
@@ -69,17 +91,13 @@ fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
         .iter()
         .filter_map(|track| {
             let n = end(track);
-            (n >= LEAST).then(|| {
+            (n >= least(track)).then(|| {
                 let of = |down: Option<f64>| left(track, n, down);
                 [of(Some(gravity_m_s2)), of(Some(fall.down_m_s2)), of(None), n as f64]
             })
         })
         .collect();
-    // Flights with a blow that was not seen say nothing.
-    let mut own: Vec<f64> = squares.iter().map(|s| s[2] / s[3]).collect();
-    own.sort_by(f64::total_cmp);
-    let usual = 9.0 * own.get(own.len() / 2).copied().unwrap_or(f64::INFINITY);
-    let squares: Vec<[f64; 4]> = squares.into_iter().filter(|s| s[2] / s[3] <= usual).collect();
+    let squares = without_hidden_blows(squares);
     let share = |of: &mut dyn Iterator<Item = &[f64; 4]>| {
         let sum = of.fold([0.0; 4], |a, s| std::array::from_fn(|k| a[k] + s[k]));
         (((sum[0] - sum[1]) / (sum[0] - sum[2]).max(1e-3 * sum[0]).max(1e-300)).min(1.0), sum)

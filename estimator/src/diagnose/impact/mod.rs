@@ -10,6 +10,7 @@ use super::candidate::Candidate;
 use super::report::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
 use super::{Options, quality};
 use crate::estimate::EstimateError;
+use crate::identify::tossed::slide::unknown_of_foot;
 use crate::identify::tossed::{Tossed, tossed};
 use haptics::recording::Recording;
 
@@ -57,18 +58,33 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     );
     let mean = mean_friction(seen);
     let slides = |c: &Candidate, found: Vec<CauseParameter>| sliding::states(c, found, mean);
-    let loses = |c: &Candidate, found: Vec<CauseParameter>| blow::states(c, &found);
+    let pushed = blow.as_ref().map_or(0.0, |(_, _, pushed)| *pushed);
+    let loses = |c: &Candidate, found: Vec<CauseParameter>| blow::states(c, &found, pushed);
     let (slide_shows, blow_shows) = (|f: &Found<'_>| sliding::shows(f), |f: &Found<'_>| blow::shows(f));
     let mut parts: Vec<Part<'_>> = Vec::new();
     parts.extend(sliding.as_ref().map(|(s, _)| s.part(&slide_shows, &slides, &|_| None)));
-    parts.extend(blow.as_ref().map(|(b, _)| b.part(&blow_shows, &loses, &|_| None)));
+    parts.extend(blow.as_ref().map(|(b, _, _)| b.part(&blow_shows, &loses, &|_| None)));
     let mut found = answer(&parts, beside, &next);
+    if parts.is_empty() {
+        of_falls(&mut found, seen, meta.gravity());
+    }
     if options.atlas {
         let channels = &mut found.atlas.channels;
         channels.extend(sliding.as_ref().map(|(s, view)| s.atlas(view, sliding::THRESHOLD, sliding::best_seen)));
-        channels.extend(blow.as_ref().map(|(b, view)| b.atlas(view, blow::THRESHOLD, blow::best_seen)));
+        channels.extend(blow.as_ref().map(|(b, view, _)| b.atlas(view, blow::THRESHOLD, blow::best_seen)));
     }
     Ok(found)
+}
+
+/// Takes the figures from the falls, where nothing else could be compared.
+fn of_falls(found: &mut Diagnosis, seen: &Tossed, gravity_m_s2: f64) {
+    let [before_m, after_m, own_m] = fall::left_m(seen, gravity_m_s2);
+    let is_named = found.causes.iter().any(|c| c.id == "length-scale");
+    let baseline = &mut found.baseline;
+    (baseline.rms_n, baseline.heldout_rms_n) = (before_m, before_m);
+    (baseline.of, baseline.unit) = (Some("height of the flights".to_owned()), Some("m".to_owned()));
+    found.end.heldout_rms_n = if is_named { after_m } else { before_m };
+    found.noise_floor_n = own_m;
 }
 
 /// Powers 0 … of a number, one row an entry.
@@ -80,13 +96,13 @@ fn powers(rows: usize, size: usize, of: impl Fn(usize) -> f64) -> nalgebra::DMat
     matrix
 }
 
-/// Standard error of the friction by the scatter of single slides: a table is not alike everywhere.
+/// Standard error of the friction by the scatter of single slides (a table is not alike everywhere) and by what is not known of the foot.
 fn mean_friction(seen: &Tossed) -> f64 {
     let n = seen.slides.len() as f64;
-    let values: Vec<f64> = seen.slides.iter().map(|s| s.slowing_m_s2 / seen.fall.down_m_s2).collect();
+    let values: Vec<f64> = seen.slides.iter().map(|s| s.friction(seen.fall.down_m_s2)).collect();
     let mean = values.iter().sum::<f64>() / n.max(1.0);
     let scatter = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
-    (scatter / (n - 1.0).max(1.0) / n.max(1.0)).sqrt()
+    (scatter / (n - 1.0).max(1.0) / n.max(1.0)).sqrt().hypot(mean * unknown_of_foot(&seen.slides))
 }
 
 fn next(open: &[Alternative]) -> Option<NextExperiment> {

@@ -8,6 +8,7 @@ use crate::diagnose::compare::Channel;
 use crate::diagnose::report::CauseParameter;
 use crate::estimate::EstimateError;
 use crate::identify::tossed::Tossed;
+use crate::identify::tossed::slide::Slide;
 use crate::segment::SystemState;
 use crate::signal::derive::polynomial;
 use haptics::law::Kind;
@@ -20,11 +21,12 @@ pub const THRESHOLD: f64 = 25.0;
 /// Speeds at which static friction falls off that are tried, as shares of the usual one.
 const STRIBECK: [f64; 4] = [0.1, 0.25, 0.5, 0.9];
 
-/// One slide: times, way along its direction, and speed.
+/// One slide: times, way along its direction, speed, and the share of friction that goes against it.
 struct Way {
     time_s: Vec<f64>,
     place_m: Vec<f64>,
     speed_m_s: Vec<f64>,
+    direct: Vec<f64>,
 }
 
 /// Compares what slows the body. `mu`: friction that the model has.
@@ -32,27 +34,39 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, Estim
     if seen.slides.len() < LEAST_SLIDES {
         return Ok(None);
     }
-    let ways: Vec<Way> = seen.slides.iter().filter_map(|s| way(seen, s.track, s.first, s.samples)).collect();
+    let ways: Vec<Way> = seen.slides.iter().filter_map(|s| way(seen, s)).collect();
     let mut speeds: Vec<f64> = ways.iter().flat_map(|w| w.speed_m_s.iter().copied()).collect();
     speeds.sort_by(f64::total_cmp);
     let usual = speeds.get(speeds.len() * 9 / 10).copied().unwrap_or(1.0);
     let fall = seen.fall.down_m_s2;
     // A slowing, integrated twice, in the place of a force: only differences within a slide count.
+    let slowed = |w: &Way, of: &dyn Fn(usize) -> f64| within(w, &integrated(w, &|i| -of(i)));
     let all = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
-        ways.iter().flat_map(|w| within(w, &integrated(w, &|i| -of(w.speed_m_s[i])))).collect()
+        ways.iter().flat_map(|w| slowed(w, &|i| of(w.speed_m_s[i]))).collect()
+    };
+    // What is dry works on every point of the foot against that point's own motion; what follows the speed does not ask which point it is.
+    let all_dry = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
+        ways.iter().flat_map(|w| slowed(w, &|i| w.direct[i] * of(w.speed_m_s[i]))).collect()
     };
     let moved: Vec<f64> = ways.iter().flat_map(|w| within(w, &w.place_m)).collect();
-    let dry = all(&|_| fall);
+    let dry = all_dry(&|_| fall);
     let y: Vec<f64> = moved.iter().zip(&dry).map(|(m, d)| m - mu * d).collect();
+    // What changes the friction by less than slides differ among themselves is within what one friction for all of them is known by.
+    let differ = differ(&ways, fall);
+    let least = |of: &dyn Fn(f64) -> f64| differ * fall / spread(&speeds.iter().map(|v| of(*v)).collect::<Vec<f64>>());
+    let follows = |id, name, unit, of: &dyn Fn(f64) -> f64| {
+        Candidate::one(id, Kind::Plant, name, unit, all(of)).positive().at_least(least(of))
+    };
     let mut candidates = vec![
         Candidate::one("load-friction", Kind::Plant, "mu", "1", dry),
-        Candidate::one("viscous-friction", Kind::Plant, "c/m", "1/s", all(&|v| v)).positive(),
-        Candidate::one("quadratic-drag", Kind::Plant, "k/m", "1/m", all(&|v| v * v)).positive(),
+        follows("viscous-friction", "c/m", "1/s", &|v| v),
+        follows("quadratic-drag", "k/m", "1/m", &|v| v * v),
     ];
     for share in STRIBECK {
         let vs = share * usual;
-        let bent = Candidate::one("stribeck", Kind::Plant, "dmu", "1", all(&|v| fall * (-(v / vs).powi(2)).exp()));
-        candidates.push(bent.positive().at("vs", vs, "m/s"));
+        let falls_off = |v: f64| fall * (-(v / vs).powi(2)).exp();
+        let bent = Candidate::one("stribeck", Kind::Plant, "dmu", "1", all_dry(&falls_off));
+        candidates.push(bent.positive().at_least(least(&falls_off)).at("vs", vs, "m/s"));
     }
     let stretch: Vec<usize> = ways.iter().enumerate().flat_map(|(k, w)| w.time_s.iter().map(move |_| k)).collect();
     let n = y.len();
@@ -67,7 +81,8 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, Estim
         weight: vec![1.0; n],
         period_s,
     };
-    let study = channel.compare(THRESHOLD)?;
+    // Friction that rises as the body stops is friction that is there.
+    let study = if mu > 0.0 { channel.compare(THRESHOLD) } else { channel.compare_without_friction(THRESHOLD) }?;
     let along = vec![true; n];
     let each = |of: fn(&Way) -> &Vec<f64>| ways.iter().flat_map(of).copied().collect::<Vec<f64>>();
     let over = vec![(Variable::Time, each(|w| &w.time_s)), (Variable::Velocity, each(|w| &w.speed_m_s))];
@@ -82,9 +97,10 @@ pub fn best_seen(id: &str) -> Variable {
     if id == "load-friction" { Variable::Time } else { Variable::Velocity }
 }
 
-fn way(seen: &Tossed, track: usize, first: usize, samples: usize) -> Option<Way> {
-    let track = &seen.tracks[track];
-    let (points, time) = (&track.points[first..first + samples], &track.time_s[first..first + samples]);
+fn way(seen: &Tossed, slide: &Slide) -> Option<Way> {
+    let track = &seen.tracks[slide.track];
+    let range = slide.first..slide.first + slide.samples;
+    let (points, time) = (&track.points[range.clone()], &track.time_s[range]);
     let total = points[points.len() - 1] - points[0];
     let along = Vector3::new(total.x, total.y, 0.0).try_normalize(1e-9)?;
     let way_m: Vec<f64> = points.iter().map(|p| along.dot(&(p - points[0]))).collect();
@@ -93,7 +109,7 @@ fn way(seen: &Tossed, track: usize, first: usize, samples: usize) -> Option<Way>
     // Horner's rule for the derivative.
     let speed = |t: f64| fitted.iter().enumerate().skip(1).rev().fold(0.0, |sum, (k, c)| sum * t + k as f64 * c);
     let speed_m_s = time_s.iter().map(|t| f64::max(speed(*t), 0.0)).collect();
-    Some(Way { time_s, place_m: way_m, speed_m_s })
+    Some(Way { time_s, place_m: way_m, speed_m_s, direct: slide.direct.clone() })
 }
 
 /// Way by an acceleration from rest, m, by trapezia.
@@ -118,6 +134,37 @@ fn within(way: &Way, values: &[f64]) -> Vec<f64> {
     let own = powers(n, 2, |i| way.time_s[i]).qr().q();
     let series = DVector::from_column_slice(values);
     (&series - &own * own.tr_mul(&series)).iter().copied().collect()
+}
+
+/// How far single slides' frictions differ beyond their own noise and beyond what follows their speeds (a table is not alike everywhere): one
+/// standard deviation, as a coefficient of friction.
+fn differ(ways: &[Way], fall_m_s2: f64) -> f64 {
+    let noise_m = floor(ways);
+    // Each slide's friction as its own dry column tells it: value, weight and mean speed.
+    let each: Vec<(f64, f64, f64)> = ways
+        .iter()
+        .map(|w| {
+            let (place, dry) = (within(w, &w.place_m), within(w, &integrated(w, &|i| -fall_m_s2 * w.direct[i])));
+            let square: f64 = dry.iter().map(|d| d * d).sum();
+            let friction = place.iter().zip(&dry).map(|(p, d)| p * d).sum::<f64>() / square.max(f64::MIN_POSITIVE);
+            (friction, square, w.speed_m_s.iter().sum::<f64>() / w.speed_m_s.len() as f64)
+        })
+        .collect();
+    let sum = |of: &dyn Fn(&(f64, f64, f64)) -> f64| each.iter().map(|e| e.1 * of(e)).sum::<f64>();
+    let weights = sum(&|_| 1.0).max(f64::MIN_POSITIVE);
+    let (friction, speed) = (sum(&|e| e.0) / weights, sum(&|e| e.2) / weights);
+    let square = sum(&|e| (e.2 - speed).powi(2)).max(f64::MIN_POSITIVE);
+    let slope = sum(&|e| (e.2 - speed) * (e.0 - friction)) / square;
+    let left = sum(&|e| (e.0 - friction - slope * (e.2 - speed)).powi(2));
+    let by_noise = (each.len() as f64 - 2.0).max(0.0) * noise_m * noise_m;
+    ((left - by_noise).max(0.0) / weights).sqrt()
+}
+
+/// Standard deviation.
+fn spread(values: &[f64]) -> f64 {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt().max(f64::MIN_POSITIVE)
 }
 
 /// What cubics leave of the ways, m.

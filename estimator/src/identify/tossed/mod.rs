@@ -46,12 +46,27 @@ pub(crate) fn tossed(recordings: &[Recording]) -> Option<Tossed> {
         return None;
     }
     let fall = Fall::of(&tracks)?;
-    let like = (fall.down_m_s2 / gravity - 1.0).abs() < LIKE_GRAVITY && fall.aside_m_s2 < LIKE_GRAVITY * gravity;
-    if !like || (fall.throws as f64) < FALLING_SHARE * recordings.len() as f64 {
+    if !falls_like(&tracks, &fall, gravity) || (fall.throws as f64) < FALLING_SHARE * recordings.len() as f64 {
         return None;
     }
-    let slides = slide::slides(&tracks);
+    // One throw has nothing beside it that says the same: it must have ended in a blow, as nothing does that a path holds.
+    if let [only] = tracks.as_slice()
+        && flight::end(only) == only.points.len()
+    {
+        return None;
+    }
+    let half_width_m = first.meta.known.get("half_width_m").copied().filter(|h| h.is_finite() && *h > 0.0);
+    let slides = slide::slides(&tracks, half_width_m);
     Some(Tossed { tracks, fall, slides })
+}
+
+/// Whether this is how bodies fall.
+fn falls_like(tracks: &[Track], fall: &Fall, gravity_m_s2: f64) -> bool {
+    let like = |fall: &Fall| {
+        (fall.down_m_s2 / gravity_m_s2 - 1.0).abs() < LIKE_GRAVITY && fall.aside_m_s2 < LIKE_GRAVITY * gravity_m_s2
+    };
+    // One short flight hardly tells falling from the turning of a point beside the middle, and its error says so: its own parabola is like a fall.
+    like(fall) || (tracks.len() == 1 && Fall::of_points(tracks).as_ref().is_some_and(like))
 }
 
 /// The fit of recordings of one thrown body; `None` when they do not show one.
@@ -66,7 +81,11 @@ pub fn fit(recordings: &[Recording]) -> Option<Fit> {
             fall.down_m_s2,
             fall.error_m_s2,
             fall.samples,
-            &format!("parabolas of {} flights, one acceleration for all, errors by flight", fall.throws),
+            &if fall.throws > 1 {
+                format!("parabolas of {} flights, one acceleration for all, errors by flight", fall.throws)
+            } else {
+                "the parabola of one flight, error by what its samples leave".to_owned()
+            },
         ),
         Parameter::identified(
             BODY,
@@ -100,10 +119,10 @@ fn friction(slides: &[slide::Slide], fall: &Fall, samples: usize) -> Parameter {
         let why = "the body does not slide flat for long enough in two recordings at least; throw it flatter";
         return Parameter::unidentified(BODY, "friction", samples, why);
     }
-    let values: Vec<f64> = slides.iter().map(|s| s.slowing_m_s2 / fall.down_m_s2).collect();
+    let values: Vec<f64> = slides.iter().map(|s| s.friction(fall.down_m_s2)).collect();
     let mean = values.iter().sum::<f64>() / n;
     let scatter = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0) / n).sqrt();
-    let error = scatter.hypot(mean * fall.error_m_s2 / fall.down_m_s2);
+    let error = scatter.hypot(mean * fall.error_m_s2 / fall.down_m_s2).hypot(mean * slide::unknown_of_foot(slides));
     let how = format!(
         "slowing of {} slides over free fall, which is free of the scale of the positions; single slides scatter by {:.3}",
         slides.len(),

@@ -1,0 +1,72 @@
+//! Dry friction of an input beside a load that turns round with the motion, as dry friction does.
+
+use super::Row;
+use crate::diagnose::geometry::Study;
+use crate::diagnose::report::Alternative;
+use crate::diagnose::system::{Use, solve};
+use crate::signal::noise::white_noise;
+
+/// Noise may make so much of what the load has of its own before the two count as one.
+const AS_ONE: f64 = 0.5;
+/// A direction turns round in nobody's way exactly: what a load has of its own within this share of what turns round is none.
+const SHAPE: f64 = 0.03;
+/// What is left of a load that is all noise, at least: a share of it.
+const LEAST_OWN: f64 = 1e-6;
+
+/// How well a load is told from dry friction.
+pub struct Told {
+    /// Share of what is the load's own in this recording that may be its noise, or another way of turning round: 0 … 1.
+    noise: f64,
+    /// Load for every unit of direction, N or N m.
+    slope: f64,
+    /// What the comparison gives the load, in the force's unit for each of the load's.
+    weight: f64,
+}
+
+impl Told {
+    /// Of a comparison whose base has the load in the column `load`. `direction`: that of dry friction, a row.
+    pub fn of(study: &Study, load: usize, direction: &[f64], rows: &[Row]) -> Option<Self> {
+        let used: Vec<usize> = (0..rows.len())
+            .filter(|i| study.weight[*i] > 0.0 && !matches!(study.system.uses[*i], Use::Locked(_)))
+            .collect();
+        let others = study.base.iter().enumerate().filter(|(k, _)| *k != load).map(|(_, column)| column.as_slice());
+        let columns: Vec<&[f64]> = others.chain([direction, study.base[load].as_slice()]).collect();
+        let gram = nalgebra::DMatrix::from_fn(columns.len(), columns.len(), |a, b| {
+            used.iter().map(|i| columns[a][*i] * columns[b][*i]).sum::<f64>()
+        });
+        let beside: Vec<usize> = (0..columns.len() - 1).collect();
+        let solved = solve(&gram, &beside, columns.len() - 1)?;
+        let loads: Vec<f64> = rows.iter().map(|r| r.load.unwrap_or(0.0)).collect();
+        let own = (solved.rss / used.len().max(1) as f64).max(LEAST_OWN * f64::MIN_POSITIVE);
+        let weight = *study.solved.as_ref()?.values.get(load)?;
+        let slope = *solved.values.last()?;
+        let noise = ((white_noise(&loads).powi(2) + (SHAPE * slope).powi(2)) / own).min(1.0);
+        Some(Self { noise, slope, weight })
+    }
+
+    /// Whether they are one and the same in this recording.
+    pub fn is_one(&self) -> bool {
+        self.noise > AS_ONE
+    }
+
+    /// What dry friction of this size may be off by because the load is: noise of a regressor makes its weight small, and what turns round with it takes
+    /// over. Where they are one, all that turns round may be either's.
+    pub fn error(&self, friction: f64) -> f64 {
+        let shared = self.weight * self.slope;
+        if self.is_one() { (friction + shared).abs() } else { (shared * self.noise / (1.0 - self.noise)).abs() }
+    }
+
+    /// What else that friction could be.
+    pub fn alternative(&self) -> Option<Alternative> {
+        self.is_one().then(|| Alternative {
+            id: "force-gain".to_owned(),
+            instead_of: "coulomb-friction".to_owned(),
+            posterior: 0.5,
+            why: WHY.to_owned(),
+        })
+    }
+}
+
+/// Why friction cannot be told from the load.
+pub const WHY: &str = "the load at the output turns round with the motion, as dry friction does: with another gain of its sensor, or another \
+     lever, it makes the same force; record runs under other loads";

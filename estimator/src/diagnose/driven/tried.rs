@@ -1,0 +1,65 @@
+//! Half gaps and ways of a bend: a grid over what the input goes, and closer and closer about what was found there.
+
+use crate::diagnose::geometry::Study;
+use crate::diagnose::searched::known;
+use crate::estimate::EstimateError;
+
+/// Half gaps that are tried, as shares of the input's range.
+const GAPS: [f64; 14] =
+    [0.003, 0.005, 0.0075, 0.01, 0.0125, 0.015, 0.018, 0.022, 0.027, 0.033, 0.042, 0.055, 0.075, 0.1];
+/// Steps in which a found half gap or way is closed in on, as shares of it, and how many of them to either side.
+const CLOSER: [f64; 3] = [0.05, 0.01, 0.002];
+const STEPS: i32 = 5;
+/// A value is closed in on only while it is known to this share of the distance between those that were tried: between closer ones nothing tells them apart.
+const SHARPER: f64 = 0.3;
+
+/// Half gaps, or ways of a bend, that are tried: more closely about what was found.
+pub struct Tried {
+    id: &'static str,
+    values: Vec<f64>,
+}
+
+impl Tried {
+    pub fn new(id: &'static str, range: f64) -> Self {
+        Self { id, values: GAPS.map(|share| share * range).to_vec() }
+    }
+
+    /// In the unit of the input, in order.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Adds values in these steps about the one that was found; false where that would tell nothing.
+    fn close_in(&mut self, study: &Study, step: f64) -> bool {
+        let Some(k) = study.chosen.iter().position(|c| study.candidates[c.candidate].id == self.id) else {
+            return false;
+        };
+        let found = study.candidates[study.chosen[k].candidate].searched[0].value;
+        let apart = self.values.iter().map(|v| (v - found).abs()).filter(|d| *d > 1e-9 * found);
+        let nearest = apart.fold(f64::INFINITY, f64::min);
+        if known(study, k, 0).std_error > SHARPER * nearest {
+            return false;
+        }
+        let more = (-STEPS..=STEPS).filter(|k| *k != 0).map(|k| found * (1.0 + f64::from(k) * step));
+        self.values.extend(more);
+        self.values.sort_by(f64::total_cmp);
+        self.values.dedup_by(|a, b| (*a - *b).abs() < 1e-9 * *b);
+        true
+    }
+}
+
+/// Compares again and again, with what was searched for closed in on.
+pub fn closer(
+    tried: &mut [Tried],
+    once: &dyn Fn(&[Tried]) -> Result<Study, EstimateError>,
+) -> Result<Study, EstimateError> {
+    let mut study = once(tried)?;
+    for step in CLOSER {
+        let more = tried.iter_mut().map(|t| t.close_in(&study, step)).fold(false, |any, one| any | one);
+        if !more {
+            break;
+        }
+        study = once(tried)?;
+    }
+    Ok(study)
+}

@@ -1,0 +1,103 @@
+//! Thrown cubes at any rate of the tracker, with few throws and with noisy orientations: a body flies, hits and slides for some time, not for some
+//! samples.
+
+use estimator::diagnose::{Cause, Diagnosis, diagnose};
+use estimator::identify::mechanism;
+use haptics::recording::{Channel, Recording};
+use tests::tasks::throw::{Kind, Sight, seen};
+
+fn diagnosed(kind: Kind, seed: u64, sight: &Sight) -> (Diagnosis, Option<f64>) {
+    let (case, truth) = seen(kind, seed, sight);
+    let found = diagnose(&case.recordings, &case.options).unwrap_or_else(|e| panic!("{kind:?} {sight:?}: {e}"));
+    for cause in &found.causes {
+        println!("{kind:?} {seed} {} Hz: {} {:?}", sight.rate_hz, cause.id, cause.parameters);
+    }
+    (found, truth.value.map(|(_, value)| value))
+}
+
+fn cause<'a>(found: &'a Diagnosis, id: &str) -> &'a Cause {
+    found.causes.iter().find(|c| c.id == id).unwrap_or_else(|| panic!("{id} is named: {:?}", found.not_excited))
+}
+
+#[test]
+fn dry_friction_is_found_at_any_rate_and_with_noisy_orientations() {
+    for (rate_hz, turn_noise) in [(50.0, 0.0), (60.0, 2e-3), (75.0, 0.0), (250.0, 2e-3), (500.0, 2e-3)] {
+        let (found, mu) = diagnosed(Kind::Dry, 3, &Sight { rate_hz, throws: 40, turn_noise });
+        let dry = cause(&found, "load-friction");
+        let mu = mu.expect("a friction");
+        assert!((dry.parameters[0].value / mu - 1.0).abs() < 0.03, "{rate_hz} Hz: {dry:?}, truth {mu}");
+        let others = ["viscous-friction", "quadratic-drag", "stribeck"];
+        assert!(found.causes.iter().all(|c| !others.contains(&c.id.as_str())), "{rate_hz} Hz: {:?}", found.causes);
+    }
+}
+
+#[test]
+fn losses_at_impacts_are_found_with_few_throws_at_any_rate() {
+    for (rate_hz, seed) in [(75.0, 1), (150.0, 2), (150.0, 3), (500.0, 4)] {
+        let (found, e) = diagnosed(Kind::Loss, seed, &Sight { rate_hz, throws: 40, turn_noise: 1e-3 });
+        let (lost, e) = (cause(&found, "velocity-loss"), e.expect("a restitution"));
+        let [value] = lost.parameters.as_slice() else { panic!("{lost:?}") };
+        let error = 4.0 * value.std_error.max(0.01);
+        assert!((value.value - e).abs() < error && value.std_error < 0.06, "{rate_hz} Hz: {lost:?}, truth {e}");
+    }
+}
+
+#[test]
+fn nothing_is_found_where_nothing_is_at_any_rate() {
+    for rate_hz in [50.0, 75.0, 300.0] {
+        let (found, _) = diagnosed(Kind::Nothing, 5, &Sight { rate_hz, throws: 60, turn_noise: 0.0 });
+        assert!(found.causes.is_empty(), "{rate_hz} Hz: {:?}", found.causes);
+    }
+}
+
+#[test]
+fn one_throw_is_a_throw_and_a_swing_is_none() {
+    for rate_hz in [60.0, 150.0, 500.0] {
+        let (case, _) = seen(Kind::Dry, 7, &Sight { rate_hz, throws: 2, turn_noise: 0.0 });
+        let fit = mechanism::fit(&case.recordings[1..]).expect("one throw");
+        let fall = fit.parameters.iter().find(|p| p.name == "free_fall_m_s2").expect("it falls");
+        let (value, error) = (fall.value.expect("so fast"), fall.std_error.expect("so well"));
+        assert!((value - 9.81).abs() < 4.0 * error.max(0.02), "{rate_hz} Hz: {value} ± {error}");
+        assert!(fit.constraints.is_empty());
+    }
+    let fit = mechanism::fit(&[swing()]);
+    println!("{:?}", fit.as_ref().map(|f| &f.parameters));
+    assert!(fit.map_or(true, |f| f.parameters.iter().all(|p| p.name != "free_fall_m_s2")));
+}
+
+/// A bob on an arm that is let go with the arm level: at first it falls.
+fn swing() -> Recording {
+    const ARM_M: f64 = 0.4;
+    let (mut angle, mut rate) = (0.0_f64, 0.0);
+    let mut points = Vec::new();
+    for k in 0..15_000 {
+        if k % 100 == 0 {
+            points.push((ARM_M * angle.cos(), -ARM_M * angle.sin()));
+        }
+        rate += 1e-4 * (9.81 / ARM_M * angle.cos() - 0.2 * rate);
+        angle += 1e-4 * rate;
+    }
+    let channel = |name: &str, of: &dyn Fn(&(f64, f64)) -> f64| Channel {
+        name: name.to_owned(),
+        unit: "m".to_owned(),
+        values: points.iter().map(of).collect(),
+    };
+    Recording {
+        name: "swing".to_owned(),
+        time_s: Some((0..points.len()).map(|i| 0.01 * i as f64).collect()),
+        channels: vec![channel("x_m", &|p| p.0), channel("y_m", &|p| p.1)],
+        ..Recording::default()
+    }
+}
+
+#[test]
+fn where_nothing_but_falls_can_be_compared_the_figures_are_those_of_the_falls() {
+    let (case, _) = seen(Kind::Scale, 9, &Sight { throws: 6, ..Sight::default() });
+    // Only until the ground comes.
+    let falls: Vec<Recording> =
+        case.recordings.iter().map(|r| r.slice(haptics::recording::Span { first: 0, end: 24 })).collect();
+    let found = diagnose(&falls, &case.options).expect("falls");
+    assert_eq!(found.baseline.of.as_deref(), Some("height of the flights"));
+    let (before, floor) = (found.baseline.heldout_rms_n, found.noise_floor_n);
+    assert!((1e-6..1e-2).contains(&floor) && before >= floor && found.end.heldout_rms_n >= floor, "{floor} {before}");
+}
