@@ -60,7 +60,7 @@ impl Shape {
 }
 
 /// What a part of the friction must explain more than all of it.
-const PARTLY: f64 = 30.0;
+const PARTLY: f64 = 60.0;
 
 /// k u + f0 + here u³ + there (u − 1)³ as k (u − place) + f0 + k3 (u − place)³: k, f0, k3 and the place.
 pub fn about_its_zero([k, f0, here, there]: [f64; 4]) -> [f64; 4] {

@@ -1,7 +1,7 @@
 //! One channel of a residual that is no force along one coordinate: what the model leaves of it, and which causes explain that.
 
 use super::candidate::Candidate;
-use super::force::{CONFIRMED, SHOWN};
+use super::force::{CONFIRMED, SHOWN, harms};
 use super::gain::{confirmed, gain, holds_out, is_tested};
 use super::geometry::{Study, residual};
 use super::select::{DRY_FRICTION, OF_DRY_FRICTION, Selection};
@@ -98,12 +98,14 @@ fn leave_out_what_is_unsure(study: &mut Study, stretch: &[usize], threshold: f64
         let is_unsure = |k: &usize| {
             let gain = gain(study, *k, 0.0);
             let gains_nothing = gain.no_share.is_none() && gain.heldout_rms_after >= gain.heldout_rms_before;
-            let is_doubtful = if holds_out(study) {
-                is_tested(study, *k, stretch) && confirmed(study, *k, stretch) < SHOWN
-            } else {
-                study.chosen[*k].score < CONFIRMED * threshold
-            };
-            gains_nothing || is_doubtful
+            let is_weak = study.chosen[*k].score < CONFIRMED * threshold;
+            if !holds_out(study) {
+                return gains_nothing || is_weak;
+            }
+            // What explains much elsewhere must harm for certain.
+            let tested = is_tested(study, *k, stretch);
+            let shows_nothing = if tested { confirmed(study, *k, stretch) < SHOWN } else { gains_nothing };
+            harms(study, *k) || is_weak && shows_nothing
         };
         let Some(k) = (0..study.chosen.len()).rev().find(is_unsure) else { return };
         study.chosen.remove(k);

@@ -310,12 +310,10 @@ impl Dictionary<'_> {
         let felt = f64::from(u8::from(way > self.grid.felt));
         let mut column: Vec<f64> = bent.iter().zip(self.dry).map(|(b, d)| felt * b * d).collect();
         super::stuck::bends(&self.track.rows, &values, &mut column);
+        // A part of the friction must be felt: standstills alone tell of a bend, not how much of the friction it is.
+        let least = if way > self.grid.felt { LEAST_BENT } else { ALL_BENT };
         let hysteresis = Candidate::one("hysteresis", Kind::Plant, "share", "1", column);
-        hysteresis.shaped(Shape::Share { least: LEAST_BENT, whole: ALL_BENT, most: MOST }).at(
-            "way",
-            way,
-            self.units().length,
-        )
+        hysteresis.shaped(Shape::Share { least, whole: ALL_BENT, most: MOST }).at("way", way, self.units().length)
     }
 
     /// A column of a law with memory, which starts anew at every stretch and lives between the rows.

@@ -143,7 +143,7 @@ pub fn leave_out_what_harms(
 }
 
 /// Whether the k-th of the chosen causes makes more of an error for certain where it was not fitted.
-fn harms(study: &Study, k: usize) -> bool {
+pub fn harms(study: &Study, k: usize) -> bool {
     let gain = gain(study, k, 0.0);
     gain.heldout_rms_after > HARMS * gain.heldout_rms_before && gain.interval[1] < 0.0
 }

@@ -58,7 +58,7 @@ fn model_name(terms: &str) -> String {
 
 /// A unit of the laws per kg m² or kg.
 fn per_inertia(unit: &str) -> &str {
-    const UNITS: [(&str, &str); 10] = [
+    const UNITS: [(&str, &str); 11] = [
         ("N m", "rad/s²"),
         ("N m s", "1/s"),
         ("N m s²", "1/rad"),
@@ -69,6 +69,7 @@ fn per_inertia(unit: &str) -> &str {
         ("N s²/m²", "1/m"),
         ("N/m", "1/s²"),
         ("N/m³", "1/(m² s²)"),
+        ("N/m^1.5", "1/(m^0.5 s²)"),
     ];
     UNITS.iter().find(|(of, _)| *of == unit).map_or(unit, |(_, per)| per)
 }
