@@ -13,9 +13,12 @@ use haptics::law::{
     MassChange, Memory, Motion, PositionRipple, QuadraticDrag, ReturnSpring, Stribeck, ViscousFriction, Weight,
 };
 
-/// Least share of the friction that bends before it slides, and the least that passes for all of it; least share of the force that lies behind a gap.
+/// Least share of the friction that bends before it slides, and the least that passes for all of it.
 const LEAST_BENT: f64 = 0.3;
 const ALL_BENT: f64 = 0.65;
+/// A part bends over a way of so many times the shortest that is felt.
+const LONG_BENT: f64 = 6.0;
+/// Least share of the force that lies behind a gap.
 const LEAST_BEHIND: f64 = 0.4;
 /// More than all of it is none of the two: another way or gap would be nearer.
 const MOST: f64 = 1.7;
@@ -310,8 +313,8 @@ impl Dictionary<'_> {
         let felt = f64::from(u8::from(way > self.grid.felt));
         let mut column: Vec<f64> = bent.iter().zip(self.dry).map(|(b, d)| felt * b * d).collect();
         super::stuck::bends(&self.track.rows, &values, &mut column);
-        // A part of the friction must be felt: standstills alone tell of a bend, not how much of the friction it is.
-        let least = if way > self.grid.felt { LEAST_BENT } else { ALL_BENT };
+        // A part of the friction must be felt beyond doubt: what sticks makes a short bend of the noise of its way.
+        let least = if way > LONG_BENT * self.grid.felt { LEAST_BENT } else { ALL_BENT };
         let hysteresis = Candidate::one("hysteresis", Kind::Plant, "share", "1", column);
         hysteresis.shaped(Shape::Share { least, whole: ALL_BENT, most: MOST }).at("way", way, self.units().length)
     }
