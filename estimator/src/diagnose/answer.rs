@@ -192,6 +192,16 @@ fn told<'a, 'b>(parts: &'b [Part<'a>]) -> Option<&'b Part<'a>> {
     parts.iter().rev().max_by(|a, b| strongest(a).total_cmp(&strongest(b)))
 }
 
+/// The answer in one word: whether anything has a name, whether anything has none, whether a name is open.
+pub fn verdict(is_named: bool, is_strange: bool, is_open: bool) -> Verdict {
+    match (is_named, is_strange) {
+        (false, false) => Verdict::None,
+        (false, true) => Verdict::Unexplained,
+        (true, _) if is_open => Verdict::Ambiguous,
+        (true, _) => Verdict::Causes,
+    }
+}
+
 /// The answer of several channels.
 pub fn answer(
     parts: &[Part<'_>],
@@ -226,12 +236,7 @@ pub fn answer(
     not_excited.retain(|n| causes.iter().all(|c| c.id != n.id) && alternatives.iter().all(|a| a.id != n.id));
     let passed = unsaid(passed, &causes, &alternatives, &not_excited);
     let open: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > OPEN).cloned().collect();
-    let verdict = match (causes.is_empty(), strange.is_empty()) {
-        (true, true) => Verdict::None,
-        (true, false) => Verdict::Unexplained,
-        _ if open.is_empty() => Verdict::Causes,
-        _ => Verdict::Ambiguous,
-    };
+    let verdict = verdict(!causes.is_empty(), !strange.is_empty(), !open.is_empty());
     for (cause, warning) in strange {
         causes.push(cause);
         warnings.push(warning);
@@ -252,11 +257,10 @@ pub fn answer(
             model,
             rms_n: train,
             heldout_rms_n: heldout,
-            rms_nm: None,
-            heldout_rms_nm: None,
             whiteness_p: white,
             of: told.map(|p| p.channel.to_owned()),
             unit: told.map(|p| p.unit.to_owned()),
+            ..Baseline::default()
         },
         // What is left in the end has the noise in it.
         noise_floor_n: told.map_or(0.0, |p| if end > 0.0 { p.floor.min(end) } else { p.floor }),
@@ -267,7 +271,7 @@ pub fn answer(
         alternatives,
         not_excited,
         passed_over: passed,
-        end: Final { heldout_rms_n: end, heldout_rms_nm: None, whiteness_p: end_white },
+        end: Final { heldout_rms_n: end, whiteness_p: end_white, ..Final::default() },
         warnings,
         validation: Vec::new(),
         settled: Vec::new(),

@@ -1,5 +1,6 @@
 //! From a comparison to an answer in words.
 
+use super::answer::verdict;
 use super::atlas::Atlas;
 use super::candidate::Candidate;
 use super::course::course;
@@ -79,39 +80,22 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         alternatives.extend(rivals(study, chosen));
     }
     for geometry in geometries {
-        for (k, chosen) in geometry.chosen.iter().enumerate() {
-            let id = geometry.candidates[chosen.candidate].id;
-            if found.iter().all(|(_, c)| c.id != id) {
-                found.push((chosen.score, cause(geometry, k, 0.0, ("path", "m"))));
-                alternatives.extend(rivals(geometry, chosen));
-            }
-        }
+        of_path(geometry, &mut found, &mut alternatives);
     }
     let strange = strange(study, &picks);
     let mut causes = in_order(faults, found);
     let least = 1.0 / (1.0 + (0.5 * OPEN).exp());
     let open_ones: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > least).cloned().collect();
-    let verdict = match (causes.is_empty(), strange.is_some()) {
-        (true, true) => Verdict::Unexplained,
-        (true, false) => Verdict::None,
-        (false, _) if !open_ones.is_empty() => Verdict::Ambiguous,
-        (false, _) => Verdict::Causes,
-    };
+    let mut verdict = verdict(!causes.is_empty(), strange.is_some(), !open_ones.is_empty());
     if let Some(strange) = strange {
         let (left, warning) = unnamed(study, strange, (floor, unit));
         causes.push(left);
         warnings.push(warning);
     }
-    let mut verdict = verdict;
     let white = whiteness_p(study, &picks, &stretch);
-    let much = if track.noise_is_measured { MUCH } else { MUCH_UNSEEN };
-    if causes.is_empty() && end > much * track.force_noise && white < SURELY_NOT_WHITE {
+    if let Some(much) = much_left(track, end, white).filter(|_| causes.is_empty()) {
         verdict = Verdict::Unexplained;
-        warnings.push(format!(
-            "{} are left, {:.0} times the noise of the force, and go with nothing that was tried",
-            amount(end, unit),
-            end / track.force_noise
-        ));
+        warnings.push(much);
     }
     let not_excited = unseen(track, study, &causes, &alternatives);
     let passed_over = passed_over(study, &picks, UNEXPLAINED);
@@ -121,11 +105,9 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
             model: model.iter().map(|e| e.law().id()).collect::<Vec<_>>().join("+"),
             rms_n: train,
             heldout_rms_n: heldout,
-            rms_nm: None,
-            heldout_rms_nm: None,
             whiteness_p: whiteness_p(study, &[], &stretch),
-            of: None,
             unit: Some(unit.to_owned()),
+            ..Baseline::default()
         },
         noise_floor_n: floor,
         noise_floor_nm: None,
@@ -149,9 +131,31 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         causes,
         alternatives,
         next_experiment: next(track, model, study, &open_ones),
-        end: Final { heldout_rms_n: end, heldout_rms_nm: None, whiteness_p: whiteness_p(study, &picks, &stretch) },
+        end: Final { heldout_rms_n: end, whiteness_p: white, ..Final::default() },
         warnings,
     }
+}
+
+/// What was found in a path and not in the force.
+fn of_path(geometry: &Study, found: &mut Vec<(f64, Cause)>, alternatives: &mut Vec<Alternative>) {
+    for (k, chosen) in geometry.chosen.iter().enumerate() {
+        let id = geometry.candidates[chosen.candidate].id;
+        if found.iter().all(|(_, c)| c.id != id) {
+            found.push((chosen.score, cause(geometry, k, 0.0, ("path", "m"))));
+            alternatives.extend(rivals(geometry, chosen));
+        }
+    }
+}
+
+/// What is left in the `end` where that is far more than the noise of the force and no noise (`white`: probability that it would be as white by chance),
+/// in a sentence.
+fn much_left(track: &Track, end: f64, white: f64) -> Option<String> {
+    let much = if track.noise_is_measured { MUCH } else { MUCH_UNSEEN };
+    let times = end / track.force_noise;
+    (times > much && white < SURELY_NOT_WHITE).then(|| {
+        let left = amount(end, track.force_unit());
+        format!("{left} are left, {times:.0} times the noise of the force, and go with nothing that was tried")
+    })
 }
 
 /// What the comparison is of, in words.

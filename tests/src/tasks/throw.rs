@@ -165,7 +165,7 @@ pub fn seen(kind: Kind, seed: u64, sight: &Sight) -> (Case, Truth) {
 
 /// One throw: it comes down on a corner, or flat and slides out.
 fn throw(world: &World, sight: &Sight, trial: usize, chance: &mut Chance) -> Recording {
-    let tumbles = trial % 2 == 0;
+    let tumbles = trial.is_multiple_of(2);
     let parts = (STEPS_HZ / sight.rate_hz).round() as usize;
     let part = 1.0 / (sight.rate_hz * parts as f64);
     let mut place = V([0.0, 0.1, chance.between(0.2, 0.4)]);
@@ -186,7 +186,9 @@ fn throw(world: &World, sight: &Sight, trial: usize, chance: &mut Chance) -> Rec
         let shaken: [f64; 3] = std::array::from_fn(|k| seen.0[k] + world.noise_m * chance.normal());
         let mut told = q;
         if sight.turn_noise > 0.0 {
-            told.iter_mut().for_each(|v| *v += sight.turn_noise * chance.normal());
+            for v in &mut told {
+                *v += sight.turn_noise * chance.normal();
+            }
         }
         rows.push([shaken[0], shaken[1], shaken[2], told[0], told[1], told[2], told[3]]);
         for _ in 0..parts {

@@ -99,14 +99,13 @@ fn describe(blocks: &Blocks<'_>) -> Result<Fit, EstimateError> {
         parameters.extend(weight);
         parameters.push(blocks.width(number)?);
     }
-    parameters.extend(match blocks.unshown("height_m") {
-        Some(why) => (1..=count).map(|n| Parameter::unidentified(&object(n), "height_m", 0, &why)).collect(),
-        None => {
-            let stacked = [Stacked::new(blocks, &weights_n)];
-            warnings.extend(stacked[0].warnings());
-            heights::heights(&stacked)?
-        }
-    });
+    if let Some(why) = blocks.unshown("height_m") {
+        parameters.extend((1..=count).map(|n| Parameter::unidentified(&object(n), "height_m", 0, &why)));
+    } else {
+        let stacked = [Stacked::new(blocks, &weights_n)];
+        warnings.extend(stacked[0].warnings());
+        parameters.extend(heights::heights(&stacked)?);
+    }
     parameters.push(blocks.pad_stiffness(count));
     let masses_kg: Vec<f64> = weights_n.iter().map(|w| w / recording.meta.gravity()).collect();
     for number in 1..=count {
