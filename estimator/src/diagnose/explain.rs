@@ -12,15 +12,15 @@ use super::gain::{chi_square_tail, gain, gain_between, rms, shows_beside, whiten
 use super::geometry::Study;
 use super::kept::of_study;
 use super::passed_over::{passed_over, unsaid};
-use super::report::{
-    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, Verdict,
-};
+use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, Verdict};
 use super::residuals;
 use super::rollout::rollout;
 use super::searched::{Known, known};
 use super::select::{Chosen, Selection};
+use super::skew::{apart, rest_s, skew};
 use super::suspects::hypotheses;
 use super::track::{Place, Track};
+use super::unseen::unseen;
 use crate::words::amount;
 use haptics::law::{Coordinate, Law, ReturnSpring, entries};
 
@@ -34,17 +34,6 @@ const MUCH_UNSEEN: f64 = 8.0;
 const SURELY_NOT_WHITE: f64 = 1e-12;
 /// A rival nearer than this leaves the cause open: its probability is then above a twentieth.
 const OPEN: f64 = 6.0;
-/// A cause of the noise's own size that would score less than this could not have been seen.
-const VISIBLE: f64 = 10.0;
-
-/// Who goes no larger a share of the way back goes one way: a hand trembles.
-const ONE_WAY: f64 = 0.02;
-/// Channels are a whole sample apart by sampling alone as long as that is no longer than this, s, …
-const LARGEST_SKEW_S: f64 = 2e-3;
-/// … and a command that is held until the next sample acts half of that later than when it is recorded: this share of a sample with some room.
-const HELD_COMMAND: f64 = 0.7;
-/// Clocks of two instruments differ by this, and what filters them: a force that is no later is no late force, s.
-const CLOCKS_DIFFER_S: f64 = 3e-4;
 
 /// The channel of what moves along one coordinate.
 pub(super) const FORCE: &str = "force";
@@ -182,48 +171,6 @@ fn in_order(faults: Vec<Cause>, found: Vec<(f64, Cause)>) -> Vec<Cause> {
         causes.insert(place, cause);
     }
     causes
-}
-
-/// The time between force and motion when it is no more than what sampling itself can make of it, s: a commanded force is recorded when
-/// it is given and acts in the sample after. A force that comes late is late as soon as clocks do not differ by as much.
-fn skew(study: &Study, k: usize, track: &Track) -> Option<f64> {
-    if study.candidates[study.chosen[k].candidate].id != "time-delay" {
-        return None;
-    }
-    let delay = parameters(study, k);
-    let found = delay.first()?;
-    // A hand's force is measured, a motor's is usually what it was told.
-    let held_s = if track.planar { 0.0 } else { HELD_COMMAND * track.raw_period_s };
-    let ahead_s = track.raw_period_s.min(LARGEST_SKEW_S).max(held_s);
-    let most_s = if found.value < 0.0 { ahead_s } else { CLOCKS_DIFFER_S };
-    (found.value.abs() - 2.0 * found.std_error <= most_s).then_some(found.value)
-}
-
-/// The same of whatever was chosen.
-pub fn skewed_s(study: &Study, track: &Track) -> Option<f64> {
-    (0..study.chosen.len()).find_map(|k| skew(study, k, track))
-}
-
-/// How that begins.
-pub const APART: &str = "force and motion are ";
-
-/// In words.
-pub fn apart(skew_s: f64) -> String {
-    let ms = 1e3 * skew_s;
-    format!(
-        "{APART}{ms:.2} ms apart, no more than sampling and clocks make of it: it is taken out and not called a delay"
-    )
-}
-
-/// What a delay comes out at beside what was found, and its error, s.
-fn rest_s(study: &Study, picks: &[usize]) -> Option<[f64; 2]> {
-    let is_delay = |c: &usize| study.candidates[*c].id == "time-delay";
-    let delay = (0..study.candidates.len()).find(is_delay)?;
-    let others: Vec<usize> = picks.iter().copied().filter(|c| !is_delay(c)).collect();
-    let solved = study.system.solve(&[others.as_slice(), &[delay]].concat())?;
-    let last = solved.values.len() - 1;
-    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
-    Some([solved.values[last], (variance * solved.inverse[(last, last)]).sqrt()])
 }
 
 /// What no known cause explains: the generic term and its score.
@@ -439,76 +386,4 @@ pub fn add_of_path(found: &mut Diagnosis, strange: &[(Study, usize, f64)]) {
             found.verdict = Verdict::Unexplained;
         }
     }
-}
-
-/// Causes that, at the size of the noise, this motion would hide.
-fn not_excited(study: &Study, picks: &[usize]) -> Vec<NotExcited> {
-    let mut found = Vec::new();
-    for entry in entries() {
-        let of: Vec<usize> = (0..study.candidates.len()).filter(|c| study.candidates[*c].id == entry.id).collect();
-        if of.is_empty() || picks.iter().any(|p| study.candidates[*p].id == entry.id) {
-            continue;
-        }
-        let best = of.iter().map(|c| study.system.distinct(*c, picks) * study.system.rows).fold(0.0, f64::max);
-        if best < VISIBLE {
-            let why = entry.reveals.trim_end_matches('.');
-            found.push(NotExcited {
-                id: entry.id.to_owned(),
-                why: format!("this motion hides it behind the model's own terms; {}", lower(why)),
-            });
-        }
-    }
-    found
-}
-
-/// What this recording could not have shown.
-fn unseen(track: &Track, study: &Study, causes: &[Cause], alternatives: &[Alternative]) -> Vec<NotExcited> {
-    let mut found = not_excited(study, &study.picks());
-    found.extend(without_reversals(track, causes, &found));
-    // What could stand in a cause's place was seen, if not told apart.
-    found.retain(|n| alternatives.iter().all(|a| a.id != n.id));
-    found
-}
-
-/// What happens at reversals alone, where there are none.
-fn without_reversals(track: &Track, causes: &[Cause], already: &[NotExcited]) -> Vec<NotExcited> {
-    let way = |side: f64| track.along().map(|i| (side * track.rows[i].motion.velocity).max(0.0)).sum::<f64>();
-    let (forward, backward) = (way(1.0), way(-1.0));
-    if forward.min(backward) > ONE_WAY * (forward + backward) {
-        return Vec::new();
-    }
-    let said = |id: &str| causes.iter().any(|c| c.id == id) || already.iter().any(|n| n.id == id);
-    let hidden = ["backlash", "hysteresis"].into_iter().filter(|id| !said(id));
-    hidden
-        .map(|id| NotExcited {
-            id: id.to_owned(),
-            why: "no reversal in the recording; move to and fro, also in short strokes".to_owned(),
-        })
-        .collect()
-}
-
-/// What no motion shows as long as nothing is known from elsewhere. `weight`, `length`: whether one is.
-pub fn without_known(found: &mut Diagnosis, weight: bool, length: bool) {
-    let hidden = [
-        ("force-gain", weight, "no weight is known; state one in the sidecar, or hang one on"),
-        (
-            "length-scale",
-            length,
-            "no length is known, so a factor of all lengths cannot show; state radius_m in the sidecar",
-        ),
-    ];
-    for (id, _, why) in hidden.into_iter().filter(|(_, known, _)| !known) {
-        let said = found.causes.iter().any(|c| c.id == id)
-            || found.alternatives.iter().any(|a| a.id == id)
-            || found.not_excited.iter().any(|n| n.id == id);
-        if !said {
-            found.not_excited.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
-            found.passed_over.retain(|p| p.id != id);
-        }
-    }
-}
-
-fn lower(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |c| c.to_lowercase().chain(letters).collect())
 }

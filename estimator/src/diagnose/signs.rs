@@ -1,12 +1,13 @@
 //! Signs: channels that are mirrored, and axes that are swapped, put right before anything is asked of the model.
 
+use super::crank::plain_crank;
 use super::force;
 use super::geometry::{self, Arm, Geometry};
 use super::held_arm::{Axes, Signals};
 use super::quality;
 use super::report::Cause;
 use super::track::Track;
-use super::{named, plain_crank, threshold};
+use super::{named, threshold};
 use crate::estimate::EstimateError;
 use haptics::law::{EccentricMass, Effect};
 use haptics::recording::Recording;

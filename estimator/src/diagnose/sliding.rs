@@ -10,6 +10,7 @@ use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use crate::identify::mechanism::{self, Raw};
 use crate::signal::noise::{quantum, resolution_error, white_noise, white_noise_under_fast_motion};
+use crate::signal::pieces::pieces;
 use haptics::Vec2;
 use haptics::law::{Coordinate, Motion};
 use haptics::recording::Recording;
@@ -18,8 +19,6 @@ use haptics::world::MechanismPath;
 /// Shortest and longest block, s: nothing that a hand does is over within the longest.
 const SHORTEST_S: f64 = 0.02;
 const LONGEST_S: f64 = 0.06;
-/// A longer step between two samples ends a stretch, in usual steps.
-const GAP: f64 = 2.5;
 /// Fewer samples are no stretch, in blocks.
 const LEAST_BLOCKS: usize = 8;
 
@@ -32,20 +31,9 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
             recording.name
         ))
     })?;
-    let mut steps: Vec<f64> = raw.time_s.windows(2).map(|w| w[1] - w[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    let period_s = steps.get(steps.len() / 2).copied().unwrap_or(1.0);
     let rate = raw.rate.clone().unwrap_or_else(|| slopes(&raw));
     let usable = |i: usize| !raw.saturated[i] && !bad.get(i).copied().unwrap_or(false);
-    let mut stretches = Vec::new();
-    let mut first = 0;
-    for i in 0..=raw.time_s.len() {
-        let ends = i == raw.time_s.len() || !usable(i);
-        if ends || (i > first && raw.time_s[i] - raw.time_s[i - 1] > GAP * period_s) {
-            stretches.push(first..i);
-            first = if ends { i + 1 } else { i };
-        }
-    }
+    let (stretches, period_s) = pieces(&raw.time_s, &usable);
     let in_blocks = |block: usize| {
         let mut made = Made { rows: Vec::new(), fine: Vec::new(), noises: Vec::new(), period_s, block };
         for range in &stretches {

@@ -5,5 +5,6 @@ pub mod derive;
 pub mod filter;
 pub mod lag;
 pub mod noise;
+pub mod pieces;
 pub mod task;
 pub mod transform;

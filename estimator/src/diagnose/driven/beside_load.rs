@@ -1,6 +1,6 @@
 //! Dry friction of an input beside a load that turns round with the motion, as dry friction does.
 
-use super::Row;
+use super::rows::Row;
 use crate::diagnose::geometry::Study;
 use crate::diagnose::report::Alternative;
 use crate::diagnose::system::{Use, solve};

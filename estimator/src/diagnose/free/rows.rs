@@ -10,6 +10,7 @@ use crate::estimate::EstimateError;
 use crate::identify::mechanism::{self, Raw};
 use crate::signal::derive::{Derivatives, even_period, interpolate_cubic, savitzky_golay};
 use crate::signal::noise::{quantum, resolution_error, white_noise, white_noise_under_fast_motion};
+use crate::signal::pieces::pieces as uninterrupted;
 use haptics::Vec2;
 use haptics::law::{Coordinate, Motion};
 use haptics::recording::Recording;
@@ -25,8 +26,6 @@ const LONGEST_RAD: f64 = 0.3;
 const QUIET: f64 = 0.01;
 /// A rate is used where it makes less than this share of the noise: what was derived from the places, perhaps late, is no better than they are.
 const RATE_BETTER: f64 = 0.3;
-/// A longer step between two samples ends a stretch, in usual steps.
-const GAP: f64 = 2.5;
 /// Fewer blocks are no stretch.
 const LEAST_BLOCKS: usize = 8;
 /// Time stamps no further from an even clock than this share of a step were rounded, not uneven.
@@ -74,17 +73,7 @@ struct Piece {
 
 /// What follows each other without a gap, and the usual step, s.
 fn pieces(raw: &Raw, bad: &[bool]) -> (Vec<Piece>, f64) {
-    let mut steps: Vec<f64> = raw.time_s.windows(2).map(|w| w[1] - w[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    let period_s = steps.get(steps.len() / 2).copied().unwrap_or(1.0).max(1e-9);
-    let usable = |i: usize| !bad.get(i).copied().unwrap_or(false);
-    let mut found: Vec<Range<usize>> = Vec::new();
-    for i in (0..raw.time_s.len()).filter(|i| usable(*i)) {
-        match found.last_mut() {
-            Some(last) if last.end == i && raw.time_s[i] - raw.time_s[i - 1] <= GAP * period_s => last.end = i + 1,
-            _ => found.push(i..i + 1),
-        }
-    }
+    let (found, period_s) = uninterrupted(&raw.time_s, &|i| !bad.get(i).copied().unwrap_or(false));
     let long = found.into_iter().filter(|range| range.len() > 2 * LEAST_HALF + 1);
     (long.map(|range| Piece::of(raw, range, period_s)).collect(), period_s)
 }

@@ -1,0 +1,196 @@
+//! Diagnosis of cranks.
+
+use super::force::{self, Model};
+use super::geometry;
+use super::held_arm::{self, Axes};
+use super::report::{Cause, Diagnosis, Validation, Verdict};
+use super::{
+    Options, atlas, bearing, explain, extra, late, nothing, quality, signs, strange_path, threshold, track, unseen,
+};
+use crate::estimate::EstimateError;
+use haptics::law::{Effect, Law, LoadFriction, ViscousFriction, Weight};
+use haptics::recording::Recording;
+
+/// Diagnoses recordings of one crank.
+pub fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let mut tracks = Vec::new();
+    let (mut geometries, mut strange, mut short) = (Vec::new(), Vec::new(), Vec::new());
+    let mut faults = Vec::new();
+    let mut swapped = Vec::new();
+    let mut link = None;
+    let mut scale = None;
+    for (k, recording) in recordings.iter().enumerate() {
+        options.progress.tell(0.4 * k as f64 / recordings.len() as f64)?;
+        let found = quality::faults(recording);
+        let (upright, mirrored, looked) = signs::of_crank(recording, &found.bad)?;
+        let recording = &upright;
+        let signs::Looked { signals, circle, rows, axis } = looked;
+        faults.extend(mirrored);
+        faults.extend(found.causes);
+        faults.extend(axis);
+        let Turned { mut rows, other, link: of_this } = turned(&signals, recording, &circle, rows)?;
+        rows.extra = vec![extra::of(recording)];
+        link = link.or(of_this);
+        // The same recording with the other link's angle wrong.
+        swapped.push(other.map(|other| track::Track { extra: rows.extra.clone(), ..other }));
+        let known_m = recording.meta.known.get("radius_m").copied().filter(|r| r.is_finite() && *r > 0.0);
+        if scale.is_none() {
+            scale = known_m.and_then(|r| quality::scaled("radius", circle.too_large(r)?));
+        }
+        tracks.push(rows);
+        let path = signals.path(recording);
+        strange.extend(strange_path::unexplained(&path, &circle.arm, &circle.study));
+        short.extend(strange_path::short_arc(&path, &circle.arm, &circle.study));
+        geometries.push(circle.study);
+    }
+    let other = swapped.iter().any(Option::is_some).then(|| {
+        let either = swapped.iter().zip(&tracks).map(|(other, rows)| other.as_ref().unwrap_or(rows).clone());
+        track::join(either.collect())
+    });
+    let mut track = track::join(tracks).ok_or_else(nothing)?;
+    let mut model: Model = match &options.world {
+        Some(world) => world.crank.as_ref().map(|c| c.effects.clone()).unwrap_or_default(),
+        None => plain_crank(),
+    };
+    let fixed = known_weight(&recordings[0], &mut model);
+    let limit = threshold(track.period_s);
+    options.progress.tell(0.4)?;
+    let look = |track: &mut track::Track| -> Result<_, EstimateError> {
+        Ok((bearing::load(track, &model, &fixed)?, force::study(track, &model, &fixed, limit)?))
+    };
+    let (mut bearing_n, mut study) = look(&mut track)?;
+    // Whose angle is wrong was asked of the plain model, which something hidden may have kept from telling.
+    if let Some(mut other) = other.flatten().filter(|_| is_turned(&study)) {
+        let (other_n, again) = look(&mut other)?;
+        if !is_turned(&again) {
+            let swapped = if link == Some(Link::First) { Link::Second } else { Link::First };
+            (track, bearing_n, study, link) = (other, other_n, again, Some(swapped));
+        }
+    }
+    options.progress.tell(0.8)?;
+    let mut found = explain::explain(&track, &model, &study, &geometries, faults);
+    found.warnings.extend(bearing_n.map(|weight_n| {
+        format!("friction goes with the load on the bearing, {weight_n:.3} N of the handle's weight included, not with the fingers' pull alone")
+    }));
+    explain::add_of_path(&mut found, &strange);
+    found.warnings.extend(short);
+    if options.atlas {
+        found.atlas = atlas::atlas(&track, &study, limit);
+    }
+    found.guess_s = late::guess_s(&track, &model);
+    name_joint(&mut found, link);
+    if let Some(cause) = scale.filter(|scale: &Cause| found.causes.iter().all(|c| c.id != scale.id)) {
+        found.causes.insert(0, cause);
+        if found.verdict == Verdict::None {
+            found.verdict = Verdict::Causes;
+        }
+    }
+    let is_known = |name: &str| recordings.iter().any(|r| r.meta.known.contains_key(name));
+    unseen::without_known(&mut found, !fixed.is_empty() || is_known("added_weight_N"), is_known("radius_m"));
+    Ok(found)
+}
+
+/// What was found, on another recording of the same crank.
+pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
+    let recording = &late::put_back(recording, diagnosis.late_s);
+    let signs::Looked { signals, circle, rows, .. } = signs::Looked::at(recording, &quality::faults(recording).bad)?;
+    let mut track = turned(&signals, recording, &circle, rows)?.rows;
+    // A weight that is stated is no part of what was fitted, and acts all the same.
+    let known = known_weight(recording, &mut diagnosis.plain.clone());
+    let with_known = |effects: &[Effect]| -> Model {
+        let weighs = effects.iter().any(|e| e.law().id() == Weight.id());
+        effects.iter().chain(known.iter().filter(|_| !weighs)).copied().collect()
+    };
+    let (before, after) = (with_known(&diagnosis.plain), with_known(&diagnosis.effects));
+    Ok(super::validate::validate(&mut track, &before, &after, &known, &diagnosis.kept))
+}
+
+/// How much more likely the force must be when the first link's angle is wrong, not the second's (2 ln likelihood).
+const TURNED: f64 = 10.0;
+
+/// Rows of a crank whose path shows that an angle of the finger is wrong.
+struct Turned {
+    /// With that link's angle put right which is the likelier one.
+    rows: track::Track,
+    /// With the other one's; nothing where no angle is wrong.
+    other: Option<track::Track>,
+    /// Which is the likelier one; none where the forces do not tell.
+    link: Option<Link>,
+}
+
+/// A link of a finger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Link {
+    First,
+    Second,
+}
+
+/// An offset of the first link's angle bends the path as the opposite offset of the second one does, and turns all of it: the circle is
+/// the same, the force then has another direction beside it.
+fn turned(
+    signals: &held_arm::Signals,
+    recording: &Recording,
+    circle: &geometry::Geometry,
+    rows: track::Track,
+) -> Result<Turned, EstimateError> {
+    let study = &circle.study;
+    let mut at = study.base.len();
+    let mut offset = None;
+    for chosen in &study.chosen {
+        let candidate = &study.candidates[chosen.candidate];
+        if candidate.id == "joint-offset" {
+            offset = study.solved.as_ref().map(|s| s.values[at]);
+        }
+        at += candidate.columns.len();
+    }
+    // With two fingers it is one of two arms: the handle's own is not turned.
+    let Some(turn_rad) = offset.filter(|_| !signals.two_fingered) else {
+        return Ok(Turned { rows, other: None, link: None });
+    };
+    let arm = geometry::Arm { turn_rad, ..circle.arm.clone() };
+    let other = signals.rows(recording, &arm, Axes::PLAIN)?;
+    let model = plain_crank();
+    let (before, _) = force::plain_rms(&mut rows.clone(), &model)?;
+    let (after, _) = force::plain_rms(&mut other.clone(), &model)?;
+    let likelier = 2.0 * rows.along().count() as f64 * (before / after.max(1e-300)).ln();
+    let link =
+        if likelier.abs() < TURNED { None } else { Some(if likelier > 0.0 { Link::First } else { Link::Second }) };
+    let (rows, other) = if link == Some(Link::First) { (other, rows) } else { (rows, other) };
+    Ok(Turned { rows, other: Some(other), link })
+}
+
+/// Whether the forces seem to be turned against the motion.
+fn is_turned(study: &geometry::Study) -> bool {
+    study.chosen.iter().any(|c| study.candidates[c.candidate].id == "force-cross-axis")
+}
+
+/// Says whose angle is wrong, as far as that shows.
+fn name_joint(found: &mut Diagnosis, link: Option<Link>) {
+    // Of two fingers it is said which of them, and the path shows no more.
+    let of_the_finger = |c: &&mut Cause| c.id == "joint-offset" && c.parameters.iter().any(|p| p.name == "delta");
+    let Some(cause) = found.causes.iter_mut().find(of_the_finger) else { return };
+    cause.evidence += match link {
+        Some(Link::First) => "; it is the angle of the first link",
+        Some(Link::Second) => "; it is the angle of the second link",
+        None => {
+            "; the first link's angle being off by the opposite makes the same path, and the forces do not tell the two apart"
+        }
+    };
+    if link == Some(Link::First) {
+        cause.parameters.iter_mut().for_each(|p| p.value = -p.value);
+    }
+}
+
+/// The thesis's crank (eq. 5.2).
+pub fn plain_crank() -> Model {
+    [&Weight as &dyn Law, &LoadFriction, &ViscousFriction].map(|law| Effect::new(law, &[1.0])).to_vec()
+}
+
+/// A weight that the sidecar states is no part of what is fitted.
+fn known_weight(recording: &Recording, model: &mut Model) -> Model {
+    let known = &recording.meta.known;
+    let weight = known.get("weight_N").copied().or_else(|| Some(known.get("mass_kg")? * recording.meta.gravity()));
+    let Some(weight) = weight else { return Model::new() };
+    model.retain(|e| e.law().id() != Weight.id());
+    vec![Effect::new(&Weight, &[weight])]
+}

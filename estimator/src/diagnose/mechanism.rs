@@ -1,0 +1,165 @@
+//! Diagnosis of mechanisms with one degree of freedom.
+
+use super::force::{self, Model};
+use super::report::{Diagnosis, Validation};
+use super::{
+    Options, along, atlas, driven, explain, extra, free, hung, impact, late, nothing, pulled, quality, signs, skew,
+    sliding, threshold, track, unseen,
+};
+use crate::estimate::EstimateError;
+use haptics::law::{Coordinate, CoulombFriction, Effect, Inertia, Law, ViscousFriction};
+use haptics::recording::Recording;
+
+/// Bodies that are thrown, paths without a clock, transmissions, and what moves along one coordinate.
+pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    if let Some(chain) = recordings.iter().find(|r| crate::identify::mechanism::is_chain(r)) {
+        return Err(EstimateError::Other(format!(
+            "{} is of a chain of two joints, which cannot be diagnosed yet; `touchstone fit` tells its inertias, moments and frictions",
+            chain.name
+        )));
+    }
+    if let Some(thrown) = impact::impact(recordings, options) {
+        return thrown;
+    }
+    if pulled::is_pulled(recordings) {
+        return pulled::pulled(recordings, options);
+    }
+    if driven::is_driven(recordings) {
+        return driven::driven(recordings, options);
+    }
+    let ask = |recordings: &[Recording]| mechanism(recordings, options);
+    Ok(late::undo(recordings, ask(recordings)?, &ask))
+}
+
+fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let (mut found, mut rest_s) = mechanism_as_it_is(recordings, options)?;
+    // What is no delay, a part of a sample, is taken out of the motion itself: a stiff loop's force changes too fast for a straight line, which
+    // says too much of it.
+    for _ in 0..CLOSER {
+        let Some(more_s) = rest_s else { break };
+        let skew_s = found.skew_s + OF_SKEW * more_s;
+        let together: Vec<Recording> = recordings.iter().map(|r| late::motion_apart(r, skew_s)).collect();
+        let Ok((mut again, rest)) = mechanism_as_it_is(&together, options) else { break };
+        if again.causes.iter().any(|c| c.id == "time-delay") || again.end.heldout_rms_n > found.end.heldout_rms_n {
+            break;
+        }
+        again.skew_s = skew_s;
+        again.warnings.retain(|w| !w.starts_with(skew::APART));
+        again.warnings.push(skew::apart(skew_s));
+        (found, rest_s) = (again, rest);
+    }
+    Ok(found)
+}
+
+/// Rounds in which a skew of force and motion is taken out, and the share of what a straight line says of it.
+const CLOSER: usize = 2;
+const OF_SKEW: f64 = 0.7;
+
+/// The answer, and by what part of a sample force and motion are apart, s.
+fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Diagnosis, Option<f64>), EstimateError> {
+    let mut faults = Vec::new();
+    let mut tracks = Vec::new();
+    let paths = crate::identify::mechanism::paths(recordings);
+    if free::is_free(recordings, &paths)? {
+        return Ok((free::diagnose(recordings, &paths, options)?, None));
+    }
+    for (recording, path) in recordings.iter().zip(&paths) {
+        let found = quality::faults(recording);
+        let (recording, mirrored_rate) = signs::with_rates_of_motion(recording);
+        let recording = recording.as_ref();
+        let mut rows = sliding::track(recording, &found.bad, path.as_ref())?;
+        rows.hung = vec![hung::Hung::on_mechanism(recording, rows.coordinate)];
+        rows.extra = vec![extra::of(recording)];
+        faults.extend(signs::of_mechanism(&mut rows, recording, mirrored_rate)?);
+        tracks.push(rows);
+        faults.extend(found.causes);
+    }
+    let mut track = track::join(tracks).ok_or_else(nothing)?;
+    let mut model: Model = match (&options.world, options.baseline.as_deref()) {
+        (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),
+        (None, name) => named(name.unwrap_or("mass+viscous+coulomb"))?,
+    };
+    let limit = threshold(track.period_s);
+    options.progress.tell(0.4)?;
+    let fixed = known_laws(&recordings[0], track.coordinate, &mut model);
+    let study = force::study(&mut track, &model, &fixed, limit)?;
+    options.progress.tell(0.8)?;
+    let mut found = explain::explain(&track, &model, &study, &[], faults);
+    found.along = Some(along::Along::of(track.coordinate, recordings, &paths));
+    found.guess_s = late::guess_s(&track, &model);
+    let is_hung = track.hung.iter().any(Option::is_some);
+    unseen::without_known(&mut found, !fixed.is_empty() || is_hung, true);
+    if options.atlas {
+        found.atlas = atlas::atlas(&track, &study, limit);
+    }
+    let skew_s = skew::skewed_s(&study, &track);
+    Ok((found, skew_s))
+}
+
+/// Laws of a mechanism that the sidecar states are no part of what is fitted.
+pub fn known_laws(recording: &Recording, coordinate: Coordinate, model: &mut Model) -> Model {
+    let known = &recording.meta.known;
+    // The mass of a pendulum is not what it resists with.
+    let names = match coordinate {
+        Coordinate::Linear => ["mass_kg", "viscous_N_s_m", "coulomb_N"],
+        Coordinate::Angular => ["inertia_kg_m2", "viscous_Nm_s", "coulomb_Nm"],
+    };
+    let laws: [&'static dyn Law; 3] = [&Inertia, &ViscousFriction, &CoulombFriction];
+    let mut fixed = Model::new();
+    for (law, name) in laws.into_iter().zip(names) {
+        let Some(value) = known.get(name).copied().filter(|_| model.iter().any(|e| e.law().id() == law.id())) else {
+            continue;
+        };
+        model.retain(|e| e.law().id() != law.id());
+        fixed.push(Effect::new(law, &[value]));
+    }
+    fixed
+}
+
+/// What was found, on another recording of the same mechanism.
+pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
+    let recording = &late::motion_apart(&late::put_back(recording, diagnosis.late_s), diagnosis.skew_s);
+    let along = diagnosis.along.ok_or_else(|| along::none(recording))?;
+    let path = along.path_of(recording)?;
+    let mut track = track_of(recording, path.as_ref(), diagnosis)?;
+    along.demand(track.coordinate, recording)?;
+    let Diagnosis { plain, effects, kept, .. } = diagnosis;
+    Ok(super::validate::validate(&mut track, plain, effects, &[], kept))
+}
+
+/// Rows of a recording on which a mechanism's answer is measured, driven or free.
+fn track_of(
+    recording: &Recording,
+    path: Option<&haptics::world::MechanismPath>,
+    diagnosis: &Diagnosis,
+) -> Result<track::Track, EstimateError> {
+    let bad = quality::faults(recording).bad;
+    if crate::identify::mechanism::raw(recording, path)?.force.is_some() {
+        if diagnosis.per_inertia {
+            return Err(EstimateError::Other(format!(
+                "{} has a force column, and what was diagnosed is known per unit of inertia only: state the inertia, or what tells it, \
+                 under \"known\" in the sidecar",
+                recording.name
+            )));
+        }
+        return sliding::track(recording, &bad, path);
+    }
+    free::track(recording, &bad, path)
+}
+
+/// The laws of a baseline's name.
+///
+/// # Errors
+/// A part that is no law of a baseline, in a sentence.
+pub fn named(name: &str) -> Result<Model, EstimateError> {
+    name.split('+')
+        .map(|part| match part.trim() {
+            "mass" | "inertia" => Ok(Effect::new(&Inertia, &[1.0])),
+            "viscous" => Ok(Effect::new(&ViscousFriction, &[1.0])),
+            "coulomb" => Ok(Effect::new(&CoulombFriction, &[1.0])),
+            other => Err(EstimateError::Other(format!(
+                "`{other}` is no part of a baseline; write mass, mass+viscous or mass+viscous+coulomb, or name a world file"
+            ))),
+        })
+        .collect()
+}

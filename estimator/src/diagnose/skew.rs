@@ -1,0 +1,54 @@
+//! Force and motion that are a part of a sample apart, which is no delay.
+
+use super::explain::parameters;
+use super::geometry::Study;
+use super::track::Track;
+
+/// Channels are a whole sample apart by sampling alone as long as that is no longer than this, s, …
+const LARGEST_SKEW_S: f64 = 2e-3;
+/// … and a command that is held until the next sample acts half of that later than when it is recorded: this share of a sample with some room.
+const HELD_COMMAND: f64 = 0.7;
+/// Clocks of two instruments differ by this, and what filters them: a force that is no later is no late force, s.
+const CLOCKS_DIFFER_S: f64 = 3e-4;
+
+/// The time between force and motion when it is no more than what sampling itself can make of it, s: a commanded force is recorded when
+/// it is given and acts in the sample after. A force that comes late is late as soon as clocks do not differ by as much.
+pub fn skew(study: &Study, k: usize, track: &Track) -> Option<f64> {
+    if study.candidates[study.chosen[k].candidate].id != "time-delay" {
+        return None;
+    }
+    let delay = parameters(study, k);
+    let found = delay.first()?;
+    // A hand's force is measured, a motor's is usually what it was told.
+    let held_s = if track.planar { 0.0 } else { HELD_COMMAND * track.raw_period_s };
+    let ahead_s = track.raw_period_s.min(LARGEST_SKEW_S).max(held_s);
+    let most_s = if found.value < 0.0 { ahead_s } else { CLOCKS_DIFFER_S };
+    (found.value.abs() - 2.0 * found.std_error <= most_s).then_some(found.value)
+}
+
+/// The same of whatever was chosen.
+pub fn skewed_s(study: &Study, track: &Track) -> Option<f64> {
+    (0..study.chosen.len()).find_map(|k| skew(study, k, track))
+}
+
+/// How that begins.
+pub const APART: &str = "force and motion are ";
+
+/// In words.
+pub fn apart(skew_s: f64) -> String {
+    let ms = 1e3 * skew_s;
+    format!(
+        "{APART}{ms:.2} ms apart, no more than sampling and clocks make of it: it is taken out and not called a delay"
+    )
+}
+
+/// What a delay comes out at beside what was found, and its error, s.
+pub fn rest_s(study: &Study, picks: &[usize]) -> Option<[f64; 2]> {
+    let is_delay = |c: &usize| study.candidates[*c].id == "time-delay";
+    let delay = (0..study.candidates.len()).find(is_delay)?;
+    let others: Vec<usize> = picks.iter().copied().filter(|c| !is_delay(c)).collect();
+    let solved = study.system.solve(&[others.as_slice(), &[delay]].concat())?;
+    let last = solved.values.len() - 1;
+    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    Some([solved.values[last], (variance * solved.inverse[(last, last)]).sqrt()])
+}
