@@ -149,7 +149,10 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
     let mut found = match task {
         Task::BlockStack | Task::Barrel if slide::is_slid(recordings) => slide::slid(recordings, options),
         // A barrel is a block that is carried.
-        Task::BlockStack | Task::Barrel => blocks::blocks(recordings, options),
+        Task::BlockStack | Task::Barrel => {
+            let ask = |recordings: &[Recording]| blocks::blocks(recordings, options);
+            ask(recordings).map(|found| late::undo(recordings, found, &ask))
+        }
         Task::Needle => needle::needle(recordings, options),
         _ => switch::switch(recordings, options),
     }?;
@@ -177,6 +180,9 @@ pub fn validate(
             Task::Crank => return crank::validate(recording, diagnosis),
             Task::Mechanism => return mechanism::validate(recording, diagnosis),
             Task::BlockStack | Task::Barrel if slide::is_slid(one) => return slide::validate(one, options, diagnosis),
+            Task::BlockStack | Task::Barrel if diagnosis.late_s != 0.0 => {
+                blocks::channels(&[late::put_back(recording, diagnosis.late_s)], options)?
+            }
             Task::BlockStack | Task::Barrel => blocks::channels(one, options)?,
             Task::Needle => needle::channels(one, options)?,
             Task::Switch => switch::channels(one, options)?,

@@ -10,23 +10,23 @@ const STARTS: usize = 6;
 /// Names of the masses of the first few blocks.
 const NAMES: [&str; 4] = ["m block-1", "m block-2", "m block-3", "m block-4"];
 
-/// What may act on carried blocks beside their weight.
-pub fn plant(rows: &Rows<'_>, has_inertia: bool) -> Vec<Candidate> {
+/// What may act on carried blocks beside their weight and the mass that goes with it.
+pub fn plant(rows: &Rows<'_>) -> Vec<Candidate> {
     let mut found = Vec::new();
     let blocks = rows.blocks();
-    if !has_inertia {
-        let columns: Vec<Vec<f64>> = (1..=blocks)
-            .map(|k| {
-                rows.carried(|one, row, number, axis| if number == k { one.acceleration[axis][row.i] } else { 0.0 })
-            })
-            .collect();
-        if blocks <= NAMES.len() {
-            let linear = NAMES[..blocks].iter().map(|n| (*n, "kg")).collect();
-            found.push(Candidate::several("inertia", Kind::Plant, columns, linear).positive());
-        } else {
-            let column = rows.carried(|one, row, _, axis| one.acceleration[axis][row.i]);
-            found.push(Candidate::one("inertia", Kind::Plant, "m", "kg", column).positive());
-        }
+    // Mass that weighs nothing: on a counterweight, or of what moves with the block.
+    let moved = |k: Option<usize>| {
+        rows.carried(
+            |one, row, number, axis| {
+                if k.is_none_or(|k| k == number) { one.acceleration[axis][row.i] } else { 0.0 }
+            },
+        )
+    };
+    found.push(Candidate::one("inertia", Kind::Plant, "m", "kg", moved(None)).positive());
+    if (2..=NAMES.len()).contains(&blocks) {
+        let linear = NAMES[..blocks].iter().map(|n| (*n, "kg")).collect();
+        let columns = (1..=blocks).map(|k| moved(Some(k))).collect();
+        found.push(Candidate::several("inertia", Kind::Plant, columns, linear).positive());
     }
     let drag = rows.carried(|one, row, _, axis| one.velocity[axis][row.i]);
     found.push(Candidate::one("viscous-friction", Kind::Plant, "c", "N s/m", drag).positive());
@@ -35,7 +35,21 @@ pub fn plant(rows: &Rows<'_>, has_inertia: bool) -> Vec<Candidate> {
     for k in 1..=blocks {
         leaks(rows, k, &mut found);
     }
+    if blocks > 1 {
+        found.push(Candidate::one("mass-change", Kind::Plant, "rate", "N/s", leaking(rows)));
+    }
     found
+}
+
+/// Weight of all that is carried, falling by one newton a second from when each is lifted: what runs out of one block that is carried several times.
+fn leaking(rows: &Rows<'_>) -> Vec<f64> {
+    let lifted_s: Vec<f64> = (1..=rows.blocks())
+        .map(|k| {
+            let own = rows.all.iter().filter(|r| matches!(r.place, Place::Carried { number, .. } if number == k));
+            own.map(|r| r.time_s).fold(f64::INFINITY, f64::min)
+        })
+        .collect();
+    rows.carried(|_, row, number, axis| if axis == 1 { row.time_s - lifted_s[number - 1] } else { 0.0 })
 }
 
 /// Changes of the weight of one block: evenly from when it is lifted or from later on, or all at once.

@@ -2,6 +2,7 @@
 
 use super::acts::{generic, instrument, plant};
 use super::cable::{cables, errors};
+use super::late::{Late, late};
 use super::rows::{Place, Row, Rows};
 use super::seen::Seen;
 use crate::diagnose::answer::{Compared, Found, parameter};
@@ -17,6 +18,8 @@ use haptics::world::World;
 
 /// The comparison and what its words need.
 pub struct Carry {
+    /// By how much the forces come later than the motion, if that shows.
+    pub late: Option<Late>,
     /// Its floor is the noise of a sum of two fingers.
     pub compared: Compared,
     /// Longest carry, s.
@@ -31,7 +34,7 @@ pub struct Carry {
     pub view: View,
 }
 
-/// Compares what may act on carried blocks and on the sensors. `world`: inertia and cables of it belong to the model.
+/// Compares what may act on carried blocks and on the sensors. `world`: its cables belong to the model.
 pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result<Carry, EstimateError> {
     const LEAST_ROWS: usize = 30;
     let rows = Rows::of(seen);
@@ -50,19 +53,15 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     let known: Vec<Option<f64>> =
         (1..=rows.blocks()).map(|k| seen.iter().find_map(|s| s.known_weight_n(k).filter(|_| s.count >= k))).collect();
     let base = base(&rows, world, &known);
-    let given = rows.carried(|one, row, number, axis| {
-        known[number - 1].map_or(0.0, |w| needed(one, row, w, axis, world.is_some()))
-    });
+    let given = rows.carried(|one, row, number, axis| known[number - 1].map_or(0.0, |w| needed(one, row, w, axis)));
     let y: Vec<f64> = rows.all.iter().zip(&given).map(|(r, g)| rows.force_n(r) - g).collect();
     // A row of one finger has the noise of one sensor.
     let weight: Vec<f64> =
         rows.all.iter().map(|r| if is_carried(r) { 1.0 } else { std::f64::consts::SQRT_2 }).collect();
     let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
-    let plant = plant(&rows, world.is_some());
-    // Beside weights and inertia: a cable is looked for before it is compared.
-    let mut beside = base.clone();
-    beside.extend(plant.iter().filter(|c| c.id == "inertia").flat_map(|c| c.columns.clone()));
-    let cables = cables(&rows, &y, &beside, &weight);
+    let plant = plant(&rows);
+    // A cable is looked for before it is compared.
+    let cables = cables(&rows, &y, &base, &weight);
     let mut candidates = plant;
     candidates.extend(instrument(&rows, &known, &given));
     candidates.extend(cables);
@@ -80,9 +79,10 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     let longest_s = longest_s(&rows);
     let channel = "net force on carried blocks";
     let view = view(&rows);
+    let late = late(&rows, &known, period_s);
     let compared = Compared { study, channel, unit: "N", floor, along, stretch: rows.stretch, state };
     let weighed = (1..=known.len()).filter(|k| known[k - 1].is_none()).collect();
-    Ok(Carry { compared, longest_s, cable_errors, numbers, weighed, view })
+    Ok(Carry { late, compared, longest_s, cable_errors, numbers, weighed, view })
 }
 
 /// What the rows are seen against: what the block does along the row's own axis, and how it is held.
@@ -125,24 +125,18 @@ fn touched(numbers: &[usize], column: &[f64]) -> usize {
     column.iter().position(|v| *v != 0.0).map_or(0, |i| numbers[i])
 }
 
-/// Force that carrying a weight needs along an axis, N.
-fn needed(one: &Seen<'_>, row: &Row, weight_n: f64, axis: usize, with_inertia: bool) -> f64 {
+/// Force that carrying a weight needs along an axis, N: its mass is no unknown of its own.
+fn needed(one: &Seen<'_>, row: &Row, weight_n: f64, axis: usize) -> f64 {
     let up = if axis == 1 { 1.0 } else { 0.0 };
     let gravity = one.blocks.recording.meta.gravity().max(1e-9);
-    weight_n * (up + if with_inertia { one.acceleration[axis][row.i] / gravity } else { 0.0 })
+    weight_n * (up + one.acceleration[axis][row.i] / gravity)
 }
 
-/// One weight a block; of a world with what its mass does in motion.
+/// One weight a block with what its mass does in motion; cables of a world.
 fn base(rows: &Rows<'_>, world: Option<&World>, known: &[Option<f64>]) -> Vec<Vec<f64>> {
     let unknown = (1..=rows.blocks()).filter(|k| known[k - 1].is_none());
     let mut base: Vec<Vec<f64>> = unknown
-        .map(|k| {
-            rows.carried(
-                |one, row, number, axis| {
-                    if number == k { needed(one, row, 1.0, axis, world.is_some()) } else { 0.0 }
-                },
-            )
-        })
+        .map(|k| rows.carried(|one, row, number, axis| if number == k { needed(one, row, 1.0, axis) } else { 0.0 }))
         .collect();
     for (k, block) in world.iter().flat_map(|w| &w.blocks).enumerate() {
         let Some(cable) = &block.cable else { continue };
@@ -202,8 +196,11 @@ impl Carry {
 
     /// For the answer: which block a change of weight or a cable is of, and a cable's errors.
     pub fn states(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
-        if ["mass-change", "added-constraint"].contains(&candidate.id) {
-            let number = touched(&self.numbers, &candidate.columns[0]);
+        let column = &candidate.columns[0];
+        let number = touched(&self.numbers, column);
+        // Of all blocks where it says of none.
+        let alone = || (0..column.len()).all(|i| column[i] == 0.0 || self.numbers[i] == number);
+        if ["mass-change", "added-constraint"].contains(&candidate.id) && alone() {
             found.push(parameter("block", number as f64, 0.0, "1"));
         }
         if let ("added-constraint", Some(errors)) = (candidate.id, self.cable_errors) {
@@ -225,7 +222,10 @@ impl Carry {
                     .enumerate()
                     .map(|(k, p)| format!("{} {:.1} g", object(k + 1), 1e3 * p.value))
                     .collect();
-                format!("the force follows the acceleration while blocks are carried ({})", masses.join(", "))
+                format!(
+                    "the force follows the acceleration of carried blocks more than the mass of their weight does (by {})",
+                    masses.join(", ")
+                )
             }
             "mass-change" => {
                 "the lift changes while a block is carried, and the forces of empty fingers do not".to_owned()

@@ -9,6 +9,7 @@ mod carry;
 mod experiment;
 mod grasp;
 mod ground;
+mod late;
 mod moved;
 mod rows;
 mod seen;
@@ -35,8 +36,12 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let world = options.world.as_ref();
     let (carry, grasp, ground) = look(&seen, world)?;
     let mut beside = Beside {
-        model: if world.is_some() { "world: weight+inertia+pads" } else { "weight+rigid widths+plain heights" }
-            .to_owned(),
+        model: if world.is_some() {
+            "world: weight+inertia+pads"
+        } else {
+            "weight and its mass+rigid widths+plain heights"
+        }
+        .to_owned(),
         causes: recordings.iter().flat_map(|r| quality::faults(r).causes).collect(),
         ..Beside::default()
     };
@@ -69,6 +74,10 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         found.atlas.channels.push(compared.atlas(view, limit, carry::best_seen));
         found.atlas.channels.extend(grasp.iter().map(|g| g.compared.atlas(&g.view, limit, grasp::best_seen)));
         found.atlas.channels.extend(ground.iter().map(|g| g.compared.atlas(&g.view, limit, ground::best_seen)));
+    }
+    if let Some(late) = carry.late {
+        found.guess_s = late.is_seen.then_some(late.tau_s);
+        found.rest_s = Some([late.tau_s, late.error_s]);
     }
     found.hypotheses = of_channels(&[(&carry.compared.study, &carry)]);
     Ok(found)

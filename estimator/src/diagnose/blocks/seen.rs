@@ -39,8 +39,9 @@ pub struct Seen<'a> {
     pub acceleration: [Vec<f64>; 2],
     /// Middle of the tips, x and y, m.
     pub place: [Vec<f64>; 2],
-    /// Time between rows that say something new, s.
+    /// Time between rows that say something new, and between samples, s.
     pub period_s: f64,
+    pub sample_s: f64,
     /// Standard deviation of the lift of one row by the sensors' noise, N.
     lift_noise_n: f64,
 }
@@ -78,6 +79,7 @@ impl<'a> Seen<'a> {
             force,
             place,
             period_s,
+            sample_s: step_s,
             lift_noise_n: 0.0,
             blocks,
         };
@@ -199,7 +201,7 @@ impl<'a> Seen<'a> {
 
     /// Rows in which a block is gripped.
     pub fn gripped(&self, number: usize) -> Vec<usize> {
-        self.every(self.blocks.shown("width_m", number).into_iter())
+        self.every(self.blocks.gripped(number).into_iter())
     }
 
     /// The state of a row.
@@ -232,11 +234,11 @@ impl<'a> Seen<'a> {
             .collect()
     }
 
-    /// What the sidecar says is known of a block: `block-1.weight_N`, or `weight_N` where there is one block.
+    /// What the sidecar says is known of a block: `block-1.weight_N`, or `weight_N` of all blocks.
     pub fn known(&self, number: usize, name: &str) -> Option<f64> {
         let known = &self.blocks.recording.meta.known;
         let own = known.get(&format!("{}.{name}", object(number)));
-        own.or_else(|| known.get(name).filter(|_| self.count == 1)).copied()
+        own.or_else(|| known.get(name)).copied()
     }
 
     /// Weight that is known of a block, N.

@@ -57,11 +57,12 @@ fn put(world: &mut World, id: &str, parameters: &[CauseParameter]) {
             }
         }
         "mass-change" => {
-            let gravity = world.gravity_m_s2.max(1e-9);
-            if let (Some(rate), Some(block)) = (value("rate").filter(|r| *r < 0.0), world.blocks.get_mut(number)) {
-                let mass_kg = 0.5 * block.mass_kg;
-                block.content =
-                    Some(Content { mass_kg, leak_kg_s: -rate / gravity, leaks_from_s: value("t0").or(Some(0.0)) });
+            let leak_kg_s = value("rate").map(|rate| -rate / world.gravity_m_s2.max(1e-9)).filter(|leak| *leak > 0.0);
+            let leaks_from_s = value("t0").or(Some(0.0));
+            let of_all = value("block").is_none();
+            let leaking = world.blocks.iter_mut().enumerate().filter(|(k, _)| of_all || *k == number);
+            for ((_, block), leak_kg_s) in leaking.zip(leak_kg_s.into_iter().cycle()) {
+                block.content = Some(Content { mass_kg: 0.5 * block.mass_kg, leak_kg_s, leaks_from_s });
             }
         }
         "added-constraint" => {
@@ -85,13 +86,13 @@ impl Simulated for Carry {
         self.weighed.iter().zip(values).map(of).collect()
     }
 
-    /// Drag in the air, and weight that is gained or lost at once, are in no world.
+    /// Drag in the air, mass that weighs nothing, and weight that is gained or lost at once, are in no world.
     fn act(&self, candidate: &Candidate, values: &[f64]) -> Option<Act> {
         let linear = candidate.linear.iter().zip(values);
         let mut found: Vec<CauseParameter> =
             linear.map(|((name, unit), value)| parameter(name, *value, 0.0, unit)).collect();
         match candidate.id {
-            "inertia" | "gravity-tilt" => {}
+            "gravity-tilt" => {}
             "added-constraint" => {
                 found.extend(candidate.searched.iter().map(|s| parameter(s.name, s.value, 0.0, s.unit)));
             }

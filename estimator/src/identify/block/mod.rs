@@ -220,6 +220,21 @@ impl<'a> Blocks<'a> {
         self.samples(&self.task.showing(parameter, MAIN, number))
     }
 
+    /// Samples in which a block is gripped and the smoothed channels have seen nothing else: within half a window of where a finger touches or lets
+    /// go they mix the way to the block with the grip on it, and pads would seem far too soft at first.
+    pub(crate) fn gripped(&self, number: usize) -> Vec<usize> {
+        let least_n = self.segmentation.thresholds.force_n;
+        let presses =
+            |finger: usize, i: usize| self.force(finger, i).x * if finger == 0 { 1.0 } else { -1.0 } > least_n;
+        let n = self.signals.len();
+        // Samples up to each one in which a finger does not press.
+        let mut loose = vec![0_usize; n + 1];
+        (0..n).for_each(|i| loose[i + 1] = loose[i] + usize::from(!(presses(0, i) && presses(1, i))));
+        let apart = half_width(&self.signals.time_s) + 1;
+        let settled = |i: &usize| loose[i.saturating_sub(apart)] == loose[(i + apart + 1).min(n)];
+        self.shown("width_m", number).into_iter().filter(settled).collect()
+    }
+
     /// Why a parameter cannot be found: no state of the task shows it.
     fn unshown(&self, parameter: &str) -> Option<String> {
         let why = || format!("no state of the task {} shows {parameter}; add it to `shows` of one", self.task.name);
@@ -297,7 +312,7 @@ impl<'a> Blocks<'a> {
 
     /// Width: distance of the tips while held, extrapolated to no grip force.
     fn width(&self, number: usize) -> Result<Parameter, EstimateError> {
-        let samples = self.shown("width_m", number);
+        let samples = self.gripped(number);
         if let Some(why) = self.unshown("width_m").or_else(|| unseen(&samples)) {
             return Ok(Parameter::unidentified(&object(number), "width_m", 0, &why));
         }
@@ -329,7 +344,7 @@ impl<'a> Blocks<'a> {
 
     /// The grip on one block from picking it up to letting it go.
     fn pads(&self, number: usize) -> Result<Option<PadFit>, EstimateError> {
-        let rows = self.rows(&self.shown("width_m", number));
+        let rows = self.rows(&self.gripped(number));
         if rows.is_empty() {
             return Ok(None);
         }

@@ -152,7 +152,7 @@ fn widths(seen: &[Blocks<'_>]) -> Result<Vec<Parameter>, EstimateError> {
     let (mut spread, mut mean, mut holds) = (0.0, 0.0, 0.0);
     for blocks in seen {
         for number in 1..=blocks.count() {
-            let rows = blocks.rows(&blocks.shown("width_m", number));
+            let rows = blocks.rows(&blocks.gripped(number));
             if rows.is_empty() {
                 continue;
             }
