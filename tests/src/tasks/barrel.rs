@@ -109,7 +109,6 @@ fn hide(kind: Kind, world: &mut World, instruments: &mut Instruments, truth: &mu
         Kind::Wall => {
             barrel.wall = Some(Wall { stiffness_n_m: chance.between(1500.0, 5000.0), strength_n: None });
             truth.hidden = vec!["pad-compliance"];
-            truth.besides = vec!["inertia"];
         }
         Kind::Leak => {
             let leak_kg_s = chance.of_order(1.0e-3, 4e-3);

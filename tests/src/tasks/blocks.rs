@@ -25,8 +25,8 @@ pub enum Kind {
     GroundSlip,
     /// A slip while the block is in the air, beside a world with known heights.
     AirSlip,
-    /// Motion that is fast enough for inertia, beside plain means.
-    Inertia,
+    /// Nothing, beside plain means, in motion that is fast enough for inertia: that is what a mass does.
+    Fast,
     /// A block that leaks; the hand lets go before and after.
     Leak,
     /// The same, cut off before the hand lets go.
@@ -55,7 +55,7 @@ impl Kind {
         ("hardening", Self::Hardening),
         ("slip on the ground", Self::GroundSlip),
         ("slip in the air", Self::AirSlip),
-        ("inertia", Self::Inertia),
+        ("nothing, carried fast", Self::Fast),
         ("leak", Self::Leak),
         ("leak, cut off", Self::LeakCut),
         ("drift", Self::Drift),
@@ -69,7 +69,7 @@ impl Kind {
 
     /// Whether the thesis's plain model is the one to start from.
     fn is_plain(self) -> bool {
-        matches!(self, Self::Pads | Self::GroundSlip | Self::Inertia)
+        matches!(self, Self::Pads | Self::GroundSlip | Self::Fast)
     }
 }
 
@@ -77,7 +77,7 @@ impl Kind {
 const KEPT: usize = 5;
 
 fn skill(chance: &mut Chance, kind: Kind) -> Skill {
-    let pace = if kind == Kind::Inertia { chance.between(0.6, 0.85) } else { chance.between(0.8, 1.3) };
+    let pace = if kind == Kind::Fast { chance.between(0.6, 0.85) } else { chance.between(0.8, 1.3) };
     Skill {
         pace,
         pinch_n: chance.between(1.4, 2.4),
@@ -148,7 +148,7 @@ fn drawn(kind: Kind, seed: u64, chance: &mut Chance) -> Object {
     let every = chance.pick(&[1, 2, 4]);
     let (mut world, mut instruments, mut truth) = (before.clone(), Instruments::default(), Truth::default());
     if kind.is_plain() {
-        truth.besides = vec!["pad-compliance", "inertia"];
+        truth.besides = vec!["pad-compliance"];
     }
     hide(kind, &mut world, &mut instruments, &mut truth, (skill, seed), chance);
     Object { before, world, instruments, truth, skill, every }
@@ -214,7 +214,7 @@ fn hide(
 ) {
     let stiffness = world.pad.stiffness_n_m;
     match kind {
-        Kind::Nothing => {}
+        Kind::Nothing | Kind::Fast => {}
         Kind::Pads => {
             truth.hidden = vec!["pad-compliance"];
             truth.value = Some(("k", stiffness));
@@ -226,10 +226,6 @@ fn hide(
             truth.hidden = vec!["stiffness-hardening"];
         }
         Kind::GroundSlip | Kind::AirSlip => slip(kind, world, truth, (skill, seed), chance),
-        Kind::Inertia => {
-            truth.hidden = vec!["inertia"];
-            truth.value = Some(("m block-1", world.blocks[0].mass_kg));
-        }
         Kind::Leak | Kind::LeakCut => {
             let block = &mut world.blocks[0];
             let leak_kg_s = chance.of_order(0.8e-3, 3e-3);
