@@ -3,19 +3,24 @@
 
 use super::blur::blur;
 use super::force::{Model, column};
-use super::track::{Place, Row, Track};
+use super::track::{Bearing, Place, Row, Track};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares_values;
 use haptics::Vec2;
-use haptics::law::{CoulombFriction, Effect, Law, LoadFriction, Weight};
+use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, Weight};
 
 /// The other load must be likelier by so much, 2 ln(likelihood): rows are not independent.
 const LIKELIER: f64 = 60.0;
 /// Rounds in which weight and load settle.
 const ROUNDS: usize = 3;
 
-/// Puts the weight on the bearing where friction goes with both; the weight that was found, N.
-pub fn load(track: &mut Track, model: &Model, fixed: &Model) -> Result<Option<f64>, EstimateError> {
+/// A load that only goes one way makes of the weight on the bearing a pull like gravity's, a quarter turn ahead: the weight is taken to be there when one
+/// free pull in every direction is likelier by no more than this.
+const AS_LIKELY: f64 = 25.0;
+
+/// Puts the weight on the bearing where friction goes with both; the weight that was found, N. `gravity_m_s2`: what makes a mass of it, which the bearing
+/// holds on its circle, too.
+pub fn load(track: &mut Track, model: &Model, fixed: &Model, gravity_m_s2: f64) -> Result<Option<f64>, EstimateError> {
     let rubs = model.iter().any(|e| e.law().id() == LoadFriction.id());
     if !rubs || !track.planar {
         return Ok(None);
@@ -24,23 +29,61 @@ pub fn load(track: &mut Track, model: &Model, fixed: &Model) -> Result<Option<f6
     let mut other = track.clone();
     let mut after = before;
     for _ in 0..ROUNDS {
-        put(&mut other, weight_n);
+        put(&mut other, weight_n, gravity_m_s2);
         (after, weight_n) = plain(&other, model, fixed)?;
     }
-    let likelier = 2.0 * track.along().count() as f64 * (before / after.max(1e-300)).ln();
-    if likelier < LIKELIER || weight_n <= 0.0 {
+    let rows = track.along().count() as f64;
+    let likelier = |a: f64, b: f64| 2.0 * rows * (a / b.max(1e-300)).ln();
+    if weight_n <= 0.0 || (likelier(before, after) < LIKELIER && !one_way(track, &other, model, fixed, &likelier)?) {
         return Ok(None);
     }
-    put(track, weight_n);
+    put(track, weight_n, gravity_m_s2);
     Ok(Some(weight_n))
 }
 
-/// Changes the load of every row to that with this weight on the bearing, N.
-fn put(track: &mut Track, weight_n: f64) {
-    let more = weight_n - track.bearing_weight_n;
-    track.bearing_weight_n = weight_n;
+/// Whether a weight on the bearing explains at once what nothing but a pull of gravity, as large as it happens to be, would explain otherwise.
+fn one_way(
+    track: &Track,
+    other: &Track,
+    model: &Model,
+    fixed: &Model,
+    likelier: &dyn Fn(f64, f64) -> f64,
+) -> Result<bool, EstimateError> {
+    let before = simply(track, model, fixed, false)?;
+    let after = simply(other, model, fixed, false)?;
+    let free = simply(track, model, fixed, true)?;
+    Ok(likelier(before, after) > LIKELIER && likelier(after, free) < AS_LIKELY)
+}
+
+/// What the model leaves with friction of all kinds and a mass, root mean square, N; with gravity of any direction if `free`.
+fn simply(track: &Track, model: &Model, fixed: &Model, free: bool) -> Result<f64, EstimateError> {
+    let mut track = track.clone();
+    blur(&mut track);
+    without_bias(&mut track);
+    let along: Vec<f64> =
+        track.rows.iter().map(|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }).collect();
+    let of = |laws: &[Effect]| laws.iter().map(|effect| column(&track, effect)).collect::<Vec<_>>();
+    let known = of(fixed);
+    let y: Vec<f64> =
+        track.rows.iter().enumerate().map(|(i, r)| r.y - known.iter().map(|k| k[i]).sum::<f64>()).collect();
+    let has = |law: &dyn Law| model.iter().chain(fixed).any(|e| e.law().id() == law.id());
+    let others = [&CoulombFriction as &'static dyn Law, &Inertia].into_iter().filter(|law| !has(*law));
+    let laws: Vec<Effect> = model.iter().copied().chain(others.map(|law| Effect::new(law, &[1.0]))).collect();
+    let mut columns = of(&laws);
+    if free {
+        let across = track.rows.iter().map(|r| if r.place == Place::Along { r.up_outward() } else { 0.0 });
+        columns.push(across.collect());
+    }
+    Ok(least_squares_values(&columns, &y, Some(&along))?.rms)
+}
+
+/// Changes the load of every row to that with this weight on the bearing, N, and with what keeps its mass on the circle.
+fn put(track: &mut Track, weight_n: f64, gravity_m_s2: f64) {
+    let before = track.bearing;
+    let per_radius = track.radius_m.map_or(0.0, |radius_m| 1.0 / radius_m);
+    track.bearing = Bearing { weight_n, mass_kg: weight_n / gravity_m_s2.max(1e-9), per_radius };
     for row in track.rows.iter_mut().filter(|r| r.place == Place::Along) {
-        row.motion.normal_force_n -= more * row.up_outward();
+        row.motion.normal_force_n += track.bearing.load_n(row) - before.load_n(row);
     }
 }
 

@@ -55,8 +55,9 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     let fixed = known_weight(&recordings[0], &mut model);
     let limit = threshold(track.period_s);
     options.progress.tell(0.4)?;
+    let gravity_m_s2 = recordings[0].meta.gravity();
     let look = |track: &mut track::Track| -> Result<_, EstimateError> {
-        Ok((bearing::load(track, &model, &fixed)?, force::study(track, &model, &fixed, limit)?))
+        Ok((bearing::load(track, &model, &fixed, gravity_m_s2)?, force::study(track, &model, &fixed, limit)?))
     };
     let (mut bearing_n, mut study) = look(&mut track)?;
     // Whose angle is wrong was asked of the plain model, which something hidden may have kept from telling.

@@ -159,7 +159,7 @@ fn correct_load(track: &mut Track, study: &Study) -> bool {
         faults.push((candidate, solved.values[at..end].to_vec()));
         at = end;
     }
-    let hangs_n = track.bearing_weight_n;
+    let bearing = track.bearing;
     let mut changes = false;
     for row in track.rows.iter_mut().filter(|r| r.place == Place::Along) {
         let outward = Vec2::new(row.along.y, -row.along.x);
@@ -178,7 +178,7 @@ fn correct_load(track: &mut Track, study: &Study) -> bool {
                 _ => Vec2::zeros(),
             };
         }
-        let load_n = force.dot(&outward) - hangs_n * row.up_outward();
+        let load_n = force.dot(&outward) + bearing.load_n(row);
         changes |= load_n.to_bits() != row.motion.normal_force_n.to_bits();
         row.motion.normal_force_n = load_n;
     }

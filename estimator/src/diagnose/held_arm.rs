@@ -4,7 +4,7 @@ use super::fine::{FINE_HZ, acceleration, calmed, offsets};
 use super::geometry::{Arm, Path, PathPoint};
 use super::hung::Hung;
 use super::rests::held_and_free;
-use super::track::{Fine, Place, Row, Span, Track};
+use super::track::{Bearing, Fine, Place, Row, Span, Track};
 use crate::estimate::EstimateError;
 use crate::signal::derive::savitzky_golay;
 use crate::signal::noise::{white_noise, white_noise_under_fast_motion};
@@ -224,7 +224,7 @@ impl Signals {
             noise_is_measured,
             span_s: self.time_s.last().copied().unwrap_or(0.0),
             hung: vec![Hung::on_crank(recording)],
-            bearing_weight_n: 0.0,
+            bearing: Bearing::default(),
             slope,
             extra: Vec::new(),
             freely: None,

@@ -5,7 +5,7 @@
 //! mean acceleration with these weights is exactly the difference of the two blocks' mean velocities.
 
 use super::fine::{FINE_HZ, between, calmed_line};
-use super::track::{Fine, Place, Row, Span, Track, Weighing};
+use super::track::{Bearing, Fine, Place, Row, Span, Track, Weighing};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use crate::identify::mechanism::{self, Raw};
@@ -206,7 +206,7 @@ impl Made {
             noise_is_measured: false,
             span_s,
             hung: Vec::new(),
-            bearing_weight_n: 0.0,
+            bearing: Bearing::default(),
             slope: None,
             extra: Vec::new(),
             freely: None,

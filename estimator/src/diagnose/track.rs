@@ -118,6 +118,23 @@ pub struct Row {
     pub open: f64,
 }
 
+/// A weight on the bearing of a crank, that of its handle.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Bearing {
+    pub weight_n: f64,
+    /// The same weight's mass, kg, …
+    pub mass_kg: f64,
+    /// … and one over the radius of the circle that the bearing holds it on, 1/m.
+    pub per_radius: f64,
+}
+
+impl Bearing {
+    /// Outward force of it on the bearing, N.
+    pub fn load_n(&self, row: &Row) -> f64 {
+        self.mass_kg * row.motion.velocity.powi(2) * self.per_radius - self.weight_n * row.up_outward()
+    }
+}
+
 impl Row {
     /// Upward part of the unit vector away from a crank's centre.
     pub fn up_outward(&self) -> f64 {
@@ -165,7 +182,7 @@ impl Track {
             noise_is_measured: false,
             span_s: 1.0,
             hung: Vec::new(),
-            bearing_weight_n: 0.0,
+            bearing: Bearing::default(),
             slope: None,
             extra: Vec::new(),
             freely: None,
@@ -202,8 +219,8 @@ pub struct Track {
     pub span_s: f64,
     /// What was hung on the object, recording by recording.
     pub hung: Vec<Option<Hung>>,
-    /// Weight that loads the bearing of a crank beside the fingers' pull, N; 0 unless the recording shows it.
-    pub bearing_weight_n: f64,
+    /// What loads the bearing of a crank beside the fingers' pull; nothing unless the recording shows it.
+    pub bearing: Bearing,
     /// Rows on either side, and order, of the polynomials whose slopes the accelerations are; none where they are differences of means.
     pub slope: Option<(usize, usize)>,
     /// Slow channels beside motion and force, recording by recording.

@@ -2,7 +2,7 @@
 
 use super::super::blur::blur;
 use super::super::force::{Model, column};
-use super::super::track::{Place, Row, Span, Track};
+use super::super::track::{Bearing, Place, Row, Span, Track};
 use super::library::Excitation;
 use super::strokes::Course;
 use crate::diagnose::report::Experiment;
@@ -37,7 +37,7 @@ pub fn imagine(track: &Track, model: &Model, values: &[f64], excitation: &Excita
         fine: Vec::new(),
         span_s: asked.seconds + 2.0 * asked.free_s,
         hung: Vec::new(),
-        bearing_weight_n: 0.0,
+        bearing: Bearing::default(),
         slope: None,
         extra: Vec::new(),
         freely: None,

@@ -5,7 +5,7 @@
 //! and cost no truth, because laws are evaluated between the rows and averaged with the same weights.
 
 use crate::diagnose::fine::{FINE_HZ, between};
-use crate::diagnose::track::{Fine, Freely, Place, Row, Span, Track, Weighing};
+use crate::diagnose::track::{Bearing, Fine, Freely, Place, Row, Span, Track, Weighing};
 use crate::estimate::EstimateError;
 use crate::identify::mechanism::{self, Raw};
 use crate::signal::derive::{Derivatives, even_period, interpolate_cubic, savitzky_golay};
@@ -306,7 +306,7 @@ impl Made {
             noise_is_measured: false,
             span_s,
             hung: Vec::new(),
-            bearing_weight_n: 0.0,
+            bearing: Bearing::default(),
             slope: None,
             extra: Vec::new(),
             freely: Some(Freely { inertia: 1.0, relative_error: 0.0, is_known: false, gravity_m_s2, known: [None; 2] }),

@@ -10,7 +10,7 @@ use crate::diagnose::compare::Channel;
 use crate::diagnose::dictionary::Dictionary;
 use crate::diagnose::experiment::Imagined;
 use crate::diagnose::grid::Grid;
-use crate::diagnose::track::{self, Track};
+use crate::diagnose::track::{self, Bearing, Track};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use crate::signal::noise::white_noise;
@@ -227,7 +227,7 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
         noise_is_measured: false,
         span_s: rows.last().map_or(0.0, |r| r.time_s) - start_s,
         hung: Vec::new(),
-        bearing_weight_n: 0.0,
+        bearing: Bearing::default(),
         slope: None,
         extra: Vec::new(),
         freely: None,
