@@ -3,6 +3,8 @@
 
 use super::blur::blur;
 use super::force::{Model, column};
+use super::gain::rms;
+use super::geometry::Study;
 use super::track::{Bearing, Place, Row, Track};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares_values;
@@ -53,6 +55,61 @@ fn one_way(
     let after = simply(other, model, fixed, false)?;
     let free = simply(track, model, fixed, true)?;
     Ok(likelier(before, after) > LIKELIER && likelier(after, free) < AS_LIKELY)
+}
+
+/// Causes that a weight on the bearing looks like when another one hides it.
+const MISTAKEN: [&str; 4] = ["eccentric-mass", "gravity-tilt", "force-bias", "force-cross-axis"];
+/// With the weight on the bearing the causes that are found must leave, or be, so much less: 2 ln(likelihood), a cause's parameter counted as the
+/// logarithm of the rows.
+const SIMPLER: f64 = 40.0;
+
+/// The comparison with the weight on the bearing, and that weight, N, where that leaves less or needs fewer causes than without (`looked_at`: its rows and
+/// what came of them; `track`: the rows as they were measured). What else is hidden may keep [`load`] from seeing it.
+pub fn beside_causes(
+    track: &Track,
+    (looked_at, study): (&Track, &Study),
+    (model, fixed): (&Model, &Model),
+    (gravity_m_s2, threshold): (f64, f64),
+) -> Result<Option<(f64, Track, Study)>, EstimateError> {
+    let rubs = model.iter().any(|e| e.law().id() == LoadFriction.id());
+    let mistaken = study.picks().iter().any(|c| MISTAKEN.contains(&study.candidates[*c].id));
+    if !rubs || !track.planar || !(mistaken || super::explain::strange(study, &study.picks()).is_some()) {
+        return Ok(None);
+    }
+    let (mut weight_n, mut found) = (weight_of(study, model, fixed), None);
+    for _ in 0..ROUNDS_BESIDE {
+        if weight_n <= 0.0 {
+            return Ok(None);
+        }
+        let mut other = track.clone();
+        put(&mut other, weight_n, gravity_m_s2);
+        let again = super::force::study(&mut other, model, fixed, threshold)?;
+        let put_n = std::mem::replace(&mut weight_n, weight_of(&again, model, fixed));
+        found = Some((put_n, other, again));
+    }
+    Ok(found.filter(|(_, other, again)| price(other, again) + SIMPLER < price(looked_at, study)))
+}
+
+/// Rounds in which the weight settles beside the causes.
+const ROUNDS_BESIDE: usize = 2;
+
+/// The weight that a comparison came out at, N.
+fn weight_of(study: &Study, model: &Model, fixed: &Model) -> f64 {
+    let is_weight = |e: &&Effect| e.law().id() == Weight.id();
+    let known_n: f64 = fixed.iter().filter(is_weight).map(|e| e.values[0]).sum();
+    let place = model.iter().position(|e| e.law().id() == Weight.id());
+    let found_n = place.and_then(|k| study.solved.as_ref()?.values.get(k).copied());
+    known_n + found_n.unwrap_or(0.0)
+}
+
+/// How unlikely what is left is, and how many parameters it took: −2 ln(likelihood) and a logarithm of the rows each.
+fn price(track: &Track, study: &Study) -> f64 {
+    let picks = study.picks();
+    let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
+    let (heldout, train) = rms(study, &picks, &along);
+    let rows = along.iter().filter(|a| **a).count() as f64;
+    let columns: usize = picks.iter().map(|c| study.candidates[*c].columns.len()).sum();
+    2.0 * rows * heldout.max(train).max(1e-300).ln() + columns as f64 * rows.ln()
 }
 
 /// What the model leaves with friction of all kinds and a mass, root mean square, N; with gravity of any direction if `free`.

@@ -59,7 +59,14 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     let look = |track: &mut track::Track| -> Result<_, EstimateError> {
         Ok((bearing::load(track, &model, &fixed, gravity_m_s2)?, force::study(track, &model, &fixed, limit)?))
     };
+    let as_measured = track.clone();
     let (mut bearing_n, mut study) = look(&mut track)?;
+    if bearing_n.is_none() {
+        let again = bearing::beside_causes(&as_measured, (&track, &study), (&model, &fixed), (gravity_m_s2, limit))?;
+        if let Some((weight_n, other, found)) = again {
+            (bearing_n, track, study) = (Some(weight_n), other, found);
+        }
+    }
     // Whose angle is wrong was asked of the plain model, which something hidden may have kept from telling.
     if let Some(mut other) = other.flatten().filter(|_| is_turned(&study)) {
         let (other_n, again) = look(&mut other)?;

@@ -32,6 +32,8 @@ const MUCH: f64 = 1.6;
 const MUCH_UNSEEN: f64 = 8.0;
 /// … and it is no noise if it would be so white by chance.
 const SURELY_NOT_WHITE: f64 = 1e-12;
+/// An unnamed term that makes held-out rows so many times worse is none.
+const WORSE: f64 = 1.1;
 /// A rival nearer than this leaves the cause open: its probability is then above a twentieth.
 const OPEN: f64 = 6.0;
 
@@ -174,7 +176,7 @@ fn in_order(faults: Vec<Cause>, found: Vec<(f64, Cause)>) -> Vec<Cause> {
 }
 
 /// What no known cause explains: the generic term and its score.
-fn strange(study: &Study, picks: &[usize]) -> Option<(usize, f64)> {
+pub(super) fn strange(study: &Study, picks: &[usize]) -> Option<(usize, f64)> {
     let selection = Selection {
         system: &study.system,
         candidates: &study.candidates,
@@ -182,7 +184,12 @@ fn strange(study: &Study, picks: &[usize]) -> Option<(usize, f64)> {
         dry: true,
         one_loss: false,
     };
-    selection.unexplained(picks).filter(|(_, score)| *score > UNEXPLAINED)
+    // What makes rows worse that took no part in the fit is not there: it was bent to a few others.
+    let worse = |candidate: usize| {
+        let gain = gain_between(study, picks, &[picks, &[candidate]].concat(), 0.0);
+        gain.heldout_rms_after > WORSE * gain.heldout_rms_before
+    };
+    selection.unexplained(picks).filter(|(candidate, score)| *score > UNEXPLAINED && !worse(*candidate))
 }
 
 fn cause(study: &Study, k: usize, floor: f64, (channel, unit): (&str, &str)) -> Cause {
