@@ -45,11 +45,13 @@ pub enum Kind {
     Cable,
     /// Positions are too large or small; the widths are known.
     Scale,
+    /// Forces are read later than the motion.
+    Late,
 }
 
 impl Kind {
     /// All of them.
-    pub const ALL: [(&'static str, Self); 15] = [
+    pub const ALL: [(&'static str, Self); 16] = [
         ("nothing", Self::Nothing),
         ("pads", Self::Pads),
         ("hardening", Self::Hardening),
@@ -65,6 +67,7 @@ impl Kind {
         ("cross-talk", Self::Cross),
         ("cable", Self::Cable),
         ("scale", Self::Scale),
+        ("late forces", Self::Late),
     ];
 
     /// Whether the thesis's plain model is the one to start from.
@@ -271,6 +274,12 @@ fn hide(
             instruments.scale = 1.0 + chance.of_order(0.005, 0.05) * chance.sign();
             truth.hidden = vec!["length-scale"];
             truth.value = Some(("epsilon", instruments.scale - 1.0));
+        }
+        Kind::Late => {
+            instruments.late_s = chance.between(0.02, 0.08);
+            truth.hidden = vec!["time-delay"];
+            truth.value = Some(("tau", instruments.late_s));
+            truth.near = vec![("tau", instruments.late_s, 4e-3)];
         }
     }
 }

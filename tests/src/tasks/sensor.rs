@@ -26,6 +26,8 @@ pub struct Instruments {
     pub gain: f64,
     /// … positions about the world's middle by this.
     pub scale: f64,
+    /// Forces are read so much later than the motion, s.
+    pub late_s: f64,
 }
 
 impl Default for Instruments {
@@ -39,6 +41,7 @@ impl Default for Instruments {
             cross: [0.0; 2],
             gain: 1.0,
             scale: 1.0,
+            late_s: 0.0,
         }
     }
 }
@@ -61,7 +64,10 @@ pub fn look(
     let keep = (-step_s / SLOW_S).exp();
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let round = |value: f64, step: f64| (value / step).round() * step;
-    for tick in ticks.iter().step_by(every) {
+    let tick_s = step_s / every.max(1) as f64;
+    let late = (with.late_s / tick_s.max(1e-9)).round() as usize;
+    for (k, tick) in ticks.iter().enumerate().step_by(every) {
+        let felt = &ticks[k.saturating_sub(late)].tip_force_n;
         let mut noise = |size: f64| Vec2::new(size * chance.normal(), size * chance.normal());
         let mut row = Vec::with_capacity(12);
         for place in tick.input.tip_in_world {
@@ -73,7 +79,7 @@ pub fn look(
             row.extend([round(seen.x, 1e-5), round(seen.y, 1e-5)]);
         }
         for (f, slow) in slow.iter_mut().enumerate() {
-            let true_n = tick.tip_force_n[f];
+            let true_n = felt[f];
             *slow = keep * *slow + noise((1.0 - keep * keep).sqrt());
             let mut seen = true_n * with.gain + Vec2::new(0.0, with.cross[f] * true_n.x);
             seen += with.bias_n[f] + with.drift_n_s[f] * tick.time_s;

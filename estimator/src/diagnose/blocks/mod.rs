@@ -15,6 +15,8 @@ mod rows;
 mod seen;
 mod simulated;
 mod slips;
+#[cfg(test)]
+mod tests;
 
 pub use simulated::{extend, with_acts};
 

@@ -1,0 +1,157 @@
+//! One block that is carried several times by two fingers with soft pads.
+
+use crate::diagnose::{Diagnosis, Options, Verdict, diagnose};
+use haptics::recording::{Channel, Recording, Task};
+use rand::{RngExt as _, SeedableRng as _};
+use std::f64::consts::TAU;
+
+const WEIGHT_N: f64 = 0.6;
+const GRAVITY: f64 = 9.81;
+const RATE_HZ: f64 = 250.0;
+const CARRIES: u32 = 3;
+const CARRY_S: f64 = 5.0;
+const WIDTH_M: f64 = 0.02;
+
+/// What is hidden.
+#[derive(Clone, Copy, Default)]
+struct Hidden {
+    /// Give of a pad, m/N.
+    give: f64,
+    /// Weight that is lost, N/s.
+    leak_n_s: f64,
+    /// Forces are read so much later than the motion, s.
+    late_s: f64,
+    /// Mass without weight, kg.
+    mass_kg: f64,
+    /// Factor of all forces, less one.
+    gain: f64,
+}
+
+/// From 0 to 1 between two times, as a hand moves, and its second derivative.
+fn reach(t: f64, from: f64, to: f64) -> [f64; 2] {
+    let length = to - from;
+    let u = ((t - from) / length).clamp(0.0, 1.0);
+    [u.powi(3) * (10.0 + u * (6.0 * u - 15.0)), 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / length.powi(2)]
+}
+
+/// Places of the middle and accelerations, grip, and lift at a time.
+fn at(t: f64, hidden: &Hidden) -> ([f64; 2], f64, f64, f64) {
+    let number = (t / CARRY_S).floor().min(f64::from(CARRIES - 1));
+    let own = t - number * CARRY_S;
+    // To and fro: what was put down is taken from where it stands.
+    let side = if number % 2.0 == 0.0 { 1.0 } else { -1.0 };
+    let start_x = if number % 2.0 == 0.0 { 0.0 } else { 0.04 };
+    let [across, across2] = reach(own, 2.0, 2.6);
+    let [up, up2] = reach(own, 1.4, 1.9);
+    let [down, down2] = reach(own, 2.9, 3.4);
+    let (x, x2) = (start_x + side * 0.04 * across, side * 0.04 * across2);
+    let (y, y2) = (-0.1 + 0.03 * (up - down), 0.03 * (up2 - down2));
+    let grip_n = 1.6 * (reach(own, 0.6, 0.9)[0] - reach(own, 4.0, 4.3)[0])
+        + 0.5 * (reach(own, 1.0, 1.2)[0] - reach(own, 1.6, 2.4)[0]);
+    let carried = reach(own, 1.2, 1.4)[0] - reach(own, 3.4, 3.6)[0];
+    let weight_n = WEIGHT_N - hidden.leak_n_s * t;
+    let mass_kg = weight_n / GRAVITY + hidden.mass_kg;
+    ([x, y], mass_kg * x2 * carried, carried * weight_n + mass_kg * y2 * carried, grip_n)
+}
+
+fn recording(seed: u64, hidden: &Hidden) -> Recording {
+    let mut rng = rand::rngs::StdRng::seed_from_u64(seed);
+    let mut normal = move || {
+        let (a, b): (f64, f64) = (rng.random_range(1e-12..1.0), rng.random());
+        (-2.0 * a.ln()).sqrt() * (TAU * b).cos()
+    };
+    let names = ["x1_m", "y1_m", "x2_m", "y2_m", "fx1_N", "fy1_N", "fx2_N", "fy2_N"];
+    let mut columns = vec![Vec::new(); names.len()];
+    let mut time_s = Vec::new();
+    for i in 0..(f64::from(CARRIES) * CARRY_S * RATE_HZ) as u32 {
+        let t = f64::from(i) / RATE_HZ;
+        let ([x, y], ..) = at(t, hidden);
+        let grip_n = at(t, hidden).3;
+        let own = t % CARRY_S;
+        let open_m = 0.008 * (1.0 - reach(own, 0.2, 0.6)[0] + reach(own, 4.3, 4.8)[0]);
+        let half_m = 0.5 * WIDTH_M + open_m - hidden.give * grip_n;
+        let (_, side_n, lift_n, grip_n) = at((t - hidden.late_s).max(0.0), hidden);
+        let g = 1.0 + hidden.gain;
+        let forces = [grip_n + 0.5 * side_n, 0.5 * lift_n, -grip_n + 0.5 * side_n, 0.5 * lift_n].map(|f| g * f);
+        let exact = [x - half_m, y, x + half_m, y].into_iter().chain(forces);
+        for (k, (column, value)) in columns.iter_mut().zip(exact).enumerate() {
+            column.push(value + normal() * if k < 4 { 1e-5 } else { 5e-3 });
+        }
+        time_s.push(t);
+    }
+    let channel = |(name, values): (&str, Vec<f64>)| Channel { name: name.to_owned(), unit: String::new(), values };
+    let mut recording = Recording {
+        name: "block".to_owned(),
+        time_s: Some(time_s),
+        channels: names.into_iter().zip(columns).map(channel).collect(),
+        ..Recording::default()
+    };
+    recording.meta.task = Some(Task::BlockStack);
+    recording
+}
+
+fn found(seed: u64, hidden: &Hidden) -> Diagnosis {
+    diagnose(&[recording(seed, hidden)], &Options::default()).expect("a block was carried")
+}
+
+fn value(found: &Diagnosis, id: &str, name: &str) -> f64 {
+    let cause = found.causes.iter().find(|c| c.id == id).unwrap_or_else(|| panic!("{id}: {:?}", found.causes));
+    cause.parameters.iter().find(|p| p.name == name).map_or(f64::NAN, |p| p.value)
+}
+
+#[test]
+fn the_mass_of_a_weight_is_no_cause() {
+    for seed in 0..4 {
+        let found = found(seed, &Hidden::default());
+        assert!(found.verdict == Verdict::None, "seed {seed}: {:?}", found.causes);
+    }
+}
+
+#[test]
+fn mass_that_weighs_nothing_is_named() {
+    let found = found(1, &Hidden { mass_kg: 0.03, ..Hidden::default() });
+    assert_eq!(found.causes[0].id, "inertia", "{:?}", found.causes);
+    let total_kg: f64 = found.causes[0].parameters.iter().map(|p| p.value).sum::<f64>();
+    let mean_kg = total_kg / found.causes[0].parameters.len() as f64;
+    assert!((mean_kg - 0.03).abs() < 3e-3, "{mean_kg}");
+}
+
+#[test]
+fn what_runs_out_over_several_carries_is_one_leak() {
+    for seed in 0..4 {
+        let found = found(seed, &Hidden { leak_n_s: 0.008, ..Hidden::default() });
+        assert_eq!(found.causes.len(), 1, "seed {seed}: {:?}", found.causes);
+        let rate = value(&found, "mass-change", "rate");
+        assert!((rate + 0.008).abs() < 8e-4, "seed {seed}: {rate}");
+        assert!(found.causes[0].parameters.iter().all(|p| p.name != "block"), "it is of all carries");
+    }
+}
+
+#[test]
+fn late_forces_are_put_back() {
+    for late_s in [-0.03, 0.02, 0.05, 0.09] {
+        let found = found(2, &Hidden { late_s, ..Hidden::default() });
+        let tau = value(&found, "time-delay", "tau");
+        assert!((tau - late_s).abs() < 3e-3, "{late_s}: {tau}");
+        assert_eq!(found.causes.len(), 1, "{late_s}: {:?}", found.causes);
+    }
+}
+
+/// The way to the block and the grip on it are mixed by the filter where they meet.
+#[test]
+fn pads_are_as_soft_as_within_the_grip() {
+    for (seed, k) in [(0, 1500.0), (1, 3000.0), (2, 6000.0)] {
+        let found = found(seed, &Hidden { give: 1.0 / k, ..Hidden::default() });
+        let seen = value(&found, "pad-compliance", "k");
+        assert!((seen / k - 1.0).abs() < 0.05, "{k}: {seen}");
+        assert_eq!(found.causes.len(), 1, "{k}: {:?}", found.causes);
+    }
+}
+
+#[test]
+fn a_weight_that_is_stated_without_a_number_is_that_of_all_carries() {
+    let mut recording = recording(3, &Hidden { gain: 0.08, ..Hidden::default() });
+    recording.meta.known.insert("mass_kg".to_owned(), WEIGHT_N / GRAVITY);
+    let found = diagnose(&[recording], &Options::default()).expect("a block was carried");
+    assert!((value(&found, "force-gain", "g - 1") - 0.08).abs() < 5e-3);
+}
