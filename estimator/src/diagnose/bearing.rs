@@ -81,6 +81,9 @@ pub fn beside_causes(
         if weight_n <= 0.0 {
             return Ok(None);
         }
+        if found.is_none() && !may_be(looked_at, study, model, weight_n, gravity_m_s2)? {
+            return Ok(None);
+        }
         let mut other = track.clone();
         put(&mut other, weight_n, gravity_m_s2);
         let again = super::force::study(&mut other, model, fixed, threshold)?;
@@ -89,6 +92,34 @@ pub fn beside_causes(
     }
     Ok(found.filter(|(_, other, again)| price(other, again) + SIMPLER < price(looked_at, study)))
 }
+
+/// Whether the weight on the bearing leaves about as little as the causes that it looks like, beside the others: a quick look, because a comparison takes
+/// as long as all the rest.
+fn may_be(
+    track: &Track,
+    study: &Study,
+    model: &Model,
+    weight_n: f64,
+    gravity_m_s2: f64,
+) -> Result<bool, EstimateError> {
+    let mut other = track.clone();
+    put(&mut other, weight_n, gravity_m_s2);
+    let left = |track: &Track, is_kept: &dyn Fn(&str) -> bool| {
+        let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
+        let picked = study.picks();
+        let kept = picked.iter().map(|c| &study.candidates[*c]).filter(|c| is_kept(c.id));
+        columns.extend(kept.flat_map(|c| c.columns.iter().cloned()));
+        let weight: Vec<f64> =
+            track.rows.iter().map(|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }).collect();
+        least_squares_values(&columns, &study.y, Some(&weight)).map(|fit| fit.rms)
+    };
+    let with_causes = left(track, &|_| true)?;
+    let on_bearing = left(&other, &|id| !MISTAKEN.contains(&id))?;
+    Ok(on_bearing < NEARLY * with_causes)
+}
+
+/// At a quick look the weight on the bearing leaves so much of what the causes leave at most.
+const NEARLY: f64 = 1.25;
 
 /// Rounds in which the weight settles beside the causes.
 const ROUNDS_BESIDE: usize = 2;
