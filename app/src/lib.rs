@@ -17,6 +17,7 @@ pub mod schema;
 pub mod tasks;
 pub mod ui;
 pub mod video;
+mod whole_file;
 pub mod worlds;
 
 pub use constraint_words::constraint_words;

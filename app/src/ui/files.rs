@@ -189,7 +189,5 @@ pub fn export_world(ctx: &egui::Context, session: &mut Session, path: PathBuf) {
 }
 
 fn write(path: &Path, text: &str) -> Result<(), String> {
-    std::fs::write(path, text).map_err(|e| {
-        format!("The file cannot be written ({e}); check the folder and its permissions: {}", path.display())
-    })
+    super::project::write_whole(path, text)
 }

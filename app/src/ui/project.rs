@@ -8,8 +8,6 @@ use super::session::{Session, Workspace, sentence};
 use crate::video::VideoSource;
 use estimator::log::Watch;
 use serde::{Deserialize, Serialize};
-use std::fs::File;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -114,20 +112,8 @@ impl Project {
 
 /// Writes beside the file first, so that a crash or a full disk leaves the old one or the new one.
 pub fn write_whole(path: &Path, text: &str) -> Result<(), String> {
-    let failed = |e: std::io::Error| {
+    crate::whole_file::write(path, text).map_err(|e| {
         format!("The file cannot be written ({e}); check the folder and its permissions: {}", path.display())
-    };
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".part");
-    let beside = PathBuf::from(beside);
-    // On the disk before it takes the other's name: after a power cut there would be an empty file otherwise.
-    let written = File::create(&beside)
-        .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
-        .and_then(|()| std::fs::rename(&beside, path));
-    written.map_err(|error| {
-        // Half a file is of no use to anybody.
-        let _ = std::fs::remove_file(&beside);
-        failed(error)
     })
 }
 
