@@ -5,7 +5,7 @@ mod switch;
 
 use crate::constraint;
 use crate::estimate::{Fit, Parameter};
-use crate::identify::mechanism;
+use crate::identify::{block, mechanism};
 use crate::segment::Segmentation;
 use crate::signal::task::{Tip, is_two_fingered, task_signals};
 use haptics::Vec2;
@@ -16,6 +16,8 @@ use haptics::world::{Block, Crank, Floor, Provenance, Source, World, presets};
 
 /// Most blocks in one fit.
 const MOST_BLOCKS: usize = 64;
+/// Width of a block whose hold no recording shows, m.
+const ASSUMED_WIDTH_M: f64 = 0.02;
 /// Height of a block that no carry spanned, m.
 const ASSUMED_HEIGHT_M: f64 = 0.015;
 /// Friction where not even a lower bound was seen.
@@ -39,7 +41,7 @@ pub fn world(task: Task, recordings: &[Recording], fit: &Fit, segmentations: &[O
     builder.pads();
     let segmentation = segmentations.first().and_then(Option::as_ref);
     match task {
-        Task::BlockStack => builder.blocks(recording, segmentation),
+        Task::BlockStack => builder.blocks(recordings, segmentations),
         Task::Barrel => builder.barrel(recording, segmentation),
         Task::Crank => builder.crank(recording, segmentation),
         Task::Needle => builder.needle(recording),
@@ -136,20 +138,38 @@ impl Builder<'_> {
         }
     }
 
-    fn blocks(&mut self, recording: &Recording, segmentation: Option<&Segmentation>) {
+    fn blocks(&mut self, recordings: &[Recording], segmentations: &[Option<Segmentation>]) {
         let count =
             (1..=MOST_BLOCKS).take_while(|n| self.fit.parameter(&format!("block-{n}"), "weight_N").is_some()).count();
-        let spots = segmentation.and_then(|s| picked_and_placed(recording, s, count));
+        let first = recordings.first().zip(segmentations.first().and_then(Option::as_ref));
+        let spots = first.and_then(|(recording, segmentation)| picked_and_placed(recording, segmentation, count));
+        let seen = recordings.iter().zip(segmentations);
+        let holds: Vec<Vec<block::Hold>> = seen.filter_map(|(r, s)| block::holds(r, s.as_ref()?, count)).collect();
         for number in 1..=count {
             let name = format!("block-{number}");
             let mass = self.take(&name, "mass_kg", 0.03).max(1e-4);
-            let width = self.take(&name, "width_m", 0.02).max(1e-3);
+            let hold: block::Hold = holds.iter().filter_map(|h| h.get(number - 1)).flatten().copied().collect();
+            let width = self.width(&name, &hold).max(1e-3);
             let height = self.take(&name, "height_m", ASSUMED_HEIGHT_M).max(1e-3);
             let mut block = Block::upright(&name, mass, width, height, 0.0, 0.0);
             block.finger_friction = self.friction(&name);
             self.world.blocks.push(block);
         }
         self.place(spots.as_deref().unwrap_or(&[]));
+    }
+
+    /// Width of a block between this world's pads, m: that at which they press on average as hard as the fingers did. Pads give by F/k, so that a
+    /// width which goes with other pads, or with no give at all, would leave nothing to press on. A width that is stated stands as it is.
+    fn width(&mut self, name: &str, hold: &[(f64, f64)]) -> f64 {
+        let found = self.fit.parameter(name, "width_m").cloned();
+        let is_stated = found.as_ref().is_some_and(|p| p.value.is_some() && p.std_error.unwrap_or(0.0) <= 0.0);
+        let pressed = block::width_under(&self.world.pad.elastic(), hold).filter(|_| !is_stated);
+        let Some(width) = pressed else { return self.take(name, "width_m", ASSUMED_WIDTH_M) };
+        let from = format!("{}: distance of the tips while held, and what these pads give under that grip", self.from);
+        // It differs from the fit's where the fit knew the pads worse, or otherwise.
+        let error = found.and_then(|p| Some(p.std_error?.max((p.value? - width).abs())));
+        self.note(name, "width_m", width, error, Source::Measured, &from);
+        width
     }
 
     fn friction(&mut self, name: &str) -> f64 {

@@ -47,6 +47,21 @@ pub struct PredictedPart {
     pub rms_n: Option<f64>,
     /// Samples at which it is predicted.
     pub samples: usize,
+    /// What the laws leave open, and how far off the prediction is there: this says nothing about the laws.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub left_open: Option<LeftOpen>,
+}
+
+/// Samples whose force is written, though no law determines it there.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
+pub struct LeftOpen {
+    /// Where, and why.
+    pub what: String,
+    /// RMS of measured minus predicted, N; absent where no force was measured.
+    #[serde(rename = "rms_N")]
+    pub rms_n: Option<f64>,
+    /// How many.
+    pub samples: usize,
 }
 
 /// What laws say of a recorded motion that does not drive the world by itself.
@@ -123,20 +138,27 @@ pub fn simulate(world: &World, recording: &Recording) -> Result<Simulation, Esti
             None => mismatch("no mechanism"),
         },
         Task::Crank => match &world.crank {
-            Some(_) if is_two_fingered(recording) && pads_are_measured(world) => {
-                play(world, recording).map(|forces| assemble_tips(recording, &forces))
-            }
+            Some(_) if is_two_fingered(recording) && pads_are_measured(world) => stepped(world, recording),
             Some(crank) => crank::needed_forces(crank, recording).map(|needed| needed.beside(recording)),
             None => mismatch("no crank"),
         },
         Task::Needle if world.membrane.is_none() => mismatch("no membrane"),
         Task::Switch if world.switch.is_none() => mismatch("no switch"),
         Task::Needle if !is_two_fingered(recording) => poke(world, recording),
-        Task::Needle | Task::Switch => play(world, recording).map(|forces| assemble_tips(recording, &forces)),
+        Task::Needle | Task::Switch => stepped(world, recording),
         _ if world.blocks.is_empty() => mismatch("no blocks"),
-        _ if pads_are_measured(world) => play(world, recording).map(|forces| assemble_tips(recording, &forces)),
+        _ if pads_are_measured(world) => stepped(world, recording),
         _ => block::needed_forces(world, recording).map(|needed| needed.beside(recording)),
     }
+}
+
+/// The world's own answer to where the fingers go.
+fn stepped(world: &World, recording: &Recording) -> Result<Simulation, EstimateError> {
+    let mut found = assemble_tips(recording, &play(world, recording)?);
+    found.inputs.push(
+        "no measured force enters the prediction: the measured motion of the fingers drives the world, and its pads answer".to_owned(),
+    );
+    Ok(found)
 }
 
 /// A single tool is the needle: what the sheet pushes back along it. One place of the sheet, as in the fit of such a recording.
@@ -200,16 +222,32 @@ fn simulate_mechanism(model: &Mechanism, recording: &Recording) -> Result<Simula
         Some(measured) => Some(measured.to_vec()),
         None => mechanism::measured(model, recording)?,
     };
-    let left = measured.iter().flat_map(|measured| measured.iter().zip(&values).zip(&is_told));
-    let rms_n = rms(left.filter(|(_, told)| **told).map(|((m, p), _)| m - p));
+    let rms_where = |told: bool| {
+        let all = measured.iter().flat_map(|measured| measured.iter().zip(&values).zip(&is_told));
+        rms(all.filter(|(_, is)| **is == told).map(|((m, p), _)| m - p))
+    };
     let samples = is_told.iter().filter(|told| **told).count();
-    let part = (samples < is_told.len()).then(|| PredictedPart { what: MOVING.to_owned(), rms_n, samples });
+    let open = is_told.len() - samples;
+    let left_open = LeftOpen { what: STANDING.to_owned(), rms_n: rms_where(false), samples: open };
+    let part = (open > 0).then(|| PredictedPart {
+        what: MOVING.to_owned(),
+        rms_n: rms_where(true),
+        samples,
+        left_open: Some(left_open),
+    });
     let channel = Channel { name: name.to_owned(), unit: unit.to_owned(), values };
-    Ok(Simulation { part, ..assemble(recording, vec![channel], |_| measured.clone()) })
+    let mut found = assemble(recording, vec![channel], |_| measured.clone());
+    found.part = part;
+    found.inputs.push(
+        "no measured force enters the prediction: it is that of the laws along the measured motion, filtered, with the noise of its acceleration in it"
+            .to_owned(),
+    );
+    Ok(found)
 }
 
-/// The part of a mechanism's force that its laws predict.
-const MOVING: &str = "the force while it moves: where it stands, dry friction holds whatever it is loaded with";
+/// The part of a mechanism's force that its laws predict, and the rest.
+const MOVING: &str = "the force while it moves";
+const STANDING: &str = "where it stands or turns, and within the filter's reach of that, dry friction holds whatever it is loaded with, up to its size";
 
 fn assemble_tips(recording: &Recording, forces: &[Vec<Vec2>; 2]) -> Simulation {
     let channel = |name: &str, finger: usize, pick: fn(&Vec2) -> f64| Channel {

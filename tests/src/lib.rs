@@ -9,6 +9,7 @@ pub mod free_motion;
 pub mod fumble;
 pub mod generate;
 pub mod handling;
+pub mod held_evenly;
 pub mod mechanisms;
 pub mod python;
 pub mod reaching;

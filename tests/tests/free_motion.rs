@@ -218,3 +218,35 @@ fn figures() {
         }
     }
 }
+
+/// What has come to rest is held by dry friction, which is anything up to its size there: the fit must not take it for motion.
+#[test]
+fn a_slide_that_comes_to_rest_shows_its_friction_by_where_it_moved() {
+    let z: Vec<[f64; 2]> = (900..924)
+        .into_par_iter()
+        .map(|seed| {
+            let like = Case::cart(seed, Hidden::Nothing, 0.0);
+            let case = Case {
+                // A second and more of standstill, and a usual encoder.
+                seconds: like.seconds + 2.0,
+                viscous: 5.0 * like.viscous,
+                rate_hz: 200.0,
+                noise: 2e-6,
+                step: 1e-6,
+                rate_noise: None,
+                known: vec![("mass_kg".to_owned(), like.inertia)],
+                ..like
+            };
+            let fit = estimator::identify::mechanism::fit(&[case.recording()]).expect("it moves");
+            let off = |name: &str, truth: f64| {
+                let found = fit.parameter("mechanism", name).unwrap_or_else(|| panic!("{name}: {:?}", fit.parameters));
+                (found.value.expect("shown") - truth) / found.std_error.expect("has one")
+            };
+            assert!(!fit.parameter("mechanism", "coulomb_N").is_some_and(|p| p.identified), "one way shows no sign");
+            [off("viscous_N_s_m", case.viscous), off("resistance_N", case.dry)]
+        })
+        .collect();
+    println!("errors in standard errors: {z:.1?}");
+    let far = z.iter().flatten().filter(|z| z.abs() > 3.0).count();
+    assert!(far <= 2, "{far} of {} beyond three errors: {z:.1?}", 2 * z.len());
+}

@@ -37,7 +37,7 @@ pub(crate) struct Said {
     /// The part of the forces that the world's laws predict, and how well, where that is not all of them.
     #[serde(skip_serializing_if = "Option::is_none")]
     predicted_part: Option<PredictedPart>,
-    /// What no law predicts and is as measured: sentences.
+    /// What no law predicts and is as measured, or that no measured force enters: sentences.
     inputs: Vec<String>,
     /// What each channel reads while nothing is touched, N: it is predicted there, where it is not zero.
     #[serde(rename = "bias_N")]
@@ -67,6 +67,11 @@ impl Simulate {
         if let Some(part) = &simulation.part {
             let rms = part.rms_n.map_or_else(String::new, |rms| format!(", measured − predicted: {rms:.4} N RMS"));
             let _ = writeln!(text, "  predicted: {} at {} samples{rms}", part.what, part.samples);
+            if let Some(open) = &part.left_open {
+                let rms =
+                    open.rms_n.map_or_else(String::new, |rms| format!("; measured − predicted there: {rms:.4} RMS"));
+                let _ = writeln!(text, "  left open: {}, at {} samples{rms}", open.what, open.samples);
+            }
         }
         for (name, level) in &simulation.bias_n {
             let _ = writeln!(text, "  {name} reads {level:.3} N while nothing is touched");

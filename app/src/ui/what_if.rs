@@ -49,7 +49,8 @@ pub fn world(analysis: &Analysis, recordings: &[Recording], values: &BTreeMap<St
     let mut fit = analysis.fit.clone();
     for parameter in &mut fit.parameters {
         if let Some(value) = values.get(&parameter.full_name()) {
-            parameter.value = Some(*value);
+            // What is tried holds exactly, like what is known.
+            (parameter.value, parameter.std_error) = (Some(*value), None);
             parameter.identified = true;
         }
     }

@@ -84,6 +84,8 @@ pub(super) struct Pressed {
     /// Give of one pad at no force, m/N.
     pub(super) give: Estimate,
     bent: f64,
+    /// Widths and slope of linear pads.
+    line: Vec<f64>,
 }
 
 /// What one grasp shows.
@@ -101,6 +103,8 @@ pub(super) struct PadFit {
     pub(super) bent: f64,
     /// Samples.
     pub(super) rows: usize,
+    /// Distance at no force and give of linear pads.
+    pub(super) line: (f64, f64),
 }
 
 /// Half of what holds 95 % of an even distribution, over 1.96: what it counts as beside errors that are normal.
@@ -182,6 +186,7 @@ pub(super) fn width_over_force(grip: &Grip<'_>) -> Result<Option<PadFit>, Estima
             resampled: width.resampled.zip(give.resampled),
             bent: found.bent,
             rows: give.rows,
+            line: (*found.line.first()?, -0.5 * *found.line.get(1)?),
         })
     };
     Ok(widths_over_force(&grips)?.and_then(one))
@@ -278,7 +283,7 @@ fn average(models: Vec<Model>, grips: &Grips, line: &LinearFit, resampled: Optio
         rows: grips.width.len(),
     };
     let widths = (0..grips.objects()).map(width).collect();
-    Pressed { widths, give, bent: part(&|m| f64::from(u8::from(m.bent))) }
+    Pressed { widths, give, bent: part(&|m| f64::from(u8::from(m.bent))), line: line.values.clone() }
 }
 
 /// A model that counts.

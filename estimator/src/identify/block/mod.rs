@@ -9,6 +9,7 @@ pub(crate) mod heights;
 pub(crate) mod landing;
 mod leak;
 mod needed;
+mod pressed;
 mod slip;
 mod slipped;
 pub(crate) mod slipping;
@@ -16,7 +17,6 @@ mod together;
 
 use super::bootstrap::block_bootstrap;
 use super::linear::{LinearFit, least_squares};
-use super::pads::{Grip, PadFit, width_over_force};
 use super::robust::{RobustFit, robust};
 use crate::constraint::{Carry, carried};
 use crate::estimate::{Constraint, Correlated, EstimateError, Fit, Parameter};
@@ -30,6 +30,7 @@ use haptics::Vec2;
 use haptics::recording::{Recording, Task};
 use heights::Stacked;
 pub(crate) use needed::needed_forces;
+pub(crate) use pressed::{Hold, holds, width_under};
 pub use together::{Together, fit_together};
 
 /// Relative error of a width whose pad compression could not be measured: the thesis's blocks came out 7 % too narrow.
@@ -92,12 +93,13 @@ fn describe(blocks: &Blocks<'_>) -> Result<Fit, EstimateError> {
     let mut weights_n = Vec::new();
     let mut correlated = Vec::new();
     let mut warnings = blocks.segmentation.warnings.clone();
+    let pad = blocks.pad_stiffness(count);
     for number in 1..=count {
         let weight = blocks.weight(number)?;
         correlated.extend(weight_and_mass(&weight[0], &weight[1]));
         weights_n.push(weight[0].value.unwrap_or(0.0));
         parameters.extend(weight);
-        parameters.push(blocks.width(number)?);
+        parameters.push(blocks.width(number, &pad)?);
     }
     if let Some(why) = blocks.unshown("height_m") {
         parameters.extend((1..=count).map(|n| Parameter::unidentified(&object(n), "height_m", 0, &why)));
@@ -106,7 +108,7 @@ fn describe(blocks: &Blocks<'_>) -> Result<Fit, EstimateError> {
         warnings.extend(stacked[0].warnings());
         parameters.extend(heights::heights(&stacked)?);
     }
-    parameters.push(blocks.pad_stiffness(count));
+    parameters.push(pad);
     let masses_kg: Vec<f64> = weights_n.iter().map(|w| w / recording.meta.gravity()).collect();
     for number in 1..=count {
         parameters.extend(blocks.friction(number));
@@ -308,49 +310,6 @@ impl<'a> Blocks<'a> {
             Parameter::identified(&name, "mass_kg", fit.values[0] / gravity, error / gravity, n, mass)
                 .with_bootstrap(resampled.map(|b| b / gravity)),
         ])
-    }
-
-    /// Width: distance of the tips while held, extrapolated to no grip force.
-    fn width(&self, number: usize) -> Result<Parameter, EstimateError> {
-        let samples = self.gripped(number);
-        if let Some(why) = self.unshown("width_m").or_else(|| unseen(&samples)) {
-            return Ok(Parameter::unidentified(&object(number), "width_m", 0, &why));
-        }
-        let rows = self.rows(&samples);
-        let width: Vec<f64> = rows.iter().map(|i| self.width[*i]).collect();
-        let grip: Vec<f64> = rows.iter().map(|i| self.grip[*i]).collect();
-        let (mean_grip, spread_grip) = mean_and_spread(&grip);
-        let name = object(number);
-        let resolution = std::f64::consts::SQRT_2 * self.resolution_m;
-        if spread_grip > LEAST_GRIP_VARIATION * mean_grip
-            && let Some(pads) = self.pads(number)?
-        {
-            let stiffness = 1.0 / pads.give_m_per_n;
-            let harder = if pads.bent > 0.5 { " when hardly pressed, and harden" } else { "" };
-            let how = format!(
-                "distance of the tips while held, extrapolated to zero grip force (pads give {stiffness:.0} N/m each{harder})"
-            );
-            let error = pads.width_error_m.hypot(resolution);
-            let resampled = pads.resampled.map(|(width, _)| width.hypot(resolution));
-            let found = Parameter::identified(&name, "width_m", pads.width_m, error, samples.len(), &how);
-            return Ok(found.with_bootstrap(resampled));
-        }
-        let fit = intercept(&width, &[])?;
-        let error = fit.std_errors[0].hypot(UNKNOWN_COMPRESSION * fit.values[0]);
-        let how = "mean distance of the tips while held; the grip was too even to tell the pads' give, so 7 % is added \
-                   to the error";
-        Ok(Parameter::identified(&name, "width_m", fit.values[0], error, samples.len(), how))
-    }
-
-    /// The grip on one block from picking it up to letting it go.
-    fn pads(&self, number: usize) -> Result<Option<PadFit>, EstimateError> {
-        let rows = self.rows(&self.gripped(number));
-        if rows.is_empty() {
-            return Ok(None);
-        }
-        let column = |series: &[f64]| rows.iter().map(|i| series[*i]).collect::<Vec<f64>>();
-        let (width, force, rate) = (column(&self.width), column(&self.grip), column(&self.width_rate));
-        width_over_force(&Grip { width: &width, force: &force, rate: &rate })
     }
 
     /// Stiffness of one pad: both give under the grip, so the width falls by 2 F / k. Blocks averaged by their errors.

@@ -59,6 +59,7 @@ pub(crate) fn needed_forces(world: &World, recording: &Recording) -> Result<Need
         what: "net force on carried blocks".to_owned(),
         rms_n: rms(correction.iter().zip(&is_carried).filter(|(_, c)| **c).flat_map(|(c, _)| [2.0 * c.x, 2.0 * c.y])),
         samples: is_carried.iter().filter(|c| **c).count(),
+        left_open: None,
     };
     Ok(Needed {
         channels,

@@ -5,6 +5,9 @@
 //! keep one ratio, and where something happens at that ratio: the pinch changes, or the tips move farther than pads give. A block
 //! that is put down has the first without the second, one that is carried steadily has the second without the first. And no ratio
 //! below one that was held without a slip is friction.
+//!
+//! That the ratio is one must be shown, not only be possible: a grip that is let go of while the block stands has a pinch that falls beside a
+//! shear that stays, and in a short window the noise allows for that, too.
 
 use super::Blocks;
 use crate::identify::bootstrap::block_bootstrap;
@@ -23,6 +26,12 @@ const SOFTEST_N_M: f64 = 500.0;
 const OF_THE_BOUND: f64 = 0.9;
 /// The two fingers' ratios agree within this share: one that only leans has another one.
 const FINGERS_AGREE: f64 = 0.15;
+/// From the first to the second half of a window the ratio changes by less than this share of itself, beyond doubt …
+const KEEPS: f64 = 0.2;
+/// … and where it is the pinch that changes, by less than this share of that change: a shear that stays as it is would change it by all of that.
+const OF_THE_PINCH: f64 = 0.5;
+/// Beyond doubt: so many standard errors.
+const DOUBT: f64 = 2.0;
 /// Onset: the first part of a slip, s; later the friction is that of motion.
 const ONSET_S: f64 = 0.1;
 
@@ -130,10 +139,24 @@ fn slides(blocks: &Blocks<'_>, (from, to): (usize, usize), held: Held) -> bool {
     if !(ratios[0].1 && ratios[1].1 && agree && 0.5 * (ratios[0].0 + ratios[1].0) > OF_THE_BOUND * held) {
         return false;
     }
+    let change = ratio_changes(blocks, (from, middle, to)) / (0.5 * (ratios[0].0 + ratios[1].0));
     let grip = |a: usize, b: usize| mean(&|i| blocks.grip[i], a, b);
     let (before, after) = (grip(from, middle), grip(middle, to));
-    let pinch_changes = (before - after).abs() > PINCH_CHANGES * before.max(after);
+    let pinch = (before - after).abs() / before.max(after);
     let way = (blocks.height[to - 1] - blocks.height[from]).abs();
     let elastic = (blocks.lift[to - 1] - blocks.lift[from]).abs() / SOFTEST_N_M;
-    pinch_changes || way > SLIDES_M + elastic
+    pinch > PINCH_CHANGES && change < KEEPS.min(OF_THE_PINCH * pinch) || way > SLIDES_M + elastic && change < KEEPS
+}
+
+/// By how much the ratio of both fingers' shear to their pinch may have changed from the first half of a window to the second, at most.
+fn ratio_changes(blocks: &Blocks<'_>, (from, middle, to): (usize, usize, usize)) -> f64 {
+    let noise_n = blocks.levels.force_noise_n;
+    let half = |from: usize, to: usize| {
+        let pairs = (from..to).flat_map(|i| [pair(blocks, 0, i), pair(blocks, 1, i)]);
+        let (both, square) = pairs.fold((0.0, 0.0), |(both, square), (a, b)| (both + a * b, square + b * b));
+        let ratio: f64 = both / f64::max(square, 1e-12);
+        (ratio, noise_n * ratio.hypot(1.0) / f64::max(square, 1e-12).sqrt())
+    };
+    let (before, after) = (half(from, middle), half(middle, to));
+    (before.0 - after.0).abs() + DOUBT * before.1.hypot(after.1)
 }

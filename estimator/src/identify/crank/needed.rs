@@ -73,6 +73,7 @@ pub(crate) fn needed_forces(crank: &Crank, recording: &Recording) -> Result<Need
         what: "net force along the crank's circle while it turns".to_owned(),
         rms_n: if is_felt { rms((0..motions.len()).filter(turns).map(missing)) } else { None },
         samples: (0..motions.len()).filter(turns).count(),
+        left_open: None,
     };
     let is_predicted = states.iter().map(|s| matches!(s, SystemState::Turning | SystemState::FreeMotion)).collect();
     Ok(Needed { channels, is_predicted, part, inputs: inputs(is_felt), bias_n })
@@ -123,6 +124,9 @@ fn inputs(is_felt: bool) -> Vec<String> {
     vec![
         "the pull along the crank's arm and the grip are the operator's own: no law predicts them, and they are as measured while the \
          handle is held"
+            .to_owned(),
+        "along the circle the laws take the place of the measured force as the fit's filter sees it: the noise of the sensors above the \
+         filter is as measured in the prediction, too, so that what is left can be less than that noise"
             .to_owned(),
         "while the handle is held still nothing is predicted, because friction holds any force within its limit: all forces are as \
          measured there"

@@ -113,6 +113,7 @@ fn report(ratios: &Ratios, known: &Known, coordinate: Coordinate, samples: usize
         let how = "free motion: ratio to the inertia, which the known parameter gives its size";
         result.parameters.push(Parameter::identified(OBJECT, name(term), value, error, samples, how));
     }
+    resistance(&mut result, ratios, coordinate, (inertia, relative_error), samples);
     gravity(&mut result, ratios, known, inertia, relative_error, samples);
     push_known(&mut result, known, coordinate);
     result.warnings.push(
@@ -120,6 +121,20 @@ fn report(ratios: &Ratios, known: &Known, coordinate: Coordinate, samples: usize
             .to_owned(),
     );
     result
+}
+
+/// What coasts one way shows friction and a constant force as one: their sum is still worth knowing.
+fn resistance(result: &mut Fit, ratios: &Ratios, coordinate: Coordinate, inertia: (f64, f64), samples: usize) {
+    let offset = ratios.terms.iter().position(|t| *t == Term::Offset);
+    let Some(i) = offset.filter(|_| !ratios.terms.contains(&Term::Coulomb)) else { return };
+    let (ratio, by_clock) = (ratios.fit.values[i], CLOCK_TOLERANCE * Term::Offset.powers_of_time());
+    let error = inertia.0 * ratios.fit.std_errors[i].hypot(ratio * by_clock).hypot(ratio * inertia.1);
+    if !error.is_finite() {
+        return;
+    }
+    let name = if coordinate == Coordinate::Linear { "resistance_N" } else { "resistance_Nm" };
+    let how = "free motion: all constant resistance along +coordinate together, which this motion cannot split";
+    result.parameters.push(Parameter::identified(OBJECT, name, ratio * inertia.0, error, samples, how));
 }
 
 /// The regression −a = Σ ratio × regressor over all pieces.

@@ -10,6 +10,7 @@ mod constant;
 mod even;
 mod free;
 mod gravity;
+mod moving;
 pub mod path;
 mod regress;
 mod report;
@@ -87,15 +88,12 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
         let text = "some recordings move along a line and others about an axis; fit each mechanism by itself";
         return Err(EstimateError::Other(text.to_owned()));
     }
-    let mut pieces = Vec::new();
-    for (raw, (recording, _)) in raws.iter().zip(&usable) {
-        pieces.extend(signals::pieces(raw, &recording.name)?);
-    }
+    let pieces = all_pieces(&raws, &usable)?;
     let known = Known::from_meta(&first.meta, raws[0].coordinate);
     let mut result = if raws.iter().all(|r| r.force.is_some()) {
         driven(&raws, &pieces, &known, first)?
     } else if raws.iter().all(|r| r.force.is_none()) {
-        free::fit(&raws, &pieces, &known)?
+        freely(&raws, &pieces, &known)?
     } else {
         let text = "some recordings have a force column and others do not; fit the driven and the free ones apart";
         return Err(EstimateError::Other(text.to_owned()));
@@ -103,6 +101,27 @@ pub fn fit(recordings: &[Recording]) -> Result<Fit, EstimateError> {
     result.constraints = constraints;
     result.parameters.extend(transmission::parameters(recordings));
     Ok(result)
+}
+
+fn all_pieces(raws: &[Raw], of: &[(&Recording, Option<&MechanismPath>)]) -> Result<Vec<Piece>, EstimateError> {
+    let each = raws.iter().zip(of).map(|(raw, (recording, _))| signals::pieces(raw, &recording.name));
+    Ok(each.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+}
+
+/// Motion that nothing drives: without what stands in it, where enough is left that moves.
+fn freely(raws: &[Raw], pieces: &[Piece], known: &Known) -> Result<Fit, EstimateError> {
+    let (parts, stood) = moving::moving(raws);
+    if stood {
+        let of_parts: Vec<Vec<Piece>> = parts.iter().filter_map(|raw| signals::pieces(raw, "").ok()).collect();
+        if of_parts.len() == parts.len() {
+            let mut found = free::fit(&parts, &of_parts.concat(), known)?;
+            found.warnings.push(
+                "what stands in the recording is left out: dry friction holds it there, and it shows nothing of the laws".to_owned(),
+            );
+            return Ok(found);
+        }
+    }
+    free::fit(raws, pieces, known)
 }
 
 fn has_coordinate(recording: &Recording) -> bool {

@@ -169,7 +169,7 @@ impl System {
 
 /// 1 where the sign of the motion is anybody's guess, 0 where it is certain: velocity noise, the place of the reversal between
 /// two samples, and friction that holds what stands still.
-fn direction_uncertainty(piece: &Piece) -> Vec<f64> {
+pub(super) fn direction_uncertainty(piece: &Piece) -> Vec<f64> {
     let blur = |m: &haptics::law::Motion| {
         1.2 * piece.velocity_noise.hypot(SKEW_SAMPLES * m.acceleration * piece.period_s).max(f64::MIN_POSITIVE)
     };

@@ -1,11 +1,12 @@
 //! The fitted mechanism as a world, and the force that it predicts for a measured motion.
 
 use super::report::{OBJECT, PHASE};
-use super::{path, signals};
+use super::signals::Raw;
+use super::{path, regress, signals};
 use crate::constraint;
 use crate::estimate::{ConstraintKind, EstimateError, Fit};
 use haptics::law::{
-    Coordinate, CoulombFriction, EccentricMass, Effect, ForceBias, Inertia, ViscousFriction, drive_forces,
+    Coordinate, CoulombFriction, EccentricMass, Effect, ForceBias, Inertia, Motion, ViscousFriction, drive_forces,
 };
 use haptics::recording::Recording;
 use haptics::world::Mechanism;
@@ -56,12 +57,14 @@ fn effects(fit: &Fit) -> Vec<Effect> {
 
 /// A direction of motion this certain is one.
 const MOVES: f64 = 0.99;
+/// Dry friction is told to a tenth of itself where a stop or a turn leaves this share of its square open, as the fit weighs its samples.
+const LEFT_OPEN: f64 = 0.01;
 
 /// What the laws say that a measured motion needs.
 pub struct Prediction {
     /// Force at every sample, N or N m.
     pub force: Vec<f64>,
-    /// Whether it is told there: where nothing moves, dry friction holds whatever it is loaded with.
+    /// Whether it is told there: where nothing moves, and as far about it as the filter reaches, dry friction holds whatever it is loaded with.
     pub is_told: Vec<bool>,
 }
 
@@ -70,8 +73,27 @@ pub fn predict(mechanism: &Mechanism, recording: &Recording) -> Result<Predictio
     let raw = signals::raw(recording, mechanism.path.as_ref())?;
     let motion = signals::motion(&raw, mechanism);
     let holds = mechanism.effects.iter().any(|e| e.law().is_dry());
-    let is_told = motion.iter().map(|m| !holds || m.direction.abs() > MOVES).collect();
+    let open = open_share(&raw);
+    let told = |(m, open): (&Motion, &f64)| !holds || m.direction.abs() > MOVES && *open < LEFT_OPEN;
+    let is_told = motion.iter().zip(&open).map(told).collect();
     Ok(Prediction { force: drive_forces(&mechanism.effects, &motion), is_told })
+}
+
+/// How much of the square of its dry friction each sample leaves open: near a stop or a turn the filter has mixed what friction held with what it
+/// braked. 0 where the motion is too short to be filtered.
+fn open_share(raw: &Raw) -> Vec<f64> {
+    let mut open = vec![0.0; raw.time_s.len()];
+    for piece in signals::pieces(raw, "").unwrap_or_default() {
+        let share = regress::direction_uncertainty(&piece);
+        for (time_s, open) in raw.time_s.iter().zip(&mut open).skip(piece.first) {
+            let at = ((time_s - piece.start_s) / piece.period_s).round();
+            match share.get(at.max(0.0) as usize) {
+                Some(share) => *open = *share,
+                None => break,
+            }
+        }
+    }
+    open
 }
 
 /// The measured force along the mechanism's coordinate, N or N m; `None` for a free motion.
