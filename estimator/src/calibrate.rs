@@ -5,6 +5,7 @@ mod switch;
 
 use crate::constraint;
 use crate::estimate::{Fit, Parameter};
+use crate::identify::needle::HELD;
 use crate::identify::{block, mechanism};
 use crate::segment::Segmentation;
 use crate::signal::task::{Tip, is_two_fingered, task_signals};
@@ -244,7 +245,10 @@ impl Builder<'_> {
             friction_n: friction_n.clamp(0.0, 0.9 * puncture_n),
             ..membrane.law
         };
-        let weight_n = self.take("needle", "weight_N", needle.mass_kg * self.world.gravity_m_s2);
+        // A bias that pulls up is no weight.
+        let usual_n = needle.mass_kg * self.world.gravity_m_s2;
+        let held_n = self.fit.value("needle", HELD).map(|_| self.take("needle", HELD, usual_n));
+        let weight_n = self.take("needle", "weight_N", held_n.filter(|held| *held > 0.0).unwrap_or(usual_n));
         if self.world.gravity_m_s2 > 0.0 {
             needle.mass_kg = (weight_n / self.world.gravity_m_s2).max(1e-3);
         }

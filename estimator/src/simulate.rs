@@ -1,7 +1,7 @@
 //! The measured motion through a world: what forces would have been felt?
 
 use crate::estimate::EstimateError;
-use crate::identify::{block, crank, mechanism};
+use crate::identify::{block, crank, mechanism, needle};
 use crate::segment::task_of;
 use crate::signal::task::{TipSeries, is_two_fingered, times, tip_series};
 use crate::wanted;
@@ -170,6 +170,9 @@ fn poke(world: &World, recording: &Recording) -> Result<Simulation, EstimateErro
             recording: recording.name.clone(),
         });
     };
+    // Its sensor feels its weight all the time, with a bias that nothing tells from it.
+    let held = world.provenance.iter().find(|p| p.object == needle::OBJECT && p.name == needle::HELD);
+    let held_n = held.map_or(0.0, |p| p.value);
     let mut history = MembraneHistory::default();
     let mut values = Vec::with_capacity(position.len());
     for i in 0..position.len() {
@@ -186,13 +189,18 @@ fn poke(world: &World, recording: &Recording) -> Result<Simulation, EstimateErro
                 0.0
             };
         }
-        values.push(-out_n);
+        values.push(held_n - out_n);
     }
     let along = Channel { name: "fy_N".to_owned(), unit: "N".to_owned(), values };
     let mut found = assemble(recording, vec![along], |name| recording.channel(name).map(<[f64]>::to_vec));
     found.inputs.push(
         "the force across the needle is the operator's own where its hole gives way: it is not predicted for a single tool".to_owned(),
     );
+    if held_n != 0.0 {
+        found.inputs.push(format!(
+            "{held_n:.3} N of the force along the needle hold the tool, as in the recording that the world is of"
+        ));
+    }
     Ok(found)
 }
 

@@ -140,6 +140,23 @@ fn truth_lies_within_two_errors_of_a_tools_fit() {
     }
 }
 
+/// The sensor of a tool feels its weight all the time: the world of a recording predicts it with the sheet's force.
+#[test]
+fn a_simulated_tool_is_held_as_the_measured_one() {
+    for seed in 0..5_u64 {
+        let (mut recording, _) = tool(63_000 + seed, 500.0, true, true);
+        let up = recording.channels.iter_mut().find(|c| c.name == "fy_N").expect("a force");
+        up.values.iter_mut().for_each(|f| *f += 0.12);
+        let world = analyse(std::slice::from_ref(&recording), &Options::default()).expect("fits").world;
+        let found = estimator::simulate::simulate(&world, &recording).expect("a tool and its sheet");
+        let predicted = found.predicted.iter().find(|c| c.name == "fy_N").expect("predicted");
+        let measured = recording.channel("fy_N").expect("measured");
+        // Outside the sheet before the first push.
+        let off: f64 = (0..200).map(|i| measured[i] - predicted.values[i]).sum::<f64>() / 200.0;
+        assert!(off.abs() < 4e-3, "seed {seed}: {off} N");
+    }
+}
+
 #[test]
 fn a_sheet_that_was_never_pierced_has_no_puncture_force() {
     for seed in 0..20_u64 {

@@ -97,6 +97,31 @@ fn more_recordings_sharpen_and_invent_nothing() {
     at_least("nothing where nothing is", quiet, CASES as usize, 0.93);
 }
 
+/// What rubs by the length in the hole or at one place of it, and forces that come late, each within what it is known by.
+#[test]
+fn what_a_hole_does_and_forces_that_come_late_are_named() {
+    for kind in [Kind::Longer, Kind::Catch, Kind::Late] {
+        let (mut named, mut beside) = (0, 0);
+        for number in 0..CASES {
+            let (case, truth) = make(kind, seed().wrapping_mul(613).wrapping_add(number));
+            let answer = asked(&case.recordings);
+            let told = answer.causes.iter().find(|c| truth.hidden.contains(&c.id.as_str()));
+            let near = |value: f64, of: f64| (value / of - 1.0).abs() < 0.1;
+            let right = told.filter(|c| {
+                truth.value.is_none_or(|(name, of)| c.parameters.iter().any(|p| p.name == name && near(p.value, of)))
+            });
+            println!(
+                "{kind:?} {number}: {:?}",
+                answer.causes.iter().map(|c| (&c.id, &c.parameters)).collect::<Vec<_>>()
+            );
+            named += usize::from(right.is_some());
+            beside += answer.causes.len() - told.iter().count();
+        }
+        at_least(&format!("{kind:?}"), named, CASES as usize, 0.9);
+        assert!(beside <= 2 * CASES as usize, "{kind:?}: {beside} others");
+    }
+}
+
 /// A recording without a push is left out, with a word; when none has one, that is the answer.
 #[test]
 fn recordings_without_a_push_take_no_part() {

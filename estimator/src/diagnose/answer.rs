@@ -13,12 +13,14 @@ use super::report::{
     Verdict,
 };
 use super::residuals::{Residual, residuals};
-use super::select::{Chosen, Selection};
+use super::select::{Chosen, REMAINDER, Selection, is_curve};
 use crate::segment::SystemState;
 use crate::words::amount;
 
 /// A generic term above this score means that something is left that no known cause explains.
 const UNEXPLAINED: f64 = 25.0;
+/// What is left is no noise if it would be so white by chance.
+const SURELY_NOT_WHITE: f64 = 1e-12;
 /// Alternatives less probable than this are as good as excluded.
 const OPEN: f64 = 0.047;
 /// A cause of a usual size that would score less than this could not have been seen.
@@ -60,7 +62,7 @@ impl Compared {
     /// As a part of the answer.
     pub fn part<'a>(&'a self, shows: Shows<'a>, states: States<'a>, usual: Usual<'a>) -> Part<'a> {
         let Self { study, channel, unit, floor, along, stretch, state } = self;
-        Part { study, channel, unit, floor: *floor, along, stretch, state, shows, states, usual }
+        Part { study, channel, unit, floor: *floor, along, stretch, state, shows, states, usual, much: None }
     }
 }
 
@@ -82,6 +84,8 @@ pub struct Part<'a> {
     pub shows: Shows<'a>,
     pub states: States<'a>,
     pub usual: Usual<'a>,
+    /// What is left in the end is never so many times the noise where the model is right; nothing where that is not known.
+    pub much: Option<f64>,
 }
 
 impl Part<'_> {
@@ -127,6 +131,11 @@ impl Part<'_> {
     /// The strongest generic term that is left, as a cause without a name, and what is said of it.
     fn unnamed(&self) -> Option<(Cause, String)> {
         let (candidate, score) = self.strange()?;
+        // What the curve of a strong cause misses by little is no news where next to nothing is left.
+        let misses = |c: &Chosen| is_curve(self.study.candidates[c.candidate].id) && score < REMAINDER * c.score;
+        if self.much.is_some() && self.much_left().is_none() && self.study.chosen.iter().any(misses) {
+            return None;
+        }
         let (cause, _) = unnamed(self.study, (candidate, score), (self.floor, self.unit));
         // What takes nothing off data held out is no more left of the channel than its noise.
         if cause.gain.no_share.is_none() && cause.gain.share_of_explainable <= 0.0 {
@@ -139,6 +148,18 @@ impl Part<'_> {
         );
         let evidence = format!("what is left of the {channel} goes with {expression}; no known cause does so here");
         Some((Cause { evidence, gain: self.in_its_unit(cause.gain), ..cause }, warning))
+    }
+
+    /// What is left in the end where that is far more than the noise and no noise, in a sentence.
+    fn much_left(&self) -> Option<String> {
+        let picks = self.study.picks();
+        let (end, _) = rms(self.study, &picks, self.along);
+        let times = end / self.floor;
+        let is_much = self.much.is_some_and(|much| times > much);
+        (is_much && whiteness_p(self.study, &picks, self.stretch) < SURELY_NOT_WHITE).then(|| {
+            let left = amount(end, self.unit);
+            format!("{left} of the {} are left, {times:.0} times its noise, and go with no known cause", self.channel)
+        })
     }
 
     /// The strongest generic term that is left, with its score.
@@ -202,6 +223,19 @@ pub fn verdict(is_named: bool, is_strange: bool, is_open: bool) -> Verdict {
     }
 }
 
+/// Adds a cause of a channel, if it is a new one. One cause may show in two channels: what it is called stays, what it comes out at is said of both.
+fn add(found: &mut Vec<(f64, Cause)>, score: f64, cause: Cause) -> bool {
+    let Some((_, held)) = found.iter_mut().find(|(_, c)| c.id == cause.id) else {
+        found.push((score, cause));
+        return true;
+    };
+    let named = |p: &CauseParameter| held.parameters.iter().all(|q| q.name != p.name);
+    let more: Vec<CauseParameter> = cause.parameters.into_iter().filter(named).collect();
+    held.parameters.extend(more);
+    held.evidence = format!("{}; and {}", held.evidence, cause.evidence);
+    false
+}
+
 /// The answer of several channels.
 pub fn answer(
     parts: &[Part<'_>],
@@ -209,24 +243,19 @@ pub fn answer(
     next: &dyn Fn(&[Alternative]) -> Option<NextExperiment>,
 ) -> Diagnosis {
     let Beside { model, mut causes, mut alternatives, mut not_excited, mut warnings } = beside;
-    let mut strange = Vec::new();
+    let (mut strange, mut much) = (Vec::new(), Vec::new());
     let mut found: Vec<(f64, Cause)> = Vec::new();
     let mut passed: Vec<PassedOver> = Vec::new();
     for part in parts {
         for (k, chosen) in part.study.chosen.iter().enumerate() {
             let cause = part.cause(k, chosen);
-            // One cause may show in two channels: what it is called stays, what it comes out at is said of both.
-            if let Some((_, held)) = found.iter_mut().find(|(_, c)| c.id == cause.id) {
-                let named = |p: &CauseParameter| held.parameters.iter().all(|q| q.name != p.name);
-                let more: Vec<CauseParameter> = cause.parameters.into_iter().filter(named).collect();
-                held.parameters.extend(more);
-                held.evidence = format!("{}; and {}", held.evidence, cause.evidence);
+            if !add(&mut found, chosen.score, cause) {
                 continue;
             }
-            found.push((chosen.score, cause));
             alternatives.extend(rivals(part.study, chosen));
         }
         strange.extend(part.unnamed());
+        much.extend(part.much_left());
         part.not_excited(&mut not_excited);
         join(&mut passed, passed_over(part.study, &part.study.picks(), UNEXPLAINED));
     }
@@ -236,7 +265,8 @@ pub fn answer(
     not_excited.retain(|n| causes.iter().all(|c| c.id != n.id) && alternatives.iter().all(|a| a.id != n.id));
     let passed = unsaid(passed, &causes, &alternatives, &not_excited);
     let open: Vec<Alternative> = alternatives.iter().filter(|a| a.posterior > OPEN).cloned().collect();
-    let verdict = verdict(!causes.is_empty(), !strange.is_empty(), !open.is_empty());
+    let verdict = verdict(!causes.is_empty(), !strange.is_empty() || !much.is_empty(), !open.is_empty());
+    warnings.extend(much);
     for (cause, warning) in strange {
         causes.push(cause);
         warnings.push(warning);

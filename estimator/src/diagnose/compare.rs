@@ -16,6 +16,7 @@ const RIDGE: f64 = 1e-2;
 const LEAST_OWN: f64 = 1e-4;
 
 /// Rows of one channel with everything that could explain them.
+#[derive(Clone)]
 pub struct Channel {
     /// The target.
     pub y: Vec<f64>,

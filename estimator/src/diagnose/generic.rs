@@ -14,6 +14,11 @@ type Factor<'a> = (&'a str, Box<dyn Fn(&Row) -> f64 + 'a>);
 
 /// All of them.
 pub fn generic(track: &Track) -> Vec<Candidate> {
+    generic_of(track, WAVES, SLOW)
+}
+
+/// The same with so many waves over the range, and in time.
+pub fn generic_of(track: &Track, waves: u32, slow: u32) -> Vec<Candidate> {
     let mut all = Vec::new();
     let force = if track.coordinate == Coordinate::Angular { "N m" } else { "N" };
     let fast = track.quantile(0.9, |r| r.motion.velocity.abs()).max(1e-12);
@@ -33,7 +38,7 @@ pub fn generic(track: &Track) -> Vec<Candidate> {
     // Along a line the waves are counted over the range.
     let turns = if track.radius_m.is_some() { String::new() } else { format!("2 pi/{range:.3} ") };
     let wave = |n: u32, of: fn(f64) -> f64| column(track, &|r| of(f64::from(n) * phase(r)));
-    let waves: Vec<[Vec<f64>; 2]> = (1..=WAVES).map(|n| [wave(n, f64::cos), wave(n, f64::sin)]).collect();
+    let waves: Vec<[Vec<f64>; 2]> = (1..=waves).map(|n| [wave(n, f64::cos), wave(n, f64::sin)]).collect();
     for (name, factor) in &factors {
         let factor = column(track, factor);
         for (n, waves) in (1..).zip(&waves) {
@@ -47,7 +52,7 @@ pub fn generic(track: &Track) -> Vec<Candidate> {
         let hinge = |r: &Row| (r.motion.velocity.abs() - bend).max(0.0) / fast * r.motion.direction;
         all.push(term(format!("max(abs(v) - {bend:.3}, 0) sgn(v)"), vec![column(track, &hinge)], force));
     }
-    for k in 1..=SLOW {
+    for k in 1..=slow {
         let wave = |r: &Row| (std::f64::consts::PI * f64::from(k) * r.motion.time_s / track.span_s.max(1e-9)).cos();
         all.push(term(format!("cos({k} pi t/T)"), vec![column(track, &wave)], force));
     }

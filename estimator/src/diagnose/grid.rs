@@ -140,6 +140,23 @@ impl Grid {
         }
     }
 
+    /// With another grid's values beside its own.
+    pub fn with(mut self, more: Self) -> Self {
+        self.stribeck.extend(more.stribeck);
+        self.ways.extend(more.ways);
+        self.straight.extend(more.straight);
+        self.ripples.extend(more.ripples);
+        self.places.extend(more.places);
+        self.walls.extend(more.walls);
+        self.cables.extend(more.cables);
+        self.rests.extend(more.rests);
+        self.hardening.extend(more.hardening);
+        self.warming.extend(more.warming);
+        self.settling.extend(more.settling);
+        self.starts.extend(more.starts);
+        self
+    }
+
     /// Values between those of the coarse grid, around the ones that were found; `step`: how far from them, 1 at first.
     pub fn around(found: &[&Candidate], track: &Track, step: f64) -> Self {
         let coarse = Self::coarse(track);

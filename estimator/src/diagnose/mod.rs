@@ -153,7 +153,10 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
             let ask = |recordings: &[Recording]| blocks::blocks(recordings, options);
             ask(recordings).map(|found| late::undo(recordings, found, &ask))
         }
-        Task::Needle => needle::needle(recordings, options),
+        Task::Needle => {
+            let ask = |recordings: &[Recording]| needle::needle(recordings, options);
+            ask(recordings).map(|found| late::undo_by(recordings, found, &ask, needle::AS_GOOD))
+        }
         _ => switch::switch(recordings, options),
     }?;
     if !faults.is_empty() && found.verdict == Verdict::None {
@@ -184,6 +187,9 @@ pub fn validate(
                 blocks::channels(&[late::put_back(recording, diagnosis.late_s)], options)?
             }
             Task::BlockStack | Task::Barrel => blocks::channels(one, options)?,
+            Task::Needle if diagnosis.late_s != 0.0 => {
+                needle::channels(&[late::put_back(recording, diagnosis.late_s)], options)?
+            }
             Task::Needle => needle::channels(one, options)?,
             Task::Switch => switch::channels(one, options)?,
         };

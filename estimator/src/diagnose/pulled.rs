@@ -116,6 +116,7 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         shows,
         states: &plain,
         usual: &|_| None,
+        much: None,
     };
     let floor = white_noise(&rows.iter().map(|r| r.force).collect::<Vec<_>>());
     let mut parts = vec![part(

@@ -70,7 +70,7 @@ const LINES: [(&str, &[Over]); 10] = [
     ("pad-compliance", &[Over::Path]),
 ];
 /// What is weaker than this share of such a cause's score may be that remainder.
-const REMAINDER: f64 = 0.12;
+pub const REMAINDER: f64 = 0.12;
 
 /// Squared correlation of two causes' estimates from which on they are one.
 const AS_ONE: f64 = 0.99;
@@ -88,6 +88,11 @@ enum Over {
     Time,
     /// The way of the tip.
     Path,
+}
+
+/// Whether the form of a cause is somebody's choice of a curve.
+pub fn is_curve(id: &str) -> bool {
+    CURVES.iter().any(|(curve, _)| *curve == id)
 }
 
 /// What is lost at a reversal.

@@ -62,6 +62,8 @@ pub enum Weighing {
     Tent,
     /// Three arcs of a parabola whose first and last points count nothing: exactly what a second difference of three mean places has.
     Bell,
+    /// A parabola that is gone half a point beyond either end: what a smoothed channel has.
+    Parabola,
 }
 
 impl Weighing {
@@ -73,6 +75,7 @@ impl Weighing {
         match self {
             Self::Even => 1.0,
             Self::Hat => middle - (k as f64 + 0.5 - middle).abs(),
+            Self::Parabola => 1.0 - ((k as f64 + 0.5 - middle) / middle).powi(2),
             Self::Tent => 1.0 - (along(2.0) - 1.0).abs(),
             Self::Bell => {
                 let aside = (along(3.0) - 1.5).abs();

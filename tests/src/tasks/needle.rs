@@ -35,10 +35,16 @@ pub enum Kind {
     Bias,
     /// A sheet that is pierced at another force the second time.
     Puncture,
+    /// Friction that grows with the length in the hole.
+    Longer,
+    /// Friction, and more of it at one place in the hole.
+    Catch,
+    /// Friction, and a force that comes late.
+    Late,
 }
 
 impl Kind {
-    /// All of them.
+    /// All that the whole battery asks for.
     pub const ALL: [(&'static str, Self); 10] = [
         ("needle: nothing", Self::Nothing),
         ("needle: nothing (hand)", Self::NothingInWorld),
@@ -99,6 +105,12 @@ struct Sheet {
     puncture_n: [f64; 2],
     dry_n: [f64; 2],
     drag_n_s_m: f64,
+    /// Dry friction by length in the hole.
+    dry_n_m: f64,
+    /// More of it: where, within how far, and how much at most.
+    catch: (f64, f64, f64),
+    /// By how much the force comes late, s.
+    late_s: f64,
 }
 
 impl Sheet {
@@ -127,6 +139,9 @@ fn tool(kind: Kind, chance: &mut Chance) -> (Case, Truth, (Sheet, f64)) {
         puncture_n: [chance.between(0.9, 2.0); 2],
         dry_n: [0.0; 2],
         drag_n_s_m: 0.0,
+        dry_n_m: 0.0,
+        catch: (0.0, 1.0, 0.0),
+        late_s: 0.0,
     };
     let mut drift_n_s = 0.0;
     match kind {
@@ -161,6 +176,24 @@ fn tool(kind: Kind, chance: &mut Chance) -> (Case, Truth, (Sheet, f64)) {
             drift_n_s = chance.of_order(3e-3, 20e-3) * chance.sign();
             truth.hidden = vec!["force-drift"];
             truth.value = Some(("rate", drift_n_s));
+        }
+        Kind::Longer => {
+            sheet.dry_n_m = chance.between(12.0, 25.0);
+            truth.hidden = vec!["other:depth sgn(v)"];
+            truth.value = Some(("A", sheet.dry_n_m));
+        }
+        Kind::Catch => {
+            sheet.dry_n = [chance.between(0.1, 0.2); 2];
+            sheet.catch = (sheet.deep_m() + 3.2e-3, 1.5e-3, chance.between(0.3, 0.6));
+            truth.besides = vec!["coulomb-friction"];
+            truth.hidden = vec!["local-resistance"];
+        }
+        Kind::Late => {
+            sheet.dry_n = [chance.between(0.1, 0.25); 2];
+            sheet.late_s = chance.between(0.03, 0.06);
+            truth.besides = vec!["coulomb-friction"];
+            truth.hidden = vec!["time-delay"];
+            truth.value = Some(("tau", sheet.late_s));
         }
         Kind::Puncture => {
             sheet.puncture_n[1] = sheet.puncture_n[0] * chance.pick(&[0.6, 0.7, 1.4, 1.7]);
@@ -220,6 +253,13 @@ fn plan(sheet: &Sheet, chance: &mut Chance) -> Plan {
 }
 
 impl Sheet {
+    /// Dry friction of a hole at a depth, N.
+    fn dry_at_n(&self, place: usize, x: f64) -> f64 {
+        let (at, within, most_n) = self.catch;
+        let aside = ((x - at) / within).abs().min(1.0);
+        self.dry_n[place] + self.dry_n_m * x + most_n * (1.0 - aside * aside).powi(2)
+    }
+
     /// How deep it is pushed in when it gives way the first time, m.
     fn deep_m(&self) -> f64 {
         let mut x = 0.0;
@@ -282,7 +322,8 @@ fn perform(sheet: &Sheet, drift_n_s: f64, plan: &Plan, chance: &mut Chance) -> R
     let bias = 0.03 * chance.normal();
     let phase = chance.between(0.0, 6.0);
     let (mut deepest, mut pierced, mut site, mut place) = (0.0_f64, false, 0_usize, 0_usize);
-    let (mut time, mut depth, mut side, mut force) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut time, mut depth, mut side) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut felt, mut force): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let mut before = turns[0].1;
     for fine in 0..(end_s / FINE_S) as usize {
         let t = fine as f64 * FINE_S;
@@ -297,7 +338,7 @@ fn perform(sheet: &Sheet, drift_n_s: f64, plan: &Plan, chance: &mut Chance) -> R
         let mut f = 0.0;
         if pierced && x > 0.0 {
             // Rational in the speed: no kink at rest.
-            f = sheet.dry_n[place] * speed / (speed * speed + 1e-8).sqrt() + sheet.drag_n_s_m * speed;
+            f = sheet.dry_at_n(place, x) * speed / (speed * speed + 1e-8).sqrt() + sheet.drag_n_s_m * speed;
         } else if x > 0.0 {
             let left = sheet.dent * deepest;
             f = if x >= deepest {
@@ -312,8 +353,13 @@ fn perform(sheet: &Sheet, drift_n_s: f64, plan: &Plan, chance: &mut Chance) -> R
             time.push(t);
             depth.push(((surface_m + x + 1e-5 * chance.normal()) / 5e-6).round() * 5e-6);
             side.push(across + 1e-5 * chance.normal());
-            force.push(((f + bias + drift_n_s * t + 0.01 * chance.normal()) / 1e-3).round() * 1e-3);
+            felt.push(f);
+            force.push(bias + drift_n_s * t + 0.01 * chance.normal());
         }
+    }
+    let late = (sheet.late_s * rate_hz).round() as usize;
+    for (i, read) in force.iter_mut().enumerate() {
+        *read = ((*read + felt[i.saturating_sub(late)]) / 1e-3).round() * 1e-3;
     }
     let still: Vec<f64> = force.iter().map(|_| 0.01 * chance.normal()).collect();
     let down = |values: Vec<f64>| values.into_iter().map(|v| -v).collect::<Vec<f64>>();

@@ -6,6 +6,7 @@ use super::sheet;
 use crate::diagnose::answer::Compared;
 use crate::diagnose::experiment::{Insertions, LIKELY, PIERCE, SURE, power, separation};
 use crate::diagnose::report::{Alternative, Experiment, NextExperiment};
+use crate::diagnose::track::Span;
 use crate::segment::threshold::percentile;
 use haptics::law::object::MembraneLaw;
 
@@ -124,7 +125,8 @@ fn imagine(needle: &Needle, motion: &Insertions, free_s: f64) -> Needle {
             push,
             deepest_m: deepest,
             stretch,
+            span: Span::default(),
         });
     }
-    Needle { rows, recordings: 1, holds: 1, punctures: Vec::new(), ..*needle }
+    Needle { rows, fine: Vec::new(), recordings: 1, holds: 1, punctures: Vec::new(), late: None, ..*needle }
 }

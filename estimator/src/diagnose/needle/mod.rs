@@ -2,7 +2,9 @@
 //!
 //! Without a world the sheet is a linear spring and the hole holds nothing, as in the thesis's simulation; with one they are its laws.
 
+mod between;
 mod experiment;
+mod late;
 mod rows;
 mod shaft;
 mod sheet;
@@ -24,6 +26,12 @@ use rows::{Needle, Puncture};
 const UNEVEN: f64 = 25.0;
 /// Puncture forces of one sheet are the same within this share.
 const PUNCTURE_SHARE: f64 = 0.03;
+
+/// What is left of the force on a shaft is never so many times its noise where the model is right, whatever is unknown of the way at reversals.
+const MUCH: f64 = 4.0;
+/// A delay that was seen in all forces of a needle leaves at most so many times as much as was left without: of the force on a shaft, rows at reversals
+/// count little, and outside of the sheet nothing comes late.
+pub const AS_GOOD: f64 = 1.5;
 
 /// Diagnoses recordings of one needle and one sheet, all together.
 pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
@@ -55,7 +63,8 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
     let (on_sheet, on_shaft) = (|f: &Found<'_>| sheet::shows(f), |f: &Found<'_>| shaft::shows(f));
     let mut parts: Vec<Part<'_>> = vec![sheet.part(&on_sheet, &plain, &sheet::usual)];
-    parts.extend(shaft.as_ref().map(|s| s.compared.part(&on_shaft, &plain, &|_| None)));
+    parts
+        .extend(shaft.as_ref().map(|s| Part { much: Some(MUCH), ..s.compared.part(&on_shaft, &plain, &shaft::usual) }));
     let asked =
         |open: &[Alternative]| experiment::propose(open, (&seen, law), (&sheet, shaft.as_ref())).or_else(|| next(open));
     let mut found = answer(&parts, beside, &asked);
@@ -63,6 +72,10 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         let of_shaft = |s: &shaft::Shaft| s.compared.atlas(&s.view, limit, sheet::best_seen);
         found.atlas.channels.push(sheet.atlas(&view, limit, sheet::best_seen));
         found.atlas.channels.extend(shaft.as_ref().map(of_shaft));
+    }
+    if let Some(late) = seen.late {
+        found.guess_s = late.is_seen.then_some(late.tau_s);
+        found.rest_s = Some([late.tau_s, late.error_s]);
     }
     found.hypotheses = simulated::hypotheses((&sheet, shaft.as_ref()), (seen.holds, seen.two_fingered), law.is_some());
     Ok(found)

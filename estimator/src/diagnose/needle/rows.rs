@@ -1,6 +1,9 @@
 //! Rows of a needle's recording: nothing held, held outside, pressing an untouched sheet, unloading it, and in the hole.
 
+use super::between::Between;
+use super::late::{Forces, Late, late};
 use crate::diagnose::compare::stretches;
+use crate::diagnose::track::{Fine, Span};
 use crate::estimate::EstimateError;
 use crate::identify::needle::Sheet;
 use crate::identify::needle::signals::{Along, along};
@@ -62,6 +65,8 @@ pub struct Row {
     /// Deepest so far at this place, m.
     pub deepest_m: f64,
     pub stretch: usize,
+    /// The points of [`Needle::fine`] that it is the mean of, in a hole.
+    pub span: Span,
 }
 
 impl Row {
@@ -93,6 +98,8 @@ pub struct Puncture {
 /// A recording of a needle, or several of the same needle and sheet.
 pub struct Needle {
     pub rows: Vec<Row>,
+    /// What lies between those in holes; nothing for what was not measured.
+    pub fine: Vec<Fine>,
     /// How many recordings take part.
     pub recordings: usize,
     pub holds: usize,
@@ -106,6 +113,8 @@ pub struct Needle {
     pub slope_noise_m_s: f64,
     /// In order.
     pub punctures: Vec<Puncture>,
+    /// How late its forces are; of several recordings the one that is seen the most clearly.
+    pub late: Option<Late>,
 }
 
 impl Needle {
@@ -113,6 +122,7 @@ impl Needle {
     pub fn then(&mut self, later: Self) {
         let of = |pick: fn(&Row) -> usize| self.rows.iter().map(pick).max().map_or(0, |last| last + 1);
         let (push, stretch, recording) = (of(|r| r.push), of(|r| r.stretch), self.recordings);
+        let points = self.fine.len();
         let end_s = self.rows.last().map_or(0.0, |r| r.time_s) + BETWEEN_S;
         self.rows.extend(later.rows.into_iter().map(|row| Row {
             recording,
@@ -121,8 +131,12 @@ impl Needle {
             hold: self.holds + row.hold,
             push: push + row.push,
             stretch: stretch + row.stretch,
+            span: Span { start: row.span.start + points, ..row.span },
             ..row
         }));
+        let runs = self.fine.last().map_or(0, |p| p.stretch + 1);
+        let then = |p: Fine| Fine { stretch: runs + p.stretch, time_s: end_s + p.time_s, ..p };
+        self.fine.extend(later.fine.into_iter().map(then));
         let holds = self.holds;
         self.punctures.extend(later.punctures.into_iter().map(|p| Puncture { recording, hold: holds + p.hold, ..p }));
         let weight = self.recordings as f64;
@@ -133,6 +147,11 @@ impl Needle {
         self.rate_noise_m_s = self.rate_noise_m_s.max(later.rate_noise_m_s);
         self.slope_noise_m_s = self.slope_noise_m_s.max(later.slope_noise_m_s);
         self.two_fingered &= later.two_fingered;
+        let clear = |late: &Late| (late.is_seen, -late.error_s);
+        self.late = match (self.late, later.late) {
+            (Some(own), Some(other)) if clear(&own) >= clear(&other) => Some(own),
+            (own, other) => other.or(own),
+        };
     }
 }
 
@@ -153,14 +172,18 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     let acceleration = smooth(&time, &depth.slope).slope;
     let surface_m = sheet.loading.surface_m;
     let phases = phases((&along, &pushes), &time, (&depth.value, &depth.slope), surface_m);
-    let stride = 2 * half_width(&time);
+    let half = half_width(&time);
+    let stride = 2 * half;
+    let in_hole: Vec<bool> = phases.iter().map(|of| of.is_some_and(|(phase, ..)| phase == Phase::Hole)).collect();
+    let between = Between::new(&time, &depth, surface_m, &in_hole, half);
     let step_s = match time.as_slice() {
         [first, .., last] => (last - first) / (time.len() - 1) as f64,
         _ => 1.0,
     };
-    let mut rows: Vec<Row> = Vec::new();
-    for i in (0..time.len()).step_by(stride) {
-        let Some((phase, hold, push, deepest)) = phases[i] else { continue };
+    let (mut rows, mut of_row): (Vec<Row>, Vec<usize>) = (Vec::new(), Vec::new());
+    for (i, of) in phases.iter().enumerate().step_by(stride) {
+        let Some((phase, hold, push, deepest)) = *of else { continue };
+        of_row.push(i);
         rows.push(Row {
             recording: 0,
             start_s: 0.0,
@@ -175,6 +198,7 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
             push,
             deepest_m: deepest - surface_m,
             stretch: 0,
+            span: if phase == Phase::Hole { between.span(i) } else { Span::default() },
         });
     }
     let period_s = stride as f64 * step_s;
@@ -183,7 +207,7 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     rows.iter_mut().zip(numbers).for_each(|(row, number)| row.stretch = number);
     let rate_noise_m_s = white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>());
     // Of a straight line through the window.
-    let half = half_width(&time) as f64;
+    let half = half as f64;
     let spread = half * (half + 1.0) * (2.0 * half + 1.0) / 3.0;
     let slope_noise_m_s = white_noise(&own) / (spread.sqrt() * step_s.max(1e-9));
     let punctures = pushes.iter().filter_map(|p| Some((p, p.puncture?))).map(|(push, i)| {
@@ -191,9 +215,9 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
         let (time_s, force_n) = (time[i] - time[0], along.force_n[i]);
         Puncture { recording: 0, time_s, force_n, error_n: step_n.hypot(along.noise_n), hold: push.hold }
     });
-    let punctures = punctures.collect();
-    Ok(Needle {
+    let mut seen = Needle {
         rows,
+        fine: between.points,
         recordings: 1,
         holds: along.holds.len(),
         period_s,
@@ -201,8 +225,11 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
         stiffness_n_m: sheet.loading.stiffness_n_m,
         rate_noise_m_s,
         slope_noise_m_s,
-        punctures,
-    })
+        punctures: punctures.collect(),
+        late: None,
+    };
+    seen.late = late(&seen, &Forces { force_n: &force.value, of_row: &of_row, sample_s: step_s });
+    Ok(seen)
 }
 
 type Of = Option<(Phase, usize, usize, f64)>;

@@ -9,6 +9,8 @@ use crate::diagnose::columns::Columns;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::dictionary::Dictionary;
 use crate::diagnose::experiment::Imagined;
+use crate::diagnose::generic::generic_of;
+use crate::diagnose::geometry::Study;
 use crate::diagnose::grid::Grid;
 use crate::diagnose::track::{self, Bearing, Track};
 use crate::estimate::EstimateError;
@@ -23,10 +25,25 @@ const LEAST_ROWS: usize = 60;
 /// Half of the filter's window, with some room, s, and how clear a direction must be.
 const WINDOW_S: f64 = 0.018;
 const NOISES: f64 = 3.0;
-/// Causes of the dictionary that are asked for in a hole. Where it rubs more than elsewhere, and what bends its friction with speed, is
-/// not: the place of a needle between two pads is not known well enough for that.
-const POSSIBLE: [&str; 6] =
-    ["coulomb-friction", "viscous-friction", "quadratic-drag", "hysteresis", "friction-change", "force-drift"];
+/// Causes of the dictionary that are asked for in a hole. Where it rubs more than elsewhere is not where two fingers hold the needle: its place between
+/// their pads is not known well enough for that.
+const POSSIBLE: [&str; 9] = [
+    "coulomb-friction",
+    "viscous-friction",
+    "quadratic-drag",
+    "stribeck",
+    "hysteresis",
+    "backlash",
+    "local-resistance",
+    "friction-change",
+    "force-drift",
+];
+/// Friction of a shaft goes with the length that is in the hole: no law of the catalogue has that, and no needle is without.
+const ALONG_THE_SHAFT: &str = "other:depth sgn(v)";
+/// Rounds of a search around the values that were found: the steps of the first grid, and half of them.
+const CLOSER: [f64; 2] = [1.0, 0.5];
+/// Waves over the depth and in time that show what has no name: a recording has few rows in its holes.
+const WAVES: u32 = 3;
 /// The rim of a world's hole may be softer or stiffer than its sheet by so much, in a first step.
 const RIM_SHARE: f64 = 0.05;
 
@@ -48,17 +65,23 @@ impl Shaft {
         let track = seen(needle, &rows);
         Imagined {
             base: base(needle, &rows, law),
-            candidates: candidates((needle, &rows), &track, law, self.dry_n),
+            candidates: candidates((needle, &rows), &track, law, (self.dry_n, &Grid::coarse(&track))),
             stretch: rows.iter().map(|r| r.stretch).collect(),
             weight: vec![1.0; rows.len()],
         }
     }
 }
 
-/// Rows in the hole. Where the way turns round within a filter's window the force is of both directions.
+/// Rows in the hole. Where the way turns round within a filter's window the force is of both directions; how much of it is of which is only known from
+/// the points between the rows.
 fn rows(needle: &Needle) -> Vec<Row> {
-    let turns = |r: &Row| r.rate_m_s.abs() < WINDOW_S * r.acceleration_m_s2.abs() + NOISES * needle.rate_noise_m_s;
-    needle.rows.iter().filter(|r| r.phase == Phase::Hole && !turns(r)).copied().collect()
+    let told = |r: &Row| if needle.fine.is_empty() { !turns(needle, r) } else { r.span.len > 0 };
+    needle.rows.iter().filter(|r| r.phase == Phase::Hole && told(r)).copied().collect()
+}
+
+/// Whether the way of a row may turn round within a filter's window.
+fn turns(needle: &Needle, row: &Row) -> bool {
+    row.rate_m_s.abs() < WINDOW_S * row.acceleration_m_s2.abs() + NOISES * needle.rate_noise_m_s
 }
 
 /// The same as a track, as certain of its direction as it can be.
@@ -90,12 +113,11 @@ fn candidates(
     (needle, rows): (&Needle, &[Row]),
     track: &Track,
     law: Option<&MembraneLaw>,
-    dry_n: f64,
+    (dry_n, grid): (f64, &Grid),
 ) -> Vec<Candidate> {
     let of = |f: &dyn Fn(usize) -> f64| (0..rows.len()).map(f).collect::<Vec<f64>>();
     let direction = of(&|i| track.rows[i].motion.direction);
     let resisting: Vec<f64> = direction.iter().map(|d| dry_n * d).collect();
-    let grid = Grid::coarse(track);
     let dictionary = Dictionary {
         track,
         predicted: &resisting,
@@ -103,10 +125,12 @@ fn candidates(
         dry: &vec![dry_n; direction.len()],
         fixed: &[],
         without: &[],
-        grid: &grid,
+        grid,
         columns: &Columns::default(),
     };
-    let possible = dictionary.candidates().into_iter().filter(|c| POSSIBLE.contains(&c.id));
+    // What pushes at a place, whichever way the needle goes, is the sheet's rim.
+    let pushes = |c: &Candidate| c.id == "local-resistance" && (c.sign == 0.0 || needle.two_fingered);
+    let possible = dictionary.candidates().into_iter().filter(|c| POSSIBLE.contains(&c.id) && !pushes(c));
     // A rate is measured less well than a direction.
     let with_noise = |c: Candidate| {
         if c.id == "viscous-friction" { c.noisy(needle.slope_noise_m_s) } else { c }
@@ -116,6 +140,8 @@ fn candidates(
         // It bends before it slides already.
         candidates.retain(|c| !["hysteresis", "coulomb-friction", "viscous-friction"].contains(&c.id));
     }
+    let longer = of(&|i| rows[i].depth_m * direction[i]);
+    candidates.push(Candidate::one(ALONG_THE_SHAFT, Kind::Plant, "A", "N/m", longer).positive());
     for push in 1..=rows.iter().map(|r| r.push).max().unwrap_or(0) {
         let later = of(&|i| if rows[i].push >= push { dry_n * direction[i] } else { 0.0 });
         if rows.iter().any(|r| r.push < push) {
@@ -123,19 +149,15 @@ fn candidates(
             candidates.push(change.at("from insertion", (push + 1) as f64, "1"));
         }
     }
-    let span = track.span_s.max(1e-9);
-    candidates.extend((1..=3).map(|k| {
-        let wave = of(&|i| (std::f64::consts::PI * f64::from(k) * rows[i].time_s / span).cos());
-        let expression = Some(format!("cos({k} pi t/T)"));
-        Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) }
-    }));
+    candidates.extend(generic_of(track, WAVES, WAVES));
     candidates
 }
 
 /// Compares what may hold the shaft. `None` where the needle hardly moved in a hole.
 pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Option<Shaft>, EstimateError> {
     let rows = rows(needle);
-    if rows.len() < LEAST_ROWS {
+    // Turns alone tell a bend from a friction, and neither how large it is.
+    if rows.iter().filter(|r| !turns(needle, r)).count() < LEAST_ROWS {
         return Ok(None);
     }
     let track = seen(needle, &rows);
@@ -148,29 +170,65 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
     // Of a world's columns the last but one is its friction.
     let of_world = if law.is_some() { look.values[base.len() - 2].abs() } else { 0.0 };
     let dry_n = look.values[first.len() - 1].abs() + of_world;
-    let candidates = candidates((needle, &rows), &track, law, dry_n);
     // Where the direction is a guess all of the friction is open.
     let floor_n = white_noise(&y);
-    let weight = direction
-        .iter()
-        .map(|d| (1.0 + dry_n * dry_n * (1.0 - d * d) / (floor_n * floor_n).max(1e-18)).powf(-0.5))
-        .collect();
+    let open = |r: &track::Row| (1.0 + dry_n * dry_n * r.open / (floor_n * floor_n).max(1e-18)).powf(-0.5);
+    let weight = track.rows.iter().map(open).collect();
     let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();
     let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
     let state = rows.iter().map(Row::state).collect();
+    let coarse = Grid::coarse(&track);
+    let asked = |grid: &Grid, dry_n: f64| candidates((needle, &rows), &track, law, (dry_n, grid));
     let channel = Channel {
         y,
         base,
-        candidates,
+        candidates: asked(&coarse, dry_n),
         stretch: stretch.clone(),
         testable: along.clone(),
         weight,
         period_s: needle.period_s,
     };
+    let study = closely(channel, (&track, &coarse), &asked, (law.is_some(), threshold, dry_n))?;
+    let dry_n = sliding_n(&study).unwrap_or(dry_n);
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
-    let study = channel.compare(threshold)?;
     let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, stretch, state };
     Ok(Some(Shaft { compared, view: super::sheet::view(&rows), model, dry_n }))
+}
+
+/// The comparison, and once more around the values that were found, as long as there are any. `asked`: candidates over a grid beside so much dry
+/// friction; `dry`: whether the model has it.
+fn closely(
+    channel: Channel,
+    (track, coarse): (&Track, &Grid),
+    asked: &dyn Fn(&Grid, f64) -> Vec<Candidate>,
+    (dry, threshold, first_n): (bool, f64, f64),
+) -> Result<Study, EstimateError> {
+    let compare = |channel: Channel| {
+        if dry { channel.compare(threshold) } else { channel.compare_without_friction(threshold) }
+    };
+    let mut study = compare(channel.clone())?;
+    let mut grid = coarse.clone();
+    for step in CLOSER {
+        let picks = study.picks();
+        let found: Vec<&Candidate> =
+            picks.iter().map(|p| &study.candidates[*p]).filter(|c| !c.searched.is_empty()).collect();
+        if found.is_empty() {
+            break;
+        }
+        grid = grid.with(Grid::around(&found, track, step));
+        // Play takes much of it away at a first look; all of its share is of what slides.
+        let dry_n = sliding_n(&study).unwrap_or(first_n);
+        study = compare(Channel { candidates: asked(&grid, dry_n), ..channel.clone() })?;
+    }
+    Ok(study)
+}
+
+/// The dry friction that was found, N.
+fn sliding_n(study: &Study) -> Option<f64> {
+    let picks = study.picks();
+    let before = picks.iter().take_while(|p| study.candidates[**p].id != "coulomb-friction");
+    let place = study.base.len() + before.map(|p| study.candidates[*p].columns.len()).sum::<usize>();
+    study.solved.as_ref()?.values.get(place).copied()
 }
 
 /// Friction of a world's hole along the measured way, N, drag left out.
@@ -209,19 +267,19 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
             force: Vec2::new(r.force_n, 0.0),
             force_rate: Vec2::zeros(),
             y: r.force_n,
-            span: track::Span::default(),
+            span: r.span,
             open: 0.0,
         })
         .collect();
     Track {
         rows: along,
-        fine: Vec::new(),
+        fine: needle.fine.iter().map(|p| track::Fine { time_s: p.time_s - start_s, ..*p }).collect(),
         period_s: needle.period_s,
         raw_period_s: needle.period_s,
         coordinate: Coordinate::Linear,
         radius_m: None,
         planar: false,
-        velocity_noise: needle.rate_noise_m_s,
+        velocity_noise: if needle.fine.is_empty() { needle.rate_noise_m_s } else { needle.slope_noise_m_s },
         position_noise: 0.0,
         force_noise: 1e-12,
         noise_is_measured: false,
@@ -234,12 +292,30 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
     }
 }
 
+/// Sizes that could just matter, and what would show them.
+pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+    Some(match candidate.id {
+        "stribeck" => (0.1, "the needle hardly moved slowly in the hole; go to and fro there slowly and fast"),
+        "backlash" => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a gap"),
+        "hysteresis" => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a bend"),
+        _ => return None,
+    })
+}
+
 /// What in the residual shows a cause.
 pub fn shows(found: &Found<'_>) -> String {
     match found.candidate.id {
         "coulomb-friction" => "in the hole the force turns round with the direction, whatever the speed".to_owned(),
         "viscous-friction" => "in the hole the force follows the speed".to_owned(),
         "hysteresis" => "at each reversal in the hole the rim gives before the shaft slides".to_owned(),
+        "backlash" => "after each reversal in the hole nothing holds the shaft for a way".to_owned(),
+        "stribeck" => "in the hole the friction falls with speed".to_owned(),
+        "local-resistance" => {
+            "at one place in the hole the shaft is held more than elsewhere, whichever way it goes".to_owned()
+        }
+        ALONG_THE_SHAFT => {
+            "the friction grows with the length that is in the hole, which no known cause does".to_owned()
+        }
         "friction-change" => "the shaft rubs differently from one insertion to the next".to_owned(),
         other => format!("{other} shows in the force on the shaft"),
     }

@@ -2,6 +2,7 @@
 
 use super::rows::{Needle, Phase, Puncture, Row};
 use super::{punctures, sheet};
+use crate::diagnose::track::Span;
 use rand::{RngExt as _, SeedableRng as _};
 use std::f64::consts::TAU;
 
@@ -41,6 +42,7 @@ fn needle(seed: u64, askew: f64, goes_on: f64) -> Needle {
             push,
             deepest_m: depth_m,
             stretch: 2 * push + usize::from(phase == Phase::Loading),
+            span: Span::default(),
         }
     };
     for (push, rate_m_s) in [0.006, 0.01, 0.014, 0.017, 0.02].into_iter().enumerate() {
@@ -51,6 +53,7 @@ fn needle(seed: u64, askew: f64, goes_on: f64) -> Needle {
     }
     Needle {
         rows,
+        fine: Vec::new(),
         recordings: 1,
         holds: 1,
         period_s: PERIOD_S,
@@ -59,6 +62,7 @@ fn needle(seed: u64, askew: f64, goes_on: f64) -> Needle {
         rate_noise_m_s: 1e-5,
         slope_noise_m_s: 1e-5,
         punctures: Vec::new(),
+        late: None,
     }
 }
 

@@ -2,13 +2,18 @@
 
 use super::signals::Along;
 use super::strokes::Push;
-use super::{OBJECT, Sheet};
+use super::{HELD, OBJECT, Sheet};
 use crate::estimate::Parameter;
 use crate::identify::bootstrap::median_error;
 use haptics::recording::Recording;
 
-/// A sheet is pierced between two samples; the force of so many samples before the fall is uncertain.
-const FALL_SAMPLES: usize = 1;
+/// A force is on the loading curve within so many times its noise, or this share of it: slow filters bend the curve a little.
+const ON_CURVE_NOISES: f64 = 4.0;
+const ON_CURVE: f64 = 0.02;
+/// A filter that force and place went through makes a sheet give way so much earlier on the curve, s, if there is one.
+const FILTER_S: f64 = 2e-3;
+/// The speed of a push before it goes through is that of so long, s, and of one step between samples at least.
+const BEFORE_S: f64 = 0.02;
 /// The place of a puncture on the curve is as uncertain as this share of the force's noise.
 const PLACE_NOISE: f64 = 0.5;
 /// Drag, and a hole that is not the same both ways, as a share of the friction.
@@ -43,20 +48,40 @@ impl Sheet {
             .with_bootstrap(drawn.map(|sum| (sum / n).sqrt().hypot(own)))
     }
 
+    /// A sheet gives way between the last sample on the loading curve and the next one. That is where the needle was with the speed that it had: once it
+    /// is through, what pushed it lets it run ahead, and the force of that falls by and by.
     fn through(&self, along: &Along, push: &Push) -> Option<Through> {
         let give = along.give_m_n.0;
         let depth = |i: usize| along.depth_m[i] - give * along.force_n[i];
-        let (at, fallen) = (push.puncture?, push.fallen?);
-        // A filter that force and place went through delays both: where the force has half fallen the place is that of the fall.
-        let half_m = 0.5 * (along.depth_m[fallen] + along.depth_m[fallen - 1]) - give * along.force_n[at];
-        let force = self.loading.force_n(half_m.max(depth(at)));
-        let before = self.loading.force_n(depth(at.saturating_sub(FALL_SAMPLES).max(push.samples.start)));
-        let place = (force - before) / 12.0_f64.sqrt();
+        let measured = |i: usize| along.force_n[i] - self.offset(push.hold);
+        let (peak, fallen) = (push.puncture?, push.fallen?);
+        let is_on_curve = |i: &usize| {
+            let curve = self.loading.force_n(depth(*i));
+            measured(*i) > curve - (ON_CURVE_NOISES * along.noise_n).max(ON_CURVE * curve)
+        };
+        let at = (peak..fallen).rev().find(is_on_curve).unwrap_or(peak);
+        let back = ((BEFORE_S / along.period_s.max(1e-9)) as usize).max(1);
+        let first = at.saturating_sub(back).max(push.samples.start).min(at.saturating_sub(1));
+        let step_m = ((depth(at) - depth(first)) / (at - first).max(1) as f64).max(0.0);
+        let (before, after) = (self.loading.force_n(depth(at)), self.loading.force_n(depth(at) + step_m));
+        let force = 0.5 * (before + after);
+        let filtered = if along.period_s > 0.0 { (after - before) * FILTER_S / along.period_s } else { 0.0 };
+        let place = ((after - before) / 12.0_f64.sqrt()).hypot(filtered);
         // The curve and the sample itself, which must agree.
-        let measured = along.force_n[at] - self.offset(push.hold);
-        let single = place.hypot(0.5 * (measured - force)).hypot(PLACE_NOISE * along.noise_n);
+        let single = place.hypot(0.5 * (measured(at) - before)).hypot(PLACE_NOISE * along.noise_n);
         let curve = self.loading.force_error_n(depth(at));
         Some(Through { force, curve, resampled: self.loading.force_resampled_n(depth(at)), single })
+    }
+
+    /// What a single tool is held with outside the sheet: where it goes up and down, its weight.
+    pub(super) fn held(&self, along: &Along) -> Option<Parameter> {
+        if along.two_fingered || along.direction.y.abs() < 0.9 {
+            return None;
+        }
+        let how = "force upwards that holds the tool outside the sheet: its weight, and any bias of its sensor";
+        let value = self.loading.offset_n.first()? / along.direction.y;
+        let error = (LEVEL_NOISE * along.noise_n).hypot(self.loading.around.std_errors[0]);
+        Some(Parameter::identified(OBJECT, HELD, value, error, self.samples, how))
     }
 
     /// Half the difference between going in and drawing out of a hole.
@@ -113,4 +138,57 @@ impl Sheet {
 fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::strokes::pushes;
+    use super::*;
+
+    /// Pushed in by `step_m` a sample into a spring of 450 N/m that is pierced at 1.6 N, `later_m` beyond a sample; then what pushed it lets it run ahead, and
+    /// the force of that falls by and by.
+    fn pierced(step_m: f64, later_m: f64) -> Along {
+        let (mut depth_m, mut force_n) = (Vec::new(), Vec::new());
+        let (mut at, mut left) = (later_m - step_m * (1.6 / 450.0 / step_m + 40.0).round(), None);
+        for i in 0..120 + (6e-3 / step_m) as usize {
+            // A deterministic stand-in for noise of 4 mN.
+            let noise = 5.6e-3 * (i as f64 * 12.9898).sin();
+            let elastic = 450.0 * f64::max(at, 0.0);
+            left = left.map(|n: f64| 0.7 * n).or((elastic > 1.6).then_some(1.25));
+            force_n.push(left.unwrap_or(elastic) + noise);
+            depth_m.push(at);
+            at += if left.is_some() { 3.0 * step_m } else { step_m };
+        }
+        let n = depth_m.len();
+        Along {
+            depth_m,
+            force_n,
+            side_m: vec![0.0; n],
+            direction: haptics::Vec2::new(0.0, -1.0),
+            holds: std::iter::once(0..n).collect(),
+            give_m_n: (0.0, 0.0),
+            calm: 1,
+            period_s: step_m / 0.02,
+            noise_n: 0.004,
+            free_n: None,
+            two_fingered: false,
+        }
+    }
+
+    #[test]
+    fn what_runs_ahead_once_it_is_through_is_no_force_of_the_sheet() {
+        for step_m in [2e-5, 1e-4, 3e-4] {
+            let mut sum = 0.0;
+            for part in 0..5 {
+                let along = pierced(step_m, step_m * f64::from(part) / 5.0);
+                let pushes = pushes(&along);
+                let sheet = Sheet::of(&along, &pushes).expect("a sheet");
+                let found = sheet.puncture(&along, &pushes);
+                let (value, error) = found.value.zip(found.std_error).expect("it goes through");
+                assert!((value - 1.6).abs() < 3.0 * error, "{value} ± {error} at {step_m}");
+                sum += value / 5.0;
+            }
+            assert!((sum / 1.6 - 1.0).abs() < 0.015, "{sum} at {step_m}");
+        }
+    }
 }

@@ -22,6 +22,9 @@ use strokes::Push;
 /// The object's name in the results.
 pub const OBJECT: &str = "needle";
 
+/// The force that a single tool is held with outside the sheet, N upwards.
+pub const HELD: &str = "held_force_N";
+
 /// What geometry and log leave unknown of a place, m: seats, resolution.
 const PLACE_ERROR_M: f64 = 1e-5;
 /// Stiffness of a hand whose pads' give is not seen, N/m.
@@ -105,6 +108,7 @@ impl Sheet {
         found.push(self.surface(along, &pushes[0]));
         found.extend(self.friction(along, pushes));
         found.extend(self.weight(along, recording));
+        found.extend(self.held(along));
         found
     }
 

@@ -41,6 +41,8 @@ pub struct Along {
     pub give_m_n: (f64, f64),
     /// So many samples are averaged to one point of the loading curve: noise in the depth would flatten the bend of the curve.
     pub calm: usize,
+    /// Usual time between two samples, s; 0 where there is no clock.
+    pub period_s: f64,
     /// White noise of the force, N.
     pub noise_n: f64,
     /// Mean force of empty hands in that direction, N, and its error; `None` where the needle is held all the time.
@@ -89,7 +91,7 @@ pub fn along(recording: &Recording) -> Result<Along, EstimateError> {
     let spans_s = time_s.last().zip(time_s.first()).map_or(0.0, |(last, first)| last - first);
     let period_s = spans_s / time_s.len().saturating_sub(1).max(1) as f64;
     let calm = if period_s > 0.0 { ((CALM_S / period_s).round() as usize).max(1) } else { 1 };
-    Ok(Along { depth_m, force_n, side_m, direction, holds, give_m_n, calm, noise_n, free_n, two_fingered })
+    Ok(Along { depth_m, force_n, side_m, direction, holds, give_m_n, calm, period_s, noise_n, free_n, two_fingered })
 }
 
 /// Mean of the force well before the first hold and after the last, and its error.

@@ -18,6 +18,8 @@ const FALLEN: f64 = 0.6;
 const DRAWN_BACK: f64 = 0.1;
 /// A force above this many times the noise is the sheet's.
 const TOUCHES: f64 = 8.0;
+/// The last of so many parts of the way to the sheet shows what the needle is held with.
+const LAST_PART: usize = 4;
 /// Peaks below this share of the strongest force are no push.
 const PUSH_SHARE: f64 = 0.15;
 
@@ -67,10 +69,11 @@ pub fn pushes(along: &Along) -> Vec<Push> {
             if known.is_some_and(|k| places[k].punctured) {
                 continue;
             }
-            let (puncture, fallen) = puncture(along, &stroke, &force).unzip();
+            let (puncture, fallen) = puncture(along, &stroke, &force, least_n).unzip();
             let end = puncture.unwrap_or(peak) + 1;
+            let start = held_from(along, &stroke, &force, least_n);
             let untouched_from_m = known.map_or(f64::NEG_INFINITY, |k| places[k].deepest_m + BEYOND_DENT_M);
-            found.push(Push { hold, samples: stroke.start..end, untouched_from_m, puncture, fallen, end: stroke.end });
+            found.push(Push { hold, samples: start..end, untouched_from_m, puncture, fallen, end: stroke.end });
             let deepest_m = along.depth_m[stroke.start..stroke.end].iter().fold(f64::MIN, |a, b| a.max(*b));
             match known {
                 Some(k) => {
@@ -127,9 +130,35 @@ fn strokes(depth: &[f64], range: &Range<usize>, turn_m: f64) -> Vec<Range<usize>
     found
 }
 
-/// The last sample before the force falls although the needle goes on, and the first one after.
-fn puncture(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64) -> Option<(usize, usize)> {
-    let touched = stroke.clone().find(|&i| force(i) > TOUCHES * along.noise_n)?;
+/// Where the sheet is touched: the force rises out of quiet. A tool that is taken only then shows another force before, which is no sheet's: it is less
+/// than a push (`least_n`).
+fn touched(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64, least_n: f64) -> Option<usize> {
+    let touches = |i: &usize| force(*i) > TOUCHES * along.noise_n;
+    let quiet = stroke.clone().take_while(|i| force(*i) < least_n).find(|i| !touches(i)).unwrap_or(stroke.start);
+    (quiet..stroke.end).find(touches)
+}
+
+/// The first sample of a stroke from which on the needle is held as it is on its way to the sheet: a tool that is taken up bears another load before.
+fn held_from(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64, least_n: f64) -> usize {
+    let Some(touched) = touched(along, stroke, force, least_n).filter(|_| !along.two_fingered) else {
+        return stroke.start;
+    };
+    let mut near: Vec<f64> = (touched - (touched - stroke.start) / LAST_PART..touched).map(force).collect();
+    near.sort_by(f64::total_cmp);
+    let Some(level) = near.get(near.len() / 2).copied() else { return stroke.start };
+    let other = |i: &usize| (force(*i) - level).abs() > TOUCHES * along.noise_n;
+    let before = stroke.start..touched - (touched - stroke.start) / LAST_PART;
+    before.rev().find(other).map_or(stroke.start, |i| i + 1)
+}
+
+/// The last sample before the force falls although the needle goes on, and the first one after. `least_n`: what is less is no push.
+fn puncture(
+    along: &Along,
+    stroke: &Range<usize>,
+    force: &dyn Fn(usize) -> f64,
+    least_n: f64,
+) -> Option<(usize, usize)> {
+    let touched = touched(along, stroke, force, least_n)?;
     let surface_m = along.depth_m[touched];
     let mut peak = touched;
     for i in touched..stroke.end {
@@ -137,7 +166,7 @@ fn puncture(along: &Along, stroke: &Range<usize>, force: &dyn Fn(usize) -> f64) 
             peak = i;
         }
         let drawn_back = along.depth_m[peak] - along.depth_m[i] > DRAWN_BACK * (along.depth_m[peak] - surface_m);
-        if force(i) < FALLEN * force(peak) && !drawn_back {
+        if force(peak) >= least_n && force(i) < FALLEN * force(peak) && !drawn_back {
             return Some((peak, i));
         }
         // What was let go this far begins anew.
@@ -179,6 +208,7 @@ mod tests {
             holds: std::iter::once(0..n).collect(),
             give_m_n: (0.0, 0.0),
             calm: 1,
+            period_s: 1e-3,
             noise_n: 0.005,
             free_n: None,
             two_fingered: false,
@@ -204,6 +234,20 @@ mod tests {
         // Steps of 9 mN, of which the median of five takes some.
         assert!((forces[0] - 1.6).abs() < 0.04, "{forces:?}");
         assert!(pushes(&pressed(&pressed_twice(), 9.0)).iter().all(|p| p.puncture.is_none()));
+    }
+
+    /// A pen that is taken at once shows no force of its own in its first samples, and the weight of a hand that lets it sag.
+    #[test]
+    fn a_tool_that_is_taken_up_first_is_read_from_then_on() {
+        let along = pressed(&pressed_twice(), 1.6);
+        let mut taken = along.clone();
+        taken.force_n[..30].iter_mut().for_each(|f| *f += 0.17);
+        let (plain, found) = (pushes(&along), pushes(&taken));
+        assert_eq!(
+            found.iter().map(|p| p.puncture).collect::<Vec<_>>(),
+            plain.iter().map(|p| p.puncture).collect::<Vec<_>>()
+        );
+        assert_eq!(found[0].samples, 30..plain[0].samples.end);
     }
 
     #[test]

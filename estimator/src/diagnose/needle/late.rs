@@ -1,0 +1,107 @@
+//! Forces that come later than the motion of a needle: with the forces of another moment, its sheet explains more.
+
+use super::rows::{Needle, Phase, Row};
+use crate::identify::linear::least_squares_values;
+
+/// Longest delay that is tried, s, both ways: a hand has done something else by then.
+const LONGEST_S: f64 = 0.1;
+/// It is tried in steps of this, s, or of a sample where those are longer.
+const STEP_S: f64 = 2e-3;
+/// When and how far from a surface or a puncture what is touched depends on the delay: forces of so much later or earlier, s, are not compared there.
+const NEAR_S: f64 = 0.06;
+/// A delay is one where it leaves less than this share of the power, and makes the forces that much likelier (2 ln likelihood). What else is hidden
+/// in a sheet is not in the plain model, so that some of it goes with any delay by chance.
+const LEAVES: f64 = 0.5;
+const LIKELIER: f64 = 60.0;
+/// Fewer rows as a share of those that are compared without a delay say nothing about one.
+const ENOUGH: f64 = 0.8;
+
+/// By how much forces come later than motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Late {
+    /// The delay and its standard error, s.
+    pub tau_s: f64,
+    pub error_s: f64,
+    /// Whether it is more than chance.
+    pub is_seen: bool,
+}
+
+/// The forces of a recording: smoothed, one a sample, of which every row has one.
+pub struct Forces<'a> {
+    pub force_n: &'a [f64],
+    /// Sample of each row.
+    pub of_row: &'a [usize],
+    pub sample_s: f64,
+}
+
+/// The delay with which what is held, and a sheet that may harden and keep a dent, leave least. A sheet that drags looks like a force that comes early,
+/// which is therefore not told. Only of a single tool: what two fingers hold gives way between their pads, by more than a hand moves on in a delay.
+pub fn late(needle: &Needle, forces: &Forces<'_>) -> Option<Late> {
+    if needle.two_fingered {
+        return None;
+    }
+    let compared: Vec<usize> = (0..needle.rows.len()).filter(|i| is_compared(needle, &needle.rows[*i])).collect();
+    let columns = columns(needle, &compared);
+    let step = (STEP_S / forces.sample_s.max(1e-9)).round().max(1.0);
+    let step_s = step * forces.sample_s;
+    let most = (LONGEST_S / step_s.max(1e-9)) as isize;
+    let tried: Vec<(isize, f64, f64)> = (-most..=most)
+        .filter_map(|k| left(forces, &compared, &columns, k * step as isize).map(|(power, count)| (k, power, count)))
+        .collect();
+    let (_, plain, count) = *tried.iter().find(|(k, ..)| *k == 0)?;
+    let enough = tried.iter().filter(|(.., n)| *n > ENOUGH * count);
+    let (best, power, rows_left) = *enough.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let at = |k: isize| tried.iter().find(|(tried, ..)| *tried == k).map(|(_, power, _)| *power);
+    let (before, after) = (at(best - 1)?, at(best + 1)?);
+    let bend = before + after - 2.0 * power;
+    if bend <= 0.0 {
+        return None;
+    }
+    let between = (0.5 * (before - after) / bend).clamp(-0.5, 0.5);
+    // Twice the logarithm of the likelihood falls by one at one standard error; rows are a window of the filter apart.
+    let error_s = step_s / (rows_left * 0.5 * bend / power.max(f64::MIN_POSITIVE)).sqrt();
+    let is_seen = best > 0 && power < LEAVES * plain && count * (plain / power.max(f64::MIN_POSITIVE)).ln() > LIKELIER;
+    Some(Late { tau_s: (best as f64 + between) * step_s, error_s, is_seen })
+}
+
+/// Rows that touch the same whatever the delay, outside and on the sheet. What a hole does to a shaft that turns round is not known well enough.
+fn is_compared(needle: &Needle, row: &Row) -> bool {
+    let at_surface = row.depth_m.abs() < NEAR_S * row.rate_m_s.abs();
+    let at_puncture = needle.punctures.iter().any(|p| (row.time_s - p.time_s).abs() < 2.0 * NEAR_S);
+    !matches!(row.phase, Phase::Empty | Phase::Hole) && !at_surface && !at_puncture
+}
+
+/// The plain model over the compared rows.
+fn columns(needle: &Needle, compared: &[usize]) -> Vec<Vec<f64>> {
+    let of = |f: &dyn Fn(&Row) -> f64| compared.iter().map(|i| f(&needle.rows[*i])).collect::<Vec<f64>>();
+    let when = |phases: &'static [Phase], f: &'static dyn Fn(&Row) -> f64| {
+        of(&|r: &Row| if phases.contains(&r.phase) && r.depth_m > 0.0 { f(r) } else { 0.0 })
+    };
+    let mut columns: Vec<Vec<f64>> = (0..needle.holds).map(|h| of(&|r| f64::from(u8::from(r.hold == h)))).collect();
+    columns.push(of(&|r| r.time_s));
+    let touched: &'static [Phase] = &[Phase::Loading, Phase::Unloading];
+    columns.push(when(touched, &|_| 1.0));
+    columns.push(when(touched, &|r| r.depth_m));
+    columns.push(when(touched, &|r| r.depth_m.powi(3)));
+    // Below its deepest point a sheet is another one.
+    columns.push(when(&[Phase::Unloading], &|_| 1.0));
+    columns.push(when(&[Phase::Unloading], &|r| r.depth_m));
+    columns
+}
+
+/// Power that is left a row with the forces of so many samples later, and rows.
+fn left(forces: &Forces<'_>, compared: &[usize], columns: &[Vec<f64>], by: isize) -> Option<(f64, f64)> {
+    let later = |i: usize| forces.of_row[i].checked_add_signed(by).and_then(|at| forces.force_n.get(at));
+    let (kept, y): (Vec<usize>, Vec<f64>) =
+        compared.iter().enumerate().filter_map(|(k, i)| Some((k, *later(*i)?))).unzip();
+    let columns: Vec<Vec<f64>> = columns
+        .iter()
+        .map(|column| kept.iter().map(|k| column[*k]).collect::<Vec<f64>>())
+        .filter(|column| column.iter().any(|v| *v != 0.0))
+        .collect();
+    if y.len() <= 2 * columns.len() {
+        return None;
+    }
+    let rms = least_squares_values(&columns, &y, None).ok()?.rms;
+    Some((rms * rms, y.len() as f64))
+}
