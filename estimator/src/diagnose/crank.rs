@@ -87,12 +87,7 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     }
     found.guess_s = late::guess_s(&track, &model);
     name_joint(&mut found, link);
-    if let Some(cause) = scale.filter(|scale: &Cause| found.causes.iter().all(|c| c.id != scale.id)) {
-        found.causes.insert(0, cause);
-        if found.verdict == Verdict::None {
-            found.verdict = Verdict::Causes;
-        }
-    }
+    add_scale(&mut found, scale);
     let is_known = |name: &str| recordings.iter().any(|r| r.meta.known.contains_key(name));
     unseen::without_known(&mut found, !fixed.is_empty() || is_known("added_weight_N"), is_known("radius_m"));
     Ok(found)
@@ -111,6 +106,15 @@ pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validati
     };
     let (before, after) = (with_known(&diagnosis.plain), with_known(&diagnosis.effects));
     Ok(super::validate::validate(&mut track, &before, &after, &known, &diagnosis.kept))
+}
+
+/// Names the scale of all lengths where the path itself did not.
+fn add_scale(found: &mut Diagnosis, scale: Option<Cause>) {
+    let Some(cause) = scale.filter(|scale| found.causes.iter().all(|c| c.id != scale.id)) else { return };
+    found.causes.insert(0, cause);
+    if found.verdict == Verdict::None {
+        found.verdict = Verdict::Causes;
+    }
 }
 
 /// How much more likely the force must be when the first link's angle is wrong, not the second's (2 ln likelihood).

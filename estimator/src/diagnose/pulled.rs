@@ -54,6 +54,13 @@ pub fn is_pulled(recordings: &[Recording]) -> bool {
     recordings.iter().all(|r| r.time_s.is_none() && path::points(r).is_some())
 }
 
+/// What depends on speed.
+fn without_a_clock() -> impl Iterator<Item = NotExcited> {
+    ["inertia", "viscous-friction", "time-delay"]
+        .into_iter()
+        .map(|id| NotExcited { id: id.to_owned(), why: "there is no clock; give a t_s column or rate_hz".to_owned() })
+}
+
 /// Diagnoses paths of one mechanism.
 pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     let (mut rows, mut kinds) = (Vec::new(), Vec::new());
@@ -78,10 +85,7 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         "the paths follow {kind} ({turns} revolute, {slides} prismatic of {}); without a clock nothing that depends on speed can be told",
         kinds.len()
     ));
-    for id in ["inertia", "viscous-friction", "time-delay"] {
-        let why = "there is no clock; give a t_s column or rate_hz".to_owned();
-        beside.not_excited.push(NotExcited { id: id.to_owned(), why });
-    }
+    beside.not_excited.extend(without_a_clock());
     let forced = recordings.iter().all(|r| path::forces(r).is_some()) && rows.len() >= 40;
     beside.model = if forced { format!("{kind}+coulomb-friction") } else { kind.to_owned() };
     if !forced {

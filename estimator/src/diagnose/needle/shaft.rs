@@ -188,7 +188,7 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         weight,
         period_s: needle.period_s,
     };
-    let study = closely(channel, (&track, &coarse), &asked, (law.is_some(), threshold, dry_n))?;
+    let study = closely(&channel, (&track, &coarse), &asked, (law.is_some(), threshold, dry_n))?;
     let dry_n = sliding_n(&study).unwrap_or(dry_n);
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
     let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, stretch, state };
@@ -198,7 +198,7 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
 /// The comparison, and once more around the values that were found, as long as there are any. `asked`: candidates over a grid beside so much dry
 /// friction; `dry`: whether the model has it.
 fn closely(
-    channel: Channel,
+    channel: &Channel,
     (track, coarse): (&Track, &Grid),
     asked: &dyn Fn(&Grid, f64) -> Vec<Candidate>,
     (dry, threshold, first_n): (bool, f64, f64),
