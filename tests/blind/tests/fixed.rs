@@ -34,7 +34,10 @@ fn two_causes_that_take_each_other_back_are_not_named() {
         assert!(named(case).is_empty(), "{case:?}: {:?}", named(case));
     }
     assert_eq!(named((2424, 8105)), ["inertia"]);
-    assert_eq!(named((2424, 8295)), ["coulomb-friction", "return-spring"]);
+    // Either may be the stronger one.
+    let mut both = named((2424, 8295));
+    both.sort_unstable();
+    assert_eq!(both, ["coulomb-friction", "return-spring"]);
 }
 
 /// What is weak must show where it was not fitted, too (`gain::confirmed`).
