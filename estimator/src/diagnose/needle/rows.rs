@@ -100,8 +100,9 @@ pub struct Needle {
     pub rows: Vec<Row>,
     /// What lies between those in holes; nothing for what was not measured.
     pub fine: Vec<Fine>,
-    /// How many recordings take part.
+    /// How many recordings take part, and whether these rows are of more than one.
     pub recordings: usize,
+    pub joined: bool,
     pub holds: usize,
     pub period_s: f64,
     pub two_fingered: bool,
@@ -122,7 +123,6 @@ impl Needle {
     pub fn then(&mut self, later: Self) {
         let of = |pick: fn(&Row) -> usize| self.rows.iter().map(pick).max().map_or(0, |last| last + 1);
         let (push, stretch, recording) = (of(|r| r.push), of(|r| r.stretch), self.recordings);
-        let points = self.fine.len();
         let end_s = self.rows.last().map_or(0.0, |r| r.time_s) + BETWEEN_S;
         self.rows.extend(later.rows.into_iter().map(|row| Row {
             recording,
@@ -131,12 +131,12 @@ impl Needle {
             hold: self.holds + row.hold,
             push: push + row.push,
             stretch: stretch + row.stretch,
-            span: Span { start: row.span.start + points, ..row.span },
             ..row
         }));
-        let runs = self.fine.last().map_or(0, |p| p.stretch + 1);
-        let then = |p: Fine| Fine { stretch: runs + p.stretch, time_s: end_s + p.time_s, ..p };
-        self.fine.extend(later.fine.into_iter().map(then));
+        // Every hole bends in its own way before anything slides in it: one law for several misses each at its turns.
+        self.joined = true;
+        self.fine.clear();
+        self.rows.iter_mut().for_each(|row| row.span = Span { start: 0, len: 0, ..row.span });
         let holds = self.holds;
         self.punctures.extend(later.punctures.into_iter().map(|p| Puncture { recording, hold: holds + p.hold, ..p }));
         let weight = self.recordings as f64;
@@ -218,6 +218,7 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     let mut seen = Needle {
         rows,
         fine: between.points,
+        joined: false,
         recordings: 1,
         holds: along.holds.len(),
         period_s,

@@ -38,6 +38,8 @@ const POSSIBLE: [&str; 9] = [
     "friction-change",
     "force-drift",
 ];
+/// Those of them that need the points between the rows.
+const CLOSELY: [&str; 3] = ["stribeck", "backlash", "local-resistance"];
 /// Friction of a shaft goes with the length that is in the hole: no law of the catalogue has that, and no needle is without.
 const ALONG_THE_SHAFT: &str = "other:depth sgn(v)";
 /// Rounds of a search around the values that were found: the steps of the first grid, and half of them.
@@ -130,7 +132,9 @@ fn candidates(
     };
     // What pushes at a place, whichever way the needle goes, is the sheet's rim.
     let pushes = |c: &Candidate| c.id == "local-resistance" && (c.sign == 0.0 || needle.two_fingered);
-    let possible = dictionary.candidates().into_iter().filter(|c| POSSIBLE.contains(&c.id) && !pushes(c));
+    // What happens within a filter's window at a turn is only told from between the rows.
+    let unseen = |c: &Candidate| needle.joined && CLOSELY.contains(&c.id);
+    let possible = dictionary.candidates().into_iter().filter(|c| POSSIBLE.contains(&c.id) && !pushes(c) && !unseen(c));
     // A rate is measured less well than a direction.
     let with_noise = |c: Candidate| {
         if c.id == "viscous-friction" { c.noisy(needle.slope_noise_m_s) } else { c }

@@ -54,6 +54,7 @@ fn needle(seed: u64, askew: f64, goes_on: f64) -> Needle {
     Needle {
         rows,
         fine: Vec::new(),
+        joined: false,
         recordings: 1,
         holds: 1,
         period_s: PERIOD_S,
