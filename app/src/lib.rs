@@ -17,7 +17,6 @@ pub mod schema;
 pub mod tasks;
 pub mod ui;
 pub mod video;
-mod whole_file;
 pub mod worlds;
 
 pub use constraint_words::constraint_words;

@@ -35,6 +35,10 @@ struct Hidden {
     /// What the left finger's top joint is wrong by, rad.
     joint_rad: f64,
     two_fingers: bool,
+    /// Weight of a handle that hangs on the bearing, N: it loads that beside the fingers' pull, and its mass is held on the circle there.
+    handle_n: f64,
+    /// Whether it is turned one way, and pulled outward all the time.
+    one_way: bool,
 }
 
 /// One instant: places and net force.
@@ -53,7 +57,10 @@ fn instants(rng: &mut StdRng, hidden: Hidden) -> Vec<Instant> {
         .iter()
         .map(|hz| (hz * rng.random_range(0.9..1.1), 0.5 / hz.sqrt(), rng.random_range(0.0..TAU)))
         .collect();
-    let angle = |t: f64| 2.4 * waves.iter().map(|(hz, size, phase)| size * (TAU * hz * t + phase).sin()).sum::<f64>();
+    let (wide, steady) = if hidden.one_way { (0.2, 2.6) } else { (2.4, 0.0) };
+    let angle = |t: f64| {
+        steady * t + wide * waves.iter().map(|(hz, size, phase)| size * (TAU * hz * t + phase).sin()).sum::<f64>()
+    };
     let ease = |x: f64| x.clamp(0.0, 1.0).powi(2) * (3.0 - 2.0 * x.clamp(0.0, 1.0));
     let one = |k: usize| {
         let t = k as f64 / RATE_HZ;
@@ -67,10 +74,13 @@ fn instants(rng: &mut StdRng, hidden: Hidden) -> Vec<Instant> {
         let place_m = [CENTER_M[0] + arm * cos + 0.004 * away, CENTER_M[1] + arm * sin - 0.012 * away];
         let held = (HELD_S[0]..HELD_S[1]).contains(&t);
         let firm = if held { ease((t - HELD_S[0]) / 0.15) * ease((HELD_S[1] - t) / 0.15) } else { 0.0 };
-        let pull_n = 1.2 * (TAU * 0.27 * t + 1.0).sin() + 0.5 * (TAU * 0.61 * t).cos();
+        let outward_n = if hidden.one_way { 3.5 } else { 0.0 };
+        let pull_n = outward_n + 1.2 * (TAU * 0.27 * t + 1.0).sin() + 0.5 * (TAU * 0.61 * t).cos();
         let ripple_n = hidden.ripple.1 * (hidden.ripple.0 * a).cos();
+        let weight_n = if hidden.handle_n > 0.0 { hidden.handle_n } else { 0.2 };
+        let load_n = pull_n + hidden.handle_n * (rate * rate / (9.81 * RADIUS_M) - sin);
         let along_n =
-            0.2 * cos + hidden.eccentric_n * sin + 0.12 * pull_n.abs() * rate.signum() + 1.1 * rate + ripple_n;
+            weight_n * cos + hidden.eccentric_n * sin + 0.12 * load_n.abs() * rate.signum() + 1.1 * rate + ripple_n;
         let force_n = [firm * (pull_n * cos - along_n * sin), firm * (pull_n * sin + along_n * cos)];
         Instant { place_m, force_n, held }
     };
@@ -218,5 +228,39 @@ fn a_ripple_has_the_length_that_it_has() {
             let length_m = value(&found, "position-ripple", "lambda");
             assert!((length_m * waves / (TAU * RADIUS_M) - 1.0).abs() < 0.02, "{seed}: {length_m} m for {waves} waves");
         }
+    }
+}
+
+fn is_on_the_bearing(found: &Diagnosis) -> bool {
+    found.warnings.iter().any(|w| w.contains("the load on the bearing"))
+}
+
+/// What only goes one way makes of the handle's weight on the bearing a pull a quarter turn ahead of gravity's.
+#[test]
+fn a_handle_that_hangs_on_its_bearing_is_no_eccentric_mass() {
+    for seed in SEEDS {
+        for one_way in [false, true] {
+            let found = asked(seed, Hidden { handle_n: 1.5, one_way, ..Hidden::default() });
+            assert_eq!(found.verdict, Verdict::None, "{seed} {one_way}: {:?}", ids(&found));
+            assert!(is_on_the_bearing(&found), "{seed} {one_way}: {:?}", found.warnings);
+        }
+    }
+}
+
+#[test]
+fn what_is_hidden_beside_a_handle_on_its_bearing_is_named_alone() {
+    for seed in SEEDS {
+        let hidden = Hidden { handle_n: 1.5, one_way: true, ripple: (5.0, 0.25), ..Hidden::default() };
+        let found = asked(seed, hidden);
+        assert_eq!(ids(&found), ["position-ripple"], "{seed}");
+        assert!(is_on_the_bearing(&found), "{seed}: {:?}", found.warnings);
+    }
+}
+
+#[test]
+fn a_mass_off_the_axis_that_is_turned_one_way_is_one() {
+    for seed in SEEDS {
+        let found = asked(seed, Hidden { eccentric_n: 0.3, one_way: true, ..Hidden::default() });
+        assert!(ids(&found).contains(&"eccentric-mass") && !is_on_the_bearing(&found), "{seed}: {:?}", ids(&found));
     }
 }

@@ -253,7 +253,7 @@ fn progress(what: &str) {
 }
 
 fn write(path: &Path, text: &str) -> anyhow::Result<()> {
-    crate::whole_file::write(path, text).with_context(|| format!("the file could not be written: {}", path.display()))
+    haptics::text_file::write(path, text).with_context(|| format!("the file could not be written: {}", path.display()))
 }
 
 /// Names and values of what a fit should find in a world.

@@ -69,7 +69,7 @@ impl Diagnose {
         let mut text = describe(&diagnosis);
         if let Some(path) = &self.out {
             let world = extended_world(&recordings, &options, &diagnosis)?;
-            crate::whole_file::write(path, world.to_json() + "\n")
+            haptics::text_file::write(path, world.to_json() + "\n")
                 .with_context(|| format!("the world could not be written: {}", path.display()))?;
             let _ = writeln!(text, "world: {}", path.display());
         }

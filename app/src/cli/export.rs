@@ -52,7 +52,7 @@ impl Export {
             self.world.display(),
             self.to.name()
         );
-        crate::whole_file::write(&self.out, &exported.text).with_context(|| {
+        haptics::text_file::write(&self.out, &exported.text).with_context(|| {
             format!("the file cannot be written; check its folder and permissions: {}", self.out.display())
         })?;
         let mut text = format!("{}: {} as {}\n", self.out.display(), exported.bodies.join(", "), self.to.name());

@@ -62,7 +62,7 @@ impl Fit {
             }
         }
         if let Some(path) = &self.out {
-            crate::whole_file::write(path, analysis.world.to_json() + "\n")
+            haptics::text_file::write(path, analysis.world.to_json() + "\n")
                 .with_context(|| format!("the world could not be written: {}", path.display()))?;
         }
         let mut text = describe(&analysis.fit);

@@ -64,7 +64,7 @@ impl Lessons {
             lesson.expert = Some(measured);
             lesson.expert_over =
                 super::progress::during("watching the expert over slow lines", |_| expert::over_lines(&lesson));
-            crate::whole_file::write(path, serde_json::to_string_pretty(&lesson)? + "\n")?;
+            haptics::text_file::write(path, serde_json::to_string_pretty(&lesson)? + "\n")?;
         }
         one(&lesson)
     }

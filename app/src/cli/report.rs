@@ -103,7 +103,7 @@ pub(super) fn write(title: &str, sheets: &[Sheet], out: &Path, logs: &[PathBuf])
     if let Some(log) = place(out).and_then(|out| logs.iter().find(|log| place(log).as_ref() == Some(&out))) {
         anyhow::bail!("the report would overwrite the log {}; choose another --out", log.display());
     }
-    crate::whole_file::write(out, page(title, sheets, &Provenance::now()))
+    haptics::text_file::write(out, page(title, sheets, &Provenance::now()))
         .with_context(|| format!("the report could not be written: {}", out.display()))
 }
 

@@ -46,6 +46,6 @@ pub fn of_files(
     {
         return Err(format!("The report would overwrite the log; choose another name: {}", out.display()));
     }
-    crate::whole_file::write(out, page("Measurement report", &sheets, &Provenance::now()))
+    haptics::text_file::write(out, page("Measurement report", &sheets, &Provenance::now()))
         .map_err(|e| format!("The report cannot be written ({e}): {}", out.display()))
 }

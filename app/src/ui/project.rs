@@ -112,7 +112,7 @@ impl Project {
 
 /// Writes beside the file first, so that a crash or a full disk leaves the old one or the new one.
 pub fn write_whole(path: &Path, text: &str) -> Result<(), String> {
-    crate::whole_file::write(path, text).map_err(|e| {
+    haptics::text_file::write(path, text).map_err(|e| {
         format!("The file cannot be written ({e}); check the folder and its permissions: {}", path.display())
     })
 }

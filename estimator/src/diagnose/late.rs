@@ -6,6 +6,7 @@ use super::force::{Model, column};
 use super::generic::generic;
 use super::products::gram;
 use super::report::{Cause, CauseParameter, Diagnosis, Gain, Verdict};
+use super::shifted::{Demands, look};
 use super::system::solve;
 use super::track::{Row, Track};
 use crate::estimate::EstimateError;
@@ -79,38 +80,15 @@ const SURE: f64 = 5.0;
 const AS_GOOD: f64 = 1.1;
 /// … and this where it was not.
 const BETTER: f64 = 0.95;
-/// Longest delay that is tried, s, both ways.
-const LONGEST_S: f64 = 0.09;
-/// Share of the plain model's power that a guess leaves at most, and 2 ln(likelihood) that it gains at least.
-const LEAVES: f64 = 0.85;
-const LIKELIER: f64 = 60.0;
+/// What makes a guess worth asking all again.
+const GUESS: Demands = Demands { longest_s: 0.09, enough: 0.5, leaves: 0.85, likelier: 60.0 };
 
 /// The delay with which a plain model, anything that goes with the place and anything slow leave least, if it is one that matters.
 /// Whole rows are tried, because a force between two rows is the mean of both, with half of the noise.
 pub fn guess_s(track: &Track, model: &Model) -> Option<f64> {
-    let most = (LONGEST_S / track.period_s) as isize;
     let moved = Moved::of(track, model);
-    let tried: Vec<(isize, f64, f64)> = (-most..=most)
-        .filter_map(|rows| {
-            let (power, count) = moved.left(rows)?;
-            Some((rows, power, count))
-        })
-        .collect();
-    let (_, plain, count) = *tried.iter().find(|(rows, ..)| *rows == 0)?;
-    let enough = tried.iter().filter(|(.., n)| *n > 0.5 * count);
-    let (best, power, _) = *enough.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    if power > LEAVES * plain || count * (plain / power).ln() < LIKELIER {
-        return None;
-    }
-    // The vertex of the parabola through the best and its neighbours.
-    let at = |rows: isize| tried.iter().find(|(r, ..)| *r == rows).map(|(_, power, _)| *power);
-    let between = match (at(best - 1), at(best + 1)) {
-        (Some(before), Some(after)) if before + after > 2.0 * power => {
-            (0.5 * (before - after) / (before + after - 2.0 * power)).clamp(-0.5, 0.5)
-        }
-        _ => 0.0,
-    };
-    Some((best as f64 + between) * track.period_s)
+    let late = look(track.period_s, &GUESS, &|rows| moved.left(rows))?;
+    late.is_seen.then_some(late.tau_s)
 }
 
 /// Rows along the motion whose forces are to be moved against it.

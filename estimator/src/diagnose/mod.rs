@@ -48,6 +48,7 @@ mod rollout;
 mod searched;
 mod select;
 mod several;
+mod shifted;
 mod signs;
 mod skew;
 mod slide;

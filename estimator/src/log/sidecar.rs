@@ -76,7 +76,7 @@ pub fn write(recording: &Recording, log: &Path) -> Result<PathBuf, LogError> {
 pub fn write_as_is(meta: &Meta, path: &Path) -> Result<(), LogError> {
     let failed = |reason: String| LogError::Write { reason, path: path.to_path_buf() };
     let text = serde_json::to_string_pretty(meta).map_err(|e| failed(e.to_string()))?;
-    std::fs::write(path, text + "\n").map_err(|e| failed(e.to_string()))
+    haptics::text_file::write(path, text + "\n").map_err(|e| failed(e.to_string()))
 }
 
 #[cfg(test)]

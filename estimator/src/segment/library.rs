@@ -54,7 +54,7 @@ pub fn save(folder: &Path, task: &Definition) -> Result<PathBuf, EstimateError> 
     }
     let path = folder.join(format!("{}.json", task.name));
     let text = serde_json::to_string_pretty(&task).map_err(|error| EstimateError::Other(error.to_string()))?;
-    let written = std::fs::create_dir_all(folder).and_then(|()| std::fs::write(&path, text + "\n"));
+    let written = std::fs::create_dir_all(folder).and_then(|()| haptics::text_file::write(&path, text + "\n"));
     written.map_err(|error| {
         EstimateError::Other(format!("the task cannot be written to {}: {error}; check the folder", path.display()))
     })?;

@@ -81,20 +81,10 @@ pub fn look_now(path: PathBuf, sidecar: Option<PathBuf>, why: Option<String>) ->
 /// Writes the sidecar in the background; the log is opened with it when that is done.
 pub fn save(ctx: &egui::Context, jobs: &mut Jobs, mapping: &Mapping) {
     let (meta, path, sidecar) = (mapping.draft.sidecar(), mapping.path.clone(), mapping.sidecar.clone());
-    jobs.start(ctx, JobKind::Save, move || match write_whole(&meta, &sidecar) {
+    jobs.start(ctx, JobKind::Save, move || match write_sidecar(&meta, &sidecar) {
         Ok(()) => Outcome::Mapped { log: path, sidecar },
         Err(error) => Outcome::Failed(sentence(&error.to_string())),
     });
-}
-
-/// Writes beside and renames: a sidecar is there as a whole or as it was.
-fn write_whole(meta: &Meta, sidecar: &Path) -> Result<(), LogError> {
-    let mut beside = sidecar.as_os_str().to_owned();
-    beside.push(".new");
-    let beside = PathBuf::from(beside);
-    write_sidecar(meta, &beside)?;
-    std::fs::rename(&beside, sidecar)
-        .map_err(|e| LogError::Write { reason: e.to_string(), path: sidecar.to_path_buf() })
 }
 
 /// The sidecar that is there; an empty one when there is none.

@@ -2,7 +2,7 @@
 
 use super::acts::{generic, instrument, plant};
 use super::cable::{cables, errors};
-use super::late::{Late, late};
+use super::late::late;
 use super::rows::{Place, Row, Rows};
 use super::seen::Seen;
 use crate::diagnose::answer::{Compared, Found, parameter};
@@ -11,6 +11,7 @@ use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::geometry::Study;
 use crate::diagnose::report::CauseParameter;
+use crate::diagnose::shifted::Late;
 use crate::estimate::EstimateError;
 use crate::identify::block::object;
 use crate::segment::SystemState;
@@ -79,7 +80,7 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     let longest_s = longest_s(&rows);
     let channel = "net force on carried blocks";
     let view = view(&rows);
-    let late = late(&rows, &known, period_s);
+    let late = late(&rows, &known);
     let compared = Compared { study, channel, unit: "N", floor, along, stretch: rows.stretch, state };
     let weighed = (1..=known.len()).filter(|k| known[k - 1].is_none()).collect();
     Ok(Carry { late, compared, longest_s, cable_errors, numbers, weighed, view })

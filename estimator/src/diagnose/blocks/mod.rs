@@ -11,6 +11,8 @@ mod grasp;
 mod ground;
 mod late;
 mod moved;
+#[cfg(test)]
+mod recorded;
 mod rows;
 mod seen;
 mod simulated;

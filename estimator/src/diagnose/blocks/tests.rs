@@ -1,9 +1,8 @@
 //! One block that is carried several times by two fingers with soft pads.
 
+use super::recorded::{reach, recorded};
 use crate::diagnose::{Diagnosis, Options, Verdict, diagnose};
-use haptics::recording::{Channel, Recording, Task};
-use rand::{RngExt as _, SeedableRng as _};
-use std::f64::consts::TAU;
+use haptics::recording::Recording;
 
 const WEIGHT_N: f64 = 0.6;
 const GRAVITY: f64 = 9.81;
@@ -27,67 +26,42 @@ struct Hidden {
     gain: f64,
 }
 
-/// From 0 to 1 between two times, as a hand moves, and its second derivative.
-fn reach(t: f64, from: f64, to: f64) -> [f64; 2] {
-    let length = to - from;
-    let u = ((t - from) / length).clamp(0.0, 1.0);
-    [u.powi(3) * (10.0 + u * (6.0 * u - 15.0)), 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / length.powi(2)]
+/// The second derivative of [`reach`], 1/s².
+fn bend(t: f64, from: f64, to: f64) -> f64 {
+    let u = ((t - from) / (to - from)).clamp(0.0, 1.0);
+    60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / (to - from).powi(2)
 }
 
-/// Places of the middle and accelerations, grip, and lift at a time.
-fn at(t: f64, hidden: &Hidden) -> ([f64; 2], f64, f64, f64) {
+/// Place of the middle, force to the side, lift and grip.
+fn at(t: f64, hidden: &Hidden) -> ([f64; 2], [f64; 3]) {
     let number = (t / CARRY_S).floor().min(f64::from(CARRIES - 1));
     let own = t - number * CARRY_S;
     // To and fro: what was put down is taken from where it stands.
-    let side = if number % 2.0 == 0.0 { 1.0 } else { -1.0 };
-    let start_x = if number % 2.0 == 0.0 { 0.0 } else { 0.04 };
-    let [across, across2] = reach(own, 2.0, 2.6);
-    let [up, up2] = reach(own, 1.4, 1.9);
-    let [down, down2] = reach(own, 2.9, 3.4);
-    let (x, x2) = (start_x + side * 0.04 * across, side * 0.04 * across2);
-    let (y, y2) = (-0.1 + 0.03 * (up - down), 0.03 * (up2 - down2));
-    let grip_n = 1.6 * (reach(own, 0.6, 0.9)[0] - reach(own, 4.0, 4.3)[0])
-        + 0.5 * (reach(own, 1.0, 1.2)[0] - reach(own, 1.6, 2.4)[0]);
-    let carried = reach(own, 1.2, 1.4)[0] - reach(own, 3.4, 3.6)[0];
+    let (start_m, side) = if number % 2.0 == 0.0 { (0.0, 1.0) } else { (0.04, -1.0) };
+    let of = |shape: &dyn Fn(f64, f64, f64) -> f64| {
+        [side * 0.04 * shape(own, 2.0, 2.6), 0.03 * (shape(own, 1.4, 1.9) - shape(own, 2.9, 3.4))]
+    };
+    let (way, acceleration) = (of(&reach), of(&bend));
+    let grip_n =
+        1.6 * (reach(own, 0.6, 0.9) - reach(own, 4.0, 4.3)) + 0.5 * (reach(own, 1.0, 1.2) - reach(own, 1.6, 2.4));
+    let carried = reach(own, 1.2, 1.4) - reach(own, 3.4, 3.6);
     let weight_n = WEIGHT_N - hidden.leak_n_s * t;
     let mass_kg = weight_n / GRAVITY + hidden.mass_kg;
-    ([x, y], mass_kg * x2 * carried, carried * weight_n + mass_kg * y2 * carried, grip_n)
+    let [side_n, lift_n] = [mass_kg * acceleration[0], weight_n + mass_kg * acceleration[1]].map(|f| carried * f);
+    ([start_m + way[0], -0.1 + way[1]], [side_n, lift_n, grip_n])
 }
 
 fn recording(seed: u64, hidden: &Hidden) -> Recording {
-    let mut rng = rand::rngs::StdRng::seed_from_u64(seed);
-    let mut normal = move || {
-        let (a, b): (f64, f64) = (rng.random_range(1e-12..1.0), rng.random());
-        (-2.0 * a.ln()).sqrt() * (TAU * b).cos()
-    };
-    let names = ["x1_m", "y1_m", "x2_m", "y2_m", "fx1_N", "fy1_N", "fx2_N", "fy2_N"];
-    let mut columns = vec![Vec::new(); names.len()];
-    let mut time_s = Vec::new();
-    for i in 0..(f64::from(CARRIES) * CARRY_S * RATE_HZ) as u32 {
-        let t = f64::from(i) / RATE_HZ;
-        let ([x, y], ..) = at(t, hidden);
-        let grip_n = at(t, hidden).3;
+    recorded(seed, (RATE_HZ, f64::from(CARRIES) * CARRY_S), 5e-3, &|t| {
+        let ([x, y], [.., grip_n]) = at(t, hidden);
         let own = t % CARRY_S;
-        let open_m = 0.008 * (1.0 - reach(own, 0.2, 0.6)[0] + reach(own, 4.3, 4.8)[0]);
+        let open_m = 0.008 * (1.0 - reach(own, 0.2, 0.6) + reach(own, 4.3, 4.8));
         let half_m = 0.5 * WIDTH_M + open_m - hidden.give * grip_n;
-        let (_, side_n, lift_n, grip_n) = at((t - hidden.late_s).max(0.0), hidden);
-        let g = 1.0 + hidden.gain;
-        let forces = [grip_n + 0.5 * side_n, 0.5 * lift_n, -grip_n + 0.5 * side_n, 0.5 * lift_n].map(|f| g * f);
-        let exact = [x - half_m, y, x + half_m, y].into_iter().chain(forces);
-        for (k, (column, value)) in columns.iter_mut().zip(exact).enumerate() {
-            column.push(value + normal() * if k < 4 { 1e-5 } else { 5e-3 });
-        }
-        time_s.push(t);
-    }
-    let channel = |(name, values): (&str, Vec<f64>)| Channel { name: name.to_owned(), unit: String::new(), values };
-    let mut recording = Recording {
-        name: "block".to_owned(),
-        time_s: Some(time_s),
-        channels: names.into_iter().zip(columns).map(channel).collect(),
-        ..Recording::default()
-    };
-    recording.meta.task = Some(Task::BlockStack);
-    recording
+        let (_, forces) = at((t - hidden.late_s).max(0.0), hidden);
+        let [side_n, lift_n, grip_n] = forces.map(|f| (1.0 + hidden.gain) * f);
+        let [side_n, lift_n] = [0.5 * side_n, 0.5 * lift_n];
+        [x - half_m, y, x + half_m, y, grip_n + side_n, lift_n, -grip_n + side_n, lift_n]
+    })
 }
 
 fn found(seed: u64, hidden: &Hidden) -> Diagnosis {

@@ -1,30 +1,16 @@
 //! Forces that come later than the motion of a needle: with the forces of another moment, its sheet explains more.
 
 use super::rows::{Needle, Phase, Row};
+use crate::diagnose::shifted::{Demands, Late, look};
 use crate::identify::linear::least_squares_values;
 
-/// Longest delay that is tried, s, both ways: a hand has done something else by then.
-const LONGEST_S: f64 = 0.1;
-/// It is tried in steps of this, s, or of a sample where those are longer.
+/// Delays are tried in steps of this, s, or of a sample where those are longer.
 const STEP_S: f64 = 2e-3;
 /// When and how far from a surface or a puncture what is touched depends on the delay: forces of so much later or earlier, s, are not compared there.
 const NEAR_S: f64 = 0.06;
-/// A delay is one where it leaves less than this share of the power, and makes the forces that much likelier (2 ln likelihood). What else is hidden
-/// in a sheet is not in the plain model, so that some of it goes with any delay by chance.
-const LEAVES: f64 = 0.5;
-const LIKELIER: f64 = 60.0;
-/// Fewer rows as a share of those that are compared without a delay say nothing about one.
-const ENOUGH: f64 = 0.8;
-
-/// By how much forces come later than motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Late {
-    /// The delay and its standard error, s.
-    pub tau_s: f64,
-    pub error_s: f64,
-    /// Whether it is more than chance.
-    pub is_seen: bool,
-}
+/// A hand has done something else after the longest of them. What else is hidden in a sheet is not in the plain model, so that some of it goes with any
+/// delay by chance.
+const DEMANDS: Demands = Demands { longest_s: 0.1, enough: 0.8, leaves: 0.5, likelier: 60.0 };
 
 /// The forces of a recording: smoothed, one a sample, of which every row has one.
 pub struct Forces<'a> {
@@ -43,25 +29,8 @@ pub fn late(needle: &Needle, forces: &Forces<'_>) -> Option<Late> {
     let compared: Vec<usize> = (0..needle.rows.len()).filter(|i| is_compared(needle, &needle.rows[*i])).collect();
     let columns = columns(needle, &compared);
     let step = (STEP_S / forces.sample_s.max(1e-9)).round().max(1.0);
-    let step_s = step * forces.sample_s;
-    let most = (LONGEST_S / step_s.max(1e-9)) as isize;
-    let tried: Vec<(isize, f64, f64)> = (-most..=most)
-        .filter_map(|k| left(forces, &compared, &columns, k * step as isize).map(|(power, count)| (k, power, count)))
-        .collect();
-    let (_, plain, count) = *tried.iter().find(|(k, ..)| *k == 0)?;
-    let enough = tried.iter().filter(|(.., n)| *n > ENOUGH * count);
-    let (best, power, rows_left) = *enough.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let at = |k: isize| tried.iter().find(|(tried, ..)| *tried == k).map(|(_, power, _)| *power);
-    let (before, after) = (at(best - 1)?, at(best + 1)?);
-    let bend = before + after - 2.0 * power;
-    if bend <= 0.0 {
-        return None;
-    }
-    let between = (0.5 * (before - after) / bend).clamp(-0.5, 0.5);
-    // Twice the logarithm of the likelihood falls by one at one standard error; rows are a window of the filter apart.
-    let error_s = step_s / (rows_left * 0.5 * bend / power.max(f64::MIN_POSITIVE)).sqrt();
-    let is_seen = best > 0 && power < LEAVES * plain && count * (plain / power.max(f64::MIN_POSITIVE)).ln() > LIKELIER;
-    Some(Late { tau_s: (best as f64 + between) * step_s, error_s, is_seen })
+    let late = look(step * forces.sample_s, &DEMANDS, &|by| left(forces, &compared, &columns, by * step as isize));
+    late.filter(|late| late.error_s.is_finite()).map(|late| Late { is_seen: late.is_seen && late.tau_s > 0.0, ..late })
 }
 
 /// Rows that touch the same whatever the delay, outside and on the sheet. What a hole does to a shaft that turns round is not known well enough.

@@ -1,8 +1,9 @@
 //! Rows of a needle's recording: nothing held, held outside, pressing an untouched sheet, unloading it, and in the hole.
 
 use super::between::Between;
-use super::late::{Forces, Late, late};
+use super::late::{Forces, late};
 use crate::diagnose::compare::stretches;
+use crate::diagnose::shifted::Late;
 use crate::diagnose::track::{Fine, Span};
 use crate::estimate::EstimateError;
 use crate::identify::needle::Sheet;

@@ -1,21 +1,14 @@
 //! A block that is picked up, carried and put down by two fingers with noisy force sensors.
 
 use super::Seen;
-use haptics::recording::{Channel, Recording, Task};
-use rand::{RngExt as _, SeedableRng as _};
-use std::f64::consts::TAU;
+use crate::diagnose::blocks::recorded::{reach, recorded};
+use haptics::recording::Recording;
 
 const WEIGHT_N: f64 = 0.34;
 const NOISE_N: f64 = 0.03;
 const RATE_HZ: f64 = 100.0;
 /// The block meets the ground, s.
 const TOUCHDOWN_S: f64 = 6.2;
-
-/// From 0 to 1 between two times, smoothly as a hand moves.
-fn reach(t: f64, from: f64, to: f64) -> f64 {
-    let u = ((t - from) / (to - from)).clamp(0.0, 1.0);
-    u * u * u * (10.0 + u * (6.0 * u - 15.0))
-}
 
 /// `kept_n`: lift that goes on for a second after the block has met the ground. `leak_n_s`: weight that runs out in the air.
 fn recording(seed: u64, kept_n: f64, leak_n_s: f64) -> Recording {
@@ -24,16 +17,7 @@ fn recording(seed: u64, kept_n: f64, leak_n_s: f64) -> Recording {
 
 /// The same with a load that goes over to the ground within `over_s`.
 fn let_down_in(over_s: f64, seed: u64, kept_n: f64, leak_n_s: f64) -> Recording {
-    let mut rng = rand::rngs::StdRng::seed_from_u64(seed);
-    let mut normal = move || {
-        let (a, b): (f64, f64) = (rng.random_range(1e-12..1.0), rng.random());
-        (-2.0 * a.ln()).sqrt() * (TAU * b).cos()
-    };
-    let names = ["x1_m", "y1_m", "x2_m", "y2_m", "fx1_N", "fy1_N", "fx2_N", "fy2_N"];
-    let mut columns = vec![Vec::new(); names.len()];
-    let mut time_s = Vec::new();
-    for i in 0..(10.0 * RATE_HZ) as u32 {
-        let t = f64::from(i) / RATE_HZ;
+    recorded(seed, (RATE_HZ, 10.0), NOISE_N, &|t| {
         let grip_n = 2.0 * (reach(t, 1.1, 1.3) - reach(t, 8.2, 8.4));
         let weight_n = WEIGHT_N - leak_n_s * (t.min(TOUCHDOWN_S) - 2.1).max(0.0);
         let let_down = reach(t, TOUCHDOWN_S, TOUCHDOWN_S + over_s) * (weight_n - kept_n) + reach(t, 7.2, 7.4) * kept_n;
@@ -41,21 +25,8 @@ fn let_down_in(over_s: f64, seed: u64, kept_n: f64, leak_n_s: f64) -> Recording 
         let open_m = 0.008 * (1.0 - reach(t, 0.5, 1.1) + reach(t, 8.4, 9.0));
         let x_m = 0.04 * reach(t, 4.0, 4.9);
         let y_m = -0.1 + 0.03 * (reach(t, 2.1, 3.1) - reach(t, 5.0, TOUCHDOWN_S));
-        let exact = [x_m - 0.01 - open_m, y_m, x_m + 0.01 + open_m, y_m, grip_n, 0.5 * lift_n, -grip_n, 0.5 * lift_n];
-        for (k, (column, value)) in columns.iter_mut().zip(exact).enumerate() {
-            column.push(value + normal() * if k < 4 { 1e-5 } else { NOISE_N });
-        }
-        time_s.push(t);
-    }
-    let channel = |(name, values): (&str, Vec<f64>)| Channel { name: name.to_owned(), unit: String::new(), values };
-    let mut recording = Recording {
-        name: "block".to_owned(),
-        time_s: Some(time_s),
-        channels: names.into_iter().zip(columns).map(channel).collect(),
-        ..Recording::default()
-    };
-    recording.meta.task = Some(Task::BlockStack);
-    recording
+        [x_m - 0.01 - open_m, y_m, x_m + 0.01 + open_m, y_m, grip_n, 0.5 * lift_n, -grip_n, 0.5 * lift_n]
+    })
 }
 
 /// Times of the rows in which the block is said to stand at the end of its carry.

@@ -1,0 +1,92 @@
+//! The weight on a crank's bearing beside what else is hidden.
+
+use super::{known_n, put, weights};
+use crate::diagnose::explain::strange;
+use crate::diagnose::force::{self, Model, column};
+use crate::diagnose::gain::rms;
+use crate::diagnose::geometry::Study;
+use crate::diagnose::track::{Place, Track};
+use crate::estimate::EstimateError;
+use crate::identify::linear::least_squares_values;
+use haptics::law::{Law as _, LoadFriction, Weight};
+
+/// Causes that a weight on the bearing looks like when another one hides it.
+const MISTAKEN: [&str; 4] = ["eccentric-mass", "gravity-tilt", "force-bias", "force-cross-axis"];
+/// With the weight on the bearing the causes that are found must leave, or be, so much less: 2 ln(likelihood), a cause's parameter counted as the
+/// logarithm of the rows.
+const SIMPLER: f64 = 40.0;
+
+/// At a quick look the weight on the bearing leaves so much of what the causes leave at most.
+const NEARLY: f64 = 1.25;
+/// Rounds in which the weight settles beside the causes.
+const ROUNDS: usize = 2;
+
+/// The comparison with the weight on the bearing, and that weight, N, where that leaves less or needs fewer causes than without (`looked_at`: its rows and
+/// what came of them; `track`: the rows as they were measured). What else is hidden may keep [`load`] from seeing it.
+pub fn beside_causes(
+    track: &Track,
+    (looked_at, study): (&Track, &Study),
+    (model, fixed): (&Model, &Model),
+    (gravity_m_s2, threshold): (f64, f64),
+) -> Result<Option<(f64, Track, Study)>, EstimateError> {
+    let rubs = model.iter().any(|e| e.law().id() == LoadFriction.id());
+    let mistaken = study.picks().iter().any(|c| MISTAKEN.contains(&study.candidates[*c].id));
+    if !rubs || !track.planar || !(mistaken || strange(study, &study.picks()).is_some()) {
+        return Ok(None);
+    }
+    let (mut weight_n, mut found) = (weight_of(study, model, fixed), None);
+    for _ in 0..ROUNDS {
+        if weight_n <= 0.0 {
+            return Ok(None);
+        }
+        if found.is_none() && !may_be(looked_at, study, model, weight_n, gravity_m_s2)? {
+            return Ok(None);
+        }
+        let mut other = track.clone();
+        put(&mut other, weight_n, gravity_m_s2);
+        let again = force::study(&mut other, model, fixed, threshold)?;
+        let put_n = std::mem::replace(&mut weight_n, weight_of(&again, model, fixed));
+        found = Some((put_n, other, again));
+    }
+    Ok(found.filter(|(_, other, again)| price(other, again) + SIMPLER < price(looked_at, study)))
+}
+
+/// Whether the weight on the bearing leaves about as little as the causes that it looks like, beside the others: a quick look, because a comparison takes
+/// as long as all the rest.
+fn may_be(
+    track: &Track,
+    study: &Study,
+    model: &Model,
+    weight_n: f64,
+    gravity_m_s2: f64,
+) -> Result<bool, EstimateError> {
+    let mut other = track.clone();
+    put(&mut other, weight_n, gravity_m_s2);
+    let left = |track: &Track, is_kept: &dyn Fn(&str) -> bool| {
+        let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
+        let picked = study.picks();
+        let kept = picked.iter().map(|c| &study.candidates[*c]).filter(|c| is_kept(c.id));
+        columns.extend(kept.flat_map(|c| c.columns.iter().cloned()));
+        least_squares_values(&columns, &study.y, Some(&weights(track))).map(|fit| fit.rms)
+    };
+    let with_causes = left(track, &|_| true)?;
+    let on_bearing = left(&other, &|id| !MISTAKEN.contains(&id))?;
+    Ok(on_bearing < NEARLY * with_causes)
+}
+
+/// The weight that a comparison came out at, N.
+fn weight_of(study: &Study, model: &Model, fixed: &Model) -> f64 {
+    let place = model.iter().position(|e| e.law().id() == Weight.id());
+    let found_n = place.and_then(|k| study.solved.as_ref()?.values.get(k).copied());
+    known_n(fixed) + found_n.unwrap_or(0.0)
+}
+
+/// How unlikely what is left is, and how many parameters it took: −2 ln(likelihood) and a logarithm of the rows each.
+fn price(track: &Track, study: &Study) -> f64 {
+    let picks = study.picks();
+    let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();
+    let (heldout, train) = rms(study, &picks, &along);
+    let rows = along.iter().filter(|a| **a).count() as f64;
+    let columns: usize = picks.iter().map(|c| study.candidates[*c].columns.len()).sum();
+    2.0 * rows * heldout.max(train).max(1e-300).ln() + columns as f64 * rows.ln()
+}

@@ -1,0 +1,71 @@
+//! The delay with which a plain model leaves least of the forces: they are shifted against the motion step by step.
+
+/// A delay that was looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Late {
+    /// By how much the forces come later than the motion, and its standard error, s; infinite where what is left has no lowest point.
+    pub tau_s: f64,
+    pub error_s: f64,
+    /// Whether it is more than chance.
+    pub is_seen: bool,
+}
+
+/// How far is looked, and what makes a delay one.
+#[derive(Clone, Copy, Debug)]
+pub struct Demands {
+    /// Longest delay that is tried, s, both ways.
+    pub longest_s: f64,
+    /// Rows that have a force of that moment, as a share of those that are compared without a delay, at least.
+    pub enough: f64,
+    /// Share of the power that a delay leaves, at most; and by how much likelier it makes the forces, at least: 2 ln(likelihood).
+    pub leaves: f64,
+    pub likelier: f64,
+}
+
+/// The delay that leaves least, told between the steps by the parabola through the best and its neighbours. `left`: power a row, and rows, with the forces
+/// of so many steps of `step_s` later.
+pub fn look(step_s: f64, demands: &Demands, left: &dyn Fn(isize) -> Option<(f64, f64)>) -> Option<Late> {
+    let most = (demands.longest_s / step_s.max(1e-9)) as isize;
+    let tried: Vec<(isize, f64, f64)> =
+        (-most..=most).filter_map(|by| left(by).map(|(power, rows)| (by, power, rows))).collect();
+    let (_, plain, count) = *tried.iter().find(|(by, ..)| *by == 0)?;
+    let enough = tried.iter().filter(|(.., rows)| *rows > demands.enough * count);
+    let (best, power, rows) = *enough.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let at = |by: isize| tried.iter().find(|(tried, ..)| *tried == by).map(|(_, power, _)| *power);
+    let sure = power.max(f64::MIN_POSITIVE);
+    let (between, error) = match (at(best - 1), at(best + 1)) {
+        (Some(before), Some(after)) if before + after > 2.0 * power => {
+            let bend = before + after - 2.0 * power;
+            // Twice the logarithm of the likelihood falls by one at one standard error.
+            ((0.5 * (before - after) / bend).clamp(-0.5, 0.5), (rows * 0.5 * bend / sure).powf(-0.5))
+        }
+        _ => (0.0, f64::INFINITY),
+    };
+    let is_seen = power <= demands.leaves * plain && count * (plain / sure).ln() >= demands.likelier;
+    Some(Late { tau_s: (best as f64 + between) * step_s, error_s: error * step_s, is_seen })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DEMANDS: Demands = Demands { longest_s: 0.1, enough: 0.5, leaves: 0.8, likelier: 40.0 };
+
+    #[test]
+    fn the_lowest_point_is_told_between_the_steps() {
+        let left = |by: isize| Some((1.0 + (0.01 * by as f64 - 0.033).powi(2) * 1e4, 500.0));
+        let late = look(0.01, &DEMANDS, &left).expect("a delay");
+        assert!((late.tau_s - 0.033).abs() < 1e-9 && late.is_seen, "{late:?}");
+        // 500 rows: ln(power) grows by 1/500 at sqrt(1/500/1e4).
+        assert!((late.error_s / (500.0_f64 * 1e4).powf(-0.5) - 1.0).abs() < 0.1, "{late:?}");
+    }
+
+    #[test]
+    fn what_leaves_as_much_is_no_delay_and_too_few_rows_are_none() {
+        let even = |by: isize| Some((1.0 - 1e-3 * by as f64, 500.0));
+        let late = look(0.01, &DEMANDS, &even).expect("the last one");
+        assert!(!late.is_seen && late.error_s.is_infinite(), "{late:?}");
+        let few = |by: isize| Some(if by == 5 { (0.01, 100.0) } else { (1.0 + 0.01 * by.abs() as f64, 500.0) });
+        assert!(look(0.01, &DEMANDS, &few).expect("none").tau_s.abs() < 0.01);
+    }
+}
