@@ -264,3 +264,15 @@ fn a_mass_off_the_axis_that_is_turned_one_way_is_one() {
         assert!(ids(&found).contains(&"eccentric-mass") && !is_on_the_bearing(&found), "{seed}: {:?}", ids(&found));
     }
 }
+
+/// What else is hidden may keep the handle from being seen at first: it is asked for once more beside that.
+#[test]
+fn a_handle_on_its_bearing_is_seen_beside_what_hides_it() {
+    let drift = Hidden { drift_n: 0.8, handle_n: 0.6, one_way: true, ..Hidden::default() };
+    let ripple = Hidden { ripple: (3.0, 0.6), handle_n: 0.6, ..Hidden::default() };
+    for (seed, hidden, id) in [(1, drift, "force-drift"), (4, ripple, "position-ripple")] {
+        let found = asked(seed, hidden);
+        assert_eq!(ids(&found), [id], "{seed}");
+        assert!(is_on_the_bearing(&found), "{seed}: {:?}", found.warnings);
+    }
+}
