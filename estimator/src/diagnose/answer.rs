@@ -9,8 +9,8 @@ use super::geometry::Study;
 use super::kept::of_study;
 use super::passed_over::{join, passed_over, unsaid};
 use super::report::{
-    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, NotExcited, PassedOver,
-    Verdict,
+    Alternative, Baseline, Cause, CauseParameter, Diagnosis, Figures, Final, Gain, NextExperiment, NotExcited,
+    PassedOver, Verdict,
 };
 use super::residuals::{Residual, residuals};
 use super::select::{Chosen, REMAINDER, Selection, is_curve};
@@ -114,6 +114,29 @@ impl Part<'_> {
             posterior: 1.0 / (1.0 + chosen.rivals.iter().map(|(_, behind)| (-0.5 * behind).exp()).sum::<f64>()),
             gain,
             evidence,
+        }
+    }
+
+    /// What the channel leaves, without and with what was found.
+    pub fn figures(&self) -> Figures {
+        let of = |picks: &[usize]| {
+            let (heldout, train) = rms(self.study, picks, self.along);
+            (heldout, train, whiteness_p(self.study, picks, self.stretch))
+        };
+        let (heldout_rms_n, rms_n, whiteness) = of(&[]);
+        let (end, _, end_white) = of(&self.study.picks());
+        Figures {
+            baseline: Baseline {
+                rms_n,
+                heldout_rms_n,
+                whiteness_p: whiteness,
+                of: Some(self.channel.to_owned()),
+                unit: Some(self.unit.to_owned()),
+                ..Baseline::default()
+            },
+            end: Final { heldout_rms_n: end, whiteness_p: end_white, ..Final::default() },
+            // What is left in the end has the noise in it.
+            noise_floor: if end > 0.0 { self.floor.min(end) } else { self.floor },
         }
     }
 
@@ -271,29 +294,11 @@ pub fn answer(
         causes.push(cause);
         warnings.push(warning);
     }
-    let told = told(parts);
-    let figures = |picks: &[usize]| {
-        told.map_or((0.0, 0.0, 1.0), |part| {
-            let (heldout, train) = rms(part.study, picks, part.along);
-            (heldout, train, whiteness_p(part.study, picks, part.stretch))
-        })
-    };
-    let (heldout, train, white) = figures(&[]);
-    let picks = told.map(|p| p.study.picks()).unwrap_or_default();
-    let (end, _, end_white) = figures(&picks);
+    let Figures { baseline, end, noise_floor } = told(parts).map_or_else(Figures::of_nothing, Part::figures);
     Diagnosis {
         verdict,
-        baseline: Baseline {
-            model,
-            rms_n: train,
-            heldout_rms_n: heldout,
-            whiteness_p: white,
-            of: told.map(|p| p.channel.to_owned()),
-            unit: told.map(|p| p.unit.to_owned()),
-            ..Baseline::default()
-        },
-        // What is left in the end has the noise in it.
-        noise_floor_n: told.map_or(0.0, |p| if end > 0.0 { p.floor.min(end) } else { p.floor }),
+        baseline: Baseline { model, ..baseline },
+        noise_floor_n: noise_floor,
         noise_floor_nm: None,
         residuals: parts.iter().flat_map(Part::residuals).collect(),
         next_experiment: next(&open),
@@ -301,7 +306,7 @@ pub fn answer(
         alternatives,
         not_excited,
         passed_over: passed,
-        end: Final { heldout_rms_n: end, whiteness_p: end_white, ..Final::default() },
+        end,
         warnings,
         validation: Vec::new(),
         settled: Vec::new(),
@@ -316,6 +321,7 @@ pub fn answer(
         skew_s: 0.0,
         rest_s: None,
         guess_s: None,
+        of_delay: None,
         hypotheses: Vec::new(),
     }
 }

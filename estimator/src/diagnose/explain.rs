@@ -116,6 +116,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         per_inertia: track.freely.is_some_and(|free| !free.is_known),
         rest_s: rest_s(study, &picks),
         guess_s: None,
+        of_delay: None,
         hypotheses: hypotheses(track, model, study),
         course: course(track, study),
         kept: of_study(FORCE, study),

@@ -5,7 +5,7 @@
 use super::force::{Model, column};
 use super::generic::generic;
 use super::products::gram;
-use super::report::{Cause, CauseParameter, Diagnosis, Gain, Verdict};
+use super::report::{Baseline, Cause, CauseParameter, Diagnosis, Figures, Gain, Verdict};
 use super::shifted::{Demands, look};
 use super::system::solve;
 use super::track::{Row, Track};
@@ -60,12 +60,21 @@ pub fn undo_by(
         }
     }
     // What was not named before must make it good.
-    let most = first.end.heldout_rms_n * if named_s.is_some() { AS_GOOD } else { better };
+    let most = told(&first).end.heldout_rms_n * if named_s.is_some() { AS_GOOD } else { better };
     let sure = |found: &Diagnosis| found.rest_s.is_none_or(|[_, error]| late_s.abs() > SURE * error);
-    match found.filter(|found| found.end.heldout_rms_n < most && (named_s.is_some() || sure(found))) {
+    match found.filter(|found| told(found).end.heldout_rms_n < most && (named_s.is_some() || sure(found))) {
         Some(found) => with_delay(found, &first, late_s, whole(late_s)),
         None => first,
     }
+}
+
+/// The figures that tell whether a delay was one.
+fn told(found: &Diagnosis) -> Figures {
+    found.of_delay.clone().unwrap_or_else(|| Figures {
+        baseline: found.baseline.clone(),
+        end: found.end.clone(),
+        noise_floor: found.noise_floor_n,
+    })
 }
 
 /// Usual time between two samples, s.
@@ -216,7 +225,8 @@ fn with_delay(mut found: Diagnosis, first: &Diagnosis, late_s: f64, back_s: f64)
         tau.value = late_s;
         tau.std_error = error.unwrap_or(tau.std_error);
     }
-    let (before, after, floor) = (cause.gain.heldout_rms_before, found.end.heldout_rms_n, found.noise_floor_n);
+    let Figures { end, noise_floor, .. } = told(&found);
+    let (before, after, floor) = (cause.gain.heldout_rms_before, end.heldout_rms_n, noise_floor);
     let power = (before * before - floor * floor).max(1e-3 * before * before);
     let share = ((before * before - after * after) / power).clamp(-1.0, 1.0);
     cause.gain.heldout_rms_after = after;
@@ -231,13 +241,16 @@ fn with_delay(mut found: Diagnosis, first: &Diagnosis, late_s: f64, back_s: f64)
     if matches!(found.verdict, Verdict::None | Verdict::Unexplained) {
         found.verdict = Verdict::Causes;
     }
-    found.baseline = first.baseline.clone();
+    let model = first.baseline.model.clone();
+    found.baseline = Baseline { model, ..told(first).baseline };
+    (found.end, found.noise_floor_n) = (end, noise_floor);
     found.late_s = back_s;
     found
 }
 
 /// A delay that the first answer did not name.
 fn unnamed_before(first: &Diagnosis, late_s: f64) -> Cause {
+    let before = told(first);
     let parameter = CauseParameter { name: "tau".to_owned(), value: late_s, std_error: 0.0, unit: "s".to_owned() };
     Cause {
         id: ID.to_owned(),
@@ -245,11 +258,7 @@ fn unnamed_before(first: &Diagnosis, late_s: f64) -> Cause {
         parameters: vec![parameter],
         p_value: 0.0,
         posterior: 1.0,
-        gain: Gain {
-            heldout_rms_before: first.end.heldout_rms_n,
-            unit: first.baseline.unit.clone(),
-            ..Gain::default()
-        },
+        gain: Gain { heldout_rms_before: before.end.heldout_rms_n, unit: before.baseline.unit, ..Gain::default() },
         evidence: format!(
             "the force fits the motion of {:.0} ms before: everything was asked again with the force put back to then",
             1e3 * late_s

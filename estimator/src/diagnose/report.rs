@@ -268,6 +268,28 @@ pub struct Final {
     pub whiteness_p: f64,
 }
 
+/// What one channel leaves, without and with what was found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Figures {
+    /// Without.
+    pub baseline: Baseline,
+    /// With it.
+    pub end: Final,
+    /// Its noise.
+    pub noise_floor: f64,
+}
+
+impl Figures {
+    /// Where nothing was compared: nothing left, and that is white.
+    pub(super) fn of_nothing() -> Self {
+        Self {
+            baseline: Baseline { whiteness_p: 1.0, ..Baseline::default() },
+            end: Final { whiteness_p: 1.0, ..Final::default() },
+            noise_floor: 0.0,
+        }
+    }
+}
+
 /// Everything that a diagnosis found.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Diagnosis {
@@ -340,6 +362,9 @@ pub struct Diagnosis {
     /// The delay with which a plain model leaves least, where that is so large that no straight line in it finds it, s.
     #[serde(skip)]
     pub(super) guess_s: Option<f64>,
+    /// Figures of the channel in which a delay shows, where those above may be of another one.
+    #[serde(skip)]
+    pub(super) of_delay: Option<Figures>,
     /// What is not excluded, as laws: to rehearse experiments.
     #[serde(skip)]
     pub(super) hypotheses: Vec<Hypothesis>,

@@ -82,6 +82,8 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     if let Some(late) = carry.late {
         found.guess_s = late.is_seen.then_some(late.tau_s);
         found.rest_s = Some([late.tau_s, late.error_s]);
+        // Of the net force, which a delay is seen in; the strongest cause may be of another channel.
+        found.of_delay = parts.first().map(Part::figures);
     }
     found.hypotheses = of_channels(&[(&carry.compared.study, &carry)]);
     Ok(found)

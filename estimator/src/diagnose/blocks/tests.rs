@@ -111,6 +111,22 @@ fn late_forces_are_put_back() {
     }
 }
 
+/// The give of the pads may be the stronger cause, in metres: what a delay gains is force all the same.
+#[test]
+fn figures_of_a_delay_are_of_the_force_beside_stronger_pads() {
+    let found = found(2, &Hidden { late_s: 0.06, give: 1.0 / 1500.0, ..Hidden::default() });
+    let ids: Vec<&str> = found.causes.iter().map(|c| c.id.as_str()).collect();
+    assert_eq!(ids, ["time-delay", "pad-compliance"]);
+    assert_eq!(found.baseline.unit.as_deref(), Some("N"));
+    // Two sensors of 5 mN, a window of eight samples.
+    let gain = &found.causes[0].gain;
+    assert!((1e-3..8e-3).contains(&gain.heldout_rms_after), "{gain:?}");
+    assert!(
+        (1e-3..8e-3).contains(&found.end.heldout_rms_n) && (1e-3..8e-3).contains(&found.noise_floor_n),
+        "{found:?}"
+    );
+}
+
 /// The way to the block and the grip on it are mixed by the filter where they meet.
 #[test]
 fn pads_are_as_soft_as_within_the_grip() {
