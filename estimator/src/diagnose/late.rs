@@ -27,17 +27,6 @@ pub fn undo(
     first: Diagnosis,
     ask: &dyn Fn(&[Recording]) -> Result<Diagnosis, EstimateError>,
 ) -> Diagnosis {
-    undo_by(recordings, first, ask, BETTER)
-}
-
-/// The same where the guess has shown already what a delay explains, so that what is left need not be less than this share of what was left before: rows
-/// in which a delay shows most, about reversals, may hardly count in that.
-pub fn undo_by(
-    recordings: &[Recording],
-    first: Diagnosis,
-    ask: &dyn Fn(&[Recording]) -> Result<Diagnosis, EstimateError>,
-    better: f64,
-) -> Diagnosis {
     let named_s = delay_s(&first);
     let guess_s = first.guess_s.filter(|tau| tau.abs() > LINEAR_S);
     let Some(mut late_s) = guess_s.or(named_s.filter(|tau| tau.abs() > LINEAR_S)) else { return first };
@@ -60,7 +49,7 @@ pub fn undo_by(
         }
     }
     // What was not named before must make it good.
-    let most = told(&first).end.heldout_rms_n * if named_s.is_some() { AS_GOOD } else { better };
+    let most = told(&first).end.heldout_rms_n * if named_s.is_some() { AS_GOOD } else { BETTER };
     let sure = |found: &Diagnosis| found.rest_s.is_none_or(|[_, error]| late_s.abs() > SURE * error);
     match found.filter(|found| told(found).end.heldout_rms_n < most && (named_s.is_some() || sure(found))) {
         Some(found) => with_delay(found, &first, late_s, whole(late_s)),

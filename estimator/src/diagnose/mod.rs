@@ -156,7 +156,7 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
         }
         Task::Needle => {
             let ask = |recordings: &[Recording]| needle::needle(recordings, options);
-            ask(recordings).map(|found| late::undo_by(recordings, found, &ask, needle::AS_GOOD))
+            ask(recordings).map(|found| late::undo(recordings, found, &ask))
         }
         _ => switch::switch(recordings, options),
     }?;

@@ -1,5 +1,7 @@
 //! The delay with which a plain model leaves least of the forces: they are shifted against the motion step by step.
 
+use super::report::{Diagnosis, Figures};
+
 /// A delay that was looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Late {
@@ -8,6 +10,15 @@ pub struct Late {
     pub error_s: f64,
     /// Whether it is more than chance.
     pub is_seen: bool,
+}
+
+impl Late {
+    /// Puts it into the answer, for all to be asked again if it is one; `of`: what the forces leave in which it was looked for.
+    pub fn tell(self, found: &mut Diagnosis, of: Figures) {
+        found.guess_s = self.is_seen.then_some(self.tau_s);
+        found.rest_s = Some([self.tau_s, self.error_s]);
+        found.of_delay = Some(of);
+    }
 }
 
 /// How far is looked, and what makes a delay one.

@@ -79,11 +79,9 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         found.atlas.channels.extend(grasp.iter().map(|g| g.compared.atlas(&g.view, limit, grasp::best_seen)));
         found.atlas.channels.extend(ground.iter().map(|g| g.compared.atlas(&g.view, limit, ground::best_seen)));
     }
-    if let Some(late) = carry.late {
-        found.guess_s = late.is_seen.then_some(late.tau_s);
-        found.rest_s = Some([late.tau_s, late.error_s]);
-        // Of the net force, which a delay is seen in; the strongest cause may be of another channel.
-        found.of_delay = parts.first().map(Part::figures);
+    // Of the net force, which a delay is seen in; the strongest cause may be of another channel.
+    if let Some((late, force)) = carry.late.zip(parts.first()) {
+        late.tell(&mut found, force.figures());
     }
     found.hypotheses = of_channels(&[(&carry.compared.study, &carry)]);
     Ok(found)

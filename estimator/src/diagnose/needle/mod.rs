@@ -29,10 +29,6 @@ const PUNCTURE_SHARE: f64 = 0.03;
 
 /// What is left of the force on a shaft is never so many times its noise where the model is right, whatever is unknown of the way at reversals.
 const MUCH: f64 = 4.0;
-/// A delay that was seen in all forces of a needle leaves at most so many times as much as was left without: of the force on a shaft, rows at reversals
-/// count little, and outside of the sheet nothing comes late.
-pub const AS_GOOD: f64 = 1.5;
-
 /// Diagnoses recordings of one needle and one sheet, all together.
 pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     let (seen, names, left_out) = joined(recordings)?;
@@ -73,9 +69,8 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         found.atlas.channels.push(sheet.atlas(&view, limit, sheet::best_seen));
         found.atlas.channels.extend(shaft.as_ref().map(of_shaft));
     }
-    if let Some(late) = seen.late {
-        found.guess_s = late.is_seen.then_some(late.tau_s);
-        found.rest_s = Some([late.tau_s, late.error_s]);
+    if let Some((late, on_sheet)) = seen.late.zip(parts.first()) {
+        late.tell(&mut found, on_sheet.figures());
     }
     found.hypotheses = simulated::hypotheses((&sheet, shaft.as_ref()), (seen.holds, seen.two_fingered), law.is_some());
     Ok(found)
