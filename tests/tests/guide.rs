@@ -30,14 +30,15 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// What a command says, on both of its outputs, without trailing blanks.
+/// What a command says, on both of its outputs, without trailing blanks and without how far it got: that shows only where it takes over a second.
 fn said(command: &str, folder: &Path) -> String {
     let words: Vec<&str> = command.split_whitespace().collect();
     let [program, arguments @ ..] = &words[..] else { panic!("an empty command") };
     assert_eq!(*program, "touchstone", "only our own commands are run: {command}");
     let output = Command::new(touchstone()).args(arguments).current_dir(folder).output().expect("the program starts");
-    let text = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
-    text.lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
+    let [text, aside] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    let aside = aside.lines().filter(|line| !line.starts_with("… "));
+    text.lines().chain(aside).map(str::trim_end).collect::<Vec<_>>().join("\n")
 }
 
 /// Whether a line is what the guide says, with whatever for `…`.
