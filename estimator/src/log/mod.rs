@@ -12,6 +12,7 @@ mod facts;
 mod fingerprint;
 mod format;
 mod mcap;
+mod pages;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod plan;

@@ -3,6 +3,7 @@
 use super::Dialect;
 use super::part::{Fault, Part};
 use crate::log::errors::LogError;
+use crate::log::pages;
 use crate::log::plan::{Plan, Use};
 use crate::log::preview::Preview;
 use crate::log::table::{Group, Table};
@@ -125,7 +126,7 @@ impl<'a> Join<'a> {
             let room = expected.min(self.size / (2 * widths) + 16) as usize;
             for (target, wanted) in group.columns.iter_mut().zip(&self.plan.uses) {
                 if matches!(wanted, Use::Number { .. }) {
-                    target.reserve_exact(room);
+                    pages::reserve_exact(target, room);
                 }
             }
         }

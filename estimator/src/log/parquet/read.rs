@@ -4,6 +4,7 @@ use super::column::{self, Meaning};
 use super::sums::Sums;
 use super::{SIDECAR, footer, guard, is_index, one_line};
 use crate::log::errors::LogError;
+use crate::log::pages;
 use crate::log::raw::{Cells, Raw};
 use crate::log::units;
 use crate::log::watch::Watch;
@@ -97,6 +98,11 @@ fn columns(
     watch: &Watch<'_>,
 ) -> Result<(), Option<String>> {
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
+    for cells in &mut raw.columns {
+        if let Cells::Numbers(values) = cells {
+            pages::reserve_exact(values, rows as usize);
+        }
+    }
     let mut bases = vec![None; used.len()];
     let mut sum: u64 = 0;
     for group in 0..reader.num_row_groups() {
