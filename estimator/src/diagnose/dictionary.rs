@@ -208,6 +208,11 @@ impl Dictionary<'_> {
         let names = || vec![("k", self.unit(&ReturnSpring, 0)), ("f0", self.units().force)];
         let spring = Candidate::several("return-spring", Kind::Plant, line(), names());
         all.push(spring.shaped(Shape::Spring { half }));
+        if self.track.radius_m.is_none() {
+            // Beside a constant force (a sensor's zero, a slope) nothing tells where it is at rest.
+            let anywhere = column(&[1.0, 0.0, 0.0, middle]);
+            all.push(Candidate::one("return-spring", Kind::Plant, "k", self.unit(&ReturnSpring, 0), anywhere).positive());
+        }
         let (mut columns, mut linear) = (line(), names());
         columns.push(column(&[0.0, 0.0, 1.0, middle]));
         columns.push(column(&[0.0, 0.0, 1.0, middle + half]));

@@ -215,7 +215,7 @@ impl Grid {
                         grid.walls.extend(places.map(|place| (place, candidate.side)));
                     }
                 }
-                "return-spring" if candidate.columns.len() == 2 && candidate.searched.is_empty() => {}
+                "return-spring" if candidate.columns.len() <= 2 && candidate.searched.is_empty() => {}
                 "return-spring" => {
                     grid.hardening = rests(FINER_RESTS, (low, high));
                     let apart = step * RESTS_WITHIN * range / f64::from(RESTS - 1);
