@@ -1,5 +1,6 @@
 //! The coordinate that a diagnosis of a mechanism counts in: what it found holds in other recordings where that is theirs, too.
 
+use super::track::Track;
 use crate::estimate::EstimateError;
 use crate::identify::mechanism::path::{keeps_to, spare_m};
 use haptics::law::Coordinate;
@@ -56,14 +57,33 @@ impl Along {
         if coordinate == self.coordinate {
             return Ok(());
         }
-        let word = |c| if c == Coordinate::Linear { "along a line" } else { "about an axis" };
         Err(EstimateError::Other(format!(
             "{} moves {}, and what was diagnosed moves {}: validate on a recording of the same object",
             recording.name,
-            word(coordinate),
-            word(self.coordinate)
+            in_words(coordinate),
+            in_words(self.coordinate)
         )))
     }
+}
+
+/// Whether recordings that are to be diagnosed together count the same.
+///
+/// # Errors
+/// One sentence where one is a length and the other an angle.
+pub fn one_kind(first: &Track, other: &Track, recording: &Recording) -> Result<(), EstimateError> {
+    if first.coordinate == other.coordinate {
+        return Ok(());
+    }
+    Err(EstimateError::Other(format!(
+        "{} moves {}, and the recordings before it move {}: diagnose recordings of one and the same object together",
+        recording.name,
+        in_words(other.coordinate),
+        in_words(first.coordinate)
+    )))
+}
+
+fn in_words(coordinate: Coordinate) -> &'static str {
+    if coordinate == Coordinate::Linear { "along a line" } else { "about an axis" }
 }
 
 /// What is said of answers that have no coordinate.
@@ -102,6 +122,21 @@ mod tests {
         let channel = |(name, values): (&str, Vec<f64>)| Channel { name: name.to_owned(), unit: String::new(), values };
         let channels = names.into_iter().zip(all).map(channel).collect();
         Recording { name: name.to_owned(), time_s: Some(time), channels, ..Recording::default() }
+    }
+
+    #[test]
+    fn a_slide_and_a_door_are_not_diagnosed_together() {
+        let made = |column: &str, name: &str| {
+            let path = door(name, (0.1, 0.5), 0.0, 1.0);
+            let places = path.channels[0].values.clone();
+            let force = path.channels[3].values.clone();
+            let channel = |name: &str, values| Channel { name: name.to_owned(), unit: String::new(), values };
+            let channels = vec![channel(column, places), channel(if column == "q_m" { "f_N" } else { "tau_Nm" }, force)];
+            Recording { channels, ..path }
+        };
+        let both = [made("q_m", "slide"), made("q_rad", "door")];
+        let said = diagnose(&both, &Options::default()).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(said.contains("door moves about an axis") && said.contains("move along a line"), "{said}");
     }
 
     fn asked(recording: &Recording) -> (Options, Diagnosis) {

@@ -68,6 +68,9 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Di
         let (recording, mirrored_rate) = signs::with_rates_of_motion(recording);
         let recording = recording.as_ref();
         let mut rows = sliding::track(recording, &found.bad, path.as_ref())?;
+        if let Some(first) = tracks.first() {
+            along::one_kind(first, &rows, recording)?;
+        }
         rows.hung = vec![hung::Hung::on_mechanism(recording, rows.coordinate)];
         rows.extra = vec![extra::of(recording)];
         faults.extend(signs::of_mechanism(&mut rows, recording, mirrored_rate)?);

@@ -200,6 +200,7 @@ pub fn up_not_honoured(recording: &Recording) -> Option<String> {
     let (what, fine) = match task {
         Some(Task::Crank) => ("cranks are read with y up or -y up", matches!(up, "y" | "-y")),
         Some(Task::BlockStack) => ("blocks are read with y up", up == "y"),
+        Some(Task::Barrel) => ("barrels are read with y up", up == "y"),
         None if fingers => ("fingertips are read with y up", matches!(up, "y" | "-y")),
         _ => return None,
     };
@@ -332,6 +333,7 @@ mod tests {
         let up = |columns: &[&str], json: &str| up_not_honoured(&recording(columns, json));
         assert!(up(&["x1_m"], r#"{"up": "x"}"#).is_some_and(|t| t.contains("y up")));
         assert!(up(&["x1_m"], r#"{"task": "block-stack", "up": "none"}"#).is_some());
+        assert!(up(&["x1_m"], r#"{"task": "barrel", "up": "-x"}"#).is_some_and(|t| t.contains("barrels")));
         assert!(up(&["x1_m"], r#"{"task": "crank", "up": "none"}"#).is_some_and(|t| t.contains("weight_N")));
         assert_eq!(up(&["x1_m"], r#"{"task": "crank", "up": "-y"}"#), None);
         assert_eq!(up(&["q_rad"], r#"{"up": "none"}"#), None);

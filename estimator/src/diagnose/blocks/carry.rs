@@ -11,6 +11,7 @@ use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::geometry::Study;
 use crate::diagnose::report::CauseParameter;
+use crate::diagnose::select::Chosen;
 use crate::diagnose::shifted::Late;
 use crate::estimate::EstimateError;
 use crate::identify::block::object;
@@ -69,7 +70,7 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     candidates.extend(generic(&rows));
     let channel =
         Channel { y, base, candidates, stretch: rows.stretch.clone(), testable: testable.clone(), weight, period_s };
-    let study = channel.compare(threshold)?;
+    let study = without_remainders(channel, threshold)?;
     let floor = floor(&rows, &study);
     let of = |row: &Row| if let Place::Carried { number, .. } = row.place { number } else { 0 };
     let numbers: Vec<usize> = rows.all.iter().map(of).collect();
@@ -84,6 +85,33 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     let compared = Compared { study, channel, unit: "N", floor, along, stretch: rows.stretch, state };
     let weighed = (1..=known.len()).filter(|k| known[k - 1].is_none()).collect();
     Ok(Carry { late, compared, longest_s, cable_errors, numbers, weighed, view })
+}
+
+/// A cable's law is a straight line with a damper; what is tied turns in the grip and sags. What scores less than this share of a cable
+/// beside it may be the rest of it, whatever it is called.
+const OF_A_CABLE: f64 = 0.05;
+/// Taking one rest away may bring up another.
+const ROUNDS: usize = 4;
+
+/// The comparison, without what a cable or wall that was found may have left over.
+fn without_remainders(mut channel: Channel, threshold: f64) -> Result<Study, EstimateError> {
+    let mut study = channel.clone().compare(threshold)?;
+    for _ in 0..ROUNDS {
+        let of = |c: &Chosen| &study.candidates[c.candidate];
+        let cable = study.chosen.iter().filter(|c| of(c).id == "added-constraint").map(|c| c.score).fold(0.0, f64::max);
+        let rests: Vec<(&str, Option<String>)> = study
+            .chosen
+            .iter()
+            .filter(|c| of(c).id != "added-constraint" && c.score < OF_A_CABLE * cable)
+            .map(|c| (of(c).id, of(c).expression.clone()))
+            .collect();
+        if rests.is_empty() {
+            break;
+        }
+        channel.candidates.retain(|c| rests.iter().all(|(id, expression)| c.id != *id || c.expression != *expression));
+        study = channel.clone().compare(threshold)?;
+    }
+    Ok(study)
 }
 
 /// What the rows are seen against: what the block does along the row's own axis, and how it is held.
