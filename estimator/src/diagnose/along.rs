@@ -131,7 +131,8 @@ mod tests {
             let places = path.channels[0].values.clone();
             let force = path.channels[3].values.clone();
             let channel = |name: &str, values| Channel { name: name.to_owned(), unit: String::new(), values };
-            let channels = vec![channel(column, places), channel(if column == "q_m" { "f_N" } else { "tau_Nm" }, force)];
+            let channels =
+                vec![channel(column, places), channel(if column == "q_m" { "f_N" } else { "tau_Nm" }, force)];
             Recording { channels, ..path }
         };
         let both = [made("q_m", "slide"), made("q_rad", "door")];

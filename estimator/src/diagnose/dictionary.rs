@@ -211,7 +211,9 @@ impl Dictionary<'_> {
         if self.track.radius_m.is_none() {
             // Beside a constant force (a sensor's zero, a slope) nothing tells where it is at rest.
             let anywhere = column(&[1.0, 0.0, 0.0, middle]);
-            all.push(Candidate::one("return-spring", Kind::Plant, "k", self.unit(&ReturnSpring, 0), anywhere).positive());
+            all.push(
+                Candidate::one("return-spring", Kind::Plant, "k", self.unit(&ReturnSpring, 0), anywhere).positive(),
+            );
         }
         let (mut columns, mut linear) = (line(), names());
         columns.push(column(&[0.0, 0.0, 1.0, middle]));

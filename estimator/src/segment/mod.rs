@@ -19,6 +19,7 @@ pub(crate) mod resting;
 pub mod rules;
 pub mod score;
 pub mod shows;
+mod slid;
 mod state;
 pub mod subtasks;
 pub mod threshold;
@@ -313,11 +314,13 @@ pub fn segment_signals_by(
     match method {
         Method::Threshold => {
             let quality = rules::qualify(&calm, &levels, &thresholds, task.thresholds.leave);
-            let raw = rules::states(&quality, &task.rules());
+            let mut raw = rules::states(&quality, &task.rules());
+            slid::put_down(&calm, &thresholds, &mut raw);
             Ok(subtasks::assemble(time_s, &raw, task, thresholds, warnings, Some(&hand)))
         }
         Method::Hmm => {
-            let decoded = markov::decode(time_s, &evidence::of_blocks(&calm, &levels, &thresholds, task))?;
+            let mut decoded = markov::decode(time_s, &evidence::of_blocks(&calm, &levels, &thresholds, task))?;
+            slid::put_down(&calm, &thresholds, &mut decoded.path);
             let by_path = subtasks::assemble(time_s, &decoded.path, task, thresholds, warnings, Some(&hand));
             Ok(decoded.into_segmentation(by_path))
         }

@@ -22,7 +22,7 @@ use crate::constraint::{Carry, carried};
 use crate::estimate::{Constraint, Correlated, EstimateError, Fit, Parameter};
 use crate::segment::definition::Definition;
 use crate::segment::threshold::{Levels, percentile};
-use crate::segment::{Method, Segmentation, Thresholds, by_hand, segment_signals_by, subtasks};
+use crate::segment::{Method, Segmentation, SystemState, Thresholds, by_hand, segment_signals_by, subtasks};
 use crate::signal::noise::{quantum, resolution_error, white_noise};
 use crate::signal::task::{TaskSignals, TipSeries, half_width, smooth, task_signals};
 use give::{Give, pad_parameter};
@@ -82,6 +82,13 @@ pub fn fit_by(
 /// All that one recording shows.
 fn describe(blocks: &Blocks<'_>) -> Result<Fit, EstimateError> {
     let (count, recording) = (blocks.count(), blocks.recording);
+    if count == 0 && blocks.segmentation.states.iter().any(|s| s.state == SystemState::SlidingOnGround) {
+        return Err(EstimateError::Other(format!(
+            "the block in {} is slid and never lifted, so what it weighs does not show in what the fingers feel: lift it once to fit it; a \
+             diagnosis tells what resists it on the table",
+            recording.name
+        )));
+    }
     if count == 0 {
         return Err(EstimateError::Other(format!(
             "no block was carried in {}: there is nothing to fit; check the task and the signs of the forces, and that a state of the \

@@ -146,7 +146,7 @@ fn ratios(pieces: &[Piece], known: &Known, coordinate: Coordinate) -> Result<Rat
     } else {
         candidates.push(Term::Offset);
     }
-    let seen = shown(pieces, &Known::default(), &candidates);
+    let seen = shown(pieces, &Known::default(), &candidates, Term::Offset);
     let minus_acceleration = |p: &Piece| -> Vec<f64> { p.motion.iter().map(|m| -m.acceleration).collect() };
     let system = System::stack(pieces, &seen.fitted, &Known::default(), minus_acceleration);
     let mut fit = system.solve()?;

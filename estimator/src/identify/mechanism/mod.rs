@@ -195,7 +195,7 @@ fn clockless(recordings: &[Recording], constraints: Vec<Constraint>, paths: &[Op
 fn driven(raws: &[Raw], pieces: &[Piece], known: &Known, first: &Recording) -> Result<Fit, EstimateError> {
     let coordinate = raws[0].coordinate;
     let base = [Term::Inertia, Term::Viscous, Term::Coulomb, Term::Offset];
-    let mut seen = shown(pieces, known, &base);
+    let mut seen = shown(pieces, known, &base, Term::Coulomb);
     if let Some(nothing) = constant::told_nothing(raws, pieces, &seen, known) {
         return Ok(nothing);
     }

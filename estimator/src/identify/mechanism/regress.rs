@@ -12,6 +12,8 @@ const DISTINCT: f64 = 0.05;
 const STEADY_DIRECTION: f64 = 0.98;
 /// Smaller share of the moving time that must lie in each direction for a reversal to count.
 const REVERSAL_SHARE: f64 = 0.02;
+/// … and of the way.
+const REVERSAL_WAY: f64 = 0.01;
 /// Standard deviation of the place of a reversal between two samples, in samples: that of a uniform distribution.
 const SKEW_SAMPLES: f64 = 0.29;
 /// Slower than about this share of the usual speed a mechanism may stick.
@@ -228,8 +230,9 @@ impl Shown {
     }
 }
 
-/// Looks at the motion: reversals, speed range, acceleration above its noise.
-pub fn shown(pieces: &[Piece], known: &Known, candidates: &[Term]) -> Shown {
+/// Looks at the motion: reversals, speed range, acceleration above its noise. `both`: Coulomb friction or offset, whichever stands for both of
+/// them where the motion never reverses. Friction knows that it holds back less where it stands; a constant does not.
+pub fn shown(pieces: &[Piece], known: &Known, candidates: &[Term], both: Term) -> Shown {
     let free = |t: &Term| known.value(*t).is_none();
     let mut shown = Shown { fitted: candidates.iter().copied().filter(free).collect(), hidden: Vec::new() };
     let has = |s: &Shown, t: Term| s.fitted.contains(&t);
@@ -251,7 +254,7 @@ pub fn shown(pieces: &[Piece], known: &Known, candidates: &[Term]) -> Shown {
         let why = "the motion never reverses, so Coulomb friction and a constant offset are one; move both ways";
         shown.hide(Term::Coulomb, why);
         shown.hide(Term::Offset, why);
-        shown.drop(Term::Coulomb);
+        shown.drop(if both == Term::Coulomb { Term::Offset } else { Term::Coulomb });
     }
     let system = System::stack(pieces, &shown.fitted, &Known::default(), |p| vec![0.0; p.motion.len()]);
     let distinct = system.steady().distinctness();
@@ -281,15 +284,18 @@ fn moves(pieces: &[Piece]) -> bool {
     pieces.iter().any(|p| p.rms(|m| m.velocity) > MOTION_RATIO * p.velocity_noise.max(f64::MIN_POSITIVE))
 }
 
-/// True when both directions are there.
+/// True when both directions are there, for some time and some way: at a stop a filter rings back by a hair.
 fn reverses(pieces: &[Piece]) -> bool {
-    let mut time = [0.0, 0.0];
+    let (mut time, mut way) = ([0.0, 0.0], [0.0, 0.0]);
     for piece in pieces {
         for ((direction, motion), usable) in piece.direction.iter().zip(&piece.motion).zip(&piece.usable) {
             if *usable && direction.abs() > 0.9 && motion.velocity.abs() > 3.0 * piece.velocity_noise {
-                time[usize::from(*direction > 0.0)] += piece.period_s;
+                let side = usize::from(*direction > 0.0);
+                time[side] += piece.period_s;
+                way[side] += piece.period_s * motion.velocity.abs();
             }
         }
     }
-    time[0].min(time[1]) > REVERSAL_SHARE * (time[0] + time[1])
+    let both = |of: [f64; 2], share: f64| of[0].min(of[1]) > share * (of[0] + of[1]);
+    both(time, REVERSAL_SHARE) && both(way, REVERSAL_WAY)
 }

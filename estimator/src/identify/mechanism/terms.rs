@@ -19,7 +19,7 @@ pub enum Term {
     Viscous,
     /// Coulomb friction.
     Coulomb,
-    /// Constant force; stands for all of the resistance when the motion never reverses.
+    /// Constant force; stands for all of the resistance when a free motion never reverses.
     Offset,
     /// Gravity moment, part that vanishes at hanging.
     GravitySine,

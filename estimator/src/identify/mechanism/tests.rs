@@ -142,6 +142,25 @@ fn what_the_motion_does_not_show_is_not_given_a_number() {
     demand(&one_way, "viscous_N_s_m", 12.0, 0.1);
     demand(&one_way, "mass_kg", 3.0, 0.1);
 
+    // With stops: what holds there is anything up to the friction, and a filter rings back by a hair when the motion sets in.
+    let halting: Motion = |t| {
+        let (w, turns) = (1.5, (1.5 * t / std::f64::consts::TAU).floor());
+        let phase = w * t - std::f64::consts::TAU * turns;
+        if phase > std::f64::consts::PI {
+            return [0.1 * (turns + 1.0), 0.0, 0.0];
+        }
+        let (s, c) = (2.0 * phase).sin_cos();
+        [
+            0.1 * turns + 0.1 / std::f64::consts::PI * (phase - 0.5 * s),
+            0.1 * w / std::f64::consts::PI * (1.0 - c),
+            0.2 * w * w / std::f64::consts::PI * s,
+        ]
+    };
+    let one_way = fit(&[record(SLIDE, &PLAIN, halting, 1)]).expect("fits");
+    refuses(&one_way, "coulomb_N", "never reverses");
+    refuses(&one_way, "offset_N", "never reverses");
+    demand(&one_way, "resistance_N", 4.7, 0.05);
+
     let triangle: Motion = |t| {
         let phase = (t / 2.0).fract();
         let forth = phase < 0.5;
