@@ -5,6 +5,7 @@ use super::columns::Columns;
 use super::free;
 use super::grid::Grid;
 use super::track::{Place, Row, Track};
+use super::zero::Zero;
 use crate::signal::derive::savitzky_golay;
 use haptics::Vec2;
 use haptics::law::{
@@ -114,7 +115,9 @@ impl Dictionary<'_> {
             all.push(self.plain(&LoadFriction, &[1.0], 0).positive());
             all.push(self.plain(&FrictionAsymmetry, &[0.0, 0.0, 1.0], 2));
         }
-        all.push(self.dry_asymmetry());
+        if self.track.zero != Zero::OfTheSensor {
+            all.push(self.dry_asymmetry());
+        }
         all.push(self.plain(&FrictionAsymmetry, &[0.0, 1.0, 0.0], 1));
         for (vs, alpha) in self.grid.stribeck.iter().copied() {
             let falls = self.plain(&Stribeck, &[1.0, vs, alpha], 0).at("vs", vs, self.unit(&Stribeck, 1)).positive();
@@ -208,7 +211,7 @@ impl Dictionary<'_> {
         let names = || vec![("k", self.unit(&ReturnSpring, 0)), ("f0", self.units().force)];
         let spring = Candidate::several("return-spring", Kind::Plant, line(), names());
         all.push(spring.shaped(Shape::Spring { half }));
-        if self.track.radius_m.is_none() {
+        if !self.track.planar {
             // Beside a constant force (a sensor's zero, a slope) nothing tells where it is at rest.
             let anywhere = column(&[1.0, 0.0, 0.0, middle]);
             all.push(
@@ -471,7 +474,9 @@ impl Dictionary<'_> {
         } else {
             let held = |r: &Row, force: f64| if r.place == Place::Along { force } else { 0.0 };
             let bias = every(&|r| held(r, Effect::new(&ForceBias, &[1.0]).force(&r.motion)));
-            all.push(Candidate::one("force-bias", Kind::Instrument, "b", units.force, bias));
+            if self.track.zero != Zero::OfThePlant {
+                all.push(Candidate::one("force-bias", Kind::Instrument, "b", units.force, bias));
+            }
             for tau in std::iter::once(0.0).chain(self.grid.settling.iter().copied()) {
                 let effect = Effect::new(&ForceDrift, &[1.0, tau]);
                 let drift = every(&|r| held(r, effect.force(&r.motion)));

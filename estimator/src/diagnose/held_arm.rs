@@ -227,6 +227,7 @@ impl Signals {
             bearing: Bearing::default(),
             slope,
             extra: Vec::new(),
+            zero: crate::diagnose::zero::Zero::Open,
             freely: None,
             rows,
             fine,

@@ -4,7 +4,7 @@ use super::force::{self, Model};
 use super::report::{Diagnosis, Validation};
 use super::{
     Options, along, atlas, driven, explain, extra, free, hung, impact, late, nothing, pulled, quality, signs, skew,
-    sliding, threshold, track, unseen,
+    sliding, threshold, track, unseen, zero,
 };
 use crate::estimate::EstimateError;
 use haptics::law::{Coordinate, CoulombFriction, Effect, Inertia, Law, ViscousFriction};
@@ -85,9 +85,14 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Di
     let limit = threshold(track.period_s);
     options.progress.tell(0.4)?;
     let fixed = known_laws(&recordings[0], track.coordinate, &mut model);
-    let study = force::study(&mut track, &model, &fixed, limit)?;
+    let mut study = force::study(&mut track, &model, &fixed, limit)?;
+    track.zero = zero::told(&study, recordings);
+    if track.zero != zero::Zero::Open {
+        study = force::study(&mut track, &model, &fixed, limit)?;
+    }
     options.progress.tell(0.8)?;
     let mut found = explain::explain(&track, &model, &study, &[], faults);
+    zero::ask(&mut found, &track);
     found.along = Some(along::Along::of(track.coordinate, recordings, &paths));
     found.guess_s = late::guess_s(&track, &model);
     let is_hung = track.hung.iter().any(Option::is_some);

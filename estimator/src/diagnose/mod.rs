@@ -64,6 +64,7 @@ mod unseen;
 mod validate;
 mod white;
 mod world;
+mod zero;
 
 pub use report::{
     Alternative, Baseline, Cause, CauseParameter, Diagnosis, Experiment, Final, Gain, NextExperiment, NotExcited,

@@ -6,6 +6,7 @@
 
 use super::fine::{FINE_HZ, between, calmed_line};
 use super::track::{Bearing, Fine, Place, Row, Span, Track, Weighing};
+use super::zero::Zero;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use crate::identify::mechanism::{self, Raw};
@@ -210,6 +211,7 @@ impl Made {
             slope: None,
             extra: Vec::new(),
             freely: None,
+            zero: Zero::Open,
         }
     }
 }

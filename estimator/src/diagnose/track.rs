@@ -2,6 +2,7 @@
 
 use super::extra::Extra;
 use super::hung::Hung;
+use super::zero::Zero;
 use haptics::Vec2;
 use haptics::law::{Coordinate, Effect, Motion};
 
@@ -230,6 +231,8 @@ pub struct Track {
     pub extra: Vec<Vec<Extra>>,
     /// What moves without any force from outside, as in a recording without a force column.
     pub freely: Option<Freely>,
+    /// What the rests of a mechanism's force sensor say of a constant force.
+    pub zero: Zero,
 }
 
 /// What moves freely, whose laws must add up to nothing.

@@ -309,6 +309,7 @@ impl Made {
             bearing: Bearing::default(),
             slope: None,
             extra: Vec::new(),
+            zero: crate::diagnose::zero::Zero::Open,
             freely: Some(Freely { inertia: 1.0, relative_error: 0.0, is_known: false, gravity_m_s2, known: [None; 2] }),
         }
     }

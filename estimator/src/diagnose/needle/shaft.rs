@@ -13,6 +13,7 @@ use crate::diagnose::generic::generic_of;
 use crate::diagnose::geometry::Study;
 use crate::diagnose::grid::Grid;
 use crate::diagnose::track::{self, Bearing, Track};
+use crate::diagnose::zero::Zero;
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use crate::signal::noise::white_noise;
@@ -293,6 +294,7 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
         slope: None,
         extra: Vec::new(),
         freely: None,
+        zero: Zero::Open,
     }
 }
 

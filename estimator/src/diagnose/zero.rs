@@ -1,0 +1,186 @@
+//! What the force sensor of a mechanism rests at where nobody touches it: a bias of the sensor is felt there as well, and friction that
+//! differs by direction, a slope or a preload are not.
+//!
+//! A recording without other evidence is untouched at its beginning and its end, where neither place nor force moves beyond their noise;
+//! a hand that holds trembles, and would have to hold as hard both times.
+
+use super::experiment::{SURE_HUNG, power};
+use super::geometry::Study;
+use super::report::{Alternative, Cause, Diagnosis, NextExperiment, Verdict};
+use super::track::Track;
+use crate::signal::noise::{quantum, white_noise};
+use haptics::law::Coordinate;
+use haptics::recording::Recording;
+
+/// What the rests say of a constant force.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Zero {
+    /// Nothing: nobody let go, or the rests agree with neither.
+    #[default]
+    Open,
+    /// The sensor reads nothing where nothing is: the constant acts on what is moved.
+    OfThePlant,
+    /// The sensor rests at that very constant.
+    OfTheSensor,
+}
+
+/// Windows of a rest, s, of this many samples at least; so many of them make a rest at either end.
+const WINDOW_S: f64 = 0.1;
+const LEAST_SAMPLES: usize = 4;
+const LEAST_WINDOWS: usize = 4;
+/// A window is quiet within so many times the noise of a sample: noise is coloured.
+const NOISES: f64 = 1.0;
+/// A rest agrees with a value within so many errors, or this share of the constant.
+const ERRORS: f64 = 4.0;
+const SHARE: f64 = 0.15;
+
+/// What the rests of all recordings say of the constant force that a study came to.
+pub fn told(study: &Study, recordings: &[Recording]) -> Zero {
+    let Some(solved) = &study.solved else { return Zero::Open };
+    let mut at = study.base.len();
+    let mut constant = None;
+    for pick in study.picks() {
+        let candidate = &study.candidates[pick];
+        if matches!((candidate.id, candidate.linear[0].0), ("force-bias", "b") | ("friction-asymmetry", "dFc")) {
+            constant = Some(solved.values[at]);
+        }
+        at += candidate.columns.len();
+    }
+    let Some(constant) = constant else { return Zero::Open };
+    let mut said = recordings.iter().map(|r| rest(r).map_or(Zero::Open, |rest| compared(constant, rest)));
+    let first = said.next().unwrap_or_default();
+    if said.all(|other| other == first) { first } else { Zero::Open }
+}
+
+fn compared(constant: f64, (mean, error): (f64, f64)) -> Zero {
+    let near = |value: f64| (mean - value).abs() <= (ERRORS * error).max(SHARE * constant.abs());
+    match (near(0.0), near(constant)) {
+        (true, false) => Zero::OfThePlant,
+        (false, true) => Zero::OfTheSensor,
+        _ => Zero::Open,
+    }
+}
+
+/// What stays open about a constant force after the rests, and what would tell it.
+pub fn ask(found: &mut Diagnosis, track: &Track) {
+    const LEAST_POWER: f64 = 0.05;
+    const FREE_S: f64 = 2.0;
+    let by_direction = |c: &&Cause| c.id == "friction-asymmetry" && c.parameters.iter().any(|p| p.name == "dFc");
+    if track.zero == Zero::OfThePlant && track.coordinate == Coordinate::Linear {
+        let Some(posterior) = found.causes.iter().find(by_direction).map(|c| 0.5 * c.posterior) else { return };
+        found.causes.iter_mut().filter(|c| by_direction(&&**c)).for_each(|c| c.posterior = posterior);
+        found.alternatives.push(Alternative {
+            id: "gravity-tilt".to_owned(),
+            instead_of: "friction-asymmetry".to_owned(),
+            posterior,
+            why: "along a line a slope is the same constant force, and the sensor reads nothing of it where nobody holds on".to_owned(),
+        });
+        found.verdict = Verdict::Ambiguous;
+        let motion = "turn the track round and move along it again: what a slope pulls changes its sign";
+        found.next_experiment.get_or_insert_with(|| NextExperiment {
+            motion: motion.to_owned(),
+            separates: vec!["friction-asymmetry".to_owned(), "gravity-tilt".to_owned()],
+            expected_power: SURE_HUNG,
+            experiment: None,
+        });
+        return;
+    }
+    let constant =
+        found.causes.iter().find(|c| c.id == "force-bias").and_then(|c| c.parameters.first()).map(|b| b.value);
+    let (Some(next), Some(size)) = (&mut found.next_experiment, constant) else { return };
+    let of_both = ["force-bias", "friction-asymmetry"].iter().all(|id| next.separates.iter().any(|s| s == id));
+    if of_both && next.expected_power < LEAST_POWER {
+        let lambda = 2.0 * FREE_S / track.period_s * (size / track.force_noise.max(1e-9)).powi(2);
+        "let go of it for two seconds before and after moving it: a bias of the sensor is read then as well"
+            .clone_into(&mut next.motion);
+        next.expected_power = SURE_HUNG * power(lambda);
+        next.experiment = None;
+    }
+}
+
+/// Mean force of what is untouched at both ends, and its error; nothing where an end moves, or the two differ.
+fn rest(recording: &Recording) -> Option<(f64, f64)> {
+    let [place, force] =
+        [["q_m", "q_rad"], ["f_N", "tau_Nm"]].map(|names| names.iter().find_map(|n| recording.channel(n)));
+    let (place, force, time) = (place?, force?, recording.time_s.as_ref()?);
+    let n = time.len().min(force.len()).min(place.len());
+    let period_s = (time.last()? - time.first()?) / n.saturating_sub(1).max(1) as f64;
+    let length = ((WINDOW_S / period_s).round() as usize).max(LEAST_SAMPLES);
+    let noise = |values: &[f64]| NOISES * white_noise(values).max(quantum(values));
+    let (still, quiet) = (noise(place), noise(force));
+    let means = |values: &[f64], backwards: bool| -> Vec<f64> {
+        let mean = |w: &[f64]| w.iter().sum::<f64>() / w.len() as f64;
+        if backwards {
+            values.rchunks_exact(length).map(mean).collect()
+        } else {
+            values.chunks_exact(length).map(mean).collect()
+        }
+    };
+    let end = |backwards: bool| -> Option<(f64, f64)> {
+        let (place, force) = (means(&place[..n], backwards), means(&force[..n], backwards));
+        let stays = |k: usize| (place[k] - place[0]).abs() <= still && (force[k] - force[0]).abs() <= quiet;
+        let count = (0..place.len()).take_while(|k| stays(*k)).count();
+        // The last one may be half in motion.
+        let rest = &force[..count.saturating_sub(1)];
+        if rest.len() < LEAST_WINDOWS {
+            return None;
+        }
+        let mean = rest.iter().sum::<f64>() / rest.len() as f64;
+        let spread = rest.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / (rest.len() - 1) as f64;
+        Some((mean, (spread / rest.len() as f64).sqrt()))
+    };
+    let ((a, da), (b, db)) = (end(false)?, end(true)?);
+    let error = da.hypot(db).max(0.1 * quiet);
+    ((a - b).abs() <= ERRORS * error).then_some((0.5 * (a + b), 0.5 * error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::{Options, diagnose};
+    use haptics::recording::Channel;
+
+    /// A slide of 1 kg that is moved to and fro with dry and viscous friction and a constant of 0.4 N, between rests of 1.5 s.
+    fn slid(at_rest_n: f64, trembles_n: f64) -> Recording {
+        let time: Vec<f64> = (0..6000).map(|i| f64::from(i) * 4e-3).collect();
+        let noise = |i: usize, k: f64| ((i as f64 * k).sin() * 43_758.545).fract() - 0.5;
+        let moves = |t: f64| (1.5..22.5).contains(&t);
+        let place =
+            |t: f64| if moves(t) { 0.05 * (1.0 - (std::f64::consts::TAU * (t - 1.5) / 3.0).cos()) } else { 0.0 };
+        let force = |t: f64| {
+            if !moves(t) {
+                return at_rest_n + trembles_n * (9.0 * t).sin();
+            }
+            let w = std::f64::consts::TAU / 3.0;
+            let (s, c) = (w * (t - 1.5)).sin_cos();
+            let (v, a) = (0.05 * w * s, 0.05 * w * w * c);
+            a + 3.0 * v + 0.8 * v.signum() + 0.4
+        };
+        let of = |name: &str, unit: &str, of: &dyn Fn(f64) -> f64, size: f64, k: f64| Channel {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            values: time.iter().enumerate().map(|(i, t)| of(*t) + size * noise(i, k)).collect(),
+        };
+        let channels = vec![of("q_m", "m", &place, 2e-6, 12.9898), of("f_N", "N", &force, 0.05, 78.233)];
+        Recording { name: "slide".to_owned(), time_s: Some(time), channels, ..Recording::default() }
+    }
+
+    #[test]
+    fn what_the_untouched_sensor_reads_tells_a_bias_from_what_is_moved() {
+        let named = |recording: Recording| {
+            let found = diagnose(&[recording], &Options::default()).expect("an answer");
+            let others: Vec<String> = found.alternatives.iter().map(|a| a.id.clone()).collect();
+            (found.causes.iter().map(|c| c.id.clone()).collect::<Vec<_>>(), others)
+        };
+        let (causes, others) = named(slid(0.4, 0.0));
+        assert!(causes == ["force-bias"] && others.is_empty(), "{causes:?} or {others:?}");
+        let (causes, others) = named(slid(0.0, 0.0));
+        assert!(causes == ["friction-asymmetry"] && others == ["gravity-tilt"], "{causes:?} or {others:?}");
+        // A hand that holds on says nothing.
+        let (causes, others) = named(slid(0.0, 0.2));
+        assert!(
+            causes == ["force-bias"] && others.contains(&"friction-asymmetry".to_owned()),
+            "{causes:?} or {others:?}"
+        );
+    }
+}
