@@ -190,6 +190,7 @@ impl Track {
             slope: None,
             extra: Vec::new(),
             freely: None,
+            zero: Zero::Open,
         }
     }
 }

@@ -139,11 +139,12 @@ mod tests {
     use super::*;
     use crate::diagnose::{Options, diagnose};
     use haptics::recording::Channel;
+    use rand::rngs::StdRng;
+    use rand::{RngExt as _, SeedableRng as _};
 
     /// A slide of 1 kg that is moved to and fro with dry and viscous friction and a constant of 0.4 N, between rests of 1.5 s.
     fn slid(at_rest_n: f64, trembles_n: f64) -> Recording {
         let time: Vec<f64> = (0..6000).map(|i| f64::from(i) * 4e-3).collect();
-        let noise = |i: usize, k: f64| ((i as f64 * k).sin() * 43_758.545).fract() - 0.5;
         let moves = |t: f64| (1.5..22.5).contains(&t);
         let place =
             |t: f64| if moves(t) { 0.05 * (1.0 - (std::f64::consts::TAU * (t - 1.5) / 3.0).cos()) } else { 0.0 };
@@ -156,12 +157,13 @@ mod tests {
             let (v, a) = (0.05 * w * s, 0.05 * w * w * c);
             a + 3.0 * v + 0.8 * v.signum() + 0.4
         };
-        let of = |name: &str, unit: &str, of: &dyn Fn(f64) -> f64, size: f64, k: f64| Channel {
+        let mut random = StdRng::seed_from_u64(7);
+        let mut of = |name: &str, unit: &str, of: &dyn Fn(f64) -> f64, size: f64| Channel {
             name: name.to_owned(),
             unit: unit.to_owned(),
-            values: time.iter().enumerate().map(|(i, t)| of(*t) + size * noise(i, k)).collect(),
+            values: time.iter().map(|t| of(*t) + size * random.random_range(-1.0..1.0)).collect(),
         };
-        let channels = vec![of("q_m", "m", &place, 2e-6, 12.9898), of("f_N", "N", &force, 0.05, 78.233)];
+        let channels = vec![of("q_m", "m", &place, 2e-6), of("f_N", "N", &force, 0.03)];
         Recording { name: "slide".to_owned(), time_s: Some(time), channels, ..Recording::default() }
     }
 
