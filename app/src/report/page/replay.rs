@@ -42,7 +42,7 @@ fn nowhere(content: &Content) -> Option<&str> {
 /// What a replay leaves of a channel, and how much of that noise makes, in the channel's unit, RMS.
 struct Left<'a> {
     name: &'a str,
-    left: f64,
+    rms: f64,
     measured: Option<f64>,
     /// White noise of the sensor, and of the simulated force.
     noise: Option<(f64, f64)>,
@@ -50,12 +50,12 @@ struct Left<'a> {
 
 impl Left<'_> {
     fn share(&self) -> Option<f64> {
-        self.measured.filter(|m| *m > 0.0).map(|measured| self.left / measured)
+        self.measured.filter(|m| *m > 0.0).map(|measured| self.rms / measured)
     }
 
     /// Whether noise alone makes what is left.
     fn is_noise(&self) -> bool {
-        self.noise.is_some_and(|(sensor, own)| self.left < NOISE_ALONE * sensor.hypot(own))
+        self.noise.is_some_and(|(sensor, own)| self.rms < NOISE_ALONE * sensor.hypot(own))
     }
 }
 
@@ -73,7 +73,7 @@ fn left<'a>(drawn: &Drawn, simulation: &'a Simulation) -> Vec<Left<'a>> {
             let felt: Vec<f64> = s.values.iter().copied().filter(|v| *v != 0.0).collect();
             (white_noise(m), white_noise(&felt))
         });
-        Left { name, left: *left, measured: measured.map(size), noise }
+        Left { name, rms: *left, measured: measured.map(size), noise }
     };
     simulation.residual_rms.iter().map(of).collect()
 }
@@ -110,7 +110,7 @@ fn table(all: &[Left<'_>], simulation: &Simulation) -> Markup {
                 tr {
                     td class="mono" { (channel.name) }
                     td class="number" { (channel.measured.map_or_else(dash, shown)) }
-                    td class="number" { (shown(channel.left)) }
+                    td class="number" { (shown(channel.rms)) }
                     td class="number" { (channel.share().map_or_else(dash, |s| format!("{} %", format::significant(100.0 * s, 2)))) }
                     td class="number" { (channel.noise.map_or_else(dash, |n| shown(n.0))) }
                     td class="number" { (channel.noise.map_or_else(dash, |n| shown(n.1))) }
