@@ -29,7 +29,10 @@ pub fn constraint_words(constraint: &Constraint) -> Vec<String> {
     }
     if let Some(yielding) = &constraint.yielding {
         let high = yielding.interval_n_m.1.map_or("rigid".to_owned(), stiffness);
-        words.push(format!("stiffness {} to {high} (95 %)", stiffness(yielding.interval_n_m.0)));
+        words.push(format!(
+            "its own stiffness, without the pads: {} to {high} (95 %)",
+            stiffness(yielding.interval_n_m.0)
+        ));
     }
     if let Some(pitch) = constraint.screw.as_ref().filter(|_| constraint.kind == ConstraintKind::Screw)
         && let Some(value) = pitch.pitch_m_rad
@@ -113,7 +116,10 @@ mod tests {
         constraint.existence = Some(tested.clone());
         assert_eq!(
             constraint_words(&constraint),
-            ["held: unexplained force, p = 2.5 × 10⁻⁸", "stiffness 370 kN/m to rigid (95 %)"]
+            [
+                "held: unexplained force, p = 2.5 × 10⁻⁸",
+                "its own stiffness, without the pads: 370 kN/m to rigid (95 %)"
+            ]
         );
         constraint.evidence = format!("a circle; {}", sentence(&tested));
         assert!(constraint.evidence.contains("p = 2.5 × 10⁻⁸"), "{}", constraint.evidence);

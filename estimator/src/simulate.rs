@@ -1,7 +1,10 @@
 //! The measured motion through a world: what forces would have been felt?
 
+mod gap;
+
 use crate::estimate::EstimateError;
 use crate::identify::{block, crank, mechanism, needle};
+use crate::log::{gap_above_s, gaps};
 use crate::segment::task_of;
 use crate::signal::task::{TipSeries, is_two_fingered, times, tip_series};
 use crate::wanted;
@@ -158,6 +161,13 @@ fn stepped(world: &World, recording: &Recording) -> Result<Simulation, EstimateE
     found.inputs.push(
         "no measured force enters the prediction: the measured motion of the fingers drives the world, and its pads answer".to_owned(),
     );
+    let gaps = gaps(&times(recording));
+    if !gaps.is_empty() {
+        found.inputs.push(format!(
+            "{} gap(s) in the time are not simulated: what both fingers held goes on where they are found again",
+            gaps.len()
+        ));
+    }
     Ok(found)
 }
 
@@ -333,13 +343,15 @@ pub fn walk(world: &World, recording: &Recording, see: impl FnMut(f64, &State)) 
 }
 
 /// [`walk`] for fingers whose motion is known already: where both are at each time, s. Samples that one of the lists lacks are not walked,
-/// nor is the rest when nobody wants it any more ([`wanted`]).
+/// nor is the rest when nobody wants it any more ([`wanted`]). Over a gap in the time nothing is stepped: what both fingers held goes on
+/// where they are found again, everything else stays where it was.
 pub fn walk_tips(world: &World, time_s: &[f64], tips: &[TipSeries; 2], mut see: impl FnMut(f64, &State)) {
     let n = tips.iter().map(|tip| tip.position.len()).fold(time_s.len(), usize::min);
     if n == 0 {
         return;
     }
     let tip = |finger: usize, i: usize| tips[finger].position[i];
+    let gap_above_s = gap_above_s(&time_s[..n]).unwrap_or(f64::INFINITY);
     let mut state = State::new(world, [tip(0, 0), tip(1, 0)]);
     see(time_s[0], &state);
     for i in 1..n {
@@ -347,8 +359,15 @@ pub fn walk_tips(world: &World, time_s: &[f64], tips: &[TipSeries; 2], mut see: 
             return;
         }
         let gap_s = time_s[i] - time_s[i - 1];
-        let parts = (gap_s / STEP_S).ceil().max(1.0) as usize;
         let tip_velocity = [0, 1].map(|finger| velocity(&tips[finger], i));
+        if gap_s > gap_above_s {
+            let input = Input { tip_in_world: [tip(0, i), tip(1, i)], tip_velocity };
+            gap::bridge(world, &mut state, &input, gap_s - STEP_S);
+            step(world, &mut state, &input, STEP_S);
+            see(time_s[i], &state);
+            continue;
+        }
+        let parts = (gap_s / STEP_S).ceil().max(1.0) as usize;
         for part in 1..=parts {
             let share = part as f64 / parts as f64;
             let between = |finger: usize| tip(finger, i - 1) + (tip(finger, i) - tip(finger, i - 1)) * share;

@@ -249,3 +249,198 @@ fn more_samples_make_no_longer_page() {
     println!("{few} and {many} bytes");
     assert!(many < few + few / 2, "{few} and {many} bytes: twenty times as many samples");
 }
+
+/// The crank's log as a bad day would leave it: a second is missing, a channel stands still for 0.3 s, another meets its limit.
+fn spoilt(folder: &Path) -> PathBuf {
+    let whole = std::fs::read_to_string(asset("crank.csv")).expect("the log");
+    let mut lines = whole.lines();
+    let header: Vec<&str> = lines.next().expect("names").split(',').collect();
+    let column = |name: &str| header.iter().position(|h| *h == name).expect("a column");
+    let (clipped, stuck) = (column("fx1_N"), column("fy2_N"));
+    let mut rows: Vec<Vec<String>> = lines.map(|l| l.split(',').map(str::to_owned).collect()).collect();
+    let held = rows[1110][stuck].clone();
+    for row in &mut rows[1110..1170] {
+        row[stuck].clone_from(&held);
+    }
+    for row in &mut rows {
+        let force: f64 = row[clipped].parse().expect("a number");
+        row[clipped] = format!("{:.3}", force.clamp(-2.171, 2.171));
+    }
+    rows.drain(2221..2421);
+    let text: Vec<String> = rows.iter().map(|row| row.join(",")).collect();
+    let log = folder.join("spoilt.csv");
+    std::fs::write(&log, format!("{}\n{}\n", header.join(","), text.join("\n"))).expect("written");
+    std::fs::copy(asset("crank.meta.json"), folder.join("spoilt.meta.json")).expect("its sidecar");
+    log
+}
+
+/// The text of every section, under its heading.
+fn sections(page: &Html) -> Vec<(String, String)> {
+    let (card, heading) = (Selector::parse("section.card").expect("a selector"), Selector::parse("h3").expect("one"));
+    let named = |e: scraper::ElementRef<'_>| Some((e.select(&heading).next()?.text().collect(), e.text().collect()));
+    page.select(&card).filter_map(named).collect()
+}
+
+/// What every section of a report about a spoilt log must say, by its heading, in order.
+const SAID: [(&str, &[&str]); 7] = [
+    (
+        "What was recorded",
+        &[
+            "18.5 s",
+            "200 Hz",
+            "1 gap(s) in the time",
+            "fx1_N stands at exactly its extreme value",
+            "fy2_N stops changing",
+        ],
+    ),
+    ("What happened when", &["Turning", "turn-1", "gap", "does not change", "at its limit", "Agreement"]),
+    (
+        "Parameters",
+        &["Radius", "21.20", "± ", "Circle through the handle's positions", "not identified", "Not measured"],
+    ),
+    ("Constraints", &["A hinge", "something guides it", "Its own stiffness, without the pads"]),
+    ("Real against virtual", &["fx1_N", "Left over, RMS", "%", "Noise simulated", "Nothing is simulated in the gap"]),
+    (
+        "What the model gets wrong",
+        &[
+            "Fault of a channel",
+            "Saturated force channel",
+            "probability",
+            "95 % interval",
+            "data that took no part",
+            "Noise",
+        ],
+    ),
+    (
+        "What could not be known",
+        &[
+            "Crank, coulomb friction",
+            "push as well as pull",
+            "lost in their own errors",
+            "Crank, inertia",
+            "would not have been seen",
+        ],
+    ),
+];
+
+#[test]
+fn every_section_is_there_and_says_what_it_is_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let log = text(&spoilt(folder.path()));
+    let (page, _, _) = report(&[&log], 0);
+    let found = sections(&page);
+    assert_eq!(found.iter().map(|s| s.0.as_str()).collect::<Vec<_>>(), SAID.map(|s| s.0));
+    for ((heading, said), (_, words)) in found.iter().zip(SAID) {
+        for word in words {
+            assert!(said.contains(word), "{heading} does not say {word:?}: {said}");
+        }
+    }
+    let diagnosed = json(&["diagnose", &log]);
+    let wrong = &found[5].1;
+    for cause in diagnosed["causes"].as_array().expect("causes") {
+        let evidence = cause["evidence"].as_str().expect("evidence").to_lowercase();
+        assert!(wrong.to_lowercase().contains(evidence.trim_end_matches('.')), "{evidence}");
+    }
+    let provenance = all(&page, "#provenance").join(" ");
+    for word in ["Program", "Revision of its sources", "Command", "SHA-256", "What the sidecar", "gravity_m_s2"] {
+        assert!(provenance.contains(word), "{word}: {provenance}");
+    }
+    let hashes = all(&page, "#provenance td.mono");
+    assert!(hashes.len() == 2 && hashes.iter().all(|h| h.len() == 64), "log and sidecar: {hashes:?}");
+    let summary = all(&page, ".summary").join(" ");
+    assert!(summary.contains("3 warnings about the quality of the data"), "{summary}");
+}
+
+/// Neighbours that a path draws a line between.
+fn strokes(path: &str) -> Vec<(f64, f64)> {
+    let runs = path.split('M').filter(|run| !run.is_empty());
+    let x = |point: &str| point.split(' ').next().and_then(|x| x.parse::<f64>().ok()).expect("a place");
+    runs.flat_map(|run| {
+        let places: Vec<f64> = run.split('L').map(x).collect();
+        places.windows(2).map(|w| (w[0], w[1])).collect::<Vec<_>>()
+    })
+    .collect()
+}
+
+#[test]
+fn no_curve_and_no_state_runs_through_a_gap() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (page, _, _) = report(&[&text(&spoilt(folder.path()))], 0);
+    let select = |s: &str| Selector::parse(s).expect("a selector");
+    let number = |e: &scraper::ElementRef<'_>, name: &str| {
+        e.value().attr(name).and_then(|v| v.parse::<f64>().ok()).expect("a number")
+    };
+    let (mut curves, mut states) = (0, 0);
+    for chart in page.select(&select("svg.chart")) {
+        let Some(gap) = chart.select(&select("rect.gap")).next() else { continue };
+        let (from, to) = (number(&gap, "x"), number(&gap, "x") + number(&gap, "width"));
+        assert!(to - from > 10.0, "a second can be seen");
+        for line in chart.select(&select("path.line")) {
+            let Some(data) = line.value().attr("d").filter(|d| !d.contains(['V', 'H', 'h', 'v'])) else { continue };
+            curves += 1;
+            let across = strokes(data).into_iter().find(|(a, b)| *a < to - 1.0 && *b > from + 1.0);
+            assert_eq!(across, None, "a line through the gap {from} … {to}");
+        }
+        for state in chart.select(&select("rect.tint, g rect")) {
+            states += 1;
+            let (a, b) = (number(&state, "x"), number(&state, "x") + number(&state, "width"));
+            assert!(b < from + 1.0 || a > to - 1.0, "a state in the gap: {a} … {b}");
+        }
+    }
+    assert!(curves > 15 && states > 20, "{curves} curves, {states} states");
+    assert!(!all(&page, "rect.stuck title").is_empty(), "what stands still is marked");
+    assert!(all(&page, "rect.limit title").iter().all(|t| t.contains("fx1_N at its limit")));
+    assert!(all(&page, "rect.limit title").len() > 4);
+}
+
+#[test]
+fn a_replay_does_not_go_through_a_gap() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (world, log) = (text(&folder.path().join("world.json")), folder.path().join("gap.csv"));
+    json(&["fit", &asset("crank.csv"), "--out", &world]);
+    // Most of a turn is missing: a straight line between its ends would pull the handle off its circle.
+    let whole = std::fs::read_to_string(asset("crank.csv")).expect("the log");
+    let kept = whole.lines().filter(|line| {
+        let time_s = line.split(',').next().and_then(|t| t.parse::<f64>().ok());
+        time_s.is_none_or(|t| !(5.0..6.2).contains(&t))
+    });
+    std::fs::write(&log, kept.collect::<Vec<_>>().join("\n")).expect("written");
+    std::fs::copy(asset("crank.meta.json"), folder.path().join("gap.meta.json")).expect("its sidecar");
+    let out = text(&folder.path().join("forces.csv"));
+    let said = run(&["simulate", &world, &text(&log), "--out", &out]);
+    let said = String::from_utf8_lossy(&said.stdout).into_owned();
+    assert!(said.contains("1 gap(s) in the time are not simulated"), "{said}");
+    let left: Vec<f64> = said
+        .lines()
+        .filter_map(|l| l.split_once("measured − predicted: ")?.1.split(' ').next()?.parse().ok())
+        .collect();
+    assert!(left.len() == 4 && left.iter().all(|l| *l < 0.06), "with the line through the gap up to 0.3 N: {left:?}");
+}
+
+#[test]
+fn a_clean_replay_says_which_noise_it_leaves_beside_a_diagnosis_that_finds_nothing() {
+    let (page, _, _) = report(&[&asset("crank.csv")], 0);
+    let summary = all(&page, ".summary").join(" ");
+    assert!(summary.contains("leaves nothing beyond the noise. Its replay leaves"), "{summary}");
+    assert!(summary.contains("noise of the sensor and of the simulated force itself"), "{summary}");
+    let found = sections(&page);
+    assert!(found[4].1.contains("In fx1_N, fy1_N, fx2_N and fy2_N nothing more than that is left."), "{}", found[4].1);
+    assert!(all(&page, "rect.gap, rect.stuck, rect.limit").is_empty(), "nothing is marked where nothing is wrong");
+}
+
+#[test]
+fn a_log_whose_task_cannot_be_told_counts_no_parameters_and_says_why() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let log = folder.path().join("strange.csv");
+    let rows: Vec<String> = (0..200).map(|i| format!("{i}.0,{i}")).collect();
+    std::fs::write(&log, format!("t_s,room_degC\n{}\n", rows.join("\n"))).expect("written");
+    let (page, _, output) = report(&[&text(&log), &asset("crank.csv")], 0);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        said.contains("strange.csv: no parameters, because the fit did not succeed: the task of strange.csv"),
+        "{said}"
+    );
+    assert!(said.contains("crank.csv: 12 of 12 parameters were measured") && !said.contains("0 of 0"), "{said}");
+    let summary = &all(&page, ".summary")[0];
+    assert!(summary.contains("The fit did not succeed: The task of strange.csv"), "{summary}");
+}

@@ -63,7 +63,7 @@ struct Content {
     task: Option<Task>,
     /// Parameters that the fit looked for.
     parameters: usize,
-    /// Those of them that it found.
+    /// Those of them that it measured: found, and larger than their errors where their size is asked.
     identified: usize,
     /// The diagnosis in one word; null without one.
     verdict: Option<Verdict>,
@@ -114,8 +114,12 @@ fn describe(sheets: &[Sheet], out: &Path) -> String {
             Ok(content) => {
                 let (found, all) = content.identified();
                 let why = content.analysis.as_ref().err();
-                let why = why.map_or_else(String::new, |why| format!("; the fit did not succeed: {why}"));
-                writeln!(text, "  {}: {found} of {all} parameters{why}", sheet.source.name())
+                let said = match why {
+                    Some(why) => format!("no parameters, because the fit did not succeed: {why}"),
+                    None if all == 0 => "no parameters were looked for".to_owned(),
+                    None => format!("{found} of {all} parameters were measured"),
+                };
+                writeln!(text, "  {}: {said}", sheet.source.name())
             }
             Err(_) => writeln!(text, "  {}: could not be read", sheet.source.name()),
         };

@@ -4,6 +4,7 @@ use super::source::Source;
 use crate::ui::plots::Residuals;
 use crate::ui::prepare::Prepared;
 use estimator::diagnose::{self, Diagnosis};
+use estimator::estimate::Parameter;
 use estimator::online::enough::{Enough, Wanted};
 use estimator::online::enough_for;
 use estimator::pipeline::{Analysis, Options, analyse};
@@ -120,9 +121,20 @@ impl Content {
         found
     }
 
-    /// Parameters with a value, and all that were looked for.
+    /// Parameters that were measured, and all that were looked for. A value whose error is larger than itself is none.
     pub fn identified(&self) -> (usize, usize) {
         let all = self.analysis.as_ref().map_or(&[][..], |a| &a.fit.parameters);
-        (all.iter().filter(|p| p.identified).count(), all.len())
+        (all.iter().filter(|p| p.identified && !is_lost(p)).count(), all.len())
     }
+}
+
+/// Parameters that are as well known near zero as anywhere: places, angles, what a sensor reads at rest.
+const OF_EITHER_SIGN: [&str; 9] =
+    ["center_", "offset", "gravity_phase", "surface_position", "added_level", "bias", "position", "angle", "phase"];
+
+/// Whether a size is lost in its own error: nothing, or twice as much, is as likely.
+pub fn is_lost(parameter: &Parameter) -> bool {
+    let sizes = parameter.value.zip(parameter.std_error);
+    let is_place = OF_EITHER_SIGN.iter().any(|name| parameter.name.starts_with(name));
+    !is_place && sizes.is_some_and(|(value, error)| error > value.abs())
 }

@@ -74,6 +74,8 @@ fn words(stem: &str) -> String {
         "friction" => return "Friction at the slip".to_owned(),
         "coulomb" => return "Coulomb friction".to_owned(),
         "viscous" => return "Viscous friction".to_owned(),
+        // What the give of the hand hides is in it: the object's own stiffness stands beside its constraint.
+        "constraint_stiffness" => return "Radial stiffness with the pads".to_owned(),
         "center_x" => return "Centre x".to_owned(),
         "center_y" => return "Centre y".to_owned(),
         _ => {}
@@ -186,7 +188,7 @@ mod tests {
             (hardening.label.as_str(), hardening.unit, hardening.factor * 1.5e6),
             ("Hardening", "N/mm³", 0.0015)
         );
-        assert_eq!(parameter("constraint_stiffness_N_m", None).label, "Constraint stiffness");
+        assert_eq!(parameter("constraint_stiffness_N_m", None).label, "Radial stiffness with the pads");
         assert_eq!(parameter("friction_mu", Some(0.05)).unit, "");
         let resistance = parameter("friction_N", Some(0.1));
         assert_eq!((resistance.label.as_str(), resistance.unit), ("Friction", "N"));

@@ -26,6 +26,7 @@ mod watch;
 mod write;
 
 pub use checks::warnings as quality;
+pub use checks::{gap_above_s, gaps};
 pub use errors::LogError;
 pub use format::Format;
 pub use mcap::attached::attached;

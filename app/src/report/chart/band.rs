@@ -1,6 +1,6 @@
 //! Which state held when, and to which subtask it belongs.
 
-use super::{LEFT, RIGHT, WIDE, key, short};
+use super::{LEFT, RIGHT, WIDE, bad, key, short};
 use crate::report::style::state_variable;
 use crate::ui::format;
 use crate::ui::panels::segments::word;
@@ -16,18 +16,21 @@ const LETTER: f64 = 6.4;
 /// A piece narrower than this is not drawn by itself.
 const LEAST: f64 = 0.3;
 
-/// The band over the same time as the curves below it.
-pub fn band(segmentation: &Segmentation, span_s: (f64, f64)) -> Markup {
+/// The band over the same time as the curves below it; nothing is told of a gap, so nothing is drawn there but the gap.
+pub fn band(segmentation: &Segmentation, span_s: (f64, f64), holes: &[(f64, f64)]) -> Markup {
     let width = WIDE - LEFT - RIGHT;
     let x = |t: f64| LEFT + (t - span_s.0) / (span_s.1 - span_s.0) * width;
     let says = format!("States over time: {} intervals", segmentation.states.len());
     html! {
         svg class="chart" viewBox=(format!("0 0 {WIDE} {}", BAND + SUBTASKS + 4.0)) role="img" aria-label=(says) {
             @for interval in &segmentation.states {
-                @let (from, to) = (x(interval.t0).max(LEFT), x(interval.t1).min(LEFT + width));
-                @if to - from > LEAST { (piece(segmentation, interval, (from, to))) }
+                @for (t0, t1) in bad::outside(holes, (interval.t0, interval.t1)) {
+                    @let (from, to) = (x(t0).max(LEFT), x(t1).min(LEFT + width));
+                    @if to - from > LEAST { (piece(segmentation, interval, (from, to))) }
+                }
             }
-            @for (name, t0, t1) in subtasks(segmentation) {
+            @for hole in holes { (bad::gap(x(hole.0), x(hole.1), BAND, hole)) }
+            @for (name, t0, t1) in subtasks(segmentation, holes) {
                 @let (from, to) = (x(t0) + 1.0, x(t1) - 1.0);
                 @if to - from > 3.0 {
                     path class="line zero" d=(format!("M{} {}V{}H{}V{}", short(from), BAND + 1.0, BAND + 4.0, short(to), BAND + 1.0)) {}
@@ -61,8 +64,8 @@ fn piece(segmentation: &Segmentation, interval: &Interval, (from, to): (f64, f64
     }
 }
 
-/// Runs of intervals of one subtask.
-fn subtasks(segmentation: &Segmentation) -> Vec<(String, f64, f64)> {
+/// Runs of intervals of one subtask, in pieces where a gap is in between.
+fn subtasks(segmentation: &Segmentation, holes: &[(f64, f64)]) -> Vec<(String, f64, f64)> {
     let mut runs: Vec<(String, f64, f64)> = Vec::new();
     for interval in &segmentation.states {
         let Some(subtask) = &interval.subtask else { continue };
@@ -71,15 +74,19 @@ fn subtasks(segmentation: &Segmentation) -> Vec<(String, f64, f64)> {
             _ => runs.push((subtask.clone(), interval.t0, interval.t1)),
         }
     }
-    runs
+    let pieces = |(name, t0, t1): (String, f64, f64)| {
+        bad::outside(holes, (t0, t1)).into_iter().map(move |(from, to)| (name.clone(), from, to)).collect::<Vec<_>>()
+    };
+    runs.into_iter().flat_map(pieces).collect()
 }
 
-/// What the states' colours mean, with the share of time of each.
-pub fn legend(segmentation: &Segmentation) -> Markup {
-    let whole: f64 = segmentation.states.iter().map(|i| i.t1 - i.t0).sum();
+/// What the states' colours mean, with the share of the recorded time of each.
+pub fn legend(segmentation: &Segmentation, holes: &[(f64, f64)]) -> Markup {
+    let recorded = |i: &Interval| bad::outside(holes, (i.t0, i.t1)).iter().map(|(from, to)| to - from).sum::<f64>();
+    let whole: f64 = segmentation.states.iter().map(recorded).sum();
     let mut shares: Vec<(SystemState, f64)> = Vec::new();
     for interval in &segmentation.states {
-        let length = interval.t1 - interval.t0;
+        let length = recorded(interval);
         match shares.iter_mut().find(|(state, _)| *state == interval.state) {
             Some((_, share)) => *share += length,
             None => shares.push((interval.state, length)),
@@ -91,6 +98,7 @@ pub fn legend(segmentation: &Segmentation) -> Markup {
                 @let share = format::number(100.0 * time / whole.max(1e-12), 0);
                 (key(&state_variable(*state), &format!("{} {share} %", word(segmentation, *state))))
             }
+            @if !holes.is_empty() { (key("faint", "gap")) }
         }
     }
 }

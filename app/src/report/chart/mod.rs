@@ -1,10 +1,12 @@
 //! Pictures as SVG inside the page. Their colours are variables of the page's style, so that light, dark and print differ by the style alone.
 
+mod bad;
 mod band;
 mod cloud;
 mod path;
 mod signals;
 
+pub use bad::holes;
 pub use band::{band, legend};
 pub use cloud::residuals;
 pub use path::path;

@@ -1,6 +1,6 @@
 //! The path through space, and the constraints that were found over it. Both axes have one scale.
 
-use super::{Frame, key, range_of};
+use super::{Frame, bad, key, range_of};
 use crate::ui::prepare::Prepared;
 use estimator::estimate::{Constraint, ConstraintKind};
 use haptics::Vec2;
@@ -31,7 +31,7 @@ pub fn path(prepared: &Prepared, constraints: &[&Constraint]) -> Option<Markup> 
                     d=(format!("M{:.1} {y:.1}h12M{x:.1} {:.1}v12", x - 6.0, y - 6.0)) {}
             }
         }
-        path class="line" style="stroke:var(--measured)" d=(frame.line(points.iter().map(|p| (p.x, p.y)))) {}
+        path class="line" style="stroke:var(--measured)" d=(frame.line(course(prepared))) {}
     };
     let found = shapes.iter().map(|s| s.name).next();
     Some(html! {
@@ -45,6 +45,19 @@ pub fn path(prepared: &Prepared, constraints: &[&Constraint]) -> Option<Markup> 
             }
             (frame.draw("Path through space, with what constrains it", &inside))
         }
+    })
+}
+
+/// Places of the path, mm, with one that is no number in every gap.
+fn course(prepared: &Prepared) -> impl Iterator<Item = (f64, f64)> {
+    let runs = bad::stretches(prepared);
+    let run = move |i: usize| runs.partition_point(|r| r.end <= i);
+    let mut before = None;
+    prepared.path_samples.iter().flat_map(move |&i| {
+        let here = run(i);
+        let broken = before.replace(here).is_some_and(|b| b != here);
+        let place = prepared.point_at(i).map(|p| (1e3 * p.x, 1e3 * p.y));
+        [broken.then_some((f64::NAN, f64::NAN)), place].into_iter().flatten()
     })
 }
 

@@ -1,10 +1,10 @@
 //! Measured curves, and measured against simulated ones.
 
-use super::{Frame, WIDE, key, range_of};
+use super::{Frame, WIDE, bad, key, range_of};
 use crate::report::collect::Drawn;
 use crate::report::style::{role_name, state_variable};
 use crate::ui::format;
-use crate::ui::plots::{Levels, decimate};
+use crate::ui::plots::Levels;
 use crate::ui::prepare::{Group, Prepared, Trace};
 use egui_plot::PlotPoint;
 use estimator::segment::{Segmentation, SystemState};
@@ -44,7 +44,7 @@ fn quantity(drawn: &Drawn, group: &Group, traces: &[Trace]) -> Markup {
     let span_s = prepared.span();
     let points: Vec<Vec<PlotPoint>> = traces
         .iter()
-        .map(|t| decimate(&prepared.times, t.levels.samples(&prepared.recording), span_s.0, span_s.1, COLUMNS))
+        .map(|t| bad::thinned(prepared, t.levels.samples(&prepared.recording), &prepared.times, COLUMNS))
         .collect();
     let frame = Frame {
         size: (WIDE, HEIGHT),
@@ -52,11 +52,14 @@ fn quantity(drawn: &Drawn, group: &Group, traces: &[Trace]) -> Markup {
         y: range_of(points.iter().flatten().map(|p| p.y), 0.06),
         x_unit: Some(time_unit(prepared)),
     };
+    let holes = bad::holes(prepared);
     let inside = html! {
-        (tints(drawn.segmentation.as_ref(), &frame))
+        (bad::gaps_in(&frame, &holes))
+        (tints(drawn.segmentation.as_ref(), &frame, &holes))
         @for (trace, points) in traces.iter().zip(&points) {
             (curve(&frame, points, "line", &role_name(trace.role, trace.second)))
         }
+        (bad::marks(&frame, prepared, &bad::names(traces)))
     };
     let says = format!("{} over time: {}", group.title, names(traces));
     html! {
@@ -65,6 +68,7 @@ fn quantity(drawn: &Drawn, group: &Group, traces: &[Trace]) -> Markup {
                 b { (group.title) @if !group.unit.is_empty() { ", " (group.unit) } }
                 span class="keys" {
                     @for trace in traces { (key(&role_name(trace.role, trace.second), &trace.label)) }
+                    (bad::keys(prepared, &bad::names(traces)))
                 }
             }
             (frame.draw(&says, &inside))
@@ -80,16 +84,18 @@ fn time_unit(prepared: &Prepared) -> &'static str {
     if prepared.clockless() { "" } else { " s" }
 }
 
-/// Faint stripes in the colours of the states.
-fn tints(segmentation: Option<&Segmentation>, frame: &Frame) -> Markup {
+/// Faint stripes in the colours of the states, none in a gap.
+fn tints(segmentation: Option<&Segmentation>, frame: &Frame, holes: &[(f64, f64)]) -> Markup {
     let states = segmentation.iter().flat_map(|s| &s.states).filter(|i| i.state != SystemState::FreeMotion);
     let (_, height) = frame.inner();
     html! {
         @for interval in states {
-            @let (from, to) = (frame.right(interval.t0), frame.right(interval.t1));
-            @if to - from > 0.5 {
-                rect class="tint" x=(super::short(from)) y="0" width=(super::short(to - from)) height=(super::short(height))
-                    style=(format!("fill:var(--{})", state_variable(interval.state))) {}
+            @for (t0, t1) in bad::outside(holes, (interval.t0, interval.t1)) {
+                @let (from, to) = (frame.right(t0), frame.right(t1));
+                @if to - from > 0.5 {
+                    rect class="tint" x=(super::short(from)) y="0" width=(super::short(to - from)) height=(super::short(height))
+                        style=(format!("fill:var(--{})", state_variable(interval.state))) {}
+                }
             }
         }
     }
@@ -117,21 +123,20 @@ pub fn against_virtual(
         measured.as_ref().map(|m| m.iter().zip(&simulated).map(|(m, s)| m - s).collect::<Vec<_>>());
     let thin = |values: Vec<f64>| {
         let levels = Levels::new(values);
-        decimate(
-            times,
-            levels.samples(&prepared.recording),
-            span_s.0,
-            span_s.1,
-            (width / WIDE * COLUMNS as f64) as usize,
-        )
+        let columns = (width / WIDE * COLUMNS as f64) as usize;
+        bad::thinned(prepared, levels.samples(&prepared.recording), times, columns)
     };
     let (simulated, measured, left) = (thin(simulated), measured.map(thin), left.map(thin));
     let size = |height: f64| (width, height);
     let y = range_of(simulated.iter().chain(measured.iter().flatten()).map(|p| p.y), 0.06);
     let above = Frame { size: size(130.0), x: span_s, y, x_unit: None };
+    let holes = bad::holes(prepared);
+    let names = [predicted.name.as_str()];
     let curves = html! {
+        (bad::gaps_in(&above, &holes))
         (curve(&above, &simulated, "line broad", "simulated"))
         @if let Some(measured) = &measured { (curve(&above, measured, "line", "measured")) }
+        (bad::marks(&above, prepared, &names))
     };
     html! {
         figure {
@@ -147,6 +152,7 @@ pub fn against_virtual(
                 @let half = 0.5 * (y.1 - y.0);
                 @let below = Frame { size: size(88.0), x: span_s, y: (-half, half), x_unit: Some(time_unit(prepared)) };
                 @let inside = html! {
+                    (bad::gaps_in(&below, &holes))
                     line class="zero" x1="0" x2=(below.inner().0) y1=(below.down(0.0)) y2=(below.down(0.0)) {}
                     (curve(&below, left, "line thin", "measured"))
                 };

@@ -66,6 +66,7 @@ fn summary(content: &Content) -> Markup {
     html! {
         div class="card summary" {
             ul {
+                @if all == 0 && content.analysis.is_ok() { li class="warning" { "No parameters were looked for in this recording." } }
                 @if all > 0 {
                     li class=(if found == all { "good" } else { "" }) {
                         @if found == all { "All " (all) " parameters were measured." }
@@ -78,7 +79,10 @@ fn summary(content: &Content) -> Markup {
                     li { (headline_of(PLAIN, diagnosis)) }
                 }
                 @if let Some(diagnosis) = &content.of_world {
-                    li class=(if diagnosis.verdict == Verdict::None { "good" } else { "" }) { (of_world(diagnosis)) }
+                    li class=(if diagnosis.verdict == Verdict::None { "good" } else { "" }) {
+                        (of_world(diagnosis))
+                        @if let Some(words) = replay::beside_the_diagnosis(content, diagnosis) { " " (words) }
+                    }
                 }
                 @if let Err(why) = &content.analysis { li class="warning" { "The fit did not succeed: " (sentence(why)) } }
                 @for warning in doubts(content).iter().take(MOST_DOUBTS) { li class="warning" { "The fit warns: " (sentence(warning)) } }

@@ -127,10 +127,11 @@ pub fn course(content: &Content) -> Markup {
 }
 
 fn states(segmentation: &Segmentation, drawn: &Drawn) -> Markup {
+    let holes = chart::holes(&drawn.prepared);
     html! {
         figure {
-            figcaption { b { "States and subtasks" } (chart::legend(segmentation)) }
-            (chart::band(segmentation, drawn.prepared.span()))
+            figcaption { b { "States and subtasks" } (chart::legend(segmentation, &holes)) }
+            (chart::band(segmentation, drawn.prepared.span(), &holes))
         }
     }
 }

@@ -1,9 +1,12 @@
 //! Real against virtual: the measured motion through the calibrated world.
 
 use super::failed;
+use crate::diagnosis_words::listed;
 use crate::report::chart;
 use crate::report::collect::{Content, Drawn};
 use crate::ui::format;
+use estimator::diagnose::{Diagnosis, Verdict};
+use estimator::signal::noise::white_noise;
 use estimator::simulate::Simulation;
 use maud::{Markup, html};
 
@@ -36,24 +39,101 @@ fn nowhere(content: &Content) -> Option<&str> {
     reasons.all(|r| r.is_some()).then_some(first.as_str())
 }
 
+/// What a replay leaves of a channel, and how much of that noise makes, in the channel's unit, RMS.
+struct Left<'a> {
+    name: &'a str,
+    rms: f64,
+    measured: Option<f64>,
+    /// White noise of the sensor, and of the simulated force.
+    noise: Option<(f64, f64)>,
+}
+
+impl Left<'_> {
+    fn share(&self) -> Option<f64> {
+        self.measured.filter(|m| *m > 0.0).map(|measured| self.rms / measured)
+    }
+
+    /// Whether noise alone makes what is left.
+    fn is_noise(&self) -> bool {
+        self.noise.is_some_and(|(sensor, own)| self.rms < NOISE_ALONE * sensor.hypot(own))
+    }
+}
+
+/// What is left is noise up to this many times what the noise makes: it is known from its white part alone.
+const NOISE_ALONE: f64 = 1.3;
+/// A share of a channel that a reader would not take for nothing.
+const NOTICED: f64 = 0.05;
+
+fn left<'a>(drawn: &Drawn, simulation: &'a Simulation) -> Vec<Left<'a>> {
+    let of = |(name, left): &'a (String, f64)| {
+        let measured = drawn.prepared.recording.channel(name);
+        let simulated = simulation.predicted.iter().find(|c| c.name == *name);
+        let noise = measured.zip(simulated).map(|(m, s)| {
+            // Where nothing is touched the simulated force is zero, without any noise.
+            let felt: Vec<f64> = s.values.iter().copied().filter(|v| *v != 0.0).collect();
+            (white_noise(m), white_noise(&felt))
+        });
+        Left { name, rms: *left, measured: measured.map(size), noise }
+    };
+    simulation.residual_rms.iter().map(of).collect()
+}
+
+/// Why a world that "leaves nothing beyond the noise" leaves a share of single channels here; nothing where it does not.
+pub fn beside_the_diagnosis(content: &Content, diagnosis: &Diagnosis) -> Option<String> {
+    if diagnosis.verdict != Verdict::None {
+        return None;
+    }
+    let simulated = content.drawn.iter().filter_map(|d| Some((d, d.simulation.as_ref().ok()?)));
+    let all: Vec<Left<'_>> = simulated.flat_map(|(d, s)| left(d, s)).collect();
+    let worst = all.iter().max_by(|a, b| a.share().unwrap_or(0.0).total_cmp(&b.share().unwrap_or(0.0)))?;
+    let share = worst.share().filter(|s| *s > NOTICED)?;
+    let why = if worst.is_noise() {
+        "this is noise of the sensor and of the simulated force itself, into which that of the measured positions comes through the stiff pads"
+    } else {
+        "that is asked of every channel, the diagnosis asks for what laws determine"
+    };
+    Some(format!("Its replay leaves {} % of {}: {why}.", format::significant(100.0 * share, 2), worst.name))
+}
+
+/// The channels' shares and noise.
+fn table(all: &[Left<'_>], simulation: &Simulation) -> Markup {
+    html! {
+        table {
+            thead { tr {
+                th { "Channel" } th class="number" { "Measured, RMS" } th class="number" { "Left over, RMS" } th class="number" { "Share" }
+                th class="number" { "Noise measured" } th class="number" { "Noise simulated" }
+            } }
+            tbody { @for channel in all {
+                @let (unit, factor) = unit_of(simulation, channel.name);
+                @let shown = |rms: f64| format!("{} {unit}", format::significant(rms * factor, 3));
+                @let dash = || "–".to_owned();
+                tr {
+                    td class="mono" { (channel.name) }
+                    td class="number" { (channel.measured.map_or_else(dash, shown)) }
+                    td class="number" { (shown(channel.rms)) }
+                    td class="number" { (channel.share().map_or_else(dash, |s| format!("{} %", format::significant(100.0 * s, 2)))) }
+                    td class="number" { (channel.noise.map_or_else(dash, |n| shown(n.0))) }
+                    td class="number" { (channel.noise.map_or_else(dash, |n| shown(n.1))) }
+                }
+            } }
+        }
+        p class="muted small" {
+            "Noise: its white part, RMS. The simulated force has some of its own, because the noise of the measured motion goes into it; "
+            "what is left holds both."
+            @let noisy: Vec<String> = all.iter().filter(|c| c.is_noise()).map(|c| c.name.to_owned()).collect();
+            @if !noisy.is_empty() { " In " (listed(&noisy)) " nothing more than that is left." }
+        }
+    }
+}
+
 fn replay(drawn: &Drawn, simulation: &Simulation) -> Markup {
     let rms = |name: &str| simulation.residual_rms.iter().find(|(n, _)| n == name).map(|(_, v)| *v);
-    let measured = |name: &str| drawn.prepared.recording.channel(name);
+    let holes = chart::holes(&drawn.prepared);
     html! {
-        @if !simulation.residual_rms.is_empty() {
-            table {
-                thead { tr { th { "Channel" } th class="number" { "Measured, RMS" } th class="number" { "Left over, RMS" } th class="number" { "Share" } } }
-                tbody { @for (name, left) in &simulation.residual_rms {
-                    @let (unit, factor) = unit_of(simulation, name);
-                    @let whole = measured(name).map(size);
-                    tr {
-                        td class="mono" { (name) }
-                        td class="number" { (whole.map_or("–".to_owned(), |w| format!("{} {unit}", format::significant(w * factor, 3)))) }
-                        td class="number" { (format::significant(left * factor, 3)) " " (unit) }
-                        td class="number" { (whole.filter(|w| *w > 0.0).map_or("–".to_owned(), |w| format!("{} %", format::significant(100.0 * left / w, 2)))) }
-                    }
-                } }
-            }
+        @if !simulation.residual_rms.is_empty() { (table(&left(drawn, simulation), simulation)) }
+        @if !holes.is_empty() {
+            p class="muted small" { "Nothing is simulated in the " @if holes.len() == 1 { "gap" } @else { (holes.len()) " gaps" }
+                ": what was held goes on where the fingers are found again." }
         }
         div class="keys small" { (chart::key("measured", "measured; below: measured less simulated")) (chart::key("simulated", "simulated")) }
         // One channel has the whole width.

@@ -3,7 +3,7 @@
 use super::{fact, failed};
 use crate::constraint_words;
 use crate::report::chart;
-use crate::report::collect::{Content, Drawn, MOST_DRAWN};
+use crate::report::collect::{Content, Drawn, MOST_DRAWN, is_lost};
 use crate::ui::format;
 use crate::ui::session::sentence;
 use estimator::estimate::{Constraint, ConstraintKind, Parameter};
@@ -58,7 +58,7 @@ pub fn parameters(content: &Content) -> Markup {
 fn row(parameter: &Parameter) -> Markup {
     let quantity = format::parameter(&parameter.name, parameter.value);
     html! {
-        tr class=[(!parameter.identified).then_some("hidden")] data-parameter=(parameter.full_name())
+        tr class=[(!parameter.identified || is_lost(parameter)).then_some("hidden")] data-parameter=(parameter.full_name())
             data-value=[parameter.value] data-error=[parameter.std_error] {
             td class="name" { (quantity.label) }
             @match parameter.value {
@@ -70,7 +70,10 @@ fn row(parameter: &Parameter) -> Markup {
                 }
                 None => td class="number" colspan="2" { "not identified" },
             }
-            td class="how" { (sentence(&parameter.how)) }
+            td class="how" {
+                @if is_lost(parameter) { b { "Not measured: the error is larger than the value." } " " }
+                (sentence(&parameter.how))
+            }
         }
     }
 }
@@ -166,7 +169,7 @@ fn one(constraint: &Constraint) -> Markup {
                 @if let Some(angle) = constraint.coverage_rad { (fact("Angle that was turned", &format!("{}°", format::number(angle.to_degrees(), 0)))) }
                 @if let Some(way) = constraint.coverage_m { (fact("Way that was covered", &millimetres(way, None))) }
                 @if let Some(off) = constraint.residual_m { (fact("Path lies off it by", &format!("{} mm RMS", format::significant(1e3 * off, 2)))) }
-                @if let Some(rigid) = constraint.rigid { (fact("Stiffness", if rigid { "rigid, as far as this hand can tell" } else { "gives way" })) }
+                @if let Some(rigid) = constraint.rigid { (fact("Its own stiffness, without the pads", if rigid { "rigid, as far as this hand can tell" } else { "gives way" })) }
             }
             p { (sentence(&constraint.evidence)) }
             @for words in constraint_words(constraint) { p class="muted small" { (sentence(&words)) } }

@@ -1,7 +1,7 @@
 //! What could not be known, and what would show it.
 
 use crate::diagnosis_words::{listed, title};
-use crate::report::collect::Content;
+use crate::report::collect::{Content, is_lost};
 use crate::ui::format;
 use crate::ui::session::sentence;
 use estimator::diagnose::NotExcited;
@@ -12,6 +12,7 @@ use maud::{Markup, html};
 pub fn unknown(content: &Content) -> Markup {
     let all = content.analysis.as_ref().map_or(&[][..], |a| &a.fit.parameters);
     let hidden: Vec<&Parameter> = all.iter().filter(|p| !p.identified).collect();
+    let lost = || all.iter().filter(|p| p.identified && is_lost(p));
     let constraints = content.analysis.as_ref().map_or(&[][..], |a| &a.fit.constraints);
     let open = constraints.iter().filter(|c| c.kind == ConstraintKind::Undecided);
     let not_excited = content.diagnosis.as_ref().map_or(&[][..], |d| &d.not_excited);
@@ -28,6 +29,16 @@ pub fn unknown(content: &Content) -> Markup {
                     }
                 } }
             }
+            @if lost().next().is_some() {
+                h4 { "Parameters that are lost in their own errors" }
+                ul { @for parameter in lost() {
+                    li {
+                        b { (format::object(&parameter.object)) ", " (format::parameter(&parameter.name, None).label.to_lowercase()) } ": "
+                        "nothing, or twice as much, is as likely."
+                        @if let Some(words) = missing(content, parameter) { " What would show it: " (words) "." }
+                    }
+                } }
+            }
             @for constraint in open { p { b { "A constraint stays open: " } (sentence(&constraint.evidence)) } }
             @if !not_excited.is_empty() {
                 h4 { "Effects that could be there and would not have been seen" }
@@ -38,7 +49,7 @@ pub fn unknown(content: &Content) -> Markup {
             }
             @if let Err(why) = &content.analysis { p { "No parameters and no constraints, because the fit did not succeed: " (sentence(why)) } }
             @if let Err(why) = &content.diagnosis { p { "Whether the model misses anything: " (sentence(why)) } }
-            @if content.analysis.is_ok() && content.diagnosis.is_ok() && all.iter().all(|p| p.identified) && not_excited.is_empty() {
+            @if content.analysis.is_ok() && content.diagnosis.is_ok() && all.iter().all(|p| p.identified && !is_lost(p)) && not_excited.is_empty() {
                 p { "Everything that was looked for could be seen." }
             }
         }

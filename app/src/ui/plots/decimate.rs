@@ -24,6 +24,12 @@ impl Columns {
         let n = times.len();
         let first = times.partition_point(|t| *t < from).saturating_sub(1);
         let end = (times.partition_point(|t| *t <= to) + 1).min(n);
+        Self::within(times, first..end, count)
+    }
+
+    /// The same of samples whose numbers are known.
+    pub fn within(times: &[f64], samples: Range<usize>, count: usize) -> Self {
+        let Range { start: first, end } = samples;
         let count = count.max(1);
         if end <= first || end - first <= 3 * count {
             return Self { samples: first..end.max(first), ends: Vec::new() };

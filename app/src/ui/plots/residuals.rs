@@ -4,6 +4,7 @@ use crate::ui::format;
 use egui_plot::PlotPoint;
 use estimator::diagnose::Diagnosis;
 use estimator::diagnose::course::{Course, Instant};
+use estimator::log::gap_above_s;
 use std::f64::consts::TAU;
 
 /// Most points of a curve, and of a cloud.
@@ -84,9 +85,11 @@ impl Residuals {
         let course = &diagnosis.course;
         let rows: Vec<&Instant> = course.instants.iter().filter(|i| i.recording == recording).collect();
         let sure: Vec<&Instant> = rows.iter().copied().filter(|i| i.weight >= LEAST_WEIGHT).collect();
-        let curve = |rows: &[&Instant], breaks: bool, of: &dyn Fn(&Instant) -> f64| {
-            // Without the rows in between, neighbours may be far apart.
-            rows.chunk_by(|a, b| b.follows && !(breaks && b.time_s - a.time_s > GAP_S))
+        let times: Vec<f64> = rows.iter().map(|i| i.time_s).collect();
+        let gap_s = gap_above_s(&times).unwrap_or(f64::INFINITY);
+        let curve = |rows: &[&Instant], far_s: f64, of: &dyn Fn(&Instant) -> f64| {
+            // Without the rows in between, neighbours may be far apart; nor is anything known of a gap.
+            rows.chunk_by(|a, b| b.follows && b.time_s - a.time_s <= far_s)
                 .map(|stretch| thin(&stretch.iter().map(|i| [i.time_s, of(i)].into()).collect::<Vec<_>>(), rows.len()))
                 .collect::<Vec<_>>()
         };
@@ -104,9 +107,9 @@ impl Residuals {
         Self {
             unit: course.force_unit(),
             is_free: course.is_free(),
-            measured: curve(&rows, false, &|i| i.measured),
-            modelled: curve(&sure, true, &Instant::simulated_before),
-            extended: curve(&sure, true, &Instant::simulated_after),
+            measured: curve(&rows, gap_s, &|i| i.measured),
+            modelled: curve(&sure, GAP_S, &Instant::simulated_before),
+            extended: curve(&sure, GAP_S, &Instant::simulated_after),
             span_s: range(rows.iter().map(|i| i.time_s), 0.0),
             force,
             largest: 1.1 * largest,

@@ -13,13 +13,33 @@ const AROUND: usize = 16;
 /// Fewer steps say nothing about what is usual.
 const MIN_STEPS: usize = 8;
 
+/// Median step of a clock, and one that only few exceed; `None` where there are too few.
+fn usual_steps(time_s: &[f64]) -> Option<(f64, f64)> {
+    if time_s.len() <= MIN_STEPS {
+        return None;
+    }
+    let step = |i: usize| time_s[i + 1] - time_s[i];
+    let mut ordered: Vec<f64> = thinned(time_s.len() - 1).map(step).collect();
+    ordered.sort_unstable_by(f64::total_cmp);
+    Some((ordered[ordered.len() / 2], ordered[ordered.len() * 95 / 100]))
+}
+
+/// A step that is longer than this, s, is a gap in the time, or a jump of the clock; `None` where too few steps tell what is usual.
+pub fn gap_above_s(time_s: &[f64]) -> Option<f64> {
+    usual_steps(time_s).map(|(median, high)| (GAP_PERIODS * median).max(5.0 * high))
+}
+
+/// Samples after which such a step follows.
+pub fn gaps(time_s: &[f64]) -> Vec<usize> {
+    let above_s = gap_above_s(time_s).unwrap_or(f64::INFINITY);
+    let steps = time_s.windows(2).enumerate();
+    steps.filter(|(_, pair)| pair[1] - pair[0] > above_s).map(|(i, _)| i).collect()
+}
+
 /// What the time column shows.
 pub fn warnings(recording: &Recording) -> Vec<Warning> {
-    let Some(time) = recording.time_s.as_ref().filter(|t| t.len() > MIN_STEPS) else { return Vec::new() };
-    let step = |i: usize| time[i + 1] - time[i];
-    let mut ordered: Vec<f64> = thinned(time.len() - 1).map(step).collect();
-    ordered.sort_unstable_by(f64::total_cmp);
-    let (median, high) = (ordered[ordered.len() / 2], ordered[ordered.len() * 95 / 100]);
+    let Some(time) = &recording.time_s else { return Vec::new() };
+    let Some((median, high)) = usual_steps(time) else { return Vec::new() };
     // On an uneven clock only what is far outside its own spread counts.
     let even = high <= 1.3 * median;
     let dropped_above = if even { DROPPED_PERIODS * median } else { f64::INFINITY };

@@ -11,6 +11,7 @@ mod repeats;
 mod scale;
 mod spikes;
 
+pub use clock::{gap_above_s, gaps};
 pub use repeats::copied;
 
 use super::units;
