@@ -2,8 +2,8 @@
 """Logs of things with known parameters, made in MuJoCo: make_logs.py LOGS TRUTH [NAME...]
 
 LOGS gets what a user would have: logs and sidecars. TRUTH gets one file with what the things are made of; only the assertion
-opens it. Everything is drawn from a seed, always the same one unless `TOUCHSTONE_MUJOCO_SEED` says another: fits were not tuned to it, and
-other seeds show that.
+opens it. Everything is drawn from a seed, always the same one unless `TOUCHSTONE_MUJOCO_SEED` says another: what others show is in
+`docs/validation.md`.
 """
 
 import json
