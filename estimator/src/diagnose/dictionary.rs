@@ -1,6 +1,8 @@
 //! The causes that act in the force, as columns over the rows of a track: each out of its law in `haptics::law`.
 
-use super::candidate::{Candidate, Searched, Shape};
+mod springs;
+
+use super::candidate::{Candidate, Shape};
 use super::columns::Columns;
 use super::free;
 use super::grid::Grid;
@@ -9,9 +11,9 @@ use super::zero::Zero;
 use crate::signal::derive::savitzky_golay;
 use haptics::Vec2;
 use haptics::law::{
-    AddedConstraint, Backlash, Cable, CoulombFriction, EccentricMass, Effect, ForceBias, ForceDrift, FrictionAsymmetry,
-    FrictionChange, Hysteresis, Inertia, Kind, Law, LoadFriction, LocalPush, LocalResistance, MAX_PARAMETERS,
-    MassChange, Memory, Motion, PositionRipple, QuadraticDrag, ReturnSpring, Stribeck, ViscousFriction, Weight,
+    Backlash, CoulombFriction, EccentricMass, Effect, ForceBias, ForceDrift, FrictionAsymmetry, FrictionChange,
+    Hysteresis, Inertia, Kind, Law, LoadFriction, LocalPush, LocalResistance, MAX_PARAMETERS, MassChange, Memory,
+    Motion, PositionRipple, QuadraticDrag, Stribeck, ViscousFriction, Weight,
 };
 
 /// Least share of the friction that bends before it slides, and the least that passes for all of it.
@@ -200,60 +202,6 @@ impl Dictionary<'_> {
         self.springs(all);
         self.local(all);
         self.walls(all);
-    }
-
-    /// A spring, and one that hardens: a cubic about any place is one about the middle and another beside it.
-    fn springs(&self, all: &mut Vec<Candidate>) {
-        let (low, high) = (self.track.quantile(0.0, position), self.track.quantile(1.0, position));
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low).max(1e-12));
-        let column = |values: &[f64]| self.law_of_place(&ReturnSpring, values);
-        let line = || vec![column(&[1.0, 0.0, 0.0, middle]), column(&[0.0, 1.0])];
-        let names = || vec![("k", self.unit(&ReturnSpring, 0)), ("f0", self.units().force)];
-        let spring = Candidate::several("return-spring", Kind::Plant, line(), names());
-        all.push(spring.shaped(Shape::Spring { half }));
-        if !self.track.planar {
-            // Beside a constant force (a sensor's zero, a slope) nothing tells where it is at rest.
-            let anywhere = column(&[1.0, 0.0, 0.0, middle]);
-            all.push(
-                Candidate::one("return-spring", Kind::Plant, "k", self.unit(&ReturnSpring, 0), anywhere).positive(),
-            );
-        }
-        let (mut columns, mut linear) = (line(), names());
-        columns.push(column(&[0.0, 0.0, 1.0, middle]));
-        columns.push(column(&[0.0, 0.0, 1.0, middle + half]));
-        linear.extend([("k3", self.unit(&ReturnSpring, 2)), ("k3 aside", self.unit(&ReturnSpring, 2))]);
-        let hardening = Candidate::several("return-spring", Kind::Plant, columns, linear);
-        all.push(hardening.shaped(Shape::Hardening { half }));
-        // Far from its place of rest all that shows is the cubic.
-        for rest in self.grid.rests.iter().copied() {
-            let cubic = self.plain(&ReturnSpring, &[0.0, 0.0, 1.0, rest], 2).positive();
-            all.push(cubic.at("q0", rest, self.unit(&ReturnSpring, 3)));
-        }
-        // Near it, where it is at rest there is no force: one parameter less than two cubics have.
-        for rest in self.grid.hardening.iter().copied() {
-            let columns = vec![column(&[1.0, 0.0, 0.0, rest]), column(&[0.0, 0.0, 1.0, rest])];
-            let linear = vec![("k", self.unit(&ReturnSpring, 0)), ("k3", self.unit(&ReturnSpring, 2))];
-            let stiff = Candidate::several("return-spring", Kind::Plant, columns, linear).shaped(Shape::Stiffening);
-            all.push(stiff.at("q0", rest, self.unit(&ReturnSpring, 3)));
-        }
-    }
-
-    /// Walls that leave a good part of the motion alone (else a spring explains as much), and cables to a place beside the arm.
-    fn walls(&self, all: &mut Vec<Candidate>) {
-        let units = self.units();
-        for (place, side) in self.grid.walls.iter().copied() {
-            let wall = self.plain(&AddedConstraint, &[1.0, place, side], 0).positive();
-            all.push(Candidate { side, ..wall.at("place", place, units.length) });
-        }
-        let (Some(radius), true) = (self.track.radius_m, self.track.planar) else { return };
-        for (direction, rest, reach) in self.grid.cables.iter().copied() {
-            let pull = self.law_of_place(&Cable, &[1.0, rest, direction, reach * radius, radius]);
-            let cable = Candidate::one("added-constraint", Kind::Plant, "k", "N/m", pull).positive();
-            let mut cable = cable.at("anchor direction", direction, "rad").at("rest length", rest, "m");
-            // How far away the anchor is hardly shows.
-            cable.searched.push(Searched { name: "anchor distance", value: reach * radius, unit: "m" });
-            all.push(cable);
-        }
     }
 
     fn ripple(&self, all: &mut Vec<Candidate>, length: f64, is_short: bool) {

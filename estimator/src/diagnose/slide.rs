@@ -13,6 +13,7 @@ use super::report::{
 use super::track::{self, Place, Track};
 use super::{Options, explain, named, nothing, quality, sliding, threshold};
 use crate::estimate::EstimateError;
+use crate::segment::slid::{LIFTED_M, LIFTED_S};
 use crate::segment::threshold::{Levels, percentile};
 use crate::signal::task::{TaskSignals, smooth, task_signals};
 use haptics::law::{Backlash, CoulombFriction, Effect, Hysteresis, Inertia, Kind, LoadFriction};
@@ -24,10 +25,6 @@ const TOUCH_SHARE: f64 = 0.1;
 const TOUCH_NOISES: f64 = 6.0;
 /// Fingers close and open slowly, s.
 const CLOSING_S: f64 = 0.15;
-/// Tips so far above the lowest ones have lifted the block, m.
-const LIFTED_M: f64 = 2e-3;
-/// What is lifted for longer is carried, s.
-const LIFTED_S: f64 = 0.3;
 /// Faster than this it slides, m/s; and so long at least in all, s.
 const SLIDES_M_S: f64 = 5e-3;
 const LEAST_S: f64 = 2.0;

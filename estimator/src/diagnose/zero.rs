@@ -28,8 +28,6 @@ pub enum Zero {
 const WINDOW_S: f64 = 0.1;
 const LEAST_SAMPLES: usize = 4;
 const LEAST_WINDOWS: usize = 4;
-/// A window is quiet within so many times the noise of a sample: noise is coloured.
-const NOISES: f64 = 1.0;
 /// A rest agrees with a value within so many errors, or this share of the constant.
 const ERRORS: f64 = 4.0;
 const SHARE: f64 = 0.15;
@@ -106,7 +104,8 @@ fn rest(recording: &Recording) -> Option<(f64, f64)> {
     let n = time.len().min(force.len()).min(place.len());
     let period_s = (time.last()? - time.first()?) / n.saturating_sub(1).max(1) as f64;
     let length = ((WINDOW_S / period_s).round() as usize).max(LEAST_SAMPLES);
-    let noise = |values: &[f64]| NOISES * white_noise(values).max(quantum(values));
+    // Means of windows stay within the noise of a single sample: noise is coloured.
+    let noise = |values: &[f64]| white_noise(values).max(quantum(values));
     let (still, quiet) = (noise(place), noise(force));
     let means = |values: &[f64], backwards: bool| -> Vec<f64> {
         let mean = |w: &[f64]| w.iter().sum::<f64>() / w.len() as f64;

@@ -19,7 +19,7 @@ pub(crate) mod resting;
 pub mod rules;
 pub mod score;
 pub mod shows;
-mod slid;
+pub(crate) mod slid;
 mod state;
 pub mod subtasks;
 pub mod threshold;

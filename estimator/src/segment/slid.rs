@@ -5,9 +5,10 @@ use super::state::SystemState;
 use super::threshold::{Thresholds, percentile};
 use crate::signal::task::TaskSignals;
 
-/// Tips so far above the lowest ones have lifted the block, m; what is lifted for longer than this is carried, s.
-const LIFTED_M: f64 = 2e-3;
-const LIFTED_S: f64 = 0.3;
+/// Tips so far above the lowest ones have lifted the block, m.
+pub const LIFTED_M: f64 = 2e-3;
+/// What is lifted for longer is carried, s.
+pub const LIFTED_S: f64 = 0.3;
 /// It is slid when the tips go so far to and fro while they hold it, m …
 const SLID_M: f64 = 5e-3;
 /// … and stands on the ground at that very height for this share of the time.
@@ -19,7 +20,8 @@ pub fn put_down(signals: &TaskSignals, thresholds: &Thresholds, states: &mut [Sy
     let held: Vec<usize> =
         (0..states.len()).filter(|i| matches!(states[*i], HoldOnGround | HoldAboveGround | SlidingOnGround)).collect();
     let (Some(first), Some(last)) = (signals.time_s.first(), signals.time_s.last()) else { return };
-    if held.is_empty() {
+    let grounded = held.iter().filter(|i| states[**i] != HoldAboveGround).count();
+    if grounded == held.len() {
         return;
     }
     let step_s = (last - first) / signals.len().max(2) as f64;
@@ -28,7 +30,6 @@ pub fn put_down(signals: &TaskSignals, thresholds: &Thresholds, states: &mut [Sy
     let mut places: Vec<f64> = held.iter().map(|i| signals.position[*i].x).collect();
     let way_m = percentile(&mut places, 0.95) - percentile(&mut places, 0.05);
     let lifted = held.iter().filter(|i| signals.position[**i].y > ground_m + LIFTED_M).count();
-    let grounded = held.iter().filter(|i| states[**i] != HoldAboveGround).count();
     let stays = (lifted as f64) * step_s < LIFTED_S && grounded as f64 > GROUNDED_SHARE * held.len() as f64;
     if !stays || way_m < SLID_M {
         return;

@@ -79,22 +79,28 @@ pub fn fit_by(
     Ok((fit, blocks.segmentation))
 }
 
+/// Why there is nothing to fit, and what to do.
+fn nothing(blocks: &Blocks<'_>) -> EstimateError {
+    let name = &blocks.recording.name;
+    let slides = blocks.segmentation.states.iter().any(|s| s.state == SystemState::SlidingOnGround);
+    EstimateError::Other(if slides {
+        format!(
+            "the block in {name} is slid and never lifted, so what it weighs does not show in what the fingers feel: lift it once to fit it; a \
+             diagnosis tells what resists it on the table"
+        )
+    } else {
+        format!(
+            "no block was carried in {name}: there is nothing to fit; check the task and the signs of the forces, and that a state of the \
+             task with a subtask shows {MAIN}"
+        )
+    })
+}
+
 /// All that one recording shows.
 fn describe(blocks: &Blocks<'_>) -> Result<Fit, EstimateError> {
     let (count, recording) = (blocks.count(), blocks.recording);
-    if count == 0 && blocks.segmentation.states.iter().any(|s| s.state == SystemState::SlidingOnGround) {
-        return Err(EstimateError::Other(format!(
-            "the block in {} is slid and never lifted, so what it weighs does not show in what the fingers feel: lift it once to fit it; a \
-             diagnosis tells what resists it on the table",
-            recording.name
-        )));
-    }
     if count == 0 {
-        return Err(EstimateError::Other(format!(
-            "no block was carried in {}: there is nothing to fit; check the task and the signs of the forces, and that a state of the \
-             task with a subtask shows {MAIN}",
-            recording.name
-        )));
+        return Err(nothing(blocks));
     }
     let mut parameters = Vec::new();
     let mut weights_n = Vec::new();
