@@ -2,7 +2,12 @@
 
 use super::recorded::{reach, recorded};
 use crate::diagnose::{Diagnosis, Options, Verdict, diagnose};
+use haptics::device::{Device as _, ScriptedOperator, Skill};
 use haptics::recording::Recording;
+use haptics::servo::recorder::{SensorModel, to_recording};
+use haptics::servo::safety::Limits;
+use haptics::servo::{Loop, Swap};
+use haptics::world::{State, presets};
 
 const WEIGHT_N: f64 = 0.6;
 const GRAVITY: f64 = 9.81;
@@ -144,4 +149,28 @@ fn a_weight_that_is_stated_without_a_number_is_that_of_all_carries() {
     recording.meta.known.insert("mass_kg".to_owned(), WEIGHT_N / GRAVITY);
     let found = diagnose(&[recording], &Options::default()).expect("a block was carried");
     assert!((value(&found, "force-gain", "g - 1") - 0.08).abs() < 5e-3);
+}
+
+/// A barrel on its cable, carried by the scripted operator in the stepped world.
+fn barrel(seed: u64) -> Recording {
+    let world = presets::barrel();
+    let state = State::resting(&world);
+    let operator = ScriptedOperator::new(&world, &state, Skill::default(), seed);
+    let limits = Limits { max_force_n: operator.spec().max_force_n, ..Limits::default() };
+    let mut servo = Loop::new(Swap::at(world.clone(), state), Box::new(operator), limits);
+    let mut ticks = Vec::new();
+    while !servo.finished() {
+        ticks.push(servo.tick(1e-3));
+    }
+    to_recording("barrel", &world, &ticks, 1, &SensorModel::TYPICAL, seed)
+}
+
+#[test]
+fn what_a_cable_leaves_over_is_no_cause_of_its_own() {
+    for seed in 1..=3 {
+        let found = diagnose(&[barrel(seed)], &Options::default()).expect("an answer");
+        let ids: Vec<&str> = found.causes.iter().map(|c| c.id.as_str()).collect();
+        assert!(ids.contains(&"added-constraint"), "{ids:?}");
+        assert!(ids.iter().all(|id| !["inertia", "force-cross-axis"].contains(id)), "{ids:?}");
+    }
 }
