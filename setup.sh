@@ -90,7 +90,7 @@ have_headers() {
   command -v pkg-config >/dev/null 2>&1 && pkg-config --exists alsa libudev
 }
 
-# MuJoCo, matplotlib and jsonschema for the tests beside other programs, in an environment of their own under the build folder, which sees what is
+# MuJoCo, Drake, matplotlib and jsonschema for the tests beside other programs, in an environment of their own under the build folder, which sees what is
 # installed besides; without them those tests are skipped, with a word.
 setup_python() {
   [ -z "${TOUCHSTONE_PYTHON:-}" ] || return 0
@@ -104,6 +104,8 @@ setup_python() {
   if python3 -m venv --system-site-packages "$environment" >/dev/null 2>&1 &&
     "$environment/bin/pip" install --quiet --disable-pip-version-check mujoco matplotlib jsonschema >/dev/null 2>&1; then
     touch "$environment/ready"
+    # Not for every system and version of Python; the test that wants it says so.
+    "$environment/bin/pip" install --quiet --disable-pip-version-check drake >/dev/null 2>&1 || true
   else
     rm -rf "$environment"
     echo "It could not be installed from here (python3-venv and PyPI are needed): tests beside MuJoCo are skipped." >&2

@@ -2,8 +2,8 @@
 """Logs of things with known parameters, made in MuJoCo: make_logs.py LOGS TRUTH [NAME...]
 
 LOGS gets what a user would have: logs and sidecars. TRUTH gets one file with what the things are made of; only the assertion
-opens it. Everything is drawn from a seed, always the same one unless `TOUCHSTONE_MUJOCO_SEED` says another: what others show is in
-`docs/validation.md`.
+opens it. Everything is drawn from a seed, always the same one unless `TOUCHSTONE_MUJOCO_SEED` says another: the test draws one a day, and
+`docs/validation.md` has what eight others show.
 """
 
 import json
@@ -222,7 +222,35 @@ def impacts(rng):
     return columns, rows, sidecar, {"body": {"free_fall_m_s2": rig.GRAVITY, "length_scale": 1.0, "friction": friction}}
 
 
-MAKERS = {"blocks": blocks, "crank": crank, "pinch": pinch, "slope": slope, "impacts": impacts}
+def thrown(rng):
+    """Twenty throws of a cube within one plane: it falls, hits with an edge, slaps down and slides out."""
+    friction, half = rng.uniform(0.15, 0.35), 0.05
+    m = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option timestep="{rig.STEP_S}" gravity="0 0 {-rig.GRAVITY}" cone="elliptic" impratio="20"/><worldbody>'
+        f'<geom type="plane" size="5 5 0.1" friction="{friction} 0.005 0.0001"/><body name="cube"><joint type="slide" axis="1 0 0"/>'
+        '<joint type="slide" axis="0 0 1"/><joint type="hinge" axis="0 -1 0"/>'
+        f'<geom type="box" size="{half} {half} {half}" mass="0.37" friction="{friction} 0.005 0.0001"/></body></worldbody></mujoco>')
+    columns = ["t_s", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "trial"]
+    every, rows = round(1.0 / (250 * rig.STEP_S)), []
+    for trial in range(20):
+        d = mujoco.MjData(m)
+        d.qpos[:] = [0.0, rng.uniform(0.12, 0.2), rng.normal(0.0, 0.15)]
+        d.qvel[:] = [rng.uniform(0.8, 1.8), rng.uniform(0.0, 0.8), rng.normal(0.0, 1.0)]
+        for tick in range(round(1.6 / rig.STEP_S)):
+            if tick % every == 0:
+                x, z, angle = d.qpos
+                place = numpy.array([x, 0.0, z]) + rng.normal(0.0, 2e-4, 3)
+                # Counter-clockwise, seen with x to the right and z up, is about -y.
+                quaternion = numpy.array([numpy.cos(angle / 2), 0.0, -numpy.sin(angle / 2), 0.0]) + rng.normal(0.0, 1e-3, 4)
+                rows.append([d.time, *place, *(quaternion / numpy.linalg.norm(quaternion)), trial])
+            if tick * rig.STEP_S > 0.3 and numpy.linalg.norm(d.qvel) < 1e-3:
+                break
+            mujoco.mj_step(m, d)
+    sidecar = {"task": "mechanism", "gravity_m_s2": rig.GRAVITY, "up": "z"}
+    return columns, rows, sidecar, {"body": {"free_fall_m_s2": rig.GRAVITY, "friction": friction}}
+
+
+MAKERS = {"blocks": blocks, "crank": crank, "pinch": pinch, "slope": slope, "impacts": impacts, "thrown": thrown}
 
 
 def main():

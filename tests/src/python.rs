@@ -18,9 +18,16 @@ fn program() -> PathBuf {
 /// What a script of the workspace prints; `None` when it has to be skipped, with a visible word: there is no Python, or the script
 /// itself says `skipped: …` because a package is missing.
 pub fn output_of(script: &str, arguments: &[&str]) -> Option<String> {
+    output_with(script, arguments, &[])
+}
+
+/// The same with variables of the environment.
+pub fn output_with(script: &str, arguments: &[&str], variables: &[(&str, String)]) -> Option<String> {
     let program = program();
     let path = workspace().join(script);
-    let Ok(output) = Command::new(&program).arg(&path).args(arguments).output() else {
+    let mut command = Command::new(&program);
+    command.arg(&path).args(arguments).envs(variables.iter().map(|(name, value)| (name, value)));
+    let Ok(output) = command.output() else {
         crate::skipped(&format!("{} cannot be started", program.display()));
         return None;
     };

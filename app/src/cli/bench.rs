@@ -7,11 +7,13 @@ mod diagnosis;
 pub(crate) mod frames;
 mod loglog;
 pub(crate) mod online;
+mod opening;
 mod peers;
 pub(crate) mod scale;
 pub(crate) mod table;
 mod verdict;
 mod whole;
+mod window;
 
 use super::{ControlArgs, Output};
 use anyhow::Context;

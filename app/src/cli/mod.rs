@@ -106,6 +106,9 @@ struct AppArgs {
     /// Task of the log: block-stack, crank, needle, mechanism, barrel, switch, a task of yours, or its JSON file
     #[arg(long, value_parser = find_task)]
     task: Option<Chosen>,
+    /// Close the window when its first picture stands, and say so: what `touchstone bench` measures
+    #[arg(long, hide = true)]
+    until_first_picture: bool,
 }
 
 /// A log on the command line.
@@ -274,8 +277,14 @@ fn sentence(error: &anyhow::Error) -> String {
 }
 
 fn open_app(args: AppArgs) -> ExitCode {
-    let options =
-        crate::ui::RunOptions { log: args.log, meta: args.meta, world: args.world, task: args.task, dark: None };
+    let options = crate::ui::RunOptions {
+        log: args.log,
+        meta: args.meta,
+        world: args.world,
+        task: args.task,
+        dark: None,
+        until_first_picture: args.until_first_picture,
+    };
     match crate::ui::run(options) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => fail(&error),

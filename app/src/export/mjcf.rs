@@ -18,6 +18,11 @@ const FAR_M: f64 = 1.0;
 const TIP_RADIUS_M: f64 = 0.003;
 const TIP_KG: f64 = 0.05;
 const TIP_DAMPING_RATIO: f64 = 0.7;
+/// What a tip touches gives much less than by MuJoCo's default: the spring behind the tip is the pad, and a contact that gives as well
+/// takes most of the grip away (MuJoCo's time constant, s, and damping ratio).
+const TIP_CONTACT: &str = "0.002 1";
+/// Rounds that MuJoCo takes after each step so that what friction holds does not creep: a held block would sink by millimetres a second.
+const ROUNDS_AGAINST_CREEP: u32 = 10;
 /// How far to each side of the workspace's middle the tips wait, m.
 const TIP_AWAY_M: f64 = 0.03;
 /// Torsional and rolling friction of MuJoCo's pairs: its defaults; neither acts in a plane.
@@ -58,7 +63,8 @@ pub fn write(world: &World, scene: &mut Scene, fingers: bool) -> Element {
                 .with("timestep", STEP_S)
                 .with("gravity", numbers(scene.gravity.as_slice()))
                 .with("cone", "elliptic")
-                .with("impratio", 10),
+                .with("impratio", 10)
+                .with("noslip_iterations", ROUNDS_AGAINST_CREEP),
         );
     let hand = fingers.then(|| hand(world, scene));
     if let Some(hand) = &hand {
@@ -326,13 +332,14 @@ fn hand(world: &World, scene: &mut Scene) -> Hand {
             // Its surface, not its middle, is where the tip is.
             ball.with("pos", numbers(&[side * TIP_RADIUS_M, 0.0, 0.0])).with("mass", TIP_KG),
         ));
-        hand.pairs.extend(blocks(scene).map(|(body, contact)| pair(name, &body.name, contact.finger_friction)));
+        let touch = |what: &str, friction: f64| pair(name, what, friction).with("solref", TIP_CONTACT);
+        hand.pairs.extend(blocks(scene).map(|(body, contact)| touch(&body.name, contact.finger_friction)));
         // A crank comes before a switch, as in the scene.
         let arms = scene.bodies.iter().filter(|body| matches!(body.outline, Outline::Arm { .. }));
         let crank = world.crank.as_ref().map(|crank| crank.finger_friction);
         let switch = world.switch.as_ref().map(|switch| switch.finger_friction);
         let frictions = crank.into_iter().chain(switch);
-        hand.pairs.extend(arms.zip(frictions).map(|(body, friction)| pair(name, &body.name, friction)));
+        hand.pairs.extend(arms.zip(frictions).map(|(body, friction)| touch(&body.name, friction)));
     }
     hand.pairs.push(Element::new("exclude").with("body1", "finger-1").with("body2", "finger-2"));
     hand.start = Element::new("key").with("name", "start").with("ctrl", numbers(&controls));

@@ -20,6 +20,7 @@ pub mod dock;
 pub mod experimenting;
 mod files;
 pub mod film;
+pub mod first_picture;
 pub mod fit_choice;
 pub mod fitting;
 pub mod format;
@@ -80,6 +81,8 @@ pub struct RunOptions {
     pub task: Option<Chosen>,
     /// Light or dark; the system's choice when absent.
     pub dark: Option<bool>,
+    /// Close when the first picture stands.
+    pub until_first_picture: bool,
 }
 
 /// Opens the window; returns when it is closed.
@@ -97,7 +100,8 @@ pub fn run(options: RunOptions) -> anyhow::Result<()> {
         ..Default::default()
     };
     let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
-        Ok(Box::new(create(cc, &options)))
+        let app = create(cc, &options);
+        Ok(if options.until_first_picture { Box::new(first_picture::UntilFirstPicture::new(app)) } else { Box::new(app) })
     };
     match eframe::run_native("touchstone", native, Box::new(start)) {
         Err(eframe::Error::Wgpu(_)) if std::env::var_os(BACKEND).is_none() => with_open_gl(),

@@ -34,10 +34,15 @@ pub struct Material {
     pub wall_n_m: f64,
 }
 
+/// Tangential stiffness and damping of a hard contact over the normal ones (Mindlin 1949, for common solids).
+const TANGENTIAL_SHARE: f64 = 2.0 / 3.0;
+/// Share of a slip that the tangential damper of an impact may take within one part: explicit, more of it would turn the slip round
+/// where several contacts share it.
+const TAKEN_IN_A_PART: f64 = 0.25;
+
 impl Material {
-    /// Hard contact: tangential stiffness and damping in proportion to the normal ones (2/3, Mindlin 1949 for common solids).
+    /// Hard contact: tangential stiffness and damping in proportion to the normal ones.
     pub fn hard(stiffness_n_m: f64, damping_n_s_m: f64, friction: f64) -> Self {
-        const TANGENTIAL_SHARE: f64 = 2.0 / 3.0;
         Self {
             elastic: Cushion::linear(stiffness_n_m),
             damping_n_s_m,
@@ -107,12 +112,14 @@ impl Touch {
             (self.met, contact.met_m_s) = (true, closing);
         }
         let normal_force = self.normal_n(closing, half_way_m, dt_s);
+        let shears = self.material.shear_damping_n_s_m;
+        let damping = if self.material.impact_damping == 0.0 { shears } else { self.impact_shear_n_s_m(dt_s) };
         let (contact, material) = (&mut self.contact, &self.material);
         let tangent = contact.tangent();
         let shear = contact.shear_m + way_along_m;
         let limit = material.friction * normal_force;
         let slip = relative_velocity.dot(&tangent);
-        let stuck = -(material.shear_stiffness_n_m * shear + material.shear_damping_n_s_m * slip);
+        let stuck = -(material.shear_stiffness_n_m * shear + damping * slip);
         let tangent_force = within(stuck, limit);
         contact.sliding = stuck != tangent_force;
         // The anchor slides along when the spring alone is beyond the limit: the spring never holds more than the way that the
@@ -121,6 +128,18 @@ impl Touch {
         contact.normal_force_n = normal_force;
         contact.tangent_force_n = tangent_force;
         contact.force_n()
+    }
+
+    /// Tangential damping where a restitution was measured, N s/m: in proportion to the normal one, as everywhere. Without it a body that
+    /// lands while it slides would first have to stretch the anchor, while the damper already presses: it would lose too little speed.
+    #[cold]
+    #[inline(never)]
+    fn impact_shear_n_s_m(&self, dt_s: f64) -> f64 {
+        let (contact, material) = (&self.contact, &self.material);
+        let elastic = material.elastic_n(contact.depth_m).max(0.0);
+        let normal = elastic * material.impact_damping / contact.met_m_s.max(RESTING_M_S);
+        let most = if self.yield_1_kg > 0.0 { TAKEN_IN_A_PART / (self.yield_1_kg * dt_s) } else { f64::INFINITY };
+        (TANGENTIAL_SHARE * normal).min(most)
     }
 
     /// Mean normal force of a part, N, ≥ 0, whose way at `closing` m/s is `half_way_m` to both sides of the depth.

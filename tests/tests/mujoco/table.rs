@@ -14,6 +14,10 @@ pub struct Row {
     pub wanted: f64,
     /// How far it may be off.
     pub tolerance: f64,
+    /// What a difference is told in: a standard error, or 1.
+    pub per: f64,
+    /// Decimal places of that.
+    pub places: usize,
 }
 
 /// Comparisons under one head.
@@ -30,7 +34,11 @@ impl Row {
     }
 
     fn line(&self) -> String {
-        format!("| {} |", [self.labels.as_slice(), self.shown.as_slice()].concat().join(" | "))
+        format!("| {} |", self.cells().join(" | "))
+    }
+
+    fn cells(&self) -> Vec<String> {
+        [self.labels.as_slice(), self.shown.as_slice()].concat()
     }
 }
 
@@ -47,9 +55,18 @@ impl Table {
     }
 
     fn text(&self) -> String {
-        let mut text = format!("| {} |\n|{}\n", self.head.join(" | "), "---|".repeat(self.head.len()));
-        for row in &self.rows {
-            let _ = writeln!(text, "{}", row.line());
+        self.text_with(None)
+    }
+
+    /// With one more column: what other seeds show.
+    fn text_with(&self, others: Option<&[String]>) -> String {
+        let mut head: Vec<&str> = self.head.clone();
+        head.extend(others.map(|_| "eight other seeds"));
+        let mut text = format!("| {} |\n|{}\n", head.join(" | "), "---|".repeat(head.len()));
+        for (k, row) in self.rows.iter().enumerate() {
+            let mut cells = row.cells();
+            cells.extend(others.and_then(|all| all.get(k)).cloned());
+            let _ = writeln!(text, "| {} |", cells.join(" | "));
         }
         text
     }
@@ -61,22 +78,23 @@ pub fn figure(value: f64, error: f64) -> String {
     format!("{value:.*}", places as usize)
 }
 
-/// Writes a table into the document, or sees to it that what stands there has the same rows.
-pub fn keep(name: &str, table: &Table) {
+/// Writes a table into the document, with what other seeds show, or sees to it that what stands there has the same rows.
+pub fn keep(name: &str, table: &Table, others: Option<&[String]>) {
     let path = tests::workspace().join("docs/validation.md");
     let document = std::fs::read_to_string(&path).expect("docs/validation.md is there");
     let (begin, end) = (format!("<!-- {name} -->\n"), format!("<!-- end of {name} -->"));
     let (before, rest) = document.split_once(&begin).expect("the document has a place for the table");
     let (stands, after) = rest.split_once(&end).expect("the table ends");
     if std::env::var_os("TOUCHSTONE_WRITE_VALIDATION").is_some() {
-        std::fs::write(&path, format!("{before}{begin}{}{end}{after}", table.text()))
+        std::fs::write(&path, format!("{before}{begin}{}{end}{after}", table.text_with(others)))
             .expect("the document can be written");
         return;
     }
     // Figures depend a little on MuJoCo's version and the processor, labels do not.
     let labels = |text: &str| -> Vec<String> {
         let columns = table.rows.first().map_or(0, |row| row.labels.len());
-        text.lines().map(|line| line.split(" | ").take(columns).collect::<Vec<_>>().join(" | ")).collect()
+        let rows = text.lines().skip(2);
+        rows.map(|line| line.split(" | ").take(columns).collect::<Vec<_>>().join(" | ")).collect()
     };
     assert_eq!(labels(stands), labels(&table.text()), "write docs/validation.md anew: see tests/tests/mujoco/main.rs");
 }

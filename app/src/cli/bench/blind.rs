@@ -1,6 +1,7 @@
 //! `touchstone bench blind`: generated recordings in which something is hidden, and how often the diagnosis finds it.
 
 use super::super::{Output, progress};
+use super::table::{Figure, Wanted};
 use clap::Args;
 use estimator::diagnose::diagnose;
 use schemars::JsonSchema;
@@ -9,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 /// Arguments of `bench blind`.
-#[derive(Args)]
+#[derive(Args, Default)]
 pub struct BlindBench {
     /// Some 170 cases out of 1400: a first look within a minute, with intervals as wide as that
     #[arg(long)]
@@ -68,6 +69,40 @@ impl BlindBench {
     }
 }
 
+/// Figures of which something is wanted: the key, the same in words, and its bound (`docs/diagnosis.md`).
+const WANTED: [(&str, &str, Wanted); 12] = [
+    ("right_first_from_ratio_0.5", "hidden cause named first, ratio of 0.5 or more", Wanted::AtLeast(0.97)),
+    ("right_first", "hidden cause named first, all ratios", Wanted::AtLeast(0.93)),
+    ("truth_in_ambiguity_set", "hidden cause among those left open", Wanted::AtLeast(0.99)),
+    ("ambiguity_set_size", "causes left open, on the average", Wanted::AtMost(1.3)),
+    ("false_alarms", "nothing hidden and something named, 100 Hz or more", Wanted::AtMost(0.005)),
+    ("false_alarms_20_hz", "nothing hidden and something named, 20 Hz", Wanted::AtMost(0.01)),
+    ("precision", "named causes that are right", Wanted::AtLeast(0.985)),
+    ("nameless_named", "cause outside of the catalogue named as one of it", Wanted::AtMost(0.02)),
+    ("pairs_both", "two hidden causes, both named", Wanted::AtLeast(0.85)),
+    ("pairs_spurious_a_case", "causes named too many beside two, a case", Wanted::AtMost(0.05)),
+    ("experiments_settled", "experiments that left what is hidden alone", Wanted::AtLeast(0.9)),
+    ("gain_of_oracle", "gain beside that of who knows, median", Wanted::AtLeast(0.97)),
+];
+
+/// What a battery's JSON says of each; a share of no cases is no figure.
+pub(super) fn figures(json: &serde_json::Value) -> Vec<Figure> {
+    let read = |(key, words, wanted): &(&str, &str, Wanted)| {
+        let said = &json["figures"][*key];
+        let value = ["share", "median"].iter().find_map(|of| said[*of].as_f64()).or_else(|| said.as_f64())?;
+        let of = said["of"].as_u64().map(|of| format!(" ({of} cases)")).unwrap_or_default();
+        Some(Figure::new(format!("{words}{of}"), value, "").wanted(*wanted))
+    };
+    WANTED.iter().filter_map(read).collect()
+}
+
+impl BlindBench {
+    /// A first look at so many cases.
+    pub(super) fn some(cases: u64) -> Self {
+        Self { fast: true, cases: Some(cases), ..Self::default() }
+    }
+}
+
 /// Days since 1970.
 fn today() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |time| time.as_secs() / 86_400)
@@ -93,6 +128,8 @@ mod tests {
         let [low, share, high] =
             [&nulls["interval"][0], &nulls["share"], &nulls["interval"][1]].map(|v| v.as_f64().expect("a number"));
         assert!(low <= share && share <= high && high - low > 0.9, "one case proves little: {nulls}");
+        let named = figures(&output.json);
+        assert!(named.iter().any(|f| f.name.contains("nothing hidden") && f.name.ends_with("cases)")), "{named:?}");
         let again = bench.run().expect("the same again");
         assert_eq!(again.json["confusion"], output.json["confusion"]);
     }

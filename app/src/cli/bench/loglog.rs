@@ -110,8 +110,8 @@ fn chart(text: &mut String, kind: &str, curves: &[&Curve]) {
         let points: Vec<(f64, f64)> =
             curve.points.iter().map(|p| (place(p.0 as f64, x), SIDE - place(p.1, y))).collect();
         let line: Vec<String> = points.iter().map(|(right, down)| format!("{right:.1} {down:.1}")).collect();
-        let color = color(k);
-        let _ = writeln!(text, "<path class=\"l\" stroke=\"{color}\" d=\"M{}\"/>", line.join("L"));
+        let (color, dash) = (color(k), if k < COLORS { "" } else { " stroke-dasharray=\"5 3\"" });
+        let _ = writeln!(text, "<path class=\"l\" stroke=\"{color}\"{dash} d=\"M{}\"/>", line.join("L"));
         for (right, down) in &points {
             let _ = writeln!(text, "<circle cx=\"{right:.1}\" cy=\"{down:.1}\" r=\"3\" fill=\"{color}\"/>");
         }
@@ -120,9 +120,12 @@ fn chart(text: &mut String, kind: &str, curves: &[&Curve]) {
     legend(text, curves, ends);
 }
 
+/// So many curves differ by colour; those after them are dashed.
+const COLORS: usize = 6;
+
 /// Of a curve: the darker kind, for lines and dots on a light sheet.
 fn color(k: usize) -> String {
-    hex(curve(false, ColorRole::Block(k % 6), true))
+    hex(curve(false, ColorRole::Block(k % COLORS), true))
 }
 
 /// Names beside the ends of their curves, apart from each other.
@@ -135,11 +138,11 @@ fn legend(text: &mut String, curves: &[&Curve], mut ends: Vec<(f64, usize)>) {
         free = at + LINE;
         let _ = writeln!(
             text,
-            "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"8\" height=\"8\" fill=\"{}\"/><text x=\"{:.1}\" y=\"{:.1}\">{}</text>",
-            SIDE + 10.0,
-            at - 4.0,
+            "<path class=\"l\" stroke=\"{}\"{} d=\"M{:.1} {at:.1}h13\"/><text x=\"{:.1}\" y=\"{:.1}\">{}</text>",
             color(k),
-            SIDE + 22.0,
+            if k < COLORS { "" } else { " stroke-dasharray=\"5 3\"" },
+            SIDE + 9.0,
+            SIDE + 26.0,
             at + 4.0,
             curves[k].name
         );

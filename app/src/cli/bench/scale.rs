@@ -5,8 +5,10 @@ use super::loglog::{self, Curve};
 use super::table::plain;
 use super::whole::{best_s, long};
 use crate::cli::{Output, progress};
+use crate::ui::frames::{Loaded, SUBJECTS};
 use clap::Args;
 use estimator::diagnose::{self, diagnose};
+use estimator::hmm::{Chain, Covariance, Gaussian, Model};
 use estimator::log::pyramid::Pyramid;
 use estimator::log::{load, write};
 use estimator::pipeline::{Options, analyse};
@@ -71,14 +73,38 @@ impl From<Curve> for Grows {
 /// What is timed as samples grow.
 type Work = fn(&Recording) -> anyhow::Result<f64>;
 
-const WORKS: [(&str, Work); 6] = [
+const WORKS: [(&str, Work); 10] = [
     ("load CSV", |r| loading(r, "csv")),
     ("load MCAP", |r| loading(r, "mcap")),
+    ("load Parquet", |r| loading(r, "parquet")),
     ("curves of a plot", |r| best_s(3, || Ok(r.channels.iter().map(|c| Pyramid::of(&c.values)).collect::<Vec<_>>()))),
+    ("a picture", |r| Ok(Loaded::unfitted(r, r.len()).measure(SUBJECTS[0], [1920, 1080], 20).zooming.median_s)),
     ("segment", |r| best_s(1, || Ok(segment_by(Method::Threshold, r, None, None)?))),
+    ("decode states", decoding),
     ("fit", |r| best_s(1, || Ok(analyse(std::slice::from_ref(r), &Options::default())?))),
     ("replay", |r| best_s(1, || Ok(estimator::simulate::simulate(&presets::crank(), r)?))),
+    ("diagnose", |r| best_s(1, || Ok(diagnose(std::slice::from_ref(r), &diagnose::Options::default())?))),
 ];
+
+/// Channels and states of the hidden Markov model.
+const MODEL: (usize, usize) = (12, 5);
+
+/// The most probable states of a model whose means are samples of the recording, evenly taken: it need not mean anything to cost the same.
+fn decoding(recording: &Recording) -> anyhow::Result<f64> {
+    let ((channels, states), n) = (MODEL, recording.len());
+    let columns: Vec<&[f64]> = recording.channels.iter().map(|c| c.values.as_slice()).cycle().take(channels).collect();
+    let values: Vec<f64> = (0..n).flat_map(|i| columns.iter().map(move |c| c[i])).collect();
+    let spread = |c: &[f64]| c.iter().map(|v| v * v).sum::<f64>() / n as f64 + 1e-6;
+    let emissions = (0..states).map(|k| {
+        let mean = columns.iter().map(|c| c[k * n / states]).collect();
+        let covariance =
+            nalgebra::DMatrix::from_diagonal(&columns.iter().map(|c| spread(c)).collect::<Vec<_>>().into());
+        Gaussian::new(mean, Covariance::Full(covariance), &vec![1e-9; channels])
+    });
+    let even = vec![1.0 / states as f64; states];
+    let model = Model::new(Chain::new(even, vec![1.0 / states as f64; states * states])?, emissions.collect())?;
+    best_s(2, || Ok(model.decode(&model.chain, &values, 1.0)?))
+}
 
 fn loading(recording: &Recording, ending: &str) -> anyhow::Result<f64> {
     let folder = tempfile::tempdir()?;

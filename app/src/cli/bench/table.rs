@@ -40,6 +40,8 @@ pub(crate) struct Figure {
 pub(crate) enum Wanted {
     /// Of the figure itself.
     AtMost(f64),
+    /// Of the figure itself, from below.
+    AtLeast(f64),
     /// How many times as fast as the other program.
     TimesAsFast(f64),
 }
@@ -71,6 +73,7 @@ impl Figure {
     pub fn is_kept(&self) -> Option<bool> {
         match self.wanted? {
             Wanted::AtMost(most) => Some(self.value <= most),
+            Wanted::AtLeast(least) => Some(self.value >= least),
             Wanted::TimesAsFast(least) => self.peer.as_ref().map(|peer| peer.times_as_fast >= least),
         }
     }
@@ -83,6 +86,7 @@ impl Figure {
         };
         match self.wanted {
             Some(Wanted::AtMost(most)) => format!("≤ {}{kept}", plain(most)),
+            Some(Wanted::AtLeast(least)) => format!("≥ {}{kept}", plain(least)),
             Some(Wanted::TimesAsFast(least)) => format!("{} ×{kept}", plain(least)),
             None => String::new(),
         }
@@ -152,6 +156,8 @@ mod tests {
     fn a_figure_says_whether_it_keeps_its_bound() {
         let figure = Figure::new("tick", 0.5, "µs").wanted(Wanted::AtMost(0.7));
         assert_eq!(figure.is_kept(), Some(true));
+        let right = Figure::new("right", 0.9, "of all").wanted(Wanted::AtLeast(0.93));
+        assert_eq!((right.is_kept(), right.wanted_in_words()), (Some(false), "≥ 0.93, MISSED".to_owned()));
         let mut slow = Figure::new("load", 2.0, "s").wanted(Wanted::TimesAsFast(2.0));
         assert_eq!(slow.is_kept(), None, "nobody to compare with");
         slow.peer = Some(Peer { name: "other".to_owned(), value: 3.0, times_as_fast: 1.5 });

@@ -125,6 +125,36 @@ fn a_corner_lands_with_the_same_restitution_as_a_face() {
 }
 
 #[test]
+fn a_block_that_lands_while_it_slides_stops_when_paper_says() {
+    // What the floor gives a body that ends at rest is its weight times the time, however it bounces and turns; while it slides the
+    // friction has mu of that: v = mu g t, counted from where it was let go.
+    const SPEED_M_S: f64 = 1.2;
+    const MU: f64 = 0.2;
+    for e in [0.02, 0.1, 0.3, 0.5] {
+        for degrees in [0.0, 3.0, 9.0_f64] {
+            for rate_hz in [1e3, 8e3] {
+                let (mut world, mut state) = above(e, degrees.to_radians(), 0.05);
+                world.floor.as_mut().expect("there is one").loss = Some(VelocityLoss { e, mu: MU });
+                world.blocks[0].block_friction = MU;
+                state.bodies[0].velocity_m_s.x = SPEED_M_S;
+                let input = state.input;
+                let slides = |state: &State| state.bodies[0].velocity_m_s.x > 1e-3;
+                let mut ticks = 0;
+                while slides(&state) && f64::from(ticks) < 2.0 * rate_hz {
+                    step(&world, &mut state, &input, 1.0 / rate_hz);
+                    ticks += 1;
+                }
+                let (took_s, paper_s) = (f64::from(ticks) / rate_hz, SPEED_M_S / (MU * 9.81));
+                assert!(
+                    (took_s / paper_s - 1.0).abs() < 0.02,
+                    "{took_s} s, not {paper_s} s, with e = {e} at {degrees}° and {rate_hz} Hz"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn a_corner_landing_takes_the_energy_that_paper_says() {
     // Falling at v, turned by 20°, the corner touches r = (5.98, −12.8) mm from the centre. The impulse (1 + e) v m_eff leaves
     // 1 − (1 − e²) m_eff/m of the energy, with m_eff/m = 1/(1 + 6 · (5.98/20)²) = 0.651 for a square (I = m a²/6).
