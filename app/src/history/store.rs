@@ -35,6 +35,8 @@ pub struct Query {
 pub struct Store {
     connection: Connection,
     path: PathBuf,
+    /// Everything in it was read once.
+    is_readable: bool,
 }
 
 impl Store {
@@ -49,7 +51,7 @@ impl Store {
         }
         let mut connection = Connection::open(path).map_err(|error| refused(&error.to_string()))?;
         set_up(&mut connection).map_err(|why| refused(&why))?;
-        Ok(Self { connection, path: path.to_path_buf() })
+        Ok(Self { connection, path: path.to_path_buf(), is_readable: false })
     }
 
     fn said(&self, error: &rusqlite::Error) -> String {
@@ -98,12 +100,26 @@ impl Store {
 
     /// `live`: made just now. `once`: not if it is known.
     fn insert(&mut self, attempt: &Attempt, live: bool, once: bool) -> Result<bool, String> {
+        if !self.is_readable {
+            // A damaged file may take a row and never give it back: then it takes none.
+            self.attempts_and_problems(&Query::default())?;
+            self.is_readable = true;
+        }
         self.add_trainee(&attempt.trainee, attempt.began)?;
         let mut added = || -> rusqlite::Result<usize> {
             // Nobody else keeps one between the look at the last place and the note of the next.
             let whole = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
             let placed = if live { place(&whole, attempt.began)? } else { attempt.began };
-            let rows = insert(&whole, attempt, placed, live, once)?;
+            // One that was just added; a damaged list may not have it all the same, and that is no attempt which is known already.
+            let find = "SELECT id FROM trainees WHERE name = ?1";
+            let trainee: i64 = whole.query_row(find, [attempt.trainee.trim()], |row| row.get(0))?;
+            let rows = insert(&whole, (attempt, trainee), placed, live, once)?;
+            if rows > 0 {
+                // As it will be asked for: it stands there under the name of who made it.
+                let again = "SELECT 1 FROM attempts JOIN trainees ON trainees.id = attempts.trainee
+                    WHERE attempts.id = last_insert_rowid() AND trainees.name = ?1";
+                whole.query_row(again, [attempt.trainee.trim()], |_| Ok(()))?;
+            }
             whole.commit()?;
             Ok(rows)
         };
@@ -161,7 +177,7 @@ fn place(whole: &Transaction<'_>, began: Timestamp) -> rusqlite::Result<Timestam
 /// Number of rows that came in.
 fn insert(
     whole: &Transaction<'_>,
-    attempt: &Attempt,
+    (attempt, trainee): (&Attempt, i64),
     placed: Timestamp,
     live: bool,
     once: bool,
@@ -172,13 +188,13 @@ fn insert(
     whole.execute(
         "INSERT INTO attempts (trainee, lesson, conditions, began, duration_s, completed, score, meets_criterion, proficient, measures,
             measures_version, grade_version, recording, placed, live)
-         SELECT id, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15 FROM trainees
-         WHERE name = ?1 AND NOT (?16 AND EXISTS (
+         SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15
+         WHERE NOT (?16 AND EXISTS (
             SELECT 1 FROM attempts
-            WHERE trainee = trainees.id AND lesson = ?2 AND conditions = ?3 AND began = ?4 AND duration_s = ?5 AND completed = ?6
+            WHERE trainee = ?1 AND lesson = ?2 AND conditions = ?3 AND began = ?4 AND duration_s = ?5 AND completed = ?6
                 AND score IS ?7))",
         params![
-            attempt.trainee.trim(),
+            trainee,
             lesson,
             conditions,
             began.to_string(),
