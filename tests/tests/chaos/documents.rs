@@ -38,11 +38,12 @@ pub fn spoiled_one(found: &[PathBuf], rng: &mut StdRng) -> Vec<u8> {
 }
 
 fn spoiled_text(text: &[u8], rng: &mut StdRng) -> Vec<u8> {
-    if rng.random_range(0..4) == 0 {
-        return mutate::bytes(text, rng);
-    }
     let value: Value = serde_json::from_slice(text).expect("JSON");
-    mutate::json(&value, rng).to_string().into_bytes()
+    match rng.random_range(0..4) {
+        0 => mutate::bytes(text, rng),
+        1 => mutate::numbers(&value, rng).to_string().into_bytes(),
+        _ => mutate::json(&value, rng).to_string().into_bytes(),
+    }
 }
 
 pub fn spoiled(chaos: &mut Chaos) {

@@ -92,11 +92,10 @@ impl Device for Failing {
         let mut sample = self.hand.exchange(command, dt_s);
         let mut possible = true;
         match said.fault {
-            Fault::None => {}
             Fault::Vanished => sample.fresh = [false; 2],
             Fault::Half(finger) => sample.fresh[1 - finger] = false,
             Fault::Lossy if self.rng.random_bool(0.9) => sample.fresh = [false; 2],
-            Fault::Lossy => {}
+            Fault::None | Fault::Lossy => {}
             Fault::NotANumber => {
                 (sample.tip_in_world[self.rng.random_range(0..2)].x, possible) = (f64::NAN, false);
             }

@@ -13,8 +13,10 @@ use std::time::{Duration, Instant};
 
 /// What must have happened.
 pub const MUST: &[&str] = &[
-    "together: ticks with force",
-    "together: ticks without fresh data",
+    servo::FORCES[0],
+    servo::FORCES[1],
+    servo::FORCES[2],
+    servo::STALE,
     "together: whole recordings",
     "together: worlds swapped",
     "together: attempts kept",
@@ -46,10 +48,13 @@ pub fn at_the_same_time(chaos: &mut Chaos) {
     let (recordings, spoiled) = (at("recordings"), at("spoiled"));
     let [first, second]: [u64; 2] = [chaos.rng.random(), chaos.rng.random()];
     let over = AtomicBool::new(false);
+    // Another hand in each lap: the fewest laps have them all.
+    chaos.count("together: laps", 1);
+    let number = chaos.counts["together: laps"];
     std::thread::scope(|scope| {
         let ending = Ending(&over);
         let others = [
-            scope.spawn(|| servo::trained(&recordings, first, &over)),
+            scope.spawn(|| servo::trained(&recordings, number, first, &over)),
             scope.spawn(|| histories::of_another_program(&database, &over)),
             scope.spawn(|| histories::on_a_bad_disk(&spoiled, second, &over)),
         ];

@@ -23,6 +23,16 @@ const DT_S: f64 = 1e-3;
 /// How long anything may take that the servo does at its next tick, on a machine that does much else.
 const PATIENCE: Duration = Duration::from_secs(20);
 
+/// Ticks with a force, by what moves the fingers.
+pub const FORCES: [&str; 3] = [
+    "together: ticks with a force on a scripted hand",
+    "together: ticks with a force on a mouse",
+    "together: ticks with a force on a remote hand",
+];
+
+/// Ticks whose samples were older than the watchdog allows.
+pub const STALE: &str = "together: ticks without fresh data";
+
 /// What moves the fingers.
 enum Hand {
     Scripted,
@@ -31,10 +41,10 @@ enum Hand {
 }
 
 impl Hand {
-    /// One of them, on a world.
-    fn draw(world: &World, rng: &mut StdRng) -> (Box<dyn Device>, Self) {
+    /// The one of this number, on a world.
+    fn of(number: u64, world: &World, rng: &mut StdRng) -> (Box<dyn Device>, Self) {
         let state = State::resting(world);
-        match rng.random_range(0..3) {
+        match number % 3 {
             0 => {
                 let device = ScriptedOperator::new(world, &state, Skill::default(), rng.random());
                 (Box::new(device), Self::Scripted)
@@ -53,9 +63,19 @@ impl Hand {
         }
     }
 
+    /// How its ticks with a force are counted.
+    fn force(&self) -> &'static str {
+        match self {
+            Self::Scripted => FORCES[0],
+            Self::Mouse(_) => FORCES[1],
+            Self::Remote(_) => FORCES[2],
+        }
+    }
+
     fn move_on(&mut self, rng: &mut StdRng) {
         match self {
             Self::Scripted => {}
+            Self::Mouse(_) if rng.random_range(0..40) != 0 => {}
             // Onto the table and off it.
             Self::Mouse(handle) => {
                 let center_in_world = Vec2::new(rng.random_range(-0.1..0.1), rng.random_range(-0.16..0.0));
@@ -81,10 +101,10 @@ struct Training {
     counts: Counts,
 }
 
-pub fn trained(recordings: &Path, seed: u64, over: &AtomicBool) -> Counts {
+pub fn trained(recordings: &Path, number: u64, seed: u64, over: &AtomicBool) -> Counts {
     let mut rng = StdRng::seed_from_u64(seed);
     let world = presets::stacking();
-    let (device, hand) = Hand::draw(&world, &mut rng);
+    let (device, hand) = Hand::of(number, &world, &mut rng);
     let limits = Limits { ramp_s: 0.05, ..Limits::default() };
     let most_n = limits.max_force_n.min(device.spec().max_force_n);
     let said = Said::new(Some(Vec::new()));
@@ -95,10 +115,15 @@ pub fn trained(recordings: &Path, seed: u64, over: &AtomicBool) -> Counts {
     let mut training = Training { servo, hand, said, world, ticks: Vec::new(), rng, counts: Counts::new() };
     let spoiled = recordings.with_extension("spoiled.json");
     let worlds = documents::documents("worlds");
-    // The force of a hand that nothing disturbs, at first.
-    training.recorded(recordings, &[Fault::None]);
+    // Nothing disturbs the hand until it presses: it has something to lose then.
+    let begun = Instant::now();
+    while training.ticks.iter().all(|tick| tick.sent_force_n == [Vec2::zeros(); 2]) {
+        assert!(begun.elapsed() < PATIENCE, "{} hold nothing", training.hand.force());
+        training.recorded(recordings, &[Fault::None], 500);
+    }
     while !over.load(Ordering::Relaxed) {
-        training.recorded(recordings, &FAULTS);
+        let lasts_ms = training.rng.random_range(400..900);
+        training.recorded(recordings, &FAULTS, lasts_ms);
         training.swap(&worlds, &spoiled);
     }
     training.ended(limits, most_n)
@@ -114,11 +139,11 @@ impl Training {
     }
 
     /// Records for a while; all of it is in the file.
-    fn recorded(&mut self, folder: &Path, faults: &[Fault]) {
+    fn recorded(&mut self, folder: &Path, faults: &[Fault], lasts_ms: u64) {
         let order = Order { world: Arc::new(self.world.clone()), ..child::order(folder) };
         let recorder = Recorder::start(self.servo.tap(), order).expect("begins");
         let first_s = self.now_s();
-        let (begun, lasts) = (Instant::now(), Duration::from_millis(self.rng.random_range(400..900)));
+        let (begun, lasts) = (Instant::now(), Duration::from_millis(lasts_ms));
         let mut next_fault = begun;
         while begun.elapsed() < lasts {
             if Instant::now() >= next_fault {
@@ -183,17 +208,19 @@ impl Training {
             self.servo.drain(&mut self.ticks);
             std::thread::sleep(Duration::from_millis(1));
         }
+        let force = self.hand.force();
         drop(self.servo);
         let exchanges = open(&self.said).exchanges.take().unwrap_or_default();
-        judge(&self.ticks, &exchanges, limits, most_n, &mut self.counts);
+        let seen = judge(&self.ticks, &exchanges, limits, most_n);
+        self.counts.extend([(force, seen.0), (STALE, seen.1)]);
         self.counts
     }
 }
 
-/// Tick by tick: the record, and what the device knows of the same moment.
-fn judge(ticks: &[TickRecord], exchanges: &[Exchange], limits: Limits, most_n: f64, counts: &mut Counts) {
+/// Tick by tick: the record, and what the device knows of the same moment. Ticks with a force, and such without fresh data.
+fn judge(ticks: &[TickRecord], exchanges: &[Exchange], limits: Limits, most_n: f64) -> (u64, u64) {
     assert!(ticks.len() <= exchanges.len(), "{} ticks of {} exchanges", ticks.len(), exchanges.len());
-    let mut before = [Vec2::zeros(); 2];
+    let (mut with_force, mut stale, mut before) = (0, 0, [Vec2::zeros(); 2]);
     for (k, (tick, exchange)) in ticks.iter().zip(exchanges).enumerate() {
         let sent_n = tick.sent_force_n;
         if exchange.age_s == 0.0 {
@@ -205,9 +232,9 @@ fn judge(ticks: &[TickRecord], exchanges: &[Exchange], limits: Limits, most_n: f
         let is_zero = sent_n == [Vec2::zeros(); 2];
         if exchange.age_s > limits.watchdog_s {
             assert!(is_zero, "{sent_n:?} N in tick {k} on a sample of {} s", exchange.age_s);
-            *counts.entry("together: ticks without fresh data").or_default() += 1;
+            stale += 1;
         }
-        *counts.entry("together: ticks with force").or_default() += u64::from(!is_zero);
+        with_force += u64::from(!is_zero);
         for (now, last) in sent_n.iter().zip(before) {
             assert!(now.norm() <= most_n + 1e-9, "{now} N in tick {k}");
             let allowed = limits.max_slew_n_s * DT_S + 1e-9;
@@ -215,4 +242,5 @@ fn judge(ticks: &[TickRecord], exchanges: &[Exchange], limits: Limits, most_n: f
         }
         before = sent_n;
     }
+    (with_force, stale)
 }
