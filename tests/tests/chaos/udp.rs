@@ -103,19 +103,23 @@ pub fn attacked(chaos: &mut Chaos) {
     let limits = Limits { ramp_s: 0.05, ..Limits::default() };
     let mut body = Loop::new(Swap::new(world), Box::new(device), limits);
     let mut client = Client::new(monitor.address(), key);
-    let (mut since_s, mut queued) = (f64::INFINITY, false);
+    let (mut since_s, mut since_flood_s) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..PHASES {
         let phase = KINDS[chaos.rng.random_range(0..KINDS.len())];
         if phase == Phase::Anew {
             client.session = 0;
         }
         for _ in 0..chaos.rng.random_range(20..400) {
-            since_s += DT;
+            (since_s, since_flood_s) = (since_s + DT, since_flood_s + DT);
             let honest = act(&mut client, phase, &mut chaos.rng);
             if honest {
                 since_s = 0.0;
             }
-            queued = phase == Phase::Flood || (queued && since_s < QUEUE_S);
+            if phase == Phase::Flood {
+                since_flood_s = 0.0;
+            }
+            // The word stood behind what the flood has left.
+            let queued = since_flood_s - since_s < QUEUE_S;
             let tick = body.tick(DT);
             client.listen();
             let is_zero = tick.sent_force_n == [Vec2::zeros(); 2];
