@@ -1,14 +1,5 @@
-//! Any bytes behind the first ones of an MCAP file: a recording or a sentence. `cargo +nightly fuzz run mcap ../tests/corpus/mcap`.
+//! `cargo +nightly fuzz run mcap ../tests/corpus/mcap`; what it does stands in `src/targets/mcap.rs`.
 
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
-
-const MAGIC: &[u8] = b"\x89MCAP0\r\n";
-
-fuzz_target!(|bytes: &[u8]| {
-    let mut whole = MAGIC.to_vec();
-    // Seeds are whole files.
-    whole.extend_from_slice(bytes.strip_prefix(MAGIC).unwrap_or(bytes));
-    fuzz::load(&whole, &fuzz::file("log.mcap"));
-});
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::targets::mcap::run(bytes));

@@ -1,16 +1,5 @@
-//! Any bytes as the sidecar of a small log: a recording or a sentence. `cargo +nightly fuzz run sidecar ../tests/corpus/sidecar`.
+//! `cargo +nightly fuzz run sidecar ../tests/corpus/sidecar`; what it does stands in `src/targets/sidecar.rs`.
 
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
-
-const TABLE: &str = "trial,t_s,x_m,y_m,q_rad,fx_N,fy_N,force_N,label\n1,0,0.1,0.2,1,2,3,4,free\n1,1,0.2,0.3,2,3,4,5,free\n2,0,1,2,3,4,5,6,held\n";
-
-fuzz_target!(|bytes: &[u8]| {
-    let path = fuzz::file("log.csv");
-    std::fs::write(path.with_file_name("log.meta.json"), bytes).expect("the temporary folder is writable");
-    std::fs::write(&path, TABLE).expect("the temporary folder is writable");
-    if let Err(error) = estimator::log::load(&path, None) {
-        assert!(!error.to_string().is_empty());
-    }
-});
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::targets::sidecar::run(bytes));

@@ -1,26 +1,5 @@
-//! Any bytes as a world: refused in one line, or a world that can be touched. `cargo +nightly fuzz run world ../assets/worlds`.
+//! `cargo +nightly fuzz run world ../assets/worlds`; what it does stands in `src/targets/world.rs`.
 
 #![no_main]
 
-use haptics::device::{ScriptedOperator, Skill};
-use haptics::servo::safety::Limits;
-use haptics::servo::{Loop, Swap};
-use haptics::world::{State, World};
-use libfuzzer_sys::fuzz_target;
-
-const TICKS: usize = 50;
-
-fuzz_target!(|bytes: &[u8]| {
-    let Ok(text) = std::str::from_utf8(bytes) else { return };
-    match World::from_json(text) {
-        Err(error) => assert!(!error.to_string().contains('\n')),
-        Ok(world) => {
-            let operator = ScriptedOperator::new(&world, &State::resting(&world), Skill::default(), 1);
-            let mut body = Loop::new(Swap::new(world), Box::new(operator), Limits::default());
-            for _ in 0..TICKS {
-                let tick = body.tick(1e-3);
-                assert!(tick.sent_force_n.iter().all(|force| force.norm() <= Limits::default().max_force_n + 1e-9));
-            }
-        }
-    }
-});
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::targets::world::run(bytes));

@@ -1,4 +1,7 @@
 //! Attempts that the database did not take: one JSON file each in a folder beside it, until it takes them.
+//!
+//! A file is called after when its attempt began, and never before one that waits already, so that they are taken in in the order in
+//! which they were made, also when the clock was set back between them.
 
 use super::{Attempt, Store};
 use std::fs::File;
@@ -8,6 +11,21 @@ use std::path::{Path, PathBuf};
 /// The folder of a database at this path.
 fn folder(database: &Path) -> PathBuf {
     database.with_extension("waiting")
+}
+
+/// What a file's name says of its place; nothing of a name that was not given here.
+fn place(path: &Path) -> Option<(i128, u32)> {
+    let (moment, number) = path.file_stem()?.to_str()?.rsplit_once('-')?;
+    Some((moment.parse().ok()?, number.parse().ok()?))
+}
+
+/// What waits, in its order.
+fn waiting(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
+    let waits = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "json");
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(waits).collect();
+    paths.sort_by_cached_key(|path| (place(path), path.clone()));
+    paths
 }
 
 /// Keeps an attempt beside the database; it is on the disk when this returns.
@@ -21,10 +39,11 @@ pub fn keep(database: &Path, attempt: &Attempt) -> Result<PathBuf, String> {
     // Whole or not at all: written under another name first.
     let mut whole = tempfile::NamedTempFile::new_in(&folder).map_err(refused)?;
     whole.write_all(text.as_bytes()).and_then(|()| whole.as_file().sync_all()).map_err(refused)?;
-    let stem = attempt.began.as_nanosecond();
-    let mut number = 0_u32;
+    let began = (attempt.began.as_nanosecond(), 0_u32);
+    let last = waiting(&folder).iter().filter_map(|path| place(path)).max();
+    let (moment, mut number) = last.map_or(began, |(moment, number)| began.max((moment, number.saturating_add(1))));
     loop {
-        let path = folder.join(format!("{stem}-{number}.json"));
+        let path = folder.join(format!("{moment}-{number}.json"));
         match whole.persist_noclobber(&path) {
             Ok(_) => {
                 // The name, too, must be on the disk; where folders cannot be synced it comes there by itself.
@@ -41,11 +60,7 @@ pub fn keep(database: &Path, attempt: &Attempt) -> Result<PathBuf, String> {
 /// Takes in what waits beside the database: how many, and what is wrong with the rest. What cannot be read stays where it is.
 pub fn take_in(database: &Path, store: &mut Store) -> (usize, Vec<String>) {
     let (mut taken, mut problems) = (0, Vec::new());
-    let Ok(entries) = std::fs::read_dir(folder(database)) else { return (taken, problems) };
-    let waits = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "json");
-    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(waits).collect();
-    paths.sort();
-    for path in paths {
+    for path in waiting(&folder(database)) {
         let read = haptics::text_file::read(&path).map_err(|error| error.to_string());
         let attempt = read.and_then(|text| serde_json::from_str::<Attempt>(&text).map_err(|error| error.to_string()));
         match attempt {
@@ -53,7 +68,7 @@ pub fn take_in(database: &Path, store: &mut Store) -> (usize, Vec<String>) {
                 problems
                     .push(format!("An attempt that waits to be kept cannot be read ({error}): {}.", path.display()));
             }
-            Ok(attempt) => match store.add(&attempt) {
+            Ok(attempt) => match store.keep_waiting(&attempt) {
                 Ok(_) => {
                     // Should the file stay, it is known already at the next start.
                     let _ = std::fs::remove_file(&path);

@@ -60,7 +60,7 @@ impl History {
         let _ = self.requests.as_ref().map(|requests| requests.send(request));
     }
 
-    /// Keeps an attempt.
+    /// Keeps an attempt that was made just now.
     pub fn add(&self, attempt: Attempt) {
         self.ask(Request::Add(Box::new(attempt)));
     }
@@ -134,7 +134,7 @@ impl Keeper {
     fn done(&mut self, request: Request, answer: &dyn Fn(Answer)) -> Result<Answer, String> {
         match request {
             Request::Add(attempt) => {
-                if let Err(problem) = self.open(answer).and_then(|store| store.add(&attempt)) {
+                if let Err(problem) = self.open(answer).and_then(|store| store.keep(&attempt)) {
                     aside::keep(&self.database, &attempt)?;
                     // It is opened anew for the next one: what was wrong may be over then.
                     self.store = None;

@@ -5,7 +5,7 @@
 use rusqlite::Connection;
 
 /// Steps in order; a file of version n has had the first n.
-const STEPS: [&str; 2] = [
+const STEPS: [&str; 3] = [
     // 1: trainees and their attempts.
     "CREATE TABLE trainees (
         id INTEGER PRIMARY KEY,
@@ -31,6 +31,15 @@ const STEPS: [&str; 2] = [
     // 2: the same attempt is kept once, however often it is taken in; and it is found by who and what.
     "DELETE FROM attempts WHERE id NOT IN (SELECT min(id) FROM attempts GROUP BY trainee, lesson, began);
     CREATE UNIQUE INDEX attempts_once ON attempts (trainee, lesson, began);",
+    // 3: the order does not hang on the clock (see the module `store`), and two attempts may begin at the same moment. Nobody knows any
+    // more what was kept on this machine and what was imported: all stand where they began, and what is kept next comes after them all.
+    "ALTER TABLE attempts ADD COLUMN placed TEXT NOT NULL DEFAULT '';
+    UPDATE attempts SET placed = began;
+    ALTER TABLE attempts ADD COLUMN live INTEGER NOT NULL DEFAULT 0;
+    UPDATE attempts SET live = 1 WHERE id = (SELECT id FROM attempts ORDER BY julianday(began) DESC, id DESC LIMIT 1);
+    DROP INDEX attempts_once;
+    CREATE INDEX attempts_of ON attempts (trainee, lesson, began);
+    CREATE INDEX attempts_live ON attempts (id) WHERE live;",
 ];
 
 /// Version of today's files.

@@ -1,8 +1,20 @@
 //! The database: what it says is kept has reached the disk.
+//!
+//! **The order of attempts.** A clock can be set back between two attempts, or stand on a wrong day for a while. So every attempt has a
+//! place, a moment that is noted when it comes in, and attempts go by their place and, at one place, by the order in which they came in:
+//! - one that is kept as it is made ([`Store::keep`]) stands where it began, but never before what was kept before it in this database;
+//! - one that is imported ([`Store::add`]) stands where it began: an older one goes among the old ones, and moves nothing that is kept later.
+//!
+//! `began` stays what the clock said. What a clock that was set *forward* by mistake has dated stays there, and what is kept afterwards
+//! comes behind it; only imports can then stand at the wrong side.
+//!
+//! **Which attempts are the same.** Two attempts may begin at the same moment, by a clock that was set back. One that is imported is
+//! known already when one of the same trainee, lesson, conditions, beginning, duration, end and score is there. One that is kept as it is
+//! made is never known.
 
 use super::{Attempt, Conditions, schema};
 use jiff::Timestamp;
-use rusqlite::{Connection, OptionalExtension as _, Row, params};
+use rusqlite::{Connection, OptionalExtension as _, Row, Transaction, TransactionBehavior, params};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -23,6 +35,8 @@ pub struct Query {
 pub struct Store {
     connection: Connection,
     path: PathBuf,
+    /// Everything in it was read once.
+    is_readable: bool,
 }
 
 impl Store {
@@ -37,7 +51,7 @@ impl Store {
         }
         let mut connection = Connection::open(path).map_err(|error| refused(&error.to_string()))?;
         set_up(&mut connection).map_err(|why| refused(&why))?;
-        Ok(Self { connection, path: path.to_path_buf() })
+        Ok(Self { connection, path: path.to_path_buf(), is_readable: false })
     }
 
     fn said(&self, error: &rusqlite::Error) -> String {
@@ -69,55 +83,68 @@ impl Store {
         names().map_err(|error| self.said(&error))
     }
 
-    /// Keeps an attempt. One that is known already (same trainee, lesson and beginning) stays as it is: false then.
-    pub fn add(&mut self, attempt: &Attempt) -> Result<bool, String> {
-        self.add_trainee(&attempt.trainee, attempt.began)?;
-        let Attempt { lesson, began, duration_s, completed, score, meets_criterion, proficient, .. } = attempt;
-        let conditions = serde_json::to_string(&attempt.conditions).unwrap_or_default();
-        let recording = attempt.recording.as_ref().map(|path| path.display().to_string());
-        let added = self.connection.execute(
-            "INSERT INTO attempts (trainee, lesson, conditions, began, duration_s, completed, score, meets_criterion, proficient, measures,
-                measures_version, grade_version, recording)
-             SELECT id, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13 FROM trainees WHERE name = ?1
-             ON CONFLICT DO NOTHING",
-            params![
-                attempt.trainee.trim(),
-                lesson,
-                conditions,
-                began.to_string(),
-                duration_s,
-                completed,
-                score,
-                meets_criterion,
-                proficient,
-                attempt.measures.to_string(),
-                attempt.measures_version,
-                attempt.grade_version,
-                recording,
-            ],
-        );
-        added.map(|rows| rows > 0).map_err(|error| self.said(&error))
+    /// Keeps an attempt that was made just now: after everything that was kept before it, whatever the clock says.
+    pub fn keep(&mut self, attempt: &Attempt) -> Result<(), String> {
+        self.insert(attempt, true, false).map(drop)
     }
 
-    /// Attempts, the oldest first. One that cannot be read is left out; [`Store::attempts_and_problems`] says so.
+    /// Keeps an attempt that was made just now and waited beside the database; false if it is known already.
+    pub(super) fn keep_waiting(&mut self, attempt: &Attempt) -> Result<bool, String> {
+        self.insert(attempt, true, true)
+    }
+
+    /// Takes in an attempt of another history, at its date. One that is known already stays as it is: false then.
+    pub fn add(&mut self, attempt: &Attempt) -> Result<bool, String> {
+        self.insert(attempt, false, true)
+    }
+
+    /// `live`: made just now. `once`: not if it is known.
+    fn insert(&mut self, attempt: &Attempt, live: bool, once: bool) -> Result<bool, String> {
+        if !self.is_readable {
+            // A damaged file may take a row and never give it back: then it takes none.
+            self.attempts_and_problems(&Query::default())?;
+            self.is_readable = true;
+        }
+        self.add_trainee(&attempt.trainee, attempt.began)?;
+        let mut added = || -> rusqlite::Result<usize> {
+            // Nobody else keeps one between the look at the last place and the note of the next.
+            let whole = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+            let placed = if live { place(&whole, attempt.began)? } else { attempt.began };
+            // One that was just added; a damaged list may not have it all the same, and that is no attempt which is known already.
+            let find = "SELECT id FROM trainees WHERE name = ?1";
+            let trainee: i64 = whole.query_row(find, [attempt.trainee.trim()], |row| row.get(0))?;
+            let rows = insert(&whole, (attempt, trainee), placed, live, once)?;
+            if rows > 0 {
+                // As it will be asked for: it stands there under the name of who made it.
+                let again = "SELECT 1 FROM attempts JOIN trainees ON trainees.id = attempts.trainee
+                    WHERE attempts.id = last_insert_rowid() AND trainees.name = ?1";
+                whole.query_row(again, [attempt.trainee.trim()], |_| Ok(()))?;
+            }
+            whole.commit()?;
+            Ok(rows)
+        };
+        added().map(|rows| rows > 0).map_err(|error| self.said(&error))
+    }
+
+    /// Attempts in their order, the oldest first. One that cannot be read is left out; [`Store::attempts_and_problems`] says so.
     pub fn attempts(&self, query: &Query) -> Result<Vec<Attempt>, String> {
         self.attempts_and_problems(query).map(|(attempts, _)| attempts)
     }
 
     /// Attempts, the oldest first, and a sentence if a damaged one had to be left out: the others can be looked at all the same.
     pub fn attempts_and_problems(&self, query: &Query) -> Result<(Vec<Attempt>, Option<String>), String> {
-        let rows = || -> rusqlite::Result<(Vec<Attempt>, Option<String>)> {
+        let rows = || -> rusqlite::Result<(Vec<Placed>, Option<String>)> {
             let mut asked = self.connection.prepare(
                 "SELECT trainees.name, lesson, conditions, began, duration_s, completed, score, meets_criterion, proficient, measures,
-                    measures_version, grade_version, recording
+                    measures_version, grade_version, recording, placed, attempts.id
                  FROM attempts JOIN trainees ON trainees.id = attempts.trainee
                  WHERE (?1 IS NULL OR trainees.name = ?1) AND (?2 IS NULL OR lesson = ?2)",
             )?;
             let mut rows = asked.query(params![query.trainee, query.lesson])?;
             let (mut read, mut damaged) = (Vec::new(), Vec::new());
             while let Some(row) = rows.next()? {
-                match attempt(row) {
-                    Ok(attempt) => read.push(attempt),
+                match placed(row) {
+                    Ok(one) => read.push(one),
                     Err(error) => damaged.push(error),
                 }
             }
@@ -130,9 +157,61 @@ impl Store {
         };
         let (mut read, problem) = rows().map_err(|error| self.said(&error))?;
         // By the moment: as words, fractions of a second would come before whole ones.
-        read.sort_by_key(|attempt| attempt.began);
-        Ok((read, problem))
+        read.sort_by_key(|(placed, id, _)| (*placed, *id));
+        Ok((read.into_iter().map(|(_, _, attempt)| attempt).collect(), problem))
     }
+}
+
+/// Where an attempt stands, the number of its row, and what it is.
+type Placed = (Timestamp, i64, Attempt);
+
+/// Where an attempt stands that is kept now.
+fn place(whole: &Transaction<'_>, began: Timestamp) -> rusqlite::Result<Timestamp> {
+    let newest = "SELECT placed FROM attempts WHERE live ORDER BY id DESC LIMIT 1";
+    let last = whole.query_row(newest, [], |row| Ok(row.get::<_, String>(0).ok())).optional()?.flatten();
+    // One that is damaged says nothing.
+    let last: Option<Timestamp> = last.and_then(|text| text.parse().ok());
+    Ok(last.map_or(began, |last| began.max(last)))
+}
+
+/// Number of rows that came in.
+fn insert(
+    whole: &Transaction<'_>,
+    (attempt, trainee): (&Attempt, i64),
+    placed: Timestamp,
+    live: bool,
+    once: bool,
+) -> rusqlite::Result<usize> {
+    let Attempt { lesson, began, duration_s, completed, score, meets_criterion, proficient, .. } = attempt;
+    let conditions = serde_json::to_string(&attempt.conditions).unwrap_or_default();
+    let recording = attempt.recording.as_ref().map(|path| path.display().to_string());
+    whole.execute(
+        "INSERT INTO attempts (trainee, lesson, conditions, began, duration_s, completed, score, meets_criterion, proficient, measures,
+            measures_version, grade_version, recording, placed, live)
+         SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15
+         WHERE NOT (?16 AND EXISTS (
+            SELECT 1 FROM attempts
+            WHERE trainee = ?1 AND lesson = ?2 AND conditions = ?3 AND began = ?4 AND duration_s = ?5 AND completed = ?6
+                AND score IS ?7))",
+        params![
+            trainee,
+            lesson,
+            conditions,
+            began.to_string(),
+            duration_s,
+            completed,
+            score,
+            meets_criterion,
+            proficient,
+            attempt.measures.to_string(),
+            attempt.measures_version,
+            attempt.grade_version,
+            recording,
+            placed.to_string(),
+            live,
+            once,
+        ],
+    )
 }
 
 fn set_up(connection: &mut Connection) -> Result<(), String> {
@@ -152,7 +231,14 @@ fn set_up(connection: &mut Connection) -> Result<(), String> {
     schema::migrate(connection)
 }
 
-/// A row of [`Store::attempts`].
+/// A row of [`Store::attempts`]. Where its place is damaged it stands where it began.
+fn placed(row: &Row<'_>) -> rusqlite::Result<Placed> {
+    let attempt = attempt(row)?;
+    let place = row.get::<_, String>(13).ok().and_then(|text| text.parse().ok());
+    Ok((place.unwrap_or(attempt.began), row.get(14)?, attempt))
+}
+
+/// What was done.
 fn attempt(row: &Row<'_>) -> rusqlite::Result<Attempt> {
     let text = |place: usize| row.get::<_, String>(place);
     let wrong = |place: usize, error: Box<dyn std::error::Error + Send + Sync>| {

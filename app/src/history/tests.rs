@@ -107,6 +107,103 @@ fn a_file_of_the_first_version_becomes_one_of_today_with_everything_in_it() {
         file.query_row("PRAGMA user_version", [], |row| row.get(0)).expect("a version")
     };
     assert_eq!(version(&path), super::schema::VERSION);
+    // What is kept next comes after them all, also when the clock was set back meanwhile.
+    let next = attempt("Ada", "pinch", "2026-02-01T08:00:00Z");
+    store.keep(&next).expect("kept");
+    assert_eq!(store.attempts(&of("Ada")).expect("rows"), [ada[0].clone(), ada[1].clone(), next]);
+}
+
+#[test]
+fn a_file_of_the_second_version_loses_nothing() {
+    let (_folder, path) = folder();
+    std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+    let file = Connection::open(&path).expect("made");
+    file.execute_batch(VERSION_1).expect("written");
+    // What the second step did, word for word.
+    file.execute_batch(
+        "DELETE FROM attempts WHERE id NOT IN (SELECT min(id) FROM attempts GROUP BY trainee, lesson, began);
+        CREATE UNIQUE INDEX attempts_once ON attempts (trainee, lesson, began);
+        INSERT INTO attempts SELECT 9, 2, 'pinch', conditions, '2026-03-01T08:04:59.75Z', 9.5, 1, 7.5, 0, 0, '{}', 1, 1, NULL
+            FROM attempts WHERE id = 1;
+        PRAGMA user_version = 2;",
+    )
+    .expect("written");
+    drop(file);
+    let mut store = Store::open(&path).expect("brought up to date");
+    let read = |store: &Store| store.attempts(&Query::default()).expect("rows");
+    let scores = |all: &[Attempt]| all.iter().map(|a| a.score).collect::<Vec<_>>();
+    assert_eq!(scores(&read(&store)), [Some(7.5), Some(61.25), None, Some(80.0)], "by the date");
+    for known in read(&store) {
+        assert_eq!(store.add(&known), Ok(false), "it is known");
+    }
+    store.keep(&attempt("Ada", "pinch", "2026-01-01T00:00:00Z")).expect("kept");
+    assert_eq!(scores(&read(&store)), [Some(7.5), Some(61.25), None, Some(80.0), Some(73.1)], "the newest");
+}
+
+/// Attempts of one person whose clock is set back by a day, by seconds and not at all; numbered by their scores.
+fn by_a_bad_clock() -> Vec<Attempt> {
+    let moments = [
+        "2026-11-22T19:00:00Z",
+        "2026-11-21T19:01:00Z",
+        "2026-11-21T19:00:57Z",
+        "2026-11-21T19:00:57Z",
+        "2026-11-21T19:03:00Z",
+        "2026-11-22T19:05:00.5Z",
+        "2026-11-22T19:05:00Z",
+    ];
+    let made = |(number, began): (usize, &&str)| Attempt {
+        score: Some(number as f64),
+        ..attempt(if number % 3 == 2 { "Grace" } else { "Ada" }, "pinch", began)
+    };
+    moments.iter().enumerate().map(made).collect()
+}
+
+#[test]
+fn a_clock_that_was_set_back_changes_no_order_and_loses_nothing() {
+    let (_folder, path) = folder();
+    let all = by_a_bad_clock();
+    let mut store = Store::open(&path).expect("made");
+    for (number, attempt) in all.iter().enumerate() {
+        store.keep(attempt).expect("kept");
+        // Between any two, the program may have been closed.
+        if number % 2 == 1 {
+            store = Store::open(&path).expect("opened again");
+        }
+    }
+    assert_eq!(store.attempts(&Query::default()).expect("rows"), all);
+    let hers: Vec<Attempt> = all.iter().filter(|a| a.trainee == "Grace").cloned().collect();
+    assert_eq!(store.attempts(&of("Grace")).expect("rows"), hers);
+    // An import goes by its date, among the old ones, and what is kept next is the newest all the same.
+    let old = attempt("Ada", "pinch", "2026-11-20T08:00:00Z");
+    let late = attempt("Ada", "pinch", "2027-01-01T00:00:00Z");
+    assert_eq!((store.add(&old), store.add(&late), store.add(&old)), (Ok(true), Ok(true), Ok(false)));
+    let next = Attempt { score: Some(99.0), ..attempt("Ada", "pinch", "2026-11-22T19:06:00Z") };
+    store.keep(&next).expect("kept");
+    let meant: Vec<Attempt> = [old].into_iter().chain(all.clone()).chain([next, late]).collect();
+    assert_eq!(store.attempts(&Query::default()).expect("rows"), meant);
+    // In another history all of it is imported, by the date, and nothing twice.
+    let (_other, path) = folder();
+    let mut other = Store::open(&path).expect("made");
+    assert!(meant.iter().all(|attempt| other.add(attempt) == Ok(true)), "two of one moment are two");
+    assert!(meant.iter().all(|attempt| other.add(attempt) == Ok(false)));
+    let dates: Vec<Timestamp> = other.attempts(&Query::default()).expect("rows").iter().map(|a| a.began).collect();
+    assert!(dates.len() == meant.len() && dates.is_sorted(), "{dates:?}");
+}
+
+#[test]
+fn what_waits_is_taken_in_in_the_order_in_which_it_was_made() {
+    let (_folder, path) = folder();
+    let all = by_a_bad_clock();
+    for attempt in &all {
+        aside::keep(&path, attempt).expect("kept beside");
+    }
+    let mut store = Store::open(&path).expect("made");
+    assert_eq!(aside::take_in(&path, &mut store), (all.len(), Vec::new()));
+    assert_eq!(store.attempts(&Query::default()).expect("rows"), all);
+    // A file that could not be removed is known at the next start.
+    aside::keep(&path, &all[3]).expect("kept beside");
+    assert_eq!(aside::take_in(&path, &mut store), (1, Vec::new()));
+    assert_eq!(store.attempts(&Query::default()).expect("rows").len(), all.len());
 }
 
 #[test]

@@ -18,7 +18,7 @@ const IN_A_ROW: usize = 2;
 /// One attempt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Try {
-    /// When it began, s on any clock.
+    /// When it began, s on any clock; one that was set back between two attempts puts no pause between them.
     pub began_s: f64,
     /// What is followed: a score, or a measure.
     pub value: f64,
@@ -211,6 +211,9 @@ mod tests {
         assert!((found[0].half_width.expect("of three") - 4.302_65 / 3.0_f64.sqrt()).abs() < 1e-4);
         assert_eq!((found[1].mean, found[1].half_width), (7.0, None));
         assert!(sessions(&[]).is_empty());
+        // The clock was set back by a day after the first one, and the sitting went on; so did the next one an hour and a half later.
+        let back = [(90_000.0, 1.0, false), (4_000.0, 2.0, false), (4_060.0, 3.0, false), (9_500.0, 4.0, false)];
+        assert_eq!(sessions(&tries(&back)).iter().map(|s| (s.first, s.end)).collect::<Vec<_>>(), [(0, 3), (3, 4)]);
     }
 
     #[test]

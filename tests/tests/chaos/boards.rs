@@ -1,7 +1,13 @@
-//! Serial boards whose cable is pulled, that fall silent, answer in halves or in noise, and come back: a board that does not answer is
-//! told zero torque.
+//! Serial boards whose cable is pulled and put in again, that fall silent, answer in halves or in noise, and come back: a board that does
+//! not answer is told zero torque, and one that comes back none until it has answered for a while.
 
 use crate::Chaos;
+
+/// What must have happened.
+#[cfg(unix)]
+pub const MUST: &[&str] = &["torques that pressed", "cables put in again", "ticks with force"];
+#[cfg(not(unix))]
+pub const MUST: &[&str] = &[];
 
 #[cfg(not(unix))]
 pub fn unplugged(_: &mut Chaos) {
@@ -15,13 +21,14 @@ pub use on_unix::unplugged;
 mod on_unix {
     use super::Chaos;
     use haptics::Vec2;
-    use haptics::device::haply::{Board, BoardModel, FiveBar, HaplyHand, Placement};
+    use haptics::device::haply::{self, Board, BoardModel, FiveBar, HaplyHand, Placement};
     use haptics::servo::safety::Limits;
     use haptics::servo::{Loop, Swap};
     use haptics::world::presets;
     use rand::RngExt as _;
     use serialport::{SerialPort as _, TTYPort};
     use std::io::{Read as _, Write as _};
+    use std::path::{Path, PathBuf};
     use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
     use std::sync::{Arc, Mutex, PoisonError};
     use std::thread::JoinHandle;
@@ -35,17 +42,22 @@ mod on_unix {
     const PHASES: usize = 12;
     /// From the third question without an answer on there may be no torque: the second one was asked when the first was given up.
     const PATIENCE: u64 = 3;
+    /// Before a board has answered so often since it was plugged in, there may be no torque.
+    const ACQUAINTANCE: u64 = 5;
+    /// After this time without one of the boards there may be no force at all, however busy the machine is.
+    const LATE: Duration = Duration::from_millis(250);
 
     const ANSWER: u8 = 0;
     const SILENT: u8 = 1;
     const NOISE: u8 = 2;
     const HALVES: u8 = 3;
-    const GONE: u8 = 4;
 
     #[derive(Default)]
     struct Shared {
         mode: AtomicU8,
         questions: AtomicU64,
+        /// Whole answers since it was plugged in.
+        answers: AtomicU64,
         pressed: AtomicU64,
         stop: AtomicBool,
         wrong: Mutex<Vec<String>>,
@@ -57,9 +69,6 @@ mod on_unix {
         let (mut bytes, mut some, mut unanswered) = (Vec::new(), [0; 64], 0);
         while !shared.stop.load(Ordering::Relaxed) {
             let mode = shared.mode.load(Ordering::Relaxed);
-            if mode == GONE {
-                return; // the line is dropped: a pulled cable
-            }
             let count = line.read(&mut some).unwrap_or(0);
             bytes.extend_from_slice(&some[..count]);
             while let Some(length) = bytes.first().map(|kind| if *kind == 1 { 26 } else { 10 })
@@ -75,6 +84,7 @@ mod on_unix {
                 judge(shared, torques, unanswered);
                 if answer(&mut line, mode) {
                     unanswered = 0;
+                    shared.answers.fetch_add(1, Ordering::Relaxed);
                 }
                 shared.questions.fetch_add(1, Ordering::Relaxed);
             }
@@ -83,9 +93,11 @@ mod on_unix {
 
     fn judge(shared: &Shared, torques: [f32; 2], unanswered: u64) {
         shared.pressed.fetch_add(u64::from(torques != [0.0; 2]), Ordering::Relaxed);
-        let bounded = torques.iter().all(|t| t.abs() <= haptics::device::haply::MAX_TORQUE_NM + 1e-6);
-        if !bounded || (unanswered >= PATIENCE && torques != [0.0; 2]) {
-            let wrong = format!("{torques:?} N m at question {unanswered} without an answer");
+        let bounded = torques.iter().all(|t| t.abs() <= haply::MAX_TORQUE_NM + 1e-6);
+        let answers = shared.answers.load(Ordering::Relaxed);
+        let silent = unanswered >= PATIENCE || answers < ACQUAINTANCE;
+        if !bounded || (silent && torques != [0.0; 2]) {
+            let wrong = format!("{torques:?} N m at question {unanswered} without an answer, after {answers} answers");
             shared.wrong.lock().unwrap_or_else(PoisonError::into_inner).push(wrong);
         }
     }
@@ -110,15 +122,39 @@ mod on_unix {
     struct Emulator {
         shared: Arc<Shared>,
         thread: JoinHandle<()>,
+        /// A pseudo-terminal hangs up when its last near end closes; a USB line does not.
+        near: TTYPort,
     }
 
-    fn plug_in() -> (Board, Emulator) {
-        let (far, mut near) = TTYPort::pair().expect("the system has pseudo-terminals");
-        near.set_timeout(TIMEOUT).expect("a pseudo-terminal has time-outs");
-        let shared = Arc::new(Shared::default());
-        let theirs = Arc::clone(&shared);
-        let thread = std::thread::spawn(move || emulate(far, &theirs));
-        (Board::start(Box::new(near), BoardModel::V3).expect("takes its set-up"), Emulator { shared, thread })
+    impl Emulator {
+        /// A board behind the port of this name, whatever was there before.
+        fn plug_in(port: &Path) -> Self {
+            let (far, near) = TTYPort::pair().expect("the system has pseudo-terminals");
+            let shared = Arc::new(Shared::default());
+            let theirs = Arc::clone(&shared);
+            let thread = std::thread::spawn(move || emulate(far, &theirs));
+            let beside = port.with_extension("new");
+            std::os::unix::fs::symlink(near.name().expect("the near end has a name"), &beside).expect("a name");
+            std::fs::rename(&beside, port).expect("a name");
+            Self { shared, thread, near }
+        }
+
+        /// Its cable is pulled, or the test is over.
+        fn unplug(self) {
+            self.shared.stop.store(true, Ordering::Relaxed);
+            self.thread.join().expect("the emulator ends");
+            drop(self.near);
+            let wrong = self.shared.wrong.lock().unwrap_or_else(PoisonError::into_inner);
+            assert!(wrong.is_empty(), "{wrong:?}");
+        }
+
+        fn answers(&self) -> u64 {
+            self.shared.answers.load(Ordering::Relaxed)
+        }
+
+        fn pressed(&self) -> u64 {
+            self.shared.pressed.load(Ordering::Relaxed)
+        }
     }
 
     /// A hand that leans on the table.
@@ -129,51 +165,92 @@ mod on_unix {
         HaplyHand::new(boards, [place(-0.02), place(0.02)])
     }
 
+    /// A hand on two boards, ticked at the servo's own pace.
+    struct Bench {
+        body: Loop,
+        last: Instant,
+        ports: [PathBuf; 2],
+        emulators: [Emulator; 2],
+    }
+
+    impl Bench {
+        /// A tick; whether there was a force in it.
+        fn tick(&mut self, chaos: &mut Chaos) -> bool {
+            std::thread::sleep(Duration::from_millis(1));
+            let now = Instant::now();
+            let tick = self.body.tick((now - self.last).as_secs_f64().clamp(1e-4, 0.01));
+            self.last = now;
+            let is_zero = tick.sent_force_n == [Vec2::zeros(); 2];
+            assert!(!tick.flags.stale || is_zero, "{:?} N from boards that do not answer", tick.sent_force_n);
+            chaos.count("ticks with force", u64::from(!is_zero));
+            !is_zero
+        }
+
+        /// Ticks until both boards have been asked often enough.
+        fn phase(&mut self, chaos: &mut Chaos, modes: [u8; 2]) {
+            let asked = |e: &Emulator| e.shared.questions.load(Ordering::Relaxed);
+            let before = self.emulators.each_ref().map(asked);
+            for (emulator, mode) in self.emulators.iter().zip(modes) {
+                emulator.shared.mode.store(mode, Ordering::Relaxed);
+            }
+            let begun = Instant::now();
+            while (0..2).any(|k| asked(&self.emulators[k]) < before[k] + QUESTIONS) {
+                assert!(begun.elapsed() < Duration::from_secs(30), "boards are asked no more: {modes:?}");
+                self.tick(chaos);
+            }
+        }
+
+        /// The cable of one board is pulled and, later, another one put in at the same port: the force goes, and comes back once the
+        /// board that is there now has answered.
+        fn pull_and_put_in(&mut self, chaos: &mut Chaos, k: usize) {
+            chaos.count("torques that pressed", self.emulators[k].pressed());
+            std::fs::remove_file(&self.ports[k]).expect("the name goes with the board");
+            let [left, right] = &mut self.emulators;
+            let (pulled, stays) = if k == 0 { (left, right) } else { (right, left) };
+            stays.shared.mode.store(ANSWER, Ordering::Relaxed);
+            let next = Emulator::plug_in(&self.ports[k].with_extension("drawer"));
+            std::mem::replace(pulled, next).unplug();
+            let (begun, out) = (Instant::now(), Duration::from_millis(chaos.rng.random_range(300..900)));
+            while begun.elapsed() < out {
+                let force = self.tick(chaos);
+                assert!(!force || begun.elapsed() < LATE, "a force without one of the boards");
+            }
+            std::fs::rename(self.ports[k].with_extension("drawer"), &self.ports[k]).expect("a name");
+            let begun = Instant::now();
+            while !self.tick(chaos) {
+                assert!(begun.elapsed() < Duration::from_secs(30), "a board that was plugged in again is not found");
+            }
+            assert!(self.emulators[k].answers() >= ACQUAINTANCE, "a force before the board has answered");
+            chaos.count("cables put in again", 1);
+        }
+    }
+
     pub fn unplugged(chaos: &mut Chaos) {
-        let ((left, first), (right, second)) = (plug_in(), plug_in());
-        let emulators = [first, second];
+        let folder = chaos.scratch();
+        let ports = ["left", "right"].map(|name| folder.path().join(name));
+        let emulators = ports.each_ref().map(|port| Emulator::plug_in(port));
+        let boards = ports.each_ref().map(|port| {
+            haply::open(port.to_str().expect("a plain name"), BoardModel::V3, None).expect("takes its set-up")
+        });
         let limits = Limits { ramp_s: 0.02, ..Limits::default() };
-        let mut body = Loop::new(Swap::new(presets::table()), Box::new(hand([left, right])), limits);
-        let mut last = Instant::now();
-        for _ in 0..PHASES {
+        let body = Loop::new(Swap::new(presets::table()), Box::new(hand(boards)), limits);
+        let mut bench = Bench { body, last: Instant::now(), ports, emulators };
+        for number in 0..PHASES {
             let modes: [u8; 2] = std::array::from_fn(|_| match chaos.rng.random_range(0..6) {
                 mode @ 1..=3 => mode,
                 _ => ANSWER,
             });
-            phase(chaos, &mut body, &emulators, modes, &mut last);
+            bench.phase(chaos, modes);
+            if number % 5 == 4 {
+                let k = chaos.rng.random_range(0..2);
+                bench.pull_and_put_in(chaos, k);
+            }
         }
-        phase(chaos, &mut body, &emulators, [GONE, ANSWER], &mut last);
-        for emulator in &emulators {
-            chaos.count("torques that pressed", emulator.shared.pressed.load(Ordering::Relaxed));
-        }
+        let Bench { body, emulators: [left, right], .. } = bench;
+        chaos.count("torques that pressed", left.pressed() + right.pressed());
+        // A cable that is out when the program ends.
+        left.unplug();
         drop(body);
-        for emulator in emulators {
-            emulator.shared.stop.store(true, Ordering::Relaxed);
-            emulator.thread.join().expect("the emulator ends");
-            let wrong = emulator.shared.wrong.lock().unwrap_or_else(PoisonError::into_inner);
-            assert!(wrong.is_empty(), "{wrong:?}");
-        }
-    }
-
-    /// Ticks until both boards have been asked often enough; one that is gone is not asked.
-    fn phase(chaos: &mut Chaos, body: &mut Loop, emulators: &[Emulator; 2], modes: [u8; 2], last: &mut Instant) {
-        let asked = |e: &Emulator| e.shared.questions.load(Ordering::Relaxed);
-        let before = emulators.each_ref().map(asked);
-        for (emulator, mode) in emulators.iter().zip(modes) {
-            emulator.shared.mode.store(mode, Ordering::Relaxed);
-        }
-        let begun = Instant::now();
-        let done = || (0..2).all(|k| modes[k] == GONE || asked(&emulators[k]) >= before[k] + QUESTIONS);
-        while !done() {
-            assert!(begun.elapsed() < Duration::from_secs(30), "boards are asked no more: {modes:?}");
-            // The servo's own pace.
-            std::thread::sleep(Duration::from_millis(1));
-            let now = Instant::now();
-            let tick = body.tick((now - *last).as_secs_f64().clamp(1e-4, 0.01));
-            *last = now;
-            let is_zero = tick.sent_force_n == [Vec2::zeros(); 2];
-            assert!(!tick.flags.stale || is_zero, "{:?} N from boards that do not answer", tick.sent_force_n);
-            chaos.count("ticks with force", u64::from(!is_zero));
-        }
+        right.unplug();
     }
 }

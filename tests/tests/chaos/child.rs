@@ -1,7 +1,7 @@
 //! This test again as a process of its own, to be killed or to meet a full disk.
 
 use crate::documents::attempt;
-use app::history::{Query, Store};
+use app::history::{Attempt, Query, Store};
 use app::recorder::{FILE_BYTES, Order, Recorder, ServoFacts};
 use app::ui::project::{Project, Source};
 use haptics::device::{ScriptedOperator, Skill};
@@ -16,6 +16,8 @@ use std::time::Duration;
 
 /// What a child does.
 pub const WHAT: &str = "TOUCHSTONE_CHAOS_CHILD";
+/// How a process says that one of its threads panicked.
+pub const PANIC: &str = "a thread panicked: ";
 /// Where.
 pub const FOLDER: &str = "TOUCHSTONE_CHAOS_FOLDER";
 
@@ -37,6 +39,24 @@ pub fn run(what: &str) {
         "full" => crate::full::child(&folder),
         other => panic!("nobody knows how to {other}"),
     }
+    let panics = crate::take_panics();
+    assert!(panics.is_empty(), "threads panicked: {panics:#?}");
+}
+
+/// What a process has said on its standard error names no panic, however it ended.
+pub fn must_not_have_panicked(said: &str) {
+    assert!(!said.contains(PANIC), "a child: {said}");
+}
+
+/// The attempt with this number, by a clock that is set back by a day now and then, and stands still in between.
+pub fn by_a_bad_clock(number: u64) -> Attempt {
+    let moment = match number % 5 {
+        1 => number - 1,
+        _ => number,
+    };
+    let day = jiff::SignedDuration::from_hours(if number % 5 == 4 { 24 } else { 0 });
+    let began = attempt(moment).began.checked_sub(day).expect("a moment");
+    Attempt { began, ..attempt(number) }
 }
 
 /// What is recorded, and where to.
@@ -67,9 +87,8 @@ fn work(folder: &Path) {
         let mut store = Store::open(&kept_in).expect("opens, however it was left");
         let first = store.attempts(&Query::default()).expect("readable").len() as u64;
         for number in first.. {
-            if store.add(&attempt(number)).expect("kept") {
-                println!("kept {number}");
-            }
+            store.keep(&by_a_bad_clock(number)).expect("kept");
+            println!("kept {number}");
         }
     });
     let saved_in = folder.join("work.touchstone.json");

@@ -23,7 +23,7 @@ const EACH: usize = 60;
 const TICKS: usize = 120;
 
 /// The documents of a folder that come with the program.
-fn documents(folder: &str) -> Vec<PathBuf> {
+pub fn documents(folder: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(workspace().join("assets").join(folder)).expect("it comes with the program");
     let mut found: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     found.retain(|path| path.extension().is_some_and(|e| e == "json"));
@@ -32,17 +32,18 @@ fn documents(folder: &str) -> Vec<PathBuf> {
 }
 
 /// One of them, with its tree or its bytes spoiled.
-fn spoiled_one(found: &[PathBuf], rng: &mut StdRng) -> Vec<u8> {
+pub fn spoiled_one(found: &[PathBuf], rng: &mut StdRng) -> Vec<u8> {
     let text = std::fs::read(&found[rng.random_range(0..found.len())]).expect("there");
     spoiled_text(&text, rng)
 }
 
 fn spoiled_text(text: &[u8], rng: &mut StdRng) -> Vec<u8> {
-    if rng.random_range(0..4) == 0 {
-        return mutate::bytes(text, rng);
-    }
     let value: Value = serde_json::from_slice(text).expect("JSON");
-    mutate::json(&value, rng).to_string().into_bytes()
+    match rng.random_range(0..4) {
+        0 => mutate::bytes(text, rng),
+        1 => mutate::numbers(&value, rng).to_string().into_bytes(),
+        _ => mutate::json(&value, rng).to_string().into_bytes(),
+    }
 }
 
 pub fn spoiled(chaos: &mut Chaos) {
@@ -126,34 +127,42 @@ pub fn attempt(number: u64) -> Attempt {
     }
 }
 
-/// A database that a disk has spoiled is refused in a sentence, and what is done meanwhile is kept beside it.
-pub fn spoiled_history(chaos: &mut Chaos) {
-    let folder = chaos.scratch();
-    let path = folder.path().join("history.sqlite");
-    let mut store = Store::open(&path).expect("made");
+/// A database of twenty attempts, as bytes.
+pub fn history(path: &Path) -> Vec<u8> {
+    let mut store = Store::open(path).expect("made");
     for number in 0..20 {
         store.add(&attempt(number)).expect("kept");
     }
     drop(store);
-    let whole = std::fs::read(&path).expect("there");
+    std::fs::read(path).expect("there")
+}
+
+pub fn spoiled_history(chaos: &mut Chaos) {
+    let folder = chaos.scratch();
+    let path = folder.path().join("history.sqlite");
+    let whole = history(&path);
     for round in 0..6 {
-        for file in std::fs::read_dir(folder.path()).expect("there").flatten() {
-            // Journals of before belong to another file.
-            let _ = std::fs::remove_file(file.path());
-        }
-        std::fs::write(&path, mutate::bytes(&whole, &mut chaos.rng)).expect("writes");
+        keep_in_a_spoiled_one(&path, &whole, &attempt(1_000 + round), &mut chaos.rng);
         chaos.count("spoiled histories", 1);
-        let late = attempt(1_000 + round);
-        let history = History::start(path.clone(), || {}).expect("a thread");
-        history.add(late.clone());
-        drop(history);
-        let kept = Store::open(&path).and_then(|store| store.attempts(&Query::default()));
-        let in_base = kept.as_ref().is_ok_and(|all| all.contains(&late));
-        if let Err(problem) = &kept {
-            must_be_a_sentence(problem, &path);
-        }
-        let beside = std::fs::read_dir(path.with_extension("waiting")).map_or(0, |entries| entries.flatten().count());
-        assert!(in_base || beside > 0, "an attempt is neither in the damaged database nor beside it: {kept:?}");
-        let _ = std::fs::remove_dir_all(path.with_extension("waiting"));
     }
+}
+
+/// A database that a disk has spoiled is refused in a sentence, and what is done meanwhile is kept beside it. It has its folder to itself.
+pub fn keep_in_a_spoiled_one(path: &Path, whole: &[u8], late: &Attempt, rng: &mut StdRng) {
+    for file in std::fs::read_dir(path.parent().expect("a folder")).expect("there").flatten() {
+        // Journals of before belong to another file.
+        let _ = std::fs::remove_file(file.path());
+    }
+    std::fs::write(path, mutate::bytes(whole, rng)).expect("writes");
+    let history = History::start(path.to_path_buf(), || {}).expect("a thread");
+    history.add(late.clone());
+    drop(history);
+    let kept = Store::open(path).and_then(|store| store.attempts(&Query::default()));
+    let in_base = kept.as_ref().is_ok_and(|all| all.contains(late));
+    if let Err(problem) = &kept {
+        must_be_a_sentence(problem, path);
+    }
+    let beside = std::fs::read_dir(path.with_extension("waiting")).map_or(0, |entries| entries.flatten().count());
+    assert!(in_base || beside > 0, "an attempt is neither in the damaged database nor beside it: {kept:?}");
+    let _ = std::fs::remove_dir_all(path.with_extension("waiting"));
 }

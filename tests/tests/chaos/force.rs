@@ -18,7 +18,7 @@ const TURNS: usize = 6;
 
 /// What is wrong with a device for a while.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Fault {
+pub enum Fault {
     None,
     Vanished,
     /// Only one finger is seen.
@@ -29,7 +29,7 @@ enum Fault {
     FarAway,
 }
 
-const FAULTS: [Fault; 9] = [
+pub const FAULTS: [Fault; 9] = [
     Fault::None,
     Fault::None,
     Fault::Vanished,
@@ -42,20 +42,39 @@ const FAULTS: [Fault; 9] = [
 ];
 
 /// What the device itself knows of what it has said.
-struct Said {
-    fault: Fault,
+pub struct Said {
+    pub fault: Fault,
     /// Time since a good sample of each finger, s.
-    age_s: [f64; 2],
+    pub age_s: [f64; 2],
+    /// Every exchange, for who looks at them later; not noted where that is nothing.
+    pub exchanges: Option<Vec<Exchange>>,
 }
 
-/// A simulated hand behind a cable that fails.
-struct Failing {
-    hand: ScriptedOperator,
-    said: Arc<Mutex<Said>>,
-    rng: StdRng,
+impl Said {
+    pub fn new(exchanges: Option<Vec<Exchange>>) -> Arc<Mutex<Self>> {
+        Arc::new(Mutex::new(Self { fault: Fault::None, age_s: [0.0; 2], exchanges }))
+    }
 }
 
-fn open(said: &Mutex<Said>) -> MutexGuard<'_, Said> {
+/// One tick as the device has seen it.
+#[derive(Clone, Copy, Debug)]
+pub struct Exchange {
+    /// What it was told, N.
+    pub told_n: [Vec2; 2],
+    /// What it said, m.
+    pub tip_in_world: [Vec2; 2],
+    /// Time since a good sample of the finger that was not seen for longer, s.
+    pub age_s: f64,
+}
+
+/// A hand behind a cable that fails.
+pub struct Failing {
+    pub hand: Box<dyn Device>,
+    pub said: Arc<Mutex<Said>>,
+    pub rng: StdRng,
+}
+
+pub fn open(said: &Mutex<Said>) -> MutexGuard<'_, Said> {
     said.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -71,13 +90,12 @@ impl Device for Failing {
     fn exchange(&mut self, command: &Command, dt_s: f64) -> Sample {
         let mut said = open(&self.said);
         let mut sample = self.hand.exchange(command, dt_s);
-        sample.fresh = [true; 2];
         let mut possible = true;
         match said.fault {
-            Fault::None => {}
             Fault::Vanished => sample.fresh = [false; 2],
             Fault::Half(finger) => sample.fresh[1 - finger] = false,
-            Fault::Lossy => sample.fresh = [self.rng.random_bool(0.1); 2],
+            Fault::Lossy if self.rng.random_bool(0.9) => sample.fresh = [false; 2],
+            Fault::None | Fault::Lossy => {}
             Fault::NotANumber => {
                 (sample.tip_in_world[self.rng.random_range(0..2)].x, possible) = (f64::NAN, false);
             }
@@ -87,6 +105,14 @@ impl Device for Failing {
         for finger in 0..2 {
             let good = possible && sample.fresh[finger];
             said.age_s[finger] = if good { 0.0 } else { said.age_s[finger] + dt_s };
+        }
+        let exchange = Exchange {
+            told_n: command.force_n,
+            tip_in_world: sample.tip_in_world,
+            age_s: said.age_s[0].max(said.age_s[1]),
+        };
+        if let Some(exchanges) = &mut said.exchanges {
+            exchanges.push(exchange);
         }
         sample
     }
@@ -119,9 +145,10 @@ fn step_s(rng: &mut StdRng) -> f64 {
 fn turn(chaos: &mut Chaos) {
     let worlds = presets::all();
     let world = worlds[chaos.rng.random_range(0..worlds.len())].clone();
-    let said = Arc::new(Mutex::new(Said { fault: Fault::None, age_s: [0.0; 2] }));
+    let said = Said::new(None);
     let hand = ScriptedOperator::new(&world, &State::resting(&world), Skill::default(), chaos.rng.random());
-    let device = Failing { hand, said: Arc::clone(&said), rng: StdRng::seed_from_u64(chaos.rng.random()) };
+    let device =
+        Failing { hand: Box::new(hand), said: Arc::clone(&said), rng: StdRng::seed_from_u64(chaos.rng.random()) };
     let limits = Limits { ramp_s: 0.05, ..Limits::default() };
     let mut body = Loop::new(Swap::new(world), Box::new(device), limits);
     let (mut left, mut before) = (0_u32, [Vec2::zeros(); 2]);

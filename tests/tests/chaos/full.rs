@@ -39,6 +39,7 @@ pub fn refuses(chaos: &mut Chaos) {
     command.env("TOUCHSTONE_CHAOS_DRAW", chaos.rng.random_range(0..1_000_u32).to_string());
     let output = command.output().expect("runs");
     let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    child::must_not_have_panicked(&said);
     assert!(output.status.success() && said.contains(DONE), "{said}");
     chaos.count("full disks", 1);
 }

@@ -1,12 +1,12 @@
 //! SIGKILL in the middle of recording, keeping and saving, and a restart in the same folder, again and again.
 
-use crate::documents::attempt;
 use crate::{Chaos, child};
 use app::history::{Query, Store};
 use app::recorder::folder;
 use app::ui::project::Project;
 use estimator::log;
 use rand::RngExt as _;
+use std::fs::File;
 use std::io::{BufRead as _, BufReader};
 use std::path::Path;
 use std::process::Stdio;
@@ -16,7 +16,16 @@ const LOST_AT_MOST_S: f64 = 1.5;
 /// Kills a lap.
 const KILLS: usize = 2;
 
-/// What a child said last.
+/// What all children have promised so far: it holds whatever comes afterwards.
+#[derive(Debug, Default)]
+pub struct Promised {
+    /// So many attempts are in the history: those with the numbers below.
+    kept: u64,
+    /// Number of the newest project.
+    saved: Option<u64>,
+}
+
+/// What a child said until it was killed.
 #[derive(Debug, Default)]
 struct Said {
     recorded_s: f64,
@@ -44,15 +53,24 @@ pub fn and_restarted(chaos: &mut Chaos) {
         let until_s = chaos.rng.random_range(0.2..2.4);
         let said = killed_after(&place, until_s);
         chaos.count("kills", 1);
-        check_history(&place, &said);
-        check_project(&place, &said);
+        // A child may have been killed before it said anything of these; over the whole of the chaos that would be a fault.
+        chaos.count(
+            "attempts said to be kept",
+            said.kept.map_or(0, |last| (last + 1).saturating_sub(chaos.promised.kept)),
+        );
+        chaos.count("projects said to be saved", u64::from(said.saved.is_some()));
+        chaos.promised.kept = chaos.promised.kept.max(said.kept.map_or(0, |last| last + 1));
+        chaos.promised.saved = chaos.promised.saved.max(said.saved);
+        check_history(&place, &chaos.promised);
+        check_project(&place, &chaos.promised);
         check_recording(&place, &said);
     }
 }
 
 fn killed_after(place: &Path, until_s: f64) -> Said {
-    let mut child =
-        child::command("work", place, "").stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("starts");
+    let complaints = place.join("standard-error");
+    let heard = File::create(&complaints).expect("a file");
+    let mut child = child::command("work", place, "").stdout(Stdio::piped()).stderr(heard).spawn().expect("starts");
     let mut said = Said::default();
     for line in BufReader::new(child.stdout.take().expect("piped")).lines() {
         said.take(&line.expect("readable"));
@@ -62,23 +80,24 @@ fn killed_after(place: &Path, until_s: f64) -> Said {
     }
     child.kill().expect("SIGKILL");
     child.wait().expect("gone");
+    let heard = std::fs::read(&complaints).expect("there");
+    child::must_not_have_panicked(&String::from_utf8_lossy(&heard));
     assert!(said.recorded_s >= until_s, "it ended by itself: {said:?}");
     said
 }
 
-fn check_history(place: &Path, said: &Said) {
+fn check_history(place: &Path, promised: &Promised) {
     let store = Store::open(&place.join("history.sqlite")).expect("opens after a kill");
     let all = store.attempts(&Query::default()).expect("readable");
-    let most = said.kept.unwrap_or(0) as usize;
-    assert!(all.len() >= most, "{} attempts, {most} were said to be kept", all.len());
-    // From all laps, in their order.
+    assert!(all.len() as u64 >= promised.kept, "{} attempts, {} were said to be kept", all.len(), promised.kept);
+    // From all laps, in their order, whatever their clock said.
     for (number, kept) in all.iter().enumerate() {
-        assert_eq!(*kept, attempt(number as u64), "attempt {number}");
+        assert_eq!(*kept, child::by_a_bad_clock(number as u64), "attempt {number}");
     }
 }
 
-fn check_project(place: &Path, said: &Said) {
-    let Some(saved) = said.saved else { return };
+fn check_project(place: &Path, promised: &Promised) {
+    let Some(saved) = promised.saved else { return };
     let found = Project::read(&place.join("work.touchstone.json")).expect("whole, whenever it was killed");
     assert!(found.cursor_s >= saved as f64, "{} is there, {saved} was said to be saved", found.cursor_s);
     assert_eq!(found.recordings.len(), child::project(0).recordings.len());

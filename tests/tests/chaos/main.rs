@@ -20,6 +20,7 @@ mod logs;
 mod memory;
 mod mutate;
 mod names;
+mod together;
 mod udp;
 mod workbench;
 
@@ -28,6 +29,7 @@ use rand::rngs::StdRng;
 use rand::seq::SliceRandom as _;
 use rand::{RngExt as _, SeedableRng as _};
 use std::collections::BTreeMap;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
@@ -47,6 +49,8 @@ struct Chaos {
     folder: PathBuf,
     /// What was done, counted.
     counts: BTreeMap<&'static str, u64>,
+    /// What programs that were killed have said to be kept and saved, in all laps.
+    promised: killed::Promised,
 }
 
 impl Chaos {
@@ -60,20 +64,23 @@ impl Chaos {
     }
 }
 
-type Part = fn(&mut Chaos);
+/// A part, its name, and what must have been counted over the whole run: without it the part had nothing to lose.
+type Part = (&'static str, fn(&mut Chaos), &'static [&'static str]);
 
-const PARTS: [(&str, Part); 11] = [
-    ("logs", logs::cut_and_spoiled),
-    ("documents", documents::spoiled),
-    ("history", documents::spoiled_history),
-    ("workbench", workbench::jobs),
-    ("force", force::vanishing_and_jumping),
-    ("udp", udp::attacked),
-    ("boards", boards::unplugged),
-    ("killed", killed::and_restarted),
-    ("full disk", full::refuses),
-    ("huge", huge::refused_or_bounded),
-    ("names", names::hostile),
+const PARTS: [Part; 12] = [
+    ("logs", logs::cut_and_spoiled, &["spoiled logs that load", "fits that answered"]),
+    ("documents", documents::spoiled, &["spoiled worlds that run", "spoiled lessons that open"]),
+    ("history", documents::spoiled_history, &["spoiled histories"]),
+    ("workbench", workbench::jobs, &["fits that answered", "deeds at the workbench"]),
+    ("force", force::vanishing_and_jumping, &["ticks with force", "ticks without fresh data"]),
+    ("udp", udp::attacked, &["sealed packets taken", "packets refused", "ticks without fresh data"]),
+    ("boards", boards::unplugged, boards::MUST),
+    ("killed", killed::and_restarted, &["kills", "attempts said to be kept", "projects said to be saved"]),
+    // Skipped where there are no mount namespaces.
+    ("full disk", full::refuses, &[]),
+    ("huge", huge::refused_or_bounded, &[]),
+    ("names", names::hostile, &["hostile names"]),
+    ("together", together::at_the_same_time, together::MUST),
 ];
 
 fn number(name: &str) -> Option<u64> {
@@ -85,31 +92,33 @@ fn seed() -> u64 {
     number("TOUCHSTONE_SEED").unwrap_or_else(today)
 }
 
-/// The one part that was asked for.
-fn only() -> Option<String> {
-    std::env::var("TOUCHSTONE_CHAOS_ONLY").ok()
-}
-
-/// Notes every panic, also those that somebody catches.
+/// Notes every panic, also those that somebody catches, and says it at once: what a killed process has said is read by its parent.
 fn note_panics() {
     std::panic::set_hook(Box::new(|info| {
-        eprintln!("{info}");
+        let said = format!("{}{info}\n", child::PANIC);
+        let _ = std::io::stderr().write_all(said.as_bytes());
         PANICS.lock().unwrap_or_else(PoisonError::into_inner).push(info.to_string());
     }));
 }
 
+/// What panicked since the last call.
+fn take_panics() -> Vec<String> {
+    std::mem::take(&mut *PANICS.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
 #[test]
 fn nothing_is_lost_nothing_panics_no_force_without_fresh_data_and_memory_stays_flat() {
+    note_panics();
     if let Some(what) = std::env::var_os(child::WHAT) {
         child::run(&what.to_string_lossy());
         return;
     }
     let (seed, seconds) = (seed(), number("TOUCHSTONE_CHAOS_SECONDS").unwrap_or(40));
     println!("chaos: TOUCHSTONE_SEED={seed} repeats it, for {seconds} s");
-    note_panics();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let rng = StdRng::seed_from_u64(seed);
-    let mut chaos = Chaos { rng, folder: folder.path().to_path_buf(), counts: BTreeMap::new() };
+    let (folder_path, counts) = (folder.path().to_path_buf(), BTreeMap::new());
+    let mut chaos = Chaos { rng, folder: folder_path, counts, promised: killed::Promised::default() };
     let (begun, mut laps, mut took_s) = (Instant::now(), Vec::new(), BTreeMap::new());
     while laps.len() < FEWEST_LAPS || begun.elapsed().as_secs() < seconds {
         lap(&mut chaos, seed, &mut took_s);
@@ -123,29 +132,36 @@ fn nothing_is_lost_nothing_panics_no_force_without_fresh_data_and_memory_stays_f
         println!("  {seconds:>9.1} s {part}");
     }
     memory::must_be_flat(&laps);
-    if only().is_some() {
-        return;
+    for (name, _, must) in parts() {
+        for what in must {
+            assert!(chaos.counts.get(what).is_some_and(|count| *count > 0), "{name} had something to lose: {what}");
+        }
     }
-    for what in ["ticks with force", "ticks without fresh data", "sealed packets taken", "kills", "fits that answered"]
-    {
-        assert!(chaos.counts.get(what).is_some_and(|count| *count > 0), "there was something to lose: {what}");
-    }
+}
+
+/// All parts, or the one that was asked for.
+fn parts() -> Vec<Part> {
+    let only = std::env::var("TOUCHSTONE_CHAOS_ONLY").ok();
+    PARTS.into_iter().filter(|(name, ..)| only.as_ref().is_none_or(|one| one == name)).collect()
 }
 
 /// Every part once; the part that fails is named with what repeats it.
 fn lap(chaos: &mut Chaos, seed: u64, took_s: &mut BTreeMap<&'static str, f64>) {
-    let mut parts = PARTS;
-    parts.shuffle(&mut chaos.rng);
-    let only = only();
-    for (name, part) in parts.into_iter().filter(|(name, _)| only.as_ref().is_none_or(|one| one == name)) {
+    let mut all = PARTS;
+    all.shuffle(&mut chaos.rng);
+    let asked = parts();
+    for (name, part, _) in all {
         let begun = Instant::now();
-        // Of its own, so that a part draws the same whatever the ones before it drew.
+        // Of its own, so that a part draws the same whatever the ones before it drew, also when it is done alone.
         let own: u64 = chaos.rng.random();
+        if asked.iter().all(|(one, ..)| *one != name) {
+            continue;
+        }
         let kept = std::mem::replace(&mut chaos.rng, StdRng::seed_from_u64(own));
         part(chaos);
         chaos.rng = kept;
         *took_s.entry(name).or_default() += begun.elapsed().as_secs_f64();
-        let panics = std::mem::take(&mut *PANICS.lock().unwrap_or_else(PoisonError::into_inner));
+        let panics = take_panics();
         assert!(panics.is_empty(), "{name}, TOUCHSTONE_SEED={seed}: {panics:#?}");
     }
 }

@@ -86,6 +86,33 @@ fn strange(value: &Value, rng: &mut StdRng) -> Value {
     }
 }
 
+/// Makes one to three numbers of a JSON document up to twice as large or as small: what is still a world is another one.
+pub fn numbers(whole: &Value, rng: &mut StdRng) -> Value {
+    let mut spoiled = whole.clone();
+    for _ in 0..rng.random_range(1..4) {
+        let mut found = Vec::new();
+        collect(&mut spoiled, &mut found);
+        if found.is_empty() {
+            break;
+        }
+        let place = rng.random_range(0..found.len());
+        if let Some(number) = found[place].as_f64() {
+            *found[place] = (number * 2.0_f64.powf(rng.random_range(-1.0..1.0))).into();
+        }
+    }
+    spoiled
+}
+
+/// All numbers with a fraction: the others count or name something.
+fn collect<'a>(value: &'a mut Value, into: &mut Vec<&'a mut Value>) {
+    match value {
+        Value::Array(items) => items.iter_mut().for_each(|item| collect(item, into)),
+        Value::Object(members) => members.values_mut().for_each(|member| collect(member, into)),
+        number if number.is_f64() => into.push(number),
+        _ => {}
+    }
+}
+
 fn nested(depth: usize) -> Value {
     (0..depth).fold(Value::Null, |inner, _| Value::Array(vec![inner]))
 }

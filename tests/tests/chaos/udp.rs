@@ -5,7 +5,7 @@ use haptics::Vec2;
 use haptics::device::udp::{FLAG_GREETING, Force, Key, Motion, UdpConfig, UdpDevice};
 use haptics::servo::safety::Limits;
 use haptics::servo::{Loop, Swap};
-use haptics::world::{State, presets};
+use haptics::world::{State, World, presets};
 use rand::RngExt as _;
 use rand::rngs::StdRng;
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
@@ -42,30 +42,30 @@ const KINDS: [Phase; 10] = [
 ];
 
 /// The far end, honest or not.
-struct Client {
+pub struct Client {
     socket: UdpSocket,
     key: Key,
-    session: u64,
+    pub session: u64,
     sequence: u64,
     /// What was on the wire, for who records it.
     heard: Vec<Vec<u8>>,
 }
 
 impl Client {
-    fn new(to: SocketAddr, key: Key) -> Self {
+    pub fn new(to: SocketAddr, key: Key) -> Self {
         let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a port");
         socket.connect(to).expect("loopback");
         socket.set_nonblocking(true).expect("a socket");
         Self { socket, key, session: 0, sequence: 0, heard: Vec::new() }
     }
 
-    fn send(&self, packet: &[u8]) {
+    pub fn send(&self, packet: &[u8]) {
         // What the system does not take is lost, as on any network.
         let _ = self.socket.send(packet);
     }
 
     /// Two tips that lean on the table.
-    fn motion(&mut self) -> Vec<u8> {
+    pub fn motion(&mut self) -> Vec<u8> {
         self.sequence += 1;
         let tips = [Vec2::new(-0.02, -0.1258), Vec2::new(0.02, -0.1258)];
         let (session, sequence) = (self.session, self.sequence);
@@ -74,7 +74,7 @@ impl Client {
     }
 
     /// What came back; a greeting names the session.
-    fn listen(&mut self) {
+    pub fn listen(&mut self) {
         let mut buffer = [0; 256];
         while let Ok(size) = self.socket.recv(&mut buffer) {
             if let Ok(force) = Force::decode(&buffer[..size], &self.key)
@@ -86,30 +86,40 @@ impl Client {
     }
 }
 
-pub fn attacked(chaos: &mut Chaos) {
-    let world = presets::table();
+/// A device that listens on a port of its own, and its key.
+pub fn device(world: &World) -> (UdpDevice, Key) {
     let key = Key::new([7; 32]);
     let listen = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
     let mut config = UdpConfig { listen, ..UdpConfig::loopback(key.clone()) };
     config.spec.damping_n_s_m = 10.0;
-    let device = UdpDevice::open(config, State::resting(&world).input.tip_in_world).expect("a free port");
+    let device = UdpDevice::open(config, State::resting(world).input.tip_in_world).expect("a free port");
+    (device, key)
+}
+
+pub fn attacked(chaos: &mut Chaos) {
+    let world = presets::table();
+    let (device, key) = device(&world);
     let monitor = device.monitor();
     let limits = Limits { ramp_s: 0.05, ..Limits::default() };
     let mut body = Loop::new(Swap::new(world), Box::new(device), limits);
     let mut client = Client::new(monitor.address(), key);
-    let (mut since_s, mut queued) = (f64::INFINITY, false);
+    let (mut since_s, mut since_flood_s) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..PHASES {
         let phase = KINDS[chaos.rng.random_range(0..KINDS.len())];
         if phase == Phase::Anew {
             client.session = 0;
         }
         for _ in 0..chaos.rng.random_range(20..400) {
-            since_s += DT;
+            (since_s, since_flood_s) = (since_s + DT, since_flood_s + DT);
             let honest = act(&mut client, phase, &mut chaos.rng);
             if honest {
                 since_s = 0.0;
             }
-            queued = phase == Phase::Flood || (queued && since_s < QUEUE_S);
+            if phase == Phase::Flood {
+                since_flood_s = 0.0;
+            }
+            // The word stood behind what the flood has left.
+            let queued = since_flood_s - since_s < QUEUE_S;
             let tick = body.tick(DT);
             client.listen();
             let is_zero = tick.sent_force_n == [Vec2::zeros(); 2];

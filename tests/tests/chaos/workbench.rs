@@ -43,38 +43,63 @@ fn take_messages(session: &mut Session, path: &Path) {
     }
 }
 
+/// A workbench that keeps its work.
+pub struct Bench {
+    pub ctx: egui::Context,
+    pub session: Session,
+    dock: Dock,
+    autosave: Autosave,
+}
+
+impl Bench {
+    pub fn open(kept_in: &Path) -> Self {
+        let (autosave, _) = Autosave::begin(kept_in).expect("a folder of its own");
+        Self { ctx: egui::Context::default(), session: Session::new(), dock: Dock::default(), autosave }
+    }
+
+    /// One thing that a user does, with a log that somebody has spoiled.
+    pub fn deed(&mut self, chaos: &mut Chaos, folder: &Path, number: usize) {
+        let Self { ctx, session, dock, autosave } = self;
+        let path = logs::spoil(folder, &format!("log-{number}"), &mut chaos.rng);
+        match chaos.rng.random_range(0..6) {
+            0 => session.add_log(ctx, &path),
+            1 => session.undo(),
+            2 => session.refit(ctx),
+            3 => session.jobs.cancel(JobKind::Fit),
+            4 => spoiled_project(chaos, session, ctx, &path),
+            _ => session.open_any(ctx, &path),
+        }
+        // Some are still at work when the next comes.
+        (0..chaos.rng.random_range(0..4)).for_each(|_| frame(ctx, session));
+        let _ = autosave.follow(ctx, session, dock, true);
+        if chaos.rng.random_range(0..3) == 0 {
+            settle(ctx, session);
+        }
+        take_messages(session, &path);
+        chaos.count("deeds at the workbench", 1);
+    }
+
+    /// After all that a good log is fitted.
+    pub fn must_fit(&mut self, chaos: &mut Chaos) {
+        let Self { ctx, session, .. } = self;
+        settle(ctx, session);
+        session.open(ctx, &workspace().join("assets/recordings/crank.csv"));
+        settle(ctx, session);
+        assert!(session.analysis.is_some(), "after all that a good log is fitted: {:?}", session.fit_problem);
+        chaos.count("fits that answered", 1);
+    }
+}
+
 pub fn jobs(chaos: &mut Chaos) {
     let folder = chaos.scratch();
     let kept_in = folder.path().join("kept");
-    let (mut autosave, _) = Autosave::begin(&kept_in).expect("a folder of its own");
-    let (ctx, dock) = (egui::Context::default(), Dock::default());
-    let mut session = Session::new();
+    let mut bench = Bench::open(&kept_in);
     for number in 0..DEEDS {
-        let path = logs::spoil(folder.path(), &format!("log-{number}"), &mut chaos.rng);
-        match chaos.rng.random_range(0..6) {
-            0 => session.add_log(&ctx, &path),
-            1 => session.undo(),
-            2 => session.refit(&ctx),
-            3 => session.jobs.cancel(JobKind::Fit),
-            4 => spoiled_project(chaos, &mut session, &ctx, &path),
-            _ => session.open_any(&ctx, &path),
-        }
-        // Some are still at work when the next comes.
-        (0..chaos.rng.random_range(0..4)).for_each(|_| frame(&ctx, &mut session));
-        let _ = autosave.follow(&ctx, &session, &dock, true);
-        if chaos.rng.random_range(0..3) == 0 {
-            settle(&ctx, &mut session);
-        }
-        take_messages(&mut session, &path);
-        chaos.count("deeds at the workbench", 1);
+        bench.deed(chaos, folder.path(), number);
     }
-    settle(&ctx, &mut session);
-    let good = workspace().join("assets/recordings/crank.csv");
-    session.open(&ctx, &good);
-    settle(&ctx, &mut session);
-    assert!(session.analysis.is_some(), "after all that a good log is fitted: {:?}", session.fit_problem);
-    chaos.count("fits that answered", 1);
+    bench.must_fit(chaos);
     // Killed here: the lock goes, the file says what was open.
+    let Bench { session, dock, mut autosave, .. } = bench;
     autosave.end(&session, &dock, true);
     drop(autosave);
     let (_, Kept { project, .. }) = Autosave::begin(&kept_in).expect("the next start");

@@ -1,11 +1,12 @@
 //! One board on its own thread: serial ports wait, the servo must not.
 //!
 //! The thread writes the newest torques and reads the angles, as fast as the board answers. When the servo has sent nothing new
-//! for [`GUARD`], it writes zero torque by itself: the firmware keeps the last one for ever.
+//! for [`GUARD`], it writes zero torque by itself: the firmware keeps the last one for ever. A board whose cable was pulled is
+//! found again when it is plugged in ([`super::open`]).
 
-use super::farewell::Outliving;
 use super::fivebar::FiveBar;
 use super::gate::{Gate, Verdict};
+use super::plug::{Connect, Connection, Plug};
 use super::protocol::{Axis, Turn, setup_frame};
 use super::turns::{Line, Turns};
 use crate::Vec2;
@@ -119,21 +120,29 @@ pub struct Board {
     number: u64,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
-    guard: Option<Outliving>,
+    is_guarded: Arc<AtomicBool>,
     tally: Tally,
 }
 
 impl Board {
-    /// Sets the board up and starts its thread. The line must have a read time-out of a few milliseconds.
-    pub fn start(mut line: Box<dyn Line>, model: BoardModel) -> std::io::Result<Self> {
-        line.write_all(&setup_frame(model.id, model.ports))?;
-        line.flush()?;
+    /// Sets the board up and starts its thread. The line must have a read time-out of a few milliseconds. Once it is pulled it stays
+    /// so: only a port can be opened again ([`super::open`]).
+    pub fn start(line: Box<dyn Line>, model: BoardModel) -> std::io::Result<Self> {
+        let line = set_up(line, model)?;
+        Self::run(Connection { line, guard: None }, model, None)
+    }
+
+    /// Starts the thread of a board that has been set up.
+    pub(super) fn run(connection: Connection, model: BoardModel, again: Option<Connect>) -> std::io::Result<Self> {
         let (answers_in, answers) = triple_buffer(&Answer::default());
         let (orders, orders_out) = triple_buffer(&Order::default());
         let stop = Arc::new(AtomicBool::new(false));
         let tally = Tally::default();
+        let plug = Plug::new(connection.guard, again);
+        let is_guarded = plug.is_guarded();
         let worker = Worker {
-            turns: Turns::new(line, model.id),
+            turns: Turns::new(connection.line, model.id),
+            plug,
             model,
             answers: answers_in,
             orders: orders_out,
@@ -141,13 +150,7 @@ impl Board {
             tally: tally.clone(),
         };
         let thread = std::thread::Builder::new().name("haply".to_owned()).spawn(move || worker.run())?;
-        Ok(Self { answers, orders, number: 0, stop, thread: Some(thread), guard: None, tally })
-    }
-
-    /// Keeps the process that ends the torque when this one dies.
-    pub(super) fn outlived_by(mut self, guard: Option<Outliving>) -> Self {
-        self.guard = guard;
-        self
+        Ok(Self { answers, orders, number: 0, stop, thread: Some(thread), is_guarded, tally })
     }
 
     /// Counts its answers, from any thread.
@@ -157,7 +160,7 @@ impl Board {
 
     /// Whether a process stands by that ends the torque when this one is killed.
     pub fn is_outlived(&self) -> bool {
-        self.guard.is_some()
+        self.is_guarded.load(Ordering::Relaxed)
     }
 
     /// Orders a force on the operator, N, in the device's frame. Never waits.
@@ -181,8 +184,16 @@ impl Drop for Board {
     }
 }
 
+/// Says to a board which motors and encoders it has.
+pub(super) fn set_up(mut line: Box<dyn Line>, model: BoardModel) -> std::io::Result<Box<dyn Line>> {
+    line.write_all(&setup_frame(model.id, model.ports))?;
+    line.flush()?;
+    Ok(line)
+}
+
 struct Worker {
     turns: Turns,
+    plug: Plug,
     model: BoardModel,
     answers: Input<Answer>,
     orders: Output<Order>,
@@ -209,7 +220,8 @@ impl Worker {
             };
             let asked = Instant::now();
             let heard = self.exchange(torques);
-            if heard == Err(Fault::Late) && asked.elapsed() < UNPLUGGED {
+            let refused = heard == Err(Fault::Late) && asked.elapsed() < UNPLUGGED;
+            if refused {
                 // A line without a device refuses at once, and would take a processor for itself.
                 std::thread::sleep(REST);
             }
@@ -226,6 +238,10 @@ impl Worker {
             }
             self.tally.add((verdict == Verdict::Refused).then(|| heard.err().unwrap_or(Fault::Impossible)));
             self.answers.write(answer);
+            if let Some(line) = self.plug.turned(refused) {
+                // Nothing that was known of the hand holds for what comes over another line.
+                (self.turns, gate, angles) = (Turns::new(line, self.model.id), Gate::default(), None);
+            }
         }
         // Whatever happened: the last word is zero torque.
         self.turns.farewell();

@@ -6,6 +6,7 @@ mod fivebar;
 mod gate;
 #[cfg(test)]
 mod phase_tests;
+mod plug;
 mod protocol;
 #[cfg(all(test, unix))]
 mod tests;
@@ -18,6 +19,7 @@ pub use turns::Line;
 
 use super::{Command, Device, DeviceSpec, Sample};
 use crate::Vec2;
+use plug::Connection;
 use std::path::Path;
 use std::time::Duration;
 
@@ -71,7 +73,18 @@ pub fn ports() -> Vec<String> {
 
 /// Opens a port and sets a board up. With `program`, the `touchstone` program, a process that outlives this one stands by to
 /// end the torque ([`farewell`]); without it, or where that cannot be had, a killed program leaves the last torque.
+///
+/// A board whose cable is pulled is found again at the same port, without a word: until its answers come anew it is one that does not
+/// answer.
 pub fn open(port: &str, model: BoardModel, program: Option<&Path>) -> Result<Board, HaplyError> {
+    let connection = connect(port, model, program)?;
+    let (again, with) = (port.to_owned(), program.map(Path::to_path_buf));
+    let connect = move || connect(&again, model, with.as_deref()).ok();
+    let failed = |e: std::io::Error| HaplyError::Setup { port: port.to_owned(), reason: e.to_string() };
+    Board::run(connection, model, Some(Box::new(connect))).map_err(failed)
+}
+
+fn connect(port: &str, model: BoardModel, program: Option<&Path>) -> Result<Connection, HaplyError> {
     let failed = |reason: String| HaplyError::Open { port: port.to_owned(), reason };
     // The rate does not matter on a USB port; it must be stated all the same.
     let builder = serialport::new(port, 115_200).timeout(READ_TIMEOUT);
@@ -80,8 +93,8 @@ pub fn open(port: &str, model: BoardModel, program: Option<&Path>) -> Result<Boa
     let (line, guard) = outlived(line, port, model.id, program);
     #[cfg(not(unix))]
     let guard = program.and_then(|program| farewell::Outliving::start(program, port, model.id).ok());
-    Board::start(Box::new(line), model)
-        .map(|board| board.outlived_by(guard))
+    board::set_up(Box::new(line), model)
+        .map(|line| Connection { line, guard })
         .map_err(|e| HaplyError::Setup { port: port.to_owned(), reason: e.to_string() })
 }
 

@@ -17,6 +17,7 @@ mod tests;
 mod wave_packet;
 #[cfg(test)]
 mod wave_tests;
+mod wire;
 
 pub use super::waves::{Account, Waves};
 pub use key::{Key, KeyError, SEAL_BYTES};
@@ -26,6 +27,7 @@ pub use packet::{
     Refused, VERSION,
 };
 pub use wave_packet::{FLAG_STOP, WAVE_DOWN_BYTES, WAVE_UP_BYTES, WAVE_VERSION, WaveDown, WaveUp};
+pub use wire::Wire;
 
 use super::waves::{SMOOTHING_S, WorldEnd};
 use super::{Command, Device, DeviceSpec, Sample};
@@ -113,12 +115,12 @@ enum Says {
 
 /// The servo's end of a remote device.
 #[derive(Debug)]
-pub struct UdpDevice {
+pub struct UdpDevice<W: Wire = UdpSocket> {
     spec: DeviceSpec,
     delay_s: f64,
     waves: Option<Waves>,
     world_end: WorldEnd,
-    socket: UdpSocket,
+    wire: W,
     key: Key,
     monitor: UdpMonitor,
     /// Draws the sessions.
@@ -143,20 +145,27 @@ impl UdpDevice {
         let fail = |e: std::io::Error| UdpError { listen, reason: e.to_string() };
         let socket = UdpSocket::bind(listen).map_err(fail)?;
         socket.set_nonblocking(true).map_err(fail)?;
-        let address = socket.local_addr().map_err(fail)?;
+        let listen = socket.local_addr().map_err(fail)?;
+        Ok(Self::over(socket, UdpConfig { listen, ..config }, start_in_world))
+    }
+}
+
+impl<W: Wire> UdpDevice<W> {
+    /// The same over something that carries packets and is open already.
+    pub fn over(wire: W, config: UdpConfig, start_in_world: [Vec2; 2]) -> Self {
         let mut spec = config.spec;
         if let Some(waves) = config.waves {
             // What the servo feels at its end is the wave impedance, not the device.
             (spec.damping_n_s_m, spec.coulomb_n, spec.resolution_m) = (waves.impedance_n_s_m, 0.0, 0.0);
         }
-        Ok(Self {
+        Self {
             spec,
             delay_s: config.delay_s,
             waves: config.waves,
             world_end: WorldEnd::default(),
-            socket,
+            wire,
             key: config.key,
-            monitor: UdpMonitor::new(address),
+            monitor: UdpMonitor::new(config.listen),
             rng: StdRng::seed_from_u64(rand::random()),
             // Nobody has been promised this one, so nobody can use it.
             session: 0,
@@ -168,7 +177,7 @@ impl UdpDevice {
             age_s: f64::INFINITY,
             now_s: 0.0,
             sample: Sample { tip_in_world: start_in_world, tip_velocity: [Vec2::zeros(); 2], fresh: [false; 2] },
-        })
+        }
     }
 
     /// Counts packets, from any thread.
@@ -181,7 +190,7 @@ impl UdpDevice {
         // One byte more than the largest packet shows what was too long.
         let mut buffer = [0; WAVE_UP_BYTES + 1];
         for _ in 0..PACKETS_A_TICK {
-            let (size, from) = match self.socket.recv_from(&mut buffer) {
+            let (size, from) = match self.wire.receive(&mut buffer) {
                 Ok(received) => received,
                 Err(e) if e.kind() == std::io::ErrorKind::WouldBlock => return,
                 // Some systems report here that an earlier answer found nobody; the next packet is behind it.
@@ -264,21 +273,21 @@ impl UdpDevice {
     fn answer(&mut self, to: SocketAddr, flags: u16, session: u64, force_n: [Vec2; 2], echo_us: u64) {
         self.sent += 1;
         let (sequence, time_us) = (self.sent, (self.now_s * 1e6) as u64);
-        // A packet that cannot be sent is a packet that is lost: the device goes to zero force by itself.
-        let _ = if let Some(waves) = self.waves {
+        if let Some(waves) = self.waves {
             let impedance_n_s_m = waves.impedance_n_s_m;
             // Who only asks has no waves yet.
             let accounts = if flags & FLAG_GREETING == 0 { self.world_end.accounts() } else { Default::default() };
             let packet = WaveDown { flags, session, sequence, time_us, accounts, impedance_n_s_m, echo_us };
-            self.socket.send_to(&packet.encode(&self.key), to)
+            self.wire.send(&packet.encode(&self.key), to);
         } else {
             let flags = flags & FLAG_GREETING;
-            self.socket.send_to(&Force { flags, session, sequence, time_us, force_n, echo_us }.encode(&self.key), to)
-        };
+            let packet = Force { flags, session, sequence, time_us, force_n, echo_us };
+            self.wire.send(&packet.encode(&self.key), to);
+        }
     }
 }
 
-impl Device for UdpDevice {
+impl<W: Wire> Device for UdpDevice<W> {
     fn spec(&self) -> &DeviceSpec {
         &self.spec
     }
@@ -324,7 +333,7 @@ impl Device for UdpDevice {
     }
 }
 
-impl Drop for UdpDevice {
+impl<W: Wire> Drop for UdpDevice<W> {
     fn drop(&mut self) {
         self.make_safe();
     }

@@ -1,0 +1,143 @@
+//! A board whose cable is pulled and plugged in again.
+//!
+//! All of it happens on the board's own thread. A line that refuses every question at once has nobody at its other end: it is let go,
+//! because the system gives a port's name to the board that comes back only when nobody holds it any more, and with it the process
+//! that stands by. From then on the port is tried a few times a second, for as long as the hand is there: nobody knows when the cable
+//! is put in again. A new line is a new beginning: the board is set up anew, and until its answers have agreed on where the hand is
+//! it gets zero torque.
+
+use super::farewell::Outliving;
+use super::turns::Line;
+use std::io::{Error, ErrorKind, Read, Result, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// So many questions in a row that were refused at once are a pulled cable: with the rests between them some 50 ms, long after the
+/// watchdog has set the force to zero.
+const REFUSED: u32 = 10;
+/// Between two tries to open the port again.
+const AGAIN: Duration = Duration::from_millis(200);
+
+/// An open line to a board that has been set up.
+pub(super) struct Connection {
+    pub line: Box<dyn Line>,
+    /// The process that ends the torque when this one dies.
+    pub guard: Option<Outliving>,
+}
+
+/// Opens a port again; `None` while nobody is there.
+pub(super) type Connect = Box<dyn FnMut() -> Option<Connection> + Send>;
+
+/// Knows whether the cable is in.
+pub(super) struct Plug {
+    guard: Option<Outliving>,
+    is_guarded: Arc<AtomicBool>,
+    /// Nothing for lines that cannot be opened again.
+    connect: Option<Connect>,
+    refused: u32,
+    /// When the port is tried next; nothing while the cable is in.
+    next_try: Option<Instant>,
+}
+
+impl Plug {
+    /// Of a line that is in.
+    pub fn new(guard: Option<Outliving>, connect: Option<Connect>) -> Self {
+        let is_guarded = Arc::new(AtomicBool::new(guard.is_some()));
+        Self { guard, is_guarded, connect, refused: 0, next_try: None }
+    }
+
+    /// Whether a process stands by that ends the torque when this one is killed; read from any thread.
+    pub fn is_guarded(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.is_guarded)
+    }
+
+    /// Told after every turn whether the line refused it at once. A line to go on with in place of the one before, when the cable was
+    /// pulled or is in again.
+    pub fn turned(&mut self, refused: bool) -> Option<Box<dyn Line>> {
+        let connect = self.connect.as_mut()?;
+        let Some(next_try) = self.next_try else {
+            self.refused = if refused { self.refused + 1 } else { 0 };
+            return (self.refused >= REFUSED).then(|| self.pulled());
+        };
+        if Instant::now() < next_try {
+            return None;
+        }
+        let Some(Connection { line, guard }) = connect() else {
+            self.next_try = Some(Instant::now() + AGAIN);
+            return None;
+        };
+        self.is_guarded.store(guard.is_some(), Ordering::Relaxed);
+        (self.guard, self.next_try, self.refused) = (guard, None, 0);
+        Some(line)
+    }
+
+    fn pulled(&mut self) -> Box<dyn Line> {
+        // It holds the port, too, and has nobody to say farewell to.
+        self.guard = None;
+        self.is_guarded.store(false, Ordering::Relaxed);
+        self.next_try = Some(Instant::now() + AGAIN);
+        Box::new(Nobody)
+    }
+}
+
+/// The line while the cable is out.
+struct Nobody;
+
+impl Read for Nobody {
+    fn read(&mut self, _: &mut [u8]) -> Result<usize> {
+        Err(Error::from(ErrorKind::NotConnected))
+    }
+}
+
+impl Write for Nobody {
+    fn write(&mut self, _: &[u8]) -> Result<usize> {
+        Err(Error::from(ErrorKind::NotConnected))
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::AtomicU32;
+
+    fn counting(after: u32) -> (Arc<AtomicU32>, Connect) {
+        let tries = Arc::new(AtomicU32::new(0));
+        let theirs = Arc::clone(&tries);
+        let connect = move || {
+            let known = theirs.fetch_add(1, Ordering::Relaxed);
+            (known >= after).then(|| Connection { line: Box::new(Nobody), guard: None })
+        };
+        (tries, Box::new(connect))
+    }
+
+    #[test]
+    fn a_line_that_refuses_for_long_is_let_go_and_opened_again_at_a_bounded_rate() {
+        let (tries, connect) = counting(2);
+        let mut plug = Plug::new(None, Some(connect));
+        for _ in 0..5 {
+            assert!((1..REFUSED).all(|_| plug.turned(true).is_none()), "a few refusals are no pulled cable");
+            assert!(plug.turned(false).is_none());
+        }
+        let pulled = (0..REFUSED).filter_map(|_| plug.turned(true)).count();
+        assert_eq!((pulled, tries.load(Ordering::Relaxed)), (1, 0));
+        let begun = Instant::now();
+        while plug.turned(true).is_none() {
+            std::thread::sleep(Duration::from_millis(1));
+            assert!(begun.elapsed() < Duration::from_mins(1), "it is never opened again");
+        }
+        assert!(begun.elapsed() + Duration::from_millis(50) >= 3 * AGAIN, "{:?}", begun.elapsed());
+        assert_eq!(tries.load(Ordering::Relaxed), 3);
+        assert!(plug.turned(true).is_none(), "a new line has its own patience");
+    }
+
+    #[test]
+    fn a_line_without_a_port_stays_what_it_is() {
+        let mut plug = Plug::new(None, None);
+        assert!((0..100).all(|_| plug.turned(true).is_none()));
+    }
+}
