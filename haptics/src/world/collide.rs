@@ -128,7 +128,7 @@ impl Gather<'_> {
         }
         let (arm_on_m, yield_on) = self.lever(on, found);
         let (arm_by_m, yield_by) = self.lever(by, found);
-        let mut yield_1_kg = yield_on + yield_by;
+        let [mut yield_1_kg, slip_yield_1_kg] = [0, 1].map(|k| yield_on[k] + yield_by[k]);
         if let Surface::Finger(finger) = on {
             // From the middle of the tick to its end.
             let body_m = if let Surface::Block(index) = by { self.solids[usize::from(index)].sweep_m } else { 0.0 };
@@ -138,17 +138,20 @@ impl Gather<'_> {
             yield_1_kg = 0.0;
         }
         let closing_m_s = f64::NAN;
-        self.touches.push(Touch { contact, arm_on_m, arm_by_m, material: *material, yield_1_kg, met, closing_m_s });
+        let material = *material;
+        let touch = Touch { contact, arm_on_m, arm_by_m, material, yield_1_kg, slip_yield_1_kg, met, closing_m_s };
+        self.touches.push(touch);
     }
 
-    /// From the centre of a body to the point, m, and how fast the body yields to a normal force there, 1/kg.
+    /// From the centre of a body to the point, m, and how fast the body yields there to a normal force and to one along the surface, 1/kg.
     #[inline]
-    fn lever(&self, surface: Surface, found: &Found) -> (Vec2, f64) {
-        let Surface::Block(index) = surface else { return (Vec2::zeros(), 0.0) };
+    fn lever(&self, surface: Surface, found: &Found) -> (Vec2, [f64; 2]) {
+        let Surface::Block(index) = surface else { return (Vec2::zeros(), [0.0; 2]) };
         let solid = &self.solids[usize::from(index)];
         let arm_m = found.point_m - solid.rect.center_m;
         let turning = arm_m.perp(&found.normal);
-        (arm_m, solid.inverse_mass + solid.inverse_inertia * turning * turning)
+        let along = arm_m.dot(&found.normal);
+        (arm_m, [turning, along].map(|turning| solid.inverse_mass + solid.inverse_inertia * turning * turning))
     }
 
     fn blocks(&mut self) {

@@ -87,6 +87,8 @@ pub struct Touch {
     /// How fast the surfaces part under a normal force, 1/kg: 1/m + (r × n)²/I of both bodies; zero where a finger, which goes
     /// as it likes, is one of them.
     pub yield_1_kg: f64,
+    /// The same along the surfaces.
+    pub slip_yield_1_kg: f64,
     /// True once the surfaces have met.
     pub met: bool,
     /// Speed at which they closed before the last force of this tick, m/s; not a number before the first.
@@ -138,7 +140,8 @@ impl Touch {
         let (contact, material) = (&self.contact, &self.material);
         let elastic = material.elastic_n(contact.depth_m).max(0.0);
         let normal = elastic * material.impact_damping / contact.met_m_s.max(RESTING_M_S);
-        let most = if self.yield_1_kg > 0.0 { TAKEN_IN_A_PART / (self.yield_1_kg * dt_s) } else { f64::INFINITY };
+        let slips = self.slip_yield_1_kg * dt_s;
+        let most = if slips > 0.0 { TAKEN_IN_A_PART / slips } else { f64::INFINITY };
         (TANGENTIAL_SHARE * normal).min(most)
     }
 
@@ -271,6 +274,7 @@ mod tests {
             arm_by_m: Vec2::zeros(),
             material,
             yield_1_kg,
+            slip_yield_1_kg: yield_1_kg,
             met: false,
             closing_m_s: f64::NAN,
         }

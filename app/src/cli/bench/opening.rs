@@ -12,14 +12,14 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// Rows that tell how many bytes one takes.
-const PROBE: usize = 20_000;
+/// Rows that tell how many bytes one takes: many enough for whole blocks of a compressed file.
+const PROBE: usize = 200_000;
 /// Columns of pixels of the plot that waits for curves.
 const PIXELS: usize = 1_000;
 
-/// In each format, a log of 1 GB.
+/// In each format, a log of about 1 GB, which is made in the folder for temporary files.
 pub(super) fn first_curves(wish: WholeBench) -> anyhow::Result<Vec<Figure>> {
-    let (bytes, size) = if wish.quick { (20e6, "20 MB") } else { (1e9, "1 GB") };
+    let bytes = if wish.quick { 20e6 } else { 1e9 };
     let once = performance("stack", &presets::stacking());
     let folder = tempfile::tempdir()?;
     let mut figures = Vec::new();
@@ -28,7 +28,8 @@ pub(super) fn first_curves(wish: WholeBench) -> anyhow::Result<Vec<Figure>> {
         write(&[long(&once, PROBE)], &path, &[])?;
         let rows = (bytes / std::fs::metadata(&path)?.len() as f64 * PROBE as f64) as usize;
         write(&[long(&once, rows)], &path, &[])?;
-        let name = format!("first curves of a log of {size}, {ending}");
+        let megabytes = 1e-6 * std::fs::metadata(&path)?.len() as f64;
+        let name = format!("first curves of a log of {megabytes:.0} MB, {ending}");
         figures.push(Figure::new(name, first_curves_s(&path)?, "s").wanted(Wanted::AtMost(2.0)));
         std::fs::remove_file(&path)?;
     }

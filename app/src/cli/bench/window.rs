@@ -5,14 +5,15 @@ use super::whole::WholeBench;
 use crate::ui::first_picture::SAID;
 use anyhow::Context as _;
 use std::io::{BufRead as _, BufReader};
-use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The first picture should stand after so long, s.
 const MOST_S: f64 = 0.5;
 /// Starts of which the middle one counts, after one that fills the caches.
 const STARTS: usize = 7;
+/// A start that takes longer has failed.
+const PATIENCE: Duration = Duration::from_mins(1);
 
 pub(super) fn first_pictures(wish: WholeBench) -> anyhow::Result<Vec<Figure>> {
     anyhow::ensure!(!cfg!(test), "only the program itself can be started again");
@@ -34,21 +35,42 @@ pub(super) fn first_pictures(wish: WholeBench) -> anyhow::Result<Vec<Figure>> {
 fn first_picture_s(screen: &Screen) -> anyhow::Result<f64> {
     let home = tempfile::tempdir()?;
     let mut command = Command::new(std::env::current_exe()?);
-    command.args(["app", "--until-first-picture"]).env("HOME", home.path());
-    for kept in ["XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME"] {
-        command.env_remove(kept);
+    command.args(["app", "--until-first-picture"]);
+    // Where it keeps things, and not HOME: the key to the screen may lie there.
+    for kept in ["XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_CACHE_HOME"] {
+        command.env(kept, home.path());
     }
     screen.lend(&mut command);
     let begun = Instant::now();
-    let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn()?;
-    let mut line = String::new();
-    if let Some(said) = child.stdout.take() {
-        BufReader::new(said).read_line(&mut line)?;
-    }
+    let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn()?;
+    let line =
+        first_line(Ended(child)).context("the window did not open within a minute: is there a graphics driver?")?;
     let took_s = begun.elapsed().as_secs_f64();
-    child.wait()?;
     anyhow::ensure!(line.trim() == SAID, "the window could not be opened: is there a graphics driver?");
     Ok(took_s)
+}
+
+/// A program that ends with this.
+struct Ended(Child);
+
+impl Drop for Ended {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// The first line that a program says within [`PATIENCE`]; it is ended afterwards.
+fn first_line(mut program: Ended) -> Option<String> {
+    let said = program.0.stdout.take()?;
+    let (sender, receiver) = std::sync::mpsc::channel();
+    std::thread::spawn(move || {
+        let mut line = String::new();
+        // Whoever waited may have given up.
+        let _ = BufReader::new(said).read_line(&mut line).map(|_| sender.send(line));
+    });
+    receiver.recv_timeout(PATIENCE).ok()
 }
 
 /// Where the window opens.
@@ -56,7 +78,7 @@ enum Screen {
     /// That of the person who asks.
     Theirs,
     /// One in memory.
-    Own { server: Child, display: String },
+    Own { _server: Ended, display: String },
 }
 
 impl Screen {
@@ -73,27 +95,18 @@ impl Screen {
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
+            .map(Ended)
             .context("there is no display, and Xvfb could not be started")?;
         let mut number = String::new();
-        if let Some(said) = server.stdout.take() {
+        if let Some(said) = server.0.stdout.take() {
             BufReader::new(said).read_line(&mut number)?;
         }
-        Ok(Self::Own { server, display: format!(":{}", number.trim()) })
+        Ok(Self::Own { _server: server, display: format!(":{}", number.trim()) })
     }
 
     fn lend(&self, command: &mut Command) {
         if let Self::Own { display, .. } = self {
-            command.env("DISPLAY", Path::new(display));
-        }
-    }
-}
-
-impl Drop for Screen {
-    fn drop(&mut self) {
-        if let Self::Own { server, .. } = self {
-            // It may be gone already.
-            let _ = server.kill();
-            let _ = server.wait();
+            command.env("DISPLAY", display);
         }
     }
 }

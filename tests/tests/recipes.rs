@@ -1,15 +1,20 @@
-//! The recipes that fan a fleet of logs out run as they are written: in the README and in `docs/scripting.md`.
+//! What README and `docs/scripting.md` say can be done runs as it is written: the first five minutes, and the recipes that fan a fleet of logs out.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 use tests::{touchstone, workspace};
 
+fn document(name: &str) -> String {
+    std::fs::read_to_string(workspace().join(name)).expect("a document")
+}
+
 /// The code block of a document in which `word` stands.
-fn block(document: &str, word: &str) -> String {
-    let text = std::fs::read_to_string(workspace().join(document)).expect("a document");
-    let blocks = text.split("```bash\n").skip(1).filter_map(|rest| rest.split("```").next());
-    blocks.into_iter().find(|block| block.contains(word)).expect("a recipe").to_owned()
+fn block(name: &str, word: &str) -> String {
+    let text = document(name);
+    let blocks = ["```bash\n", "```python\n"].into_iter().flat_map(|begins| text.split(begins).skip(1));
+    let mut blocks = blocks.filter_map(|rest| rest.split("```").next());
+    blocks.find(|block| block.contains(word)).expect("a recipe").to_owned()
 }
 
 /// Runs a recipe in a folder where `logs` lies; standard error where it failed.
@@ -49,6 +54,46 @@ fn diagnosed(found: &BTreeMap<String, String>) -> usize {
         found.values().flat_map(|text| text.lines()).map(|l| serde_json::from_str(l).expect("JSON")).collect();
     assert!(lines.iter().all(|line| line["result"].is_object()), "{lines:?}");
     lines.len()
+}
+
+#[test]
+fn the_first_five_minutes_go_as_the_readme_says() {
+    let text = document("README.md");
+    let section = text.split("\n## ").find(|part| part.starts_with("Five minutes")).expect("the section is there");
+    // `./run` builds the program and hands its arguments on.
+    let commands: Vec<String> = section
+        .lines()
+        .flat_map(|line| line.split('`').map(str::trim).filter(|word| word.starts_with("./run ")))
+        .filter(|command| !command.starts_with("./run app"))
+        .map(|command| command.replace("./run", "touchstone"))
+        .collect();
+    assert_eq!(commands.len(), 4, "record, segment, fit, simulate: {commands:?}");
+    let folder = tempfile::tempdir().expect("a folder");
+    for command in &commands {
+        run(command, folder.path(), &[]).unwrap_or_else(|said| panic!("{command}: {said}"));
+    }
+    let order = "touchstone segment stack.csv | grep -q 'sequence: 132313231'";
+    run(order, folder.path(), &[]).expect("the order that the README tells");
+    assert!(section.contains("`sequence: 132313231`"));
+    for made in ["stack.csv", "stack.meta.json", "blocks.json", "predicted.csv"] {
+        assert!(folder.path().join(made).is_file(), "{made}");
+    }
+}
+
+#[test]
+fn ray_fans_out_as_the_manual_says() {
+    let python = std::env::var_os("TOUCHSTONE_PYTHON").unwrap_or_else(|| "python3".into());
+    if !Command::new(&python).args(["-c", "import ray"]).output().is_ok_and(|output| output.status.success()) {
+        tests::skipped("the Python package ray is not here");
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    record(&folder.path().join("logs/a.mcap"), "1");
+    record(&folder.path().join("logs/b.mcap"), "2");
+    std::fs::write(folder.path().join("recipe.py"), block("docs/scripting.md", "@ray.remote")).expect("written");
+    run(&format!("'{}' recipe.py", python.display()), folder.path(), &[]).expect("the recipe runs");
+    let found = results(folder.path());
+    assert_eq!((found.len(), diagnosed(&found)), (2, 2));
 }
 
 #[test]
