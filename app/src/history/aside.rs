@@ -57,8 +57,9 @@ pub fn keep(database: &Path, attempt: &Attempt) -> Result<PathBuf, String> {
     }
 }
 
-/// Takes in what waits beside the database: how many, and what is wrong with the rest. What cannot be read stays where it is.
-pub fn take_in(database: &Path, store: &mut Store) -> (usize, Vec<String>) {
+/// Takes in what waits beside the database: how many, and what is wrong with the rest. What cannot be read stays where it is; where the
+/// database refuses one, that is the error, and those behind it wait on.
+pub fn take_in(database: &Path, store: &mut Store) -> (usize, Vec<String>, Result<(), String>) {
     let (mut taken, mut problems) = (0, Vec::new());
     for path in waiting(&folder(database)) {
         let read = haptics::text_file::read(&path).map_err(|error| error.to_string());
@@ -74,12 +75,9 @@ pub fn take_in(database: &Path, store: &mut Store) -> (usize, Vec<String>) {
                     let _ = std::fs::remove_file(&path);
                     taken += 1;
                 }
-                Err(problem) => {
-                    problems.push(problem);
-                    break;
-                }
+                Err(problem) => return (taken, problems, Err(problem)),
             },
         }
     }
-    (taken, problems)
+    (taken, problems, Ok(()))
 }

@@ -49,7 +49,7 @@ impl History {
             let _ = sender.send(answer);
             wake();
         };
-        let work = move || Keeper { database, store: None }.run(&asked, &answer);
+        let work = move || Keeper { database, store: None, has_refused: false }.run(&asked, &answer);
         let thread = std::thread::Builder::new().name("history".to_owned()).spawn(work);
         let thread = thread.map_err(|error| format!("The system gave no thread for the history ({error})."))?;
         Ok(Self { requests: Some(requests), answers, thread: Some(thread) })
@@ -105,6 +105,8 @@ struct Keeper {
     database: PathBuf,
     /// Nothing where it could not be opened yet.
     store: Option<Store>,
+    /// True while attempts wait beside it that it has refused.
+    has_refused: bool,
 }
 
 impl Keeper {
@@ -120,21 +122,39 @@ impl Keeper {
     /// The open database; what waits beside it is taken in when it opens.
     fn open(&mut self, answer: &dyn Fn(Answer)) -> Result<&mut Store, String> {
         if self.store.is_none() {
-            let mut store = Store::open(&self.database)?;
-            let (taken, problems) = aside::take_in(&self.database, &mut store);
-            if taken > 0 {
-                answer(Answer::TakenIn(taken));
+            self.store = Some(Store::open(&self.database)?);
+            if let Err(problem) = self.take_in(answer) {
+                answer(Answer::Problem(problem));
             }
-            problems.into_iter().map(Answer::Problem).for_each(answer);
-            self.store = Some(store);
         }
         self.store.as_mut().ok_or_else(|| "The history is not open.".to_owned())
+    }
+
+    /// Takes in what waits beside the database; an error where that refuses one.
+    fn take_in(&mut self, answer: &dyn Fn(Answer)) -> Result<(), String> {
+        let Some(store) = &mut self.store else { return Ok(()) };
+        let (taken, problems, all) = aside::take_in(&self.database, store);
+        if taken > 0 {
+            answer(Answer::TakenIn(taken));
+        }
+        problems.into_iter().map(Answer::Problem).for_each(answer);
+        self.has_refused = all.is_err();
+        all
+    }
+
+    /// Keeps an attempt, behind those that wait: none may overtake another.
+    fn keep(&mut self, attempt: &Attempt, answer: &dyn Fn(Answer)) -> Result<(), String> {
+        self.open(answer)?;
+        if self.has_refused {
+            self.take_in(answer)?;
+        }
+        self.open(answer)?.keep(attempt)
     }
 
     fn done(&mut self, request: Request, answer: &dyn Fn(Answer)) -> Result<Answer, String> {
         match request {
             Request::Add(attempt) => {
-                if let Err(problem) = self.open(answer).and_then(|store| store.keep(&attempt)) {
+                if let Err(problem) = self.keep(&attempt, answer) {
                     aside::keep(&self.database, &attempt)?;
                     // It is opened anew for the next one: what was wrong may be over then.
                     self.store = None;

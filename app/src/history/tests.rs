@@ -198,11 +198,11 @@ fn what_waits_is_taken_in_in_the_order_in_which_it_was_made() {
         aside::keep(&path, attempt).expect("kept beside");
     }
     let mut store = Store::open(&path).expect("made");
-    assert_eq!(aside::take_in(&path, &mut store), (all.len(), Vec::new()));
+    assert_eq!(aside::take_in(&path, &mut store), (all.len(), Vec::new(), Ok(())));
     assert_eq!(store.attempts(&Query::default()).expect("rows"), all);
     // A file that could not be removed is known at the next start.
     aside::keep(&path, &all[3]).expect("kept beside");
-    assert_eq!(aside::take_in(&path, &mut store), (1, Vec::new()));
+    assert_eq!(aside::take_in(&path, &mut store), (1, Vec::new(), Ok(())));
     assert_eq!(store.attempts(&Query::default()).expect("rows").len(), all.len());
 }
 
@@ -279,7 +279,7 @@ fn an_attempt_that_a_broken_file_refuses_waits_beside_it_and_is_taken_in_later()
     drop(history);
     // It does not wait any more.
     let mut store = Store::open(&path).expect("opened");
-    assert_eq!(aside::take_in(&path, &mut store), (0, Vec::new()));
+    assert_eq!(aside::take_in(&path, &mut store), (0, Vec::new(), Ok(())));
 }
 
 #[test]
@@ -312,7 +312,8 @@ fn what_waits_and_cannot_be_read_stays_and_keeps_nobody_else_waiting() {
     assert_ne!(files[0], files[1], "two of one moment are two files");
     std::fs::write(&files[0], "{ half").expect("damaged");
     let mut store = Store::open(&path).expect("made");
-    let (taken, problems) = aside::take_in(&path, &mut store);
+    let (taken, problems, all) = aside::take_in(&path, &mut store);
+    assert_eq!(all, Ok(()), "nothing was refused");
     assert!(taken == 2 && problems.len() == 1 && problems[0].contains("cannot be read"), "{taken} {problems:?}");
     assert!(files[0].exists() && !files[1].exists() && !files[2].exists());
     assert_eq!(store.attempts(&Query::default()).expect("rows"), kept[1..]);

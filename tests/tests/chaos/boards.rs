@@ -21,7 +21,7 @@ pub use on_unix::unplugged;
 mod on_unix {
     use super::Chaos;
     use haptics::Vec2;
-    use haptics::device::haply::{self, Board, BoardModel, FiveBar, HaplyHand, Placement};
+    use haptics::device::haply::{self, Board, BoardModel, FiveBar, HaplyHand, Placement, Tally};
     use haptics::servo::safety::Limits;
     use haptics::servo::{Loop, Swap};
     use haptics::world::presets;
@@ -44,8 +44,10 @@ mod on_unix {
     const PATIENCE: u64 = 3;
     /// Before a board has answered so often since it was plugged in, there may be no torque.
     const ACQUAINTANCE: u64 = 5;
-    /// After this time without one of the boards there may be no force at all, however busy the machine is.
-    const LATE: Duration = Duration::from_millis(250);
+    /// A board that is in again waits for a word, here for so long.
+    const UNSAID: Duration = Duration::from_millis(400);
+    /// After so many ticks without one of the boards there may be no force at all: a tick counts at most 10 ms.
+    const LATE: u32 = 40;
 
     const ANSWER: u8 = 0;
     const SILENT: u8 = 1;
@@ -171,6 +173,7 @@ mod on_unix {
         last: Instant,
         ports: [PathBuf; 2],
         emulators: [Emulator; 2],
+        tallies: [Tally; 2],
     }
 
     impl Bench {
@@ -211,11 +214,19 @@ mod on_unix {
             let next = Emulator::plug_in(&self.ports[k].with_extension("drawer"));
             std::mem::replace(pulled, next).unplug();
             let (begun, out) = (Instant::now(), Duration::from_millis(chaos.rng.random_range(300..900)));
-            while begun.elapsed() < out {
+            let mut ticks = 0;
+            while begun.elapsed() < out || ticks < LATE {
                 let force = self.tick(chaos);
-                assert!(!force || begun.elapsed() < LATE, "a force without one of the boards");
+                ticks += 1;
+                assert!(!force || ticks < LATE, "a force without one of the boards");
             }
             std::fs::rename(self.ports[k].with_extension("drawer"), &self.ports[k]).expect("a name");
+            let begun = Instant::now();
+            while begun.elapsed() < UNSAID {
+                assert!(!self.tick(chaos), "a force from an arm of which nobody has said that it rests");
+            }
+            assert!(self.tallies[k].is_unplugged() && self.emulators[k].answers() == 0, "it was set up unasked");
+            self.tallies[k].arm_rests();
             let begun = Instant::now();
             while !self.tick(chaos) {
                 assert!(begun.elapsed() < Duration::from_secs(30), "a board that was plugged in again is not found");
@@ -233,8 +244,10 @@ mod on_unix {
             haply::open(port.to_str().expect("a plain name"), BoardModel::V3, None).expect("takes its set-up")
         });
         let limits = Limits { ramp_s: 0.02, ..Limits::default() };
-        let body = Loop::new(Swap::new(presets::table()), Box::new(hand(boards)), limits);
-        let mut bench = Bench { body, last: Instant::now(), ports, emulators };
+        let hand = hand(boards);
+        let tallies = hand.tallies();
+        let body = Loop::new(Swap::new(presets::table()), Box::new(hand), limits);
+        let mut bench = Bench { body, last: Instant::now(), ports, emulators, tallies };
         for number in 0..PHASES {
             let modes: [u8; 2] = std::array::from_fn(|_| match chaos.rng.random_range(0..6) {
                 mode @ 1..=3 => mode,

@@ -29,6 +29,7 @@ impl Course {
     /// Its first seconds.
     fn until(mut self, seconds: f64) -> Self {
         let count = (seconds / (EVERY as f64 * STEP_S)) as usize;
+        assert!(count <= self.ours.len(), "the course is shorter than {seconds} s");
         self.ours.truncate(count);
         self.theirs.truncate(count);
         self

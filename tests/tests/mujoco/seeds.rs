@@ -1,6 +1,6 @@
 //! The same logs of other seeds: what the tables' own one hides.
 
-use super::fits::{self, Made};
+use super::fits::{self, Made, UNSEEN, Within};
 use super::table::{Row, Table};
 use super::thrown;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -15,14 +15,14 @@ pub fn today() -> u64 {
 }
 
 /// All comparisons of some logs, by the names of their places in the document.
-pub fn tables(made: &Made) -> [(&'static str, Table); 3] {
-    [("fits", fits::found(made)), ("replays", fits::replayed(made)), ("thrown", thrown::compared(made))]
+pub fn tables(made: &Made, within: Within) -> [(&'static str, Table); 3] {
+    [("fits", fits::found(made, within)), ("replays", fits::replayed(made, within)), ("thrown", thrown::compared(made))]
 }
 
 /// The tables of the other seeds; only where the document is written.
 pub fn others() -> Option<Vec<[(&'static str, Table); 3]>> {
     std::env::var_os("TOUCHSTONE_WRITE_VALIDATION")?;
-    OTHERS.iter().map(|seed| Some(tables(&fits::made(*seed)?))).collect()
+    OTHERS.iter().map(|seed| Some(tables(&fits::made(*seed)?, UNSEEN))).collect()
 }
 
 /// For each row of a table, what the other seeds have there: the least and the most, in the unit that the row is told in.

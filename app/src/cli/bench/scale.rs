@@ -28,7 +28,7 @@ const STOREYS: usize = 5;
 const SETTLING: usize = 2_000;
 const TICKS: usize = 1_000;
 /// What took longer than this is not asked for ten times as much, s.
-const LONGEST_S: f64 = 10.0;
+const LONGEST_S: f64 = 3.0;
 
 /// Arguments of `bench scale`.
 #[derive(Args)]

@@ -6,6 +6,7 @@ use crate::ui::theme;
 use crate::ui::trainer::{Steering, Trainer};
 use crate::ui::widgets::{fact, plain_card, remark};
 use egui::Ui;
+use haptics::device::haply::Tally;
 use haptics::device::udp::{Refused, UdpMonitor};
 
 /// What this panel says; sentences with numbers in them stand where the numbers are.
@@ -19,13 +20,20 @@ mod words {
     pub const ANSWERS_OF_THE_BOARDS: &str = "Answers of the boards";
     pub const LEFT: &str = "Left";
     pub const RIGHT: &str = "Right";
+    pub const WITHOUT_CABLE: &str = "A cable was pulled";
+    pub const PLUG_IN: &str = "plug it in and lay its arm where it rests, as at the start. Then let it be set up: it takes the pose it is in for that one.";
+    pub const SET_UP: &str = "The arm rests: set it up";
+    pub const LOOKING: &str = "Looking for the board at its port …";
 }
 
 /// The card of the running device; nothing for those that cannot lose anything.
 pub fn answers(ui: &mut Ui, trainer: &Trainer) {
     match &trainer.steering {
         Steering::Udp(monitor) => packets(ui, monitor),
-        Steering::Haply(tallies) => boards(ui, tallies.each_ref().map(Answers::from)),
+        Steering::Haply(tallies) => {
+            boards(ui, tallies.each_ref().map(Answers::from));
+            unplugged(ui, tallies);
+        }
         _ => {}
     }
 }
@@ -43,6 +51,23 @@ fn packets(ui: &mut Ui, monitor: &UdpMonitor) {
         if monitor.refused(Refused::Seal) > 0 {
             let text = words::SOMEBODY_SENDS_WITH_ANOTHER;
             remark(ui, Icon::Doubt, text);
+        }
+    });
+}
+
+/// What to do about a board whose cable was pulled; nothing while both are in.
+fn unplugged(ui: &mut Ui, tallies: &[Tally; 2]) {
+    if !tallies.iter().any(Tally::is_unplugged) {
+        return;
+    }
+    plain_card(ui, words::WITHOUT_CABLE, |ui| {
+        for (side, tally) in [words::LEFT, words::RIGHT].into_iter().zip(tallies).filter(|(_, t)| t.is_unplugged()) {
+            remark(ui, Icon::Doubt, format!("{side}: {}", words::PLUG_IN));
+            if tally.is_looked_for() {
+                ui.label(theme::caption(ui, words::LOOKING));
+            } else if ui.push_id(side, |ui| ui.button(words::SET_UP)).inner.clicked() {
+                tally.arm_rests();
+            }
         }
     });
 }

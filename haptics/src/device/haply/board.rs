@@ -81,6 +81,8 @@ impl Fault {
 pub struct Tally {
     asked: Arc<AtomicU64>,
     faults: Arc<[AtomicU64; Fault::ALL.len()]>,
+    unplugged: Arc<AtomicBool>,
+    rests: Arc<AtomicBool>,
 }
 
 impl Tally {
@@ -97,6 +99,28 @@ impl Tally {
     /// Of these, those for one reason.
     pub fn count(&self, why: Fault) -> u64 {
         self.faults[why as usize].load(Ordering::Relaxed)
+    }
+
+    /// True since the board's cable was pulled, until it has been set up anew. It gets no torque meanwhile.
+    pub fn is_unplugged(&self) -> bool {
+        self.unplugged.load(Ordering::Relaxed)
+    }
+
+    /// True while the board is looked for, after [`Tally::arm_rests`].
+    pub fn is_looked_for(&self) -> bool {
+        self.is_unplugged() && self.rests.load(Ordering::Relaxed)
+    }
+
+    /// Said by a person: the cable is in again and the arm lies where it rests, so the board may be set up. It takes the pose that it
+    /// is in then for its pose of rest, so nobody else can say this: from any other pose every place and every force would be off.
+    pub fn arm_rests(&self) {
+        self.rests.store(true, Ordering::Relaxed);
+    }
+
+    /// The cable was pulled, or the board was set up after that.
+    pub(super) fn note_unplugged(&self, is_out: bool) {
+        self.rests.store(false, Ordering::Relaxed);
+        self.unplugged.store(is_out, Ordering::Relaxed);
     }
 
     fn add(&self, fault: Option<Fault>) {
@@ -138,7 +162,7 @@ impl Board {
         let (orders, orders_out) = triple_buffer(&Order::default());
         let stop = Arc::new(AtomicBool::new(false));
         let tally = Tally::default();
-        let plug = Plug::new(connection.guard, again);
+        let plug = Plug::new(connection.guard, again, tally.clone());
         let is_guarded = plug.is_guarded();
         let worker = Worker {
             turns: Turns::new(connection.line, model.id),

@@ -74,8 +74,8 @@ pub fn ports() -> Vec<String> {
 /// Opens a port and sets a board up. With `program`, the `touchstone` program, a process that outlives this one stands by to
 /// end the torque ([`farewell`]); without it, or where that cannot be had, a killed program leaves the last torque.
 ///
-/// A board whose cable is pulled is found again at the same port, without a word: until its answers come anew it is one that does not
-/// answer.
+/// A board whose cable is pulled is found again at the same port, once a person has said that its arm lies where it rests
+/// ([`Tally::arm_rests`]); until its answers come anew it is one that does not answer.
 pub fn open(port: &str, model: BoardModel, program: Option<&Path>) -> Result<Board, HaplyError> {
     let connection = connect(port, model, program)?;
     let (again, with) = (port.to_owned(), program.map(Path::to_path_buf));

@@ -2,10 +2,12 @@
 //!
 //! All of it happens on the board's own thread. A line that refuses every question at once has nobody at its other end: it is let go,
 //! because the system gives a port's name to the board that comes back only when nobody holds it any more, and with it the process
-//! that stands by. From then on the port is tried a few times a second, for as long as the hand is there: nobody knows when the cable
-//! is put in again. A new line is a new beginning: the board is set up anew, and until its answers have agreed on where the hand is
-//! it gets zero torque.
+//! that stands by. A board that was without power has lost where its arm is: it learns that from the pose in which it is set up. So it
+//! stays without torque until a person says that the arm lies where it rests ([`Tally::arm_rests`]); from then on the port is tried a
+//! few times a second, for as long as the hand is there. A new line is a new beginning: until its answers have agreed on where the hand
+//! is the board gets zero torque.
 
+use super::board::Tally;
 use super::farewell::Outliving;
 use super::turns::Line;
 use std::io::{Error, ErrorKind, Read, Result, Write};
@@ -38,13 +40,15 @@ pub(super) struct Plug {
     refused: u32,
     /// When the port is tried next; nothing while the cable is in.
     next_try: Option<Instant>,
+    /// Where a person says that the arm rests.
+    tally: Tally,
 }
 
 impl Plug {
     /// Of a line that is in.
-    pub fn new(guard: Option<Outliving>, connect: Option<Connect>) -> Self {
+    pub fn new(guard: Option<Outliving>, connect: Option<Connect>, tally: Tally) -> Self {
         let is_guarded = Arc::new(AtomicBool::new(guard.is_some()));
-        Self { guard, is_guarded, connect, refused: 0, next_try: None }
+        Self { guard, is_guarded, connect, refused: 0, next_try: None, tally }
     }
 
     /// Whether a process stands by that ends the torque when this one is killed; read from any thread.
@@ -60,7 +64,7 @@ impl Plug {
             self.refused = if refused { self.refused + 1 } else { 0 };
             return (self.refused >= REFUSED).then(|| self.pulled());
         };
-        if Instant::now() < next_try {
+        if Instant::now() < next_try || !self.tally.is_looked_for() {
             return None;
         }
         let Some(Connection { line, guard }) = connect() else {
@@ -69,6 +73,7 @@ impl Plug {
         };
         self.is_guarded.store(guard.is_some(), Ordering::Relaxed);
         (self.guard, self.next_try, self.refused) = (guard, None, 0);
+        self.tally.note_unplugged(false);
         Some(line)
     }
 
@@ -77,6 +82,7 @@ impl Plug {
         self.guard = None;
         self.is_guarded.store(false, Ordering::Relaxed);
         self.next_try = Some(Instant::now() + AGAIN);
+        self.tally.note_unplugged(true);
         Box::new(Nobody)
     }
 }
@@ -116,28 +122,37 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_refuses_for_long_is_let_go_and_opened_again_at_a_bounded_rate() {
+    fn a_line_that_refuses_for_long_is_let_go_and_opened_again_when_a_person_says_so() {
         let (tries, connect) = counting(2);
-        let mut plug = Plug::new(None, Some(connect));
+        let tally = Tally::default();
+        let mut plug = Plug::new(None, Some(connect), tally.clone());
+        // Said too early: of an arm that moves.
+        tally.arm_rests();
         for _ in 0..5 {
             assert!((1..REFUSED).all(|_| plug.turned(true).is_none()), "a few refusals are no pulled cable");
             assert!(plug.turned(false).is_none());
         }
+        let begun = Instant::now();
         let pulled = (0..REFUSED).filter_map(|_| plug.turned(true)).count();
         assert_eq!((pulled, tries.load(Ordering::Relaxed)), (1, 0));
-        let begun = Instant::now();
+        assert!(tally.is_unplugged());
+        std::thread::sleep(2 * AGAIN);
+        assert!(plug.turned(true).is_none());
+        assert_eq!(tries.load(Ordering::Relaxed), 0, "nobody has said that the arm rests");
+        tally.arm_rests();
         while plug.turned(true).is_none() {
             std::thread::sleep(Duration::from_millis(1));
             assert!(begun.elapsed() < Duration::from_mins(1), "it is never opened again");
         }
-        assert!(begun.elapsed() + Duration::from_millis(50) >= 3 * AGAIN, "{:?}", begun.elapsed());
+        assert!(begun.elapsed() >= 4 * AGAIN, "two rests before and two between three tries: {:?}", begun.elapsed());
         assert_eq!(tries.load(Ordering::Relaxed), 3);
+        assert!(!tally.is_unplugged());
         assert!(plug.turned(true).is_none(), "a new line has its own patience");
     }
 
     #[test]
     fn a_line_without_a_port_stays_what_it_is() {
-        let mut plug = Plug::new(None, None);
+        let mut plug = Plug::new(None, None, Tally::default());
         assert!((0..100).all(|_| plug.turned(true).is_none()));
     }
 }
