@@ -266,3 +266,24 @@ fn answers_of_boards_are_told_by_reason() {
         assert!(harness.query_by_label_contains(part).is_some(), "{part}");
     }
 }
+
+#[test]
+fn a_board_whose_cable_was_pulled_is_set_up_when_a_person_says_that_its_arm_rests() {
+    let tallies = [haptics::device::haply::Tally::default(), haptics::device::haply::Tally::default()];
+    let shown = tallies.clone();
+    let show = move |ui: &mut egui::Ui, (): &mut ()| super::panels::answers::unplugged(ui, &shown);
+    let mut harness = Harness::builder().with_context_setup(theme::install).build_ui_state(show, ());
+    harness.run_steps(2);
+    let (card, button) = ("A cable was pulled", "The arm rests: set it up");
+    assert!(harness.query_by_label(card).is_none(), "both are in");
+    tallies[1].note_unplugged(true);
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("Right: plug it in").is_some() && !tallies[1].is_looked_for());
+    harness.get_by_label(button).click();
+    harness.run_steps(2);
+    assert!(tallies[1].is_looked_for() && !tallies[0].is_looked_for());
+    assert!(harness.query_by_label(button).is_none() && harness.query_by_label_contains("Looking for").is_some());
+    tallies[1].note_unplugged(false);
+    harness.run_steps(2);
+    assert!(harness.query_by_label(card).is_none());
+}

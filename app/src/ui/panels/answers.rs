@@ -56,7 +56,7 @@ fn packets(ui: &mut Ui, monitor: &UdpMonitor) {
 }
 
 /// What to do about a board whose cable was pulled; nothing while both are in.
-fn unplugged(ui: &mut Ui, tallies: &[Tally; 2]) {
+pub fn unplugged(ui: &mut Ui, tallies: &[Tally; 2]) {
     if !tallies.iter().any(Tally::is_unplugged) {
         return;
     }

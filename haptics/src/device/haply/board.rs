@@ -117,8 +117,8 @@ impl Tally {
         self.rests.store(true, Ordering::Relaxed);
     }
 
-    /// The cable was pulled, or the board was set up after that.
-    pub(super) fn note_unplugged(&self, is_out: bool) {
+    /// The cable was pulled, or the board was set up after that. (Of use outside only where a hand is shown without one.)
+    pub fn note_unplugged(&self, is_out: bool) {
         self.rests.store(false, Ordering::Relaxed);
         self.unplugged.store(is_out, Ordering::Relaxed);
     }
