@@ -230,7 +230,7 @@ fn so_it_is_with_what_is_measured() {
     let blind = holds("bench-blind", &["bench", "blind", "--seed", "3", "--cases", "4"]);
     assert_eq!(blind["cases"], 4, "{blind}");
     let scale = holds("bench-scale", &["bench", "scale", "--quick"]);
-    assert!(scale["scale"].as_array().is_some_and(|all| all.len() == 8), "{scale}");
+    assert!(scale["scale"].as_array().is_some_and(|all| all.len() == 12), "{scale}");
 }
 
 #[test]
