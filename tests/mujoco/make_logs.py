@@ -195,59 +195,65 @@ def slope(rng):
     return columns, rows, {"task": "mechanism", "gravity_m_s2": rig.GRAVITY, "up": "y"}, truth
 
 
+POSES = ["t_s", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "trial"]
+HALF_M = 0.05
+
+
+def cube_on_a_table(friction, joints):
+    return mujoco.MjModel.from_xml_string(
+        f'<mujoco><option timestep="{rig.STEP_S}" gravity="0 0 {-rig.GRAVITY}" cone="elliptic" impratio="20"/><worldbody>'
+        f'<geom type="plane" size="5 5 0.1" friction="{friction} 0.005 0.0001"/><body name="cube">{joints}'
+        f'<geom type="box" size="{HALF_M} {HALF_M} {HALF_M}" mass="0.37" friction="{friction} 0.005 0.0001"/></body></worldbody></mujoco>')
+
+
+def watched(rng, m, d, pose, trial):
+    """A throw until the cube rests, as a camera sees it: `pose(d)` is its place and its quaternion."""
+    every, rows = round(1.0 / (250 * rig.STEP_S)), []
+    for tick in range(round(1.6 / rig.STEP_S)):
+        if tick % every == 0:
+            place, quaternion = pose(d)
+            place = place + rng.normal(0.0, 2e-4, 3)
+            quaternion = quaternion + rng.normal(0.0, 1e-3, 4)
+            rows.append([d.time, *place, *(quaternion / numpy.linalg.norm(quaternion)), trial])
+        if tick * rig.STEP_S > 0.3 and numpy.linalg.norm(d.qvel) < 1e-3:
+            break
+        mujoco.mj_step(m, d)
+    return rows
+
+
 def impacts(rng):
     """Forty throws of a cube onto a table: it falls, hits, tumbles or not, and slides out."""
-    friction, half = rng.uniform(0.15, 0.35), 0.05
-    m = mujoco.MjModel.from_xml_string(
-        f'<mujoco><option timestep="{rig.STEP_S}" gravity="0 0 {-rig.GRAVITY}" cone="elliptic" impratio="20"/><worldbody>'
-        f'<geom type="plane" size="5 5 0.1" friction="{friction} 0.005 0.0001"/><body name="cube"><freejoint/>'
-        f'<geom type="box" size="{half} {half} {half}" mass="0.37" friction="{friction} 0.005 0.0001"/></body></worldbody></mujoco>')
-    columns = ["t_s", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "trial"]
-    every, rows = round(1.0 / (250 * rig.STEP_S)), []
+    friction = rng.uniform(0.15, 0.35)
+    m, rows = cube_on_a_table(friction, "<freejoint/>"), []
     for trial in range(40):
         d = mujoco.MjData(m)
         d.qpos[:3] = [0.0, 0.0, rng.uniform(0.12, 0.2)]
         turn = rng.normal(0.0, 0.25, 3)
         mujoco.mju_axisAngle2Quat(d.qpos[3:7], turn / numpy.linalg.norm(turn), numpy.linalg.norm(turn))
         d.qvel[:] = [rng.uniform(0.8, 1.8), rng.uniform(-0.4, 0.4), rng.uniform(0.0, 0.8), *rng.normal(0.0, 1.5, 3)]
-        for tick in range(round(1.6 / rig.STEP_S)):
-            if tick % every == 0:
-                place = d.qpos[:3] + rng.normal(0.0, 2e-4, 3)
-                quaternion = d.qpos[3:7] + rng.normal(0.0, 1e-3, 4)
-                rows.append([d.time, *place, *(quaternion / numpy.linalg.norm(quaternion)), trial])
-            if tick * rig.STEP_S > 0.3 and numpy.linalg.norm(d.qvel) < 1e-3:
-                break
-            mujoco.mj_step(m, d)
+        rows += watched(rng, m, d, lambda d: (d.qpos[:3], d.qpos[3:7]), trial)
     sidecar = {"task": "mechanism", "gravity_m_s2": rig.GRAVITY, "up": "z"}
-    return columns, rows, sidecar, {"body": {"free_fall_m_s2": rig.GRAVITY, "length_scale": 1.0, "friction": friction}}
+    return POSES, rows, sidecar, {"body": {"free_fall_m_s2": rig.GRAVITY, "length_scale": 1.0, "friction": friction}}
 
 
 def thrown(rng):
     """Twenty throws of a cube within one plane: it falls, hits with an edge, slaps down and slides out."""
-    friction, half = rng.uniform(0.15, 0.35), 0.05
-    m = mujoco.MjModel.from_xml_string(
-        f'<mujoco><option timestep="{rig.STEP_S}" gravity="0 0 {-rig.GRAVITY}" cone="elliptic" impratio="20"/><worldbody>'
-        f'<geom type="plane" size="5 5 0.1" friction="{friction} 0.005 0.0001"/><body name="cube"><joint type="slide" axis="1 0 0"/>'
-        '<joint type="slide" axis="0 0 1"/><joint type="hinge" axis="0 -1 0"/>'
-        f'<geom type="box" size="{half} {half} {half}" mass="0.37" friction="{friction} 0.005 0.0001"/></body></worldbody></mujoco>')
-    columns = ["t_s", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "trial"]
-    every, rows = round(1.0 / (250 * rig.STEP_S)), []
+    friction = rng.uniform(0.15, 0.35)
+    m, rows = cube_on_a_table(friction, '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
+                                        '<joint type="hinge" axis="0 -1 0"/>'), []
+
+    def pose(d):
+        x, z, angle = d.qpos
+        # Counter-clockwise, seen with x to the right and z up, is about -y.
+        return numpy.array([x, 0.0, z]), numpy.array([numpy.cos(angle / 2), 0.0, -numpy.sin(angle / 2), 0.0])
+
     for trial in range(20):
         d = mujoco.MjData(m)
         d.qpos[:] = [0.0, rng.uniform(0.12, 0.2), rng.normal(0.0, 0.15)]
         d.qvel[:] = [rng.uniform(0.8, 1.8), rng.uniform(0.0, 0.8), rng.normal(0.0, 1.0)]
-        for tick in range(round(1.6 / rig.STEP_S)):
-            if tick % every == 0:
-                x, z, angle = d.qpos
-                place = numpy.array([x, 0.0, z]) + rng.normal(0.0, 2e-4, 3)
-                # Counter-clockwise, seen with x to the right and z up, is about -y.
-                quaternion = numpy.array([numpy.cos(angle / 2), 0.0, -numpy.sin(angle / 2), 0.0]) + rng.normal(0.0, 1e-3, 4)
-                rows.append([d.time, *place, *(quaternion / numpy.linalg.norm(quaternion)), trial])
-            if tick * rig.STEP_S > 0.3 and numpy.linalg.norm(d.qvel) < 1e-3:
-                break
-            mujoco.mj_step(m, d)
+        rows += watched(rng, m, d, pose, trial)
     sidecar = {"task": "mechanism", "gravity_m_s2": rig.GRAVITY, "up": "z"}
-    return columns, rows, sidecar, {"body": {"free_fall_m_s2": rig.GRAVITY, "friction": friction}}
+    return POSES, rows, sidecar, {"body": {"free_fall_m_s2": rig.GRAVITY, "friction": friction}}
 
 
 MAKERS = {"blocks": blocks, "crank": crank, "pinch": pinch, "slope": slope, "impacts": impacts, "thrown": thrown}

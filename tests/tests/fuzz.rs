@@ -1,9 +1,6 @@
 //! What the fuzz targets do, over the seeds that fuzzing starts from and over spoiled ones, with any compiler: a target that does not
 //! build any more, or a seed that fails, is seen here. `fuzz/` itself needs a nightly one and cargo-fuzz.
 
-#[path = "chaos/mutate.rs"]
-#[allow(dead_code)] // trees of documents are spoiled elsewhere
-mod mutate;
 #[path = "../../fuzz/src/targets/mod.rs"]
 mod targets;
 #[path = "../../fuzz/src/window/mod.rs"]
@@ -86,7 +83,7 @@ fn every_target_takes_its_seeds_and_spoiled_ones() {
         let begun = std::time::Instant::now();
         for seed in &seeds {
             run(seed);
-            (0..spoiled).for_each(|_| run(&mutate::bytes(seed, &mut rng)));
+            (0..spoiled).for_each(|_| run(&tests::spoiled::bytes(seed, &mut rng)));
         }
         println!("{name}: {} seeds, {:.2} s", seeds.len(), begun.elapsed().as_secs_f64());
     }

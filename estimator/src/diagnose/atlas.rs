@@ -57,7 +57,7 @@ impl Variable {
 /// One suspect of the atlas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
-    /// Out of `spec/causes.md`.
+    /// Out of `docs/causes/README.md`.
     pub id: String,
     /// What it explains alone, in units of 2 ln(likelihood), what its parameters cost paid.
     pub score: f64,
@@ -104,7 +104,7 @@ pub struct Channel {
 /// One suspect of a channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Against {
-    /// Out of `spec/causes.md`.
+    /// Out of `docs/causes/README.md`.
     pub id: String,
     /// As [`Seen::score`].
     pub score: f64,

@@ -76,7 +76,7 @@ pub fn about_its_zero([k, f0, here, there]: [f64; 4]) -> [f64; 4] {
 /// One cause with its searched values set: columns that are linear in what is left.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// Out of `spec/causes.md`; terms of the base and of the generic library have names of their own.
+    /// Out of `docs/causes/README.md`; terms of the base and of the generic library have names of their own.
     pub id: &'static str,
     pub kind: Kind,
     /// One column a linear parameter, one entry a row.

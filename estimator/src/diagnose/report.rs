@@ -123,7 +123,7 @@ pub struct Rollout {
 /// A cause that was found.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Cause {
-    /// Out of `spec/causes.md`, or `other:<expression>`.
+    /// Out of `docs/causes/README.md`, or `other:<expression>`.
     pub id: String,
     /// Plant or instrument.
     pub kind: Kind,
@@ -142,7 +142,7 @@ pub struct Cause {
 /// A cause that would explain the recording as well.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Alternative {
-    /// Out of `spec/causes.md`.
+    /// Out of `docs/causes/README.md`.
     pub id: String,
     /// The found cause whose place it could take.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -156,7 +156,7 @@ pub struct Alternative {
 /// A cause that this recording could not have shown.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct NotExcited {
-    /// Out of `spec/causes.md`.
+    /// Out of `docs/causes/README.md`.
     pub id: String,
     /// What is missing.
     pub why: String,
@@ -165,7 +165,7 @@ pub struct NotExcited {
 /// A cause that was looked for and not named.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct PassedOver {
-    /// Out of `spec/causes.md`.
+    /// Out of `docs/causes/README.md`.
     pub id: String,
     /// Its score on the model alone, in units of 2 ln(likelihood), what its parameters cost paid; 0 where it is impossible.
     pub alone: f64,

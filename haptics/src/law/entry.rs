@@ -90,7 +90,7 @@ impl ParameterSpec {
 /// One page of the catalogue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
-    /// Stable id (`spec/causes.md`, or a base term such as `weight`).
+    /// Stable id (`docs/causes/README.md`, or a base term such as `weight`).
     pub id: &'static str,
     /// Plant or instrument.
     pub kind: Kind,

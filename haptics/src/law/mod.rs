@@ -2,7 +2,7 @@
 //!
 //! A law adds a term to the force that is needed to move a coordinate `s` (or angle) against it. The same object is
 //! integrated by the servo ([`crate::world`]), summed by the replay, put into a fit as regressor columns by the estimator and
-//! proposed by the diagnosis. Ids are those of `spec/causes.md`.
+//! proposed by the diagnosis. Ids are those of `docs/causes/README.md`.
 //!
 //! ```
 //! use haptics::law::{CoulombFriction, Effect, Motion, ViscousFriction};
@@ -14,7 +14,7 @@
 //! assert!((force_n - 0.5).abs() < 1e-12);
 //! ```
 //!
-//! Adding a law: one file here, one line in [`CATALOGUE`], one one-effect test in its file, one recovery test in `tests/`.
+//! Adding a law: `docs/guide/developer.md`, *Add a law in 15 minutes*.
 //! Laws of contacts, which act on no coordinate, are in [`contact`], those of captured objects in [`object`]; every cause, law or
 //! not, is in [`entries`].
 
@@ -138,7 +138,7 @@ pub trait Law: Sync {
     fn entry(&self) -> &'static Entry;
     /// Its part in the equation of motion.
     fn role(&self) -> Role;
-    /// Stable id (`spec/causes.md`, or a base term such as `weight`).
+    /// Stable id (`docs/causes/README.md`, or a base term such as `weight`).
     fn id(&self) -> &'static str {
         self.entry().id
     }

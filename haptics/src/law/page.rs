@@ -104,7 +104,9 @@ pub fn index<'a>(entries: impl Iterator<Item = &'a Entry>) -> String {
             "\n## {title}\n\n{words}\n\n| cause | id | term | which motion reveals it |\n|---|---|---|---|"
         );
         for e in entries {
-            let _ = writeln!(text, "| [{}]({}.md) | `{}` | `{}` | {} |", e.title, e.id, e.id, e.equation, e.reveals);
+            // A bar would end the cell, also within back-quotes.
+            let equation = e.equation.replace('|', "\\|");
+            let _ = writeln!(text, "| [{}]({}.md) | `{}` | `{equation}` | {} |", e.title, e.id, e.id, e.reveals);
         }
     }
     text + "\n## Without a name\n\n[Something that no law explains](other.md) (`other:<expression>`): it is there, and what it goes with \

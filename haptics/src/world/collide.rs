@@ -128,7 +128,13 @@ impl Gather<'_> {
         }
         let (arm_on_m, yield_on) = self.lever(on, found);
         let (arm_by_m, yield_by) = self.lever(by, found);
-        let [mut yield_1_kg, slip_yield_1_kg] = [0, 1].map(|k| yield_on[k] + yield_by[k]);
+        let mut yield_1_kg = yield_on + yield_by;
+        // Only the damper of a measured restitution asks for it.
+        let slip_yield_1_kg = if material.impact_damping == 0.0 {
+            0.0
+        } else {
+            self.yields(on, arm_on_m.dot(&normal)) + self.yields(by, arm_by_m.dot(&normal))
+        };
         if let Surface::Finger(finger) = on {
             // From the middle of the tick to its end.
             let body_m = if let Surface::Block(index) = by { self.solids[usize::from(index)].sweep_m } else { 0.0 };
@@ -143,15 +149,21 @@ impl Gather<'_> {
         self.touches.push(touch);
     }
 
-    /// From the centre of a body to the point, m, and how fast the body yields there to a normal force and to one along the surface, 1/kg.
+    /// From the centre of a body to the point, m, and how fast the body yields to a normal force there, 1/kg.
     #[inline]
-    fn lever(&self, surface: Surface, found: &Found) -> (Vec2, [f64; 2]) {
-        let Surface::Block(index) = surface else { return (Vec2::zeros(), [0.0; 2]) };
+    fn lever(&self, surface: Surface, found: &Found) -> (Vec2, f64) {
+        let Surface::Block(index) = surface else { return (Vec2::zeros(), 0.0) };
         let solid = &self.solids[usize::from(index)];
         let arm_m = found.point_m - solid.rect.center_m;
-        let turning = arm_m.perp(&found.normal);
-        let along = arm_m.dot(&found.normal);
-        (arm_m, [turning, along].map(|turning| solid.inverse_mass + solid.inverse_inertia * turning * turning))
+        (arm_m, self.yields(surface, arm_m.perp(&found.normal)))
+    }
+
+    /// How fast a body yields to a force that passes its centre at this distance, m, in 1/kg.
+    #[inline]
+    fn yields(&self, surface: Surface, passes_m: f64) -> f64 {
+        let Surface::Block(index) = surface else { return 0.0 };
+        let solid = &self.solids[usize::from(index)];
+        solid.inverse_mass + solid.inverse_inertia * passes_m * passes_m
     }
 
     fn blocks(&mut self) {

@@ -87,7 +87,7 @@ pub struct Touch {
     /// How fast the surfaces part under a normal force, 1/kg: 1/m + (r × n)²/I of both bodies; zero where a finger, which goes
     /// as it likes, is one of them.
     pub yield_1_kg: f64,
-    /// The same along the surfaces.
+    /// The same along the surfaces where a restitution was measured; zero elsewhere.
     pub slip_yield_1_kg: f64,
     /// True once the surfaces have met.
     pub met: bool,

@@ -40,7 +40,7 @@ pub fn spoiled_one(found: &[PathBuf], rng: &mut StdRng) -> Vec<u8> {
 fn spoiled_text(text: &[u8], rng: &mut StdRng) -> Vec<u8> {
     let value: Value = serde_json::from_slice(text).expect("JSON");
     match rng.random_range(0..4) {
-        0 => mutate::bytes(text, rng),
+        0 => tests::spoiled::bytes(text, rng),
         1 => mutate::numbers(&value, rng).to_string().into_bytes(),
         _ => mutate::json(&value, rng).to_string().into_bytes(),
     }
@@ -153,7 +153,7 @@ pub fn keep_in_a_spoiled_one(path: &Path, whole: &[u8], late: &Attempt, rng: &mu
         // Journals of before belong to another file.
         let _ = std::fs::remove_file(file.path());
     }
-    std::fs::write(path, mutate::bytes(whole, rng)).expect("writes");
+    std::fs::write(path, tests::spoiled::bytes(whole, rng)).expect("writes");
     let history = History::start(path.to_path_buf(), || {}).expect("a thread");
     history.add(late.clone());
     drop(history);

@@ -66,9 +66,9 @@ pub fn spoil(folder: &Path, stem: &str, rng: &mut StdRng) -> PathBuf {
     let good = &good()[rng.random_range(0..good().len())];
     let path = folder.join(stem).with_extension(good.ending);
     let (log, sidecar) = match rng.random_range(0..3) {
-        0 => (mutate::bytes(&good.bytes, rng), good.meta.to_string().into_bytes()),
+        0 => (tests::spoiled::bytes(&good.bytes, rng), good.meta.to_string().into_bytes()),
         1 => (good.bytes.clone(), mutate::json(&good.meta, rng).to_string().into_bytes()),
-        _ => (mutate::bytes(&good.bytes, rng), mutate::bytes(good.meta.to_string().as_bytes(), rng)),
+        _ => (tests::spoiled::bytes(&good.bytes, rng), tests::spoiled::bytes(good.meta.to_string().as_bytes(), rng)),
     };
     std::fs::write(&path, log).expect("writes");
     std::fs::write(log::sidecar_path(&path), sidecar).expect("writes");

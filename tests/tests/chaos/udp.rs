@@ -156,7 +156,7 @@ fn act(client: &mut Client, phase: Phase, rng: &mut StdRng) -> bool {
         }
         Phase::Spoiled => {
             let packet = client.motion();
-            let spoiled = crate::mutate::bytes(&packet, rng);
+            let spoiled = tests::spoiled::bytes(&packet, rng);
             let same = spoiled == packet;
             client.send(&spoiled);
             same && client.session != 0

@@ -110,7 +110,7 @@ fn spoiled_project(chaos: &mut Chaos, session: &mut Session, ctx: &egui::Context
     let path = log.with_extension("touchstone.json");
     session.save_project_as(ctx, path.clone());
     if let Ok(text) = std::fs::read(&path) {
-        std::fs::write(&path, crate::mutate::bytes(&text, &mut chaos.rng)).expect("writes");
+        std::fs::write(&path, tests::spoiled::bytes(&text, &mut chaos.rng)).expect("writes");
     }
     session.open_project(ctx, &path);
 }

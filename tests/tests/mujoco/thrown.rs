@@ -54,7 +54,7 @@ fn throw(log: &Recording, gravity_m_s2: f64) -> Throw {
     Throw { start, velocity_m_s: Vec2::new(vx_m_s, vz_m_s), rate_rad_s }
 }
 
-/// The same throw in our world, for as long as the log lasts: where it comes to rest, m, and whether it fell on the same side.
+/// The same throw in our world, for as long as the log lasts: where and how it lies then.
 fn thrown_again(throw: &Throw, seconds: f64, (friction, gravity_m_s2): (f64, f64)) -> Pose {
     let mut world = World::empty("thrown");
     world.gravity_m_s2 = gravity_m_s2;

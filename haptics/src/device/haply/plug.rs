@@ -58,17 +58,17 @@ impl Plug {
 
     /// Told after every turn whether the line refused it at once. A line to go on with in place of the one before, when the cable was
     /// pulled or is in again.
-    pub fn turned(&mut self, refused: bool) -> Option<Box<dyn Line>> {
+    pub fn turned(&mut self, refused: bool, now: Instant) -> Option<Box<dyn Line>> {
         let connect = self.connect.as_mut()?;
         let Some(next_try) = self.next_try else {
             self.refused = if refused { self.refused + 1 } else { 0 };
-            return (self.refused >= REFUSED).then(|| self.pulled());
+            return (self.refused >= REFUSED).then(|| self.pulled(now));
         };
-        if Instant::now() < next_try || !self.tally.is_looked_for() {
+        if now < next_try || !self.tally.is_looked_for() {
             return None;
         }
         let Some(Connection { line, guard }) = connect() else {
-            self.next_try = Some(Instant::now() + AGAIN);
+            self.next_try = Some(now + AGAIN);
             return None;
         };
         self.is_guarded.store(guard.is_some(), Ordering::Relaxed);
@@ -77,11 +77,11 @@ impl Plug {
         Some(line)
     }
 
-    fn pulled(&mut self) -> Box<dyn Line> {
+    fn pulled(&mut self, now: Instant) -> Box<dyn Line> {
         // It holds the port, too, and has nobody to say farewell to.
         self.guard = None;
         self.is_guarded.store(false, Ordering::Relaxed);
-        self.next_try = Some(Instant::now() + AGAIN);
+        self.next_try = Some(now + AGAIN);
         self.tally.note_unplugged(true);
         Box::new(Nobody)
     }
@@ -128,31 +128,32 @@ mod tests {
         let mut plug = Plug::new(None, Some(connect), tally.clone());
         // Said too early: of an arm that moves.
         tally.arm_rests();
+        let mut now = Instant::now();
         for _ in 0..5 {
-            assert!((1..REFUSED).all(|_| plug.turned(true).is_none()), "a few refusals are no pulled cable");
-            assert!(plug.turned(false).is_none());
+            assert!((1..REFUSED).all(|_| plug.turned(true, now).is_none()), "a few refusals are no pulled cable");
+            assert!(plug.turned(false, now).is_none());
         }
-        let begun = Instant::now();
-        let pulled = (0..REFUSED).filter_map(|_| plug.turned(true)).count();
+        let pulled = (0..REFUSED).filter_map(|_| plug.turned(true, now)).count();
         assert_eq!((pulled, tries.load(Ordering::Relaxed)), (1, 0));
         assert!(tally.is_unplugged());
-        std::thread::sleep(2 * AGAIN);
-        assert!(plug.turned(true).is_none());
+        now += 2 * AGAIN;
+        assert!(plug.turned(true, now).is_none());
         assert_eq!(tries.load(Ordering::Relaxed), 0, "nobody has said that the arm rests");
         tally.arm_rests();
-        while plug.turned(true).is_none() {
-            std::thread::sleep(Duration::from_millis(1));
-            assert!(begun.elapsed() < Duration::from_mins(1), "it is never opened again");
+        for number in 1..=2 {
+            assert!(plug.turned(true, now).is_none() && plug.turned(true, now + AGAIN / 2).is_none());
+            assert_eq!(tries.load(Ordering::Relaxed), number, "one try in this time");
+            now += AGAIN;
         }
-        assert!(begun.elapsed() >= 4 * AGAIN, "two rests before and two between three tries: {:?}", begun.elapsed());
-        assert_eq!(tries.load(Ordering::Relaxed), 3);
+        assert!(plug.turned(true, now).is_some(), "the third one finds it");
         assert!(!tally.is_unplugged());
-        assert!(plug.turned(true).is_none(), "a new line has its own patience");
+        assert!(plug.turned(true, now).is_none(), "a new line has its own patience");
     }
 
     #[test]
     fn a_line_without_a_port_stays_what_it_is() {
         let mut plug = Plug::new(None, None, Tally::default());
-        assert!((0..100).all(|_| plug.turned(true).is_none()));
+        let now = Instant::now();
+        assert!((0..100).all(|_| plug.turned(true, now).is_none()));
     }
 }

@@ -134,6 +134,12 @@ impl Training {
         *self.counts.entry(what).or_default() += by;
     }
 
+    /// As a window does, at its own pace: a servo tells nobody anything, it may not wake a thread.
+    fn look(&mut self) {
+        self.servo.drain(&mut self.ticks);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+
     fn now_s(&mut self) -> f64 {
         self.servo.newest().tick.time_s
     }
@@ -156,8 +162,7 @@ impl Training {
                 _ => {}
             }
             self.hand.move_on(&mut self.rng);
-            self.servo.drain(&mut self.ticks);
-            std::thread::sleep(Duration::from_millis(2));
+            self.look();
         }
         let least = ((self.now_s() - first_s) / DT_S).round() as u64;
         self.check(recorder.stop(), least);
@@ -192,8 +197,7 @@ impl Training {
         let begun = Instant::now();
         while self.servo.newest().generation < generation {
             assert!(begun.elapsed() < PATIENCE, "the servo takes no world: {:?}", self.servo.newest().fault);
-            self.servo.drain(&mut self.ticks);
-            std::thread::sleep(Duration::from_millis(1));
+            self.look();
         }
         self.world = next;
         self.count("together: worlds swapped", 1);
@@ -205,8 +209,7 @@ impl Training {
         let (begun, made) = (Instant::now(), self.ticks.len());
         while self.ticks.len() < made + 50 {
             assert!(begun.elapsed() < PATIENCE && self.servo.is_running(), "{:?}", self.servo.newest().fault);
-            self.servo.drain(&mut self.ticks);
-            std::thread::sleep(Duration::from_millis(1));
+            self.look();
         }
         let force = self.hand.force();
         drop(self.servo);
