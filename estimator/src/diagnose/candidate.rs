@@ -200,6 +200,12 @@ impl Candidate {
         self.sign * values[0] >= 0.0 && values[0].abs() >= self.least && self.shape.admits(values)
     }
 
+    /// Whether its first value is a share of the model's dry friction.
+    pub fn is_share(&self) -> bool {
+        ["hysteresis", "friction-change"].contains(&self.id)
+            && self.linear.first().is_some_and(|(_, unit)| *unit == "1")
+    }
+
     /// What makes its name doubtful, in 2 ln(likelihood).
     pub fn doubt(&self, values: &[f64]) -> f64 {
         self.shape.doubt(values)

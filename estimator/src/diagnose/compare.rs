@@ -78,7 +78,7 @@ impl Channel {
         let chosen = Selection { system: &system, candidates: &candidates, threshold, dry, one_loss: false }.run(&[]);
         let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
         let solved = system.solve(&picks);
-        let mut made = Study { candidates, chosen, system, solved, y, base, weight };
+        let mut made = Study { candidates, chosen, system, solved, y, base, weight, shares_of: [1.0, 0.0] };
         leave_out_what_is_unsure(&mut made, &stretch, threshold);
         leave_out_what_cannot_be(&mut made);
         if !dry && lifts_nothing(&made) {

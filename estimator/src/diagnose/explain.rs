@@ -15,9 +15,10 @@ use super::passed_over::{passed_over, unsaid};
 use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, Verdict};
 use super::residuals;
 use super::rollout::rollout;
-use super::searched::{Known, known};
+use super::searched::{first_of, settled};
 use super::select::{Chosen, Selection};
 use super::skew::{apart, rest_s, skew};
+use super::slowest::widen;
 use super::suspects::hypotheses;
 use super::track::{Place, Track};
 use super::unseen::unseen;
@@ -64,6 +65,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
         }
         let mut named = cause(study, k, floor, (channel(track), unit));
         named.gain.rollout = rollout(track, model, study, k);
+        widen(&named.id, &mut named.parameters, track);
         if let Some(parameters) = of_hardening_spring(track, study, k) {
             named.parameters = parameters;
         }
@@ -248,28 +250,24 @@ pub(super) fn p_value(study: &Study, chosen: &Chosen) -> f64 {
 }
 
 pub(super) fn parameters(study: &Study, k: usize) -> Vec<CauseParameter> {
-    let Some(solved) = &study.solved else { return Vec::new() };
-    let picks: Vec<&Candidate> = study.chosen.iter().map(|c| &study.candidates[c.candidate]).collect();
-    let first = study.system.base + picks[..k].iter().map(|c| c.columns.len()).sum::<usize>();
-    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
-    let mut found: Vec<CauseParameter> = picks[k]
+    let Some(settled) = settled(study) else { return Vec::new() };
+    let (own, first) = (&study.candidates[study.chosen[k].candidate], first_of(study, k));
+    let mut found: Vec<CauseParameter> = own
         .linear
         .iter()
         .enumerate()
         .map(|(i, (name, unit))| {
-            let (value, error) = (solved.values[first + i], (variance * solved.inverse[(first + i, first + i)]).sqrt());
-            match picks[k].id {
+            let (value, error) = (settled.values[first + i], settled.std_errors[first + i]);
+            match own.id {
                 // The stiffness is asked for, the give was found.
-                _ if picks[k].channel.is_some() => of_channel(picks[k], name, value, error),
+                _ if own.channel.is_some() => of_channel(own, name, value, error),
                 "pad-compliance" => number("k", 1.0 / value.max(1e-12), error / (value * value).max(1e-24), "N/m"),
                 _ => number(name, value, error, unit),
             }
         })
         .collect();
-    found.extend(picks[k].searched.iter().enumerate().map(|(which, searched)| {
-        let Known { value, std_error } = known(study, k, which);
-        number(searched.name, value, std_error, searched.unit)
-    }));
+    let searched = own.searched.iter().zip(&settled.searched[k]);
+    found.extend(searched.map(|(s, known)| number(s.name, known.value, known.std_error, s.unit)));
     found
 }
 
@@ -286,8 +284,7 @@ fn of_hardening_spring(track: &Track, study: &Study, k: usize) -> Option<Vec<Cau
         return None;
     }
     let solved = study.solved.as_ref()?;
-    let before = study.chosen[..k].iter().map(|c| study.candidates[c.candidate].columns.len()).sum::<usize>();
-    let first = study.system.base + before;
+    let first = first_of(study, k);
     let values = &solved.values[first..first + 4];
     let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
     let found = spring(values, track);

@@ -4,6 +4,7 @@ use super::candidate::{Candidate, about_its_zero};
 use super::force::Model;
 use super::free;
 use super::geometry::Study;
+use super::searched::settled;
 use super::system::Solved;
 use super::track::Track;
 use haptics::law::{
@@ -15,8 +16,11 @@ use haptics::law::{
 /// The model's laws refitted beside the chosen causes, and the plant causes among these as laws of their own. Instruments' faults are
 /// no part of a world.
 pub fn effects(track: &Track, model: &Model, study: &Study) -> Vec<Effect> {
-    let Some(solved) = &study.solved else { return model.clone() };
-    made(track, model, study, &study.picks(), solved).0
+    let Some(settled) = settled(study) else { return model.clone() };
+    let searched: Vec<Vec<f64>> =
+        settled.searched.iter().map(|all| all.iter().map(|known| known.value).collect()).collect();
+    let candidates: Vec<&Candidate> = study.picks().into_iter().map(|c| &study.candidates[c]).collect();
+    made(track, model, &candidates, &settled.values, &searched).0
 }
 
 /// The same for some of the candidates; nothing where a plant cause among them has no law that a world runs.
@@ -27,24 +31,40 @@ pub fn effects_of(
     picks: &[usize],
     solved: &Solved,
 ) -> Option<Vec<Effect>> {
-    let (found, is_whole) = made(track, model, study, picks, solved);
+    let candidates: Vec<&Candidate> = picks.iter().map(|c| &study.candidates[*c]).collect();
+    let tried = |c: &&Candidate| c.searched.iter().map(|s| s.value).collect();
+    let searched: Vec<Vec<f64>> = candidates.iter().map(tried).collect();
+    let mut values = solved.values.clone();
+    let mut at = values.len() - candidates.iter().map(|c| c.columns.len()).sum::<usize>();
+    for candidate in &candidates {
+        values[at] *= if candidate.is_share() { study.shares_of[0] } else { 1.0 };
+        at += candidate.columns.len();
+    }
+    let (found, is_whole) = made(track, model, &candidates, &values, &searched);
     is_whole.then_some(found)
 }
 
-/// The laws, and whether every plant cause is among them.
-fn made(track: &Track, model: &Model, study: &Study, picks: &[usize], solved: &Solved) -> (Vec<Effect>, bool) {
-    let mut found: Vec<Effect> = model.iter().zip(&solved.values).map(|(e, share)| scaled(e, *share)).collect();
+/// The laws, and whether every plant cause is among them. `values`: of the model's columns and then of the causes' ones; `searched`: of each cause.
+fn made(
+    track: &Track,
+    model: &Model,
+    causes: &[&Candidate],
+    values: &[f64],
+    searched: &[Vec<f64>],
+) -> (Vec<Effect>, bool) {
+    let mut found: Vec<Effect> = model.iter().zip(values).map(|(e, share)| scaled(e, *share)).collect();
     let dry = Dry::of(&found);
     let weight_n = found.iter().filter(|e| e.role() == Role::Gravity).map(|e| e.values[0]).sum::<f64>();
-    let (mut at, mut is_whole) = (study.base.len(), true);
-    for candidate in picks.iter().map(|p| &study.candidates[*p]) {
-        let values = &solved.values[at..at + candidate.columns.len()];
+    let of_causes = causes.iter().map(|c| c.columns.len()).sum::<usize>();
+    let (mut at, mut is_whole) = (values.len() - of_causes, true);
+    for (candidate, searched) in causes.iter().zip(searched) {
+        let values = &values[at..at + candidate.columns.len()];
         if candidate.id == Hysteresis.id() {
             // What bends before it slides is taken from what slides at once.
             found.iter_mut().filter(|e| e.law().is_dry()).for_each(|e| *e = scaled(e, (1.0 - values[0]).max(0.0)));
         }
-        let laws = match dry.law(candidate, values) {
-            laws if laws.is_empty() => effect(candidate, values, track, weight_n).into_iter().collect(),
+        let laws = match dry.law(candidate, values, searched) {
+            laws if laws.is_empty() => effect(candidate, (values, searched), track, weight_n).into_iter().collect(),
             laws => laws,
         };
         is_whole &= !laws.is_empty() || candidate.kind == Kind::Instrument;
@@ -70,8 +90,8 @@ impl Dry {
     }
 
     /// A cause that is a share of the dry friction, as laws: of either part that there is. None for other causes.
-    fn law(&self, candidate: &Candidate, values: &[f64]) -> Vec<Effect> {
-        let (share, searched) = (values[0], |k: usize| candidate.searched.get(k).map_or(0.0, |s| s.value));
+    fn law(&self, candidate: &Candidate, values: &[f64], searched: &[f64]) -> Vec<Effect> {
+        let (share, searched) = (values[0], |k: usize| searched.get(k).copied().unwrap_or(0.0));
         let starts = candidate.searched.first().is_some_and(|s| s.name == "t0");
         let course = if starts { [0.0, searched(0)] } else { [searched(0), 0.0] };
         let changes = |of: f64| [0.0, share * of, course[0], course[1]];
@@ -111,12 +131,12 @@ fn scaled(effect: &Effect, share: f64) -> Effect {
 }
 
 /// A plant cause of the force as a law, but for a share of the dry friction. `weight_n`: weight of the model, N or N m.
-fn effect(candidate: &Candidate, values: &[f64], track: &Track, weight_n: f64) -> Option<Effect> {
+fn effect(candidate: &Candidate, (values, searched): (&[f64], &[f64]), track: &Track, weight_n: f64) -> Option<Effect> {
     if candidate.kind != Kind::Plant {
         return None;
     }
     let first = values.first().copied().unwrap_or(0.0);
-    let searched = |k: usize| candidate.searched.get(k).map_or(0.0, |s| s.value);
+    let searched = |k: usize| searched.get(k).copied().unwrap_or(0.0);
     let radius = track.radius_m.unwrap_or(0.0);
     let named = |name: &str| candidate.linear.first().is_some_and(|(n, _)| *n == name);
     let of = |law: &'static dyn Law, values: &[f64]| Some(Effect::new(law, values));
@@ -187,19 +207,19 @@ mod tests {
         let at = |time_s: f64| Motion { time_s, direction: 1.0, normal_force_n: -5.0, ..Motion::default() };
         let total = |laws: &[Effect], time_s: f64| laws.iter().map(|e| e.force(&at(time_s))).sum::<f64>();
         let bends = Candidate::one("hysteresis", Kind::Plant, "share", "1", Vec::new()).at("way", 1e-4, "m");
-        let laws = Dry::of(&model).law(&bends, &[0.8]);
+        let laws = Dry::of(&model).law(&bends, &[0.8], &[1e-4]);
         assert!(laws.len() == 2 && (total(&laws, 0.0) - 0.8 * (0.1 + 0.2 * 5.0)).abs() < 1e-12, "{laws:?}");
         // Under another load the same share.
-        let loaded = Dry::of(&model[1..2]).law(&bends, &[0.8]);
+        let loaded = Dry::of(&model[1..2]).law(&bends, &[0.8], &[1e-4]);
         assert!(loaded.len() == 1 && (total(&loaded, 0.0) - 0.8).abs() < 1e-12, "{loaded:?}");
         let change = || Candidate::one("friction-change", Kind::Plant, "relative change", "1", Vec::new());
-        let laws = Dry::of(&model).law(&change().at("t0", 8.0, "s"), &[0.5]);
+        let laws = Dry::of(&model).law(&change().at("t0", 8.0, "s"), &[0.5], &[8.0]);
         assert!(total(&laws, 7.9) == 0.0 && (total(&laws, 8.1) - 0.5 * 1.1).abs() < 1e-12, "{laws:?}");
-        let warms = Dry::of(&model).law(&change().at("tau", 8.0, "s"), &[-0.5]);
+        let warms = Dry::of(&model).law(&change().at("tau", 8.0, "s"), &[-0.5], &[8.0]);
         assert!((total(&warms, 8.0) + 0.5 * 1.1 * (1.0 - (-1.0_f64).exp())).abs() < 1e-12, "{warms:?}");
         let channel = ("temperature_degC".to_owned(), "degC".to_owned());
-        assert!(Dry::of(&model).law(&change().with(channel), &[0.5]).is_empty(), "no world has a temperature");
+        assert!(Dry::of(&model).law(&change().with(channel), &[0.5], &[]).is_empty(), "no world has a temperature");
         let other = Candidate::one("stribeck", Kind::Plant, "Fs", "N", Vec::new());
-        assert!(Dry::of(&model).law(&other, &[0.5]).is_empty());
+        assert!(Dry::of(&model).law(&other, &[0.5], &[]).is_empty());
     }
 }

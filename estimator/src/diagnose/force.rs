@@ -13,7 +13,7 @@ use super::hung;
 use super::select::{Chosen, Selection};
 use super::starts::to_refine;
 use super::stuck::{self, Load};
-use super::system::{Held, Rows, System};
+use super::system::{Held, Rows, Solved, System};
 use super::track::{Place, Row, Track};
 use super::white::Noise;
 use crate::estimate::EstimateError;
@@ -260,7 +260,8 @@ fn compare(
         Selection { system: &system, candidates: &candidates, threshold, dry: has_dry, one_loss: true }.run(&start);
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
     let solved = system.solve(&picks);
-    Ok(Study { candidates, chosen, system, solved, y, base, weight })
+    let shares_of = solved.as_ref().map_or([1.0, 0.0], |s| shares_of(track, model, &dry, s, system.rows));
+    Ok(Study { candidates, chosen, system, solved, y, base, weight, shares_of })
 }
 
 /// What the model with Coulomb friction leaves of the force, root mean square, and whether its friction resists.
@@ -470,6 +471,19 @@ fn friction_is_sound(model: &Model, values: &[f64]) -> bool {
 fn is_resisting(effect: &Effect) -> bool {
     use haptics::law::Role;
     matches!(effect.role(), Role::Dry | Role::Presliding | Role::Viscous)
+}
+
+/// `used`: the dry friction of each row that shares were asked of; its ratio to what the model came out at beside them, along the motion, and the
+/// relative error of that.
+fn shares_of(track: &Track, model: &Model, used: &[f64], solved: &Solved, rows: f64) -> [f64; 2] {
+    let of = |level: &dyn Fn(usize) -> f64| track.along().map(level).sum::<f64>();
+    let (used, now) = (of(&|i| used[i]), of(&|i| dry_level(track, model, &solved.values, i)));
+    let variance = solved.rss / (rows - solved.columns.len() as f64).max(1.0);
+    let dry = model.iter().enumerate().filter(|(_, effect)| effect.law().is_dry());
+    let error = |(k, effect): (usize, &Effect)| {
+        (variance * solved.inverse[(k, k)]).sqrt() * of(&|i| level(effect, track, i).abs())
+    };
+    if used > 0.0 && now > 0.0 { [used / now, dry.map(error).sum::<f64>() / now] } else { [1.0, 0.0] }
 }
 
 /// Size of the model's dry friction at a row if it slid.

@@ -104,6 +104,8 @@ pub struct Study {
     pub y: Vec<f64>,
     pub base: Vec<Vec<f64>>,
     pub weight: Vec<f64>,
+    /// The dry friction that columns of shares of it were made of, over the one that came out beside them, and the relative error of that.
+    pub shares_of: [f64; 2],
 }
 
 impl Study {
@@ -201,7 +203,7 @@ fn compare(
     let chosen = Selection { system: &system, candidates: &candidates, threshold, dry: true, one_loss: false }.run(&[]);
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
     let solved = system.solve(&picks);
-    let mut study = Study { candidates, chosen, system, solved, y, base, weight };
+    let mut study = Study { candidates, chosen, system, solved, y, base, weight, shares_of: [1.0, 0.0] };
     // What a line misses of pads that harden, or one slip of two, looks like another cause, weakly, where it was fitted.
     leave_out_what_harms(&mut study, &stretch, threshold, &|_, _| true);
     Ok(study)

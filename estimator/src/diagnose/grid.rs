@@ -16,6 +16,8 @@ const WIDTHS: [f64; 3] = [0.12, 0.2, 0.35];
 const STRIBECK: [f64; 7] = [0.06, 0.1, 0.16, 0.26, 0.4, 0.6, 0.9];
 /// Exponents with which it falls; 0 is the Gaussian.
 const FALLING: [f64; 2] = [0.0, 1.0];
+/// A Gaussian looks most like an exponential where its speed is this many times the other's.
+const LIKE_EXPONENTIAL: f64 = 1.5;
 /// Ways of presliding and half gaps, as shares of the range of positions.
 const WAYS: [f64; 14] =
     [0.00003, 0.00006, 0.00012, 0.00024, 0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.065, 0.13, 0.2];
@@ -171,8 +173,14 @@ impl Grid {
             match candidate.id {
                 "stribeck" => {
                     let alpha = value("alpha").unwrap_or(0.0);
-                    let speeds = times(value("vs").unwrap_or(0.0), &[0.72, 0.85, 1.0, 1.18, 1.38]);
+                    let vs = value("vs").unwrap_or(0.0);
+                    let speeds = times(vs, &[0.72, 0.85, 1.0, 1.18, 1.38]);
                     grid.stribeck.extend(speeds.into_iter().map(|vs| (vs, alpha)));
+                    // The other exponent, as near: on the coarse grid alone the wrong one may be nearer.
+                    let (other, alike) =
+                        if alpha == 1.0 { (0.0, vs * LIKE_EXPONENTIAL) } else { (1.0, vs / LIKE_EXPONENTIAL) };
+                    let speeds = times(alike, &[0.72, 0.85, 1.0, 1.18, 1.38]);
+                    grid.stribeck.extend(speeds.into_iter().map(|vs| (vs, other)));
                 }
                 "hysteresis" | "backlash" => {
                     let way = value("way").or(value("delta")).unwrap_or(0.0);

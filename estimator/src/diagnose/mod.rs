@@ -53,6 +53,7 @@ mod signs;
 mod skew;
 mod slide;
 mod sliding;
+mod slowest;
 mod starts;
 mod strange_path;
 mod stuck;

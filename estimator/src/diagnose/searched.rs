@@ -18,23 +18,95 @@ pub struct Known {
     pub std_error: f64,
 }
 
+/// The chosen causes with their searched values at the vertices, and all that was solved beside them there.
+pub struct Settled {
+    /// Values of the model's columns and then of the causes' ones, in the order of [`System::columns`](super::system::System::columns).
+    pub values: Vec<f64>,
+    /// One standard error of each of these: that of the values solved for, and what is unknown of the searched ones.
+    pub std_errors: Vec<f64>,
+    /// The searched values of each chosen cause.
+    pub searched: Vec<Vec<Known>>,
+}
+
+/// What everything comes out at between the values that were tried. Nothing where nothing was solved.
+pub fn settled(study: &Study) -> Option<Settled> {
+    let solved = study.solved.as_ref()?;
+    let picks = study.picks();
+    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    let squares = (0..solved.values.len()).map(|i| variance * solved.inverse[(i, i)]);
+    let (mut values, mut squares) = (solved.values.clone(), squares.collect::<Vec<f64>>());
+    let mut searched = Vec::new();
+    for (k, own) in picks.iter().map(|c| &study.candidates[*c]).enumerate() {
+        let all: Vec<Known> = (0..own.searched.len()).map(|which| known(study, k, which)).collect();
+        let first = first_of(study, k);
+        for (i, unknown) in carried_over(study, k, &all).into_iter().enumerate() {
+            squares[i] += unknown.powi(2);
+        }
+        // A longer wave has another phase where it begins: its parts are no smooth functions of its length.
+        if own.id != PositionRipple.id() {
+            for (which, known) in all.iter().enumerate() {
+                let moved = moved(study, k, which, known.value);
+                values.iter_mut().zip(moved.into_iter().flatten()).for_each(|(v, by)| *v += by);
+            }
+        }
+        let own_values = first..first + own.columns.len();
+        if !own.admits(&values[own_values.clone()]) {
+            values[own_values.clone()].copy_from_slice(&solved.values[own_values]);
+        }
+        searched.push(all);
+    }
+    let mut std_errors: Vec<f64> = squares.into_iter().map(f64::sqrt).collect();
+    for k in (0..picks.len()).filter(|k| study.candidates[picks[*k]].is_share()) {
+        let first = first_of(study, k);
+        // Friction that was less at first has changed by more: the errors of both add up.
+        let [ratio, error] = study.shares_of;
+        values[first] *= ratio;
+        std_errors[first] = std_errors[first] * ratio + error * values[first].abs();
+    }
+    Some(Settled { values, std_errors, searched })
+}
+
+/// Where the values of the k-th chosen cause begin.
+pub fn first_of(study: &Study, k: usize) -> usize {
+    study.system.base + study.picks()[..k].iter().map(|p| study.candidates[*p].columns.len()).sum::<usize>()
+}
+
+/// All values and −2 ln(likelihood), with another candidate in the place of the k-th chosen cause.
+fn fitted(study: &Study, k: usize, candidate: usize) -> Option<(Vec<f64>, f64)> {
+    let mut with = study.picks();
+    with[k] = candidate;
+    study.system.least(&with).map(|(values, rss)| (values, study.system.rows * rss.max(1e-300).ln()))
+}
+
+/// What all values change by where one searched value is another than the tried one: on the parabola through what comes out at its neighbours.
+fn moved(study: &Study, k: usize, which: usize, to: f64) -> Option<Vec<f64>> {
+    let own = study.picks()[k];
+    let place = |candidate: usize| study.candidates[candidate].searched[which].value;
+    let [below, above] = neighbours(study, own, which);
+    let (below, above) = (below?, above?);
+    let (left, right, away) = (place(below) - place(own), place(above) - place(own), to - place(own));
+    let [here, below, above] = [own, below, above].map(|c| fitted(study, k, c));
+    let ((here, _), (below, _), (above, _)) = (here?, below?, above?);
+    // Lagrange's: one at its own place, nothing at the others.
+    let of_below = away * (away - right) / (left * (left - right));
+    let of_above = away * (away - left) / (right * (right - left));
+    let changes = here.iter().zip(&below).zip(&above);
+    Some(changes.map(|((h, b), a)| of_below * (b - h) + of_above * (a - h)).collect())
+}
+
 /// The `which`-th searched value of the k-th chosen cause: the vertex of −2 ln(likelihood) through it and its neighbours, all else solved
 /// anew beside each, and the error that its curvature there stands for.
 pub fn known(study: &Study, k: usize, which: usize) -> Known {
-    let picks = study.picks();
-    let price = |candidate: usize| {
-        let mut with = picks.clone();
-        with[k] = candidate;
-        study.system.solve(&with).map(|solved| study.system.rows * solved.rss.max(1e-300).ln())
-    };
+    let own = study.picks()[k];
     let value = |candidate: usize| study.candidates[candidate].searched[which].value;
+    let price = |candidate: usize| fitted(study, k, candidate).map(|(_, price)| price);
     let tried = |candidate: Option<usize>| candidate.and_then(|c| Some((value(c), price(c)?)));
-    let here = value(picks[k]);
-    let Some(least) = price(picks[k]) else { return alone(here) };
-    if study.candidates[picks[k]].id == PositionRipple.id() {
-        return wave(neighbours(study, picks[k], which).map(tried), (here, least));
+    let here = value(own);
+    let Some(least) = price(own) else { return alone(here) };
+    if study.candidates[own].id == PositionRipple.id() {
+        return wave(neighbours(study, own, which).map(tried), (here, least));
     }
-    match neighbours(study, picks[k], which).map(tried).into() {
+    match neighbours(study, own, which).map(tried).into() {
         (Some(below), Some(above)) => vertex(below, (here, least), above),
         (Some((other, _)), None) | (None, Some((other, _))) => {
             Known { value: here, std_error: AT_THE_END * (other - here).abs() }
@@ -43,34 +115,36 @@ pub fn known(study: &Study, k: usize, which: usize) -> Known {
     }
 }
 
-/// What is unknown of the searched values leaves unknown of the first fitted one of the k-th chosen cause: a wider gap takes a smaller share. By
-/// its slope over the neighbours, and by what comes out at all other tried values, as likely as they are.
-pub fn carried_over(study: &Study, k: usize) -> f64 {
-    let picks = study.picks();
-    let own = &study.candidates[picks[k]];
-    let first = study.system.base + picks[..k].iter().map(|p| study.candidates[*p].columns.len()).sum::<usize>();
-    let fitted = |candidate: usize| {
-        let mut with = picks.clone();
-        with[k] = candidate;
-        study.system.least(&with).map(|(values, rss)| (values[first], study.system.rows * rss.max(1e-300).ln()))
-    };
-    let Some((best, least)) = fitted(picks[k]) else { return 0.0 };
-    let of = |which: usize| {
-        let value = |candidate: usize| study.candidates[candidate].searched[which].value;
-        let [below, above] = neighbours(study, picks[k], which).map(|c| c.unwrap_or(picks[k]));
-        let slope = (fitted(above)?.0 - fitted(below)?.0) / (value(above) - value(below));
-        slope.is_finite().then(|| slope * known(study, k, which).std_error)
-    };
-    let by_slope = (0..own.searched.len()).filter_map(of).fold(0.0, f64::hypot);
+/// What is unknown of the searched values of the k-th chosen cause leaves unknown of all that was solved: a wider gap takes a smaller share. By its
+/// slope over the neighbours, or by what comes out at all other tried values, as likely as they are, whichever is more.
+fn carried_over(study: &Study, k: usize, searched: &[Known]) -> Vec<f64> {
+    let own = study.picks()[k];
+    let Some((best, least)) = fitted(study, k, own).filter(|_| !searched.is_empty()) else { return Vec::new() };
+    let mut by_slope = vec![0.0_f64; best.len()];
+    for (which, known) in searched.iter().enumerate() {
+        let place = |candidate: usize| study.candidates[candidate].searched[which].value;
+        let [below, above] = neighbours(study, own, which).map(|c| c.unwrap_or(own));
+        let apart = place(above) - place(below);
+        let (Some((low, _)), Some((high, _))) = (fitted(study, k, below), fitted(study, k, above)) else { continue };
+        if apart > 0.0 {
+            let slopes = low.iter().zip(&high).map(|(l, h)| (h - l) / apart * known.std_error);
+            by_slope.iter_mut().zip(slopes).for_each(|(sum, s)| *sum = sum.hypot(s));
+        }
+    }
+    let own = &study.candidates[own];
     let alike = |c: &Candidate| c.id == own.id && c.part == own.part && c.linear == own.linear;
-    let others = (0..study.candidates.len()).filter(|c| alike(&study.candidates[*c])).filter_map(fitted);
-    let (mut weights, mut squares) = (0.0, 0.0);
-    for (value, price) in others {
+    let others = (0..study.candidates.len()).filter(|c| alike(&study.candidates[*c]));
+    let (mut weights, mut squares) = (0.0, vec![0.0; best.len()]);
+    for (values, price) in others.filter_map(|c| fitted(study, k, c)) {
         let weight = (-0.5 * (price - least)).min(0.0).exp();
         weights += weight;
-        squares += weight * (value - best).powi(2);
+        squares.iter_mut().zip(values.iter().zip(&best)).for_each(|(s, (v, b))| *s += weight * (v - b).powi(2));
     }
-    by_slope.hypot((squares / weights.max(1e-300)).sqrt())
+    by_slope
+        .into_iter()
+        .zip(squares)
+        .map(|(slope, square)| slope.max((square / f64::max(weights, 1e-300)).sqrt()))
+        .collect()
 }
 
 /// The candidates with the next smaller and the next larger of one searched value, all others being the same.

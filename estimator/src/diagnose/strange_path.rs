@@ -74,7 +74,7 @@ pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<(Study, usiz
         let (term, score) = selection.unexplained(&picks)?;
         let solved = system.solve(&picks);
         let (y, base, weight) = (study.y.clone(), study.base.clone(), study.weight.clone());
-        Some((Study { candidates, chosen, system, solved, y, base, weight }, term, score))
+        Some((Study { candidates, chosen, system, solved, y, base, weight, shares_of: [1.0, 0.0] }, term, score))
     };
     made(candidates)
 }

@@ -8,7 +8,6 @@ use super::{channel, generic};
 use crate::diagnose::candidate::{Candidate, Shape};
 use crate::diagnose::geometry::Study;
 use crate::diagnose::report::CauseParameter;
-use crate::diagnose::searched::carried_over;
 use crate::diagnose::threshold;
 use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
@@ -94,8 +93,7 @@ pub fn as_of_input(
     for p in &mut found {
         match p.name.as_str() {
             "share" => {
-                let carried = place.map_or(0.0, |k| carried_over(study, k));
-                let error = (p.std_error.hypot(carried) / ratio).abs();
+                let error = (p.std_error / ratio).abs();
                 (p.value, p.std_error) = (p.value / ratio, error.hypot(unseen / searched));
             }
             "delta" | "way" => p.std_error = p.std_error.hypot(unseen),
