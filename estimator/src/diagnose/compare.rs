@@ -72,6 +72,7 @@ impl Channel {
             weight: &weight,
             period_s,
             noise: Noise::Any,
+            may_stand: false,
         };
         let coefficients = whitening(&base, &candidates, &rows, threshold)?;
         let system = System::new(&base, &candidates, &rows, coefficients);

@@ -246,6 +246,7 @@ fn compare(
         weight: &weight,
         period_s: track.period_s,
         noise: if track.freely.is_some() { Noise::OfDifferences } else { Noise::Any },
+        may_stand: true,
     };
     let has_dry = model.iter().any(|e| e.law().is_dry());
     let place = |found: &Candidate| candidates.iter().position(|c| c.id == found.id && c.is_near(&found.searched));

@@ -189,6 +189,7 @@ fn compare(
         weight: &weight,
         period_s: path.period_s,
         noise: Noise::Any,
+        may_stand: false,
     };
     // The whitening must not swallow what it is to leave: it comes from the residual of everything together.
     let unwhitened = System::new(&base, &candidates, &rows, Vec::new());

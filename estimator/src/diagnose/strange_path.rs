@@ -65,6 +65,7 @@ pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<(Study, usiz
             weight: &study.weight,
             period_s: path.period_s,
             noise: Noise::Any,
+            may_stand: false,
         };
         let coefficients = study.system.coefficients.clone();
         let system = System::new(&study.base, &candidates, &rows, coefficients);

@@ -16,6 +16,10 @@ const MOST_BLOCKS: usize = 20;
 const LOCKED_EVERY: usize = 4;
 /// Rows so close to a locked block take no part, s.
 const GUARD_S: f64 = 0.1;
+/// … and as many of them say something.
+const LEAST_SAID: usize = 3;
+/// Sums of ones are whole numbers.
+const ROUNDING: f64 = 1e-6;
 /// Folds of the cross-validation.
 pub const FOLDS: usize = 5;
 
@@ -33,6 +37,8 @@ pub struct Rows<'a> {
     pub period_s: f64,
     /// What their noise is like.
     pub noise: Noise,
+    /// Whether what stands has next to no weight: blocks are then of rows that say as much, not of as many.
+    pub may_stand: bool,
 }
 
 /// Whether a row may be held out.
@@ -67,9 +73,21 @@ pub fn uses(rows: &Rows<'_>) -> Vec<Use> {
     testable.sort_by(|a, b| rows.time_s[*a].total_cmp(&rows.time_s[*b]));
     // What stands by itself (a blow, not a sample of a motion) has nothing in common with what is beside it.
     let is_alone = rows.stretch.windows(2).all(|pair| pair[0] != pair[1]);
-    let blocks = (testable.len() / if is_alone { LEAST_ALONE } else { LEAST_BLOCK }).clamp(1, MOST_BLOCKS);
+    // By what rows say, not by how many they are: a block of a standstill tests nothing, and without the one block that moves nothing trains.
+    let mut said = 0.0;
+    let before: Vec<f64> = testable
+        .iter()
+        .map(|i| {
+            let own = if rows.may_stand { rows.weight[*i].powi(2) } else { 1.0 };
+            said += own;
+            said - own
+        })
+        .collect();
+    let least = if is_alone { LEAST_ALONE } else { LEAST_BLOCK };
+    let most = ((said + ROUNDING) as usize / LEAST_SAID).clamp(1, MOST_BLOCKS);
+    let blocks = (testable.len() / least).clamp(1, most);
     let guard = if is_alone { 0 } else { (GUARD_S / rows.period_s).round().max(1.0) as usize };
-    let block_of = |k: usize| k * blocks / testable.len();
+    let block_of = |k: usize| ((before[k] * blocks as f64 / said.max(1e-300)) as usize).min(blocks - 1);
     let locked = |block: usize| blocks >= LOCKED_EVERY && block % LOCKED_EVERY == LOCKED_EVERY - 1;
     let mut uses = vec![Use::Always; rows.y.len()];
     let mut open = 0;
@@ -324,4 +342,50 @@ fn squares(gram: &DMatrix<f64>, columns: &[usize], values: &[f64], target: usize
         }
     }
     sum.max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Blocks of rows of these weights, 50 a second.
+    fn of(weight: &[f64]) -> Vec<Use> {
+        let time_s: Vec<f64> = (0..weight.len()).map(|i| 0.02 * i as f64).collect();
+        let rows = Rows {
+            y: &vec![0.0; weight.len()],
+            stretch: &vec![0; weight.len()],
+            testable: &vec![Held::Fully; weight.len()],
+            time_s: &time_s,
+            weight,
+            period_s: 0.02,
+            noise: Noise::Any,
+            may_stand: true,
+        };
+        uses(&rows)
+    }
+
+    #[test]
+    fn rows_that_say_as_much_are_held_out_in_blocks_of_as_many() {
+        let found = of(&[1.0; 600]);
+        let locked = |block: usize| found.iter().filter(|u| **u == Use::Locked(block)).count();
+        assert_eq!([3, 7, 11, 15, 19].map(locked), [30; 5]);
+        let folds: Vec<usize> = (0..FOLDS).map(|f| found.iter().filter(|u| **u == Use::Fold(f)).count()).collect();
+        assert!(folds.iter().all(|n| (70..=90).contains(n)), "{folds:?}");
+    }
+
+    #[test]
+    fn something_that_stands_for_most_of_the_time_still_trains_on_motion_whatever_is_held_out() {
+        // It moves for two of thirty seconds.
+        let weight: Vec<f64> = (0..1500).map(|i| if (700..800).contains(&i) { 1.0 } else { 0.01 }).collect();
+        let found = of(&weight);
+        let said = |wanted: &dyn Fn(Use) -> bool| {
+            let rows = weight.iter().zip(&found).filter(|(_, u)| wanted(**u));
+            rows.map(|(w, _)| w * w).sum::<f64>()
+        };
+        for fold in 0..FOLDS {
+            let share = said(&|u| u == Use::Fold(fold)) / said(&|u| matches!(u, Use::Fold(_)));
+            assert!((0.08..0.4).contains(&share), "fold {fold}: {share}");
+        }
+        assert!(said(&|u| matches!(u, Use::Locked(_))) > 15.0, "what is locked has to tell something");
+    }
 }
