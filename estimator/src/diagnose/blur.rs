@@ -5,7 +5,7 @@ use super::track::{Place, Row, Track};
 /// The sign of a velocity is blurred over this share of the usual speed at least.
 const BLUR: f64 = 0.008;
 /// … over this one where a mass takes part, whose force jumps with the friction's.
-const BLUR_OF_MASS: f64 = 0.007;
+const BLUR_OF_MASS: f64 = 0.012;
 /// … and over this one where there is no force whose clock could differ.
 const BLUR_OF_FREE: f64 = 0.004;
 /// A reversal lies anywhere between two rows: standard deviation of its place, in rows, with some room.
