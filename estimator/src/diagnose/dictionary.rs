@@ -6,6 +6,7 @@ use super::candidate::{Candidate, Shape};
 use super::columns::Columns;
 use super::free;
 use super::grid::Grid;
+use super::means;
 use super::track::{Place, Row, Track};
 use super::zero::Zero;
 use crate::signal::derive::savitzky_golay;
@@ -322,7 +323,7 @@ impl Dictionary<'_> {
             }
             felt.push(of(&motion(point.velocity), &memory, padded));
         }
-        self.column(&|row| row.span.weights().map(|(k, weight)| weight * felt[k]).sum())
+        means::of_points(track, &felt, |_| 0.0)
     }
 
     fn remembered_by_rows(
