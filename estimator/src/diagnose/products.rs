@@ -43,6 +43,7 @@ fn is_run(rows: &[usize]) -> bool {
 fn add(sum: &mut DMatrix<f64>, (columns, order): (&[Vec<f64>], &[usize]), first: usize, picked: &[usize]) {
     let count = order.len();
     let mut tile = DMatrix::zeros(TILE + LEAST_TILE, count);
+    let mut turned = DMatrix::zeros(count - first, TILE + LEAST_TILE);
     let panels = (count - first).div_ceil(PANEL).max(1);
     let bound = |panel: usize| first + panel * (count - first) / panels;
     let mut rest = picked;
@@ -61,7 +62,8 @@ fn add(sum: &mut DMatrix<f64>, (columns, order): (&[Vec<f64>], &[usize]), first:
             }
         }
         let tile = tile.rows(0, rows.len());
-        let across = tile.columns(first, count - first).transpose();
+        let mut across = turned.columns_mut(0, rows.len());
+        tile.columns(first, count - first).transpose_to(&mut across);
         if first > 0 {
             let old = tile.columns(0, first);
             sum.view_mut((first, 0), (count - first, first)).gemm(1.0, &across, &old, 1.0);
