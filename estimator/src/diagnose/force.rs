@@ -217,10 +217,10 @@ fn compare(
         let without = &taken;
         let (predicted, resisting, dry) = (&predicted, &resisting, &dry);
         let columns = &made.columns;
-        Dictionary { track, predicted, resisting, dry, fixed: &known, without, grid, columns }.candidates()
+        Dictionary { track, predicted, resisting, dry, fixed: &known, without, grid, columns }
     };
-    let mut candidates = dictionary(coarse);
-    candidates.extend(dictionary(fine).into_iter().filter(|c| !c.searched.is_empty()));
+    let mut candidates = dictionary(coarse).candidates();
+    candidates.extend(dictionary(fine).searched());
     let losses = candidates.iter().filter(|c| ["hysteresis", "backlash"].contains(&c.id));
     let losses: Vec<&[f64]> = losses.map(|c| c.columns[0].as_slice()).collect();
     base.extend(stuck::creep(track, &y, &losses));
