@@ -265,6 +265,11 @@ fn compare(
 /// What the model with Coulomb friction leaves of the force, root mean square, and whether its friction resists.
 pub fn plain_rms(track: &mut Track, model: &Model) -> Result<(f64, bool), EstimateError> {
     blur(track);
+    blurred_rms(track, model)
+}
+
+/// The same of rows whose directions are blurred already.
+pub fn blurred_rms(track: &Track, model: &Model) -> Result<(f64, bool), EstimateError> {
     let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
     columns.push(column(track, &Effect::new(&CoulombFriction, &[1.0])));
     let along: Vec<f64> =
