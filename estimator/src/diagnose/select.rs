@@ -165,17 +165,10 @@ impl Selection<'_> {
             .filter(|c| chosen.iter().all(|o| !self.excludes(self.candidates[*o].id, self.candidates[*c].id)))
     }
 
-    /// The best few, whether they earn their place or not: what the whitening must not swallow.
-    pub fn greedy(&self) -> Vec<usize> {
-        let mut chosen: Vec<usize> = Vec::new();
-        for _ in 0..self.most() {
-            let price = |c: &usize| self.price(&[chosen.as_slice(), &[*c]].concat());
-            match cheapest(self.open(&chosen), price) {
-                Some((best, price)) if price.is_finite() => chosen.push(best),
-                _ => break,
-            }
-        }
-        chosen
+    /// The best one beside the chosen ones, whether it earns its place or not.
+    pub fn next(&self, chosen: &[usize]) -> Option<usize> {
+        let price = |c: &usize| self.price(&[chosen, &[*c]].concat());
+        cheapest(self.open(chosen), price).filter(|(_, price)| price.is_finite()).map(|(best, _)| best)
     }
 
     /// The strongest generic term beside the chosen causes, and its score after the search for it is paid.
@@ -231,11 +224,8 @@ impl Selection<'_> {
     /// What stands of a search that starts with `chosen`; `merges`: one is put in the place of two.
     fn settled(&self, mut chosen: Vec<usize>, merges: bool) -> Vec<usize> {
         while chosen.len() < self.most() {
-            let price = |c: &usize| self.price(&[chosen.as_slice(), &[*c]].concat());
-            match cheapest(self.open(&chosen), price) {
-                Some((best, price)) if price.is_finite() => chosen.push(best),
-                _ => break,
-            }
+            let Some(best) = self.next(&chosen) else { break };
+            chosen.push(best);
             self.swap(&mut chosen);
         }
         self.prune(&mut chosen);
