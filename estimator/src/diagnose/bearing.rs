@@ -6,7 +6,8 @@ mod beside;
 pub use beside::beside_causes;
 
 use super::blur::blur;
-use super::force::{Model, column};
+use super::force::Model;
+use super::means::column;
 use super::track::{Bearing, Place, Row, Track};
 use crate::estimate::EstimateError;
 use crate::identify::linear::{Values, least_squares_values};

@@ -1,10 +1,11 @@
 //! Columns of laws, each made once: the rounds of a comparison ask for most of them again.
 
-use super::force::{column, column_of_place};
-use super::track::Track;
+use super::means::{at_points, column, column_of_place, is_short, of_points};
+use super::track::{Row, Track};
 use haptics::law::{Effect, Law, MAX_PARAMETERS};
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::rc::Rc;
 
 /// How a law becomes a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -17,24 +18,62 @@ enum How {
     Remembered,
 }
 
-/// A law's id, the bits of its values, and how it became a column.
-type Key = (&'static str, [u64; MAX_PARAMETERS], How);
+/// A law's id and the bits of its values.
+type Which = (&'static str, [u64; MAX_PARAMETERS]);
+/// … and how it became a column.
+type Key = (Which, How);
+
+fn which(law: &dyn Law, values: &[f64]) -> Which {
+    let mut bits = [0; MAX_PARAMETERS];
+    bits.iter_mut().zip(values).for_each(|(bits, value)| *bits = value.to_bits());
+    (law.id(), bits)
+}
 
 /// What was made on one track, which changes in its loads only.
 #[derive(Default)]
 pub struct Columns {
     known: RefCell<HashMap<Key, Vec<f64>>>,
+    /// What was felt last at the finer points: the next law may be it times the direction.
+    felt: RefCell<Option<(Which, Rc<[f64]>)>>,
 }
 
 impl Columns {
     /// As [`column`].
     pub fn of(&self, track: &Track, effect: &Effect) -> Vec<f64> {
-        self.made(effect.law(), &effect.values, How::Means, || column(track, effect))
+        self.made(effect.law(), &effect.values, How::Means, || self.mean(track, effect))
     }
 
     /// As [`column_of_place`].
     pub fn of_place(&self, track: &Track, effect: &Effect) -> Vec<f64> {
-        self.made(effect.law(), &effect.values, How::OfPlace, || column_of_place(track, effect))
+        self.made(effect.law(), &effect.values, How::OfPlace, || {
+            if is_short(track) { column_of_place(track, effect) } else { self.mean(track, effect) }
+        })
+    }
+
+    /// As [`column`]. What is another law times the direction is made of that law, which is looked at once for both.
+    fn mean(&self, track: &Track, effect: &Effect) -> Vec<f64> {
+        let (law, alone) = (effect.law(), |row: &Row| effect.force(&row.motion));
+        let other = law.times_direction();
+        let Some(felt) = self.felt(track, &Effect::new(other.unwrap_or(law), &effect.values)) else {
+            return column(track, effect);
+        };
+        if other.is_none() {
+            return of_points(track, &felt, alone);
+        }
+        let turned: Vec<f64> = felt.iter().zip(&track.fine).map(|(felt, point)| felt * point.direction).collect();
+        of_points(track, &turned, alone)
+    }
+
+    /// The force at the finer points; none of a law that needs more than they tell.
+    fn felt(&self, track: &Track, effect: &Effect) -> Option<Rc<[f64]>> {
+        let which = which(effect.law(), &effect.values);
+        let mut last = self.felt.borrow_mut();
+        if let Some((_, felt)) = last.as_ref().filter(|(known, _)| *known == which) {
+            return Some(Rc::clone(felt));
+        }
+        let felt: Rc<[f64]> = at_points(track, effect)?.into();
+        *last = Some((which, Rc::clone(&felt)));
+        Some(felt)
     }
 
     /// What `make` makes of a law that remembers: the same for the same values, each time.
@@ -44,21 +83,19 @@ impl Columns {
 
     /// The loads changed: what goes with them is to be made anew.
     pub fn forget_loads(&mut self) {
-        self.known.get_mut().retain(|(id, ..), _| haptics::law::law(id).is_some_and(|law| !law.feels_load()));
+        self.known.get_mut().retain(|((id, _), _), _| haptics::law::law(id).is_some_and(|law| !law.feels_load()));
     }
 
     fn made(&self, law: &dyn Law, values: &[f64], how: How, make: impl FnOnce() -> Vec<f64>) -> Vec<f64> {
-        let mut bits = [0; MAX_PARAMETERS];
-        bits.iter_mut().zip(values).for_each(|(bits, value)| *bits = value.to_bits());
-        self.known.borrow_mut().entry((law.id(), bits, how)).or_insert_with(make).clone()
+        self.known.borrow_mut().entry((which(law, values), how)).or_insert_with(make).clone()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::track::Row;
+    use super::super::track::{Fine, Span, Weighing};
     use super::*;
-    use haptics::law::{LoadFriction, Motion, ViscousFriction};
+    use haptics::law::{LoadFriction, LocalPush, LocalResistance, Motion, ViscousFriction};
 
     fn track(load_n: f64) -> Track {
         let motion = Motion { velocity: 0.2, direction: 1.0, normal_force_n: load_n, ..Motion::default() };
@@ -76,5 +113,22 @@ mod tests {
         assert_eq!(both(&columns, &track(5.0)), [0.2, 5.0]);
         // Other values are another column.
         assert_eq!(columns.of(&track(5.0), &Effect::new(&LoadFriction, &[0.5]))[0], 2.5);
+    }
+
+    #[test]
+    fn what_resists_and_what_pushes_at_a_place_are_told_apart_by_the_direction_at_every_point() {
+        // Reversed in the middle of a row.
+        let point = |k: usize| Fine { position: 0.01, direction: if k < 3 { 1.0 } else { -0.5 }, ..Fine::default() };
+        let span = Span { start: 0, len: 4, weighing: Weighing::Even };
+        let rows = vec![Row { span, ..Row::at_rest() }];
+        let track = Track { fine: (0..4).map(point).collect(), period_s: 0.04, ..Track::of_rows(rows) };
+        let columns = Columns::default();
+        let of =
+            |law: &'static dyn Law, place: f64| columns.of_place(&track, &Effect::new(law, &[1.0, place, 0.04]))[0];
+        for place in [0.01, 0.02] {
+            let pushes = of(&LocalPush, place);
+            assert!((of(&LocalResistance, place) - 0.625 * pushes).abs() < 1e-12 && pushes > 0.4, "{pushes}");
+        }
+        assert_eq!(of(&LocalPush, 0.01), 1.0);
     }
 }

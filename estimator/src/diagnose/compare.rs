@@ -5,7 +5,7 @@ use super::force::{CONFIRMED, SHOWN, harms};
 use super::gain::{confirmed, gain, holds_out, is_tested};
 use super::geometry::{Study, residual};
 use super::select::{DRY_FRICTION, OF_DRY_FRICTION, Selection};
-use super::system::{Held, Rows, System, solve, uses};
+use super::system::{Held, Rough, Rows, System, solve, uses};
 use super::white::{Noise, whitener};
 use crate::estimate::EstimateError;
 
@@ -146,16 +146,18 @@ pub fn whitening(
     rows: &Rows<'_>,
     threshold: f64,
 ) -> Result<Vec<f64>, EstimateError> {
-    let rough = System::new(base, candidates, rows, Vec::new());
-    let mut used = Selection { system: &rough, candidates, threshold, dry: true, one_loss: false }.greedy();
-    let causes = used.clone();
+    let mut rough = Rough::new(base, candidates, rows);
+    let causes = rough.greedy(threshold);
+    let generic = (0..candidates.len()).filter(|c| candidates[*c].expression.is_some());
+    let used: Vec<usize> = causes.iter().copied().chain(generic).collect();
+    rough.know(&used);
+    let rough = rough.system();
     let own = |k: &usize| {
         let others: Vec<usize> = causes.iter().filter(|c| *c != k).copied().collect();
         rough.distinct(*k, &others).max(LEAST_OWN)
     };
     let mut kept_out: Vec<f64> =
         causes.iter().flat_map(|k| vec![RIDGE * own(k); candidates[*k].columns.len()]).collect();
-    used.extend((0..candidates.len()).filter(|c| candidates[*c].expression.is_some()));
     let columns = rough.columns(&used);
     let target = rough.train.ncols() - 1;
     let mut ridged = rough.train.clone();

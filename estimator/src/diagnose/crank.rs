@@ -2,7 +2,7 @@
 
 use super::force::{self, Model};
 use super::geometry;
-use super::held_arm::{self, Axes};
+use super::held_arm;
 use super::report::{Cause, Diagnosis, Validation, Verdict};
 use super::{
     Options, atlas, bearing, explain, extra, late, nothing, quality, signs, strange_path, threshold, track, unseen,
@@ -160,7 +160,7 @@ fn turned(
         return Ok(Turned { rows, other: None, link: None });
     };
     let arm = geometry::Arm { turn_rad, ..circle.arm.clone() };
-    let other = signals.rows(recording, &arm, Axes::PLAIN)?;
+    let other = signals.rows(recording, &arm)?;
     let model = plain_crank();
     let (before, _) = force::plain_rms(&mut rows.clone(), &model)?;
     let (after, _) = force::plain_rms(&mut other.clone(), &model)?;

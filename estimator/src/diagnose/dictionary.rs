@@ -6,6 +6,7 @@ use super::candidate::{Candidate, Shape};
 use super::columns::Columns;
 use super::free;
 use super::grid::Grid;
+use super::means;
 use super::track::{Place, Row, Track};
 use super::zero::Zero;
 use crate::signal::derive::savitzky_golay;
@@ -61,14 +62,26 @@ struct Units {
 impl Dictionary<'_> {
     /// All candidates.
     pub fn candidates(&self) -> Vec<Candidate> {
+        self.made(false)
+    }
+
+    /// Those alone that have values which were searched for.
+    pub fn searched(&self) -> Vec<Candidate> {
+        self.made(true)
+    }
+
+    fn made(&self, is_searched: bool) -> Vec<Candidate> {
         let mut all = Vec::new();
         self.friction(&mut all);
-        self.motion(&mut all);
+        // Nothing is searched for in what moves.
+        if !is_searched {
+            self.motion(&mut all);
+        }
         self.place(&mut all);
         self.memory(&mut all);
         self.time(&mut all);
         self.instrument(&mut all);
-        all.retain(|c| !self.without.contains(&c.id));
+        all.retain(|c| !self.without.contains(&c.id) && (!is_searched || !c.searched.is_empty()));
         if self.track.freely.is_some() {
             let both_ways = free::goes_both_ways(self.track);
             all.retain(|c| free::can_show(c.id, both_ways));
@@ -322,7 +335,7 @@ impl Dictionary<'_> {
             }
             felt.push(of(&motion(point.velocity), &memory, padded));
         }
-        self.column(&|row| row.span.weights().map(|(k, weight)| weight * felt[k]).sum())
+        means::of_points(track, &felt, |_| 0.0)
     }
 
     fn remembered_by_rows(

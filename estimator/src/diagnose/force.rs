@@ -10,6 +10,7 @@ use super::generic::generic;
 use super::geometry::{Study, residual};
 use super::grid::Grid;
 use super::hung;
+use super::means::column;
 use super::select::{Chosen, Selection};
 use super::starts::to_refine;
 use super::stuck::{self, Load};
@@ -20,9 +21,6 @@ use crate::estimate::EstimateError;
 use crate::identify::linear::{least_squares, least_squares_values};
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, Memory, Stribeck, ViscousFriction};
-
-/// Rows no longer than this are short for what depends on the place, s.
-const SHORT_S: f64 = 0.015;
 
 /// Most rounds in which searched values and the sensor's faults are settled.
 const REFINEMENTS: usize = 2;
@@ -219,10 +217,10 @@ fn compare(
         let without = &taken;
         let (predicted, resisting, dry) = (&predicted, &resisting, &dry);
         let columns = &made.columns;
-        Dictionary { track, predicted, resisting, dry, fixed: &known, without, grid, columns }.candidates()
+        Dictionary { track, predicted, resisting, dry, fixed: &known, without, grid, columns }
     };
-    let mut candidates = dictionary(coarse);
-    candidates.extend(dictionary(fine).into_iter().filter(|c| !c.searched.is_empty()));
+    let mut candidates = dictionary(coarse).candidates();
+    candidates.extend(dictionary(fine).searched());
     let losses = candidates.iter().filter(|c| ["hysteresis", "backlash"].contains(&c.id));
     let losses: Vec<&[f64]> = losses.map(|c| c.columns[0].as_slice()).collect();
     base.extend(stuck::creep(track, &y, &losses));
@@ -268,6 +266,11 @@ fn compare(
 /// What the model with Coulomb friction leaves of the force, root mean square, and whether its friction resists.
 pub fn plain_rms(track: &mut Track, model: &Model) -> Result<(f64, bool), EstimateError> {
     blur(track);
+    blurred_rms(track, model)
+}
+
+/// The same of rows whose directions are blurred already.
+pub fn blurred_rms(track: &Track, model: &Model) -> Result<(f64, bool), EstimateError> {
     let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
     columns.push(column(track, &Effect::new(&CoulombFriction, &[1.0])));
     let along: Vec<f64> =
@@ -316,21 +319,6 @@ pub fn drives(track: &Track, model: &Model) -> Result<bool, EstimateError> {
     // A force that only comes late drives, too, but needs no negative dry friction for that.
     let negative = |s: &f64| *s < -SURELY_NEGATIVE;
     Ok(friction < 0.0 && sizes.iter().all(|s| *s < SURELY_NEGATIVE) && (negative(mass) || others.iter().all(negative)))
-}
-
-/// The force of a law of the place, and of the direction at most in proportion, like [`column`]: within a short row it is as good as straight.
-pub fn column_of_place(track: &Track, effect: &Effect) -> Vec<f64> {
-    if track.period_s > SHORT_S {
-        return column(track, effect);
-    }
-    let of = |row: &Row| if row.place == Place::Along { effect.force(&row.motion) } else { 0.0 };
-    track.rows.iter().map(of).collect()
-}
-
-/// The force of a law with its linear parameters at one (only the first, where it has several), 0 in free rows.
-pub fn column(track: &Track, effect: &Effect) -> Vec<f64> {
-    let of = |row: &Row| if row.place == Place::Along { track.mean(row, &|m| effect.force(m)) } else { 0.0 };
-    track.rows.iter().map(of).collect()
 }
 
 /// What the laws need along every row, each law a mean over the row; what they remember starts anew at every stretch.

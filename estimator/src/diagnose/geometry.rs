@@ -4,7 +4,7 @@ use super::candidate::Candidate;
 use super::courses::{Course, SLIP_STARTS, jump};
 use super::force::leave_out_what_harms;
 use super::select::{Chosen, Selection};
-use super::system::{Held, Rows, Solved, System, solve, uses};
+use super::system::{Held, Rough, Rows, Solved, System, solve, uses};
 use super::white::{Noise, whitener};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
@@ -192,9 +192,9 @@ fn compare(
         may_stand: false,
     };
     // The whitening must not swallow what it is to leave: it comes from the residual of everything together.
-    let unwhitened = System::new(&base, &candidates, &rows, Vec::new());
-    let picks =
-        Selection { system: &unwhitened, candidates: &candidates, threshold, dry: true, one_loss: false }.greedy();
+    let mut unwhitened = Rough::new(&base, &candidates, &rows);
+    let picks = unwhitened.greedy(threshold);
+    let unwhitened = unwhitened.system();
     let columns = unwhitened.columns(&picks);
     let solved = solve(&unwhitened.train, &columns, unwhitened.train.ncols() - 1)
         .ok_or_else(|| EstimateError::Other("no circle fits the handle's path".to_owned()))?;

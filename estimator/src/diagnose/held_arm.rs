@@ -50,9 +50,6 @@ pub struct Axes {
 }
 
 impl Axes {
-    /// As recorded.
-    pub const PLAIN: Self = Self { swapped: false, signs: [1.0; 2] };
-
     fn of(self, force: Vec2) -> Vec2 {
         let force = if self.swapped { force.yx() } else { force };
         Vec2::new(self.signs[0] * force.x, self.signs[1] * force.y)
@@ -184,9 +181,8 @@ impl Signals {
         Path { points, period_s: self.period_s, two_fingered }
     }
 
-    /// The rows along the circle of `arm`, then the free ones.
-    /// `axes`: how the recorded force is turned into the force.
-    pub fn rows(&self, recording: &Recording, arm: &Arm, axes: Axes) -> Result<Track, EstimateError> {
+    /// The rows along the circle of `arm`, then the free ones, with the force as it was recorded.
+    pub fn rows(&self, recording: &Recording, arm: &Arm) -> Result<Track, EstimateError> {
         let up = if recording.meta.up.as_deref() == Some("-y") { -1.0 } else { 1.0 };
         let mut rows = Vec::new();
         let mut fine = Vec::new();
@@ -194,7 +190,7 @@ impl Signals {
         let mut noise = Vec::new();
         let mut slope = None;
         for range in stretches(&self.held) {
-            let (mut made, finest) = self.stretch(range.clone(), stretch_number, arm, (up, axes));
+            let (mut made, finest) = self.stretch(range.clone(), stretch_number, arm, up);
             slope = slope.max(Some(finest));
             noise.push(self.finely(range, arm, &mut made, &mut fine));
             rows.extend(made);
@@ -208,10 +204,8 @@ impl Signals {
                 needed: LEAST_ROWS,
             });
         }
-        let (free, force_noise) = self.free_rows(stretch_number, axes);
-        let noise_is_measured = free.len() > 40;
-        rows.extend(free);
-        let along: Vec<f64> = rows.iter().filter(|r| r.place == Place::Along).map(|r| r.y).collect();
+        rows.extend(self.free_rows(stretch_number));
+        let (force_noise, noise_is_measured) = force_noise(&rows);
         Ok(Track {
             period_s: self.period_s,
             raw_period_s: self.raw_period_s,
@@ -220,7 +214,7 @@ impl Signals {
             planar: true,
             velocity_noise: mean_square(&noise, 0),
             position_noise: mean_square(&noise, 1) / (self.every as f64).sqrt(),
-            force_noise: if noise_is_measured { force_noise } else { white_noise(&along) }.max(1e-9),
+            force_noise,
             noise_is_measured,
             span_s: self.time_s.last().copied().unwrap_or(0.0),
             hung: vec![Hung::on_crank(recording)],
@@ -235,13 +229,7 @@ impl Signals {
     }
 
     /// The rows of a stretch, and the window and order of their acceleration.
-    fn stretch(
-        &self,
-        range: std::ops::Range<usize>,
-        stretch: usize,
-        arm: &Arm,
-        (up, axes): (f64, Axes),
-    ) -> (Vec<Row>, (usize, usize)) {
+    fn stretch(&self, range: std::ops::Range<usize>, stretch: usize, arm: &Arm, up: f64) -> (Vec<Row>, (usize, usize)) {
         let time = &self.time_s[range.clone()];
         let directions: Vec<(Vec2, Vec2)> = range
             .clone()
@@ -266,7 +254,7 @@ impl Signals {
                 let wrapped = outward.y.atan2(outward.x);
                 let angle = wrapped + ((before - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU;
                 before = angle;
-                let force = axes.of(self.force[i]);
+                let force = self.force[i];
                 Row {
                     recording: 0,
                     stretch,
@@ -283,7 +271,7 @@ impl Signals {
                     angle_rad: angle,
                     along,
                     force,
-                    force_rate: axes.of(Vec2::new(rate_x[k], rate_y[k])),
+                    force_rate: Vec2::new(rate_x[k], rate_y[k]),
                     y: force.dot(&along),
                     span: Span::default(),
                     open: 0.0,
@@ -334,15 +322,10 @@ impl Signals {
         [raw.calmed_to * white_noise(&recorded), white_noise_under_fast_motion(&places)]
     }
 
-    fn free_rows(&self, first_stretch: usize, axes: Axes) -> (Vec<Row>, f64) {
+    fn free_rows(&self, first_stretch: usize) -> Vec<Row> {
         let mut rows = Vec::new();
-        let (mut square, mut count) = (0.0, 0.0);
         for (k, range) in stretches(&self.free).into_iter().enumerate() {
             for (a, place) in [Place::FreeX, Place::FreeY].into_iter().enumerate() {
-                let values: Vec<f64> = range.clone().map(|i| axes.of(self.force[i])[a]).collect();
-                let mean = values.iter().sum::<f64>() / values.len() as f64;
-                square += values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
-                count += values.len() as f64;
                 rows.extend(range.clone().map(|i| Row {
                     recording: 0,
                     stretch: first_stretch + 2 * k + a,
@@ -350,16 +333,53 @@ impl Signals {
                     motion: Motion { time_s: self.time_s[i], ..Motion::default() },
                     angle_rad: 0.0,
                     along: if a == 0 { Vec2::x() } else { Vec2::y() },
-                    force: axes.of(self.force[i]),
+                    force: self.force[i],
                     force_rate: Vec2::zeros(),
-                    y: axes.of(self.force[i])[a],
+                    y: self.force[i][a],
                     span: Span::default(),
                     open: 0.0,
                 }));
             }
         }
-        (rows, (square / count.max(1.0_f64)).sqrt())
+        rows
     }
+}
+
+/// Fewer free rows do not tell the noise.
+const FREE_ROWS: usize = 40;
+
+/// Noise of one row's force, N, and whether it was seen where nothing is touched.
+fn force_noise(rows: &[Row]) -> (f64, bool) {
+    let (mut square, mut count) = (0.0, 0_usize);
+    let is_free = |row: &Row| matches!(row.place, Place::FreeX | Place::FreeY);
+    for rows in rows.chunk_by(|a, b| a.stretch == b.stretch).filter(|rows| is_free(&rows[0])) {
+        let mean = rows.iter().map(|r| r.y).sum::<f64>() / rows.len() as f64;
+        square += rows.iter().map(|r| (r.y - mean).powi(2)).sum::<f64>();
+        count += rows.len();
+    }
+    let is_measured = count > FREE_ROWS;
+    let along = || rows.iter().filter(|r| r.place == Place::Along).map(|r| r.y).collect::<Vec<f64>>();
+    let noise = if is_measured { (square / count as f64).sqrt() } else { white_noise(&along()) };
+    (noise.max(1e-9), is_measured)
+}
+
+/// The same motion with its force, as it was recorded, turned into what it is.
+pub fn with_axes(as_recorded: &Track, axes: Axes) -> Track {
+    let mut track = as_recorded.clone();
+    for row in &mut track.rows {
+        row.force = axes.of(row.force);
+        match row.place {
+            Place::FreeX => row.y = row.force.x,
+            Place::FreeY => row.y = row.force.y,
+            Place::Along | Place::Stuck { .. } => {
+                row.force_rate = axes.of(row.force_rate);
+                row.motion.normal_force_n = row.force.dot(&Vec2::new(row.along.y, -row.along.x));
+                row.y = row.force.dot(&row.along);
+            }
+        }
+    }
+    (track.force_noise, track.noise_is_measured) = force_noise(&track.rows);
+    track
 }
 
 /// Root mean square of one of the noises.

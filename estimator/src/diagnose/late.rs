@@ -2,8 +2,9 @@
 //! was found, and all is asked again (Gauss and Newton's step with the recording itself). A delay as long as what a hand does in a moment
 //! is not seen by that line at all: it is looked for by shifting the rows' forces against their motion ([`guess_s`]).
 
-use super::force::{Model, column};
+use super::force::Model;
 use super::generic::generic;
+use super::means::column;
 use super::products::gram;
 use super::report::{Baseline, Cause, CauseParameter, Diagnosis, Figures, Gain, Verdict};
 use super::shifted::{Demands, look};

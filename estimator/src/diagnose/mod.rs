@@ -33,6 +33,7 @@ mod hung;
 mod impact;
 mod kept;
 mod late;
+mod means;
 mod mechanism;
 mod needle;
 mod passed_over;

@@ -34,6 +34,88 @@ pub fn more(columns: &[Vec<f64>], picked: &[usize], had: &DMatrix<f64>, from: &[
     })
 }
 
+/// Fewer columns than this side by side would be multiplied in another way; and so many are at a time.
+const LEAST_COLUMNS: usize = 8;
+pub const STRIP: usize = 24;
+
+/// Columns whose rows weigh.
+pub struct Weighed<'a> {
+    pub columns: &'a [&'a [f64]],
+    pub weight: &'a [f64],
+}
+
+impl Weighed<'_> {
+    fn fill(&self, tile: &mut [f64], column: usize, rows: &[usize]) {
+        let column = self.columns[column];
+        if is_run(rows) {
+            let run = rows[0]..rows[0] + rows.len();
+            let weighed = column[run.clone()].iter().zip(&self.weight[run]);
+            tile.iter_mut().zip(weighed).for_each(|(value, (v, w))| *value = v * w);
+        } else {
+            tile.iter_mut().zip(rows).for_each(|(value, row)| *value = column[*row] * self.weight[*row]);
+        }
+    }
+
+    /// Products of the columns `of` with those of `with`, and with each other within each of these `strips` of them if `own`: to the bit what
+    /// [`gram`] makes of them among many others. A row for each of `of`; a strip's own products come after those `with`.
+    pub fn products(&self, strips: &[Vec<usize>], with: &[usize], own: bool, picked: &[usize]) -> Vec<DMatrix<f64>> {
+        // What is too few is there twice.
+        let enough = |columns: &[usize]| -> Vec<usize> {
+            columns.iter().copied().cycle().take(columns.len().max(LEAST_COLUMNS)).collect()
+        };
+        let (asked, count) = (strips, with.len());
+        let strips: Vec<Vec<usize>> = strips.iter().map(|strip| enough(strip)).collect();
+        let widest = strips.iter().map(Vec::len).max().unwrap_or(0);
+        let with = enough(with);
+        let mut sums: Vec<DMatrix<f64>> = strips
+            .iter()
+            .map(|strip| DMatrix::zeros(strip.len(), with.len() + if own { strip.len() } else { 0 }))
+            .collect();
+        let mut tile = DMatrix::zeros(TILE + LEAST_TILE, with.len() + widest);
+        let mut turned = DMatrix::zeros(widest, TILE + LEAST_TILE);
+        let mut rest = picked;
+        while !rest.is_empty() {
+            let (rows, later) = rest.split_at(if rest.len() < TILE + LEAST_TILE { rest.len() } else { TILE });
+            rest = later;
+            let fill = |tile: &mut DMatrix<f64>, place: usize, column: usize| {
+                let mut place = tile.column_mut(place);
+                self.fill(&mut place.as_mut_slice()[..rows.len()], column, rows);
+            };
+            with.iter().enumerate().for_each(|(k, column)| fill(&mut tile, k, *column));
+            for (strip, sum) in strips.iter().zip(&mut sums) {
+                strip.iter().enumerate().for_each(|(k, column)| fill(&mut tile, with.len() + k, *column));
+                let mut across = turned.view_mut((0, 0), (strip.len(), rows.len()));
+                tile.view((0, with.len()), (rows.len(), strip.len())).transpose_to(&mut across);
+                let beside = tile.view((0, 0), (rows.len(), sum.ncols()));
+                sum.gemm(1.0, &across, &beside, 1.0);
+            }
+        }
+        let made = strips.iter().zip(sums).zip(asked);
+        made.map(|((strip, sum), asked)| {
+            // Without what was there twice.
+            let place = |j: usize| if j < count { j } else { sum.ncols() - strip.len() + j - count };
+            DMatrix::from_fn(asked.len(), count + if own { asked.len() } else { 0 }, |i, j| sum[(i, place(j))])
+        })
+        .collect()
+    }
+}
+
+/// Mean squares of columns over these rows, several columns at a time: each sum waits for itself.
+pub fn mean_squares(columns: &Weighed<'_>, rows: &[usize]) -> Vec<f64> {
+    let Weighed { columns, weight } = columns;
+    let mut means = Vec::with_capacity(columns.len());
+    for columns in columns.chunks(LEAST_COLUMNS) {
+        let mut sums = [0.0; LEAST_COLUMNS];
+        for row in rows {
+            for (sum, column) in sums.iter_mut().zip(columns) {
+                *sum += (column[*row] * weight[*row]).powi(2);
+            }
+        }
+        means.extend(sums[..columns.len()].iter().map(|sum| sum / rows.len().max(1) as f64));
+    }
+    means
+}
+
 /// Whether increasing numbers follow each other without a gap.
 fn is_run(rows: &[usize]) -> bool {
     rows.first().zip(rows.last()).is_some_and(|(first, last)| last - first + 1 == rows.len())
@@ -43,6 +125,7 @@ fn is_run(rows: &[usize]) -> bool {
 fn add(sum: &mut DMatrix<f64>, (columns, order): (&[Vec<f64>], &[usize]), first: usize, picked: &[usize]) {
     let count = order.len();
     let mut tile = DMatrix::zeros(TILE + LEAST_TILE, count);
+    let mut turned = DMatrix::zeros(count - first, TILE + LEAST_TILE);
     let panels = (count - first).div_ceil(PANEL).max(1);
     let bound = |panel: usize| first + panel * (count - first) / panels;
     let mut rest = picked;
@@ -61,7 +144,8 @@ fn add(sum: &mut DMatrix<f64>, (columns, order): (&[Vec<f64>], &[usize]), first:
             }
         }
         let tile = tile.rows(0, rows.len());
-        let across = tile.columns(first, count - first).transpose();
+        let mut across = turned.columns_mut(0, rows.len());
+        tile.columns(first, count - first).transpose_to(&mut across);
         if first > 0 {
             let old = tile.columns(0, first);
             sum.view_mut((first, 0), (count - first, first)).gemm(1.0, &across, &old, 1.0);
@@ -78,6 +162,38 @@ fn add(sum: &mut DMatrix<f64>, (columns, order): (&[Vec<f64>], &[usize]), first:
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn products_of_some_columns_are_to_the_bit_those_among_many_others() {
+        let wave = |c: usize, i: usize| (0.37 * (i * (c + 1)) as f64).sin() + 0.01 * c as f64;
+        let weight: Vec<f64> = (0..1500).map(|i| 0.5 + 0.5 * wave(3, i).abs()).collect();
+        let columns: Vec<Vec<f64>> = (0..150).map(|c| (0..1500).map(|i| wave(c, i)).collect()).collect();
+        let weigh = |column: &Vec<f64>| column.iter().zip(&weight).map(|(v, w)| v * w).collect::<Vec<f64>>();
+        let whole: Vec<Vec<f64>> = columns.iter().map(weigh).collect();
+        let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        let some = Weighed { columns: &columns, weight: &weight };
+        let picked: Vec<usize> = (0..1500).filter(|i| i % 700 < 400).collect();
+        let all = gram(&whole, &picked);
+        for (strips, with, own) in [
+            (vec![vec![0, 1, 2], (20..44).collect(), vec![7]], vec![149, 3], true),
+            (vec![(50..150).collect()], (0..70).collect::<Vec<_>>(), false),
+        ] {
+            let found = some.products(&strips, &with, own, &picked);
+            for (strip, found) in strips.iter().zip(&found) {
+                let beside: Vec<usize> = if own { [with.as_slice(), strip].concat() } else { with.clone() };
+                assert_eq!(found.shape(), (strip.len(), beside.len()));
+                for (i, a) in strip.iter().enumerate() {
+                    for (j, b) in beside.iter().enumerate() {
+                        assert_eq!(found[(i, j)].to_bits(), all[(*a, *b)].to_bits(), "{a} {b}");
+                    }
+                }
+            }
+        }
+        let square = |c: usize| picked.iter().map(|i| whole[c][*i].powi(2)).sum::<f64>() / picked.len() as f64;
+        let wanted: Vec<u64> = (0..150).map(|c| square(c).to_bits()).collect();
+        let found: Vec<u64> = mean_squares(&some, &picked).into_iter().map(f64::to_bits).collect();
+        assert_eq!(found, wanted);
+    }
 
     #[test]
     fn products_in_tiles_are_those_of_whole_columns() {

@@ -165,17 +165,10 @@ impl Selection<'_> {
             .filter(|c| chosen.iter().all(|o| !self.excludes(self.candidates[*o].id, self.candidates[*c].id)))
     }
 
-    /// The best few, whether they earn their place or not: what the whitening must not swallow.
-    pub fn greedy(&self) -> Vec<usize> {
-        let mut chosen: Vec<usize> = Vec::new();
-        for _ in 0..self.most() {
-            let price = |c: &usize| self.price(&[chosen.as_slice(), &[*c]].concat());
-            match self.open(&chosen).min_by(|a, b| price(a).total_cmp(&price(b))) {
-                Some(best) if price(&best).is_finite() => chosen.push(best),
-                _ => break,
-            }
-        }
-        chosen
+    /// The best one beside the chosen ones, whether it earns its place or not.
+    pub fn next(&self, chosen: &[usize]) -> Option<usize> {
+        let price = |c: &usize| self.price(&[chosen, &[*c]].concat());
+        cheapest(self.open(chosen), price).filter(|(_, price)| price.is_finite()).map(|(best, _)| best)
     }
 
     /// The strongest generic term beside the chosen causes, and its score after the search for it is paid.
@@ -231,11 +224,7 @@ impl Selection<'_> {
     /// What stands of a search that starts with `chosen`; `merges`: one is put in the place of two.
     fn settled(&self, mut chosen: Vec<usize>, merges: bool) -> Vec<usize> {
         while chosen.len() < self.most() {
-            let price = |c: &usize| self.price(&[chosen.as_slice(), &[*c]].concat());
-            let Some(best) = self.open(&chosen).min_by(|a, b| price(a).total_cmp(&price(b))) else { break };
-            if !price(&best).is_finite() {
-                break;
-            }
+            let Some(best) = self.next(&chosen) else { break };
             chosen.push(best);
             self.swap(&mut chosen);
         }
@@ -259,11 +248,11 @@ impl Selection<'_> {
             let merged = all.filter_map(|(a, b)| {
                 let rest = without(&without(chosen, b), a);
                 let with = |c: usize| [rest.as_slice(), &[c]].concat();
-                self.open(&rest).map(with).min_by(|a, b| self.price(a).total_cmp(&self.price(b)))
+                cheapest(self.open(&rest).map(with), |merged| self.price(merged))
             });
-            merged.min_by(|a, b| self.price(a).total_cmp(&self.price(b)))
+            merged.min_by(|a, b| a.1.total_cmp(&b.1))
         };
-        while let Some(better) = pair(chosen).filter(|merged| self.price(merged) < self.price(chosen) + AMBIGUOUS) {
+        while let Some((better, _)) = pair(chosen).filter(|(_, price)| *price < self.price(chosen) + AMBIGUOUS) {
             *chosen = better;
         }
     }
@@ -275,8 +264,8 @@ impl Selection<'_> {
                 let rest: Vec<usize> = chosen.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, c)| *c).collect();
                 let with = |c: usize| self.price(&[rest.as_slice(), &[c]].concat());
                 let now = with(chosen[k]);
-                if let Some(best) = self.open(&rest).min_by(|a, b| with(*a).total_cmp(&with(*b)))
-                    && with(best) < now - 1e-9
+                if let Some((best, price)) = cheapest(self.open(&rest), |c| with(*c))
+                    && price < now - 1e-9
                 {
                     chosen[k] = best;
                     changed = true;
@@ -292,13 +281,13 @@ impl Selection<'_> {
     fn prune(&self, chosen: &mut Vec<usize>) {
         while !chosen.is_empty() {
             let whole = self.price(chosen);
-            let loss = |k: usize| self.price(&without(chosen, k)) - whole;
-            let Some(weakest) = (0..chosen.len()).min_by(|a, b| loss(*a).total_cmp(&loss(*b))) else { return };
-            let doubtful = (0..chosen.len())
-                .find(|k| !self.validates(chosen, *k) || self.remains(chosen, *k) || self.pulls_against(chosen, *k));
-            if loss(weakest) < self.threshold {
+            let loss = |k: &usize| self.price(&without(chosen, *k)) - whole;
+            let Some((weakest, loss)) = cheapest(0..chosen.len(), loss) else { return };
+            let is_doubtful =
+                |k: &usize| !self.validates(chosen, *k) || self.remains(chosen, *k) || self.pulls_against(chosen, *k);
+            if loss < self.threshold {
                 chosen.remove(weakest);
-            } else if let Some(k) = doubtful {
+            } else if let Some(k) = (0..chosen.len()).find(is_doubtful) {
                 chosen.remove(k);
             } else {
                 return;
@@ -418,9 +407,7 @@ impl Selection<'_> {
         let mut order: Vec<usize> = Vec::new();
         while !left.is_empty() {
             let price = |c: &usize| self.price(&[order.as_slice(), &[*c]].concat());
-            let Some(next) = (0..left.len()).min_by(|a, b| price(&left[*a]).total_cmp(&price(&left[*b]))) else {
-                break;
-            };
+            let Some((next, _)) = cheapest(0..left.len(), |k| price(&left[*k])) else { break };
             order.push(left.remove(next));
         }
         order
@@ -458,6 +445,15 @@ impl Selection<'_> {
         best.sort_by(|a, b| a.1.total_cmp(&b.1));
         best
     }
+}
+
+/// The cheapest of all, the first of several, and its price; each is priced once.
+fn cheapest<T>(all: impl Iterator<Item = T>, price: impl Fn(&T) -> f64) -> Option<(T, f64)> {
+    let priced = all.map(|one| {
+        let price = price(&one);
+        (one, price)
+    });
+    priced.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 fn without(chosen: &[usize], k: usize) -> Vec<usize> {

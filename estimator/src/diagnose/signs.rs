@@ -3,7 +3,7 @@
 use super::crank::plain_crank;
 use super::force;
 use super::geometry::{self, Arm, Geometry};
-use super::held_arm::{Axes, Signals};
+use super::held_arm::{Axes, Signals, with_axes};
 use super::quality;
 use super::report::Cause;
 use super::track::Track;
@@ -204,14 +204,15 @@ const PLAUSIBLE: f64 = 1.8;
 
 /// The rows, with an axis of the force mirrored back where that alone makes sense of them.
 pub fn upright(signals: &Signals, recording: &Recording, arm: &Arm) -> Result<(Track, Option<Cause>), EstimateError> {
-    let as_recorded = signals.rows(recording, arm, Axes::PLAIN)?;
+    let as_recorded = signals.rows(recording, arm)?;
     let model = model_of(arm);
-    let left = |track: &Track| force::plain_rms(&mut track.clone(), &model);
-    let (before, resists) = left(&as_recorded)?;
+    // The motion is the same whatever the force's axes are.
+    let mut blurred = as_recorded.clone();
+    let (before, resists) = force::plain_rms(&mut blurred, &model)?;
     if resists && before < PLAUSIBLE * as_recorded.force_noise {
         return Ok((as_recorded, None));
     }
-    let mut best: Option<(f64, Track, &str)> = None;
+    let mut best: Option<(f64, Axes, &str)> = None;
     let mirrored = |signs| Axes { swapped: false, signs };
     let crossed = [
         (mirrored([-1.0, 1.0]), "fx"),
@@ -220,21 +221,21 @@ pub fn upright(signals: &Signals, recording: &Recording, arm: &Arm) -> Result<(T
         (Axes { swapped: true, signs: [1.0; 2] }, "fx with fy"),
     ];
     for (axes, name) in crossed {
-        let track = signals.rows(recording, arm, axes)?;
-        let (after, resists) = left(&track)?;
+        let track = with_axes(&blurred, axes);
+        let (after, resists_then) = force::blurred_rms(&track, &model)?;
         let both = name == "fx and fy";
         // Both at once change every sign and no size: only friction that drives tells.
         let better = if both {
-            resists && !left(&as_recorded)?.1
+            resists_then && !resists
         } else {
-            resists && after < MIRRORED_SHARE * before && makes_sense((before, after), &track)
+            resists_then && after < MIRRORED_SHARE * before && makes_sense((before, after), &track)
         };
         if better && best.as_ref().is_none_or(|(least, ..)| after < *least) {
-            best = Some((after, track, name));
+            best = Some((after, axes, name));
         }
     }
     Ok(match best {
-        Some((after, track, name)) => (track, Some(quality::mirrored(name, after / before))),
+        Some((after, axes, name)) => (with_axes(&as_recorded, axes), Some(quality::mirrored(name, after / before))),
         None => (as_recorded, None),
     })
 }

@@ -48,7 +48,9 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
     let shortest = whole(SHORTEST_S / period_s);
     let longest = whole((LONGEST_S / period_s).floor()).max(shortest);
     let mass = in_blocks(whole(0.5 * (shortest + longest) as f64)).mass();
-    let quiet = |block: &usize| quiet(&raw, force, period_s, *block, mass);
+    // Of a rate, or of a position where none was recorded, and of the force.
+    let noise = [white_noise(raw.rate.as_ref().unwrap_or(&raw.position)), white_noise(force)];
+    let quiet = |block: &usize| quiet(noise, raw.rate.is_some(), period_s, *block, mass);
     let block = (shortest..=longest).step_by(skip).find(quiet).unwrap_or(longest);
     let made = in_blocks(block);
     if made.rows.is_empty() {
@@ -67,16 +69,14 @@ fn skip(period_s: f64) -> usize {
     (1.0 / (FINE_HZ * period_s)).round().max(1.0) as usize
 }
 
-/// Whether the acceleration's noise makes no more of a force than the force's own noise, in blocks of this many samples.
-fn quiet(raw: &Raw, force: &[f64], period_s: f64, block: usize, mass: f64) -> bool {
+/// Whether the acceleration's noise makes no more of a force than the force's own noise, in blocks of this many samples. `motion`: noise of the rates,
+/// or of the positions where no rates were recorded (`is_rate`).
+fn quiet([motion, force]: [f64; 2], is_rate: bool, period_s: f64, block: usize, mass: f64) -> bool {
     let (samples, length_s) = (block as f64, block as f64 * period_s);
     // Of a block's mean velocity: of as many rates, or of the two positions at its ends.
-    let velocity = match &raw.rate {
-        Some(rate) => white_noise(rate) / samples.sqrt(),
-        None => std::f64::consts::SQRT_2 * white_noise(&raw.position) / length_s,
-    };
+    let velocity = if is_rate { motion / samples.sqrt() } else { std::f64::consts::SQRT_2 * motion / length_s };
     let of_mass = mass.abs() * std::f64::consts::SQRT_2 * velocity / length_s;
-    of_mass < white_noise(force) * averaged(block)
+    of_mass < force * averaged(block)
 }
 
 /// What a hat over two blocks leaves of white noise.

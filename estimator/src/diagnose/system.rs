@@ -1,11 +1,16 @@
 //! Whitened normal equations of all columns, block by block: every fit, comparison and cross-validation is then a small solve.
 
+mod rough;
+
+pub use rough::Rough;
+
 use super::candidate::Candidate;
 use super::geometry::Study;
-use super::products::{self, gram};
+use super::products::{self, Weighed, gram, mean_squares};
 use super::white::{Noise, Whitening};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// Rows of a block are this many at least, and there are this many blocks at most.
 const LEAST_BLOCK: usize = 12;
@@ -118,7 +123,7 @@ pub struct System {
     /// Of each fold, and how many rows it has.
     pub folds: Vec<(DMatrix<f64>, f64)>,
     /// Candidates' columns.
-    pub places: Vec<std::ops::Range<usize>>,
+    pub places: Vec<Range<usize>>,
     pub base: usize,
     pub coefficients: Vec<f64>,
     pub uses: Vec<Use>,
@@ -157,6 +162,32 @@ fn origins(columns: &[&[f64]], had: &[&[f64]]) -> Vec<Option<usize>> {
     columns.iter().map(&mut origin).collect()
 }
 
+/// Which columns are those of each candidate, after so many of the model.
+fn places(base: usize, candidates: &[Candidate]) -> Vec<Range<usize>> {
+    let mut end = base;
+    let place = |candidate: &Candidate| {
+        let start = end;
+        end += candidate.columns.len();
+        start..end
+    };
+    candidates.iter().map(place).collect()
+}
+
+/// How many observations rows are: one of little weight is less than one and leaves as little as it says.
+fn counted(picked: &[usize], rows: &Rows<'_>) -> f64 {
+    picked.iter().map(|i| rows.weight[*i].powi(2)).sum::<f64>()
+}
+
+/// Mean square of each column over the rows that train, out of the products of these, and over all `whole` rows that are looked at.
+fn energy(train: &DMatrix<f64>, columns: &Weighed<'_>, uses: &[Use], whole: &[bool]) -> Vec<(f64, f64)> {
+    // What is neither fitted nor tested needs no support.
+    let is_looked_at = |i: &usize| whole[*i] && !matches!(uses[*i], Use::Guard | Use::Beside(_));
+    let looked_at: Vec<usize> = (0..uses.len()).filter(is_looked_at).collect();
+    let trained = looked_at.iter().filter(|i| !matches!(uses[**i], Use::Locked(_))).count().max(1) as f64;
+    let all = mean_squares(columns, &looked_at).into_iter().enumerate();
+    all.map(|(c, all)| (train[(c, c)] / trained, all)).collect()
+}
+
 /// A solved subset of the columns.
 #[derive(Clone, Debug)]
 pub struct Solved {
@@ -193,12 +224,6 @@ impl System {
         let uses = uses(rows);
         let white = Whitening::new(rows.stretch, rows.weight, &coefficients);
         let whole = white.leaves();
-        let mut places = Vec::new();
-        let mut at = base;
-        for candidate in candidates {
-            places.push(at..at + candidate.columns.len());
-            at += candidate.columns.len();
-        }
         let (from, mut had) = known.map_or_else(|| (vec![None; columns.len()], None), |k| (k.from, Some(k.system)));
         let mut taken = |c: usize| Some(std::mem::take(&mut had.as_mut()?.whitened[from[c]?]));
         let columns: Vec<Vec<f64>> =
@@ -210,8 +235,7 @@ impl System {
             Some(had) => products::more(&columns, picked, part(had), &from),
             None => gram(&columns, picked),
         };
-        // A row of little weight is less than one observation: it leaves as little as it says.
-        let counted = |picked: &[usize]| picked.iter().map(|i| rows.weight[*i].powi(2)).sum::<f64>();
+        let counted = |picked: &[usize]| counted(picked, rows);
         let picked = pick(&|u| u == Use::Always);
         let always = products(&|had| &had.always, &picked);
         let mut train = always.clone();
@@ -224,17 +248,10 @@ impl System {
             count += counted(&picked);
             folds.push((part, counted(&picked)));
         }
-        // What is neither fitted nor tested needs no support.
-        let looked_at = pick(&|u| !matches!(u, Use::Guard | Use::Beside(_)));
-        let trained = looked_at.iter().filter(|i| !matches!(uses[**i], Use::Locked(_))).count();
-        let energy = columns
-            .iter()
-            .enumerate()
-            .map(|(c, values)| {
-                let all = looked_at.iter().map(|i| values[*i].powi(2)).sum::<f64>() / looked_at.len().max(1) as f64;
-                (train[(c, c)] / (trained.max(1) as f64), all)
-            })
-            .collect();
+        let slices: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        let all_alike = vec![1.0; rows.y.len()];
+        let energy = energy(&train, &Weighed { columns: &slices, weight: &all_alike }, &uses, &whole);
+        let places = places(base, candidates);
         Self { train, rows: count, folds, places, base, coefficients, uses, energy, always, whitened: columns }
     }
 

@@ -42,6 +42,14 @@ pub struct Fine {
     pub open: f64,
 }
 
+impl Fine {
+    /// The motion there; what is not known between the rows is that of one of them.
+    pub fn motion(&self, row: &Motion) -> Motion {
+        let Self { time_s, position, velocity, direction, .. } = *self;
+        Motion { time_s, position, velocity, direction, ..*row }
+    }
+}
+
 /// Which points of [`Track::fine`] a row is the mean of.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Span {
@@ -297,11 +305,7 @@ impl Track {
         if row.span.len == 0 {
             return of(&row.motion);
         }
-        let at = |k: usize| {
-            let Fine { time_s, position, velocity, direction, .. } = self.fine[k];
-            of(&Motion { time_s, position, velocity, direction, ..row.motion })
-        };
-        row.span.weights().map(|(k, weight)| weight * at(k)).sum()
+        row.span.weights().map(|(k, weight)| weight * of(&self.fine[k].motion(&row.motion))).sum()
     }
 
     /// True when two neighbouring rows follow each other without a gap.

@@ -3,10 +3,11 @@
 use super::blur::blur;
 use super::columns::Columns;
 use super::dictionary::{Dictionary, dry_of};
-use super::force::{column, needed};
+use super::force::needed;
 use super::gain::bootstrap;
 use super::grid::Grid;
 use super::kept::Kept;
+use super::means::column;
 use super::report::Validation;
 use super::track::{Place, Track};
 use haptics::law::{Effect, Kind, Memories};

@@ -3,7 +3,7 @@
 //! width = 0 adds nothing. For a stop that springs back see `added-constraint`.
 
 use super::entry::{ANY, POSITIVE};
-use super::{Entry, Kind, Law, MAX_PARAMETERS, Motion, ParameterSpec, Role};
+use super::{Entry, Kind, Law, LocalPush, MAX_PARAMETERS, Motion, ParameterSpec, Role};
 
 /// Local resistance; equation and sign in the module's head.
 #[derive(Clone, Copy, Debug)]
@@ -31,9 +31,12 @@ impl Law for LocalResistance {
         Role::Dry
     }
 
+    fn times_direction(&self) -> Option<&'static dyn Law> {
+        Some(&LocalPush)
+    }
+
     fn force(&self, motion: &Motion, parameters: &[f64; MAX_PARAMETERS]) -> f64 {
-        let [force, place, width, period, ..] = *parameters;
-        force * hump(motion.position - place, width, period) * motion.direction
+        LocalPush.force(motion, parameters) * motion.direction
     }
 }
 

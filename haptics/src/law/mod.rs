@@ -162,6 +162,15 @@ pub trait Law: Sync {
     fn feels_load(&self) -> bool {
         false
     }
+    /// True when the force goes with time, place, speed and direction alone: neither with the acceleration nor with a load nor with where
+    /// up is.
+    fn is_of_path(&self) -> bool {
+        !self.feels_load() && !matches!(self.role(), Role::Inertia | Role::Gravity)
+    }
+    /// The law that this one is times [`Motion::direction`], parameter by parameter, where there is one.
+    fn times_direction(&self) -> Option<&'static dyn Law> {
+        None
+    }
     /// True when the law has a memory that [`Law::advance`] moves.
     fn remembers(&self) -> bool {
         false

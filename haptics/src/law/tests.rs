@@ -61,6 +61,46 @@ fn linear_means_linear_and_the_columns_sum_to_the_force() {
 }
 
 #[test]
+fn what_goes_with_the_path_alone_says_so() {
+    let at = |position: f64, [acceleration, normal_force_n, up_along]: [f64; 3]| Motion {
+        time_s: 7.0,
+        position,
+        velocity: -0.04,
+        acceleration,
+        direction: -0.8,
+        normal_force_n,
+        up_along,
+    };
+    for law in CATALOGUE {
+        let goes = |place: f64, third: f64| {
+            let effect = Effect::new(law, &[0.3, 0.2, third, 0.05, 0.4]);
+            let others = [[0.3, 1.5, 0.6], [-0.7, 1.5, 0.6], [0.3, -4.0, 0.6], [0.3, 1.5, -0.2]];
+            let forces = others.map(|other| effect.force(&at(place, other)));
+            forces.iter().any(|force| force.to_bits() != forces[0].to_bits())
+        };
+        let places = || (-20..20).map(|k| 0.01 * f64::from(k));
+        // A tilt goes with where up is only without a third value, friction by direction with a load only with one.
+        let goes = |place: f64| goes(place, 0.0) || goes(place, 0.1);
+        assert_eq!(places().any(goes), !law.is_of_path(), "{}", law.id());
+    }
+}
+
+#[test]
+fn what_is_another_law_times_the_direction_is_that_to_the_bit() {
+    let values = [0.3, 0.02, 0.1, 0.5, 0.4];
+    let mut felt = 0;
+    for (law, other) in CATALOGUE.iter().filter_map(|law| Some((law, law.times_direction()?))) {
+        for position in (-20..20).map(|k| 0.01 * f64::from(k)) {
+            let motion = Motion { time_s: 7.0, position, velocity: -0.04, direction: -0.8, ..Motion::default() };
+            let (own, its) = (law.force(&motion, &values), other.force(&motion, &values) * motion.direction);
+            assert_eq!(own.to_bits(), its.to_bits(), "{} at {position}", law.id());
+            felt += u32::from(own != 0.0);
+        }
+    }
+    assert!(felt > 5);
+}
+
+#[test]
 fn what_goes_with_the_load_says_so() {
     let at = |position: f64, normal_force_n: f64| Motion {
         time_s: 7.0,

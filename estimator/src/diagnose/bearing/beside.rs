@@ -2,9 +2,10 @@
 
 use super::{known_n, put, weights};
 use crate::diagnose::explain::strange;
-use crate::diagnose::force::{self, Model, column};
+use crate::diagnose::force::{self, Model};
 use crate::diagnose::gain::rms;
 use crate::diagnose::geometry::Study;
+use crate::diagnose::means::column;
 use crate::diagnose::track::{Place, Track};
 use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares_values;

@@ -1,7 +1,8 @@
 //! Rows of a motion that was not made yet: the model's own forces on it.
 
 use super::super::blur::blur;
-use super::super::force::{Model, column};
+use super::super::force::Model;
+use super::super::means::column;
 use super::super::track::{Bearing, Place, Row, Span, Track};
 use super::library::Excitation;
 use super::strokes::Course;

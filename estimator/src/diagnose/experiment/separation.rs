@@ -3,9 +3,10 @@
 use super::super::candidate::Candidate;
 use super::super::columns::Columns;
 use super::super::dictionary::{Dictionary, dry_of};
-use super::super::force::{Model, column};
+use super::super::force::Model;
 use super::super::geometry::Study;
 use super::super::grid::Grid;
+use super::super::means::column;
 use super::super::track::Track;
 use super::super::white::Whitening;
 use nalgebra::{DMatrix, DVector};
