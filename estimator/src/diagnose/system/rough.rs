@@ -152,6 +152,7 @@ mod tests {
             weight: &weight,
             period_s: 0.01,
             noise: Noise::Any,
+            may_stand: false,
         };
         let mut rough = Rough::new(&base, &candidates, &rows);
         let chosen = rough.greedy(20.0);
