@@ -1,6 +1,10 @@
 //! What a cause would leave in the residual.
 
 use haptics::law::Kind;
+use std::sync::Arc;
+
+/// What a cause adds to each row, per unit of its parameter; kept by whoever needs it, made once.
+pub type Column = Arc<Vec<f64>>;
 
 /// A value that was searched for, not solved for.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +84,7 @@ pub struct Candidate {
     pub id: &'static str,
     pub kind: Kind,
     /// One column a linear parameter, one entry a row.
-    pub columns: Vec<Vec<f64>>,
+    pub columns: Vec<Column>,
     /// Name and unit of the linear parameters.
     pub linear: Vec<(&'static str, &'static str)>,
     pub searched: Vec<Searched>,
@@ -107,22 +111,7 @@ pub struct Candidate {
 impl Candidate {
     /// A cause with one linear parameter.
     pub fn one(id: &'static str, kind: Kind, name: &'static str, unit: &'static str, column: Vec<f64>) -> Self {
-        Self {
-            id,
-            kind,
-            columns: vec![column],
-            linear: vec![(name, unit)],
-            searched: Vec::new(),
-            cost: 1.0,
-            sign: 0.0,
-            shape: Shape::Any,
-            least: 0.0,
-            noise: 0.0,
-            side: 0.0,
-            expression: None,
-            channel: None,
-            part: 0,
-        }
+        Self::several(id, kind, vec![column], vec![(name, unit)])
     }
 
     /// A cause with several linear parameters.
@@ -132,6 +121,11 @@ impl Candidate {
         columns: Vec<Vec<f64>>,
         linear: Vec<(&'static str, &'static str)>,
     ) -> Self {
+        Self::of(id, kind, columns.into_iter().map(Column::new).collect(), linear)
+    }
+
+    /// The same of columns that somebody else has as well.
+    pub fn of(id: &'static str, kind: Kind, columns: Vec<Column>, linear: Vec<(&'static str, &'static str)>) -> Self {
         let cost = columns.len() as f64;
         Self {
             id,

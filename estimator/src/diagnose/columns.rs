@@ -1,11 +1,13 @@
 //! Columns of laws, each made once: the rounds of a comparison ask for most of them again.
 
+use super::candidate::Column;
 use super::means::{at_points, column, column_of_place, is_short, of_points};
 use super::track::{Row, Track};
 use haptics::law::{Effect, Law, MAX_PARAMETERS};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// How a law becomes a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -32,19 +34,19 @@ fn which(law: &dyn Law, values: &[f64]) -> Which {
 /// What was made on one track, which changes in its loads only.
 #[derive(Default)]
 pub struct Columns {
-    known: RefCell<HashMap<Key, Vec<f64>>>,
+    known: RefCell<HashMap<Key, Column>>,
     /// What was felt last at the finer points: the next law may be it times the direction.
     felt: RefCell<Option<(Which, Rc<[f64]>)>>,
 }
 
 impl Columns {
     /// As [`column`].
-    pub fn of(&self, track: &Track, effect: &Effect) -> Vec<f64> {
+    pub fn of(&self, track: &Track, effect: &Effect) -> Column {
         self.made(effect.law(), &effect.values, How::Means, || self.mean(track, effect))
     }
 
     /// As [`column_of_place`].
-    pub fn of_place(&self, track: &Track, effect: &Effect) -> Vec<f64> {
+    pub fn of_place(&self, track: &Track, effect: &Effect) -> Column {
         self.made(effect.law(), &effect.values, How::OfPlace, || {
             if is_short(track) { column_of_place(track, effect) } else { self.mean(track, effect) }
         })
@@ -77,7 +79,7 @@ impl Columns {
     }
 
     /// What `make` makes of a law that remembers: the same for the same values, each time.
-    pub fn remembered(&self, law: &'static dyn Law, values: &[f64], make: impl FnOnce() -> Vec<f64>) -> Vec<f64> {
+    pub fn remembered(&self, law: &'static dyn Law, values: &[f64], make: impl FnOnce() -> Vec<f64>) -> Column {
         self.made(law, values, How::Remembered, make)
     }
 
@@ -86,8 +88,9 @@ impl Columns {
         self.known.get_mut().retain(|((id, _), _), _| haptics::law::law(id).is_some_and(|law| !law.feels_load()));
     }
 
-    fn made(&self, law: &dyn Law, values: &[f64], how: How, make: impl FnOnce() -> Vec<f64>) -> Vec<f64> {
-        self.known.borrow_mut().entry((which(law, values), how)).or_insert_with(make).clone()
+    fn made(&self, law: &dyn Law, values: &[f64], how: How, make: impl FnOnce() -> Vec<f64>) -> Column {
+        let mut known = self.known.borrow_mut();
+        Arc::clone(known.entry((which(law, values), how)).or_insert_with(|| make().into()))
     }
 }
 

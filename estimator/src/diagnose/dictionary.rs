@@ -2,7 +2,7 @@
 
 mod springs;
 
-use super::candidate::{Candidate, Shape};
+use super::candidate::{Candidate, Column, Shape};
 use super::columns::Columns;
 use super::free;
 use super::grid::Grid;
@@ -102,12 +102,12 @@ impl Dictionary<'_> {
     }
 
     /// The force of a law with these values, in the rows along the motion.
-    fn law(&self, law: &'static dyn Law, values: &[f64]) -> Vec<f64> {
+    fn law(&self, law: &'static dyn Law, values: &[f64]) -> Column {
         self.columns.of(self.track, &Effect::new(law, values))
     }
 
     /// The same of a law of the place, and of the direction at most in proportion.
-    fn law_of_place(&self, law: &'static dyn Law, values: &[f64]) -> Vec<f64> {
+    fn law_of_place(&self, law: &'static dyn Law, values: &[f64]) -> Column {
         self.columns.of_place(self.track, &Effect::new(law, values))
     }
 
@@ -120,7 +120,7 @@ impl Dictionary<'_> {
     /// A cause that is one law with one linear parameter, number `index`, the others at `values`.
     fn plain(&self, law: &'static dyn Law, values: &[f64], index: usize) -> Candidate {
         let spec = &law.parameters()[index];
-        Candidate::one(law.id(), law.kind(), spec.name, self.unit(law, index), self.law(law, values))
+        Candidate::of(law.id(), law.kind(), vec![self.law(law, values)], vec![(spec.name, self.unit(law, index))])
     }
 
     fn friction(&self, all: &mut Vec<Candidate>) {
@@ -149,7 +149,7 @@ impl Dictionary<'_> {
         if self.track.planar {
             return by_direction;
         }
-        let columns = vec![self.column(&|_| 1.0)];
+        let columns = vec![Column::new(self.column(&|_| 1.0))];
         // The sensor is said first.
         Candidate { columns, cost: by_direction.cost + HARDLY, ..by_direction }
     }
@@ -225,7 +225,7 @@ impl Dictionary<'_> {
         };
         let columns = vec![column(0.0), column(-std::f64::consts::FRAC_PI_2)];
         let linear = vec![("A cos phi", units.force), ("A sin(-phi)", units.force)];
-        let ripple = Candidate::several("position-ripple", Kind::Plant, columns, linear);
+        let ripple = Candidate::of("position-ripple", Kind::Plant, columns, linear);
         all.push(ripple.at("lambda", length, units.length));
     }
 
@@ -234,11 +234,11 @@ impl Dictionary<'_> {
         let part = |values: &[f64]| self.law_of_place(&EccentricMass, values);
         if self.track.planar {
             let column = part(&[1.0, 0.0, radius]);
-            all.push(Candidate::one("eccentric-mass", Kind::Plant, "a", self.units().force, column));
+            all.push(Candidate::of("eccentric-mass", Kind::Plant, vec![column], vec![("a", self.units().force)]));
         } else {
             let columns = vec![part(&[1.0, 0.0, radius]), part(&[0.0, 1.0, radius])];
             let linear = vec![("a", self.units().force), ("b", self.units().force)];
-            all.push(Candidate::several("eccentric-mass", Kind::Plant, columns, linear));
+            all.push(Candidate::of("eccentric-mass", Kind::Plant, columns, linear));
         }
     }
 
@@ -250,7 +250,12 @@ impl Dictionary<'_> {
             let found = |c: Candidate| c.at("place", place, units.length).at("width", width, units.length);
             let named = |law: &'static dyn Law| {
                 let column = self.law_of_place(law, &values);
-                Candidate::one(LocalResistance.id(), Kind::Plant, law.parameters()[0].name, units.force, column)
+                Candidate::of(
+                    LocalResistance.id(),
+                    Kind::Plant,
+                    vec![column],
+                    vec![(law.parameters()[0].name, units.force)],
+                )
             };
             all.push(found(named(&LocalResistance).positive()));
             all.push(found(named(&LocalPush)));
@@ -296,7 +301,7 @@ impl Dictionary<'_> {
         law: &'static dyn Law,
         values: &[f64],
         of: &dyn Fn(&Motion, &Memory, &[f64; MAX_PARAMETERS]) -> f64,
-    ) -> Vec<f64> {
+    ) -> Column {
         self.columns.remembered(law, values, || {
             let mut padded = [0.0; MAX_PARAMETERS];
             padded[..values.len()].copy_from_slice(values);

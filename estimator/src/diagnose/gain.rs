@@ -1,5 +1,6 @@
 //! What a cause is worth where it was neither chosen nor fitted: on the locked blocks.
 
+use super::candidate::Column;
 use super::geometry::{Study, residual};
 use super::report::Gain;
 use super::system::{Use, solve};
@@ -154,7 +155,7 @@ fn whitened(values: &[f64], stretch: &[usize], coefficients: &[f64]) -> Vec<Opti
 /// Whether some of these causes show in the held-out rows that are not about the force.
 pub fn shows_beside(study: &Study, picks: &[usize]) -> bool {
     let beside = |i: usize| matches!(study.system.uses[i], Use::Beside(_));
-    let shows = |column: &Vec<f64>| column.iter().enumerate().any(|(i, v)| beside(i) && *v != 0.0);
+    let shows = |column: &Column| column.iter().enumerate().any(|(i, v)| beside(i) && *v != 0.0);
     picks.iter().any(|p| study.candidates[*p].columns.iter().any(shows))
 }
 

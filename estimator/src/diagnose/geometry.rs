@@ -212,7 +212,8 @@ fn compare(
 
 /// What is left of `y`.
 pub fn residual(y: &[f64], base: &[Vec<f64>], candidates: &[Candidate], picks: &[usize], solved: &Solved) -> Vec<f64> {
-    let columns: Vec<&Vec<f64>> = base.iter().chain(picks.iter().flat_map(|p| &candidates[*p].columns)).collect();
+    let columns: Vec<&Vec<f64>> =
+        base.iter().chain(picks.iter().flat_map(|p| &candidates[*p].columns).map(|c| &**c)).collect();
     (0..y.len()).map(|i| y[i] - columns.iter().zip(&solved.values).map(|(c, v)| c[i] * v).sum::<f64>()).collect()
 }
 

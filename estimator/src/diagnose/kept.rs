@@ -69,7 +69,7 @@ impl Kept {
         }
         let mut sum = vec![0.0; nearest.columns.first()?.len()];
         for (column, value) in nearest.columns.iter().zip(&self.values) {
-            sum.iter_mut().zip(column).for_each(|(s, c)| *s += value * c);
+            sum.iter_mut().zip(column.iter()).for_each(|(s, c)| *s += value * c);
         }
         Some(sum)
     }

@@ -4,7 +4,7 @@
 
 use super::force::Model;
 use super::generic::generic;
-use super::means::column;
+use super::means::{Weights, column};
 use super::products::gram;
 use super::report::{Baseline, Cause, CauseParameter, Diagnosis, Figures, Gain, Verdict};
 use super::shifted::{Demands, look};
@@ -14,6 +14,7 @@ use crate::estimate::EstimateError;
 use crate::signal::derive::{interpolate, interpolate_cubic};
 use haptics::law::{CoulombFriction, Effect, Inertia, Kind, Law};
 use haptics::recording::{Recording, Span};
+use std::sync::Arc;
 
 /// A delay up to this is as good as proportional, s.
 const LINEAR_S: f64 = 3e-3;
@@ -110,7 +111,7 @@ impl<'a> Moved<'a> {
         let mut motion: Vec<Vec<f64>> = others.iter().map(|effect| column(track, effect)).collect();
         let of_place = |expression: &str| expression.starts_with("1 ") || expression.starts_with("cos(");
         let terms = generic(track).into_iter().filter(|c| c.expression.as_deref().is_some_and(of_place));
-        motion.extend(terms.flat_map(|c| c.columns));
+        motion.extend(terms.flat_map(|c| c.columns).map(Arc::unwrap_or_clone));
         motion.push(vec![1.0; track.rows.len()]);
         Self { track, rows: track.along().collect(), loads, motion }
     }
@@ -149,7 +150,8 @@ impl<'a> Moved<'a> {
         let mut columns: Vec<Vec<f64>> =
             self.motion.iter().map(|of| weighted(&mut picked.iter().map(|i| of[*i]))).collect();
         for law in &self.loads {
-            columns.push(weighted(&mut moved.iter().map(|row| self.track.mean(row, &|m| law.force(m)))));
+            let mut weights = Weights::default();
+            columns.push(weighted(&mut moved.iter().map(|row| weights.mean(self.track, row, |m| law.force(m)))));
         }
         let target = columns.len();
         columns.push(weighted(&mut moved.iter().map(|row| row.y)));

@@ -30,7 +30,7 @@ pub fn column(track: &Track, effect: &Effect) -> Vec<f64> {
 
 /// Weights of rows, which are the same for rows of as many points.
 #[derive(Default)]
-struct Weights {
+pub struct Weights {
     known: Vec<((Weighing, usize), Vec<f64>)>,
 }
 
@@ -42,6 +42,16 @@ impl Weights {
             self.known.len() - 1
         });
         &self.known[place].1
+    }
+
+    /// The mean over a row of what depends on motion, as [`Track::mean`].
+    pub fn mean(&mut self, track: &Track, row: &Row, of: impl Fn(&Motion) -> f64) -> f64 {
+        if row.span.len == 0 {
+            return of(&row.motion);
+        }
+        let points = &track.fine[row.span.start..row.span.start + row.span.len];
+        let weighed = self.of(row.span).iter().zip(points);
+        weighed.map(|(weight, point)| weight * of(&point.motion(&row.motion))).sum()
     }
 }
 
@@ -71,15 +81,7 @@ pub fn at_points(track: &Track, effect: &Effect) -> Option<Vec<f64>> {
 fn by_rows(track: &Track, effect: &Effect) -> Vec<f64> {
     let mut weights = Weights::default();
     let mean = |row: &Row| {
-        if row.place != Place::Along {
-            return 0.0;
-        }
-        if row.span.len == 0 {
-            return effect.force(&row.motion);
-        }
-        let points = &track.fine[row.span.start..row.span.start + row.span.len];
-        let weighed = weights.of(row.span).iter().zip(points);
-        weighed.map(|(weight, point)| weight * effect.force(&point.motion(&row.motion))).sum()
+        if row.place == Place::Along { weights.mean(track, row, |motion| effect.force(motion)) } else { 0.0 }
     };
     track.rows.iter().map(mean).collect()
 }

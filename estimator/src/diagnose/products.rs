@@ -106,9 +106,14 @@ pub fn mean_squares(columns: &Weighed<'_>, rows: &[usize]) -> Vec<f64> {
     let mut means = Vec::with_capacity(columns.len());
     for columns in columns.chunks(LEAST_COLUMNS) {
         let mut sums = [0.0; LEAST_COLUMNS];
-        for row in rows {
-            for (sum, column) in sums.iter_mut().zip(columns) {
-                *sum += (column[*row] * weight[*row]).powi(2);
+        for rows in rows.chunk_by(|a, b| a + 1 == *b) {
+            let rows = rows[0]..rows[0] + rows.len();
+            let weight = &weight[rows.clone()];
+            // Where there are fewer columns, something that nobody asks for.
+            let mut here = [weight; LEAST_COLUMNS];
+            here.iter_mut().zip(columns).for_each(|(here, column)| *here = &column[rows.clone()]);
+            for (k, weight) in weight.iter().enumerate() {
+                sums.iter_mut().zip(&here).for_each(|(sum, here)| *sum += (here[k] * weight).powi(2));
             }
         }
         means.extend(sums[..columns.len()].iter().map(|sum| sum / rows.len().max(1) as f64));

@@ -92,7 +92,7 @@ fn side(track: &Track, model: &Model, study: &Study, picks: &[usize]) -> Option<
     for candidate in picks.iter().map(|p| &study.candidates[*p]) {
         for (column, value) in candidate.columns.iter().zip(&solved.values[at..]) {
             if candidate.kind == Kind::Instrument {
-                drive.iter_mut().zip(column).for_each(|(d, c)| *d -= value * c);
+                drive.iter_mut().zip(column.iter()).for_each(|(d, c)| *d -= value * c);
             }
         }
         at += candidate.columns.len();

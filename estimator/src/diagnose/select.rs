@@ -165,10 +165,9 @@ impl Selection<'_> {
             .filter(|c| chosen.iter().all(|o| !self.excludes(self.candidates[*o].id, self.candidates[*c].id)))
     }
 
-    /// The best one beside the chosen ones, whether it earns its place or not.
-    pub fn next(&self, chosen: &[usize]) -> Option<usize> {
-        let price = |c: &usize| self.price(&[chosen, &[*c]].concat());
-        cheapest(self.open(chosen), price).filter(|(_, price)| price.is_finite()).map(|(best, _)| best)
+    /// What each candidate would cost beside the chosen ones that may join them.
+    pub fn priced(&self, chosen: &[usize]) -> Vec<(usize, f64)> {
+        self.open(chosen).map(|c| (c, self.price(&[chosen, &[c]].concat()))).collect()
     }
 
     /// The strongest generic term beside the chosen causes, and its score after the search for it is paid.
@@ -224,8 +223,10 @@ impl Selection<'_> {
     /// What stands of a search that starts with `chosen`; `merges`: one is put in the place of two.
     fn settled(&self, mut chosen: Vec<usize>, merges: bool) -> Vec<usize> {
         while chosen.len() < self.most() {
-            let Some(best) = self.next(&chosen) else { break };
-            chosen.push(best);
+            match cheapest(self.priced(&chosen)) {
+                Some((best, price)) if price.is_finite() => chosen.push(best),
+                _ => break,
+            }
             self.swap(&mut chosen);
         }
         self.prune(&mut chosen);
@@ -248,7 +249,7 @@ impl Selection<'_> {
             let merged = all.filter_map(|(a, b)| {
                 let rest = without(&without(chosen, b), a);
                 let with = |c: usize| [rest.as_slice(), &[c]].concat();
-                cheapest(self.open(&rest).map(with), |merged| self.price(merged))
+                cheapest(self.priced(&rest)).map(|(c, price)| (with(c), price))
             });
             merged.min_by(|a, b| a.1.total_cmp(&b.1))
         };
@@ -264,7 +265,7 @@ impl Selection<'_> {
                 let rest: Vec<usize> = chosen.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, c)| *c).collect();
                 let with = |c: usize| self.price(&[rest.as_slice(), &[c]].concat());
                 let now = with(chosen[k]);
-                if let Some((best, price)) = cheapest(self.open(&rest), |c| with(*c))
+                if let Some((best, price)) = cheapest(self.priced(&rest))
                     && price < now - 1e-9
                 {
                     chosen[k] = best;
@@ -281,8 +282,8 @@ impl Selection<'_> {
     fn prune(&self, chosen: &mut Vec<usize>) {
         while !chosen.is_empty() {
             let whole = self.price(chosen);
-            let loss = |k: &usize| self.price(&without(chosen, *k)) - whole;
-            let Some((weakest, loss)) = cheapest(0..chosen.len(), loss) else { return };
+            let losses = (0..chosen.len()).map(|k| (k, self.price(&without(chosen, k)) - whole));
+            let Some((weakest, loss)) = cheapest(losses) else { return };
             let is_doubtful =
                 |k: &usize| !self.validates(chosen, *k) || self.remains(chosen, *k) || self.pulls_against(chosen, *k);
             if loss < self.threshold {
@@ -407,7 +408,7 @@ impl Selection<'_> {
         let mut order: Vec<usize> = Vec::new();
         while !left.is_empty() {
             let price = |c: &usize| self.price(&[order.as_slice(), &[*c]].concat());
-            let Some((next, _)) = cheapest(0..left.len(), |k| price(&left[*k])) else { break };
+            let Some((next, _)) = cheapest((0..left.len()).map(|k| (k, price(&left[k])))) else { break };
             order.push(left.remove(next));
         }
         order
@@ -447,13 +448,9 @@ impl Selection<'_> {
     }
 }
 
-/// The cheapest of all, the first of several, and its price; each is priced once.
-fn cheapest<T>(all: impl Iterator<Item = T>, price: impl Fn(&T) -> f64) -> Option<(T, f64)> {
-    let priced = all.map(|one| {
-        let price = price(&one);
-        (one, price)
-    });
-    priced.min_by(|a, b| a.1.total_cmp(&b.1))
+/// The cheapest of all, the first of several, and its price.
+pub(super) fn cheapest<T>(priced: impl IntoIterator<Item = (T, f64)>) -> Option<(T, f64)> {
+    priced.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 fn without(chosen: &[usize], k: usize) -> Vec<usize> {

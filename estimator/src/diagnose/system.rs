@@ -145,7 +145,7 @@ struct Known {
 /// All columns in the order of a system, the target last.
 fn columns_of<'a>(base: &'a [Vec<f64>], candidates: &'a [Candidate], y: &'a [f64]) -> Vec<&'a [f64]> {
     let of_candidates = candidates.iter().flat_map(|c| &c.columns);
-    base.iter().chain(of_candidates).map(Vec::as_slice).chain([y]).collect()
+    base.iter().chain(of_candidates.map(|column| &**column)).map(Vec::as_slice).chain([y]).collect()
 }
 
 /// Which of the columns in `had` each one is, to the bit; each of them stands for one at most.

@@ -67,7 +67,7 @@ fn may_be(
         let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
         let picked = study.picks();
         let kept = picked.iter().map(|c| &study.candidates[*c]).filter(|c| is_kept(c.id));
-        columns.extend(kept.flat_map(|c| c.columns.iter().cloned()));
+        columns.extend(kept.flat_map(|c| c.columns.iter().map(|column| column.to_vec())));
         least_squares_values(&columns, &study.y, Some(&weights(track))).map(|fit| fit.rms)
     };
     let with_causes = left(track, &|_| true)?;

@@ -169,7 +169,7 @@ pub fn errors(rows: &Rows<'_>, study: &Study, number_of: &dyn Fn(&[f64]) -> usiz
     });
     let place = stiffness.into_iter().find(|(_, c)| *c == pick)?.0;
     let k = study.solved.as_ref()?.values[place];
-    let mut columns: Vec<Vec<f64>> = cable.columns.clone();
+    let mut columns: Vec<Vec<f64>> = cable.columns.iter().map(|column| column.to_vec()).collect();
     columns.extend((0..3).map(|p| {
         let moved = |step: f64| {
             let mut to = at;
@@ -181,7 +181,7 @@ pub fn errors(rows: &Rows<'_>, study: &Study, number_of: &dyn Fn(&[f64]) -> usiz
     }));
     columns.extend(study.base.iter().filter(|c| c.iter().any(|v| *v != 0.0)).cloned());
     let others = study.picks().into_iter().filter(|p| *p != pick);
-    columns.extend(others.flat_map(|p| study.candidates[p].columns.clone()));
+    columns.extend(others.flat_map(|p| study.candidates[p].columns.iter().map(|column| column.to_vec())));
     let squares: Vec<f64> = study.weight.iter().map(|w| w * w).collect();
     let fit = least_squares(&columns, &study.y, Some(&squares)).ok()?;
     Some([fit.std_errors[0], fit.std_errors[2], fit.std_errors[3], fit.std_errors[4]])

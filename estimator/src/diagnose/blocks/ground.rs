@@ -291,7 +291,7 @@ impl Ground {
             .base
             .iter()
             .skip(self.stands.len())
-            .chain(picks.iter().flat_map(|p| &self.compared.study.candidates[*p].columns))
+            .chain(picks.iter().flat_map(|p| &self.compared.study.candidates[*p].columns).map(|column| &**column))
             .collect();
         for (column, value) in columns.iter().zip(&solved.values[self.stands.len()..]) {
             give.iter_mut().zip(column.iter()).for_each(|(g, c)| *g += value * c);

@@ -55,7 +55,8 @@ pub fn ways(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], study: &Study) ->
         let (start_s, length_s) = (value("t0")?, value("duration")?);
         let rest = rests.iter().position(|r| own.columns[0][r.rows.clone()].iter().any(|share| *share > 0.0))?;
         let others = chosen.iter().filter(is_slip).filter(|c| c.searched[0].value != start_s);
-        let model = [model, &others.flat_map(|c| c.columns.clone()).collect::<Vec<_>>()].concat();
+        let model =
+            [model, &others.flat_map(|c| &c.columns).map(|column| column.to_vec()).collect::<Vec<_>>()].concat();
         let left = heights.left(&model);
         let best = heights.tried(&left, Slip { rest, start_s, length_s })?;
         let (way_m, error_m) = heights.way_m(&left, best, variance_m2);

@@ -12,20 +12,21 @@ impl Dictionary<'_> {
         let column = |values: &[f64]| self.law_of_place(&ReturnSpring, values);
         let line = || vec![column(&[1.0, 0.0, 0.0, middle]), column(&[0.0, 1.0])];
         let names = || vec![("k", self.unit(&ReturnSpring, 0)), ("f0", self.units().force)];
-        let spring = Candidate::several("return-spring", Kind::Plant, line(), names());
+        let spring = Candidate::of("return-spring", Kind::Plant, line(), names());
         all.push(spring.shaped(Shape::Spring { half }));
         if !self.track.planar {
             // Beside a constant force (a sensor's zero, a slope) nothing tells where it is at rest.
             let anywhere = column(&[1.0, 0.0, 0.0, middle]);
             all.push(
-                Candidate::one("return-spring", Kind::Plant, "k", self.unit(&ReturnSpring, 0), anywhere).positive(),
+                Candidate::of("return-spring", Kind::Plant, vec![anywhere], vec![("k", self.unit(&ReturnSpring, 0))])
+                    .positive(),
             );
         }
         let (mut columns, mut linear) = (line(), names());
         columns.push(column(&[0.0, 0.0, 1.0, middle]));
         columns.push(column(&[0.0, 0.0, 1.0, middle + half]));
         linear.extend([("k3", self.unit(&ReturnSpring, 2)), ("k3 aside", self.unit(&ReturnSpring, 2))]);
-        let hardening = Candidate::several("return-spring", Kind::Plant, columns, linear);
+        let hardening = Candidate::of("return-spring", Kind::Plant, columns, linear);
         all.push(hardening.shaped(Shape::Hardening { half }));
         // Far from its place of rest all that shows is the cubic.
         for rest in self.grid.rests.iter().copied() {
@@ -36,7 +37,7 @@ impl Dictionary<'_> {
         for rest in self.grid.hardening.iter().copied() {
             let columns = vec![column(&[1.0, 0.0, 0.0, rest]), column(&[0.0, 0.0, 1.0, rest])];
             let linear = vec![("k", self.unit(&ReturnSpring, 0)), ("k3", self.unit(&ReturnSpring, 2))];
-            let stiff = Candidate::several("return-spring", Kind::Plant, columns, linear).shaped(Shape::Stiffening);
+            let stiff = Candidate::of("return-spring", Kind::Plant, columns, linear).shaped(Shape::Stiffening);
             all.push(stiff.at("q0", rest, self.unit(&ReturnSpring, 3)));
         }
     }
@@ -51,7 +52,7 @@ impl Dictionary<'_> {
         let (Some(radius), true) = (self.track.radius_m, self.track.planar) else { return };
         for (direction, rest, reach) in self.grid.cables.iter().copied() {
             let pull = self.law_of_place(&Cable, &[1.0, rest, direction, reach * radius, radius]);
-            let cable = Candidate::one("added-constraint", Kind::Plant, "k", "N/m", pull).positive();
+            let cable = Candidate::of("added-constraint", Kind::Plant, vec![pull], vec![("k", "N/m")]).positive();
             let mut cable = cable.at("anchor direction", direction, "rad").at("rest length", rest, "m");
             // How far away the anchor is hardly shows.
             cable.searched.push(Searched { name: "anchor distance", value: reach * radius, unit: "m" });

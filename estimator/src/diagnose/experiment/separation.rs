@@ -100,7 +100,7 @@ impl<'a> Eye<'a> {
         let like = nearest(&self.on.candidates, own)?;
         let parts = like.columns.iter().zip(&solved.values[at..at + own.columns.len()]);
         let effect = parts.fold(vec![0.0; self.on.weight.len()], |mut sum, (c, v)| {
-            sum.iter_mut().zip(c).for_each(|(s, x)| *s += v * x);
+            sum.iter_mut().zip(c.iter()).for_each(|(s, x)| *s += v * x);
             sum
         });
         let effect = self.white.of(&effect);

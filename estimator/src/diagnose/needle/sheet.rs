@@ -198,7 +198,7 @@ fn said_by_a_row(
     let free: Vec<usize> = (0..rows.len()).filter(|i| !touches(&rows[*i])).collect();
     let slow = candidates.iter().filter(|c| c.id == "force-drift" || c.expression.is_some());
     let here = |column: &Vec<f64>| free.iter().map(|i| column[*i]).collect::<Vec<f64>>();
-    let mut columns: Vec<Vec<f64>> = base.iter().chain(slow.flat_map(|c| &c.columns)).map(here).collect();
+    let mut columns: Vec<Vec<f64>> = base.iter().chain(slow.flat_map(|c| &c.columns).map(|c| &**c)).map(here).collect();
     columns.retain(|column| column.iter().any(|v| *v != 0.0));
     let y: Vec<f64> = free.iter().map(|i| rows[*i].force_n).collect();
     if y.len() < 2 * columns.len() {

@@ -207,7 +207,7 @@ fn of_found(study: &Study, rows: usize) -> Vec<f64> {
     let Some(solved) = &study.solved else { return sum };
     let columns = study.chosen.iter().flat_map(|c| &study.candidates[c.candidate].columns);
     for (column, value) in columns.zip(&solved.values[study.base.len()..]) {
-        sum.iter_mut().zip(column).for_each(|(s, c)| *s += value * c);
+        sum.iter_mut().zip(column.iter()).for_each(|(s, c)| *s += value * c);
     }
     sum
 }

@@ -2,12 +2,15 @@
 
 use super::super::candidate::Candidate;
 use super::super::products::{STRIP, Weighed};
-use super::super::select::Selection;
+use super::super::select::{Selection, cheapest};
 use super::{FOLDS, Rows, System, Use, columns_of, counted, energy, places, uses};
 use nalgebra::DMatrix;
 
 /// Fewer columns than this are all multiplied with each other at once.
 const MANY: usize = 64;
+
+/// So many causes are looked at ahead.
+const AHEAD: usize = 6;
 
 /// A system that is not whitened, whose products are made when they are needed: those of the model with all columns, then those of each cause
 /// that was chosen. What was not made is no number.
@@ -102,21 +105,43 @@ impl<'a> Rough<'a> {
 
     /// The best few, whether they earn their place or not: what the whitening must not swallow.
     pub fn greedy(&mut self, threshold: f64) -> Vec<usize> {
-        let mut chosen: Vec<usize> = Vec::new();
+        let (mut chosen, mut known): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
         loop {
             let (system, candidates) = (&self.system, self.candidates);
             let selection = Selection { system, candidates, threshold, dry: true, one_loss: false };
             if chosen.len() == selection.most() {
                 return chosen;
             }
-            let Some(best) = selection.next(&chosen) else { return chosen };
+            let priced = selection.priced(&chosen);
+            let Some((best, _)) = cheapest(priced.iter().copied()).filter(|(_, price)| price.is_finite()) else {
+                return chosen;
+            };
             chosen.push(best);
-            // What may come beside it.
+            if known.contains(&best) {
+                continue;
+            }
+            // Others that may be the next are looked at as well while everything is gone through. What may come beside the chosen ones:
             let open: Vec<usize> = selection.open(&chosen).collect();
             let strips: Vec<Vec<usize>> = self.columns_of(&open).chunks(STRIP).map(<[usize]>::to_vec).collect();
-            self.learn(&strips, &self.columns_of(&[best]), false);
+            let ahead = likely(&priced, &open, candidates);
+            let with: Vec<usize> = std::iter::once(best).chain(ahead).collect();
+            self.learn(&strips, &self.columns_of(&with), false);
+            known.extend(with);
         }
     }
+}
+
+/// The best candidates of some other causes that are open yet.
+fn likely(priced: &[(usize, f64)], open: &[usize], candidates: &[Candidate]) -> Vec<usize> {
+    let mut others: Vec<(usize, f64)> = priced.iter().filter(|(c, _)| open.contains(c)).copied().collect();
+    others.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let mut ahead: Vec<usize> = Vec::new();
+    for (c, _) in others {
+        if ahead.len() < AHEAD && ahead.iter().all(|known| candidates[*known].id != candidates[c].id) {
+            ahead.push(c);
+        }
+    }
+    ahead
 }
 
 #[cfg(test)]
@@ -173,8 +198,8 @@ mod tests {
         let selection =
             Selection { system: &whole, candidates: &candidates, threshold: 20.0, dry: true, one_loss: false };
         let mut wanted = Vec::new();
-        while let Some(best) = selection.next(&wanted).filter(|_| wanted.len() < selection.most()) {
-            wanted.push(best);
+        while wanted.len() < selection.most() {
+            wanted.extend(cheapest(selection.priced(&wanted)).map(|(best, _)| best));
         }
         assert_eq!(chosen, wanted);
         // Nobody asked for those.
