@@ -197,7 +197,7 @@ impl Part<'_> {
         let Study { system, candidates, solved, .. } = self.study;
         let picks = self.study.picks();
         let Some(solved) = solved else { return };
-        let variance = solved.rss / (system.rows - solved.columns.len() as f64).max(1.0);
+        let variance = solved.variance(system.rows);
         let mut best: Vec<(&str, f64, &str)> = Vec::new();
         for (k, candidate) in candidates.iter().enumerate() {
             let Some((size, why)) = (self.usual)(candidate) else { continue };

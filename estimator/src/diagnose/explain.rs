@@ -15,7 +15,7 @@ use super::passed_over::{passed_over, unsaid};
 use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, Verdict};
 use super::residuals;
 use super::rollout::rollout;
-use super::searched::{first_of, settled};
+use super::searched::{firsts, settled};
 use super::select::{Chosen, Selection};
 use super::skew::{apart, rest_s, skew};
 use super::slowest::widen;
@@ -251,7 +251,8 @@ pub(super) fn p_value(study: &Study, chosen: &Chosen) -> f64 {
 
 pub(super) fn parameters(study: &Study, k: usize) -> Vec<CauseParameter> {
     let Some(settled) = settled(study) else { return Vec::new() };
-    let (own, first) = (&study.candidates[study.chosen[k].candidate], first_of(study, k));
+    let picks = study.picks();
+    let (own, first) = (&study.candidates[picks[k]], firsts(study, &picks)[k]);
     let mut found: Vec<CauseParameter> = own
         .linear
         .iter()
@@ -284,9 +285,9 @@ fn of_hardening_spring(track: &Track, study: &Study, k: usize) -> Option<Vec<Cau
         return None;
     }
     let solved = study.solved.as_ref()?;
-    let first = first_of(study, k);
+    let first = firsts(study, &study.picks())[k];
     let values = &solved.values[first..first + 4];
-    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    let variance = solved.variance(study.system.rows);
     let found = spring(values, track);
     let slopes: Vec<[f64; 4]> = (0..4)
         .map(|j| {
@@ -349,7 +350,7 @@ pub(super) fn unnamed(study: &Study, (candidate, score): (usize, f64), (floor, u
     let mut odds = 1.0;
     if let Some(solved) = study.system.solve(&with) {
         let first = solved.values.len() - term.columns.len();
-        let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+        let variance = solved.variance(study.system.rows);
         let names: &[&str] = if term.columns.len() == 2 { &["A cos phi", "A sin(-phi)"] } else { &["A"] };
         parameters.extend(names.iter().zip(first..).map(|(name, i)| {
             number(name, solved.values[i], (variance * solved.inverse[(i, i)]).sqrt(), term.linear[i - first].1)

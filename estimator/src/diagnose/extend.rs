@@ -4,7 +4,7 @@ use super::candidate::{Candidate, about_its_zero};
 use super::force::Model;
 use super::free;
 use super::geometry::Study;
-use super::searched::settled;
+use super::searched::{settled, shares};
 use super::system::Solved;
 use super::track::Track;
 use haptics::law::{
@@ -35,11 +35,7 @@ pub fn effects_of(
     let tried = |c: &&Candidate| c.searched.iter().map(|s| s.value).collect();
     let searched: Vec<Vec<f64>> = candidates.iter().map(tried).collect();
     let mut values = solved.values.clone();
-    let mut at = values.len() - candidates.iter().map(|c| c.columns.len()).sum::<usize>();
-    for candidate in &candidates {
-        values[at] *= if candidate.is_share() { study.shares_of[0] } else { 1.0 };
-        at += candidate.columns.len();
-    }
+    shares(study, picks).for_each(|first| values[first] *= study.shares_of[0]);
     let (found, is_whole) = made(track, model, &candidates, &values, &searched);
     is_whole.then_some(found)
 }

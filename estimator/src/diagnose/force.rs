@@ -467,7 +467,7 @@ fn is_resisting(effect: &Effect) -> bool {
 fn shares_of(track: &Track, model: &Model, used: &[f64], solved: &Solved, rows: f64) -> [f64; 2] {
     let of = |level: &dyn Fn(usize) -> f64| track.along().map(level).sum::<f64>();
     let (used, now) = (of(&|i| used[i]), of(&|i| dry_level(track, model, &solved.values, i)));
-    let variance = solved.rss / (rows - solved.columns.len() as f64).max(1.0);
+    let variance = solved.variance(rows);
     let dry = model.iter().enumerate().filter(|(_, effect)| effect.law().is_dry());
     let error = |(k, effect): (usize, &Effect)| {
         (variance * solved.inverse[(k, k)]).sqrt() * of(&|i| level(effect, track, i).abs())

@@ -80,7 +80,7 @@ impl Geometry {
     /// By what share the path is too large for a known radius, and the error of that.
     pub fn too_large(&self, known_m: f64) -> Option<[f64; 2]> {
         let solved = self.study.solved.as_ref()?;
-        let variance = solved.rss / (self.study.system.rows - solved.columns.len() as f64).max(1.0);
+        let variance = solved.variance(self.study.system.rows);
         Some([self.arm.radius_m / known_m - 1.0, (variance * solved.inverse[(0, 0)]).sqrt() / known_m])
     }
 }

@@ -174,13 +174,13 @@ impl Grid {
                 "stribeck" => {
                     let alpha = value("alpha").unwrap_or(0.0);
                     let vs = value("vs").unwrap_or(0.0);
-                    let speeds = times(vs, &[0.72, 0.85, 1.0, 1.18, 1.38]);
-                    grid.stribeck.extend(speeds.into_iter().map(|vs| (vs, alpha)));
-                    // The other exponent, as near: on the coarse grid alone the wrong one may be nearer.
-                    let (other, alike) =
-                        if alpha == 1.0 { (0.0, vs * LIKE_EXPONENTIAL) } else { (1.0, vs / LIKE_EXPONENTIAL) };
-                    let speeds = times(alike, &[0.72, 0.85, 1.0, 1.18, 1.38]);
-                    grid.stribeck.extend(speeds.into_iter().map(|vs| (vs, other)));
+                    // Of the other exponent as well, as near: on the coarse grid alone the wrong one may be nearer.
+                    let [gaussian, exponential] =
+                        if alpha == 1.0 { [vs * LIKE_EXPONENTIAL, vs] } else { [vs, vs / LIKE_EXPONENTIAL] };
+                    for (alpha, vs) in [(0.0, gaussian), (1.0, exponential)] {
+                        let speeds = times(vs, &[0.72, 0.85, 1.0, 1.18, 1.38]);
+                        grid.stribeck.extend(speeds.into_iter().map(|vs| (vs, alpha)));
+                    }
                 }
                 "hysteresis" | "backlash" => {
                     let way = value("way").or(value("delta")).unwrap_or(0.0);

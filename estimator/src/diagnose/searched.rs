@@ -32,13 +32,13 @@ pub struct Settled {
 pub fn settled(study: &Study) -> Option<Settled> {
     let solved = study.solved.as_ref()?;
     let picks = study.picks();
-    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    let variance = solved.variance(study.system.rows);
     let squares = (0..solved.values.len()).map(|i| variance * solved.inverse[(i, i)]);
     let (mut values, mut squares) = (solved.values.clone(), squares.collect::<Vec<f64>>());
     let mut searched = Vec::new();
-    for (k, own) in picks.iter().map(|c| &study.candidates[*c]).enumerate() {
+    for (k, first) in firsts(study, &picks).into_iter().enumerate() {
+        let own = &study.candidates[picks[k]];
         let all: Vec<Known> = (0..own.searched.len()).map(|which| known(study, k, which)).collect();
-        let first = first_of(study, k);
         for (i, unknown) in carried_over(study, k, &all).into_iter().enumerate() {
             squares[i] += unknown.powi(2);
         }
@@ -56,8 +56,7 @@ pub fn settled(study: &Study) -> Option<Settled> {
         searched.push(all);
     }
     let mut std_errors: Vec<f64> = squares.into_iter().map(f64::sqrt).collect();
-    for k in (0..picks.len()).filter(|k| study.candidates[picks[*k]].is_share()) {
-        let first = first_of(study, k);
+    for first in shares(study, &picks) {
         // Friction that was less at first has changed by more: the errors of both add up.
         let [ratio, error] = study.shares_of;
         values[first] *= ratio;
@@ -66,9 +65,19 @@ pub fn settled(study: &Study) -> Option<Settled> {
     Some(Settled { values, std_errors, searched })
 }
 
-/// Where the values of the k-th chosen cause begin.
-pub fn first_of(study: &Study, k: usize) -> usize {
-    study.system.base + study.picks()[..k].iter().map(|p| study.candidates[*p].columns.len()).sum::<usize>()
+/// Where the values of each of these causes begin.
+pub fn firsts(study: &Study, picks: &[usize]) -> Vec<usize> {
+    let counts = picks.iter().map(|p| study.candidates[*p].columns.len());
+    counts.scan(study.system.base, |at, count| Some(std::mem::replace(at, *at + count))).collect()
+}
+
+/// Where the values of the causes begin that are shares of the dry friction.
+pub fn shares<'a>(study: &'a Study, picks: &'a [usize]) -> impl Iterator<Item = usize> + 'a {
+    firsts(study, picks)
+        .into_iter()
+        .zip(picks)
+        .filter(|(_, p)| study.candidates[**p].is_share())
+        .map(|(first, _)| first)
 }
 
 /// All values and −2 ln(likelihood), with another candidate in the place of the k-th chosen cause.

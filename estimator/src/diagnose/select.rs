@@ -376,7 +376,7 @@ impl Selection<'_> {
         let Some(solved) = self.system.solve(chosen) else { return false };
         let before: usize = chosen[..k].iter().map(|c| self.candidates[*c].columns.len()).sum();
         let first = self.system.base + before;
-        let variance = solved.rss / (self.system.rows - solved.columns.len() as f64).max(1.0);
+        let variance = solved.variance(self.system.rows);
         (first..first + self.candidates[chosen[k]].columns.len())
             .any(|i| solved.values[i].abs() > CLEAR_T * (variance * solved.inverse[(i, i)]).sqrt())
     }

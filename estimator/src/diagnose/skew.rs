@@ -49,6 +49,6 @@ pub fn rest_s(study: &Study, picks: &[usize]) -> Option<[f64; 2]> {
     let others: Vec<usize> = picks.iter().copied().filter(|c| !is_delay(c)).collect();
     let solved = study.system.solve(&[others.as_slice(), &[delay]].concat())?;
     let last = solved.values.len() - 1;
-    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    let variance = solved.variance(study.system.rows);
     Some([solved.values[last], (variance * solved.inverse[(last, last)]).sqrt()])
 }

@@ -337,7 +337,7 @@ fn scales(found: &mut Diagnosis, study: &Study, model: &Model, mass_kg: Option<f
     use haptics::law::Law;
     let (Some(known), Some(solved)) = (mass_kg, &study.solved) else { return };
     let Some(k) = model.iter().position(|e| e.law().id() == Inertia.id()) else { return };
-    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    let variance = solved.variance(study.system.rows);
     let (ratio, error) = (solved.values[k] / known, (variance * solved.inverse[(k, k)]).sqrt() / known);
     let off = (ratio - 1.0).abs();
     if off < MASS_SHARE.max((ERRORS + 1.0) * error) {

@@ -95,7 +95,7 @@ pub fn short_arc(path: &Path, arm: &Arm, study: &Study) -> Option<String> {
     let arc_rad = (high - low).min(std::f64::consts::TAU);
     let bulge_m = arm.radius_m * (1.0 - (0.5 * arc_rad).cos());
     let noise_m = white_noise(&study.y);
-    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    let variance = solved.variance(study.system.rows);
     let error_m = (variance * solved.inverse[(0, 0)]).sqrt();
     (bulge_m < BULGE * noise_m || error_m > UNSURE * arm.radius_m).then(|| {
         format!(

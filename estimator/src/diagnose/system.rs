@@ -199,6 +199,13 @@ pub struct Solved {
     pub rss: f64,
 }
 
+impl Solved {
+    /// Variance of what is left in one of so many rows.
+    pub fn variance(&self, rows: f64) -> f64 {
+        self.rss / (rows - self.columns.len() as f64).max(1.0)
+    }
+}
+
 impl System {
     pub fn new(base: &[Vec<f64>], candidates: &[Candidate], rows: &Rows<'_>, coefficients: Vec<f64>) -> Self {
         Self::build(columns_of(base, candidates, rows.y), (base.len(), candidates), rows, coefficients, None)

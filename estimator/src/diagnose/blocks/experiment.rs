@@ -97,7 +97,7 @@ pub fn propose(open: &[Alternative], carry: &Carry, seen: &[Seen<'_>]) -> Option
     let weight_n = study.y.iter().copied().fold(0.0, f64::max);
     // Noise that goes on from row to row hides slow effects better.
     let slow = 1.0 - study.system.coefficients.iter().sum::<f64>();
-    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    let variance = solved.variance(study.system.rows);
     let rivals: Vec<&Alternative> = open.iter().filter(|a| a.instead_of == first.instead_of).collect();
     let mut best: Option<NextExperiment> = None;
     for seconds in HELD_S {

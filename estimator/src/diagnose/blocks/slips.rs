@@ -48,8 +48,7 @@ pub fn ways(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], study: &Study) ->
     let heights = rows.heights(&rests);
     let chosen: Vec<&Candidate> = study.picks().into_iter().map(|p| &study.candidates[p]).collect();
     let is_slip = |c: &&&Candidate| c.id == "fingertip-slip";
-    let variance_m2 =
-        study.solved.as_ref().map_or(0.0, |s| s.rss / (study.system.rows - s.columns.len() as f64).max(1.0));
+    let variance_m2 = study.solved.as_ref().map_or(0.0, |s| s.variance(study.system.rows));
     let way = |own: &&Candidate| {
         let value = |name: &str| own.searched.iter().find(|s| s.name == name).map(|s| s.value);
         let (start_s, length_s) = (value("t0")?, value("duration")?);

@@ -55,7 +55,7 @@ impl Imagined {
 /// What a study left of a row's power, on the average.
 fn variance(study: &Study) -> Option<f64> {
     let solved = study.solved.as_ref()?;
-    Some((solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0)).max(1e-24))
+    Some(solved.variance(study.system.rows).max(1e-24))
 }
 
 /// λ of the worse case: either the found cause is there or its rival, and the model and the other one imitate what they can of it on this

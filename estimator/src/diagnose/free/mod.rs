@@ -247,7 +247,7 @@ fn fixed(track: &Track) -> Model {
 fn inertia_by(stated: Stated, model: &Model, study: &Study) -> Option<(f64, f64)> {
     let (Stated::Inertia(known) | Stated::Gravity(known) | Stated::Viscous(known) | Stated::Coulomb(known)) = stated;
     let solved = study.solved.as_ref()?;
-    let variance = solved.rss / (study.system.rows - solved.columns.len() as f64).max(1.0);
+    let variance = solved.variance(study.system.rows);
     let of: Vec<usize> = (0..model.len()).filter(|k| model[*k].law().id() == law_of(stated).id()).collect();
     let ratio = of.iter().map(|k| solved.values[*k].powi(2)).sum::<f64>().sqrt();
     let pairs = of.iter().flat_map(|a| of.iter().map(move |b| (*a, *b)));
