@@ -57,7 +57,10 @@ fn a_cause_that_was_searched_for_beside_a_pruned_one_is_searched_for_again() {
 /// Half a step of the coarse grid of gaps costs more than what a bend of another way misses; beside another cause that decided.
 #[test]
 fn play_is_told_from_a_bend_where_both_were_searched_for_as_closely() {
-    assert_eq!(named((2929, 9783)), ["backlash", "mass-change"]);
+    // Either may be the stronger one.
+    let mut both = named((2929, 9783));
+    both.sort_unstable();
+    assert_eq!(both, ["backlash", "mass-change"]);
     assert_eq!(named((2929, 9864)), ["pad-compliance", "backlash"]);
 }
 
