@@ -6,6 +6,7 @@
 //! `cargo run --release -p blind --example blind -- --experiments [SEED [N]]` performs what answers ask for: N cases of every effect.
 //! `cargo run --release -p blind --example blind -- --one DIR ID [FORM [RATIO [RATE [SEED]]]]` writes one of a kind.
 //! `cargo run --release -p blind --example blind -- --only ID [SEED]` asks the cases of a whole battery in which one effect is hidden alone.
+//! `cargo run --release -p blind --example blind -- --list SEED…` asks whole batteries and prints every case in a line.
 //! `cargo run --release -p blind --example blind -- --again DIR SEED…` writes cases of whole batteries that a report names by their seeds.
 //! `cargo run --release -p blind --example blind -- --table [SEED]` makes every effect once and prints how large it came out.
 
@@ -32,11 +33,12 @@ fn main() -> ExitCode {
         ["--experiments", rest @ ..] => experiments(number(rest.first(), 1), number(rest.get(1), 2)),
         ["--one", folder, id, rest @ ..] => one(Path::new(folder), id, rest),
         ["--only", id, rest @ ..] => only(id, number(rest.first(), 1)),
+        ["--list", seeds @ ..] => seeds.iter().for_each(|seed| list(number(Some(seed), 1))),
         ["--again", folder, seeds @ ..] => again(Path::new(folder), seeds),
         ["--table", rest @ ..] => table(number(rest.first(), 7)),
         _ => {
             eprintln!(
-                "blind --fast [SEED] | --whole [SEED] | --long [SEED] | --dump DIR [N [SEED]] | --one DIR ID … | --only ID [SEED] | --again DIR SEED… | --table [SEED]"
+                "blind --fast [SEED] | --whole [SEED] | --long [SEED] | --dump DIR [N [SEED]] | --one DIR ID … | --only ID [SEED] | --list SEED… | --again DIR SEED… | --table [SEED]"
             );
             return ExitCode::from(2);
         }
@@ -132,6 +134,18 @@ fn only(id: &str, seed: u64) {
     let right = rows.iter().filter(|row| row.first_right()).count();
     let in_set = rows.iter().filter(|row| row.set_right()).count();
     println!("{right} of {} have {id} first, {in_set} among what cannot be told apart, seed {seed}", rows.len());
+}
+
+/// Every case of a whole battery in a line: what it is, what was hidden, what equals that there, and what was said.
+fn list(seed: u64) {
+    let jobs = battery(Counts::WHOLE, seed);
+    let rows = ask(&jobs, &|recordings, options| diagnose(recordings, options).map_err(|e| e.to_string()));
+    for row in &rows {
+        let kind = format!("{}, {}, {} Hz", row.bench.name(), row.log.name(), row.rate_hz);
+        let (hidden, equals, said, named) =
+            (row.ids().join(","), row.equals.join(","), row.said(), row.named().join(","));
+        println!("{:?}|{}|{kind}|{}|{hidden}|{equals}|{said}|{named}", row.set, row.seed, row.ratio);
+    }
 }
 
 /// Writes cases of whole batteries by the seeds that a report names them by.
