@@ -3,7 +3,7 @@
 use super::profile::{Profile, holds};
 use super::{about, is_position, limited, place};
 use crate::log::units::{self, Dimension};
-use crate::signal::noise::white_noise;
+use crate::signal::noise::{white_noise, white_noise_under_fast_motion};
 use haptics::recording::{Channel, Recording, Span, Warning};
 
 /// Plateau at the extreme value: at least this many samples (`facts/diagnosis.md`, step 0).
@@ -177,6 +177,10 @@ pub fn coarse(recording: &Recording, profiles: &[Profile]) -> Vec<Warning> {
             let same = channels().filter(|(c, _)| c.unit == channel.unit);
             let range = same.map(|(_, p)| p.spread()).fold(0.0, f64::max);
             if channel.values.len() < COARSE_SAMPLES || quantum * COARSE_LEVELS < range {
+                return None;
+            }
+            // Noise larger than the steps carries the finer detail across them: means of many samples have it.
+            if white_noise_under_fast_motion(&channel.values) > NOISY_STEPS * quantum {
                 return None;
             }
             let text = format!(

@@ -96,6 +96,27 @@ fn a_clipped_force_is_saturated_and_a_quantised_one_is_not() {
 }
 
 #[test]
+fn steps_that_noise_crosses_are_not_coarse() {
+    use rand::{RngExt, SeedableRng};
+    let time: Vec<f64> = (0..2000).map(|i| f64::from(i) * 1e-3).collect();
+    let mut rng = rand::rngs::StdRng::seed_from_u64(5);
+    // Steps of an eighth of what a slow force ranges over, behind noise of so many steps.
+    let mut kinds_behind = |noise: f64| {
+        let mut reading = |i: i32| {
+            let spread = 3.0_f64.sqrt() * noise;
+            let more = if spread > 0.0 { rng.random_range(-spread..spread) } else { 0.0 };
+            (4.0 * (f64::from(i) * 0.01).sin() + more).round() * 0.1
+        };
+        let force = (0..2000).map(&mut reading).collect();
+        let found = warnings(&recording(time.clone(), vec![channel("f_N", force)]));
+        found.into_iter().map(|w| w.kind).collect::<Vec<_>>()
+    };
+    assert_eq!(kinds_behind(0.0), ["quantised"]);
+    assert_eq!(kinds_behind(0.3), ["quantised"]);
+    assert!(kinds_behind(1.5).is_empty());
+}
+
+#[test]
 fn a_limit_that_two_sensors_reach_on_both_sides_is_seen_in_all_of_them_together() {
     let time: Vec<f64> = (0..2000).map(|i| f64::from(i) * 1e-3).collect();
     // A slow force with a steep stroke wherever `strokes` says so: up to its side of ±2 N, and held there for so many samples.
