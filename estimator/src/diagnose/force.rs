@@ -5,27 +5,33 @@ use super::candidate::Candidate;
 use super::columns::Columns;
 use super::compare::whitening as whitening_of;
 use super::dictionary::Dictionary;
+use super::friction::{dry_level, friction_is_sound, is_resisting, shares_of, total};
 use super::gain::{confirmed, gain};
 use super::generic::generic;
 use super::geometry::{Study, residual};
 use super::grid::Grid;
 use super::hung;
 use super::means::column;
+use super::searched::firsts;
 use super::select::{Chosen, Selection};
 use super::starts::to_refine;
 use super::stuck::{self, Load};
-use super::system::{Held, Rows, Solved, System};
+use super::system::{Held, Rows, System};
 use super::track::{Place, Row, Track};
 use super::white::Noise;
 use crate::estimate::EstimateError;
 use crate::identify::linear::{least_squares, least_squares_values};
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, Memory, Stribeck, ViscousFriction};
+use std::collections::HashMap;
 
 /// Most rounds in which searched values and the sensor's faults are settled.
 const REFINEMENTS: usize = 2;
 /// … and of a free motion, whose noise is less where it swings.
 const REFINEMENTS_OF_FREE: usize = 5;
+
+/// What a model misses is alike within about this time, s: as long as a hand takes for a stroke.
+const PIECE_S: f64 = 0.5;
 
 /// The model to start from: laws with their non-linear values.
 pub type Model = Vec<Effect>;
@@ -120,8 +126,8 @@ pub const CONFIRMED: f64 = 2.5;
 /// than nothing.
 pub const SHOWN: f64 = 1.0;
 
-/// A cause that makes more of an error for certain where it was not fitted is none, whatever it explains elsewhere; nor is one that scores
-/// little and shows nothing there, where it is `tested`. `stretch`: of each row. `threshold`: least score of a cause.
+/// A cause that makes more of an error for certain where it was not fitted is none, whatever it explains elsewhere; nor is one that is known
+/// badly where every piece may be wrong in its own way, or one that scores little and shows nothing there, where it is `tested`. `stretch`: of each row. `threshold`: least score of a cause.
 pub fn leave_out_what_harms(
     study: &mut Study,
     stretch: &[usize],
@@ -132,12 +138,26 @@ pub fn leave_out_what_harms(
     loop {
         let unsure = |k: &usize| {
             harms(study, *k)
+                || !is_steady(study, *k)
                 || study.chosen[*k].score < sure && tested(study, *k) && confirmed(study, *k, stretch) < SHOWN
         };
         let Some(k) = (0..study.chosen.len()).rev().find(unsure) else { return };
         study.chosen.remove(k);
         study.solved = study.system.solve(&study.picks());
     }
+}
+
+/// So much is asked of the square of what a cause explains over its error by a jackknife, as is asked of its score.
+const STEADY: f64 = 20.0;
+
+/// Whether what the k-th of the chosen causes explains is known as well as is asked for by a jackknife over pieces of the recording, too. That is
+/// asked in the end alone: as long as another cause is missing, what that one leaves is in the pieces.
+fn is_steady(study: &Study, k: usize) -> bool {
+    let Some(solved) = &study.solved else { return true };
+    let picks = study.picks();
+    let first = firsts(study, &picks)[k];
+    let own = first..first + study.candidates[picks[k]].columns.len();
+    study.system.steadiness(solved, &own) > STEADY
 }
 
 /// Whether the k-th of the chosen causes makes more of an error for certain where it was not fitted.
@@ -250,17 +270,29 @@ fn compare(
     let place = |found: &Candidate| candidates.iter().position(|c| c.id == found.id && c.is_near(&found.searched));
     let found = before.iter().flat_map(|b| b.chosen.iter().map(|c| &b.candidates[c.candidate]));
     let start: Vec<usize> = found.filter_map(place).collect();
-    let system = match before {
+    let mut system = match before {
         // Rows of other weights leave another noise.
         Some(before) if before.weight == weight => System::after(before, &base, &candidates, &rows),
         _ => System::new(&base, &candidates, &rows, whitening_of(&base, &candidates, &rows, threshold)?),
     };
+    system.resisting = (0..model.len()).filter(|k| is_resisting(&model[*k])).collect();
+    system.pieces = pieces(&time_s);
     let chosen =
         Selection { system: &system, candidates: &candidates, threshold, dry: has_dry, one_loss: true }.run(&start);
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
     let solved = system.solve(&picks);
     let shares_of = solved.as_ref().map_or([1.0, 0.0], |s| shares_of(track, model, &dry, s, system.rows));
     Ok(Study { candidates, chosen, system, solved, y, base, weight, shares_of })
+}
+
+/// Which piece of [`PIECE_S`] each row is in, counted without those that no row is in.
+fn pieces(time_s: &[f64]) -> Vec<usize> {
+    let mut numbers: HashMap<i64, usize> = HashMap::new();
+    let mut number = |time_s: &f64| {
+        let next = numbers.len();
+        *numbers.entry((time_s / PIECE_S).floor() as i64).or_insert(next)
+    };
+    time_s.iter().map(&mut number).collect()
 }
 
 /// What the model with Coulomb friction leaves of the force, root mean square, and whether its friction resists.
@@ -438,51 +470,4 @@ fn loads(track: &Track, model: &Model, fixed: &Model) -> Result<Vec<Option<Load>
         (friction > 0.0).then(|| Load { share: held / friction, whole: y[i] / friction, friction })
     };
     Ok((0..y.len()).map(load).collect())
-}
-
-/// What the model's laws add up to in all rows at these values, all of them or those that resist motion.
-fn total(rows: usize, model: &Model, base: &[Vec<f64>], values: &[f64], resists: bool) -> Vec<f64> {
-    let mut sum = vec![0.0; rows];
-    for ((effect, column), value) in model.iter().zip(base).zip(values) {
-        if !resists || is_resisting(effect) {
-            sum.iter_mut().zip(column).for_each(|(s, c)| *s += value * c);
-        }
-    }
-    sum
-}
-
-/// Whether there is dry friction and it resists.
-fn friction_is_sound(model: &Model, values: &[f64]) -> bool {
-    let mut dry = model.iter().zip(values).filter(|(e, _)| e.law().is_dry()).map(|(_, v)| *v).peekable();
-    dry.peek().is_some() && dry.all(|v| v > 0.0)
-}
-
-fn is_resisting(effect: &Effect) -> bool {
-    use haptics::law::Role;
-    matches!(effect.role(), Role::Dry | Role::Presliding | Role::Viscous)
-}
-
-/// `used`: the dry friction of each row that shares were asked of; its ratio to what the model came out at beside them, along the motion, and the
-/// relative error of that.
-fn shares_of(track: &Track, model: &Model, used: &[f64], solved: &Solved, rows: f64) -> [f64; 2] {
-    let of = |level: &dyn Fn(usize) -> f64| track.along().map(level).sum::<f64>();
-    let (used, now) = (of(&|i| used[i]), of(&|i| dry_level(track, model, &solved.values, i)));
-    let variance = solved.variance(rows);
-    let dry = model.iter().enumerate().filter(|(_, effect)| effect.law().is_dry());
-    let error = |(k, effect): (usize, &Effect)| {
-        (variance * solved.inverse[(k, k)]).sqrt() * of(&|i| level(effect, track, i).abs())
-    };
-    if used > 0.0 && now > 0.0 { [used / now, dry.map(error).sum::<f64>() / now] } else { [1.0, 0.0] }
-}
-
-/// Size of the model's dry friction at a row if it slid.
-fn dry_level(track: &Track, model: &Model, values: &[f64], i: usize) -> f64 {
-    let dry = model.iter().zip(values).filter(|(e, _)| e.law().is_dry());
-    dry.map(|(e, v)| v * level(e, track, i)).sum::<f64>().abs()
-}
-
-/// Size of a dry law's force at a row if it slid.
-fn level(effect: &Effect, track: &Track, i: usize) -> f64 {
-    let motion = haptics::law::Motion { direction: 1.0, ..track.rows[i].motion };
-    effect.force(&motion)
 }

@@ -24,6 +24,7 @@ mod extra;
 mod fine;
 mod force;
 mod free;
+mod friction;
 mod gain;
 mod generic;
 mod geometry;

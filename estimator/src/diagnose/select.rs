@@ -115,7 +115,7 @@ impl Selection<'_> {
         if !self.dry && is(&OF_DRY_FRICTION) && !is(&DRY_FRICTION) {
             return f64::INFINITY;
         }
-        let Some((values, rss)) = self.system.least(chosen) else { return f64::INFINITY };
+        let Some((values, rss)) = self.system.least_sound(chosen) else { return f64::INFINITY };
         let (mut at, mut doubt) = (self.system.base, 0.0);
         for c in chosen {
             let candidate = &self.candidates[*c];
@@ -136,7 +136,7 @@ impl Selection<'_> {
 
     /// The same whatever the signs.
     fn plain_price(&self, chosen: &[usize]) -> Option<f64> {
-        Some(self.paid(chosen, self.system.least(chosen)?.1))
+        Some(self.paid(chosen, self.system.least_sound(chosen)?.1))
     }
 
     /// Whether a generic term in the k-th cause's place explains more, its own search paid, by as much as what its curve may miss: its name

@@ -1,6 +1,7 @@
 //! Whitened normal equations of all columns, block by block: every fit, comparison and cross-validation is then a small solve.
 
 mod rough;
+mod steady;
 
 pub use rough::Rough;
 
@@ -125,6 +126,10 @@ pub struct System {
     /// Candidates' columns.
     pub places: Vec<Range<usize>>,
     pub base: usize,
+    /// Columns of the base that can only resist: less than nothing of them is no explanation.
+    pub resisting: Vec<usize>,
+    /// Which piece of the recording each row belongs to; empty where it has no pieces of one kind.
+    pub pieces: Vec<usize>,
     pub coefficients: Vec<f64>,
     pub uses: Vec<Use>,
     /// Mean square of each column over all rows, for the support guard.
@@ -259,7 +264,20 @@ impl System {
         let all_alike = vec![1.0; rows.y.len()];
         let energy = energy(&train, &Weighed { columns: &slices, weight: &all_alike }, &uses, &whole);
         let places = places(base, candidates);
-        Self { train, rows: count, folds, places, base, coefficients, uses, energy, always, whitened: columns }
+        Self {
+            train,
+            rows: count,
+            folds,
+            places,
+            base,
+            resisting: Vec::new(),
+            pieces: Vec::new(),
+            coefficients,
+            uses,
+            energy,
+            always,
+            whitened: columns,
+        }
     }
 
     fn target(&self) -> usize {
@@ -288,6 +306,22 @@ impl System {
     pub fn least(&self, chosen: &[usize]) -> Option<(Vec<f64>, f64)> {
         let columns = self.columns(chosen);
         let (values, rss, _) = scaled(&self.train, &columns, self.target())?;
+        Some((values, rss))
+    }
+
+    /// The same, but what resists is nothing rather than less than nothing.
+    pub fn least_sound(&self, chosen: &[usize]) -> Option<(Vec<f64>, f64)> {
+        let (mut values, mut rss) = self.least(chosen)?;
+        let mut columns = self.columns(chosen);
+        // What is left out stays out: the next one is rarely taken back by it.
+        while let Some(k) =
+            self.resisting.iter().find_map(|r| columns.iter().position(|c| c == r).filter(|k| values[*k] < 0.0))
+        {
+            columns.remove(k);
+            (values, rss, _) = scaled(&self.train, &columns, self.target())?;
+        }
+        let out: Vec<usize> = (0..self.base).filter(|c| !columns.contains(c)).collect();
+        out.into_iter().for_each(|c| values.insert(c, 0.0));
         Some((values, rss))
     }
 
@@ -339,8 +373,8 @@ struct Scaled {
     scale: Vec<f64>,
 }
 
-/// The values of [`solve`], the sum of the squared residuals, and what the values' errors come from. A breath of ridge keeps equal columns apart.
-fn scaled(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<(Vec<f64>, f64, Scaled)> {
+/// A breath of ridge keeps equal columns apart.
+fn factored(gram: &DMatrix<f64>, columns: &[usize]) -> Option<Scaled> {
     const RIDGE: f64 = 1e-10;
     let p = columns.len();
     let scale: Vec<f64> =
@@ -348,12 +382,17 @@ fn scaled(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<(Vec<
     let normal = DMatrix::from_fn(p, p, |i, j| {
         gram[(columns[i], columns[j])] / (scale[i] * scale[j]) + if i == j { RIDGE } else { 0.0 }
     });
-    let right = DVector::from_fn(p, |i, _| gram[(columns[i], target)] / scale[i]);
-    let cholesky = normal.cholesky()?;
-    let found = cholesky.solve(&right);
-    let values: Vec<f64> = (0..p).map(|i| found[i] / scale[i]).collect();
+    Some(Scaled { cholesky: normal.cholesky()?, scale })
+}
+
+/// The values of [`solve`], the sum of the squared residuals, and what the values' errors come from.
+fn scaled(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<(Vec<f64>, f64, Scaled)> {
+    let made = factored(gram, columns)?;
+    let right = DVector::from_fn(columns.len(), |i, _| gram[(columns[i], target)] / made.scale[i]);
+    let found = made.cholesky.solve(&right);
+    let values: Vec<f64> = (0..columns.len()).map(|i| found[i] / made.scale[i]).collect();
     let rss = squares(gram, columns, &values, target).max(1e-12 * gram[(target, target)]);
-    Some((values, rss, Scaled { cholesky, scale }))
+    Some((values, rss, made))
 }
 
 /// Σ (y − Σ value × column)².

@@ -43,6 +43,8 @@ impl<'a> Rough<'a> {
             places: places(base.len(), candidates),
             base: base.len(),
             coefficients: Vec::new(),
+            resisting: Vec::new(),
+            pieces: Vec::new(),
             uses,
             energy: Vec::new(),
             always: DMatrix::zeros(0, 0),

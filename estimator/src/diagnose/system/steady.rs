@@ -1,0 +1,122 @@
+//! Whether an effect is as sure where every piece of a recording may be wrong in its own way.
+
+use super::{Scaled, Solved, System, Use, factored};
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// No piece tells more than this share of an effect less than all of it.
+const LEAST_REST: f64 = 1e-9;
+
+impl System {
+    /// The square of what these columns of a solution add up to over its error by a jackknife over pieces of the recording (Tukey 1958): unlike
+    /// the error by what is left, this one knows that what a model misses in one place is missed in all rows there. Infinite without pieces.
+    pub fn steadiness(&self, solved: &Solved, own: &Range<usize>) -> f64 {
+        let Some(pieces) = self.pieces.iter().max().map(|last| last + 1) else { return f64::INFINITY };
+        let Some(effect) = self.apart(solved, own) else { return f64::INFINITY };
+        let column = |c: usize| &self.whitened[c];
+        let target = column(self.target());
+        // Without one piece the effect comes out larger by what that piece's rows leave along it, over what all the others have of it.
+        let (mut power, mut slope) = (vec![0.0; pieces], vec![0.0; pieces]);
+        for (i, piece) in self.pieces.iter().enumerate() {
+            if matches!(self.uses[i], Use::Always | Use::Fold(_)) {
+                let made: f64 = solved.columns.iter().zip(&solved.values).map(|(c, value)| value * column(*c)[i]).sum();
+                power[*piece] += effect[i] * effect[i];
+                slope[*piece] += effect[i] * (target[i] - made);
+            }
+        }
+        let whole: f64 = power.iter().sum();
+        let moves = |(power, slope): (&f64, &f64)| (slope / (whole - power).max(LEAST_REST * whole)).powi(2);
+        1.0 / power.iter().zip(&slope).map(moves).sum::<f64>()
+    }
+
+    /// What these columns of a solution add up to, row by row, without what all its others can make of that.
+    fn apart(&self, solved: &Solved, own: &Range<usize>) -> Option<Vec<f64>> {
+        let others: Vec<usize> =
+            (0..solved.columns.len()).filter(|j| !own.contains(j)).map(|j| solved.columns[j]).collect();
+        let product =
+            |a: usize| own.clone().map(|j| solved.values[j] * self.train[(a, solved.columns[j])]).sum::<f64>();
+        let taken = combination(&self.train, &others, &product)?;
+        let mut effect = vec![0.0; self.uses.len()];
+        let mut add = |c: usize, times: f64| {
+            effect.iter_mut().zip(&self.whitened[c]).for_each(|(sum, value)| *sum += times * value);
+        };
+        own.clone().for_each(|j| add(solved.columns[j], solved.values[j]));
+        others.iter().zip(&taken).for_each(|(c, taken)| add(*c, -taken));
+        Some(effect)
+    }
+}
+
+/// The combination of columns that comes nearest to another one, of which their products with it are known.
+fn combination(gram: &DMatrix<f64>, columns: &[usize], product: &dyn Fn(usize) -> f64) -> Option<Vec<f64>> {
+    let Scaled { cholesky, scale } = factored(gram, columns)?;
+    let right = DVector::from_fn(columns.len(), |i, _| product(columns[i]) / scale[i]);
+    let found = cholesky.solve(&right);
+    Some((0..columns.len()).map(|i| found[i] / scale[i]).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Held, Rows};
+    use super::*;
+    use crate::diagnose::white::Noise;
+    use rand::rngs::StdRng;
+    use rand::{RngExt, SeedableRng};
+    use rand_distr::{Distribution, StandardNormal};
+
+    const ROWS: usize = 2000;
+    /// Rows of a piece.
+    const OF_A_PIECE: usize = 50;
+
+    /// A level and a cause's column, solved; how sure the cause is by what is left, and by the jackknife.
+    fn sure(column: &[f64], y: &[f64]) -> [f64; 2] {
+        let time_s: Vec<f64> = (0..ROWS).map(|i| 0.01 * i as f64).collect();
+        let rows = Rows {
+            y,
+            stretch: &vec![0; ROWS],
+            testable: &vec![Held::Fully; ROWS],
+            time_s: &time_s,
+            weight: &vec![1.0; ROWS],
+            period_s: 0.01,
+            noise: Noise::Any,
+            may_stand: true,
+        };
+        let mut system = System::new(&[vec![1.0; ROWS], column.to_vec()], &[], &rows, Vec::new());
+        system.pieces = (0..ROWS).map(|i| i / OF_A_PIECE).collect();
+        let solved = system.solve(&[]).expect("it can be solved");
+        let variance = solved.variance(system.rows) * solved.inverse[(1, 1)];
+        [solved.values[1].powi(2) / variance, system.steadiness(&solved, &(1..2))]
+    }
+
+    fn noise(rng: &mut StdRng) -> f64 {
+        StandardNormal.sample(rng)
+    }
+
+    #[test]
+    fn what_is_there_all_the_time_is_as_sure_by_both() {
+        let mut rng = StdRng::seed_from_u64(11);
+        for _ in 0..20 {
+            let column: Vec<f64> = (0..ROWS).map(|_| noise(&mut rng)).collect();
+            let y: Vec<f64> = column.iter().map(|c| 0.3 * c + noise(&mut rng)).collect();
+            let [plain, steady] = sure(&column, &y);
+            assert!((0.4..2.5).contains(&(steady / plain)), "{plain} {steady}");
+        }
+    }
+
+    #[test]
+    fn what_single_places_miss_is_no_more_sure_for_having_many_rows() {
+        let mut rng = StdRng::seed_from_u64(12);
+        let mut fooled = 0;
+        for _ in 0..40 {
+            // A column that is large in every fourth piece, where a model misses something else each time.
+            let of_piece = |rng: &mut StdRng| -> Vec<f64> { (0..ROWS / OF_A_PIECE).map(|_| noise(rng)).collect() };
+            let (shape, missed) = (of_piece(&mut rng), of_piece(&mut rng));
+            let at = |all: &[f64], i: usize| if i / OF_A_PIECE % 4 == 0 { all[i / OF_A_PIECE] } else { 0.0 };
+            let column: Vec<f64> = (0..ROWS).map(|i| at(&shape, i)).collect();
+            let y: Vec<f64> = (0..ROWS).map(|i| at(&missed, i) + rng.random_range(-0.5..0.5)).collect();
+            let [plain, steady] = sure(&column, &y);
+            fooled += usize::from(plain > 20.0);
+            assert!(steady < 20.0, "{plain} {steady}");
+        }
+        assert!(fooled > 10, "what is left alone would be sure of it: {fooled}");
+    }
+}
