@@ -130,7 +130,9 @@ impl Dictionary<'_> {
             all.push(self.plain(&LoadFriction, &[1.0], 0).positive());
             all.push(self.plain(&FrictionAsymmetry, &[0.0, 0.0, 1.0], 2));
         }
-        if self.track.zero != Zero::OfTheSensor {
+        // What goes one way along a coordinate tells a constant from dry friction by the guess of its direction where it is slow, which is none.
+        let is_friction = !self.track.planar && self.track.goes_one_way();
+        if self.track.zero != Zero::OfTheSensor && !is_friction {
             all.push(self.dry_asymmetry());
         }
         all.push(self.plain(&FrictionAsymmetry, &[0.0, 1.0, 0.0], 1));

@@ -274,6 +274,14 @@ impl Track {
         first.iter().filter_map(|e| Some((e.name.clone(), e.unit.clone(), values(&e.name)?))).collect()
     }
 
+    /// Whether it goes one way: no larger a share of the way back than by how far a hand trembles.
+    pub fn goes_one_way(&self) -> bool {
+        const TREMBLES: f64 = 0.02;
+        let way = |side: f64| self.along().map(|i| (side * self.rows[i].motion.velocity).max(0.0)).sum::<f64>();
+        let (forward, backward) = (way(1.0), way(-1.0));
+        forward.min(backward) <= TREMBLES * (forward + backward)
+    }
+
     /// Indices of the rows along the motion.
     pub fn along(&self) -> impl Iterator<Item = usize> + '_ {
         self.rows.iter().enumerate().filter(|(_, r)| r.place == Place::Along).map(|(i, _)| i)

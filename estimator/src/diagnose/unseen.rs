@@ -5,16 +5,15 @@ use super::report::{Alternative, Cause, Diagnosis, NotExcited};
 use super::track::Track;
 use haptics::law::entries;
 
-/// A cause of the noise's own size that would score less than this could not have been seen.
-const VISIBLE: f64 = 10.0;
-
-/// Who goes no larger a share of the way back goes one way: a hand trembles.
-const ONE_WAY: f64 = 0.02;
+/// A cause of the noise's own size that would score less than this could not have been seen: it would not have been named.
+const VISIBLE: f64 = 20.0;
 
 /// What this recording could not have shown.
 pub fn unseen(track: &Track, study: &Study, causes: &[Cause], alternatives: &[Alternative]) -> Vec<NotExcited> {
-    let mut found = not_excited(study, &study.picks());
-    found.extend(without_reversals(track, causes, &found));
+    let mut found = without_reversals(track, causes);
+    let hidden = not_excited(study, &study.picks());
+    let more: Vec<NotExcited> = hidden.into_iter().filter(|h| found.iter().all(|n| n.id != h.id)).collect();
+    found.extend(more);
     // What could stand in a cause's place was seen, if not told apart.
     found.retain(|n| alternatives.iter().all(|a| a.id != n.id));
     found
@@ -28,7 +27,9 @@ fn not_excited(study: &Study, picks: &[usize]) -> Vec<NotExcited> {
         if of.is_empty() || picks.iter().any(|p| study.candidates[*p].id == entry.id) {
             continue;
         }
-        let best = of.iter().map(|c| study.system.distinct(*c, picks) * study.system.rows).fold(0.0, f64::max);
+        let rows = study.system.rows;
+        let score = |c: &usize| study.system.distinct(*c, picks) * rows - study.candidates[*c].cost * rows.ln();
+        let best = of.iter().map(score).fold(f64::NEG_INFINITY, f64::max);
         if best < VISIBLE {
             let why = entry.reveals.trim_end_matches('.');
             found.push(NotExcited {
@@ -41,14 +42,14 @@ fn not_excited(study: &Study, picks: &[usize]) -> Vec<NotExcited> {
 }
 
 /// What happens at reversals alone, where there are none.
-fn without_reversals(track: &Track, causes: &[Cause], already: &[NotExcited]) -> Vec<NotExcited> {
-    let way = |side: f64| track.along().map(|i| (side * track.rows[i].motion.velocity).max(0.0)).sum::<f64>();
-    let (forward, backward) = (way(1.0), way(-1.0));
-    if forward.min(backward) > ONE_WAY * (forward + backward) {
+fn without_reversals(track: &Track, causes: &[Cause]) -> Vec<NotExcited> {
+    if !track.goes_one_way() {
         return Vec::new();
     }
-    let said = |id: &str| causes.iter().any(|c| c.id == id) || already.iter().any(|n| n.id == id);
-    let hidden = ["backlash", "hysteresis"].into_iter().filter(|id| !said(id));
+    let said = |id: &str| causes.iter().any(|c| c.id == id);
+    // Along one coordinate a friction that is larger one way is then as large a friction.
+    let by_direction = (!track.planar).then_some("friction-asymmetry");
+    let hidden = ["backlash", "hysteresis"].into_iter().chain(by_direction).filter(|id| !said(id));
     hidden
         .map(|id| NotExcited {
             id: id.to_owned(),
