@@ -1,7 +1,7 @@
 //! One channel of a residual that is no force along one coordinate: what the model leaves of it, and which causes explain that.
 
 use super::candidate::Candidate;
-use super::force::{CONFIRMED, SHOWN, harms};
+use super::force::{CONFIRMED, PIECES_S, SHOWN, harms, is_steady};
 use super::gain::{confirmed, gain, holds_out, is_tested};
 use super::geometry::{Study, residual};
 use super::select::{DRY_FRICTION, OF_DRY_FRICTION, Selection};
@@ -75,7 +75,8 @@ impl Channel {
             may_stand: false,
         };
         let coefficients = whitening(&base, &candidates, &rows, threshold)?;
-        let system = System::new(&base, &candidates, &rows, coefficients);
+        let mut system = System::new(&base, &candidates, &rows, coefficients);
+        system.pieces = PIECES_S.iter().filter_map(|piece_s| pieces(&stretch, piece_s / period_s)).collect();
         let chosen = Selection { system: &system, candidates: &candidates, threshold, dry, one_loss: false }.run(&[]);
         let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
         let solved = system.solve(&picks);
@@ -107,12 +108,29 @@ fn leave_out_what_is_unsure(study: &mut Study, stretch: &[usize], threshold: f64
             // What explains much elsewhere must harm for certain.
             let tested = is_tested(study, *k, stretch);
             let shows_nothing = if tested { confirmed(study, *k, stretch) < SHOWN } else { gains_nothing };
-            harms(study, *k) || is_weak && shows_nothing
+            // … and what rows that were held out could not show must be everywhere where it was fitted.
+            harms(study, *k) || is_weak && shows_nothing || (is_weak || !tested) && !is_steady(study, *k)
         };
         let Some(k) = (0..study.chosen.len()).rev().find(is_unsure) else { return };
         study.chosen.remove(k);
         study.solved = study.system.solve(&study.picks());
     }
+}
+
+/// Fewer pieces do not tell how much one differs from the next.
+const LEAST_PIECES: usize = 8;
+
+/// Which piece of so many rows each row is in; none where there are too few of them.
+fn pieces(stretch: &[usize], rows: f64) -> Option<Vec<usize>> {
+    let most = (rows as usize).max(1);
+    let (mut piece, mut own) = (0, 0);
+    let mut pieces = Vec::with_capacity(stretch.len());
+    for i in 0..stretch.len() {
+        let goes_on = i == 0 || stretch[i] == stretch[i - 1] && own < most;
+        (piece, own) = if goes_on { (piece, own + 1) } else { (piece + 1, 1) };
+        pieces.push(piece);
+    }
+    (piece + 1 >= LEAST_PIECES).then_some(pieces)
 }
 
 /// Whether a change of dry friction was chosen without any.

@@ -30,8 +30,8 @@ const REFINEMENTS: usize = 2;
 /// … and of a free motion, whose noise is less where it swings.
 const REFINEMENTS_OF_FREE: usize = 5;
 
-/// What a model misses is alike within about this time, s: as long as a hand takes for a stroke.
-const PIECE_S: f64 = 0.5;
+/// What a model misses is alike within about such times, s: as long as a hand takes for a turn and for a stroke.
+pub const PIECES_S: [f64; 3] = [0.25, 0.5, 1.0];
 
 /// The model to start from: laws with their non-linear values.
 pub type Model = Vec<Effect>;
@@ -147,12 +147,12 @@ pub fn leave_out_what_harms(
     }
 }
 
-/// So much is asked of the square of what a cause explains over its error by a jackknife, as is asked of its score.
-const STEADY: f64 = 20.0;
+/// So much is asked of the square of what a cause explains over its error by a jackknife.
+const STEADY: f64 = 15.0;
 
 /// Whether what the k-th of the chosen causes explains is known as well as is asked for by a jackknife over pieces of the recording, too. That is
 /// asked in the end alone: as long as another cause is missing, what that one leaves is in the pieces.
-fn is_steady(study: &Study, k: usize) -> bool {
+pub fn is_steady(study: &Study, k: usize) -> bool {
     let Some(solved) = &study.solved else { return true };
     let picks = study.picks();
     let first = firsts(study, &picks)[k];
@@ -276,7 +276,7 @@ fn compare(
         _ => System::new(&base, &candidates, &rows, whitening_of(&base, &candidates, &rows, threshold)?),
     };
     system.resisting = (0..model.len()).filter(|k| is_resisting(&model[*k])).collect();
-    system.pieces = pieces(&time_s);
+    system.pieces = PIECES_S.map(|piece_s| pieces(&time_s, piece_s)).to_vec();
     let chosen =
         Selection { system: &system, candidates: &candidates, threshold, dry: has_dry, one_loss: true }.run(&start);
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
@@ -285,12 +285,12 @@ fn compare(
     Ok(Study { candidates, chosen, system, solved, y, base, weight, shares_of })
 }
 
-/// Which piece of [`PIECE_S`] each row is in, counted without those that no row is in.
-fn pieces(time_s: &[f64]) -> Vec<usize> {
+/// Which piece of this length each row is in, counted without those that no row is in.
+fn pieces(time_s: &[f64], piece_s: f64) -> Vec<usize> {
     let mut numbers: HashMap<i64, usize> = HashMap::new();
     let mut number = |time_s: &f64| {
         let next = numbers.len();
-        *numbers.entry((time_s / PIECE_S).floor() as i64).or_insert(next)
+        *numbers.entry((time_s / piece_s).floor() as i64).or_insert(next)
     };
     time_s.iter().map(&mut number).collect()
 }

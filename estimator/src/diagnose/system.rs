@@ -128,8 +128,8 @@ pub struct System {
     pub base: usize,
     /// Columns of the base that can only resist: less than nothing of them is no explanation.
     pub resisting: Vec<usize>,
-    /// Which piece of the recording each row belongs to; empty where it has no pieces of one kind.
-    pub pieces: Vec<usize>,
+    /// Which piece of the recording each row belongs to, for several lengths of pieces; empty where it has no pieces of one kind.
+    pub pieces: Vec<Vec<usize>>,
     pub coefficients: Vec<f64>,
     pub uses: Vec<Use>,
     /// Mean square of each column over all rows, for the support guard.
