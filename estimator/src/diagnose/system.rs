@@ -321,7 +321,9 @@ impl System {
             (values, rss, _) = scaled(&self.train, &columns, self.target())?;
         }
         let out: Vec<usize> = (0..self.base).filter(|c| !columns.contains(c)).collect();
-        out.into_iter().for_each(|c| values.insert(c, 0.0));
+        for c in out {
+            values.insert(c, 0.0);
+        }
         Some((values, rss))
     }
 

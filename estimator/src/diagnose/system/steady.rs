@@ -119,7 +119,7 @@ mod tests {
             // A column that is large in every fourth piece, where a model misses something else each time.
             let of_piece = |rng: &mut StdRng| -> Vec<f64> { (0..ROWS / OF_A_PIECE).map(|_| noise(rng)).collect() };
             let (shape, missed) = (of_piece(&mut rng), of_piece(&mut rng));
-            let at = |all: &[f64], i: usize| if i / OF_A_PIECE % 4 == 0 { all[i / OF_A_PIECE] } else { 0.0 };
+            let at = |all: &[f64], i: usize| if (i / OF_A_PIECE).is_multiple_of(4) { all[i / OF_A_PIECE] } else { 0.0 };
             let column: Vec<f64> = (0..ROWS).map(|i| at(&shape, i)).collect();
             let y: Vec<f64> = (0..ROWS).map(|i| at(&missed, i) + rng.random_range(-0.5..0.5)).collect();
             let [plain, steady] = sure(&column, &y);
