@@ -188,7 +188,7 @@ impl Part<'_> {
     /// The strongest generic term that is left, with its score.
     fn strange(&self) -> Option<(usize, f64)> {
         let Study { system, candidates, .. } = self.study;
-        let selection = Selection { system, candidates, threshold: UNEXPLAINED, dry: true, one_loss: false };
+        let selection = Selection::new(system, candidates, UNEXPLAINED);
         selection.unexplained(&self.study.picks()).filter(|(_, score)| *score > UNEXPLAINED)
     }
 

@@ -193,7 +193,7 @@ pub(super) fn channel(
 /// Of every cause that the rows could show the candidate with most evidence, and that: the strongest cause first.
 fn strongest(study: &Study, threshold: f64) -> Vec<(&'static str, usize, f64)> {
     let Study { system, candidates, .. } = study;
-    let selection = Selection { system, candidates, threshold, dry: true, one_loss: false };
+    let selection = Selection::new(system, candidates, threshold);
     let mut best: Vec<(&str, usize, f64)> = Vec::new();
     for (c, candidate) in candidates.iter().enumerate() {
         if candidate.expression.is_some() || cause(candidate.id).is_none() || !system.supported(c) {

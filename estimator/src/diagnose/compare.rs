@@ -77,7 +77,7 @@ impl Channel {
         let coefficients = whitening(&base, &candidates, &rows, threshold)?;
         let mut system = System::new(&base, &candidates, &rows, coefficients);
         system.pieces = PIECES_S.iter().filter_map(|piece_s| pieces(&stretch, piece_s / period_s)).collect();
-        let chosen = Selection { system: &system, candidates: &candidates, threshold, dry, one_loss: false }.run(&[]);
+        let chosen = Selection::new(&system, &candidates, threshold).of(dry, false).run(&[]);
         let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
         let solved = system.solve(&picks);
         let mut made = Study { candidates, chosen, system, solved, y, base, weight, shares_of: [1.0, 0.0] };

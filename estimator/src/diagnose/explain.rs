@@ -180,13 +180,7 @@ fn in_order(faults: Vec<Cause>, found: Vec<(f64, Cause)>) -> Vec<Cause> {
 
 /// What no known cause explains: the generic term and its score.
 pub(super) fn strange(study: &Study, picks: &[usize]) -> Option<(usize, f64)> {
-    let selection = Selection {
-        system: &study.system,
-        candidates: &study.candidates,
-        threshold: UNEXPLAINED,
-        dry: true,
-        one_loss: false,
-    };
+    let selection = Selection::new(&study.system, &study.candidates, UNEXPLAINED);
     // What makes rows worse that took no part in the fit is not there: it was bent to a few others.
     let worse = |candidate: usize| {
         let gain = gain_between(study, picks, &[picks, &[candidate]].concat(), 0.0);

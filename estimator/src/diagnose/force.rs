@@ -75,7 +75,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
     let rises = |study: &Study| study.chosen.iter().any(|c| study.candidates[c.candidate].id == Stribeck.id());
     let bends = |study: &Study| {
         let Study { system, candidates, .. } = study;
-        let selection = Selection { system, candidates, threshold, dry: true, one_loss: false };
+        let selection = Selection::new(system, candidates, threshold);
         selection.unexplained(&study.picks()).is_some_and(|(_, score)| score > threshold)
     };
     let (rose, bent) = (rises(&made), !track.planar && bends(&made));
@@ -277,8 +277,7 @@ fn compare(
     };
     system.resisting = (0..model.len()).filter(|k| is_resisting(&model[*k])).collect();
     system.pieces = PIECES_S.map(|piece_s| pieces(&time_s, piece_s)).to_vec();
-    let chosen =
-        Selection { system: &system, candidates: &candidates, threshold, dry: has_dry, one_loss: true }.run(&start);
+    let chosen = Selection::new(&system, &candidates, threshold).of(has_dry, true).run(&start);
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
     let solved = system.solve(&picks);
     let shares_of = solved.as_ref().map_or([1.0, 0.0], |s| shares_of(track, model, &dry, s, system.rows));

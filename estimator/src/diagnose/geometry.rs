@@ -201,7 +201,7 @@ fn compare(
     let residual = residual(&y, &base, &candidates, &picks, &solved);
     let coefficients = whitener(&residual, &rows, &uses(&rows));
     let system = System::new(&base, &candidates, &rows, coefficients);
-    let chosen = Selection { system: &system, candidates: &candidates, threshold, dry: true, one_loss: false }.run(&[]);
+    let chosen = Selection::new(&system, &candidates, threshold).run(&[]);
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
     let solved = system.solve(&picks);
     let mut study = Study { candidates, chosen, system, solved, y, base, weight, shares_of: [1.0, 0.0] };

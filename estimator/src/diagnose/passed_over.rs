@@ -56,13 +56,7 @@ struct Judge<'a> {
 
 impl Judge<'_> {
     fn one(&self, id: &str) -> PassedOver {
-        let selection = Selection {
-            system: self.system,
-            candidates: self.candidates,
-            threshold: self.least,
-            dry: true,
-            one_loss: false,
-        };
+        let selection = Selection::new(self.system, self.candidates, self.least);
         let of = |c: &usize| self.candidates[*c].id == id && self.system.supported(*c);
         let best = |with: &[usize]| {
             let scores = (0..self.candidates.len()).filter(of).filter_map(|c| selection.score_beside(with, c));

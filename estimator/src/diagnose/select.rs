@@ -3,6 +3,8 @@
 use super::candidate::Candidate;
 use super::starts::MANY;
 use super::system::{Solved, System};
+use std::cell::RefCell;
+use std::collections::HashMap;
 
 /// Most causes at once, and so many more where the model has no friction of its own, which is then two of them.
 const MOST_CAUSES: usize = 4;
@@ -37,9 +39,11 @@ pub struct Selection<'a> {
     pub candidates: &'a [Candidate],
     pub threshold: f64,
     /// Whether the model has dry friction: what bends or lifts it needs it.
-    pub dry: bool,
+    dry: bool,
     /// Whether what is lost at a reversal is seen once only, so that bending and play cannot share it out.
-    pub one_loss: bool,
+    one_loss: bool,
+    /// What was asked already, in this order: swaps, prunings and second starts come by the same ones again.
+    prices: RefCell<HashMap<Vec<usize>, f64>>,
 }
 
 /// Causes whose form is somebody's choice of a curve, by what the curve is over: a real one of another form leaves a remainder that
@@ -103,6 +107,18 @@ pub(super) const OF_DRY_FRICTION: [&str; 3] = ["stribeck", "hysteresis", "fricti
 /// Causes that are dry friction.
 pub(super) const DRY_FRICTION: [&str; 2] = ["coulomb-friction", "load-friction"];
 
+impl<'a> Selection<'a> {
+    /// Of causes beside dry friction, which may lose something at reversals in two ways.
+    pub fn new(system: &'a System, candidates: &'a [Candidate], threshold: f64) -> Self {
+        Self { system, candidates, threshold, dry: true, one_loss: false, prices: RefCell::default() }
+    }
+
+    /// Where the model may have no dry friction, or what is lost at a reversal may be seen once only.
+    pub fn of(self, dry: bool, one_loss: bool) -> Self {
+        Self { dry, one_loss, ..self }
+    }
+}
+
 impl Selection<'_> {
     /// Most causes at once.
     pub(super) fn most(&self) -> usize {
@@ -111,6 +127,15 @@ impl Selection<'_> {
 
     /// N ln(RSS) plus what its parameters cost; smaller is better. Infinite where a parameter has an impossible sign.
     pub(super) fn price(&self, chosen: &[usize]) -> f64 {
+        if let Some(price) = self.prices.borrow().get(chosen) {
+            return *price;
+        }
+        let price = self.asked(chosen);
+        self.prices.borrow_mut().insert(chosen.to_vec(), price);
+        price
+    }
+
+    fn asked(&self, chosen: &[usize]) -> f64 {
         let is = |all: &[&str]| chosen.iter().any(|c| all.contains(&self.candidates[*c].id));
         if !self.dry && is(&OF_DRY_FRICTION) && !is(&DRY_FRICTION) {
             return f64::INFINITY;

@@ -80,6 +80,6 @@ impl Selection<'_> {
 pub fn to_refine(study: &Study, threshold: f64, dry: bool) -> Vec<&Candidate> {
     let Study { system, candidates, .. } = study;
     let picks = study.picks();
-    let others = Selection { system, candidates, threshold, dry, one_loss: true }.left_behind(&picks);
+    let others = Selection::new(system, candidates, threshold).of(dry, true).left_behind(&picks);
     picks.iter().chain(&others).map(|c| &candidates[*c]).collect()
 }

@@ -70,8 +70,7 @@ pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<(Study, usiz
         let coefficients = study.system.coefficients.clone();
         let system = System::new(&study.base, &candidates, &rows, coefficients);
         let picks: Vec<usize> = (0..chosen.len()).collect();
-        let selection =
-            Selection { system: &system, candidates: &candidates, threshold: 0.0, dry: true, one_loss: false };
+        let selection = Selection::new(&system, &candidates, 0.0);
         let (term, score) = selection.unexplained(&picks)?;
         let solved = system.solve(&picks);
         let (y, base, weight) = (study.y.clone(), study.base.clone(), study.weight.clone());

@@ -110,7 +110,7 @@ impl<'a> Rough<'a> {
         let (mut chosen, mut known): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
         loop {
             let (system, candidates) = (&self.system, self.candidates);
-            let selection = Selection { system, candidates, threshold, dry: true, one_loss: false };
+            let selection = Selection::new(system, candidates, threshold);
             if chosen.len() == selection.most() {
                 return chosen;
             }
@@ -197,8 +197,7 @@ mod tests {
                 assert_eq!(rough.system.train[(*a, *b)].to_bits(), whole.train[(*a, *b)].to_bits(), "{a} {b}");
             }
         }
-        let selection =
-            Selection { system: &whole, candidates: &candidates, threshold: 20.0, dry: true, one_loss: false };
+        let selection = Selection::new(&whole, &candidates, 20.0);
         let mut wanted = Vec::new();
         while wanted.len() < selection.most() {
             wanted.extend(cheapest(selection.priced(&wanted)).map(|(best, _)| best));
