@@ -127,7 +127,8 @@ pub const CONFIRMED: f64 = 2.5;
 pub const SHOWN: f64 = 1.0;
 
 /// A cause that makes more of an error for certain where it was not fitted is none, whatever it explains elsewhere; nor is one that is known
-/// badly where every piece may be wrong in its own way, or one that scores little and shows nothing there, where it is `tested`. `stretch`: of each row. `threshold`: least score of a cause.
+/// badly where every piece may be wrong in its own way, or one that scores little and shows nothing there, where it is `tested`.
+/// `stretch`: of each row. `threshold`: least score of a cause.
 pub fn leave_out_what_harms(
     study: &mut Study,
     stretch: &[usize],

@@ -453,4 +453,31 @@ mod tests {
         }
         assert!(said(&|u| matches!(u, Use::Locked(_))) > 15.0, "what is locked has to tell something");
     }
+
+    #[test]
+    fn what_resists_is_nothing_rather_than_less_than_nothing() {
+        let x: Vec<f64> = (0..600).map(|i| (0.1 * f64::from(i)).sin()).collect();
+        let least = |slope: f64| {
+            let y: Vec<f64> = x.iter().map(|x| 2.0 + slope * x).collect();
+            let rows = Rows {
+                y: &y,
+                stretch: &[0; 600],
+                testable: &[Held::Fully; 600],
+                time_s: &(0..600).map(f64::from).collect::<Vec<f64>>(),
+                weight: &[1.0; 600],
+                period_s: 0.02,
+                noise: Noise::Any,
+                may_stand: true,
+            };
+            let mut system = System::new(&[x.clone(), vec![1.0; 600]], &[], &rows, Vec::new());
+            system.resisting = vec![0];
+            let [plain, sound] = [system.least(&[]), system.least_sound(&[])].map(|found| found.expect("solved"));
+            (plain, sound)
+        };
+        let ((plain, _), (sound, _)) = least(3.0);
+        assert!((sound[0] - 3.0).abs() < 1e-6 && sound == plain, "{sound:?}");
+        let ((plain, rss), (sound, more)) = least(-3.0);
+        assert!((plain[0] + 3.0).abs() < 1e-6 && sound[0] == 0.0 && (sound[1] - 2.0).abs() < 0.2, "{sound:?}");
+        assert!(more > rss + 100.0, "{more} after {rss}");
+    }
 }

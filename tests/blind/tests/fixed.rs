@@ -78,3 +78,19 @@ fn a_weak_cause_of_the_path_shows_where_it_was_not_fitted() {
     assert_eq!(named((2929, 9781)), ["pad-compliance", "added-constraint"]);
     assert_eq!(named((2929, 9562)), ["fingertip-slip"]);
 }
+
+/// What a model misses at a few reversals, or in one stroke, is missed in all rows there: it scores, and a jackknife over pieces knows better.
+#[test]
+fn what_single_places_of_a_recording_make_is_not_named() {
+    for case in [(4242, 13177), (5858, 18116)] {
+        assert!(named(case).is_empty(), "{case:?}: {:?}", named(case));
+    }
+}
+
+/// Along a coordinate a constant is told from dry friction by moving both ways alone.
+#[test]
+fn what_goes_one_way_has_no_friction_by_direction() {
+    for case in [(7272, 22119), (7272, 22138)] {
+        assert!(named(case).is_empty(), "{case:?}: {:?}", named(case));
+    }
+}
