@@ -118,6 +118,28 @@ fn little_is_named_that_is_not_there() {
 }
 
 #[test]
+fn what_is_found_gains_when_the_model_runs_on_its_own() {
+    let (mut clear, mut gains) = (0, 0);
+    for row in of(|r| r.answer.is_ok()) {
+        let causes = row.answer.iter().flat_map(|a| &a.causes);
+        for cause in causes.filter(|c| row.truth.hidden.contains(&c.id.as_str())) {
+            let gain = &cause.gain;
+            match (&gain.rollout, &gain.no_rollout) {
+                (Some(r), None) => println!(
+                    "{} {} {}: one step {:.2} [{:.2} {:.2}], forward {:?} {:.2e} -> {:.2e} {} {:.2} [{:.2} {:.2}] over {}",
+                    row.kind, row.seed, cause.id, gain.share_of_explainable, gain.interval[0], gain.interval[1],
+                    r.of, r.rms_before, r.rms_after, r.unit, r.share, r.interval[0], r.interval[1], r.windows
+                ),
+                (_, why) => println!("{} {} {}: one step {:.2}, {why:?} {}", row.kind, row.seed, cause.id, gain.share_of_explainable, gain.heldout_rms_before),
+            }
+            clear += 1;
+            gains += 1;
+        }
+    }
+    assert_eq!(clear, gains);
+}
+
+#[test]
 fn a_change_of_weight_and_a_drift_are_told_apart_only_by_letting_go() {
     let cut = of(|r| r.kind.ends_with("cut off"));
     at_least("open, or settled by what little was free", Share::count(cut, Row::verdict_fits), 0.9);

@@ -264,7 +264,8 @@ fn parameter(p: &CauseParameter) -> String {
 
 fn cause_line(cause: &Cause) -> String {
     let parameters: Vec<String> = cause.parameters.iter().map(parameter).collect();
-    let forward = cause.gain.rollout.as_ref().map_or_else(String::new, |r| {
+    let not_run = cause.gain.no_rollout.as_ref().map_or_else(String::new, |why| format!("; not run forward: {why}"));
+    let forward = cause.gain.rollout.as_ref().map_or(not_run, |r| {
         let what = if r.of == RolloutOf::Position { "position" } else { "force" };
         format!(
             "; run forward over {} windows of {} s the {what} is off by {} RMS instead of {}",

@@ -13,6 +13,7 @@ use super::report::{
     PassedOver, Verdict,
 };
 use super::residuals::{Residual, residuals};
+use super::rollout::{AT_ONCE, Forward, NO_LAW, in_turn};
 use super::select::{Chosen, REMAINDER, Selection, is_curve};
 use crate::segment::SystemState;
 use crate::words::amount;
@@ -62,7 +63,8 @@ impl Compared {
     /// As a part of the answer.
     pub fn part<'a>(&'a self, shows: Shows<'a>, states: States<'a>, usual: Usual<'a>) -> Part<'a> {
         let Self { study, channel, unit, floor, along, stretch, state } = self;
-        Part { study, channel, unit, floor: *floor, along, stretch, state, shows, states, usual, much: None }
+        let (much, forward) = (None, Err(AT_ONCE));
+        Part { study, channel, unit, floor: *floor, along, stretch, state, shows, states, usual, much, forward }
     }
 }
 
@@ -86,12 +88,27 @@ pub struct Part<'a> {
     pub usual: Usual<'a>,
     /// What is left in the end is never so many times the noise where the model is right; nothing where that is not known.
     pub much: Option<f64>,
+    /// How it runs on its own; why not, where nothing in it does.
+    pub forward: Result<&'a dyn Forward, &'static str>,
 }
 
-impl Part<'_> {
+impl<'a> Part<'a> {
+    /// That can be run forward.
+    pub fn running(mut self, forward: &'a dyn Forward) -> Self {
+        self.forward = Ok(forward);
+        self
+    }
+
+    /// In which nothing runs on its own, for this reason.
+    pub fn still(mut self, why: &'static str) -> Self {
+        self.forward = Err(why);
+        self
+    }
+
     fn cause(&self, k: usize, chosen: &Chosen) -> Cause {
         let candidate = &self.study.candidates[chosen.candidate];
-        let gain = self.in_its_unit(gain(self.study, k, self.floor));
+        let forward = self.forward.map_err(str::to_owned).and_then(|forward| in_turn(self.study, forward, k));
+        let gain = self.in_its_unit(gain(self.study, k, self.floor)).run(forward);
         let parameters = (self.states)(candidate, parameters(self.study, k));
         let shown = (self.shows)(&Found { candidate, parameters: &parameters });
         let held_out = if let Some(why) = &gain.no_share {
@@ -170,7 +187,8 @@ impl Part<'_> {
             "something is left of the {channel} that no known cause explains: it goes with {expression} (score {score:.0})"
         );
         let evidence = format!("what is left of the {channel} goes with {expression}; no known cause does so here");
-        Some((Cause { evidence, gain: self.in_its_unit(cause.gain), ..cause }, warning))
+        let gain = self.in_its_unit(cause.gain).run(Err(NO_LAW.to_owned()));
+        Some((Cause { evidence, gain, ..cause }, warning))
     }
 
     /// What is left in the end where that is far more than the noise and no noise, in a sentence.

@@ -4,6 +4,7 @@
 mod beside_load;
 mod fine;
 mod force;
+mod forward;
 mod rows;
 mod tried;
 mod way;
@@ -68,9 +69,9 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
             .warnings
             .push("no load at the output was recorded: give is told from the force at the input alone".to_owned());
     }
-    let told = force.as_ref().and_then(|(_, told)| told.as_ref());
-    if let (Some((force, _)), Some(told)) = (&force, told.filter(|t| t.is_one())) {
-        let study = &force.compared.study;
+    let told = force.as_ref().and_then(|f| f.told.as_ref());
+    if let (Some(force), Some(told)) = (&force, told.filter(|t| t.is_one())) {
+        let study = &force.side.compared.study;
         if study.picks().iter().any(|c| study.candidates[*c].id == "coulomb-friction") {
             beside.alternatives.extend(told.alternative());
         } else {
@@ -91,11 +92,13 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let shown = |f: &Found<'_>| shows(f);
     let mut parts = Vec::new();
     // The force is what a trainee feels: its figures stand for the whole.
-    parts.extend(force.as_ref().map(|(force, _)| force.compared.part(&shown, &force_states, &|_| None)));
+    if let Some(force::Force { side, input, .. }) = &force {
+        parts.push(side.compared.part(&shown, &force_states, &|_| None).running(input));
+    }
     parts.push(way.compared.part(&shown, &way_states, &|_| None));
     let mut found = answer(&parts, beside, &|_| None);
     if options.atlas {
-        let sides = force.iter().map(|(force, _)| force).chain([&way]);
+        let sides = force.iter().map(|f| &f.side).chain([&way]);
         let period_s = 1.0 / ROW_HZ;
         found.atlas.channels =
             sides.map(|side| side.compared.atlas(&view(&side.rows, names), threshold(period_s), best_seen)).collect();

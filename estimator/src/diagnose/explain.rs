@@ -14,7 +14,7 @@ use super::kept::of_study;
 use super::passed_over::{passed_over, unsaid};
 use super::report::{Alternative, Baseline, Cause, CauseParameter, Diagnosis, Final, Gain, NextExperiment, Verdict};
 use super::residuals;
-use super::rollout::rollout;
+use super::rollout::{AT_ONCE, NO_LAW, rollout};
 use super::searched::{firsts, settled};
 use super::select::{Chosen, Selection};
 use super::skew::{apart, rest_s, skew};
@@ -64,7 +64,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
             continue;
         }
         let mut named = cause(study, k, floor, (channel(track), unit));
-        named.gain.rollout = rollout(track, model, study, k);
+        named.gain = named.gain.run(rollout(track, model, study, k));
         widen(&named.id, &mut named.parameters, track);
         if let Some(parameters) = of_hardening_spring(track, study, k) {
             named.parameters = parameters;
@@ -135,7 +135,9 @@ fn of_path(geometry: &Study, found: &mut Vec<(f64, Cause)>, alternatives: &mut V
     for (k, chosen) in geometry.chosen.iter().enumerate() {
         let id = geometry.candidates[chosen.candidate].id;
         if found.iter().all(|(_, c)| c.id != id) {
-            found.push((chosen.score, cause(geometry, k, 0.0, ("path", "m"))));
+            let mut named = cause(geometry, k, 0.0, ("path", "m"));
+            named.gain = named.gain.run(Err(AT_ONCE.to_owned()));
+            found.push((chosen.score, named));
             alternatives.extend(rivals(geometry, chosen));
         }
     }
@@ -366,7 +368,8 @@ pub(super) fn unnamed(study: &Study, (candidate, score): (usize, f64), (floor, u
         parameters,
         p_value: chi_square_tail(score, term.cost),
         posterior: 1.0 / odds.max(1.0),
-        gain: Gain { unit: Some(unit.to_owned()), ..gain_between(study, &picks, &with, floor) },
+        gain: Gain { unit: Some(unit.to_owned()), ..gain_between(study, &picks, &with, floor) }
+            .run(Err(NO_LAW.to_owned())),
         evidence: format!("what is left goes with {expression}; no known cause does so here"),
     };
     let warning =

@@ -48,11 +48,31 @@ fn made(
     values: &[f64],
     searched: &[Vec<f64>],
 ) -> (Vec<Effect>, bool) {
-    let mut found: Vec<Effect> = model.iter().zip(values).map(|(e, share)| scaled(e, *share)).collect();
-    let dry = Dry::of(&found);
-    let weight_n = found.iter().filter(|e| e.role() == Role::Gravity).map(|e| e.values[0]).sum::<f64>();
+    let found: Vec<Effect> = model.iter().zip(values).map(|(e, share)| scaled(e, *share)).collect();
     let of_causes = causes.iter().map(|c| c.columns.len()).sum::<usize>();
-    let (mut at, mut is_whole) = (values.len() - of_causes, true);
+    let dry = Dry::of(&found);
+    beside_model(track, found, &dry, causes, &values[values.len() - of_causes..], searched)
+}
+
+/// Laws of causes that were found in a model without dry friction of its own, in the order of which shares of it follow on it, or nothing where one
+/// has none. `dry_n`: the friction that the shares are of, N; `values`: of the causes alone.
+pub fn without_friction(track: &Track, laws: Vec<Effect>, dry_n: f64, causes: &[&Candidate], values: &[f64]) -> Option<Vec<Effect>> {
+    let tried = |c: &&Candidate| c.searched.iter().map(|s| s.value).collect();
+    let searched: Vec<Vec<f64>> = causes.iter().map(tried).collect();
+    let (found, is_whole) = beside_model(track, laws, &Dry { level_n: dry_n, mu: 0.0 }, causes, values, &searched);
+    is_whole.then_some(found)
+}
+
+fn beside_model(
+    track: &Track,
+    mut found: Vec<Effect>,
+    dry: &Dry,
+    causes: &[&Candidate],
+    values: &[f64],
+    searched: &[Vec<f64>],
+) -> (Vec<Effect>, bool) {
+    let weight_n = found.iter().filter(|e| e.role() == Role::Gravity).map(|e| e.values[0]).sum::<f64>();
+    let (mut at, mut is_whole) = (0, true);
     for (candidate, searched) in causes.iter().zip(searched) {
         let values = &values[at..at + candidate.columns.len()];
         if candidate.id == Hysteresis.id() {

@@ -7,6 +7,7 @@ use super::generic::generic;
 use super::means::{Weights, column};
 use super::products::gram;
 use super::report::{Baseline, Cause, CauseParameter, Diagnosis, Figures, Gain, Verdict};
+use super::rollout::PUT_BACK;
 use super::shifted::{Demands, look};
 use super::system::solve;
 use super::track::{Row, Track};
@@ -224,6 +225,9 @@ fn with_delay(mut found: Diagnosis, first: &Diagnosis, late_s: f64, back_s: f64)
     cause.gain.heldout_rms_after = after;
     cause.gain.share_of_explainable = share;
     cause.gain.interval = [cause.gain.interval[0].min(share), cause.gain.interval[1].max(share)];
+    if cause.gain.rollout.is_none() {
+        cause.gain.no_rollout = Some(PUT_BACK.to_owned());
+    }
     cause.posterior = 1.0;
     found.causes.retain(|c| c.id != ID);
     found.alternatives.retain(|a| a.instead_of != ID && a.id != ID);

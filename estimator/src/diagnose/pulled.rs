@@ -7,6 +7,7 @@ use super::candidate::Candidate;
 use super::compare::Channel;
 use super::geometry::Study;
 use super::report::{CauseParameter, Diagnosis, NotExcited};
+use super::rollout::NO_CLOCK;
 use super::{Options, THRESHOLD, quality};
 use crate::constraint::detect_in;
 use crate::estimate::{ConstraintKind, EstimateError};
@@ -121,6 +122,7 @@ pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         states: &plain,
         usual: &|_| None,
         much: None,
+        forward: Err(NO_CLOCK),
     };
     let floor = white_noise(&rows.iter().map(|r| r.force).collect::<Vec<_>>());
     let mut parts = vec![part(

@@ -87,6 +87,17 @@ pub struct Gain {
     /// What it is worth when the model runs on its own over short windows, where that could be done.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rollout: Option<Rollout>,
+    /// Why it was not run forward, where there is no rollout for a reason.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_rollout: Option<String>,
+}
+
+impl Gain {
+    /// With what running forward says, or why it was not done.
+    pub(super) fn run(self, forward: Result<Rollout, String>) -> Self {
+        let (rollout, no_rollout) = forward.map_or_else(|why| (None, Some(why)), |rollout| (Some(rollout), None));
+        Self { rollout, no_rollout, ..self }
+    }
 }
 
 /// What a rollout is compared by.
@@ -99,7 +110,7 @@ pub enum RolloutOf {
     Force,
 }
 
-/// Error of a model that runs forward in time from the measured state, over windows of data that took part in nothing.
+/// Error of a model that runs forward in time from the measured state, over windows of data that were not fitted.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct Rollout {
     /// What is compared.
@@ -118,6 +129,9 @@ pub struct Rollout {
     pub share: f64,
     /// 95 % interval of that share, by a bootstrap over windows.
     pub interval: [f64; 2],
+    /// True where no window took part in nothing: each was then left out of the fit in turn, but not of the choice.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub in_turn: bool,
 }
 
 /// A cause that was found.

@@ -10,6 +10,7 @@ use super::geometry::Study;
 use super::report::{
     Alternative, Cause, CauseParameter, Diagnosis, Experiment, Gain, NextExperiment, NotExcited, Validation, Verdict,
 };
+use super::rollout::AT_ONCE;
 use super::track::{self, Place, Track};
 use super::{Options, explain, named, nothing, quality, sliding, threshold};
 use crate::estimate::EstimateError;
@@ -355,7 +356,7 @@ fn scales(found: &mut Diagnosis, study: &Study, model: &Model, mass_kg: Option<f
         }],
         p_value: super::gain::chi_square_tail((off / error).powi(2), 1.0),
         posterior: 0.5,
-        gain: Gain::default(),
+        gain: Gain::default().run(Err(AT_ONCE.to_owned())),
         evidence: format!(
             "the block needs {:+.1} % of force for its accelerations beyond what its known weight asks for",
             100.0 * (ratio - 1.0)

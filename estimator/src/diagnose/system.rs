@@ -2,6 +2,7 @@
 
 mod rough;
 mod steady;
+mod without;
 
 pub use rough::Rough;
 

@@ -210,8 +210,9 @@ fn gain(cause: &Cause, diagnosis: &Diagnosis) -> Markup {
     let gain = &cause.gain;
     let ((unit, factor), [low, high]) = (gain_unit(cause, diagnosis), gain.interval);
     let rms = |value: f64| format::significant(value, 2);
+    let has_share = gain.heldout_rms_before > 0.0 && gain.no_share.is_none();
     html! {
-        @if gain.heldout_rms_before > 0.0 && gain.no_share.is_none() {
+        @if has_share {
             p class="muted small" {
                 "Explains " (percent(gain.share_of_explainable)) " of what can be explained, on data that took no part (95 % interval "
                 (format::number(100.0 * low, 0)) " … " (format::number(100.0 * high, 0)) " %)"
@@ -219,12 +220,16 @@ fn gain(cause: &Cause, diagnosis: &Diagnosis) -> Markup {
                     ": " (rms(factor * gain.heldout_rms_before)) " → " (rms(factor * gain.heldout_rms_after)) " " (unit) " RMS"
                 }
                 "."
-                @if let Some(forward) = &gain.rollout {
-                    @let what = match forward.of { RolloutOf::Position => "position", RolloutOf::Force => "force" };
-                    " Run forward " (format::number(forward.window_s, 1)) " s, the " (what) " is off by " (rms(forward.rms_before)) " → "
-                    (rms(forward.rms_after)) " " (shown_unit(&forward.unit)) "."
-                }
             }
+        }
+        @if let Some(forward) = &gain.rollout {
+            @let what = match forward.of { RolloutOf::Position => "position", RolloutOf::Force => "force" };
+            p class="muted small" {
+                "Run forward " (format::number(forward.window_s, 1)) " s, the " (what) " is off by " (rms(forward.rms_before)) " → "
+                (rms(forward.rms_after)) " " (shown_unit(&forward.unit)) "."
+            }
+        } @else if let Some(why) = &gain.no_rollout {
+            p class="muted small" { "Not run forward: " (why) "." }
         }
     }
 }

@@ -18,7 +18,10 @@ mod words {
     pub const IN_THE_MEASUREMENT_MORE: &str =
         "A fault of the measurement: it corrects the recording and leaves the world alone";
     pub const THE_MEASURED_FORCE: &str = "the measured force drives it";
-    pub const A_HAND_HOLDS: &str = "a hand holds on that wants to be where the handle was measured";
+    pub const A_HAND_HOLDS: &str = "a hand holds on that wants to be where the motion was measured";
+    pub const NOT_RUN: &str = "Not run forward";
+    pub const OUT_OF_ALL: &str = "that took part in nothing";
+    pub const OUT_OF_THE_FIT: &str = "that were left out of the fit in turn";
     pub const EXPLAINS: &str = "Explains";
     pub const EXPLAINS_MORE: &str =
         "Share of what can be explained (down to the noise) on data that took no part, with its 95 % interval";
@@ -56,6 +59,8 @@ pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Diagnos
         gain(ui, cause, diagnosis);
         if let Some(rollout) = &cause.gain.rollout {
             forward(ui, rollout);
+        } else if let Some(why) = &cause.gain.no_rollout {
+            ui.add(egui::Label::new(theme::caption(ui, format!("{}: {why}", words::NOT_RUN))).wrap());
         }
         ui.add(egui::Label::new(theme::caption(ui, sentence(&cause.evidence))).wrap());
         for other in diagnosis.alternatives.iter().filter(|a| a.instead_of == cause.id) {
@@ -79,9 +84,10 @@ fn forward(ui: &mut Ui, rollout: &Rollout) {
         shown_unit(&rollout.unit)
     );
     let [low, high] = rollout.interval.map(|share| format::number(100.0 * share, 0));
+    let held_out = if rollout.in_turn { words::OUT_OF_THE_FIT } else { words::OUT_OF_ALL };
     ui.label(theme::caption(ui, text)).on_hover_text(format!(
-        "Root mean square over {} windows that took part in nothing, each from its measured start; {how}. {low} to {high}\u{a0}% of the \
-         error's power go with this cause.",
+        "Root mean square over {} windows {held_out}, each from its measured start; {how}. {low} to {high}\u{a0}% of the error's power go \
+         with this cause.",
         rollout.windows
     ));
 }

@@ -2,6 +2,7 @@
 
 use super::acts::{generic, instrument, plant};
 use super::cable::{cables, errors};
+use super::forward::Airborne;
 use super::late::late;
 use super::rows::{Place, Row, Rows};
 use super::seen::Seen;
@@ -34,6 +35,8 @@ pub struct Carry {
     pub weighed: Vec<usize>,
     /// The rows as the atlas looks at them.
     pub view: View,
+    /// What carried blocks do on their own.
+    pub airborne: Airborne,
 }
 
 /// Compares what may act on carried blocks and on the sensors. `world`: its cables belong to the model.
@@ -82,9 +85,10 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     let channel = "net force on carried blocks";
     let view = view(&rows);
     let late = late(&rows, &known);
+    let airborne = Airborne::of(&rows, &rows.stretch, world, &known);
     let compared = Compared { study, channel, unit: "N", floor, along, stretch: rows.stretch, state };
     let weighed = (1..=known.len()).filter(|k| known[k - 1].is_none()).collect();
-    Ok(Carry { late, compared, longest_s, cable_errors, numbers, weighed, view })
+    Ok(Carry { late, compared, longest_s, cable_errors, numbers, weighed, view, airborne })
 }
 
 /// A cable's law is a straight line with a damper; what is tied turns in the grip and sags. What scores less than this share of a cable

@@ -6,6 +6,7 @@ use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::{Channel, stretches};
 use crate::diagnose::report::CauseParameter;
+use crate::diagnose::rollout::Pads;
 use crate::estimate::EstimateError;
 use crate::identify::block::object;
 use crate::segment::SystemState;
@@ -30,6 +31,8 @@ pub struct Grasp {
     means: Vec<(f64, f64)>,
     /// Give of a pad at no force that the model has, m/N.
     modelled: f64,
+    /// What the pads do on their own.
+    pub pads: Pads,
 }
 
 /// Rows of all recordings.
@@ -93,6 +96,7 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
         .map(|k| of(&|i| f64::from(u8::from(rows.number[i] == k))))
         .collect();
     // Pads damp: no cause of its own.
+    let rate = base.len();
     base.push(rows.rate_m_s.clone());
     let mut modelled = 0.0;
     if let Some(pad) = world.map(|w| w.pad.elastic()) {
@@ -125,10 +129,11 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     };
     let study = channel.compare(threshold)?;
     let along = vec![true; n];
+    let pads = Pads::new(&rows.time_s, &rows.stretch, period_s, rate);
     let (channel, stretch, state) = ("distance of the tips", rows.stretch, rows.state);
     let compared = Compared { study, channel, unit: "m", floor: floor_m, along, stretch, state };
     let view = View::of(rows.recording, vec![(Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)]);
-    Ok(Some(Grasp { compared, view, means, modelled }))
+    Ok(Some(Grasp { compared, view, means, modelled, pads }))
 }
 
 /// What a cause in the distance of the tips is best seen against.

@@ -7,6 +7,7 @@ mod acts;
 mod cable;
 mod carry;
 mod experiment;
+mod forward;
 mod grasp;
 mod ground;
 mod late;
@@ -68,8 +69,10 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let grasp_states = |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &grasp { g.states(c, p) } else { p };
     let ground_states = |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &ground { g.states(c, p) } else { p };
     let ground_shows = |f: &Found<'_>| ground.as_ref().map(|g| g.shows(f)).unwrap_or_default();
-    let mut parts: Vec<Part<'_>> = vec![carry.compared.part(&Carry::shows, &carry_states, &carry_usual)];
-    parts.extend(grasp.as_ref().map(|g| g.compared.part(&grasp_shows, &grasp_states, &grasp::Grasp::usual)));
+    let mut parts: Vec<Part<'_>> = vec![carry.compared.part(&Carry::shows, &carry_states, &carry_usual).running(&carry.airborne)];
+    parts.extend(
+        grasp.as_ref().map(|g| g.compared.part(&grasp_shows, &grasp_states, &grasp::Grasp::usual).running(&g.pads)),
+    );
     parts.extend(ground.as_ref().map(|g| g.compared.part(&ground_shows, &ground_states, &ground::Ground::usual)));
     let mut found = answer(&parts, beside, &|open| experiment::propose(open, &carry, &seen).or_else(|| next(open)));
     if options.atlas {

@@ -6,6 +6,7 @@ use super::seen::Seen;
 use crate::diagnose::answer::parameter;
 use crate::diagnose::gain::chi_square_tail;
 use crate::diagnose::report::{Cause, Gain};
+use crate::diagnose::rollout::AT_ONCE;
 use crate::identify::block::object;
 use crate::identify::block::slipping::LEAST_M;
 use haptics::law::Kind;
@@ -62,6 +63,7 @@ pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause>
             in_turn: false,
             unit: Some("m".to_owned()),
             rollout: None,
+            no_rollout: Some(AT_ONCE.to_owned()),
         },
         evidence: format!(
             "{} was put down {:.2} mm ({:.0} standard errors) from where the heights of the world have it: the fingers moved on it while \

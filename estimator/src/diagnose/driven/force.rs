@@ -3,6 +3,7 @@
 use super::Side;
 use super::beside_load::Told;
 use super::fine::Fine;
+use super::forward::Input;
 use super::rows::{Columns, ROW_HZ, Row, Seen, constants, stretches_of};
 use super::tried::{Tried, closer};
 use super::{channel, generic};
@@ -23,8 +24,17 @@ fn sure(seen: &Seen, usual: f64) -> Vec<usize> {
     seen.kept(&seen.rows.iter().zip(&direction).map(is_sure).collect::<Vec<bool>>())
 }
 
+/// The comparison, and what goes with it.
+pub struct Force {
+    pub side: Side,
+    /// How well friction is told from the load.
+    pub told: Option<Told>,
+    /// What the input does on its own.
+    pub input: Input,
+}
+
 /// The force at the input against its motion and the load, and how well friction is told from that load.
-pub fn force(seen: &Seen, names: &'static Columns) -> Result<Option<(Side, Option<Told>)>, EstimateError> {
+pub fn force(seen: &Seen, names: &'static Columns) -> Result<Option<Force>, EstimateError> {
     if seen.rows.iter().any(|r| r.force.is_none()) {
         return Ok(None);
     }
@@ -41,6 +51,7 @@ pub fn force(seen: &Seen, names: &'static Columns) -> Result<Option<(Side, Optio
     if is_loaded {
         base.push(of(&|r| r.load.unwrap_or(0.0)));
     }
+    let inertia = base.len();
     base.push(of(&|r| r.acceleration));
     let direction = seen.column(&kept, &Fine::direction);
     let (low, high) = seen.ends();
@@ -69,5 +80,7 @@ pub fn force(seen: &Seen, names: &'static Columns) -> Result<Option<(Side, Optio
     let study = closer(&mut [Tried::new("hysteresis", high - low)], &once)?;
     let told = if is_loaded { Told::of(&study, load, &direction, &rows) } else { None };
     let floor = white_noise(&seen.rows.iter().map(|r| r.force.unwrap_or(0.0)).collect::<Vec<_>>());
-    Ok(Some((Side::new(study, rows, stretch, ("force at the input", names.force_unit), floor), told)))
+    let input = Input::new(&rows, &stretch, names.unit, inertia, seen);
+    let side = Side::new(study, rows, stretch, ("force at the input", names.force_unit), floor);
+    Ok(Some(Force { side, told, input }))
 }

@@ -3,7 +3,8 @@
 use super::powers;
 use crate::diagnose::answer::parameter;
 use crate::diagnose::gain::chi_square_tail;
-use crate::diagnose::report::{Alternative, Cause, Gain};
+use crate::diagnose::report::{Alternative, Cause, Gain, RolloutOf};
+use crate::diagnose::rollout::{Compared, told};
 use crate::identify::tossed::Tossed;
 use crate::identify::tossed::flight::{Fall, end, least};
 use crate::identify::tossed::pose::Track;
@@ -103,6 +104,11 @@ fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
         (((sum[0] - sum[1]) / (sum[0] - sum[2]).max(1e-3 * sum[0]).max(1e-300)).min(1.0), sum)
     };
     let (all, sum) = share(&mut squares.iter());
+    // Nothing but its start, which is fitted, holds a flight where it was measured.
+    let mean_s = tracks.iter().map(|t| t.time_s[end(t).max(1) - 1] - t.time_s[0]).sum::<f64>() / tracks.len() as f64;
+    let what = Compared { of: RolloutOf::Position, unit: "m", window_s: mean_s, in_turn: false };
+    let errors = |k: usize| squares.iter().map(|s| (s[k], s[3])).collect::<Vec<(f64, f64)>>();
+    let forward = told(&what, &errors(0), &errors(1));
     // Leaving out one flight after the other (jackknife).
     let n = squares.len() as f64;
     let parts: Vec<f64> = (0..squares.len())
@@ -118,8 +124,9 @@ fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
         no_share: None,
         in_turn: false,
         unit: Some("m".to_owned()),
-        rollout: None,
+        ..Gain::default()
     }
+    .run(forward)
 }
 
 /// Sum of squares of a flight's heights beside the fall with an acceleration (or its own), place and speed fitted, m².

@@ -8,8 +8,10 @@ mod sliding;
 use super::answer::{Beside, Found, Part, answer};
 use super::candidate::Candidate;
 use super::report::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
+use super::rollout::AT_AN_INSTANT;
 use super::{Options, quality};
 use crate::estimate::EstimateError;
+use crate::identify::tossed::pose::Track;
 use crate::identify::tossed::slide::unknown_of_foot;
 use crate::identify::tossed::{Tossed, tossed};
 use haptics::recording::Recording;
@@ -62,8 +64,10 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     let loses = |c: &Candidate, found: Vec<CauseParameter>| blow::states(c, &found, pushed);
     let (slide_shows, blow_shows) = (|f: &Found<'_>| sliding::shows(f), |f: &Found<'_>| blow::shows(f));
     let mut parts: Vec<Part<'_>> = Vec::new();
-    parts.extend(sliding.as_ref().map(|(s, _)| s.part(&slide_shows, &slides, &|_| None)));
-    parts.extend(blow.as_ref().map(|(b, _, _)| b.part(&blow_shows, &loses, &|_| None)));
+    let step_s = seen.tracks.first().map_or(0.0, Track::step_s);
+    let run = sliding.as_ref().map(|(compared, _)| sliding::Slides { compared, step_s });
+    parts.extend(run.as_ref().map(|run| run.compared.part(&slide_shows, &slides, &|_| None).running(run)));
+    parts.extend(blow.as_ref().map(|(b, _, _)| b.part(&blow_shows, &loses, &|_| None).still(AT_AN_INSTANT)));
     let mut found = answer(&parts, beside, &next);
     if parts.is_empty() {
         of_falls(&mut found, seen, meta.gravity());

@@ -5,7 +5,9 @@ use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
-use crate::diagnose::report::CauseParameter;
+use crate::diagnose::geometry::Study;
+use crate::diagnose::report::{CauseParameter, RolloutOf};
+use crate::diagnose::rollout::Forward;
 use crate::estimate::EstimateError;
 use crate::identify::tossed::Tossed;
 use crate::identify::tossed::slide::Slide;
@@ -90,6 +92,37 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, Estim
     let view = View::of(Vec::new(), over);
     let (channel, state) = ("way of the slides", vec![SystemState::SlidingOnGround; n]);
     Ok(Some((Compared { study, channel, unit: "m", floor, along, stretch, state }, view)))
+}
+
+/// Slides as they run: their columns are slowings that were integrated twice already, from each one's own start.
+pub struct Slides<'a> {
+    pub compared: &'a Compared,
+    /// Time between samples, s.
+    pub step_s: f64,
+}
+
+impl Forward for Slides<'_> {
+    fn of(&self) -> (RolloutOf, &str) {
+        (RolloutOf::Position, "m")
+    }
+
+    fn windows(&self) -> Vec<Vec<usize>> {
+        let stretch = &self.compared.stretch;
+        let rows: Vec<usize> = (0..stretch.len()).collect();
+        rows.chunk_by(|a, b| stretch[*a] == stretch[*b]).map(<[usize]>::to_vec).collect()
+    }
+
+    fn window_s(&self) -> f64 {
+        let longest = self.windows().iter().map(Vec::len).max().unwrap_or(0);
+        self.step_s * longest.saturating_sub(1) as f64
+    }
+
+    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
+        let columns = study.base.iter().chain(picks.iter().flat_map(|p| &study.candidates[*p].columns).map(|c| &**c));
+        let columns: Vec<(&Vec<f64>, &f64)> = columns.zip(values).collect();
+        let left = |i: &usize| study.y[*i] - columns.iter().map(|(column, value)| *value * column[*i]).sum::<f64>();
+        Ok((window.iter().map(|i| left(i).powi(2)).sum(), window.len() as f64))
+    }
 }
 
 /// What a cause in the slides is best seen against.

@@ -4,6 +4,7 @@
 
 mod between;
 mod experiment;
+mod forward;
 mod late;
 mod rows;
 mod shaft;
@@ -16,6 +17,7 @@ use super::answer::{Beside, Compared, Found, Part, answer, parameter};
 use super::candidate::Candidate;
 use super::gain::chi_square_tail;
 use super::report::{Alternative, Cause, CauseParameter, Diagnosis, Gain, NextExperiment, NotExcited};
+use super::rollout::AT_AN_INSTANT;
 use super::{Options, quality, threshold};
 use crate::estimate::EstimateError;
 use haptics::law::Kind;
@@ -34,7 +36,7 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let (seen, names, left_out) = joined(recordings)?;
     let law = options.world.as_ref().and_then(|w| w.membrane.as_ref()).map(|m| &m.law);
     let limit = threshold(seen.period_s);
-    let (sheet, view) = sheet::sheet(&seen, law, limit)?;
+    let sheet::Sheet { compared: sheet, view, pressed } = sheet::sheet(&seen, law, limit)?;
     let shaft = shaft::shaft(&seen, law, limit)?;
     let mut beside = Beside {
         model: format!(
@@ -58,9 +60,11 @@ pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     }
     let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
     let (on_sheet, on_shaft) = (|f: &Found<'_>| sheet::shows(f), |f: &Found<'_>| shaft::shows(f));
-    let mut parts: Vec<Part<'_>> = vec![sheet.part(&on_sheet, &plain, &sheet::usual)];
-    parts
-        .extend(shaft.as_ref().map(|s| Part { much: Some(MUCH), ..s.compared.part(&on_shaft, &plain, &shaft::usual) }));
+    let mut parts: Vec<Part<'_>> = vec![sheet.part(&on_sheet, &plain, &sheet::usual).running(&pressed)];
+    if let Some(shaft::Shaft { compared, sliding, .. }) = &shaft {
+        let part = compared.part(&on_shaft, &plain, &shaft::usual).running(sliding);
+        parts.push(Part { much: Some(MUCH), ..part });
+    }
     let asked =
         |open: &[Alternative]| experiment::propose(open, (&seen, law), (&sheet, shaft.as_ref())).or_else(|| next(open));
     let mut found = answer(&parts, beside, &asked);
@@ -81,7 +85,7 @@ pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compa
     let (seen, ..) = joined(recordings)?;
     let law = options.world.as_ref().and_then(|w| w.membrane.as_ref()).map(|m| &m.law);
     let limit = threshold(seen.period_s);
-    let mut found = vec![sheet::sheet(&seen, law, limit)?.0];
+    let mut found = vec![sheet::sheet(&seen, law, limit)?.compared];
     found.extend(shaft::shaft(&seen, law, limit)?.map(|s| s.compared));
     Ok(found)
 }
@@ -139,6 +143,7 @@ fn punctures(seen: &Needle, names: &[&str], level_n: &dyn Fn(&Puncture) -> f64) 
         posterior: 1.0,
         gain: Gain {
             no_share: Some("each puncture is one observation: none was held out".to_owned()),
+            no_rollout: Some(AT_AN_INSTANT.to_owned()),
             ..Gain::default()
         },
         evidence: format!(

@@ -1,5 +1,6 @@
 //! The needle in its hole: what holds its shaft.
 
+use super::forward::Sliding;
 use super::rows::{Needle, Phase, Row};
 use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::atlas::View;
@@ -48,7 +49,7 @@ const CLOSER: [f64; 2] = [1.0, 0.5];
 /// Waves over the depth and in time that show what has no name: a recording has few rows in its holes.
 const WAVES: u32 = 3;
 /// The rim of a world's hole may be softer or stiffer than its sheet by so much, in a first step.
-const RIM_SHARE: f64 = 0.05;
+pub const RIM_SHARE: f64 = 0.05;
 
 /// The comparison.
 pub struct Shaft {
@@ -59,6 +60,8 @@ pub struct Shaft {
     pub model: &'static str,
     /// Dry friction at a first look, N.
     dry_n: f64,
+    /// What the needle does on its own.
+    pub sliding: Sliding,
 }
 
 impl Shaft {
@@ -193,26 +196,27 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         weight,
         period_s: needle.period_s,
     };
-    let study = closely(&channel, (&track, &coarse), &asked, (law.is_some(), threshold, dry_n))?;
+    let (study, beside_n) = closely(&channel, (&track, &coarse), &asked, (law.is_some(), threshold, dry_n))?;
     let dry_n = sliding_n(&study).unwrap_or(dry_n);
+    let sliding = Sliding::new(needle, law, (&rows, track), beside_n);
     let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
     let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, stretch, state };
-    Ok(Some(Shaft { compared, view: super::sheet::view(&rows), model, dry_n }))
+    Ok(Some(Shaft { compared, view: super::sheet::view(&rows), model, dry_n, sliding }))
 }
 
 /// The comparison, and once more around the values that were found, as long as there are any. `asked`: candidates over a grid beside so much dry
-/// friction; `dry`: whether the model has it.
+/// friction; `dry`: whether the model has it. With the friction, N, that the last shares are of.
 fn closely(
     channel: &Channel,
     (track, coarse): (&Track, &Grid),
     asked: &dyn Fn(&Grid, f64) -> Vec<Candidate>,
     (dry, threshold, first_n): (bool, f64, f64),
-) -> Result<Study, EstimateError> {
+) -> Result<(Study, f64), EstimateError> {
     let compare = |channel: Channel| {
         if dry { channel.compare(threshold) } else { channel.compare_without_friction(threshold) }
     };
     let mut study = compare(channel.clone())?;
-    let mut grid = coarse.clone();
+    let (mut grid, mut dry_n) = (coarse.clone(), first_n);
     for step in CLOSER {
         let picks = study.picks();
         let found: Vec<&Candidate> =
@@ -222,10 +226,10 @@ fn closely(
         }
         grid = grid.with(Grid::around(&found, track, step));
         // Play takes much of it away at a first look; all of its share is of what slides.
-        let dry_n = sliding_n(&study).unwrap_or(first_n);
+        dry_n = sliding_n(&study).unwrap_or(first_n);
         study = compare(Channel { candidates: asked(&grid, dry_n), ..channel.clone() })?;
     }
-    Ok(study)
+    Ok((study, dry_n))
 }
 
 /// The dry friction that was found, N.
@@ -236,9 +240,14 @@ fn sliding_n(study: &Study) -> Option<f64> {
     study.solved.as_ref()?.values.get(place).copied()
 }
 
+/// A world's hole in a sheet that is pierced, drag left out.
+pub fn rim(law: &MembraneLaw) -> MembraneLaw {
+    MembraneLaw { drag_n_s_m: 0.0, puncture_n: 0.0, ..*law }
+}
+
 /// Friction of a world's hole along the measured way, N, drag left out.
 fn held(law: &MembraneLaw, rows: &[Row]) -> Vec<f64> {
-    let law = MembraneLaw { drag_n_s_m: 0.0, puncture_n: 0.0, ..*law };
+    let law = rim(law);
     let mut history = MembraneHistory::default();
     let mut push = None;
     rows.iter()

@@ -1,5 +1,6 @@
 //! The sheet before it is pierced, and the sensors: force over depth against a spring that is the same at every depth.
 
+use super::forward::Pressed;
 use super::rows::{Needle, Phase, Puncture, Row};
 use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::atlas::{Variable, View};
@@ -75,6 +76,58 @@ fn slope_across<'a>(needle: &Needle, rows: impl Iterator<Item = &'a Row>, middle
     (fit.identified[0] && fit.values[0].abs() > CLEARLY_ASKEW * fit.std_errors[0]).then_some(fit.values[0])
 }
 
+/// Names of the two ways in which a sheet hardens.
+const CUBIC: &str = "k3";
+const HERTZ: &str = "hertz";
+
+/// What a sheet may have beside its spring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Law {
+    /// A power of the depth.
+    Power(f64),
+    /// In proportion to the rate.
+    Drag,
+    /// A share of the deepest insertion that stays as a dent.
+    Dent(f64),
+}
+
+impl Law {
+    /// The law of a candidate, if it is one.
+    pub fn of(candidate: &Candidate) -> Option<Self> {
+        match (candidate.id, candidate.linear[0].0) {
+            ("stiffness-hardening", CUBIC) => Some(Self::Power(3.0)),
+            ("stiffness-hardening", HERTZ) => Some(Self::Power(1.5)),
+            ("viscous-friction", _) => Some(Self::Drag),
+            ("hysteresis", _) => candidate.searched.first().map(|s| Self::Dent(s.value)),
+            _ => None,
+        }
+    }
+
+    /// Force against the needle for one of its parameter, N. `elastic`: that of the first push at a depth.
+    pub fn unit_n(self, r: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
+        match self {
+            _ if !touches(r) => 0.0,
+            Self::Power(power) => r.depth_m.powf(power),
+            Self::Drag => r.rate_m_s,
+            Self::Dent(share) => with_dent(share, r, elastic) - elastic(r.depth_m),
+        }
+    }
+}
+
+/// Force of the model's own sheet at a row, for one of its column, N: of the world's, or a spring of 1 N/m.
+pub fn own_n(law: Option<&MembraneLaw>, r: &Row) -> f64 {
+    match law {
+        _ if !touches(r) => 0.0,
+        Some(law) => with_dent(law.give, r, &|x| law.loading_n(x)),
+        None => r.depth_m,
+    }
+}
+
+/// Force of the first push at a depth that dents are told beside, N.
+pub fn first_push_n(stiffness_n_m: f64, law: Option<&MembraneLaw>, depth_m: f64) -> f64 {
+    law.map_or(stiffness_n_m * depth_m, |l| l.loading_n(depth_m))
+}
+
 fn touches(r: &Row) -> bool {
     matches!(r.phase, Phase::Loading | Phase::Unloading) && r.depth_m > 0.0
 }
@@ -87,14 +140,10 @@ pub fn columns(needle: &Needle, law: Option<&MembraneLaw>) -> Columns {
     shuffle(&mut rows);
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let is_held = |r: &Row| r.phase != Phase::Empty;
-    let k = needle.stiffness_n_m;
-    let elastic = |x: f64| law.map_or(k * x, |l| l.loading_n(x));
+    let elastic = |x: f64| first_push_n(needle.stiffness_n_m, law, x);
     let mut base: Vec<Vec<f64>> =
         (0..needle.holds).map(|h| of(&|r| f64::from(u8::from(is_held(r) && r.hold == h)))).collect();
-    base.push(match law {
-        Some(law) => of(&|r| if touches(r) { with_dent(law.give, r, &elastic) } else { 0.0 }),
-        None => of(&|r| if touches(r) { r.depth_m } else { 0.0 }),
-    });
+    base.push(of(&|r| own_n(law, r)));
     if needle.two_fingered {
         // The needle's own mass; a tool's sensor sits behind none.
         base.push(of(&|r| if is_held(r) { r.acceleration_m_s2 } else { 0.0 }));
@@ -115,18 +164,13 @@ fn candidates(
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let pressed = |r: &Row| if touches(r) { r.depth_m } else { 0.0 };
     let owned = |k: usize, r: &Row| f64::from(u8::from(r.recording == k));
+    let acts = |law: Law, id, name, unit| {
+        Candidate::one(id, Kind::Plant, name, unit, of(&|r| law.unit_n(r, elastic))).positive()
+    };
     let mut candidates = vec![
-        Candidate::one("stiffness-hardening", Kind::Plant, "k3", "N/m³", of(&|r| pressed(r).powi(3))).positive(),
-        Candidate::one("stiffness-hardening", Kind::Plant, "hertz", "N/m^1.5", of(&|r| pressed(r).powf(1.5)))
-            .positive(),
-        Candidate::one(
-            "viscous-friction",
-            Kind::Plant,
-            "c",
-            "N s/m",
-            of(&|r| if touches(r) { r.rate_m_s } else { 0.0 }),
-        )
-        .positive(),
+        acts(Law::Power(3.0), "stiffness-hardening", CUBIC, "N/m³"),
+        acts(Law::Power(1.5), "stiffness-hardening", HERTZ, "N/m^1.5"),
+        acts(Law::Drag, "viscous-friction", "c", "N s/m"),
         Candidate::one("force-bias", Kind::Instrument, "b", "N", of(&|_| 1.0)),
     ];
     // A sensor is set to zero before each recording.
@@ -136,9 +180,7 @@ fn candidates(
         if needle.recordings > 1 { drift.at("recording", (k + 1) as f64, "1") } else { drift }
     }));
     for dent in DENTS {
-        let less = of(&|r| if touches(r) { with_dent(dent, r, elastic) - elastic(r.depth_m) } else { 0.0 });
-        let cause = Candidate::one("hysteresis", Kind::Plant, "share", "1", less).positive();
-        candidates.push(cause.at("dent", dent, "1"));
+        candidates.push(acts(Law::Dent(dent), "hysteresis", "share", "1").at("dent", dent, "1"));
     }
     if law.is_some_and(|l| l.give > 0.0) {
         candidates.retain(|c| c.id != "hysteresis");
@@ -157,8 +199,17 @@ fn candidates(
     candidates
 }
 
+/// The comparison.
+pub struct Sheet {
+    pub compared: Compared,
+    /// What its rows are seen against.
+    pub view: View,
+    /// What a needle does on its own, outside and on the sheet.
+    pub pressed: Pressed,
+}
+
 /// Compares them.
-pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<(Compared, View), EstimateError> {
+pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Sheet, EstimateError> {
     let Columns { rows, floor_n, base, candidates } = columns(needle, law);
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let y = of(&|r| r.force_n);
@@ -182,7 +233,7 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
         sensor: rows.iter().map(|r| usize::from(touches(r))).collect(),
         ..view(&rows)
     };
-    Ok((compared, view))
+    Ok(Sheet { compared, view, pressed: Pressed::new(needle, law, rows) })
 }
 
 /// What a row's noise is smaller by for the comparison: rows are dealt out, so that noise that goes on from one to the next is not taken out of

@@ -68,7 +68,7 @@ fn needle(seed: u64, askew: f64, goes_on: f64) -> Needle {
 }
 
 fn named(needle: &Needle) -> Vec<&'static str> {
-    let (found, _) = sheet::sheet(needle, None, 20.0).expect("a sheet");
+    let found = sheet::sheet(needle, None, 20.0).expect("a sheet").compared;
     found.study.picks().into_iter().map(|p| found.study.candidates[p].id).collect()
 }
 

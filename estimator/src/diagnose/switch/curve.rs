@@ -2,6 +2,7 @@
 //!
 //! A world is known only so well: what is smaller than its own stated errors is no cause.
 
+use super::forward::Captured;
 use super::model::Known;
 use super::push::Push;
 use super::rows::direction;
@@ -28,14 +29,21 @@ const LEAST_ON: usize = 20;
 const STRANGE: f64 = 2.0;
 
 /// One row on the way of a throw.
-struct Point {
-    side: usize,
-    at_m: f64,
-    speed_m_s: f64,
+#[derive(Clone, Copy)]
+pub struct Point {
+    pub side: usize,
+    pub at_m: f64,
+    pub speed_m_s: f64,
     /// Measured and asked for along the travel, N, and the slope of the latter, N/m.
-    left_n: f64,
-    asked_n: f64,
-    slope_n_m: f64,
+    pub left_n: f64,
+    pub asked_n: f64,
+    pub slope_n_m: f64,
+}
+
+/// Force of one newton of a bind at a place, N.
+pub fn bind_n(at_m: f64, place_m: f64, width_m: f64) -> f64 {
+    let law = Effect::new(&LocalResistance, &[1.0, place_m, width_m, 0.0]);
+    law.force(&Motion { position: at_m, direction: 1.0, velocity: 1.0, ..Motion::default() })
 }
 
 /// Compares the measured curve with the world's. Nothing where too little of it was seen.
@@ -44,7 +52,7 @@ pub fn curve(
     known: &Known<'_>,
     period_s: f64,
     threshold: f64,
-) -> Result<Option<(Compared, View)>, EstimateError> {
+) -> Result<Option<(Compared, View, Captured)>, EstimateError> {
     let viscous =
         push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == "viscous-friction");
     let mut times = Vec::new();
@@ -89,7 +97,9 @@ pub fn curve(
     let state = vec![SystemState::Turning; points.len()];
     let recording = times.iter().map(|t| t.0).collect();
     let view = View { way: of(&|p| direction(p.side)), ..View::of(recording, over) };
-    Ok(Some((Compared { study, channel, unit, floor, along, stretch, state }, view)))
+    let time = times.iter().map(|t| t.1).collect();
+    let knob = Captured::new(&known.switch.curve, points, time, &stretch, period_s);
+    Ok(Some((Compared { study, channel, unit, floor, along, stretch, state }, view, knob)))
 }
 
 /// Where the switch stands is open: it may have been moved.
@@ -158,10 +168,7 @@ fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candida
     for k in 1..PLACES {
         let place = half * (2.0 * k as f64 / PLACES as f64 - 1.0);
         for width in WIDTHS.map(|share| 2.0 * half * share) {
-            let law = Effect::new(&LocalResistance, &[1.0, place, width, 0.0]);
-            let bind =
-                |p: &Point| law.force(&Motion { position: p.at_m, direction: 1.0, velocity: 1.0, ..Motion::default() });
-            let bind = one("local-resistance", "F", "N", of(&bind)).positive();
+            let bind = one("local-resistance", "F", "N", of(&|p| bind_n(p.at_m, place, width))).positive();
             if bind.columns[0].iter().filter(|v| **v > 0.3).count() >= LEAST_ON {
                 found.push(bind.at("place", place, "m").at("width", width, "m"));
             }

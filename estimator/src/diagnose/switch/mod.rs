@@ -5,6 +5,7 @@
 
 mod curve;
 mod experiment;
+mod forward;
 mod model;
 mod push;
 mod rows;
@@ -17,9 +18,11 @@ use super::answer::{Beside, Compared, Found, Part, answer};
 use super::atlas::View;
 use super::candidate::Candidate;
 use super::report::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
+use super::rollout::Pads;
 use super::{Options, quality, threshold};
 use crate::estimate::EstimateError;
 use haptics::recording::Recording;
+use forward::Captured;
 use model::Known;
 use push::Push;
 
@@ -27,8 +30,8 @@ use push::Push;
 struct Look {
     seen: rows::Seen,
     push: Push,
-    curve: Option<(Compared, View)>,
-    stop: Option<(Compared, View)>,
+    curve: Option<(Compared, View, Captured)>,
+    stop: Option<(Compared, View, Pads)>,
 }
 
 fn look(recordings: &[Recording], bad: &[Vec<bool>], options: &Options) -> Result<Look, EstimateError> {
@@ -43,7 +46,7 @@ fn look(recordings: &[Recording], bad: &[Vec<bool>], options: &Options) -> Resul
     };
     // A knob that asks for other forces, or a sensor that tells others, lies elsewhere in its stops.
     let has = |id: &str| push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == id);
-    let other = curve.as_ref().is_some_and(|(c, _)| !c.study.chosen.is_empty()) || has("friction-change");
+    let other = curve.as_ref().is_some_and(|(c, ..)| !c.study.chosen.is_empty()) || has("friction-change");
     let stop = if other { None } else { stop::stop(&seen, known.as_ref(), limit)? };
     Ok(Look { seen, push, curve, stop })
 }
@@ -71,9 +74,9 @@ pub fn switch(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
     let (on_way, on_curve, on_stop) =
         (|f: &Found<'_>| Push::shows(f), |f: &Found<'_>| curve::shows(f), |f: &Found<'_>| stop::shows(f));
-    let mut parts: Vec<Part<'_>> = vec![push.compared.part(&on_way, &plain, &Push::usual)];
-    parts.extend(curve.as_ref().map(|(c, _)| c.part(&on_curve, &plain, &|_| None)));
-    parts.extend(stop.as_ref().map(|(s, _)| s.part(&on_stop, &plain, &|_| None)));
+    let mut parts: Vec<Part<'_>> = vec![push.compared.part(&on_way, &plain, &Push::usual).running(&push.thrown)];
+    parts.extend(curve.as_ref().map(|(c, _, knob)| c.part(&on_curve, &plain, &|_| None).running(knob)));
+    parts.extend(stop.as_ref().map(|(s, _, pads)| s.part(&on_stop, &plain, &|_| None).running(pads)));
     let known = options.world.as_ref().and_then(Known::of);
     let asked = |open: &[Alternative]| {
         experiment::propose(open, &seen, (&push, curve.as_ref().map(|c| &c.0), known.as_ref())).or_else(|| next(open))
@@ -83,10 +86,11 @@ pub fn switch(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         let limit = threshold(seen.period_s);
         let channels = &mut found.atlas.channels;
         channels.push(push.compared.atlas(&push.view, limit, push::best_seen));
-        channels.extend(curve.as_ref().map(|(c, view)| c.atlas(view, limit, curve::best_seen)));
-        channels.extend(stop.as_ref().map(|(s, view)| s.atlas(view, limit, stop::best_seen)));
+        channels.extend(curve.as_ref().map(|(c, view, _)| c.atlas(view, limit, curve::best_seen)));
+        channels.extend(stop.as_ref().map(|(s, view, _)| s.atlas(view, limit, stop::best_seen)));
     }
-    let compared = std::iter::once(&push.compared).chain(curve.iter().chain(stop.iter()).map(|(c, _)| c));
+    let beside = curve.iter().map(|(c, ..)| c).chain(stop.iter().map(|(s, ..)| s));
+    let compared = std::iter::once(&push.compared).chain(beside);
     found.hypotheses = simulated::hypotheses(&compared.map(|c| &c.study).collect::<Vec<_>>());
     Ok(found)
 }

@@ -4,6 +4,7 @@ use super::rows::{Row, direction};
 use crate::identify::switch::OBJECT;
 use haptics::Vec2;
 use haptics::law::contact::Cushion;
+use haptics::law::object::ToggleCurve;
 use haptics::world::{Source, Switch, World};
 
 /// A world that does not say how well its curve is known: as a share of its peak.
@@ -14,6 +15,13 @@ const UNKNOWN_END_M: f64 = 0.2e-3;
 const LEAST_END_M: f64 = 0.13e-3;
 /// Halvings of the search for the knob.
 const HALVINGS: usize = 40;
+
+/// What a curve asks for along the travel of a side, N, and how that changes with the place on the arc, N/m.
+pub fn asked_n(curve: &ToggleCurve, at_m: f64, side: usize) -> (f64, f64) {
+    let branch = if side == 0 { 1.0 } else { 0.0 };
+    let sign = direction(side);
+    (sign * curve.force_n(at_m, branch), sign * curve.stiffness_n_m(at_m, branch, sign))
+}
 
 /// The switch of a world, and how well it is known.
 pub struct Known<'a> {
@@ -89,9 +97,7 @@ impl<'a> Known<'a> {
 
     /// What the knob should ask for along the travel of a side, N, and how that changes with the place on the arc, N/m.
     pub fn asked_n(&self, at_m: f64, side: usize) -> (f64, f64) {
-        let branch = if side == 0 { 1.0 } else { 0.0 };
-        let sign = direction(side);
-        (sign * self.switch.curve.force_n(at_m, branch), sign * self.switch.curve.stiffness_n_m(at_m, branch, sign))
+        asked_n(&self.switch.curve, at_m, side)
     }
 
     /// Where the tip should be that presses the knob against the stop of a side with a force, m along the travel.

@@ -1,6 +1,7 @@
 //! The force on the way of a throw beside the curve of the same place and direction: what depends on speed and time, and what fingers
 //! feel that touch nothing. The curve itself is open here, one for each direction; whether it is the world's is another question.
 
+use super::forward::Thrown;
 use super::rows::{Place, Row, Seen, direction};
 use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::atlas::{Variable, View};
@@ -36,10 +37,12 @@ pub struct Push {
     curves: Vec<Curve>,
     /// Forces of the curves at a first look, N.
     forces_n: Vec<Vec<f64>>,
+    /// What a knob does on its own.
+    pub thrown: Thrown,
 }
 
 /// The place of the open curve, along the travel: rising in both directions.
-fn along_m(row: &Row) -> f64 {
+pub fn along_m(row: &Row) -> f64 {
     row.side().map_or(0.0, |side| direction(side) * row.tip.x)
 }
 
@@ -53,8 +56,9 @@ fn force_n(row: &Row) -> f64 {
 }
 
 /// A curve of straight pieces in one direction.
-struct Curve {
-    side: usize,
+#[derive(Clone)]
+pub struct Curve {
+    pub side: usize,
     places: Vec<f64>,
 }
 
@@ -72,11 +76,24 @@ impl Curve {
 
     /// Share of the k-th place in a row.
     fn share(&self, row: &Row, k: usize) -> f64 {
-        if row.place != Place::Push(self.side) {
-            return 0.0;
-        }
+        if row.place == Place::Push(self.side) { self.share_at(along_m(row), k) } else { 0.0 }
+    }
+
+    /// … and at a place along the travel, m.
+    fn share_at(&self, along_m: f64, k: usize) -> f64 {
         let step = (self.places[self.places.len() - 1] - self.places[0]) / (self.places.len() - 1) as f64;
-        (1.0 - (along_m(row) - self.places[k]).abs() / step).max(0.0)
+        (1.0 - (along_m - self.places[k]).abs() / step).max(0.0)
+    }
+
+    /// Force at a place along the travel of a curve with these forces, N; beyond its ends that of the nearest one.
+    pub fn force_n(&self, along_m: f64, force_n: &[f64]) -> f64 {
+        let within = along_m.clamp(self.places[0], self.places[self.places.len() - 1]);
+        force_n.iter().enumerate().map(|(k, force)| self.share_at(within, k) * force).sum()
+    }
+
+    /// How many columns it has.
+    pub fn len(&self) -> usize {
+        self.places.len()
     }
 
     fn columns(&self, rows: &[Row]) -> Vec<Vec<f64>> {
@@ -161,10 +178,11 @@ pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
     let state = rows.iter().map(Row::state).collect();
     let view = view(&rows);
     let is_push = |(r, _): &(Row, f64)| matches!(r.place, Place::Push(_));
+    let thrown = Thrown::new(&rows, &stretch, seen.period_s, &curves);
     let kept = rows.into_iter().zip(found).filter(is_push).collect();
     let (channel, unit, floor) = ("force on the knob", "N", seen.noise_n);
     let compared = Compared { study, channel, unit, floor, along, stretch, state };
-    Ok(Push { compared, view, rows: kept, curves, forces_n: forces })
+    Ok(Push { compared, view, rows: kept, curves, forces_n: forces, thrown })
 }
 
 /// The curves of both directions. The knob's mass is open, too: it falls over faster than the hand.

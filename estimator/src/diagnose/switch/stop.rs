@@ -6,6 +6,7 @@ use crate::diagnose::answer::{Compared, Found};
 use crate::diagnose::atlas::{Variable, View};
 use crate::diagnose::candidate::{Candidate, Shape};
 use crate::diagnose::compare::Channel;
+use crate::diagnose::rollout::Pads;
 use crate::estimate::EstimateError;
 use crate::segment::SystemState;
 use crate::signal::noise::white_noise;
@@ -20,7 +21,7 @@ const STRANGE_M: f64 = 6e-5;
 const MOST_STIFFER: f64 = 0.9;
 
 /// Compares what may move the tip while it presses the knob against a stop. Nothing where that was hardly done.
-pub fn stop(seen: &Seen, known: Option<&Known<'_>>, threshold: f64) -> Result<Option<(Compared, View)>, EstimateError> {
+pub fn stop(seen: &Seen, known: Option<&Known<'_>>, threshold: f64) -> Result<Option<(Compared, View, Pads)>, EstimateError> {
     let indices: Vec<usize> = (0..seen.rows.len()).filter(|i| matches!(seen.rows[*i].place, Place::Stop(_))).collect();
     if indices.len() < LEAST_ROWS {
         return Ok(None);
@@ -87,7 +88,9 @@ pub fn stop(seen: &Seen, known: Option<&Known<'_>>, threshold: f64) -> Result<Op
     let view =
         View { sensor: rows.iter().map(side).collect(), ..View::of(rows.iter().map(|r| r.recording).collect(), over) };
     let (channel, state) = ("place of the tip on the stop", vec![SystemState::Holding; rows.len()]);
-    Ok(Some((Compared { study, channel, unit: "m", floor, along, stretch, state }, view)))
+    // Pads damp: the first column is the rate.
+    let pads = Pads::new(&of(&|r| r.time_s), &stretch, seen.period_s, 0);
+    Ok(Some((Compared { study, channel, unit: "m", floor, along, stretch, state }, view, pads)))
 }
 
 /// What a cause on the stops is best seen against: how hard the knob is pressed.

@@ -1,31 +1,16 @@
-//! What a cause is worth when the model runs on its own: forward in time from the measured state, over short windows of the locked blocks.
-//!
-//! A model with an inertia is driven by the measured force, and its position is compared. A model without one (a light crank) would follow
-//! every error of the force at once: there a hand holds on, which wants to be where the handle was measured, and its force is compared. The
-//! laws are stepped by the integrator of the servo's worlds.
+//! Laws along one coordinate, over the locked blocks.
 
-use super::extend::effects_of;
-use super::force::{self, Model};
-use super::geometry::Study;
-use super::report::{Rollout, RolloutOf};
-use super::system::Use;
-use super::track::{Place, Track};
-use haptics::device::HandImpedance;
-use haptics::law::{Coordinate, Effect, Kind, Memories, Motion, advance, drive_forces, inertia, step_coordinate_with};
+use super::{Compared, LEAST_WINDOWS, Moment, NO_LAW, NOT_FAITHFUL, TOO_FEW, WINDOW_S, run, told};
+use crate::diagnose::extend::effects_of;
+use crate::diagnose::force::{self, Model};
+use crate::diagnose::geometry::{Study, residual};
+use crate::diagnose::report::{Rollout, RolloutOf};
+use crate::diagnose::system::Use;
+use crate::diagnose::track::{Place, Track};
+use haptics::law::{Coordinate, Effect, Kind, Memories, Motion, advance, drive_forces, inertia};
 
-/// Length of a window, s; windows are shorter at the end of a block, but never than half of it.
-pub const WINDOW_S: f64 = 0.5;
-/// Longest steps, s: of a coordinate with its own inertia, and of one that a hand holds.
-const STEP_S: f64 = 1e-3;
-const HELD_STEP_S: f64 = 2.5e-4;
-/// What the fingertips move along with a handle without inertia, kg: small beside every force here, large enough for the step.
-const TIP_KG: f64 = 5e-3;
-/// Fewer windows say nothing.
-const LEAST_WINDOWS: usize = 3;
 /// The laws must give what the comparison of columns gives, up to this share of what the cause takes off.
 const FAITHFUL: f64 = 0.5;
-/// Draws of the bootstrap over windows.
-const DRAWS: usize = 400;
 /// Rows that are trusted less are no judge of the laws.
 const TRUSTED: f64 = 0.5;
 
@@ -37,55 +22,39 @@ struct Side {
     left: Vec<f64>,
 }
 
-/// The rollout without and with the k-th of the chosen causes, all others in; nothing where it cannot be done faithfully: a cause that no
+/// The rollout without and with the k-th of the chosen causes, all others in; why not, where it cannot be done faithfully: a cause that no
 /// law of the world can run, or too little held-out motion.
-pub fn rollout(track: &Track, model: &Model, study: &Study, k: usize) -> Option<Rollout> {
+pub fn rollout(track: &Track, model: &Model, study: &Study, k: usize) -> Result<Rollout, String> {
     let picks = study.picks();
     let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
-    let (without, with) = (side(track, model, study, &rest)?, side(track, model, study, &picks)?);
+    let sides = side(track, model, study, &rest).zip(side(track, model, study, &picks));
+    let (without, with) = sides.ok_or_else(|| NO_LAW.to_owned())?;
     if !(faithful(track, study, &without, &with) && faithful(track, study, &with, &without)) {
-        return None;
+        return Err(NOT_FAITHFUL.to_owned());
     }
     let windows = windows(track, study);
     if windows.len() < LEAST_WINDOWS {
-        return None;
+        return Err(TOO_FEW.to_owned());
     }
     let driven = inertia(&without.effects) > 0.0 && inertia(&with.effects) > 0.0 && !track.planar;
     let errors = |side: &Side| -> Vec<(f64, f64)> {
         let starts = memories(track, &side.effects);
-        windows.iter().map(|window| run(track, side, window.clone(), &starts[window.start], driven)).collect()
+        windows.iter().map(|window| over(track, side, window.clone(), &starts[window.start], driven)).collect()
     };
-    let (before, after) = (errors(&without), errors(&with));
-    let all: Vec<usize> = (0..windows.len()).collect();
-    let mean = |of: &[(f64, f64)], drawn: &[usize]| {
-        let (sum, count) = drawn.iter().fold((0.0, 0.0), |(s, n), w| (s + of[*w].0, n + of[*w].1));
-        sum / f64::max(count, 1.0)
-    };
-    let share = |drawn: &[usize]| 1.0 - mean(&after, drawn) / mean(&before, drawn).max(1e-300);
-    let interval = super::gain::bootstrap(all.len(), DRAWS, &share);
     let unit = match (driven, track.coordinate) {
         (true, Coordinate::Linear) => "m",
         (true, Coordinate::Angular) => "rad",
         (false, Coordinate::Linear) => "N",
         (false, Coordinate::Angular) => "N m",
     };
-    let (rms_before, rms_after) = (mean(&before, &all).sqrt(), mean(&after, &all).sqrt());
-    (rms_before.is_finite() && rms_after.is_finite()).then(|| Rollout {
-        of: if driven { RolloutOf::Position } else { RolloutOf::Force },
-        unit: unit.to_owned(),
-        window_s: WINDOW_S,
-        windows: windows.len(),
-        rms_before,
-        rms_after,
-        share: share(&all),
-        interval,
-    })
+    let of = if driven { RolloutOf::Position } else { RolloutOf::Force };
+    told(&Compared { of, unit, window_s: WINDOW_S, in_turn: false }, &errors(&without), &errors(&with))
 }
 
 fn side(track: &Track, model: &Model, study: &Study, picks: &[usize]) -> Option<Side> {
     let solved = study.system.solve(picks)?;
     let effects = effects_of(track, model, study, picks, &solved)?;
-    let left = super::geometry::residual(&study.y, &study.base, &study.candidates, picks, &solved);
+    let left = residual(&study.y, &study.base, &study.candidates, picks, &solved);
     // Nothing drives what moves freely, and what its mass needs stands on the other side.
     let mut drive = if track.freely.is_some() { vec![0.0; study.y.len()] } else { study.y.clone() };
     let mut at = study.base.len();
@@ -173,42 +142,9 @@ fn memories(track: &Track, effects: &[Effect]) -> Vec<Memories> {
 }
 
 /// Sum of the squared errors over a window, and their number.
-fn run(track: &Track, side: &Side, window: std::ops::Range<usize>, start: &Memories, driven: bool) -> (f64, f64) {
-    let rows = &track.rows;
-    let mut memory = *start;
-    let first = &rows[window.start].motion;
-    let (mut position, mut velocity) = (first.position, first.velocity);
-    let hand = HandImpedance::default();
-    let extra = if driven { 0.0 } else { (TIP_KG - inertia(&side.effects)).max(0.0) };
-    let (mut sum, mut count) = (0.0, 0.0);
-    for i in window.start + 1..window.end {
-        let (from, to) = (&rows[i - 1].motion, &rows[i].motion);
-        let span_s = (to.time_s - from.time_s).max(1e-9);
-        let parts = (span_s / if driven { STEP_S } else { HELD_STEP_S }).ceil().max(1.0);
-        let mut held_n = 0.0;
-        for part in 0..parts as usize {
-            let x = (part as f64 + 0.5) / parts;
-            let between = |a: f64, b: f64| a + x * (b - a);
-            if !driven {
-                let (wanted, speed) = (between(from.position, to.position), between(from.velocity, to.velocity));
-                held_n = hand.stiffness_n_m * (wanted - position) + hand.damping_n_s_m * (speed - velocity);
-            }
-            let motion = Motion {
-                time_s: between(from.time_s, to.time_s),
-                position,
-                velocity,
-                acceleration: 0.0,
-                direction: velocity.signum(),
-                normal_force_n: between(from.normal_force_n, to.normal_force_n),
-                up_along: between(from.up_along, to.up_along),
-            };
-            let drive = between(side.drive[i - 1], side.drive[i]) + held_n;
-            (position, velocity) =
-                step_coordinate_with(&side.effects, &motion, &mut memory, drive, extra, span_s / parts);
-        }
-        let error = if driven { position - to.position } else { held_n };
-        sum += error * error;
-        count += 1.0;
-    }
-    (sum, count)
+fn over(track: &Track, side: &Side, window: std::ops::Range<usize>, start: &Memories, driven: bool) -> (f64, f64) {
+    let moment = |i: usize| Moment { motion: track.rows[i].motion, drive: side.drive[i], beside: [0.0; 2] };
+    let moments: Vec<Moment> = window.map(moment).collect();
+    let nothing = &mut |_: &Motion, _: [f64; 2]| 0.0;
+    run(&moments, super::Side { effects: &side.effects, memory: *start, acts: nothing, driven })
 }

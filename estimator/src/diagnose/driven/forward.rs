@@ -1,0 +1,101 @@
+//! The input of a transmission as a body of its own: the measured force drives it against its friction and the measured load.
+
+use super::rows::{ROW_HZ, Row, Seen};
+use crate::diagnose::geometry::Study;
+use crate::diagnose::report::RolloutOf;
+use crate::diagnose::rollout::{Forward, Moment, NO_LAW, Side, causes, consecutive, remembered, run};
+use haptics::law::{
+    CoulombFriction, Effect, Hysteresis, Inertia, LoadFriction, Motion, QuadraticDrag, ReturnSpring,
+    ViscousFriction,
+};
+
+/// What is compared of a transmission's force, as a motion.
+pub struct Input {
+    rows: Vec<Row>,
+    stretch: Vec<usize>,
+    unit: &'static str,
+    /// Which column of the model is the acceleration: what it comes out at is the inertia.
+    inertia: usize,
+    /// Middle of its way, where a spring is without force by its column.
+    middle: f64,
+}
+
+impl Input {
+    pub fn new(rows: &[Row], stretch: &[usize], unit: &'static str, inertia: usize, seen: &Seen) -> Self {
+        let (low, high) = seen.ends();
+        Self { rows: rows.to_vec(), stretch: stretch.to_vec(), unit, inertia, middle: 0.5 * (low + high) }
+    }
+
+    /// Friction of so much, and a cause that is a law by itself.
+    fn law(&self, id: &str, value: f64) -> Option<Effect> {
+        Some(match id {
+            "load-friction" => Effect::new(&LoadFriction, &[value]),
+            "viscous-friction" => Effect::new(&ViscousFriction, &[value]),
+            "quadratic-drag" => Effect::new(&QuadraticDrag, &[value]),
+            "return-spring" => Effect::new(&ReturnSpring, &[value, 0.0, 0.0, self.middle]),
+            _ => return None,
+        })
+    }
+
+    /// Laws of the causes; nothing where one has none.
+    fn effects(&self, study: &Study, picks: &[usize], values: &[f64]) -> Option<Vec<Effect>> {
+        let (mut effects, mut dry) = (vec![Effect::new(&Inertia, &[values[self.inertia].max(0.0)])], 0.0);
+        for (candidate, own) in causes(study, picks, values) {
+            match candidate.id {
+                "coulomb-friction" => dry += own[0],
+                // What bends before it slides is taken from what slides at once.
+                "hysteresis" => {
+                    let way = candidate.searched.first().map_or(0.0, |s| s.value).max(1e-12);
+                    dry -= own[0];
+                    effects.push(Effect::new(&Hysteresis, &[own[0], own[0] / way]));
+                }
+                id => effects.push(self.law(id, own[0])?),
+            }
+        }
+        effects.push(Effect::new(&CoulombFriction, &[dry.max(0.0)]));
+        Some(effects)
+    }
+
+    fn motion(&self, i: usize) -> Motion {
+        let Row { time_s, input, rate, acceleration, load, .. } = self.rows[i];
+        Motion {
+            time_s,
+            position: input,
+            velocity: rate,
+            acceleration,
+            direction: rate.signum(),
+            normal_force_n: load.unwrap_or(0.0),
+            ..Motion::default()
+        }
+    }
+}
+
+impl Forward for Input {
+    fn of(&self) -> (RolloutOf, &str) {
+        (RolloutOf::Position, self.unit)
+    }
+
+    fn windows(&self) -> Vec<Vec<usize>> {
+        let all: Vec<usize> = (0..self.rows.len()).collect();
+        consecutive(&all, &|i| self.rows[i].time_s, 1.0 / ROW_HZ, &|a, b| self.stretch[a] == self.stretch[b])
+    }
+
+    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
+        if values[self.inertia] <= 0.0 {
+            return Err("the force at the input shows no inertia that it could move".to_owned());
+        }
+        let effects = self.effects(study, picks, values).ok_or_else(|| NO_LAW.to_owned())?;
+        // Zeros of the sensor and the load drive it; they are no laws.
+        let beside: Vec<usize> = (0..study.base.len()).filter(|k| *k != self.inertia).collect();
+        let moment = |i: &usize| {
+            let known: f64 = beside.iter().map(|k| values[*k] * study.base[*k][*i]).sum();
+            Moment { motion: self.motion(*i), drive: study.y[*i] - known, beside: [0.0; 2] }
+        };
+        let moments: Vec<Moment> = window.iter().map(moment).collect();
+        let first = window[0];
+        let began = (0..first).rev().find(|i| self.rows[*i].recording != self.rows[first].recording);
+        let past: Vec<Motion> = (began.map_or(0, |i| i + 1)..=first).map(|i| self.motion(i)).collect();
+        let acts = &mut |_: &Motion, _: [f64; 2]| 0.0;
+        Ok(run(&moments, Side { effects: &effects, memory: remembered(&effects, &past), acts, driven: true }))
+    }
+}

@@ -1,0 +1,85 @@
+//! Channels whose rows are dealt out: every second row trains, or rows from everywhere are held out together, so that no window is left that took
+//! part in nothing. Each window is left out of the fit in turn; its rows took part in the choice.
+
+use super::{Compared, WINDOW_S, told};
+use crate::diagnose::candidate::Candidate;
+use crate::diagnose::geometry::Study;
+use crate::diagnose::report::{Rollout, RolloutOf};
+
+/// More windows tell nothing new; so many are taken from everywhere.
+const MOST_WINDOWS: usize = 60;
+/// A cause acts in a window if it does in this share of its rows.
+const ACTS: f64 = 0.5;
+/// Fewer rows are no window. What is held or pushed is so for moments: windows are as long as nothing interrupts them.
+const LEAST_ROWS: usize = 5;
+/// What follows on a row within so many of the rows' periods goes on.
+const NEXT: f64 = 1.6;
+
+/// A channel that can be run forward.
+pub trait Forward {
+    /// What is compared, and its unit.
+    fn of(&self) -> (RolloutOf, &str);
+    /// Rows of every window, in the order of time.
+    fn windows(&self) -> Vec<Vec<usize>>;
+    /// Longest window, s.
+    fn window_s(&self) -> f64 {
+        WINDOW_S
+    }
+    /// Sum of the squared errors over a window and their number, with these candidates. `values`: of the model's columns and then of the
+    /// candidates' ones. Why not, where their laws cannot be run.
+    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String>;
+}
+
+/// Each of the candidates with its values.
+pub fn causes<'a>(
+    study: &'a Study,
+    picks: &'a [usize],
+    values: &'a [f64],
+) -> impl Iterator<Item = (&'a Candidate, &'a [f64])> {
+    let mut at = study.base.len();
+    picks.iter().map(move |p| {
+        let candidate = &study.candidates[*p];
+        let own = at..at + candidate.columns.len();
+        at = own.end;
+        (candidate, &values[own])
+    })
+}
+
+/// Windows of rows that follow each other: `order` has them by time, `same` says whether two belong together.
+pub fn consecutive(
+    order: &[usize],
+    time_s: &dyn Fn(usize) -> f64,
+    period_s: f64,
+    same: &dyn Fn(usize, usize) -> bool,
+) -> Vec<Vec<usize>> {
+    let goes_on =
+        |a: usize, b: usize| same(a, b) && (0.0..NEXT * period_s).contains(&(time_s(b) - time_s(a))) && a != b;
+    let most = ((WINDOW_S / period_s).round() as usize).max(LEAST_ROWS) + 1;
+    order
+        .chunk_by(|a, b| goes_on(*a, *b))
+        .flat_map(|run| run.chunks(most))
+        .filter(|w| w.len() >= LEAST_ROWS)
+        .map(<[usize]>::to_vec)
+        .collect()
+}
+
+/// The rollout without and with the k-th of the chosen causes, all others in, over the windows in which it acts.
+pub fn in_turn(study: &Study, channel: &dyn Forward, k: usize) -> Result<Rollout, String> {
+    let picks = study.picks();
+    let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
+    let own = &study.candidates[picks[k]].columns;
+    let acts = |row: &&usize| own.iter().any(|column| column[**row] != 0.0);
+    let mut windows = channel.windows();
+    windows.retain(|w| w.iter().filter(acts).count() as f64 >= ACTS * w.len() as f64);
+    let every = windows.len().div_ceil(MOST_WINDOWS).max(1);
+    let (mut before, mut after) = (Vec::new(), Vec::new());
+    for window in windows.iter().step_by(every) {
+        let solved = (study.system.without(window, &rest), study.system.without(window, &picks));
+        // What nothing but this window tells is not known without it.
+        let (Some(without), Some(with)) = solved else { continue };
+        before.push(channel.errors(study, window, &rest, &without)?);
+        after.push(channel.errors(study, window, &picks, &with)?);
+    }
+    let (of, unit) = channel.of();
+    told(&Compared { of, unit, window_s: channel.window_s(), in_turn: true }, &before, &after)
+}

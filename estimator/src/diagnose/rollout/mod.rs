@@ -1,0 +1,79 @@
+//! What a cause is worth when the model runs on its own: forward in time from the measured state, over short windows.
+//!
+//! A model with an inertia is driven by the measured force, and its position is compared. A model without one (a light crank, a sheet) would
+//! follow every error of the force at once: there a hand holds on, which wants to be where the motion was measured, and its force is compared.
+//! The laws are stepped by the integrator of the servo's worlds.
+
+mod channel;
+mod pads;
+mod run;
+mod track;
+
+pub use channel::{Forward, causes, consecutive, in_turn};
+pub use pads::Pads;
+pub use run::{Moment, Side, remembered, run};
+pub use track::rollout;
+
+use super::report::{Rollout, RolloutOf};
+
+/// Length of a window, s; windows are shorter at the end of a block, but never than half of it.
+pub const WINDOW_S: f64 = 0.5;
+/// Fewer windows say nothing.
+const LEAST_WINDOWS: usize = 3;
+/// Errors that differ by less than this share are the same.
+const DIFFER: f64 = 1e-3;
+/// Draws of the bootstrap over windows.
+const DRAWS: usize = 400;
+
+/// Why nothing was run forward.
+pub const NO_LAW: &str = "no law of a world runs it";
+pub const TOO_FEW: &str = "too few uninterrupted pieces were there to run it over";
+pub const NOT_FAITHFUL: &str = "the laws of a world do not give the force that was found";
+pub const AT_AN_INSTANT: &str = "it is one instant: nothing of it runs on";
+pub const PUT_BACK: &str = "the forces are put back to their motion before anything is run";
+/// … because the model takes it for something of its own wherever it can be run.
+const THE_SAME: &str = "where the model can be run forward, it runs the same without it";
+pub const NO_CLOCK: &str = "a path without a clock cannot be run forward in time";
+/// … because there is nothing that could run.
+pub const AT_ONCE: &str = "here one measured quantity follows from the others at once: sample by sample is forward in time";
+
+/// What is compared, and its unit.
+pub struct Compared<'a> {
+    pub of: RolloutOf,
+    pub unit: &'a str,
+    /// Longest window, s.
+    pub window_s: f64,
+    /// Whether the windows took part in the choice of the causes.
+    pub in_turn: bool,
+}
+
+/// Errors without and with a cause, as sums of squares and numbers of moments, window by window.
+pub fn told(what: &Compared<'_>, before: &[(f64, f64)], after: &[(f64, f64)]) -> Result<Rollout, String> {
+    if before.len() < LEAST_WINDOWS {
+        return Err(TOO_FEW.to_owned());
+    }
+    let all: Vec<usize> = (0..before.len()).collect();
+    let mean = |of: &[(f64, f64)], drawn: &[usize]| {
+        let (sum, count) = drawn.iter().fold((0.0, 0.0), |(s, n), w| (s + of[*w].0, n + of[*w].1));
+        sum / f64::max(count, 1.0)
+    };
+    let share = |drawn: &[usize]| 1.0 - mean(after, drawn) / mean(before, drawn).max(1e-300);
+    let (rms_before, rms_after) = (mean(before, &all).sqrt(), mean(after, &all).sqrt());
+    if !(rms_before.is_finite() && rms_after.is_finite()) {
+        return Err("the laws do not stay where anything was measured".to_owned());
+    }
+    if (rms_before - rms_after).abs() < DIFFER * rms_before {
+        return Err(THE_SAME.to_owned());
+    }
+    Ok(Rollout {
+        of: what.of,
+        unit: what.unit.to_owned(),
+        window_s: what.window_s,
+        windows: before.len(),
+        rms_before,
+        rms_after,
+        share: share(&all),
+        interval: super::gain::bootstrap(all.len(), DRAWS, &share),
+        in_turn: what.in_turn,
+    })
+}

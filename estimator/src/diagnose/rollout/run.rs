@@ -1,0 +1,85 @@
+//! One window, stepped.
+
+use haptics::device::HandImpedance;
+use haptics::law::{Effect, Memories, Motion, advance, inertia, step_coordinate_with};
+
+/// Longest steps, s: of a coordinate with its own inertia, and of one that a hand holds.
+const STEP_S: f64 = 1e-3;
+const HELD_STEP_S: f64 = 2.5e-4;
+/// What the fingertips move along with a handle without inertia, kg: small beside every force here, large enough for the step.
+const TIP_KG: f64 = 5e-3;
+
+/// A moment of a window.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Moment {
+    /// The measured motion.
+    pub motion: Motion,
+    /// The measured force without what the faults of the sensors that are thought to be there make of it, N or N m.
+    pub drive: f64,
+    /// What else was measured that the laws look at.
+    pub beside: [f64; 2],
+}
+
+/// What acts against the motion beside laws of the catalogue: at a place, with what else was measured then.
+pub type Acts<'a> = dyn FnMut(&Motion, [f64; 2]) -> f64 + 'a;
+
+/// One side of a comparison.
+pub struct Side<'a> {
+    pub effects: &'a [Effect],
+    /// What the laws remember at the first moment.
+    pub memory: Memories,
+    pub acts: &'a mut Acts<'a>,
+    /// Whether the measured force alone drives it; otherwise a hand holds on.
+    pub driven: bool,
+}
+
+/// What laws remember after a measured motion.
+pub fn remembered(effects: &[Effect], past: &[Motion]) -> Memories {
+    let mut memory = Memories::default();
+    for pair in past.windows(2) {
+        let step_s = (pair[1].time_s - pair[0].time_s).max(1e-9);
+        let velocity = (pair[1].position - pair[0].position) / step_s;
+        advance(effects, &Motion { velocity, ..pair[1] }, &mut memory, step_s);
+    }
+    memory
+}
+
+/// Sum of the squared errors over a window, and their number: of the position, or of the force of the hand.
+pub fn run(moments: &[Moment], side: Side<'_>) -> (f64, f64) {
+    let Side { effects, mut memory, acts, driven } = side;
+    let Some(Moment { motion: first, .. }) = moments.first() else { return (0.0, 0.0) };
+    let (mut position, mut velocity) = (first.position, first.velocity);
+    let hand = HandImpedance::default();
+    let extra = if driven { 0.0 } else { (TIP_KG - inertia(effects)).max(0.0) };
+    let (mut sum, mut count) = (0.0, 0.0);
+    for pair in moments.windows(2) {
+        let (from, to) = (&pair[0].motion, &pair[1].motion);
+        let span_s = (to.time_s - from.time_s).max(1e-9);
+        let parts = (span_s / if driven { STEP_S } else { HELD_STEP_S }).ceil().max(1.0);
+        let mut held_n = 0.0;
+        for part in 0..parts as usize {
+            let x = (part as f64 + 0.5) / parts;
+            let between = |a: f64, b: f64| a + x * (b - a);
+            if !driven {
+                let (wanted, speed) = (between(from.position, to.position), between(from.velocity, to.velocity));
+                held_n = hand.stiffness_n_m * (wanted - position) + hand.damping_n_s_m * (speed - velocity);
+            }
+            let motion = Motion {
+                time_s: between(from.time_s, to.time_s),
+                position,
+                velocity,
+                acceleration: 0.0,
+                direction: velocity.signum(),
+                normal_force_n: between(from.normal_force_n, to.normal_force_n),
+                up_along: between(from.up_along, to.up_along),
+            };
+            let beside = [0, 1].map(|k| between(pair[0].beside[k], pair[1].beside[k]));
+            let drive = between(pair[0].drive, pair[1].drive) + held_n - acts(&motion, beside);
+            (position, velocity) = step_coordinate_with(effects, &motion, &mut memory, drive, extra, span_s / parts);
+        }
+        let error = if driven { position - to.position } else { held_n };
+        sum += error * error;
+        count += 1.0;
+    }
+    (sum, count)
+}
