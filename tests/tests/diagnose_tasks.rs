@@ -4,7 +4,7 @@
 //! `TOUCHSTONE_TASK_CASES=30`. Demands leave room for the luck of few cases; the figures of a large set are in `docs/diagnosis.md`.
 
 use blind::Share;
-use estimator::diagnose::{Options, Verdict, diagnose};
+use estimator::diagnose::{Cause, Gain, Options, Verdict, diagnose};
 use estimator::identify::block;
 use haptics::recording::{Recording, Span};
 use rayon::prelude::*;
@@ -95,7 +95,18 @@ fn of(keep: impl Fn(&Row) -> bool) -> Vec<&'static Row> {
 #[test]
 fn nothing_is_found_where_nothing_is() {
     let nulls = of(|r| r.kind.contains("nothing"));
-    at_least("nulls that are called nothing", Share::count(nulls, Row::verdict_fits), 0.97);
+    at_least("nulls that are called nothing", Share::count(nulls.clone(), Row::verdict_fits), 0.97);
+    // A kind of which a third is called something stays no secret among all others.
+    for own in nulls.chunk_by(|a, b| a.kind == b.kind) {
+        let wrong = own.iter().filter(|r| !r.verdict_fits()).count();
+        assert!(
+            3 * wrong <= own.len(),
+            "{}: {wrong} of {}; TOUCHSTONE_SEED={} repeats it",
+            own[0].kind,
+            own.len(),
+            seed()
+        );
+    }
 }
 
 #[test]
@@ -117,26 +128,73 @@ fn little_is_named_that_is_not_there() {
     at_least("answers without anything else", Share::count(hidden, |r| r.spurious() == 0), 0.85);
 }
 
-#[test]
-fn what_is_found_gains_when_the_model_runs_on_its_own() {
-    let (mut clear, mut gains) = (0, 0);
-    for row in of(|r| r.answer.is_ok()) {
+/// Hidden causes that were found, with the kind of their case.
+fn found() -> Vec<(&'static Row, &'static Cause)> {
+    let of_row = |row: &'static Row| {
         let causes = row.answer.iter().flat_map(|a| &a.causes);
-        for cause in causes.filter(|c| row.truth.hidden.contains(&c.id.as_str())) {
-            let gain = &cause.gain;
-            match (&gain.rollout, &gain.no_rollout) {
-                (Some(r), None) => println!(
-                    "{} {} {}: one step {:.2} [{:.2} {:.2}], forward {:?} {:.2e} -> {:.2e} {} {:.2} [{:.2} {:.2}] over {}",
-                    row.kind, row.seed, cause.id, gain.share_of_explainable, gain.interval[0], gain.interval[1],
-                    r.of, r.rms_before, r.rms_after, r.unit, r.share, r.interval[0], r.interval[1], r.windows
-                ),
-                (_, why) => println!("{} {} {}: one step {:.2}, {why:?} {}", row.kind, row.seed, cause.id, gain.share_of_explainable, gain.heldout_rms_before),
-            }
-            clear += 1;
-            gains += 1;
+        causes.filter(|c| row.truth.hidden.contains(&c.id.as_str())).map(move |c| (row, c))
+    };
+    rows().iter().flat_map(of_row).collect()
+}
+
+#[test]
+fn what_is_found_is_run_forward_or_it_is_said_why_not() {
+    for (row, cause) in found() {
+        let Gain { rollout, no_rollout, .. } = &cause.gain;
+        // The fit of what was there first is about something else.
+        let told = rollout.is_some() != no_rollout.is_some();
+        assert!(told, "{} seed {}: {} {rollout:?} {no_rollout:?}", row.kind, row.seed, cause.id);
+        if let Some(r) = rollout {
+            assert!(r.interval[0] <= r.share && r.share <= r.interval[1] && r.windows >= 3, "{} {r:?}", row.kind);
         }
     }
-    assert_eq!(clear, gains);
+}
+
+/// What must run in each task, and at least how much of the error's power goes in the middle of all cases: the generator has no law of ours, and the
+/// forces that drive the model are noisy.
+const RUN: [(&str, &str, f64); 26] = [
+    ("pads", "pad-compliance", 0.9),
+    ("hardening", "stiffness-hardening", 0.4),
+    ("leak", "mass-change", 0.7),
+    ("drift", "force-drift", 0.3),
+    ("bias", "force-bias", 0.3),
+    ("gain", "force-gain", 0.8),
+    ("cross-talk", "force-cross-axis", 0.8),
+    ("cable", "added-constraint", 0.9),
+    ("scale", "length-scale", 0.9),
+    ("needle: hardening", "stiffness-hardening", 0.2),
+    ("needle: dent", "hysteresis", 0.8),
+    ("needle: shaft", "coulomb-friction", 0.9),
+    ("needle: drag", "viscous-friction", 0.9),
+    ("needle: drift", "force-drift", 0.8),
+    ("throw: scale", "length-scale", 0.8),
+    ("throw: dry", "load-friction", 0.9),
+    ("throw: viscous", "viscous-friction", 0.9),
+    ("switch: viscous", "viscous-friction", 0.3),
+    ("switch: change", "friction-change", 0.4),
+    ("switch: drift", "force-drift", 0.6),
+    ("switch: hardening", "stiffness-hardening", 0.2),
+    ("switch: friction (world)", "coulomb-friction", 0.8),
+    ("switch: spring (world)", "return-spring", 0.6),
+    ("switch: stop (world)", "added-constraint", 0.9),
+    ("barrel: wall", "pad-compliance", 0.9),
+    ("barrel: leak", "mass-change", 0.6),
+];
+
+#[test]
+fn a_model_with_what_was_found_runs_closer_to_what_was_measured() {
+    for (kind, id, demanded) in RUN {
+        let own = found().into_iter().filter(|(row, cause)| row.kind == kind && cause.id == id);
+        let mut shares: Vec<f64> = own.filter_map(|(_, cause)| Some(cause.gain.rollout.as_ref()?.share)).collect();
+        shares.sort_by(f64::total_cmp);
+        println!("{kind}: {shares:.2?}");
+        let middle = shares.get(shares.len() / 2);
+        assert!(
+            middle.is_some_and(|m| *m > demanded),
+            "{kind}, {id}: {shares:?}; TOUCHSTONE_SEED={} repeats it",
+            seed()
+        );
+    }
 }
 
 #[test]

@@ -188,7 +188,7 @@ impl<'a> Part<'a> {
         );
         let evidence = format!("what is left of the {channel} goes with {expression}; no known cause does so here");
         let gain = self.in_its_unit(cause.gain).run(Err(NO_LAW.to_owned()));
-        Some((Cause { evidence, gain, ..cause }, warning))
+        Some((Cause { gain, evidence, ..cause }, warning))
     }
 
     /// What is left in the end where that is far more than the noise and no noise, in a sentence.

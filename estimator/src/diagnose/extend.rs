@@ -56,7 +56,13 @@ fn made(
 
 /// Laws of causes that were found in a model without dry friction of its own, in the order of which shares of it follow on it, or nothing where one
 /// has none. `dry_n`: the friction that the shares are of, N; `values`: of the causes alone.
-pub fn without_friction(track: &Track, laws: Vec<Effect>, dry_n: f64, causes: &[&Candidate], values: &[f64]) -> Option<Vec<Effect>> {
+pub fn without_friction(
+    track: &Track,
+    laws: Vec<Effect>,
+    dry_n: f64,
+    causes: &[&Candidate],
+    values: &[f64],
+) -> Option<Vec<Effect>> {
     let tried = |c: &&Candidate| c.searched.iter().map(|s| s.value).collect();
     let searched: Vec<Vec<f64>> = causes.iter().map(tried).collect();
     let (found, is_whole) = beside_model(track, laws, &Dry { level_n: dry_n, mu: 0.0 }, causes, values, &searched);

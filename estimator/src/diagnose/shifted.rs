@@ -10,6 +10,8 @@ pub struct Late {
     pub error_s: f64,
     /// Whether it is more than chance.
     pub is_seen: bool,
+    /// What the plain model leaves without any delay, RMS.
+    pub plain_rms: f64,
 }
 
 impl Late {
@@ -53,7 +55,8 @@ pub fn look(step_s: f64, demands: &Demands, left: &dyn Fn(isize) -> Option<(f64,
         _ => (0.0, f64::INFINITY),
     };
     let is_seen = power <= demands.leaves * plain && count * (plain / sure).ln() >= demands.likelier;
-    Some(Late { tau_s: (best as f64 + between) * step_s, error_s: error * step_s, is_seen })
+    let (tau_s, error_s) = ((best as f64 + between) * step_s, error * step_s);
+    Some(Late { tau_s, error_s, is_seen, plain_rms: plain.max(0.0).sqrt() })
 }
 
 #[cfg(test)]

@@ -135,6 +135,9 @@ pub fn twice(kind: Kind, seed: u64) -> (Case, Truth, Recording) {
     (case, truth, again.expect("it was asked for"))
 }
 
+/// Friction at which nothing slips.
+const FIRM: f64 = 1.5;
+
 /// The blocks of a case, and who holds them.
 struct Object {
     before: World,
@@ -154,6 +157,10 @@ fn drawn(kind: Kind, seed: u64, chance: &mut Chance) -> Object {
         truth.besides = vec!["pad-compliance"];
     }
     hide(kind, &mut world, &mut instruments, &mut truth, (skill, seed), chance);
+    if truth.hidden.is_empty() {
+        // Where fingers slip by themselves something is there.
+        world.blocks.iter_mut().for_each(|block| block.finger_friction = FIRM);
+    }
     Object { before, world, instruments, truth, skill, every }
 }
 

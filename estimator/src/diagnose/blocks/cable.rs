@@ -6,6 +6,7 @@ use crate::diagnose::geometry::Study;
 use crate::identify::linear::least_squares;
 use haptics::Vec2;
 use haptics::law::{AddedConstraint, Kind};
+use haptics::world::Cable;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -140,16 +141,26 @@ impl Explains {
     }
 }
 
-/// What a cable of 1 N/m asks of the hand, N.
-fn pull(rows: &Rows<'_>, tied: usize, anchor: Vec2, length_m: f64) -> Vec<f64> {
+/// Force along an axis that a cable to a block asks of the hand, N, at a place, m, and a velocity, m/s. It damps while it is taut.
+pub fn pull_n(cable: &Cable, place_m: Vec2, velocity_m_s: Vec2, axis: usize) -> f64 {
+    let away = place_m - cable.anchor_m;
+    let length = away.norm().max(1e-9);
+    let damped = if length > cable.length_m { velocity_m_s.dot(&away) / length } else { 0.0 };
+    let along = AddedConstraint::cable_n(cable.stiffness_n_m, cable.length_m, length) + cable.damping_n_s_m * damped;
+    along * away[axis] / length
+}
+
+/// The same, row by row, of one to this block.
+pub fn pulls(rows: &Rows<'_>, tied: usize, cable: &Cable) -> Vec<f64> {
     rows.carried(|seen, row, number, axis| {
-        if number != tied {
-            return 0.0;
-        }
-        let away = Vec2::new(seen.place[0][row.i], seen.place[1][row.i]) - anchor;
-        let length = away.norm().max(1e-9);
-        AddedConstraint::cable_n(1.0, length_m, length) * away[axis] / length
+        let both = |of: &[Vec<f64>; 2]| Vec2::new(of[0][row.i], of[1][row.i]);
+        if number == tied { pull_n(cable, both(&seen.place), both(&seen.velocity), axis) } else { 0.0 }
     })
+}
+
+/// What a cable of 1 N/m asks of the hand, N.
+fn pull(rows: &Rows<'_>, tied: usize, anchor_m: Vec2, length_m: f64) -> Vec<f64> {
+    pulls(rows, tied, &Cable { anchor_m, length_m, stiffness_n_m: 1.0, damping_n_s_m: 0.0 })
 }
 
 /// Standard errors of stiffness, anchor and length of a found cable: what its searched values leave open counts. `None` where they cannot
@@ -188,16 +199,7 @@ pub fn errors(rows: &Rows<'_>, study: &Study, number_of: &dyn Fn(&[f64]) -> usiz
 }
 
 fn one(rows: &Rows<'_>, tied: usize, anchor: Vec2, length_m: f64) -> Candidate {
-    // Cables damp while they are taut.
-    let damping = rows.carried(|seen, row, number, axis| {
-        if number != tied {
-            return 0.0;
-        }
-        let away = Vec2::new(seen.place[0][row.i], seen.place[1][row.i]) - anchor;
-        let length = away.norm().max(1e-9);
-        let rate = Vec2::new(seen.velocity[0][row.i], seen.velocity[1][row.i]).dot(&away) / length;
-        if length > length_m { rate * away[axis] / length } else { 0.0 }
-    });
+    let damping = pulls(rows, tied, &Cable { anchor_m: anchor, length_m, stiffness_n_m: 0.0, damping_n_s_m: 1.0 });
     let columns = vec![pull(rows, tied, anchor, length_m), damping];
     Candidate::several("added-constraint", Kind::Plant, columns, vec![("k", "N/m"), ("c", "N s/m")])
         .positive()

@@ -1,7 +1,7 @@
 //! Forces while blocks are carried, beside those while nothing is touched: weight, inertia, cables, and what is wrong with the sensors.
 
 use super::acts::{generic, instrument, plant};
-use super::cable::{cables, errors};
+use super::cable::{cables, errors, pulls};
 use super::forward::Airborne;
 use super::late::late;
 use super::rows::{Place, Row, Rows};
@@ -17,7 +17,7 @@ use crate::diagnose::shifted::Late;
 use crate::estimate::EstimateError;
 use crate::identify::block::object;
 use crate::segment::SystemState;
-use haptics::world::World;
+use haptics::world::{Cable, World};
 
 /// The comparison and what its words need.
 pub struct Carry {
@@ -165,7 +165,7 @@ fn needed(one: &Seen<'_>, row: &Row, weight_n: f64, axis: usize) -> f64 {
     weight_n * (up + one.acceleration[axis][row.i] / gravity)
 }
 
-/// One weight a block with what its mass does in motion; cables of a world.
+/// One weight a block with what its mass does in motion; cables of a world; and each block's swinging in the pads.
 fn base(rows: &Rows<'_>, world: Option<&World>, known: &[Option<f64>]) -> Vec<Vec<f64>> {
     let unknown = (1..=rows.blocks()).filter(|k| known[k - 1].is_none());
     let mut base: Vec<Vec<f64>> = unknown
@@ -173,13 +173,15 @@ fn base(rows: &Rows<'_>, world: Option<&World>, known: &[Option<f64>]) -> Vec<Ve
         .collect();
     for (k, block) in world.iter().flat_map(|w| &w.blocks).enumerate() {
         let Some(cable) = &block.cable else { continue };
-        base.push(rows.carried(|one, row, number, axis| {
-            let away = haptics::Vec2::new(one.place[0][row.i], one.place[1][row.i]) - cable.anchor_m;
-            let length = away.norm().max(1e-9);
-            let pull = haptics::law::AddedConstraint::cable_n(cable.stiffness_n_m, cable.length_m, length);
-            if number == k + 1 { pull * away[axis] / length } else { 0.0 }
-        }));
+        // What it damps is asked for beside it.
+        base.push(pulls(rows, k + 1, &Cable { damping_n_s_m: 0.0, ..*cable }));
     }
+    // Pads give along the motion: what they hold lags behind the grip, and swings in it.
+    base.extend(
+        (1..=rows.blocks()).map(|k| {
+            rows.carried(|one, row, number, axis| if number == k { one.force_curve[axis][row.i] } else { 0.0 })
+        }),
+    );
     base
 }
 

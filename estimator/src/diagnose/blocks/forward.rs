@@ -1,12 +1,13 @@
 //! A carried block as a body of its own: the measured net force of the fingers moves its mass, gravity and cables pull at it.
 
+use super::cable::pull_n;
 use super::rows::{Place, Rows};
 use crate::diagnose::geometry::Study;
 use crate::diagnose::report::RolloutOf;
 use crate::diagnose::rollout::{Forward, Moment, NO_LAW, Side, causes, consecutive, run};
 use haptics::Vec2;
-use haptics::law::{AddedConstraint, Effect, Inertia, Memories, Motion, ViscousFriction};
-use haptics::world::World;
+use haptics::law::{Effect, Inertia, Memories, Motion, ViscousFriction};
+use haptics::world::{Cable, World};
 
 /// What a row is for this.
 #[derive(Clone, Copy)]
@@ -22,26 +23,6 @@ struct Row {
     force_n: f64,
 }
 
-/// A line from a block to a fixed place.
-#[derive(Clone, Copy)]
-struct Tie {
-    stiffness_n_m: f64,
-    damping_n_s_m: f64,
-    anchor_m: Vec2,
-    length_m: f64,
-}
-
-impl Tie {
-    /// Force along an axis that it asks of the hand, N.
-    fn pull_n(&self, place_m: Vec2, velocity_m_s: Vec2, axis: usize) -> f64 {
-        let away = place_m - self.anchor_m;
-        let length = away.norm().max(1e-9);
-        let damped = if length > self.length_m { velocity_m_s.dot(&away) / length } else { 0.0 };
-        let along = AddedConstraint::cable_n(self.stiffness_n_m, self.length_m, length) + self.damping_n_s_m * damped;
-        along * away[axis] / length
-    }
-}
-
 /// Carried blocks as bodies of their own.
 pub struct Airborne {
     rows: Vec<Row>,
@@ -50,7 +31,7 @@ pub struct Airborne {
     /// Weights that are known, N, by block.
     known_n: Vec<Option<f64>>,
     /// Cables of the world, one column of the model each after those of the weights, and their blocks.
-    ties: Vec<(usize, Tie)>,
+    ties: Vec<(usize, Cable)>,
 }
 
 impl Airborne {
@@ -74,9 +55,9 @@ impl Airborne {
             }
         };
         let tied = world.iter().flat_map(|w| &w.blocks).enumerate().filter_map(|(k, block)| {
-            let cable = block.cable.as_ref()?;
-            let (stiffness_n_m, length_m, anchor_m) = (cable.stiffness_n_m, cable.length_m, cable.anchor_m);
-            Some((k + 1, Tie { stiffness_n_m, damping_n_s_m: 0.0, anchor_m, length_m }))
+            // What it damps is no part of the model.
+            let cable = Cable { damping_n_s_m: 0.0, ..*block.cable.as_ref()? };
+            Some((k + 1, cable))
         });
         let gravity = |one: &super::seen::Seen<'_>| one.blocks.recording.meta.gravity();
         Self {
@@ -95,10 +76,10 @@ impl Airborne {
     }
 
     /// The world's cable at a block as fitted.
-    fn of_world(&self, number: usize, values: &[f64]) -> Option<Tie> {
+    fn of_world(&self, number: usize, values: &[f64]) -> Option<Cable> {
         let open = self.known_n.iter().filter(|k| k.is_none()).count();
         let (k, (_, tie)) = self.ties.iter().enumerate().find(|(_, (own, _))| *own == number)?;
-        Some(Tie { stiffness_n_m: tie.stiffness_n_m * values.get(open + k).copied().unwrap_or(1.0), ..*tie })
+        Some(Cable { stiffness_n_m: tie.stiffness_n_m * values.get(open + k).copied().unwrap_or(1.0), ..*tie })
     }
 
     /// Which block a column is of.
@@ -122,9 +103,12 @@ impl Forward for Airborne {
         let Row { number, axis, .. } = self.rows[window[0]];
         let weight_n = self.weight_n(number, values);
         let up = if axis == 1 { 1.0 } else { 0.0 };
-        let mut drive: Vec<f64> = window.iter().map(|i| self.rows[*i].force_n - up * weight_n).collect();
+        // Its swinging in the pads is no motion of the grip.
+        let swings = self.known_n.iter().filter(|k| k.is_none()).count() + self.ties.len() + number - 1;
+        let swing_n = |i: usize| values[swings] * study.base[swings][i];
+        let mut drive: Vec<f64> = window.iter().map(|i| self.rows[*i].force_n - up * weight_n - swing_n(*i)).collect();
         let (mut mass_kg, mut drag) = (weight_n / self.gravity_m_s2, 0.0);
-        let mut ties: Vec<Tie> = self.of_world(number, values).into_iter().collect();
+        let mut ties: Vec<Cable> = self.of_world(number, values).into_iter().collect();
         for (candidate, own) in causes(study, picks, values) {
             let at = |name: &str| candidate.searched.iter().find(|s| s.name == name).map_or(0.0, |s| s.value);
             match candidate.id {
@@ -132,7 +116,7 @@ impl Forward for Airborne {
                 "inertia" => mass_kg += own.get(number - 1).filter(|_| own.len() > 1).unwrap_or(&own[0]),
                 "viscous-friction" => drag += own[0],
                 "added-constraint" if self.tied(&candidate.columns[0]) != number => {}
-                "added-constraint" => ties.push(Tie {
+                "added-constraint" => ties.push(Cable {
                     stiffness_n_m: own[0],
                     damping_n_s_m: own.get(1).copied().unwrap_or(0.0).max(0.0),
                     anchor_m: Vec2::new(at("anchor x"), at("anchor y")),
@@ -151,15 +135,15 @@ impl Forward for Airborne {
         let across = 1 - axis;
         let moment = |(i, drive): (&usize, &f64)| {
             let Row { time_s, place_m, velocity_m_s, .. } = self.rows[*i];
-            let motion =
-                Motion { time_s, position: place_m[axis], velocity: velocity_m_s[axis], ..Motion::default() };
+            let motion = Motion { time_s, position: place_m[axis], velocity: velocity_m_s[axis], ..Motion::default() };
             Moment { motion, drive: *drive, beside: [place_m[across], velocity_m_s[across]] }
         };
         let moments: Vec<Moment> = window.iter().zip(&drive).map(moment).collect();
         let acts = &mut |motion: &Motion, [place, velocity]: [f64; 2]| {
-            let both = |along: f64, across: f64| if axis == 0 { Vec2::new(along, across) } else { Vec2::new(across, along) };
+            let both =
+                |along: f64, across: f64| if axis == 0 { Vec2::new(along, across) } else { Vec2::new(across, along) };
             let (place_m, velocity_m_s) = (both(motion.position, place), both(motion.velocity, velocity));
-            ties.iter().map(|tie| tie.pull_n(place_m, velocity_m_s, axis)).sum::<f64>()
+            ties.iter().map(|tie| pull_n(tie, place_m, velocity_m_s, axis)).sum::<f64>()
         };
         Ok(run(&moments, Side { effects: &effects, memory: Memories::default(), acts, driven: true }))
     }

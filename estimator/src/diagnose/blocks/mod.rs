@@ -26,7 +26,7 @@ pub use simulated::{extend, with_acts};
 use super::answer::{Beside, Compared, Found, Part, answer};
 use super::candidate::Candidate;
 use super::quality;
-use super::report::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
+use super::report::{Alternative, CauseParameter, Diagnosis, Figures, Final, NextExperiment, NotExcited};
 use super::suspects::of_channels;
 use super::{Options, threshold};
 use crate::estimate::EstimateError;
@@ -69,7 +69,8 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     let grasp_states = |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &grasp { g.states(c, p) } else { p };
     let ground_states = |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &ground { g.states(c, p) } else { p };
     let ground_shows = |f: &Found<'_>| ground.as_ref().map(|g| g.shows(f)).unwrap_or_default();
-    let mut parts: Vec<Part<'_>> = vec![carry.compared.part(&Carry::shows, &carry_states, &carry_usual).running(&carry.airborne)];
+    let mut parts: Vec<Part<'_>> =
+        vec![carry.compared.part(&Carry::shows, &carry_states, &carry_usual).running(&carry.airborne)];
     parts.extend(
         grasp.as_ref().map(|g| g.compared.part(&grasp_shows, &grasp_states, &grasp::Grasp::usual).running(&g.pads)),
     );
@@ -84,7 +85,10 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     }
     // Of the net force, which a delay is seen in; the strongest cause may be of another channel.
     if let Some((late, force)) = carry.late.zip(parts.first()) {
-        late.tell(&mut found, force.figures());
+        let figures = force.figures();
+        // What else is in the model may take some of a delay: it is judged by what it was looked for with, too.
+        let end = Final { heldout_rms_n: (late.plain_rms * figures.end.heldout_rms_n).sqrt(), ..figures.end };
+        late.tell(&mut found, Figures { end, ..figures });
     }
     found.hypotheses = of_channels(&[(&carry.compared.study, &carry)]);
     Ok(found)

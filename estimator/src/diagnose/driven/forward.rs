@@ -5,8 +5,7 @@ use crate::diagnose::geometry::Study;
 use crate::diagnose::report::RolloutOf;
 use crate::diagnose::rollout::{Forward, Moment, NO_LAW, Side, causes, consecutive, remembered, run};
 use haptics::law::{
-    CoulombFriction, Effect, Hysteresis, Inertia, LoadFriction, Motion, QuadraticDrag, ReturnSpring,
-    ViscousFriction,
+    CoulombFriction, Effect, Hysteresis, Inertia, LoadFriction, Motion, QuadraticDrag, ReturnSpring, ViscousFriction,
 };
 
 /// What is compared of a transmission's force, as a motion.

@@ -95,11 +95,8 @@ impl Forward for Pressed {
         let constant = study.base.iter().enumerate().filter(|(k, _)| !of_motion.contains(&Some(*k)));
         let mut beside: Vec<(&[f64], f64)> = constant.map(|(k, column)| (column.as_slice(), values[k])).collect();
         beside.extend(faults(causes(study, picks, values).filter(|(c, _)| Law::of(c).is_none())));
-        let moment = |i: &usize| Moment {
-            motion: motion(&self.rows[*i]),
-            drive: drive(study, *i, &beside),
-            beside: [0.0; 2],
-        };
+        let moment =
+            |i: &usize| Moment { motion: motion(&self.rows[*i]), drive: drive(study, *i, &beside), beside: [0.0; 2] };
         let moments: Vec<Moment> = window.iter().map(moment).collect();
         let first = self.rows[window[0]];
         // Empty fingers meet no sheet and move nothing but themselves.
@@ -189,9 +186,9 @@ impl Forward for Sliding {
             let Some(laws) = &of_world else { return [0.0; 2] };
             [0, 1].map(|k| laws[k].force_n(motion.position.max(1e-6), motion.velocity, &mut histories[k]))
         };
-        before.iter().for_each(|motion| {
+        for motion in &before {
             held(motion);
-        });
+        }
         let worlds = self.model.law.map(|_| [values[first], values[first + 1], values[first + 2]]);
         let acts = &mut |motion: &Motion, _: [f64; 2]| {
             let Some([stiffer, factor, drag]) = worlds else { return 0.0 };

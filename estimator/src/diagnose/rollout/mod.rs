@@ -35,7 +35,8 @@ pub const PUT_BACK: &str = "the forces are put back to their motion before anyth
 const THE_SAME: &str = "where the model can be run forward, it runs the same without it";
 pub const NO_CLOCK: &str = "a path without a clock cannot be run forward in time";
 /// … because there is nothing that could run.
-pub const AT_ONCE: &str = "here one measured quantity follows from the others at once: sample by sample is forward in time";
+pub const AT_ONCE: &str =
+    "here one measured quantity follows from the others at once: sample by sample is forward in time";
 
 /// What is compared, and its unit.
 pub struct Compared<'a> {

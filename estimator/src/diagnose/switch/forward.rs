@@ -126,13 +126,7 @@ pub struct Captured {
 }
 
 impl Captured {
-    pub fn new(
-        curve: &ToggleCurve,
-        points: Vec<Point>,
-        time_s: Vec<f64>,
-        stretch: &[usize],
-        period_s: f64,
-    ) -> Self {
+    pub fn new(curve: &ToggleCurve, points: Vec<Point>, time_s: Vec<f64>, stretch: &[usize], period_s: f64) -> Self {
         let travel = Travel {
             time_s,
             side: points.iter().map(|p| Some(p.side)).collect(),

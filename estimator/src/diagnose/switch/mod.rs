@@ -21,8 +21,8 @@ use super::report::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotE
 use super::rollout::Pads;
 use super::{Options, quality, threshold};
 use crate::estimate::EstimateError;
-use haptics::recording::Recording;
 use forward::Captured;
+use haptics::recording::Recording;
 use model::Known;
 use push::Push;
 

@@ -21,7 +21,11 @@ const STRANGE_M: f64 = 6e-5;
 const MOST_STIFFER: f64 = 0.9;
 
 /// Compares what may move the tip while it presses the knob against a stop. Nothing where that was hardly done.
-pub fn stop(seen: &Seen, known: Option<&Known<'_>>, threshold: f64) -> Result<Option<(Compared, View, Pads)>, EstimateError> {
+pub fn stop(
+    seen: &Seen,
+    known: Option<&Known<'_>>,
+    threshold: f64,
+) -> Result<Option<(Compared, View, Pads)>, EstimateError> {
     let indices: Vec<usize> = (0..seen.rows.len()).filter(|i| matches!(seen.rows[*i].place, Place::Stop(_))).collect();
     if indices.len() < LEAST_ROWS {
         return Ok(None);

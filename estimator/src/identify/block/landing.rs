@@ -14,6 +14,8 @@ const CLEARLY: f64 = 3.0;
 /// From there the load is followed until half of the weight is gone over, or for this time, s; the line through it says when it began …
 const HALF: f64 = 0.5;
 const RISE_S: f64 = 0.2;
+/// … or a line through its first part, up to these shares of the weight …
+const FIRST: [f64; 2] = [0.25, 0.12];
 /// … by this much before at most, s.
 const BEFORE_S: f64 = 0.06;
 
@@ -68,18 +70,61 @@ pub(crate) fn stands_from(
     }
     let rises = |i: &usize| missing(*i) < HALF * usual(*i) && time_s[*i] - time_s[clear] < RISE_S;
     let rise = (clear..time_s.len()).take_while(rises);
-    let begins_s = begin(&rise.map(|i| (time_s[i], missing(i))).collect::<Vec<_>>());
+    let rise: Vec<(f64, f64)> = rise.map(|i| (time_s[i], missing(i))).collect();
+    let begins_s = begin(&rise, usual(clear), plain_n.min(moving_n) / CLEARLY);
     let begins_s = begins_s.map_or(time_s[clear], |s| s.clamp(time_s[clear] - BEFORE_S, time_s[clear]));
     time_s[..clear].partition_point(|t| *t < begins_s).max(least)
 }
 
-/// Where a straight line through the points, time and load, is zero: where the load began before it rose out of the noise. `None` where it does not
-/// rise.
-fn begin(points: &[(f64, f64)]) -> Option<f64> {
+/// Where the load (N, after times, s) began before it rose out of the noise: where a straight line through its rise is zero. What is set down hard
+/// rises at once and then slowly, and a line through all of that would begin too early: the line through its first part counts where it begins later
+/// for certain. `None` where it does not rise.
+fn begin(rise: &[(f64, f64)], weight_n: f64, noise_n: f64) -> Option<f64> {
+    let (mut begins_s, _) = zero(rise, noise_n).filter(|_| rise.len() > 2)?;
+    for share in FIRST {
+        let end = rise.iter().position(|(_, load)| *load > share * weight_n).map_or(rise.len(), |last| last + 1);
+        if let Some((own_s, error_s)) = zero(&rise[..end], noise_n)
+            && own_s - CLEARLY * error_s > begins_s
+        {
+            begins_s = own_s;
+        }
+    }
+    Some(begins_s)
+}
+
+/// Where a straight line through points is zero, and the error of that by their noise, which neighbours share. `None` where it does not rise.
+fn zero(points: &[(f64, f64)], noise_n: f64) -> Option<(f64, f64)> {
     let n = points.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
     let (time, load) = (mean(|p| p.0), mean(|p| p.1));
     let rising: f64 = points.iter().map(|(t, l)| (t - time) * (l - load)).sum();
     let spread: f64 = points.iter().map(|(t, _)| (t - time).powi(2)).sum();
-    (points.len() > 2 && rising > 0.0).then(|| time - load * spread / rising)
+    (points.len() > 1 && rising > 0.0).then(|| {
+        let slope = rising / spread;
+        let before = load / slope;
+        (time - before, noise_n / slope * (1.0 + before * before * n / spread).sqrt())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Load over time every 4 ms, from 20 ms before it begins; what it is after so many seconds.
+    fn load(after: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        let all = (0..60).map(|k| 0.004 * f64::from(k) - 0.02).map(|t| (t, after(t.max(0.0))));
+        // From where it is clear of the noise on.
+        all.filter(|(_, load)| *load > 0.1).collect()
+    }
+
+    #[test]
+    fn what_is_set_down_hard_is_not_taken_for_lowered_slowly() {
+        let hard = load(|t| if t < 0.012 { t / 0.012 * 0.45 } else { 0.45 + (t - 0.012) * 4.0 });
+        let (plain_s, _) = zero(&hard, 0.01).expect("it rises");
+        let begins_s = begin(&hard, 2.5, 0.01).expect("it rises");
+        assert!(plain_s < -0.03 && begins_s.abs() < 0.008, "{plain_s} {begins_s}");
+        let slowly = load(|t| 6.0 * t);
+        let begins_s = begin(&slowly, 2.5, 0.01).expect("it rises");
+        assert!(begins_s.abs() < 1e-6, "{begins_s}");
+    }
 }
