@@ -73,7 +73,7 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     candidates.extend(generic(&rows));
     let channel =
         Channel { y, base, candidates, stretch: rows.stretch.clone(), testable: testable.clone(), weight, period_s };
-    let study = without_remainders(channel, threshold)?;
+    let study = beside_swinging(channel, &rows, threshold)?;
     let floor = floor(&rows, &study);
     let of = |row: &Row| if let Place::Carried { number, .. } = row.place { number } else { 0 };
     let numbers: Vec<usize> = rows.all.iter().map(of).collect();
@@ -165,7 +165,7 @@ fn needed(one: &Seen<'_>, row: &Row, weight_n: f64, axis: usize) -> f64 {
     weight_n * (up + one.acceleration[axis][row.i] / gravity)
 }
 
-/// One weight a block with what its mass does in motion; cables of a world; and each block's swinging in the pads.
+/// One weight a block with what its mass does in motion; cables of a world.
 fn base(rows: &Rows<'_>, world: Option<&World>, known: &[Option<f64>]) -> Vec<Vec<f64>> {
     let unknown = (1..=rows.blocks()).filter(|k| known[k - 1].is_none());
     let mut base: Vec<Vec<f64>> = unknown
@@ -176,13 +176,22 @@ fn base(rows: &Rows<'_>, world: Option<&World>, known: &[Option<f64>]) -> Vec<Ve
         // What it damps is asked for beside it.
         base.push(pulls(rows, k + 1, &Cable { damping_n_s_m: 0.0, ..*cable }));
     }
-    // Pads give along the motion: what they hold lags behind the grip, and swings in it.
-    base.extend(
-        (1..=rows.blocks()).map(|k| {
-            rows.carried(|one, row, number, axis| if number == k { one.force_curve[axis][row.i] } else { 0.0 })
-        }),
-    );
     base
+}
+
+/// The comparison. Pads give along the motion: what they hold lags behind the grip and swings in it, which looks like mass. Mass is named if it is
+/// there beside each block's swinging, too; that is no part of the model from the beginning, because its column has noise of the forces in it.
+fn beside_swinging(channel: Channel, rows: &Rows<'_>, threshold: f64) -> Result<Study, EstimateError> {
+    let plain = without_remainders(channel.clone(), threshold)?;
+    let has_mass = |study: &Study| study.picks().iter().any(|p| study.candidates[*p].id == "inertia");
+    if !has_mass(&plain) {
+        return Ok(plain);
+    }
+    let swing =
+        |k: usize| rows.carried(|one, row, number, axis| if number == k { one.force_curve[axis][row.i] } else { 0.0 });
+    let base = channel.base.iter().cloned().chain((1..=rows.blocks()).map(swing)).collect();
+    let swinging = without_remainders(Channel { base, ..channel }, threshold)?;
+    Ok(if has_mass(&swinging) { plain } else { swinging })
 }
 
 /// Length of the longest carry, s.

@@ -103,9 +103,9 @@ impl Forward for Airborne {
         let Row { number, axis, .. } = self.rows[window[0]];
         let weight_n = self.weight_n(number, values);
         let up = if axis == 1 { 1.0 } else { 0.0 };
-        // Its swinging in the pads is no motion of the grip.
+        // Its swinging in the pads, where that is in the model, is no motion of the grip.
         let swings = self.known_n.iter().filter(|k| k.is_none()).count() + self.ties.len() + number - 1;
-        let swing_n = |i: usize| values[swings] * study.base[swings][i];
+        let swing_n = |i: usize| study.base.get(swings).map_or(0.0, |column| values[swings] * column[i]);
         let mut drive: Vec<f64> = window.iter().map(|i| self.rows[*i].force_n - up * weight_n - swing_n(*i)).collect();
         let (mut mass_kg, mut drag) = (weight_n / self.gravity_m_s2, 0.0);
         let mut ties: Vec<Cable> = self.of_world(number, values).into_iter().collect();
