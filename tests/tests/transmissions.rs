@@ -197,6 +197,10 @@ fn the_same_is_found_whichever_way_the_sensors_count() {
             assert!((0.7..1.5).contains(&(half / hidden.gap)), "{seed} {names:?}: {half}");
             let dry = value(&found, "coulomb-friction", "Fc");
             assert!((0.8..1.2).contains(&(dry / hidden.dry)), "{seed} {names:?}: {dry}");
+            let forward = |id: &str| named(&found, id).and_then(|c| Some(c.gain.rollout.as_ref()?.share));
+            assert!(forward("coulomb-friction").is_some_and(|share| share > 0.8), "{seed} {names:?}: {found:?}");
+            let still = named(&found, "backlash").and_then(|c| c.gain.no_rollout.as_deref());
+            assert!(still.is_some_and(|why| why.contains("at once")), "{seed} {names:?}: {still:?}");
             let stiffness = value(&found, "pad-compliance", "k");
             assert!((0.5..2.0).contains(&(stiffness / hidden.stiffness)), "{seed} {names:?}: {stiffness}");
             let sign = named(&found, "axis-sign").map(|c| c.parameters[0].name.as_str());

@@ -80,7 +80,7 @@ pub fn force(seen: &Seen, names: &'static Columns) -> Result<Option<Force>, Esti
     let study = closer(&mut [Tried::new("hysteresis", high - low)], &once)?;
     let told = if is_loaded { Told::of(&study, load, &direction, &rows) } else { None };
     let floor = white_noise(&seen.rows.iter().map(|r| r.force.unwrap_or(0.0)).collect::<Vec<_>>());
-    let input = Input::new(&rows, &stretch, names.unit, inertia, seen);
+    let input = Input::new((&rows, &stretch), names.force_unit, inertia, seen);
     let side = Side::new(study, rows, stretch, ("force at the input", names.force_unit), floor);
     Ok(Some(Force { side, told, input }))
 }

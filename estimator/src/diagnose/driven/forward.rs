@@ -1,4 +1,5 @@
-//! The input of a transmission as a body of its own: the measured force drives it against its friction and the measured load.
+//! The input of a transmission on its own: a hand holds it on its measured way, and its friction and the measured load act against it. (Its inertia
+//! is a small part of the force: a measured force that drove it would be followed in all its errors.)
 
 use super::rows::{ROW_HZ, Row, Seen};
 use crate::diagnose::geometry::Study;
@@ -20,7 +21,8 @@ pub struct Input {
 }
 
 impl Input {
-    pub fn new(rows: &[Row], stretch: &[usize], unit: &'static str, inertia: usize, seen: &Seen) -> Self {
+    /// `unit`: of the force; `inertia`: which column of the model is the acceleration.
+    pub fn new((rows, stretch): (&[Row], &[usize]), unit: &'static str, inertia: usize, seen: &Seen) -> Self {
         let (low, high) = seen.ends();
         Self { rows: rows.to_vec(), stretch: stretch.to_vec(), unit, inertia, middle: 0.5 * (low + high) }
     }
@@ -71,7 +73,7 @@ impl Input {
 
 impl Forward for Input {
     fn of(&self) -> (RolloutOf, &str) {
-        (RolloutOf::Position, self.unit)
+        (RolloutOf::Force, self.unit)
     }
 
     fn windows(&self) -> Vec<Vec<usize>> {
@@ -80,9 +82,6 @@ impl Forward for Input {
     }
 
     fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
-        if values[self.inertia] <= 0.0 {
-            return Err("the force at the input shows no inertia that it could move".to_owned());
-        }
         let effects = self.effects(study, picks, values).ok_or_else(|| NO_LAW.to_owned())?;
         // Zeros of the sensor and the load drive it; they are no laws.
         let beside: Vec<usize> = (0..study.base.len()).filter(|k| *k != self.inertia).collect();
@@ -95,6 +94,6 @@ impl Forward for Input {
         let began = (0..first).rev().find(|i| self.rows[*i].recording != self.rows[first].recording);
         let past: Vec<Motion> = (began.map_or(0, |i| i + 1)..=first).map(|i| self.motion(i)).collect();
         let acts = &mut |_: &Motion, _: [f64; 2]| 0.0;
-        Ok(run(&moments, Side { effects: &effects, memory: remembered(&effects, &past), acts, driven: true }))
+        Ok(run(&moments, Side { effects: &effects, memory: remembered(&effects, &past), acts, driven: false }))
     }
 }
