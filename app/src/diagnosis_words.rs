@@ -97,8 +97,11 @@ pub fn symbol(name: &str) -> String {
     spelt.split_inclusive(|c: char| !c.is_alphabetic()).map(letter).collect()
 }
 
-/// What a parameter says that is no quantity: which axes point the other way, or are swapped.
+/// What a parameter says that is no quantity: which axes point the other way, or are swapped; which block it is about.
 pub fn said_in_words(parameter: &CauseParameter) -> Option<String> {
+    if parameter.name == "block" {
+        return Some(format!("at block {:.0}", parameter.value));
+    }
     let which = parameter.name.strip_prefix("which: ")?;
     Some(match which.split_once(" with ") {
         Some((one, other)) => format!("{one} and {other} are swapped"),

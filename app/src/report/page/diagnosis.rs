@@ -10,6 +10,7 @@ use crate::report::collect::Content;
 use crate::ui::format;
 use crate::ui::session::sentence;
 use estimator::diagnose::{Cause, CauseParameter, Diagnosis, RolloutOf};
+use estimator::words::amount;
 use haptics::law::{self, Kind};
 use maud::{Markup, html};
 
@@ -225,8 +226,8 @@ fn gain(cause: &Cause, diagnosis: &Diagnosis) -> Markup {
         @if let Some(forward) = &gain.rollout {
             @let what = match forward.of { RolloutOf::Position => "position", RolloutOf::Force => "force" };
             p class="muted small" {
-                "Run forward " (format::number(forward.window_s, 1)) " s, the " (what) " is off by " (rms(forward.rms_before)) " → "
-                (rms(forward.rms_after)) " " (shown_unit(&forward.unit)) "."
+                "Run forward " (format::number(forward.window_s, 1)) " s, the " (what) " is off by " (amount(forward.rms_before, &forward.unit))
+                " → " (amount(forward.rms_after, &forward.unit)) "."
             }
         } @else if let Some(why) = &gain.no_rollout {
             p class="muted small" { "Not run forward: " (why) "." }

@@ -5,8 +5,9 @@ use crate::ui::format;
 use crate::ui::session::sentence;
 use crate::ui::theme::{self, palette, space};
 use crate::ui::widgets::{bar, card, compact};
-use egui::{Align, Color32, Frame, Layout, Margin, Response, RichText, Stroke, Ui};
+use egui::{Align, Color32, FontId, Layout, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, vec2};
 use estimator::diagnose::{Alternative, Cause, CauseParameter, Diagnosis, Rollout, RolloutOf};
+use estimator::words::amount;
 use haptics::law::{self, Kind};
 
 /// What this panel says; sentences with numbers in them stand where the numbers are.
@@ -47,11 +48,15 @@ pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Diagnos
             ui.spacing_mut().item_spacing.x = space::XS;
             chip(ui, &cause.id, p.secondary).on_hover_ui(|ui| page(ui, &cause.id));
             match cause.kind {
-                Kind::Plant => chip(ui, words::IN_THE_WORLD, p.good).on_hover_text(words::IN_THE_WORLD_MORE),
-                Kind::Instrument => {
-                    chip(ui, words::IN_THE_MEASUREMENT, p.caution).on_hover_text(words::IN_THE_MEASUREMENT_MORE)
+                _ if changes_the_world(cause) => {
+                    chip(ui, words::IN_THE_WORLD, p.good).on_hover_text(words::IN_THE_WORLD_MORE);
                 }
-            };
+                // What has no name has no law, either.
+                Kind::Plant => {}
+                Kind::Instrument => {
+                    chip(ui, words::IN_THE_MEASUREMENT, p.caution).on_hover_text(words::IN_THE_MEASUREMENT_MORE);
+                }
+            }
         });
         for parameter in &cause.parameters {
             line(ui, parameter);
@@ -71,21 +76,20 @@ pub(super) fn cause(ui: &mut Ui, rank: usize, cause: &Cause, diagnosis: &Diagnos
 
 /// What the cause is worth when the model runs on its own.
 fn forward(ui: &mut Ui, rollout: &Rollout) {
-    let rms = |value: f64| format::significant(value, 2);
+    let rms = |value: f64| amount(value, &rollout.unit);
     let (what, how) = match rollout.of {
         RolloutOf::Position => ("position", words::THE_MEASURED_FORCE),
         RolloutOf::Force => ("force", words::A_HAND_HOLDS),
     };
     let text = format!(
-        "Run forward {} s, {what} is off by {} → {} {}",
+        "Run forward {} s, {what} is off by {} → {}",
         format::number(rollout.window_s, 1),
         rms(rollout.rms_before),
-        rms(rollout.rms_after),
-        shown_unit(&rollout.unit)
+        rms(rollout.rms_after)
     );
     let [low, high] = rollout.interval.map(|share| format::number(100.0 * share, 0));
     let held_out = if rollout.in_turn { words::OUT_OF_THE_FIT } else { words::OUT_OF_ALL };
-    ui.label(theme::caption(ui, text)).on_hover_text(format!(
+    ui.add(egui::Label::new(theme::caption(ui, text)).wrap()).on_hover_text(format!(
         "Root mean square over {} windows {held_out}, each from its measured start; {how}. {low} to {high}\u{a0}% of the error's power go \
          with this cause.",
         rollout.windows
@@ -148,16 +152,20 @@ fn alternative(ui: &mut Ui, other: &Alternative) {
     ui.add(egui::Label::new(theme::caption(ui, sentence(&other.why))).wrap());
 }
 
+/// Corners of a chip, points.
+const CORNER: f32 = 9.0;
+
 /// A small label with a rim.
 pub(super) fn chip(ui: &mut Ui, text: &str, color: Color32) -> Response {
-    let p = palette(ui);
-    Frame::new()
-        .fill(p.sunken)
-        .stroke(Stroke::new(1.0, p.border))
-        .corner_radius(9)
-        .inner_margin(Margin::symmetric(7, 1))
-        .show(ui, |ui| ui.label(RichText::new(text).size(11.0).color(color)))
-        .response
+    const AROUND: Vec2 = vec2(7.0, 4.0);
+    let (fill, rim) = (palette(ui).sunken, palette(ui).border);
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(11.0), color);
+    // As one piece: in a row that wraps it goes to the next line whole.
+    let (rect, response) = ui.allocate_exact_size(galley.size() + 2.0 * AROUND, Sense::hover());
+    ui.painter().rect(rect, CORNER, fill, Stroke::new(1.0, rim), StrokeKind::Inside);
+    ui.painter().galley(rect.min + AROUND, galley, color);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
+    response
 }
 
 /// What the catalogue says.

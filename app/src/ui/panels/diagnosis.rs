@@ -114,10 +114,13 @@ fn by_state(ui: &mut Ui, diagnosis: &Diagnosis) {
         for (k, channel) in channels.into_iter().enumerate() {
             let own: Vec<&Residual> = all.iter().filter(|left| left.channel == channel).collect();
             let (unit, factor) = residual_unit(&own);
-            let heads = if k > 0 { ["", "", ""] } else { [words::MODEL, words::FOUND, words::NOISE] };
-            let heads = heads.map(|head| theme::caption(ui, if head == words::FOUND && !found { "" } else { head }));
+            if k == 0 {
+                let heads = [words::MODEL, if found { words::FOUND } else { "" }, words::NOISE];
+                figures(ui, RichText::new(""), heads.map(|head| theme::caption(ui, head)));
+            }
+            // A channel's name may be longer than what is left beside the numbers.
             let name = theme::caption(ui, format!("{}, {unit}", format::capitalised(channel)));
-            figures(ui, name, heads);
+            ui.add(egui::Label::new(name).wrap());
             for left in own {
                 let shown = |rms: f64| RichText::new(format::significant(rms * factor, 3)).size(12.0);
                 let after = if found { shown(left.rms_after) } else { RichText::new("") };
