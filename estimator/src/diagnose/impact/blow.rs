@@ -33,6 +33,8 @@ const SLOW_M_S: f64 = 0.4;
 const LEAST_BLOWS: usize = 8;
 /// A blow that is so many times as far from what blows usually leave as they scatter was two: a second corner hit before the next sample.
 const TWO: f64 = 4.0;
+/// Where the usual blow is off one restitution by this share of its speed, most of them were several blows: they tell none.
+const MIXED: f64 = 0.25;
 /// Scatter of a normal over its median size.
 const OVER_MEDIAN: f64 = 1.4826;
 /// Where between two samples the ground lets go is not seen: the share of a step that it may push on for (an even spread's standard deviation).
@@ -52,9 +54,12 @@ pub fn blow(
     if pairs.len() < LEAST_BLOWS {
         return Ok(None);
     }
-    let pairs = without_second_blows(pairs);
+    let (pairs, scatter_m_s) = without_second_blows(pairs);
     let n = pairs.len();
     let speed = (pairs.iter().map(|(before, _)| before * before).sum::<f64>() / n as f64).sqrt();
+    if scatter_m_s > MIXED * speed {
+        return Ok(None);
+    }
     let step_s = seen.tracks.iter().map(Track::step_s).sum::<f64>() / seen.tracks.len() as f64;
     let pushed = UNSEEN * seen.fall.down_m_s2 * step_s / speed;
     let y: Vec<f64> = pairs.iter().map(|(before, after)| after + restitution * before).collect();
@@ -89,16 +94,16 @@ pub fn blow(
     Ok(Some((Compared { study, channel, unit: "m/s", floor, along, stretch, state }, view, pushed)))
 }
 
-/// Pairs of speeds before and after, but those that are far off the rest.
-fn without_second_blows(pairs: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+/// Pairs of speeds before and after, but those that are far off the rest; and how far the usual one is from one restitution, m/s.
+fn without_second_blows(pairs: Vec<(f64, f64)>) -> (Vec<(f64, f64)>, f64) {
     let median = |values: &mut Vec<f64>| {
         values.sort_by(f64::total_cmp);
         values[values.len() / 2]
     };
     let kept = median(&mut pairs.iter().map(|(before, after)| after / before).collect());
     let off = |(before, after): &(f64, f64)| (after - kept * before).abs();
-    let most = TWO * OVER_MEDIAN * median(&mut pairs.iter().map(off).collect());
-    pairs.into_iter().filter(|pair| off(pair) <= most).collect()
+    let scatter_m_s = OVER_MEDIAN * median(&mut pairs.iter().map(off).collect());
+    (pairs.into_iter().filter(|pair| off(pair) <= TWO * scatter_m_s).collect(), scatter_m_s)
 }
 
 /// What a cause in the impacts is best seen against.

@@ -27,8 +27,11 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     let floor = options.world.as_ref().and_then(|w| w.floor.as_ref());
     let sliding = sliding::sliding(seen, floor.map_or(0.0, |f| f.loss.map_or(f.friction, |l| l.mu)))?;
     let half_width_m = meta.known.get("half_width_m").copied();
+    let scaled = fall::scale(seen, meta.gravity());
+    let recorded = if scaled.is_some() { seen.fall.down_m_s2 / meta.gravity() } else { 1.0 };
     let blow = match half_width_m {
-        Some(half) => blow::blow(seen, half, floor.and_then(|f| f.loss).map_or(1.0, |l| l.e))?,
+        // As long as its places are recorded.
+        Some(half) => blow::blow(seen, half * recorded, floor.and_then(|f| f.loss).map_or(1.0, |l| l.e))?,
         None => None,
     };
     let mut beside = Beside {
@@ -39,7 +42,7 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     if floor.is_some() {
         "free-fall+floor of the world".clone_into(&mut beside.model);
     }
-    if let Some((cause, alternative)) = fall::scale(seen, meta.gravity()) {
+    if let Some((cause, alternative)) = scaled {
         beside.causes.push(cause);
         beside.alternatives.push(alternative);
     }

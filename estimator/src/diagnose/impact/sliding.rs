@@ -20,6 +20,8 @@ use nalgebra::{DVector, Vector3};
 const LEAST_SLIDES: usize = 4;
 /// Score that makes a cause.
 pub const THRESHOLD: f64 = 25.0;
+/// No dry friction is less than this: what a slowing by the speed leaves over is.
+const LEAST_MU: f64 = 2e-3;
 /// Speeds at which static friction falls off that are tried, as shares of the usual one.
 const STRIBECK: [f64; 4] = [0.1, 0.25, 0.5, 0.9];
 
@@ -60,7 +62,7 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, Estim
         Candidate::one(id, Kind::Plant, name, unit, all(of)).positive().at_least(least(of))
     };
     let mut candidates = vec![
-        Candidate::one("load-friction", Kind::Plant, "mu", "1", dry),
+        Candidate::one("load-friction", Kind::Plant, "mu", "1", dry).at_least(LEAST_MU),
         follows("viscous-friction", "c/m", "1/s", &|v| v),
         follows("quadratic-drag", "k/m", "1/m", &|v| v * v),
     ];
