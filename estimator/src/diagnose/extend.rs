@@ -54,8 +54,8 @@ fn made(
     beside_model(track, found, &dry, causes, &values[values.len() - of_causes..], searched)
 }
 
-/// Laws of causes that were found in a model without dry friction of its own, in the order of which shares of it follow on it, or nothing where one
-/// has none. `dry_n`: the friction that the shares are of, N; `values`: of the causes alone.
+/// Laws of causes that were found in a model without dry friction of its own (that friction before what is a share of it), or nothing where one has
+/// none. `dry_n`: the friction that the shares are of, N; `values`: of the causes alone.
 pub fn without_friction(
     track: &Track,
     laws: Vec<Effect>,

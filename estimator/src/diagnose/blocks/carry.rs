@@ -187,8 +187,10 @@ fn beside_swinging(channel: Channel, rows: &Rows<'_>, threshold: f64) -> Result<
     if !has_mass(&plain) {
         return Ok(plain);
     }
-    let swing =
-        |k: usize| rows.carried(|one, row, number, axis| if number == k { one.force_curve[axis][row.i] } else { 0.0 });
+    let curves: Vec<[Vec<f64>; 2]> = rows.seen.iter().map(Seen::force_curve).collect();
+    let swing = |k: usize| {
+        rows.carried(|_, row, number, axis| if number == k { curves[row.recording][axis][row.i] } else { 0.0 })
+    };
     let base = channel.base.iter().cloned().chain((1..=rows.blocks()).map(swing)).collect();
     let swinging = without_remainders(Channel { base, ..channel }, threshold)?;
     Ok(if has_mass(&swinging) { plain } else { swinging })

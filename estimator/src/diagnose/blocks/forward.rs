@@ -69,6 +69,11 @@ impl Airborne {
         }
     }
 
+    /// How many weights are open: they are the first columns of the model.
+    fn open(&self) -> usize {
+        self.known_n.iter().filter(|k| k.is_none()).count()
+    }
+
     /// Weight of a block as known or as fitted, N.
     fn weight_n(&self, number: usize, values: &[f64]) -> f64 {
         let open_before = self.known_n[..number - 1].iter().filter(|k| k.is_none()).count();
@@ -77,9 +82,8 @@ impl Airborne {
 
     /// The world's cable at a block as fitted.
     fn of_world(&self, number: usize, values: &[f64]) -> Option<Cable> {
-        let open = self.known_n.iter().filter(|k| k.is_none()).count();
         let (k, (_, tie)) = self.ties.iter().enumerate().find(|(_, (own, _))| *own == number)?;
-        Some(Cable { stiffness_n_m: tie.stiffness_n_m * values.get(open + k).copied().unwrap_or(1.0), ..*tie })
+        Some(Cable { stiffness_n_m: tie.stiffness_n_m * values.get(self.open() + k).copied().unwrap_or(1.0), ..*tie })
     }
 
     /// Which block a column is of.
@@ -104,7 +108,7 @@ impl Forward for Airborne {
         let weight_n = self.weight_n(number, values);
         let up = if axis == 1 { 1.0 } else { 0.0 };
         // Its swinging in the pads, where that is in the model, is no motion of the grip.
-        let swings = self.known_n.iter().filter(|k| k.is_none()).count() + self.ties.len() + number - 1;
+        let swings = self.open() + self.ties.len() + number - 1;
         let swing_n = |i: usize| study.base.get(swings).map_or(0.0, |column| values[swings] * column[i]);
         let mut drive: Vec<f64> = window.iter().map(|i| self.rows[*i].force_n - up * weight_n - swing_n(*i)).collect();
         let (mut mass_kg, mut drag) = (weight_n / self.gravity_m_s2, 0.0);

@@ -34,8 +34,6 @@ pub struct Seen<'a> {
     pub count: usize,
     /// Recorded force of a finger (first) along an axis (second: x, y), N.
     pub force: [[Vec<f64>; 2]; 2],
-    /// Second derivative of the net force along x and y, N/s².
-    pub force_curve: [Vec<f64>; 2],
     /// Velocity of the grip along x and y, m/s, and its rate, m/s².
     pub velocity: [Vec<f64>; 2],
     pub acceleration: [Vec<f64>; 2],
@@ -64,10 +62,6 @@ impl<'a> Seen<'a> {
             let raw = blocks.signals.tips[finger].force.clone().unwrap_or_default();
             [0, 1].map(|axis| smooth(time, &raw.iter().map(|f| f[axis]).collect::<Vec<f64>>()).value)
         });
-        let force_curve = [0, 1].map(|axis: usize| {
-            let net: Vec<f64> = force[0][axis].iter().zip(&force[1][axis]).map(|(a, b)| a + b).collect();
-            smooth(time, &smooth(time, &net).slope).slope
-        });
         let moving =
             [0, 1].map(|axis| smooth(time, &blocks.signals.velocity.iter().map(|v| v[axis]).collect::<Vec<f64>>()));
         let place = [0, 1]
@@ -83,7 +77,6 @@ impl<'a> Seen<'a> {
             acceleration: [x.slope, y.slope],
             count,
             force,
-            force_curve,
             place,
             period_s,
             sample_s: step_s,
@@ -102,6 +95,15 @@ impl<'a> Seen<'a> {
         }
         let squares: f64 = free.iter().map(|i| self.blocks.lift[*i].powi(2)).sum();
         (squares / free.len() as f64).sqrt()
+    }
+
+    /// Second derivative of the net force along x and y, N/s².
+    pub fn force_curve(&self) -> [Vec<f64>; 2] {
+        let time = &self.blocks.signals.time_s;
+        [0, 1].map(|axis: usize| {
+            let net: Vec<f64> = self.force[0][axis].iter().zip(&self.force[1][axis]).map(|(a, b)| a + b).collect();
+            smooth(time, &smooth(time, &net).slope).slope
+        })
     }
 
     pub fn time_s(&self, i: usize) -> f64 {

@@ -7,7 +7,7 @@ use crate::diagnose::candidate::Candidate;
 use crate::diagnose::compare::Channel;
 use crate::diagnose::geometry::Study;
 use crate::diagnose::report::{CauseParameter, RolloutOf};
-use crate::diagnose::rollout::Forward;
+use crate::diagnose::rollout::{Forward, columns};
 use crate::estimate::EstimateError;
 use crate::identify::tossed::Tossed;
 use crate::identify::tossed::slide::Slide;
@@ -120,9 +120,8 @@ impl Forward for Slides<'_> {
     }
 
     fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
-        let columns = study.base.iter().chain(picks.iter().flat_map(|p| &study.candidates[*p].columns).map(|c| &**c));
-        let columns: Vec<(&Vec<f64>, &f64)> = columns.zip(values).collect();
-        let left = |i: &usize| study.y[*i] - columns.iter().map(|(column, value)| *value * column[*i]).sum::<f64>();
+        let columns: Vec<(&[f64], f64)> = columns(study, picks, values).collect();
+        let left = |i: &usize| study.y[*i] - columns.iter().map(|(column, value)| value * column[*i]).sum::<f64>();
         Ok((window.iter().map(|i| left(i).powi(2)).sum(), window.len() as f64))
     }
 }

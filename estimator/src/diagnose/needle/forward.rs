@@ -154,8 +154,10 @@ impl Forward for Sliding {
     fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
         let no_law = || NO_LAW.to_owned();
         let mass = self.model.holds;
-        let plant: Vec<(&Candidate, &[f64])> =
+        let mut plant: Vec<(&Candidate, &[f64])> =
             causes(study, picks, values).filter(|(c, _)| c.kind == Kind::Plant).collect();
+        // What bends before it slides is taken from friction that is there already.
+        plant.sort_by_key(|(c, _)| c.id != "coulomb-friction");
         // A hole that is another one at the next insertion is no change in time.
         if plant.iter().any(|(c, _)| c.searched.iter().any(|s| s.name == "from insertion")) {
             return Err(no_law());

@@ -45,6 +45,12 @@ pub fn causes<'a>(
     })
 }
 
+/// Columns of the model and of the candidates with their values.
+pub fn columns<'a>(study: &'a Study, picks: &'a [usize], values: &'a [f64]) -> impl Iterator<Item = (&'a [f64], f64)> {
+    let of_causes = picks.iter().flat_map(|p| &study.candidates[*p].columns).map(|column| column.as_slice());
+    study.base.iter().map(Vec::as_slice).chain(of_causes).zip(values.iter().copied())
+}
+
 /// Windows of rows that follow each other: `order` has them by time, `same` says whether two belong together.
 pub fn consecutive(
     order: &[usize],

@@ -9,7 +9,7 @@ mod pads;
 mod run;
 mod track;
 
-pub use channel::{Forward, causes, consecutive, in_turn};
+pub use channel::{Forward, causes, columns, consecutive, in_turn};
 pub use pads::Pads;
 pub use run::{Moment, Side, remembered, run};
 pub use track::rollout;

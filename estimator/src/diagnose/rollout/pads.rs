@@ -1,6 +1,6 @@
 //! Pads that give under a measured force: they damp, so that their way follows it with a delay of its own.
 
-use super::{Forward, consecutive};
+use super::{Forward, columns, consecutive};
 use crate::diagnose::geometry::Study;
 use crate::diagnose::report::RolloutOf;
 
@@ -32,18 +32,16 @@ impl Forward for Pads {
     /// place = give of the force + lag · rate, stepped where each step ends: a lag that runs ahead of the force is noise, and none.
     fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
         let lag_s = (-values[self.rate]).max(0.0);
-        let columns = study.base.iter().chain(picks.iter().flat_map(|p| &study.candidates[*p].columns).map(|c| &**c));
-        let columns: Vec<(&Vec<f64>, f64)> = columns
-            .zip(values)
+        let given: Vec<(&[f64], f64)> = columns(study, picks, values)
             .enumerate()
             .filter(|(k, _)| *k != self.rate)
-            .map(|(_, (column, value))| (column, *value))
+            .map(|(_, column)| column)
             .collect();
         let mut place = study.y[window[0]];
         let (mut sum, mut count) = (0.0, 0.0);
         for pair in window.windows(2) {
             let step_s = (self.time_s[pair[1]] - self.time_s[pair[0]]).max(1e-9);
-            let given = columns.iter().map(|(column, value)| value * column[pair[1]]).sum::<f64>();
+            let given = given.iter().map(|(column, value)| value * column[pair[1]]).sum::<f64>();
             place = (given + lag_s / step_s * place) / (1.0 + lag_s / step_s);
             sum += (place - study.y[pair[1]]).powi(2);
             count += 1.0;
