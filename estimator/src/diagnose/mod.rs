@@ -84,7 +84,6 @@ pub use world::{Worlds, extended_world, worlds};
 
 use crate::estimate::EstimateError;
 use crate::log::NO_CLOCK;
-use crate::pipeline;
 use crate::segment::task_of;
 use haptics::recording::{Recording, Task};
 use haptics::world::World;

@@ -2,8 +2,9 @@
 
 use super::report::Diagnosis;
 use super::suspects::as_found;
-use super::{Options, blocks, pipeline, switch};
+use super::{Options, blocks, switch};
 use crate::estimate::EstimateError;
+use crate::pipeline;
 use haptics::law::{Effect, Role};
 use haptics::recording::Recording;
 use haptics::world::World;
