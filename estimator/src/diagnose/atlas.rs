@@ -7,7 +7,7 @@ use super::track::{Place, Track};
 use haptics::law::cause;
 use std::collections::BTreeSet;
 
-/// What a suspect's force goes with.
+/// Variable against which the effect of a cause is plotted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Variable {
     /// Place along the motion.
@@ -20,7 +20,7 @@ pub enum Variable {
     Across,
     /// Measured force along the motion.
     Force,
-    /// How fast that changes.
+    /// Rate of change of that force.
     ForceRate,
     /// Time.
     Time,
@@ -37,7 +37,8 @@ pub enum Variable {
 }
 
 impl Variable {
-    /// What a cause is best seen against. `planar`: the force has two axes, whose share along the motion changes with the place.
+    /// Variable that shows a cause best. `planar`: the force has two axes, whose share along the motion depends on the
+    /// position.
     fn of(id: &str, planar: bool) -> Self {
         match id {
             "coulomb-friction" | "viscous-friction" | "stribeck" | "quadratic-drag" | "friction-asymmetry" => {
@@ -59,11 +60,12 @@ impl Variable {
 pub struct Seen {
     /// Out of `docs/causes/README.md`.
     pub id: String,
-    /// What it explains alone, in units of 2 ln(likelihood), what its parameters cost paid.
+    /// Evidence of the cause alone: 2 ln(likelihood ratio) less the penalty of its parameters.
     pub score: f64,
-    /// What it is best seen against.
+    /// Variable that shows it best.
     pub variable: Variable,
-    /// What it takes of the model's residual, one an instant of the course, N or N m; the model is fitted anew beside it.
+    /// Part of the base model's residual that it explains when the model is refitted with it, at each instant of the
+    /// course, N or N m.
     pub taken: Vec<f64>,
 }
 
@@ -74,7 +76,7 @@ pub struct Atlas {
     pub suspects: Vec<Seen>,
     /// Rate of the rate of the coordinate, one an instant, m/s² or rad/s².
     pub acceleration: Vec<f64>,
-    /// How fast the measured force changes, N/s or N m/s.
+    /// Rate of change of the measured force, N/s or N m/s.
     pub force_rate: Vec<f64>,
     /// Tasks without one coordinate have channels instead of all that.
     pub channels: Vec<Channel>,
@@ -83,19 +85,19 @@ pub struct Atlas {
 /// One channel of a task without one coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// What it is, in words.
+    /// Name of the channel, in words.
     pub name: &'static str,
     /// SI unit.
     pub unit: &'static str,
-    /// Whether places are angles, and rates those of angles.
+    /// True if positions are angles, and rates angular rates.
     pub is_angular: bool,
     /// Noise of a row.
     pub noise: f64,
-    /// Which recording each row is of; empty where single recordings say too little by themselves.
+    /// Recording of each row. Empty if single recordings have too few rows to be shown apart.
     pub recording: Vec<usize>,
-    /// Which way it went in each row, as a sign; empty where that says nothing.
+    /// Direction of motion in each row, as a sign. Empty if it does not matter.
     pub way: Vec<f64>,
-    /// What the model leaves of each row.
+    /// Residual of the base model in each row.
     pub left: Vec<f64>,
     /// Suspects that the recordings could have shown, most evidence first.
     pub suspects: Vec<Against>,
@@ -108,27 +110,27 @@ pub struct Against {
     pub id: String,
     /// As [`Seen::score`].
     pub score: f64,
-    /// What it is best seen against.
+    /// Variable that shows it best.
     pub variable: Variable,
     /// The rows in which it could be, …
     pub rows: Vec<usize>,
-    /// … the variable there, SI, …
+    /// Values of that variable in these rows, SI units.
     pub over: Vec<f64>,
-    /// … and what it takes of the model's residual.
+    /// Part of the base model's residual that it explains in these rows.
     pub taken: Vec<f64>,
 }
 
 /// The rows of a channel as they are looked at.
 pub(super) struct View {
-    /// Which recording each row is of; empty: all are shown together.
+    /// Recording of each row. Empty if all are shown together.
     pub recording: Vec<usize>,
     /// Rows of one number are of one sensor, or of one sum of sensors: a suspect is shown over all that it could be in.
     pub sensor: Vec<usize>,
-    /// What the rows are seen against.
+    /// Variables of the plots, with a value for each row.
     pub over: Vec<(Variable, Vec<f64>)>,
-    /// Which way it went in each row, as a sign; empty where that says nothing.
+    /// Direction of motion in each row, as a sign. Empty if it does not matter.
     pub way: Vec<f64>,
-    /// Whether places are angles.
+    /// True if positions are angles.
     pub is_angular: bool,
 }
 

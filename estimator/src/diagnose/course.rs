@@ -1,4 +1,4 @@
-//! What was measured and what the model says, row by row: for plots of a diagnosis.
+//! Measured and modelled values row by row, for the plots of a diagnosis.
 
 use super::geometry::{Study, residual};
 use super::system::Use;
@@ -7,7 +7,7 @@ use super::track::{Place, Track};
 /// One instant of a recording along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instant {
-    /// Which recording, in the order in which they were given.
+    /// Index of the recording, in the order in which they were given.
     pub recording: usize,
     /// Time from the start of that recording, s.
     pub time_s: f64,
@@ -21,11 +21,11 @@ pub struct Instant {
     pub normal_force_n: f64,
     /// Measured force along the motion, N or N m.
     pub measured: f64,
-    /// What the model leaves of it …
+    /// Residual of the base model.
     pub left_before: f64,
-    /// … and what the model with the found causes leaves.
+    /// Residual of the extended model.
     pub left_after: f64,
-    /// How far the row is trusted, 0 … 1: less where the direction of motion is a guess.
+    /// Weight of the row, 0 … 1: less if the direction of motion is uncertain.
     pub weight: f64,
     /// It took part in no choice and no fit.
     pub is_locked: bool,
@@ -56,11 +56,11 @@ pub struct Course {
     pub is_angular: bool,
     /// True when the force across the motion was measured.
     pub has_normal_force: bool,
-    /// Where the forces come from.
+    /// Source of the forces.
     pub source: Source,
 }
 
-/// Where the forces of a course come from.
+/// Source of the forces of a course.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Source {
     /// They were measured.
@@ -73,7 +73,7 @@ pub enum Source {
 }
 
 impl Course {
-    /// Whether nothing but the motion was measured.
+    /// True if only the motion was measured.
     pub fn is_free(&self) -> bool {
         self.source != Source::Sensor
     }
@@ -103,7 +103,7 @@ pub(super) fn course(track: &Track, study: &Study) -> Course {
         angle_rad: row.angle_rad,
         velocity: row.motion.velocity,
         normal_force_n: row.motion.normal_force_n,
-        // What moves freely needs what its mass needs, and nothing else is measured.
+        // A free motion has no measured force: the target is the force that its inertia needs.
         measured: if track.freely.is_some() { study.y[i] } else { row.y },
         left_before: before[i],
         left_after: after[i],

@@ -93,12 +93,12 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     Ok(found)
 }
 
-/// What was found, on another recording of the same crank.
+/// Validates the found causes on another recording of the same crank.
 pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
     let recording = &late::put_back(recording, diagnosis.late_s);
     let signs::Looked { signals, circle, rows, .. } = signs::Looked::at(recording, &quality::faults(recording).bad)?;
     let mut track = turned(&signals, recording, &circle, rows)?.rows;
-    // A weight that is stated is no part of what was fitted, and acts all the same.
+    // A stated weight was not fitted, but acts all the same.
     let known = known_weight(recording, &mut diagnosis.plain.clone());
     let with_known = |effects: &[Effect]| -> Model {
         let weighs = effects.iter().any(|e| e.law().id() == Weight.id());
@@ -117,16 +117,16 @@ fn add_scale(found: &mut Diagnosis, scale: Option<Cause>) {
     }
 }
 
-/// How much more likely the force must be when the first link's angle is wrong, not the second's (2 ln likelihood).
+/// Evidence by which the first link's angle must be favoured over the second's, in 2 ln(likelihood).
 const TURNED: f64 = 10.0;
 
-/// Rows of a crank whose path shows that an angle of the finger is wrong.
+/// Rows of a crank whose path shows an angle error of the finger.
 struct Turned {
     /// With that link's angle put right which is the likelier one.
     rows: track::Track,
     /// With the other one's; nothing where no angle is wrong.
     other: Option<track::Track>,
-    /// Which is the likelier one; none where the forces do not tell.
+    /// Likelier link of the two. None if the forces do not tell.
     link: Option<Link>,
 }
 
@@ -137,8 +137,8 @@ enum Link {
     Second,
 }
 
-/// An offset of the first link's angle bends the path as the opposite offset of the second one does, and turns all of it: the circle is
-/// the same, the force then has another direction beside it.
+/// Corrects an angle error of the finger. An offset of the first link distorts the path as the opposite offset of the
+/// second does, and also rotates it: the circle is the same, but the force has another direction relative to it.
 fn turned(
     signals: &held_arm::Signals,
     recording: &Recording,
@@ -171,14 +171,14 @@ fn turned(
     Ok(Turned { rows, other: Some(other), link })
 }
 
-/// Whether the forces seem to be turned against the motion.
+/// True if the forces seem rotated against the motion.
 fn is_turned(study: &geometry::Study) -> bool {
     study.chosen.iter().any(|c| study.candidates[c.candidate].id == "force-cross-axis")
 }
 
-/// Says whose angle is wrong, as far as that shows.
+/// Names the joint with the angle error, if the data tell.
 fn name_joint(found: &mut Diagnosis, link: Option<Link>) {
-    // Of two fingers it is said which of them, and the path shows no more.
+    // With two fingers, the cause names the finger. The path shows no more.
     let of_the_finger = |c: &&mut Cause| c.id == "joint-offset" && c.parameters.iter().any(|p| p.name == "delta");
     let Some(cause) = found.causes.iter_mut().find(of_the_finger) else { return };
     cause.evidence += match link {

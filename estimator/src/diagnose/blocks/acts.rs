@@ -1,4 +1,4 @@
-//! What may be in the net force of carried blocks, as columns: laws of the block and faults of the sensors.
+//! Candidate terms of the net force on carried blocks: laws of the block and faults of the sensors.
 
 use super::rows::{Place, Row, Rows};
 use super::seen::Seen;
@@ -10,11 +10,11 @@ const STARTS: usize = 6;
 /// Names of the masses of the first few blocks.
 const NAMES: [&str; 4] = ["m block-1", "m block-2", "m block-3", "m block-4"];
 
-/// What may act on carried blocks beside their weight and the mass that goes with it.
+/// Laws that may act on carried blocks beside their weight and its inertia.
 pub fn plant(rows: &Rows<'_>) -> Vec<Candidate> {
     let mut found = Vec::new();
     let blocks = rows.blocks();
-    // Mass that weighs nothing: on a counterweight, or of what moves with the block.
+    // Inertia without weight: of a counterweight, or of parts that move with the block.
     let moved = |k: Option<usize>| {
         rows.carried(
             |one, row, number, axis| {
@@ -76,7 +76,7 @@ const MOVED_M: f64 = 1e-3;
 const BIAS: [[(&str, &str); 2]; 2] = [[("bx1", "N"), ("by1", "N")], [("bx2", "N"), ("by2", "N")]];
 const DRIFT: [[(&str, &str); 2]; 2] = [[("rx1", "N/s"), ("ry1", "N/s")], [("rx2", "N/s"), ("ry2", "N/s")]];
 
-/// What may be wrong with the force sensors. `known`: weights that are known, N; `given`: the forces by them.
+/// Faults that the force sensors may have. `known`: weights that are known, N; `given`: the forces by them.
 pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<Candidate> {
     let mut found = Vec::new();
     let all = |id: &'static str, names: &[[(&'static str, &'static str); 2]; 2], of: &dyn Fn(&Row) -> f64| {
@@ -154,7 +154,7 @@ pub fn generic(rows: &Rows<'_>) -> Vec<Candidate> {
         }
         for (axis, name) in [(0, "x"), (1, "y")] {
             let (middle, spread) = along(rows, axis);
-            // What was not moved along an axis has no dependence on it.
+            // An axis without motion shows no dependence on position.
             if spread > MOVED_M {
                 term(name, &|s, r| s.place[axis][r.i] - middle);
             }

@@ -17,7 +17,8 @@ const LIBRARY: [(&str, &str, f64); 2] = [
     ),
     ("carry-still", "lift the block and hold it still", 0.0),
 ];
-/// Lengths of a carry, s: the shortest that is likely to do. What leaks is soon empty, and what drifts does not drift evenly for long.
+/// Lengths of a carry, s. The shortest that is likely to suffice is asked for: a leak soon ends, and a drift does not
+/// stay linear for long.
 const HELD_S: [f64; 3] = [4.0, 8.0, 16.0];
 /// Nobody lifts a block more slowly than this, m/s.
 const LIFT_M_S: f64 = 0.02;
@@ -69,7 +70,7 @@ fn columns(id: &str, rows: &[Row], weight_n: f64) -> Option<Vec<Vec<f64>>> {
     }
 }
 
-/// What of an effect the weight and a rival could not imitate, as a sum of squares.
+/// Sum of squares of an effect that the weight and a rival cannot explain.
 fn unexplained(effect: &[f64], beside: &[Vec<f64>]) -> f64 {
     let beside: Vec<&Vec<f64>> = beside.iter().filter(|c| c.iter().any(|v| *v != 0.0)).collect();
     let matrix = DMatrix::from_fn(effect.len(), beside.len(), |i, j| beside[j][i]);
@@ -83,7 +84,7 @@ fn unexplained(effect: &[f64], beside: &[Vec<f64>]) -> f64 {
     (target - matrix * solved).norm_squared()
 }
 
-/// The recording to make for the first question that is open; nothing for questions of other channels.
+/// Recording that would settle the first open question of this channel, if there is one.
 pub fn propose(open: &[Alternative], carry: &Carry, seen: &[Seen<'_>]) -> Option<NextExperiment> {
     let first = open.first()?;
     let study = &carry.compared.study;
@@ -114,7 +115,7 @@ pub fn propose(open: &[Alternative], carry: &Carry, seen: &[Seen<'_>]) -> Option
             let weighs = rows.iter().map(|r| f64::from(u8::from(matches!(r.1, Place::Carried(_))))).collect();
             let mut least = f64::INFINITY;
             for rival in &rivals {
-                // Either of the two may be true; a drift of one finger stands for all.
+                // Either of the two may be true. A drift of one finger represents the drift of both.
                 for (a, b) in [(own.id, rival.id.as_str()), (rival.id.as_str(), own.id)] {
                     let vertical = usize::from(a.starts_with("force") && b != "gravity-tilt");
                     let effect = columns(a, &rows, weight_n)?.swap_remove(vertical);

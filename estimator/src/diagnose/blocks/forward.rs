@@ -9,7 +9,7 @@ use haptics::Vec2;
 use haptics::law::{Effect, Inertia, Memories, Motion, ViscousFriction};
 use haptics::world::{Cable, World};
 
-/// What a row is for this.
+/// Data of a row for the free-run simulation.
 #[derive(Clone, Copy)]
 struct Row {
     recording: usize,
@@ -30,7 +30,7 @@ pub struct Airborne {
     gravity_m_s2: f64,
     /// Weights that are known, N, by block.
     known_n: Vec<Option<f64>>,
-    /// Cables of the world, one column of the model each after those of the weights, and their blocks.
+    /// Cables of the world with their blocks. Each has one regressor in the model, after those of the weights.
     ties: Vec<(usize, Cable)>,
 }
 
@@ -55,7 +55,7 @@ impl Airborne {
             }
         };
         let tied = world.iter().flat_map(|w| &w.blocks).enumerate().filter_map(|(k, block)| {
-            // What it damps is no part of the model.
+            // Its damping is no part of the model.
             let cable = Cable { damping_n_s_m: 0.0, ..*block.cable.as_ref()? };
             Some((k + 1, cable))
         });
@@ -69,7 +69,7 @@ impl Airborne {
         }
     }
 
-    /// How many weights are open: they are the first columns of the model.
+    /// Number of estimated weights: their regressors come first in the model.
     fn open(&self) -> usize {
         self.known_n.iter().filter(|k| k.is_none()).count()
     }
@@ -86,7 +86,7 @@ impl Airborne {
         Some(Cable { stiffness_n_m: tie.stiffness_n_m * values.get(self.open() + k).copied().unwrap_or(1.0), ..*tie })
     }
 
-    /// Which block a column is of.
+    /// Number of the block on which a regressor acts.
     fn tied(&self, column: &[f64]) -> usize {
         column.iter().position(|v| *v != 0.0).map_or(0, |i| self.rows[i].number)
     }
@@ -126,7 +126,7 @@ impl Forward for Airborne {
                     anchor_m: Vec2::new(at("anchor x"), at("anchor y")),
                     length_m: at("length"),
                 }),
-                // What does not go with the motion, and faults of the sensors.
+                // Effects that do not depend on the motion, and faults of the sensors.
                 _ => candidate.columns.iter().zip(own).for_each(|(column, value)| {
                     drive.iter_mut().zip(window).for_each(|(drive, i)| *drive -= value * column[*i]);
                 }),

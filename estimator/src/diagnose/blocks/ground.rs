@@ -1,4 +1,4 @@
-//! Height of the grip while a held block stands on something: give of the pads under the load, and slips of the fingers.
+//! Grip height while a held block stands on something: pad compliance under the load, and slips of the fingers.
 
 use super::seen::Seen;
 use super::slips::{slips, ways};
@@ -25,7 +25,7 @@ const LEAST_IN_ALL: usize = 24;
 /// at the very contact began shows in nothing else.
 const HELD_OUT: usize = 2;
 const FIRST: usize = 4;
-/// So many rows that may be held out make a block of them, and there are so many blocks at most: as the comparison counts.
+/// Testable rows per held-out block, and the largest number of such blocks, as in the comparison.
 const BLOCK: usize = 12;
 const MOST_BLOCKS: usize = 20;
 
@@ -39,7 +39,7 @@ pub struct Stand {
     pub below: Vec<usize>,
     pub first: usize,
     pub end: usize,
-    /// From when it stands, s; and from when plain means of its height are taken.
+    /// Start of the standing phase, s, and start of the plain means of its height, s.
     pub from_s: f64,
     pub plain_from_s: f64,
     /// Samples of it.
@@ -71,7 +71,8 @@ pub struct Rows {
     pub half_s: f64,
 }
 
-/// Compares what may move the grip while a held block stands. `cross`: what each finger's vertical force has of its horizontal one. `None` where no block was held still on anything for long enough.
+/// Compares the causes that move the grip while a held block stands. `cross`: share of each finger's horizontal force
+/// in its vertical channel. `None` if no block stood still long enough.
 pub fn ground(
     seen: &[Seen<'_>],
     world: Option<&World>,
@@ -148,8 +149,8 @@ pub fn ground(
     Ok(Some(Ground { compared, view, stands, rows, ways }))
 }
 
-/// The order in which rows are held out together: blocks of rows from all over the rests. What a slip is worth shows on rows before and after it,
-/// and a rest is shorter than a block of rows that follow each other.
+/// Order in which rows are held out together: each held-out block takes rows from all rests. The effect of a slip needs
+/// rows before and after it, and a rest is shorter than a block of consecutive rows.
 fn spread(along: &[bool]) -> Vec<f64> {
     let blocks = (along.iter().filter(|t| **t).count() / BLOCK).clamp(1, MOST_BLOCKS);
     let before = along.iter().scan(0, |count, testable| {
@@ -159,7 +160,7 @@ fn spread(along: &[bool]) -> Vec<f64> {
     before.enumerate().map(|(i, count)| ((count % blocks) * along.len() + i) as f64).collect()
 }
 
-/// What a cause in the height of the grip is best seen against.
+/// Variable that best shows a cause in the grip height.
 pub fn best_seen(id: &str) -> Variable {
     if id == "pad-compliance" { Variable::Lift } else { Variable::Time }
 }
@@ -215,12 +216,12 @@ fn add(
 }
 
 impl Ground {
-    /// Which rest a time belongs to.
+    /// Standing phase to which a time belongs.
     fn stand_at(&self, time_s: f64) -> Option<&Stand> {
         self.stands.iter().find(|s| (s.from_s - self.rows.half_s..=self.rows.time_s[s.end - 1]).contains(&time_s))
     }
 
-    /// For the answer.
+    /// Parameters for the answer.
     pub fn states(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         match candidate.id {
             "fingertip-slip" => {
@@ -239,7 +240,7 @@ impl Ground {
         }
     }
 
-    /// What in the residual shows a cause.
+    /// Sentence on how the residual shows a cause.
     pub fn shows(&self, found: &Found<'_>) -> String {
         let value = found.parameters.first().map_or(0.0, |p| p.value);
         if found.candidate.id == "pad-compliance" {

@@ -1,7 +1,8 @@
-//! Diagnosis of carried blocks: distance of the tips, net force and height over the ground, each with its own causes.
+//! Diagnosis of carried blocks: grip width, net force and standing height, each with its own causes.
 //!
-//! Without a world the model is the thesis's: rigid widths and plain means of weights and heights. With one its pads, inertia and
-//! cables belong to the model; what a block weighs and how wide it is stays open in both, unless the sidecar says that it is known.
+//! Without a world the base model is the thesis's: rigid widths and plain means of weights and heights. With a world,
+//! its pads, inertia and cables belong to the base model. Weights and widths are estimated in both, unless the sidecar
+//! states them.
 
 mod acts;
 mod cable;
@@ -86,7 +87,8 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     // Of the net force, which a delay is seen in; the strongest cause may be of another channel.
     if let Some((late, force)) = carry.late.zip(parts.first()) {
         let figures = force.figures();
-        // What else is in the model may take some of a delay: it is judged by what it was looked for with, too.
+        // Other terms of the final model may absorb part of a delay. The delay is therefore judged by its own model,
+        // too.
         let end = Final { heldout_rms_n: (late.plain_rms * figures.end.heldout_rms_n).sqrt(), ..figures.end };
         late.tell(&mut found, Figures { end, ..figures });
     }
@@ -120,7 +122,7 @@ pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compa
     Ok(std::iter::once(carry.compared).chain(rest).collect())
 }
 
-/// What no recording of this kind could show.
+/// Causes that no recording of this kind shows.
 fn unseen(seen: &[Seen<'_>], found: &mut Vec<NotExcited>) {
     let mut add = |id: &str, why: &str| found.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
     let knows = |name: &str| seen.iter().any(|s| (1..=s.count).any(|k| s.known(k, name).is_some()));
@@ -133,7 +135,7 @@ fn unseen(seen: &[Seen<'_>], found: &mut Vec<NotExcited>) {
     add("friction-change", "the fingers hold the blocks and do not slide on them");
 }
 
-/// The recording that would settle what is open.
+/// Recording that would settle the open questions.
 fn next(open: &[Alternative]) -> Option<NextExperiment> {
     let first = open.first()?;
     let pair = [first.instead_of.as_str(), first.id.as_str()];

@@ -1,4 +1,5 @@
-//! What a diagnosis looks at in a recording of carried blocks: states from the pipeline, all channels through one filter.
+//! Signals of a recording of carried blocks for the diagnosis: states from the pipeline, all channels through one
+//! filter.
 
 use crate::estimate::EstimateError;
 use crate::identify::block::landing::{stands_from, usual_lift};
@@ -22,8 +23,8 @@ const OTHER_LIFT: f64 = 0.05;
 const SURELY: f64 = 4.0;
 /// A block that was just lifted swings behind its pads, s.
 const SWINGS_S: f64 = 0.12;
-/// The ground takes over a block within the first of these rows at either end of a carry; the lift of those up to the second is the
-/// carried one, and what is off it by this share is not all of it.
+/// Rows at either end of a carry: the ground may support the block in those before the first number. Those from the
+/// first to the second number define the carried lift. A lift off it by `END_SHARE` is partly supported.
 const END_ROWS: (usize, usize) = (4, 10);
 const END_SHARE: f64 = 0.025;
 
@@ -115,7 +116,7 @@ impl<'a> Seen<'a> {
         self.carried_and_standing(number).0
     }
 
-    /// The same with the rows at its end in which the block stands already, although the lift is still upwards.
+    /// The same, with the rows at its end in which the block already stands although the lift is still upwards.
     fn carried_and_standing(&self, number: usize) -> (Vec<usize>, Vec<usize>) {
         let samples = self.blocks.shown(MAIN, number);
         let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return (Vec::new(), Vec::new()) };
@@ -135,7 +136,8 @@ impl<'a> Seen<'a> {
         (rows, still)
     }
 
-    /// Whether the lift of a sample is less than all of what is carried in `rows`. `cross`: what each finger's vertical force has of its horizontal one.
+    /// Predicate: the lift of a sample is less than the whole carried weight of `rows`. `cross`: share of each finger's
+    /// horizontal force in its vertical channel.
     fn light(&self, rows: &[usize], cross: [f64; 2]) -> impl Fn(&usize) -> bool + use<'_, 'a> {
         let lift = self.lift_without(cross);
         let usual = usual_lift(&self.blocks.signals.time_s, rows, &lift);
@@ -145,14 +147,14 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// Lift of a sample without what each finger's vertical force has of its horizontal one.
+    /// Lift of a sample without the cross-talk of each finger's horizontal force.
     fn lift_without(&self, cross: [f64; 2]) -> impl Fn(usize) -> f64 + use<'_, 'a> {
         move |i| self.blocks.lift[i] - cross[0] * self.force[0][0][i] - cross[1] * self.force[1][0][i]
     }
 
-    /// Samples in which a block stands after its carry, and the time from which it does: when the load has begun to go over to what is below. The
-    /// fingers may come down further then, by the give of their pads or in a slip, and nothing else but the load tells that from lowering.
-    /// `rest`: samples in which it is known to stand; `cross`: as found.
+    /// Start time and samples of the phase in which a block stands after its carry, from the first transfer of load to
+    /// the ground. The fingers may then move down further, by compression of their pads or a slip, and only the load
+    /// tells that from lowering. `rest`: samples in which the block is known to stand; `cross`: cross-talk as found.
     pub fn put(&self, number: usize, rest: &[usize], cross: [f64; 2]) -> (f64, Vec<usize>) {
         let (carried, mut standing) = self.carried_and_standing(number);
         if cross != [0.0; 2] && !rest.is_empty() {
@@ -173,7 +175,8 @@ impl<'a> Seen<'a> {
         (self.time_s(from), (settled..known).chain(rest).collect())
     }
 
-    /// What is heavy is lifted, and put down, in longer than a row: at both ends of a carry the ground may have a part of it.
+    /// Removes rows at both ends of a carry in which the ground may support part of the weight: a heavy block takes
+    /// longer than a row to lift and to put down.
     fn without_ends(&self, rows: &mut Vec<usize>) {
         for _ in 0..2 {
             rows.reverse();
@@ -202,7 +205,8 @@ impl<'a> Seen<'a> {
         let (carried, now) = (mean(before), mean(&rows[from..]));
         let error = self.lift_noise_n * (1.0 / before.len() as f64 + 1.0 / (rows.len() - from) as f64).sqrt();
         let other = (now - carried).abs() > (OTHER_LIFT * carried.abs()).max(SURELY * error);
-        // A block that hangs still over the ground is lowered slowly at last: it stands from where the lift is the new one.
+        // A block may hang still just above the ground and then be lowered slowly. It stands once the lift is nearer to
+        // the new value.
         let stands = |i: &usize| (self.blocks.lift[*i] - now).abs() < (self.blocks.lift[*i] - carried).abs();
         let first = from + rows[from..].iter().position(stands)?;
         (lowered && other).then_some((from.saturating_sub(2), first))
@@ -243,7 +247,7 @@ impl<'a> Seen<'a> {
             .collect()
     }
 
-    /// What the sidecar says is known of a block: `block-1.weight_N`, or `weight_N` of all blocks.
+    /// Value that the sidecar states for a block: `block-1.weight_N`, or `weight_N` of all blocks.
     pub fn known(&self, number: usize, name: &str) -> Option<f64> {
         let known = &self.blocks.recording.meta.known;
         let own = known.get(&format!("{}.{name}", object(number)));

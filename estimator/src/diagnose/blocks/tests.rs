@@ -16,7 +16,7 @@ const CARRIES: u32 = 3;
 const CARRY_S: f64 = 5.0;
 const WIDTH_M: f64 = 0.02;
 
-/// What is hidden.
+/// Hidden truth of a simulated recording.
 #[derive(Clone, Copy, Default)]
 struct Hidden {
     /// Give of a pad, m/N.
@@ -41,7 +41,7 @@ fn bend(t: f64, from: f64, to: f64) -> f64 {
 fn at(t: f64, hidden: &Hidden) -> ([f64; 2], [f64; 3]) {
     let number = (t / CARRY_S).floor().min(f64::from(CARRIES - 1));
     let own = t - number * CARRY_S;
-    // To and fro: what was put down is taken from where it stands.
+    // Back and forth: a block is picked up from where it was put down.
     let (start_m, side) = if number % 2.0 == 0.0 { (0.0, 1.0) } else { (0.04, -1.0) };
     let of = |shape: &dyn Fn(f64, f64, f64) -> f64| {
         [side * 0.04 * shape(own, 2.0, 2.6), 0.03 * (shape(own, 1.4, 1.9) - shape(own, 2.9, 3.4))]

@@ -179,7 +179,7 @@ fn a_cause_beside_a_term_of_the_model_that_is_nearly_the_same_keeps_its_size() {
     assert!(study.picks() == [0] && strongest < 0.3, "{:?}", study.system.coefficients);
 }
 
-/// Observations that stand by themselves are held out by threes and need no rows between them and what trains.
+/// Single observations are held out three at a time and need no margin between training and held-out rows.
 #[test]
 fn a_dozen_of_single_observations_can_be_tested() {
     let n = 16;
