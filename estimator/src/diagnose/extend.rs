@@ -1,4 +1,4 @@
-//! The model with what was found in it: laws with values, as a world runs them.
+//! Extended model: the base model with the causes found, as laws with values that a world can run.
 
 use super::candidate::{Candidate, about_its_zero};
 use super::force::Model;
@@ -40,7 +40,8 @@ pub fn effects_of(
     is_whole.then_some(found)
 }
 
-/// The laws, and whether every plant cause is among them. `values`: of the model's columns and then of the causes' ones; `searched`: of each cause.
+/// The laws, and true if every plant cause is among them. `values`: of the model's regressors, then of the causes'
+/// ones; `searched`: searched values of each cause.
 fn made(
     track: &Track,
     model: &Model,
@@ -54,8 +55,9 @@ fn made(
     beside_model(track, found, &dry, causes, &values[values.len() - of_causes..], searched)
 }
 
-/// Laws of causes that were found in a model without dry friction of its own (that friction before what is a share of it), or nothing where one has
-/// none. `dry_n`: the friction that the shares are of, N; `values`: of the causes alone.
+/// Laws of causes found beside a model without dry friction of its own. Dry friction must precede the causes that are a
+/// share of it. `None` if a cause has no law. `dry_n`: friction to which the shares refer, N; `values`: of the causes
+/// alone.
 pub fn without_friction(
     track: &Track,
     laws: Vec<Effect>,
@@ -82,7 +84,7 @@ fn beside_model(
     for (candidate, searched) in causes.iter().zip(searched) {
         let values = &values[at..at + candidate.columns.len()];
         if candidate.id == Hysteresis.id() {
-            // What bends before it slides is taken from what slides at once.
+            // Friction that bends before it slides is part of the dry friction, and is subtracted from it.
             found.iter_mut().filter(|e| e.law().is_dry()).for_each(|e| *e = scaled(e, (1.0 - values[0]).max(0.0)));
         }
         let laws = match dry.law(candidate, values, searched) {
@@ -177,7 +179,7 @@ fn effect(candidate: &Candidate, (values, searched): (&[f64], &[f64]), track: &T
         "gravity-tilt" => free::tilted(track, first),
         "position-ripple" => {
             let (cosine, sine) = (first, values.get(1).copied().unwrap_or(0.0));
-            // cos(x − π/2) is the sine's column.
+            // cos(x − π/2) is the regressor of the sine.
             of(&PositionRipple, &[cosine.hypot(sine), searched(0), (-sine).atan2(cosine)])
         }
         "return-spring" if named("k3") => of(&ReturnSpring, &[0.0, 0.0, first, searched(0)]),
@@ -205,7 +207,7 @@ fn effect(candidate: &Candidate, (values, searched): (&[f64], &[f64]), track: &T
     }
 }
 
-/// A spring's k, f0, k3 and place, out of the columns' values.
+/// Parameters of a spring, k, f0, k3 and rest position, from the coefficients of its regressors.
 pub fn spring(values: &[f64], track: &Track) -> [f64; 4] {
     let (low, high) = (track.quantile(0.0, |r| r.motion.position), track.quantile(1.0, |r| r.motion.position));
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low).max(1e-12));

@@ -75,8 +75,8 @@ pub fn acceleration(time_s: &[f64], speed: &[f64], half: usize, period_s: f64) -
     (savitzky_golay(time_s, speed, half, 2).first, (half, 2))
 }
 
-/// Where in a row of `every` samples its finer points lie, in samples after the first: evenly about the middle, as the row's force is.
-/// A point that is early on the average would pass for a force that is late.
+/// Positions of the finer points in a row of `every` samples, in samples after the first. They are symmetric about the
+/// middle, as the row's force is. If the points were early on average, the force would look late.
 pub fn offsets(every: usize, period_s: f64) -> impl Iterator<Item = f64> {
     let samples = every as f64;
     let points = (samples * FINE_HZ * period_s).round().clamp(1.0, samples);

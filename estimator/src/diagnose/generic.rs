@@ -9,7 +9,7 @@ const WAVES: u32 = 6;
 /// Slow waves in time.
 const SLOW: u32 = 6;
 
-/// What a wave is multiplied by, with its name.
+/// Factor of a wave, with its name.
 type Factor<'a> = (&'a str, Box<dyn Fn(&Row) -> f64 + 'a>);
 
 /// All of them.

@@ -31,15 +31,15 @@ pub struct PathPoint {
     pub force: Vec2,
     /// ∂position/∂(top joint angle) and ∂position/∂(length of the first link) of each finger, where joints were recorded.
     pub joints: [Option<[Vec2; 2]>; 2],
-    /// A mean of points on an arc lies inside it by this over the radius, m².
+    /// Inward offset of a mean of points on an arc, times the radius, m².
     pub inside_m2: f64,
 }
 
-/// What the geometry is found from.
+/// Data from which the geometry is estimated.
 pub struct Path {
     pub points: Vec<PathPoint>,
     pub period_s: f64,
-    /// Two pads hold the handle: their give belongs to the model.
+    /// True if two pads hold the handle: their compliance belongs to the model.
     pub two_fingered: bool,
 }
 
@@ -56,9 +56,9 @@ pub struct Arm {
     /// m
     pub center_m: Vec2,
     pub radius_m: f64,
-    /// What is subtracted from the measured position of a signals' row, m.
+    /// Offset subtracted from the measured position of a signals' row, m.
     pub shifts: Vec<Vec2>,
-    /// What the whole arm stands wrongly turned by, rad: a circle does not show it, the directions of the forces do.
+    /// Rotation error of the whole arm, rad. A circle does not show it, the directions of the forces do.
     pub turn_rad: f64,
 }
 
@@ -70,7 +70,7 @@ impl Arm {
     }
 }
 
-/// The circle, and what was found to distort it.
+/// The circle, and the causes found that distort it.
 pub struct Geometry {
     pub arm: Arm,
     pub study: Study,
@@ -85,7 +85,7 @@ impl Geometry {
     }
 }
 
-/// How far the causes of the last round displaced a point, m.
+/// Displacement of a point by the causes of the last round, m.
 #[derive(Clone, Copy, Debug, Default)]
 struct Displaced {
     exact: Vec2,
@@ -104,7 +104,8 @@ pub struct Study {
     pub y: Vec<f64>,
     pub base: Vec<Vec<f64>>,
     pub weight: Vec<f64>,
-    /// The dry friction that columns of shares of it were made of, over the one that came out beside them, and the relative error of that.
+    /// Ratio of the dry friction to which the share regressors refer to the one estimated beside them, and its relative
+    /// error.
     pub shares_of: [f64; 2],
 }
 
@@ -136,7 +137,7 @@ pub fn geometry(path: &Path, signals: usize, threshold: f64) -> Result<Geometry,
         let step = Vec2::new(solved.values[1], solved.values[2]);
         center_m += step;
         bent = corrections(path, &made, &mut shift_m, center_m);
-        // Slips that were found are looked for more and more closely.
+        // The grid around found slips becomes finer.
         step_s *= 0.5;
         let found = made.chosen.iter().map(|c| &made.candidates[c.candidate]).filter(|c| c.id == SLIP);
         let finer: Vec<Course> = found.flat_map(|c| Course::of(c).around(step_s)).collect();
@@ -168,7 +169,7 @@ fn compare(
 ) -> Result<Study, EstimateError> {
     let arms: Vec<Vec2> = path.points.iter().map(|p| p.position - center_m).collect();
     let outward: Vec<Vec2> = arms.iter().map(Vec2::normalize).collect();
-    // What is known of the displacement enters as it is, and stays in the target as its columns can take it.
+    // The known displacement enters exactly. The target keeps its linear part, which the regressors explain.
     let distance = |i: usize| (arms[i] - bent[i].exact).norm() + outward[i].dot(&bent[i].linear);
     let y: Vec<f64> = (0..arms.len()).map(|i| distance(i) + path.points[i].inside_m2 / arms[i].norm()).collect();
     let column = |f: &dyn Fn(usize) -> f64| (0..y.len()).map(f).collect::<Vec<f64>>();
@@ -205,12 +206,12 @@ fn compare(
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
     let solved = system.solve(&picks);
     let mut study = Study { candidates, chosen, system, solved, y, base, weight, shares_of: [1.0, 0.0] };
-    // What a line misses of pads that harden, or one slip of two, looks like another cause, weakly, where it was fitted.
+    // Misfit of hardening pads, or of two slips by one, looks like another weak cause in the fitted rows.
     leave_out_what_harms(&mut study, &stretch, threshold, &|_, _| true);
     Ok(study)
 }
 
-/// What is left of `y`.
+/// Residual of `y`.
 pub fn residual(y: &[f64], base: &[Vec<f64>], candidates: &[Candidate], picks: &[usize], solved: &Solved) -> Vec<f64> {
     let columns: Vec<&Vec<f64>> =
         base.iter().chain(picks.iter().flat_map(|p| &candidates[*p].columns).map(|c| &**c)).collect();
@@ -250,12 +251,12 @@ fn candidates(path: &Path, outward: &[Vec2], courses: &[Course]) -> Vec<Candidat
     found
 }
 
-/// Which finger a cause of the joints is about.
+/// Finger of a joint cause.
 fn finger(candidate: &Candidate) -> usize {
     usize::from(candidate.linear.first().is_some_and(|(name, _)| name.ends_with('2')))
 }
 
-/// What the found causes displaced the positions by.
+/// Displacement of the positions by the causes found.
 fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2) -> Vec<Displaced> {
     shift_m.fill(Vec2::zeros());
     let Some(solved) = &study.solved else { return vec![Displaced::default(); path.points.len()] };

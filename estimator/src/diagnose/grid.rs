@@ -1,4 +1,4 @@
-//! The values of what must be searched for: coarsely at first, then around what was found.
+//! Search grids of the non-linear values: coarse at first, then finer around the values found.
 
 use super::candidate::Candidate;
 use super::fine::FINE_HZ;
@@ -7,9 +7,9 @@ use std::f64::consts::TAU;
 
 /// Ripples a turn (over the range, where nothing turns) that are tried.
 const RIPPLES: std::ops::RangeInclusive<u32> = 2..=40;
-/// … as long as the fastest motion takes so many rows for one: a shorter one is smoothed away.
+/// Least length of a ripple, in rows of the fastest motion. The rows average out a shorter one.
 const LEAST_ROWS_A_RIPPLE: f64 = 1.0;
-/// Places of a local resistance that are tried, and widths in shares of the range.
+/// Number of tried places of a local resistance, and its widths as shares of the range.
 const PLACES: usize = 24;
 const WIDTHS: [f64; 3] = [0.12, 0.2, 0.35];
 /// Speeds at which static friction has fallen off, as shares of the usual speed.
@@ -21,19 +21,21 @@ const LIKE_EXPONENTIAL: f64 = 1.5;
 /// Ways of presliding and half gaps, as shares of the range of positions.
 const WAYS: [f64; 14] =
     [0.00003, 0.00006, 0.00012, 0.00024, 0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.065, 0.13, 0.2];
-/// Shortest of these that are felt at a reversal, in points of the motion at the usual speed (it is slower there).
+/// Shortest of these that is felt at a reversal, in points of the motion at the usual speed. (At the reversal the
+/// motion is slower.)
 const STEPS: f64 = 0.06;
-/// Where a mass takes part, the filters of force and motion leave as much of every reversal themselves.
+/// The same with inertia in the model: the filters of force and motion blur every reversal by as much.
 const STEPS_OF_MASS: f64 = 0.25;
-/// … and on a crank, whose way is the sum of its joints' noisy rates, that are this many times the noise of that sum within a row: it alone
-/// builds a shorter bend up and takes it back, which makes friction smaller wherever the handle sticks, as the noise of the speed does.
+/// The same for a crank, in standard deviations of the summed rate noise within a row. Such noise alone builds up and
+/// releases a shorter presliding, which reduces the friction while the handle sticks, as the noise of the velocity
+/// does.
 const STEPS_OF_NOISE: f64 = 3.0;
-/// Where the object was seen to stand, they are this many times the noise of its place at least.
+/// The same where the object was seen to stand, in standard deviations of its position noise.
 const SEEN: f64 = 0.5;
-/// Directions of a cable's anchor that are tried, and how much of the way round it is slack.
+/// Number of tried anchor directions of a cable, and the slack shares of the travel around it.
 const CABLES: u32 = 16;
 const SLACK: [f64; 3] = [0.35, 0.6, 0.8];
-/// How far away the anchor is at first, in arms, and how far it may be.
+/// Initial distance of the anchor, in arm lengths, and the distances tried.
 const REACH: f64 = 5.0;
 const REACHES: [f64; 3] = [2.5, REACH, 20.0];
 /// Shares of the motion on one side of a wall.
@@ -41,13 +43,13 @@ const WALLS: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 /// Places of rest of a spring that hardens: so many, up to so many half ranges from the middle.
 const RESTS: u32 = 13;
 const RESTS_WITHIN: f64 = 1.5;
-/// … and so many where the linear part of it shows.
+/// Number of rest positions if the linear part of the spring shows.
 const FINER_RESTS: u32 = 25;
-/// Times in which friction changes, in shares of the recording, …
+/// Time constants of a friction change, in shares of the recording.
 const WARMING: [f64; 4] = [0.1, 0.3, 1.0, 3.0];
-/// … in which a drift or a leak dies away, …
+/// Time constants of a decaying drift or leak, in shares of the recording.
 const SETTLING: [f64; 2] = [0.2, 0.5];
-/// … and the number of starts of what happens at once.
+/// Number of tried start times of a sudden change.
 const STARTS: u32 = 16;
 
 /// Values to try, in the units of the track.
@@ -56,9 +58,10 @@ pub struct Grid {
     /// Speed and exponent.
     pub stribeck: Vec<(f64, f64)>,
     pub ways: Vec<f64>,
-    /// Ways of what gives back along a straight line (Bouc and Wen).
+    /// Presliding distances of friction that springs back along a straight line (Bouc and Wen).
     pub straight: Vec<f64>,
-    /// Shorter ones than this do not show in the force, only in the way that a standing object gives.
+    /// Shortest presliding distance that is felt in the force. Shorter ones show only in the displacement of a standing
+    /// object.
     pub felt: f64,
     /// Wave lengths.
     pub ripples: Vec<f64>,
@@ -72,7 +75,7 @@ pub struct Grid {
     pub cables: Vec<(f64, f64, f64)>,
     /// Places of rest.
     pub rests: Vec<f64>,
-    /// The same of a spring whose linear part shows, too: tried where something of its kind was found.
+    /// The same for a spring whose linear part shows, too. Tried if such a spring was found.
     pub hardening: Vec<f64>,
     pub warming: Vec<f64>,
     pub settling: Vec<f64>,
@@ -93,14 +96,14 @@ fn shorter(track: &Track, range: f64) -> impl Iterator<Item = f64> {
 }
 
 impl Grid {
-    /// What is tried first.
+    /// Grid of the first round.
     pub fn coarse(track: &Track) -> Self {
         let position = |share| track.quantile(share, |r| r.motion.position);
         let (low, high) = (position(0.0), position(1.0));
         let range = (high - low).max(1e-12);
         let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
         let turn = track.radius_m.map(|r| TAU * r);
-        // What is shorter than the way between two points cannot be told from a reversal that lies between them.
+        // A distance shorter than the spacing of two points cannot be distinguished from a reversal between them.
         let between_s = track.raw_period_s.max(1.0 / FINE_HZ).min(track.period_s);
         let point_s = if track.fine.is_empty() { track.period_s } else { between_s };
         let stands = track.rows.iter().any(|r| matches!(r.place, Place::Stuck { .. }));
@@ -159,7 +162,7 @@ impl Grid {
         self
     }
 
-    /// Values between those of the coarse grid, around the ones that were found; `step`: how far from them, 1 at first.
+    /// Values between those of the coarse grid, around the ones found; `step`: distance from them, 1 at first.
     pub fn around(found: &[&Candidate], track: &Track, step: f64) -> Self {
         let coarse = Self::coarse(track);
         let mut grid = Self { turn: coarse.turn, felt: coarse.felt, ..Self::default() };

@@ -27,7 +27,7 @@ pub struct Signals {
     pub position: Vec<Vec2>,
     pub velocity: Vec<Vec2>,
     pub force: Vec<Vec2>,
-    /// Whether two fingers hold the handle, whose places are means of both tips.
+    /// True if two fingers hold the handle. Positions are then means of both tips.
     pub two_fingered: bool,
     /// Joint angles of each finger, where they were recorded.
     joints: [Option<Vec<JointAngles>>; 2],
@@ -42,7 +42,7 @@ pub struct Signals {
     raw: RawMotion,
 }
 
-/// How a recorded force becomes the force: some cables are crossed.
+/// Map from the recorded force axes to the true ones: some cables are swapped or inverted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axes {
     pub swapped: bool,
@@ -56,12 +56,12 @@ impl Axes {
     }
 }
 
-/// What was recorded, at its own rate.
+/// Recorded motion at its own rate.
 struct RawMotion {
     time_s: Vec<f64>,
     position: Vec<Vec2>,
     velocity: Vec<Vec2>,
-    /// What is left of the noise of one sample after the calming, as a factor.
+    /// Noise of one sample after smoothing, relative to before.
     calmed_to: f64,
     /// The velocity as recorded: its noise is read from it.
     as_recorded: Vec<Vec2>,
@@ -228,7 +228,7 @@ impl Signals {
         })
     }
 
-    /// The rows of a stretch, and the window and order of their acceleration.
+    /// The rows of a segment, and the window and order of their acceleration.
     fn stretch(&self, range: std::ops::Range<usize>, stretch: usize, arm: &Arm, up: f64) -> (Vec<Row>, (usize, usize)) {
         let time = &self.time_s[range.clone()];
         let directions: Vec<(Vec2, Vec2)> = range
@@ -281,11 +281,12 @@ impl Signals {
         (rows, slope)
     }
 
-    /// The motion between the rows of a stretch; returns the noise of its velocity, m/s, and of one recorded place, m.
+    /// Adds the motion between the rows of a segment; returns the noise of its velocity, m/s, and of one recorded
+    /// position, m.
     fn finely(&self, range: std::ops::Range<usize>, arm: &Arm, rows: &mut [Row], fine: &mut Vec<Fine>) -> [f64; 2] {
         let number = fine.last().map_or(0, |f: &Fine| f.stretch + 1);
         let raw = &self.raw;
-        // Recorded samples are thinned out, or filled in, to about the same rate.
+        // Recorded samples are thinned out, or interpolated, to about the same rate.
         let fill = (FINE_HZ * self.raw_period_s).round().max(1.0) as usize;
         let mut recorded = Vec::with_capacity(range.len() * self.every);
         let mut places = Vec::with_capacity(range.len() * self.every);

@@ -1,7 +1,7 @@
-//! A known weight on the object: what it adds to the force, and the tilt of the plane that it tells from an eccentric mass.
+//! A known weight hung on the object: its force, and the tilt of the plane, which it separates from an eccentric mass.
 //!
-//! The weight of what is hung on is known and its direction is gravity's: a tilted plane turns its force as it turns that of the object, an
-//! eccentric mass leaves it alone.
+//! Magnitude and direction of the hung weight are known. A tilted plane rotates its force as it rotates that of the
+//! object. An eccentric mass does not.
 
 use super::candidate::Candidate;
 use super::track::{Place, Row, Track};
@@ -21,9 +21,9 @@ const STEEPEST: f64 = 0.6;
 pub struct Hung {
     /// Its largest force along the coordinate, N (N m for angles).
     pub force: f64,
-    /// What it adds to the inertia, kg (kg m²).
+    /// Its inertia, kg (kg m²).
     pub inertia: f64,
-    /// Coordinate at which its lever is level, rad; a crank's comes out of its position.
+    /// Coordinate at which its lever is horizontal, rad. A crank's follows from its position.
     pub level_rad: f64,
 }
 
@@ -49,7 +49,7 @@ fn stated(recording: &Recording, name: &str) -> Option<f64> {
     recording.meta.known.get(name).copied().filter(|v| v.is_finite() && *v > 0.0)
 }
 
-/// What was hung on in a row's recording.
+/// Weight hung on in a row's recording.
 fn of(track: &Track, row: &Row) -> Option<Hung> {
     track.hung.get(row.recording).copied().flatten().filter(|_| row.place == Place::Along)
 }
@@ -93,12 +93,13 @@ impl Plain {
         Self {
             columns,
             y: track.rows.iter().zip(known).map(|(r, k)| r.y - k).collect(),
-            // Where the direction is a guess, friction is, too.
+            // An uncertain direction makes the friction uncertain, too.
             used: column(&|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }),
         }
     }
 
-    /// What is left beside the columns and more of them, after `taken` is off; and what the additional ones come out at.
+    /// Residual RMS with additional regressors, after subtraction of `taken`, and the coefficients of the additional
+    /// ones.
     fn left(&self, more: Vec<Vec<f64>>, taken: &[f64]) -> Option<(f64, Vec<f64>)> {
         let first = self.columns.len();
         let columns: Vec<Vec<f64>> = self.columns.iter().cloned().chain(more).collect();
@@ -108,7 +109,7 @@ impl Plain {
     }
 }
 
-/// Crank: all that hangs is turned by the tilt, the object's own weight and what was hung on.
+/// Crank: the tilt rotates all weights, the object's own and the hung one.
 fn tilted_crank(track: &Track, known: &[f64]) -> Option<Candidate> {
     let plain = Plain::of(track, known);
     let turned = |tilt: f64| -> Vec<f64> {
@@ -127,7 +128,7 @@ fn tilted_crank(track: &Track, known: &[f64]) -> Option<Candidate> {
     // Around a tilt, in steps: the one that leaves least, and the weight that goes with it.
     let best = |around: f64, step: f64| {
         let tried = (-STEPS..=STEPS).filter_map(|k| {
-            // Never exactly none: the column is what one radian of it does.
+            // The tilt is never exactly zero, because the regressor is the effect per radian.
             let tilt = around + step * (f64::from(k) + 0.05);
             let tilted = turned(tilt);
             let (left, values) = plain.left(vec![tilted.clone()], &hung_on(&tilted))?;

@@ -1,6 +1,7 @@
-//! A force that comes late by more than a row: a straight line in the delay is then no good, so the force is put back to when it was, by what
-//! was found, and all is asked again (Gauss and Newton's step with the recording itself). A delay as long as what a hand does in a moment
-//! is not seen by that line at all: it is looked for by shifting the rows' forces against their motion ([`guess_s`]).
+//! Time delay of the force by more than a row. A linear regressor in the delay is then inaccurate. The force is shifted
+//! back by the delay found and the diagnosis repeated: a Gauss-Newton step with the recording itself. The linear
+//! regressor does not detect a delay as long as a hand's movement. A shift of the rows' forces against their motion
+//! finds it ([`guess_s`]).
 
 use super::force::Model;
 use super::generic::generic;
@@ -43,7 +44,7 @@ pub fn undo(
             return first;
         }
         let back: Vec<Recording> = recordings.iter().map(|r| put_back(r, back_s)).collect();
-        // Where nothing sensible is left the first answer stands.
+        // If the repetition fails, the first answer remains.
         let Ok(now) = ask(&back) else { return first };
         late_s = back_s + now.rest_s.map_or(0.0, |[more, _]| more);
         found = Some(now);
@@ -51,7 +52,7 @@ pub fn undo(
             break;
         }
     }
-    // What was not named before must make it good.
+    // A delay that was not named must improve the residual clearly.
     let most = told(&first).end.heldout_rms_n * if named_s.is_some() { AS_GOOD } else { BETTER };
     let sure = |found: &Diagnosis| found.rest_s.is_none_or(|[_, error]| late_s.abs() > SURE * error);
     match found.filter(|found| told(found).end.heldout_rms_n < most && (named_s.is_some() || sure(found))) {
@@ -77,11 +78,11 @@ fn period_s(recording: &Recording) -> Option<f64> {
 
 /// A delay that was not named at first is so many times its error at least.
 const SURE: f64 = 5.0;
-/// What is left with the forces put back, as a share of what was left before: at most this where the delay was named, …
+/// Largest ratio of residuals, after over before the shift, if the delay was named.
 const AS_GOOD: f64 = 1.1;
-/// … and this where it was not.
+/// The same ratio if the delay was not named.
 const BETTER: f64 = 0.95;
-/// What makes a guess worth asking all again.
+/// Demands on a guess for a repetition of the diagnosis.
 const GUESS: Demands = Demands { longest_s: 0.09, enough: 0.5, leaves: 0.85, likelier: 60.0 };
 
 /// The delay with which a plain model, anything that goes with the place and anything slow leave least, if it is one that matters.
@@ -99,7 +100,7 @@ struct Moved<'a> {
     rows: Vec<usize>,
     /// Laws that go with the load, which moves with the force.
     loads: Vec<Effect>,
-    /// What goes with the motion alone, one entry a row of the track.
+    /// Regressors that depend on the motion alone, one entry per row of the track.
     motion: Vec<Vec<f64>>,
 }
 
@@ -143,7 +144,7 @@ impl<'a> Moved<'a> {
     /// Power that is left a row with the forces of so many rows later, and rows.
     fn left(&self, by: isize) -> Option<(f64, f64)> {
         let (moved, picked) = self.later(by);
-        // What the sign's guess is worth, squared: its fourth power weighs the squares.
+        // Square of the direction's estimate: weights of the squares are its fourth power.
         let root: Vec<f64> = moved.iter().map(|row| row.motion.direction.powi(2)).collect();
         let weighted = |column: &mut dyn Iterator<Item = f64>| -> Vec<f64> {
             column.zip(&root).map(|(value, root)| value * root).collect()

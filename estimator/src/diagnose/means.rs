@@ -1,4 +1,4 @@
-//! Means over the rows of a track: what many columns have in common is worked out once.
+//! Means over the rows of a track, with the parts that many regressors share computed once.
 
 use super::track::{Place, Row, Span, Track, Weighing};
 use haptics::law::{Effect, Motion};
@@ -6,12 +6,13 @@ use haptics::law::{Effect, Motion};
 /// Rows no longer than this are short for what depends on the place, s.
 const SHORT_S: f64 = 0.015;
 
-/// Whether the rows are short for what depends on the place.
+/// True if the rows are short for effects of position.
 pub fn is_short(track: &Track) -> bool {
     track.period_s <= SHORT_S
 }
 
-/// The force of a law of the place, and of the direction at most in proportion, like [`column`]: within a short row it is as good as straight.
+/// Force of a law of position that depends on the direction in proportion, if at all, like [`column`]. Within a short
+/// row it is nearly linear.
 pub fn column_of_place(track: &Track, effect: &Effect) -> Vec<f64> {
     if !is_short(track) {
         return column(track, effect);
@@ -20,7 +21,7 @@ pub fn column_of_place(track: &Track, effect: &Effect) -> Vec<f64> {
     track.rows.iter().map(of).collect()
 }
 
-/// The force of a law with its linear parameters at one (only the first, where it has several), 0 in free rows.
+/// Force of a law with its linear parameters at one (only the first, if it has several), 0 in free rows.
 pub fn column(track: &Track, effect: &Effect) -> Vec<f64> {
     match at_points(track, effect) {
         Some(felt) => of_points(track, &felt, |row| effect.force(&row.motion)),

@@ -33,8 +33,8 @@ pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<
 
 fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     let (mut found, mut rest_s) = mechanism_as_it_is(recordings, options)?;
-    // What is no delay, a part of a sample, is taken out of the motion itself: a stiff loop's force changes too fast for a straight line, which
-    // says too much of it.
+    // A delay of a fraction of a sample between channels is removed from the motion itself. The force of a stiff loop
+    // changes too fast for a linear regressor, which overestimates it.
     for _ in 0..CLOSER {
         let Some(more_s) = rest_s else { break };
         let skew_s = found.skew_s + OF_SKEW * more_s;
@@ -124,7 +124,7 @@ pub fn known_laws(recording: &Recording, coordinate: Coordinate, model: &mut Mod
     fixed
 }
 
-/// What was found, on another recording of the same mechanism.
+/// Validates the found causes on another recording of the same mechanism.
 pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
     let recording = &late::motion_apart(&late::put_back(recording, diagnosis.late_s), diagnosis.skew_s);
     let along = diagnosis.along.ok_or_else(|| along::none(recording))?;

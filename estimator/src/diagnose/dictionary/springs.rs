@@ -1,4 +1,4 @@
-//! What draws to a place or keeps from it: springs, walls and cables.
+//! Candidates that pull to a place or push away from it: springs, walls and cables.
 
 use super::super::candidate::{Candidate, Searched, Shape};
 use super::{Dictionary, position};
@@ -54,7 +54,7 @@ impl Dictionary<'_> {
             let pull = self.law_of_place(&Cable, &[1.0, rest, direction, reach * radius, radius]);
             let cable = Candidate::of("added-constraint", Kind::Plant, vec![pull], vec![("k", "N/m")]).positive();
             let mut cable = cable.at("anchor direction", direction, "rad").at("rest length", rest, "m");
-            // How far away the anchor is hardly shows.
+            // The distance of the anchor hardly affects the force.
             cable.searched.push(Searched { name: "anchor distance", value: reach * radius, unit: "m" });
             all.push(cable);
         }

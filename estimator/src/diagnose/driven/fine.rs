@@ -1,5 +1,5 @@
-//! Columns that have a memory or a jump, worked out at the recording's own rate and then put through the filter that the channels went
-//! through: worked out on the rows they would have the corners that the rows have lost.
+//! Regressors of laws with memory or a jump, computed at the recording's own rate and then passed through the filter of
+//! the channels. Computed on the rows they would keep corners that the filtered rows have lost.
 
 use crate::signal::noise::white_noise;
 use crate::signal::task::{half_width, smooth, smooth_value};
@@ -50,7 +50,7 @@ impl Fine {
         self.rows(&signs)
     }
 
-    /// What the output lacks of the input behind a gap of twice `half` (the play operator).
+    /// Lost motion of the output behind a gap of twice `half` (the play operator).
     pub fn lost(&self, half: f64) -> Vec<f64> {
         let mut place = self.input[0];
         let series: Vec<f64> = self
@@ -89,7 +89,7 @@ impl Fine {
 mod tests {
     use super::*;
 
-    /// One stroke to and fro in a second, at 200 Hz.
+    /// Back-and-forth strokes of one second, at 200 Hz.
     fn strokes() -> (Vec<f64>, Vec<f64>) {
         let time_s: Vec<f64> = (0..800).map(|i| 0.005 * f64::from(i)).collect();
         let input = time_s.iter().map(|t| 0.5 * (std::f64::consts::TAU * t).sin()).collect();

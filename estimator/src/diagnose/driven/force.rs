@@ -27,9 +27,9 @@ fn sure(seen: &Seen, usual: f64) -> Vec<usize> {
 /// The comparison, and what goes with it.
 pub struct Force {
     pub side: Side,
-    /// How well friction is told from the load.
+    /// Separability of friction and load.
     pub told: Option<Told>,
-    /// What the input does on its own.
+    /// Free-run model of the input.
     pub input: Input,
 }
 

@@ -9,19 +9,19 @@ use haptics::law::{
     CoulombFriction, Effect, Hysteresis, Inertia, LoadFriction, Motion, QuadraticDrag, ReturnSpring, ViscousFriction,
 };
 
-/// What is compared of a transmission's force, as a motion.
+/// Free-run simulation of a transmission's input.
 pub struct Input {
     rows: Vec<Row>,
     stretch: Vec<usize>,
     unit: &'static str,
-    /// Which column of the model is the acceleration: what it comes out at is the inertia.
+    /// Index of the acceleration among the model's regressors. Its coefficient is the inertia.
     inertia: usize,
-    /// Middle of its way, where a spring is without force by its column.
+    /// Middle of its travel, the position at which the regressor of a spring is zero.
     middle: f64,
 }
 
 impl Input {
-    /// `unit`: of the force; `inertia`: which column of the model is the acceleration.
+    /// `unit`: of the force; `inertia`: index of the acceleration among the model's regressors.
     pub fn new((rows, stretch): (&[Row], &[usize]), unit: &'static str, inertia: usize, seen: &Seen) -> Self {
         let (low, high) = seen.ends();
         Self { rows: rows.to_vec(), stretch: stretch.to_vec(), unit, inertia, middle: 0.5 * (low + high) }
@@ -44,7 +44,7 @@ impl Input {
         for (candidate, own) in causes(study, picks, values) {
             match candidate.id {
                 "coulomb-friction" => dry += own[0],
-                // What bends before it slides is taken from what slides at once.
+                // Friction that bends before it slides is part of the dry friction, and is subtracted from it.
                 "hysteresis" => {
                     let way = candidate.searched.first().map_or(0.0, |s| s.value).max(1e-12);
                     dry -= own[0];

@@ -20,7 +20,7 @@ pub struct Row {
     pub load: Option<f64>,
 }
 
-/// Names of the columns of one kind of coordinate, and its units.
+/// Names of the channels of one kind of coordinate, and its units.
 pub struct Columns {
     pub input: &'static str,
     pub output: &'static str,
@@ -55,7 +55,7 @@ impl Seen {
         Self { rows: rows.concat(), fine, step }
     }
 
-    /// One column out of a series of every recording, at some of the rows.
+    /// A regressor made from a series of every recording, at some of the rows.
     pub fn column(&self, kept: &[usize], of: &dyn Fn(&Fine) -> Vec<f64>) -> Vec<f64> {
         let all: Vec<f64> = self.fine.iter().flat_map(of).collect();
         kept.iter().map(|i| all[*i]).collect()
@@ -150,5 +150,5 @@ pub fn spread(values: &[f64]) -> f64 {
 
 /// Rows come at about this rate, Hz.
 pub const ROW_HZ: f64 = 50.0;
-/// Fewer rows, as a share, would not stand for a recording.
+/// Least share of rows that still represents a recording.
 const FEW: f64 = 0.5;

@@ -1,4 +1,4 @@
-//! Half gaps and ways of a bend: a grid over what the input goes, and closer and closer about what was found there.
+//! Search grids for half gaps and presliding distances: over the input's travel, then finer around the values found.
 
 use crate::diagnose::geometry::Study;
 use crate::diagnose::searched::known;
@@ -13,7 +13,7 @@ const STEPS: i32 = 5;
 /// A value is closed in on only while it is known to this share of the distance between those that were tried: between closer ones nothing tells them apart.
 const SHARPER: f64 = 0.3;
 
-/// Half gaps, or ways of a bend, that are tried: more closely about what was found.
+/// Tried half gaps or presliding distances, finer around a value found.
 pub struct Tried {
     id: &'static str,
     values: Vec<f64>,
@@ -29,7 +29,7 @@ impl Tried {
         &self.values
     }
 
-    /// Adds values in these steps about the one that was found; false where that would tell nothing.
+    /// Adds values in these steps around the one found; false if finer values would not improve the estimate.
     fn close_in(&mut self, study: &Study, step: f64) -> bool {
         let Some(k) = study.chosen.iter().position(|c| study.candidates[c.candidate].id == self.id) else {
             return false;

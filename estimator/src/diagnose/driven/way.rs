@@ -15,11 +15,11 @@ use haptics::law::Kind;
 
 /// A gap that makes up a smaller share of the lost motion, or a larger one, is not what its name says.
 const SHARES: [f64; 2] = [0.1, 2.0];
-/// What moves the output by less than so many times its noise, or than this share of its sensor's steps, is not told from those steps: an output that
-/// waits shows one and the same of them.
+/// Least effect on the output, in multiples of its noise and as a share of its sensor's steps. A smaller one cannot be
+/// distinguished from the steps: an output at rest reads one and the same step.
 const NOISES: f64 = 2.0;
 const STEPS_OF_SENSOR: f64 = 0.5;
-/// Clocks of two sensors differ by this, and what filters them: an output that is no later is not late, s.
+/// Difference of the clocks and filters of two sensors, s: a smaller delay is none.
 const CLOCKS_DIFFER_S: f64 = 3e-4;
 
 /// The output against the input.
@@ -33,7 +33,7 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
     base.push(of(&|r| r.input));
     let lever = ratio(rows);
     let share = Shape::Share { least: SHARES[0] * lever, whole: f64::NEG_INFINITY, most: SHARES[1] * lever };
-    // What moves the output by so little may be the steps of its sensor.
+    // A smaller motion of the output may be due to the steps of its sensor.
     let noise = white_noise(&rows.iter().map(|r| r.output).collect::<Vec<_>>());
     let least =
         |column: &[f64]| (NOISES * noise).max(STEPS_OF_SENSOR * seen.step) / spread(column).max(f64::MIN_POSITIVE);
@@ -109,7 +109,7 @@ pub fn as_of_input(
     found
 }
 
-/// Share of a candidate's first column, as the comparison sees it, that is noise.
+/// Noise share of a candidate's first regressor after whitening.
 fn noise_of_own(study: &Study, candidate: usize) -> f64 {
     let system = &study.system;
     let first = system.places[candidate].start;

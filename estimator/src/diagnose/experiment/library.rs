@@ -3,7 +3,7 @@
 /// One movement: to where, how fast, how long a rest after it, and the push across at its end.
 #[derive(Clone, Copy, Debug)]
 pub struct Move {
-    /// Where it ends, in half ranges from the middle.
+    /// Target position, in half ranges from the middle.
     pub to: f64,
     /// Its fastest speed, in those of the experiment.
     pub pace: f64,
@@ -36,7 +36,7 @@ fn one_of<const N: usize>(of: [f64; N], k: usize) -> f64 {
     of[k % N]
 }
 
-/// What is hung on is moved slowly: its inertia is no question.
+/// Slow motion with a hung weight: its inertia does not matter.
 pub const HANG: Excitation = Excitation {
     id: "hang-weight",
     words: "turn slowly to and fro over the whole range, and let go for a second before and after",

@@ -5,7 +5,7 @@ use crate::diagnose::report::Experiment;
 
 /// Peak over mean speed of a movement from rest to rest.
 const PEAK: f64 = 1.875;
-/// Nobody moves to and fro faster than this, s a movement.
+/// Shortest duration of a back-and-forth movement, s.
 const SHORTEST_S: f64 = 0.25;
 
 /// Position and push across, in units of the experiment, at a time.
@@ -41,7 +41,7 @@ impl Course {
     }
 }
 
-/// Where an experiment wants the object, and how hard it is pushed across its motion.
+/// Target of an experiment: position of the object and transverse push.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     /// Length in m, or angle in rad: as in the [`Experiment`].
@@ -71,7 +71,7 @@ impl Strokes {
         Some(Self { course, middle: asked.middle, half_range: asked.half_range, across_n: asked.across_n })
     }
 
-    /// What is wanted so long after the object was taken, s.
+    /// Target at this time after the object was taken, s.
     pub fn at(&self, time_s: f64) -> Stroke {
         let (place, across) = self.course.at(time_s.max(0.0));
         Stroke { coordinate: self.middle + self.half_range * place, across_n: self.across_n * across }

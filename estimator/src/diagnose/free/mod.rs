@@ -1,8 +1,10 @@
-//! What moves without a force column: nothing drives it, so its laws and its inertia must add up to nothing.
+//! Free motion, without a force channel. No external force acts, so the forces of the laws and of the inertia sum to
+//! zero.
 //!
-//! The rows are those of a mechanism with a force of zero and a known inertia: what the laws must give is then minus what the mass needs,
-//! −I a. The acceleration carries the most noise, so it stands on that side alone. Only ratios to the inertia show; what the sidecar (or the
-//! world) knows gives them their size, as in a fit (`identify/mechanism/free.rs`). All values are proportional to the inertia.
+//! The rows are those of a mechanism with zero force and a known inertia: the laws must equal −I a. The acceleration
+//! has the most noise, so it is the target. The data determine only ratios to the inertia. Values known from the
+//! sidecar or the world set the scale, as in a fit (`identify/mechanism/free.rs`). All values are proportional to the
+//! inertia.
 
 mod rows;
 mod words;
@@ -28,13 +30,13 @@ use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 pub(super) use rows::track;
 
-/// What goes no larger a share of its way back goes one way.
+/// Share of backward travel up to which a motion counts as one-way.
 const ONE_WAY: f64 = 0.02;
-/// What swings goes back at least this share of its way …
+/// Least share of backward travel of a swing.
 const BACK: f64 = 0.1;
-/// … and gravity of any phase then explains so much of its acceleration's power at least.
+/// Least share of the acceleration's power that gravity of any phase explains in a swing.
 const SWINGS: f64 = 0.5;
-/// A known parameter gives the scale where its ratio to the inertia is so many standard errors.
+/// Standard errors from which the ratio of a known parameter to the inertia sets the scale.
 const CLEAR: f64 = 3.0;
 /// Causes that only a force sensor shows, or only a force that drives.
 const WITH_A_FORCE: [&str; 9] = [
@@ -49,7 +51,7 @@ const WITH_A_FORCE: [&str; 9] = [
     "backlash",
 ];
 
-/// Whether no recording has a force along its coordinate. `paths`: of tools whose coordinate is counted along one.
+/// True if no recording has a force along its coordinate. `paths`: of tools whose coordinate is measured along one.
 ///
 /// # Errors
 /// Recordings of both kinds, or without coordinate or clock: in a sentence.
@@ -69,7 +71,7 @@ pub(super) fn is_free(recordings: &[Recording], paths: &[Option<MechanismPath>])
 /// Causes that are friction, or its course with the speed, in what goes one way and slows down.
 const WITH_BOTH_WAYS: [&str; 3] = ["friction-asymmetry", "gravity-tilt", "friction-change"];
 
-/// Whether a free motion can show a cause at all. `both_ways`: whether it goes both ways.
+/// True if a free motion can show a cause at all. `both_ways`: the motion has both directions.
 pub(super) fn can_show(id: &str, both_ways: bool) -> bool {
     !WITH_A_FORCE.contains(&id) && (both_ways || !WITH_BOTH_WAYS.contains(&id))
 }
@@ -80,7 +82,7 @@ fn ways(track: &Track) -> [f64; 2] {
     [way(1.0), way(-1.0)]
 }
 
-/// Whether it goes both ways.
+/// True if the motion has both directions.
 pub(super) fn goes_both_ways(track: &Track) -> bool {
     let [forward, backward] = ways(track);
     forward.min(backward) > ONE_WAY * (forward + backward)
@@ -102,7 +104,7 @@ pub(super) fn diagnose(
     let mut study = force::study(&mut track, &model, &fixed, limit)?;
     options.progress.tell(0.6)?;
     if let Scale::ByRatio(stated) = scale {
-        // Beside what was found: a hidden spring would pass for gravity.
+        // Estimated together with the causes found: a hidden spring would look like gravity.
         match inertia_by(stated, &model, &study) {
             Some((inertia, relative_error)) => {
                 set(&mut track, inertia, relative_error);
@@ -164,7 +166,7 @@ fn gravity(track: &Track, first: &Recording) -> Model {
     [[1.0, 0.0], [0.0, 1.0]].map(|values| Effect::new(&EccentricMass, &values)).to_vec()
 }
 
-/// Whether it goes to and fro, and gravity explains how.
+/// True if the motion swings back and forth under gravity.
 fn swings(track: &Track) -> bool {
     let along = |of: &dyn Fn(&Row) -> f64| -> Vec<f64> { track.along().map(|i| of(&track.rows[i])).collect() };
     let [forward, backward] = ways(track);
@@ -177,7 +179,7 @@ fn swings(track: &Track) -> bool {
     explains && forward.min(backward) > BACK * (forward + backward)
 }
 
-/// Where the inertia comes from.
+/// Source of the inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Scale {
     /// The world or the sidecar states it.
@@ -237,7 +239,7 @@ fn keep_known(track: &mut Track, first: &Recording, model: &mut Model, gave: Opt
     free.known = [kept.next(), kept.next()];
 }
 
-/// What is known of the forces: that of the mass, and friction that the sidecar states.
+/// Known forces: that of the inertia, and friction that the sidecar states.
 fn fixed(track: &Track) -> Model {
     let Some(free) = track.freely else { return Model::new() };
     std::iter::once(Effect::new(&Inertia, &[free.inertia])).chain(free.known.into_iter().flatten()).collect()

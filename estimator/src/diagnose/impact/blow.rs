@@ -31,15 +31,17 @@ const TOGETHER: f64 = 0.1;
 const SLOW_M_S: f64 = 0.4;
 /// Fewer blows show nothing.
 const LEAST_BLOWS: usize = 8;
-/// A blow that is so many times as far from what blows usually leave as they scatter was two: a second corner hit before the next sample.
+/// Deviation of a blow from the usual ones, in units of their scatter, from which it was two blows: a second corner hit
+/// before the next sample.
 const TWO: f64 = 4.0;
-/// Where the usual blow is off one restitution by this share of its speed, most of them were several blows: they tell none.
+/// Deviation of the usual blow from one restitution, as a share of its speed, above which most were several blows. They
+/// then determine none.
 const MIXED: f64 = 0.25;
-/// Scatter of a normal over its median size.
+/// Ratio of a normal distribution's standard deviation to its median absolute value.
 const OVER_MEDIAN: f64 = 1.4826;
-/// Where between two samples the ground lets go is not seen: the share of a step that it may push on for (an even spread's standard deviation).
+/// Share of a sampling step for which the ground may push on unseen (standard deviation of a uniform distribution).
 const UNSEEN: f64 = 0.29;
-/// Score that makes a cause.
+/// Least evidence of a cause.
 pub const THRESHOLD: f64 = 20.0;
 
 /// Compares what impacts leave of the speed. `restitution`: that of the model. `None` where too few blows are clear. The number is the error of a
@@ -77,7 +79,7 @@ pub fn blow(
     };
     let study = channel.compare(THRESHOLD)?;
     let floor = study.solved.as_ref().map_or(0.0, |s| (s.rss / study.system.rows.max(1.0)).sqrt());
-    // What the model starts from is remembered in the unit of the parameter: see `states`.
+    // The model's restitution is kept in the unit of the parameter: see `states`.
     let mut study = study;
     for candidate in &mut study.candidates {
         candidate.searched.push(crate::diagnose::candidate::Searched {
@@ -106,7 +108,7 @@ fn without_second_blows(pairs: Vec<(f64, f64)>) -> (Vec<(f64, f64)>, f64) {
     (pairs.into_iter().filter(|pair| off(pair) <= TWO * scatter_m_s).collect(), scatter_m_s)
 }
 
-/// What a cause in the impacts is best seen against.
+/// Variable that best shows a cause in the impacts.
 pub fn best_seen(_: &str) -> Variable {
     Variable::Velocity
 }
@@ -141,7 +143,7 @@ fn corner(track: &Track, half_m: f64, fall_m_s2: f64) -> Option<(f64, f64)> {
     (down < -SLOW_M_S).then_some((down, rebound))
 }
 
-/// Where a first blow is, and the free flight on either side of it.
+/// A first blow, and the free flight on either side of it.
 struct Beside {
     hit: usize,
     before: Range<usize>,
@@ -165,7 +167,7 @@ fn around(track: &Track, fall_m_s2: f64) -> Option<Beside> {
     };
     let mut first: Vec<f64> = (reach..least).map(kick).collect();
     first.sort_by(f64::total_cmp);
-    // What the tracker's noise makes of free flight.
+    // Effect of the tracker's noise on free flight.
     let noise = first.get(first.len() / 2)?;
     let hit = (reach..n - reach).find(|i| kick(*i) > BLOW_M_S.max(4.0 * noise))?;
     let over = (hit + 1..n - reach).find(|i| kick(*i) < STILL_M_S.max(3.0 * noise))?;
@@ -179,14 +181,14 @@ fn around(track: &Track, fall_m_s2: f64) -> Option<Beside> {
     })
 }
 
-/// When two free flights met, s after `at_s`: a blow changes the velocity, not the place.
+/// Time at which two free flights met, s after `at_s`. A blow changes the velocity, not the position.
 fn met(falls: &Free, rises: &Free, at_s: f64, step_s: f64, reach: usize) -> f64 {
     let faster = falls.speed_m_s - rises.speed_m_s;
     if faster.abs() < SAME_M_S {
         return 0.0;
     }
     let since = (rises.at_zero_m() - falls.at_zero_m()) / faster;
-    // Where it was told.
+    // Limited to the interval in which the blow was detected.
     (since - at_s).clamp(-step_s, 2.0 * reach as f64 * step_s)
 }
 
@@ -224,7 +226,7 @@ pub fn states(candidate: &Candidate, found: &[CauseParameter], pushed: f64) -> V
     found.first().map(|p| parameter("e", model + p.value, p.std_error.hypot(pushed), "1")).into_iter().collect()
 }
 
-/// What in the residual shows a cause.
+/// Sentence on how the residual shows a cause.
 pub fn shows(found: &Found<'_>) -> String {
     let (value, error) = found.parameters.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
     format!("the corner that hits first leaves with {value:.3} ± {error:.3} of the speed it came with")

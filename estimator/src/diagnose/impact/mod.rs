@@ -1,5 +1,5 @@
-//! Diagnosis of a thrown body: what its falls, its impacts and its slides say against a simulation that has the right lengths, loses
-//! nothing at an impact and slides without friction (or has the floor of `--world`).
+//! Diagnosis of a thrown body. Its falls, impacts and slides are compared with a simulation with the right lengths,
+//! lossless impacts and no sliding friction, or with the floor of `--world`.
 
 mod blow;
 mod fall;
