@@ -1,4 +1,4 @@
-//! Why the other causes were not named: what each would have explained, alone and beside what was found.
+//! Causes that were not named, with the reason: evidence of each alone, and beside the causes found.
 
 use super::candidate::Candidate;
 use super::geometry::Study;
@@ -67,7 +67,7 @@ impl Judge<'_> {
             (None, None) => "it would need a sign that it cannot have".to_owned(),
             _ => self.words(alone.unwrap_or(f64::NEG_INFINITY), beside),
         };
-        // What cannot be had counts as nothing.
+        // Evidence that cannot be computed counts as zero.
         let shown = |score: Option<f64>| score.unwrap_or(0.0);
         PassedOver { id: id.to_owned(), alone: shown(alone), beside: shown(beside), least: self.least, why }
     }

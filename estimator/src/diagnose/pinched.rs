@@ -1,7 +1,7 @@
-//! Mirrored axes of two fingers that hold something between them: what is held pushes back along the line between the tips, keeps its width
-//! while it is carried, moves with both, and weighs down on both once it is lifted.
+//! Mirrored axes of two fingers that hold an object between them. The object pushes back along the line between the
+//! tips, keeps its width while carried, moves with both, and weighs down on both once it is lifted.
 //!
-//! These are laws of any grip, whatever is gripped, so they are asked before the recording is taken apart into states.
+//! These laws hold for any grip and object, so they are tested before the recording is segmented.
 
 use super::quality;
 use super::report::Cause;
@@ -15,19 +15,19 @@ use std::ops::Range;
 
 /// Both fingers press when each has this share of the usual grip …
 const PRESSING: f64 = 0.3;
-/// … and so many times the noise.
+/// Least grip force, in standard deviations of the noise.
 const OVER_NOISE: f64 = 10.0;
 /// Fewer samples of a grip tell nothing.
 const LEAST_SAMPLES: usize = 20;
-/// Forces that go together like this, or more, do not hold anything between them.
+/// Correlation of the two forces from which nothing is held between the fingers.
 const TOGETHER: f64 = 0.8;
-/// What must move how far in a grip, m, to be looked at, and how much less what stays the same must move.
+/// Least travel in a grip, m, and the largest motion of a constant dimension relative to it.
 const TRAVEL_M: f64 = 2e-3;
 const STAYS: f64 = 0.1;
-/// Within this of where it was gripped an object stands, m; beyond this share of its rise it is lifted.
+/// Rise up to which an object still stands, m, and share of its rise from which it is lifted.
 const STANDS_M: f64 = 5e-4;
 const LIFTED: f64 = 0.6;
-/// How much more the difference of the vertical forces must change at a lift than their sum.
+/// Least ratio of the changes at a lift: difference of the vertical forces over their sum.
 const DIFFERS: f64 = 2.0;
 
 /// A channel of each finger along one axis.
@@ -59,10 +59,10 @@ struct Found {
     why: String,
 }
 
-/// The stretches in which both fingers press, and what the fingers read.
+/// Segments in which both fingers press, and the signals of the fingers.
 struct Grips {
     spans: Vec<Range<usize>>,
-    /// What counts as pressing, N.
+    /// Threshold of pressing, N.
     least_n: f64,
     x: Pair,
     y: Pair,
@@ -148,7 +148,7 @@ impl Grips {
         usize::from(self.mean(|i| self.x[1][i] + self.x[0][i]) < 0.0)
     }
 
-    /// The finger that goes down first once something is gripped: what stands can only be lifted.
+    /// The finger that moves down first in a grip: a standing object can only be lifted.
     fn sinking(&self) -> usize {
         let first = self.spans.iter().find_map(|span| {
             let moved = |i: &usize| (self.y[0][*i] - self.y[0][span.start]).abs() > TRAVEL_M;
@@ -157,7 +157,7 @@ impl Grips {
         usize::from(first.is_some_and(|rise| rise > 0.0))
     }
 
-    /// A finger that pushes alone: it pushes away from itself, and what gives way goes with it.
+    /// A finger that pushes alone: it pushes away from itself, and a yielding object moves with it.
     fn alone(&self, recording: &Recording) -> Option<Found> {
         for k in [0, 1] {
             let size = |k: usize, i: usize| self.fx[k][i].hypot(self.fy[k][i]);
@@ -199,7 +199,7 @@ impl Grips {
         }
         let pulls = [self.mean(|i| one[i]) < 0.0, self.mean(|i| two[i]) > 0.0];
         if self.mean(|i| self.x[1][i] - self.x[0][i]) <= 0.0 {
-            // The first finger is the left one: pressing to the right, it stands to the right.
+            // The first finger is the left one. If it presses to the right, its tip is on the right of the other.
             let both = pulls == [false, false] && recording.channel("x1_m").is_some();
             let why =
                 "while both fingers press, the first one stands to the right of the other and pushes to the right"
@@ -244,7 +244,7 @@ impl Grips {
         Some(Found { axes, why })
     }
 
-    /// What the vertical forces gain in a grip between where something stands and where it is lifted to.
+    /// Changes of the vertical forces in a grip between the standing and the lifted object.
     fn lift(&self, span: &Range<usize>) -> Option<Lift> {
         let height = |i: usize| 0.5 * (self.y[0][i] + self.y[1][i]);
         let start = height(span.start);
@@ -262,7 +262,7 @@ impl Grips {
 
 /// One lift.
 struct Lift {
-    /// What the vertical force of either finger gained, N.
+    /// Change of the vertical force of either finger, N.
     gained_n: [f64; 2],
     /// It went down, as recorded.
     downwards: bool,

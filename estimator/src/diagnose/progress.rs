@@ -1,4 +1,4 @@
-//! How far a diagnosis has come, and the wish to end it.
+//! Share of a diagnosis that is done, and the wish to end it.
 
 use crate::estimate::EstimateError;
 use std::fmt;

@@ -36,7 +36,7 @@ struct Units {
 static ROUND: Units = Units { force: "N m", place: "rad", per_place: "N m/rad", per_cube: "N m/rad³" };
 static STRAIGHT: Units = Units { force: "N", place: "m", per_place: "N/m", per_cube: "N/m³" };
 
-/// Part of the way of one recording.
+/// One part of the path of a recording.
 #[derive(Clone, Debug)]
 struct Row {
     recording: usize,
@@ -45,17 +45,17 @@ struct Row {
     direction: f64,
     /// Along the coordinate, N or N m.
     force: f64,
-    /// What one estimate of the force says, and the other one beside it, N.
+    /// Measured force, and the second estimate of it, N.
     measured_n: [f64; 3],
     second_n: Option<[f64; 3]>,
 }
 
-/// Whether this is what [`pulled`] is for.
+/// True if [`pulled`] handles these recordings.
 pub fn is_pulled(recordings: &[Recording]) -> bool {
     recordings.iter().all(|r| r.time_s.is_none() && path::points(r).is_some())
 }
 
-/// What depends on speed.
+/// Causes that depend on speed or time.
 fn without_a_clock() -> impl Iterator<Item = NotExcited> {
     ["inertia", "viscous-friction", "time-delay"]
         .into_iter()
@@ -162,14 +162,14 @@ fn in_the_atlas(
     found
 }
 
-/// What the force along the way is seen against.
+/// Variables of the plots of the force along the path.
 fn view(rows: &[Row]) -> View {
     let over = vec![(Variable::Place, rows.iter().map(|r| r.place).collect())];
     let way = rows.iter().map(|r| r.direction).collect();
     View { way, ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
 }
 
-/// What two forces are seen against: the rows of all three axes follow each other.
+/// Variables of the plots of two forces: the rows of all three axes follow each other.
 fn view_of_both(rows: &[Row]) -> View {
     let each =
         |f: &dyn Fn(&Row, usize) -> f64| (0..3).flat_map(|a| rows.iter().map(move |r| f(r, a))).collect::<Vec<f64>>();
@@ -198,7 +198,7 @@ fn drives_backwards(rows: &[Row]) -> bool {
     work < -0.5 * size
 }
 
-/// Equal parts of the way that was gone.
+/// Equal parts of the travelled path.
 fn parts(recording: &Recording, number: usize, seen: &path::Projected) -> Vec<Row> {
     let n = seen.position.len();
     let travelled: Vec<f64> = seen
@@ -295,7 +295,7 @@ fn along(rows: &[Row], units: &Units) -> Result<(Study, String), EstimateError> 
     Ok((channel.compare(THRESHOLD)?, falls))
 }
 
-/// What in the residual shows a cause.
+/// Sentence on how the residual shows a cause.
 fn shows(found: &Found<'_>, falls: &str) -> String {
     match found.candidate.id {
         "local-resistance" => format!("the force goes with the place: a resistance that is passed ({falls})"),
@@ -304,7 +304,7 @@ fn shows(found: &Found<'_>, falls: &str) -> String {
     }
 }
 
-/// Two estimates of one force: whether they differ by a constant, a factor or a turn.
+/// Comparison of two estimates of one force: a constant, a factor or a rotation between them.
 fn second(rows: &[Row]) -> Result<Option<(Study, f64)>, EstimateError> {
     if rows.iter().any(|r| r.second_n.is_none()) {
         return Ok(None);

@@ -6,22 +6,22 @@ use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 use haptics::recording::{Recording, Warning};
 
-/// What was found in the samples.
+/// Faults found in the samples.
 pub struct Faults {
     pub causes: Vec<Cause>,
     /// Samples that no sensor measured, one flag a sample.
     pub bad: Vec<bool>,
 }
 
-/// So many standard deviations of the noise below a rail nothing is cut.
+/// Distance of a saturation limit from the samples, in standard deviations of the noise, from which none is clipped.
 const RAIL_SIGMAS: f64 = 3.5;
 /// Kinds of warnings that are a fault of a channel.
 const CHANNEL: [&str; 7] =
     ["stuck-channel", "copied-channel", "duplicate-samples", "dropped-samples", "gap", "clock-jump", "quantised"];
-/// … of which these are about all samples: nothing can be left out.
+/// Those of them that concern all samples, so that none can be left out.
 const WHOLE: [&str; 4] = ["dropped-samples", "gap", "clock-jump", "quantised"];
 
-/// Samples lost in fewer places spoil nothing.
+/// Number of places with lost samples up to which the data remain usable.
 const MANY: usize = 3;
 
 /// Looks at the raw samples.
@@ -46,7 +46,7 @@ pub fn faults(recording: &Recording) -> Faults {
             found.causes.push(cause(id, &warning, recording));
         }
     }
-    // What is nearly all of the recording cannot be left out.
+    // Faults in most of the recording cannot be left out.
     if 2 * found.bad.iter().filter(|b| **b).count() > found.bad.len() {
         found.bad.fill(false);
     }
@@ -157,11 +157,11 @@ pub fn against_motion(which: &str) -> Cause {
     Cause { evidence, ..mirrored(which, 1.0) }
 }
 
-/// So many standard errors, and at least this share, must lengths be off for a known one to say so.
+/// Standard errors, and least relative error, from which a known length shows a wrong scale.
 const SCALE_SIGMAS: f64 = 6.0;
 const LEAST_SCALE: f64 = 2e-3;
 
-/// Lengths that are off by a share (`epsilon` with its error) against one that is known, as a cause; nothing where they agree.
+/// Scale error of lengths (`epsilon` with its standard error) against a known length, as a cause; `None` if they agree.
 pub fn scaled(known: &str, [epsilon, std_error]: [f64; 2]) -> Option<Cause> {
     let off = epsilon.abs() > LEAST_SCALE.max(SCALE_SIGMAS * std_error);
     let evidence = format!("the path is {:+.2} % off the known {known}", 100.0 * epsilon);

@@ -28,7 +28,7 @@ pub fn settle(
     }
     let mut unsettled: Vec<Pair> = Vec::new();
     for count in 1..=recordings.len() {
-        // What the first ones cannot answer at all leaves nothing open.
+        // If the first recordings cannot be diagnosed, they leave no open question.
         let made = if count < recordings.len() { ask(&recordings[..count]).ok() } else { None };
         let Some(now) = made.as_ref().or((count == recordings.len()).then_some(&*whole)) else { continue };
         let still = open(now);
@@ -39,7 +39,7 @@ pub fn settle(
             .filter_map(|(a, b)| match (has(a), has(b)) {
                 (true, false) => Some((a, b)),
                 (false, true) => Some((b, a)),
-                // Both, or neither: the question itself is gone.
+                // With both or neither, the question no longer exists.
                 _ => None,
             })
             .map(|(kept, excluded)| sentence(&recordings[count - 1].name, now, kept, excluded))

@@ -8,9 +8,9 @@ pub struct Late {
     /// By how much the forces come later than the motion, and its standard error, s; infinite where what is left has no lowest point.
     pub tau_s: f64,
     pub error_s: f64,
-    /// Whether it is more than chance.
+    /// True if it is significant.
     pub is_seen: bool,
-    /// What the plain model leaves without any delay, RMS.
+    /// Residual RMS of the plain model without a delay.
     pub plain_rms: f64,
 }
 
@@ -23,7 +23,7 @@ impl Late {
     }
 }
 
-/// How far is looked, and what makes a delay one.
+/// Range of the search, and the demands on a delay.
 #[derive(Clone, Copy, Debug)]
 pub struct Demands {
     /// Longest delay that is tried, s, both ways.
@@ -35,8 +35,8 @@ pub struct Demands {
     pub likelier: f64,
 }
 
-/// The delay that leaves least, told between the steps by the parabola through the best and its neighbours. `left`: power a row, and rows, with the forces
-/// of so many steps of `step_s` later.
+/// Delay with the smallest residual, interpolated by the parabola through the best step and its neighbours. `left`:
+/// residual power per row, and number of rows, with the forces of this many steps of `step_s` later.
 pub fn look(step_s: f64, demands: &Demands, left: &dyn Fn(isize) -> Option<(f64, f64)>) -> Option<Late> {
     let most = (demands.longest_s / step_s.max(1e-9)) as isize;
     let tried: Vec<(isize, f64, f64)> =
@@ -49,7 +49,7 @@ pub fn look(step_s: f64, demands: &Demands, left: &dyn Fn(isize) -> Option<(f64,
     let (between, error) = match (at(best - 1), at(best + 1)) {
         (Some(before), Some(after)) if before + after > 2.0 * power => {
             let bend = before + after - 2.0 * power;
-            // Twice the logarithm of the likelihood falls by one at one standard error.
+            // Twice the log likelihood falls by one at one standard error.
             ((0.5 * (before - after) / bend).clamp(-0.5, 0.5), (rows * 0.5 * bend / sure).powf(-0.5))
         }
         _ => (0.0, f64::INFINITY),

@@ -50,10 +50,10 @@ const ALONE: [&[&str]; 14] = [
     &["x1_m", "vx1_m_s"],
     &["y1_m", "vy1_m_s"],
 ];
-/// What leaves less than this many times the noise is not searched for mirrored channels: causes leave as much.
+/// Ratio of residual to noise up to which mirrored channels are not searched: other causes leave as much.
 const SENSELESS: f64 = 4.0;
 
-/// A recording with a rate that goes against its motion put right, and the name of that rate.
+/// The recording with the sign of a rate corrected that goes against its motion, and the name of that rate.
 pub fn with_rates_of_motion(recording: &Recording) -> (Cow<'_, Recording>, Option<&'static str>) {
     let against = RATES.iter().find(|(rate, of)| correlation(recording, rate, of).is_some_and(|c| c < AGAINST));
     match against {
@@ -62,7 +62,7 @@ pub fn with_rates_of_motion(recording: &Recording) -> (Cow<'_, Recording>, Optio
     }
 }
 
-/// How a recorded rate goes with the differences of what it is the rate of.
+/// Correlation of a recorded rate with the differences of its position.
 fn correlation(recording: &Recording, rate: &str, of: &str) -> Option<f64> {
     let (rate, place) = (recording.channel(rate)?, recording.channel(of)?);
     let time_s = recording.time_s.as_ref()?;
@@ -106,7 +106,7 @@ impl Looked {
     /// `bad`: samples that no sensor measured.
     ///
     /// # Errors
-    /// Missing columns, too little that is held, a path that is no circle: in a sentence.
+    /// Missing channels, too little data while held, a path that is no circle: in a sentence.
     pub fn at(recording: &Recording, bad: &[bool]) -> Result<Self, EstimateError> {
         let signals = Signals::of(recording, bad)?;
         let path = signals.path(recording);
@@ -115,13 +115,14 @@ impl Looked {
         Ok(Self { signals, circle, rows, axis })
     }
 
-    /// What a crank's model leaves of the force, N, and whether friction takes work.
+    /// Residual RMS of a crank's model, N, and true if friction dissipates work.
     fn left(&self) -> Result<(f64, bool), EstimateError> {
         force::plain_rms(&mut self.rows.clone(), &model_of(&self.circle.arm))
     }
 }
 
-/// A crank's recording with its channels put right, one by one, and what it looks like then; whole axes of the force are [`upright`]'s.
+/// A crank's recording with its channels corrected one by one, and its signals after that. [`upright`] corrects whole
+/// axes of the force.
 ///
 /// # Errors
 /// As [`Looked::at`].
@@ -158,8 +159,8 @@ pub fn of_crank<'a>(
     })
 }
 
-/// A force whose sign is that of the hand on the mechanism's other side: with it mass and friction come out negative, and every one of them for
-/// certain. The rows have it mirrored back then.
+/// Detects a force with the sign of the reaction: mass and friction are then negative, each of them significantly. The
+/// sign is corrected in the rows.
 pub fn of_mechanism(
     track: &mut Track,
     recording: &Recording,
@@ -173,25 +174,25 @@ pub fn of_mechanism(
         row.force = -row.force;
         row.force_rate = -row.force_rate;
     }
-    // A rate that went against the place, and a force that drives: it is the place that is mirrored.
+    // If a rate contradicts the position and the force drives the motion, the position is the mirrored one.
     let names: &[&str] = if rate.is_some() { &["q_m", "q_rad"] } else { &["f_N", "tau_Nm"] };
     let name = names.iter().find(|name| recording.channel(name).is_some()).unwrap_or(&"the force");
     Ok(Some(quality::driving(name)))
 }
 
-/// The thesis's crank, and gravity out of phase: a mass off the axis, or a weight that hangs on a tilted plane, may pass in few strokes for friction
-/// that drives, and leaves as much as a mirrored axis does.
+/// The thesis's crank with gravity at any phase. In few strokes, an eccentric mass or a weight on a tilted plane can
+/// look like driving friction, and leaves as large a residual as a mirrored axis does.
 fn model_of(arm: &Arm) -> force::Model {
     let mut model = plain_crank();
     model.push(Effect::new(&EccentricMass, &[1.0, 0.0, arm.radius_m]));
     model
 }
 
-/// How much better a mirrored axis must explain the force: left, of what the recorded one leaves.
+/// Largest ratio of residuals, after over before, for a mirrored axis.
 const MIRRORED_SHARE: f64 = 0.5;
 
-/// … and it leaves no more than this many times the noise, where that was seen, or this share of what was left: an effect that is large beside the
-/// noise is made smaller by many a change of sign.
+/// Largest residual of a mirrored axis, in multiples of a measured noise and as a share of the residual before. Many a
+/// change of sign reduces an effect that is large beside the noise.
 const SENSE: f64 = 4.0;
 const NEARLY_ALL: f64 = 0.1;
 
@@ -199,10 +200,10 @@ fn makes_sense((before, after): (f64, f64), track: &Track) -> bool {
     !track.noise_is_measured || after < SENSE * track.force_noise || after < NEARLY_ALL * before
 }
 
-/// What leaves less than this many times the noise makes sense as it is.
+/// Ratio of residual to noise up to which the recorded axes are plausible.
 const PLAUSIBLE: f64 = 1.8;
 
-/// The rows, with an axis of the force mirrored back where that alone makes sense of them.
+/// The rows, with an axis of the force mirrored back if only that makes them plausible.
 pub fn upright(signals: &Signals, recording: &Recording, arm: &Arm) -> Result<(Track, Option<Cause>), EstimateError> {
     let as_recorded = signals.rows(recording, arm)?;
     let model = model_of(arm);

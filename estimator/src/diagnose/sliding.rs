@@ -1,8 +1,8 @@
-//! Rows out of a recording of a mechanism: one coordinate and the force along it.
+//! Rows of a mechanism's recording: one coordinate and the force along it.
 //!
-//! Where a mass matters, force and acceleration must be seen through one and the same filter: dry friction jumps at a reversal, the
-//! acceleration jumps back, and only their sum is smooth. Every row is therefore a mean with the weights of a hat over two blocks; the
-//! mean acceleration with these weights is exactly the difference of the two blocks' mean velocities.
+//! With inertia, force and acceleration must pass through the same filter. Dry friction jumps at a reversal and the
+//! acceleration jumps back, and only their sum is smooth. Every row is therefore a mean with triangular weights over
+//! two blocks. The mean acceleration with these weights is exactly the difference of the two blocks' mean velocities.
 
 use super::fine::{FINE_HZ, between, calmed_line};
 use super::track::{Bearing, Fine, Place, Row, Span, Track, Weighing};
@@ -20,10 +20,11 @@ use haptics::world::MechanismPath;
 /// Shortest and longest block, s: nothing that a hand does is over within the longest.
 const SHORTEST_S: f64 = 0.02;
 const LONGEST_S: f64 = 0.06;
-/// Fewer samples are no stretch, in blocks.
+/// Least length of a segment, in blocks.
 const LEAST_BLOCKS: usize = 8;
 
-/// The rows of one recording. `bad`: samples that no sensor measured; `path`: where a tool's coordinate is counted along, its own if none.
+/// The rows of one recording. `bad`: samples that no sensor measured; `path`: path along which a tool's coordinate is
+/// measured, its own if `None`.
 pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) -> Result<Track, EstimateError> {
     let raw = mechanism::raw(recording, path)?;
     let force = raw.force.as_ref().ok_or_else(|| {
@@ -69,22 +70,22 @@ fn skip(period_s: f64) -> usize {
     (1.0 / (FINE_HZ * period_s)).round().max(1.0) as usize
 }
 
-/// Whether the acceleration's noise makes no more of a force than the force's own noise, in blocks of this many samples. `motion`: noise of the rates,
-/// or of the positions where no rates were recorded (`is_rate`).
+/// True if the acceleration's noise, as a force, is below the force's own noise for blocks of this many samples.
+/// `motion`: noise of the rates, or of the positions if no rates were recorded (`is_rate`).
 fn quiet([motion, force]: [f64; 2], is_rate: bool, period_s: f64, block: usize, mass: f64) -> bool {
     let (samples, length_s) = (block as f64, block as f64 * period_s);
-    // Of a block's mean velocity: of as many rates, or of the two positions at its ends.
+    // Noise of a block's mean velocity: from its rates, or from the two positions at its ends.
     let velocity = if is_rate { motion / samples.sqrt() } else { std::f64::consts::SQRT_2 * motion / length_s };
     let of_mass = mass.abs() * std::f64::consts::SQRT_2 * velocity / length_s;
     of_mass < force * averaged(block)
 }
 
-/// What a hat over two blocks leaves of white noise.
+/// Factor by which a triangular mean over two blocks reduces white noise.
 fn averaged(block: usize) -> f64 {
     (2.0 / (3.0 * block as f64)).sqrt()
 }
 
-/// Rates out of positions: central differences.
+/// Rates from positions: central differences.
 fn slopes(raw: &Raw) -> Vec<f64> {
     let n = raw.time_s.len();
     let at = |i: usize| {
@@ -98,7 +99,8 @@ fn slopes(raw: &Raw) -> Vec<f64> {
 struct Made {
     rows: Vec<Row>,
     fine: Vec<Fine>,
-    /// Of the velocity, the force and the position, and what the position's steps hide however long it stands; one set a stretch.
+    /// Noise of velocity, force and position, and the position uncertainty that the sensor's steps hide however long it
+    /// stands; one set per segment.
     noises: Vec<[f64; 4]>,
     period_s: f64,
     /// Samples a block.
@@ -252,12 +254,12 @@ mod tests {
 
     #[test]
     fn mean_velocities_of_two_blocks_differ_by_the_hats_acceleration() {
-        // A velocity of straight pieces whose slope jumps in the middle of a block.
+        // A piecewise linear velocity whose slope jumps in the middle of a block.
         let slope = |k: usize| if k < 7 { -2.0 } else { 3.0 };
         let mut velocity = vec![1.0];
         (0..20).for_each(|k| velocity.push(velocity[k] + 0.1 * slope(k)));
         let difference = (trapezoid(&velocity[10..=20]) - trapezoid(&velocity[0..=10])) / 1.0;
-        // The acceleration is constant between samples: its mean with the hat's weights, piece by piece.
+        // The acceleration is constant between samples: its mean with the triangular weights, step by step.
         let mean: f64 = (0..20)
             .map(|k| {
                 let middle = 0.1 * (k as f64 + 0.5);

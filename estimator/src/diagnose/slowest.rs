@@ -1,4 +1,4 @@
-//! How slow a motion must be for its friction to be told: what is gone through while a row is being averaged shows as its sum only.
+//! Lowest speed at which friction can be resolved: of motion within one averaged row only the sum is known.
 
 use super::report::CauseParameter;
 use super::track::{Place, Row, Track};
@@ -20,8 +20,8 @@ fn told_from(track: &Track) -> f64 {
     rates.get(rates.len() / 2).map_or(0.0, |median| median * ROWS * track.period_s)
 }
 
-/// Static friction that has fallen off before the motion is fast enough to be told shows by its area alone: its size and its speed are then open
-/// by as much as they are.
+/// Widens the standard errors of Stribeck friction that falls off below the lowest resolved speed. Only its area is
+/// then known, so its size and its speed are uncertain by as much as they are.
 pub fn widen(id: &str, parameters: &mut [CauseParameter], track: &Track) {
     if id != Stribeck.id() {
         return;

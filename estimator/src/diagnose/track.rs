@@ -6,7 +6,7 @@ use super::zero::Zero;
 use haptics::Vec2;
 use haptics::law::{Coordinate, Effect, Motion};
 
-/// What a row's force is.
+/// Kind of a row's force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     /// Along the motion, while the object is held.
@@ -15,9 +15,9 @@ pub enum Place {
     FreeX,
     /// Vertical, while nothing is touched.
     FreeY,
-    /// No force, but the way that the object gives while it stands (`stuck.rs`), times `scale`.
+    /// No force, but the displacement of a standing object (`stuck.rs`), times `scale`.
     Stuck {
-        /// What the friction holds, as a share of it.
+        /// Load on the friction as a share of it.
         share: f64,
         /// Side of the whole load: −1, 1, or 0 where it is a guess.
         side: f64,
@@ -38,7 +38,7 @@ pub struct Fine {
     pub velocity: f64,
     /// −1 … 1, as certain as the velocity is.
     pub direction: f64,
-    /// How much of the friction's square is a guess, 0 … 1.
+    /// Uncertain share of the squared friction, 0 … 1.
     pub open: f64,
 }
 
@@ -50,16 +50,16 @@ impl Fine {
     }
 }
 
-/// Which points of [`Track::fine`] a row is the mean of.
+/// Points of [`Track::fine`] over which a row is averaged.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Span {
     pub start: usize,
     pub len: usize,
-    /// How much each of them counts.
+    /// Weights of the points.
     pub weighing: Weighing,
 }
 
-/// How the points of a row are weighed.
+/// Weighting of the points of a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weighing {
     /// All the same.
@@ -71,7 +71,7 @@ pub enum Weighing {
     Tent,
     /// Three arcs of a parabola whose first and last points count nothing: exactly what a second difference of three mean places has.
     Bell,
-    /// A parabola that is gone half a point beyond either end: what a smoothed channel has.
+    /// A parabola that vanishes half a point beyond either end: that of a smoothed channel.
     Parabola,
 }
 
@@ -106,11 +106,11 @@ impl Span {
 /// One force with the motion that belongs to it.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// Which recording.
+    /// Index of the recording.
     pub recording: usize,
     /// Rows of one number follow each other without a gap.
     pub stretch: usize,
-    /// Where the force comes from.
+    /// Source of the force.
     pub place: Place,
     /// Motion along the coordinate (its time runs from the start of the recording).
     pub motion: Motion,
@@ -126,7 +126,7 @@ pub struct Row {
     pub y: f64,
     /// The finer points that it is the mean of; none where the rows are all that is known.
     pub span: Span,
-    /// How much of the direction is a guess, 0 … 1 (share of the friction's square).
+    /// Uncertain share of the direction, 0 … 1 (as a share of the squared friction).
     pub open: f64,
 }
 
@@ -136,7 +136,7 @@ pub struct Bearing {
     pub weight_n: f64,
     /// The same weight's mass, kg, …
     pub mass_kg: f64,
-    /// … and one over the radius of the circle that the bearing holds it on, 1/m.
+    /// Inverse radius of the circle on which the bearing holds that mass, 1/m.
     pub per_radius: f64,
 }
 
@@ -208,7 +208,7 @@ impl Track {
 pub struct Track {
     /// In time order, recording after recording; free rows after the held ones of each.
     pub rows: Vec<Row>,
-    /// What lies between the rows.
+    /// Motion between the rows.
     pub fine: Vec<Fine>,
     /// Sampling period of the rows, s.
     pub period_s: f64,
@@ -230,28 +230,28 @@ pub struct Track {
     pub noise_is_measured: bool,
     /// Longest recording, s.
     pub span_s: f64,
-    /// What was hung on the object, recording by recording.
+    /// Weight hung on the object, recording by recording.
     pub hung: Vec<Option<Hung>>,
-    /// What loads the bearing of a crank beside the fingers' pull; nothing unless the recording shows it.
+    /// Load on the bearing of a crank beside the pull of the fingers; none unless the recording shows it.
     pub bearing: Bearing,
     /// Rows on either side, and order, of the polynomials whose slopes the accelerations are; none where they are differences of means.
     pub slope: Option<(usize, usize)>,
     /// Slow channels beside motion and force, recording by recording.
     pub extra: Vec<Vec<Extra>>,
-    /// What moves without any force from outside, as in a recording without a force column.
+    /// Data of a free motion, without external force, as in a recording without a force channel.
     pub freely: Option<Freely>,
-    /// What the rests of a mechanism's force sensor say of a constant force.
+    /// Evidence from the rests of a mechanism's force sensor on a constant force.
     pub zero: Zero,
 }
 
-/// What moves freely, whose laws must add up to nothing.
+/// A free motion, in which the forces of all laws sum to zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Freely {
-    /// Mass or moment of inertia, kg or kg m²; 1 where nothing tells it.
+    /// Mass or moment of inertia, kg or kg m²; 1 if it is unknown.
     pub inertia: f64,
     /// One standard error of that, as a share.
     pub relative_error: f64,
-    /// Whether something told it: otherwise all forces are per unit of inertia.
+    /// True if it is known; otherwise all forces are per unit of inertia.
     pub is_known: bool,
     /// Acceleration of gravity, m/s².
     pub gravity_m_s2: f64,
@@ -274,7 +274,7 @@ impl Track {
         first.iter().filter_map(|e| Some((e.name.clone(), e.unit.clone(), values(&e.name)?))).collect()
     }
 
-    /// Whether it goes one way: no larger a share of the way back than by how far a hand trembles.
+    /// True if the motion has one direction: its backward share is no larger than a hand's tremor.
     pub fn goes_one_way(&self) -> bool {
         const TREMBLES: f64 = 0.02;
         let way = |side: f64| self.along().map(|i| (side * self.rows[i].motion.velocity).max(0.0)).sum::<f64>();

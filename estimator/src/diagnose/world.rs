@@ -8,13 +8,13 @@ use haptics::law::{Effect, Role};
 use haptics::recording::Recording;
 use haptics::world::World;
 
-/// One world with the model's laws as they fit best alone, one with those that were found beside them. All else is equal, so that
-/// one can be put in the other's place while somebody touches it.
+/// Two worlds: one with the base model's laws at their own best fit, one with the causes found beside them. All else is
+/// equal, so that one can replace the other while somebody touches it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worlds {
-    /// With the model alone.
+    /// With the base model alone.
     pub before: World,
-    /// With what was found.
+    /// With the causes found.
     pub after: World,
 }
 
@@ -61,8 +61,8 @@ pub(super) fn with_laws(world: &World, laws: &[Effect]) -> World {
     world
 }
 
-/// The laws, and before them what the world had of inertia and weight where the laws have none: nothing moves without inertia, and a
-/// weight that was known beforehand is no part of what is fitted.
+/// The laws, preceded by the world's inertia and weight if the laws have none. Nothing moves without inertia, and a
+/// known weight is not fitted.
 fn beside(had: &[Effect], laws: &[Effect]) -> Vec<Effect> {
     let missing = |role: Role| !laws.iter().any(|law| law.role() == role);
     let kept = had.iter().filter(|e| matches!(e.role(), Role::Inertia | Role::Gravity) && missing(e.role()));

@@ -1,8 +1,8 @@
-//! What the force sensor of a mechanism rests at where nobody touches it: a bias of the sensor is felt there as well, and friction that
-//! differs by direction, a slope or a preload are not.
+//! Offset of a mechanism's force sensor at rest without touch. A sensor bias is present there. Friction by direction, a
+//! slope or a preload is not.
 //!
-//! A recording without other evidence is untouched at its beginning and its end, where neither place nor force moves beyond their noise;
-//! a hand that holds trembles, and would have to hold as hard both times.
+//! Without other evidence, a recording counts as untouched at its beginning and end if position and force stay within
+//! their noise there. A hand that holds on trembles, and would have to hold equally hard both times.
 
 use super::experiment::{SURE_HUNG, power};
 use super::geometry::Study;
@@ -12,7 +12,7 @@ use crate::signal::noise::{quantum, white_noise};
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
 
-/// What the rests say of a constant force.
+/// Evidence from the rests on a constant force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Zero {
     /// Nothing: nobody let go, or the rests agree with neither.
@@ -32,7 +32,7 @@ const LEAST_WINDOWS: usize = 4;
 const ERRORS: f64 = 4.0;
 const SHARE: f64 = 0.15;
 
-/// What the rests of all recordings say of the constant force that a study came to.
+/// Evidence from the rests of all recordings on the constant force that a study estimated.
 pub fn told(study: &Study, recordings: &[Recording]) -> Zero {
     let Some(solved) = &study.solved else { return Zero::Open };
     let mut at = study.base.len();
@@ -59,7 +59,7 @@ fn compared(constant: f64, (mean, error): (f64, f64)) -> Zero {
     }
 }
 
-/// What stays open about a constant force after the rests, and what would tell it.
+/// Adds the question that stays open about a constant force after the rests, and the experiment for it.
 pub fn ask(found: &mut Diagnosis, track: &Track) {
     const LEAST_POWER: f64 = 0.05;
     const FREE_S: f64 = 2.0;
@@ -141,7 +141,8 @@ mod tests {
     use rand::rngs::StdRng;
     use rand::{RngExt as _, SeedableRng as _};
 
-    /// A slide of 1 kg that is moved to and fro with dry and viscous friction and a constant of 0.4 N, between rests of 1.5 s.
+    /// A slide of 1 kg that is moved back and forth with dry and viscous friction and a constant of 0.4 N, between
+    /// rests of 1.5 s.
     fn slid(at_rest_n: f64, trembles_n: f64) -> Recording {
         let time: Vec<f64> = (0..6000).map(|i| f64::from(i) * 4e-3).collect();
         let moves = |t: f64| (1.5..22.5).contains(&t);

@@ -1,4 +1,5 @@
-//! The insertions that would settle what is open about a needle: the same columns on a recording that was not made yet.
+//! Insertions that would settle the open questions about a needle: the same regressors on a recording that has not been
+//! made yet.
 
 use super::rows::{INSIDE_M, Needle, OUTSIDE_M, Phase, Row};
 use super::shaft::Shaft;

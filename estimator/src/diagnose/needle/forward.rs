@@ -12,11 +12,11 @@ use crate::diagnose::track::Track;
 use haptics::law::object::{MembraneHistory, MembraneLaw};
 use haptics::law::{Effect, Inertia, Kind, Memories, Motion};
 
-/// What both have in common: which columns of the model are the needle's mass and the world's law.
+/// Parts common to both simulations: the world's law, and the indices of the model's regressors.
 struct Model {
     law: Option<MembraneLaw>,
     period_s: f64,
-    /// How many columns say what is held, and whether the needle's mass is one.
+    /// Number of regressors for the held weight, and true if the needle's mass is a regressor.
     holds: usize,
     two_fingered: bool,
 }
@@ -34,12 +34,12 @@ impl Model {
     }
 }
 
-/// Measured force without what these columns say of a row, N.
+/// Measured force less the contribution of these regressors in a row, N.
 fn drive(study: &Study, row: usize, columns: &[(&[f64], f64)]) -> f64 {
     study.y[row] - columns.iter().map(|(column, value)| value * column[row]).sum::<f64>()
 }
 
-/// Columns of candidates with their values.
+/// Regressors of candidates with their coefficients.
 fn faults<'a>(of: impl Iterator<Item = (&'a Candidate, &'a [f64])>) -> impl Iterator<Item = (&'a [f64], f64)> {
     of.flat_map(|(candidate, own)| candidate.columns.iter().map(|c| c.as_slice()).zip(own.iter().copied()))
 }
@@ -61,7 +61,7 @@ impl Pressed {
         Self { model: Model::new(needle, law), stiffness_n_m: needle.stiffness_n_m, rows }
     }
 
-    /// How deep the sheet was pressed at the place of a row so far, m.
+    /// Deepest indentation of the sheet so far at the place of a row, m.
     fn deepest_m(&self, at: &Row) -> f64 {
         let here = |r: &&Row| r.recording == at.recording && r.push == at.push && r.time_s <= at.time_s;
         let touched = |r: &&Row| matches!(r.phase, Phase::Loading | Phase::Unloading);
@@ -75,7 +75,7 @@ impl Forward for Pressed {
     }
 
     fn windows(&self) -> Vec<Vec<usize>> {
-        // The comparison deals its rows out.
+        // The comparison deals its rows into separate segments.
         let mut order: Vec<usize> = (0..self.rows.len()).collect();
         order.sort_by(|a, b| self.rows[*a].time_s.total_cmp(&self.rows[*b].time_s));
         let of = |i: usize| {
@@ -156,9 +156,9 @@ impl Forward for Sliding {
         let mass = self.model.holds;
         let mut plant: Vec<(&Candidate, &[f64])> =
             causes(study, picks, values).filter(|(c, _)| c.kind == Kind::Plant).collect();
-        // What bends before it slides is taken from friction that is there already.
+        // Friction that bends before it slides is subtracted from the dry friction, which must come first.
         plant.sort_by_key(|(c, _)| c.id != "coulomb-friction");
-        // A hole that is another one at the next insertion is no change in time.
+        // A hole that differs from one insertion to the next is no change in time.
         if plant.iter().any(|(c, _)| c.searched.iter().any(|s| s.name == "from insertion")) {
             return Err(no_law());
         }
@@ -177,7 +177,7 @@ impl Forward for Sliding {
         let moments: Vec<Moment> = window.iter().map(moment).collect();
         let past = self.past(window[0]);
         let before: Vec<Motion> = past.clone().map(|i| self.track.rows[i].motion).collect();
-        // A world's hole: as stiff as the sheet, and a little stiffer, as the columns have it.
+        // A world's hole: as stiff as the sheet, and slightly stiffer, as in the regressors.
         let first = mass + usize::from(self.model.two_fingered);
         let of_world = self.model.law.map(|law| {
             let stiffer = MembraneLaw { stiffness_n_m: (1.0 + RIM_SHARE) * law.stiffness_n_m, ..law };

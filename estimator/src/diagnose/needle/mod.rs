@@ -29,7 +29,8 @@ const UNEVEN: f64 = 25.0;
 /// Puncture forces of one sheet are the same within this share.
 const PUNCTURE_SHARE: f64 = 0.03;
 
-/// What is left of the force on a shaft is never so many times its noise where the model is right, whatever is unknown of the way at reversals.
+/// Largest ratio of final residual to noise on a shaft under a correct model. It allows for the uncertain presliding at
+/// reversals.
 const MUCH: f64 = 4.0;
 /// Diagnoses recordings of one needle and one sheet, all together.
 pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
@@ -115,8 +116,8 @@ fn joined(recordings: &[Recording]) -> Result<(Needle, Vec<&str>, Vec<String>), 
     }
 }
 
-/// Puncture forces that differ from one insertion to the next: no law of the catalogue has that. `names`: of the recordings; `level_n`: what the
-/// sensor reads at a puncture without the sheet.
+/// Puncture forces that differ between insertions, for which the catalogue has no law. `names`: of the recordings;
+/// `level_n`: sensor reading at a puncture without the sheet, N.
 fn punctures(seen: &Needle, names: &[&str], level_n: &dyn Fn(&Puncture) -> f64) -> Option<Cause> {
     let n = seen.punctures.len() as f64;
     let all: Vec<Puncture> =

@@ -17,9 +17,9 @@ use std::ops::Range;
 
 /// The needle counts as in the hole from this depth on, m: at the surface the sheet lets go.
 pub const INSIDE_M: f64 = 5e-4;
-/// … and outside from this far above the surface.
+/// Height above the surface from which a needle is outside, m.
 pub const OUTSIDE_M: f64 = 3e-4;
-/// Rows so close to the surface, m, or to a puncture, s, are of both sides.
+/// Distance from the surface, m, and time from a puncture, s, within which a row belongs to both sides.
 const EDGE_M: f64 = 1e-4;
 const WINDOW_S: f64 = 0.02;
 /// A sheet that was pierced swings for this time, s.
@@ -27,10 +27,10 @@ const SWINGS_S: f64 = 0.1;
 /// Fingers close and open slowly: this time at either end of a hold is neither held nor free, s.
 const CLOSING_S: f64 = 0.25;
 
-/// What passes between recordings that are taken as one, s: no row follows across it.
+/// Time between recordings that are joined, s: no row follows across it.
 const BETWEEN_S: f64 = 1.0;
 
-/// What happens in a row.
+/// Contact phase of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// Nothing is held.
@@ -48,7 +48,7 @@ pub enum Phase {
 /// One row.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// Which recording, and its start on the clock of all of them.
+    /// Index of the recording, and its start on the common clock.
     pub recording: usize,
     pub start_s: f64,
     pub time_s: f64,
@@ -60,7 +60,7 @@ pub struct Row {
     pub side_m: f64,
     pub force_n: f64,
     pub phase: Phase,
-    /// Which hold (grip) and which place of the sheet.
+    /// Number of the hold (grip), and of the place on the sheet.
     pub hold: usize,
     pub push: usize,
     /// Deepest so far at this place, m.
@@ -83,25 +83,25 @@ impl Row {
     }
 }
 
-/// Where a sheet gave way.
+/// Puncture of a sheet.
 #[derive(Clone, Copy, Debug)]
 pub struct Puncture {
-    /// Which recording, and the time in it, s.
+    /// Index of the recording, and the time in it, s.
     pub recording: usize,
     pub time_s: f64,
     pub force_n: f64,
-    /// What it may be off, N: it lies between two samples, and they are noisy.
+    /// Standard error of the force, N: the puncture is between two noisy samples.
     pub error_n: f64,
-    /// Which hold it belongs to.
+    /// Number of the hold.
     pub hold: usize,
 }
 
 /// A recording of a needle, or several of the same needle and sheet.
 pub struct Needle {
     pub rows: Vec<Row>,
-    /// What lies between those in holes; nothing for what was not measured.
+    /// Points between those rows that are in holes; empty if the motion there was not measured.
     pub fine: Vec<Fine>,
-    /// How many recordings take part, and whether these rows are of more than one.
+    /// Number of recordings, and true if these rows are of more than one.
     pub recordings: usize,
     pub joined: bool,
     pub holds: usize,
@@ -111,11 +111,11 @@ pub struct Needle {
     pub stiffness_n_m: f64,
     /// Noise of the rate, m/s …
     pub rate_noise_m_s: f64,
-    /// … and what of it comes from the noise of the measured way, whatever the motion.
+    /// Part of that noise due to the measured path alone, whatever the motion.
     pub slope_noise_m_s: f64,
     /// In order.
     pub punctures: Vec<Puncture>,
-    /// How late its forces are; of several recordings the one that is seen the most clearly.
+    /// Delay of its forces; of several recordings, the best determined one.
     pub late: Option<Late>,
 }
 

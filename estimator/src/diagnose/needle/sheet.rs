@@ -18,7 +18,7 @@ use haptics::law::object::MembraneLaw;
 const NEXT: f64 = 1.5;
 /// Pushes within this of each other, m, are at one place of the sheet.
 const OTHER_PLACE_M: f64 = 5e-4;
-/// A sheet lies askew when it does so by this many standard errors.
+/// Standard errors from which a sheet is inclined to the needle.
 const CLEARLY_ASKEW: f64 = 3.0;
 /// Shares of the deepest insertion that may stay as a dent.
 const DENTS: [f64; 16] = [0.04, 0.07, 0.1, 0.13, 0.16, 0.19, 0.22, 0.25, 0.28, 0.32, 0.36, 0.4, 0.45, 0.5, 0.58, 0.66];
@@ -43,8 +43,9 @@ impl Columns {
     }
 }
 
-/// Puts depths right by how the sheet of a recording lies across the needle's way, where that is clear: the way is known from forces, within a few
-/// thousandths, and no sheet is square to it, so that each place is met a little elsewhere. Each is pushed at its own speed, which would pass for drag.
+/// Corrects depths for an inclination of a recording's sheet to the needle's axis, if it is significant. The axis is
+/// known from forces to a few thousandths, so each place has a slightly different surface. Places are pushed at
+/// different speeds, so the error would look like drag.
 fn square(needle: &Needle, recording: usize, rows: &mut [Row]) {
     let met = |r: &Row| r.recording == recording && touches(r);
     let sides = rows.iter().filter(|r| met(r)).map(|r| r.side_m);
@@ -60,7 +61,7 @@ fn square(needle: &Needle, recording: usize, rows: &mut [Row]) {
     }
 }
 
-/// How much farther the sheet is met a metre across the needle's way; `None` where that is no more than its error.
+/// Inclination of the sheet: rise of its surface per metre across the needle's axis. `None` if it is within its error.
 fn slope_across<'a>(needle: &Needle, rows: impl Iterator<Item = &'a Row>, middle_m: f64) -> Option<f64> {
     let rows: Vec<&Row> = rows.filter(|r| r.phase != Phase::Unloading).collect();
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(|r| f(r)).collect::<Vec<f64>>();
@@ -80,7 +81,7 @@ fn slope_across<'a>(needle: &Needle, rows: impl Iterator<Item = &'a Row>, middle
 const CUBIC: &str = "k3";
 const HERTZ: &str = "hertz";
 
-/// What a sheet may have beside its spring.
+/// Force of a sheet beside its linear spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
     /// A power of the depth.
@@ -114,7 +115,7 @@ impl Law {
     }
 }
 
-/// Force of the model's own sheet at a row, for one of its column, N: of the world's, or a spring of 1 N/m.
+/// Force of the model's own sheet at a row for a coefficient of one, N: of the world's sheet, or of a spring of 1 N/m.
 pub fn own_n(law: Option<&MembraneLaw>, r: &Row) -> f64 {
     match law {
         _ if !touches(r) => 0.0,
@@ -123,7 +124,7 @@ pub fn own_n(law: Option<&MembraneLaw>, r: &Row) -> f64 {
     }
 }
 
-/// Force of the first push at a depth that dents are told beside, N.
+/// Force of the first push at a depth, to which dents are relative, N.
 pub fn first_push_n(stiffness_n_m: f64, law: Option<&MembraneLaw>, depth_m: f64) -> f64 {
     law.map_or(stiffness_n_m * depth_m, |l| l.loading_n(depth_m))
 }
@@ -148,7 +149,7 @@ pub fn columns(needle: &Needle, law: Option<&MembraneLaw>) -> Columns {
         // The needle's own mass; a tool's sensor sits behind none.
         base.push(of(&|r| if is_held(r) { r.acceleration_m_s2 } else { 0.0 }));
     }
-    // Where the surface is, to first order: each recording found it by itself.
+    // Surface position to first order: each recording detected it by itself.
     let owned = |k: usize, r: &Row| f64::from(u8::from(r.recording == k));
     base.extend((0..needle.recordings).map(|k| of(&|r| if touches(r) { owned(k, r) } else { 0.0 })));
     let candidates = candidates(needle, &rows, law, &elastic);
@@ -202,9 +203,9 @@ fn candidates(
 /// The comparison.
 pub struct Sheet {
     pub compared: Compared,
-    /// What its rows are seen against.
+    /// Variables of the plots of its rows.
     pub view: View,
-    /// What a needle does on its own, outside and on the sheet.
+    /// Free-run model of a needle outside and on the sheet.
     pub pressed: Pressed,
 }
 
@@ -229,22 +230,23 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
     let (channel, state) = ("force outside and on the sheet", rows.iter().map(Row::state).collect());
     let compared = Compared { study, channel, unit: "N", floor: floor_n, along, stretch, state };
     let view = View {
-        // What presses the sheet says nothing of empty fingers.
+        // Rows on the sheet are apart from those of empty fingers.
         sensor: rows.iter().map(|r| usize::from(touches(r))).collect(),
         ..view(&rows)
     };
     Ok(Sheet { compared, view, pressed: Pressed::new(needle, law, rows) })
 }
 
-/// What a row's noise is smaller by for the comparison: rows are dealt out, so that noise that goes on from one to the next is not taken out of
-/// them, and each says less than its own (1 where it is white). Learnt outside of the sheet, from what slow changes leave.
+/// Weight of a row in the comparison, 1 for white noise. The rows are dealt out, so that whitening does not remove
+/// noise that is correlated between rows, and each row has less information. Estimated outside the sheet, from the
+/// residual after slow changes.
 fn said_by_a_row(
     needle: &Needle,
     rows: &[Row],
     base: &[Vec<f64>],
     candidates: &[Candidate],
 ) -> Result<f64, EstimateError> {
-    /// So many standard errors of a correlation are no chance.
+    /// Standard errors from which a correlation is significant.
     const CLEAR: f64 = 3.0;
     let free: Vec<usize> = (0..rows.len()).filter(|i| !touches(&rows[*i])).collect();
     let slow = candidates.iter().filter(|c| c.id == "force-drift" || c.expression.is_some());
@@ -269,13 +271,13 @@ fn said_by_a_row(
         (if sums.1 > 0.0 { sums.0 / sums.1 } else { 0.0 }, sums.2)
     };
     let ((first, pairs), (second, _)) = (correlation(1), correlation(2));
-    // What a mean over many rows is worse by: white noise beside such that dies away by one share from row to row.
+    // Inflation of a mean's error over many rows: white noise plus noise with an exponential autocorrelation.
     let share = (second / first.max(1e-9)).clamp(first.clamp(0.0, 0.95), 0.95);
     let is_clear = first * pairs.sqrt() > CLEAR;
     Ok(if is_clear { (1.0 + 2.0 * first / (1.0 - share)).powf(-0.5) } else { 1.0 })
 }
 
-/// What the sensor reads at a puncture without the sheet, N: what is held, and the faults of the sensor that were found.
+/// Sensor reading at a puncture without the sheet, N: held weight and the sensor faults found.
 pub fn level_n(study: &Study, at: &Puncture) -> f64 {
     let Some(solved) = &study.solved else { return 0.0 };
     let mut level = solved.values[at.hold];
@@ -292,7 +294,7 @@ pub fn level_n(study: &Study, at: &Puncture) -> f64 {
     level
 }
 
-/// What rows of a needle are seen against.
+/// Variables of the plots of a needle's rows.
 pub fn view(rows: &[Row]) -> View {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let over = vec![
@@ -303,7 +305,7 @@ pub fn view(rows: &[Row]) -> View {
     View { way: of(&|r| r.rate_m_s), ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
 }
 
-/// What a cause on a needle is best seen against.
+/// Variable that best shows a cause on a needle.
 pub fn best_seen(id: &str) -> Variable {
     match id {
         "stiffness-hardening" | "hysteresis" => Variable::Depth,
@@ -312,17 +314,17 @@ pub fn best_seen(id: &str) -> Variable {
     }
 }
 
-/// A push is over within a second: rows that are held out in blocks would take all of one. Rows a filter window apart hardly hang
-/// together, so they are dealt out like cards, each a stretch of its own.
+/// Deals the rows into segments of their own, like cards. A push lasts less than a second, so a held-out block of
+/// consecutive rows would contain all of it. Rows a filter window apart are nearly uncorrelated.
 fn shuffle(rows: &mut Vec<Row>) {
-    /// Hands that the rows are dealt to.
+    /// Number of hands to which the rows are dealt.
     const HANDS: usize = 7;
     let dealt = (0..HANDS).flat_map(|hand| rows.iter().skip(hand).step_by(HANDS).copied()).collect();
     *rows = dealt;
     rows.iter_mut().enumerate().for_each(|(k, row)| row.stretch = k);
 }
 
-/// A sheet that keeps a share of its deepest insertion as a dent: below the deepest place it is steeper, and lower.
+/// Force of a sheet that keeps a share of its deepest indentation as a dent: above that depth it is steeper and lower.
 fn with_dent(share: f64, row: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
     let (x, deepest) = (row.depth_m, row.deepest_m);
     if row.phase == Phase::Loading || x >= deepest {
@@ -332,7 +334,7 @@ fn with_dent(share: f64, row: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
     elastic(deepest) * ((x - dent) / (deepest - dent).max(1e-9)).max(0.0)
 }
 
-/// What in the residual shows a cause.
+/// Sentence on how the residual shows a cause.
 pub fn shows(found: &Found<'_>) -> String {
     match found.candidate.id {
         "stiffness-hardening" => "the deeper the sheet is pressed the steeper its force rises".to_owned(),
@@ -344,7 +346,7 @@ pub fn shows(found: &Found<'_>) -> String {
     }
 }
 
-/// Sizes that could just matter, and what would show them.
+/// Smallest sizes that matter, with the experiment that would show them.
 pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
     Some(match candidate.id {
         "stiffness-hardening" if candidate.linear[0].0 == "k3" => (5e5, "the sheet was hardly pressed in"),

@@ -1,4 +1,4 @@
-//! What was found about a needle and its sheet, or could be there instead, put into a world.
+//! Causes found on a needle and its sheet, and rival causes, as effects in a world.
 
 use super::shaft::Shaft;
 use crate::diagnose::answer::{Compared, parameter};
@@ -17,7 +17,7 @@ const DEEPEST_DENT: f64 = 0.9;
 struct Channel {
     /// Name of its act.
     name: &'static str,
-    /// Indices of the columns in the base, and the names of their values.
+    /// Indices of the regressors in the base, and the names of their values.
     columns: Vec<(usize, &'static str)>,
     two_fingered: bool,
 }
@@ -63,7 +63,8 @@ impl Simulated for Channel {
     }
 }
 
-/// Everything that could stand in the place of what was found. `holds`: how many columns of the base say what is held.
+/// The hypothesis as found, and those of every rival cause. `holds`: number of regressors of the base for the held
+/// weight.
 pub fn hypotheses(
     (sheet, shaft): (&Compared, Option<&Shaft>),
     (holds, two_fingered): (usize, bool),
@@ -114,7 +115,7 @@ fn put(law: &mut MembraneLaw, id: &str, value: &dyn Fn(&str) -> Option<f64>) {
         }
         "hole: coulomb-friction" => law.friction_n += positive("Fc").unwrap_or(0.0),
         "hole: viscous-friction" => law.drag_n_s_m += positive("c").unwrap_or(0.0),
-        // A rim that gives before the shaft slides is the law's own way of rubbing.
+        // A rim that yields before the shaft slides is already the law's own friction.
         _ => {}
     }
 }

@@ -10,14 +10,14 @@ use crate::diagnose::report::{Rollout, RolloutOf};
 const MOST_WINDOWS: usize = 60;
 /// A cause acts in a window if it does in this share of its rows.
 const ACTS: f64 = 0.5;
-/// Fewer rows are no window. What is held or pushed is so for moments: windows are as long as nothing interrupts them.
+/// Least number of rows in a window. Holds and pushes are short, so a window lasts as long as nothing interrupts it.
 const LEAST_ROWS: usize = 5;
-/// What follows on a row within so many of the rows' periods goes on.
+/// Largest time step, in row periods, within one window.
 const NEXT: f64 = 1.6;
 
-/// A channel that can be run forward.
+/// A channel with a free-run simulation.
 pub trait Forward {
-    /// What is compared, and its unit.
+    /// Compared quantity and its unit.
     fn of(&self) -> (RolloutOf, &str);
     /// Rows of every window, in the order of time.
     fn windows(&self) -> Vec<Vec<usize>>;
@@ -25,8 +25,8 @@ pub trait Forward {
     fn window_s(&self) -> f64 {
         WINDOW_S
     }
-    /// Sum of the squared errors over a window and their number, with these candidates. `values`: of the model's columns and then of the
-    /// candidates' ones. Why not, where their laws cannot be run.
+    /// Sum of squared errors over a window and their number, with these candidates. `values`: of the model's
+    /// regressors, then of the candidates' ones. The error is the reason why their laws cannot be simulated.
     fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String>;
 }
 
@@ -81,7 +81,7 @@ pub fn in_turn(study: &Study, channel: &dyn Forward, k: usize) -> Result<Rollout
     let (mut before, mut after) = (Vec::new(), Vec::new());
     for window in windows.iter().step_by(every) {
         let solved = (study.system.without(window, &rest), study.system.without(window, &picks));
-        // What nothing but this window tells is not known without it.
+        // A value that only this window determines is unknown without it.
         let (Some(without), Some(with)) = solved else { continue };
         before.push(channel.errors(study, window, &rest, &without)?);
         after.push(channel.errors(study, window, &picks, &with)?);

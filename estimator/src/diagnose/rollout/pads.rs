@@ -4,12 +4,12 @@ use super::{Forward, columns, consecutive};
 use crate::diagnose::geometry::Study;
 use crate::diagnose::report::RolloutOf;
 
-/// A channel of places, with the rate of the place among the columns of its model.
+/// A channel of positions, with the rate of the position among the regressors of its model.
 pub struct Pads {
     time_s: Vec<f64>,
     stretch: Vec<usize>,
     period_s: f64,
-    /// Which column of the model is the rate.
+    /// Index of the rate among the model's regressors.
     rate: usize,
 }
 

@@ -25,10 +25,10 @@ const WIDTHS: [f64; 4] = [0.08, 0.13, 0.2, 0.3];
 const LEAST_ROWS: usize = 40;
 /// A bind must be seen in so many rows.
 const LEAST_ON: usize = 20;
-/// What no cause explains must be larger still, in times of what a cause must be.
+/// Least evidence of an unexplained term, as a multiple of a cause's threshold.
 const STRANGE: f64 = 2.0;
 
-/// One row on the way of a throw.
+/// One row on the travel of a throw.
 #[derive(Clone, Copy)]
 pub struct Point {
     pub side: usize,
@@ -102,20 +102,21 @@ pub fn curve(
     Ok(Some((Compared { study, channel, unit, floor, along, stretch, state }, view, knob)))
 }
 
-/// Where the switch stands is open: it may have been moved.
+/// Position of the switch, which may have been moved, as a regressor.
 fn base(points: &[Point]) -> Vec<Vec<f64>> {
     vec![points.iter().map(|p| direction(p.side) * p.slope_n_m).collect()]
 }
 
-/// Columns on throws that were not made yet: of each its side, its fastest speed, m/s, and its way, m.
+/// Predicted regressors on throws that have not been made yet: of each its side, its highest speed, m/s, and its
+/// travel, m.
 pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) -> Imagined {
     let half = known.half_way_m();
     let (mut points, mut stretch) = (Vec::new(), Vec::new());
     for (number, (side, fast_m_s, way_m)) in throws.iter().enumerate() {
         for (travel_m, speed_m_s) in pushed(*fast_m_s, *way_m, period_s) {
-            // A finger that begins before the knob lies on the other side of the middle.
+            // A finger that begins before the knob is on the other side of the middle.
             let at_m = direction(*side) * (travel_m - 0.5 * way_m);
-            // Half way the knob leaves the finger.
+            // The knob leaves the finger half way.
             if at_m.abs() > half || direction(*side) * at_m > 0.0 || known.bends_near(at_m, CORNER_M) {
                 continue;
             }
@@ -140,7 +141,7 @@ pub fn pushed(fast_m_s: f64, way_m: f64, period_s: f64) -> impl Iterator<Item = 
     })
 }
 
-/// What a cause beside the world's curve is best seen against.
+/// Variable that best shows a cause beside the world's curve.
 pub fn best_seen(id: &str) -> Variable {
     match id {
         "viscous-friction" => Variable::Velocity,
@@ -197,7 +198,7 @@ fn seen(candidate: Candidate, least_n: f64) -> Candidate {
     candidate.at_least(strange * least_n / size.max(1e-12))
 }
 
-/// What in the residual shows a cause.
+/// Sentence on how the residual shows a cause.
 pub fn shows(found: &Found<'_>) -> String {
     let value = found.parameters.first().map_or(0.0, |p| p.value);
     let at = |name: &str| found.parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);

@@ -1,4 +1,5 @@
-//! The throws that would settle what is open about a switch: the same columns on a recording that was not made yet.
+//! Throws that would settle the open questions about a switch: the same regressors on a recording that has not been
+//! made yet.
 
 use super::curve;
 use super::model::Known;
@@ -12,11 +13,11 @@ use haptics::Vec2;
 
 /// Numbers of throws: the least that is likely to do.
 const THROWS: [usize; 3] = [6, 12, 18];
-/// How fast a finger moves at least and at most, m/s.
+/// Lowest and highest speed of a finger, m/s.
 const FAST_M_S: (f64, f64) = (0.06, 0.15);
 /// Nothing is touched for so long before and after, s.
 const FREE_S: f64 = 2.0;
-/// Between letting go of a finger and the next push, m: what its spring and its gap take.
+/// Travel between a finger's release and the next push, m: that of the spring and the gap.
 const GAP_M: f64 = 6e-3;
 /// Free fingers are looked at every so many blocks.
 const FREE_EVERY: usize = 10;

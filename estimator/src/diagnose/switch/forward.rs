@@ -14,7 +14,7 @@ use haptics::law::{Effect, Inertia, Memories, Motion};
 /// Rows along the travel of a push, in the order of a comparison.
 struct Travel {
     time_s: Vec<f64>,
-    /// Which push each row is of; none where nothing is pushed.
+    /// Side of the push of each row; `None` without a push.
     side: Vec<Option<usize>>,
     stretch: Vec<usize>,
     period_s: f64,
@@ -56,12 +56,12 @@ impl Travel {
     }
 }
 
-/// What a candidate adds to a row, N.
+/// Contribution of a candidate to a row, N.
 fn added(candidate: &Candidate, own: &[f64], row: usize) -> f64 {
     candidate.columns.iter().zip(own).map(|(column, value)| value * column[row]).sum()
 }
 
-/// A knob whose curve is open.
+/// Free-run model of a knob whose curve is estimated.
 pub struct Thrown {
     travel: Travel,
     curves: Vec<Curve>,
@@ -113,7 +113,7 @@ impl Forward for Thrown {
         let acts = |motion: &Motion| {
             curve.map_or(0.0, |(curve, forces)| curve.force_n(motion.position, forces)) + drag * motion.velocity
         };
-        // The mass is the last column of the model.
+        // The mass is the last regressor of the model.
         Ok(self.travel.errors(window, values[study.base.len() - 1], &drive, &acts))
     }
 }
@@ -155,7 +155,7 @@ impl Forward for Captured {
         let drive = |i: usize| {
             let Point { left_n, asked_n, slope_n_m, .. } = self.points[i];
             let beside = causes(study, picks, values).filter(|(c, _)| !goes_with_motion(c));
-            // Where the switch stands is open.
+            // The position of the switch is estimated.
             let moved = values[0] * direction(side) * slope_n_m;
             left_n + asked_n - moved - beside.map(|(c, own)| added(c, own, i)).sum::<f64>()
         };

@@ -9,14 +9,14 @@ use haptics::world::{Source, Switch, World};
 
 /// A world that does not say how well its curve is known: as a share of its peak.
 const UNKNOWN: f64 = 0.03;
-/// … and its stops, m.
+/// The same for its stops, m.
 const UNKNOWN_END_M: f64 = 0.2e-3;
-/// No stop is known better than that by a tip on a round knob, m.
+/// Least uncertainty of a stop, m, due to a tip on a round knob.
 const LEAST_END_M: f64 = 0.13e-3;
 /// Halvings of the search for the knob.
 const HALVINGS: usize = 40;
 
-/// What a curve asks for along the travel of a side, N, and how that changes with the place on the arc, N/m.
+/// Force of a curve along the travel of a side, N, and its derivative by the position on the arc, N/m.
 pub fn asked_n(curve: &ToggleCurve, at_m: f64, side: usize) -> (f64, f64) {
     let branch = if side == 0 { 1.0 } else { 0.0 };
     let sign = direction(side);
@@ -68,7 +68,7 @@ impl<'a> Known<'a> {
         })
     }
 
-    /// Where the knob is under a tip that presses it, m along its arc.
+    /// Position of the knob under a pressing tip, m along its arc.
     pub fn at_m(&self, row: &Row, side: usize) -> f64 {
         let sign = direction(side);
         let pressed = (sign * row.above_zero.x).max(0.0);
@@ -87,7 +87,7 @@ impl<'a> Known<'a> {
         0.5 * (back + front)
     }
 
-    /// What moves the knob on along the travel of a side, N: the finger and the knob's own weight.
+    /// Driving force on the knob along the travel of a side, N: of the finger and of the knob's own weight.
     pub fn driving_n(&self, force: Vec2, at_m: f64, side: usize) -> f64 {
         let outward = (self.switch.knob_in_world(at_m) - self.switch.pivot_m) / self.switch.lever_m;
         let along = Vec2::new(outward.y, -outward.x);
@@ -95,12 +95,12 @@ impl<'a> Known<'a> {
         direction(side) * (force + weight).dot(&along)
     }
 
-    /// What the knob should ask for along the travel of a side, N, and how that changes with the place on the arc, N/m.
+    /// Predicted force of the knob along the travel of a side, N, and its derivative by the position on the arc, N/m.
     pub fn asked_n(&self, at_m: f64, side: usize) -> (f64, f64) {
         asked_n(&self.switch.curve, at_m, side)
     }
 
-    /// Where the tip should be that presses the knob against the stop of a side with a force, m along the travel.
+    /// Predicted position of a tip that presses the knob against the stop of a side with a force, m along the travel.
     pub fn stopped_m(&self, side: usize, force_n: f64, height_m: f64) -> f64 {
         let sign = direction(side);
         let points = &self.switch.curve.points;
@@ -112,7 +112,7 @@ impl<'a> Known<'a> {
         sign * knob.x - (reach * reach - (knob.y - height_m).powi(2)).max(0.0).sqrt()
     }
 
-    /// Whether a place is near a bend of the curve.
+    /// True if a position is near a corner of the curve.
     pub fn bends_near(&self, at_m: f64, within_m: f64) -> bool {
         let points = &self.switch.curve.points;
         points.iter().any(|p| (p.at_m - at_m).abs() < within_m)

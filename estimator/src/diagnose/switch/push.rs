@@ -1,5 +1,6 @@
-//! The force on the way of a throw beside the curve of the same place and direction: what depends on speed and time, and what fingers
-//! feel that touch nothing. The curve itself is open here, one for each direction; whether it is the world's is another question.
+//! Force during the travel of a throw, relative to the curve at the same position and direction: effects of speed and
+//! time, and readings of fingers without touch. The curve itself is estimated here, one per direction. Its comparison
+//! with the world's is a separate channel.
 
 use super::forward::Thrown;
 use super::rows::{Place, Row, Seen, direction};
@@ -16,28 +17,29 @@ use haptics::law::Kind;
 /// Places of the open curve, m apart, and how many at most.
 const APART_M: f64 = 0.7e-3;
 const MOST_PLACES: usize = 24;
-/// Fewest rows on the way of throws.
+/// Least number of rows on the travel of throws.
 const LEAST_ROWS: usize = 30;
-/// Rows so near to the top of the curve are left out, m: a corner is not seen as sharp in a fast throw as in a slow one.
+/// Distance from the top of the curve within which rows are left out, m: fast throws round its corner more than slow
+/// ones.
 const CORNER_M: f64 = 0.6e-3;
-/// Slower than this a finger stands with the knob, m/s.
+/// Speed below which a finger rests with the knob, m/s.
 const REST_M_S: f64 = 2e-3;
 /// Times at which friction may have changed at once.
 const CHANGES: usize = 20;
-/// Pads that damp, and corners that a fast throw rounds, look like nearly half of this, N s/m.
+/// Least viscous friction, N s/m. Pads with damping, and corners that a fast throw rounds, look like nearly half of it.
 const LEAST_VISCOUS_N_S_M: f64 = 0.8;
 
 /// The comparison.
 pub struct Push {
     pub compared: Compared,
-    /// What its rows are seen against.
+    /// Variables of the plots of its rows.
     pub view: View,
     /// Rows of throws that took part, and what the found causes add to the force along the travel there, N.
     pub rows: Vec<(Row, f64)>,
     curves: Vec<Curve>,
     /// Forces of the curves at a first look, N.
     forces_n: Vec<Vec<f64>>,
-    /// What a knob does on its own.
+    /// Free-run model of a knob.
     pub thrown: Thrown,
 }
 
@@ -55,7 +57,7 @@ fn force_n(row: &Row) -> f64 {
     }
 }
 
-/// A curve of straight pieces in one direction.
+/// A piecewise linear curve in one direction.
 #[derive(Clone)]
 pub struct Curve {
     pub side: usize,
@@ -79,19 +81,19 @@ impl Curve {
         if row.place == Place::Push(self.side) { self.share_at(along_m(row), k) } else { 0.0 }
     }
 
-    /// … and at a place along the travel, m.
+    /// Share of the k-th node at a position along the travel, m.
     fn share_at(&self, along_m: f64, k: usize) -> f64 {
         let step = (self.places[self.places.len() - 1] - self.places[0]) / (self.places.len() - 1) as f64;
         (1.0 - (along_m - self.places[k]).abs() / step).max(0.0)
     }
 
-    /// Force at a place along the travel of a curve with these forces, N; beyond its ends that of the nearest one.
+    /// Force of a curve with these node values at a position along the travel, N; constant beyond its ends.
     pub fn force_n(&self, along_m: f64, force_n: &[f64]) -> f64 {
         let within = along_m.clamp(self.places[0], self.places[self.places.len() - 1]);
         force_n.iter().enumerate().map(|(k, force)| self.share_at(within, k) * force).sum()
     }
 
-    /// How many columns it has.
+    /// Number of its regressors.
     pub fn len(&self) -> usize {
         self.places.len()
     }
@@ -148,7 +150,7 @@ pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
     };
     let indices: Vec<usize> = (0..seen.rows.len()).filter(|i| kept(*i)).collect();
     let rows: Vec<Row> = indices.iter().map(|i| seen.rows[*i]).collect();
-    // What was left out in between ends a stretch.
+    // A gap left by removed rows ends a segment.
     let mut number = 0;
     let stretch: Vec<usize> = (0..rows.len())
         .map(|k| {
@@ -193,7 +195,7 @@ fn base(rows: &[Row], curves: &[Curve]) -> Vec<Vec<f64>> {
     base
 }
 
-/// What the rows are seen against; fingers that touch nothing are sensors of their own.
+/// Variables of the plots. Fingers without touch are sensors of their own.
 fn view(rows: &[Row]) -> View {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let sensor = |r: &Row| match r.place {
@@ -210,7 +212,7 @@ fn view(rows: &[Row]) -> View {
     View { sensor, way, ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
 }
 
-/// What a cause on the way of the throws is best seen against.
+/// Variable that best shows a cause on the travel of the throws.
 pub fn best_seen(id: &str) -> Variable {
     match id {
         "viscous-friction" => Variable::Velocity,
@@ -219,7 +221,7 @@ pub fn best_seen(id: &str) -> Variable {
     }
 }
 
-/// What the chosen causes add to the rows.
+/// Contribution of the chosen causes to the rows.
 fn of_found(study: &Study, rows: usize) -> Vec<f64> {
     let mut sum = vec![0.0; rows];
     let Some(solved) = &study.solved else { return sum };
@@ -299,13 +301,13 @@ impl Push {
         }
     }
 
-    /// Where along the travel the throws of a side were seen, m.
+    /// Range of the travel seen in the throws of a side, m.
     pub fn seen_m(&self, side: usize) -> Option<(f64, f64)> {
         let curve = self.curves.iter().find(|c| c.side == side)?;
         curve.places.first().copied().zip(curve.places.last().copied())
     }
 
-    /// What in the residual shows a cause.
+    /// Sentence on how the residual shows a cause.
     pub fn shows(found: &Found<'_>) -> String {
         let value = found.parameters.first().map_or(0.0, |p| p.value);
         match found.candidate.id {

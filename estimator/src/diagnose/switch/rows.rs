@@ -27,12 +27,12 @@ const TOUCHING_S: f64 = 0.1;
 const REST_M_S: f64 = 2e-3;
 /// Against a stop the force is at least this share of what it comes to.
 const STOP_SHARE: f64 = 0.4;
-/// … and the finger does not draw back, m/s: the knob is on the branch of the way there.
+/// Velocity below which the finger draws back, m/s. Above it, the knob is on the forward branch.
 const BACK_M_S: f64 = -5e-4;
-/// Free rows are so many blocks apart: neighbours share their noise.
+/// Spacing of free rows, in blocks: neighbours share their noise.
 const FREE_EVERY: usize = 10;
 
-/// What a row is. Sides and fingers: 0 is the left finger, which pushes to the right.
+/// Kind of a row. Sides and fingers: 0 is the left finger, which pushes to the right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// The finger of this number pushes the knob on.
@@ -82,13 +82,13 @@ pub struct Seen {
     pub recordings: usize,
 }
 
-/// Which way a finger pushes: +1 to the right.
+/// Direction in which a finger pushes: +1 to the right.
 pub fn direction(side: usize) -> f64 {
     if side == 0 { 1.0 } else { -1.0 }
 }
 
 impl Row {
-    /// The side that a row on the knob is of.
+    /// Side of a row on the knob.
     pub fn side(&self) -> Option<usize> {
         match self.place {
             Place::Push(side) | Place::Stop(side) => Some(side),
@@ -96,7 +96,8 @@ impl Row {
         }
     }
 
-    /// How much a fault of one finger's force along one axis is in what the row explains: on the knob the force along the travel.
+    /// Share of a fault of one finger's force along one axis in a row. On the knob the row is the force along the
+    /// travel.
     pub fn share(&self, finger: usize, axis: usize) -> f64 {
         match self.place {
             Place::Push(side) if side == finger && axis == 0 => direction(side),

@@ -1,4 +1,5 @@
-//! A finger that presses the knob against its stops: what gives there, and whether the stop is where the world has it.
+//! A finger that presses the knob against its stops: compliance there, and position of the stop relative to the
+//! world's.
 
 use super::model::Known;
 use super::rows::{Place, Row, Seen, direction};
@@ -15,9 +16,9 @@ use haptics::law::Kind;
 const LEAST_ROWS: usize = 40;
 /// Least size of what is named, in errors of the world.
 const ERRORS: f64 = 3.0;
-/// What no cause explains is at least so much, m: a knob lies a little differently each time.
+/// Least size of an unexplained term, m: a knob rests at a slightly different position each time.
 const STRANGE_M: f64 = 6e-5;
-/// Pads may lack so much of the give that the world has for them: ten times as stiff.
+/// Largest missing share of the world's pad compliance: ten times as stiff.
 const MOST_STIFFER: f64 = 0.9;
 
 /// Compares what may move the tip while it presses the knob against a stop. Nothing where that was hardly done.
@@ -46,10 +47,10 @@ pub fn stop(
     let mut candidates = Vec::new();
     let plant = |id, name, unit, column| Candidate::one(id, Kind::Plant, name, unit, column);
     if let Some(known) = known {
-        // Where the switch stands is open: it may have been moved.
+        // The position of the switch is estimated: it may have been moved.
         base.push(of(&|r| direction(side(r))));
         let least = ERRORS * known.give_error_m_n;
-        // However stiff other pads are, they do not give less than nothing.
+        // However stiff other pads are, their compliance is not negative.
         let shape = Shape::Share {
             least: -MOST_STIFFER / known.pad.spring.k1.max(1e-9),
             whole: f64::NEG_INFINITY,
@@ -92,17 +93,17 @@ pub fn stop(
     let view =
         View { sensor: rows.iter().map(side).collect(), ..View::of(rows.iter().map(|r| r.recording).collect(), over) };
     let (channel, state) = ("place of the tip on the stop", vec![SystemState::Holding; rows.len()]);
-    // Pads damp: the first column is the rate.
+    // Pads have damping: the first regressor is the rate.
     let pads = Pads::new(&of(&|r| r.time_s), &stretch, seen.period_s, 0);
     Ok(Some((Compared { study, channel, unit: "m", floor, along, stretch, state }, view, pads)))
 }
 
-/// What a cause on the stops is best seen against: how hard the knob is pressed.
+/// Variable that best shows a cause on the stops: the force on the knob.
 pub fn best_seen(_: &str) -> Variable {
     Variable::Force
 }
 
-/// What in the residual shows a cause.
+/// Sentence on how the residual shows a cause.
 pub fn shows(found: &Found<'_>) -> String {
     let value = found.parameters.first().map_or(0.0, |p| p.value);
     match found.candidate.id {

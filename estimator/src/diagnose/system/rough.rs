@@ -1,4 +1,4 @@
-//! A quick look at what explains most, before the noise is known: it needs few of the products of all columns with each other.
+//! Prescreen before the noise is known: the strongest causes, from few of the products of all columns.
 
 use super::super::candidate::Candidate;
 use super::super::products::{STRIP, Weighed};
@@ -6,14 +6,14 @@ use super::super::select::{Selection, cheapest};
 use super::{FOLDS, Rows, System, Use, columns_of, counted, energy, places, uses};
 use nalgebra::DMatrix;
 
-/// Fewer columns than this are all multiplied with each other at once.
+/// Number of columns up to which all are multiplied at once.
 const MANY: usize = 64;
 
-/// So many causes are looked at ahead.
+/// Number of causes for which products are computed ahead.
 const AHEAD: usize = 6;
 
-/// A system that is not whitened, whose products are made when they are needed: those of the model with all columns, then those of each cause
-/// that was chosen. What was not made is no number.
+/// A system without whitening, whose products are computed when they are needed: those of the model with all columns,
+/// then those of each chosen cause. Products not yet computed are NaN.
 pub struct Rough<'a> {
     system: System,
     candidates: &'a [Candidate],
@@ -59,7 +59,8 @@ impl<'a> Rough<'a> {
         &self.system
     }
 
-    /// Products of the model and the target with everything, and of each candidate's columns with each other.
+    /// Computes the products of the model and the target with everything, and of each candidate's columns with each
+    /// other.
     fn begin(&mut self) {
         let (base, target) = (self.system.base, self.system.target());
         let model: Vec<usize> = (0..base).chain([target]).collect();
@@ -122,7 +123,8 @@ impl<'a> Rough<'a> {
             if known.contains(&best) {
                 continue;
             }
-            // Others that may be the next are looked at as well while everything is gone through. What may come beside the chosen ones:
+            // The same pass also computes products of other likely next causes. Candidates that may join the chosen
+            // ones:
             let open: Vec<usize> = selection.open(&chosen).collect();
             let strips: Vec<Vec<usize>> = self.columns_of(&open).chunks(STRIP).map(<[usize]>::to_vec).collect();
             let ahead = likely(&priced, &open, candidates);
