@@ -1,4 +1,5 @@
-//! The coordinate that a diagnosis of a mechanism counts in: what it found holds in other recordings where that is theirs, too.
+//! The coordinate that a diagnosis of a mechanism counts in: what it found holds in other recordings where that is
+//! theirs, too.
 
 use super::track::Track;
 use crate::estimate::EstimateError;

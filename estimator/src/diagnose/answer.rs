@@ -18,11 +18,11 @@ use super::select::{Chosen, REMAINDER, Selection, is_curve};
 use crate::segment::SystemState;
 use crate::words::amount;
 
-/// A generic term above this score means that something is left that no known cause explains.
+/// Evidence of a generic term from which the residual has an unexplained part.
 const UNEXPLAINED: f64 = 25.0;
 /// The final residual is not white if noise would have this p-value or less.
 const SURELY_NOT_WHITE: f64 = 1e-12;
-/// Alternatives less probable than this are as good as excluded.
+/// Probability below which an alternative is excluded.
 const OPEN: f64 = 0.047;
 /// Evidence of a cause of usual size below which the motion does not excite it.
 const VISIBLE: f64 = 25.0;
@@ -248,7 +248,7 @@ pub struct Beside {
     pub warnings: Vec<String>,
 }
 
-/// The channel that baseline and end are told of: that of the strongest cause, the first one where there is none.
+/// Channel of the baseline and final figures: that of the strongest cause, or the first one if there is none.
 fn told<'a, 'b>(parts: &'b [Part<'a>]) -> Option<&'b Part<'a>> {
     let strongest = |part: &Part<'_>| part.study.chosen.iter().map(|c| c.score).fold(0.0, f64::max);
     // Of equals the last one would be taken.

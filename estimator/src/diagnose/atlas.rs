@@ -1,4 +1,4 @@
-//! The residual atlas: what the model leaves of the force beside what every suspect, alone, would take of it.
+//! Residual atlas: the residual of the force, and the part of it that every candidate cause alone explains.
 
 use super::answer::Compared;
 use super::geometry::{Study, residual};
@@ -55,7 +55,7 @@ impl Variable {
     }
 }
 
-/// One suspect of the atlas.
+/// One candidate cause of the atlas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
     /// Out of `docs/causes/README.md`.
@@ -72,7 +72,7 @@ pub struct Seen {
 /// Everything that could have been there, most evidence first, and what it is seen against.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Atlas {
-    /// Suspects that the recording could have shown.
+    /// Candidate causes that the recording excites.
     pub suspects: Vec<Seen>,
     /// Rate of the rate of the coordinate, one an instant, m/s² or rad/s².
     pub acceleration: Vec<f64>,
@@ -99,11 +99,11 @@ pub struct Channel {
     pub way: Vec<f64>,
     /// Residual of the base model in each row.
     pub left: Vec<f64>,
-    /// Suspects that the recordings could have shown, most evidence first.
+    /// Candidate causes that the recordings excite, most evidence first.
     pub suspects: Vec<Against>,
 }
 
-/// One suspect of a channel.
+/// One candidate cause of a channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Against {
     /// Out of `docs/causes/README.md`.
@@ -143,7 +143,8 @@ impl View {
 }
 
 impl Compared {
-    /// This channel's part of the atlas. `best`: what a cause is best seen against; the first variable of the view where that is missing.
+    /// This channel's part of the atlas. `best`: what a cause is best seen against; the first variable of the view
+    /// where that is missing.
     pub(super) fn atlas(&self, view: &View, threshold: f64, best: fn(&str) -> Variable) -> Channel {
         channel(&self.study, (self.channel, self.unit, self.floor), view, threshold, best)
     }

@@ -14,7 +14,7 @@ use crate::identify::linear::{Values, least_squares_values};
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, Weight};
 
-/// The other load must be likelier by so much, 2 ln(likelihood): rows are not independent.
+/// Evidence by which the other load must be favoured, 2 ln(likelihood). It is high because rows are not independent.
 const LIKELIER: f64 = 60.0;
 /// Rounds in which weight and load settle.
 const ROUNDS: usize = 3;
@@ -74,7 +74,8 @@ fn simply(track: &Track, model: &Model, fixed: &Model, free: bool) -> Result<f64
     Ok(look.fit(&columns)?.rms)
 }
 
-/// Changes the load of every row to that with this weight on the bearing, N, and with what keeps its mass on the circle.
+/// Changes the load of every row to that with this weight on the bearing, N, and with what keeps its mass on the
+/// circle.
 fn put(track: &mut Track, weight_n: f64, gravity_m_s2: f64) {
     let before = track.bearing;
     let per_radius = track.radius_m.map_or(0.0, |radius_m| 1.0 / radius_m);

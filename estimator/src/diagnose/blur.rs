@@ -1,4 +1,4 @@
-//! The direction of motion, which a noisy velocity tells less and less the slower it is.
+//! Direction of motion: the slower the motion, the less certain a noisy velocity makes its sign.
 
 use super::track::{Place, Row, Track};
 

@@ -14,7 +14,7 @@ pub struct Searched {
     pub unit: &'static str,
 }
 
-/// A spring is at rest within so many half ranges of the middle.
+/// Largest distance of a spring's rest position from the middle, in half ranges.
 const RESTS_WITHIN: f64 = 3.0;
 
 /// Constraint on the parameters of a cause.

@@ -1,4 +1,4 @@
-//! One channel of a residual that is no force along one coordinate: what the model leaves of it, and which causes explain that.
+//! One measured channel: its residual, and the causes that explain it.
 
 use super::candidate::Candidate;
 use super::force::{CONFIRMED, PIECES_S, SHOWN, harms, is_steady};
@@ -9,8 +9,9 @@ use super::system::{Held, Rough, Rows, System, solve, uses};
 use super::white::{Noise, whitener};
 use crate::estimate::EstimateError;
 
-/// Ridge of the residual from which whitening is learnt, relative to the power of a generic term, or to the part of a
-/// cause beyond the model. Without it, whitening would absorb regressors that are nearly collinear with the model.
+/// Ridge on the candidates in the fit whose residual determines the whitening, relative to the power of a regressor.
+/// For causes it is scaled by their part beyond the model. With a common ridge, the fit would attribute nearly
+/// collinear causes to the model and leave the difference in the residual.
 const RIDGE: f64 = 1e-2;
 /// Part of a cause beyond the model below which it counts as none.
 const LEAST_OWN: f64 = 1e-4;
@@ -35,7 +36,7 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// Compares all candidates. `threshold`: least score of a cause.
+    /// Compares all candidates. `threshold`: least evidence of a cause.
     pub fn compare(self, threshold: f64) -> Result<Study, EstimateError> {
         // The rows are in the order of their times already.
         let order: Vec<f64> = (0..self.y.len()).map(|i| i as f64).collect();
@@ -119,10 +120,10 @@ fn leave_out_what_is_unsure(study: &mut Study, stretch: &[usize], threshold: f64
     }
 }
 
-/// Least number of segments from which their scatter can be estimated.
+/// Least number of jackknife blocks from which their scatter can be estimated.
 const LEAST_PIECES: usize = 8;
 
-/// Segment of at most this many rows for each row. None if there are too few segments.
+/// Jackknife block of at most this many rows for each row. None if there are too few blocks.
 fn pieces(stretch: &[usize], rows: f64) -> Option<Vec<usize>> {
     let most = (rows as usize).max(1);
     let (mut piece, mut own) = (0, 0);

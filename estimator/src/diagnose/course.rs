@@ -66,7 +66,7 @@ pub enum Source {
     /// They were measured.
     #[default]
     Sensor,
-    /// Nothing but the motion was measured: they are what the laws must give for it.
+    /// Only the motion was measured: the forces are those that the laws must sum to.
     Motion,
     /// The same, per unit of inertia.
     MotionPerInertia,
@@ -89,7 +89,7 @@ impl Course {
     }
 }
 
-/// The rows along the motion with what the model leaves of them, without and with what was chosen.
+/// The rows along the motion with their residuals, without and with the chosen causes.
 pub(super) fn course(track: &Track, study: &Study) -> Course {
     let of = |picks: &[usize]| {
         let solved = study.system.solve(picks);

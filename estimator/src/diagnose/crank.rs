@@ -124,7 +124,7 @@ const TURNED: f64 = 10.0;
 struct Turned {
     /// With that link's angle put right which is the likelier one.
     rows: track::Track,
-    /// With the other one's; nothing where no angle is wrong.
+    /// Rows if the other link's angle is wrong; `None` if no angle is.
     other: Option<track::Track>,
     /// Likelier link of the two. None if the forces do not tell.
     link: Option<Link>,
@@ -138,7 +138,7 @@ enum Link {
 }
 
 /// Corrects an angle error of the finger. An offset of the first link distorts the path as the opposite offset of the
-/// second does, and also rotates it: the circle is the same, but the force has another direction relative to it.
+/// second does, and also rotates it. The circle is the same, but the force has another direction relative to it.
 fn turned(
     signals: &held_arm::Signals,
     recording: &Recording,

@@ -43,7 +43,7 @@ pub struct Dictionary<'a> {
     pub resisting: &'a [f64],
     /// The dry friction at each row if it slid in the positive direction.
     pub dry: &'a [f64],
-    /// Forces of which everything is known: they tell the gain of the sensor.
+    /// Forces that are completely known: they determine the gain of the sensor.
     pub fixed: &'a [Vec<f64>],
     /// Causes that belong to the model already.
     pub without: &'a [&'a str],
@@ -191,8 +191,8 @@ impl Dictionary<'_> {
         pieces
     }
 
-    /// Rates of the predicted force, through the window that the acceleration was seen through: what that takes off an inertia's force would
-    /// otherwise pass for a delay.
+    /// Rates of the predicted force, through the window that the acceleration was seen through: what that takes off an
+    /// inertia's force would otherwise pass for a delay.
     fn rates(&self, range: std::ops::Range<usize>) -> Vec<f64> {
         let time_s: Vec<f64> = self.track.rows[range.clone()].iter().map(|r| r.motion.time_s).collect();
         let force = &self.predicted[range];
@@ -234,7 +234,8 @@ impl Dictionary<'_> {
         all.push(ripple.at("lambda", length, units.length));
     }
 
-    /// Gravity that the model does not have: across the arm's weight; for an angle without any gravity in the model, both parts.
+    /// Gravity that the model does not have: across the arm's weight; for an angle without any gravity in the model,
+    /// both parts.
     fn gravity(&self, all: &mut Vec<Candidate>, radius: f64) {
         let part = |values: &[f64]| self.law_of_place(&EccentricMass, values);
         if self.track.planar {

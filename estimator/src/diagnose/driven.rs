@@ -1,5 +1,5 @@
-//! Diagnosis of a transmission: an input that drives an output through gears or a cable. The model is rigid and without friction; lost
-//! motion, give under the load and friction of the input are what it may lack.
+//! Diagnosis of a transmission: an input that drives an output through gears or a cable. The model is rigid and without
+//! friction; lost motion, give under the load and friction of the input are what it may lack.
 
 mod beside_load;
 mod fine;
@@ -22,9 +22,10 @@ use haptics::law::Kind;
 use haptics::recording::Recording;
 use rows::{Columns, ROW_HZ, Row, Seen, columns};
 
-/// The work of the input is looked at in so many equal parts of a recording.
+/// Number of equal parts of a recording in which the work of the input is evaluated.
 const PARTS: usize = 10;
-/// It is taken and not given for certain when its mean is so many standard errors below zero, and so in nearly all of the parts.
+/// It is taken and not given for certain when its mean is so many standard errors below zero, and so in nearly all of
+/// the parts.
 const SURELY: f64 = 6.0;
 const NEARLY_ALL: f64 = 0.9;
 

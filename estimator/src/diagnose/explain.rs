@@ -352,7 +352,7 @@ pub(super) fn unnamed(study: &Study, (candidate, score): (usize, f64), (floor, u
         parameters.extend(names.iter().zip(first..).map(|(name, i)| {
             number(name, solved.values[i], (variance * solved.inverse[(i, i)]).sqrt(), term.linear[i - first].1)
         }));
-        // Other terms that leave as little.
+        // Other generic terms with as small a residual.
         let others = (0..study.candidates.len()).filter(|c| study.candidates[*c].expression.is_some());
         odds = others
             .filter_map(|c| {

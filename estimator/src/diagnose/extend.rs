@@ -13,8 +13,8 @@ use haptics::law::{
     LocalResistance, MassChange, Motion, PositionRipple, QuadraticDrag, ReturnSpring, Role, Stribeck, ViscousFriction,
 };
 
-/// The model's laws refitted beside the chosen causes, and the plant causes among these as laws of their own. Instruments' faults are
-/// no part of a world.
+/// The model's laws refitted beside the chosen causes, and the plant causes among these as laws of their own.
+/// Instruments' faults are no part of a world.
 pub fn effects(track: &Track, model: &Model, study: &Study) -> Vec<Effect> {
     let Some(settled) = settled(study) else { return model.clone() };
     let searched: Vec<Vec<f64>> =
@@ -23,7 +23,7 @@ pub fn effects(track: &Track, model: &Model, study: &Study) -> Vec<Effect> {
     made(track, model, &candidates, &settled.values, &searched).0
 }
 
-/// The same for some of the candidates; nothing where a plant cause among them has no law that a world runs.
+/// The same for some of the candidates; `None` if a plant cause among them has no law in a world.
 pub fn effects_of(
     track: &Track,
     model: &Model,

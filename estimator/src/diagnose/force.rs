@@ -1,4 +1,4 @@
-//! The force that the motion needs: what the model leaves of it, and which causes explain that.
+//! Force along one coordinate: its residual, and the causes that explain it.
 
 use super::blur::{TOGETHER, blur, blurred};
 use super::candidate::Candidate;
@@ -40,7 +40,7 @@ pub type Model = Vec<Effect>;
 pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) -> Result<Study, EstimateError> {
     blur(track);
     let loads = loads(track, model, fixed)?;
-    // Without a force nothing tells a standstill under load from one without.
+    // Without a force, a stick phase under load cannot be distinguished from one without.
     if track.freely.is_none() {
         stuck::add(track, &loads);
     }
@@ -50,8 +50,8 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
     let mut made = compare(track, (model, fixed), &known, threshold, [&coarse, &Grid::default()], None)?;
     let is_free = track.freely.is_some();
     for round in 0..if is_free { REFINEMENTS_OF_FREE } else { REFINEMENTS } {
-        // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of them. The long means of a
-        // free motion show so much more of a place that one alone is not near enough either.
+        // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of
+        // them. The long means of a free motion show so much more of a place that one alone is not near enough either.
         let searched = |c: &Chosen| !made.candidates[c.candidate].searched.is_empty();
         let enough = if is_free { round > 0 && !made.chosen.iter().any(searched) } else { made.chosen.len() <= round };
         if made.chosen.is_empty() || enough {
@@ -118,7 +118,8 @@ fn calmer(track: &Track, made: &Study) -> Option<f64> {
     (found < CALMER * model).then_some(found)
 }
 
-/// By so much a cause must enlarge what is left to be harmful: a small one that is true, but known badly, may do a little.
+/// Ratio of held-out residuals from which a cause is harmful. A true but poorly estimated small cause may increase the
+/// residual slightly.
 const HARMS: f64 = 1.05;
 
 /// Multiple of the threshold below which a cause must be confirmed on the locked blocks.
@@ -127,7 +128,7 @@ pub const CONFIRMED: f64 = 2.5;
 /// one found by a search in noise becomes negative.
 pub const SHOWN: f64 = 1.0;
 
-/// Removes unsound causes: those that certainly increase the held-out error, those that are unsteady over segments of
+/// Removes unsound causes: those that certainly increase the held-out error, those that are unsteady over blocks of
 /// the recording, and weak ones that fail on the `tested` held-out rows. `stretch`: segment of each row; `threshold`:
 /// least evidence of a cause.
 pub fn leave_out_what_harms(
@@ -152,8 +153,8 @@ pub fn leave_out_what_harms(
 /// Least ratio of a cause's squared effect to its jackknife variance.
 const STEADY: f64 = 15.0;
 
-/// True if a jackknife over segments of the recording confirms the effect of the k-th chosen cause. The test is only
-/// made at the end: before that, the residual of a missing cause disturbs the segments.
+/// True if a jackknife over blocks of the recording confirms the effect of the k-th chosen cause. The test is only
+/// made at the end: before that, the residual of a missing cause disturbs the blocks.
 pub fn is_steady(study: &Study, k: usize) -> bool {
     let Some(solved) = &study.solved else { return true };
     let picks = study.picks();
@@ -215,8 +216,8 @@ struct Known {
     noise: Option<f64>,
 }
 
-/// One round: laws that are fitted, and those of which everything is known. `before`: the round before, whose whitening stays (the same
-/// things together left the same).
+/// One round: laws that are fitted, and those of which everything is known. `before`: the round before, whose whitening
+/// stays (the same things together left the same).
 fn compare(
     track: &Track,
     (model, fixed): (&Model, &Model),
@@ -273,7 +274,7 @@ fn compare(
     let found = before.iter().flat_map(|b| b.chosen.iter().map(|c| &b.candidates[c.candidate]));
     let start: Vec<usize> = found.filter_map(place).collect();
     let mut system = match before {
-        // Rows of other weights leave another noise.
+        // Rows with other weights have another residual noise.
         Some(before) if before.weight == weight => System::after(before, &base, &candidates, &rows),
         _ => System::new(&base, &candidates, &rows, whitening_of(&base, &candidates, &rows, threshold)?),
     };
@@ -286,7 +287,7 @@ fn compare(
     Ok(Study { candidates, chosen, system, solved, y, base, weight, shares_of })
 }
 
-/// Segment of this length for each row, numbered without the empty ones.
+/// Jackknife block of this length for each row, numbered without the empty ones.
 fn pieces(time_s: &[f64], piece_s: f64) -> Vec<usize> {
     let mut numbers: HashMap<i64, usize> = HashMap::new();
     let mut number = |time_s: &f64| {

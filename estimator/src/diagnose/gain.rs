@@ -8,7 +8,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Draws of the bootstrap over locked blocks.
 const DRAWS: usize = 400;
-/// Each locked block is cut into so many parts for it.
+/// Number of parts into which each locked block is cut for the bootstrap.
 const PARTS: usize = 4;
 /// Lags of the test for whiteness.
 const LAGS: usize = 10;
@@ -222,7 +222,8 @@ fn means(parts: &Parts, picked: &[usize]) -> [f64; 2] {
     [mean(&parts.before), mean(&parts.after)]
 }
 
-/// Probability that white residuals would be at least as correlated (Ljung & Box 1978), after the noise's own autoregression.
+/// Probability that white residuals would be at least as correlated (Ljung & Box 1978), after the noise's own
+/// autoregression.
 pub fn whiteness_p(study: &Study, picks: &[usize], stretch: &[usize]) -> f64 {
     let white: Vec<f64> =
         whitened(&left(study, picks), stretch, &study.system.coefficients).into_iter().flatten().collect();

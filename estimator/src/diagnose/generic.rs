@@ -17,7 +17,7 @@ pub fn generic(track: &Track) -> Vec<Candidate> {
     generic_of(track, WAVES, SLOW)
 }
 
-/// The same with so many waves over the range, and in time.
+/// The same with this number of waves over the range, and in time.
 pub fn generic_of(track: &Track, waves: u32, slow: u32) -> Vec<Candidate> {
     let mut all = Vec::new();
     let force = if track.coordinate == Coordinate::Angular { "N m" } else { "N" };
@@ -73,7 +73,8 @@ pub fn generic_of(track: &Track, waves: u32, slow: u32) -> Vec<Candidate> {
 }
 
 fn column(track: &Track, of: &dyn Fn(&Row) -> f64) -> Vec<f64> {
-    // The noise of a place in the middle of a row of a free motion is that of its acceleration: a mean is taken, as of the laws.
+    // The noise of a place in the middle of a row of a free motion is that of its acceleration: a mean is taken, as of
+    // the laws.
     let mean = |row: &Row| track.mean(row, &|m| of(&Row { motion: *m, angle_rad: m.position, ..*row }));
     let value = |row: &Row| if track.freely.is_some() { mean(row) } else { of(row) };
     track.rows.iter().map(|r| if r.place == Place::Along { value(r) } else { 0.0 }).collect()

@@ -29,7 +29,8 @@ pub struct PathPoint {
     pub time_s: f64,
     pub position: Vec2,
     pub force: Vec2,
-    /// ∂position/∂(top joint angle) and ∂position/∂(length of the first link) of each finger, where joints were recorded.
+    /// ∂position/∂(top joint angle) and ∂position/∂(length of the first link) of each finger, where joints were
+    /// recorded.
     pub joints: [Option<[Vec2; 2]>; 2],
     /// Inward offset of a mean of points on an arc, times the radius, m².
     pub inside_m2: f64,
@@ -116,7 +117,8 @@ impl Study {
     }
 }
 
-/// Fits the circle and asks what distorts it. `signals`: number of rows of the signals; `threshold`: least score of a cause.
+/// Fits the circle and its distortions. `signals`: number of rows of the signals; `threshold`: least evidence of a
+/// cause.
 pub fn geometry(path: &Path, signals: usize, threshold: f64) -> Result<Geometry, EstimateError> {
     let positions: Vec<Vec2> = path.points.iter().map(|p| p.position).collect();
     let mut center_m = circle(&positions)?;

@@ -38,7 +38,7 @@ const SLACK: [f64; 3] = [0.35, 0.6, 0.8];
 /// Initial distance of the anchor, in arm lengths, and the distances tried.
 const REACH: f64 = 5.0;
 const REACHES: [f64; 3] = [2.5, REACH, 20.0];
-/// Shares of the motion on one side of a wall.
+/// Number of tried rest positions of a hardening spring, and their largest distance from the middle, in half ranges.
 const WALLS: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 /// Places of rest of a spring that hardens: so many, up to so many half ranges from the middle.
 const RESTS: u32 = 13;
@@ -88,7 +88,8 @@ fn rests(count: u32, (low, high): (f64, f64)) -> Vec<f64> {
     (0..count).map(|k| 0.5 * (low + high + RESTS_WITHIN * (high - low) * share(k))).collect()
 }
 
-/// Ripples of what swings freely that are shorter than any of a turn: it goes through them slowly wherever it turns round.
+/// Ripples of what swings freely that are shorter than any of a turn: it goes through them slowly wherever it turns
+/// round.
 fn shorter(track: &Track, range: f64) -> impl Iterator<Item = f64> {
     let longest =
         if track.freely.is_some() { track.radius_m.unwrap_or(0.0) * TAU / f64::from(*RIPPLES.end()) } else { 0.0 };

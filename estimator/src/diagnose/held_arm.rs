@@ -346,7 +346,7 @@ impl Signals {
     }
 }
 
-/// Fewer free rows do not tell the noise.
+/// Least number of free rows for an estimate of the noise.
 const FREE_ROWS: usize = 40;
 
 /// Noise of one row's force, N, and whether it was seen where nothing is touched.

@@ -15,8 +15,8 @@ const STEPS: i32 = 12;
 /// A plane that was thought to be level is not this steep, as the sine of its tilt.
 const STEEPEST: f64 = 0.6;
 
-/// A known weight on the object, `known` in the sidecar: `added_weight_N`, on a mechanism that turns also `added_lever_m` and
-/// `added_level_rad`, the coordinate at which its lever is level.
+/// A known weight on the object, `known` in the sidecar: `added_weight_N`, on a mechanism that turns also
+/// `added_lever_m` and `added_level_rad`, the coordinate at which its lever is level.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hung {
     /// Its largest force along the coordinate, N (N m for angles).
@@ -69,13 +69,13 @@ pub fn column(track: &Track) -> Option<Vec<f64>> {
     })
 }
 
-/// The tilt of the plane as a cause, where a hung weight tells it from an eccentric mass.
+/// The tilt of the plane as a cause, if a hung weight separates it from an eccentric mass.
 pub fn tilt(track: &Track) -> Option<Candidate> {
     let known = column(track)?;
     if track.planar { tilted_crank(track, &known) } else { tilted_axis(track, &known) }
 }
 
-/// Columns of a plain fit, their rows and what the hung weight leaves of the force.
+/// Regressors of a plain fit, their rows, and the residual force beside the hung weight.
 struct Plain {
     columns: Vec<Vec<f64>>,
     y: Vec<f64>,
@@ -125,7 +125,7 @@ fn tilted_crank(track: &Track, known: &[f64]) -> Option<Candidate> {
         let force = track.rows.iter().map(|r| of(track, r).map_or(0.0, |h| h.force));
         force.zip(tilted.iter().zip(&upright)).map(|(w, (t, u))| w * (t - u)).collect()
     };
-    // Around a tilt, in steps: the one that leaves least, and the weight that goes with it.
+    // Steps around a tilt: the one with the smallest residual, and its weight.
     let best = |around: f64, step: f64| {
         let tried = (-STEPS..=STEPS).filter_map(|k| {
             // The tilt is never exactly zero, because the regressor is the effect per radian.

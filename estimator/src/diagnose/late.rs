@@ -18,7 +18,7 @@ use haptics::law::{CoulombFriction, Effect, Inertia, Kind, Law};
 use haptics::recording::{Recording, Span};
 use std::sync::Arc;
 
-/// A delay up to this is as good as proportional, s.
+/// Delay up to which a linear regressor is accurate, s.
 const LINEAR_S: f64 = 3e-3;
 /// Most rounds.
 const ROUNDS: usize = 5;
@@ -61,7 +61,7 @@ pub fn undo(
     }
 }
 
-/// The figures that tell whether a delay was one.
+/// The figures by which a delay is judged.
 fn told(found: &Diagnosis) -> Figures {
     found.of_delay.clone().unwrap_or_else(|| Figures {
         baseline: found.baseline.clone(),
@@ -76,7 +76,7 @@ fn period_s(recording: &Recording) -> Option<f64> {
     Some((time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64)
 }
 
-/// A delay that was not named at first is so many times its error at least.
+/// Standard errors that a delay must have if it was not named at first.
 const SURE: f64 = 5.0;
 /// Largest ratio of residuals, after over before the shift, if the delay was named.
 const AS_GOOD: f64 = 1.1;
@@ -85,8 +85,8 @@ const BETTER: f64 = 0.95;
 /// Demands on a guess for a repetition of the diagnosis.
 const GUESS: Demands = Demands { longest_s: 0.09, enough: 0.5, leaves: 0.85, likelier: 60.0 };
 
-/// The delay with which a plain model, anything that goes with the place and anything slow leave least, if it is one that matters.
-/// Whole rows are tried, because a force between two rows is the mean of both, with half of the noise.
+/// The delay with which a plain model, anything that goes with the place and anything slow leave least, if it is one
+/// that matters. Whole rows are tried, because a force between two rows is the mean of both, with half of the noise.
 pub fn guess_s(track: &Track, model: &Model) -> Option<f64> {
     let moved = Moved::of(track, model);
     let late = look(track.period_s, &GUESS, &|rows| moved.left(rows))?;
@@ -118,7 +118,7 @@ impl<'a> Moved<'a> {
         Self { track, rows: track.along().collect(), loads, motion }
     }
 
-    /// The rows with the forces of so many rows later, and which they were.
+    /// The rows with the forces of this many rows later, and their indices.
     fn later(&self, by: isize) -> (Vec<Row>, Vec<usize>) {
         let of = |i: &usize| &self.track.rows[*i];
         let (mut moved, mut picked) = (Vec::new(), Vec::new());
@@ -141,7 +141,7 @@ impl<'a> Moved<'a> {
         (moved, picked)
     }
 
-    /// Power that is left a row with the forces of so many rows later, and rows.
+    /// Residual power per row, and number of rows, with the forces of this many rows later.
     fn left(&self, by: isize) -> Option<(f64, f64)> {
         let (moved, picked) = self.later(by);
         // Square of the direction's estimate: weights of the squares are its fourth power.
@@ -169,7 +169,7 @@ fn delay_s(found: &Diagnosis) -> Option<f64> {
     found.causes.iter().find(|c| c.id == ID)?.parameters.first().map(|p| p.value)
 }
 
-/// The recording with its forces so much earlier, without the end that has none then.
+/// The recording with its forces shifted earlier, without its end, which has no such forces.
 pub fn put_back(recording: &Recording, late_s: f64) -> Recording {
     let Some(time_s) = recording.time_s.as_ref().filter(|t| t.len() > 2 && late_s != 0.0) else {
         return recording.clone();
@@ -186,8 +186,8 @@ pub fn put_back(recording: &Recording, late_s: f64) -> Recording {
     moved.slice(Span { first, end: last + 1 })
 }
 
-/// The recording with its motion as it was when the force was read that is recorded beside it: the force comes late by `apart_s`, a part of a sample. (A
-/// force between two samples has less noise than the others; a place hardly has any.)
+/// The recording with its motion as it was when the force was read that is recorded beside it: the force comes late by
+/// `apart_s`, a part of a sample. (A force between two samples has less noise than the others; a place hardly has any.)
 pub fn motion_apart(recording: &Recording, apart_s: f64) -> Recording {
     let mut moved = recording.clone();
     let Some(time_s) = recording.time_s.as_ref().filter(|t| t.len() > 2 && apart_s != 0.0) else { return moved };

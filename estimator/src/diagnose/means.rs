@@ -72,7 +72,7 @@ pub fn of_points(track: &Track, felt: &[f64], alone: impl Fn(&Row) -> f64) -> Ve
     track.rows.iter().map(mean).collect()
 }
 
-/// The force of a law at each of the finer points; none of a law that needs more than they tell.
+/// Force of a law at each of the finer points; `None` if the law needs more than they hold.
 pub fn at_points(track: &Track, effect: &Effect) -> Option<Vec<f64>> {
     let force = |motion: Motion| effect.force(&motion);
     effect.law().is_of_path().then(|| track.fine.iter().map(|p| force(p.motion(&Motion::default()))).collect())

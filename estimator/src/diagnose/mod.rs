@@ -104,7 +104,7 @@ pub struct Options {
     pub atlas: bool,
 }
 
-/// Least score of a cause, in units of 2 ln(likelihood): keeps false alarms below 1 in 200 (`facts/diagnosis.md`, 3) …
+/// Least evidence of a cause, 2 ln(likelihood): keeps false alarms below 1 in 200 (`facts/diagnosis.md`, 3).
 const THRESHOLD: f64 = 20.0;
 /// The same for slow rows, whose noise averages out less.
 const THRESHOLD_SLOW: f64 = 25.0;

@@ -7,8 +7,8 @@ use super::select::Selection;
 use super::system::System;
 use haptics::law::cause;
 
-/// Causes that could have shown in this channel and were not chosen, those that would have explained most first. `least`: the
-/// score that names a cause.
+/// Causes that could have shown in this channel and were not chosen, those that would have explained most first.
+/// `least`: the score that names a cause.
 pub fn passed_over(study: &Study, picks: &[usize], least: f64) -> Vec<PassedOver> {
     let Study { system, candidates, .. } = study;
     let judge = Judge { system, candidates, picks, least };

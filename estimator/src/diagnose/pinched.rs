@@ -13,11 +13,11 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Both fingers press when each has this share of the usual grip …
+/// Least force of each finger in a grip, as a share of the usual grip.
 const PRESSING: f64 = 0.3;
-/// Least grip force, in standard deviations of the noise.
+/// Least force of each finger in a grip, in standard deviations of the noise.
 const OVER_NOISE: f64 = 10.0;
-/// Fewer samples of a grip tell nothing.
+/// Least number of samples of a grip.
 const LEAST_SAMPLES: usize = 20;
 /// Correlation of the two forces from which nothing is held between the fingers.
 const TOGETHER: f64 = 0.8;
@@ -33,9 +33,11 @@ const DIFFERS: f64 = 2.0;
 /// A channel of each finger along one axis.
 type Pair = [Vec<f64>; 2];
 
-/// The recording with mirrored axes of its fingers put right, and what they were; nothing where all makes sense or no grip tells.
+/// The recording with mirrored axes of its fingers put right, and what they were; nothing where all makes sense or no
+/// grip tells.
 pub fn upright(recording: &Recording) -> Option<(Recording, Cause)> {
-    // A place that is mirrored beside a rate that is right looks like the rate's fault first; with both turned it is told from a grip.
+    // A place that is mirrored beside a rate that is right looks like the rate's fault first; with both turned it is
+    // told from a grip.
     let (straight, rate) = with_rates_of_motion(recording);
     let found = Grips::of(&straight).and_then(|grips| {
         (grips.places(&straight))

@@ -2,8 +2,8 @@
 
 use nalgebra::DMatrix;
 
-/// Number of rows multiplied at a time (a block of the matrix product's own, so that sums stay equal to the bit), the
-/// least number of rows, below which another algorithm is used, and number of columns at a time.
+/// Number of rows multiplied at a time: a block of the matrix product's own, so that sums stay equal to the bit. Then
+/// the least number of rows, below which another algorithm is used, and the number of columns at a time.
 const TILE: usize = 256;
 const LEAST_TILE: usize = 8;
 const PANEL: usize = 64;

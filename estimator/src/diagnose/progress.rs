@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 type Listener = dyn Fn(f64) -> bool + Send + Sync;
 
-/// Whoever waits for a diagnosis: is told how much is done, and says whether the rest is still wanted. Nobody by default.
+/// Whoever waits for a diagnosis: is told how much is done, and says whether the rest is still wanted. Nobody by
+/// default.
 #[derive(Clone, Default)]
 pub struct Progress(Option<Arc<Listener>>);
 

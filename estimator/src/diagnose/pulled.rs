@@ -1,5 +1,5 @@
-//! Diagnosis of a tool path without a clock: a door or drawer that was pulled. Nothing that needs a rate can be told; what depends on
-//! the place can, and so can two estimates of one force that do not agree.
+//! Diagnosis of a tool path without a clock: a door or drawer that was pulled. Nothing that needs a rate can be told;
+//! what depends on the place can, and so can two estimates of one force that do not agree.
 
 use super::answer::{Beside, Found, Part, answer};
 use super::atlas::{self, Variable, View};
@@ -17,7 +17,7 @@ use crate::signal::noise::white_noise;
 use haptics::law::{Effect, Kind, Law, LocalResistance, Motion, ReturnSpring};
 use haptics::recording::Recording;
 
-/// The way is cut into so many equal parts, with the mean force of each.
+/// Number of equal parts of the path, with the mean force of each.
 const PARTS: usize = 160;
 /// A part has this many samples at least, on the average.
 const LEAST_SAMPLES: usize = 3;

@@ -1,4 +1,5 @@
-//! Faults of the recording itself, before anything is asked of the model: plateaus, stuck, coarse and missing samples, mirrored axes.
+//! Faults of the recording itself, before anything is asked of the model: plateaus, stuck, coarse and missing samples,
+//! mirrored axes.
 
 use super::report::{Cause, CauseParameter, Gain};
 use crate::log;
@@ -18,7 +19,7 @@ const RAIL_SIGMAS: f64 = 3.5;
 /// Kinds of warnings that are a fault of a channel.
 const CHANNEL: [&str; 7] =
     ["stuck-channel", "copied-channel", "duplicate-samples", "dropped-samples", "gap", "clock-jump", "quantised"];
-/// Those of them that concern all samples, so that none can be left out.
+/// Kinds of them that concern all samples, so that none can be left out.
 const WHOLE: [&str; 4] = ["dropped-samples", "gap", "clock-jump", "quantised"];
 
 /// Number of places with lost samples up to which the data remain usable.

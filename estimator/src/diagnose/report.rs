@@ -282,7 +282,7 @@ pub struct Final {
     pub whiteness_p: f64,
 }
 
-/// What one channel leaves, without and with what was found.
+/// Residual figures of one channel, without and with the causes found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figures {
     /// Without the causes.

@@ -5,9 +5,9 @@ use crate::segment::{SystemState, segment};
 use haptics::Vec2;
 use haptics::recording::{Recording, Task};
 
-/// Held samples so close to a change between free and held belong to neither, s …
+/// Distance from a change between free and held within which held samples belong to neither, s.
 const MARGIN_S: f64 = 0.06;
-/// Margin at the ends of free rests, s.
+/// The same for free samples, s.
 const GROWING_S: f64 = 0.25;
 /// Least duration of a free rest, s: a shorter one may be a zero crossing of the force.
 const LEAST_FREE_S: f64 = 0.25;

@@ -15,7 +15,7 @@ const SWAP_ROUNDS: usize = 3;
 const CLEAR_T: f64 = 2.0;
 /// A cause that changes the folds' errors by less than this share was not tested by them.
 const UNTESTED: f64 = 1e-8;
-/// Folds that lose less than this share of a cause's score do not speak against it.
+/// Loss of the folds, as a share of a cause's evidence, up to which they do not speak against it.
 const SPARED: f64 = 0.05;
 /// Evidence margin within which rival causes are ambiguous.
 pub const AMBIGUOUS: f64 = 10.0;
@@ -25,7 +25,7 @@ pub const AMBIGUOUS: f64 = 10.0;
 pub struct Chosen {
     /// Index of the candidate.
     pub candidate: usize,
-    /// Score that is lost without it, in units of 2 ln(likelihood), penalty included.
+    /// Evidence lost without it, 2 ln(likelihood) with penalty.
     pub score: f64,
     /// Likelihood ratio alone.
     pub lambda: f64,
@@ -33,7 +33,7 @@ pub struct Chosen {
     pub rivals: Vec<(usize, f64)>,
 }
 
-/// Chooses among the candidates. `threshold`: least score of a cause.
+/// Chooses among the candidates. `threshold`: least evidence of a cause.
 pub struct Selection<'a> {
     pub system: &'a System,
     pub candidates: &'a [Candidate],
@@ -79,7 +79,7 @@ pub const REMAINDER: f64 = 0.12;
 
 /// Squared correlation of two causes' estimates from which on they are one.
 const AS_ONE: f64 = 0.99;
-/// Two causes that leave less than this share of the weaker one's mean square between them take each other back.
+/// Mean square of two causes together, as a share of the weaker one's, below which they cancel.
 const TAKEN_BACK: f64 = 0.1;
 
 /// Multiple of the threshold from which the pair is kept all the same.
@@ -196,7 +196,7 @@ impl Selection<'_> {
         self.open(chosen).map(|c| (c, self.price(&[chosen, &[c]].concat()))).collect()
     }
 
-    /// The strongest generic term beside the chosen causes, and its score after the search for it is paid.
+    /// The strongest generic term beside the chosen causes, and its evidence after the penalty for the search.
     pub fn unexplained(&self, chosen: &[usize]) -> Option<(usize, f64)> {
         let whole = self.price(chosen);
         let generic: Vec<usize> = (0..self.candidates.len())

@@ -4,7 +4,7 @@ use super::report::{Diagnosis, Settled};
 use crate::estimate::EstimateError;
 use haptics::recording::Recording;
 
-/// An alternative less probable than this is as good as excluded.
+/// Probability below which an alternative is excluded.
 const OPEN: f64 = 0.047;
 /// More recordings than this are repetitions, not answers to each other.
 const MOST: usize = 8;

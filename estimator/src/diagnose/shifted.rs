@@ -1,11 +1,12 @@
-//! The delay with which a plain model leaves least of the forces: they are shifted against the motion step by step.
+//! Delay for which a plain model has the smallest residual of the forces, which are shifted against the motion step by
+//! step.
 
 use super::report::{Diagnosis, Figures};
 
 /// A delay that was looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Late {
-    /// By how much the forces come later than the motion, and its standard error, s; infinite where what is left has no lowest point.
+    /// Delay of the forces after the motion, and its standard error, s; infinite if the residual has no minimum.
     pub tau_s: f64,
     pub error_s: f64,
     /// True if it is significant.
@@ -15,7 +16,8 @@ pub struct Late {
 }
 
 impl Late {
-    /// Puts it into the answer, for all to be asked again if it is one; `of`: what the forces leave in which it was looked for.
+    /// Enters it in the answer if it is significant, so that the diagnosis is repeated; `of`: residual figures of the
+    /// channel in which it was searched.
     pub fn tell(self, found: &mut Diagnosis, of: Figures) {
         found.guess_s = self.is_seen.then_some(self.tau_s);
         found.rest_s = Some([self.tau_s, self.error_s]);
@@ -30,7 +32,8 @@ pub struct Demands {
     pub longest_s: f64,
     /// Rows that have a force of that moment, as a share of those that are compared without a delay, at least.
     pub enough: f64,
-    /// Share of the power that a delay leaves, at most; and by how much likelier it makes the forces, at least: 2 ln(likelihood).
+    /// Share of the power that a delay leaves, at most; and by how much likelier it makes the forces, at least: 2
+    /// ln(likelihood).
     pub leaves: f64,
     pub likelier: f64,
 }

@@ -4,7 +4,7 @@ use super::explain::parameters;
 use super::geometry::Study;
 use super::track::Track;
 
-/// Channels are a whole sample apart by sampling alone as long as that is no longer than this, s, …
+/// Largest offset of one whole sample between channels that sampling alone explains, s.
 const LARGEST_SKEW_S: f64 = 2e-3;
 /// Delay of a command that is held until the next sample, in samples: half a sample with some margin.
 const HELD_COMMAND: f64 = 0.7;

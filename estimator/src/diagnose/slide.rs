@@ -1,9 +1,9 @@
-//! Diagnosis of a block that is slid over the table, held between two fingers or pushed by one: force along the table
-//! against motion, as for any other motion along one coordinate.
+//! Diagnosis of a block that is slid over the table, held between two fingers or pushed by one. The force along the
+//! table is compared with the motion, as for any other motion along one coordinate.
 //!
-//! The base model is a mass with dry friction: in proportion to the load on the ground if the block's weight is known
-//! (less the lift of the fingers), a constant otherwise. A tilted table pulls on the block alone. Empty fingers feel a
-//! sensor bias, too.
+//! The base model is a mass with dry friction. The friction is proportional to the load on the ground if the block's
+//! weight is known (less the lift of the fingers), and a constant otherwise. A tilted table pulls on the block alone.
+//! Empty fingers feel a sensor bias, too.
 
 use super::force::{self, Model};
 use super::geometry::Study;
@@ -21,7 +21,7 @@ use haptics::law::{Backlash, CoulombFriction, Effect, Hysteresis, Inertia, Kind,
 use haptics::recording::{Channel, Meta, Recording};
 use haptics::world::World;
 
-/// A finger touches from this share of its usual force on, and from so many times the noise.
+/// Least force of a touching finger, as a share of its usual force and in multiples of the noise.
 const TOUCH_SHARE: f64 = 0.1;
 const TOUCH_NOISES: f64 = 6.0;
 /// Fingers close and open slowly, s.
@@ -29,10 +29,10 @@ const CLOSING_S: f64 = 0.15;
 /// Faster than this it slides, m/s; and so long at least in all, s.
 const SLIDES_M_S: f64 = 5e-3;
 const LEAST_S: f64 = 2.0;
-/// Empty fingers tell a bias when they were free for so long, s, in parts of this length.
+/// Least duration of empty fingers for an estimate of the bias, s, and length of its parts.
 const FREE_S: f64 = 1.0;
 const PART_S: f64 = 0.25;
-/// A constant force is of the sensor, or of the table, by so many standard errors.
+/// Standard errors by which a constant force is attributed to the sensor or to the table.
 const ERRORS: f64 = 4.0;
 /// Relative error of a known mass from which a scale is wrong.
 const MASS_SHARE: f64 = 0.08;

@@ -65,7 +65,7 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
     Ok(made.track(&raw))
 }
 
-/// Every so many-th sample is one of the finer points.
+/// Number of samples per finer point.
 fn skip(period_s: f64) -> usize {
     (1.0 / (FINE_HZ * period_s)).round().max(1.0) as usize
 }

@@ -4,14 +4,14 @@ use super::report::CauseParameter;
 use super::track::{Place, Row, Track};
 use haptics::law::{Law, Stribeck};
 
-/// Rows that an acceleration is told over, on either side.
+/// Number of rows, on either side, over which an acceleration is evaluated.
 const ROWS: f64 = 2.0;
 /// Share of the motion that is slowest.
 const SLOW: f64 = 0.25;
-/// A peak is so much higher for one that is so much narrower: its area stays.
+/// Ratio by which a narrower peak is higher at equal area.
 const HIGHER: f64 = 1.5;
 
-/// The speed that the motion reaches, where it is slow, within the time over which its acceleration is told, m/s or rad/s.
+/// Speed that a slow motion reaches within the time over which its acceleration is evaluated, m/s or rad/s.
 fn told_from(track: &Track) -> f64 {
     let slow = track.quantile(SLOW, |r| r.motion.velocity.abs());
     let is_slow = |r: &&Row| r.place == Place::Along && r.motion.velocity.abs() <= slow;

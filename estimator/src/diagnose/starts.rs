@@ -35,7 +35,8 @@ impl Selection<'_> {
         })
     }
 
-    /// The best two more causes beside the chosen ones, each kind as it explains most alone, if they explain something beyond doubt together.
+    /// The best two more causes beside the chosen ones, each kind as it explains most alone, if they explain something
+    /// beyond doubt together.
     pub fn pair_beside(&self, chosen: &[usize]) -> Option<Vec<usize>> {
         if chosen.len() + 2 > self.most() {
             return None;
@@ -78,8 +79,8 @@ impl Selection<'_> {
     }
 }
 
-/// The candidates around which the next round searches: those that were chosen, and what else may turn out better once it is searched
-/// for as closely.
+/// The candidates around which the next round searches: those that were chosen, and what else may turn out better once
+/// it is searched for as closely.
 pub fn to_refine(study: &Study, threshold: f64, dry: bool) -> Vec<&Candidate> {
     let Study { system, candidates, .. } = study;
     let picks = study.picks();

@@ -14,7 +14,8 @@ const WAVES: u32 = 4;
 const SLOW: u32 = 4;
 /// A path that is off its circle by more than this many times its noise should have a reason.
 const STRANGE: f64 = 2.0;
-/// An arc whose bulge is no more than this many times the noise of one place, or whose radius is known to no better than this share, is short.
+/// An arc whose bulge is no more than this many times the noise of one place, or whose radius is known to no better
+/// than this share, is short.
 const BULGE: f64 = 12.0;
 const UNSURE: f64 = 0.05;
 
@@ -39,8 +40,8 @@ fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
     waves.chain(slow).collect()
 }
 
-/// Unexplained residual of the path beside the causes found, if it is far above the noise and a generic term fits it:
-/// the comparison with that term, its index and its evidence.
+/// Unexplained residual of the path beside the causes found: the comparison with the generic term, its index and its
+/// evidence. `None` if the residual is near the noise or no term fits it.
 pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<(Study, usize, f64)> {
     let picks = study.picks();
     let solved = study.solved.as_ref()?;

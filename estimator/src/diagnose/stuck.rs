@@ -16,14 +16,15 @@ const HOLDS: f64 = 0.7;
 const LARGEST: f64 = 0.006;
 /// Largest share of the friction up to which presliding is followed.
 const BENT: f64 = 0.95;
-/// A standstill whose give differs from what is usual by this share of it, and by so many times its noise, was a slow slide.
+/// Deviation of a stick phase's compliance from the usual one, relative and in standard errors, from which it was a
+/// slow slide.
 const UNLIKE: f64 = 0.7;
 const UNLIKE_SURE: f64 = 4.0;
-/// Rows slower than this share the time of a standstill with a slide, s.
+/// Duration of a stick phase with a slide, s, relative to which rows must be slower.
 const SLOWEST_S: f64 = 0.03;
-/// Fewer rows are no standstill.
+/// Least number of rows of a stick phase.
 const LEAST_ROWS: usize = 3;
-/// A load that is no further from zero than this many times its noise has no side.
+/// Load, in standard deviations of its noise, up to which its side is unknown.
 const SURE: f64 = 2.0;
 /// Load, in standard deviations of its noise, that certainly presses to one side of a gap.
 const PRESSED: f64 = 3.5;
@@ -46,7 +47,7 @@ pub struct Load {
     pub friction: f64,
 }
 
-/// Adds the rows of the standstills. `loads`: one a row, `None` where the friction is unknown.
+/// Adds the rows of the stick phases. `loads`: one per row, `None` if the friction is unknown.
 pub fn add(track: &mut Track, loads: &[Option<Load>]) {
     let noise = track.position_noise;
     if noise <= 0.0 || noise.is_nan() || track.raw_period_s > SLOWEST_S {
@@ -297,7 +298,7 @@ fn side(row: &Row, all: bool) -> f64 {
     }
 }
 
-/// Way of a row since the middle of its standstill.
+/// Displacement of a row from the middle of its stick phase.
 fn place_m(row: &Row) -> f64 {
     if let Place::Stuck { scale, .. } = row.place { row.y / scale } else { 0.0 }
 }
@@ -320,7 +321,7 @@ mod tests {
 
     #[test]
     fn a_slow_slide_is_no_standstill() {
-        // Three standstills that give 20 µm a friction, and a slide of 300 µm while the load falls.
+        // Three stick phases with a compliance of 20 µm per friction, and a slide of 300 µm while the load falls.
         let still = |k: usize| (0..6).map(|i| row(k, 0.1 * f64::from(i), 2.0 * f64::from(i) - 5.0)).collect::<Vec<_>>();
         let slides: Vec<Row> = (0..6).map(|i| row(9, -0.1 * f64::from(i), 60.0 * f64::from(i) - 150.0)).collect();
         let kept = alike(vec![still(1), slides, still(2), still(3)], 1e-6);

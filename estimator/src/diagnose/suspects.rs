@@ -19,19 +19,20 @@ use haptics::world::World;
 /// Fault of the force sensors of both fingers, which is no part of the world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SensorFault {
-    /// Added always, one a finger, N.
+    /// Constant offset, one per finger, N.
     pub offset_n: [Vec2; 2],
-    /// Added more and more: the rate at the start, one a finger, N/s …
+    /// Drift: initial rate, one per finger, N/s.
     pub drift_n_s: [Vec2; 2],
     /// Time constant of that drift, s; 0 if it never settles.
     pub settles_s: f64,
-    /// It begins to drift once something is held, not at the start.
+    /// True if the drift begins when an object is held, not at the start.
     pub drifts_once_held: bool,
-    /// Added always to the force along the coordinate of a mechanism, N or N m …
+    /// Constant offset of the force along the coordinate of a mechanism, N or N m.
     pub offset_along: f64,
     /// Drift along the coordinate: initial rate, N/s or N m/s.
     pub drift_along_per_s: f64,
-    /// Share of the finger's y force that is read in x, and of its x force that is read in y, one a finger.
+    /// Cross-talk: share of the finger's y force that is read in x, and of its x force that is read in y, one per
+    /// finger.
     pub cross: [Vec2; 2],
     /// Relative gain error of the reading.
     pub gain_error: f64,
@@ -40,7 +41,7 @@ pub struct SensorFault {
 }
 
 impl SensorFault {
-    /// Adds what a candidate came out at; false for a fault that is none of these.
+    /// Adds the estimate of a candidate; false for a fault that is none of these.
     fn add(&mut self, candidate: &Candidate, values: &[f64]) -> bool {
         if candidate.id == "force-drift" {
             self.settles_s = candidate.searched.first().map_or(0.0, |s| s.value);
@@ -100,7 +101,7 @@ pub(super) type Act = (String, Vec<CauseParameter>);
 pub(super) struct Hypothesis {
     /// The cause that is thought to be there.
     id: String,
-    /// Nothing where a cause among them cannot be simulated.
+    /// `None` if a cause among them cannot be simulated.
     inside: Option<Inside>,
     fault: Option<SensorFault>,
     hung_share: f64,
@@ -120,8 +121,8 @@ pub struct Suspect {
     pub hung_share: f64,
 }
 
-/// By how much an axis that is thought to be upright leans, as a sine: no recording of the mechanism alone shows it. Some six degrees are
-/// noticed by nobody.
+/// Tilt of an axis that is assumed to be vertical, as a sine: no recording of the mechanism alone shows it. Nobody
+/// notices some six degrees.
 const LEANS: f64 = 0.1;
 
 /// The hypothesis as found, and those of every rival cause.
@@ -145,7 +146,7 @@ pub(super) fn hypotheses(track: &Track, model: &Model, study: &Study) -> Vec<Hyp
         let twins = TWINS.iter().filter(|(a, b, _)| *a == own && study.candidates.iter().all(|c| c.id != *b));
         for (_, twin, _) in twins {
             let laws = effects(track, model, study);
-            // By itself a leaning axis is what a mass off it is; only what hangs on it tells.
+            // By itself, a tilted axis is equivalent to an eccentric mass. Only a hung weight separates them.
             let (laws, hung_share) = if track.planar { (tilted(&laws), 1.0) } else { (Some(laws), LEANS) };
             let fault = study.solved.as_ref().and_then(|s| fault(study, &picks, &s.values));
             all.push(Hypothesis { id: (*twin).to_owned(), inside: laws.map(Inside::Laws), fault, hung_share });
@@ -190,7 +191,7 @@ pub(super) fn of_channels(channels: &[(&Study, &dyn Simulated)]) -> Vec<Hypothes
     all
 }
 
-/// Acts and faults of some candidates of each channel; nothing where they cannot be solved.
+/// Acts and faults of some candidates of each channel; `None` if they cannot be solved.
 fn of_picks(
     channels: &[(&Study, &dyn Simulated)],
     picks: &[Vec<usize>],
@@ -221,7 +222,7 @@ fn of_picks(
     Some((acts, sum.map(as_sensed)))
 }
 
-/// The faults of the sensors among some candidates; nothing where one of them is none that can be put into a recording.
+/// The sensor faults among some candidates; `None` if one of them cannot be added to a recording.
 fn fault(study: &Study, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
     add_faults(&SensorFault::default(), study, picks, values)
 }
@@ -240,7 +241,7 @@ fn add_faults(beside: &SensorFault, study: &Study, picks: &[usize], values: &[f6
     Some(sum)
 }
 
-/// The same force by a tilted plane: w cos θ + a sin θ = W cos(θ − δ). Nothing where there is no eccentric mass on a circle.
+/// Equivalent force of a tilted plane: w cos θ + a sin θ = W cos(θ − δ). `None` without an eccentric mass on a circle.
 fn tilted(laws: &[Effect]) -> Option<Vec<Effect>> {
     let mass = laws.iter().find(|e| e.law().id() == EccentricMass.id())?;
     let [sine_n, cosine_n, radius_m, ..] = mass.values;

@@ -1,4 +1,4 @@
-//! Whitened normal equations of all regressors, held-out block by block: every fit, comparison and cross-validation is
+//! Whitened normal equations of all regressors, one set per block: every fit, comparison and cross-validation is
 //! then a small solve.
 
 mod rough;
@@ -131,7 +131,7 @@ pub struct System {
     pub base: usize,
     /// Columns of the base that can only resist: less than nothing of them is no explanation.
     pub resisting: Vec<usize>,
-    /// Jackknife segment of each row, for several lengths of segments; empty if the rows have no common segments.
+    /// Jackknife block of each row, for several block lengths; empty if the rows have no common blocks.
     pub pieces: Vec<Vec<usize>>,
     pub coefficients: Vec<f64>,
     pub uses: Vec<Use>,
@@ -208,7 +208,7 @@ pub struct Solved {
 }
 
 impl Solved {
-    /// Variance of what is left in one of so many rows.
+    /// Residual variance of one of this many rows.
     pub fn variance(&self, rows: f64) -> f64 {
         self.rss / (rows - self.columns.len() as f64).max(1.0)
     }

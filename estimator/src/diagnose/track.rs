@@ -69,7 +69,8 @@ pub enum Weighing {
     Hat,
     /// A hat whose first and last points count nothing: exactly what a difference of two mean rates has.
     Tent,
-    /// Three arcs of a parabola whose first and last points count nothing: exactly what a second difference of three mean places has.
+    /// Three arcs of a parabola whose first and last points count nothing: exactly what a second difference of three
+    /// mean places has.
     Bell,
     /// A parabola that vanishes half a point beyond either end: that of a smoothed channel.
     Parabola,
@@ -234,7 +235,8 @@ pub struct Track {
     pub hung: Vec<Option<Hung>>,
     /// Load on the bearing of a crank beside the pull of the fingers; none unless the recording shows it.
     pub bearing: Bearing,
-    /// Rows on either side, and order, of the polynomials whose slopes the accelerations are; none where they are differences of means.
+    /// Rows on either side, and order, of the polynomials whose slopes the accelerations are; none where they are
+    /// differences of means.
     pub slope: Option<(usize, usize)>,
     /// Slow channels beside motion and force, recording by recording.
     pub extra: Vec<Vec<Extra>>,

@@ -5,7 +5,8 @@ use super::report::{Alternative, Cause, Diagnosis, NotExcited};
 use super::track::Track;
 use haptics::law::entries;
 
-/// A cause of the noise's own size that would score less than this could not have been seen: it would not have been named.
+/// Evidence of a cause of the noise's own size below which the motion does not excite it, because it would not be
+/// named.
 const VISIBLE: f64 = 20.0;
 
 /// Causes that this recording does not show.

@@ -86,7 +86,8 @@ fn faults(track: &Track, predicted: &[f64], known: &[Effect], kept: &[Kept], lef
     sum
 }
 
-/// Unexplained force before and after on another recording. Rows around reversals, whose direction is a guess, count little.
+/// Unexplained force before and after on another recording. Rows around reversals, whose direction is a guess, count
+/// little.
 pub fn validate(track: &mut Track, before: &[Effect], after: &[Effect], known: &[Effect], kept: &[Kept]) -> Validation {
     blur(track);
     let of: &dyn Fn(&Track, &[Effect]) -> Vec<f64> = if track.freely.is_some() { &needed } else { &predicted };

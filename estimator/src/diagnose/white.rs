@@ -51,7 +51,7 @@ pub fn whitener(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> Vec<f64> {
     best.1
 }
 
-/// Levinson's recursion: hands out the coefficients of every order from 1 on, with what they leave of the power.
+/// Levinson's recursion: passes on the coefficients of every order from 1 on, with the residual power.
 fn levinson(lags: &[f64], tell: &mut dyn FnMut(&[f64], f64)) {
     let (mut coefficients, mut innovation): (Vec<f64>, f64) = (Vec::new(), lags[0]);
     for order in 1..lags.len() {
@@ -72,8 +72,8 @@ const WHITE_BESIDE: [f64; 8] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 100.0];
 /// Restoring terms of a swinging position: second differences plus this share of the noise itself.
 const TAKEN_BACK: [f64; 7] = [0.0, 0.01, 0.03, 0.06, 0.1, 0.2, 0.4];
 
-/// Autoregression of what differences of white noise leave: the one of its kind that leaves least. One estimated from few rows would fill up
-/// the gap that the noise has at low frequencies, where everything that swings is.
+/// Autoregression of what differences of white noise leave: the one of its kind that leaves least. One estimated from
+/// few rows would fill up the gap that the noise has at low frequencies, where everything that swings is.
 fn whitener_of_differences(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> Vec<f64> {
     let order = (residual.len() / SHARE_OF_DIFFERENCES).min(ORDER_OF_DIFFERENCES);
     let second = TAKEN_BACK.map(|back| vec![1.0, back - 2.0, 1.0]);

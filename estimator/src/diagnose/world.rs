@@ -40,7 +40,8 @@ pub(super) fn calibrated(recordings: &[Recording], options: &Options) -> Result<
     Ok(pipeline::analyse(recordings, &fit)?.world)
 }
 
-/// The world that runs what the diagnosis found: the one it started from, or one calibrated from the recordings, with the extended laws.
+/// The world that runs what the diagnosis found: the one it started from, or one calibrated from the recordings, with
+/// the extended laws.
 pub fn extended_world(
     recordings: &[Recording],
     options: &Options,

@@ -18,7 +18,7 @@ pub enum Zero {
     /// Nothing: nobody let go, or the rests agree with neither.
     #[default]
     Open,
-    /// The sensor reads nothing where nothing is: the constant acts on what is moved.
+    /// The sensor reads zero without touch: the constant acts on the object.
     OfThePlant,
     /// The sensor rests at that very constant.
     OfTheSensor,
@@ -28,7 +28,7 @@ pub enum Zero {
 const WINDOW_S: f64 = 0.1;
 const LEAST_SAMPLES: usize = 4;
 const LEAST_WINDOWS: usize = 4;
-/// A rest agrees with a value within so many errors, or this share of the constant.
+/// Agreement of a rest with a value, in standard errors and as a share of the constant.
 const ERRORS: f64 = 4.0;
 const SHARE: f64 = 0.15;
 
@@ -96,7 +96,7 @@ pub fn ask(found: &mut Diagnosis, track: &Track) {
     }
 }
 
-/// Mean force of what is untouched at both ends, and its error; nothing where an end moves, or the two differ.
+/// Mean force without touch at both ends, and its standard error; `None` if an end moves, or the two differ.
 fn rest(recording: &Recording) -> Option<(f64, f64)> {
     let [place, force] =
         [["q_m", "q_rad"], ["f_N", "tau_Nm"]].map(|names| names.iter().find_map(|n| recording.channel(n)));

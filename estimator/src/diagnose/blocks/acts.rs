@@ -41,7 +41,8 @@ pub fn plant(rows: &Rows<'_>) -> Vec<Candidate> {
     found
 }
 
-/// Weight of all that is carried, falling by one newton a second from when each is lifted: what runs out of one block that is carried several times.
+/// Weight of all that is carried, falling by one newton a second from when each is lifted: what runs out of one block
+/// that is carried several times.
 fn leaking(rows: &Rows<'_>) -> Vec<f64> {
     let lifted_s: Vec<f64> = (1..=rows.blocks())
         .map(|k| {
@@ -97,7 +98,8 @@ pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<
     };
     found.extend(all("force-bias", &BIAS, &|_| 1.0));
     found.extend(all("force-drift", &DRIFT, &|r| r.time_s));
-    // Sensors may begin to drift when they are loaded: only what is free afterwards tells that from a block that changes.
+    // Sensors may begin to drift when they are loaded: only what is free afterwards tells that from a block that
+    // changes.
     let loaded_s = |r: &Row| {
         let carried = |o: &&Row| o.recording == r.recording && matches!(o.place, Place::Carried { .. });
         rows.all.iter().filter(carried).map(|o| o.time_s).fold(f64::INFINITY, f64::min)

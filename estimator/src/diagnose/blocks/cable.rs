@@ -20,11 +20,11 @@ const REFINED: usize = 4;
 const HALVINGS: usize = 9;
 /// Most moves with one step size. Without a cable the search does not converge.
 const MOVES: usize = 15;
-/// A wall is a cable from so many half ranges away.
+/// Distance of the anchor, in half ranges, from which a cable is a wall.
 const FAR: f64 = 200.0;
 
-/// Anchor of a cable, relative to the middle of the carries: direction, rad; inverse distance, in 1/half ranges; and
-/// the travel away from the anchor at which it becomes taut, in half ranges.
+/// Anchor of a cable, relative to the middle of the carries. Direction, rad; inverse distance, in 1/half ranges; travel
+/// away from the anchor at which it becomes taut, in half ranges.
 #[derive(Clone, Copy, Debug)]
 struct Tie([f64; 3]);
 
@@ -141,7 +141,8 @@ impl Explains {
     }
 }
 
-/// Force along an axis that a cable to a block asks of the hand, N, at a place, m, and a velocity, m/s. It damps while it is taut.
+/// Force along an axis that a cable to a block asks of the hand, N, at a place, m, and a velocity, m/s. It damps while
+/// it is taut.
 pub fn pull_n(cable: &Cable, place_m: Vec2, velocity_m_s: Vec2, axis: usize) -> f64 {
     let away = place_m - cable.anchor_m;
     let length = away.norm().max(1e-9);

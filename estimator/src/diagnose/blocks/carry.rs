@@ -1,4 +1,5 @@
-//! Forces while blocks are carried, beside those while nothing is touched: weight, inertia, cables, and what is wrong with the sensors.
+//! Forces while blocks are carried, beside those while nothing is touched: weight, inertia, cables, and what is wrong
+//! with the sensors.
 
 use super::acts::{generic, instrument, plant};
 use super::cable::{cables, errors, pulls};
@@ -21,7 +22,7 @@ use haptics::world::{Cable, World};
 
 /// The comparison and what its words need.
 pub struct Carry {
-    /// By how much the forces come later than the motion, if that shows.
+    /// Delay of the forces after the motion, if it is significant.
     pub late: Option<Late>,
     /// Its floor is the noise of a sum of two fingers.
     pub compared: Compared,

@@ -1,4 +1,5 @@
-//! A carried block as a body of its own: the measured net force of the fingers moves its mass, gravity and cables pull at it.
+//! A carried block as a body of its own: the measured net force of the fingers moves its mass, gravity and cables pull
+//! at it.
 
 use super::cable::pull_n;
 use super::rows::{Place, Rows};

@@ -29,7 +29,7 @@ pub struct Grasp {
     pub view: View,
     /// Mean distance and grip of each block, m and N.
     means: Vec<(f64, f64)>,
-    /// Give of a pad at no force that the model has, m/N.
+    /// Compliance of a pad at zero force in the model, m/N.
     modelled: f64,
     /// Free-run model of the pads.
     pub pads: Pads,

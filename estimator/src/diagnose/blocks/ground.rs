@@ -21,8 +21,8 @@ use haptics::world::World;
 const LEAST_ROWS: usize = 8;
 /// Fewer rows in all cannot be held out in turn.
 const LEAST_IN_ALL: usize = 24;
-/// Of so many rows one may be held out: every rest is seen while it is fitted, from its beginning to its end. The first ones never are: when a slip
-/// at the very contact began shows in nothing else.
+/// Of so many rows one may be held out: every rest is seen while it is fitted, from its beginning to its end. The first
+/// ones never are: when a slip at the very contact began shows in nothing else.
 const HELD_OUT: usize = 2;
 const FIRST: usize = 4;
 /// Testable rows per held-out block, and the largest number of such blocks, as in the comparison.
@@ -95,7 +95,8 @@ pub fn ground(
     let mut base: Vec<Vec<f64>> = (0..stands.len()).map(|s| of(&|i| f64::from(u8::from(rows.stand[i] == s)))).collect();
     let give = rows.lift_n.clone();
     let contact = of(&|i| (stands[rows.stand[i]].below.len() + 1) as f64 * rows.lift_n[i]);
-    // Pads damp and forces come a little late: both show while the load goes over to the ground, and neither is a cause of its own.
+    // Pads damp and forces come a little late: both show while the load goes over to the ground, and neither is a cause
+    // of its own.
     base.push(rows.lift_rate.clone());
     let model = [base.as_slice(), &[give.clone(), contact.clone()]].concat();
     let mut candidates = Vec::new();
@@ -232,7 +233,7 @@ impl Ground {
                 }
                 found
             }
-            // Two pads side by side; the give of one is twice what the pair's is, so its stiffness half.
+            // Two pads act side by side. The compliance of one is twice that of the pair, so its stiffness is half.
             "pad-compliance" => {
                 found.iter().take(1).map(|p| parameter("k_shear", 0.5 * p.value, 0.5 * p.std_error, "N/m")).collect()
             }
@@ -280,7 +281,8 @@ impl Ground {
         }
     }
 
-    /// Mean height of a rest without the slip found in it and without the give under its load, m, and its standard error.
+    /// Mean height of a rest without the slip found in it and without the compression under its load, m, and its
+    /// standard error.
     pub fn level(&self, stand: &Stand) -> (f64, f64) {
         let picks = self.compared.study.picks();
         let Some(solved) = &self.compared.study.solved else { return (0.0, f64::INFINITY) };

@@ -109,7 +109,7 @@ fn look(
     Ok((carry, grasp, ground))
 }
 
-/// Least score of a cause.
+/// Least evidence of a cause.
 fn limit(seen: &[Seen<'_>]) -> f64 {
     threshold(seen.iter().map(|s| s.period_s).fold(0.0, f64::max))
 }

@@ -19,7 +19,7 @@ const WHOLE: f64 = 0.75;
 const REST_M_S: f64 = 8e-3;
 const BEFORE: usize = 6;
 const OTHER_LIFT: f64 = 0.05;
-/// A lift is another one, or less than the whole, when the noise alone would hardly ever make the difference: so many standard deviations.
+/// Difference of two lifts, in standard deviations of the noise, from which they differ.
 const SURELY: f64 = 4.0;
 /// A block that was just lifted swings behind its pads, s.
 const SWINGS_S: f64 = 0.12;
@@ -175,7 +175,7 @@ impl<'a> Seen<'a> {
         (self.time_s(from), (settled..known).chain(rest).collect())
     }
 
-    /// Removes rows at both ends of a carry in which the ground may support part of the weight: a heavy block takes
+    /// Removes rows at both ends of a carry in which the ground may support part of the weight. A heavy block takes
     /// longer than a row to lift and to put down.
     fn without_ends(&self, rows: &mut Vec<usize>) {
         for _ in 0..2 {
@@ -191,7 +191,8 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// Up to which row a block that was lowered is carried, and from which on it rests, with another lift than in the air.
+    /// Up to which row a block that was lowered is carried, and from which on it rests, with another lift than in the
+    /// air.
     fn put_down(&self, rows: &[usize]) -> Option<(usize, usize)> {
         let speed = |i: usize| self.velocity[0][i].hypot(self.velocity[1][i]);
         let moved = rows.iter().rposition(|i| speed(*i) > REST_M_S)?;

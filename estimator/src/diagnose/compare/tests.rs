@@ -138,7 +138,8 @@ fn where_nothing_can_be_kept_out_of_the_choice_a_cause_must_be_beyond_doubt() {
     }
 }
 
-/// Friction that rises near rest is a change of friction: without any, a falling-off and a rising curve would together pass for a constant.
+/// Friction that rises near rest is a change of friction: without any, a falling-off and a rising curve would together
+/// pass for a constant.
 #[test]
 fn what_lifts_dry_friction_is_not_asked_for_where_there_is_none() {
     let speed = |i: usize| 0.3 + 0.25 * (i as f64 / 40.0).sin();

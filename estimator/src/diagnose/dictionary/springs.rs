@@ -42,7 +42,8 @@ impl Dictionary<'_> {
         }
     }
 
-    /// Walls that leave a good part of the motion alone (else a spring explains as much), and cables to a place beside the arm.
+    /// Walls that leave a good part of the motion alone (else a spring explains as much), and cables to a place beside
+    /// the arm.
     pub(super) fn walls(&self, all: &mut Vec<Candidate>) {
         let units = self.units();
         for (place, side) in self.grid.walls.iter().copied() {

@@ -1,4 +1,4 @@
-//! Dry friction of an input beside a load that turns round with the motion, as dry friction does.
+//! Dry friction of an input beside a load that reverses with the motion, as dry friction does.
 
 use super::rows::Row;
 use crate::diagnose::geometry::Study;
@@ -6,11 +6,11 @@ use crate::diagnose::report::Alternative;
 use crate::diagnose::system::{Use, solve};
 use crate::signal::noise::white_noise;
 
-/// Noise may make so much of what the load has of its own before the two count as one.
+/// Noise share of the load's own part from which load and dry friction count as one regressor.
 const AS_ONE: f64 = 0.5;
-/// A direction turns round in nobody's way exactly: what a load has of its own within this share of what turns round is none.
+/// Relative error of the direction's shape at reversals: a smaller part of the load's own is none.
 const SHAPE: f64 = 0.03;
-/// What is left of a load that is all noise, at least: a share of it.
+/// Least mean square of the load's own part, to avoid division by zero.
 const LEAST_OWN: f64 = 1e-6;
 
 /// Separability of a load from dry friction.

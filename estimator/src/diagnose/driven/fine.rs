@@ -4,7 +4,7 @@
 use crate::signal::noise::white_noise;
 use crate::signal::task::{half_width, smooth, smooth_value};
 
-/// The sign of a speed is a guess below so many times its noise, and below this share of the fastest.
+/// Speed below which its sign is uncertain, in multiples of its noise and as a share of the largest speed.
 const SPEED_NOISES: f64 = 2.0;
 const LEAST_SPEED: f64 = 1e-3;
 
@@ -18,7 +18,7 @@ pub struct Fine {
     rate_noise: f64,
     /// Speed over which a direction goes from one to the other.
     blur: f64,
-    /// Of so many samples one is a row.
+    /// Number of samples per row.
     every: usize,
 }
 

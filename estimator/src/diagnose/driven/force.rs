@@ -33,7 +33,7 @@ pub struct Force {
     pub input: Input,
 }
 
-/// The force at the input against its motion and the load, and how well friction is told from that load.
+/// The input force against its motion and the load, and the separability of friction from that load.
 pub fn force(seen: &Seen, names: &'static Columns) -> Result<Option<Force>, EstimateError> {
     if seen.rows.iter().any(|r| r.force.is_none()) {
         return Ok(None);

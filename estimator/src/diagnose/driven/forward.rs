@@ -1,5 +1,6 @@
-//! The input of a transmission on its own: a hand holds it on its measured way, and its friction and the measured load act against it. (Its inertia
-//! is a small part of the force: a measured force that drove it would be followed in all its errors.)
+//! The input of a transmission on its own: a hand holds it on its measured way, and its friction and the measured load
+//! act against it. (Its inertia is a small part of the force: a measured force that drove it would be followed in all
+//! its errors.)
 
 use super::rows::{ROW_HZ, Row, Seen};
 use crate::diagnose::geometry::Study;
@@ -38,7 +39,7 @@ impl Input {
         })
     }
 
-    /// Laws of the causes; nothing where one has none.
+    /// Laws of the causes; `None` if one has no law.
     fn effects(&self, study: &Study, picks: &[usize], values: &[f64]) -> Option<Vec<Effect>> {
         let (mut effects, mut dry) = (vec![Effect::new(&Inertia, &[values[self.inertia].max(0.0)])], 0.0);
         for (candidate, own) in causes(study, picks, values) {

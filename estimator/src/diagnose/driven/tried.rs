@@ -10,7 +10,8 @@ const GAPS: [f64; 14] =
 /// Steps in which a found half gap or way is closed in on, as shares of it, and how many of them to either side.
 const CLOSER: [f64; 3] = [0.05, 0.01, 0.002];
 const STEPS: i32 = 5;
-/// A value is closed in on only while it is known to this share of the distance between those that were tried: between closer ones nothing tells them apart.
+/// Standard error, as a share of the distance between tried values, up to which the grid is refined. Closer values
+/// cannot be separated.
 const SHARPER: f64 = 0.3;
 
 /// Tried half gaps or presliding distances, finer around a value found.

@@ -78,7 +78,8 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
     Ok(Side::new(study, rows.clone(), stretch, ("output's place", names.unit), noise))
 }
 
-/// Parameters of what the output shows, for the input: the output moves by the ratio. Of a gap's share it is not known better than the gap is.
+/// Parameters of what the output shows, for the input: the output moves by the ratio. Of a gap's share it is not known
+/// better than the gap is.
 pub fn as_of_input(
     study: &Study,
     own: &Candidate,

@@ -1,4 +1,5 @@
-//! Motions that can be asked for: what a person, or a program that moves like one, can do with an object in half a minute.
+//! Motions that can be asked for: what a person, or a program that moves like one, can do with an object in half a
+//! minute.
 
 /// One movement: to where, how fast, how long a rest after it, and the push across at its end.
 #[derive(Clone, Copy, Debug)]

@@ -29,7 +29,7 @@ const SETTLED: f64 = 5.0;
 /// one because neither answer may be true (measured, `docs/diagnosis.md`).
 pub(super) const SURE: f64 = 0.85;
 pub(super) const SURE_HUNG: f64 = 0.95;
-/// More evidence than this is as good as certain.
+/// Evidence from which a question counts as settled.
 const MOST: f64 = 1e6;
 /// A crank is turned no farther than this to either side, rad.
 const TURN_RAD: f64 = 7.0;
@@ -97,7 +97,8 @@ fn asked(track: &Track, excitation: &Excitation, seconds: f64) -> Experiment {
     }
 }
 
-/// An eccentric mass and a tilted plane are the same in every motion of the object: a known weight on it tells them apart.
+/// An eccentric mass and a tilted plane are equivalent in every motion of the object. A known weight on it separates
+/// them.
 fn hang(track: &Track, model: &Model, study: &Study, pair: (&str, &str)) -> Option<NextExperiment> {
     let solved = study.solved.as_ref()?;
     let chosen = study.chosen.iter().find(|c| study.candidates[c.candidate].id == pair.0)?;

@@ -107,7 +107,7 @@ impl Insertions {
         self.depth.at(time_s)
     }
 
-    /// Depth at which the sheet is expected to give way, m.
+    /// Expected puncture depth of the sheet, m.
     pub fn puncture_m(&self) -> f64 {
         self.puncture_m
     }

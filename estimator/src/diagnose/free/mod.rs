@@ -271,7 +271,8 @@ pub(super) fn tilted(track: &Track, sine: f64) -> Option<Effect> {
     Some(Effect::new(&GravityTilt, &[free.inertia * free.gravity_m_s2, sine.clamp(-1.0, 1.0).asin(), 0.0]))
 }
 
-/// The laws of what moves freely as a world has them: with its inertia and what is known, and gravity of both phases as one law.
+/// The laws of what moves freely as a world has them: with its inertia and what is known, and gravity of both phases as
+/// one law.
 pub(super) fn whole(track: &Track, laws: Vec<Effect>) -> Vec<Effect> {
     let Some(Freely { inertia, known, .. }) = track.freely else { return laws };
     let mut all = vec![Effect::new(&Inertia, &[inertia])];

@@ -39,7 +39,7 @@ const LEAST_HALF: usize = 3;
 /// of such rows.
 const STANDS: f64 = 3.0;
 const STANDING_ROWS: usize = 3;
-/// Over this long accelerations are told for a first look, s.
+/// Time over which accelerations are estimated for a first look, s.
 const ROUGH_S: f64 = 0.06;
 
 /// The rows of one recording, with forces of zero and an inertia of one.
@@ -202,7 +202,7 @@ fn usual(pieces: &[Piece], period_s: f64) -> [f64; 2] {
     sums.map(|sum| (sum / f64::max(count, 1.0)).sqrt())
 }
 
-/// Every so many-th sample is one of the finer points.
+/// Number of samples per finer point.
 fn skip(period_s: f64) -> usize {
     (1.0 / (FINE_HZ * period_s)).round().max(1.0) as usize
 }
@@ -338,8 +338,8 @@ fn moving(rows: &[Row], noise: [f64; 2]) -> Vec<Row> {
     moving
 }
 
-/// Mean over a block from sample `from` on, one neighbour on either side at hand: the trapezoidal rule with its first correction (Euler and
-/// Maclaurin), exact for cubics.
+/// Mean over a block from sample `from` on, one neighbour on either side at hand: the trapezoidal rule with its first
+/// correction (Euler and Maclaurin), exact for cubics.
 fn mean(values: &[f64], from: usize, block: usize) -> f64 {
     let end = from + block;
     let ends = 0.5 * (values[from] + values[end]);

@@ -1,4 +1,5 @@
-//! Speed that an impact takes, at the corner of a cube that hits first: its velocity before, from the flight, and after.
+//! Speed that an impact takes, at the corner of a cube that hits first: its velocity before, from the flight, and
+//! after.
 
 use super::powers;
 use crate::diagnose::answer::{Compared, Found, parameter};
@@ -17,17 +18,18 @@ use std::ops::Range;
 
 /// Time before and after a blow that is looked at, at most, s.
 const BESIDE_S: f64 = 0.054;
-/// Changes of the velocity are told over so much on either side, s.
+/// Time on either side over which changes of the velocity are evaluated, s.
 const REACH_S: f64 = 0.0068;
-/// A velocity that changes by this much there is a blow, by that much still is one; less than the last is free fall, m/s.
+/// A velocity that changes by this much there is a blow, by that much still is one; less than the last is free fall,
+/// m/s.
 const BLOW_M_S: f64 = 0.15;
 const STILL_M_S: f64 = 0.10;
 const FREE_M_S: f64 = 0.06;
-/// Two velocities that differ by less do not tell when they met, m/s.
+/// Difference of two velocities below which their meeting time is undetermined, m/s.
 const SAME_M_S: f64 = 0.1;
 /// A second corner within this height hits at the same time, in half widths.
 const TOGETHER: f64 = 0.1;
-/// A slower blow tells nothing, m/s.
+/// Least speed of a blow, m/s.
 const SLOW_M_S: f64 = 0.4;
 /// Fewer blows show nothing.
 const LEAST_BLOWS: usize = 8;
@@ -44,8 +46,9 @@ const UNSEEN: f64 = 0.29;
 /// Least evidence of a cause.
 pub const THRESHOLD: f64 = 20.0;
 
-/// Compares what impacts leave of the speed. `restitution`: that of the model. `None` where too few blows are clear. The number is the error of a
-/// restitution that no scatter shows: the ground may push on behind a blow, the more of it the longer the time between samples.
+/// Compares what impacts leave of the speed. `restitution`: that of the model. `None` where too few blows are clear.
+/// The number is the error of a restitution that no scatter shows: the ground may push on behind a blow, the more of it
+/// the longer the time between samples.
 pub fn blow(
     seen: &Tossed,
     half_width_m: f64,
@@ -96,7 +99,8 @@ pub fn blow(
     Ok(Some((Compared { study, channel, unit: "m/s", floor, along, stretch, state }, view, pushed)))
 }
 
-/// Pairs of speeds before and after, but those that are far off the rest; and how far the usual one is from one restitution, m/s.
+/// Pairs of speeds before and after, but those that are far off the rest; and how far the usual one is from one
+/// restitution, m/s.
 fn without_second_blows(pairs: Vec<(f64, f64)>) -> (Vec<(f64, f64)>, f64) {
     let median = |values: &mut Vec<f64>| {
         values.sort_by(f64::total_cmp);

@@ -13,10 +13,10 @@ use nalgebra::DVector;
 
 /// Every so many-th throw is held out.
 const HELD_OUT: usize = 4;
-/// Score that makes a cause: 2 ln(likelihood) less what its one parameter costs.
+/// Least evidence of a cause: 2 ln(likelihood) less the penalty of its parameter.
 const THRESHOLD: f64 = 20.0;
-/// Before anything is seen: clocks are off by this share (a crystal by far less; one standard deviation, generously), and lengths
-/// that a person put in by this one.
+/// Before anything is seen: clocks are off by this share (a crystal by far less; one standard deviation, generously),
+/// and lengths that a person put in by this one.
 const CLOCKS: f64 = 1e-3;
 const LENGTHS: f64 = 2e-2;
 
@@ -59,7 +59,8 @@ pub fn scale(seen: &Tossed, gravity_m_s2: f64) -> Option<(Cause, Alternative)> {
     Some((cause, other))
 }
 
-/// Root mean squares of what is left of the heights of all flights: by gravity, by their common fall, and by each one's own, m.
+/// Residual RMS of the heights of all flights: with standard gravity, with their common fall, and with each one's own,
+/// m.
 pub fn left_m(seen: &Tossed, gravity_m_s2: f64) -> [f64; 3] {
     let falls = [Some(gravity_m_s2), Some(seen.fall.down_m_s2), None];
     let flights = seen.tracks.iter().map(|t| (t, end(t))).filter(|(t, n)| *n >= least(t));
@@ -73,7 +74,8 @@ pub fn left_m(seen: &Tossed, gravity_m_s2: f64) -> [f64; 3] {
     [0, 1, 2].map(|k| (sum[k] / sum[3].max(1.0)).sqrt())
 }
 
-/// Flights with a blow that was not seen say nothing: they stray from their own parabolas (third; rows last) far more than others do.
+/// Flights with a blow that was not seen say nothing: they stray from their own parabolas (third; rows last) far more
+/// than others do.
 fn without_hidden_blows(squares: Vec<[f64; 4]>) -> Vec<[f64; 4]> {
     let mut own: Vec<f64> = squares.iter().map(|s| s[2] / s[3]).collect();
     own.sort_by(f64::total_cmp);

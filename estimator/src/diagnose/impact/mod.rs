@@ -103,7 +103,8 @@ fn powers(rows: usize, size: usize, of: impl Fn(usize) -> f64) -> nalgebra::DMat
     matrix
 }
 
-/// Standard error of the friction by the scatter of single slides (a table is not alike everywhere) and by what is not known of the foot.
+/// Standard error of the friction by the scatter of single slides (a table is not alike everywhere) and by what is not
+/// known of the foot.
 fn mean_friction(seen: &Tossed) -> f64 {
     let n = seen.slides.len() as f64;
     let values: Vec<f64> = seen.slides.iter().map(|s| s.friction(seen.fall.down_m_s2)).collect();

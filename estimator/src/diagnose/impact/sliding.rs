@@ -18,7 +18,7 @@ use nalgebra::{DVector, Vector3};
 
 /// Fewer slides show nothing.
 const LEAST_SLIDES: usize = 4;
-/// Score that makes a cause.
+/// Least evidence of a cause.
 pub const THRESHOLD: f64 = 25.0;
 /// Least dry friction coefficient. A smaller one is misfit of a speed-dependent resistance.
 const LEAST_MU: f64 = 2e-3;

@@ -1,4 +1,4 @@
-//! The motion between the rows of a hole: where a needle turns round within a row, and what it remembers of its way, is told there.
+//! Motion between the rows of a hole, for reversals within a row and for laws with memory.
 
 use crate::diagnose::fine::FINE_HZ;
 use crate::diagnose::track::{Fine, Span, Weighing};

@@ -22,7 +22,7 @@ const FREE_S: f64 = 2.0;
 const WORDS: &str = "push in slowly, draw back before the sheet gives way, push through, move to and fro in the hole slowly and fast, \
                      draw out";
 
-/// The recording to make; nothing where nothing is open that it could settle.
+/// The recording to make; `None` if it would settle no open question.
 pub fn propose(
     open: &[Alternative],
     (needle, law): (&Needle, Option<&MembraneLaw>),

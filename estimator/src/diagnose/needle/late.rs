@@ -1,4 +1,4 @@
-//! Forces that come later than the motion of a needle: with the forces of another moment, its sheet explains more.
+//! Time delay of the forces after the motion of a needle, from the shift for which its sheet explains most.
 
 use super::rows::{Needle, Phase, Row};
 use crate::diagnose::shifted::{Demands, Late, look};
@@ -6,8 +6,8 @@ use crate::identify::linear::least_squares_values;
 
 /// Delays are tried in steps of this, s, or of a sample where those are longer.
 const STEP_S: f64 = 2e-3;
-/// Largest delay, s, for rows near a surface or a puncture. A shift of the force would change their contact phase, so
-/// they are not compared.
+/// Time from the surface and from punctures within which rows are not compared, s, because a delay of the forces would
+/// change their contact phase.
 const NEAR_S: f64 = 0.06;
 /// Limits of a delay. Beyond the longest one a hand is already at another movement. Other causes in a sheet are not in
 /// the plain model and correlate with some delay by chance.
@@ -61,7 +61,7 @@ fn columns(needle: &Needle, compared: &[usize]) -> Vec<Vec<f64>> {
     columns
 }
 
-/// Power that is left a row with the forces of so many samples later, and rows.
+/// Residual power per row, and number of rows, with the forces of this many samples later.
 fn left(forces: &Forces<'_>, compared: &[usize], columns: &[Vec<f64>], by: isize) -> Option<(f64, f64)> {
     let later = |i: usize| forces.of_row[i].checked_add_signed(by).and_then(|at| forces.force_n.get(at));
     let (kept, y): (Vec<usize>, Vec<f64>) =

@@ -1,6 +1,8 @@
-//! Diagnosis of a needle in a sheet: the sheet before it is pierced, the shaft in its hole, and the sensors where nothing is touched.
+//! Diagnosis of a needle in a sheet: the sheet before it is pierced, the shaft in its hole, and the sensors where
+//! nothing is touched.
 //!
-//! Without a world the sheet is a linear spring and the hole holds nothing, as in the thesis's simulation; with one they are its laws.
+//! Without a world the sheet is a linear spring and the hole holds nothing, as in the thesis's simulation; with one
+//! they are its laws.
 
 mod between;
 mod experiment;

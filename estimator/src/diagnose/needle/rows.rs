@@ -1,4 +1,5 @@
-//! Rows of a needle's recording: nothing held, held outside, pressing an untouched sheet, unloading it, and in the hole.
+//! Rows of a needle's recording: nothing held, held outside, pressing an untouched sheet, unloading it, and in the
+//! hole.
 
 use super::between::Between;
 use super::late::{Forces, late};
@@ -109,7 +110,7 @@ pub struct Needle {
     pub two_fingered: bool,
     /// Stiffness that the sheet begins with, N/m.
     pub stiffness_n_m: f64,
-    /// Noise of the rate, m/s …
+    /// Noise of the rate, m/s.
     pub rate_noise_m_s: f64,
     /// Part of that noise due to the measured path alone, whatever the motion.
     pub slope_noise_m_s: f64,
@@ -120,7 +121,8 @@ pub struct Needle {
 }
 
 impl Needle {
-    /// Goes on with a recording that was made later: its holds and its places of the sheet are others, and so is its own surface.
+    /// Goes on with a recording that was made later: its holds and its places of the sheet are others, and so is its
+    /// own surface.
     pub fn then(&mut self, later: Self) {
         let of = |pick: fn(&Row) -> usize| self.rows.iter().map(pick).max().map_or(0, |last| last + 1);
         let (push, stretch, recording) = (of(|r| r.push), of(|r| r.stretch), self.recordings);

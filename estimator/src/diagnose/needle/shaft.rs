@@ -40,7 +40,7 @@ const POSSIBLE: [&str; 9] = [
     "friction-change",
     "force-drift",
 ];
-/// Those of them that need the points between the rows.
+/// Possible causes that need the points between the rows.
 const CLOSELY: [&str; 3] = ["stribeck", "backlash", "local-resistance"];
 /// Friction of a shaft in proportion to the length in the hole. The catalogue has no law for it, and every needle shows
 /// it.

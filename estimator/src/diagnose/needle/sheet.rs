@@ -14,7 +14,7 @@ use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 use haptics::law::object::MembraneLaw;
 
-/// Rows follow each other within so many of their distances.
+/// Largest distance of consecutive rows, in their usual distances.
 const NEXT: f64 = 1.5;
 /// Pushes within this of each other, m, are at one place of the sheet.
 const OTHER_PLACE_M: f64 = 5e-4;
@@ -133,7 +133,8 @@ fn touches(r: &Row) -> bool {
     matches!(r.phase, Phase::Loading | Phase::Unloading) && r.depth_m > 0.0
 }
 
-/// Columns of what the sheet may be beside a linear spring (or the law of a world), and of what may be wrong with the force.
+/// Columns of what the sheet may be beside a linear spring (or the law of a world), and of what may be wrong with the
+/// force.
 pub fn columns(needle: &Needle, law: Option<&MembraneLaw>) -> Columns {
     let mut rows: Vec<Row> = needle.rows.iter().filter(|r| r.phase != Phase::Hole).copied().collect();
     let floor_n = white_noise(&rows.iter().map(|r| r.force_n).collect::<Vec<f64>>());
@@ -261,7 +262,7 @@ fn said_by_a_row(
     let left = |k: usize| y[k] - columns.iter().zip(&fit.values).map(|(c, v)| c[k] * v).sum::<f64>();
     let mut in_time: Vec<(f64, f64)> = free.iter().enumerate().map(|(k, i)| (rows[*i].time_s, left(k))).collect();
     in_time.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // Correlation of rows so many apart, and of how many pairs.
+    // Correlation of rows at this distance, and number of pairs.
     let correlation = |lag: usize| {
         let near = |run: &&[(f64, f64)]| run[lag].0 - run[0].0 < (lag as f64 + NEXT - 1.0) * needle.period_s;
         let pairs = in_time.windows(lag + 1).filter(near).map(|run| (run[0].1, run[lag].1));

@@ -1,5 +1,6 @@
-//! Channels whose rows are dealt out: every second row trains, or rows from everywhere are held out together, so that no window is left that took
-//! part in nothing. Each window is left out of the fit in turn; its rows took part in the choice.
+//! Channels whose rows are dealt out: every second row trains, or rows from everywhere are held out together, so that
+//! no window is left that took part in nothing. Each window is left out of the fit in turn; its rows took part in the
+//! choice.
 
 use super::{Compared, WINDOW_S, told};
 use crate::diagnose::candidate::Candidate;

@@ -29,7 +29,8 @@ impl Forward for Pads {
         consecutive(&all, &|i| self.time_s[i], self.period_s, &|a, b| self.stretch[a] == self.stretch[b])
     }
 
-    /// place = give of the force + lag · rate, stepped where each step ends: a lag that runs ahead of the force is noise, and none.
+    /// place = give of the force + lag · rate, stepped where each step ends: a lag that runs ahead of the force is
+    /// noise, and none.
     fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
         let lag_s = (-values[self.rate]).max(0.0);
         let given: Vec<(&[f64], f64)> = columns(study, picks, values)

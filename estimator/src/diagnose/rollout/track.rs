@@ -100,7 +100,7 @@ fn stretches(track: &Track) -> Vec<std::ops::Range<usize>> {
     found
 }
 
-/// Pieces of the locked blocks.
+/// Segments of the locked blocks.
 fn windows(track: &Track, study: &Study) -> Vec<std::ops::Range<usize>> {
     let rows = (WINDOW_S / track.period_s).round().max(4.0) as usize;
     let mut found = Vec::new();

@@ -1,4 +1,5 @@
-//! The curve that was measured beside that of a world: friction, springs and binds that the world does not have, and scales of sensors.
+//! The curve that was measured beside that of a world: friction, springs and binds that the world does not have, and
+//! scales of sensors.
 //!
 //! A world is known only so well: what is smaller than its own stated errors is no cause.
 
@@ -23,7 +24,7 @@ const CORNER_M: f64 = 0.8e-3;
 const PLACES: usize = 24;
 const WIDTHS: [f64; 4] = [0.08, 0.13, 0.2, 0.3];
 const LEAST_ROWS: usize = 40;
-/// A bind must be seen in so many rows.
+/// Least number of rows in a local resistance.
 const LEAST_ON: usize = 20;
 /// Least evidence of an unexplained term, as a multiple of a cause's threshold.
 const STRANGE: f64 = 2.0;
@@ -46,7 +47,7 @@ pub fn bind_n(at_m: f64, place_m: f64, width_m: f64) -> f64 {
     law.force(&Motion { position: at_m, direction: 1.0, velocity: 1.0, ..Motion::default() })
 }
 
-/// Compares the measured curve with the world's. Nothing where too little of it was seen.
+/// Compares the measured curve with the world's. `None` if too little of it was seen.
 pub fn curve(
     push: &Push,
     known: &Known<'_>,

@@ -19,13 +19,13 @@ const FAST_M_S: (f64, f64) = (0.06, 0.15);
 const FREE_S: f64 = 2.0;
 /// Travel between a finger's release and the next push, m: that of the spring and the gap.
 const GAP_M: f64 = 6e-3;
-/// Free fingers are looked at every so many blocks.
+/// Spacing of the rows of free fingers, in blocks.
 const FREE_EVERY: usize = 10;
 
 const WORDS: &str = "throw the switch over to both sides, slowly and fast in turn, press on at each stop, and let go for two seconds \
                      before and after";
 
-/// The recording to make; nothing where nothing is open that it could settle.
+/// The recording to make; `None` if it would settle no open question.
 pub fn propose(
     open: &[Alternative],
     seen: &Seen,

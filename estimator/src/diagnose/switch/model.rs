@@ -28,7 +28,7 @@ pub struct Known<'a> {
     pub switch: &'a Switch,
     pub pad: Cushion,
     gravity_m_s2: f64,
-    /// Error of its forces, N, of its stops, m, and of the give at the stops, m/N.
+    /// Standard errors of its forces, N, of its stops, m, and of the compliance at the stops, m/N.
     pub error_n: f64,
     pub end_error_m: f64,
     pub give_error_m_n: f64,

@@ -1,4 +1,5 @@
-//! Rows of a switch's recording: a finger that pushes the knob on, one that presses it against its stop, and fingers that touch nothing.
+//! Rows of a switch's recording: a finger that pushes the knob on, one that presses it against its stop, and fingers
+//! that touch nothing.
 
 use crate::diagnose::compare::stretches;
 use crate::estimate::EstimateError;
@@ -12,7 +13,7 @@ use std::ops::Range;
 
 /// Samples are averaged over about this time, s, forces and places alike.
 const BLOCK_S: f64 = 0.01;
-/// A finger touches from this share of its strongest force on, and from so many times the noise of a block.
+/// Least force of a touching finger, as a share of its strongest force and in standard deviations of a block's noise.
 const TOUCH_SHARE: f64 = 0.03;
 const TOUCH_NOISES: f64 = 6.0;
 /// Windows in which a finger is free at some time, and the share of their blocks that are taken for it.
@@ -234,7 +235,8 @@ fn finger(recording: &Recording, name: &str, block: usize, side: usize) -> Resul
     Ok(Finger { tip, velocity, force, zero, touches, noise_n })
 }
 
-/// Blocks in which a finger touches nothing: a finger pushes and cannot pull, so that the least force of some time is none.
+/// Blocks in which a finger touches nothing: a finger pushes and cannot pull, so that the least force of some time is
+/// none.
 fn free_blocks(along: &[f64]) -> Vec<usize> {
     let long = along.len().div_ceil(WINDOWS).max(1);
     (0..along.len())

@@ -21,7 +21,7 @@ const STRANGE_M: f64 = 6e-5;
 /// Largest missing share of the world's pad compliance: ten times as stiff.
 const MOST_STIFFER: f64 = 0.9;
 
-/// Compares what may move the tip while it presses the knob against a stop. Nothing where that was hardly done.
+/// Compares the causes that move the tip while it presses the knob against a stop. `None` if that was hardly done.
 pub fn stop(
     seen: &Seen,
     known: Option<&Known<'_>>,

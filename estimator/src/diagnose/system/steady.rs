@@ -1,4 +1,4 @@
-//! Jackknife of an effect over segments of a recording, each of which may have its own model error.
+//! Jackknife of an effect over blocks of a recording, each of which may have its own model error.
 
 use super::{Scaled, Solved, System, Use, factored};
 use nalgebra::{DMatrix, DVector};
@@ -8,9 +8,9 @@ use std::ops::Range;
 const LEAST_REST: f64 = 1e-9;
 
 impl System {
-    /// Squared effect of these regressors in a solution over its jackknife variance over segments of the recording
-    /// (Tukey 1958), for the most favourable segment length. Unlike the variance of the residual, it includes that a
-    /// model error at one place affects all rows there. Infinite without segments.
+    /// Squared effect of these regressors in a solution over its jackknife variance over blocks of the recording
+    /// (Tukey 1958), for the most favourable block length. Unlike the variance of the residual, it includes that a
+    /// model error at one place affects all rows there. Infinite without blocks.
     pub fn steadiness(&self, solved: &Solved, own: &Range<usize>) -> f64 {
         if self.pieces.is_empty() {
             return f64::INFINITY;
@@ -23,7 +23,7 @@ impl System {
         self.pieces.iter().map(|pieces| self.known_to(pieces, &effect, &left)).fold(0.0, f64::max)
     }
 
-    /// The same for one set of segments. Without a segment, the effect grows by its rows' residual along the effect
+    /// The same for one set of blocks. Without a block, the effect grows by its rows' residual along the effect
     /// over the effect's power in all others.
     fn known_to(&self, pieces: &[usize], effect: &[f64], left: &[f64]) -> f64 {
         let count = pieces.iter().max().map_or(0, |last| last + 1);
@@ -74,7 +74,7 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
 
     const ROWS: usize = 2000;
-    /// Rows of a segment.
+    /// Rows of a block.
     const OF_A_PIECE: usize = 50;
 
     /// A constant and a cause's regressor, solved: significance of the cause by its residual, and by the jackknife.
@@ -117,7 +117,7 @@ mod tests {
         let mut rng = StdRng::seed_from_u64(12);
         let mut fooled = 0;
         for _ in 0..40 {
-            // A regressor that is large in every fourth segment, in which the model has another error each time.
+            // A regressor that is large in every fourth block, in which the model has another error each time.
             let of_piece = |rng: &mut StdRng| -> Vec<f64> { (0..ROWS / OF_A_PIECE).map(|_| noise(rng)).collect() };
             let (shape, missed) = (of_piece(&mut rng), of_piece(&mut rng));
             let at = |all: &[f64], i: usize| if (i / OF_A_PIECE).is_multiple_of(4) { all[i / OF_A_PIECE] } else { 0.0 };

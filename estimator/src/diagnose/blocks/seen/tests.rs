@@ -10,7 +10,8 @@ const RATE_HZ: f64 = 100.0;
 /// The block meets the ground, s.
 const TOUCHDOWN_S: f64 = 6.2;
 
-/// `kept_n`: lift that goes on for a second after the block has met the ground. `leak_n_s`: weight that runs out in the air.
+/// `kept_n`: lift that goes on for a second after the block has met the ground. `leak_n_s`: weight that runs out in the
+/// air.
 fn recording(seed: u64, kept_n: f64, leak_n_s: f64) -> Recording {
     let_down_in(0.1, seed, kept_n, leak_n_s)
 }
