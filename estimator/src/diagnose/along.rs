@@ -8,7 +8,7 @@ use haptics::law::Coordinate;
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 
-/// Length or angle, and where a tool's is counted along.
+/// Kind of coordinate, length or angle, and the path along which a tool's is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Along {
     coordinate: Coordinate,
@@ -27,7 +27,7 @@ impl Along {
         Self { coordinate, path }
     }
 
-    /// The path to see another recording along: none where it has the coordinate itself.
+    /// Path along which another recording's coordinate is measured: `None` if it has the coordinate itself.
     ///
     /// # Errors
     /// One sentence where the place in it is not the place in what was diagnosed.

@@ -1,4 +1,4 @@
-//! From comparisons of several channels to one answer in words.
+//! Builds one answer in words from comparisons of several channels.
 
 use super::atlas::Atlas;
 use super::candidate::Candidate;
@@ -42,7 +42,7 @@ pub type States<'a> = &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CausePa
 /// Usual size of a cause with its unit, for the test of excitation. None if the cause does not belong to the channel.
 pub type Usual<'a> = &'a dyn Fn(&Candidate) -> Option<(f64, &'static str)>;
 
-/// A channel that was compared, with all that an answer needs of it but words.
+/// A compared channel, with everything but the words of its answer.
 pub struct Compared {
     /// The comparison.
     pub study: Study,
@@ -99,7 +99,7 @@ impl<'a> Part<'a> {
         self
     }
 
-    /// In which nothing runs on its own, for this reason.
+    /// Marks the channel as static, without a free run, for this reason.
     pub fn still(mut self, why: &'static str) -> Self {
         self.forward = Err(why);
         self
@@ -211,7 +211,7 @@ impl<'a> Part<'a> {
         selection.unexplained(&self.study.picks()).filter(|(_, score)| *score > UNEXPLAINED)
     }
 
-    /// Causes that, at their usual size, this recording would hide.
+    /// Causes of usual size whose effect this recording would hide.
     fn not_excited(&self, found: &mut Vec<NotExcited>) {
         let Study { system, candidates, solved, .. } = self.study;
         let picks = self.study.picks();
@@ -236,10 +236,10 @@ impl<'a> Part<'a> {
     }
 }
 
-/// Everything about an answer that is no comparison.
+/// Parts of an answer that do not come from a comparison.
 #[derive(Default)]
 pub struct Beside {
-    /// Name of the model that was started from.
+    /// Name of the base model.
     pub model: String,
     /// Faults of the samples, and causes found by other tests. They come first.
     pub causes: Vec<Cause>,
@@ -251,11 +251,11 @@ pub struct Beside {
 /// Channel of the baseline and final figures: that of the strongest cause, or the first one if there is none.
 fn told<'a, 'b>(parts: &'b [Part<'a>]) -> Option<&'b Part<'a>> {
     let strongest = |part: &Part<'_>| part.study.chosen.iter().map(|c| c.score).fold(0.0, f64::max);
-    // Of equals the last one would be taken.
+    // Of equal ones, the last would be taken.
     parts.iter().rev().max_by(|a, b| strongest(a).total_cmp(&strongest(b)))
 }
 
-/// The answer in one word: whether anything has a name, whether anything has none, whether a name is open.
+/// Verdict of the answer: true arguments mean that a cause is named, that a term has no name, that a name is ambiguous.
 pub fn verdict(is_named: bool, is_strange: bool, is_open: bool) -> Verdict {
     match (is_named, is_strange) {
         (false, false) => Verdict::None,

@@ -24,9 +24,9 @@ pub enum Variable {
     ForceRate,
     /// Time.
     Time,
-    /// Force with which something is gripped.
+    /// Grip force.
     Grip,
-    /// Force with which something is lifted.
+    /// Lift force.
     Lift,
     /// Distance of the tips.
     Width,
@@ -69,16 +69,16 @@ pub struct Seen {
     pub taken: Vec<f64>,
 }
 
-/// Everything that could have been there, most evidence first, and what it is seen against.
+/// Candidate causes of the residual, most evidence first, and the variables of their plots.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Atlas {
     /// Candidate causes that the recording excites.
     pub suspects: Vec<Seen>,
-    /// Rate of the rate of the coordinate, one an instant, m/s² or rad/s².
+    /// Acceleration of the coordinate at each instant, m/s² or rad/s².
     pub acceleration: Vec<f64>,
     /// Rate of change of the measured force, N/s or N m/s.
     pub force_rate: Vec<f64>,
-    /// Tasks without one coordinate have channels instead of all that.
+    /// Channels of tasks without one coordinate, instead of the fields above.
     pub channels: Vec<Channel>,
 }
 
@@ -112,7 +112,7 @@ pub struct Against {
     pub score: f64,
     /// Variable that shows it best.
     pub variable: Variable,
-    /// The rows in which it could be, …
+    /// Rows in which it may have an effect.
     pub rows: Vec<usize>,
     /// Values of that variable in these rows, SI units.
     pub over: Vec<f64>,
@@ -120,11 +120,11 @@ pub struct Against {
     pub taken: Vec<f64>,
 }
 
-/// The rows of a channel as they are looked at.
+/// Rows of a channel, with the variables of their plots.
 pub(super) struct View {
     /// Recording of each row. Empty if all are shown together.
     pub recording: Vec<usize>,
-    /// Rows of one number are of one sensor, or of one sum of sensors: a suspect is shown over all that it could be in.
+    /// Sensor, or sum of sensors, of each row. A candidate cause is shown over all sensors that it may affect.
     pub sensor: Vec<usize>,
     /// Variables of the plots, with a value for each row.
     pub over: Vec<(Variable, Vec<f64>)>,
@@ -135,7 +135,7 @@ pub(super) struct View {
 }
 
 impl View {
-    /// Rows of one sensor, of which the way says nothing.
+    /// Rows of one sensor, without a direction.
     pub fn of(recording: Vec<usize>, over: Vec<(Variable, Vec<f64>)>) -> Self {
         let sensor = vec![0; over.first().map_or(0, |(_, values)| values.len())];
         Self { recording, sensor, over, way: Vec::new(), is_angular: false }
@@ -193,7 +193,7 @@ pub(super) fn channel(
     }
 }
 
-/// Of every cause that the rows could show the candidate with most evidence, and that: the strongest cause first.
+/// Strongest candidate of every cause that the rows can show, with its evidence; the strongest cause first.
 fn strongest(study: &Study, threshold: f64) -> Vec<(&'static str, usize, f64)> {
     let Study { system, candidates, .. } = study;
     let selection = Selection::new(system, candidates, threshold);
@@ -213,7 +213,7 @@ fn strongest(study: &Study, threshold: f64) -> Vec<(&'static str, usize, f64)> {
     best
 }
 
-/// The atlas of a comparison. `threshold`: the score that names a cause.
+/// The atlas of a comparison. `threshold`: least evidence of a named cause.
 pub(super) fn atlas(track: &Track, study: &Study, threshold: f64) -> Atlas {
     let Study { system, candidates, .. } = study;
     let along: Vec<usize> = (0..track.rows.len()).filter(|i| track.rows[*i].place == Place::Along).collect();

@@ -16,7 +16,7 @@ use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, Weight};
 
 /// Evidence by which the other load must be favoured, 2 ln(likelihood). It is high because rows are not independent.
 const LIKELIER: f64 = 60.0;
-/// Rounds in which weight and load settle.
+/// Rounds in which weight and load converge.
 const ROUNDS: usize = 3;
 
 /// Evidence by which a free force of gravity, of any direction, may beat the weight on the bearing. On a load in one
@@ -94,7 +94,7 @@ fn plain(track: &Track, model: &Model, fixed: &Model) -> Result<(f64, f64), Esti
     let fit = look.fit(&look.laws(&weighed))?;
     let found = weighed.iter().zip(&fit.values).filter(|(e, _)| is_weight(e));
     let weight_n = known_n(fixed) + found.map(|(e, share)| e.values[0] * share).sum::<f64>();
-    // A mass off the axis, a tilt or a bias is no reason to look for another load.
+    // An eccentric mass, a tilt or a bias is no reason to look for another load.
     let rubs: Vec<Effect> = weighed.into_iter().filter(|e| !is_weight(e)).collect();
     let mut columns = look.laws(&rubs);
     let beside: [&dyn Fn(&Row) -> f64; 4] =
@@ -108,7 +108,7 @@ fn known_n(fixed: &Model) -> f64 {
     fixed.iter().filter(|e| e.law().id() == Weight.id()).map(|e| e.values[0]).sum()
 }
 
-/// Rows as a plain fit sees them: blurred directions, loads without bias, forces without what is known.
+/// Rows for a plain fit: blurred directions, loads without bias, forces without the known ones.
 struct Look {
     track: Track,
     y: Vec<f64>,

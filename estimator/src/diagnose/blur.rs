@@ -2,7 +2,7 @@
 
 use super::track::{Place, Row, Track};
 
-/// The sign of a velocity is blurred over this share of the usual speed at least.
+/// Least width of the blur of the direction, as a share of the usual speed.
 const BLUR: f64 = 0.008;
 /// Time over which the direction is blurred if inertia is in the model, whose force jumps together with the friction's.
 const BLUR_OF_MASS: f64 = 0.012;
@@ -10,7 +10,7 @@ const BLUR_OF_MASS: f64 = 0.012;
 const BLUR_OF_FREE: f64 = 0.004;
 /// A reversal may be at any point between two rows: standard deviation of its position, in rows, with some margin.
 const SKEW: f64 = 0.5;
-/// The clocks of force and motion differ by about this, s.
+/// Difference of the clocks of force and motion, s.
 const CLOCKS_S: f64 = 1e-3;
 /// Speed, in units of the velocity blur, below which the object may stick: its friction is then undetermined.
 const STICKS: f64 = 1.0;
@@ -21,7 +21,8 @@ pub const STANDS: f64 = 0.4;
 /// Share of the squared friction that stays uncertain in a row with a reversal at a known position.
 const REVERSAL: f64 = 0.05;
 
-/// The direction of motion, as certain as the velocity's noise and the clocks of the channels let it be.
+/// Sets the direction of motion of each row and its uncertainty, from the noise of the velocity and the clocks of the
+/// channels.
 pub fn blur(track: &mut Track) {
     let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
     let (noise, period_s) = (track.velocity_noise, track.period_s);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 /// Regressor: effect of a cause on each row per unit of its parameter, made once and shared.
 pub type Column = Arc<Vec<f64>>;
 
-/// A value that was searched for, not solved for.
+/// A value that was searched on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Searched {
     pub name: &'static str,
@@ -30,13 +30,13 @@ pub enum Shape {
     Spring { half: f64 },
     /// k, f0 and two cubics (about the middle, and half a range beside it) of a spring that hardens.
     Hardening { half: f64 },
-    /// k and k3 of a spring that hardens about a place that was searched for.
+    /// k and k3 of a spring that hardens about a searched place.
     Stiffening,
     /// k, c of a compliant element with damping; a force that drives the motion is no damper.
     Damped,
 }
 
-/// A damper of so many seconds times the stiffness, the wrong way round, may still be noise, s.
+/// Largest damping of the wrong sign that may be noise, in seconds times the stiffness.
 const NEARLY_UNDAMPED_S: f64 = 0.1;
 
 impl Shape {
@@ -81,7 +81,7 @@ pub fn about_its_zero([k, f0, here, there]: [f64; 4]) -> [f64; 4] {
 /// One cause with its searched values fixed: its regressors are linear in the residual.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// Out of `docs/causes/README.md`; terms of the base and of the generic library have names of their own.
+    /// Id from `docs/causes/README.md`; terms of the base model and of the generic library have names of their own.
     pub id: &'static str,
     pub kind: Kind,
     /// One regressor per linear parameter, one entry per row.
@@ -91,21 +91,21 @@ pub struct Candidate {
     pub searched: Vec<Searched>,
     /// Parameters that count in the evidence: linear and searched ones.
     pub cost: f64,
-    /// The sign that its first parameter must have, or 0.
+    /// Required sign of its first parameter, or 0.
     pub sign: f64,
     /// Further constraint on its parameters: a cause is named only if they fit it.
     pub shape: Shape,
-    /// The least size of its first parameter: what is smaller is within what the model itself is known by.
+    /// Least size of its first parameter. A smaller one is within the uncertainty of the model itself.
     pub least: f64,
     /// Measurement noise of its regressor in a row: a rate is measured less well than a direction.
     pub noise: f64,
     /// Side of a one-sided law: +1, −1, or 0 where there is none.
     pub side: f64,
-    /// Of a generic term that is no cause: its expression.
+    /// Expression of a generic term.
     pub expression: Option<String>,
-    /// The channel that it goes with, and that channel's unit.
+    /// Channel on which it depends, and that channel's unit.
     pub channel: Option<(String, String)>,
-    /// The part of the recording that its values were searched in: a time in another part is no neighbour.
+    /// Part of the recording in which its values were searched. Times in different parts are no neighbours on the grid.
     pub part: usize,
 }
 
@@ -146,7 +146,7 @@ impl Candidate {
         }
     }
 
-    /// With one more value that was searched for.
+    /// Adds one more searched value.
     pub fn at(mut self, name: &'static str, value: f64, unit: &'static str) -> Self {
         self.searched.push(Searched { name, value, unit });
         self.cost += 1.0;
@@ -178,7 +178,7 @@ impl Candidate {
         self
     }
 
-    /// Whose first parameter is so large at least.
+    /// Sets the least size of its first parameter.
     pub fn at_least(mut self, least: f64) -> Self {
         self.least = least;
         self

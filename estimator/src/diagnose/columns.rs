@@ -1,4 +1,4 @@
-//! Columns of laws, each made once: the rounds of a comparison ask for most of them again.
+//! Cache of regressors: the rounds of a comparison need most of them again.
 
 use super::candidate::Column;
 use super::means::{at_points, column, column_of_place, is_short, of_points};
@@ -45,7 +45,7 @@ impl Columns {
         self.made(effect.law(), &effect.values, How::Means, || self.mean(track, effect))
     }
 
-    /// As [`column_of_place`].
+    /// Regressor of a law of position, see [`column_of_place`].
     pub fn of_place(&self, track: &Track, effect: &Effect) -> Column {
         self.made(effect.law(), &effect.values, How::OfPlace, || {
             if is_short(track) { column_of_place(track, effect) } else { self.mean(track, effect) }
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn what_resists_and_what_pushes_at_a_place_are_told_apart_by_the_direction_at_every_point() {
-        // Reversed in the middle of a row.
+        // The direction reverses in the middle of a row.
         let point = |k: usize| Fine { position: 0.01, direction: if k < 3 { 1.0 } else { -0.5 }, ..Fine::default() };
         let span = Span { start: 0, len: 4, weighing: Weighing::Even };
         let rows = vec![Row { span, ..Row::at_rest() }];

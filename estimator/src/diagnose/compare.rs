@@ -16,7 +16,7 @@ const RIDGE: f64 = 1e-2;
 /// Part of a cause beyond the model below which it counts as none.
 const LEAST_OWN: f64 = 1e-4;
 
-/// Rows of one channel with everything that could explain them.
+/// Rows of one channel with the base model and all candidates.
 #[derive(Clone)]
 pub struct Channel {
     /// The target.
@@ -25,7 +25,7 @@ pub struct Channel {
     pub base: Vec<Vec<f64>>,
     /// Causes and generic terms.
     pub candidates: Vec<Candidate>,
-    /// Rows of one number follow each other without a gap.
+    /// Segment of each row.
     pub stretch: Vec<usize>,
     /// Rows that may be held out.
     pub testable: Vec<bool>,
@@ -38,18 +38,18 @@ pub struct Channel {
 impl Channel {
     /// Compares all candidates. `threshold`: least evidence of a cause.
     pub fn compare(self, threshold: f64) -> Result<Study, EstimateError> {
-        // The rows are in the order of their times already.
+        // The rows are already in time order.
         let order: Vec<f64> = (0..self.y.len()).map(|i| i as f64).collect();
         self.chosen(&order, threshold, true)
     }
 
-    /// The same where the model has no dry friction: what bends or lifts it is then asked for beside it only.
+    /// The same without dry friction in the model: causes that bend or lift it are then tried only beside it.
     pub fn compare_without_friction(self, threshold: f64) -> Result<Study, EstimateError> {
         let order: Vec<f64> = (0..self.y.len()).map(|i| i as f64).collect();
         self.chosen(&order, threshold, false)
     }
 
-    /// The same with rows held out together that follow each other in this order.
+    /// The same with this order of the rows for held-out blocks.
     pub fn compare_in(self, order: &[f64], threshold: f64) -> Result<Study, EstimateError> {
         self.chosen(order, threshold, true)
     }

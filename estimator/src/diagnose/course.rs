@@ -4,7 +4,7 @@ use super::geometry::{Study, residual};
 use super::system::Use;
 use super::track::{Place, Track};
 
-/// One instant of a recording along the motion.
+/// One instant of the course along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instant {
     /// Index of the recording, in the order in which they were given.
@@ -17,7 +17,7 @@ pub struct Instant {
     pub angle_rad: f64,
     /// Rate of the coordinate, m/s or rad/s.
     pub velocity: f64,
-    /// Force across the motion, N, positive outwards; zero where it was not measured.
+    /// Force across the motion, N, positive outwards; zero if it was not measured.
     pub normal_force_n: f64,
     /// Measured force along the motion, N or N m.
     pub measured: f64,
@@ -27,34 +27,34 @@ pub struct Instant {
     pub left_after: f64,
     /// Weight of the row, 0 … 1: less if the direction of motion is uncertain.
     pub weight: f64,
-    /// It took part in no choice and no fit.
+    /// True if it took part in neither choice nor fit.
     pub is_locked: bool,
-    /// It follows the instant before it without a gap.
+    /// True if it follows the instant before it without a gap.
     pub follows: bool,
 }
 
 impl Instant {
-    /// Force that the model says, N or N m.
+    /// Force predicted by the base model, N or N m.
     pub fn simulated_before(&self) -> f64 {
         self.measured - self.left_before
     }
 
-    /// Force that the model with the found causes says, N or N m.
+    /// Force predicted by the extended model, N or N m.
     pub fn simulated_after(&self) -> f64 {
         self.measured - self.left_after
     }
 }
 
-/// Everything along the motion, at the rate of the comparison.
+/// Course of all quantities along the motion, at the rate of the comparison.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Course {
     /// In time order, recording after recording.
     pub instants: Vec<Instant>,
-    /// True when something turns about an axis: [`Instant::angle_rad`] is an angle.
+    /// True if the object rotates about an axis: [`Instant::angle_rad`] is an angle.
     pub turns: bool,
-    /// True when the coordinate is an angle: forces are N m, velocities rad/s.
+    /// True if the coordinate is an angle: forces are N m, velocities rad/s.
     pub is_angular: bool,
-    /// True when the force across the motion was measured.
+    /// True if the force across the motion was measured.
     pub has_normal_force: bool,
     /// Source of the forces.
     pub source: Source,
@@ -63,12 +63,12 @@ pub struct Course {
 /// Source of the forces of a course.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Source {
-    /// They were measured.
+    /// Measured forces.
     #[default]
     Sensor,
     /// Only the motion was measured: the forces are those that the laws must sum to.
     Motion,
-    /// The same, per unit of inertia.
+    /// The same per unit of inertia.
     MotionPerInertia,
 }
 

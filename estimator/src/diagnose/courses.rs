@@ -5,7 +5,7 @@ use super::candidate::Candidate;
 use super::geometry::{Path, PathPoint};
 use haptics::Vec2;
 
-/// Starts of a slip that are tried.
+/// Number of tried starts of a slip.
 pub const SLIP_STARTS: usize = 24;
 /// Starts and durations of a creep of the grasp, in shares of the recording.
 const CREEP_STARTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
@@ -32,7 +32,7 @@ impl Course {
         Self { start_s: slip.searched[0].value, duration_s: slip.searched.get(1).map(|d| d.value) }
     }
 
-    /// Share of the way that is behind it.
+    /// Share of the slip completed at this time.
     pub fn gone(self, time_s: f64) -> f64 {
         let since_s = time_s - self.start_s;
         self.duration_s.map_or(f64::from(u8::from(since_s >= 0.0)), |d| (since_s / d.max(1e-12)).clamp(0.0, 1.0))

@@ -31,7 +31,7 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
         let Turned { mut rows, other, link: of_this } = turned(&signals, recording, &circle, rows)?;
         rows.extra = vec![extra::of(recording)];
         link = link.or(of_this);
-        // The same recording with the other link's angle wrong.
+        // The same recording with an error of the other link's angle.
         swapped.push(other.map(|other| track::Track { extra: rows.extra.clone(), ..other }));
         let known_m = recording.meta.known.get("radius_m").copied().filter(|r| r.is_finite() && *r > 0.0);
         if scale.is_none() {
@@ -67,7 +67,7 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
             (bearing_n, track, study) = (Some(weight_n), other, found);
         }
     }
-    // Whose angle is wrong was asked of the plain model, which something hidden may have kept from telling.
+    // The link was chosen by the plain model, which hidden causes may have misled.
     if let Some(mut other) = other.flatten().filter(|_| is_turned(&study)) {
         let (other_n, again) = look(&mut other)?;
         if !is_turned(&again) {
@@ -108,7 +108,7 @@ pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validati
     Ok(super::validate::validate(&mut track, &before, &after, &known, &diagnosis.kept))
 }
 
-/// Names the scale of all lengths where the path itself did not.
+/// Names the scale of all lengths if the path itself did not show it.
 fn add_scale(found: &mut Diagnosis, scale: Option<Cause>) {
     let Some(cause) = scale.filter(|scale| found.causes.iter().all(|c| c.id != scale.id)) else { return };
     found.causes.insert(0, cause);
@@ -155,7 +155,7 @@ fn turned(
         }
         at += candidate.columns.len();
     }
-    // With two fingers it is one of two arms: the handle's own is not turned.
+    // With two fingers, the error is of one arm of two: the handle itself is not rotated.
     let Some(turn_rad) = offset.filter(|_| !signals.two_fingered) else {
         return Ok(Turned { rows, other: None, link: None });
     };
@@ -198,7 +198,7 @@ pub fn plain_crank() -> Model {
     [&Weight as &dyn Law, &LoadFriction, &ViscousFriction].map(|law| Effect::new(law, &[1.0])).to_vec()
 }
 
-/// A weight that the sidecar states is no part of what is fitted.
+/// Takes a weight that the sidecar states out of the fitted laws.
 fn known_weight(recording: &Recording, model: &mut Model) -> Model {
     let known = &recording.meta.known;
     let weight = known.get("weight_N").copied().or_else(|| Some(known.get("mass_kg")? * recording.meta.gravity()));

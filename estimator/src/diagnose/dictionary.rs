@@ -18,7 +18,7 @@ use haptics::law::{
     Motion, PositionRipple, QuadraticDrag, Stribeck, ViscousFriction, Weight,
 };
 
-/// Least share of the friction that bends before it slides, and the least that passes for all of it.
+/// Least share of the friction that bends before it slides, and least share that counts as all of it.
 const LEAST_BENT: f64 = 0.3;
 const ALL_BENT: f64 = 0.65;
 /// Presliding distance from which only a share of the friction may bend, in multiples of the shortest that is felt.
@@ -28,7 +28,7 @@ const LEAST_BEHIND: f64 = 0.4;
 /// Largest admissible share. Beyond it, another presliding distance or gap would fit better.
 const MOST: f64 = 1.7;
 
-/// Ripples of fewer rows than this are averaged over each row.
+/// Length of a ripple, in rows, below which it is averaged over each row.
 const SHORT_RIPPLE: f64 = 25.0;
 
 /// Shape parameter of presliding that springs back along a straight line.
@@ -45,7 +45,7 @@ pub struct Dictionary<'a> {
     pub dry: &'a [f64],
     /// Forces that are completely known: they determine the gain of the sensor.
     pub fixed: &'a [Vec<f64>],
-    /// Causes that belong to the model already.
+    /// Causes that already belong to the model.
     pub without: &'a [&'a str],
     /// The values that are tried.
     pub grid: &'a Grid,
@@ -74,7 +74,7 @@ impl Dictionary<'_> {
     fn made(&self, is_searched: bool) -> Vec<Candidate> {
         let mut all = Vec::new();
         self.friction(&mut all);
-        // Nothing is searched for in what moves.
+        // The moving part has no searched values.
         if !is_searched {
             self.motion(&mut all);
         }
@@ -140,7 +140,7 @@ impl Dictionary<'_> {
         all.push(self.plain(&FrictionAsymmetry, &[0.0, 1.0, 0.0], 1));
         for (vs, alpha) in self.grid.stribeck.iter().copied() {
             let falls = self.plain(&Stribeck, &[1.0, vs, alpha], 0).at("vs", vs, self.unit(&Stribeck, 1)).positive();
-            // The Gaussian is the form that is meant where none is said.
+            // Without an exponent, the Gaussian form is meant.
             all.push(if alpha > 0.0 { falls.at("alpha", alpha, "1") } else { falls });
         }
         all.push(self.plain(&QuadraticDrag, &[1.0], 0).positive());
@@ -179,7 +179,7 @@ impl Dictionary<'_> {
         column
     }
 
-    /// Rows along the motion that follow each other without a gap.
+    /// Segments of rows along the motion.
     fn pieces(&self) -> Vec<std::ops::Range<usize>> {
         let mut pieces: Vec<std::ops::Range<usize>> = Vec::new();
         for i in self.track.along() {
@@ -214,7 +214,7 @@ impl Dictionary<'_> {
             all.extend(super::hung::tilt(self.track));
         }
         all.extend(free::tilt(self.track));
-        // A short one changes within a row.
+        // A short ripple changes within a row.
         let short = SHORT_RIPPLE * self.track.quantile(0.9, |r| r.motion.velocity.abs()) * self.track.period_s;
         self.grid.ripples.iter().for_each(|length| self.ripple(all, *length, *length < short));
         self.springs(all);
@@ -288,14 +288,15 @@ impl Dictionary<'_> {
         }
     }
 
-    /// Friction of the model that bends by `way` before it slides: what it lacks against sliding at once.
+    /// Candidate by which the model's friction bends over `way` before it slides: the difference from sliding at once.
     fn bent(&self, way: f64, shape: f64) -> Candidate {
         let values = [1.0, 1.0 / way, shape];
         let bent = self.remembered(&Hysteresis, &values, &|motion, memory, _| memory[0] - motion.direction);
         let felt = f64::from(u8::from(way > self.grid.felt));
         let mut column: Vec<f64> = bent.iter().zip(self.dry).map(|(b, d)| felt * b * d).collect();
         super::stuck::bends(&self.track.rows, &values, &mut column);
-        // A part of the friction must be felt beyond doubt: what sticks makes a short bend of the noise of its way.
+        // Presliding of only part of the friction needs strong evidence: noise of the path during sticking looks like a
+        // short bend.
         let least = if way > LONG_BENT * self.grid.felt { LEAST_BENT } else { ALL_BENT };
         let hysteresis = Candidate::one("hysteresis", Kind::Plant, "share", "1", column);
         hysteresis.shaped(Shape::Share { least, whole: ALL_BENT, most: MOST }).at("way", way, self.units().length)
@@ -382,14 +383,14 @@ impl Dictionary<'_> {
                 all.push(self.plain(&MassChange, &[0.0, 1.0, 0.0, 0.0, tau], 1).at("tau", tau, "s"));
             }
             for start in self.grid.starts.iter().copied() {
-                // A weight that is another one from `start` on.
+                // A step of the weight at `start`.
                 let column = self.column(&|r| {
                     if r.motion.time_s >= start { Weight.force(&r.motion, &[1.0, 0.0, 0.0, 0.0, 0.0]) } else { 0.0 }
                 });
                 all.push(Candidate::one("mass-change", Kind::Plant, "step", units.force, column).at("t0", start, "s"));
             }
         }
-        // Friction that grows or falls in proportion to the model's own, slowly or at once.
+        // A change of friction in proportion to the model's own, slow or sudden.
         let of_dry = |effect: &Effect| -> Vec<f64> {
             self.columns.of(self.track, effect).iter().zip(self.dry).map(|(w, d)| w * d).collect()
         };
@@ -439,7 +440,7 @@ impl Dictionary<'_> {
             let id = "force-cross-axis";
             all.push(Candidate::one(id, Kind::Instrument, "kappa_xy", "1", cross(Vec2::x(), Vec2::y())));
             all.push(Candidate::one(id, Kind::Instrument, "kappa_yx", "1", cross(Vec2::y(), Vec2::x())));
-            // The whole sensor is turned: Fx − κ Fy and Fy + κ Fx.
+            // The whole sensor is rotated: Fx − κ Fy and Fy + κ Fx.
             let turned = every(&|r| r.along.y * r.force.x - r.along.x * r.force.y);
             let turned = Candidate::one(id, Kind::Instrument, "kappa_turned", "rad", turned);
             all.push(Candidate { cost: turned.cost + HARDLY, ..turned });

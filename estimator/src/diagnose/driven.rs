@@ -34,7 +34,7 @@ pub fn is_driven(recordings: &[Recording]) -> bool {
     recordings.iter().all(|r| r.time_s.is_some() && columns(r).is_some())
 }
 
-/// One channel's comparison on the rows that it could be made on.
+/// Comparison of one channel, with its rows.
 struct Side {
     compared: Compared,
     rows: Vec<Row>,

@@ -1,4 +1,4 @@
-//! From a comparison to an answer in words.
+//! Builds an answer in words from a comparison.
 
 use super::answer::verdict;
 use super::atlas::Atlas;
@@ -38,10 +38,10 @@ const WORSE: f64 = 1.1;
 /// Evidence margin below which a rival keeps the cause ambiguous: its probability is then above a twentieth.
 const OPEN: f64 = 6.0;
 
-/// The channel of what moves along one coordinate.
+/// Channel of a motion along one coordinate.
 pub(super) const FORCE: &str = "force";
 
-/// Two causes that are one and the same regressor, whatever the motion.
+/// Two causes with the same regressor for every motion.
 pub(super) const TWINS: [(&str, &str, &str); 1] = [(
     "eccentric-mass",
     "gravity-tilt",

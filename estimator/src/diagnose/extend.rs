@@ -98,7 +98,7 @@ fn beside_model(
     (free::whole(track, found), is_whole)
 }
 
-/// The dry friction of a model: the same everywhere, N or N m, and in proportion to the load.
+/// Dry friction of a model: a constant part, N or N m, and a part in proportion to the load.
 struct Dry {
     level_n: f64,
     mu: f64,
@@ -113,7 +113,7 @@ impl Dry {
         Self { level_n: at(0.0).max(0.0), mu: (at(1.0) - at(0.0)).max(0.0) }
     }
 
-    /// A cause that is a share of the dry friction, as laws: of either part that there is. None for other causes.
+    /// Laws of a cause that is a share of the dry friction, one for each part of that friction. Empty for other causes.
     fn law(&self, candidate: &Candidate, values: &[f64], searched: &[f64]) -> Vec<Effect> {
         let (share, searched) = (values[0], |k: usize| searched.get(k).copied().unwrap_or(0.0));
         let starts = candidate.searched.first().is_some_and(|s| s.name == "t0");
@@ -125,7 +125,7 @@ impl Dry {
                 let everywhere = Effect::new(&Hysteresis, &[level, level / way, searched(1)]);
                 (everywhere, Effect::new(&LoadHysteresis, &[share * self.mu, way, searched(1)]))
             }
-            // No law of a world knows what else was recorded.
+            // No law of a world depends on other recorded channels.
             "friction-change" if candidate.channel.is_none() => (
                 Effect::new(&FrictionChange, &changes(self.level_n)),
                 Effect::new(&LoadFrictionChange, &changes(self.mu)),
@@ -154,7 +154,7 @@ fn scaled(effect: &Effect, share: f64) -> Effect {
     scaled
 }
 
-/// A plant cause of the force as a law, but for a share of the dry friction. `weight_n`: weight of the model, N or N m.
+/// Law of a plant cause that is no share of the dry friction. `weight_n`: weight of the model, N or N m.
 fn effect(candidate: &Candidate, (values, searched): (&[f64], &[f64]), track: &Track, weight_n: f64) -> Option<Effect> {
     if candidate.kind != Kind::Plant {
         return None;
@@ -199,7 +199,7 @@ fn effect(candidate: &Candidate, (values, searched): (&[f64], &[f64]), track: &T
         "backlash" => of(&Backlash, &[searched(0)]),
         "mass-change" if named("rate") => of(&MassChange, &[0.0, first, 0.0, 0.0, searched(0)]),
         "mass-change" => {
-            // A step: all of it within a sample.
+            // A step takes place within a sample.
             let step_s = track.period_s;
             of(&MassChange, &[0.0, first / step_s, searched(0), step_s])
         }
@@ -233,7 +233,7 @@ mod tests {
         let bends = Candidate::one("hysteresis", Kind::Plant, "share", "1", Vec::new()).at("way", 1e-4, "m");
         let laws = Dry::of(&model).law(&bends, &[0.8], &[1e-4]);
         assert!(laws.len() == 2 && (total(&laws, 0.0) - 0.8 * (0.1 + 0.2 * 5.0)).abs() < 1e-12, "{laws:?}");
-        // Under another load the same share.
+        // The same share under another load.
         let loaded = Dry::of(&model[1..2]).law(&bends, &[0.8], &[1e-4]);
         assert!(loaded.len() == 1 && (total(&loaded, 0.0) - 0.8).abs() < 1e-12, "{loaded:?}");
         let change = || Candidate::one("friction-change", Kind::Plant, "relative change", "1", Vec::new());

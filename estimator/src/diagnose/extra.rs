@@ -19,16 +19,16 @@ const FURTHER: [&str; 19] =
 /// A slow channel of one recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extra {
-    /// As the recording has it, e.g. `temperature_degC`.
+    /// Name in the recording, for example `temperature_degC`.
     pub name: String,
-    /// Its unit, as its name says.
+    /// Unit by its name.
     pub unit: String,
     time_s: Vec<f64>,
     values: Vec<f64>,
 }
 
 impl Extra {
-    /// Its value so long after the recording's start, s.
+    /// Value at this time after the recording's start, s.
     pub fn at(&self, time_s: f64) -> f64 {
         let after = self.time_s.partition_point(|t| *t < time_s).min(self.time_s.len() - 1);
         let before = after.saturating_sub(1);

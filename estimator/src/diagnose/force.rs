@@ -25,7 +25,7 @@ use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, Memory, Stribeck, ViscousFriction};
 use std::collections::HashMap;
 
-/// Most rounds in which searched values and the sensor's faults are settled.
+/// Most rounds of refinement of searched values and of the sensor's faults.
 const REFINEMENTS: usize = 2;
 /// The same for a free motion, whose noise becomes smaller if it swings.
 const REFINEMENTS_OF_FREE: usize = 5;
@@ -33,10 +33,10 @@ const REFINEMENTS_OF_FREE: usize = 5;
 /// Correlation times of a model error, s: typical durations of a hand's reversal and stroke.
 pub const PIECES_S: [f64; 3] = [0.25, 0.5, 1.0];
 
-/// The model to start from: laws with their non-linear values.
+/// Base model: laws with their non-linear values.
 pub type Model = Vec<Effect>;
 
-/// Compares all causes on a track. `fixed`: laws of which everything is known. `threshold`: least score of a cause.
+/// Compares all causes on a track. `fixed`: laws that are completely known. `threshold`: least evidence of a cause.
 pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) -> Result<Study, EstimateError> {
     blur(track);
     let loads = loads(track, model, fixed)?;
@@ -63,7 +63,7 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
             (Some(before), Some(now)) if (now / before).ln().abs() < SAME_NOISE => Some(before),
             (before, now) => now.or(before),
         };
-        // The load on the friction is what the sensor told, rid of what is now known of the sensor.
+        // Load on the friction: the sensor's reading, corrected for its faults found so far.
         if correct_load(track, &made) {
             known.columns.forget_loads();
             known.generic = generic(track);
@@ -212,7 +212,7 @@ struct Known {
     generic: Vec<Candidate>,
     /// True if the width of the direction's blur is reduced.
     is_sharp: bool,
-    /// The noise of the rows along the motion, N or N m; what a plain fit leaves where nothing better is known.
+    /// Noise of the rows along the motion, N or N m. Without a measured noise, it is the residual of a plain fit.
     noise: Option<f64>,
 }
 
@@ -350,7 +350,7 @@ pub fn drives(track: &Track, model: &Model) -> Result<bool, EstimateError> {
         })
         .sum();
     let [mass, others @ ..] = sizes.as_slice() else { return Ok(false) };
-    // A force that only comes late drives, too, but needs no negative dry friction for that.
+    // A delayed force also drives the motion, but needs no negative dry friction for that.
     let negative = |s: &f64| *s < -SURELY_NEGATIVE;
     Ok(friction < 0.0 && sizes.iter().all(|s| *s < SURELY_NEGATIVE) && (negative(mass) || others.iter().all(negative)))
 }
@@ -387,7 +387,7 @@ struct Asked {
     base: Vec<Vec<f64>>,
     /// Forces that are completely known, including a hung weight's.
     known: Vec<Vec<f64>>,
-    /// The force that the known ones leave.
+    /// The measured force less the known ones.
     y: Vec<f64>,
 }
 
@@ -443,7 +443,7 @@ fn first_look(
                 if row.place != Place::Along {
                     return 1.0;
                 }
-                // A sign that is anybody's guess leaves all of the friction open.
+                // If the sign is unknown, so is all of the friction.
                 let open = together * dry(&fit.values, i).powi(2) * row.open;
                 (1.0 + open / (noise * noise)).powf(-0.5)
             })

@@ -24,7 +24,7 @@ const LEAST_SHARE: f64 = 1e-3;
 struct Parts {
     before: Vec<f64>,
     after: Vec<f64>,
-    /// Squares of what the two differ by.
+    /// Squares of the difference of the two residuals.
     changed: Vec<f64>,
     rows: Vec<f64>,
 }
@@ -137,7 +137,7 @@ fn held_out(study: &Study, k: usize, stretch: &[usize], of: &dyn Fn(f64, f64) ->
     };
     let (power, rows) = over(&|u| matches!(u, Use::Fold(_)), &|_, a| a * a);
     let (sum, _) = over(&|u| matches!(u, Use::Locked(_) | Use::Beside(_)), of);
-    // As large as the noise in the rows that train.
+    // Normalised to the noise of the training rows.
     if power > 0.0 { sum * rows / power } else { 0.0 }
 }
 
@@ -206,7 +206,7 @@ fn parts(study: &Study, before: &[f64], after: &[f64], with_beside: bool) -> Par
 }
 
 impl Parts {
-    /// One more part: these rows, as they are left without the cause and with it.
+    /// Adds a part: these rows, with their residuals without and with the cause.
     fn add(&mut self, rows: &[usize], before: &[f64], after: &[f64]) {
         let sum = |of: &dyn Fn(usize) -> f64| rows.iter().map(|i| of(*i).powi(2)).sum::<f64>();
         self.before.push(sum(&|i| before[i]));

@@ -1,4 +1,4 @@
-//! Terms of no cause in particular: what is left when no law fits, told by what it depends on.
+//! Generic terms: regressors without a physical law, which detect the variable of an unexplained residual.
 
 use super::candidate::Candidate;
 use super::track::{Place, Row, Track};
@@ -35,7 +35,7 @@ pub fn generic_of(track: &Track, waves: u32, slow: u32) -> Vec<Candidate> {
     if track.planar {
         factors.push(("Fn", Box::new(|r: &Row| r.motion.normal_force_n)));
     }
-    // Along a line the waves are counted over the range.
+    // Along a line, waves are counted over the range.
     let turns = if track.radius_m.is_some() { String::new() } else { format!("2 pi/{range:.3} ") };
     let wave = |n: u32, of: fn(f64) -> f64| column(track, &|r| of(f64::from(n) * phase(r)));
     let waves: Vec<[Vec<f64>; 2]> = (1..=waves).map(|n| [wave(n, f64::cos), wave(n, f64::sin)]).collect();

@@ -1,4 +1,4 @@
-//! The path before the force: centre and radius of a crank, and the causes that distort the circle.
+//! Path of a crank: centre and radius, and the causes that distort the circle.
 
 use super::candidate::Candidate;
 use super::courses::{Course, SLIP_STARTS, jump};
@@ -11,13 +11,13 @@ use crate::identify::linear::least_squares;
 use haptics::Vec2;
 use haptics::law::Kind;
 
-/// A grasp that moves on the handle; the parameter of one that moves along the arm.
+/// Slip of the grasp on the handle, and the parameter of a slip along the arm.
 const SLIP: &str = "fingertip-slip";
 const OUTWARD: &str = "dr";
 /// Parameters of a finger's joint and first link, of one finger and of two.
 const OF_THE_FINGER: [&str; 2] = ["delta", "link_error"];
 const OF_FINGERS: [[&str; 2]; 2] = [["delta1", "link_error1"], ["delta2", "link_error2"]];
-/// Rounds of the linearised circle fit, and those after which the time of a slip is known well enough.
+/// Rounds of the linearised circle fit, and rounds after which the time of a slip is known well enough.
 const ROUNDS: usize = 8;
 const CLOSER: usize = 5;
 
@@ -78,7 +78,7 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// By what share the path is too large for a known radius, and the error of that.
+    /// Relative excess of the path over a known radius, with its standard error.
     pub fn too_large(&self, known_m: f64) -> Option<[f64; 2]> {
         let solved = self.study.solved.as_ref()?;
         let variance = solved.variance(self.study.system.rows);
@@ -94,12 +94,12 @@ struct Displaced {
     linear: Vec2,
 }
 
-/// One comparison of causes: everything that words and figures are made of.
+/// Result of one comparison of causes, from which texts and figures are made.
 pub struct Study {
     pub candidates: Vec<Candidate>,
     pub chosen: Vec<Chosen>,
     pub system: System,
-    /// All chosen, solved on the rows that train.
+    /// Solution of all chosen causes on the training rows.
     pub solved: Option<Solved>,
     /// The target.
     pub y: Vec<f64>,
@@ -194,7 +194,7 @@ fn compare(
         noise: Noise::Any,
         may_stand: false,
     };
-    // The whitening must not swallow what it is to leave: it comes from the residual of everything together.
+    // The whitening must not absorb causes, so it is learnt from the residual of all candidates together.
     let mut unwhitened = Rough::new(&base, &candidates, &rows);
     let picks = unwhitened.greedy(threshold);
     let unwhitened = unwhitened.system();
@@ -245,7 +245,7 @@ fn candidates(path: &Path, outward: &[Vec2], courses: &[Course]) -> Vec<Candidat
                 None => slip,
             }
         };
-        // The grasp moves over a handle that keeps its direction, or along the arm of one that turns with it.
+        // The grasp slips along a handle of constant direction, or along the arm of one that turns with it.
         let columns = vec![gone(&|i| outward[i].x), gone(&|i| outward[i].y)];
         let across = Candidate::several(SLIP, Kind::Plant, columns, vec![("dx", "m"), ("dy", "m")]);
         found.extend([across, Candidate::one(SLIP, Kind::Plant, OUTWARD, "m", gone(&|_| 1.0))].map(dated));
@@ -274,7 +274,8 @@ fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2)
             shift += match (candidate.id, point.joints[finger(candidate)]) {
                 ("pad-compliance", _) => outward * (value * outward.dot(&point.force)),
                 ("joint-offset", Some(joint)) => {
-                    // The second link turns about its joint: on an arc, not along its tangent.
+                    // The second link rotates about its joint: its error moves the tip on an arc, not along the
+                    // tangent.
                     bow += Vec2::new(joint[0].y, -joint[0].x) * (1.0 - value.cos()) + joint[0] * (value.sin() - value);
                     joint[0] * value
                 }

@@ -5,20 +5,20 @@ use super::fine::FINE_HZ;
 use super::track::{Place, Track};
 use std::f64::consts::TAU;
 
-/// Ripples a turn (over the range, where nothing turns) that are tried.
+/// Tried numbers of ripples per turn (over the range, if nothing turns).
 const RIPPLES: std::ops::RangeInclusive<u32> = 2..=40;
 /// Least length of a ripple, in rows of the fastest motion. The rows average out a shorter one.
 const LEAST_ROWS_A_RIPPLE: f64 = 1.0;
 /// Number of tried places of a local resistance, and its widths as shares of the range.
 const PLACES: usize = 24;
 const WIDTHS: [f64; 3] = [0.12, 0.2, 0.35];
-/// Speeds at which static friction has fallen off, as shares of the usual speed.
+/// Speeds of the decay of static friction, as shares of the usual speed.
 const STRIBECK: [f64; 7] = [0.06, 0.1, 0.16, 0.26, 0.4, 0.6, 0.9];
-/// Exponents with which it falls; 0 is the Gaussian.
+/// Exponents of that decay; 0 is the Gaussian.
 const FALLING: [f64; 2] = [0.0, 1.0];
-/// A Gaussian looks most like an exponential where its speed is this many times the other's.
+/// Ratio of speeds at which a Gaussian is most like an exponential.
 const LIKE_EXPONENTIAL: f64 = 1.5;
-/// Ways of presliding and half gaps, as shares of the range of positions.
+/// Presliding distances and half gaps, as shares of the range of positions.
 const WAYS: [f64; 14] =
     [0.00003, 0.00006, 0.00012, 0.00024, 0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.065, 0.13, 0.2];
 /// Shortest of these that is felt at a reversal, in points of the motion at the usual speed. (At the reversal the
@@ -67,7 +67,7 @@ pub struct Grid {
     pub ripples: Vec<f64>,
     /// Place and width.
     pub places: Vec<(f64, f64)>,
-    /// A place comes again after this; 0 never.
+    /// Period of the position; 0 if there is none.
     pub turn: f64,
     /// Place and side.
     pub walls: Vec<(f64, f64)>,
@@ -82,7 +82,7 @@ pub struct Grid {
     pub starts: Vec<f64>,
 }
 
-/// Places of rest of a spring, evenly about the middle of a range.
+/// Rest positions of a spring, evenly spaced about the middle of a range.
 fn rests(count: u32, (low, high): (f64, f64)) -> Vec<f64> {
     let share = |k: u32| 2.0 * f64::from(k) / f64::from(count - 1) - 1.0;
     (0..count).map(|k| 0.5 * (low + high + RESTS_WITHIN * (high - low) * share(k))).collect()
@@ -115,7 +115,7 @@ impl Grid {
         };
         let least = if stands { (SEEN * track.position_noise).min(felt) } else { felt };
         let scale = track.radius_m.map_or(range, |r| range.min(2.0 * r));
-        // On a crank a place comes again every turn.
+        // On a crank, positions repeat every turn.
         let whole = turn.filter(|t| range > 0.8 * t);
         let (from, span) = whole.map_or((low, range), |t| (0.0, t));
         let places = (0..PLACES).map(|k| from + span * (k as f64 + 0.5) / PLACES as f64);
@@ -146,7 +146,7 @@ impl Grid {
         }
     }
 
-    /// With another grid's values beside its own.
+    /// Adds another grid's values.
     pub fn with(mut self, more: Self) -> Self {
         self.stribeck.extend(more.stribeck);
         self.ways.extend(more.ways);
@@ -178,7 +178,7 @@ impl Grid {
                 "stribeck" => {
                     let alpha = value("alpha").unwrap_or(0.0);
                     let vs = value("vs").unwrap_or(0.0);
-                    // Of the other exponent as well, as near: on the coarse grid alone the wrong one may be nearer.
+                    // The other exponent is tried as finely: on the coarse grid the wrong one may fit better.
                     let [gaussian, exponential] =
                         if alpha == 1.0 { [vs * LIKE_EXPONENTIAL, vs] } else { [vs, vs / LIKE_EXPONENTIAL] };
                     for (alpha, vs) in [(0.0, gaussian), (1.0, exponential)] {
@@ -209,14 +209,14 @@ impl Grid {
                     }
                 }
                 "added-constraint" => {
-                    // A wall and a spring that hardens are alike.
+                    // A wall and a hardening spring are similar.
                     grid.hardening = rests(FINER_RESTS, (low, high));
                     if let (Some(direction), Some(rest)) = (value("anchor direction"), value("rest length")) {
                         let found = value("anchor distance").map_or(REACH, |d| d / radius.max(1e-12));
                         for turn in [-0.6, -0.3, 0.0, 0.3, 0.6].map(|s| s * step * TAU / f64::from(CABLES)) {
                             let rests = [-0.3, -0.15, 0.0, 0.15, 0.3].map(|s| rest + s * step * radius);
                             grid.cables.extend(rests.map(|rest| (direction + turn, rest, found)));
-                            // The same slack from another distance.
+                            // The same slack with another distance of the anchor.
                             for reach in REACHES.into_iter().filter(|reach| (reach - found).abs() > 1e-6) {
                                 let rests = [-0.2, 0.0, 0.2].map(|s| rest + (s * step + reach - found) * radius);
                                 grid.cables.extend(rests.map(|rest| (direction + turn, rest, reach)));

@@ -9,10 +9,10 @@ use crate::identify::linear::least_squares;
 use haptics::law::{Coordinate, Kind};
 use haptics::recording::Recording;
 
-/// Tilts that are tried, rad: more than this is no oversight.
+/// Largest tried tilt, rad: a larger one would be noticed.
 const LARGEST_TILT: f64 = 1.4;
 const STEPS: i32 = 12;
-/// A plane that was thought to be level is not this steep, as the sine of its tilt.
+/// Steepest tilt of a plane that was assumed to be level, as its sine.
 const STEEPEST: f64 = 0.6;
 
 /// A known weight on the object, `known` in the sidecar: `added_weight_N`, on a mechanism that turns also
@@ -28,7 +28,7 @@ pub struct Hung {
 }
 
 impl Hung {
-    /// On the handle of a crank.
+    /// A weight hung on the handle of a crank.
     pub fn on_crank(recording: &Recording) -> Option<Self> {
         let weight = stated(recording, "added_weight_N")?;
         Some(Self { force: weight, inertia: weight / recording.meta.gravity(), level_rad: 0.0 })
@@ -59,7 +59,7 @@ fn level(track: &Track, row: &Row, hung: Hung) -> f64 {
     if track.planar { row.motion.up_along } else { (row.motion.position - hung.level_rad).cos() }
 }
 
-/// The force that the hung weight needs, one a row, where there is one.
+/// Force that the hung weight needs, one per row; `None` without a weight.
 pub fn column(track: &Track) -> Option<Vec<f64>> {
     track.hung.iter().any(Option::is_some).then(|| {
         let force = |row: &Row| {
@@ -139,14 +139,14 @@ fn tilted_crank(track: &Track, known: &[f64]) -> Option<Candidate> {
     let rough = best(0.0, LARGEST_TILT / f64::from(STEPS))?;
     let (_, tilt, weight) = best(rough.1, 0.1 * LARGEST_TILT / f64::from(STEPS))?;
     let tilted = turned(tilt);
-    // The model's own weight takes what is upright of the object's.
+    // The model's own weight already contains the vertical part of the object's.
     let own = tilted.iter().zip(&upright).map(|(t, u)| weight * (t - tilt.cos() * u));
     let column = own.zip(hung_on(&tilted)).map(|(own, hung)| (own + hung) / tilt).collect();
     let found = Candidate::one("gravity-tilt", Kind::Plant, "angle", "rad", column);
     Some(found)
 }
 
-/// A mechanism whose axis was thought to be upright: what was hung on acts with the sine of the tilt only.
+/// A mechanism whose axis was assumed to be vertical: the hung weight acts with the sine of the tilt only.
 fn tilted_axis(track: &Track, known: &[f64]) -> Option<Candidate> {
     let plain = Plain::of(track, known);
     let column = |of: &dyn Fn(&Row) -> f64| track.rows.iter().map(of).collect::<Vec<f64>>();

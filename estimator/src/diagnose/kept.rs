@@ -9,15 +9,15 @@ use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::law::Kind;
 
-/// Values that say when or in which recording something happened: nothing of another recording.
+/// Values that belong to one recording (a time, an insertion) and do not carry over to another.
 const OF_ONE_RECORDING: [&str; 4] = ["t0", "from insertion", "from recording", "duration"];
-/// Searched values of another recording's grid that are as near as this count as the same.
+/// Relative difference of searched values, on another recording's grid, up to which they count as equal.
 const SAME: f64 = 0.35;
 
 /// One cause of one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kept {
-    /// Of which channel.
+    /// Channel of the cause.
     pub channel: &'static str,
     /// The cause.
     pub id: &'static str,
@@ -28,7 +28,7 @@ pub struct Kept {
     values: Vec<f64>,
 }
 
-/// All that was chosen in a comparison.
+/// All causes chosen in a comparison.
 pub fn of_study(channel: &'static str, study: &Study) -> Vec<Kept> {
     let Some(solved) = &study.solved else { return Vec::new() };
     let mut at = study.base.len();

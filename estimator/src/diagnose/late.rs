@@ -25,7 +25,7 @@ const ROUNDS: usize = 5;
 /// The cause.
 const ID: &str = "time-delay";
 
-/// Asks again with the force where it belongs, as long as a large delay is found; then says all of it.
+/// Repeats the diagnosis with the force shifted back while a large delay is found, then completes the answer.
 pub fn undo(
     recordings: &[Recording],
     first: Diagnosis,
@@ -34,7 +34,7 @@ pub fn undo(
     let named_s = delay_s(&first);
     let guess_s = first.guess_s.filter(|tau| tau.abs() > LINEAR_S);
     let Some(mut late_s) = guess_s.or(named_s.filter(|tau| tau.abs() > LINEAR_S)) else { return first };
-    // Whole samples: between two of them a force is their mean, with less noise than the rest has.
+    // Whole samples only: an interpolated force is a mean, with less noise than the others.
     let period_s = recordings.iter().filter_map(period_s).fold(0.0, f64::max);
     let whole = |late_s: f64| if period_s > 0.0 { (late_s / period_s).round() * period_s } else { late_s };
     let mut found = None;
@@ -93,12 +93,12 @@ pub fn guess_s(track: &Track, model: &Model) -> Option<f64> {
     late.is_seen.then_some(late.tau_s)
 }
 
-/// Rows along the motion whose forces are to be moved against it.
+/// Rows along the motion whose forces are shifted against it.
 struct Moved<'a> {
     track: &'a Track,
     /// Indices of the rows.
     rows: Vec<usize>,
-    /// Laws that go with the load, which moves with the force.
+    /// Laws that depend on the load, which moves with the force.
     loads: Vec<Effect>,
     /// Regressors that depend on the motion alone, one entry per row of the track.
     motion: Vec<Vec<f64>>,
@@ -209,7 +209,7 @@ fn is_force(name: &str) -> bool {
     })
 }
 
-/// The answer about the recording with its forces put back by `back_s`, with the delay that it has.
+/// The answer for the recording with its forces shifted back by `back_s`, with its delay.
 fn with_delay(mut found: Diagnosis, first: &Diagnosis, late_s: f64, back_s: f64) -> Diagnosis {
     let place = first.causes.iter().position(|c| c.id == ID);
     let mut cause = place.map_or_else(|| unnamed_before(first, late_s), |place| first.causes[place].clone());
@@ -245,7 +245,7 @@ fn with_delay(mut found: Diagnosis, first: &Diagnosis, late_s: f64, back_s: f64)
     found
 }
 
-/// A delay that the first answer did not name.
+/// A delay that the first answer did not name, as a cause.
 fn unnamed_before(first: &Diagnosis, late_s: f64) -> Cause {
     let before = told(first);
     let parameter = CauseParameter { name: "tau".to_owned(), value: late_s, std_error: 0.0, unit: "s".to_owned() };

@@ -3,7 +3,7 @@
 use super::track::{Place, Row, Span, Track, Weighing};
 use haptics::law::{Effect, Motion};
 
-/// Rows no longer than this are short for what depends on the place, s.
+/// Longest row that is short for effects of position, s.
 const SHORT_S: f64 = 0.015;
 
 /// True if the rows are short for effects of position.
@@ -29,7 +29,7 @@ pub fn column(track: &Track, effect: &Effect) -> Vec<f64> {
     }
 }
 
-/// Weights of rows, which are the same for rows of as many points.
+/// Weights of rows, shared by rows with the same number of points.
 #[derive(Default)]
 pub struct Weights {
     known: Vec<((Weighing, usize), Vec<f64>)>,
@@ -45,7 +45,7 @@ impl Weights {
         &self.known[place].1
     }
 
-    /// The mean over a row of what depends on motion, as [`Track::mean`].
+    /// Mean over a row of a function of the motion, as [`Track::mean`].
     pub fn mean(&mut self, track: &Track, row: &Row, of: impl Fn(&Motion) -> f64) -> f64 {
         if row.span.len == 0 {
             return of(&row.motion);
@@ -56,7 +56,7 @@ impl Weights {
     }
 }
 
-/// Means of what is felt at each of the finer points, 0 in free rows. `alone`: what a row is that has no such points.
+/// Means of the force at the finer points, 0 in free rows. `alone`: value of a row without such points.
 pub fn of_points(track: &Track, felt: &[f64], alone: impl Fn(&Row) -> f64) -> Vec<f64> {
     let mut weights = Weights::default();
     let mean = |row: &Row| {

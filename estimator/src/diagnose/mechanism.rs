@@ -10,7 +10,7 @@ use crate::estimate::EstimateError;
 use haptics::law::{Coordinate, CoulombFriction, Effect, Inertia, Law, ViscousFriction};
 use haptics::recording::Recording;
 
-/// Bodies that are thrown, paths without a clock, transmissions, and what moves along one coordinate.
+/// Diagnosis of thrown bodies, paths without a clock, transmissions, and motions along one coordinate.
 pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     if let Some(chain) = recordings.iter().find(|r| crate::identify::mechanism::is_chain(r)) {
         return Err(EstimateError::Other(format!(
@@ -51,11 +51,11 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     Ok(found)
 }
 
-/// Rounds in which a skew of force and motion is taken out, and the share of what a straight line says of it.
+/// Rounds in which an offset between force and motion is removed, and the share of the linear estimate that is used.
 const CLOSER: usize = 2;
 const OF_SKEW: f64 = 0.7;
 
-/// The answer, and by what part of a sample force and motion are apart, s.
+/// The answer, and the sub-sample offset between force and motion, s.
 fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Diagnosis, Option<f64>), EstimateError> {
     let mut faults = Vec::new();
     let mut tracks = Vec::new();
@@ -104,10 +104,10 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Di
     Ok((found, skew_s))
 }
 
-/// Laws of a mechanism that the sidecar states are no part of what is fitted.
+/// Laws of a mechanism that the sidecar states, which are taken out of the fitted ones.
 pub fn known_laws(recording: &Recording, coordinate: Coordinate, model: &mut Model) -> Model {
     let known = &recording.meta.known;
-    // The mass of a pendulum is not what it resists with.
+    // The mass of a pendulum is not its moment of inertia.
     let names = match coordinate {
         Coordinate::Linear => ["mass_kg", "viscous_N_s_m", "coulomb_N"],
         Coordinate::Angular => ["inertia_kg_m2", "viscous_Nm_s", "coulomb_Nm"],
@@ -135,7 +135,7 @@ pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validati
     Ok(super::validate::validate(&mut track, plain, effects, &[], kept))
 }
 
-/// Rows of a recording on which a mechanism's answer is measured, driven or free.
+/// Rows of a recording for the validation of a mechanism, driven or free.
 fn track_of(
     recording: &Recording,
     path: Option<&haptics::world::MechanismPath>,
@@ -155,10 +155,10 @@ fn track_of(
     free::track(recording, &bad, path)
 }
 
-/// The laws of a baseline's name.
+/// Laws of the baseline with this name.
 ///
 /// # Errors
-/// A part that is no law of a baseline, in a sentence.
+/// A term that is no law of a baseline, in a sentence.
 pub fn named(name: &str) -> Result<Model, EstimateError> {
     name.split('+')
         .map(|part| match part.trim() {

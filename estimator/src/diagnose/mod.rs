@@ -94,7 +94,7 @@ use haptics::world::World;
 pub struct Options {
     /// The task; inferred from sidecar and channels if absent.
     pub task: Option<Task>,
-    /// The model of a mechanism to start from: `mass`, `mass+viscous` or `mass+viscous+coulomb`.
+    /// Base model of a mechanism: `mass`, `mass+viscous` or `mass+viscous+coulomb`.
     pub baseline: Option<String>,
     /// The world to start from.
     pub world: Option<World>,
@@ -108,7 +108,7 @@ pub struct Options {
 const THRESHOLD: f64 = 20.0;
 /// The same for slow rows, whose noise averages out less.
 const THRESHOLD_SLOW: f64 = 25.0;
-/// Slower rows than this count as slow, s.
+/// Row period from which rows count as slow, s.
 const SLOW_PERIOD_S: f64 = 0.019;
 
 /// Diagnoses one or several recordings of the same object.
@@ -153,7 +153,7 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
     faults.dedup_by(|a, b| which(a) == which(b));
     let mut found = match task {
         Task::BlockStack | Task::Barrel if slide::is_slid(recordings) => slide::slid(recordings, options),
-        // A barrel is a block that is carried.
+        // A barrel is a carried block.
         Task::BlockStack | Task::Barrel => {
             let ask = |recordings: &[Recording]| blocks::blocks(recordings, options);
             ask(recordings).map(|found| late::undo(recordings, found, &ask))

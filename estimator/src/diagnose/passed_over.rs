@@ -24,7 +24,7 @@ pub fn passed_over(study: &Study, picks: &[usize], least: f64) -> Vec<PassedOver
     all
 }
 
-/// Takes those of another channel in: one that shows in both is passed over where it came nearer.
+/// Adds the causes of another channel. A cause that is in both keeps the entry with more evidence.
 pub fn join(all: &mut Vec<PassedOver>, more: Vec<PassedOver>) {
     for passed in more {
         match all.iter_mut().find(|p| p.id == passed.id) {
@@ -35,7 +35,7 @@ pub fn join(all: &mut Vec<PassedOver>, more: Vec<PassedOver>) {
     }
 }
 
-/// Without those of which something else is said.
+/// Removes those that the answer already mentions.
 pub fn unsaid(
     mut all: Vec<PassedOver>,
     causes: &[Cause],

@@ -55,7 +55,7 @@ pub fn upright(recording: &Recording) -> Option<(Recording, Cause)> {
     Some((mirrored(&straight, &names), cause))
 }
 
-/// Axes that are mirrored, and the sentence that says why.
+/// Mirrored axes, and the sentence with the reason.
 struct Found {
     axes: Vec<String>,
     why: String,
@@ -115,7 +115,7 @@ impl Grips {
         sum / f64::from(n.max(1))
     }
 
-    /// Root mean square of what `of` does within the grips, each about its own mean.
+    /// RMS variation of `of` within the grips, each about its own mean.
     fn moves(&self, of: impl Fn(usize) -> f64) -> f64 {
         let (mut power, mut n) = (0.0, 0);
         for span in &self.spans {
@@ -126,7 +126,7 @@ impl Grips {
         (power / n.max(1) as f64).sqrt()
     }
 
-    /// A tip that goes the other way than the one beside it, along x or y.
+    /// A tip that moves opposite to the other one, along x or y.
     fn places(&self, recording: &Recording) -> Option<Found> {
         recording.channel("x1_m")?;
         for (axis, at) in [("x", &self.x), ("y", &self.y)] {
@@ -145,7 +145,7 @@ impl Grips {
         None
     }
 
-    /// The finger whose x, mirrored, puts the second tip to the right of the first.
+    /// The finger whose x axis, mirrored, puts the second tip to the right of the first.
     fn crossed(&self) -> usize {
         usize::from(self.mean(|i| self.x[1][i] + self.x[0][i]) < 0.0)
     }
@@ -188,7 +188,7 @@ impl Grips {
         None
     }
 
-    /// Forces along x that do not press what is between the tips together.
+    /// Forces along x that do not press the held object together.
     fn across(&self, recording: &Recording) -> Option<Found> {
         if self.spans.is_empty() {
             return None;
@@ -216,7 +216,7 @@ impl Grips {
         (!axes.is_empty()).then_some(Found { axes, why })
     }
 
-    /// A vertical force that falls when the weight comes onto it, or heights that fall when something is lifted.
+    /// A vertical force that falls when it takes over the weight, or heights that fall when an object is lifted.
     fn upwards(&self, recording: &Recording) -> Option<Found> {
         let lifts: Vec<Lift> = self.spans.iter().filter_map(|span| self.lift(span)).collect();
         let down = lifts.iter().filter(|l| l.downwards).count();
@@ -266,6 +266,6 @@ impl Grips {
 struct Lift {
     /// Change of the vertical force of either finger, N.
     gained_n: [f64; 2],
-    /// It went down, as recorded.
+    /// True if the recorded height decreased.
     downwards: bool,
 }

@@ -19,9 +19,9 @@ use haptics::recording::Recording;
 
 /// Number of equal parts of the path, with the mean force of each.
 const PARTS: usize = 160;
-/// A part has this many samples at least, on the average.
+/// Least mean number of samples per part.
 const LEAST_SAMPLES: usize = 3;
-/// Places and widths of a local resistance that are tried, in shares of the range.
+/// Number of tried places of a local resistance, and its widths as shares of the range.
 const PLACES: usize = 24;
 const WIDTHS: [f64; 6] = [0.08, 0.15, 0.25, 0.4, 0.6, 0.9];
 
@@ -40,10 +40,10 @@ static STRAIGHT: Units = Units { force: "N", place: "m", per_place: "N/m", per_c
 #[derive(Clone, Debug)]
 struct Row {
     recording: usize,
-    /// m or rad from the start.
+    /// Position from the start, m or rad.
     place: f64,
     direction: f64,
-    /// Along the coordinate, N or N m.
+    /// Force along the coordinate, N or N m.
     force: f64,
     /// Measured force, and the second estimate of it, N.
     measured_n: [f64; 3],
@@ -191,7 +191,7 @@ fn best_of_both(id: &str) -> Variable {
     }
 }
 
-/// A door does not drive whoever opens it: a force that takes work all the way is the one on the hand.
+/// A door does not drive the person who opens it: a force that takes work all the way is the reaction on the hand.
 fn drives_backwards(rows: &[Row]) -> bool {
     let work: f64 = rows.iter().map(|r| r.force * r.direction).sum();
     let size: f64 = rows.iter().map(|r| r.force.abs()).sum();
@@ -238,7 +238,7 @@ fn parts(recording: &Recording, number: usize, seen: &path::Projected) -> Vec<Ro
     rows
 }
 
-/// Columns of another estimate of the same force: `fx_<words>_N`, `fy_<words>_N` (and z).
+/// Channels of another estimate of the same force: `fx_<words>_N`, `fy_<words>_N` (and z).
 fn second_names(recording: &Recording) -> Option<[String; 3]> {
     let own = |name: &&str| name.starts_with("fx_") && name.ends_with("_N") && *name != "fx_N";
     let first = recording.channels.iter().map(|c| c.name.as_str()).find(own)?;
@@ -246,7 +246,7 @@ fn second_names(recording: &Recording) -> Option<[String; 3]> {
     recording.channel(&names[1]).map(|_| names)
 }
 
-/// Force along the way, against the place; the dry friction of one direction is the model.
+/// Comparison of the force along the path over position. The base model is the dry friction of one direction.
 fn along(rows: &[Row], units: &Units) -> Result<(Study, String), EstimateError> {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let (low, high) =

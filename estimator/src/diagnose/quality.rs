@@ -10,7 +10,7 @@ use haptics::recording::{Recording, Warning};
 /// Faults found in the samples.
 pub struct Faults {
     pub causes: Vec<Cause>,
-    /// Samples that no sensor measured, one flag a sample.
+    /// Flags of samples that no sensor measured.
     pub bad: Vec<bool>,
 }
 
@@ -54,7 +54,8 @@ pub fn faults(recording: &Recording) -> Faults {
     found
 }
 
-/// Beside a rail the noise is cut on one side: what is left there is no fair sample of the force.
+/// Leaves out samples near a saturation limit, where the noise is cut on one side: the rest there is a biased sample of
+/// the force.
 fn leave_out_near_the_rail(recording: &Recording, warning: &Warning, bad: &mut [bool]) {
     let channel = warning.column.as_deref().and_then(|c| recording.channels.iter().find(|x| x.name == c));
     let (Some(channel), Some(span)) = (channel, warning.spans.first()) else { return };
@@ -68,7 +69,7 @@ fn leave_out_near_the_rail(recording: &Recording, warning: &Warning, bad: &mut [
 /// The force and motion channels, and the clock.
 fn is_sensed(warning: &Warning) -> bool {
     let Some(column) = &warning.column else { return true };
-    // A sample lost here and there is how recorders are.
+    // Recorders occasionally lose a single sample.
     let clock = column == "t_s" && (warning.kind != "dropped-samples" || warning.spans.len() >= MANY);
     clock || ["f", "tau", "q", "dq", "x", "y", "v"].iter().any(|start| column.starts_with(start))
 }
@@ -95,7 +96,7 @@ fn cause(id: &str, warning: &Warning, recording: &Recording) -> Cause {
             vec![number("F_max", channel.values[span.first].abs(), &channel.unit)]
         }
         (_, Some(span), _) => {
-            // Without a clock they are numbers of samples.
+            // Without a clock, these are numbers of samples.
             let unit = if recording.time_s.is_some() { "s" } else { "samples" };
             vec![number("from", time(span.first), unit), number("to", time(span.end), unit)]
         }
@@ -134,7 +135,7 @@ pub fn mirrored(which: &str, better: f64) -> Cause {
     }
 }
 
-/// Forces that are those on the hand, as a cause: they take work from the one who moves the mechanism, all the way.
+/// Reaction forces on the hand, as a cause: they take work from the person who moves the mechanism, all the way.
 pub fn backwards(which: &str) -> Cause {
     let (act, they) = if which.contains(" and ") { ("act", "they are forces") } else { ("acts", "it is the force") };
     let taken = if which.contains(" and ") { "are" } else { "is" };
@@ -152,7 +153,7 @@ pub fn driving(which: &str) -> Cause {
     Cause { evidence, ..mirrored(which, 1.0) }
 }
 
-/// A rate that goes against the differences of its own place, as a cause.
+/// A rate that contradicts the differences of its own position, as a cause.
 pub fn against_motion(which: &str) -> Cause {
     let evidence = format!("{which} goes against what the recorded places do; it is taken with the other sign");
     Cause { evidence, ..mirrored(which, 1.0) }

@@ -41,14 +41,14 @@ pub fn held_and_free(
             off(middle, mean(middle))
         })
         .collect();
-    // A few samples may be quiet by luck.
+    // A few samples may be quiet by chance.
     let quietest = |least: usize| {
         let long = rests.iter().zip(&unrest).filter(|(r, _)| r.len() >= least);
         long.map(|(_, unrest)| *unrest).fold(f64::INFINITY, f64::min)
     };
     let quietest = Some(quietest(TELLING)).filter(|q| q.is_finite()).unwrap_or_else(|| quietest(0));
     for (range, unrest) in rests.iter().zip(&unrest) {
-        // A hand that holds lightly for a while is not away: its force wanders.
+        // A hand that holds lightly is not away: its force wanders.
         if *unrest <= WANDERS * quietest {
             free[range.clone()].fill(true);
         }
@@ -59,7 +59,7 @@ pub fn held_and_free(
     let mut near = vec![false; n];
     let mut surely_free = free.clone();
     for interval in rests.iter().filter(|i| free[i.start]) {
-        // A grasp grows out of nothing: its beginning is still below every threshold.
+        // A grasp grows slowly: its beginning is below every threshold.
         let growing = samples(GROWING_S).min((interval.end - interval.start) / 3);
         if interval.start > 0 {
             near[interval.start.saturating_sub(margin)..interval.start].fill(true);

@@ -1,10 +1,10 @@
-//! Values that were searched for: how well the recording knows them, out of what their neighbours on the grid explain.
+//! Uncertainty of searched values, from the likelihood of their neighbours on the grid.
 
 use super::candidate::Candidate;
 use super::geometry::Study;
 use haptics::law::{Law, PositionRipple};
 
-/// Share of the distance between two tried values that remains of the error of the vertex.
+/// Share of the distance between two tried values that is added to the vertex's standard error.
 const OF_STEP: f64 = 0.1;
 /// Standard error of a value without a neighbour on one side, as a share of the distance to the other.
 const AT_THE_END: f64 = 0.5;
@@ -18,12 +18,12 @@ pub struct Known {
     pub std_error: f64,
 }
 
-/// The chosen causes with their searched values at the vertices, and all that was solved beside them there.
+/// The chosen causes with their searched values at the vertices, and the coefficients solved there.
 pub struct Settled {
     /// Coefficients of the model's regressors and then of the causes' ones, in the order of
     /// [`System::columns`](super::system::System::columns).
     pub values: Vec<f64>,
-    /// One standard error of each of these: that of the values solved for, and what is unknown of the searched ones.
+    /// Standard errors of these values, including the uncertainty of the searched ones.
     pub std_errors: Vec<f64>,
     /// The searched values of each chosen cause.
     pub searched: Vec<Vec<Known>>,
@@ -58,7 +58,7 @@ pub fn settled(study: &Study) -> Option<Settled> {
     }
     let mut std_errors: Vec<f64> = squares.into_iter().map(f64::sqrt).collect();
     for first in shares(study, &picks) {
-        // Friction that was less at first has changed by more: the errors of both add up.
+        // Friction that was smaller at first has changed by more: both errors add up.
         let [ratio, error] = study.shares_of;
         values[first] *= ratio;
         std_errors[first] = std_errors[first] * ratio + error * values[first].abs();
@@ -159,7 +159,7 @@ fn carried_over(study: &Study, k: usize, searched: &[Known]) -> Vec<f64> {
         .collect()
 }
 
-/// The candidates with the next smaller and the next larger of one searched value, all others being the same.
+/// The candidates with the next smaller and the next larger of one searched value, all others equal.
 fn neighbours(study: &Study, own: usize, which: usize) -> [Option<usize>; 2] {
     let value = |candidate: usize| study.candidates[candidate].searched[which].value;
     let here = value(own);

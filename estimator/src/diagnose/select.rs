@@ -6,21 +6,21 @@ use super::system::{Solved, System};
 use std::cell::RefCell;
 use std::collections::HashMap;
 
-/// Most causes at once, and so many more where the model has no friction of its own, which is then two of them.
+/// Most causes at once, and the number of further ones without friction in the model, whose friction takes two of them.
 const MOST_CAUSES: usize = 4;
 const FRICTIONS: usize = 2;
 /// Rounds of swapping after each addition.
 const SWAP_ROUNDS: usize = 3;
-/// A cause whose t-value is below this must improve nearly every fold.
+/// t-value below which a cause must improve nearly every fold.
 const CLEAR_T: f64 = 2.0;
-/// A cause that changes the folds' errors by less than this share was not tested by them.
+/// Relative change of the folds' errors below which they did not test a cause.
 const UNTESTED: f64 = 1e-8;
 /// Loss of the folds, as a share of a cause's evidence, up to which they do not speak against it.
 const SPARED: f64 = 0.05;
 /// Evidence margin within which rival causes are ambiguous.
 pub const AMBIGUOUS: f64 = 10.0;
 
-/// A chosen candidate with what speaks for it.
+/// A chosen candidate with its evidence.
 #[derive(Clone, Debug)]
 pub struct Chosen {
     /// Index of the candidate.
@@ -61,7 +61,7 @@ const CURVES: [(&str, &[Over]); 10] = [
     ("position-ripple", &[Over::Place]),
     ("fingertip-slip", &[Over::Path]),
 ];
-/// Causes over the same that have a form of their own.
+/// Causes over the same variables with an exact law.
 const LINES: [(&str, &[Over]); 10] = [
     ("coulomb-friction", &[Over::Motion]),
     ("load-friction", &[Over::Motion]),
@@ -77,7 +77,7 @@ const LINES: [(&str, &[Over]); 10] = [
 /// Share of such a cause's evidence below which another cause may be its misfit.
 pub const REMAINDER: f64 = 0.12;
 
-/// Squared correlation of two causes' estimates from which on they are one.
+/// Squared correlation of two causes' estimates from which they count as one.
 const AS_ONE: f64 = 0.99;
 /// Mean square of two causes together, as a share of the weaker one's, below which they cancel.
 const TAKEN_BACK: f64 = 0.1;
@@ -126,7 +126,8 @@ impl Selection<'_> {
         if self.dry { MOST_CAUSES } else { MOST_CAUSES + FRICTIONS }
     }
 
-    /// N ln(RSS) plus what its parameters cost; smaller is better. Infinite where a parameter has an impossible sign.
+    /// Price N ln(RSS) plus the penalty of the parameters; smaller is better. Infinite if a parameter has an impossible
+    /// sign.
     pub(super) fn price(&self, chosen: &[usize]) -> f64 {
         if let Some(price) = self.prices.borrow().get(chosen) {
             return *price;
@@ -160,7 +161,7 @@ impl Selection<'_> {
         self.system.rows * rss.ln() + cost * self.system.rows.ln()
     }
 
-    /// The same whatever the signs.
+    /// The same without sign constraints.
     fn plain_price(&self, chosen: &[usize]) -> Option<f64> {
         Some(self.paid(chosen, self.system.least_sound(chosen)?.1))
     }
@@ -227,7 +228,7 @@ impl Selection<'_> {
                 chosen = going_on;
             }
         }
-        // One step at a time may have led where no step leads out of.
+        // The search by single steps may end in a local optimum.
         if chosen.len() > MANY
             && let Some(pair) = self.pair()
         {
@@ -236,7 +237,7 @@ impl Selection<'_> {
                 chosen = sparser;
             }
         }
-        // Two that take each other back for the most part are found by neither of them alone.
+        // Two causes that largely cancel are found by neither of them alone.
         if let Some(pair) = self.pair_beside(&chosen) {
             let more = self.settled([chosen.as_slice(), &pair].concat(), is_fine);
             if self.price(&more) < self.price(&chosen) {
@@ -268,7 +269,7 @@ impl Selection<'_> {
         chosen
     }
 
-    /// Puts one cause in the place of two where it does as well: two that are not told apart from one are one.
+    /// Replaces two causes by one that explains as much: causes that cannot be separated from one are one.
     fn merge(&self, chosen: &mut Vec<usize>) {
         let pair = |chosen: &[usize]| {
             let all = (1..chosen.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
@@ -304,7 +305,7 @@ impl Selection<'_> {
         }
     }
 
-    /// Takes out the weakest until every one that is left earns its place.
+    /// Removes the weakest cause until every remaining one is justified.
     fn prune(&self, chosen: &mut Vec<usize>) {
         while !chosen.is_empty() {
             let whole = self.price(chosen);
@@ -431,7 +432,7 @@ impl Selection<'_> {
         found
     }
 
-    /// The chosen ones as they would be found one after the other: the one that alone explains most first.
+    /// The chosen causes in the order of forward selection: the strongest alone first.
     fn order(&self, chosen: &[usize]) -> Vec<usize> {
         let mut left = chosen.to_vec();
         let mut order: Vec<usize> = Vec::new();
@@ -477,7 +478,7 @@ impl Selection<'_> {
     }
 }
 
-/// The cheapest of all, the first of several, and its price.
+/// The cheapest candidate, the first of equal ones, and its price.
 pub(super) fn cheapest<T>(priced: impl IntoIterator<Item = (T, f64)>) -> Option<(T, f64)> {
     priced.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
 }

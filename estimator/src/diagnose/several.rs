@@ -1,4 +1,4 @@
-//! Several recordings of one object: which of them answered what earlier ones had left open.
+//! Resolved questions: of several recordings of one object, those that settled an ambiguity of earlier ones.
 
 use super::report::{Diagnosis, Settled};
 use crate::estimate::EstimateError;
@@ -6,10 +6,10 @@ use haptics::recording::Recording;
 
 /// Probability below which an alternative is excluded.
 const OPEN: f64 = 0.047;
-/// More recordings than this are repetitions, not answers to each other.
+/// Number of recordings above which they are repetitions, not answers to each other.
 const MOST: usize = 8;
 
-/// Found cause and what else it could be.
+/// Named cause and its alternative.
 type Pair = (String, String);
 
 fn open(diagnosis: &Diagnosis) -> Vec<Pair> {
@@ -17,7 +17,7 @@ fn open(diagnosis: &Diagnosis) -> Vec<Pair> {
     alternatives.map(|a| (a.instead_of.clone(), a.id.clone())).collect()
 }
 
-/// Adds to the answer of all recordings what each of them settled. `ask` answers the first few of them.
+/// Adds the questions that each recording settled. `ask` diagnoses the first few recordings.
 pub fn settle(
     recordings: &[Recording],
     whole: &mut Diagnosis,

@@ -3,7 +3,7 @@
 
 use super::report::{Diagnosis, Figures};
 
-/// A delay that was looked for.
+/// Result of the search for a delay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Late {
     /// Delay of the forces after the motion, and its standard error, s; infinite if the residual has no minimum.
@@ -28,9 +28,9 @@ impl Late {
 /// Range of the search, and the demands on a delay.
 #[derive(Clone, Copy, Debug)]
 pub struct Demands {
-    /// Longest delay that is tried, s, both ways.
+    /// Longest tried delay, s, in both directions.
     pub longest_s: f64,
-    /// Rows that have a force of that moment, as a share of those that are compared without a delay, at least.
+    /// Least share of the rows without a delay that have a force at the shifted time.
     pub enough: f64,
     /// Share of the power that a delay leaves, at most; and by how much likelier it makes the forces, at least: 2
     /// ln(likelihood).

@@ -1,4 +1,4 @@
-//! Signs: channels that are mirrored, and axes that are swapped, put right before anything is asked of the model.
+//! Axis signs: mirrored channels and swapped axes, corrected before the model is fitted.
 
 use super::crank::plain_crank;
 use super::force;
@@ -13,7 +13,7 @@ use haptics::law::{EccentricMass, Effect};
 use haptics::recording::Recording;
 use std::borrow::Cow;
 
-/// Rates and what they are the rates of.
+/// Rates and their positions.
 const RATES: [(&str, &str); 12] = [
     ("dq_m_s", "q_m"),
     ("dq_rad_s", "q_rad"),
@@ -28,12 +28,12 @@ const RATES: [(&str, &str); 12] = [
     ("dqb1_rad_s", "qb1_rad"),
     ("dqt1_rad_s", "qt1_rad"),
 ];
-/// Differences are taken over about this, s.
+/// Time over which differences are taken, s.
 const WINDOW_S: f64 = 0.03;
-/// A rate that goes with the motion's like this, or worse, is mirrored.
+/// Correlation with the motion's rate at or below which a rate is mirrored.
 const AGAINST: f64 = -0.8;
 
-/// Channels that may each be mirrored alone where a recording makes no sense: a finger's axis, a joint.
+/// Channels that may each be mirrored alone if a recording is implausible: a finger's axis, a joint.
 const ALONE: [&[&str]; 14] = [
     &["fx1_N"],
     &["fy1_N"],
@@ -91,14 +91,14 @@ pub fn mirrored(recording: &Recording, names: &[&str]) -> Recording {
     other
 }
 
-/// A crank's recording as it is asked about.
+/// A crank's recording, prepared for the diagnosis.
 pub struct Looked {
     pub signals: Signals,
     /// The path of the handle.
     pub circle: Geometry,
-    /// Along it, the force's axes upright.
+    /// Rows along the circle, with the force's axes corrected.
     pub rows: Track,
-    /// The axis that had to be mirrored for that.
+    /// Mirrored axis that was corrected for that.
     pub axis: Option<Cause>,
 }
 
@@ -151,7 +151,7 @@ pub fn of_crank<'a>(
     }
     Ok(match best {
         Some((after, looked, other, names)) => {
-            // A joint's rate that was right goes with its angle: then only the angle was mirrored.
+            // If a joint's rate agrees with its angle afterwards, only the angle was mirrored.
             let name = if names[0].starts_with('f') { names.join(" and ") } else { names[0].to_owned() };
             (Cow::Owned(other), Some(quality::mirrored(&name, after / before)), looked)
         }
@@ -207,7 +207,7 @@ const PLAUSIBLE: f64 = 1.8;
 pub fn upright(signals: &Signals, recording: &Recording, arm: &Arm) -> Result<(Track, Option<Cause>), EstimateError> {
     let as_recorded = signals.rows(recording, arm)?;
     let model = model_of(arm);
-    // The motion is the same whatever the force's axes are.
+    // The motion does not depend on the axes of the force.
     let mut blurred = as_recorded.clone();
     let (before, resists) = force::plain_rms(&mut blurred, &model)?;
     if resists && before < PLAUSIBLE * as_recorded.force_noise {
@@ -225,7 +225,7 @@ pub fn upright(signals: &Signals, recording: &Recording, arm: &Arm) -> Result<(T
         let track = with_axes(&blurred, axes);
         let (after, resists_then) = force::blurred_rms(&track, &model)?;
         let both = name == "fx and fy";
-        // Both at once change every sign and no size: only friction that drives tells.
+        // Both at once change every sign and no magnitude: only driving friction shows it.
         let better = if both {
             resists_then && !resists
         } else {

@@ -1,4 +1,4 @@
-//! Force and motion that are a part of a sample apart, which is no delay.
+//! Sub-sample offset between force and motion, which is no delay.
 
 use super::explain::parameters;
 use super::geometry::Study;

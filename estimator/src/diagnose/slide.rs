@@ -24,9 +24,9 @@ use haptics::world::World;
 /// Least force of a touching finger, as a share of its usual force and in multiples of the noise.
 const TOUCH_SHARE: f64 = 0.1;
 const TOUCH_NOISES: f64 = 6.0;
-/// Fingers close and open slowly, s.
+/// Margin at the slow closing and opening of fingers, s.
 const CLOSING_S: f64 = 0.15;
-/// Faster than this it slides, m/s; and so long at least in all, s.
+/// Least speed of sliding, m/s, and its least total duration, s.
 const SLIDES_M_S: f64 = 5e-3;
 const LEAST_S: f64 = 2.0;
 /// Least duration of empty fingers for an estimate of the bias, s, and length of its parts.
@@ -65,7 +65,7 @@ pub fn slid(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Es
     let study = force::study(&mut track, &model, &given_by_pads(), limit)?;
     options.progress.tell(0.8)?;
     let mut found = explain::explain(&track, &model, &study, &[], faults);
-    // Motions of that library are for what is driven along its coordinate by a program.
+    // Motions of the library are for an object that a program drives along its coordinate.
     if let Some(next) = &mut found.next_experiment {
         next.experiment = None;
     }
@@ -101,7 +101,7 @@ fn model(options: &Options, weighs: bool) -> Result<Model, EstimateError> {
     }
 }
 
-/// Rows of all recordings, faults of their samples, and the recordings as they were read.
+/// Rows of all recordings, faults of their samples, and the recordings as read.
 fn track_of(recordings: &[Recording], world: Option<&World>) -> Result<(Track, Vec<Cause>, Vec<Slid>), EstimateError> {
     let (mut tracks, mut faults, mut all) = (Vec::new(), Vec::new(), Vec::new());
     for recording in recordings {
@@ -233,7 +233,7 @@ fn free(signals: &TaskSignals, levels: &Levels, step_s: f64) -> Option<(f64, f64
     (n >= 3.0).then(|| (mean, (spread / n).sqrt()))
 }
 
-/// Names of a force that is the same wherever the block slides: on the move all are one and the same.
+/// Causes with a constant force at every position: during motion they are equivalent.
 const CONSTANT: [&str; 2] = ["force-bias", "friction-asymmetry"];
 
 /// Attributes a constant force along the table. It belongs to the sensor if empty fingers feel it, and otherwise to a
@@ -265,7 +265,7 @@ fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
         cause.evidence += "; empty fingers feel it as well";
         (&[], "")
     } else if all_free {
-        // The table's part is what empty fingers do not feel.
+        // The table's part is the difference from the reading of empty fingers.
         let (tilt_n, error) = (mean - b.value, error.hypot(b.std_error));
         "gravity-tilt".clone_into(&mut cause.id);
         cause.kind = Kind::Plant;

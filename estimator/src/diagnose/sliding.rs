@@ -17,7 +17,7 @@ use haptics::law::{Coordinate, Motion};
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 
-/// Shortest and longest block, s: nothing that a hand does is over within the longest.
+/// Shortest and longest block, s: every motion of a hand lasts longer than the longest.
 const SHORTEST_S: f64 = 0.02;
 const LONGEST_S: f64 = 0.06;
 /// Least length of a segment, in blocks.
@@ -43,13 +43,13 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
         }
         made
     };
-    // Whole numbers of the finer points, which then lie evenly about the middle of every hat.
+    // A whole number of finer points per block, which are then symmetric about the middle of every mean.
     let skip = skip(period_s);
     let whole = |samples: f64| (samples / skip as f64).round().max(1.0) as usize * skip;
     let shortest = whole(SHORTEST_S / period_s);
     let longest = whole((LONGEST_S / period_s).floor()).max(shortest);
     let mass = in_blocks(whole(0.5 * (shortest + longest) as f64)).mass();
-    // Of a rate, or of a position where none was recorded, and of the force.
+    // Noise of a rate, or of a position if no rate was recorded, and of the force.
     let noise = [white_noise(raw.rate.as_ref().unwrap_or(&raw.position)), white_noise(force)];
     let quiet = |block: &usize| quiet(noise, raw.rate.is_some(), period_s, *block, mass);
     let block = (shortest..=longest).step_by(skip).find(quiet).unwrap_or(longest);
@@ -115,7 +115,7 @@ impl Made {
         }
         let number = self.fine.last().map_or(0, |f| f.stretch + 1);
         let (calm, left) = calmed_line(&rate[range.clone()], self.period_s);
-        // Rates of differences carry the noise of the positions once more.
+        // Rates from differences also contain the noise of the positions.
         let position = white_noise_under_fast_motion(&raw.position[range.clone()]);
         let hidden = resolution_error(quantum(&raw.position[range.clone()]), white_noise(&raw.position[range.clone()]));
         self.noises.push([
@@ -148,7 +148,7 @@ impl Made {
             let (v0, v1) = (mean(rate, before), mean(rate, middle));
             let half_s = 0.5 * (raw.time_s[middle + block] - raw.time_s[before]);
             let hat = |values: &[f64]| hat(&values[before..=middle + block]);
-            // The points that the hat covers.
+            // The points that the triangular weights cover.
             let per = |samples: usize| samples * fill / skip;
             let start = first_fine + per((b - 1) * block);
             let end = (first_fine + per((b + 1) * block) + 1).min(self.fine.len());
@@ -218,17 +218,17 @@ impl Made {
     }
 }
 
-/// Mean of a line through the values.
+/// Mean of the line through the values.
 fn trapezoid(values: &[f64]) -> f64 {
     let n = values.len();
     let ends = 0.5 * (values[0] + values[n - 1]);
     (ends + values[1..n - 1].iter().sum::<f64>()) / (n - 1) as f64
 }
 
-/// Mean of a line through the values with the weights of a hat over all of them.
+/// Mean of the line through the values with triangular weights over all of them.
 fn hat(values: &[f64]) -> f64 {
     let half = (values.len() - 1) / 2;
-    // Exact for lines between the samples: a third of what the ends of the hat and its top miss.
+    // Exact for lines between the samples: a correction of one third at the ends and at the top of the weights.
     let weight = |k: usize| match k {
         0 => 1.0 / 6.0,
         k if k == 2 * half => 1.0 / 6.0,

@@ -6,7 +6,7 @@ use haptics::law::{Law, Stribeck};
 
 /// Number of rows, on either side, over which an acceleration is evaluated.
 const ROWS: f64 = 2.0;
-/// Share of the motion that is slowest.
+/// Share of the rows that count as slow.
 const SLOW: f64 = 0.25;
 /// Ratio by which a narrower peak is higher at equal area.
 const HIGHER: f64 = 1.5;

@@ -1,4 +1,4 @@
-//! Other beginnings of a search: what goes forward one cause at a time may end where no single step leads out.
+//! Restarts of the search, because selection of one cause at a time may end in a local optimum.
 
 use super::candidate::Candidate;
 use super::geometry::Study;

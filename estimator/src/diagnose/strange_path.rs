@@ -12,7 +12,7 @@ use haptics::law::Kind;
 /// Generic waves round a turn, and slow ones over the recording.
 const WAVES: u32 = 4;
 const SLOW: u32 = 4;
-/// A path that is off its circle by more than this many times its noise should have a reason.
+/// Ratio of the path's residual to its noise from which a reason is expected.
 const STRANGE: f64 = 2.0;
 /// An arc whose bulge is no more than this many times the noise of one place, or whose radius is known to no better
 /// than this share, is short.

@@ -9,7 +9,7 @@ use super::track::{Place, Row, Track};
 use haptics::Vec2;
 use haptics::law::{Hysteresis, Law, MAX_PARAMETERS, Memory, Motion};
 
-/// Share of the friction up to which nothing slides, also where the friction is known badly.
+/// Share of the friction up to which nothing slides, even if the friction is uncertain.
 const HOLDS: f64 = 0.7;
 /// Largest displacement in a stick phase, as a share of the range (of the diameter, on a circle). A wider gap shows in
 /// the force.
@@ -20,7 +20,7 @@ const BENT: f64 = 0.95;
 /// slow slide.
 const UNLIKE: f64 = 0.7;
 const UNLIKE_SURE: f64 = 4.0;
-/// Duration of a stick phase with a slide, s, relative to which rows must be slower.
+/// Longest sampling period at which stick phases are resolved, s.
 const SLOWEST_S: f64 = 0.03;
 /// Least number of rows of a stick phase.
 const LEAST_ROWS: usize = 3;
@@ -37,7 +37,7 @@ const CREEPS: f64 = 10.0;
 /// Steps in which a change of the load is followed.
 const PARTS: usize = 16;
 
-/// The load of one row beside the friction that could hold it.
+/// Load on the friction in one row.
 pub struct Load {
     /// Load on the friction as a share of it: −1 and 1 slide.
     pub share: f64,
@@ -69,7 +69,7 @@ pub fn add(track: &mut Track, loads: &[Option<Load>]) {
         if i < track.rows.len() && stands(i) && (first == i || track.follows(i)) {
             continue;
         }
-        // A row at either end may have moved already.
+        // A row at either end may already have moved.
         let still = first + 1..i.saturating_sub(1);
         if still.len() >= LEAST_ROWS && stays(still.clone()) {
             made.push(standstill(track, &loads[still.clone()], still, number));
@@ -143,7 +143,7 @@ fn standstill(track: &Track, loads: &[Option<Load>], range: std::ops::Range<usiz
     let middle = rows.iter().map(|r| r.motion.position).sum::<f64>() / rows.len() as f64;
     let of = |k: usize| {
         let load = loads[k].as_ref()?;
-        // The hand's load changes slowly: its neighbours tell it, too.
+        // The hand's load changes slowly, so it is averaged over neighbours.
         let near = k.saturating_sub(NEAR)..(k + NEAR + 1).min(loads.len());
         let count = near.len() as f64;
         let mean =
@@ -234,7 +234,7 @@ pub fn bends(rows: &[Row], law: &[f64; 3], column: &mut [f64]) {
                 if k == 0 {
                     memory[0] = share;
                 } else if (share - memory[0]).abs() > noise {
-                    // The noise alone bends nothing: what is followed stays this far behind.
+                    // Noise alone causes no presliding: the tracked load stays behind by this much.
                     let aim = share - noise * (share - memory[0]).signum();
                     at += follow(&values, &mut memory, aim);
                 }
@@ -244,7 +244,7 @@ pub fn bends(rows: &[Row], law: &[f64; 3], column: &mut [f64]) {
     });
 }
 
-/// The way on which the law's friction goes to `aim`; the memory follows.
+/// Displacement over which the law's friction reaches `aim`; the memory follows.
 fn follow(values: &[f64; MAX_PARAMETERS], memory: &mut Memory, aim: f64) -> f64 {
     let side = (aim - memory[0]).signum();
     let mut gone = 0.0;
@@ -282,13 +282,13 @@ fn lies(rows: &[Row], half: f64, all: bool, column: &mut [f64]) {
             let floats = (0..stretch.len()).map(|k| around(&places, k));
             0.5 * (floats.clone().fold(f64::MAX, f64::min) + floats.fold(f64::MIN, f64::max))
         };
-        // Without a load it floats: wherever it was seen a moment before and after, within the gap.
+        // Without load the object floats within the gap, near its positions a moment before and after.
         let floats = |k: usize| (around(&places, k) - middle).clamp(-half, half);
         (0..stretch.len()).map(|k| middle + if sides[k] == 0.0 { floats(k) } else { half * sides[k] }).collect()
     });
 }
 
-/// The side on which the load holds what has play; 0 where the load may be none.
+/// Side to which the load presses an object with backlash; 0 if the load may be zero.
 fn side(row: &Row, all: bool) -> f64 {
     let Place::Stuck { share, side, noise, .. } = row.place else { return 0.0 };
     match all {
@@ -303,7 +303,7 @@ fn place_m(row: &Row) -> f64 {
     if let Place::Stuck { scale, .. } = row.place { row.y / scale } else { 0.0 }
 }
 
-/// Mean of the neighbours of a place, without its own noise.
+/// Mean of the neighbours of a position, without its own noise.
 fn around(places: &[f64], k: usize) -> f64 {
     let near = k.saturating_sub(NEAR)..(k + NEAR + 1).min(places.len());
     let count = near.len() - 1;

@@ -49,7 +49,8 @@ impl SensorFault {
         candidate.linear.iter().zip(values).all(|((name, _), value)| self.add_one(candidate.id, name, *value))
     }
 
-    /// Faults of the net force are halved between the fingers; those in proportion to the force are each finger's own.
+    /// Adds a fault. Faults of the net force are halved between the fingers; those in proportion to the force belong to
+    /// each finger.
     fn add_one(&mut self, id: &str, name: &str, value: f64) -> bool {
         match (id, name) {
             ("force-bias", "b") => self.offset_along = value,
@@ -99,7 +100,7 @@ pub(super) type Act = (String, Vec<CauseParameter>);
 /// One answer that is not excluded.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Hypothesis {
-    /// The cause that is thought to be there.
+    /// The assumed cause.
     id: String,
     /// `None` if a cause among them cannot be simulated.
     inside: Option<Inside>,
@@ -227,7 +228,7 @@ fn fault(study: &Study, picks: &[usize], values: &[f64]) -> Option<SensorFault> 
     add_faults(&SensorFault::default(), study, picks, values)
 }
 
-/// The same beside others.
+/// The same, added to other faults.
 fn add_faults(beside: &SensorFault, study: &Study, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
     let mut sum = *beside;
     let mut at = study.base.len();

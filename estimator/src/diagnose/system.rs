@@ -15,32 +15,32 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Rows of a block are this many at least, and there are this many blocks at most.
+/// Least number of rows of a block. The largest number of blocks is below.
 const LEAST_BLOCK: usize = 12;
-/// The same of rows of which none follows on another.
+/// The same for rows that are single observations.
 const LEAST_ALONE: usize = 3;
 const MOST_BLOCKS: usize = 20;
 /// Every so many-th block is locked: it is used for the gain only.
 const LOCKED_EVERY: usize = 4;
 /// Guard time beside a locked block, s: rows within it are not used.
 const GUARD_S: f64 = 0.1;
-/// Least number of them that hold information.
+/// Least effective number of rows of a block.
 const LEAST_SAID: usize = 3;
 /// Rounding error of sums of ones.
 const ROUNDING: f64 = 1e-6;
 /// Folds of the cross-validation.
 pub const FOLDS: usize = 5;
 
-/// Rows as the system sees them.
+/// Rows of the system.
 pub struct Rows<'a> {
     pub y: &'a [f64],
-    /// Rows of one number follow each other without a gap.
+    /// Segment of each row.
     pub stretch: &'a [usize],
-    /// Rows that may be held out; the others always train.
+    /// Hold-out role of each row; rows that may not be held out always train.
     pub testable: &'a [Held],
     /// Time of each row, s: rows near in time are held out together.
     pub time_s: &'a [f64],
-    /// Weight of each row, 0 … 1: what its noise is smaller by.
+    /// Weight of each row, 0 … 1: factor by which its noise is reduced.
     pub weight: &'a [f64],
     pub period_s: f64,
     /// Kind of their noise.
@@ -52,11 +52,11 @@ pub struct Rows<'a> {
 /// Hold-out role of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Held {
-    /// It trains always.
+    /// Always used for training.
     Never,
-    /// Folds test it. It is another quantity than the force: locked blocks test it for what it is about alone.
+    /// Tested by folds. Its quantity is not the force, and locked blocks test it for that quantity alone.
     ByFolds,
-    /// Folds test it, and locked blocks.
+    /// Tested by folds and by locked blocks.
     Fully,
 }
 
@@ -65,17 +65,17 @@ pub enum Held {
 pub enum Use {
     /// Trains always.
     Always,
-    /// Trains, and is tested by the fold of this number.
+    /// Used for training, and tested by the fold of this number.
     Fold(usize),
     /// Tests only; the number of its block.
     Locked(usize),
-    /// The same for a row of [`Held::ByFolds`]: only the gain of what such rows are about is tested by it.
+    /// The same for a row of [`Held::ByFolds`]: it tests only the gain of causes that affect such rows.
     Beside(usize),
     /// Beside a locked block.
     Guard,
 }
 
-/// Blocks of the rows that may be held out.
+/// Use of each row: blocks of the rows that may be held out.
 pub fn uses(rows: &Rows<'_>) -> Vec<Use> {
     let mut testable: Vec<usize> = (0..rows.y.len()).filter(|i| rows.testable[*i] != Held::Never).collect();
     testable.sort_by(|a, b| rows.time_s[*a].total_cmp(&rows.time_s[*b]));
@@ -121,15 +121,15 @@ pub fn uses(rows: &Rows<'_>) -> Vec<Use> {
 
 /// Normal equations of all regressors and the target, which comes last.
 pub struct System {
-    /// Of the rows that train.
+    /// Normal equations of the training rows.
     pub train: DMatrix<f64>,
     pub rows: f64,
-    /// Of each fold, and how many rows it has.
+    /// Normal equations of each fold, and its number of rows.
     pub folds: Vec<(DMatrix<f64>, f64)>,
     /// Index ranges of the candidates' regressors.
     pub places: Vec<Range<usize>>,
     pub base: usize,
-    /// Columns of the base that can only resist: less than nothing of them is no explanation.
+    /// Regressors of the base model that can only resist: a negative coefficient is no explanation.
     pub resisting: Vec<usize>,
     /// Jackknife block of each row, for several block lengths; empty if the rows have no common blocks.
     pub pieces: Vec<Vec<usize>>,
@@ -137,7 +137,7 @@ pub struct System {
     pub uses: Vec<Use>,
     /// Mean square of each regressor over all rows, for the support guard.
     energy: Vec<(f64, f64)>,
-    /// Products over the rows that train always.
+    /// Products over the rows that always train.
     always: DMatrix<f64>,
     /// All regressors, for the products with those of a later system.
     whitened: Vec<Vec<f64>>,
@@ -312,7 +312,7 @@ impl System {
         Some((values, rss))
     }
 
-    /// The same, but what resists is nothing rather than less than nothing.
+    /// The same, but resisting regressors with a negative coefficient are left out.
     pub fn least_sound(&self, chosen: &[usize]) -> Option<(Vec<f64>, f64)> {
         let (mut values, mut rss) = self.least(chosen)?;
         let mut columns = self.columns(chosen);
@@ -330,7 +330,7 @@ impl System {
         Some((values, rss))
     }
 
-    /// The sum of squared errors on every fold by a fit to all the others.
+    /// Sum of squared errors on every fold by a fit to all the others.
     pub fn cross_validate(&self, chosen: &[usize]) -> Option<Vec<f64>> {
         let mut all = self.columns(chosen);
         all.push(self.target());
@@ -443,7 +443,7 @@ mod tests {
 
     #[test]
     fn something_that_stands_for_most_of_the_time_still_trains_on_motion_whatever_is_held_out() {
-        // It moves for two of thirty seconds.
+        // Motion during two of thirty seconds.
         let weight: Vec<f64> = (0..1500).map(|i| if (700..800).contains(&i) { 1.0 } else { 0.01 }).collect();
         let found = of(&weight);
         let said = |wanted: &dyn Fn(Use) -> bool| {

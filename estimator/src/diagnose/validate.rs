@@ -14,7 +14,7 @@ use haptics::law::{Effect, Kind, Memories};
 
 /// Number of blocks of a recording for the bootstrap, because neighbouring rows share their errors.
 const PIECES: usize = 32;
-/// Draws of the bootstrap over them.
+/// Draws of the bootstrap over these blocks.
 const DRAWS: usize = 400;
 
 /// Residual RMS before and after, and the share of the power that is explained. All in row order, with the rows'
@@ -112,7 +112,7 @@ mod tests {
         let found = compared(&before, &even, &vec![1.0; 640]);
         assert!((found.share - 0.75).abs() < 1e-12 && (found.rms_before - 2.0).abs() < 1e-12);
         assert!(found.interval.iter().all(|v| (v - 0.75).abs() < 1e-12), "{:?}", found.interval);
-        // All of it in the first half, nothing in the second: not sure at all.
+        // All of the gain is in the first half, none in the second: it is uncertain.
         let half: Vec<f64> = (0..640).map(|i| if i < 320 { 0.0 } else { 2.0 }).collect();
         let [low, high] = compared(&before, &half, &vec![1.0; 640]).interval;
         assert!(low < 0.4 && high > 0.6 && low > 0.1 && high < 0.9, "{low} {high}");

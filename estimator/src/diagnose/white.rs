@@ -3,7 +3,7 @@
 use super::system::{Rows, Use};
 use std::ops::Range;
 
-/// Highest order of the whitening autoregression of what a force leaves.
+/// Highest order of the autoregression that whitens the residual of a force.
 const LARGEST_ORDER: usize = 6;
 /// Largest order for differenced data, whose noise is correlated over many rows: in rows, and as the inverse share of
 /// all rows.
@@ -13,9 +13,9 @@ const SHARE_OF_DIFFERENCES: usize = 12;
 /// Kind of the rows' noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Noise {
-    /// Nothing is known of it.
+    /// Unknown noise.
     Any,
-    /// It is that of first or second differences of what has white noise, beside some that is white.
+    /// Noise of first or second differences of data with white noise, plus some white noise.
     OfDifferences,
 }
 

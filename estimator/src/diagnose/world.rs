@@ -18,7 +18,7 @@ pub struct Worlds {
     pub after: World,
 }
 
-/// Both worlds of a diagnosis: those of the world that it started from, or of one calibrated from the recordings.
+/// Both worlds of a diagnosis, from its initial world or from one calibrated from the recordings.
 pub fn worlds(recordings: &[Recording], options: &Options, diagnosis: &Diagnosis) -> Result<Worlds, EstimateError> {
     let world = calibrated(recordings, options)?;
     let mut after = with_laws(&world, &diagnosis.effects);
@@ -31,7 +31,7 @@ pub fn worlds(recordings: &[Recording], options: &Options, diagnosis: &Diagnosis
     Ok(Worlds { before: with_laws(&world, &diagnosis.plain), after })
 }
 
-/// The world that the diagnosis started from, or one calibrated from the recordings.
+/// The initial world of the diagnosis, or one calibrated from the recordings.
 pub(super) fn calibrated(recordings: &[Recording], options: &Options) -> Result<World, EstimateError> {
     if let Some(world) = &options.world {
         return Ok(world.clone());

@@ -15,16 +15,16 @@ use haptics::recording::Recording;
 /// Evidence from the rests on a constant force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Zero {
-    /// Nothing: nobody let go, or the rests agree with neither.
+    /// No evidence: nobody let go, or the rests agree with neither.
     #[default]
     Open,
     /// The sensor reads zero without touch: the constant acts on the object.
     OfThePlant,
-    /// The sensor rests at that very constant.
+    /// The sensor reads that constant at rest.
     OfTheSensor,
 }
 
-/// Windows of a rest, s, of this many samples at least; so many of them make a rest at either end.
+/// Window of a rest, s, its least number of samples, and the number of windows that make a rest at either end.
 const WINDOW_S: f64 = 0.1;
 const LEAST_SAMPLES: usize = 4;
 const LEAST_WINDOWS: usize = 4;
@@ -104,7 +104,7 @@ fn rest(recording: &Recording) -> Option<(f64, f64)> {
     let n = time.len().min(force.len()).min(place.len());
     let period_s = (time.last()? - time.first()?) / n.saturating_sub(1).max(1) as f64;
     let length = ((WINDOW_S / period_s).round() as usize).max(LEAST_SAMPLES);
-    // Means of windows stay within the noise of a single sample: noise is coloured.
+    // The noise is autocorrelated, so means of windows stay within the noise of a single sample.
     let noise = |values: &[f64]| white_noise(values).max(quantum(values));
     let (still, quiet) = (noise(place), noise(force));
     let means = |values: &[f64], backwards: bool| -> Vec<f64> {
@@ -119,7 +119,7 @@ fn rest(recording: &Recording) -> Option<(f64, f64)> {
         let (place, force) = (means(&place[..n], backwards), means(&force[..n], backwards));
         let stays = |k: usize| (place[k] - place[0]).abs() <= still && (force[k] - force[0]).abs() <= quiet;
         let count = (0..place.len()).take_while(|k| stays(*k)).count();
-        // The last one may be half in motion.
+        // The last window may be partly in motion.
         let rest = &force[..count.saturating_sub(1)];
         if rest.len() < LEAST_WINDOWS {
             return None;
@@ -178,7 +178,7 @@ mod tests {
         assert!(causes == ["force-bias"] && others.is_empty(), "{causes:?} or {others:?}");
         let (causes, others) = named(slid(0.0, 0.0));
         assert!(causes == ["friction-asymmetry"] && others == ["gravity-tilt"], "{causes:?} or {others:?}");
-        // A hand that holds on says nothing.
+        // A hand that holds on gives no evidence.
         let (causes, others) = named(slid(0.0, 0.2));
         assert!(
             causes == ["force-bias"] && others.contains(&"friction-asymmetry".to_owned()),

@@ -1,4 +1,4 @@
-//! The weight on a crank's bearing beside what else is hidden.
+//! Weight on a crank's bearing, compared with other hidden causes.
 
 use super::{known_n, put, weights};
 use crate::diagnose::explain::strange;
@@ -11,7 +11,7 @@ use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares_values;
 use haptics::law::{Law as _, LoadFriction, Weight};
 
-/// Causes that a weight on the bearing looks like when another one hides it.
+/// Causes that resemble a weight on the bearing if another cause hides it.
 const MISTAKEN: [&str; 4] = ["eccentric-mass", "gravity-tilt", "force-bias", "force-cross-axis"];
 /// Margin by which the comparison with the weight on the bearing must win: −2 ln(likelihood) plus a penalty of ln(rows)
 /// for each parameter of a cause.
@@ -20,7 +20,7 @@ const SIMPLER: f64 = 40.0;
 /// Largest ratio of residuals, with the weight on the bearing over with the causes alone, for which the full comparison
 /// is made.
 const NEARLY: f64 = 1.25;
-/// Rounds in which the weight settles beside the causes.
+/// Rounds in which the weight converges beside the causes.
 const ROUNDS: usize = 2;
 
 /// Comparison with the weight on the bearing, and that weight, N, if its residual is smaller or it needs fewer causes.
@@ -77,7 +77,7 @@ fn may_be(
     Ok(on_bearing < NEARLY * with_causes)
 }
 
-/// The weight that a comparison came out at, N.
+/// Weight that a comparison estimates, N.
 fn weight_of(study: &Study, model: &Model, fixed: &Model) -> f64 {
     let place = model.iter().position(|e| e.law().id() == Weight.id());
     let found_n = place.and_then(|k| study.solved.as_ref()?.values.get(k).copied());

@@ -53,7 +53,7 @@ fn leaking(rows: &Rows<'_>) -> Vec<f64> {
     rows.carried(|_, row, number, axis| if axis == 1 { row.time_s - lifted_s[number - 1] } else { 0.0 })
 }
 
-/// Changes of the weight of one block: evenly from when it is lifted or from later on, or all at once.
+/// Changes of the weight of one block: linear from the lift or from later on, or a step.
 fn leaks(rows: &Rows<'_>, k: usize, found: &mut Vec<Candidate>) {
     let times: Vec<f64> =
         rows.all.iter().filter(|r| r.place == (Place::Carried { number: k, axis: 1 })).map(|r| r.time_s).collect();
@@ -72,7 +72,7 @@ fn leaks(rows: &Rows<'_>, k: usize, found: &mut Vec<Candidate>) {
     }
 }
 
-/// A block that moves less than this along an axis, m, is not moved along it.
+/// Least motion along an axis, m, from which a block counts as moved.
 const MOVED_M: f64 = 1e-3;
 const BIAS: [[(&str, &str); 2]; 2] = [[("bx1", "N"), ("by1", "N")], [("bx2", "N"), ("by2", "N")]];
 const DRIFT: [[(&str, &str); 2]; 2] = [[("rx1", "N/s"), ("ry1", "N/s")], [("rx2", "N/s"), ("ry2", "N/s")]];
@@ -111,7 +111,7 @@ pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<
         let column = rows.column(|r| Rows::share(r, finger, axis) * (r.time_s - since[r.recording]).max(0.0));
         found.push(Candidate::one("force-drift", Kind::Instrument, name, unit, column));
     }
-    // One finger's force along the other axis, where only the sum is compared: what a carried row has of it.
+    // Effect on the carried rows of one finger's force along the other axis, of which only the sum is compared.
     let other = |row: &Row, finger: usize, to: usize| {
         let force = &rows.seen[row.recording].force[finger];
         Rows::share(row, finger, to) * force[1 - to][row.i]
@@ -139,7 +139,7 @@ fn along(rows: &Rows<'_>, axis: usize) -> (f64, f64) {
     (mean, (places.iter().map(|p| (p - mean).powi(2)).sum::<f64>() / n).sqrt())
 }
 
-/// Terms of no cause in particular.
+/// Generic terms.
 pub fn generic(rows: &Rows<'_>) -> Vec<Candidate> {
     let span = rows.all.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
     let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! Cables and walls that a carried block may meet: tried all over the place, and refined where they explain most.
+//! Cables and walls that a carried block may meet: a search over all directions and distances, refined at the best.
 
 use super::rows::{Place, Rows};
 use crate::diagnose::candidate::{Candidate, Shape};
@@ -10,10 +10,11 @@ use haptics::world::Cable;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Directions of the anchor from the middle of the carries, and one over its distance in half ranges; 0 is a wall.
+/// Number of tried directions of the anchor from the middle of the carries, and inverse distances in 1/half ranges; 0
+/// is a wall.
 const DIRECTIONS: u32 = 20;
 const NEARNESS: [f64; 3] = [0.0, 0.25, 0.6];
-/// Share of the carries in which it is slack.
+/// Tried shares of the carries in which the cable is slack.
 const SLACK: [f64; 5] = [0.15, 0.4, 0.6, 0.75, 0.88];
 /// Number of starting points that are refined, and of halvings of their step.
 const REFINED: usize = 4;
@@ -39,12 +40,12 @@ impl Field {
         let Tie([direction, nearness, taut]) = tie;
         let away = self.range_m / nearness.clamp(1.0 / FAR, 0.95);
         let anchor = self.middle + away * Vec2::new(direction.cos(), direction.sin());
-        // A cable of negative length would pull from a distance on that no place can be at.
+        // A cable of negative length would pull beyond any possible place.
         (anchor, (away + taut * self.range_m).max(0.0))
     }
 }
 
-/// The cables that explain most beside `base`, each at one of the blocks.
+/// The strongest cables beside `base`, each at one of the blocks.
 pub fn cables(rows: &Rows<'_>, y: &[f64], base: &[Vec<f64>], weight: &[f64]) -> Vec<Candidate> {
     let explains = Explains::of(y, base, weight);
     (1..=rows.blocks()).flat_map(|number| at_block(rows, number, &explains, weight)).collect()

@@ -20,7 +20,7 @@ use crate::identify::block::object;
 use crate::segment::SystemState;
 use haptics::world::{Cable, World};
 
-/// The comparison and what its words need.
+/// The comparison with the data for its texts.
 pub struct Carry {
     /// Delay of the forces after the motion, if it is significant.
     pub late: Option<Late>,
@@ -28,7 +28,7 @@ pub struct Carry {
     pub compared: Compared,
     /// Longest carry, s.
     longest_s: f64,
-    /// Of a cable's stiffness, anchor and length.
+    /// Standard errors of a cable's stiffness, anchor and length.
     cable_errors: Option<[f64; 4]>,
     /// Number of the block of each row; 0 if none is held.
     numbers: Vec<usize>,
@@ -40,7 +40,7 @@ pub struct Carry {
     pub airborne: Airborne,
 }
 
-/// Compares what may act on carried blocks and on the sensors. `world`: its cables belong to the model.
+/// Compares the causes that may act on carried blocks and on the sensors. `world`: its cables belong to the model.
 pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result<Carry, EstimateError> {
     const LEAST_ROWS: usize = 30;
     let rows = Rows::of(seen);
@@ -66,7 +66,7 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
         rows.all.iter().map(|r| if is_carried(r) { 1.0 } else { std::f64::consts::SQRT_2 }).collect();
     let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
     let plant = plant(&rows);
-    // A cable is looked for before it is compared.
+    // The search for a cable precedes the comparison.
     let cables = cables(&rows, &y, &base, &weight);
     let mut candidates = plant;
     candidates.extend(instrument(&rows, &known, &given));
@@ -205,7 +205,7 @@ fn longest_s(rows: &Rows<'_>) -> f64 {
     lengths.fold(0.0, f64::max)
 }
 
-/// Noise of the sum of two fingers, from where nothing is touched (N); from the residual where that never was.
+/// Noise of the sum of two fingers, N: from free rows, or from the residual if there are none.
 fn floor(rows: &Rows<'_>, study: &Study) -> f64 {
     let Some(solved) = &study.solved else { return 0.0 };
     let picks = study.picks();
@@ -242,11 +242,11 @@ impl Carry {
         found
     }
 
-    /// For the answer: which block a change of weight or a cable is of, and a cable's errors.
+    /// Parameters for the answer: the block of a change of weight or of a cable, and a cable's standard errors.
     pub fn states(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         let column = &candidate.columns[0];
         let number = touched(&self.numbers, column);
-        // Of all blocks where it says of none.
+        // Without a block, the cause concerns all blocks.
         let alone = || (0..column.len()).all(|i| column[i] == 0.0 || self.numbers[i] == number);
         if ["mass-change", "added-constraint"].contains(&candidate.id) && alone() {
             found.push(parameter("block", number as f64, 0.0, "1"));
@@ -295,7 +295,7 @@ impl Carry {
         }
     }
 
-    /// Sizes that could just matter, and what would show them.
+    /// Smallest sizes that matter, with the experiment that would show them.
     pub fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
         // One hundredth of a newton over the longest carry.
         let slow = 0.01 / self.longest_s.max(1.0);

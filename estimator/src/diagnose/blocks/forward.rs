@@ -24,7 +24,7 @@ struct Row {
     force_n: f64,
 }
 
-/// Carried blocks as bodies of their own.
+/// Free-run simulation of carried blocks as separate bodies.
 pub struct Airborne {
     rows: Vec<Row>,
     period_s: f64,
@@ -81,7 +81,7 @@ impl Airborne {
         self.known_n[number - 1].unwrap_or_else(|| values.get(open_before).copied().unwrap_or(0.0))
     }
 
-    /// The world's cable at a block as fitted.
+    /// The world's cable at a block, with fitted stiffness.
     fn of_world(&self, number: usize, values: &[f64]) -> Option<Cable> {
         let (k, (_, tie)) = self.ties.iter().enumerate().find(|(_, (own, _))| *own == number)?;
         Some(Cable { stiffness_n_m: tie.stiffness_n_m * values.get(self.open() + k).copied().unwrap_or(1.0), ..*tie })
@@ -108,7 +108,7 @@ impl Forward for Airborne {
         let Row { number, axis, .. } = self.rows[window[0]];
         let weight_n = self.weight_n(number, values);
         let up = if axis == 1 { 1.0 } else { 0.0 };
-        // Its swinging in the pads, where that is in the model, is no motion of the grip.
+        // A block's swinging in the pads, if it is in the model, is no motion of the grip.
         let swings = self.open() + self.ties.len() + number - 1;
         let swing_n = |i: usize| study.base.get(swings).map_or(0.0, |column| values[swings] * column[i]);
         let mut drive: Vec<f64> = window.iter().map(|i| self.rows[*i].force_n - up * weight_n - swing_n(*i)).collect();

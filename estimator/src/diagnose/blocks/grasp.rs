@@ -15,14 +15,14 @@ use haptics::law::Kind;
 use haptics::law::contact::{Cushion, Densification, ONSET, StiffnessHardening};
 use haptics::world::World;
 
-/// Bends of the pads' law that are tried, between hardly any and strong, and ends of the foam.
+/// Number of tried bends of the pads' law, from weak to strong, and tried ends of the foam.
 const BENDS: usize = 7;
-/// A pad that is not felt: what could just have been seen is measured with it, m/N.
+/// Compliance of a pad of usual size, m/N, for the test of excitation.
 const USUAL_GIVE: f64 = 1.0 / 8000.0;
 /// A usual error of lengths.
 const USUAL_SCALE: f64 = 0.02;
 
-/// The comparison and what its words need.
+/// The comparison with the data for its texts.
 pub struct Grasp {
     pub compared: Compared,
     /// The rows as the atlas looks at them.
@@ -78,7 +78,7 @@ fn rows(seen: &[Seen<'_>]) -> Rows {
     rows
 }
 
-/// Compares what may change the distance of the tips. `None` where blocks were hardly gripped.
+/// Compares the causes that change the grip width. `None` if blocks were hardly gripped.
 pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result<Option<Grasp>, EstimateError> {
     const LEAST_ROWS: usize = 30;
     let rows = rows(seen);
@@ -95,7 +95,7 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
         .filter(|k| known[k - 1].is_none())
         .map(|k| of(&|i| f64::from(u8::from(rows.number[i] == k))))
         .collect();
-    // Pads damp: no cause of its own.
+    // Damping of the pads is part of the base model.
     let rate = base.len();
     base.push(rows.rate_m_s.clone());
     let mut modelled = 0.0;

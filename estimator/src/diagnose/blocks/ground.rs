@@ -17,9 +17,9 @@ use crate::signal::task::half_width;
 use haptics::law::Kind;
 use haptics::world::World;
 
-/// Fewer rows of a rest show nothing.
+/// Least number of rows of a rest.
 const LEAST_ROWS: usize = 8;
-/// Fewer rows in all cannot be held out in turn.
+/// Least number of rows in all, for folds.
 const LEAST_IN_ALL: usize = 24;
 /// Of so many rows one may be held out: every rest is seen while it is fitted, from its beginning to its end. The first
 /// ones never are: when a slip at the very contact began shows in nothing else.
@@ -46,14 +46,14 @@ pub struct Stand {
     pub samples: Vec<usize>,
 }
 
-/// The comparison and what its words need.
+/// The comparison with the data for its texts.
 pub struct Ground {
     pub compared: Compared,
     /// The rows as the atlas looks at them.
     pub view: View,
     pub stands: Vec<Stand>,
     rows: Rows,
-    /// Each slip's time, s, and its way and the error of that with its time open, m.
+    /// Each slip's time, s, its distance, m, and the standard error of the distance with the time free, m.
     ways: Vec<[f64; 3]>,
 }
 
@@ -67,7 +67,7 @@ pub struct Rows {
     lift_rate: Vec<f64>,
     /// Largest shear over normal force of a finger.
     ratio: Vec<f64>,
-    /// Half of the window that the heights are means over, s.
+    /// Half of the averaging window of the heights, s.
     pub half_s: f64,
 }
 
@@ -141,7 +141,7 @@ pub fn ground(
     };
     let view = View {
         recording: rows.stand.iter().map(|s| stands[*s].recording).collect(),
-        // One rest is no continuation of another: each has a height of its own.
+        // Each rest has a height of its own.
         sensor: rows.stand.clone(),
         over: vec![(Variable::Time, rows.time_s.clone()), (Variable::Lift, rows.lift_n.clone())],
         way: Vec::new(),
@@ -253,7 +253,7 @@ impl Ground {
         };
         let near = (stand.first..stand.end).filter(|i| (self.rows.time_s[*i] - at).abs() < 0.15);
         let ratio = near.map(|i| self.rows.ratio[i]).fold(0.0, f64::max);
-        // A plain mean over the rest has the shift for as long as it lasts.
+        // A plain mean over the rest includes the shift while it lasts.
         let plain = (stand.first..stand.end).map(|i| self.rows.time_s[i]).filter(|t| *t >= stand.plain_from_s);
         let (rows, after) = plain.fold((0_u32, 0_u32), |(n, after), t| (n + 1, after + u32::from(t >= at)));
         let mean_off = value * f64::from(after) / f64::from(rows.max(1));
@@ -287,7 +287,7 @@ impl Ground {
         let picks = self.compared.study.picks();
         let Some(solved) = &self.compared.study.solved else { return (0.0, f64::INFINITY) };
         let mut give = vec![0.0; self.rows.stand.len()];
-        // All but the rests' own heights.
+        // All but the heights of the rests.
         let columns: Vec<&Vec<f64>> = self
             .compared
             .study

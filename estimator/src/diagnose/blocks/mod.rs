@@ -84,7 +84,7 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         found.atlas.channels.extend(grasp.iter().map(|g| g.compared.atlas(&g.view, limit, grasp::best_seen)));
         found.atlas.channels.extend(ground.iter().map(|g| g.compared.atlas(&g.view, limit, ground::best_seen)));
     }
-    // Of the net force, which a delay is seen in; the strongest cause may be of another channel.
+    // Delay of the net force, in which it is best seen. The strongest cause may be of another channel.
     if let Some((late, force)) = carry.late.zip(parts.first()) {
         let figures = force.figures();
         // Other terms of the final model may absorb part of a delay. The delay is therefore judged by its own model,
@@ -96,7 +96,7 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     Ok(found)
 }
 
-/// Net force, distance of the tips and height of the grip, compared.
+/// Comparisons of net force, grip width and grip height.
 fn look(
     seen: &[Seen<'_>],
     world: Option<&World>,
@@ -104,7 +104,7 @@ fn look(
     let limit = limit(seen);
     let carry = carry::carry(seen, world, limit)?;
     let grasp = grasp::grasp(seen, world, limit)?;
-    // A block that a cable pulls at is held by more than its ground.
+    // A block with a taut cable is supported by more than the ground.
     let ground = if carry.has("added-constraint") { None } else { ground::ground(seen, world, carry.cross(), limit)? };
     Ok((carry, grasp, ground))
 }

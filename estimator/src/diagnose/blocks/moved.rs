@@ -39,7 +39,7 @@ pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause>
             }
         }
         let ((after, a), (before, b)) = (ground.level(placed), ground.level(picked));
-        // A block that turns between the pads moves their middle, too.
+        // A block that rotates between the pads also moves their middle.
         let turns = seen[placed.recording].blocks.finger_disagreement(&picked.samples, &placed.samples);
         let error = (variance + a * a + b * b).sqrt().hypot(turns / 3.0_f64.sqrt());
         Some((after - before - expected, error, placed))

@@ -1,4 +1,4 @@
-//! Rows of forces: sums of both fingers while blocks are carried, single channels while nothing is touched.
+//! Rows of forces: sums of both fingers while blocks are carried, single channels without touch.
 
 use super::seen::Seen;
 use crate::diagnose::compare::stretches;
@@ -8,7 +8,7 @@ use crate::diagnose::compare::stretches;
 pub enum Place {
     /// Sum of both fingers along an axis, a block of this number in the air.
     Carried { number: usize, axis: usize },
-    /// One finger along an axis, nothing touched.
+    /// One finger along an axis, without touch.
     Free { finger: usize, axis: usize },
 }
 
@@ -21,7 +21,7 @@ pub struct Row {
     pub place: Place,
 }
 
-/// All rows with the recordings that they are from.
+/// All rows with their recordings.
 pub struct Rows<'a> {
     pub seen: &'a [Seen<'a>],
     pub all: Vec<Row>,

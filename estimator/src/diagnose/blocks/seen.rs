@@ -9,19 +9,19 @@ use crate::signal::noise::white_noise;
 use crate::signal::task::{half_width, smooth};
 use haptics::recording::Recording;
 
-/// Shorter rests are not free motion, s.
+/// Least duration of free motion, s.
 const LEAST_FREE_S: f64 = 0.25;
-/// The ends of free motion may touch already, s.
+/// Margin at the ends of free motion, which may already touch, s.
 const ENDS_S: f64 = 0.05;
-/// Less than this share of the usual lift is not all of the weight.
+/// Share of the usual lift below which part of the weight is supported.
 const WHOLE: f64 = 0.75;
-/// Slower than this it rests, m/s; rows that are looked at before it does; and a lift that is another one.
+/// Speed of a resting grip, m/s; number of rows examined before it rests; and relative change of the lift that counts.
 const REST_M_S: f64 = 8e-3;
 const BEFORE: usize = 6;
 const OTHER_LIFT: f64 = 0.05;
 /// Difference of two lifts, in standard deviations of the noise, from which they differ.
 const SURELY: f64 = 4.0;
-/// A block that was just lifted swings behind its pads, s.
+/// Duration for which a block swings behind its pads after the lift, s.
 const SWINGS_S: f64 = 0.12;
 /// Rows at either end of a carry: the ground may support the block in those before the first number. Those from the
 /// first to the second number define the carried lift. A lift off it by `END_SHARE` is partly supported.
@@ -40,7 +40,7 @@ pub struct Seen<'a> {
     pub acceleration: [Vec<f64>; 2],
     /// Middle of the tips, x and y, m.
     pub place: [Vec<f64>; 2],
-    /// Time between rows that say something new, and between samples, s.
+    /// Time between independent rows, and between samples, s.
     pub period_s: f64,
     pub sample_s: f64,
     /// Standard deviation of the lift of one row by the sensors' noise, N.
@@ -88,7 +88,7 @@ impl<'a> Seen<'a> {
         Ok(seen)
     }
 
-    /// From where nothing is touched; where that never was, from the fast changes of the lift.
+    /// Lift noise from samples without touch, or from fast changes of the lift if there are none.
     fn lift_noise(&self) -> f64 {
         let free = self.free();
         if free.len() < BEFORE {
@@ -111,7 +111,7 @@ impl<'a> Seen<'a> {
         self.blocks.signals.time_s[i]
     }
 
-    /// Rows in which a block is carried, from when it no longer swings to when something else carries it as well.
+    /// Rows in which a block is carried, from the end of its swinging until something else supports it as well.
     pub fn carried(&self, number: usize) -> Vec<usize> {
         self.carried_and_standing(number).0
     }
@@ -122,7 +122,7 @@ impl<'a> Seen<'a> {
         let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return (Vec::new(), Vec::new()) };
         let (start, end) = (self.time_s(*first) + SWINGS_S, self.time_s(*last));
         let mut rows = self.every(samples.into_iter().filter(|i| (start..=end).contains(&self.time_s(*i))));
-        // A block that the ground takes over already at either end is no longer carried.
+        // A block that the ground already supports at either end is no longer carried.
         let light = self.light(&rows, [0.0; 2]);
         let mut standing = rows.split_off(rows.iter().rposition(|i| !light(i)).map_or(0, |k| k + 1));
         rows.drain(..rows.iter().position(|i| !light(i)).unwrap_or(0));
@@ -158,18 +158,18 @@ impl<'a> Seen<'a> {
     pub fn put(&self, number: usize, rest: &[usize], cross: [f64; 2]) -> (f64, Vec<usize>) {
         let (carried, mut standing) = self.carried_and_standing(number);
         if cross != [0.0; 2] && !rest.is_empty() {
-            // With some of the grip in it, the recorded lift falls as the grip does, on the ground or not.
+            // With cross-talk from the grip, the recorded lift falls with the grip force, on the ground or not.
             standing.clear();
         }
         let Some(first) = rest.first().into_iter().chain(standing.first()).min().copied() else {
             return (0.0, Vec::new());
         };
         let known = rest.first().copied().or_else(|| Some(standing.last()? + 1)).unwrap_or(first);
-        // Not before the middle of the carry; without a break from there on.
+        // The start is in the second half of the carry, without a break after it.
         let least = carried.get(carried.len() / 2).map_or(first, |middle| *middle).min(first);
         let lift = self.lift_without(cross);
         let from = stands_from(&self.blocks, &carried, least..first, &lift);
-        // The filter looks this far back into the air.
+        // The filter's window still reaches back to samples in the air.
         let settled = if from < known { from + half_width(&self.blocks.signals.time_s) } else { from };
         let rest = rest.iter().copied().filter(|i| *i >= settled);
         (self.time_s(from), (settled..known).chain(rest).collect())
@@ -233,7 +233,7 @@ impl<'a> Seen<'a> {
         }))
     }
 
-    /// Samples a filter window apart: neighbours that share their noise say nothing new.
+    /// Samples a filter window apart, because neighbours share their noise.
     pub fn every(&self, samples: impl Iterator<Item = usize>) -> Vec<usize> {
         let stride = 2 * half_width(&self.blocks.signals.time_s);
         let mut last: Option<usize> = None;

@@ -47,7 +47,7 @@ fn put(world: &mut World, id: &str, parameters: &[CauseParameter]) {
             world.pad.cubic_n_m3 = value("k3").map_or(world.pad.cubic_n_m3, |k| k.max(0.0));
         }
         "gravity-tilt" => {
-            // The hand holds against what pulls to the side: gravity points along (sin, −cos) of the tilt.
+            // The hand resists the lateral force: gravity points along (sin, −cos) of the tilt.
             world.tilt_rad -= value("angle").unwrap_or(0.0);
         }
         "weight" => {
@@ -86,7 +86,7 @@ impl Simulated for Carry {
         self.weighed.iter().zip(values).map(of).collect()
     }
 
-    /// Drag in the air, mass that weighs nothing, and weight that is gained or lost at once, are in no world.
+    /// A world has no drag in the air, no mass without weight, and no sudden change of weight.
     fn act(&self, candidate: &Candidate, values: &[f64]) -> Option<Act> {
         let linear = candidate.linear.iter().zip(values);
         let mut found: Vec<CauseParameter> =

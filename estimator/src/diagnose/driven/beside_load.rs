@@ -8,17 +8,17 @@ use crate::signal::noise::white_noise;
 
 /// Noise share of the load's own part from which load and dry friction count as one regressor.
 const AS_ONE: f64 = 0.5;
-/// Relative error of the direction's shape at reversals: a smaller part of the load's own is none.
+/// Noise of the load due to the shape of its reversal, per unit of its slope over the direction.
 const SHAPE: f64 = 0.03;
 /// Least mean square of the load's own part, to avoid division by zero.
 const LEAST_OWN: f64 = 1e-6;
 
 /// Separability of a load from dry friction.
 pub struct Told {
-    /// Share of the load's own part (beyond the other regressors) that may be noise or another shape of the reversal: 0
-    /// … 1.
+    /// Share of the load's own part (beyond the other regressors) that may be noise or another shape of the reversal, 0
+    /// to 1.
     noise: f64,
-    /// Load for every unit of direction, N or N m.
+    /// Load per unit of direction, N or N m.
     slope: f64,
     /// Coefficient of the load in the comparison, in units of force per unit of load.
     weight: f64,

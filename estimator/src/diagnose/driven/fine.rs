@@ -11,7 +11,7 @@ const LEAST_SPEED: f64 = 1e-3;
 /// The input of one recording at its own rate.
 pub struct Fine {
     time_s: Vec<f64>,
-    /// Place and speed through the filter, rad or m, and per second.
+    /// Filtered position and speed, rad or m, and per second.
     input: Vec<f64>,
     rate: Vec<f64>,
     /// Noise of the speed.
@@ -27,7 +27,7 @@ impl Fine {
         let through = smooth(time_s, input);
         let half = half_width(time_s) as f64;
         let step_s = (time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1).max(1) as f64;
-        // Of a straight line's slope over the filter's window.
+        // Noise of the slope of a line over the filter's window.
         let rate_noise = white_noise(input) / (step_s * (half * (half + 1.0) * (2.0 * half + 1.0) / 3.0).sqrt());
         let fastest = through.slope.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         let blur = (SPEED_NOISES * rate_noise).max(LEAST_SPEED * fastest).max(f64::MIN_POSITIVE);
@@ -39,12 +39,12 @@ impl Fine {
         self.rate_noise
     }
 
-    /// A series at the recording's own rate as its rows see it.
+    /// Values of a series at the rows, through their filter.
     fn rows(&self, series: &[f64]) -> Vec<f64> {
         smooth_value(&self.time_s, series).into_iter().step_by(self.every).collect()
     }
 
-    /// The direction of motion, −1 … 1; between them where a row looks over a reversal.
+    /// The direction of motion, −1 … 1, with intermediate values in rows over a reversal.
     pub fn direction(&self) -> Vec<f64> {
         let signs: Vec<f64> = self.rate.iter().map(|v| (v / self.blur).tanh()).collect();
         self.rows(&signs)

@@ -1,4 +1,4 @@
-//! The force at the input of a transmission against its motion and the load.
+//! Force at the input of a transmission against its motion and the load.
 
 use super::Side;
 use super::beside_load::Told;
@@ -13,18 +13,18 @@ use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 
-/// Below this share of the usual speed, and where a row looks over a reversal, the direction of friction is a guess.
+/// Share of the usual speed below which the direction of friction is uncertain, as it is in rows over a reversal.
 const SLOW: f64 = 0.1;
 const SURE: f64 = 0.99;
 
-/// Rows at which the direction of friction is no guess.
+/// Rows with a certain direction of friction.
 fn sure(seen: &Seen, usual: f64) -> Vec<usize> {
     let direction: Vec<f64> = seen.fine.iter().flat_map(Fine::direction).collect();
     let is_sure = |(row, direction): (&Row, &f64)| direction.abs() > SURE && row.rate.abs() > SLOW * usual;
     seen.kept(&seen.rows.iter().zip(&direction).map(is_sure).collect::<Vec<bool>>())
 }
 
-/// The comparison, and what goes with it.
+/// The comparison with its free-run model.
 pub struct Force {
     pub side: Side,
     /// Separability of friction and load.

@@ -28,7 +28,7 @@ impl Input {
         Self { rows: rows.to_vec(), stretch: stretch.to_vec(), unit, inertia, middle: 0.5 * (low + high) }
     }
 
-    /// Friction of so much, and a cause that is a law by itself.
+    /// Law of a friction of this size, or of a cause that is a law by itself.
     fn law(&self, id: &str, value: f64) -> Option<Effect> {
         Some(match id {
             "load-friction" => Effect::new(&LoadFriction, &[value]),
@@ -84,7 +84,7 @@ impl Forward for Input {
 
     fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
         let effects = self.effects(study, picks, values).ok_or_else(|| NO_LAW.to_owned())?;
-        // Zeros of the sensor and the load drive it; they are no laws.
+        // The sensors' zeros and the load drive it; they are no laws.
         let beside: Vec<usize> = (0..study.base.len()).filter(|k| *k != self.inertia).collect();
         let moment = |i: &usize| {
             let known: f64 = beside.iter().map(|k| values[*k] * study.base[*k][*i]).sum();

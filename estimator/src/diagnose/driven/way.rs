@@ -1,4 +1,4 @@
-//! The output of a transmission against its input.
+//! Output of a transmission against its input.
 
 use super::Side;
 use super::fine::Fine;
@@ -13,7 +13,7 @@ use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 
-/// A gap that makes up a smaller share of the lost motion, or a larger one, is not what its name says.
+/// Range of a gap's share of the lost motion. Outside of it, the cause is not what its name says.
 const SHARES: [f64; 2] = [0.1, 2.0];
 /// Least effect on the output, in multiples of its noise and as a share of its sensor's steps. A smaller one cannot be
 /// distinguished from the steps: an output at rest reads one and the same step.
@@ -40,8 +40,8 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
     let mut plain = Vec::new();
     for f in [|r: &Row| r.load, |r: &Row| r.force] {
         if rows.iter().all(|r| f(r).is_some()) {
-            // Without its mean over a recording, which the zero of the output has.
-            // A load may be counted either way.
+            // The mean over a recording is removed, because it belongs to the zero of the output. A load may have
+            // either sign.
             for sign in [1.0, -1.0] {
                 let column = of(&|r| sign * f(r).unwrap_or(0.0));
                 let least = least(&column);
@@ -88,7 +88,7 @@ pub fn as_of_input(
 ) -> Vec<CauseParameter> {
     let place = study.chosen.iter().position(|c| std::ptr::eq(&raw const study.candidates[c.candidate], own));
     let ratio = study.solved.as_ref().map_or(1.0, |s| s.values[study.system.base - 1]);
-    // An output that waits behind a gap shows one step of its sensor, wherever within that it is.
+    // An output at rest within a gap shows one step of its sensor, whatever its exact position.
     let unseen = step / 12.0_f64.sqrt() / ratio.abs();
     let searched = own.searched.first().map_or(f64::INFINITY, |s| s.value);
     for p in &mut found {
@@ -99,7 +99,7 @@ pub fn as_of_input(
             }
             "delta" | "way" => p.std_error = p.std_error.hypot(unseen),
             "tau" => {
-                // Noise of a regressor makes its weight small.
+                // Noise of a regressor biases its coefficient towards zero.
                 let small = place.map_or(0.0, |k| p.value * noise_of_own(study, study.chosen[k].candidate));
                 (p.value, p.std_error) = (p.value / ratio, (p.std_error.hypot(small) / ratio).abs());
             }

@@ -1,4 +1,4 @@
-//! Rows of a motion that was not made yet: the model's own forces on it.
+//! Predicted rows of a motion that has not been made yet, with the forces of the base model.
 
 use super::super::blur::blur;
 use super::super::force::Model;

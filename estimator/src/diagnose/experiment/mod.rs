@@ -20,7 +20,7 @@ use library::{Excitation, HANG, LIBRARY};
 pub(super) use separation::{Imagined, separation};
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Lengths of a proposed recording, s: the shortest that is likely to do.
+/// Lengths of a proposed recording, s. The shortest that is likely to suffice is proposed.
 const LENGTHS_S: [f64; 3] = [20.0, 40.0, 80.0];
 pub(super) const LIKELY: f64 = 0.8;
 /// Evidence that settles a question, as a log likelihood ratio.
@@ -31,9 +31,9 @@ pub(super) const SURE: f64 = 0.85;
 pub(super) const SURE_HUNG: f64 = 0.95;
 /// Evidence from which a question counts as settled.
 const MOST: f64 = 1e6;
-/// A crank is turned no farther than this to either side, rad.
+/// Largest turn of a crank to either side, rad.
 const TURN_RAD: f64 = 7.0;
-/// The weight to hang on, in those that the object shows, and the heaviest, N: fingers must still lift it.
+/// Weight to hang on, as a multiple of the object's, and the heaviest, N, which fingers can still lift.
 const HUNG_WEIGHTS: f64 = 6.0;
 const HEAVIEST_N: f64 = 1.2;
 /// Hung weight on a mechanism that turns: multiple of the moment found, and lever, m.
@@ -78,7 +78,7 @@ fn proposal(motion: String, pairs: &[(&str, &str)], power: f64, experiment: Expe
     NextExperiment { motion, separates, expected_power: power, experiment: Some(experiment) }
 }
 
-/// A motion of the library on this object: as wide and as fast as it was moved before.
+/// A motion of the library with the range and speed of the recorded motion.
 fn asked(track: &Track, excitation: &Excitation, seconds: f64) -> Experiment {
     let scale = if track.planar { track.radius_m.unwrap_or(1.0) } else { 1.0 };
     let at = |share| track.quantile(share, |r| r.motion.position) / scale;
@@ -121,7 +121,7 @@ fn hang(track: &Track, model: &Model, study: &Study, pair: (&str, &str)) -> Opti
     asked.added_lever_m = LEVER_M;
     asked.added_weight_n = in_steps(HUNG_MOMENTS * moment / LEVER_M);
     let hung = asked.added_weight_n * LEVER_M;
-    // All of it acts, or the sine of a small tilt: nothing in between is thought of.
+    // Either all of it acts, or the sine of a small tilt; nothing in between is considered.
     let noise = track.force_noise.max(1e-12);
     let lambda = asked.seconds / track.period_s * 0.5 * (0.4 * hung / noise).powi(2);
     Some(hung_proposal(&asked, &[pair], power(lambda), "a lever"))

@@ -11,12 +11,12 @@ use super::super::track::Track;
 use super::super::white::Whitening;
 use nalgebra::{DMatrix, DVector};
 
-/// Rows of a motion that was not made yet, as a channel would see them.
+/// Predicted rows of a motion that has not been made yet.
 pub struct Imagined {
-    /// Columns of the model and of everything that could explain the rows.
+    /// Regressors of the base model, and all candidates.
     pub base: Vec<Vec<f64>>,
     pub candidates: Vec<Candidate>,
-    /// Rows of one number follow each other without a gap.
+    /// Segment of each row.
     pub stretch: Vec<usize>,
     /// Weight of each row: inverse of its relative noise.
     pub weight: Vec<f64>,
@@ -113,7 +113,7 @@ impl<'a> Eye<'a> {
     }
 }
 
-/// The instance of the same cause whose searched values are nearest.
+/// The candidate of the same cause with the nearest searched values.
 fn nearest<'a>(candidates: &'a [Candidate], own: &Candidate) -> Option<&'a Candidate> {
     let apart = |c: &Candidate| -> f64 {
         c.searched.iter().zip(&own.searched).map(|(a, b)| ((a.value - b.value) / b.value.abs().max(1e-9)).powi(2)).sum()

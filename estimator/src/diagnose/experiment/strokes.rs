@@ -1,4 +1,4 @@
-//! The strokes of a motion of the library: where the object is wanted when, and how hard it is pushed across.
+//! Strokes of a motion of the library: target position and transverse push over time.
 
 use super::library::{Excitation, HANG, LIBRARY};
 use crate::diagnose::report::Experiment;
@@ -15,7 +15,7 @@ pub(super) struct Course {
 }
 
 impl Course {
-    /// `speed`: half ranges a second at pace 1.
+    /// Knots of the motion. `speed`: half ranges per second at pace 1.
     pub(super) fn of(excitation: &Excitation, speed: f64, until_s: f64) -> Self {
         let mut knots = vec![(0.0, 0.0, 0.0)];
         let mut k = 0;
@@ -60,7 +60,7 @@ pub struct Strokes {
 }
 
 impl Strokes {
-    /// Nothing for a motion that is not in the library, or numbers that make none.
+    /// `None` for a motion that is not in the library, or for numbers that define none.
     pub fn of(asked: &Experiment) -> Option<Self> {
         let excitation = LIBRARY.iter().chain([&HANG]).find(|e| e.id == asked.id)?;
         let sane = [asked.seconds, asked.half_range, asked.fast].iter().all(|v| v.is_finite() && *v > 0.0);

@@ -14,9 +14,9 @@ const OUTSIDE_M: f64 = 4e-3;
 const OVER_S: f64 = 1.0;
 /// Depth of the presses before a puncture, as a share of the puncture depth.
 const PRESSED: f64 = 0.6;
-/// Paces of throws, in turn, two a pace: one to either side.
+/// Paces of throws, in turn; two throws per pace, one to either side.
 const PACES: [f64; 3] = [0.15, 1.0, 0.4];
-/// A knob is pressed against its stop, let go, and left alone for so long, s.
+/// Duration of the press against a stop, of the release, and of the rest after it, s.
 const PRESS_S: f64 = 0.35;
 const RELEASE_S: f64 = 0.4;
 const ALONE_S: f64 = 0.25;
@@ -41,7 +41,7 @@ impl Turns {
         self.0.push((now_s + seconds, place));
     }
 
-    /// On to a place, at a peak speed.
+    /// Adds a movement to a position, with this peak speed.
     fn go(&mut self, to: f64, fastest: f64) {
         let (now_s, from) = self.end();
         self.0.push((now_s + (PEAK * (to - from).abs() / fastest).max(SHORTEST_S), to));
@@ -68,7 +68,7 @@ pub struct Insertions {
 }
 
 impl Insertions {
-    /// Nothing for another motion, or for numbers that make none.
+    /// `None` for another motion, or for numbers that define none.
     pub fn of(asked: &Experiment) -> Option<Self> {
         let (puncture_m, full_m) = (asked.middle - asked.half_range, asked.middle + asked.half_range);
         let sane = [asked.seconds, asked.half_range, asked.fast, puncture_m].iter().all(|v| v.is_finite() && *v > 0.0);
@@ -112,7 +112,7 @@ impl Insertions {
         self.puncture_m
     }
 
-    /// The insertion that is going on, and how far the hand is on its way to the place of the next, 0 … 1.
+    /// The current insertion, and the progress of the hand to the place of the next one, 0 … 1.
     pub fn place(&self, time_s: f64) -> (usize, f64) {
         let k = self.begin_s.partition_point(|b| *b <= time_s).saturating_sub(1);
         let ends_s = self.begin_s.get(k + 1).copied().unwrap_or_else(|| self.duration_s());

@@ -38,7 +38,7 @@ const BACK: f64 = 0.1;
 const SWINGS: f64 = 0.5;
 /// Standard errors from which the ratio of a known parameter to the inertia sets the scale.
 const CLEAR: f64 = 3.0;
-/// Causes that only a force sensor shows, or only a force that drives.
+/// Causes that only a force sensor or a driving force shows.
 const WITH_A_FORCE: [&str; 9] = [
     "force-bias",
     "force-drift",
@@ -68,7 +68,7 @@ pub(super) fn is_free(recordings: &[Recording], paths: &[Option<MechanismPath>])
     Ok(driven.iter().all(|d| !d))
 }
 
-/// Causes that are friction, or its course with the speed, in what goes one way and slows down.
+/// Causes that act like friction, or like its dependence on speed, in a one-way motion that slows down.
 const WITH_BOTH_WAYS: [&str; 3] = ["friction-asymmetry", "gravity-tilt", "friction-change"];
 
 /// True if a free motion can show a cause at all. `both_ways`: the motion has both directions.
@@ -125,7 +125,7 @@ pub(super) fn diagnose(
     Ok(found)
 }
 
-/// The rows of all recordings, and what is wrong with their samples.
+/// The rows of all recordings, and the faults of their samples.
 fn tracks(
     recordings: &[Recording],
     paths: &[Option<MechanismPath>],
@@ -143,7 +143,7 @@ fn tracks(
     Ok((join(tracks).ok_or_else(nothing)?, faults))
 }
 
-/// The laws to start from, without the inertia.
+/// The laws of the base model, without the inertia.
 fn model(track: &Track, first: &Recording, options: &Options) -> Result<Model, EstimateError> {
     let mut model: Model = match (&options.world, options.baseline.as_deref()) {
         (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),
@@ -157,7 +157,7 @@ fn model(track: &Track, first: &Recording, options: &Options) -> Result<Model, E
     Ok(model)
 }
 
-/// Gravity of any phase for an angle that swings: it need not be measured from hanging.
+/// Gravity of any phase for an angle that swings: its zero need not be the hanging position.
 fn gravity(track: &Track, first: &Recording) -> Model {
     let is_known = mechanism::stated(&first.meta, track.coordinate).iter().any(|s| matches!(s, Stated::Gravity(_)));
     if track.coordinate == Coordinate::Linear || !(is_known || swings(track)) {
@@ -184,15 +184,15 @@ fn swings(track: &Track) -> bool {
 pub(super) enum Scale {
     /// The world or the sidecar states it.
     Stated,
-    /// A parameter is known whose ratio to it shows.
+    /// A known parameter whose ratio to the inertia is significant.
     ByRatio(Stated),
-    /// Such a parameter is known, but its ratio to the inertia does not show, or it is no part of the model.
+    /// A known parameter whose ratio to the inertia is not significant, or that is no part of the model.
     Hidden,
     /// Nothing is known.
     Nothing,
 }
 
-/// Sets the inertia where it is stated, or says which known parameter will tell it.
+/// Sets the inertia if it is stated; otherwise returns the known parameter that determines it.
 fn scale_of(track: &mut Track, first: &Recording, model: &mut Model, options: &Options) -> Scale {
     let laws = options.world.as_ref().and_then(|w| w.mechanism.as_ref()).map(|m| m.effects.as_slice());
     let of_world: f64 = laws.into_iter().flatten().filter(|e| e.role() == Role::Inertia).map(|e| e.values[0]).sum();
@@ -227,7 +227,7 @@ fn set(track: &mut Track, inertia: f64, relative_error: f64) {
     (free.inertia, free.relative_error, free.is_known) = (inertia, relative_error, true);
 }
 
-/// Friction that the sidecar knows is no part of what is fitted, unless it gave the inertia.
+/// Takes friction that the sidecar states out of the fitted laws, unless it determined the inertia.
 fn keep_known(track: &mut Track, first: &Recording, model: &mut Model, gave: Option<Stated>) {
     let had = model.clone();
     let known = known_laws(first, track.coordinate, model);
@@ -245,7 +245,7 @@ fn fixed(track: &Track) -> Model {
     std::iter::once(Effect::new(&Inertia, &[free.inertia])).chain(free.known.into_iter().flatten()).collect()
 }
 
-/// Inertia out of a known parameter and its value per unit of inertia, and one standard error of it as a share.
+/// Inertia from a known parameter and its value per unit of inertia, with its relative standard error.
 fn inertia_by(stated: Stated, model: &Model, study: &Study) -> Option<(f64, f64)> {
     let (Stated::Inertia(known) | Stated::Gravity(known) | Stated::Viscous(known) | Stated::Coulomb(known)) = stated;
     let solved = study.solved.as_ref()?;
@@ -258,7 +258,7 @@ fn inertia_by(stated: Stated, model: &Model, study: &Study) -> Option<(f64, f64)
     (ratio > CLEAR * error).then(|| (known / ratio, error / ratio))
 }
 
-/// A slope under what moves along a line: the sine of its angle. None where something turns or is driven.
+/// Slope under a linear motion, as the sine of its angle. `None` if the object rotates or is driven.
 pub(super) fn tilt(track: &Track) -> Option<Candidate> {
     let free = track.freely.filter(|_| track.coordinate == Coordinate::Linear)?;
     let pull = free.inertia * free.gravity_m_s2;

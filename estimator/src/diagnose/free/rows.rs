@@ -32,7 +32,7 @@ const RATE_BETTER: f64 = 0.3;
 const LEAST_BLOCKS: usize = 8;
 /// Deviation from an even clock, as a share of a step, up to which time stamps count as rounded.
 const ROUNDED: f64 = 0.03;
-/// Order, and least samples on either side, of the polynomials that follow the motion between the rows.
+/// Order of the local polynomials between the rows, and their least number of samples on either side.
 const ORDER: usize = 4;
 const LEAST_HALF: usize = 3;
 /// Limit of velocity and acceleration of a standing object, in standard deviations of their noise, and the least number
@@ -44,10 +44,10 @@ const ROUGH_S: f64 = 0.06;
 
 /// The rows of one recording, with forces of zero and an inertia of one.
 ///
-/// `bad`: samples that no sensor measured; `path`: where a tool's coordinate is counted along, its own if none.
+/// `bad`: samples that no sensor measured; `path`: path along which a tool's coordinate is measured, its own if `None`.
 ///
 /// # Errors
-/// No coordinate, no clock, or too little in one uninterrupted piece: in a sentence.
+/// No coordinate, no clock, or too few samples in one segment: in a sentence.
 pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) -> Result<Track, EstimateError> {
     let raw = mechanism::raw(recording, path)?;
     let (pieces, period_s) = pieces(&raw, bad);
@@ -96,7 +96,7 @@ impl Piece {
     }
 }
 
-/// As many even times between the first and the last one; the usual step where there is only one.
+/// Even times from the first to the last one; the usual step if there is only one.
 fn clock(time_s: &[f64], period_s: f64) -> Vec<f64> {
     let last = time_s.len() - 1;
     let step_s = if last > 0 { (time_s[last] - time_s[0]) / last as f64 } else { period_s };
@@ -167,7 +167,7 @@ impl Plan {
         plan
     }
 
-    /// Samples on either side that follow the motion between the rows.
+    /// Number of samples on either side for the local polynomials.
     fn half(&self) -> usize {
         (self.block / 2).max(LEAST_HALF)
     }

@@ -16,7 +16,7 @@ use haptics::law::Kind;
 use nalgebra::{DVector, Rotation3, Vector3};
 use std::ops::Range;
 
-/// Time before and after a blow that is looked at, at most, s.
+/// Longest time before and after a blow that is evaluated, s.
 const BESIDE_S: f64 = 0.054;
 /// Time on either side over which changes of the velocity are evaluated, s.
 const REACH_S: f64 = 0.0068;
@@ -27,7 +27,7 @@ const STILL_M_S: f64 = 0.10;
 const FREE_M_S: f64 = 0.06;
 /// Difference of two velocities below which their meeting time is undetermined, m/s.
 const SAME_M_S: f64 = 0.1;
-/// A second corner within this height hits at the same time, in half widths.
+/// Height within which a second corner hits at the same time, in half widths.
 const TOGETHER: f64 = 0.1;
 /// Least speed of a blow, m/s.
 const SLOW_M_S: f64 = 0.4;
@@ -92,9 +92,9 @@ pub fn blow(
         });
     }
     let along = vec![true; n];
-    // A throw has one blow: all of them are seen together, over the speed that they came with.
+    // A throw has one blow, so all of them are shown together, over their speed before impact.
     let view = View::of(Vec::new(), vec![(Variable::Velocity, pairs.iter().map(|(before, _)| -before).collect())]);
-    // A blow is none of a segmentation's states.
+    // Segmentation has no state for a blow.
     let (channel, state) = ("speed after impacts", vec![SystemState::NoState; n]);
     Ok(Some((Compared { study, channel, unit: "m/s", floor, along, stretch, state }, view, pushed)))
 }
@@ -117,7 +117,7 @@ pub fn best_seen(_: &str) -> Variable {
     Variable::Velocity
 }
 
-/// Velocity upwards of the corner that hits first, before and after, m/s.
+/// Upward velocity of the corner that hits first, before and after, m/s.
 fn corner(track: &Track, half_m: f64, fall_m_s2: f64) -> Option<(f64, f64)> {
     let turned = track.turned.as_ref()?;
     let Beside { hit, before, after, reach } = around(track, fall_m_s2)?;
@@ -128,7 +128,7 @@ fn corner(track: &Track, half_m: f64, fall_m_s2: f64) -> Option<(f64, f64)> {
         (turned[b] * turned[a].inverse()).scaled_axis() / (track.time_s[b] - track.time_s[a])
     };
     let (spin_before, spin_after) = (spin(&before), spin(&after));
-    // A cube turns evenly in flight: so it came to the ground.
+    // A cube rotates evenly in flight, so its orientation at impact follows.
     let last = before.end - 1;
     let pose = Rotation3::from_scaled_axis(spin_before * (at_s - track.time_s[last])) * turned[last];
     let mut corners: Vec<Vector3<f64>> = (0..8_u32)
@@ -152,18 +152,18 @@ struct Beside {
     hit: usize,
     before: Range<usize>,
     after: Range<usize>,
-    /// Samples over which it was told.
+    /// Number of samples over which it was evaluated.
     reach: usize,
 }
 
-/// `None` without a blow, or without a moment of free flight behind it.
+/// `None` without a blow, or without free flight after it.
 fn around(track: &Track, fall_m_s2: f64) -> Option<Beside> {
     let (points, time) = (&track.points, &track.time_s);
     let (n, least, reach) = (points.len(), least(track), track.steps(REACH_S));
     if n < least + 4 * reach {
         return None;
     }
-    // Change of the velocity at a sample beyond what falling makes, m/s.
+    // Change of the velocity at a sample beyond that by gravity, m/s.
     let kick = |i: usize| {
         let (a, b) = (time[i] - time[i - reach], time[i + reach] - time[i]);
         let change = (points[i + reach] - points[i]) / b - (points[i] - points[i - reach]) / a;
@@ -196,7 +196,7 @@ fn met(falls: &Free, rises: &Free, at_s: f64, step_s: f64, reach: usize) -> f64 
     (since - at_s).clamp(-step_s, 2.0 * reach as f64 * step_s)
 }
 
-/// A free flight's height: a straight line beside the fall from rest at time zero.
+/// Height in free flight: a line added to the fall from rest at time zero.
 struct Free {
     /// Time and height of a point of that line, s and m.
     point: (f64, f64),
@@ -213,7 +213,7 @@ impl Free {
     }
 }
 
-/// The free flight of the middle in these samples.
+/// Free flight of the centre in these samples.
 fn free(track: &Track, range: &Range<usize>, fall_m_s2: f64) -> Option<Free> {
     let time = &track.time_s[range.clone()];
     let middle_s = time.iter().sum::<f64>() / time.len().max(1) as f64;
@@ -224,7 +224,7 @@ fn free(track: &Track, range: &Range<usize>, fall_m_s2: f64) -> Option<Free> {
     Some(Free { point: (middle_s, solved[0]), speed_m_s: solved[1] })
 }
 
-/// The restitution out of its change against the model. `pushed`: its error beside that of the scatter.
+/// Restitution from its change against the model. `pushed`: its error beside that of the scatter.
 pub fn states(candidate: &Candidate, found: &[CauseParameter], pushed: f64) -> Vec<CauseParameter> {
     let model = candidate.searched.first().map_or(1.0, |s| s.value);
     found.first().map(|p| parameter("e", model + p.value, p.std_error.hypot(pushed), "1")).into_iter().collect()

@@ -22,10 +22,10 @@ const LEAST_SLIDES: usize = 4;
 pub const THRESHOLD: f64 = 25.0;
 /// Least dry friction coefficient. A smaller one is misfit of a speed-dependent resistance.
 const LEAST_MU: f64 = 2e-3;
-/// Speeds at which static friction falls off that are tried, as shares of the usual one.
+/// Tried decay speeds of static friction, as shares of the usual speed.
 const STRIBECK: [f64; 4] = [0.1, 0.25, 0.5, 0.9];
 
-/// One slide: times, way along its direction, speed, and the share of friction that goes against it.
+/// One slide: times, distance along its direction, speed, and the share of friction against it.
 struct Way {
     time_s: Vec<f64>,
     place_m: Vec<f64>,
@@ -33,7 +33,7 @@ struct Way {
     direct: Vec<f64>,
 }
 
-/// Compares what slows the body. `mu`: friction that the model has.
+/// Compares the causes that slow the body. `mu`: friction of the model.
 pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, EstimateError> {
     if seen.slides.len() < LEAST_SLIDES {
         return Ok(None);
@@ -43,7 +43,7 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, Estim
     speeds.sort_by(f64::total_cmp);
     let usual = speeds.get(speeds.len() * 9 / 10).copied().unwrap_or(1.0);
     let fall = seen.fall.down_m_s2;
-    // A slowing, integrated twice, in the place of a force: only differences within a slide count.
+    // A deceleration, integrated twice, takes the place of a force: only differences within a slide count.
     let slowed = |w: &Way, of: &dyn Fn(usize) -> f64| within(w, &integrated(w, &|i| -of(i)));
     let all = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
         ways.iter().flat_map(|w| slowed(w, &|i| of(w.speed_m_s[i]))).collect()
@@ -86,12 +86,12 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, Estim
         weight: vec![1.0; n],
         period_s,
     };
-    // Friction that rises as the body stops is friction that is there.
+    // Friction that rises as the body stops requires dry friction.
     let study = if mu > 0.0 { channel.compare(THRESHOLD) } else { channel.compare_without_friction(THRESHOLD) }?;
     let along = vec![true; n];
     let each = |of: fn(&Way) -> &Vec<f64>| ways.iter().flat_map(of).copied().collect::<Vec<f64>>();
     let over = vec![(Variable::Time, each(|w| &w.time_s)), (Variable::Velocity, each(|w| &w.speed_m_s))];
-    // A single slide is short: all of them are seen together.
+    // A single slide is short, so all are shown together.
     let view = View::of(Vec::new(), over);
     let (channel, state) = ("way of the slides", vec![SystemState::SlidingOnGround; n]);
     Ok(Some((Compared { study, channel, unit: "m", floor, along, stretch, state }, view)))
@@ -147,7 +147,7 @@ fn way(seen: &Tossed, slide: &Slide) -> Option<Way> {
     Some(Way { time_s, place_m: way_m, speed_m_s, direct: slide.direct.clone() })
 }
 
-/// Way by an acceleration from rest, m, by trapezia.
+/// Distance by an acceleration from rest, m, with the trapezoidal rule.
 fn integrated(way: &Way, acceleration: &dyn Fn(usize) -> f64) -> Vec<f64> {
     let (mut speed, mut place) = (0.0, 0.0);
     (0..way.time_s.len())
@@ -163,7 +163,7 @@ fn integrated(way: &Way, acceleration: &dyn Fn(usize) -> f64) -> Vec<f64> {
         .collect()
 }
 
-/// A series without its own start and speed.
+/// A series less its own start and speed.
 fn within(way: &Way, values: &[f64]) -> Vec<f64> {
     let n = values.len();
     let own = powers(n, 2, |i| way.time_s[i]).qr().q();
@@ -214,7 +214,7 @@ fn floor(ways: &[Way]) -> f64 {
     (sum / n.max(1.0)).sqrt()
 }
 
-/// Slides scatter more than their samples do: `scatter` is the standard error by it.
+/// Parameters for the answer. Slides scatter more than their samples do: `scatter` is the standard error from it.
 pub fn states(candidate: &Candidate, mut found: Vec<CauseParameter>, scatter: f64) -> Vec<CauseParameter> {
     if candidate.id == "load-friction" {
         for p in &mut found {

@@ -11,12 +11,12 @@ use crate::diagnose::track::Span;
 use crate::segment::threshold::percentile;
 use haptics::law::object::MembraneLaw;
 
-/// Numbers of insertions: the least that is likely to do.
+/// Numbers of insertions. The least that is likely to suffice is proposed.
 const INSERTIONS: [usize; 3] = [1, 2, 4];
-/// Half of a stroke in the hole, m; and how fast a hand moves there at least and at most, m/s.
+/// Half of a stroke in the hole, m, and lowest and highest speed of a hand there, m/s.
 const HALF_STROKE_M: f64 = 2.5e-3;
 const FAST_M_S: (f64, f64) = (0.03, 0.1);
-/// Two fingers let go for so long before and after, s.
+/// Time without touch before and after, s.
 const FREE_S: f64 = 2.0;
 
 const WORDS: &str = "push in slowly, draw back before the sheet gives way, push through, move to and fro in the hole slowly and fast, \
@@ -60,7 +60,7 @@ pub fn propose(
     best
 }
 
-/// As deep as the sheet was pressed until it gave way, and as fast as before at least.
+/// As deep as the sheet was pressed before the puncture, and at least as fast as before.
 fn asked(needle: &Needle, count: usize) -> Option<(Experiment, Insertions)> {
     let pressed = needle.rows.iter().filter(|r| matches!(r.phase, Phase::Loading | Phase::Unloading));
     let deep_m = pressed.map(|r| r.depth_m).fold(0.0, f64::max);
@@ -83,7 +83,7 @@ fn asked(needle: &Needle, count: usize) -> Option<(Experiment, Insertions)> {
     Some((asked, motion))
 }
 
-/// Rows of that motion, as they would be read.
+/// Predicted rows of that motion.
 fn imagine(needle: &Needle, motion: &Insertions, free_s: f64) -> Needle {
     let period_s = needle.period_s;
     let count = |seconds: f64| (seconds / period_s) as usize;

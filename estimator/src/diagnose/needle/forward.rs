@@ -1,4 +1,4 @@
-//! A needle on its own: a hand holds it on its measured way, and the sheet or the hole acts against it where it is.
+//! Free-run simulation of a needle: a hand holds it on its measured path, and the sheet or the hole acts on it.
 
 use super::rows::{Needle, Phase, Row};
 use super::shaft::{RIM_SHARE, rim};
@@ -27,7 +27,7 @@ impl Model {
         Self { law: law.copied(), period_s: needle.period_s, holds, two_fingered }
     }
 
-    /// Less than no mass is the noise of none.
+    /// A negative mass is noise of a zero one.
     fn inertia(&self, mass: usize, values: &[f64]) -> Vec<Effect> {
         let kg = if self.two_fingered { values[mass].max(0.0) } else { 0.0 };
         vec![Effect::new(&Inertia, &[kg])]
@@ -48,11 +48,11 @@ fn motion(row: &Row) -> Motion {
     Motion { time_s: row.time_s, position: row.depth_m, velocity: row.rate_m_s, ..Motion::default() }
 }
 
-/// A needle outside of a sheet, and on one that is not pierced yet.
+/// Simulation of a needle outside of a sheet, and on one that is not pierced yet.
 pub struct Pressed {
     model: Model,
     stiffness_n_m: f64,
-    /// In the order of the comparison.
+    /// Rows in the order of the comparison.
     rows: Vec<Row>,
 }
 
@@ -99,7 +99,7 @@ impl Forward for Pressed {
             |i: &usize| Moment { motion: motion(&self.rows[*i]), drive: drive(study, *i, &beside), beside: [0.0; 2] };
         let moments: Vec<Moment> = window.iter().map(moment).collect();
         let first = self.rows[window[0]];
-        // Empty fingers meet no sheet and move nothing but themselves.
+        // Empty fingers touch no sheet and carry only their own mass.
         let is_held = first.phase != Phase::Empty;
         let mut deepest_m = self.deepest_m(&first);
         let acts = &mut |motion: &Motion, _: [f64; 2]| {
@@ -123,7 +123,7 @@ pub struct Sliding {
     model: Model,
     rows: Vec<Row>,
     track: Track,
-    /// Dry friction that shares of it are of, N.
+    /// Dry friction to which shares refer, N.
     dry_n: f64,
 }
 

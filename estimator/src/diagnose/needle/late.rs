@@ -4,7 +4,7 @@ use super::rows::{Needle, Phase, Row};
 use crate::diagnose::shifted::{Demands, Late, look};
 use crate::identify::linear::least_squares_values;
 
-/// Delays are tried in steps of this, s, or of a sample where those are longer.
+/// Step of the tried delays, s, or one sample if that is longer.
 const STEP_S: f64 = 2e-3;
 /// Time from the surface and from punctures within which rows are not compared, s, because a delay of the forces would
 /// change their contact phase.
@@ -55,7 +55,7 @@ fn columns(needle: &Needle, compared: &[usize]) -> Vec<Vec<f64>> {
     columns.push(when(touched, &|_| 1.0));
     columns.push(when(touched, &|r| r.depth_m));
     columns.push(when(touched, &|r| r.depth_m.powi(3)));
-    // Below its deepest point a sheet is another one.
+    // Above its deepest indentation, a sheet has another law.
     columns.push(when(&[Phase::Unloading], &|_| 1.0));
     columns.push(when(&[Phase::Unloading], &|r| r.depth_m));
     columns

@@ -1,5 +1,5 @@
-//! Diagnosis of a needle in a sheet: the sheet before it is pierced, the shaft in its hole, and the sensors where
-//! nothing is touched.
+//! Diagnosis of a needle in a sheet: the sheet before the puncture, the shaft in its hole, and the sensors without
+//! touch.
 //!
 //! Without a world the sheet is a linear spring and the hole holds nothing, as in the thesis's simulation; with one
 //! they are its laws.
@@ -26,9 +26,9 @@ use haptics::law::Kind;
 use haptics::recording::Recording;
 use rows::{Needle, Puncture};
 
-/// Punctures whose forces scatter by more than this (χ², beside what freedom costs) are not of one sheet.
+/// Scatter of puncture forces (χ² less its degrees of freedom) from which they are not of one sheet.
 const UNEVEN: f64 = 25.0;
-/// Puncture forces of one sheet are the same within this share.
+/// Relative scatter of the puncture forces of one sheet.
 const PUNCTURE_SHARE: f64 = 0.03;
 
 /// Largest ratio of final residual to noise on a shaft under a correct model. It allows for the uncertain presliding at
@@ -93,7 +93,7 @@ pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compa
     Ok(found)
 }
 
-/// All recordings as one, the names of those that take part, and a sentence for each that does not.
+/// All recordings joined, the names of those used, and a sentence for each that is not.
 fn joined(recordings: &[Recording]) -> Result<(Needle, Vec<&str>, Vec<String>), EstimateError> {
     let (mut whole, mut names, mut left_out): (Option<Needle>, Vec<&str>, Vec<String>) = (None, Vec::new(), Vec::new());
     let mut first_error = None;

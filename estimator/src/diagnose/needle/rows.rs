@@ -16,16 +16,16 @@ use crate::signal::task::{half_width, smooth, times};
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// The needle counts as in the hole from this depth on, m: at the surface the sheet lets go.
+/// Depth from which the needle is in the hole, m: at the surface the sheet lets go.
 pub const INSIDE_M: f64 = 5e-4;
 /// Height above the surface from which a needle is outside, m.
 pub const OUTSIDE_M: f64 = 3e-4;
 /// Distance from the surface, m, and time from a puncture, s, within which a row belongs to both sides.
 const EDGE_M: f64 = 1e-4;
 const WINDOW_S: f64 = 0.02;
-/// A sheet that was pierced swings for this time, s.
+/// Duration of a sheet's swinging after the puncture, s.
 const SWINGS_S: f64 = 0.1;
-/// Fingers close and open slowly: this time at either end of a hold is neither held nor free, s.
+/// Margin at either end of a hold, s, in which fingers close or open slowly: it is neither held nor free.
 const CLOSING_S: f64 = 0.25;
 
 /// Time between recordings that are joined, s: no row follows across it.
@@ -36,11 +36,11 @@ const BETWEEN_S: f64 = 1.0;
 pub enum Phase {
     /// Nothing is held.
     Empty,
-    /// Held, the sheet is not touched.
+    /// Held without touch of the sheet.
     Outside,
-    /// The sheet is pressed farther than ever before.
+    /// Indentation deeper than ever before.
     Loading,
-    /// It is pressed less than it was.
+    /// Indentation less than before.
     Unloading,
     /// The sheet is pierced.
     Hole,
@@ -53,11 +53,11 @@ pub struct Row {
     pub recording: usize,
     pub start_s: f64,
     pub time_s: f64,
-    /// Beyond the undisturbed surface, m, without the give of the pads.
+    /// Depth beyond the undisturbed surface, m, without the compression of the pads.
     pub depth_m: f64,
     pub rate_m_s: f64,
     pub acceleration_m_s2: f64,
-    /// Way across the needle, m: another place of the sheet.
+    /// Position across the needle, m: another place of the sheet.
     pub side_m: f64,
     pub force_n: f64,
     pub phase: Phase,
@@ -67,12 +67,12 @@ pub struct Row {
     /// Deepest so far at this place, m.
     pub deepest_m: f64,
     pub stretch: usize,
-    /// The points of [`Needle::fine`] that it is the mean of, in a hole.
+    /// Points of [`Needle::fine`] over which it is averaged, in a hole.
     pub span: Span,
 }
 
 impl Row {
-    /// The state that a segmentation would call it.
+    /// Corresponding state of the segmentation.
     pub fn state(&self) -> SystemState {
         match self.phase {
             Phase::Empty | Phase::Outside => SystemState::FreeMotion,
@@ -108,7 +108,7 @@ pub struct Needle {
     pub holds: usize,
     pub period_s: f64,
     pub two_fingered: bool,
-    /// Stiffness that the sheet begins with, N/m.
+    /// Initial stiffness of the sheet, N/m.
     pub stiffness_n_m: f64,
     /// Noise of the rate, m/s.
     pub rate_noise_m_s: f64,
@@ -136,7 +136,7 @@ impl Needle {
             stretch: stretch + row.stretch,
             ..row
         }));
-        // Every hole bends in its own way before anything slides in it: one law for several misses each at its turns.
+        // Every hole has its own presliding: one law for several holes has a misfit at their reversals.
         self.joined = true;
         self.fine.clear();
         self.rows.iter_mut().for_each(|row| row.span = Span { start: 0, len: 0, ..row.span });
@@ -209,7 +209,7 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     let numbers = stretches(&at, period_s, |i| rows[i].phase != rows[i - 1].phase || rows[i].hold != rows[i - 1].hold);
     rows.iter_mut().zip(numbers).for_each(|(row, number)| row.stretch = number);
     let rate_noise_m_s = white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>());
-    // Of a straight line through the window.
+    // Noise of the slope of a line through the window.
     let half = half as f64;
     let spread = half * (half + 1.0) * (2.0 * half + 1.0) / 3.0;
     let slope_noise_m_s = white_noise(&own) / (spread.sqrt() * step_s.max(1e-9));
@@ -273,7 +273,7 @@ fn phases(
                 continue;
             }
             let Some((k, push)) = now else { continue };
-            // Filters see the surface, and the fall of the force at a puncture, from either side.
+            // The filter's window includes the surface, and the fall of the force at a puncture, from either side.
             let meets = (depth_m[i] - surface_m).abs() < EDGE_M + WINDOW_S * rate_m_s[i].abs();
             let falls = push.puncture.is_some_and(|at| i <= at && time[at] - time[i] < WINDOW_S);
             if meets || falls {
@@ -286,7 +286,7 @@ fn phases(
                     (settled && depth_m[i] > surface_m + INSIDE_M).then_some(Phase::Hole)
                 }
                 _ if push.samples.contains(&i) && depth_m[i] > push.untouched_from_m => Some(Phase::Loading),
-                // Pushed in again below the dent, or drawn back.
+                // Pushed in again above the dent, or drawn back.
                 _ => Some(Phase::Unloading),
             };
             found[i] = phase.map(|p| (p, h, *k, deepest.max(push.untouched_from_m - BEYOND_DENT_M)));

@@ -1,4 +1,4 @@
-//! The needle in its hole: what holds its shaft.
+//! Needle in its hole: the forces that hold its shaft.
 
 use super::forward::Sliding;
 use super::rows::{Needle, Phase, Row};
@@ -22,9 +22,9 @@ use haptics::Vec2;
 use haptics::law::object::{MembraneHistory, MembraneLaw};
 use haptics::law::{Coordinate, Kind, Motion};
 
-/// Fewer rows in a hole show nothing.
+/// Least number of rows in a hole.
 const LEAST_ROWS: usize = 60;
-/// Half of the filter's window, with some room, s, and how clear a direction must be.
+/// Half of the filter's window with some margin, s, and certainty of a direction.
 const WINDOW_S: f64 = 0.018;
 const NOISES: f64 = 3.0;
 /// Causes of the candidate library that are tried in a hole. Local resistance is excluded if two fingers hold the
@@ -60,7 +60,7 @@ pub struct Shaft {
     pub view: View,
     /// Content of the base model, in words.
     pub model: &'static str,
-    /// Dry friction at a first look, N.
+    /// Dry friction of a first fit, N.
     dry_n: f64,
     /// Free-run model of the needle.
     pub sliding: Sliding,
@@ -147,7 +147,7 @@ fn candidates(
     };
     let mut candidates: Vec<Candidate> = possible.map(with_noise).collect();
     if law.is_some() {
-        // It bends before it slides already.
+        // The world's law already bends before it slides.
         candidates.retain(|c| !["hysteresis", "coulomb-friction", "viscous-friction"].contains(&c.id));
     }
     let longer = of(&|i| rows[i].depth_m * direction[i]);
@@ -163,10 +163,10 @@ fn candidates(
     candidates
 }
 
-/// Compares what may hold the shaft. `None` where the needle hardly moved in a hole.
+/// Compares the causes that may hold the shaft. `None` if the needle hardly moved in a hole.
 pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Option<Shaft>, EstimateError> {
     let rows = rows(needle);
-    // Turns alone tell a bend from a friction, and neither how large it is.
+    // Reversals alone cannot separate presliding from friction, nor determine the size of either.
     if rows.iter().filter(|r| !turns(needle, r)).count() < LEAST_ROWS {
         return Ok(None);
     }
@@ -228,7 +228,7 @@ fn closely(
             break;
         }
         grid = grid.with(Grid::around(&found, track, step));
-        // Play takes much of it away at a first look; all of its share is of what slides.
+        // Backlash takes much of it away in a first fit; its share refers to the friction of sliding.
         dry_n = sliding_n(&study).unwrap_or(first_n);
         study = compare(Channel { candidates: asked(&grid, dry_n), ..channel.clone() })?;
     }
@@ -310,7 +310,7 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
     }
 }
 
-/// Sizes that could just matter, and what would show them.
+/// Smallest sizes that matter, with the experiment that would show them.
 pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
     Some(match candidate.id {
         "stribeck" => (0.1, "the needle hardly moved slowly in the hole; go to and fro there slowly and fast"),

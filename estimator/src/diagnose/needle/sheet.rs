@@ -1,4 +1,4 @@
-//! The sheet before it is pierced, and the sensors: force over depth against a spring that is the same at every depth.
+//! Sheet before the puncture, and sensors: force over depth against a linear spring.
 
 use super::forward::Pressed;
 use super::rows::{Needle, Phase, Puncture, Row};
@@ -16,14 +16,14 @@ use haptics::law::object::MembraneLaw;
 
 /// Largest distance of consecutive rows, in their usual distances.
 const NEXT: f64 = 1.5;
-/// Pushes within this of each other, m, are at one place of the sheet.
+/// Largest distance of pushes at one place of the sheet, m.
 const OTHER_PLACE_M: f64 = 5e-4;
 /// Standard errors from which a sheet is inclined to the needle.
 const CLEARLY_ASKEW: f64 = 3.0;
-/// Shares of the deepest insertion that may stay as a dent.
+/// Tried shares of the deepest indentation that stay as a dent.
 const DENTS: [f64; 16] = [0.04, 0.07, 0.1, 0.13, 0.16, 0.19, 0.22, 0.25, 0.28, 0.32, 0.36, 0.4, 0.45, 0.5, 0.58, 0.66];
 
-/// Rows of the sheet, and everything that could explain them.
+/// Rows of the sheet, with the base model and all candidates.
 pub struct Columns {
     rows: Vec<Row>,
     floor_n: f64,
@@ -32,7 +32,7 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// As rows that were not measured yet.
+    /// The same as predicted rows.
     pub fn imagined(self) -> Imagined {
         Imagined {
             stretch: self.rows.iter().map(|r| r.stretch).collect(),
@@ -77,7 +77,7 @@ fn slope_across<'a>(needle: &Needle, rows: impl Iterator<Item = &'a Row>, middle
     (fit.identified[0] && fit.values[0].abs() > CLEARLY_ASKEW * fit.std_errors[0]).then_some(fit.values[0])
 }
 
-/// Names of the two ways in which a sheet hardens.
+/// Names of the two forms of hardening.
 const CUBIC: &str = "k3";
 const HERTZ: &str = "hertz";
 
@@ -88,7 +88,7 @@ pub enum Law {
     Power(f64),
     /// In proportion to the rate.
     Drag,
-    /// A share of the deepest insertion that stays as a dent.
+    /// A share of the deepest indentation that stays as a dent.
     Dent(f64),
 }
 
@@ -104,7 +104,7 @@ impl Law {
         }
     }
 
-    /// Force against the needle for one of its parameter, N. `elastic`: that of the first push at a depth.
+    /// Force against the needle per unit of its parameter, N. `elastic`: force of the first push at a depth.
     pub fn unit_n(self, r: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
         match self {
             _ if !touches(r) => 0.0,
@@ -147,7 +147,7 @@ pub fn columns(needle: &Needle, law: Option<&MembraneLaw>) -> Columns {
         (0..needle.holds).map(|h| of(&|r| f64::from(u8::from(is_held(r) && r.hold == h)))).collect();
     base.push(of(&|r| own_n(law, r)));
     if needle.two_fingered {
-        // The needle's own mass; a tool's sensor sits behind none.
+        // Mass of the needle. A tool's sensor carries no mass in front of it.
         base.push(of(&|r| if is_held(r) { r.acceleration_m_s2 } else { 0.0 }));
     }
     // Surface position to first order: each recording detected it by itself.
@@ -175,7 +175,7 @@ fn candidates(
         acts(Law::Drag, "viscous-friction", "c", "N s/m"),
         Candidate::one("force-bias", Kind::Instrument, "b", "N", of(&|_| 1.0)),
     ];
-    // A sensor is set to zero before each recording.
+    // A sensor is zeroed before each recording.
     candidates.extend((0..needle.recordings).map(|k| {
         let since = of(&|r| owned(k, r) * (r.time_s - r.start_s));
         let drift = Candidate::one("force-drift", Kind::Instrument, "rate", "N/s", since);
@@ -192,7 +192,7 @@ fn candidates(
         expression: Some(expression.to_owned()),
         ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
     };
-    // A curve of another form still: it keeps the whitening honest.
+    // A curve of yet another form, so that the whitening is not too optimistic.
     candidates.push(term("x²", of(&|r| pressed(r).powi(2))));
     candidates.extend((1..=3).map(|n| {
         let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * r.time_s / span).cos());

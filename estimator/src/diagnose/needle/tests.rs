@@ -1,4 +1,4 @@
-//! Rows of a needle as a recording would give them, with what must not pass for a cause.
+//! Rows of a needle as in a recording, with effects that must not be named as causes.
 
 use super::rows::{Needle, Phase, Puncture, Row};
 use super::{punctures, sheet};

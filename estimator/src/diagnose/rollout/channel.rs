@@ -7,9 +7,9 @@ use crate::diagnose::candidate::Candidate;
 use crate::diagnose::geometry::Study;
 use crate::diagnose::report::{Rollout, RolloutOf};
 
-/// More windows tell nothing new; so many are taken from everywhere.
+/// Most windows, taken evenly from the whole recording; more add no information.
 const MOST_WINDOWS: usize = 60;
-/// A cause acts in a window if it does in this share of its rows.
+/// Least share of a window's rows in which a cause acts.
 const ACTS: f64 = 0.5;
 /// Least number of rows in a window. Holds and pushes are short, so a window lasts as long as nothing interrupts it.
 const LEAST_ROWS: usize = 5;
@@ -52,7 +52,7 @@ pub fn columns<'a>(study: &'a Study, picks: &'a [usize], values: &'a [f64]) -> i
     study.base.iter().map(Vec::as_slice).chain(of_causes).zip(values.iter().copied())
 }
 
-/// Windows of rows that follow each other: `order` has them by time, `same` says whether two belong together.
+/// Windows of consecutive rows: `order` has them by time, `same` is true if two belong together.
 pub fn consecutive(
     order: &[usize],
     time_s: &dyn Fn(usize) -> f64,

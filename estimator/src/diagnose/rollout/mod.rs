@@ -16,11 +16,11 @@ pub use track::rollout;
 
 use super::report::{Rollout, RolloutOf};
 
-/// Length of a window, s; windows are shorter at the end of a block, but never than half of it.
+/// Longest window, s. Windows are shorter at the end of a block, but at least half of it.
 pub const WINDOW_S: f64 = 0.5;
 /// Fewer windows say nothing.
 const LEAST_WINDOWS: usize = 3;
-/// Errors that differ by less than this share are the same.
+/// Relative difference of errors up to which they count as equal.
 const DIFFER: f64 = 1e-3;
 /// Draws of the bootstrap over windows.
 const DRAWS: usize = 400;

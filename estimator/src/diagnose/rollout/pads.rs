@@ -1,4 +1,4 @@
-//! Pads that give under a measured force: they damp, so that their way follows it with a delay of its own.
+//! Compliant pads under a measured force: their damping delays the displacement after the force.
 
 use super::{Forward, columns, consecutive};
 use crate::diagnose::geometry::Study;

@@ -3,7 +3,7 @@
 use haptics::device::HandImpedance;
 use haptics::law::{Effect, Memories, Motion, advance, inertia, step_coordinate_with};
 
-/// Longest steps, s: of a coordinate with its own inertia, and of one that a hand holds.
+/// Longest integration steps, s: of a coordinate with its own inertia, and of one that a hand holds.
 const STEP_S: f64 = 1e-3;
 const HELD_STEP_S: f64 = 2.5e-4;
 /// Mass of the fingertips that move a handle without inertia, kg: negligible beside every force here, large enough for
@@ -15,7 +15,7 @@ const TIP_KG: f64 = 5e-3;
 pub struct Moment {
     /// The measured motion.
     pub motion: Motion,
-    /// The measured force without what the faults of the sensors that are thought to be there make of it, N or N m.
+    /// Measured force less the assumed sensor faults, N or N m.
     pub drive: f64,
     /// Other measured quantities that the laws depend on.
     pub beside: [f64; 2],

@@ -14,7 +14,7 @@ const FAITHFUL: f64 = 0.5;
 /// Least weight of a row for the test of the laws.
 const TRUSTED: f64 = 0.5;
 
-/// One side of the comparison: laws, and the measured force without what the found faults of the sensor make of it.
+/// One side of the comparison: laws, and the measured force less the found sensor faults.
 struct Side {
     effects: Vec<Effect>,
     drive: Vec<f64>,

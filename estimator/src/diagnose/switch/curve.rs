@@ -1,5 +1,5 @@
-//! The curve that was measured beside that of a world: friction, springs and binds that the world does not have, and
-//! scales of sensors.
+//! Measured curve against that of a world: friction, springs and local resistance that the world lacks, and scales of
+//! sensors.
 //!
 //! A world is known only so well: what is smaller than its own stated errors is no cause.
 
@@ -16,11 +16,11 @@ use crate::estimate::EstimateError;
 use crate::segment::SystemState;
 use haptics::law::{Effect, Kind, LocalResistance, Motion};
 
-/// Least size of what is named, in errors of the world.
+/// Least size of a named cause, in standard errors of the world.
 const ERRORS: f64 = 3.0;
-/// Rows so near to a bend of the world's curve are left out, m.
+/// Distance from a corner of the world's curve within which rows are left out, m.
 const CORNER_M: f64 = 0.8e-3;
-/// Places and widths of a local resistance that are tried, in shares of the way.
+/// Number of tried places of a local resistance, and its widths as shares of the travel.
 const PLACES: usize = 24;
 const WIDTHS: [f64; 4] = [0.08, 0.13, 0.2, 0.3];
 const LEAST_ROWS: usize = 40;
@@ -35,13 +35,13 @@ pub struct Point {
     pub side: usize,
     pub at_m: f64,
     pub speed_m_s: f64,
-    /// Measured and asked for along the travel, N, and the slope of the latter, N/m.
+    /// Measured and predicted force along the travel, N, and slope of the latter, N/m.
     pub left_n: f64,
     pub asked_n: f64,
     pub slope_n_m: f64,
 }
 
-/// Force of one newton of a bind at a place, N.
+/// Force of a local resistance of one newton at a position, N.
 pub fn bind_n(at_m: f64, place_m: f64, width_m: f64) -> f64 {
     let law = Effect::new(&LocalResistance, &[1.0, place_m, width_m, 0.0]);
     law.force(&Motion { position: at_m, direction: 1.0, velocity: 1.0, ..Motion::default() })
@@ -130,7 +130,7 @@ pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) 
     Imagined { base: base(&points), candidates: candidates(&points, known, false), stretch, weight }
 }
 
-/// Way and speed of a smooth movement, every `period_s`.
+/// Travel and speed of a smooth movement, every `period_s`.
 pub fn pushed(fast_m_s: f64, way_m: f64, period_s: f64) -> impl Iterator<Item = (f64, f64)> {
     /// Peak over mean speed.
     const PEAK: f64 = 1.875;
@@ -189,7 +189,7 @@ fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candida
     found.into_iter().map(|c| seen(c, ERRORS * known.error_n)).collect()
 }
 
-/// A cause that must come to some force, N, where it acts.
+/// A cause that must reach some force, N, where it acts.
 fn seen(candidate: Candidate, least_n: f64) -> Candidate {
     let column = &candidate.columns[0];
     let most = column.iter().fold(0.0_f64, |m, v| m.max(v.abs()));

@@ -1,4 +1,4 @@
-//! A knob on its own: a hand holds it on its measured way, and its curve acts against it where it is.
+//! Free-run simulation of a knob: a hand holds it on its measured path, and its curve acts on it.
 
 use super::curve::{Point, bind_n};
 use super::model::asked_n;
@@ -30,7 +30,7 @@ impl Travel {
         consecutive(&pushed, &|i| self.time_s[i], self.period_s, &|a, b| of(a) == of(b))
     }
 
-    /// Errors of a knob of this mass, kg, that is driven by so much at every row, N, and acts against that.
+    /// Errors of a knob of this mass, kg, under this driving force in every row, N, and these forces against it.
     fn errors(
         &self,
         window: &[usize],
@@ -49,7 +49,7 @@ impl Travel {
             beside: [0.0; 2],
         };
         let moments: Vec<Moment> = window.iter().map(moment).collect();
-        // Less than no mass is the noise of none.
+        // A negative mass is noise of a zero one.
         let effects = [Effect::new(&Inertia, &[mass_kg.max(0.0)])];
         let acts = &mut |motion: &Motion, _: [f64; 2]| acts(motion);
         run(&moments, Side { effects: &effects, memory: Memories::default(), acts, driven: false })
@@ -81,7 +81,7 @@ impl Thrown {
         Self { travel, curves: curves.to_vec() }
     }
 
-    /// Curve of a side with its forces out of the model's values.
+    /// Curve of a side with its forces from the model's values.
     fn curve<'a>(&'a self, side: usize, values: &'a [f64]) -> Option<(&'a Curve, &'a [f64])> {
         let mut at = 0;
         self.curves.iter().find_map(|curve| {

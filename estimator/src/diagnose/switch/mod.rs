@@ -27,7 +27,7 @@ use haptics::recording::Recording;
 use model::Known;
 use push::Push;
 
-/// Everything about the recordings of one switch that was compared.
+/// All comparisons of the recordings of one switch.
 struct Look {
     seen: rows::Seen,
     push: Push,
@@ -120,7 +120,7 @@ fn unseen(seen: &rows::Seen, has_world: bool, beside: &mut Beside) {
     }
 }
 
-/// The recording that would settle what is open.
+/// Recording that would settle the open questions.
 fn next(open: &[Alternative]) -> Option<NextExperiment> {
     let first = open.first()?;
     let mut separates = vec![first.instead_of.clone()];

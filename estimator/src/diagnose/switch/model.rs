@@ -1,4 +1,4 @@
-//! A world's switch as the model of a recording: where the knob is under a fingertip, and what it should ask for there.
+//! Switch of a world as the model of a recording: position of the knob under a fingertip, and its predicted force.
 
 use super::rows::{Row, direction};
 use crate::identify::switch::OBJECT;
@@ -7,13 +7,13 @@ use haptics::law::contact::Cushion;
 use haptics::law::object::ToggleCurve;
 use haptics::world::{Source, Switch, World};
 
-/// A world that does not say how well its curve is known: as a share of its peak.
+/// Relative standard error of a world's curve that states none, as a share of its peak.
 const UNKNOWN: f64 = 0.03;
 /// The same for its stops, m.
 const UNKNOWN_END_M: f64 = 0.2e-3;
 /// Least uncertainty of a stop, m, due to a tip on a round knob.
 const LEAST_END_M: f64 = 0.13e-3;
-/// Halvings of the search for the knob.
+/// Halvings of the search for the knob's position.
 const HALVINGS: usize = 40;
 
 /// Force of a curve along the travel of a side, N, and its derivative by the position on the arc, N/m.
@@ -23,7 +23,7 @@ pub fn asked_n(curve: &ToggleCurve, at_m: f64, side: usize) -> (f64, f64) {
     (sign * curve.force_n(at_m, branch), sign * curve.stiffness_n_m(at_m, branch, sign))
 }
 
-/// The switch of a world, and how well it is known.
+/// The switch of a world, and its uncertainty.
 pub struct Known<'a> {
     pub switch: &'a Switch,
     pub pad: Cushion,
@@ -32,12 +32,12 @@ pub struct Known<'a> {
     pub error_n: f64,
     pub end_error_m: f64,
     pub give_error_m_n: f64,
-    /// Damping of the knob, where it is more than an assumption, N s/m.
+    /// Damping of the knob, N s/m, if it is more than an assumption.
     pub damping_n_s_m: f64,
 }
 
 impl<'a> Known<'a> {
-    /// Nothing for a world without a switch.
+    /// `None` for a world without a switch.
     pub fn of(world: &'a World) -> Option<Self> {
         let switch = world.switch.as_ref()?;
         let stated = |object: &str, name: &str| {
@@ -118,7 +118,7 @@ impl<'a> Known<'a> {
         points.iter().any(|p| (p.at_m - at_m).abs() < within_m)
     }
 
-    /// Half of the knob's way, m.
+    /// Half of the knob's travel, m.
     pub fn half_way_m(&self) -> f64 {
         let points = &self.switch.curve.points;
         match (points.first(), points.last()) {

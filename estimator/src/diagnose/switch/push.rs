@@ -14,7 +14,7 @@ use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::law::Kind;
 
-/// Places of the open curve, m apart, and how many at most.
+/// Spacing of the nodes of the estimated curve, m, and their largest number.
 const APART_M: f64 = 0.7e-3;
 const MOST_PLACES: usize = 24;
 /// Least number of rows on the travel of throws.
@@ -24,7 +24,7 @@ const LEAST_ROWS: usize = 30;
 const CORNER_M: f64 = 0.6e-3;
 /// Speed below which a finger rests with the knob, m/s.
 const REST_M_S: f64 = 2e-3;
-/// Times at which friction may have changed at once.
+/// Number of tried times of a sudden change of friction.
 const CHANGES: usize = 20;
 /// Least viscous friction, N s/m. Pads with damping, and corners that a fast throw rounds, look like nearly half of it.
 const LEAST_VISCOUS_N_S_M: f64 = 0.8;
@@ -34,21 +34,21 @@ pub struct Push {
     pub compared: Compared,
     /// Variables of the plots of its rows.
     pub view: View,
-    /// Rows of throws that took part, and what the found causes add to the force along the travel there, N.
+    /// Rows of the throws used, and the contribution of the found causes to the force along the travel there, N.
     pub rows: Vec<(Row, f64)>,
     curves: Vec<Curve>,
-    /// Forces of the curves at a first look, N.
+    /// Forces of the curves in a first fit, N.
     forces_n: Vec<Vec<f64>>,
     /// Free-run model of a knob.
     pub thrown: Thrown,
 }
 
-/// The place of the open curve, along the travel: rising in both directions.
+/// Position on the estimated curve, along the travel: rising in both directions.
 pub fn along_m(row: &Row) -> f64 {
     row.side().map_or(0.0, |side| direction(side) * row.tip.x)
 }
 
-/// Force that the knob asks for along the travel, or that of a free finger, N.
+/// Force of the knob along the travel, or that of a free finger, N.
 fn force_n(row: &Row) -> f64 {
     match row.place {
         Place::Push(side) => direction(side) * row.force.x,
@@ -76,7 +76,7 @@ impl Curve {
         Some(Self { side, places })
     }
 
-    /// Share of the k-th place in a row.
+    /// Share of the k-th node in a row.
     fn share(&self, row: &Row, k: usize) -> f64 {
         if row.place == Place::Push(self.side) { self.share_at(along_m(row), k) } else { 0.0 }
     }
@@ -102,7 +102,7 @@ impl Curve {
         (0..self.places.len()).map(|k| rows.iter().map(|r| self.share(r, k)).collect()).collect()
     }
 
-    /// Slope at a row, N/m along the travel, of a curve with these forces.
+    /// Slope of a curve with these forces at a row, N/m along the travel.
     fn slope(&self, row: &Row, force_n: &[f64]) -> f64 {
         if row.place != Place::Push(self.side) {
             return 0.0;
@@ -117,12 +117,12 @@ impl Curve {
     }
 }
 
-/// Curves of both directions, as far as they are seen.
+/// Curves of both directions, over their observed range.
 fn curves(rows: &[Row]) -> Vec<Curve> {
     [0, 1].into_iter().filter_map(|side| Curve::of(rows, side)).collect()
 }
 
-/// Forces at the places of all curves, of a plain fit.
+/// Node forces of all curves in a plain fit.
 fn first_look(rows: &[Row], curves: &[Curve]) -> Result<Vec<Vec<f64>>, EstimateError> {
     curves
         .iter()
@@ -134,7 +134,7 @@ fn first_look(rows: &[Row], curves: &[Curve]) -> Result<Vec<Vec<f64>>, EstimateE
         .collect()
 }
 
-/// Compares what depends on speed and time.
+/// Compares the causes that depend on speed and time.
 pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
     let moves = |r: &Row| !matches!(r.place, Place::Push(_)) || r.speed_m_s() > REST_M_S;
     let on = |r: &&Row| !matches!(r.place, Place::Stop(_)) && moves(r);
@@ -187,7 +187,7 @@ pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
     Ok(Push { compared, view, rows: kept, curves, forces_n: forces, thrown })
 }
 
-/// The curves of both directions. The knob's mass is open, too: it falls over faster than the hand.
+/// Base model: the curves of both directions and the knob's mass, which falls over faster than the hand moves.
 fn base(rows: &[Row], curves: &[Curve]) -> Vec<Vec<f64>> {
     let mut base: Vec<Vec<f64>> = curves.iter().flat_map(|c| c.columns(rows)).collect();
     let of_mass = |r: &Row| if let Place::Push(side) = r.place { direction(side) * r.acceleration_m_s2 } else { 0.0 };
@@ -244,7 +244,7 @@ fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) 
         let slope: f64 = curves.iter().zip(forces).map(|(c, f)| c.slope(r, f)).sum();
         -slope * r.speed_m_s()
     };
-    // Pads that damp put the force a little ahead: that is no fault of the clocks.
+    // Damping of the pads puts the force slightly ahead, which is no fault of the clocks.
     found.push(Candidate::one("time-delay", Kind::Instrument, "tau", "s", pushed(&late)).positive());
     let span_s = rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
     if seen.recordings == 1 {
@@ -291,7 +291,7 @@ fn sensors(rows: &[Row], found: &mut Vec<Candidate>) {
 }
 
 impl Push {
-    /// Columns on rows that were not measured yet.
+    /// Predicted regressors on rows that have not been measured yet.
     pub fn imagined(&self, seen: &Seen) -> Imagined {
         Imagined {
             base: base(&seen.rows, &self.curves),
@@ -327,7 +327,7 @@ impl Push {
         }
     }
 
-    /// Sizes that could just matter, and what would show them.
+    /// Smallest sizes that matter, with the experiment that would show them.
     pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
         Some(match (candidate.id, candidate.linear[0].0) {
             ("viscous-friction", _) => (2.0, "the throws were all of one speed; throw it slowly and fast"),

@@ -11,22 +11,22 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Samples are averaged over about this time, s, forces and places alike.
+/// Averaging time of samples, s, for forces and positions alike.
 const BLOCK_S: f64 = 0.01;
 /// Least force of a touching finger, as a share of its strongest force and in standard deviations of a block's noise.
 const TOUCH_SHARE: f64 = 0.03;
 const TOUCH_NOISES: f64 = 6.0;
-/// Windows in which a finger is free at some time, and the share of their blocks that are taken for it.
+/// Number of windows in each of which a finger is free at some time, and share of their blocks taken as free.
 const WINDOWS: usize = 8;
 const FREE_SHARE: f64 = 0.15;
-/// After a turn the force goes over from one branch to the other within less than this way, m.
+/// Travel after a reversal within which the force changes from one branch to the other, m.
 const SETTLED_M: f64 = 0.8e-3;
-/// A knob that snaps over leaves the finger within this time, s; and touching begins and ends slowly.
+/// Time within which a knob that snaps over leaves the finger, s. Touch begins and ends slowly, too.
 const LEAVING_S: f64 = 0.03;
 const TOUCHING_S: f64 = 0.1;
-/// Slower than this the knob may rest, m/s.
+/// Speed below which the knob may rest, m/s.
 const REST_M_S: f64 = 2e-3;
-/// Against a stop the force is at least this share of what it comes to.
+/// Least force against a stop, as a share of its maximum.
 const STOP_SHARE: f64 = 0.4;
 /// Velocity below which the finger draws back, m/s. Above it, the knob is on the forward branch.
 const BACK_M_S: f64 = -5e-4;
@@ -38,9 +38,9 @@ const FREE_EVERY: usize = 10;
 pub enum Place {
     /// The finger of this number pushes the knob on.
     Push(usize),
-    /// It presses the knob against the stop.
+    /// The finger of this number presses the knob against the stop.
     Stop(usize),
-    /// This finger touches nothing; along this axis.
+    /// The finger of this number without touch, along this axis.
     Free(usize, usize),
 }
 
@@ -50,18 +50,18 @@ pub struct Row {
     pub recording: usize,
     pub time_s: f64,
     pub place: Place,
-    /// The tip, m in the world, its velocity, m/s, and the rate of that along x, m/s².
+    /// Position of the tip, m in the world, its velocity, m/s, and its acceleration along x, m/s².
     pub tip: Vec2,
     pub velocity: Vec2,
     pub acceleration_m_s2: f64,
-    /// Of the finger, N.
+    /// Force of the finger, N.
     pub force: Vec2,
     /// Force of the finger without its zero, N.
     pub above_zero: Vec2,
 }
 
 impl Row {
-    /// The state that a segmentation would call it.
+    /// Corresponding state of the segmentation.
     pub fn state(&self) -> SystemState {
         match self.place {
             Place::Push(_) => SystemState::Turning,
@@ -261,11 +261,11 @@ fn line(at: &[usize], of: &dyn Fn(usize) -> f64) -> [f64; 2] {
 /// A finger in touch.
 struct Touch {
     blocks: Range<usize>,
-    /// It moves the knob over; otherwise it presses it against a stop.
+    /// True if it moves the knob over; otherwise it presses the knob against a stop.
     throws: bool,
 }
 
-/// Touches that move the knob on, and what follows each of them on the stop.
+/// Touches that move the knob on, and the press on the stop after each of them.
 fn touches(finger: &Finger, side: usize, time: &[f64]) -> Vec<Touch> {
     let along = |k: usize| direction(side) * finger.tip[k].x;
     let pressed = |k: usize| direction(side) * (finger.force[k].x - finger.zero[k].x);

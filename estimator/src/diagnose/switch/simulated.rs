@@ -9,7 +9,7 @@ use haptics::law::object::CurvePoint;
 use haptics::law::{Effect, LocalResistance, Motion};
 use haptics::world::{Switch, World};
 
-/// Causes that a world's switch, or its pads, can have; a change of friction over time and a longer scale are in none.
+/// Causes that a world's switch or its pads can have. A world has no change of friction over time and no length scale.
 const POSSIBLE: [&str; 7] = [
     "viscous-friction",
     "coulomb-friction",
@@ -119,7 +119,7 @@ fn nearer(switch: &mut Switch, left_m: f64, right_m: f64) {
     switch.start_m = switch.start_m.clamp(low, high);
 }
 
-/// A place that resists in both directions, as its law has it.
+/// Adds a local resistance in both directions by its law.
 fn bind(switch: &mut Switch, [force_n, place_m, width_m]: [f64; 3]) {
     let curve = &mut switch.curve;
     let (Some(first), Some(last)) = (curve.points.first(), curve.points.last()) else { return };

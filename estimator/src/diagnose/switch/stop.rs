@@ -14,7 +14,7 @@ use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 
 const LEAST_ROWS: usize = 40;
-/// Least size of what is named, in errors of the world.
+/// Least size of a named cause, in standard errors of the world.
 const ERRORS: f64 = 3.0;
 /// Least size of an unexplained term, m: a knob rests at a slightly different position each time.
 const STRANGE_M: f64 = 6e-5;
@@ -38,7 +38,7 @@ pub fn stop(
     let pressed = |r: &Row| direction(side(r)) * r.above_zero.x;
     let expected = |r: &Row| known.map_or(0.0, |k| k.stopped_m(side(r), pressed(r), r.tip.y));
     let y = of(&|r| direction(side(r)) * r.tip.x - expected(r));
-    // Pads damp: no cause of its own.
+    // Damping of the pads is part of the base model.
     let mut base = vec![of(&|r| direction(side(r)) * r.velocity.x)];
     let usual = rows.iter().map(pressed).fold(0.0, f64::max).max(1e-9);
     let bend = of(&|r| -usual * (pressed(r) / usual).powi(3));
@@ -89,7 +89,7 @@ pub fn stop(
     };
     let study = channel.compare(threshold)?;
     let over = vec![(Variable::Force, of(&pressed)), (Variable::Time, of(&|r| r.time_s))];
-    // The two stops are places of their own.
+    // The two stops are separate positions.
     let view =
         View { sensor: rows.iter().map(side).collect(), ..View::of(rows.iter().map(|r| r.recording).collect(), over) };
     let (channel, state) = ("place of the tip on the stop", vec![SystemState::Holding; rows.len()]);

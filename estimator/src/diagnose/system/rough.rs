@@ -20,7 +20,7 @@ pub struct Rough<'a> {
     /// All columns, the target last.
     columns: Vec<&'a [f64]>,
     weight: &'a [f64],
-    /// Rows that train: their products are summed part by part, as those of a system.
+    /// Training rows in parts, whose products are summed part by part, as in a system.
     parts: Vec<Vec<usize>>,
 }
 
@@ -95,7 +95,7 @@ impl<'a> Rough<'a> {
         }
     }
 
-    /// Products of everything that these candidates have with each other.
+    /// Computes all products of these candidates with everything.
     pub fn know(&mut self, candidates: &[usize]) {
         let columns = self.columns_of(candidates);
         let strips: Vec<Vec<usize>> = columns.chunks(STRIP).map(<[usize]>::to_vec).collect();
@@ -106,7 +106,7 @@ impl<'a> Rough<'a> {
         candidates.iter().flat_map(|c| self.system.places[*c].clone()).collect()
     }
 
-    /// The best few, whether they earn their place or not: what the whitening must not swallow.
+    /// The best few candidates, justified or not: the whitening must not absorb them.
     pub fn greedy(&mut self, threshold: f64) -> Vec<usize> {
         let (mut chosen, mut known): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
         loop {
@@ -135,7 +135,7 @@ impl<'a> Rough<'a> {
     }
 }
 
-/// The best candidates of some other causes that are open yet.
+/// The best candidates of some other causes that may still join.
 fn likely(priced: &[(usize, f64)], open: &[usize], candidates: &[Candidate]) -> Vec<usize> {
     let mut others: Vec<(usize, f64)> = priced.iter().filter(|(c, _)| open.contains(c)).copied().collect();
     others.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -205,7 +205,7 @@ mod tests {
             wanted.extend(cheapest(selection.priced(&wanted)).map(|(best, _)| best));
         }
         assert_eq!(chosen, wanted);
-        // Nobody asked for those.
+        // Products that were not requested stay NaN.
         assert!(rough.system.train.iter().any(|product| product.is_nan()));
     }
 }

@@ -7,7 +7,7 @@ use haptics::recording::Recording;
 const WEIGHT_N: f64 = 0.34;
 const NOISE_N: f64 = 0.03;
 const RATE_HZ: f64 = 100.0;
-/// The block meets the ground, s.
+/// Time of the block's contact with the ground, s.
 const TOUCHDOWN_S: f64 = 6.2;
 
 /// `kept_n`: lift that goes on for a second after the block has met the ground. `leak_n_s`: weight that runs out in the
@@ -16,7 +16,7 @@ fn recording(seed: u64, kept_n: f64, leak_n_s: f64) -> Recording {
     let_down_in(0.1, seed, kept_n, leak_n_s)
 }
 
-/// The same with a load that goes over to the ground within `over_s`.
+/// The same with a transfer of the load to the ground within `over_s`.
 fn let_down_in(over_s: f64, seed: u64, kept_n: f64, leak_n_s: f64) -> Recording {
     recorded(seed, (RATE_HZ, 10.0), NOISE_N, &|t| {
         let grip_n = 2.0 * (reach(t, 1.1, 1.3) - reach(t, 8.2, 8.4));
