@@ -15,7 +15,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Least number of rows of a block. The largest number of blocks is below.
+/// Least number of rows of a block; `MOST_BLOCKS` is the largest number of blocks.
 const LEAST_BLOCK: usize = 12;
 /// The same for rows that are single observations.
 const LEAST_ALONE: usize = 3;
