@@ -1,4 +1,5 @@
-//! The coordinate that a diagnosis of a mechanism counts in: what it found holds in other recordings where that is theirs, too.
+//! The coordinate that a diagnosis of a mechanism counts in: what it found holds in other recordings where that is
+//! theirs, too.
 
 use super::track::Track;
 use crate::estimate::EstimateError;
@@ -7,11 +8,12 @@ use haptics::law::Coordinate;
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 
-/// Length or angle, and where a tool's is counted along.
+/// Kind of coordinate, length or angle, and the path along which a tool's is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Along {
     coordinate: Coordinate,
-    /// The path of the first tool that has one, and how far others may lie beside it, m; none where the coordinate is a column.
+    /// Path of the first tool that has one, and the largest offset of other paths from it, m. None if the coordinate is
+    /// a recorded channel.
     path: Option<(MechanismPath, f64)>,
 }
 
@@ -25,7 +27,7 @@ impl Along {
         Self { coordinate, path }
     }
 
-    /// The path to see another recording along: none where it has the coordinate itself.
+    /// Path along which another recording's coordinate is measured: `None` if it has the coordinate itself.
     ///
     /// # Errors
     /// One sentence where the place in it is not the place in what was diagnosed.
@@ -49,10 +51,10 @@ impl Along {
         }
     }
 
-    /// Whether rows of another recording count the same.
+    /// Checks that another recording has the same kind of coordinate.
     ///
     /// # Errors
-    /// One sentence where one is a length and the other an angle.
+    /// One sentence if one coordinate is a length and the other an angle.
     pub fn demand(&self, coordinate: Coordinate, recording: &Recording) -> Result<(), EstimateError> {
         if coordinate == self.coordinate {
             return Ok(());
@@ -66,10 +68,10 @@ impl Along {
     }
 }
 
-/// Whether recordings that are to be diagnosed together count the same.
+/// Checks that recordings to be diagnosed together have the same kind of coordinate.
 ///
 /// # Errors
-/// One sentence where one is a length and the other an angle.
+/// One sentence if one coordinate is a length and the other an angle.
 pub fn one_kind(first: &Track, other: &Track, recording: &Recording) -> Result<(), EstimateError> {
     if first.coordinate == other.coordinate {
         return Ok(());
@@ -86,7 +88,7 @@ fn in_words(coordinate: Coordinate) -> &'static str {
     if coordinate == Coordinate::Linear { "along a line" } else { "about an axis" }
 }
 
-/// What is said of answers that have no coordinate.
+/// Error for diagnoses that have no coordinate.
 pub fn none(recording: &Recording) -> EstimateError {
     EstimateError::Other(format!(
         "what was found in thrown bodies, transmissions and paths without a clock is not measured on other recordings yet ({}); leave out --validate, or give all logs together",
@@ -102,7 +104,8 @@ mod tests {
 
     const RADIUS_M: f64 = 0.3;
 
-    /// A door that is opened to and fro: inertia, friction by sign and speed, and a spring that pulls from where it was shut.
+    /// A door that is opened and shut: inertia, Coulomb and viscous friction, and a spring that pulls from the closed
+    /// position.
     fn door(name: &str, (begin_rad, swing_rad): (f64, f64), shifted_m: f64, phase: f64) -> Recording {
         let time: Vec<f64> = (0..6000).map(|i| f64::from(i) * 2e-3).collect();
         let noise = |i: usize, k: f64| ((i as f64 + phase) * k).sin() + ((i as f64 - phase) * 1.7 * k).cos();

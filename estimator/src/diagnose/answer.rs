@@ -1,4 +1,4 @@
-//! From comparisons of several channels to one answer in words.
+//! Builds one answer in words from comparisons of several channels.
 
 use super::atlas::Atlas;
 use super::candidate::Candidate;
@@ -18,41 +18,41 @@ use super::select::{Chosen, REMAINDER, Selection, is_curve};
 use crate::segment::SystemState;
 use crate::words::amount;
 
-/// A generic term above this score means that something is left that no known cause explains.
+/// Evidence of a generic term from which the residual has an unexplained part.
 const UNEXPLAINED: f64 = 25.0;
-/// What is left is no noise if it would be so white by chance.
+/// The final residual is not white if noise would have this p-value or less.
 const SURELY_NOT_WHITE: f64 = 1e-12;
-/// Alternatives less probable than this are as good as excluded.
+/// Probability below which an alternative is excluded.
 const OPEN: f64 = 0.047;
-/// A cause of a usual size that would score less than this could not have been seen.
+/// Evidence of a cause of usual size below which the motion does not excite it.
 const VISIBLE: f64 = 25.0;
 
-/// What makes the sentence of a cause.
+/// Input of a cause's evidence sentence.
 pub struct Found<'a> {
     /// The candidate that was chosen.
     pub candidate: &'a Candidate,
-    /// Its parameters as they will stand in the answer.
+    /// Its parameters as the answer states them.
     pub parameters: &'a [CauseParameter],
 }
 
-/// What in the residual shows a cause, in words.
+/// Sentence on how the residual shows a cause.
 pub type Shows<'a> = &'a dyn Fn(&Found<'_>) -> String;
-/// Makes the parameters of a cause out of those of its columns.
+/// Parameters of a cause, made from those of its regressors.
 pub type States<'a> = &'a dyn Fn(&Candidate, Vec<CauseParameter>) -> Vec<CauseParameter>;
-/// The size that a cause usually has, for what could not have been seen; nothing where it does not belong to the channel.
+/// Usual size of a cause with its unit, for the test of excitation. None if the cause does not belong to the channel.
 pub type Usual<'a> = &'a dyn Fn(&Candidate) -> Option<(f64, &'static str)>;
 
-/// A channel that was compared, with all that an answer needs of it but words.
+/// A compared channel, with everything but the words of its answer.
 pub struct Compared {
     /// The comparison.
     pub study: Study,
-    /// What the channel is, in words.
+    /// Name of the channel, in words.
     pub channel: &'static str,
     /// Its unit.
     pub unit: &'static str,
     /// Noise of its rows.
     pub floor: f64,
-    /// Rows that are held out in turn, and their stretches.
+    /// True for rows that are held out in turn.
     pub along: Vec<bool>,
     pub stretch: Vec<usize>,
     /// The state of every row.
@@ -72,13 +72,13 @@ impl Compared {
 pub struct Part<'a> {
     /// The comparison.
     pub study: &'a Study,
-    /// What the channel is, in words.
+    /// Name of the channel, in words.
     pub channel: &'static str,
     /// Its unit.
     pub unit: &'a str,
     /// Noise of its rows.
     pub floor: f64,
-    /// Rows that are held out in turn, and their stretches.
+    /// True for rows that are held out in turn.
     pub along: &'a [bool],
     pub stretch: &'a [usize],
     /// The state of every row.
@@ -86,20 +86,20 @@ pub struct Part<'a> {
     pub shows: Shows<'a>,
     pub states: States<'a>,
     pub usual: Usual<'a>,
-    /// What is left in the end is never so many times the noise where the model is right; nothing where that is not known.
+    /// Largest ratio of final residual to noise under a correct model. None if it is not known.
     pub much: Option<f64>,
-    /// How it runs on its own; why not, where nothing in it does.
+    /// Free-run simulation of the channel, or the reason why it has none.
     pub forward: Result<&'a dyn Forward, &'static str>,
 }
 
 impl<'a> Part<'a> {
-    /// That can be run forward.
+    /// Adds the free-run simulation.
     pub fn running(mut self, forward: &'a dyn Forward) -> Self {
         self.forward = Ok(forward);
         self
     }
 
-    /// In which nothing runs on its own, for this reason.
+    /// Marks the channel as static, without a free run, for this reason.
     pub fn still(mut self, why: &'static str) -> Self {
         self.forward = Err(why);
         self
@@ -134,7 +134,7 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// What the channel leaves, without and with what was found.
+    /// Residual figures of the channel, without and with the causes found.
     pub fn figures(&self) -> Figures {
         let of = |picks: &[usize]| {
             let (heldout, train) = rms(self.study, picks, self.along);
@@ -152,32 +152,33 @@ impl<'a> Part<'a> {
                 ..Baseline::default()
             },
             end: Final { heldout_rms_n: end, whiteness_p: end_white, ..Final::default() },
-            // What is left in the end has the noise in it.
+            // The final residual contains the noise, so the noise floor is no larger.
             noise_floor: if end > 0.0 { self.floor.min(end) } else { self.floor },
         }
     }
 
-    /// What the channel leaves in every state.
+    /// Residuals of the channel, state by state.
     fn residuals(&self) -> Vec<Residual> {
         residuals(self.study, (self.unit, Some(self.floor)), &|i| Some((self.channel, self.state[i])))
     }
 
-    /// Nothing has a unit where nothing was held out.
+    /// The gain has a unit only if rows were held out.
     fn in_its_unit(&self, gain: Gain) -> Gain {
         let unit = (gain.heldout_rms_before > 0.0).then(|| self.unit.to_owned());
         Gain { unit, ..gain }
     }
 
-    /// The strongest generic term that is left, as a cause without a name, and what is said of it.
+    /// Strongest generic term of the residual, as a cause without a name, with its warning.
     fn unnamed(&self) -> Option<(Cause, String)> {
         let (candidate, score) = self.strange()?;
-        // What the curve of a strong cause misses by little is no news where next to nothing is left.
+        // If the final residual is small, a generic term may be a small misfit of a strong cause's curve. It is then
+        // not reported.
         let misses = |c: &Chosen| is_curve(self.study.candidates[c.candidate].id) && score < REMAINDER * c.score;
         if self.much.is_some() && self.much_left().is_none() && self.study.chosen.iter().any(misses) {
             return None;
         }
         let (cause, _) = unnamed(self.study, (candidate, score), (self.floor, self.unit));
-        // What takes nothing off data held out is no more left of the channel than its noise.
+        // A term that does not reduce the held-out residual is noise.
         if cause.gain.no_share.is_none() && cause.gain.share_of_explainable <= 0.0 {
             return None;
         }
@@ -191,7 +192,7 @@ impl<'a> Part<'a> {
         Some((Cause { gain, evidence, ..cause }, warning))
     }
 
-    /// What is left in the end where that is far more than the noise and no noise, in a sentence.
+    /// Sentence on the final residual if it is far above the noise and not white.
     fn much_left(&self) -> Option<String> {
         let picks = self.study.picks();
         let (end, _) = rms(self.study, &picks, self.along);
@@ -203,14 +204,14 @@ impl<'a> Part<'a> {
         })
     }
 
-    /// The strongest generic term that is left, with its score.
+    /// Strongest generic term of the residual, with its evidence.
     fn strange(&self) -> Option<(usize, f64)> {
         let Study { system, candidates, .. } = self.study;
         let selection = Selection::new(system, candidates, UNEXPLAINED);
         selection.unexplained(&self.study.picks()).filter(|(_, score)| *score > UNEXPLAINED)
     }
 
-    /// Causes that, at their usual size, this recording would hide.
+    /// Causes of usual size whose effect this recording would hide.
     fn not_excited(&self, found: &mut Vec<NotExcited>) {
         let Study { system, candidates, solved, .. } = self.study;
         let picks = self.study.picks();
@@ -235,26 +236,26 @@ impl<'a> Part<'a> {
     }
 }
 
-/// Everything about an answer that is no comparison.
+/// Parts of an answer that do not come from a comparison.
 #[derive(Default)]
 pub struct Beside {
-    /// Name of the model that was started from.
+    /// Name of the base model.
     pub model: String,
-    /// Faults of the samples, and causes that were found in another way: they come first.
+    /// Faults of the samples, and causes found by other tests. They come first.
     pub causes: Vec<Cause>,
     pub alternatives: Vec<Alternative>,
     pub not_excited: Vec<NotExcited>,
     pub warnings: Vec<String>,
 }
 
-/// The channel that baseline and end are told of: that of the strongest cause, the first one where there is none.
+/// Channel of the baseline and final figures: that of the strongest cause, or the first one if there is none.
 fn told<'a, 'b>(parts: &'b [Part<'a>]) -> Option<&'b Part<'a>> {
     let strongest = |part: &Part<'_>| part.study.chosen.iter().map(|c| c.score).fold(0.0, f64::max);
-    // Of equals the last one would be taken.
+    // Of equal ones, the last would be taken.
     parts.iter().rev().max_by(|a, b| strongest(a).total_cmp(&strongest(b)))
 }
 
-/// The answer in one word: whether anything has a name, whether anything has none, whether a name is open.
+/// Verdict of the answer: true arguments mean that a cause is named, that a term has no name, that a name is ambiguous.
 pub fn verdict(is_named: bool, is_strange: bool, is_open: bool) -> Verdict {
     match (is_named, is_strange) {
         (false, false) => Verdict::None,
@@ -264,7 +265,8 @@ pub fn verdict(is_named: bool, is_strange: bool, is_open: bool) -> Verdict {
     }
 }
 
-/// Adds a cause of a channel, if it is a new one. One cause may show in two channels: what it is called stays, what it comes out at is said of both.
+/// Adds a cause of a channel, or merges it into an earlier one of the same id. The name stays, the parameters and
+/// evidence of both channels are kept.
 fn add(found: &mut Vec<(f64, Cause)>, score: f64, cause: Cause) -> bool {
     let Some((_, held)) = found.iter_mut().find(|(_, c)| c.id == cause.id) else {
         found.push((score, cause));

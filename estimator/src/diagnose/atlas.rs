@@ -1,4 +1,4 @@
-//! The residual atlas: what the model leaves of the force beside what every suspect, alone, would take of it.
+//! Residual atlas: the residual of the force, and the part of it that every candidate cause alone explains.
 
 use super::answer::Compared;
 use super::geometry::{Study, residual};
@@ -7,7 +7,7 @@ use super::track::{Place, Track};
 use haptics::law::cause;
 use std::collections::BTreeSet;
 
-/// What a suspect's force goes with.
+/// Variable against which the effect of a cause is plotted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Variable {
     /// Place along the motion.
@@ -20,13 +20,13 @@ pub enum Variable {
     Across,
     /// Measured force along the motion.
     Force,
-    /// How fast that changes.
+    /// Rate of change of that force.
     ForceRate,
     /// Time.
     Time,
-    /// Force with which something is gripped.
+    /// Grip force.
     Grip,
-    /// Force with which something is lifted.
+    /// Lift force.
     Lift,
     /// Distance of the tips.
     Width,
@@ -37,7 +37,8 @@ pub enum Variable {
 }
 
 impl Variable {
-    /// What a cause is best seen against. `planar`: the force has two axes, whose share along the motion changes with the place.
+    /// Variable that shows a cause best. `planar`: the force has two axes, whose share along the motion depends on the
+    /// position.
     fn of(id: &str, planar: bool) -> Self {
         match id {
             "coulomb-friction" | "viscous-friction" | "stribeck" | "quadratic-drag" | "friction-asymmetry" => {
@@ -54,86 +55,87 @@ impl Variable {
     }
 }
 
-/// One suspect of the atlas.
+/// One candidate cause of the atlas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
     /// Out of `docs/causes/README.md`.
     pub id: String,
-    /// What it explains alone, in units of 2 ln(likelihood), what its parameters cost paid.
+    /// Evidence of the cause alone: 2 ln(likelihood ratio) less the penalty of its parameters.
     pub score: f64,
-    /// What it is best seen against.
+    /// Variable that shows it best.
     pub variable: Variable,
-    /// What it takes of the model's residual, one an instant of the course, N or N m; the model is fitted anew beside it.
+    /// Part of the base model's residual that it explains when the model is refitted with it, at each instant of the
+    /// course, N or N m.
     pub taken: Vec<f64>,
 }
 
-/// Everything that could have been there, most evidence first, and what it is seen against.
+/// Candidate causes of the residual, most evidence first, and the variables of their plots.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Atlas {
-    /// Suspects that the recording could have shown.
+    /// Candidate causes that the recording excites.
     pub suspects: Vec<Seen>,
-    /// Rate of the rate of the coordinate, one an instant, m/s² or rad/s².
+    /// Acceleration of the coordinate at each instant, m/s² or rad/s².
     pub acceleration: Vec<f64>,
-    /// How fast the measured force changes, N/s or N m/s.
+    /// Rate of change of the measured force, N/s or N m/s.
     pub force_rate: Vec<f64>,
-    /// Tasks without one coordinate have channels instead of all that.
+    /// Channels of tasks without one coordinate, instead of the fields above.
     pub channels: Vec<Channel>,
 }
 
 /// One channel of a task without one coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// What it is, in words.
+    /// Name of the channel, in words.
     pub name: &'static str,
     /// SI unit.
     pub unit: &'static str,
-    /// Whether places are angles, and rates those of angles.
+    /// True if positions are angles, and rates angular rates.
     pub is_angular: bool,
     /// Noise of a row.
     pub noise: f64,
-    /// Which recording each row is of; empty where single recordings say too little by themselves.
+    /// Recording of each row. Empty if single recordings have too few rows to be shown apart.
     pub recording: Vec<usize>,
-    /// Which way it went in each row, as a sign; empty where that says nothing.
+    /// Direction of motion in each row, as a sign. Empty if it does not matter.
     pub way: Vec<f64>,
-    /// What the model leaves of each row.
+    /// Residual of the base model in each row.
     pub left: Vec<f64>,
-    /// Suspects that the recordings could have shown, most evidence first.
+    /// Candidate causes that the recordings excite, most evidence first.
     pub suspects: Vec<Against>,
 }
 
-/// One suspect of a channel.
+/// One candidate cause of a channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Against {
     /// Out of `docs/causes/README.md`.
     pub id: String,
     /// As [`Seen::score`].
     pub score: f64,
-    /// What it is best seen against.
+    /// Variable that shows it best.
     pub variable: Variable,
-    /// The rows in which it could be, …
+    /// Rows in which it may have an effect.
     pub rows: Vec<usize>,
-    /// … the variable there, SI, …
+    /// Values of that variable in these rows, SI units.
     pub over: Vec<f64>,
-    /// … and what it takes of the model's residual.
+    /// Part of the base model's residual that it explains in these rows.
     pub taken: Vec<f64>,
 }
 
-/// The rows of a channel as they are looked at.
+/// Rows of a channel, with the variables of their plots.
 pub(super) struct View {
-    /// Which recording each row is of; empty: all are shown together.
+    /// Recording of each row. Empty if all are shown together.
     pub recording: Vec<usize>,
-    /// Rows of one number are of one sensor, or of one sum of sensors: a suspect is shown over all that it could be in.
+    /// Sensor, or sum of sensors, of each row. A candidate cause is shown over all sensors that it may affect.
     pub sensor: Vec<usize>,
-    /// What the rows are seen against.
+    /// Variables of the plots, with a value for each row.
     pub over: Vec<(Variable, Vec<f64>)>,
-    /// Which way it went in each row, as a sign; empty where that says nothing.
+    /// Direction of motion in each row, as a sign. Empty if it does not matter.
     pub way: Vec<f64>,
-    /// Whether places are angles.
+    /// True if positions are angles.
     pub is_angular: bool,
 }
 
 impl View {
-    /// Rows of one sensor, of which the way says nothing.
+    /// Rows of one sensor, without a direction.
     pub fn of(recording: Vec<usize>, over: Vec<(Variable, Vec<f64>)>) -> Self {
         let sensor = vec![0; over.first().map_or(0, |(_, values)| values.len())];
         Self { recording, sensor, over, way: Vec::new(), is_angular: false }
@@ -141,7 +143,8 @@ impl View {
 }
 
 impl Compared {
-    /// This channel's part of the atlas. `best`: what a cause is best seen against; the first variable of the view where that is missing.
+    /// This channel's part of the atlas. `best`: what a cause is best seen against; the first variable of the view
+    /// where that is missing.
     pub(super) fn atlas(&self, view: &View, threshold: f64, best: fn(&str) -> Variable) -> Channel {
         channel(&self.study, (self.channel, self.unit, self.floor), view, threshold, best)
     }
@@ -190,7 +193,7 @@ pub(super) fn channel(
     }
 }
 
-/// Of every cause that the rows could show the candidate with most evidence, and that: the strongest cause first.
+/// Strongest candidate of every cause that the rows can show, with its evidence; the strongest cause first.
 fn strongest(study: &Study, threshold: f64) -> Vec<(&'static str, usize, f64)> {
     let Study { system, candidates, .. } = study;
     let selection = Selection::new(system, candidates, threshold);
@@ -210,7 +213,7 @@ fn strongest(study: &Study, threshold: f64) -> Vec<(&'static str, usize, f64)> {
     best
 }
 
-/// The atlas of a comparison. `threshold`: the score that names a cause.
+/// The atlas of a comparison. `threshold`: least evidence of a named cause.
 pub(super) fn atlas(track: &Track, study: &Study, threshold: f64) -> Atlas {
     let Study { system, candidates, .. } = study;
     let along: Vec<usize> = (0..track.rows.len()).filter(|i| track.rows[*i].place == Place::Along).collect();

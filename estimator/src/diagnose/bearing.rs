@@ -1,5 +1,5 @@
-//! What loads a crank's bearing: the pull of the fingers alone (thesis, eq. 5.2), or that and the weight of the handle, which hangs on the same
-//! bearing. The recording decides.
+//! Bearing load of a crank: either the pull of the fingers alone (thesis, eq. 5.2), or that pull and the weight of the
+//! handle. The recording decides between the two models.
 
 mod beside;
 
@@ -14,17 +14,17 @@ use crate::identify::linear::{Values, least_squares_values};
 use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, Inertia, Law, LoadFriction, Weight};
 
-/// The other load must be likelier by so much, 2 ln(likelihood): rows are not independent.
+/// Evidence by which the other load must be favoured, 2 ln(likelihood). It is high because rows are not independent.
 const LIKELIER: f64 = 60.0;
-/// Rounds in which weight and load settle.
+/// Rounds in which weight and load converge.
 const ROUNDS: usize = 3;
 
-/// A load that only goes one way makes of the weight on the bearing a pull like gravity's, a quarter turn ahead: the weight is taken to be there when one
-/// free pull in every direction is likelier by no more than this.
+/// Evidence by which a free force of gravity, of any direction, may beat the weight on the bearing. On a load in one
+/// direction only, that weight acts like a force of gravity a quarter turn ahead.
 const AS_LIKELY: f64 = 25.0;
 
-/// Puts the weight on the bearing where friction goes with both; the weight that was found, N. `gravity_m_s2`: what makes a mass of it, which the bearing
-/// holds on its circle, too.
+/// Adds the weight on the bearing to the load if the data favour it, and returns that weight, N. `gravity_m_s2` turns
+/// it into a mass, whose centripetal force the bearing carries.
 pub fn load(track: &mut Track, model: &Model, fixed: &Model, gravity_m_s2: f64) -> Result<Option<f64>, EstimateError> {
     let rubs = model.iter().any(|e| e.law().id() == LoadFriction.id());
     if !rubs || !track.planar {
@@ -46,7 +46,7 @@ pub fn load(track: &mut Track, model: &Model, fixed: &Model, gravity_m_s2: f64) 
     Ok(Some(weight_n))
 }
 
-/// Whether a weight on the bearing explains at once what nothing but a pull of gravity, as large as it happens to be, would explain otherwise.
+/// True if a weight on the bearing explains the data as well as a free force of gravity does.
 fn one_way(
     track: &Track,
     other: &Track,
@@ -61,7 +61,7 @@ fn one_way(
     Ok(likelier(after, simply(track, model, fixed, true)?) < AS_LIKELY)
 }
 
-/// What the model leaves with friction of all kinds and a mass, root mean square, N; with gravity of any direction if `free`.
+/// Residual RMS of the model with friction of every kind and a mass, N. `free` adds gravity of any direction.
 fn simply(track: &Track, model: &Model, fixed: &Model, free: bool) -> Result<f64, EstimateError> {
     let look = Look::at(track, fixed);
     let has = |law: &dyn Law| model.iter().chain(fixed).any(|e| e.law().id() == law.id());
@@ -74,7 +74,8 @@ fn simply(track: &Track, model: &Model, fixed: &Model, free: bool) -> Result<f64
     Ok(look.fit(&columns)?.rms)
 }
 
-/// Changes the load of every row to that with this weight on the bearing, N, and with what keeps its mass on the circle.
+/// Changes the load of every row to that with this weight on the bearing, N, and with what keeps its mass on the
+/// circle.
 fn put(track: &mut Track, weight_n: f64, gravity_m_s2: f64) {
     let before = track.bearing;
     let per_radius = track.radius_m.map_or(0.0, |radius_m| 1.0 / radius_m);
@@ -84,7 +85,7 @@ fn put(track: &mut Track, weight_n: f64, gravity_m_s2: f64) {
     }
 }
 
-/// What friction and whatever else may be wrong leave, root mean square, and the weight that the model alone comes out at, N.
+/// Residual RMS of the model with friction and possible disturbances, and the weight that the model alone estimates, N.
 fn plain(track: &Track, model: &Model, fixed: &Model) -> Result<(f64, f64), EstimateError> {
     let look = Look::at(track, fixed);
     let is_weight = |e: &Effect| e.law().id() == Weight.id();
@@ -93,7 +94,7 @@ fn plain(track: &Track, model: &Model, fixed: &Model) -> Result<(f64, f64), Esti
     let fit = look.fit(&look.laws(&weighed))?;
     let found = weighed.iter().zip(&fit.values).filter(|(e, _)| is_weight(e));
     let weight_n = known_n(fixed) + found.map(|(e, share)| e.values[0] * share).sum::<f64>();
-    // A mass off the axis, a tilt or a bias is no reason to look for another load.
+    // An eccentric mass, a tilt or a bias is no reason to look for another load.
     let rubs: Vec<Effect> = weighed.into_iter().filter(|e| !is_weight(e)).collect();
     let mut columns = look.laws(&rubs);
     let beside: [&dyn Fn(&Row) -> f64; 4] =
@@ -107,7 +108,7 @@ fn known_n(fixed: &Model) -> f64 {
     fixed.iter().filter(|e| e.law().id() == Weight.id()).map(|e| e.values[0]).sum()
 }
 
-/// Rows as a plain fit sees them: blurred directions, loads without bias, forces without what is known.
+/// Rows for a plain fit: blurred directions, loads without bias, forces without the known ones.
 struct Look {
     track: Track,
     y: Vec<f64>,
@@ -129,7 +130,7 @@ impl Look {
         laws.iter().map(|effect| column(&self.track, effect)).collect()
     }
 
-    /// A column along the motion.
+    /// Regressor over the rows along the motion, 0 in all others.
     fn rows(&self, of: &dyn Fn(&Row) -> f64) -> Vec<f64> {
         self.track.rows.iter().map(|r| if r.place == Place::Along { of(r) } else { 0.0 }).collect()
     }
@@ -139,12 +140,12 @@ impl Look {
     }
 }
 
-/// What the guess of a row's direction is worth, squared: its fourth power weighs the squares.
+/// Weight of a row in the sum of squares: the fourth power of its direction estimate.
 fn weights(track: &Track) -> Vec<f64> {
     track.rows.iter().map(|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }).collect()
 }
 
-/// Takes what the sensors say where nothing is touched out of the load: a bias across the motion looks like a weight.
+/// Removes the sensor bias, seen in free rows, from the load. A bias across the motion looks like a weight.
 fn without_bias(track: &mut Track) {
     let mean = |place: Place| {
         let free: Vec<f64> = track.rows.iter().filter(|r| r.place == place).map(|r| r.y).collect();

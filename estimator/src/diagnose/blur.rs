@@ -1,27 +1,28 @@
-//! The direction of motion, which a noisy velocity tells less and less the slower it is.
+//! Direction of motion: the slower the motion, the less certain a noisy velocity makes its sign.
 
 use super::track::{Place, Row, Track};
 
-/// The sign of a velocity is blurred over this share of the usual speed at least.
+/// Least width of the blur of the direction, as a share of the usual speed.
 const BLUR: f64 = 0.008;
-/// … over this one where a mass takes part, whose force jumps with the friction's.
+/// Time over which the direction is blurred if inertia is in the model, whose force jumps together with the friction's.
 const BLUR_OF_MASS: f64 = 0.012;
-/// … and over this one where there is no force whose clock could differ.
+/// Time over which the direction is blurred if there is no force channel whose clock could differ.
 const BLUR_OF_FREE: f64 = 0.004;
-/// A reversal lies anywhere between two rows: standard deviation of its place, in rows, with some room.
+/// A reversal may be at any point between two rows: standard deviation of its position, in rows, with some margin.
 const SKEW: f64 = 0.5;
-/// The clocks of force and motion differ by about this, s.
+/// Difference of the clocks of force and motion, s.
 const CLOCKS_S: f64 = 1e-3;
-/// What moves no faster than this many times what the sign is blurred over may as well stick: its friction is anything.
+/// Speed, in units of the velocity blur, below which the object may stick: its friction is then undetermined.
 const STICKS: f64 = 1.0;
-/// Rows that stick stick together: so many of them count as one. (The rows of a mechanism overlap, and none of them sticks alone.)
+/// Number of sticking rows that count as one observation. Rows of a mechanism overlap, and none of them sticks alone.
 pub const TOGETHER: f64 = 3.0;
-/// A row whose friction is open by more than this stands.
+/// Uncertainty of the direction above which a row counts as standing.
 pub const STANDS: f64 = 0.4;
-/// Share of the friction's square that stays open in a row with a reversal in it whose place is known.
+/// Share of the squared friction that stays uncertain in a row with a reversal at a known position.
 const REVERSAL: f64 = 0.05;
 
-/// The direction of motion, as certain as the velocity's noise and the clocks of the channels let it be.
+/// Sets the direction of motion of each row and its uncertainty, from the noise of the velocity and the clocks of the
+/// channels.
 pub fn blur(track: &mut Track) {
     let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
     let (noise, period_s) = (track.velocity_noise, track.period_s);
@@ -55,13 +56,13 @@ pub fn blur(track: &mut Track) {
             open += weight * track.fine[k].open;
         }
         row.motion.direction = sum;
-        // Where in the row a reversal lies is known up to what the channels' clocks and filters differ by.
+        // The position of a reversal within the row is uncertain because the clocks and filters of the channels differ.
         row.open = open + REVERSAL / together * (1.0 - sum * sum - open).max(0.0);
     }
     stand_together(track, together);
 }
 
-/// What the blur of the direction takes off the dry friction (`dry`, by row) where the velocity is certain.
+/// Part of the dry friction (`dry`, by row) that the blur of the direction removes where the velocity is certain.
 pub fn blurred(track: &Track, dry: &[f64]) -> Vec<f64> {
     let of = |(row, dry): (&Row, &f64)| {
         if row.place == Place::Along { dry * track.mean(row, &|m| m.velocity.signum() - m.direction) } else { 0.0 }
@@ -69,8 +70,8 @@ pub fn blurred(track: &Track, dry: &[f64]) -> Vec<f64> {
     track.rows.iter().zip(dry).map(of).collect()
 }
 
-/// Rows that stand one after the other are one observation: a hand holds on to the same load meanwhile. `together`: how many of them are
-/// taken for one already.
+/// Counts consecutive standing rows as one observation, because a hand keeps holding the same load. `together`: number
+/// of rows that already count as one.
 fn stand_together(track: &mut Track, together: f64) {
     let stands = |row: &Row| row.place == Place::Along && row.open > STANDS;
     let mut first = 0;

@@ -1,12 +1,12 @@
-//! What a cause would leave in the residual.
+//! Candidate terms: effects that a cause would have on the residual.
 
 use haptics::law::Kind;
 use std::sync::Arc;
 
-/// What a cause adds to each row, per unit of its parameter; kept by whoever needs it, made once.
+/// Regressor: effect of a cause on each row per unit of its parameter, made once and shared.
 pub type Column = Arc<Vec<f64>>;
 
-/// A value that was searched for, not solved for.
+/// A value that was searched on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Searched {
     pub name: &'static str,
@@ -14,28 +14,29 @@ pub struct Searched {
     pub unit: &'static str,
 }
 
-/// A spring is at rest within so many half ranges of the middle.
+/// Largest distance of a spring's rest position from the middle, in half ranges.
 const RESTS_WITHIN: f64 = 3.0;
 
-/// What the parameters of a cause must be like.
+/// Constraint on the parameters of a cause.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     /// Anything.
     Any,
-    /// The share of the friction that a law takes over: the law is about all of it; what sticks and slips looks like a part, which is believed below
-    /// `whole` only where it explains much.
+    /// Share of the dry friction that a law replaces. The law concerns all of it; a smaller share, below `whole`, can
+    /// be an artefact of stick-slip and needs more evidence.
     Share { least: f64, whole: f64, most: f64 },
-    /// k, f0 of a spring that is at rest somewhere near: a force that is the same everywhere is none. `half`: half the range.
+    /// k, f0 of a spring with its rest position near the range; a force that hardly depends on position is none.
+    /// `half`: half the range.
     Spring { half: f64 },
     /// k, f0 and two cubics (about the middle, and half a range beside it) of a spring that hardens.
     Hardening { half: f64 },
-    /// k and k3 of a spring that hardens about a place that was searched for.
+    /// k and k3 of a spring that hardens about a searched place.
     Stiffening,
-    /// k, c of something that gives way and damps: what pushes along with the motion is no damper.
+    /// k, c of a compliant element with damping; a force that drives the motion is no damper.
     Damped,
 }
 
-/// A damper of so many seconds times the stiffness, the wrong way round, may still be noise, s.
+/// Largest damping of the wrong sign that may be noise, in seconds times the stiffness.
 const NEARLY_UNDAMPED_S: f64 = 0.1;
 
 impl Shape {
@@ -54,7 +55,7 @@ impl Shape {
         }
     }
 
-    /// What its parameters cost beside their number, in 2 ln(likelihood).
+    /// Penalty of its parameters beside their number, in 2 ln(likelihood).
     fn doubt(self, values: &[f64]) -> f64 {
         match (self, values) {
             (Self::Share { whole, .. }, [share, ..]) if *share < whole => PARTLY,
@@ -63,7 +64,7 @@ impl Shape {
     }
 }
 
-/// What a part of the friction must explain more than all of it.
+/// Extra evidence that a law of only part of the friction needs.
 const PARTLY: f64 = 60.0;
 
 /// k u + f0 + here u³ + there (u − 1)³ as k (u − place) + f0 + k3 (u − place)³: k, f0, k3 and the place.
@@ -77,34 +78,34 @@ pub fn about_its_zero([k, f0, here, there]: [f64; 4]) -> [f64; 4] {
     [c1 - c2 * c2 / (3.0 * k3), c0 + c1 * place + c2 * place * place + k3 * place.powi(3), k3, place]
 }
 
-/// One cause with its searched values set: columns that are linear in what is left.
+/// One cause with its searched values fixed: its regressors are linear in the residual.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// Out of `docs/causes/README.md`; terms of the base and of the generic library have names of their own.
+    /// Id from `docs/causes/README.md`; terms of the base model and of the generic library have names of their own.
     pub id: &'static str,
     pub kind: Kind,
-    /// One column a linear parameter, one entry a row.
+    /// One regressor per linear parameter, one entry per row.
     pub columns: Vec<Column>,
     /// Name and unit of the linear parameters.
     pub linear: Vec<(&'static str, &'static str)>,
     pub searched: Vec<Searched>,
     /// Parameters that count in the evidence: linear and searched ones.
     pub cost: f64,
-    /// The sign that its first parameter must have, or 0.
+    /// Required sign of its first parameter, or 0.
     pub sign: f64,
-    /// What its parameters must be like beside that: a name for a force must fit it.
+    /// Further constraint on its parameters: a cause is named only if they fit it.
     pub shape: Shape,
-    /// The least size of its first parameter: what is smaller is within what the model itself is known by.
+    /// Least size of its first parameter. A smaller one is within the uncertainty of the model itself.
     pub least: f64,
-    /// Measurement noise of its column, a row: a rate is measured less well than a direction.
+    /// Measurement noise of its regressor in a row: a rate is measured less well than a direction.
     pub noise: f64,
     /// Side of a one-sided law: +1, −1, or 0 where there is none.
     pub side: f64,
-    /// Of a generic term that is no cause: its expression.
+    /// Expression of a generic term.
     pub expression: Option<String>,
-    /// The channel that it goes with, and that channel's unit.
+    /// Channel on which it depends, and that channel's unit.
     pub channel: Option<(String, String)>,
-    /// The part of the recording that its values were searched in: a time in another part is no neighbour.
+    /// Part of the recording in which its values were searched. Times in different parts are no neighbours on the grid.
     pub part: usize,
 }
 
@@ -124,7 +125,7 @@ impl Candidate {
         Self::of(id, kind, columns.into_iter().map(Column::new).collect(), linear)
     }
 
-    /// The same of columns that somebody else has as well.
+    /// The same with shared regressors.
     pub fn of(id: &'static str, kind: Kind, columns: Vec<Column>, linear: Vec<(&'static str, &'static str)>) -> Self {
         let cost = columns.len() as f64;
         Self {
@@ -145,14 +146,14 @@ impl Candidate {
         }
     }
 
-    /// With one more value that was searched for.
+    /// Adds one more searched value.
     pub fn at(mut self, name: &'static str, value: f64, unit: &'static str) -> Self {
         self.searched.push(Searched { name, value, unit });
         self.cost += 1.0;
         self
     }
 
-    /// Whether it was searched for at these values.
+    /// True if it was searched for near these values.
     pub fn is_near(&self, values: &[Searched]) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs());
         self.searched.len() == values.len()
@@ -165,42 +166,42 @@ impl Candidate {
         self
     }
 
-    /// That goes with a channel of the recording.
+    /// Sets the channel of the recording on which it depends.
     pub fn with(mut self, channel: (String, String)) -> Self {
         self.channel = Some(channel);
         self
     }
 
-    /// That was searched for in this part of the recording.
+    /// Sets the part of the recording to which the search was limited.
     pub fn within(mut self, part: usize) -> Self {
         self.part = part;
         self
     }
 
-    /// Whose first parameter is so large at least.
+    /// Sets the least size of its first parameter.
     pub fn at_least(mut self, least: f64) -> Self {
         self.least = least;
         self
     }
 
-    /// Whose column is measured with so much noise.
+    /// Sets the measurement noise of its regressor.
     pub fn noisy(mut self, noise: f64) -> Self {
         self.noise = noise;
         self
     }
 
-    /// Whether it could be what its name says.
+    /// True if the estimated values fit its name.
     pub fn admits(&self, values: &[f64]) -> bool {
         self.sign * values[0] >= 0.0 && values[0].abs() >= self.least && self.shape.admits(values)
     }
 
-    /// Whether its first value is a share of the model's dry friction.
+    /// True if its first value is a share of the model's dry friction.
     pub fn is_share(&self) -> bool {
         ["hysteresis", "friction-change"].contains(&self.id)
             && self.linear.first().is_some_and(|(_, unit)| *unit == "1")
     }
 
-    /// What makes its name doubtful, in 2 ln(likelihood).
+    /// Penalty for values that make its name doubtful, in 2 ln(likelihood).
     pub fn doubt(&self, values: &[f64]) -> f64 {
         self.shape.doubt(values)
     }

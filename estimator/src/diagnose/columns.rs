@@ -1,4 +1,4 @@
-//! Columns of laws, each made once: the rounds of a comparison ask for most of them again.
+//! Cache of regressors: the rounds of a comparison need most of them again.
 
 use super::candidate::Column;
 use super::means::{at_points, column, column_of_place, is_short, of_points};
@@ -9,20 +9,20 @@ use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// How a law becomes a column.
+/// Method by which a law becomes a regressor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum How {
-    /// [`column`]
+    /// Mean over each row, see [`column`].
     Means,
     /// [`column_of_place`]
     OfPlace,
-    /// What a law with a memory does on its way over the rows.
+    /// Simulated over the rows, for a law with memory.
     Remembered,
 }
 
 /// A law's id and the bits of its values.
 type Which = (&'static str, [u64; MAX_PARAMETERS]);
-/// … and how it became a column.
+/// A law with its values and the method of its regressor.
 type Key = (Which, How);
 
 fn which(law: &dyn Law, values: &[f64]) -> Which {
@@ -31,28 +31,29 @@ fn which(law: &dyn Law, values: &[f64]) -> Which {
     (law.id(), bits)
 }
 
-/// What was made on one track, which changes in its loads only.
+/// Cache of the regressors of one track, of which only the loads change.
 #[derive(Default)]
 pub struct Columns {
     known: RefCell<HashMap<Key, Column>>,
-    /// What was felt last at the finer points: the next law may be it times the direction.
+    /// Force of the last law at the finer points: the next law may be it times the direction.
     felt: RefCell<Option<(Which, Rc<[f64]>)>>,
 }
 
 impl Columns {
-    /// As [`column`].
+    /// Regressor of a law, see [`column`].
     pub fn of(&self, track: &Track, effect: &Effect) -> Column {
         self.made(effect.law(), &effect.values, How::Means, || self.mean(track, effect))
     }
 
-    /// As [`column_of_place`].
+    /// Regressor of a law of position, see [`column_of_place`].
     pub fn of_place(&self, track: &Track, effect: &Effect) -> Column {
         self.made(effect.law(), &effect.values, How::OfPlace, || {
             if is_short(track) { column_of_place(track, effect) } else { self.mean(track, effect) }
         })
     }
 
-    /// As [`column`]. What is another law times the direction is made of that law, which is looked at once for both.
+    /// Regressor by means, see [`column`]. A law that is another law times the direction reuses that law, which is
+    /// evaluated once for both.
     fn mean(&self, track: &Track, effect: &Effect) -> Vec<f64> {
         let (law, alone) = (effect.law(), |row: &Row| effect.force(&row.motion));
         let other = law.times_direction();
@@ -66,7 +67,7 @@ impl Columns {
         of_points(track, &turned, alone)
     }
 
-    /// The force at the finer points; none of a law that needs more than they tell.
+    /// Force at the finer points. None if the law needs more than they hold.
     fn felt(&self, track: &Track, effect: &Effect) -> Option<Rc<[f64]>> {
         let which = which(effect.law(), &effect.values);
         let mut last = self.felt.borrow_mut();
@@ -78,12 +79,12 @@ impl Columns {
         Some(felt)
     }
 
-    /// What `make` makes of a law that remembers: the same for the same values, each time.
+    /// Regressor of a law with memory, made by `make` at the first request for these values.
     pub fn remembered(&self, law: &'static dyn Law, values: &[f64], make: impl FnOnce() -> Vec<f64>) -> Column {
         self.made(law, values, How::Remembered, make)
     }
 
-    /// The loads changed: what goes with them is to be made anew.
+    /// Removes the regressors that depend on the loads after these changed.
     pub fn forget_loads(&mut self) {
         self.known.get_mut().retain(|((id, _), _), _| haptics::law::law(id).is_some_and(|law| !law.feels_load()));
     }
@@ -114,13 +115,13 @@ mod tests {
         assert_eq!(both(&columns, &track(5.0)), [0.2, 2.0], "nobody said that the loads had changed");
         columns.forget_loads();
         assert_eq!(both(&columns, &track(5.0)), [0.2, 5.0]);
-        // Other values are another column.
+        // Other values make another regressor.
         assert_eq!(columns.of(&track(5.0), &Effect::new(&LoadFriction, &[0.5]))[0], 2.5);
     }
 
     #[test]
     fn what_resists_and_what_pushes_at_a_place_are_told_apart_by_the_direction_at_every_point() {
-        // Reversed in the middle of a row.
+        // The direction reverses in the middle of a row.
         let point = |k: usize| Fine { position: 0.01, direction: if k < 3 { 1.0 } else { -0.5 }, ..Fine::default() };
         let span = Span { start: 0, len: 4, weighing: Weighing::Even };
         let rows = vec![Row { span, ..Row::at_rest() }];

@@ -1,4 +1,4 @@
-//! One channel of a residual that is no force along one coordinate: what the model leaves of it, and which causes explain that.
+//! One measured channel: its residual, and the causes that explain it.
 
 use super::candidate::Candidate;
 use super::force::{CONFIRMED, PIECES_S, SHOWN, harms, is_steady};
@@ -9,13 +9,14 @@ use super::system::{Held, Rough, Rows, System, solve, uses};
 use super::white::{Noise, whitener};
 use crate::estimate::EstimateError;
 
-/// What whitening is learnt from keeps this much of the generic terms' strength out, and of what a cause has of its own: kept out of all of it, what
-/// is nearly the model's would be given to the model, and the difference left over.
+/// Ridge on the candidates in the fit whose residual determines the whitening, relative to the power of a regressor.
+/// For causes it is scaled by their part beyond the model. With a common ridge, the fit would attribute nearly
+/// collinear causes to the model and leave the difference in the residual.
 const RIDGE: f64 = 1e-2;
-/// A cause that has less of its own than this has nothing.
+/// Part of a cause beyond the model below which it counts as none.
 const LEAST_OWN: f64 = 1e-4;
 
-/// Rows of one channel with everything that could explain them.
+/// Rows of one channel with the base model and all candidates.
 #[derive(Clone)]
 pub struct Channel {
     /// The target.
@@ -24,31 +25,31 @@ pub struct Channel {
     pub base: Vec<Vec<f64>>,
     /// Causes and generic terms.
     pub candidates: Vec<Candidate>,
-    /// Rows of one number follow each other without a gap.
+    /// Segment of each row.
     pub stretch: Vec<usize>,
     /// Rows that may be held out.
     pub testable: Vec<bool>,
-    /// What each row's noise is smaller by.
+    /// Factor by which the noise of each row is reduced.
     pub weight: Vec<f64>,
     /// Time between rows, s.
     pub period_s: f64,
 }
 
 impl Channel {
-    /// Compares all candidates. `threshold`: least score of a cause.
+    /// Compares all candidates. `threshold`: least evidence of a cause.
     pub fn compare(self, threshold: f64) -> Result<Study, EstimateError> {
-        // The rows are in the order of their times already.
+        // The rows are already in time order.
         let order: Vec<f64> = (0..self.y.len()).map(|i| i as f64).collect();
         self.chosen(&order, threshold, true)
     }
 
-    /// The same where the model has no dry friction: what bends or lifts it is then asked for beside it only.
+    /// The same without dry friction in the model: causes that bend or lift it are then tried only beside it.
     pub fn compare_without_friction(self, threshold: f64) -> Result<Study, EstimateError> {
         let order: Vec<f64> = (0..self.y.len()).map(|i| i as f64).collect();
         self.chosen(&order, threshold, false)
     }
 
-    /// The same with rows held out together that follow each other in this order.
+    /// The same with this order of the rows for held-out blocks.
     pub fn compare_in(self, order: &[f64], threshold: f64) -> Result<Study, EstimateError> {
         self.chosen(order, threshold, true)
     }
@@ -84,7 +85,8 @@ impl Channel {
         leave_out_what_is_unsure(&mut made, &stretch, threshold);
         leave_out_what_cannot_be(&mut made);
         if !dry && lifts_nothing(&made) {
-            // The dry friction that it was found beside went: nothing of the kind was there.
+            // The dry friction beside which the change was found was removed: a change of friction without friction is
+            // not possible.
             let Study { y, base, mut candidates, weight, .. } = made;
             candidates.retain(|c| !OF_DRY_FRICTION.contains(&c.id));
             let testable = testable.iter().map(|held| *held != Held::Never).collect();
@@ -94,8 +96,9 @@ impl Channel {
     }
 }
 
-/// Nothing is named that takes nothing off rows which were not fitted, where such rows could show it. Where too few rows are there to keep any out of
-/// the choice, they are left out of the fit in turn, and a cause must be beyond doubt, because it was chosen by all of them.
+/// Removes causes without a proven gain on held-out rows, if those rows could show it. If too few rows exist for a
+/// separate hold-out, each fold is predicted from the others. The cause then needs far more evidence, because all rows
+/// took part in its choice.
 fn leave_out_what_is_unsure(study: &mut Study, stretch: &[usize], threshold: f64) {
     loop {
         let is_unsure = |k: &usize| {
@@ -105,10 +108,10 @@ fn leave_out_what_is_unsure(study: &mut Study, stretch: &[usize], threshold: f64
             if !holds_out(study) {
                 return gains_nothing || is_weak;
             }
-            // What explains much elsewhere must harm for certain.
+            // A cause with strong evidence is removed only if it clearly increases the held-out error.
             let tested = is_tested(study, *k, stretch);
             let shows_nothing = if tested { confirmed(study, *k, stretch) < SHOWN } else { gains_nothing };
-            // … and what rows that were held out could not show must be everywhere where it was fitted.
+            // A cause that the held-out rows could not test must be steady over the fitted ones.
             harms(study, *k) || is_weak && shows_nothing || (is_weak || !tested) && !is_steady(study, *k)
         };
         let Some(k) = (0..study.chosen.len()).rev().find(is_unsure) else { return };
@@ -117,10 +120,10 @@ fn leave_out_what_is_unsure(study: &mut Study, stretch: &[usize], threshold: f64
     }
 }
 
-/// Fewer pieces do not tell how much one differs from the next.
+/// Least number of jackknife blocks from which their scatter can be estimated.
 const LEAST_PIECES: usize = 8;
 
-/// Which piece of so many rows each row is in; none where there are too few of them.
+/// Jackknife block of at most this many rows for each row. None if there are too few blocks.
 fn pieces(stretch: &[usize], rows: f64) -> Option<Vec<usize>> {
     let most = (rows as usize).max(1);
     let (mut piece, mut own) = (0, 0);
@@ -133,13 +136,13 @@ fn pieces(stretch: &[usize], rows: f64) -> Option<Vec<usize>> {
     (piece + 1 >= LEAST_PIECES).then_some(pieces)
 }
 
-/// Whether a change of dry friction was chosen without any.
+/// True if a change of dry friction was chosen without any dry friction.
 fn lifts_nothing(study: &Study) -> bool {
     let is = |all: &[&str]| study.picks().iter().any(|c| all.contains(&study.candidates[*c].id));
     is(&OF_DRY_FRICTION) && !is(&DRY_FRICTION)
 }
 
-/// What stood beside a cause that went may be left with a size that its name does not allow.
+/// Removes causes whose estimate no longer fits their name after another cause was removed.
 fn leave_out_what_cannot_be(study: &mut Study) {
     let impossible = |study: &Study| {
         let values = &study.solved.as_ref()?.values;
@@ -190,9 +193,9 @@ pub fn whitening(
     Ok(whitener(&weighted, rows, &uses(rows)))
 }
 
-/// Numbers the rows whose place in time follows on that of the row before; `new` begins a stretch in any case.
+/// Numbers the segments: rows without a gap in time. `new` begins a segment in any case.
 pub fn stretches(time_s: &[f64], period_s: f64, new: impl Fn(usize) -> bool) -> Vec<usize> {
-    /// A row is missing from so many periods on.
+    /// Time step, in periods, from which rows are missing.
     const GAP: f64 = 1.6;
     let mut number = 0;
     (0..time_s.len())

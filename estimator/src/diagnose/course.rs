@@ -1,13 +1,13 @@
-//! What was measured and what the model says, row by row: for plots of a diagnosis.
+//! Measured and modelled values row by row, for the plots of a diagnosis.
 
 use super::geometry::{Study, residual};
 use super::system::Use;
 use super::track::{Place, Track};
 
-/// One instant of a recording along the motion.
+/// One instant of the course along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instant {
-    /// Which recording, in the order in which they were given.
+    /// Index of the recording, in the order in which they were given.
     pub recording: usize,
     /// Time from the start of that recording, s.
     pub time_s: f64,
@@ -17,63 +17,63 @@ pub struct Instant {
     pub angle_rad: f64,
     /// Rate of the coordinate, m/s or rad/s.
     pub velocity: f64,
-    /// Force across the motion, N, positive outwards; zero where it was not measured.
+    /// Force across the motion, N, positive outwards; zero if it was not measured.
     pub normal_force_n: f64,
     /// Measured force along the motion, N or N m.
     pub measured: f64,
-    /// What the model leaves of it …
+    /// Residual of the base model.
     pub left_before: f64,
-    /// … and what the model with the found causes leaves.
+    /// Residual of the extended model.
     pub left_after: f64,
-    /// How far the row is trusted, 0 … 1: less where the direction of motion is a guess.
+    /// Weight of the row, 0 … 1: less if the direction of motion is uncertain.
     pub weight: f64,
-    /// It took part in no choice and no fit.
+    /// True if it took part in neither choice nor fit.
     pub is_locked: bool,
-    /// It follows the instant before it without a gap.
+    /// True if it follows the instant before it without a gap.
     pub follows: bool,
 }
 
 impl Instant {
-    /// Force that the model says, N or N m.
+    /// Force predicted by the base model, N or N m.
     pub fn simulated_before(&self) -> f64 {
         self.measured - self.left_before
     }
 
-    /// Force that the model with the found causes says, N or N m.
+    /// Force predicted by the extended model, N or N m.
     pub fn simulated_after(&self) -> f64 {
         self.measured - self.left_after
     }
 }
 
-/// Everything along the motion, at the rate of the comparison.
+/// Course of all quantities along the motion, at the rate of the comparison.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Course {
     /// In time order, recording after recording.
     pub instants: Vec<Instant>,
-    /// True when something turns about an axis: [`Instant::angle_rad`] is an angle.
+    /// True if the object rotates about an axis: [`Instant::angle_rad`] is an angle.
     pub turns: bool,
-    /// True when the coordinate is an angle: forces are N m, velocities rad/s.
+    /// True if the coordinate is an angle: forces are N m, velocities rad/s.
     pub is_angular: bool,
-    /// True when the force across the motion was measured.
+    /// True if the force across the motion was measured.
     pub has_normal_force: bool,
-    /// Where the forces come from.
+    /// Source of the forces.
     pub source: Source,
 }
 
-/// Where the forces of a course come from.
+/// Source of the forces of a course.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Source {
-    /// They were measured.
+    /// Measured forces.
     #[default]
     Sensor,
-    /// Nothing but the motion was measured: they are what the laws must give for it.
+    /// Only the motion was measured: the forces are those that the laws must sum to.
     Motion,
-    /// The same, per unit of inertia.
+    /// The same per unit of inertia.
     MotionPerInertia,
 }
 
 impl Course {
-    /// Whether nothing but the motion was measured.
+    /// True if only the motion was measured.
     pub fn is_free(&self) -> bool {
         self.source != Source::Sensor
     }
@@ -89,7 +89,7 @@ impl Course {
     }
 }
 
-/// The rows along the motion with what the model leaves of them, without and with what was chosen.
+/// The rows along the motion with their residuals, without and with the chosen causes.
 pub(super) fn course(track: &Track, study: &Study) -> Course {
     let of = |picks: &[usize]| {
         let solved = study.system.solve(picks);
@@ -103,7 +103,7 @@ pub(super) fn course(track: &Track, study: &Study) -> Course {
         angle_rad: row.angle_rad,
         velocity: row.motion.velocity,
         normal_force_n: row.motion.normal_force_n,
-        // What moves freely needs what its mass needs, and nothing else is measured.
+        // A free motion has no measured force: the target is the force that its inertia needs.
         measured: if track.freely.is_some() { study.y[i] } else { row.y },
         left_before: before[i],
         left_after: after[i],

@@ -1,24 +1,26 @@
-//! When a grasp slips or creeps along its handle: what is tried, and where a large slip shows at once.
+//! Start and duration of a grasp's slip or creep along the handle: the candidates, and a direct test for one large
+//! slip.
 
 use super::candidate::Candidate;
 use super::geometry::{Path, PathPoint};
 use haptics::Vec2;
 
-/// Starts of a slip that are tried.
+/// Number of tried starts of a slip.
 pub const SLIP_STARTS: usize = 24;
-/// When a creep of the grasp begins, and for how long it goes on, in shares of the recording.
+/// Starts and durations of a creep of the grasp, in shares of the recording.
 const CREEP_STARTS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 const CREEPS: [f64; 3] = [0.25, 0.5, 1.0];
-/// How much farther apart they are than slips.
+/// Ratio of the spacing of creeps to that of slips.
 const CREEPS_APART: f64 = 4.0;
-/// A jump is looked for at so many times, this part of the rows away from the ends, and must gain so much in 2 ln(likelihood) of white rows.
+/// Number of tried times of a jump, margin at either end as a part of the rows, and least evidence in 2 ln(likelihood)
+/// of white rows.
 const JUMPS: usize = 240;
 const JUMP_MARGIN: usize = 50;
 const JUMPED: f64 = 100.0;
-/// A breath of ridge keeps equal columns apart.
+/// Small ridge that keeps the normal equations regular for equal regressors.
 const JUMP_RIDGE: f64 = 1e-9;
 
-/// When a grasp slips, and for how long it creeps; at once without a duration.
+/// Time course of a grasp's slip: start and duration. A slip without a duration is a jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Course {
     pub start_s: f64,
@@ -30,13 +32,13 @@ impl Course {
         Self { start_s: slip.searched[0].value, duration_s: slip.searched.get(1).map(|d| d.value) }
     }
 
-    /// Share of the way that is behind it.
+    /// Share of the slip completed at this time.
     pub fn gone(self, time_s: f64) -> f64 {
         let since_s = time_s - self.start_s;
         self.duration_s.map_or(f64::from(u8::from(since_s >= 0.0)), |d| (since_s / d.max(1e-12)).clamp(0.0, 1.0))
     }
 
-    /// What is tried at first. A grasp that creeps looks like a centre that wanders.
+    /// Candidates of the first round. A creeping grasp looks like a wandering centre.
     pub fn coarse(path: &Path) -> Vec<Self> {
         let first = path.points.first().map_or(0.0, |p| p.time_s);
         let span_s = path.span_s();
@@ -48,7 +50,7 @@ impl Course {
         slips.chain(creeps).collect()
     }
 
-    /// What lies around one that was found, and itself.
+    /// Neighbours of a found course, and the course itself.
     pub fn around(self, step_s: f64) -> Vec<Self> {
         // Creeps were tried farther apart.
         let wide_s = if self.duration_s.is_some() { CREEPS_APART * step_s } else { step_s };
@@ -57,16 +59,16 @@ impl Course {
             return starts.map(|start_s| Self { start_s, duration_s: None }).to_vec();
         };
         let lasts = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|s| duration_s + s * wide_s).into_iter().filter(|d| *d > step_s);
-        // What looked like a creep may have gone at once in the middle of it.
+        // An apparent creep may be a jump in its middle.
         let middle_s = self.start_s + 0.5 * duration_s;
         let at_once = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|s| Self { start_s: middle_s + s * wide_s, duration_s: None });
         lasts.flat_map(|d| starts.map(|start_s| Self { start_s, duration_s: Some(d) })).chain(at_once).collect()
     }
 }
 
-/// When the grasp jumped, if it did once and by much: two circles of one radius, before and after, leave least. A slip that is large beside the noise is
-/// not seen by comparing one here and there: what is left between its time and the tried one looks like a noise with a memory, beside which no slip
-/// is better than another.
+/// Time of the one large jump of the grasp, if there was one: the split for which two circles of one radius leave the
+/// smallest residual. A comparison of single slips misses a large jump. The residual between its time and the tried one
+/// looks like coloured noise, beside which no slip is better than another.
 pub fn jump(path: &Path, center_m: Vec2) -> Option<Course> {
     let outward = |p: &PathPoint| (p.position - center_m).normalize();
     let row = |p: &PathPoint| {

@@ -31,7 +31,7 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
         let Turned { mut rows, other, link: of_this } = turned(&signals, recording, &circle, rows)?;
         rows.extra = vec![extra::of(recording)];
         link = link.or(of_this);
-        // The same recording with the other link's angle wrong.
+        // The same recording with an error of the other link's angle.
         swapped.push(other.map(|other| track::Track { extra: rows.extra.clone(), ..other }));
         let known_m = recording.meta.known.get("radius_m").copied().filter(|r| r.is_finite() && *r > 0.0);
         if scale.is_none() {
@@ -67,7 +67,7 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
             (bearing_n, track, study) = (Some(weight_n), other, found);
         }
     }
-    // Whose angle is wrong was asked of the plain model, which something hidden may have kept from telling.
+    // The link was chosen by the plain model, which hidden causes may have misled.
     if let Some(mut other) = other.flatten().filter(|_| is_turned(&study)) {
         let (other_n, again) = look(&mut other)?;
         if !is_turned(&again) {
@@ -93,12 +93,12 @@ pub fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     Ok(found)
 }
 
-/// What was found, on another recording of the same crank.
+/// Validates the found causes on another recording of the same crank.
 pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
     let recording = &late::put_back(recording, diagnosis.late_s);
     let signs::Looked { signals, circle, rows, .. } = signs::Looked::at(recording, &quality::faults(recording).bad)?;
     let mut track = turned(&signals, recording, &circle, rows)?.rows;
-    // A weight that is stated is no part of what was fitted, and acts all the same.
+    // A stated weight was not fitted, but acts all the same.
     let known = known_weight(recording, &mut diagnosis.plain.clone());
     let with_known = |effects: &[Effect]| -> Model {
         let weighs = effects.iter().any(|e| e.law().id() == Weight.id());
@@ -108,7 +108,7 @@ pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validati
     Ok(super::validate::validate(&mut track, &before, &after, &known, &diagnosis.kept))
 }
 
-/// Names the scale of all lengths where the path itself did not.
+/// Names the scale of all lengths if the path itself did not show it.
 fn add_scale(found: &mut Diagnosis, scale: Option<Cause>) {
     let Some(cause) = scale.filter(|scale| found.causes.iter().all(|c| c.id != scale.id)) else { return };
     found.causes.insert(0, cause);
@@ -117,16 +117,16 @@ fn add_scale(found: &mut Diagnosis, scale: Option<Cause>) {
     }
 }
 
-/// How much more likely the force must be when the first link's angle is wrong, not the second's (2 ln likelihood).
+/// Evidence by which the first link's angle must be favoured over the second's, in 2 ln(likelihood).
 const TURNED: f64 = 10.0;
 
-/// Rows of a crank whose path shows that an angle of the finger is wrong.
+/// Rows of a crank whose path shows an angle error of the finger.
 struct Turned {
     /// With that link's angle put right which is the likelier one.
     rows: track::Track,
-    /// With the other one's; nothing where no angle is wrong.
+    /// Rows if the other link's angle is wrong; `None` if no angle is.
     other: Option<track::Track>,
-    /// Which is the likelier one; none where the forces do not tell.
+    /// Likelier link of the two. None if the forces do not tell.
     link: Option<Link>,
 }
 
@@ -137,8 +137,8 @@ enum Link {
     Second,
 }
 
-/// An offset of the first link's angle bends the path as the opposite offset of the second one does, and turns all of it: the circle is
-/// the same, the force then has another direction beside it.
+/// Corrects an angle error of the finger. An offset of the first link distorts the path as the opposite offset of the
+/// second does, and also rotates it. The circle is the same, but the force has another direction relative to it.
 fn turned(
     signals: &held_arm::Signals,
     recording: &Recording,
@@ -155,7 +155,7 @@ fn turned(
         }
         at += candidate.columns.len();
     }
-    // With two fingers it is one of two arms: the handle's own is not turned.
+    // With two fingers, the error is of one arm of two: the handle itself is not rotated.
     let Some(turn_rad) = offset.filter(|_| !signals.two_fingered) else {
         return Ok(Turned { rows, other: None, link: None });
     };
@@ -171,14 +171,14 @@ fn turned(
     Ok(Turned { rows, other: Some(other), link })
 }
 
-/// Whether the forces seem to be turned against the motion.
+/// True if the forces seem rotated against the motion.
 fn is_turned(study: &geometry::Study) -> bool {
     study.chosen.iter().any(|c| study.candidates[c.candidate].id == "force-cross-axis")
 }
 
-/// Says whose angle is wrong, as far as that shows.
+/// Names the joint with the angle error, if the data tell.
 fn name_joint(found: &mut Diagnosis, link: Option<Link>) {
-    // Of two fingers it is said which of them, and the path shows no more.
+    // With two fingers, the cause names the finger. The path shows no more.
     let of_the_finger = |c: &&mut Cause| c.id == "joint-offset" && c.parameters.iter().any(|p| p.name == "delta");
     let Some(cause) = found.causes.iter_mut().find(of_the_finger) else { return };
     cause.evidence += match link {
@@ -198,7 +198,7 @@ pub fn plain_crank() -> Model {
     [&Weight as &dyn Law, &LoadFriction, &ViscousFriction].map(|law| Effect::new(law, &[1.0])).to_vec()
 }
 
-/// A weight that the sidecar states is no part of what is fitted.
+/// Takes a weight that the sidecar states out of the fitted laws.
 fn known_weight(recording: &Recording, model: &mut Model) -> Model {
     let known = &recording.meta.known;
     let weight = known.get("weight_N").copied().or_else(|| Some(known.get("mass_kg")? * recording.meta.gravity()));

@@ -1,4 +1,5 @@
-//! The causes that act in the force, as columns over the rows of a track: each out of its law in `haptics::law`.
+//! Candidate library of the force: the regressor of each cause over the rows of a track, made from its law in
+//! `haptics::law`.
 
 mod springs;
 
@@ -17,38 +18,38 @@ use haptics::law::{
     Motion, PositionRipple, QuadraticDrag, Stribeck, ViscousFriction, Weight,
 };
 
-/// Least share of the friction that bends before it slides, and the least that passes for all of it.
+/// Least share of the friction that bends before it slides, and least share that counts as all of it.
 const LEAST_BENT: f64 = 0.3;
 const ALL_BENT: f64 = 0.65;
-/// A part bends over a way of so many times the shortest that is felt.
+/// Presliding distance from which only a share of the friction may bend, in multiples of the shortest that is felt.
 const LONG_BENT: f64 = 6.0;
-/// Least share of the force that lies behind a gap.
+/// Least share of the force that a gap may cut off.
 const LEAST_BEHIND: f64 = 0.4;
-/// More than all of it is none of the two: another way or gap would be nearer.
+/// Largest admissible share. Beyond it, another presliding distance or gap would fit better.
 const MOST: f64 = 1.7;
 
-/// Ripples of fewer rows than this are averaged over each row.
+/// Length of a ripple, in rows, below which it is averaged over each row.
 const SHORT_RIPPLE: f64 = 25.0;
 
-/// Shape of presliding that gives back along a straight line.
+/// Shape parameter of presliding that springs back along a straight line.
 const STRAIGHT: f64 = 0.5;
 
-/// Everything that columns are made of.
+/// Data from which the regressors are made.
 pub struct Dictionary<'a> {
     pub track: &'a Track,
-    /// What the model without any cause predicts, one a row, …
+    /// Force predicted by the base model, one per row.
     pub predicted: &'a [f64],
-    /// … and the dry and viscous part of it.
+    /// Dry and viscous part of that prediction.
     pub resisting: &'a [f64],
     /// The dry friction at each row if it slid in the positive direction.
     pub dry: &'a [f64],
-    /// Forces of which everything is known: they tell the gain of the sensor.
+    /// Forces that are completely known: they determine the gain of the sensor.
     pub fixed: &'a [Vec<f64>],
-    /// Causes that belong to the model already.
+    /// Causes that already belong to the model.
     pub without: &'a [&'a str],
     /// The values that are tried.
     pub grid: &'a Grid,
-    /// What was made before on this track.
+    /// Regressors already made on this track.
     pub columns: &'a Columns,
 }
 
@@ -65,7 +66,7 @@ impl Dictionary<'_> {
         self.made(false)
     }
 
-    /// Those alone that have values which were searched for.
+    /// Only the candidates that have searched values.
     pub fn searched(&self) -> Vec<Candidate> {
         self.made(true)
     }
@@ -73,7 +74,7 @@ impl Dictionary<'_> {
     fn made(&self, is_searched: bool) -> Vec<Candidate> {
         let mut all = Vec::new();
         self.friction(&mut all);
-        // Nothing is searched for in what moves.
+        // The moving part has no searched values.
         if !is_searched {
             self.motion(&mut all);
         }
@@ -95,7 +96,7 @@ impl Dictionary<'_> {
         Units { force: if angular { "N m" } else { "N" }, length: if angular { "rad" } else { "m" }, angular }
     }
 
-    /// A column over the rows along the motion; free rows feel nothing of the object.
+    /// A regressor over the rows along the motion, 0 in free rows.
     fn column(&self, of: &dyn Fn(&Row) -> f64) -> Vec<f64> {
         let rows = self.track.rows.iter();
         rows.map(|r| if r.place == Place::Along { of(r) } else { 0.0 }).collect()
@@ -106,7 +107,7 @@ impl Dictionary<'_> {
         self.columns.of(self.track, &Effect::new(law, values))
     }
 
-    /// The same of a law of the place, and of the direction at most in proportion.
+    /// The same for a law of position that depends on the direction in proportion, if at all.
     fn law_of_place(&self, law: &'static dyn Law, values: &[f64]) -> Column {
         self.columns.of_place(self.track, &Effect::new(law, values))
     }
@@ -130,7 +131,8 @@ impl Dictionary<'_> {
             all.push(self.plain(&LoadFriction, &[1.0], 0).positive());
             all.push(self.plain(&FrictionAsymmetry, &[0.0, 0.0, 1.0], 2));
         }
-        // What goes one way along a coordinate tells a constant from dry friction by the guess of its direction where it is slow, which is none.
+        // With motion in one direction, a constant and dry friction differ only where the direction is uncertain, which
+        // is no evidence.
         let is_friction = !self.track.planar && self.track.goes_one_way();
         if self.track.zero != Zero::OfTheSensor && !is_friction {
             all.push(self.dry_asymmetry());
@@ -138,21 +140,22 @@ impl Dictionary<'_> {
         all.push(self.plain(&FrictionAsymmetry, &[0.0, 1.0, 0.0], 1));
         for (vs, alpha) in self.grid.stribeck.iter().copied() {
             let falls = self.plain(&Stribeck, &[1.0, vs, alpha], 0).at("vs", vs, self.unit(&Stribeck, 1)).positive();
-            // The Gaussian is the form that is meant where none is said.
+            // Without an exponent, the Gaussian form is meant.
             all.push(if alpha > 0.0 { falls.at("alpha", alpha, "1") } else { falls });
         }
         all.push(self.plain(&QuadraticDrag, &[1.0], 0).positive());
     }
 
-    /// Dry friction by direction. Along one coordinate it is the very constant that a bias of the sensor is: they differ where the object
-    /// stands, and there friction holds anything. What a guess of the direction makes of them at reversals is no difference.
+    /// Dry friction by direction. Along one coordinate its regressor is the constant that a sensor bias also is. The
+    /// two differ only in standing rows, where friction may take any value, and at reversals, where the direction is
+    /// uncertain. Neither counts as a difference.
     fn dry_asymmetry(&self) -> Candidate {
         let by_direction = self.plain(&FrictionAsymmetry, &[1.0, 0.0, 0.0], 0);
         if self.track.planar {
             return by_direction;
         }
         let columns = vec![Column::new(self.column(&|_| 1.0))];
-        // The sensor is said first.
+        // The sensor bias takes precedence.
         Candidate { columns, cost: by_direction.cost + HARDLY, ..by_direction }
     }
 
@@ -161,8 +164,8 @@ impl Dictionary<'_> {
         all.push(Candidate::one("time-delay", Kind::Instrument, "tau", "s", self.late()));
     }
 
-    /// What a delay of the force by one second adds along the motion: the rate of the predicted force (the measured one's noise would
-    /// explain itself), and the load that turns with the arm meanwhile.
+    /// Effect of a force delay of one second along the motion: the rate of the predicted force, and of the load that
+    /// turns with the arm. The rate of the measured force is not used, because its noise would explain itself.
     fn late(&self) -> Vec<f64> {
         let rows = &self.track.rows;
         let radius = self.track.radius_m.unwrap_or(1.0);
@@ -176,7 +179,7 @@ impl Dictionary<'_> {
         column
     }
 
-    /// Rows along the motion that follow each other without a gap.
+    /// Segments of rows along the motion.
     fn pieces(&self) -> Vec<std::ops::Range<usize>> {
         let mut pieces: Vec<std::ops::Range<usize>> = Vec::new();
         for i in self.track.along() {
@@ -188,8 +191,8 @@ impl Dictionary<'_> {
         pieces
     }
 
-    /// Rates of the predicted force, through the window that the acceleration was seen through: what that takes off an inertia's force would
-    /// otherwise pass for a delay.
+    /// Rates of the predicted force, through the window that the acceleration was seen through: what that takes off an
+    /// inertia's force would otherwise pass for a delay.
     fn rates(&self, range: std::ops::Range<usize>) -> Vec<f64> {
         let time_s: Vec<f64> = self.track.rows[range.clone()].iter().map(|r| r.motion.time_s).collect();
         let force = &self.predicted[range];
@@ -211,7 +214,7 @@ impl Dictionary<'_> {
             all.extend(super::hung::tilt(self.track));
         }
         all.extend(free::tilt(self.track));
-        // A short one changes within a row.
+        // A short ripple changes within a row.
         let short = SHORT_RIPPLE * self.track.quantile(0.9, |r| r.motion.velocity.abs()) * self.track.period_s;
         self.grid.ripples.iter().for_each(|length| self.ripple(all, *length, *length < short));
         self.springs(all);
@@ -231,7 +234,8 @@ impl Dictionary<'_> {
         all.push(ripple.at("lambda", length, units.length));
     }
 
-    /// Gravity that the model does not have: across the arm's weight; for an angle without any gravity in the model, both parts.
+    /// Gravity that the model does not have: across the arm's weight; for an angle without any gravity in the model,
+    /// both parts.
     fn gravity(&self, all: &mut Vec<Candidate>, radius: f64) {
         let part = |values: &[f64]| self.law_of_place(&EccentricMass, values);
         if self.track.planar {
@@ -244,7 +248,7 @@ impl Dictionary<'_> {
         }
     }
 
-    /// What resists at a place in both directions, and what pushes there.
+    /// Local resistance in both directions, and a push at a place.
     fn local(&self, all: &mut Vec<Candidate>) {
         let units = self.units();
         for (place, width) in self.grid.places.iter().copied() {
@@ -273,7 +277,7 @@ impl Dictionary<'_> {
                 1.0 - Backlash.engaged(motion, values, memory)
             });
             let felt = f64::from(u8::from(way > self.grid.felt));
-            // Behind the gap lies what resists, or everything.
+            // A gap cuts off the resisting part of the force, or all of it.
             for (behind, whole) in [(self.resisting, false), (self.predicted, true)] {
                 let mut column: Vec<f64> = gap.iter().zip(behind).map(|(g, f)| -felt * g * f).collect();
                 super::stuck::plays(self.track, way, whole, &mut column);
@@ -284,20 +288,21 @@ impl Dictionary<'_> {
         }
     }
 
-    /// Friction of the model that bends by `way` before it slides: what it lacks against sliding at once.
+    /// Candidate by which the model's friction bends over `way` before it slides: the difference from sliding at once.
     fn bent(&self, way: f64, shape: f64) -> Candidate {
         let values = [1.0, 1.0 / way, shape];
         let bent = self.remembered(&Hysteresis, &values, &|motion, memory, _| memory[0] - motion.direction);
         let felt = f64::from(u8::from(way > self.grid.felt));
         let mut column: Vec<f64> = bent.iter().zip(self.dry).map(|(b, d)| felt * b * d).collect();
         super::stuck::bends(&self.track.rows, &values, &mut column);
-        // A part of the friction must be felt beyond doubt: what sticks makes a short bend of the noise of its way.
+        // Presliding of only part of the friction needs strong evidence: noise of the path during sticking looks like a
+        // short bend.
         let least = if way > LONG_BENT * self.grid.felt { LEAST_BENT } else { ALL_BENT };
         let hysteresis = Candidate::one("hysteresis", Kind::Plant, "share", "1", column);
         hysteresis.shaped(Shape::Share { least, whole: ALL_BENT, most: MOST }).at("way", way, self.units().length)
     }
 
-    /// A column of a law with memory, which starts anew at every stretch and lives between the rows.
+    /// A regressor of a law with memory, evaluated between the rows; its memory is cleared at every segment.
     fn remembered(
         &self,
         law: &'static dyn Law,
@@ -378,14 +383,14 @@ impl Dictionary<'_> {
                 all.push(self.plain(&MassChange, &[0.0, 1.0, 0.0, 0.0, tau], 1).at("tau", tau, "s"));
             }
             for start in self.grid.starts.iter().copied() {
-                // A weight that is another one from `start` on.
+                // A step of the weight at `start`.
                 let column = self.column(&|r| {
                     if r.motion.time_s >= start { Weight.force(&r.motion, &[1.0, 0.0, 0.0, 0.0, 0.0]) } else { 0.0 }
                 });
                 all.push(Candidate::one("mass-change", Kind::Plant, "step", units.force, column).at("t0", start, "s"));
             }
         }
-        // Friction that grows or falls in proportion to the model's own, slowly or at once.
+        // A change of friction in proportion to the model's own, slow or sudden.
         let of_dry = |effect: &Effect| -> Vec<f64> {
             self.columns.of(self.track, effect).iter().zip(self.dry).map(|(w, d)| w * d).collect()
         };
@@ -398,7 +403,7 @@ impl Dictionary<'_> {
             let step = Effect::new(&FrictionChange, &[0.0, 1.0, 0.0, start, 0.0]);
             all.push(change(of_dry(&step)).at("t0", start, "s"));
         }
-        // … or with what else was recorded, all of what resists or what is dry alone.
+        // Friction that changes with another recorded channel: all of the resistance, or the dry part alone.
         for (name, unit, values) in self.track.extras() {
             let goes = |level: &dyn Fn(usize) -> f64| -> Vec<f64> {
                 let rows = self.track.rows.iter().enumerate();
@@ -435,7 +440,7 @@ impl Dictionary<'_> {
             let id = "force-cross-axis";
             all.push(Candidate::one(id, Kind::Instrument, "kappa_xy", "1", cross(Vec2::x(), Vec2::y())));
             all.push(Candidate::one(id, Kind::Instrument, "kappa_yx", "1", cross(Vec2::y(), Vec2::x())));
-            // The whole sensor is turned: Fx − κ Fy and Fy + κ Fx.
+            // The whole sensor is rotated: Fx − κ Fy and Fy + κ Fx.
             let turned = every(&|r| r.along.y * r.force.x - r.along.x * r.force.y);
             let turned = Candidate::one(id, Kind::Instrument, "kappa_turned", "rad", turned);
             all.push(Candidate { cost: turned.cost + HARDLY, ..turned });
@@ -455,11 +460,12 @@ impl Dictionary<'_> {
     }
 }
 
-/// What one of two causes costs more that are one and the same in some recordings, so that it is always the other one that is said first there:
-/// a turned sensor where the load keeps its sign (as friction by direction), friction by direction along one coordinate (as a bias).
+/// Penalty of one of two causes that are equivalent in some recordings, so that the other one is always named first.
+/// Examples are a rotated sensor where the load keeps its sign, equivalent to friction by direction, and friction by
+/// direction along one coordinate, equivalent to a bias.
 const HARDLY: f64 = 0.02;
 
-/// The dry friction at each row if it slid in the positive direction, where all that is known is what resists.
+/// Dry friction at each row if it slid in the positive direction, from the resisting force alone.
 pub fn dry_of(track: &Track, resisting: &[f64]) -> Vec<f64> {
     let rows = track.rows.iter().zip(resisting);
     rows.map(|(r, f)| if r.motion.direction.abs() > 0.05 { f / r.motion.direction } else { f.abs() }).collect()

@@ -1,5 +1,5 @@
-//! Diagnosis of a transmission: an input that drives an output through gears or a cable. The model is rigid and without friction; lost
-//! motion, give under the load and friction of the input are what it may lack.
+//! Diagnosis of a transmission: an input that drives an output through gears or a cable. The model is rigid and without
+//! friction; lost motion, give under the load and friction of the input are what it may lack.
 
 mod beside_load;
 mod fine;
@@ -22,18 +22,19 @@ use haptics::law::Kind;
 use haptics::recording::Recording;
 use rows::{Columns, ROW_HZ, Row, Seen, columns};
 
-/// The work of the input is looked at in so many equal parts of a recording.
+/// Number of equal parts of a recording in which the work of the input is evaluated.
 const PARTS: usize = 10;
-/// It is taken and not given for certain when its mean is so many standard errors below zero, and so in nearly all of the parts.
+/// It is taken and not given for certain when its mean is so many standard errors below zero, and so in nearly all of
+/// the parts.
 const SURELY: f64 = 6.0;
 const NEARLY_ALL: f64 = 0.9;
 
-/// Whether this is what [`driven`] is for.
+/// True if [`driven`] handles these recordings.
 pub fn is_driven(recordings: &[Recording]) -> bool {
     recordings.iter().all(|r| r.time_s.is_some() && columns(r).is_some())
 }
 
-/// One channel's comparison on the rows that it could be made on.
+/// Comparison of one channel, with its rows.
 struct Side {
     compared: Compared,
     rows: Vec<Row>,
@@ -91,7 +92,7 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     };
     let shown = |f: &Found<'_>| shows(f);
     let mut parts = Vec::new();
-    // The force is what a trainee feels: its figures stand for the whole.
+    // The force is the quantity that a trainee feels, so its figures represent the whole diagnosis.
     if let Some(force::Force { side, input, .. }) = &force {
         parts.push(side.compared.part(&shown, &force_states, &|_| None).running(input));
     }
@@ -106,13 +107,14 @@ pub fn driven(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     Ok(found)
 }
 
-/// Counts the output the way the input goes, and the force as what drives the input. Gears and cables may run either way, which is no fault; but
-/// nothing that only rubs and gives gives work back for good.
+/// Makes the output count in the input's direction, and the force positive if it drives the input. Gears and cables may
+/// reverse the direction, which is no fault. The sign of the force follows from its work: friction and compliance
+/// cannot return net work.
 fn turn(rows: &mut [Row], names: &Columns, beside: &mut Beside) {
     let (mut ratio, mut work) = (0.0, Vec::new());
     for own in rows.chunk_by(|a, b| a.recording == b.recording) {
         let mean = |of: &dyn Fn(&Row) -> f64| own.iter().map(of).sum::<f64>() / own.len() as f64;
-        // About the means: zeros of sensors differ.
+        // Relative to the means, because sensors have different zeros.
         let (input, output) = (mean(&|r| r.input), mean(&|r| r.output));
         ratio += own.iter().map(|r| (r.input - input) * (r.output - output)).sum::<f64>();
         let force = mean(&|r| r.force.unwrap_or(0.0));
@@ -142,7 +144,7 @@ fn turn(rows: &mut [Row], names: &Columns, beside: &mut Beside) {
     }
 }
 
-/// What the rows of both channels are seen against.
+/// Variables of the plots of both channels.
 fn view(rows: &[Row], names: &Columns) -> View {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let load = |r: &Row| r.load.or(r.force).unwrap_or(0.0);
@@ -152,7 +154,7 @@ fn view(rows: &[Row], names: &Columns) -> View {
     View { way: of(&|r| r.rate), is_angular: names.unit == "rad", ..View::of(recording, over) }
 }
 
-/// What a cause of a transmission is best seen against.
+/// Variable that best shows a cause of a transmission.
 fn best_seen(id: &str) -> Variable {
     match id {
         "coulomb-friction" | "viscous-friction" | "quadratic-drag" | "time-delay" => Variable::Velocity,
@@ -190,7 +192,7 @@ fn generic(rows: &[Row], low: f64, high: f64) -> Vec<Candidate> {
     found
 }
 
-/// What in the residual shows a cause.
+/// Sentence on how the residual shows a cause.
 fn shows(found: &Found<'_>) -> String {
     let value = found.parameters.first().map_or(0.0, |p| p.value);
     match found.candidate.id {

@@ -1,4 +1,4 @@
-//! From a comparison to an answer in words.
+//! Builds an answer in words from a comparison.
 
 use super::answer::verdict;
 use super::atlas::Atlas;
@@ -25,23 +25,23 @@ use super::unseen::unseen;
 use crate::words::amount;
 use haptics::law::{Coordinate, Law, ReturnSpring, entries};
 
-/// A generic term above this score means that something is left that no known cause explains.
+/// Evidence of a generic term from which the residual has an unexplained part.
 const UNEXPLAINED: f64 = 20.0;
-/// What is left in the end is never so many times the noise of the force where the model is right, whatever the noise of the motion adds to it: where that
-/// noise was seen, and where it is told by how fast it changes …
+/// Largest ratio of final residual to force noise under a correct model, whose residual also contains noise of the
+/// motion. Two values: for a noise that was measured in free rows, and for one estimated from fast changes.
 const MUCH: f64 = 1.6;
 const MUCH_UNSEEN: f64 = 8.0;
-/// … and it is no noise if it would be so white by chance.
+/// The final residual is not white if noise would have this p-value or less.
 const SURELY_NOT_WHITE: f64 = 1e-12;
-/// An unnamed term that makes held-out rows so many times worse is none.
+/// Ratio of held-out residuals from which an unnamed term is rejected.
 const WORSE: f64 = 1.1;
-/// A rival nearer than this leaves the cause open: its probability is then above a twentieth.
+/// Evidence margin below which a rival keeps the cause ambiguous: its probability is then above a twentieth.
 const OPEN: f64 = 6.0;
 
-/// The channel of what moves along one coordinate.
+/// Channel of a motion along one coordinate.
 pub(super) const FORCE: &str = "force";
 
-/// Two causes that are one and the same regressor, whatever the motion.
+/// Two causes with the same regressor for every motion.
 pub(super) const TWINS: [(&str, &str, &str); 1] = [(
     "eccentric-mass",
     "gravity-tilt",
@@ -130,7 +130,7 @@ pub fn explain(track: &Track, model: &Model, study: &Study, geometries: &[Study]
     }
 }
 
-/// What was found in a path and not in the force.
+/// Adds the causes that were found in a path but not in the force.
 fn of_path(geometry: &Study, found: &mut Vec<(f64, Cause)>, alternatives: &mut Vec<Alternative>) {
     for (k, chosen) in geometry.chosen.iter().enumerate() {
         let id = geometry.candidates[chosen.candidate].id;
@@ -143,8 +143,8 @@ fn of_path(geometry: &Study, found: &mut Vec<(f64, Cause)>, alternatives: &mut V
     }
 }
 
-/// What is left in the `end` where that is far more than the noise of the force and no noise (`white`: probability that it would be as white by chance),
-/// in a sentence.
+/// Sentence on the final residual (`end`) if it is far above the force noise and not white. `white`: p-value of its
+/// whiteness.
 fn much_left(track: &Track, end: f64, white: f64) -> Option<String> {
     let much = if track.noise_is_measured { MUCH } else { MUCH_UNSEEN };
     let times = end / track.force_noise;
@@ -154,17 +154,17 @@ fn much_left(track: &Track, end: f64, white: f64) -> Option<String> {
     })
 }
 
-/// What the comparison is of, in words.
+/// Name of the compared channel.
 fn channel(track: &Track) -> &'static str {
     if track.freely.is_some() { "motion" } else { "force" }
 }
 
-/// What to record next, if anything is `open`.
+/// Next experiment, if a question is `open`.
 fn next(track: &Track, model: &Model, study: &Study, open: &[Alternative]) -> Option<NextExperiment> {
     if track.freely.is_some() { free::next(open) } else { propose(track, model, study, open) }
 }
 
-/// Faults first; causes of the force in the order in which they were found, those of the path where their score puts them.
+/// Order of the causes: faults first, causes of the force as they were found, and those of the path by their evidence.
 fn in_order(faults: Vec<Cause>, found: Vec<(f64, Cause)>) -> Vec<Cause> {
     let mut scores: Vec<f64> = vec![f64::INFINITY; faults.len()];
     let mut causes = faults;
@@ -180,10 +180,10 @@ fn in_order(faults: Vec<Cause>, found: Vec<(f64, Cause)>) -> Vec<Cause> {
     causes
 }
 
-/// What no known cause explains: the generic term and its score.
+/// Generic term that no known cause explains, with its evidence.
 pub(super) fn strange(study: &Study, picks: &[usize]) -> Option<(usize, f64)> {
     let selection = Selection::new(&study.system, &study.candidates, UNEXPLAINED);
-    // What makes rows worse that took no part in the fit is not there: it was bent to a few others.
+    // A term that increases the held-out residual is an overfit to a few other rows.
     let worse = |candidate: usize| {
         let gain = gain_between(study, picks, &[picks, &[candidate]].concat(), 0.0);
         gain.heldout_rms_after > WORSE * gain.heldout_rms_before
@@ -230,7 +230,7 @@ fn cause(study: &Study, k: usize, floor: f64, (channel, unit): (&str, &str)) -> 
     }
 }
 
-/// Likelihood of everything that could stand in a cause's place, in units of its own; a twin is as likely as itself.
+/// Sum of the likelihoods of a cause and its rivals, relative to its own. An equivalent cause counts as one.
 fn total_odds(study: &Study, chosen: &Chosen) -> f64 {
     let own = study.candidates[chosen.candidate].id;
     let rival = |id: &str| chosen.rivals.iter().any(|(c, _)| study.candidates[*c].id == id);
@@ -239,7 +239,7 @@ fn total_odds(study: &Study, chosen: &Chosen) -> f64 {
     1.0 + twins as f64 + chosen.rivals.iter().map(|(_, behind)| (-0.5 * behind).exp()).sum::<f64>()
 }
 
-/// By chance, among all that were tried.
+/// Probability of this evidence by chance, among all candidates that were tried.
 pub(super) fn p_value(study: &Study, chosen: &Chosen) -> f64 {
     let tried = study.candidates.iter().filter(|c| c.expression.is_none()).count() as f64;
     (tried * chi_square_tail(chosen.lambda, study.candidates[chosen.candidate].cost)).min(1.0)
@@ -256,7 +256,7 @@ pub(super) fn parameters(study: &Study, k: usize) -> Vec<CauseParameter> {
         .map(|(i, (name, unit))| {
             let (value, error) = (settled.values[first + i], settled.std_errors[first + i]);
             match own.id {
-                // The stiffness is asked for, the give was found.
+                // The answer states the stiffness, while the estimate is a compliance.
                 _ if own.channel.is_some() => of_channel(own, name, value, error),
                 "pad-compliance" => number("k", 1.0 / value.max(1e-12), error / (value * value).max(1e-24), "N/m"),
                 _ => number(name, value, error, unit),
@@ -268,13 +268,14 @@ pub(super) fn parameters(study: &Study, k: usize) -> Vec<CauseParameter> {
     found
 }
 
-/// What goes with a channel is so much for every unit of that.
+/// Parameter of an effect in proportion to a recorded channel, per unit of that channel.
 fn of_channel(candidate: &Candidate, name: &str, value: f64, std_error: f64) -> CauseParameter {
     let (channel, unit) = candidate.channel.clone().unwrap_or_default();
     number(&format!("{name} with {channel}"), value, std_error, &format!("1/{unit}"))
 }
 
-/// What a spring that hardens is for people: stiffness, force, hardening and place out of two cubics; errors to first order.
+/// Parameters of a hardening spring: stiffness, force, hardening and rest position, from the coefficients of two
+/// cubics. Errors are to first order.
 fn of_hardening_spring(track: &Track, study: &Study, k: usize) -> Option<Vec<CauseParameter>> {
     let candidate = &study.candidates[study.chosen[k].candidate];
     if candidate.id != "return-spring" || candidate.columns.len() != 4 {
@@ -323,7 +324,7 @@ pub(super) fn rivals(study: &Study, chosen: &Chosen) -> Vec<Alternative> {
         })
         .collect();
     for (a, b, why) in TWINS {
-        // What has columns of its own here is no twin here.
+        // A cause that has a regressor of its own here is not equivalent here.
         if own == a && study.candidates.iter().all(|c| c.id != b) {
             found.push(Alternative {
                 id: b.to_owned(),
@@ -336,7 +337,7 @@ pub(super) fn rivals(study: &Study, chosen: &Chosen) -> Vec<Alternative> {
     found
 }
 
-/// What goes with none of the laws, with its amplitudes and what it would be worth.
+/// Unnamed cause for a generic term, with its amplitudes and gain, and the warning about it.
 pub(super) fn unnamed(study: &Study, (candidate, score): (usize, f64), (floor, unit): (f64, &str)) -> (Cause, String) {
     let picks = study.picks();
     let with: Vec<usize> = picks.iter().copied().chain([candidate]).collect();
@@ -351,7 +352,7 @@ pub(super) fn unnamed(study: &Study, (candidate, score): (usize, f64), (floor, u
         parameters.extend(names.iter().zip(first..).map(|(name, i)| {
             number(name, solved.values[i], (variance * solved.inverse[(i, i)]).sqrt(), term.linear[i - first].1)
         }));
-        // Other terms that leave as little.
+        // Other generic terms with as small a residual.
         let others = (0..study.candidates.len()).filter(|c| study.candidates[*c].expression.is_some());
         odds = others
             .filter_map(|c| {
@@ -377,7 +378,7 @@ pub(super) fn unnamed(study: &Study, (candidate, score): (usize, f64), (floor, u
     (cause, warning)
 }
 
-/// What is left of paths that no known cause explains, one comparison, term and score a path.
+/// Adds the unexplained terms of paths: a comparison, its generic term and the term's evidence for each path.
 pub fn add_of_path(found: &mut Diagnosis, strange: &[(Study, usize, f64)]) {
     for (study, term, score) in strange.iter().filter(|(.., score)| *score > UNEXPLAINED) {
         let (cause, warning) = unnamed(study, (*term, *score), (0.0, "m"));

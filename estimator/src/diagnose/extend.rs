@@ -1,4 +1,4 @@
-//! The model with what was found in it: laws with values, as a world runs them.
+//! Extended model: the base model with the causes found, as laws with values that a world can run.
 
 use super::candidate::{Candidate, about_its_zero};
 use super::force::Model;
@@ -13,8 +13,8 @@ use haptics::law::{
     LocalResistance, MassChange, Motion, PositionRipple, QuadraticDrag, ReturnSpring, Role, Stribeck, ViscousFriction,
 };
 
-/// The model's laws refitted beside the chosen causes, and the plant causes among these as laws of their own. Instruments' faults are
-/// no part of a world.
+/// The model's laws refitted beside the chosen causes, and the plant causes among these as laws of their own.
+/// Instruments' faults are no part of a world.
 pub fn effects(track: &Track, model: &Model, study: &Study) -> Vec<Effect> {
     let Some(settled) = settled(study) else { return model.clone() };
     let searched: Vec<Vec<f64>> =
@@ -23,7 +23,7 @@ pub fn effects(track: &Track, model: &Model, study: &Study) -> Vec<Effect> {
     made(track, model, &candidates, &settled.values, &searched).0
 }
 
-/// The same for some of the candidates; nothing where a plant cause among them has no law that a world runs.
+/// The same for some of the candidates; `None` if a plant cause among them has no law in a world.
 pub fn effects_of(
     track: &Track,
     model: &Model,
@@ -40,7 +40,8 @@ pub fn effects_of(
     is_whole.then_some(found)
 }
 
-/// The laws, and whether every plant cause is among them. `values`: of the model's columns and then of the causes' ones; `searched`: of each cause.
+/// The laws, and true if every plant cause is among them. `values`: of the model's regressors, then of the causes'
+/// ones; `searched`: searched values of each cause.
 fn made(
     track: &Track,
     model: &Model,
@@ -54,8 +55,9 @@ fn made(
     beside_model(track, found, &dry, causes, &values[values.len() - of_causes..], searched)
 }
 
-/// Laws of causes that were found in a model without dry friction of its own (that friction before what is a share of it), or nothing where one has
-/// none. `dry_n`: the friction that the shares are of, N; `values`: of the causes alone.
+/// Laws of causes found beside a model without dry friction of its own. Dry friction must precede the causes that are a
+/// share of it. `None` if a cause has no law. `dry_n`: friction to which the shares refer, N; `values`: of the causes
+/// alone.
 pub fn without_friction(
     track: &Track,
     laws: Vec<Effect>,
@@ -82,7 +84,7 @@ fn beside_model(
     for (candidate, searched) in causes.iter().zip(searched) {
         let values = &values[at..at + candidate.columns.len()];
         if candidate.id == Hysteresis.id() {
-            // What bends before it slides is taken from what slides at once.
+            // Friction that bends before it slides is part of the dry friction, and is subtracted from it.
             found.iter_mut().filter(|e| e.law().is_dry()).for_each(|e| *e = scaled(e, (1.0 - values[0]).max(0.0)));
         }
         let laws = match dry.law(candidate, values, searched) {
@@ -96,7 +98,7 @@ fn beside_model(
     (free::whole(track, found), is_whole)
 }
 
-/// The dry friction of a model: the same everywhere, N or N m, and in proportion to the load.
+/// Dry friction of a model: a constant part, N or N m, and a part in proportion to the load.
 struct Dry {
     level_n: f64,
     mu: f64,
@@ -111,7 +113,7 @@ impl Dry {
         Self { level_n: at(0.0).max(0.0), mu: (at(1.0) - at(0.0)).max(0.0) }
     }
 
-    /// A cause that is a share of the dry friction, as laws: of either part that there is. None for other causes.
+    /// Laws of a cause that is a share of the dry friction, one for each part of that friction. Empty for other causes.
     fn law(&self, candidate: &Candidate, values: &[f64], searched: &[f64]) -> Vec<Effect> {
         let (share, searched) = (values[0], |k: usize| searched.get(k).copied().unwrap_or(0.0));
         let starts = candidate.searched.first().is_some_and(|s| s.name == "t0");
@@ -123,7 +125,7 @@ impl Dry {
                 let everywhere = Effect::new(&Hysteresis, &[level, level / way, searched(1)]);
                 (everywhere, Effect::new(&LoadHysteresis, &[share * self.mu, way, searched(1)]))
             }
-            // No law of a world knows what else was recorded.
+            // No law of a world depends on other recorded channels.
             "friction-change" if candidate.channel.is_none() => (
                 Effect::new(&FrictionChange, &changes(self.level_n)),
                 Effect::new(&LoadFrictionChange, &changes(self.mu)),
@@ -152,7 +154,7 @@ fn scaled(effect: &Effect, share: f64) -> Effect {
     scaled
 }
 
-/// A plant cause of the force as a law, but for a share of the dry friction. `weight_n`: weight of the model, N or N m.
+/// Law of a plant cause that is no share of the dry friction. `weight_n`: weight of the model, N or N m.
 fn effect(candidate: &Candidate, (values, searched): (&[f64], &[f64]), track: &Track, weight_n: f64) -> Option<Effect> {
     if candidate.kind != Kind::Plant {
         return None;
@@ -177,7 +179,7 @@ fn effect(candidate: &Candidate, (values, searched): (&[f64], &[f64]), track: &T
         "gravity-tilt" => free::tilted(track, first),
         "position-ripple" => {
             let (cosine, sine) = (first, values.get(1).copied().unwrap_or(0.0));
-            // cos(x − π/2) is the sine's column.
+            // cos(x − π/2) is the regressor of the sine.
             of(&PositionRipple, &[cosine.hypot(sine), searched(0), (-sine).atan2(cosine)])
         }
         "return-spring" if named("k3") => of(&ReturnSpring, &[0.0, 0.0, first, searched(0)]),
@@ -197,7 +199,7 @@ fn effect(candidate: &Candidate, (values, searched): (&[f64], &[f64]), track: &T
         "backlash" => of(&Backlash, &[searched(0)]),
         "mass-change" if named("rate") => of(&MassChange, &[0.0, first, 0.0, 0.0, searched(0)]),
         "mass-change" => {
-            // A step: all of it within a sample.
+            // A step takes place within a sample.
             let step_s = track.period_s;
             of(&MassChange, &[0.0, first / step_s, searched(0), step_s])
         }
@@ -205,7 +207,7 @@ fn effect(candidate: &Candidate, (values, searched): (&[f64], &[f64]), track: &T
     }
 }
 
-/// A spring's k, f0, k3 and place, out of the columns' values.
+/// Parameters of a spring, k, f0, k3 and rest position, from the coefficients of its regressors.
 pub fn spring(values: &[f64], track: &Track) -> [f64; 4] {
     let (low, high) = (track.quantile(0.0, |r| r.motion.position), track.quantile(1.0, |r| r.motion.position));
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low).max(1e-12));
@@ -231,7 +233,7 @@ mod tests {
         let bends = Candidate::one("hysteresis", Kind::Plant, "share", "1", Vec::new()).at("way", 1e-4, "m");
         let laws = Dry::of(&model).law(&bends, &[0.8], &[1e-4]);
         assert!(laws.len() == 2 && (total(&laws, 0.0) - 0.8 * (0.1 + 0.2 * 5.0)).abs() < 1e-12, "{laws:?}");
-        // Under another load the same share.
+        // The same share under another load.
         let loaded = Dry::of(&model[1..2]).law(&bends, &[0.8], &[1e-4]);
         assert!(loaded.len() == 1 && (total(&loaded, 0.0) - 0.8).abs() < 1e-12, "{loaded:?}");
         let change = || Candidate::one("friction-change", Kind::Plant, "relative change", "1", Vec::new());

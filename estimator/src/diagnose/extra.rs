@@ -1,13 +1,15 @@
-//! Channels beside motion and force (a temperature, a voltage): what slowly changes may change friction, or the force itself.
+//! Covariates: slowly changing channels beside motion and force (a temperature, a voltage) that may affect friction or
+//! the force sensor.
 
 use crate::log::units::{is_program_name, split};
 use haptics::recording::Recording;
 
-/// A channel counts as slow when it changes over this time …
+/// Time over which the changes of a slow channel are measured, s.
 const SLOW_S: f64 = 1.0;
-/// … by less than this share of its whole spread (both root mean squares): what follows the motion itself is no suspect.
+/// Largest ratio of the change over that time to the total spread (both RMS) of a slow channel. A faster channel
+/// follows the motion itself and is no candidate.
 const SLOW_SHARE: f64 = 0.6;
-/// Names of people's own marks.
+/// Names of channels for user annotations.
 const MARKS: [&str; 3] = ["trial", "label", "state"];
 
 /// Quantities of motion, force and time.
@@ -17,16 +19,16 @@ const FURTHER: [&str; 19] =
 /// A slow channel of one recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extra {
-    /// As the recording has it, e.g. `temperature_degC`.
+    /// Name in the recording, for example `temperature_degC`.
     pub name: String,
-    /// Its unit, as its name says.
+    /// Unit by its name.
     pub unit: String,
     time_s: Vec<f64>,
     values: Vec<f64>,
 }
 
 impl Extra {
-    /// Its value so long after the recording's start, s.
+    /// Value at this time after the recording's start, s.
     pub fn at(&self, time_s: f64) -> f64 {
         let after = self.time_s.partition_point(|t| *t < time_s).min(self.time_s.len() - 1);
         let before = after.saturating_sub(1);
@@ -69,7 +71,7 @@ pub fn of(recording: &Recording) -> Vec<Extra> {
     recording.channels.iter().filter_map(extra).collect()
 }
 
-/// Whether neighbours are much more alike than any two.
+/// True if the RMS change between neighbours is small relative to the spread.
 fn is_slow(values: &[f64]) -> bool {
     let n = values.len() as f64;
     if values.len() < 8 {

@@ -1,33 +1,34 @@
-//! Motion between the rows: calmed a little, thinned out or filled in.
+//! Motion between the rows: slightly smoothed, thinned out or interpolated.
 
 use super::track::Fine;
 use crate::signal::derive::savitzky_golay;
 use crate::signal::noise::white_noise;
 use haptics::Vec2;
 
-/// Points come at about this rate, Hz: a hand's motion is a straight line between them.
+/// Approximate rate of the points, Hz: a hand's motion is nearly linear between them.
 pub const FINE_HZ: f64 = 400.0;
-/// Velocities are means over about this long, s.
+/// Averaging time of velocities, s.
 const CALM_S: f64 = 0.012;
-/// Over this window a parabola of the speed halves what trembles at 9 Hz. Shorter ones and higher orders leave more of it, and more noise:
-/// the first of these whose noise makes no more than [`NOISE_OF_ACCELERATION`] of the acceleration's power is taken. Rows on either side,
-/// order, and power of the slope's noise in the noise of one row's speed over a row's time (Savitzky & Golay 1964).
+/// Over this window a parabola of the speed halves what trembles at 9 Hz. Shorter ones and higher orders leave more of
+/// it, and more noise: the first of these whose noise makes no more than [`NOISE_OF_ACCELERATION`] of the
+/// acceleration's power is taken. Rows on either side, order, and power of the slope's noise in the noise of one row's
+/// speed over a row's time (Savitzky & Golay 1964).
 const FINER: [(usize, usize, f64); 3] = [(2, 4, 0.903), (3, 4, 0.263), (4, 4, 0.114)];
 const NOISE_OF_ACCELERATION: f64 = 0.02;
 
-/// Weights of the calming, from the middle outwards; their sum over both sides is one.
+/// Weights of the smoothing, from the middle outwards; their sum over both sides is one.
 fn weights(period_s: f64) -> Vec<f64> {
     let half = (0.5 * CALM_S / period_s).floor() as usize;
     let sum: f64 = (half + 1) as f64 + (1..=half).map(|k| (half + 1 - k) as f64).sum::<f64>() * 2.0;
     (0..=half).map(|k| (half + 1 - k) as f64 / sum).collect()
 }
 
-/// Short weighted means (a hat), and what is left of the noise of one sample, as a factor.
+/// Short weighted means (triangular), and the remaining noise of one sample, as a factor.
 pub fn calmed(values: &[Vec2], period_s: f64) -> (Vec<Vec2>, f64) {
     let weights = weights(period_s);
     let n = values.len();
     let at = |i: usize| {
-        // The same on both sides, also near an end.
+        // The window is symmetric, also near an end.
         let reach = (weights.len() - 1).min(i).min(n - 1 - i);
         let (mut sum, mut total) = (values[i] * weights[0], weights[0]);
         for (k, w) in weights.iter().enumerate().take(reach + 1).skip(1) {
@@ -46,7 +47,7 @@ pub fn calmed_line(values: &[f64], period_s: f64) -> (Vec<f64>, f64) {
     (calm.into_iter().map(|v| v.x).collect(), left)
 }
 
-/// A point between two others: time and velocity on a line, the position on the cubic that has both slopes.
+/// A point between two others: time and velocity by linear interpolation, position by the cubic with both slopes.
 pub fn between(a: &Fine, b: &Fine, part: f64) -> Fine {
     let step_s = b.time_s - a.time_s;
     let (p, q) = (part, 1.0 - part);
@@ -62,7 +63,7 @@ pub fn between(a: &Fine, b: &Fine, part: f64) -> Fine {
     }
 }
 
-/// The acceleration of each row, as finely as the noise of the speed lets it be told, with its window and order.
+/// Acceleration of each row, with the shortest window that the noise of the speed permits, its window and order.
 pub fn acceleration(time_s: &[f64], speed: &[f64], half: usize, period_s: f64) -> (Vec<f64>, (usize, usize)) {
     let noise = (white_noise(speed) / period_s).powi(2);
     for (finer, order, slope_noise) in FINER.into_iter().filter(|(finer, ..)| *finer <= half) {
@@ -75,8 +76,8 @@ pub fn acceleration(time_s: &[f64], speed: &[f64], half: usize, period_s: f64) -
     (savitzky_golay(time_s, speed, half, 2).first, (half, 2))
 }
 
-/// Where in a row of `every` samples its finer points lie, in samples after the first: evenly about the middle, as the row's force is.
-/// A point that is early on the average would pass for a force that is late.
+/// Positions of the finer points in a row of `every` samples, in samples after the first. They are symmetric about the
+/// middle, as the row's force is. If the points were early on average, the force would look late.
 pub fn offsets(every: usize, period_s: f64) -> impl Iterator<Item = f64> {
     let samples = every as f64;
     let points = (samples * FINE_HZ * period_s).round().clamp(1.0, samples);

@@ -1,4 +1,4 @@
-//! The force that the motion needs: what the model leaves of it, and which causes explain that.
+//! Force along one coordinate: its residual, and the causes that explain it.
 
 use super::blur::{TOGETHER, blur, blurred};
 use super::candidate::Candidate;
@@ -25,22 +25,22 @@ use haptics::Vec2;
 use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, Memory, Stribeck, ViscousFriction};
 use std::collections::HashMap;
 
-/// Most rounds in which searched values and the sensor's faults are settled.
+/// Most rounds of refinement of searched values and of the sensor's faults.
 const REFINEMENTS: usize = 2;
-/// … and of a free motion, whose noise is less where it swings.
+/// The same for a free motion, whose noise becomes smaller if it swings.
 const REFINEMENTS_OF_FREE: usize = 5;
 
-/// What a model misses is alike within about such times, s: as long as a hand takes for a turn and for a stroke.
+/// Correlation times of a model error, s: typical durations of a hand's reversal and stroke.
 pub const PIECES_S: [f64; 3] = [0.25, 0.5, 1.0];
 
-/// The model to start from: laws with their non-linear values.
+/// Base model: laws with their non-linear values.
 pub type Model = Vec<Effect>;
 
-/// Compares all causes on a track. `fixed`: laws of which everything is known. `threshold`: least score of a cause.
+/// Compares all causes on a track. `fixed`: laws that are completely known. `threshold`: least evidence of a cause.
 pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) -> Result<Study, EstimateError> {
     blur(track);
     let loads = loads(track, model, fixed)?;
-    // Without a force nothing tells a standstill under load from one without.
+    // Without a force, a stick phase under load cannot be distinguished from one without.
     if track.freely.is_none() {
         stuck::add(track, &loads);
     }
@@ -50,8 +50,8 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
     let mut made = compare(track, (model, fixed), &known, threshold, [&coarse, &Grid::default()], None)?;
     let is_free = track.freely.is_some();
     for round in 0..if is_free { REFINEMENTS_OF_FREE } else { REFINEMENTS } {
-        // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of them. The long means of a
-        // free motion show so much more of a place that one alone is not near enough either.
+        // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of
+        // them. The long means of a free motion show so much more of a place that one alone is not near enough either.
         let searched = |c: &Chosen| !made.candidates[c.candidate].searched.is_empty();
         let enough = if is_free { round > 0 && !made.chosen.iter().any(searched) } else { made.chosen.len() <= round };
         if made.chosen.is_empty() || enough {
@@ -63,15 +63,15 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
             (Some(before), Some(now)) if (now / before).ln().abs() < SAME_NOISE => Some(before),
             (before, now) => now.or(before),
         };
-        // The load on the friction is what the sensor told, rid of what is now known of the sensor.
+        // Load on the friction: the sensor's reading, corrected for its faults found so far.
         if correct_load(track, &made) {
             known.columns.forget_loads();
             known.generic = generic(track);
         }
         made = compare(track, (model, fixed), &known, threshold, [&coarse, &fine], Some(made))?;
     }
-    // How wide the direction of a mechanism is blurred is a guess. Where it is too wide, the friction of everything slow comes out too small,
-    // which passes for friction that rises there, or for a bend that no law has.
+    // The blur of a mechanism's direction is an assumption. If it is too wide, the friction of all slow motion is
+    // estimated too small, which looks like friction that rises there or like a misfit of the curves.
     let rises = |study: &Study| study.chosen.iter().any(|c| study.candidates[c.candidate].id == Stribeck.id());
     let bends = |study: &Study| {
         let Study { system, candidates, .. } = study;
@@ -93,13 +93,14 @@ pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) ->
     Ok(made)
 }
 
-/// What the causes leave must be less than this share of what the model leaves for the rows' weights to be asked for again.
+/// Ratio of residuals (extended over base model) below which the weights of the rows are computed again.
 const CALMER: f64 = 0.7;
-/// Noises that differ by less than this factor's logarithm are one.
+/// Difference of log noise below which two noise levels count as equal.
 const SAME_NOISE: f64 = 0.2;
 
-/// The noise of the rows along the motion as what was found leaves it, where nothing else tells it and it is much less than the model leaves: what is hidden
-/// passes for noise at first, beside which a direction that is a guess weighs nothing.
+/// Residual RMS of the extended model along the motion, as the noise of the rows. `None` if the noise was measured, or
+/// is not much less than the base model's residual. Hidden causes count as noise at first, and beside such noise an
+/// uncertain direction hardly reduces a row's weight.
 fn calmer(track: &Track, made: &Study) -> Option<f64> {
     if track.noise_is_measured {
         return None;
@@ -117,18 +118,19 @@ fn calmer(track: &Track, made: &Study) -> Option<f64> {
     (found < CALMER * model).then_some(found)
 }
 
-/// By so much a cause must enlarge what is left to be harmful: a small one that is true, but known badly, may do a little.
+/// Ratio of held-out residuals from which a cause is harmful. A true but poorly estimated small cause may increase the
+/// residual slightly.
 const HARMS: f64 = 1.05;
 
-/// A cause that scores less than this many times what is asked for must show on the locked blocks, too …
+/// Multiple of the threshold below which a cause must be confirmed on the locked blocks.
 pub const CONFIRMED: f64 = 2.5;
-/// … by more than this in 2 ln(likelihood): what is true is worth a third of its score there, what was searched for among noise as much less
-/// than nothing.
+/// Least evidence on the locked blocks, 2 ln(likelihood). A true cause keeps about a third of its evidence there, while
+/// one found by a search in noise becomes negative.
 pub const SHOWN: f64 = 1.0;
 
-/// A cause that makes more of an error for certain where it was not fitted is none, whatever it explains elsewhere; nor is one that is known
-/// badly where every piece may be wrong in its own way, or one that scores little and shows nothing there, where it is `tested`.
-/// `stretch`: of each row. `threshold`: least score of a cause.
+/// Removes unsound causes: those that certainly increase the held-out error, those that are unsteady over blocks of
+/// the recording, and weak ones that fail on the `tested` held-out rows. `stretch`: segment of each row; `threshold`:
+/// least evidence of a cause.
 pub fn leave_out_what_harms(
     study: &mut Study,
     stretch: &[usize],
@@ -148,11 +150,11 @@ pub fn leave_out_what_harms(
     }
 }
 
-/// So much is asked of the square of what a cause explains over its error by a jackknife.
+/// Least ratio of a cause's squared effect to its jackknife variance.
 const STEADY: f64 = 15.0;
 
-/// Whether what the k-th of the chosen causes explains is known as well as is asked for by a jackknife over pieces of the recording, too. That is
-/// asked in the end alone: as long as another cause is missing, what that one leaves is in the pieces.
+/// True if a jackknife over blocks of the recording confirms the effect of the k-th chosen cause. The test is only
+/// made at the end: before that, the residual of a missing cause disturbs the blocks.
 pub fn is_steady(study: &Study, k: usize) -> bool {
     let Some(solved) = &study.solved else { return true };
     let picks = study.picks();
@@ -161,13 +163,13 @@ pub fn is_steady(study: &Study, k: usize) -> bool {
     study.system.steadiness(solved, &own) > STEADY
 }
 
-/// Whether the k-th of the chosen causes makes more of an error for certain where it was not fitted.
+/// True if the k-th chosen cause certainly increases the error on held-out rows.
 pub fn harms(study: &Study, k: usize) -> bool {
     let gain = gain(study, k, 0.0);
     gain.heldout_rms_after > HARMS * gain.heldout_rms_before && gain.interval[1] < 0.0
 }
 
-/// The force across the motion without the faults of the sensor that were found; whether that changes anything.
+/// Removes the sensor faults found from the force across the motion; true if the load changed.
 fn correct_load(track: &mut Track, study: &Study) -> bool {
     let Some(solved) = study.solved.as_ref().filter(|_| track.planar) else { return false };
     let mut faults: Vec<(&Candidate, Vec<f64>)> = Vec::new();
@@ -204,18 +206,18 @@ fn correct_load(track: &mut Track, study: &Study) -> bool {
     changes
 }
 
-/// What every round is made of.
+/// Inputs common to all rounds.
 struct Known {
     columns: Columns,
     generic: Vec<Candidate>,
-    /// How wide the direction is blurred is open, too.
+    /// True if the width of the direction's blur is reduced.
     is_sharp: bool,
-    /// The noise of the rows along the motion, N or N m; what a plain fit leaves where nothing better is known.
+    /// Noise of the rows along the motion, N or N m. Without a measured noise, it is the residual of a plain fit.
     noise: Option<f64>,
 }
 
-/// One round: laws that are fitted, and those of which everything is known. `before`: the round before, whose whitening stays (the same
-/// things together left the same).
+/// One round: laws that are fitted, and those of which everything is known. `before`: the round before, whose whitening
+/// stays (the same things together left the same).
 fn compare(
     track: &Track,
     (model, fixed): (&Model, &Model),
@@ -227,7 +229,7 @@ fn compare(
     let Asked { mut base, known, y } = asked(track, model, fixed);
     let Look { mut predicted, mut resisting, weight, slides: mut dry } =
         first_look(track, model, (&base, &y), made.noise)?;
-    // What the model's laws came out at beside what was found.
+    // Coefficients of the model's laws, estimated together with the causes of the last round.
     let laws = before.as_ref().and_then(|b| Some(&b.solved.as_ref()?.values[..b.base.len()]));
     if let Some(laws) = laws.filter(|laws| friction_is_sound(model, laws)) {
         (predicted, resisting) = (total(y.len(), model, &base, laws, false), total(y.len(), model, &base, laws, true));
@@ -272,7 +274,7 @@ fn compare(
     let found = before.iter().flat_map(|b| b.chosen.iter().map(|c| &b.candidates[c.candidate]));
     let start: Vec<usize> = found.filter_map(place).collect();
     let mut system = match before {
-        // Rows of other weights leave another noise.
+        // Rows with other weights have another residual noise.
         Some(before) if before.weight == weight => System::after(before, &base, &candidates, &rows),
         _ => System::new(&base, &candidates, &rows, whitening_of(&base, &candidates, &rows, threshold)?),
     };
@@ -285,7 +287,7 @@ fn compare(
     Ok(Study { candidates, chosen, system, solved, y, base, weight, shares_of })
 }
 
-/// Which piece of this length each row is in, counted without those that no row is in.
+/// Jackknife block of this length for each row, numbered without the empty ones.
 fn pieces(time_s: &[f64], piece_s: f64) -> Vec<usize> {
     let mut numbers: HashMap<i64, usize> = HashMap::new();
     let mut number = |time_s: &f64| {
@@ -295,13 +297,13 @@ fn pieces(time_s: &[f64], piece_s: f64) -> Vec<usize> {
     time_s.iter().map(&mut number).collect()
 }
 
-/// What the model with Coulomb friction leaves of the force, root mean square, and whether its friction resists.
+/// Residual RMS of the model with Coulomb friction, and true if its friction opposes motion.
 pub fn plain_rms(track: &mut Track, model: &Model) -> Result<(f64, bool), EstimateError> {
     blur(track);
     blurred_rms(track, model)
 }
 
-/// The same of rows whose directions are blurred already.
+/// The same for rows whose directions are already blurred.
 pub fn blurred_rms(track: &Track, model: &Model) -> Result<(f64, bool), EstimateError> {
     let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
     columns.push(column(track, &Effect::new(&CoulombFriction, &[1.0])));
@@ -320,16 +322,16 @@ pub fn blurred_rms(track: &Track, model: &Model) -> Result<(f64, bool), Estimate
     Ok((fit.rms, resisting > 0.0))
 }
 
-/// So many standard errors below zero every one of mass, damping and dry friction must be for a force with the wrong sign.
+/// Standard errors below zero from which the wrong sign of a mass, damping or dry friction is certain.
 const SURELY_NEGATIVE: f64 = 6.0;
 
-/// Whether the laws of a model (all of them positive in anything that exists) come out with the wrong sign: none of them is positive for
-/// certain, and the strongest is negative beyond doubt, as is the work that the friction takes.
+/// True if the laws of a model, all positive physically, are estimated with the wrong sign: none is certainly positive,
+/// and the strongest and the friction's work are certainly negative.
 pub fn drives(track: &Track, model: &Model) -> Result<bool, EstimateError> {
     let mut track = track.clone();
     blur(&mut track);
     let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(&track, effect)).collect();
-    // What stands in the way of mass: a spring, gravity, a constant pull.
+    // Effects that may be confused with inertia: a spring, gravity, a constant pull.
     let beside: [&dyn Fn(&Row) -> f64; 4] =
         [&|_| 1.0, &|r| r.motion.position, &|r| r.angle_rad.sin(), &|r| r.angle_rad.cos()];
     let turns = track.coordinate == haptics::law::Coordinate::Angular;
@@ -348,12 +350,12 @@ pub fn drives(track: &Track, model: &Model) -> Result<bool, EstimateError> {
         })
         .sum();
     let [mass, others @ ..] = sizes.as_slice() else { return Ok(false) };
-    // A force that only comes late drives, too, but needs no negative dry friction for that.
+    // A delayed force also drives the motion, but needs no negative dry friction for that.
     let negative = |s: &f64| *s < -SURELY_NEGATIVE;
     Ok(friction < 0.0 && sizes.iter().all(|s| *s < SURELY_NEGATIVE) && (negative(mass) || others.iter().all(negative)))
 }
 
-/// What the laws need along every row, each law a mean over the row; what they remember starts anew at every stretch.
+/// Force that the laws need along every row, each law a mean over the row. Memory is cleared at every segment.
 pub fn needed(track: &Track, effects: &[Effect]) -> Vec<f64> {
     let mut sum = vec![0.0; track.rows.len()];
     for effect in effects {
@@ -379,13 +381,13 @@ fn remembered(track: &Track, effect: &Effect) -> Vec<f64> {
     (0..rows.len()).map(&mut force).collect()
 }
 
-/// What a fit is asked for.
+/// Regressors and target of a fit.
 struct Asked {
-    /// Columns of the model's laws, …
+    /// Regressors of the model's laws.
     base: Vec<Vec<f64>>,
-    /// … and of the forces of which everything is known, a hung weight's among them.
+    /// Forces that are completely known, including a hung weight's.
     known: Vec<Vec<f64>>,
-    /// The force that the known ones leave.
+    /// The measured force less the known ones.
     y: Vec<f64>,
 }
 
@@ -397,19 +399,19 @@ fn asked(track: &Track, model: &Model, fixed: &Model) -> Asked {
     Asked { base, known, y }
 }
 
-/// What a first plain fit tells of every row.
+/// Result of a first plain fit for every row.
 struct Look {
-    /// What the model predicts, and the part of it that resists motion.
+    /// Force predicted by the model, and the part of it that opposes motion.
     predicted: Vec<f64>,
     resisting: Vec<f64>,
-    /// How much the row can be trusted.
+    /// Weight of the row.
     weight: Vec<f64>,
     /// The dry friction if it slid.
     slides: Vec<f64>,
 }
 
-/// A first plain fit: what the model predicts, the resisting part of it, how much each row can be trusted where the direction is a
-/// guess (effective variance, Orear 1982), and the dry friction of each row if it slid. `noise`: of a row, where it is known.
+/// A first plain fit: predicted force, its resisting part, weight of each row with an uncertain direction (effective
+/// variance, Orear 1982), and dry friction of each row if it slid. `noise`: of a row, if known.
 fn first_look(
     track: &Track,
     model: &Model,
@@ -420,7 +422,7 @@ fn first_look(
     let together = if track.planar { TOGETHER } else { 1.0 };
     let has = |law: &dyn Law| model.iter().any(|e| e.law().id() == law.id());
     let has_dry = has(&CoulombFriction);
-    // What resists without being in the model: with dry friction alone a viscous one would pass for it.
+    // Resistance that the model lacks. With dry friction alone, viscous friction would be attributed to it.
     let missing: [(&'static dyn Law, bool); 2] =
         [(&CoulombFriction, has_dry), (&ViscousFriction, has_dry || has(&ViscousFriction))];
     for (law, _) in missing.iter().filter(|(_, there)| !there) {
@@ -441,7 +443,7 @@ fn first_look(
                 if row.place != Place::Along {
                     return 1.0;
                 }
-                // A sign that is anybody's guess leaves all of the friction open.
+                // If the sign is unknown, so is all of the friction.
                 let open = together * dry(&fit.values, i).powi(2) * row.open;
                 (1.0 + open / (noise * noise)).powf(-0.5)
             })
@@ -460,7 +462,7 @@ fn first_look(
     Ok(Look { predicted: sum(false), resisting: sum(true), weight, slides })
 }
 
-/// What the friction holds in each row along the motion, as far as a plain fit tells.
+/// Load on the friction in each row along the motion, as far as a plain fit determines it.
 fn loads(track: &Track, model: &Model, fixed: &Model) -> Result<Vec<Option<Load>>, EstimateError> {
     let Asked { base, y, .. } = asked(track, model, fixed);
     let Look { predicted, resisting, slides, .. } = first_look(track, model, (&base, &y), None)?;

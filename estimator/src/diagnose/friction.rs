@@ -1,11 +1,11 @@
-//! What a model's friction comes out at: its size in every row, and whether it resists.
+//! Estimated friction of a model: its size in every row, and its sign.
 
 use super::force::Model;
 use super::system::Solved;
 use super::track::Track;
 use haptics::law::{Effect, Motion, Role};
 
-/// What the model's laws add up to in all rows at these values, all of them or those that resist motion.
+/// Sum of the model's laws in all rows at these values: all laws, or only those that oppose motion.
 pub fn total(rows: usize, model: &Model, base: &[Vec<f64>], values: &[f64], resists: bool) -> Vec<f64> {
     let mut sum = vec![0.0; rows];
     for ((effect, column), value) in model.iter().zip(base).zip(values) {
@@ -16,19 +16,18 @@ pub fn total(rows: usize, model: &Model, base: &[Vec<f64>], values: &[f64], resi
     sum
 }
 
-/// Whether there is dry friction and it resists.
+/// True if there is dry friction and it opposes motion.
 pub fn friction_is_sound(model: &Model, values: &[f64]) -> bool {
     let mut dry = model.iter().zip(values).filter(|(e, _)| e.law().is_dry()).map(|(_, v)| *v).peekable();
     dry.peek().is_some() && dry.all(|v| v > 0.0)
 }
 
-/// Whether a law takes work whichever way it goes.
+/// True if a law dissipates work in either direction.
 pub fn is_resisting(effect: &Effect) -> bool {
     matches!(effect.role(), Role::Dry | Role::Presliding | Role::Viscous)
 }
 
-/// `used`: the dry friction of each row that shares were asked of; its ratio to what the model came out at beside them, along the motion, and the
-/// relative error of that.
+/// Ratio of the dry friction `used` for shares, by row, to the estimated one along the motion, and its relative error.
 pub fn shares_of(track: &Track, model: &Model, used: &[f64], solved: &Solved, rows: f64) -> [f64; 2] {
     let of = |level: &dyn Fn(usize) -> f64| track.along().map(level).sum::<f64>();
     let (used, now) = (of(&|i| used[i]), of(&|i| dry_level(track, model, &solved.values, i)));

@@ -1,4 +1,4 @@
-//! What a cause is worth where it was neither chosen nor fitted: on the locked blocks.
+//! Gain of a cause on the locked blocks, which took part in neither the choice nor the fit.
 
 use super::candidate::Column;
 use super::geometry::{Study, residual};
@@ -8,15 +8,15 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Draws of the bootstrap over locked blocks.
 const DRAWS: usize = 400;
-/// Each locked block is cut into so many parts for it.
+/// Number of parts into which each locked block is cut for the bootstrap.
 const PARTS: usize = 4;
 /// Lags of the test for whiteness.
 const LAGS: usize = 10;
 
-/// What a cause changes on the rows that were held out must be so much in 2 ln(likelihood) for them to speak for or against it: what is true gains as
-/// much there, give or take twice its root.
+/// Least change by a cause on held-out rows, 2 ln(likelihood), for them to count for or against it. A true cause gains
+/// about as much there, ± twice its root.
 const TESTED: f64 = 3.0;
-/// Less than this share of the power that is left is no more than the noise of it.
+/// Share of the residual power below which a change is noise.
 const LEAST_SHARE: f64 = 1e-3;
 
 /// Sums of squares over parts of the locked blocks, and rows.
@@ -24,7 +24,7 @@ const LEAST_SHARE: f64 = 1e-3;
 struct Parts {
     before: Vec<f64>,
     after: Vec<f64>,
-    /// Squares of what the two differ by.
+    /// Squares of the difference of the two residuals.
     changed: Vec<f64>,
     rows: Vec<f64>,
 }
@@ -57,7 +57,7 @@ pub fn gain(study: &Study, k: usize, floor: f64) -> Gain {
     gain_between(study, &rest, &picks, floor)
 }
 
-/// The gain by some causes more. What shows while the object stands is tested there, too.
+/// Gain by additional causes. Effects on standing rows are tested there, too.
 pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) -> Gain {
     let more: Vec<usize> = picks.iter().filter(|p| !rest.contains(p)).copied().collect();
     let in_turn = !holds_out(study);
@@ -71,7 +71,7 @@ pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) 
     }
     let all: Vec<usize> = (0..parts.rows.len()).collect();
     let [b, a] = means(&parts, &all);
-    // The noise is no more than what is left in the end, whatever was measured of it elsewhere.
+    // The noise is at most the final residual, whatever other estimate exists.
     let noise = (floor * floor * mean_square_weight(study)).min(a);
     let least = b - noise;
     let measured = Gain { heldout_rms_before: b.sqrt(), heldout_rms_after: a.sqrt(), in_turn, ..Gain::default() };
@@ -90,12 +90,12 @@ pub fn gain_between(study: &Study, rest: &[usize], picks: &[usize], floor: f64) 
     Gain { share_of_explainable: share(b, a), interval, ..measured }
 }
 
-/// Whether rows were kept out of the choice and the fit. A short recording has too few for that.
+/// True if rows were kept out of both choice and fit. A short recording has too few.
 pub fn holds_out(study: &Study) -> bool {
     study.system.uses.iter().any(|u| matches!(u, Use::Locked(_)))
 }
 
-/// Each fold as a fit to all other rows leaves it: what can be said where nothing could be kept out of the choice.
+/// Each fold predicted by a fit to all other rows, for recordings too short to lock any rows.
 fn parts_in_turn(study: &Study, rest: &[usize], picks: &[usize]) -> Parts {
     let mut parts = Parts::default();
     for (fold, (products, rows)) in study.system.folds.iter().enumerate().filter(|(_, (_, rows))| *rows > 0.0) {
@@ -113,18 +113,19 @@ fn parts_in_turn(study: &Study, rest: &[usize], picks: &[usize]) -> Parts {
     parts
 }
 
-/// What the k-th of the chosen causes, all others in, takes off on the rows that neither chose nor fitted it, in 2 ln(likelihood) of the whitened
-/// rows: below zero, it makes more of an error than it takes. `stretch`: of each row.
+/// Evidence for the k-th chosen cause, beside all others, on the rows that neither chose nor fitted it: 2
+/// ln(likelihood) of the whitened rows. Negative if it increases the error. `stretch`: segment of each row.
 pub fn confirmed(study: &Study, k: usize, stretch: &[usize]) -> f64 {
     held_out(study, k, stretch, &|before, after| before * before - after * after)
 }
 
-/// Whether those rows could speak for or against it.
+/// True if those rows could speak for or against it.
 pub fn is_tested(study: &Study, k: usize, stretch: &[usize]) -> bool {
     held_out(study, k, stretch, &|before, after| (before - after).powi(2)) > TESTED
 }
 
-/// Sum over the held-out, whitened rows of something about what is left without and with the k-th of the chosen causes, all others in; noise is one.
+/// Sum over the held-out, whitened rows of a function of the residuals without and with the k-th chosen cause, beside
+/// all others. The noise has unit variance.
 fn held_out(study: &Study, k: usize, stretch: &[usize], of: &dyn Fn(f64, f64) -> f64) -> f64 {
     let picks = study.picks();
     let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
@@ -136,11 +137,11 @@ fn held_out(study: &Study, k: usize, stretch: &[usize], of: &dyn Fn(f64, f64) ->
     };
     let (power, rows) = over(&|u| matches!(u, Use::Fold(_)), &|_, a| a * a);
     let (sum, _) = over(&|u| matches!(u, Use::Locked(_) | Use::Beside(_)), of);
-    // As large as the noise in the rows that train.
+    // Normalised to the noise of the training rows.
     if power > 0.0 { sum * rows / power } else { 0.0 }
 }
 
-/// Rows after the noise's own autoregression; `None` where a stretch is too young for it.
+/// Rows whitened by the noise's autoregression; `None` at the start of a segment, before enough rows precede.
 fn whitened(values: &[f64], stretch: &[usize], coefficients: &[f64]) -> Vec<Option<f64>> {
     let mut since = 0;
     (0..values.len())
@@ -152,14 +153,14 @@ fn whitened(values: &[f64], stretch: &[usize], coefficients: &[f64]) -> Vec<Opti
         .collect()
 }
 
-/// Whether some of these causes show in the held-out rows that are not about the force.
+/// True if some of these causes affect held-out rows that are not about the force.
 pub fn shows_beside(study: &Study, picks: &[usize]) -> bool {
     let beside = |i: usize| matches!(study.system.uses[i], Use::Beside(_));
     let shows = |column: &Column| column.iter().enumerate().any(|(i, v)| beside(i) && *v != 0.0);
     picks.iter().any(|p| study.candidates[*p].columns.iter().any(shows))
 }
 
-/// 95 % interval of a figure by drawing pieces with replacement; the draws are the same every time.
+/// 95 % confidence interval of a figure by a bootstrap over blocks, with the same random draws every time.
 pub fn bootstrap(pieces: usize, draws: usize, figure: &dyn Fn(&[usize]) -> f64) -> [f64; 2] {
     let mut state = 0x2545_F491_4F6C_DD1D_u64;
     let mut figures: Vec<f64> = (0..draws)
@@ -205,7 +206,7 @@ fn parts(study: &Study, before: &[f64], after: &[f64], with_beside: bool) -> Par
 }
 
 impl Parts {
-    /// One more part: these rows, as they are left without the cause and with it.
+    /// Adds a part: these rows, with their residuals without and with the cause.
     fn add(&mut self, rows: &[usize], before: &[f64], after: &[f64]) {
         let sum = |of: &dyn Fn(usize) -> f64| rows.iter().map(|i| of(*i).powi(2)).sum::<f64>();
         self.before.push(sum(&|i| before[i]));
@@ -221,7 +222,8 @@ fn means(parts: &Parts, picked: &[usize]) -> [f64; 2] {
     [mean(&parts.before), mean(&parts.after)]
 }
 
-/// Probability that white residuals would be at least as correlated (Ljung & Box 1978), after the noise's own autoregression.
+/// Probability that white residuals would be at least as correlated (Ljung & Box 1978), after the noise's own
+/// autoregression.
 pub fn whiteness_p(study: &Study, picks: &[usize], stretch: &[usize]) -> f64 {
     let white: Vec<f64> =
         whitened(&left(study, picks), stretch, &study.system.coefficients).into_iter().flatten().collect();

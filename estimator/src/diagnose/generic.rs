@@ -1,4 +1,4 @@
-//! Terms of no cause in particular: what is left when no law fits, told by what it depends on.
+//! Generic terms: regressors without a physical law, which detect the variable of an unexplained residual.
 
 use super::candidate::Candidate;
 use super::track::{Place, Row, Track};
@@ -9,7 +9,7 @@ const WAVES: u32 = 6;
 /// Slow waves in time.
 const SLOW: u32 = 6;
 
-/// What a wave is multiplied by, with its name.
+/// Factor of a wave, with its name.
 type Factor<'a> = (&'a str, Box<dyn Fn(&Row) -> f64 + 'a>);
 
 /// All of them.
@@ -17,7 +17,7 @@ pub fn generic(track: &Track) -> Vec<Candidate> {
     generic_of(track, WAVES, SLOW)
 }
 
-/// The same with so many waves over the range, and in time.
+/// The same with this number of waves over the range, and in time.
 pub fn generic_of(track: &Track, waves: u32, slow: u32) -> Vec<Candidate> {
     let mut all = Vec::new();
     let force = if track.coordinate == Coordinate::Angular { "N m" } else { "N" };
@@ -35,7 +35,7 @@ pub fn generic_of(track: &Track, waves: u32, slow: u32) -> Vec<Candidate> {
     if track.planar {
         factors.push(("Fn", Box::new(|r: &Row| r.motion.normal_force_n)));
     }
-    // Along a line the waves are counted over the range.
+    // Along a line, waves are counted over the range.
     let turns = if track.radius_m.is_some() { String::new() } else { format!("2 pi/{range:.3} ") };
     let wave = |n: u32, of: fn(f64) -> f64| column(track, &|r| of(f64::from(n) * phase(r)));
     let waves: Vec<[Vec<f64>; 2]> = (1..=waves).map(|n| [wave(n, f64::cos), wave(n, f64::sin)]).collect();
@@ -73,7 +73,8 @@ pub fn generic_of(track: &Track, waves: u32, slow: u32) -> Vec<Candidate> {
 }
 
 fn column(track: &Track, of: &dyn Fn(&Row) -> f64) -> Vec<f64> {
-    // The noise of a place in the middle of a row of a free motion is that of its acceleration: a mean is taken, as of the laws.
+    // The noise of a place in the middle of a row of a free motion is that of its acceleration: a mean is taken, as of
+    // the laws.
     let mean = |row: &Row| track.mean(row, &|m| of(&Row { motion: *m, angle_rad: m.position, ..*row }));
     let value = |row: &Row| if track.freely.is_some() { mean(row) } else { of(row) };
     track.rows.iter().map(|r| if r.place == Place::Along { value(r) } else { 0.0 }).collect()

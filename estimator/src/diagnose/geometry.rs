@@ -1,4 +1,4 @@
-//! The path before the force: centre and radius of a crank, and the causes that distort the circle.
+//! Path of a crank: centre and radius, and the causes that distort the circle.
 
 use super::candidate::Candidate;
 use super::courses::{Course, SLIP_STARTS, jump};
@@ -11,13 +11,13 @@ use crate::identify::linear::least_squares;
 use haptics::Vec2;
 use haptics::law::Kind;
 
-/// A grasp that moves on the handle; the parameter of one that moves along the arm.
+/// Slip of the grasp on the handle, and the parameter of a slip along the arm.
 const SLIP: &str = "fingertip-slip";
 const OUTWARD: &str = "dr";
 /// Parameters of a finger's joint and first link, of one finger and of two.
 const OF_THE_FINGER: [&str; 2] = ["delta", "link_error"];
 const OF_FINGERS: [[&str; 2]; 2] = [["delta1", "link_error1"], ["delta2", "link_error2"]];
-/// Rounds of the linearised circle fit, and those after which the time of a slip is known well enough.
+/// Rounds of the linearised circle fit, and rounds after which the time of a slip is known well enough.
 const ROUNDS: usize = 8;
 const CLOSER: usize = 5;
 
@@ -29,17 +29,18 @@ pub struct PathPoint {
     pub time_s: f64,
     pub position: Vec2,
     pub force: Vec2,
-    /// ∂position/∂(top joint angle) and ∂position/∂(length of the first link) of each finger, where joints were recorded.
+    /// ∂position/∂(top joint angle) and ∂position/∂(length of the first link) of each finger, where joints were
+    /// recorded.
     pub joints: [Option<[Vec2; 2]>; 2],
-    /// A mean of points on an arc lies inside it by this over the radius, m².
+    /// Inward offset of a mean of points on an arc, times the radius, m².
     pub inside_m2: f64,
 }
 
-/// What the geometry is found from.
+/// Data from which the geometry is estimated.
 pub struct Path {
     pub points: Vec<PathPoint>,
     pub period_s: f64,
-    /// Two pads hold the handle: their give belongs to the model.
+    /// True if two pads hold the handle: their compliance belongs to the model.
     pub two_fingered: bool,
 }
 
@@ -56,9 +57,9 @@ pub struct Arm {
     /// m
     pub center_m: Vec2,
     pub radius_m: f64,
-    /// What is subtracted from the measured position of a signals' row, m.
+    /// Offset subtracted from the measured position of a signals' row, m.
     pub shifts: Vec<Vec2>,
-    /// What the whole arm stands wrongly turned by, rad: a circle does not show it, the directions of the forces do.
+    /// Rotation error of the whole arm, rad. A circle does not show it, the directions of the forces do.
     pub turn_rad: f64,
 }
 
@@ -70,14 +71,14 @@ impl Arm {
     }
 }
 
-/// The circle, and what was found to distort it.
+/// The circle, and the causes found that distort it.
 pub struct Geometry {
     pub arm: Arm,
     pub study: Study,
 }
 
 impl Geometry {
-    /// By what share the path is too large for a known radius, and the error of that.
+    /// Relative excess of the path over a known radius, with its standard error.
     pub fn too_large(&self, known_m: f64) -> Option<[f64; 2]> {
         let solved = self.study.solved.as_ref()?;
         let variance = solved.variance(self.study.system.rows);
@@ -85,7 +86,7 @@ impl Geometry {
     }
 }
 
-/// How far the causes of the last round displaced a point, m.
+/// Displacement of a point by the causes of the last round, m.
 #[derive(Clone, Copy, Debug, Default)]
 struct Displaced {
     exact: Vec2,
@@ -93,18 +94,19 @@ struct Displaced {
     linear: Vec2,
 }
 
-/// One comparison of causes: everything that words and figures are made of.
+/// Result of one comparison of causes, from which texts and figures are made.
 pub struct Study {
     pub candidates: Vec<Candidate>,
     pub chosen: Vec<Chosen>,
     pub system: System,
-    /// All chosen, solved on the rows that train.
+    /// Solution of all chosen causes on the training rows.
     pub solved: Option<Solved>,
     /// The target.
     pub y: Vec<f64>,
     pub base: Vec<Vec<f64>>,
     pub weight: Vec<f64>,
-    /// The dry friction that columns of shares of it were made of, over the one that came out beside them, and the relative error of that.
+    /// Ratio of the dry friction to which the share regressors refer to the one estimated beside them, and its relative
+    /// error.
     pub shares_of: [f64; 2],
 }
 
@@ -115,7 +117,8 @@ impl Study {
     }
 }
 
-/// Fits the circle and asks what distorts it. `signals`: number of rows of the signals; `threshold`: least score of a cause.
+/// Fits the circle and its distortions. `signals`: number of rows of the signals; `threshold`: least evidence of a
+/// cause.
 pub fn geometry(path: &Path, signals: usize, threshold: f64) -> Result<Geometry, EstimateError> {
     let positions: Vec<Vec2> = path.points.iter().map(|p| p.position).collect();
     let mut center_m = circle(&positions)?;
@@ -136,7 +139,7 @@ pub fn geometry(path: &Path, signals: usize, threshold: f64) -> Result<Geometry,
         let step = Vec2::new(solved.values[1], solved.values[2]);
         center_m += step;
         bent = corrections(path, &made, &mut shift_m, center_m);
-        // Slips that were found are looked for more and more closely.
+        // The grid around found slips becomes finer.
         step_s *= 0.5;
         let found = made.chosen.iter().map(|c| &made.candidates[c.candidate]).filter(|c| c.id == SLIP);
         let finer: Vec<Course> = found.flat_map(|c| Course::of(c).around(step_s)).collect();
@@ -168,7 +171,7 @@ fn compare(
 ) -> Result<Study, EstimateError> {
     let arms: Vec<Vec2> = path.points.iter().map(|p| p.position - center_m).collect();
     let outward: Vec<Vec2> = arms.iter().map(Vec2::normalize).collect();
-    // What is known of the displacement enters as it is, and stays in the target as its columns can take it.
+    // The known displacement enters exactly. The target keeps its linear part, which the regressors explain.
     let distance = |i: usize| (arms[i] - bent[i].exact).norm() + outward[i].dot(&bent[i].linear);
     let y: Vec<f64> = (0..arms.len()).map(|i| distance(i) + path.points[i].inside_m2 / arms[i].norm()).collect();
     let column = |f: &dyn Fn(usize) -> f64| (0..y.len()).map(f).collect::<Vec<f64>>();
@@ -191,7 +194,7 @@ fn compare(
         noise: Noise::Any,
         may_stand: false,
     };
-    // The whitening must not swallow what it is to leave: it comes from the residual of everything together.
+    // The whitening must not absorb causes, so it is learnt from the residual of all candidates together.
     let mut unwhitened = Rough::new(&base, &candidates, &rows);
     let picks = unwhitened.greedy(threshold);
     let unwhitened = unwhitened.system();
@@ -205,12 +208,12 @@ fn compare(
     let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
     let solved = system.solve(&picks);
     let mut study = Study { candidates, chosen, system, solved, y, base, weight, shares_of: [1.0, 0.0] };
-    // What a line misses of pads that harden, or one slip of two, looks like another cause, weakly, where it was fitted.
+    // Misfit of hardening pads, or of two slips by one, looks like another weak cause in the fitted rows.
     leave_out_what_harms(&mut study, &stretch, threshold, &|_, _| true);
     Ok(study)
 }
 
-/// What is left of `y`.
+/// Residual of `y`.
 pub fn residual(y: &[f64], base: &[Vec<f64>], candidates: &[Candidate], picks: &[usize], solved: &Solved) -> Vec<f64> {
     let columns: Vec<&Vec<f64>> =
         base.iter().chain(picks.iter().flat_map(|p| &candidates[*p].columns).map(|c| &**c)).collect();
@@ -242,7 +245,7 @@ fn candidates(path: &Path, outward: &[Vec2], courses: &[Course]) -> Vec<Candidat
                 None => slip,
             }
         };
-        // The grasp moves over a handle that keeps its direction, or along the arm of one that turns with it.
+        // The grasp slips along a handle of constant direction, or along the arm of one that turns with it.
         let columns = vec![gone(&|i| outward[i].x), gone(&|i| outward[i].y)];
         let across = Candidate::several(SLIP, Kind::Plant, columns, vec![("dx", "m"), ("dy", "m")]);
         found.extend([across, Candidate::one(SLIP, Kind::Plant, OUTWARD, "m", gone(&|_| 1.0))].map(dated));
@@ -250,12 +253,12 @@ fn candidates(path: &Path, outward: &[Vec2], courses: &[Course]) -> Vec<Candidat
     found
 }
 
-/// Which finger a cause of the joints is about.
+/// Finger of a joint cause.
 fn finger(candidate: &Candidate) -> usize {
     usize::from(candidate.linear.first().is_some_and(|(name, _)| name.ends_with('2')))
 }
 
-/// What the found causes displaced the positions by.
+/// Displacement of the positions by the causes found.
 fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2) -> Vec<Displaced> {
     shift_m.fill(Vec2::zeros());
     let Some(solved) = &study.solved else { return vec![Displaced::default(); path.points.len()] };
@@ -271,7 +274,8 @@ fn corrections(path: &Path, study: &Study, shift_m: &mut [Vec2], center_m: Vec2)
             shift += match (candidate.id, point.joints[finger(candidate)]) {
                 ("pad-compliance", _) => outward * (value * outward.dot(&point.force)),
                 ("joint-offset", Some(joint)) => {
-                    // The second link turns about its joint: on an arc, not along its tangent.
+                    // The second link rotates about its joint: its error moves the tip on an arc, not along the
+                    // tangent.
                     bow += Vec2::new(joint[0].y, -joint[0].x) * (1.0 - value.cos()) + joint[0] * (value.sin() - value);
                     joint[0] * value
                 }

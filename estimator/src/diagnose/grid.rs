@@ -1,53 +1,55 @@
-//! The values of what must be searched for: coarsely at first, then around what was found.
+//! Search grids of the non-linear values: coarse at first, then finer around the values found.
 
 use super::candidate::Candidate;
 use super::fine::FINE_HZ;
 use super::track::{Place, Track};
 use std::f64::consts::TAU;
 
-/// Ripples a turn (over the range, where nothing turns) that are tried.
+/// Tried numbers of ripples per turn (over the range, if nothing turns).
 const RIPPLES: std::ops::RangeInclusive<u32> = 2..=40;
-/// … as long as the fastest motion takes so many rows for one: a shorter one is smoothed away.
+/// Least length of a ripple, in rows of the fastest motion. The rows average out a shorter one.
 const LEAST_ROWS_A_RIPPLE: f64 = 1.0;
-/// Places of a local resistance that are tried, and widths in shares of the range.
+/// Number of tried places of a local resistance, and its widths as shares of the range.
 const PLACES: usize = 24;
 const WIDTHS: [f64; 3] = [0.12, 0.2, 0.35];
-/// Speeds at which static friction has fallen off, as shares of the usual speed.
+/// Speeds of the decay of static friction, as shares of the usual speed.
 const STRIBECK: [f64; 7] = [0.06, 0.1, 0.16, 0.26, 0.4, 0.6, 0.9];
-/// Exponents with which it falls; 0 is the Gaussian.
+/// Exponents of that decay; 0 is the Gaussian.
 const FALLING: [f64; 2] = [0.0, 1.0];
-/// A Gaussian looks most like an exponential where its speed is this many times the other's.
+/// Ratio of speeds at which a Gaussian is most like an exponential.
 const LIKE_EXPONENTIAL: f64 = 1.5;
-/// Ways of presliding and half gaps, as shares of the range of positions.
+/// Presliding distances and half gaps, as shares of the range of positions.
 const WAYS: [f64; 14] =
     [0.00003, 0.00006, 0.00012, 0.00024, 0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.065, 0.13, 0.2];
-/// Shortest of these that are felt at a reversal, in points of the motion at the usual speed (it is slower there).
+/// Shortest of these that is felt at a reversal, in points of the motion at the usual speed. (At the reversal the
+/// motion is slower.)
 const STEPS: f64 = 0.06;
-/// Where a mass takes part, the filters of force and motion leave as much of every reversal themselves.
+/// The same with inertia in the model: the filters of force and motion blur every reversal by as much.
 const STEPS_OF_MASS: f64 = 0.25;
-/// … and on a crank, whose way is the sum of its joints' noisy rates, that are this many times the noise of that sum within a row: it alone
-/// builds a shorter bend up and takes it back, which makes friction smaller wherever the handle sticks, as the noise of the speed does.
+/// The same for a crank, in standard deviations of the summed rate noise within a row. Such noise alone builds up and
+/// releases a shorter presliding, which reduces the friction while the handle sticks, as the noise of the velocity
+/// does.
 const STEPS_OF_NOISE: f64 = 3.0;
-/// Where the object was seen to stand, they are this many times the noise of its place at least.
+/// The same where the object was seen to stand, in standard deviations of its position noise.
 const SEEN: f64 = 0.5;
-/// Directions of a cable's anchor that are tried, and how much of the way round it is slack.
+/// Number of tried anchor directions of a cable, and the slack shares of the travel around it.
 const CABLES: u32 = 16;
 const SLACK: [f64; 3] = [0.35, 0.6, 0.8];
-/// How far away the anchor is at first, in arms, and how far it may be.
+/// Initial distance of the anchor, in arm lengths, and the distances tried.
 const REACH: f64 = 5.0;
 const REACHES: [f64; 3] = [2.5, REACH, 20.0];
-/// Shares of the motion on one side of a wall.
+/// Number of tried rest positions of a hardening spring, and their largest distance from the middle, in half ranges.
 const WALLS: [f64; 6] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 /// Places of rest of a spring that hardens: so many, up to so many half ranges from the middle.
 const RESTS: u32 = 13;
 const RESTS_WITHIN: f64 = 1.5;
-/// … and so many where the linear part of it shows.
+/// Number of rest positions if the linear part of the spring shows.
 const FINER_RESTS: u32 = 25;
-/// Times in which friction changes, in shares of the recording, …
+/// Time constants of a friction change, in shares of the recording.
 const WARMING: [f64; 4] = [0.1, 0.3, 1.0, 3.0];
-/// … in which a drift or a leak dies away, …
+/// Time constants of a decaying drift or leak, in shares of the recording.
 const SETTLING: [f64; 2] = [0.2, 0.5];
-/// … and the number of starts of what happens at once.
+/// Number of tried start times of a sudden change.
 const STARTS: u32 = 16;
 
 /// Values to try, in the units of the track.
@@ -56,15 +58,16 @@ pub struct Grid {
     /// Speed and exponent.
     pub stribeck: Vec<(f64, f64)>,
     pub ways: Vec<f64>,
-    /// Ways of what gives back along a straight line (Bouc and Wen).
+    /// Presliding distances of friction that springs back along a straight line (Bouc and Wen).
     pub straight: Vec<f64>,
-    /// Shorter ones than this do not show in the force, only in the way that a standing object gives.
+    /// Shortest presliding distance that is felt in the force. Shorter ones show only in the displacement of a standing
+    /// object.
     pub felt: f64,
     /// Wave lengths.
     pub ripples: Vec<f64>,
     /// Place and width.
     pub places: Vec<(f64, f64)>,
-    /// A place comes again after this; 0 never.
+    /// Period of the position; 0 if there is none.
     pub turn: f64,
     /// Place and side.
     pub walls: Vec<(f64, f64)>,
@@ -72,20 +75,21 @@ pub struct Grid {
     pub cables: Vec<(f64, f64, f64)>,
     /// Places of rest.
     pub rests: Vec<f64>,
-    /// The same of a spring whose linear part shows, too: tried where something of its kind was found.
+    /// The same for a spring whose linear part shows, too. Tried if such a spring was found.
     pub hardening: Vec<f64>,
     pub warming: Vec<f64>,
     pub settling: Vec<f64>,
     pub starts: Vec<f64>,
 }
 
-/// Places of rest of a spring, evenly about the middle of a range.
+/// Rest positions of a spring, evenly spaced about the middle of a range.
 fn rests(count: u32, (low, high): (f64, f64)) -> Vec<f64> {
     let share = |k: u32| 2.0 * f64::from(k) / f64::from(count - 1) - 1.0;
     (0..count).map(|k| 0.5 * (low + high + RESTS_WITHIN * (high - low) * share(k))).collect()
 }
 
-/// Ripples of what swings freely that are shorter than any of a turn: it goes through them slowly wherever it turns round.
+/// Ripples of what swings freely that are shorter than any of a turn: it goes through them slowly wherever it turns
+/// round.
 fn shorter(track: &Track, range: f64) -> impl Iterator<Item = f64> {
     let longest =
         if track.freely.is_some() { track.radius_m.unwrap_or(0.0) * TAU / f64::from(*RIPPLES.end()) } else { 0.0 };
@@ -93,14 +97,14 @@ fn shorter(track: &Track, range: f64) -> impl Iterator<Item = f64> {
 }
 
 impl Grid {
-    /// What is tried first.
+    /// Grid of the first round.
     pub fn coarse(track: &Track) -> Self {
         let position = |share| track.quantile(share, |r| r.motion.position);
         let (low, high) = (position(0.0), position(1.0));
         let range = (high - low).max(1e-12);
         let fast = track.quantile(0.9, |r| r.motion.velocity.abs());
         let turn = track.radius_m.map(|r| TAU * r);
-        // What is shorter than the way between two points cannot be told from a reversal that lies between them.
+        // A distance shorter than the spacing of two points cannot be distinguished from a reversal between them.
         let between_s = track.raw_period_s.max(1.0 / FINE_HZ).min(track.period_s);
         let point_s = if track.fine.is_empty() { track.period_s } else { between_s };
         let stands = track.rows.iter().any(|r| matches!(r.place, Place::Stuck { .. }));
@@ -111,7 +115,7 @@ impl Grid {
         };
         let least = if stands { (SEEN * track.position_noise).min(felt) } else { felt };
         let scale = track.radius_m.map_or(range, |r| range.min(2.0 * r));
-        // On a crank a place comes again every turn.
+        // On a crank, positions repeat every turn.
         let whole = turn.filter(|t| range > 0.8 * t);
         let (from, span) = whole.map_or((low, range), |t| (0.0, t));
         let places = (0..PLACES).map(|k| from + span * (k as f64 + 0.5) / PLACES as f64);
@@ -142,7 +146,7 @@ impl Grid {
         }
     }
 
-    /// With another grid's values beside its own.
+    /// Adds another grid's values.
     pub fn with(mut self, more: Self) -> Self {
         self.stribeck.extend(more.stribeck);
         self.ways.extend(more.ways);
@@ -159,7 +163,7 @@ impl Grid {
         self
     }
 
-    /// Values between those of the coarse grid, around the ones that were found; `step`: how far from them, 1 at first.
+    /// Values between those of the coarse grid, around the ones found; `step`: distance from them, 1 at first.
     pub fn around(found: &[&Candidate], track: &Track, step: f64) -> Self {
         let coarse = Self::coarse(track);
         let mut grid = Self { turn: coarse.turn, felt: coarse.felt, ..Self::default() };
@@ -174,7 +178,7 @@ impl Grid {
                 "stribeck" => {
                     let alpha = value("alpha").unwrap_or(0.0);
                     let vs = value("vs").unwrap_or(0.0);
-                    // Of the other exponent as well, as near: on the coarse grid alone the wrong one may be nearer.
+                    // The other exponent is tried as finely: on the coarse grid the wrong one may fit better.
                     let [gaussian, exponential] =
                         if alpha == 1.0 { [vs * LIKE_EXPONENTIAL, vs] } else { [vs, vs / LIKE_EXPONENTIAL] };
                     for (alpha, vs) in [(0.0, gaussian), (1.0, exponential)] {
@@ -205,14 +209,14 @@ impl Grid {
                     }
                 }
                 "added-constraint" => {
-                    // A wall and a spring that hardens are alike.
+                    // A wall and a hardening spring are similar.
                     grid.hardening = rests(FINER_RESTS, (low, high));
                     if let (Some(direction), Some(rest)) = (value("anchor direction"), value("rest length")) {
                         let found = value("anchor distance").map_or(REACH, |d| d / radius.max(1e-12));
                         for turn in [-0.6, -0.3, 0.0, 0.3, 0.6].map(|s| s * step * TAU / f64::from(CABLES)) {
                             let rests = [-0.3, -0.15, 0.0, 0.15, 0.3].map(|s| rest + s * step * radius);
                             grid.cables.extend(rests.map(|rest| (direction + turn, rest, found)));
-                            // The same slack from another distance.
+                            // The same slack with another distance of the anchor.
                             for reach in REACHES.into_iter().filter(|reach| (reach - found).abs() > 1e-6) {
                                 let rests = [-0.2, 0.0, 0.2].map(|s| rest + (s * step + reach - found) * radius);
                                 grid.cables.extend(rests.map(|rest| (direction + turn, rest, reach)));

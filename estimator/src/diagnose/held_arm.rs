@@ -1,4 +1,4 @@
-//! Rows out of a recording of a crank: positions and forces of whatever holds its handle.
+//! Rows of a crank's recording: positions and forces of the fingers or tool that hold the handle.
 
 use super::fine::{FINE_HZ, acceleration, calmed, offsets};
 use super::geometry::{Arm, Path, PathPoint};
@@ -14,7 +14,7 @@ use haptics::hand::JointAngles;
 use haptics::law::{Coordinate, Motion};
 use haptics::recording::Recording;
 
-/// Rows come at about this rate, Hz: nothing that a hand does is faster than half of it.
+/// Approximate rate of the rows, Hz: no motion of a hand is faster than half of it.
 const ROW_HZ: f64 = 100.0;
 /// Window of the acceleration, s.
 const ACCELERATION_WINDOW_S: f64 = 0.09;
@@ -27,22 +27,22 @@ pub struct Signals {
     pub position: Vec<Vec2>,
     pub velocity: Vec<Vec2>,
     pub force: Vec<Vec2>,
-    /// Whether two fingers hold the handle, whose places are means of both tips.
+    /// True if two fingers hold the handle. Positions are then means of both tips.
     pub two_fingered: bool,
-    /// Joint angles of each finger, where they were recorded.
+    /// Joint angles of each finger, if recorded.
     joints: [Option<Vec<JointAngles>>; 2],
     pub held: Vec<bool>,
     pub free: Vec<bool>,
     pub period_s: f64,
-    /// Of the recording itself, s.
+    /// Sampling period of the recording itself, s.
     pub raw_period_s: f64,
     /// Recorded samples a row.
     every: usize,
-    /// Time, position and velocity of every recorded sample, the latter calmed.
+    /// Time, position and smoothed velocity of every recorded sample.
     raw: RawMotion,
 }
 
-/// How a recorded force becomes the force: some cables are crossed.
+/// Map from the recorded force axes to the true ones: some cables are swapped or inverted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axes {
     pub swapped: bool,
@@ -56,14 +56,14 @@ impl Axes {
     }
 }
 
-/// What was recorded, at its own rate.
+/// Recorded motion at its own rate.
 struct RawMotion {
     time_s: Vec<f64>,
     position: Vec<Vec2>,
     velocity: Vec<Vec2>,
-    /// What is left of the noise of one sample after the calming, as a factor.
+    /// Noise of one sample after smoothing, relative to before.
     calmed_to: f64,
-    /// The velocity as recorded: its noise is read from it.
+    /// Velocity as recorded, from which its noise is estimated.
     as_recorded: Vec<Vec2>,
 }
 
@@ -151,7 +151,7 @@ impl Signals {
     pub fn path(&self, recording: &Recording) -> Path {
         let fingers = recording.meta.hand().fingers;
         let two_fingered = self.two_fingered;
-        // The place is the mean of both tips.
+        // The position is the mean of both tips.
         let share = if two_fingered { 0.5 } else { 1.0 };
         let stretches = stretches(&self.held);
         let spread_s2 = self.raw_period_s.powi(2) * (self.every * self.every - 1) as f64 / 24.0;
@@ -228,7 +228,7 @@ impl Signals {
         })
     }
 
-    /// The rows of a stretch, and the window and order of their acceleration.
+    /// The rows of a segment, and the window and order of their acceleration.
     fn stretch(&self, range: std::ops::Range<usize>, stretch: usize, arm: &Arm, up: f64) -> (Vec<Row>, (usize, usize)) {
         let time = &self.time_s[range.clone()];
         let directions: Vec<(Vec2, Vec2)> = range
@@ -281,11 +281,12 @@ impl Signals {
         (rows, slope)
     }
 
-    /// The motion between the rows of a stretch; returns the noise of its velocity, m/s, and of one recorded place, m.
+    /// Adds the motion between the rows of a segment; returns the noise of its velocity, m/s, and of one recorded
+    /// position, m.
     fn finely(&self, range: std::ops::Range<usize>, arm: &Arm, rows: &mut [Row], fine: &mut Vec<Fine>) -> [f64; 2] {
         let number = fine.last().map_or(0, |f: &Fine| f.stretch + 1);
         let raw = &self.raw;
-        // Recorded samples are thinned out, or filled in, to about the same rate.
+        // Recorded samples are thinned out, or interpolated, to about the same rate.
         let fill = (FINE_HZ * self.raw_period_s).round().max(1.0) as usize;
         let mut recorded = Vec::with_capacity(range.len() * self.every);
         let mut places = Vec::with_capacity(range.len() * self.every);
@@ -306,7 +307,7 @@ impl Signals {
                     direction: 0.0,
                     open: 0.0,
                 };
-                // As it was recorded: between two samples there is less noise.
+                // Recorded positions, because interpolated ones have less noise.
                 places.push(point.position + (raw.position[at.nearest] - at.position).dot(&along));
                 recorded.push(raw.as_recorded[at.nearest].dot(&along));
                 if let Some(before) = fine.last().copied().filter(|f| f.stretch == number) {
@@ -345,10 +346,10 @@ impl Signals {
     }
 }
 
-/// Fewer free rows do not tell the noise.
+/// Least number of free rows for an estimate of the noise.
 const FREE_ROWS: usize = 40;
 
-/// Noise of one row's force, N, and whether it was seen where nothing is touched.
+/// Noise of one row's force, N, and true if it was measured without touch.
 fn force_noise(rows: &[Row]) -> (f64, bool) {
     let (mut square, mut count) = (0.0, 0_usize);
     let is_free = |row: &Row| matches!(row.place, Place::FreeX | Place::FreeY);
@@ -363,7 +364,7 @@ fn force_noise(rows: &[Row]) -> (f64, bool) {
     (noise.max(1e-9), is_measured)
 }
 
-/// The same motion with its force, as it was recorded, turned into what it is.
+/// The same motion with the recorded force in the true axes.
 pub fn with_axes(as_recorded: &Track, axes: Axes) -> Track {
     let mut track = as_recorded.clone();
     for row in &mut track.rows {
@@ -387,7 +388,7 @@ fn mean_square(noises: &[[f64; 2]], k: usize) -> f64 {
     (noises.iter().map(|n| n[k] * n[k]).sum::<f64>() / noises.len().max(1) as f64).sqrt()
 }
 
-/// Spans of held rows without a gap, long enough to be differentiated.
+/// Segments of held rows that are long enough to be differentiated.
 fn stretches(flags: &[bool]) -> Vec<std::ops::Range<usize>> {
     let mut found = Vec::new();
     let mut start = None;

@@ -1,7 +1,7 @@
-//! A known weight on the object: what it adds to the force, and the tilt of the plane that it tells from an eccentric mass.
+//! A known weight hung on the object: its force, and the tilt of the plane, which it separates from an eccentric mass.
 //!
-//! The weight of what is hung on is known and its direction is gravity's: a tilted plane turns its force as it turns that of the object, an
-//! eccentric mass leaves it alone.
+//! Magnitude and direction of the hung weight are known. A tilted plane rotates its force as it rotates that of the
+//! object. An eccentric mass does not.
 
 use super::candidate::Candidate;
 use super::track::{Place, Row, Track};
@@ -9,26 +9,26 @@ use crate::identify::linear::least_squares;
 use haptics::law::{Coordinate, Kind};
 use haptics::recording::Recording;
 
-/// Tilts that are tried, rad: more than this is no oversight.
+/// Largest tried tilt, rad: a larger one would be noticed.
 const LARGEST_TILT: f64 = 1.4;
 const STEPS: i32 = 12;
-/// A plane that was thought to be level is not this steep, as the sine of its tilt.
+/// Steepest tilt of a plane that was assumed to be level, as its sine.
 const STEEPEST: f64 = 0.6;
 
-/// A known weight on the object, `known` in the sidecar: `added_weight_N`, on a mechanism that turns also `added_lever_m` and
-/// `added_level_rad`, the coordinate at which its lever is level.
+/// A known weight on the object, `known` in the sidecar: `added_weight_N`, on a mechanism that turns also
+/// `added_lever_m` and `added_level_rad`, the coordinate at which its lever is level.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hung {
     /// Its largest force along the coordinate, N (N m for angles).
     pub force: f64,
-    /// What it adds to the inertia, kg (kg m²).
+    /// Its inertia, kg (kg m²).
     pub inertia: f64,
-    /// Coordinate at which its lever is level, rad; a crank's comes out of its position.
+    /// Coordinate at which its lever is horizontal, rad. A crank's follows from its position.
     pub level_rad: f64,
 }
 
 impl Hung {
-    /// On the handle of a crank.
+    /// A weight hung on the handle of a crank.
     pub fn on_crank(recording: &Recording) -> Option<Self> {
         let weight = stated(recording, "added_weight_N")?;
         Some(Self { force: weight, inertia: weight / recording.meta.gravity(), level_rad: 0.0 })
@@ -49,7 +49,7 @@ fn stated(recording: &Recording, name: &str) -> Option<f64> {
     recording.meta.known.get(name).copied().filter(|v| v.is_finite() && *v > 0.0)
 }
 
-/// What was hung on in a row's recording.
+/// Weight hung on in a row's recording.
 fn of(track: &Track, row: &Row) -> Option<Hung> {
     track.hung.get(row.recording).copied().flatten().filter(|_| row.place == Place::Along)
 }
@@ -59,7 +59,7 @@ fn level(track: &Track, row: &Row, hung: Hung) -> f64 {
     if track.planar { row.motion.up_along } else { (row.motion.position - hung.level_rad).cos() }
 }
 
-/// The force that the hung weight needs, one a row, where there is one.
+/// Force that the hung weight needs, one per row; `None` without a weight.
 pub fn column(track: &Track) -> Option<Vec<f64>> {
     track.hung.iter().any(Option::is_some).then(|| {
         let force = |row: &Row| {
@@ -69,13 +69,13 @@ pub fn column(track: &Track) -> Option<Vec<f64>> {
     })
 }
 
-/// The tilt of the plane as a cause, where a hung weight tells it from an eccentric mass.
+/// The tilt of the plane as a cause, if a hung weight separates it from an eccentric mass.
 pub fn tilt(track: &Track) -> Option<Candidate> {
     let known = column(track)?;
     if track.planar { tilted_crank(track, &known) } else { tilted_axis(track, &known) }
 }
 
-/// Columns of a plain fit, their rows and what the hung weight leaves of the force.
+/// Regressors of a plain fit, their rows, and the residual force beside the hung weight.
 struct Plain {
     columns: Vec<Vec<f64>>,
     y: Vec<f64>,
@@ -93,12 +93,13 @@ impl Plain {
         Self {
             columns,
             y: track.rows.iter().zip(known).map(|(r, k)| r.y - k).collect(),
-            // Where the direction is a guess, friction is, too.
+            // An uncertain direction makes the friction uncertain, too.
             used: column(&|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }),
         }
     }
 
-    /// What is left beside the columns and more of them, after `taken` is off; and what the additional ones come out at.
+    /// Residual RMS with additional regressors, after subtraction of `taken`, and the coefficients of the additional
+    /// ones.
     fn left(&self, more: Vec<Vec<f64>>, taken: &[f64]) -> Option<(f64, Vec<f64>)> {
         let first = self.columns.len();
         let columns: Vec<Vec<f64>> = self.columns.iter().cloned().chain(more).collect();
@@ -108,7 +109,7 @@ impl Plain {
     }
 }
 
-/// Crank: all that hangs is turned by the tilt, the object's own weight and what was hung on.
+/// Crank: the tilt rotates all weights, the object's own and the hung one.
 fn tilted_crank(track: &Track, known: &[f64]) -> Option<Candidate> {
     let plain = Plain::of(track, known);
     let turned = |tilt: f64| -> Vec<f64> {
@@ -124,10 +125,10 @@ fn tilted_crank(track: &Track, known: &[f64]) -> Option<Candidate> {
         let force = track.rows.iter().map(|r| of(track, r).map_or(0.0, |h| h.force));
         force.zip(tilted.iter().zip(&upright)).map(|(w, (t, u))| w * (t - u)).collect()
     };
-    // Around a tilt, in steps: the one that leaves least, and the weight that goes with it.
+    // Steps around a tilt: the one with the smallest residual, and its weight.
     let best = |around: f64, step: f64| {
         let tried = (-STEPS..=STEPS).filter_map(|k| {
-            // Never exactly none: the column is what one radian of it does.
+            // The tilt is never exactly zero, because the regressor is the effect per radian.
             let tilt = around + step * (f64::from(k) + 0.05);
             let tilted = turned(tilt);
             let (left, values) = plain.left(vec![tilted.clone()], &hung_on(&tilted))?;
@@ -138,14 +139,14 @@ fn tilted_crank(track: &Track, known: &[f64]) -> Option<Candidate> {
     let rough = best(0.0, LARGEST_TILT / f64::from(STEPS))?;
     let (_, tilt, weight) = best(rough.1, 0.1 * LARGEST_TILT / f64::from(STEPS))?;
     let tilted = turned(tilt);
-    // The model's own weight takes what is upright of the object's.
+    // The model's own weight already contains the vertical part of the object's.
     let own = tilted.iter().zip(&upright).map(|(t, u)| weight * (t - tilt.cos() * u));
     let column = own.zip(hung_on(&tilted)).map(|(own, hung)| (own + hung) / tilt).collect();
     let found = Candidate::one("gravity-tilt", Kind::Plant, "angle", "rad", column);
     Some(found)
 }
 
-/// A mechanism whose axis was thought to be upright: what was hung on acts with the sine of the tilt only.
+/// A mechanism whose axis was assumed to be vertical: the hung weight acts with the sine of the tilt only.
 fn tilted_axis(track: &Track, known: &[f64]) -> Option<Candidate> {
     let plain = Plain::of(track, known);
     let column = |of: &dyn Fn(&Row) -> f64| track.rows.iter().map(of).collect::<Vec<f64>>();

@@ -1,4 +1,4 @@
-//! What was found, kept as values of columns, so that it can be put on other recordings of the same object.
+//! Causes found, kept as coefficients of regressors, for use on other recordings of the same object.
 
 use super::answer::Compared;
 use super::candidate::{Candidate, Searched};
@@ -9,15 +9,15 @@ use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::law::Kind;
 
-/// Values that say when or in which recording something happened: nothing of another recording.
+/// Values that belong to one recording (a time, an insertion) and do not carry over to another.
 const OF_ONE_RECORDING: [&str; 4] = ["t0", "from insertion", "from recording", "duration"];
-/// Searched values of another recording's grid that are as near as this count as the same.
+/// Relative difference of searched values, on another recording's grid, up to which they count as equal.
 const SAME: f64 = 0.35;
 
 /// One cause of one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kept {
-    /// Of which channel.
+    /// Channel of the cause.
     pub channel: &'static str,
     /// The cause.
     pub id: &'static str,
@@ -28,7 +28,7 @@ pub struct Kept {
     values: Vec<f64>,
 }
 
-/// All that was chosen in a comparison.
+/// All causes chosen in a comparison.
 pub fn of_study(channel: &'static str, study: &Study) -> Vec<Kept> {
     let Some(solved) = &study.solved else { return Vec::new() };
     let mut at = study.base.len();
@@ -50,7 +50,8 @@ pub fn of_study(channel: &'static str, study: &Study) -> Vec<Kept> {
 }
 
 impl Kept {
-    /// What it adds to the rows of another recording, out of the candidates there; nothing where it is not to be had there.
+    /// Effect of the cause on the rows of another recording, from the candidates there; `None` if it has no candidate
+    /// there.
     pub fn column(&self, candidates: &[Candidate]) -> Option<Vec<f64>> {
         if self.searched.iter().any(|s| OF_ONE_RECORDING.contains(&s.name)) {
             return None;
@@ -75,9 +76,9 @@ impl Kept {
     }
 }
 
-/// What the kept causes are worth on the channels of another recording. What each recording leaves open there (weights, places, zeros) is
-/// fitted, with and without them; the causes and their sizes are not. `order`: the causes, strongest first; the figures are of the channel
-/// of the first of them that can be had.
+/// Gain by the kept causes on the channels of another recording. Weights, positions and zeros of each recording are
+/// fitted again, with and without the causes; the causes and their sizes are not. `order`: the causes, strongest first.
+/// The figures are of the channel of the first available cause.
 pub fn measure(kept: &[Kept], order: &[&str], channels: &[Compared]) -> Result<Validation, EstimateError> {
     let mut left_out: Vec<String> = Vec::new();
     let mut found: Option<Validation> = None;
@@ -100,12 +101,13 @@ pub fn measure(kept: &[Kept], order: &[&str], channels: &[Compared]) -> Result<V
                 None => left_out.push(cause.id.to_owned()),
             }
         }
-        // The first channel stands for all where nothing was found.
+        // Without causes, the figures are of the first channel.
         if found.as_ref().is_some_and(|v| v.of.is_some()) || (found.is_some() && !is_any) {
             continue;
         }
         let after: Vec<f64> = study.y.iter().zip(&sum).map(|(y, s)| y - s).collect();
-        // Rows that are held out in turn stand for their neighbours; other places of the channel (empty fingers) count with them.
+        // Rows that are held out in turn represent their neighbours. Other rows of the channel (empty fingers) count
+        // with them.
         let squares: Vec<f64> = study.weight.iter().map(|w| w * w).collect();
         found = Some(Validation {
             of: is_any.then(|| channel.channel.to_owned()),
@@ -120,7 +122,7 @@ pub fn measure(kept: &[Kept], order: &[&str], channels: &[Compared]) -> Result<V
     Ok(found)
 }
 
-/// What the open part of the model leaves of a target, row by row.
+/// Residual of a target after a fit of the base model, row by row.
 fn open(channel: &Compared, y: &[f64]) -> Result<Vec<f64>, EstimateError> {
     let study = &channel.study;
     let base: Vec<Vec<f64>> = study.base.iter().filter(|c| c.iter().any(|v| *v != 0.0)).cloned().collect();

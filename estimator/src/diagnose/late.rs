@@ -1,6 +1,7 @@
-//! A force that comes late by more than a row: a straight line in the delay is then no good, so the force is put back to when it was, by what
-//! was found, and all is asked again (Gauss and Newton's step with the recording itself). A delay as long as what a hand does in a moment
-//! is not seen by that line at all: it is looked for by shifting the rows' forces against their motion ([`guess_s`]).
+//! Time delay of the force by more than a row. A linear regressor in the delay is then inaccurate. The force is shifted
+//! back by the delay found and the diagnosis repeated: a Gauss-Newton step with the recording itself. The linear
+//! regressor does not detect a delay as long as a hand's movement. A shift of the rows' forces against their motion
+//! finds it ([`guess_s`]).
 
 use super::force::Model;
 use super::generic::generic;
@@ -17,14 +18,14 @@ use haptics::law::{CoulombFriction, Effect, Inertia, Kind, Law};
 use haptics::recording::{Recording, Span};
 use std::sync::Arc;
 
-/// A delay up to this is as good as proportional, s.
+/// Delay up to which a linear regressor is accurate, s.
 const LINEAR_S: f64 = 3e-3;
 /// Most rounds.
 const ROUNDS: usize = 5;
 /// The cause.
 const ID: &str = "time-delay";
 
-/// Asks again with the force where it belongs, as long as a large delay is found; then says all of it.
+/// Repeats the diagnosis with the force shifted back while a large delay is found, then completes the answer.
 pub fn undo(
     recordings: &[Recording],
     first: Diagnosis,
@@ -33,7 +34,7 @@ pub fn undo(
     let named_s = delay_s(&first);
     let guess_s = first.guess_s.filter(|tau| tau.abs() > LINEAR_S);
     let Some(mut late_s) = guess_s.or(named_s.filter(|tau| tau.abs() > LINEAR_S)) else { return first };
-    // Whole samples: between two of them a force is their mean, with less noise than the rest has.
+    // Whole samples only: an interpolated force is a mean, with less noise than the others.
     let period_s = recordings.iter().filter_map(period_s).fold(0.0, f64::max);
     let whole = |late_s: f64| if period_s > 0.0 { (late_s / period_s).round() * period_s } else { late_s };
     let mut found = None;
@@ -43,7 +44,7 @@ pub fn undo(
             return first;
         }
         let back: Vec<Recording> = recordings.iter().map(|r| put_back(r, back_s)).collect();
-        // Where nothing sensible is left the first answer stands.
+        // If the repetition fails, the first answer remains.
         let Ok(now) = ask(&back) else { return first };
         late_s = back_s + now.rest_s.map_or(0.0, |[more, _]| more);
         found = Some(now);
@@ -51,7 +52,7 @@ pub fn undo(
             break;
         }
     }
-    // What was not named before must make it good.
+    // A delay that was not named must improve the residual clearly.
     let most = told(&first).end.heldout_rms_n * if named_s.is_some() { AS_GOOD } else { BETTER };
     let sure = |found: &Diagnosis| found.rest_s.is_none_or(|[_, error]| late_s.abs() > SURE * error);
     match found.filter(|found| told(found).end.heldout_rms_n < most && (named_s.is_some() || sure(found))) {
@@ -60,7 +61,7 @@ pub fn undo(
     }
 }
 
-/// The figures that tell whether a delay was one.
+/// The figures by which a delay is judged.
 fn told(found: &Diagnosis) -> Figures {
     found.of_delay.clone().unwrap_or_else(|| Figures {
         baseline: found.baseline.clone(),
@@ -75,31 +76,31 @@ fn period_s(recording: &Recording) -> Option<f64> {
     Some((time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64)
 }
 
-/// A delay that was not named at first is so many times its error at least.
+/// Standard errors that a delay must have if it was not named at first.
 const SURE: f64 = 5.0;
-/// What is left with the forces put back, as a share of what was left before: at most this where the delay was named, …
+/// Largest ratio of residuals, after over before the shift, if the delay was named.
 const AS_GOOD: f64 = 1.1;
-/// … and this where it was not.
+/// The same ratio if the delay was not named.
 const BETTER: f64 = 0.95;
-/// What makes a guess worth asking all again.
+/// Demands on a guess for a repetition of the diagnosis.
 const GUESS: Demands = Demands { longest_s: 0.09, enough: 0.5, leaves: 0.85, likelier: 60.0 };
 
-/// The delay with which a plain model, anything that goes with the place and anything slow leave least, if it is one that matters.
-/// Whole rows are tried, because a force between two rows is the mean of both, with half of the noise.
+/// The delay with which a plain model, anything that goes with the place and anything slow leave least, if it is one
+/// that matters. Whole rows are tried, because a force between two rows is the mean of both, with half of the noise.
 pub fn guess_s(track: &Track, model: &Model) -> Option<f64> {
     let moved = Moved::of(track, model);
     let late = look(track.period_s, &GUESS, &|rows| moved.left(rows))?;
     late.is_seen.then_some(late.tau_s)
 }
 
-/// Rows along the motion whose forces are to be moved against it.
+/// Rows along the motion whose forces are shifted against it.
 struct Moved<'a> {
     track: &'a Track,
     /// Indices of the rows.
     rows: Vec<usize>,
-    /// Laws that go with the load, which moves with the force.
+    /// Laws that depend on the load, which moves with the force.
     loads: Vec<Effect>,
-    /// What goes with the motion alone, one entry a row of the track.
+    /// Regressors that depend on the motion alone, one entry per row of the track.
     motion: Vec<Vec<f64>>,
 }
 
@@ -117,7 +118,7 @@ impl<'a> Moved<'a> {
         Self { track, rows: track.along().collect(), loads, motion }
     }
 
-    /// The rows with the forces of so many rows later, and which they were.
+    /// The rows with the forces of this many rows later, and their indices.
     fn later(&self, by: isize) -> (Vec<Row>, Vec<usize>) {
         let of = |i: &usize| &self.track.rows[*i];
         let (mut moved, mut picked) = (Vec::new(), Vec::new());
@@ -140,10 +141,10 @@ impl<'a> Moved<'a> {
         (moved, picked)
     }
 
-    /// Power that is left a row with the forces of so many rows later, and rows.
+    /// Residual power per row, and number of rows, with the forces of this many rows later.
     fn left(&self, by: isize) -> Option<(f64, f64)> {
         let (moved, picked) = self.later(by);
-        // What the sign's guess is worth, squared: its fourth power weighs the squares.
+        // Square of the direction's estimate: weights of the squares are its fourth power.
         let root: Vec<f64> = moved.iter().map(|row| row.motion.direction.powi(2)).collect();
         let weighted = |column: &mut dyn Iterator<Item = f64>| -> Vec<f64> {
             column.zip(&root).map(|(value, root)| value * root).collect()
@@ -168,7 +169,7 @@ fn delay_s(found: &Diagnosis) -> Option<f64> {
     found.causes.iter().find(|c| c.id == ID)?.parameters.first().map(|p| p.value)
 }
 
-/// The recording with its forces so much earlier, without the end that has none then.
+/// The recording with its forces shifted earlier, without its end, which has no such forces.
 pub fn put_back(recording: &Recording, late_s: f64) -> Recording {
     let Some(time_s) = recording.time_s.as_ref().filter(|t| t.len() > 2 && late_s != 0.0) else {
         return recording.clone();
@@ -185,8 +186,8 @@ pub fn put_back(recording: &Recording, late_s: f64) -> Recording {
     moved.slice(Span { first, end: last + 1 })
 }
 
-/// The recording with its motion as it was when the force was read that is recorded beside it: the force comes late by `apart_s`, a part of a sample. (A
-/// force between two samples has less noise than the others; a place hardly has any.)
+/// The recording with its motion as it was when the force was read that is recorded beside it: the force comes late by
+/// `apart_s`, a part of a sample. (A force between two samples has less noise than the others; a place hardly has any.)
 pub fn motion_apart(recording: &Recording, apart_s: f64) -> Recording {
     let mut moved = recording.clone();
     let Some(time_s) = recording.time_s.as_ref().filter(|t| t.len() > 2 && apart_s != 0.0) else { return moved };
@@ -208,7 +209,7 @@ fn is_force(name: &str) -> bool {
     })
 }
 
-/// The answer about the recording with its forces put back by `back_s`, with the delay that it has.
+/// The answer for the recording with its forces shifted back by `back_s`, with its delay.
 fn with_delay(mut found: Diagnosis, first: &Diagnosis, late_s: f64, back_s: f64) -> Diagnosis {
     let place = first.causes.iter().position(|c| c.id == ID);
     let mut cause = place.map_or_else(|| unnamed_before(first, late_s), |place| first.causes[place].clone());
@@ -244,7 +245,7 @@ fn with_delay(mut found: Diagnosis, first: &Diagnosis, late_s: f64, back_s: f64)
     found
 }
 
-/// A delay that the first answer did not name.
+/// A delay that the first answer did not name, as a cause.
 fn unnamed_before(first: &Diagnosis, late_s: f64) -> Cause {
     let before = told(first);
     let parameter = CauseParameter { name: "tau".to_owned(), value: late_s, std_error: 0.0, unit: "s".to_owned() };

@@ -1,17 +1,18 @@
-//! Means over the rows of a track: what many columns have in common is worked out once.
+//! Means over the rows of a track, with the parts that many regressors share computed once.
 
 use super::track::{Place, Row, Span, Track, Weighing};
 use haptics::law::{Effect, Motion};
 
-/// Rows no longer than this are short for what depends on the place, s.
+/// Longest row that is short for effects of position, s.
 const SHORT_S: f64 = 0.015;
 
-/// Whether the rows are short for what depends on the place.
+/// True if the rows are short for effects of position.
 pub fn is_short(track: &Track) -> bool {
     track.period_s <= SHORT_S
 }
 
-/// The force of a law of the place, and of the direction at most in proportion, like [`column`]: within a short row it is as good as straight.
+/// Force of a law of position that depends on the direction in proportion, if at all, like [`column`]. Within a short
+/// row it is nearly linear.
 pub fn column_of_place(track: &Track, effect: &Effect) -> Vec<f64> {
     if !is_short(track) {
         return column(track, effect);
@@ -20,7 +21,7 @@ pub fn column_of_place(track: &Track, effect: &Effect) -> Vec<f64> {
     track.rows.iter().map(of).collect()
 }
 
-/// The force of a law with its linear parameters at one (only the first, where it has several), 0 in free rows.
+/// Force of a law with its linear parameters at one (only the first, if it has several), 0 in free rows.
 pub fn column(track: &Track, effect: &Effect) -> Vec<f64> {
     match at_points(track, effect) {
         Some(felt) => of_points(track, &felt, |row| effect.force(&row.motion)),
@@ -28,7 +29,7 @@ pub fn column(track: &Track, effect: &Effect) -> Vec<f64> {
     }
 }
 
-/// Weights of rows, which are the same for rows of as many points.
+/// Weights of rows, shared by rows with the same number of points.
 #[derive(Default)]
 pub struct Weights {
     known: Vec<((Weighing, usize), Vec<f64>)>,
@@ -44,7 +45,7 @@ impl Weights {
         &self.known[place].1
     }
 
-    /// The mean over a row of what depends on motion, as [`Track::mean`].
+    /// Mean over a row of a function of the motion, as [`Track::mean`].
     pub fn mean(&mut self, track: &Track, row: &Row, of: impl Fn(&Motion) -> f64) -> f64 {
         if row.span.len == 0 {
             return of(&row.motion);
@@ -55,7 +56,7 @@ impl Weights {
     }
 }
 
-/// Means of what is felt at each of the finer points, 0 in free rows. `alone`: what a row is that has no such points.
+/// Means of the force at the finer points, 0 in free rows. `alone`: value of a row without such points.
 pub fn of_points(track: &Track, felt: &[f64], alone: impl Fn(&Row) -> f64) -> Vec<f64> {
     let mut weights = Weights::default();
     let mean = |row: &Row| {
@@ -71,7 +72,7 @@ pub fn of_points(track: &Track, felt: &[f64], alone: impl Fn(&Row) -> f64) -> Ve
     track.rows.iter().map(mean).collect()
 }
 
-/// The force of a law at each of the finer points; none of a law that needs more than they tell.
+/// Force of a law at each of the finer points; `None` if the law needs more than they hold.
 pub fn at_points(track: &Track, effect: &Effect) -> Option<Vec<f64>> {
     let force = |motion: Motion| effect.force(&motion);
     effect.law().is_of_path().then(|| track.fine.iter().map(|p| force(p.motion(&Motion::default()))).collect())

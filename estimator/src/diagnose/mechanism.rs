@@ -10,7 +10,7 @@ use crate::estimate::EstimateError;
 use haptics::law::{Coordinate, CoulombFriction, Effect, Inertia, Law, ViscousFriction};
 use haptics::recording::Recording;
 
-/// Bodies that are thrown, paths without a clock, transmissions, and what moves along one coordinate.
+/// Diagnosis of thrown bodies, paths without a clock, transmissions, and motions along one coordinate.
 pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     if let Some(chain) = recordings.iter().find(|r| crate::identify::mechanism::is_chain(r)) {
         return Err(EstimateError::Other(format!(
@@ -33,8 +33,8 @@ pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<
 
 fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     let (mut found, mut rest_s) = mechanism_as_it_is(recordings, options)?;
-    // What is no delay, a part of a sample, is taken out of the motion itself: a stiff loop's force changes too fast for a straight line, which
-    // says too much of it.
+    // A delay of a fraction of a sample between channels is removed from the motion itself. The force of a stiff loop
+    // changes too fast for a linear regressor, which overestimates it.
     for _ in 0..CLOSER {
         let Some(more_s) = rest_s else { break };
         let skew_s = found.skew_s + OF_SKEW * more_s;
@@ -51,11 +51,11 @@ fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, E
     Ok(found)
 }
 
-/// Rounds in which a skew of force and motion is taken out, and the share of what a straight line says of it.
+/// Rounds in which an offset between force and motion is removed, and the share of the linear estimate that is used.
 const CLOSER: usize = 2;
 const OF_SKEW: f64 = 0.7;
 
-/// The answer, and by what part of a sample force and motion are apart, s.
+/// The answer, and the sub-sample offset between force and motion, s.
 fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Diagnosis, Option<f64>), EstimateError> {
     let mut faults = Vec::new();
     let mut tracks = Vec::new();
@@ -104,10 +104,10 @@ fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Di
     Ok((found, skew_s))
 }
 
-/// Laws of a mechanism that the sidecar states are no part of what is fitted.
+/// Laws of a mechanism that the sidecar states, which are taken out of the fitted ones.
 pub fn known_laws(recording: &Recording, coordinate: Coordinate, model: &mut Model) -> Model {
     let known = &recording.meta.known;
-    // The mass of a pendulum is not what it resists with.
+    // The mass of a pendulum is not its moment of inertia.
     let names = match coordinate {
         Coordinate::Linear => ["mass_kg", "viscous_N_s_m", "coulomb_N"],
         Coordinate::Angular => ["inertia_kg_m2", "viscous_Nm_s", "coulomb_Nm"],
@@ -124,7 +124,7 @@ pub fn known_laws(recording: &Recording, coordinate: Coordinate, model: &mut Mod
     fixed
 }
 
-/// What was found, on another recording of the same mechanism.
+/// Validates the found causes on another recording of the same mechanism.
 pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
     let recording = &late::motion_apart(&late::put_back(recording, diagnosis.late_s), diagnosis.skew_s);
     let along = diagnosis.along.ok_or_else(|| along::none(recording))?;
@@ -135,7 +135,7 @@ pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validati
     Ok(super::validate::validate(&mut track, plain, effects, &[], kept))
 }
 
-/// Rows of a recording on which a mechanism's answer is measured, driven or free.
+/// Rows of a recording for the validation of a mechanism, driven or free.
 fn track_of(
     recording: &Recording,
     path: Option<&haptics::world::MechanismPath>,
@@ -155,10 +155,10 @@ fn track_of(
     free::track(recording, &bad, path)
 }
 
-/// The laws of a baseline's name.
+/// Laws of the baseline with this name.
 ///
 /// # Errors
-/// A part that is no law of a baseline, in a sentence.
+/// A term that is no law of a baseline, in a sentence.
 pub fn named(name: &str) -> Result<Model, EstimateError> {
     name.split('+')
         .map(|part| match part.trim() {

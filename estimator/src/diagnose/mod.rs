@@ -1,6 +1,6 @@
-//! What the simulation gets wrong, the cause, and what mending it gains.
+//! Diagnosis of the residual between measurement and model: its causes, and the gain of an extended model.
 //!
-//! Measured motion is put through the model; what remains of the force is compared with what every known cause would leave there.
+//! The model is evaluated on the measured motion, and the residual is compared with the effect of every known cause.
 //! Method: named hypotheses, effective-variance weights, whitening, forward selection with swaps, a locked test part.
 
 mod along;
@@ -88,26 +88,26 @@ use crate::segment::task_of;
 use haptics::recording::{Recording, Task};
 use haptics::world::World;
 
-/// What may be stated by the user.
+/// Settings of the user.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// The task; told from sidecar and columns when absent.
+    /// The task; inferred from sidecar and channels if absent.
     pub task: Option<Task>,
-    /// The model of a mechanism to start from: `mass`, `mass+viscous` or `mass+viscous+coulomb`.
+    /// Base model of a mechanism: `mass`, `mass+viscous` or `mass+viscous+coulomb`.
     pub baseline: Option<String>,
     /// The world to start from.
     pub world: Option<World>,
-    /// How far it is, and the wish to end it.
+    /// Share done, and the wish to end.
     pub progress: Progress,
-    /// Whether [`Diagnosis::atlas`] is wanted: what every suspect alone would take of the force.
+    /// True to compute [`Diagnosis::atlas`]: the part of the force's residual that every candidate alone would explain.
     pub atlas: bool,
 }
 
-/// Least score of a cause, in units of 2 ln(likelihood): keeps false alarms below 1 in 200 (`facts/diagnosis.md`, 3) …
+/// Least evidence of a cause, 2 ln(likelihood): keeps false alarms below 1 in 200 (`facts/diagnosis.md`, 3).
 const THRESHOLD: f64 = 20.0;
-/// … and for few rows a second, where the noise hides less well.
+/// The same for slow rows, whose noise averages out less.
 const THRESHOLD_SLOW: f64 = 25.0;
-/// Slower rows than this count as slow, s.
+/// Row period from which rows count as slow, s.
 const SLOW_PERIOD_S: f64 = 0.019;
 
 /// Diagnoses one or several recordings of the same object.
@@ -135,10 +135,10 @@ fn of_task(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
     }
 }
 
-/// What is held between two fingers, with mirrored axes put right.
+/// Diagnosis of an object held between two fingers, after mirrored axes are corrected.
 fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
     let looked_at: Vec<_> = recordings.iter().map(pinched::upright).collect();
-    // Nothing is copied where nothing is mirrored, which is nearly always.
+    // Recordings are copied only if an axis is mirrored, which is rare.
     let upright: Vec<Recording> = if looked_at.iter().any(Option::is_some) {
         let pairs = looked_at.iter().zip(recordings);
         pairs.map(|(other, recording)| other.as_ref().map_or(recording, |(other, _)| other).clone()).collect()
@@ -152,7 +152,7 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
     faults.dedup_by(|a, b| which(a) == which(b));
     let mut found = match task {
         Task::BlockStack | Task::Barrel if slide::is_slid(recordings) => slide::slid(recordings, options),
-        // A barrel is a block that is carried.
+        // A barrel is a carried block.
         Task::BlockStack | Task::Barrel => {
             let ask = |recordings: &[Recording]| blocks::blocks(recordings, options);
             ask(recordings).map(|found| late::undo(recordings, found, &ask))
@@ -170,8 +170,9 @@ fn pinched(task: Task, recordings: &[Recording], options: &Options) -> Result<Di
     Ok(found)
 }
 
-/// What was found, on other recordings of the same object: nothing is chosen there, and no cause is fitted. Faults of the sensors that
-/// were found in the first recordings are taken out of these as well; the path of a crank, and mirrored axes, are looked at in each.
+/// Validates the found causes on other recordings of the same object: none is chosen or fitted there. Sensor faults
+/// found in the first recordings are corrected in these as well. The path of a crank, and mirrored axes, are checked in
+/// each.
 pub fn validate(
     recordings: &[Recording],
     options: &Options,
@@ -179,7 +180,7 @@ pub fn validate(
 ) -> Result<Vec<Validation>, EstimateError> {
     let of = |recording: &Recording| {
         let task = task_of(recording, options.task)?;
-        // Cranks and mechanisms have laws of their own for their signs.
+        // Cranks and mechanisms have their own tests of signs.
         let upright = if matches!(task, Task::Crank | Task::Mechanism) { None } else { pinched::upright(recording) };
         let recording = upright.as_ref().map_or(recording, |(other, _)| other);
         let one = std::slice::from_ref(recording);

@@ -1,4 +1,4 @@
-//! Why the other causes were not named: what each would have explained, alone and beside what was found.
+//! Causes that were not named, with the reason: evidence of each alone, and beside the causes found.
 
 use super::candidate::Candidate;
 use super::geometry::Study;
@@ -7,8 +7,8 @@ use super::select::Selection;
 use super::system::System;
 use haptics::law::cause;
 
-/// Causes that could have shown in this channel and were not chosen, those that would have explained most first. `least`: the
-/// score that names a cause.
+/// Causes that could have shown in this channel and were not chosen, those that would have explained most first.
+/// `least`: the score that names a cause.
 pub fn passed_over(study: &Study, picks: &[usize], least: f64) -> Vec<PassedOver> {
     let Study { system, candidates, .. } = study;
     let judge = Judge { system, candidates, picks, least };
@@ -24,7 +24,7 @@ pub fn passed_over(study: &Study, picks: &[usize], least: f64) -> Vec<PassedOver
     all
 }
 
-/// Takes those of another channel in: one that shows in both is passed over where it came nearer.
+/// Adds the causes of another channel. A cause that is in both keeps the entry with more evidence.
 pub fn join(all: &mut Vec<PassedOver>, more: Vec<PassedOver>) {
     for passed in more {
         match all.iter_mut().find(|p| p.id == passed.id) {
@@ -35,7 +35,7 @@ pub fn join(all: &mut Vec<PassedOver>, more: Vec<PassedOver>) {
     }
 }
 
-/// Without those of which something else is said.
+/// Removes those that the answer already mentions.
 pub fn unsaid(
     mut all: Vec<PassedOver>,
     causes: &[Cause],
@@ -67,7 +67,7 @@ impl Judge<'_> {
             (None, None) => "it would need a sign that it cannot have".to_owned(),
             _ => self.words(alone.unwrap_or(f64::NEG_INFINITY), beside),
         };
-        // What cannot be had counts as nothing.
+        // Evidence that cannot be computed counts as zero.
         let shown = |score: Option<f64>| score.unwrap_or(0.0);
         PassedOver { id: id.to_owned(), alone: shown(alone), beside: shown(beside), least: self.least, why }
     }

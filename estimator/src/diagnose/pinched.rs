@@ -1,7 +1,7 @@
-//! Mirrored axes of two fingers that hold something between them: what is held pushes back along the line between the tips, keeps its width
-//! while it is carried, moves with both, and weighs down on both once it is lifted.
+//! Mirrored axes of two fingers that hold an object between them. The object pushes back along the line between the
+//! tips, keeps its width while carried, moves with both, and weighs down on both once it is lifted.
 //!
-//! These are laws of any grip, whatever is gripped, so they are asked before the recording is taken apart into states.
+//! These laws hold for any grip and object, so they are tested before the recording is segmented.
 
 use super::quality;
 use super::report::Cause;
@@ -13,29 +13,31 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Both fingers press when each has this share of the usual grip …
+/// Least force of each finger in a grip, as a share of the usual grip.
 const PRESSING: f64 = 0.3;
-/// … and so many times the noise.
+/// Least force of each finger in a grip, in standard deviations of the noise.
 const OVER_NOISE: f64 = 10.0;
-/// Fewer samples of a grip tell nothing.
+/// Least number of samples of a grip.
 const LEAST_SAMPLES: usize = 20;
-/// Forces that go together like this, or more, do not hold anything between them.
+/// Correlation of the two forces from which nothing is held between the fingers.
 const TOGETHER: f64 = 0.8;
-/// What must move how far in a grip, m, to be looked at, and how much less what stays the same must move.
+/// Least travel in a grip, m, and the largest motion of a constant dimension relative to it.
 const TRAVEL_M: f64 = 2e-3;
 const STAYS: f64 = 0.1;
-/// Within this of where it was gripped an object stands, m; beyond this share of its rise it is lifted.
+/// Rise up to which an object still stands, m, and share of its rise from which it is lifted.
 const STANDS_M: f64 = 5e-4;
 const LIFTED: f64 = 0.6;
-/// How much more the difference of the vertical forces must change at a lift than their sum.
+/// Least ratio of the changes at a lift: difference of the vertical forces over their sum.
 const DIFFERS: f64 = 2.0;
 
 /// A channel of each finger along one axis.
 type Pair = [Vec<f64>; 2];
 
-/// The recording with mirrored axes of its fingers put right, and what they were; nothing where all makes sense or no grip tells.
+/// The recording with mirrored axes of its fingers put right, and what they were; nothing where all makes sense or no
+/// grip tells.
 pub fn upright(recording: &Recording) -> Option<(Recording, Cause)> {
-    // A place that is mirrored beside a rate that is right looks like the rate's fault first; with both turned it is told from a grip.
+    // A place that is mirrored beside a rate that is right looks like the rate's fault first; with both turned it is
+    // told from a grip.
     let (straight, rate) = with_rates_of_motion(recording);
     let found = Grips::of(&straight).and_then(|grips| {
         (grips.places(&straight))
@@ -53,16 +55,16 @@ pub fn upright(recording: &Recording) -> Option<(Recording, Cause)> {
     Some((mirrored(&straight, &names), cause))
 }
 
-/// Axes that are mirrored, and the sentence that says why.
+/// Mirrored axes, and the sentence with the reason.
 struct Found {
     axes: Vec<String>,
     why: String,
 }
 
-/// The stretches in which both fingers press, and what the fingers read.
+/// Segments in which both fingers press, and the signals of the fingers.
 struct Grips {
     spans: Vec<Range<usize>>,
-    /// What counts as pressing, N.
+    /// Threshold of pressing, N.
     least_n: f64,
     x: Pair,
     y: Pair,
@@ -113,7 +115,7 @@ impl Grips {
         sum / f64::from(n.max(1))
     }
 
-    /// Root mean square of what `of` does within the grips, each about its own mean.
+    /// RMS variation of `of` within the grips, each about its own mean.
     fn moves(&self, of: impl Fn(usize) -> f64) -> f64 {
         let (mut power, mut n) = (0.0, 0);
         for span in &self.spans {
@@ -124,7 +126,7 @@ impl Grips {
         (power / n.max(1) as f64).sqrt()
     }
 
-    /// A tip that goes the other way than the one beside it, along x or y.
+    /// A tip that moves opposite to the other one, along x or y.
     fn places(&self, recording: &Recording) -> Option<Found> {
         recording.channel("x1_m")?;
         for (axis, at) in [("x", &self.x), ("y", &self.y)] {
@@ -143,12 +145,12 @@ impl Grips {
         None
     }
 
-    /// The finger whose x, mirrored, puts the second tip to the right of the first.
+    /// The finger whose x axis, mirrored, puts the second tip to the right of the first.
     fn crossed(&self) -> usize {
         usize::from(self.mean(|i| self.x[1][i] + self.x[0][i]) < 0.0)
     }
 
-    /// The finger that goes down first once something is gripped: what stands can only be lifted.
+    /// The finger that moves down first in a grip: a standing object can only be lifted.
     fn sinking(&self) -> usize {
         let first = self.spans.iter().find_map(|span| {
             let moved = |i: &usize| (self.y[0][*i] - self.y[0][span.start]).abs() > TRAVEL_M;
@@ -157,7 +159,7 @@ impl Grips {
         usize::from(first.is_some_and(|rise| rise > 0.0))
     }
 
-    /// A finger that pushes alone: it pushes away from itself, and what gives way goes with it.
+    /// A finger that pushes alone: it pushes away from itself, and a yielding object moves with it.
     fn alone(&self, recording: &Recording) -> Option<Found> {
         for k in [0, 1] {
             let size = |k: usize, i: usize| self.fx[k][i].hypot(self.fy[k][i]);
@@ -186,7 +188,7 @@ impl Grips {
         None
     }
 
-    /// Forces along x that do not press what is between the tips together.
+    /// Forces along x that do not press the held object together.
     fn across(&self, recording: &Recording) -> Option<Found> {
         if self.spans.is_empty() {
             return None;
@@ -199,7 +201,7 @@ impl Grips {
         }
         let pulls = [self.mean(|i| one[i]) < 0.0, self.mean(|i| two[i]) > 0.0];
         if self.mean(|i| self.x[1][i] - self.x[0][i]) <= 0.0 {
-            // The first finger is the left one: pressing to the right, it stands to the right.
+            // The first finger is the left one. If it presses to the right, its tip is on the right of the other.
             let both = pulls == [false, false] && recording.channel("x1_m").is_some();
             let why =
                 "while both fingers press, the first one stands to the right of the other and pushes to the right"
@@ -214,7 +216,7 @@ impl Grips {
         (!axes.is_empty()).then_some(Found { axes, why })
     }
 
-    /// A vertical force that falls when the weight comes onto it, or heights that fall when something is lifted.
+    /// A vertical force that falls when it takes over the weight, or heights that fall when an object is lifted.
     fn upwards(&self, recording: &Recording) -> Option<Found> {
         let lifts: Vec<Lift> = self.spans.iter().filter_map(|span| self.lift(span)).collect();
         let down = lifts.iter().filter(|l| l.downwards).count();
@@ -244,7 +246,7 @@ impl Grips {
         Some(Found { axes, why })
     }
 
-    /// What the vertical forces gain in a grip between where something stands and where it is lifted to.
+    /// Changes of the vertical forces in a grip between the standing and the lifted object.
     fn lift(&self, span: &Range<usize>) -> Option<Lift> {
         let height = |i: usize| 0.5 * (self.y[0][i] + self.y[1][i]);
         let start = height(span.start);
@@ -262,8 +264,8 @@ impl Grips {
 
 /// One lift.
 struct Lift {
-    /// What the vertical force of either finger gained, N.
+    /// Change of the vertical force of either finger, N.
     gained_n: [f64; 2],
-    /// It went down, as recorded.
+    /// True if the recorded height decreased.
     downwards: bool,
 }

@@ -1,15 +1,15 @@
-//! Products of columns, which a comparison spends much of its time on.
+//! Gram matrices of regressors, on which a comparison spends much of its time.
 
 use nalgebra::DMatrix;
 
-/// Rows that are multiplied at a time (a block of the product's own, so that sums are what they were), and the fewest: a handful would be
-/// multiplied in another way. Columns at a time.
+/// Number of rows multiplied at a time: a block of the matrix product's own, so that sums stay equal to the bit. Then
+/// the least number of rows, below which another algorithm is used, and the number of columns at a time.
 const TILE: usize = 256;
 const LEAST_TILE: usize = 8;
 const PANEL: usize = 64;
 
-/// Products of all columns with each other, summed over the picked rows. As products of matrices, not column by column: several times as
-/// fast. Tile by tile, which stay in the cache, and on one side of the diagonal only: the other is the same.
+/// Gram matrix of all columns over the picked rows. It is computed as matrix products, which are several times as fast
+/// as single columns. The tiles fit in the cache, and only one side of the diagonal is computed.
 pub fn gram(columns: &[Vec<f64>], picked: &[usize]) -> DMatrix<f64> {
     let all: Vec<usize> = (0..columns.len()).collect();
     let mut gram = DMatrix::zeros(columns.len(), columns.len());
@@ -18,9 +18,10 @@ pub fn gram(columns: &[Vec<f64>], picked: &[usize]) -> DMatrix<f64> {
     gram
 }
 
-/// The same where many columns were there before: `had` are their products over the same rows, `from` which of them each column was.
+/// The same if many columns are known: `had` is their Gram matrix over the same rows, `from` the index of each column
+/// in it.
 pub fn more(columns: &[Vec<f64>], picked: &[usize], had: &DMatrix<f64>, from: &[Option<usize>]) -> DMatrix<f64> {
-    // Those that were there first.
+    // Known columns come first.
     let (old, new): (Vec<usize>, Vec<usize>) = (0..columns.len()).partition(|c| from[*c].is_some());
     let order = [old.as_slice(), new.as_slice()].concat();
     let mut sorted = DMatrix::zeros(columns.len(), columns.len());
@@ -29,16 +30,16 @@ pub fn more(columns: &[Vec<f64>], picked: &[usize], had: &DMatrix<f64>, from: &[
     order.iter().enumerate().for_each(|(k, c)| place[*c] = k);
     DMatrix::from_fn(columns.len(), columns.len(), |i, j| match (from[i], from[j]) {
         (Some(a), Some(b)) => had[(a, b)],
-        // Below the diagonal, or beside it.
+        // Below the diagonal, or its mirror image.
         _ => sorted[(place[i].max(place[j]), place[i].min(place[j]))],
     })
 }
 
-/// Fewer columns than this side by side would be multiplied in another way; and so many are at a time.
+/// Least number of columns side by side, below which another algorithm is used, and number of columns at a time.
 const LEAST_COLUMNS: usize = 8;
 pub const STRIP: usize = 24;
 
-/// Columns whose rows weigh.
+/// Columns with weighted rows.
 pub struct Weighed<'a> {
     pub columns: &'a [&'a [f64]],
     pub weight: &'a [f64],
@@ -56,10 +57,10 @@ impl Weighed<'_> {
         }
     }
 
-    /// Products of the columns `of` with those of `with`, and with each other within each of these `strips` of them if `own`: to the bit what
-    /// [`gram`] makes of them among many others. A row for each of `of`; a strip's own products come after those `with`.
+    /// Products of the columns `of` with those of `with` and, if `own`, with each other within each of the `strips`.
+    /// They equal those of [`gram`] to the bit. One row for each of `of`; a strip's own products follow those `with`.
     pub fn products(&self, strips: &[Vec<usize>], with: &[usize], own: bool, picked: &[usize]) -> Vec<DMatrix<f64>> {
-        // What is too few is there twice.
+        // Too few columns are repeated.
         let enough = |columns: &[usize]| -> Vec<usize> {
             columns.iter().copied().cycle().take(columns.len().max(LEAST_COLUMNS)).collect()
         };
@@ -100,7 +101,8 @@ impl Weighed<'_> {
     }
 }
 
-/// Mean squares of columns over these rows, several columns at a time: each sum waits for itself.
+/// Mean squares of columns over these rows, several columns at a time, because each sum is a chain of dependent
+/// additions.
 pub fn mean_squares(columns: &Weighed<'_>, rows: &[usize]) -> Vec<f64> {
     let Weighed { columns, weight } = columns;
     let mut means = Vec::with_capacity(columns.len());
@@ -109,7 +111,7 @@ pub fn mean_squares(columns: &Weighed<'_>, rows: &[usize]) -> Vec<f64> {
         for rows in rows.chunk_by(|a, b| a + 1 == *b) {
             let rows = rows[0]..rows[0] + rows.len();
             let weight = &weight[rows.clone()];
-            // Where there are fewer columns, something that nobody asks for.
+            // Unused places hold an arbitrary column.
             let mut here = [weight; LEAST_COLUMNS];
             here.iter_mut().zip(columns).for_each(|(here, column)| *here = &column[rows.clone()]);
             for (k, weight) in weight.iter().enumerate() {
@@ -121,12 +123,13 @@ pub fn mean_squares(columns: &Weighed<'_>, rows: &[usize]) -> Vec<f64> {
     means
 }
 
-/// Whether increasing numbers follow each other without a gap.
+/// True if increasing numbers follow each other without a gap.
 fn is_run(rows: &[usize]) -> bool {
     rows.first().zip(rows.last()).is_some_and(|(first, last)| last - first + 1 == rows.len())
 }
 
-/// Adds the products of columns in this order: of those from number `first` on, with each other and all before, below the diagonal.
+/// Adds the products of columns in this order, below the diagonal: those from number `first` on, with each other and
+/// with all before.
 fn add(sum: &mut DMatrix<f64>, (columns, order): (&[Vec<f64>], &[usize]), first: usize, picked: &[usize]) {
     let count = order.len();
     let mut tile = DMatrix::zeros(TILE + LEAST_TILE, count);
@@ -235,7 +238,7 @@ mod tests {
             let (found, anew) = (more(&columns, &picked, &before, &from), gram(&columns, &picked));
             assert!((&found - &anew).abs().max() < 1e-9, "{had:?} {now:?}");
             assert!(found == found.transpose());
-            // What was known is not made again.
+            // Known products are not computed again.
             let wrong = DMatrix::from_element(had.len(), had.len(), 7.0);
             let taken = more(&columns, &picked, &wrong, &from);
             let known = |i: usize, j: usize| from[i].is_some() && from[j].is_some();

@@ -1,4 +1,4 @@
-//! How far a diagnosis has come, and the wish to end it.
+//! Share of a diagnosis that is done, and the wish to end it.
 
 use crate::estimate::EstimateError;
 use std::fmt;
@@ -6,17 +6,18 @@ use std::sync::Arc;
 
 type Listener = dyn Fn(f64) -> bool + Send + Sync;
 
-/// Whoever waits for a diagnosis: is told how much is done, and says whether the rest is still wanted. Nobody by default.
+/// Whoever waits for a diagnosis: is told how much is done, and says whether the rest is still wanted. Nobody by
+/// default.
 #[derive(Clone, Default)]
 pub struct Progress(Option<Arc<Listener>>);
 
 impl Progress {
-    /// `listen` is told the share that is done, 0 … 1; the diagnosis ends with an error when it answers false.
+    /// `listen` receives the share done, 0 … 1. If it returns false, the diagnosis ends with an error.
     pub fn new(listen: impl Fn(f64) -> bool + Send + Sync + 'static) -> Self {
         Self(Some(Arc::new(listen)))
     }
 
-    /// Tells how much is done; an error when nobody wants the rest.
+    /// Reports the share done; an error if the rest is not wanted.
     pub(super) fn tell(&self, share: f64) -> Result<(), EstimateError> {
         match &self.0 {
             Some(listen) if !listen(share.clamp(0.0, 1.0)) => {

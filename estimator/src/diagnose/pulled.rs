@@ -1,5 +1,5 @@
-//! Diagnosis of a tool path without a clock: a door or drawer that was pulled. Nothing that needs a rate can be told; what depends on
-//! the place can, and so can two estimates of one force that do not agree.
+//! Diagnosis of a tool path without a clock: a door or drawer that was pulled. Nothing that needs a rate can be told;
+//! what depends on the place can, and so can two estimates of one force that do not agree.
 
 use super::answer::{Beside, Found, Part, answer};
 use super::atlas::{self, Variable, View};
@@ -17,11 +17,11 @@ use crate::signal::noise::white_noise;
 use haptics::law::{Effect, Kind, Law, LocalResistance, Motion, ReturnSpring};
 use haptics::recording::Recording;
 
-/// The way is cut into so many equal parts, with the mean force of each.
+/// Number of equal parts of the path, with the mean force of each.
 const PARTS: usize = 160;
-/// A part has this many samples at least, on the average.
+/// Least mean number of samples per part.
 const LEAST_SAMPLES: usize = 3;
-/// Places and widths of a local resistance that are tried, in shares of the range.
+/// Number of tried places of a local resistance, and its widths as shares of the range.
 const PLACES: usize = 24;
 const WIDTHS: [f64; 6] = [0.08, 0.15, 0.25, 0.4, 0.6, 0.9];
 
@@ -36,26 +36,26 @@ struct Units {
 static ROUND: Units = Units { force: "N m", place: "rad", per_place: "N m/rad", per_cube: "N m/rad³" };
 static STRAIGHT: Units = Units { force: "N", place: "m", per_place: "N/m", per_cube: "N/m³" };
 
-/// Part of the way of one recording.
+/// One part of the path of a recording.
 #[derive(Clone, Debug)]
 struct Row {
     recording: usize,
-    /// m or rad from the start.
+    /// Position from the start, m or rad.
     place: f64,
     direction: f64,
-    /// Along the coordinate, N or N m.
+    /// Force along the coordinate, N or N m.
     force: f64,
-    /// What one estimate of the force says, and the other one beside it, N.
+    /// Measured force, and the second estimate of it, N.
     measured_n: [f64; 3],
     second_n: Option<[f64; 3]>,
 }
 
-/// Whether this is what [`pulled`] is for.
+/// True if [`pulled`] handles these recordings.
 pub fn is_pulled(recordings: &[Recording]) -> bool {
     recordings.iter().all(|r| r.time_s.is_none() && path::points(r).is_some())
 }
 
-/// What depends on speed.
+/// Causes that depend on speed or time.
 fn without_a_clock() -> impl Iterator<Item = NotExcited> {
     ["inertia", "viscous-friction", "time-delay"]
         .into_iter()
@@ -162,14 +162,14 @@ fn in_the_atlas(
     found
 }
 
-/// What the force along the way is seen against.
+/// Variables of the plots of the force along the path.
 fn view(rows: &[Row]) -> View {
     let over = vec![(Variable::Place, rows.iter().map(|r| r.place).collect())];
     let way = rows.iter().map(|r| r.direction).collect();
     View { way, ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
 }
 
-/// What two forces are seen against: the rows of all three axes follow each other.
+/// Variables of the plots of two forces: the rows of all three axes follow each other.
 fn view_of_both(rows: &[Row]) -> View {
     let each =
         |f: &dyn Fn(&Row, usize) -> f64| (0..3).flat_map(|a| rows.iter().map(move |r| f(r, a))).collect::<Vec<f64>>();
@@ -191,14 +191,14 @@ fn best_of_both(id: &str) -> Variable {
     }
 }
 
-/// A door does not drive whoever opens it: a force that takes work all the way is the one on the hand.
+/// A door does not drive the person who opens it: a force that takes work all the way is the reaction on the hand.
 fn drives_backwards(rows: &[Row]) -> bool {
     let work: f64 = rows.iter().map(|r| r.force * r.direction).sum();
     let size: f64 = rows.iter().map(|r| r.force.abs()).sum();
     work < -0.5 * size
 }
 
-/// Equal parts of the way that was gone.
+/// Equal parts of the travelled path.
 fn parts(recording: &Recording, number: usize, seen: &path::Projected) -> Vec<Row> {
     let n = seen.position.len();
     let travelled: Vec<f64> = seen
@@ -238,7 +238,7 @@ fn parts(recording: &Recording, number: usize, seen: &path::Projected) -> Vec<Ro
     rows
 }
 
-/// Columns of another estimate of the same force: `fx_<words>_N`, `fy_<words>_N` (and z).
+/// Channels of another estimate of the same force: `fx_<words>_N`, `fy_<words>_N` (and z).
 fn second_names(recording: &Recording) -> Option<[String; 3]> {
     let own = |name: &&str| name.starts_with("fx_") && name.ends_with("_N") && *name != "fx_N";
     let first = recording.channels.iter().map(|c| c.name.as_str()).find(own)?;
@@ -246,7 +246,7 @@ fn second_names(recording: &Recording) -> Option<[String; 3]> {
     recording.channel(&names[1]).map(|_| names)
 }
 
-/// Force along the way, against the place; the dry friction of one direction is the model.
+/// Comparison of the force along the path over position. The base model is the dry friction of one direction.
 fn along(rows: &[Row], units: &Units) -> Result<(Study, String), EstimateError> {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let (low, high) =
@@ -295,7 +295,7 @@ fn along(rows: &[Row], units: &Units) -> Result<(Study, String), EstimateError> 
     Ok((channel.compare(THRESHOLD)?, falls))
 }
 
-/// What in the residual shows a cause.
+/// Sentence on how the residual shows a cause.
 fn shows(found: &Found<'_>, falls: &str) -> String {
     match found.candidate.id {
         "local-resistance" => format!("the force goes with the place: a resistance that is passed ({falls})"),
@@ -304,7 +304,7 @@ fn shows(found: &Found<'_>, falls: &str) -> String {
     }
 }
 
-/// Two estimates of one force: whether they differ by a constant, a factor or a turn.
+/// Comparison of two estimates of one force: a constant, a factor or a rotation between them.
 fn second(rows: &[Row]) -> Result<Option<(Study, f64)>, EstimateError> {
     if rows.iter().any(|r| r.second_n.is_none()) {
         return Ok(None);

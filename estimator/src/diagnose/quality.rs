@@ -1,4 +1,5 @@
-//! Faults of the recording itself, before anything is asked of the model: plateaus, stuck, coarse and missing samples, mirrored axes.
+//! Faults of the recording itself, before anything is asked of the model: plateaus, stuck, coarse and missing samples,
+//! mirrored axes.
 
 use super::report::{Cause, CauseParameter, Gain};
 use crate::log;
@@ -6,22 +7,22 @@ use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 use haptics::recording::{Recording, Warning};
 
-/// What was found in the samples.
+/// Faults found in the samples.
 pub struct Faults {
     pub causes: Vec<Cause>,
-    /// Samples that no sensor measured, one flag a sample.
+    /// Flags of samples that no sensor measured.
     pub bad: Vec<bool>,
 }
 
-/// So many standard deviations of the noise below a rail nothing is cut.
+/// Distance of a saturation limit from the samples, in standard deviations of the noise, from which none is clipped.
 const RAIL_SIGMAS: f64 = 3.5;
 /// Kinds of warnings that are a fault of a channel.
 const CHANNEL: [&str; 7] =
     ["stuck-channel", "copied-channel", "duplicate-samples", "dropped-samples", "gap", "clock-jump", "quantised"];
-/// … of which these are about all samples: nothing can be left out.
+/// Kinds of them that concern all samples, so that none can be left out.
 const WHOLE: [&str; 4] = ["dropped-samples", "gap", "clock-jump", "quantised"];
 
-/// Samples lost in fewer places spoil nothing.
+/// Number of places with lost samples up to which the data remain usable.
 const MANY: usize = 3;
 
 /// Looks at the raw samples.
@@ -46,14 +47,15 @@ pub fn faults(recording: &Recording) -> Faults {
             found.causes.push(cause(id, &warning, recording));
         }
     }
-    // What is nearly all of the recording cannot be left out.
+    // Faults in most of the recording cannot be left out.
     if 2 * found.bad.iter().filter(|b| **b).count() > found.bad.len() {
         found.bad.fill(false);
     }
     found
 }
 
-/// Beside a rail the noise is cut on one side: what is left there is no fair sample of the force.
+/// Leaves out samples near a saturation limit, where the noise is cut on one side: the rest there is a biased sample of
+/// the force.
 fn leave_out_near_the_rail(recording: &Recording, warning: &Warning, bad: &mut [bool]) {
     let channel = warning.column.as_deref().and_then(|c| recording.channels.iter().find(|x| x.name == c));
     let (Some(channel), Some(span)) = (channel, warning.spans.first()) else { return };
@@ -67,7 +69,7 @@ fn leave_out_near_the_rail(recording: &Recording, warning: &Warning, bad: &mut [
 /// The force and motion channels, and the clock.
 fn is_sensed(warning: &Warning) -> bool {
     let Some(column) = &warning.column else { return true };
-    // A sample lost here and there is how recorders are.
+    // Recorders occasionally lose a single sample.
     let clock = column == "t_s" && (warning.kind != "dropped-samples" || warning.spans.len() >= MANY);
     clock || ["f", "tau", "q", "dq", "x", "y", "v"].iter().any(|start| column.starts_with(start))
 }
@@ -94,7 +96,7 @@ fn cause(id: &str, warning: &Warning, recording: &Recording) -> Cause {
             vec![number("F_max", channel.values[span.first].abs(), &channel.unit)]
         }
         (_, Some(span), _) => {
-            // Without a clock they are numbers of samples.
+            // Without a clock, these are numbers of samples.
             let unit = if recording.time_s.is_some() { "s" } else { "samples" };
             vec![number("from", time(span.first), unit), number("to", time(span.end), unit)]
         }
@@ -133,7 +135,7 @@ pub fn mirrored(which: &str, better: f64) -> Cause {
     }
 }
 
-/// Forces that are those on the hand, as a cause: they take work from the one who moves the mechanism, all the way.
+/// Reaction forces on the hand, as a cause: they take work from the person who moves the mechanism, all the way.
 pub fn backwards(which: &str) -> Cause {
     let (act, they) = if which.contains(" and ") { ("act", "they are forces") } else { ("acts", "it is the force") };
     let taken = if which.contains(" and ") { "are" } else { "is" };
@@ -151,17 +153,17 @@ pub fn driving(which: &str) -> Cause {
     Cause { evidence, ..mirrored(which, 1.0) }
 }
 
-/// A rate that goes against the differences of its own place, as a cause.
+/// A rate that contradicts the differences of its own position, as a cause.
 pub fn against_motion(which: &str) -> Cause {
     let evidence = format!("{which} goes against what the recorded places do; it is taken with the other sign");
     Cause { evidence, ..mirrored(which, 1.0) }
 }
 
-/// So many standard errors, and at least this share, must lengths be off for a known one to say so.
+/// Standard errors, and least relative error, from which a known length shows a wrong scale.
 const SCALE_SIGMAS: f64 = 6.0;
 const LEAST_SCALE: f64 = 2e-3;
 
-/// Lengths that are off by a share (`epsilon` with its error) against one that is known, as a cause; nothing where they agree.
+/// Scale error of lengths (`epsilon` with its standard error) against a known length, as a cause; `None` if they agree.
 pub fn scaled(known: &str, [epsilon, std_error]: [f64; 2]) -> Option<Cause> {
     let off = epsilon.abs() > LEAST_SCALE.max(SCALE_SIGMAS * std_error);
     let evidence = format!("the path is {:+.2} % off the known {known}", 100.0 * epsilon);

@@ -1,4 +1,4 @@
-//! What a diagnosis answers. These types *are* the JSON of `touchstone diagnose --json`.
+//! Published answer of a diagnosis. These types *are* the JSON of `touchstone diagnose --json`.
 
 use super::along::Along;
 use super::atlas::Atlas;
@@ -282,10 +282,10 @@ pub struct Final {
     pub whiteness_p: f64,
 }
 
-/// What one channel leaves, without and with what was found.
+/// Residual figures of one channel, without and with the causes found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figures {
-    /// Without.
+    /// Without the causes.
     pub baseline: Baseline,
     /// With it.
     pub end: Final,
@@ -294,7 +294,7 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// Where nothing was compared: nothing left, and that is white.
+    /// Figures if nothing was compared: zero residual, white.
     pub(super) fn of_nothing() -> Self {
         Self {
             baseline: Baseline { whiteness_p: 1.0, ..Baseline::default() },

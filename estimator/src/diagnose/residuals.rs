@@ -1,4 +1,4 @@
-//! What the model leaves, channel by channel and state by state, beside the noise.
+//! Residual table: RMS of every channel in every state, beside the noise.
 
 use super::blur::STANDS;
 use super::geometry::{Study, residual};
@@ -28,7 +28,7 @@ pub struct Residual {
     pub noise_floor: Option<f64>,
 }
 
-/// What a comparison leaves in each state. `state`: channel and state of a row; nothing for a row of no channel.
+/// Residuals of a comparison in each state. `state`: channel and state of a row; `None` for a row of no channel.
 pub fn residuals(
     study: &Study,
     (unit, floor): (&str, Option<f64>),
@@ -60,7 +60,7 @@ pub fn residuals(
     found.into_iter().map(one).collect()
 }
 
-/// What is left of what moves along one coordinate, and of the paths of cranks.
+/// Residuals along one coordinate, and of the paths of cranks.
 pub fn of_crank_or_mechanism(
     track: &Track,
     study: &Study,
@@ -70,25 +70,25 @@ pub fn of_crank_or_mechanism(
     of_force(track, study, unit, floor).into_iter().chain(geometries.iter().flat_map(of_path)).collect()
 }
 
-/// What is left of a force along one coordinate.
+/// Residuals of a force along one coordinate.
 fn of_force(track: &Track, study: &Study, unit: &str, floor: f64) -> Vec<Residual> {
     let state = |i: usize| {
         let row = &track.rows[i];
         match row.place {
-            // Nothing holds what moves freely.
+            // A free motion has no measured force.
             Place::Along if track.freely.is_some() => Some(("force that the motion needs", SystemState::FreeMotion)),
             Place::Along if row.open > STANDS => Some(("force along the motion", SystemState::Holding)),
             Place::Along => Some(("force along the motion", SystemState::Turning)),
             Place::FreeX => Some(("horizontal force", SystemState::FreeMotion)),
             Place::FreeY => Some(("vertical force", SystemState::FreeMotion)),
-            // Ways, in newtons of the same noise.
+            // Displacements, in newtons of the same noise.
             Place::Stuck { .. } => None,
         }
     };
     residuals(study, (unit, Some(floor)), &state)
 }
 
-/// What is left of the path of a crank's handle.
+/// Residuals of the path of a crank's handle.
 fn of_path(study: &Study) -> Vec<Residual> {
     let floor = white_noise(&study.y);
     residuals(study, ("m", Some(floor)), &|_| Some(("distance from the circle", SystemState::Turning)))

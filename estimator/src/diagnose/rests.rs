@@ -1,25 +1,25 @@
-//! When the hand is on a crank's handle, and when nothing is touched.
+//! Contact phases of a crank: samples in which the hand holds the handle, and samples without touch.
 
 use crate::estimate::EstimateError;
 use crate::segment::{SystemState, segment};
 use haptics::Vec2;
 use haptics::recording::{Recording, Task};
 
-/// Held samples so close to a change between free and held belong to neither, s …
+/// Distance from a change between free and held within which held samples belong to neither, s.
 const MARGIN_S: f64 = 0.06;
-/// … and free ones.
+/// The same for free samples, s.
 const GROWING_S: f64 = 0.25;
-/// Free rests shorter than this may be zero crossings of the force, s.
+/// Least duration of a free rest, s: a shorter one may be a zero crossing of the force.
 const LEAST_FREE_S: f64 = 0.25;
-/// A rest whose force spreads this many times as much as in the quietest one is none.
+/// Ratio of a rest's force scatter to that of the quietest one from which it is no rest.
 const WANDERS: f64 = 2.5;
-/// A rest is followed outwards from its middle in pieces of this length, s, and of so many samples at least.
+/// Length of the parts in which a rest is followed outwards from its middle, s, and their least number of samples.
 const PIECE_S: f64 = 0.05;
 const LEAST_PIECE: usize = 4;
-/// Samples of a rest whose unrest says how quiet nothing is.
+/// Number of samples of a rest that determine the noise without touch.
 const TELLING: usize = 24;
 
-/// Which samples are surely held, and which surely free.
+/// Flags of samples that are certainly held, and of those that are certainly free.
 pub fn held_and_free(
     recording: &Recording,
     time_s: &[f64],
@@ -41,14 +41,14 @@ pub fn held_and_free(
             off(middle, mean(middle))
         })
         .collect();
-    // A few samples may be quiet by luck.
+    // A few samples may be quiet by chance.
     let quietest = |least: usize| {
         let long = rests.iter().zip(&unrest).filter(|(r, _)| r.len() >= least);
         long.map(|(_, unrest)| *unrest).fold(f64::INFINITY, f64::min)
     };
     let quietest = Some(quietest(TELLING)).filter(|q| q.is_finite()).unwrap_or_else(|| quietest(0));
     for (range, unrest) in rests.iter().zip(&unrest) {
-        // A hand that holds lightly for a while is not away: its force wanders.
+        // A hand that holds lightly is not away: its force wanders.
         if *unrest <= WANDERS * quietest {
             free[range.clone()].fill(true);
         }
@@ -59,7 +59,7 @@ pub fn held_and_free(
     let mut near = vec![false; n];
     let mut surely_free = free.clone();
     for interval in rests.iter().filter(|i| free[i.start]) {
-        // A grasp grows out of nothing: its beginning is still below every threshold.
+        // A grasp grows slowly: its beginning is below every threshold.
         let growing = samples(GROWING_S).min((interval.end - interval.start) / 3);
         if interval.start > 0 {
             near[interval.start.saturating_sub(margin)..interval.start].fill(true);
@@ -69,7 +69,7 @@ pub fn held_and_free(
             near[interval.end..(interval.end + margin).min(n)].fill(true);
             surely_free[interval.end - growing..interval.end].fill(false);
         }
-        // What is left out here is neither free nor surely held.
+        // Samples left out here are neither free nor certainly held.
         let quiet = quiet(force, interval.clone(), piece, WANDERS * quietest);
         surely_free[interval.start..quiet.start].fill(false);
         surely_free[quiet.end..interval.end].fill(false);
@@ -88,13 +88,14 @@ fn mean(force: &[Vec2]) -> Vec2 {
     force.iter().sum::<Vec2>() / force.len().max(1) as f64
 }
 
-/// How far forces are from a mean, N, root mean square.
+/// RMS distance of forces from a mean, N.
 fn off(force: &[Vec2], mean: Vec2) -> f64 {
     (force.iter().map(|f| (f - mean).norm_squared()).sum::<f64>() / force.len().max(1) as f64).sqrt()
 }
 
-/// What of a rest is as quiet as its middle, piece by piece outwards from there. A hand that holds on already, or still, may stay below
-/// every threshold for a while; a few such rows among the free ones, which weigh fully, pass for their noise and hide all that is smaller.
+/// Part of a rest that is as quiet as its middle, followed outwards from there part by part. A hand that holds on early
+/// or late may stay below every threshold for a while. A few such rows among the free ones, which have full weight,
+/// count as noise and hide all smaller effects.
 fn quiet(force: &[Vec2], rest: std::ops::Range<usize>, piece: usize, most_n: f64) -> std::ops::Range<usize> {
     let std::ops::Range { mut start, mut end } = middle(&rest);
     let level = mean(&force[start..end]);
@@ -120,7 +121,7 @@ fn quiet(force: &[Vec2], rest: std::ops::Range<usize>, piece: usize, most_n: f64
 mod tests {
     use super::*;
 
-    /// Noise of 0.01 N in both axes: two waves that no piece is a multiple of.
+    /// Noise of 0.01 N in both axes: two waves whose periods divide no part.
     fn noise(k: usize) -> Vec2 {
         let x = k as f64;
         0.014 * Vec2::new((2.7 * x).sin(), (1.9 * x + 0.4).sin())

@@ -1,14 +1,14 @@
-//! Values that were searched for: how well the recording knows them, out of what their neighbours on the grid explain.
+//! Uncertainty of searched values, from the likelihood of their neighbours on the grid.
 
 use super::candidate::Candidate;
 use super::geometry::Study;
 use haptics::law::{Law, PositionRipple};
 
-/// Share of the distance between two tried values that remains of the error of the vertex.
+/// Share of the distance between two tried values that is added to the vertex's standard error.
 const OF_STEP: f64 = 0.1;
-/// Where a value has no neighbour on one side: share of the way to the other one that is its error.
+/// Standard error of a value without a neighbour on one side, as a share of the distance to the other.
 const AT_THE_END: f64 = 0.5;
-/// Share of a value that nothing was tried beside: all that is known is that something there explains it.
+/// Relative standard error of a value that was tried alone.
 const ALONE: f64 = 1.0;
 
 /// A searched value with one standard error.
@@ -18,17 +18,18 @@ pub struct Known {
     pub std_error: f64,
 }
 
-/// The chosen causes with their searched values at the vertices, and all that was solved beside them there.
+/// The chosen causes with their searched values at the vertices, and the coefficients solved there.
 pub struct Settled {
-    /// Values of the model's columns and then of the causes' ones, in the order of [`System::columns`](super::system::System::columns).
+    /// Coefficients of the model's regressors and then of the causes' ones, in the order of
+    /// [`System::columns`](super::system::System::columns).
     pub values: Vec<f64>,
-    /// One standard error of each of these: that of the values solved for, and what is unknown of the searched ones.
+    /// Standard errors of these values, including the uncertainty of the searched ones.
     pub std_errors: Vec<f64>,
     /// The searched values of each chosen cause.
     pub searched: Vec<Vec<Known>>,
 }
 
-/// What everything comes out at between the values that were tried. Nothing where nothing was solved.
+/// Estimates interpolated between the tried values. `None` without a solution.
 pub fn settled(study: &Study) -> Option<Settled> {
     let solved = study.solved.as_ref()?;
     let picks = study.picks();
@@ -42,7 +43,7 @@ pub fn settled(study: &Study) -> Option<Settled> {
         for (i, unknown) in carried_over(study, k, &all).into_iter().enumerate() {
             squares[i] += unknown.powi(2);
         }
-        // A longer wave has another phase where it begins: its parts are no smooth functions of its length.
+        // A longer wave has another phase at its start: its components are no smooth functions of its length.
         if own.id != PositionRipple.id() {
             for (which, known) in all.iter().enumerate() {
                 let moved = moved(study, k, which, known.value);
@@ -57,7 +58,7 @@ pub fn settled(study: &Study) -> Option<Settled> {
     }
     let mut std_errors: Vec<f64> = squares.into_iter().map(f64::sqrt).collect();
     for first in shares(study, &picks) {
-        // Friction that was less at first has changed by more: the errors of both add up.
+        // Friction that was smaller at first has changed by more: both errors add up.
         let [ratio, error] = study.shares_of;
         values[first] *= ratio;
         std_errors[first] = std_errors[first] * ratio + error * values[first].abs();
@@ -65,13 +66,13 @@ pub fn settled(study: &Study) -> Option<Settled> {
     Some(Settled { values, std_errors, searched })
 }
 
-/// Where the values of each of these causes begin.
+/// First index of the values of each of these causes.
 pub fn firsts(study: &Study, picks: &[usize]) -> Vec<usize> {
     let counts = picks.iter().map(|p| study.candidates[*p].columns.len());
     counts.scan(study.system.base, |at, count| Some(std::mem::replace(at, *at + count))).collect()
 }
 
-/// Where the values of the causes begin that are shares of the dry friction.
+/// First index of the values of those causes that are shares of the dry friction.
 pub fn shares<'a>(study: &'a Study, picks: &'a [usize]) -> impl Iterator<Item = usize> + 'a {
     firsts(study, picks)
         .into_iter()
@@ -87,7 +88,8 @@ fn fitted(study: &Study, k: usize, candidate: usize) -> Option<(Vec<f64>, f64)> 
     study.system.least(&with).map(|(values, rss)| (values, study.system.rows * rss.max(1e-300).ln()))
 }
 
-/// What all values change by where one searched value is another than the tried one: on the parabola through what comes out at its neighbours.
+/// Change of all values if one searched value differs from the tried one, on the parabola through the solutions of its
+/// neighbours.
 fn moved(study: &Study, k: usize, which: usize, to: f64) -> Option<Vec<f64>> {
     let own = study.picks()[k];
     let place = |candidate: usize| study.candidates[candidate].searched[which].value;
@@ -96,15 +98,15 @@ fn moved(study: &Study, k: usize, which: usize, to: f64) -> Option<Vec<f64>> {
     let (left, right, away) = (place(below) - place(own), place(above) - place(own), to - place(own));
     let [here, below, above] = [own, below, above].map(|c| fitted(study, k, c));
     let ((here, _), (below, _), (above, _)) = (here?, below?, above?);
-    // Lagrange's: one at its own place, nothing at the others.
+    // Lagrange polynomials: one at their own place, zero at the others.
     let of_below = away * (away - right) / (left * (left - right));
     let of_above = away * (away - left) / (right * (right - left));
     let changes = here.iter().zip(&below).zip(&above);
     Some(changes.map(|((h, b), a)| of_below * (b - h) + of_above * (a - h)).collect())
 }
 
-/// The `which`-th searched value of the k-th chosen cause: the vertex of −2 ln(likelihood) through it and its neighbours, all else solved
-/// anew beside each, and the error that its curvature there stands for.
+/// Estimate of the `which`-th searched value of the k-th chosen cause: vertex of −2 ln(likelihood) through it and its
+/// neighbours, all else fitted again beside each. Its standard error follows from the curvature.
 pub fn known(study: &Study, k: usize, which: usize) -> Known {
     let own = study.picks()[k];
     let value = |candidate: usize| study.candidates[candidate].searched[which].value;
@@ -124,8 +126,9 @@ pub fn known(study: &Study, k: usize, which: usize) -> Known {
     }
 }
 
-/// What is unknown of the searched values of the k-th chosen cause leaves unknown of all that was solved: a wider gap takes a smaller share. By its
-/// slope over the neighbours, or by what comes out at all other tried values, as likely as they are, whichever is more.
+/// Standard errors of all solved values due to those of the searched values of the k-th chosen cause: a wider gap takes
+/// a smaller share. Computed from the slope over the neighbours and from the likelihood-weighted solutions at all other
+/// tried values; the larger one counts.
 fn carried_over(study: &Study, k: usize, searched: &[Known]) -> Vec<f64> {
     let own = study.picks()[k];
     let Some((best, least)) = fitted(study, k, own).filter(|_| !searched.is_empty()) else { return Vec::new() };
@@ -156,7 +159,7 @@ fn carried_over(study: &Study, k: usize, searched: &[Known]) -> Vec<f64> {
         .collect()
 }
 
-/// The candidates with the next smaller and the next larger of one searched value, all others being the same.
+/// The candidates with the next smaller and the next larger of one searched value, all others equal.
 fn neighbours(study: &Study, own: usize, which: usize) -> [Option<usize>; 2] {
     let value = |candidate: usize| study.candidates[candidate].searched[which].value;
     let here = value(own);
@@ -170,8 +173,8 @@ fn neighbours(study: &Study, own: usize, which: usize) -> [Option<usize>; 2] {
     ]
 }
 
-/// The same of a wave's length. Waves are alike by their number over the motion, not by their length, and those that are a whole wave more or less over
-/// it explain nothing at all: no parabola goes through these.
+/// The same for the length of a wave. Waves are similar by their number over the motion, not by their length. Those
+/// that differ by a whole wave over the motion explain nothing, so no parabola fits them.
 fn wave([below, above]: [Option<(f64, f64)>; 2], (here, least): (f64, f64)) -> Known {
     let number = |(length, price): (f64, f64)| (1.0 / length, price);
     let (Some(below), Some(above)) = (below.map(number), above.map(number)) else {
@@ -202,7 +205,7 @@ fn differs_in_one(own: &Candidate, other: &Candidate, which: usize) -> bool {
             .all(|(i, (a, b))| a.name == b.name && (i == which) != same(a.value, b.value))
 }
 
-/// Lowest point of the parabola through three points, and the error that its curvature stands for.
+/// Vertex of the parabola through three points, and the standard error from its curvature.
 fn vertex(below: (f64, f64), here: (f64, f64), above: (f64, f64)) -> Known {
     let (left, right) = (here.0 - below.0, above.0 - here.0);
     let (down, up) = ((here.1 - below.1) / left, (above.1 - here.1) / right);
@@ -254,7 +257,7 @@ mod tests {
     fn what_the_neighbours_do_not_tell_is_known_to_a_step_at_best() {
         let flat = vertex((1.0, 5.0), (2.0, 5.0), (4.0, 5.0));
         assert_eq!(flat, Known { value: 2.0, std_error: 1.5 });
-        // A peak far below its neighbours lies no further from the best value than half way to them.
+        // The vertex beside much worse neighbours is at most half way to them.
         let steep = vertex((1.0, 500.0), (2.0, 5.0), (3.0, 400.0));
         assert!(steep.value > 1.5 && steep.value < 2.5 && steep.std_error < 0.2, "{steep:?}");
     }

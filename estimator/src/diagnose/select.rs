@@ -1,4 +1,4 @@
-//! Which causes the recording asks for: forward with a look ahead, swaps, pruning.
+//! Stepwise regression over the candidates: forward selection with look-ahead, swaps, pruning.
 
 use super::candidate::Candidate;
 use super::starts::MANY;
@@ -6,48 +6,49 @@ use super::system::{Solved, System};
 use std::cell::RefCell;
 use std::collections::HashMap;
 
-/// Most causes at once, and so many more where the model has no friction of its own, which is then two of them.
+/// Most causes at once, and the number of further ones without friction in the model, whose friction takes two of them.
 const MOST_CAUSES: usize = 4;
 const FRICTIONS: usize = 2;
 /// Rounds of swapping after each addition.
 const SWAP_ROUNDS: usize = 3;
-/// A cause whose t-value is below this must improve nearly every fold.
+/// t-value below which a cause must improve nearly every fold.
 const CLEAR_T: f64 = 2.0;
-/// A cause that changes the folds' errors by less than this share was not tested by them.
+/// Relative change of the folds' errors below which they did not test a cause.
 const UNTESTED: f64 = 1e-8;
-/// Folds that lose less than this share of a cause's score do not speak against it.
+/// Loss of the folds, as a share of a cause's evidence, up to which they do not speak against it.
 const SPARED: f64 = 0.05;
-/// Causes that could stand in each other's place within this score are not told apart.
+/// Evidence margin within which rival causes are ambiguous.
 pub const AMBIGUOUS: f64 = 10.0;
 
-/// A chosen candidate with what speaks for it.
+/// A chosen candidate with its evidence.
 #[derive(Clone, Debug)]
 pub struct Chosen {
     /// Index of the candidate.
     pub candidate: usize,
-    /// Score that is lost without it, in units of 2 ln(likelihood), penalty included.
+    /// Evidence lost without it, 2 ln(likelihood) with penalty.
     pub score: f64,
     /// Likelihood ratio alone.
     pub lambda: f64,
-    /// Other causes that could stand in its place: candidate, and how much less they score.
+    /// Rivals of the cause: candidate, and its deficit in evidence.
     pub rivals: Vec<(usize, f64)>,
 }
 
-/// Chooses among the candidates. `threshold`: least score of a cause.
+/// Chooses among the candidates. `threshold`: least evidence of a cause.
 pub struct Selection<'a> {
     pub system: &'a System,
     pub candidates: &'a [Candidate],
     pub threshold: f64,
-    /// Whether the model has dry friction: what bends or lifts it needs it.
+    /// True if the model has dry friction. Causes that bend or lift it require it.
     dry: bool,
-    /// Whether what is lost at a reversal is seen once only, so that bending and play cannot share it out.
+    /// True if motion is lost at a reversal in one way only: hysteresis and backlash then exclude each other.
     one_loss: bool,
-    /// What was asked already, in this order: swaps, prunings and second starts come by the same ones again.
+    /// Cache of prices, by the causes in this order: swaps, prunings and restarts meet the same sets again.
     prices: RefCell<HashMap<Vec<usize>, f64>>,
 }
 
-/// Causes whose form is somebody's choice of a curve, by what the curve is over: a real one of another form leaves a remainder that
-/// looks like a weak cause over the same. What is lost at reversals is lost where they are.
+/// Causes with an empirical curve, and the variable of that curve. If the true curve has another form, the misfit looks
+/// like a weak cause over the same variable. Motion is lost at reversals, so lost motion also depends on their
+/// positions.
 const CURVES: [(&str, &[Over]); 10] = [
     ("stribeck", &[Over::Motion]),
     ("quadratic-drag", &[Over::Motion]),
@@ -60,7 +61,7 @@ const CURVES: [(&str, &[Over]); 10] = [
     ("position-ripple", &[Over::Place]),
     ("fingertip-slip", &[Over::Path]),
 ];
-/// Causes over the same that have a form of their own.
+/// Causes over the same variables with an exact law.
 const LINES: [(&str, &[Over]); 10] = [
     ("coulomb-friction", &[Over::Motion]),
     ("load-friction", &[Over::Motion]),
@@ -73,47 +74,47 @@ const LINES: [(&str, &[Over]); 10] = [
     ("length-scale", &[Over::Path]),
     ("pad-compliance", &[Over::Path]),
 ];
-/// What is weaker than this share of such a cause's score may be that remainder.
+/// Share of such a cause's evidence below which another cause may be its misfit.
 pub const REMAINDER: f64 = 0.12;
 
-/// Squared correlation of two causes' estimates from which on they are one.
+/// Squared correlation of two causes' estimates from which they count as one.
 const AS_ONE: f64 = 0.99;
-/// Two causes that leave less than this share of the weaker one's mean square between them take each other back.
+/// Mean square of two causes together, as a share of the weaker one's, below which they cancel.
 const TAKEN_BACK: f64 = 0.1;
 
-/// … unless both together score this many times what is asked for.
+/// Multiple of the threshold from which the pair is kept all the same.
 pub(super) const SURE: f64 = 10.0;
 
-/// What a curve is over.
+/// Variable of a curve.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Over {
     Motion,
     Place,
     Time,
-    /// The way of the tip.
+    /// Path of the tip.
     Path,
 }
 
-/// Whether the form of a cause is somebody's choice of a curve.
+/// True if the cause has an empirical curve.
 pub fn is_curve(id: &str) -> bool {
     CURVES.iter().any(|(curve, _)| *curve == id)
 }
 
-/// What is lost at a reversal.
+/// Causes of lost motion at a reversal.
 pub const LOST_MOTION: [&str; 2] = ["hysteresis", "backlash"];
 
-/// Causes that are a change of dry friction, and mean nothing without it.
+/// Causes that change dry friction, and need it.
 pub(super) const OF_DRY_FRICTION: [&str; 3] = ["stribeck", "hysteresis", "friction-change"];
 /// Causes that are dry friction.
 pub(super) const DRY_FRICTION: [&str; 2] = ["coulomb-friction", "load-friction"];
 
 impl<'a> Selection<'a> {
-    /// Of causes beside dry friction, which may lose something at reversals in two ways.
+    /// A selection beside dry friction, in which motion may be lost at reversals in two ways.
     pub fn new(system: &'a System, candidates: &'a [Candidate], threshold: f64) -> Self {
         Self { system, candidates, threshold, dry: true, one_loss: false, prices: RefCell::default() }
     }
 
-    /// Where the model may have no dry friction, or what is lost at a reversal may be seen once only.
+    /// Sets if the model has dry friction, and if motion is lost at reversals in one way only.
     pub fn of(self, dry: bool, one_loss: bool) -> Self {
         Self { dry, one_loss, ..self }
     }
@@ -125,7 +126,8 @@ impl Selection<'_> {
         if self.dry { MOST_CAUSES } else { MOST_CAUSES + FRICTIONS }
     }
 
-    /// N ln(RSS) plus what its parameters cost; smaller is better. Infinite where a parameter has an impossible sign.
+    /// Price N ln(RSS) plus the penalty of the parameters; smaller is better. Infinite if a parameter has an impossible
+    /// sign.
     pub(super) fn price(&self, chosen: &[usize]) -> f64 {
         if let Some(price) = self.prices.borrow().get(chosen) {
             return *price;
@@ -159,13 +161,13 @@ impl Selection<'_> {
         self.system.rows * rss.ln() + cost * self.system.rows.ln()
     }
 
-    /// The same whatever the signs.
+    /// The same without sign constraints.
     fn plain_price(&self, chosen: &[usize]) -> Option<f64> {
         Some(self.paid(chosen, self.system.least_sound(chosen)?.1))
     }
 
-    /// Whether a generic term in the k-th cause's place explains more, its own search paid, by as much as what its curve may miss: its name
-    /// is then a guess. What a strong cause misses by little, by a bend that the model lacks, is left beside it.
+    /// True if a generic term in place of the k-th cause has more evidence, penalised for its search, by more than the
+    /// cause's curve may miss. Its name is then a guess. A small misfit of a strong cause's curve does not count.
     fn outdone(&self, chosen: &[usize], k: usize) -> bool {
         let rest = without(chosen, k);
         let generic: Vec<usize> = (0..self.candidates.len())
@@ -178,7 +180,7 @@ impl Selection<'_> {
         generic.iter().any(|c| self.price(&[rest.as_slice(), &[*c]].concat()) < whole - more)
     }
 
-    /// Whether two causes cannot stand side by side.
+    /// True if two causes exclude each other.
     fn excludes(&self, a: &str, b: &str) -> bool {
         a == b || (self.one_loss && LOST_MOTION.contains(&a) && LOST_MOTION.contains(&b))
     }
@@ -190,12 +192,12 @@ impl Selection<'_> {
             .filter(|c| chosen.iter().all(|o| !self.excludes(self.candidates[*o].id, self.candidates[*c].id)))
     }
 
-    /// What each candidate would cost beside the chosen ones that may join them.
+    /// Price of each candidate that may join the chosen ones.
     pub fn priced(&self, chosen: &[usize]) -> Vec<(usize, f64)> {
         self.open(chosen).map(|c| (c, self.price(&[chosen, &[c]].concat()))).collect()
     }
 
-    /// The strongest generic term beside the chosen causes, and its score after the search for it is paid.
+    /// The strongest generic term beside the chosen causes, and its evidence after the penalty for the search.
     pub fn unexplained(&self, chosen: &[usize]) -> Option<(usize, f64)> {
         let whole = self.price(chosen);
         let generic: Vec<usize> = (0..self.candidates.len())
@@ -206,18 +208,18 @@ impl Selection<'_> {
         generic.iter().map(|c| (*c, score(*c))).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// How much a candidate adds to the chosen ones, what it costs paid; `None` where it cannot stand beside them, or only with an
-    /// impossible sign.
+    /// Evidence of a candidate beside the chosen ones, penalised for its parameters. `None` if it cannot join them, or
+    /// only with an impossible sign.
     pub fn score_beside(&self, chosen: &[usize], c: usize) -> Option<f64> {
         let fits = chosen.iter().all(|o| !self.excludes(self.candidates[*o].id, self.candidates[c].id));
         let with = self.price(&[chosen, &[c]].concat());
         (fits && with.is_finite()).then_some(self.plain_price(chosen)? - with)
     }
 
-    /// Everything that stands after forward selection, swaps and pruning; strongest first. `before`: what an earlier round chose; it is
-    /// searched from there, too, and from nothing.
+    /// Causes after forward selection, swaps and pruning, strongest first. `before`: choice of an earlier round. The
+    /// search then starts from it, and from nothing.
     pub fn run(&self, before: &[usize]) -> Vec<Chosen> {
-        // What was only searched for coarsely may take two to say what one does, but not which one.
+        // On a coarse grid, two causes may be needed to describe one, but they do not tell which.
         let is_fine = !before.is_empty();
         let mut chosen = self.settled(Vec::new(), is_fine);
         if is_fine {
@@ -226,7 +228,7 @@ impl Selection<'_> {
                 chosen = going_on;
             }
         }
-        // One step at a time may have led where no step leads out of.
+        // The search by single steps may end in a local optimum.
         if chosen.len() > MANY
             && let Some(pair) = self.pair()
         {
@@ -235,7 +237,7 @@ impl Selection<'_> {
                 chosen = sparser;
             }
         }
-        // Two that take each other back for the most part are found by neither of them alone.
+        // Two causes that largely cancel are found by neither of them alone.
         if let Some(pair) = self.pair_beside(&chosen) {
             let more = self.settled([chosen.as_slice(), &pair].concat(), is_fine);
             if self.price(&more) < self.price(&chosen) {
@@ -245,7 +247,7 @@ impl Selection<'_> {
         self.describe(&chosen)
     }
 
-    /// What stands of a search that starts with `chosen`; `merges`: one is put in the place of two.
+    /// Result of a search that starts with `chosen`; `merges`: true to replace two causes by one.
     fn settled(&self, mut chosen: Vec<usize>, merges: bool) -> Vec<usize> {
         while chosen.len() < self.most() {
             match cheapest(self.priced(&chosen)) {
@@ -267,7 +269,7 @@ impl Selection<'_> {
         chosen
     }
 
-    /// Puts one cause in the place of two where it does as well: two that are not told apart from one are one.
+    /// Replaces two causes by one that explains as much: causes that cannot be separated from one are one.
     fn merge(&self, chosen: &mut Vec<usize>) {
         let pair = |chosen: &[usize]| {
             let all = (1..chosen.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
@@ -303,7 +305,7 @@ impl Selection<'_> {
         }
     }
 
-    /// Takes out the weakest until every one that is left earns its place.
+    /// Removes the weakest cause until every remaining one is justified.
     fn prune(&self, chosen: &mut Vec<usize>) {
         while !chosen.is_empty() {
             let whole = self.price(chosen);
@@ -318,16 +320,17 @@ impl Selection<'_> {
             } else {
                 return;
             }
-            // What was searched for beside another cause may be impossible without it, and its neighbour on the grid not.
+            // A cause whose values were searched beside another one may be impossible without it, while its neighbour
+            // on the grid is possible.
             if !self.price(chosen).is_finite() {
                 self.swap(chosen);
             }
         }
     }
 
-    /// Whether the k-th cause may be what the curve of a stronger one misses.
+    /// True if the k-th cause may be misfit of a stronger one's curve.
     fn remains(&self, chosen: &[usize], k: usize) -> bool {
-        // Whatever the signs of the others come out at.
+        // Without the sign constraints of the others.
         let loss = |k: usize| Some(self.plain_price(&without(chosen, k))? - self.plain_price(chosen)?);
         let over = |c: usize, all: &[(&str, &'static [Over])]| -> &'static [Over] {
             all.iter().find(|(id, _)| *id == self.candidates[c].id).map_or(&[], |(_, over)| over)
@@ -338,8 +341,8 @@ impl Selection<'_> {
             .any(|o| loss(k).zip(loss(o)).is_some_and(|(weak, strong)| weak < REMAINDER * strong))
     }
 
-    /// Whether a cause and a better one are nearly the same in this recording: what they say is then in their difference alone, each as
-    /// large as one likes and taken back by the other. So it is where they need not be the same to take each other back.
+    /// True if the k-th cause and a better one are nearly collinear in this recording: large coefficients cancel, and
+    /// only their difference matters. Causes that differ may cancel as well.
     fn pulls_against(&self, chosen: &[usize], k: usize) -> bool {
         let count = |k: usize| self.candidates[chosen[k]].columns.len();
         let Some(solved) = self.system.solve(chosen) else { return false };
@@ -356,7 +359,7 @@ impl Selection<'_> {
             self.power(&solved, &[one, other].concat()) < TAKEN_BACK * weaker
         };
         let left = |k: usize| self.plain_price(&without(chosen, k)).unwrap_or(f64::INFINITY);
-        // What both together explain beyond doubt is there, even where it is little beside what either of them makes.
+        // A joint effect beyond doubt is real, even if it is small beside either of the two.
         let sure = |o: usize| {
             let rest: Vec<usize> = chosen.iter().copied().filter(|c| *c != chosen[k] && *c != chosen[o]).collect();
             self.plain_price(&rest).is_some_and(|less| less - self.price(chosen) > SURE * self.threshold)
@@ -364,7 +367,7 @@ impl Selection<'_> {
         (0..chosen.len()).filter(|o| *o != k).any(|o| (as_one(o) || taken_back(o) && !sure(o)) && left(k) < left(o))
     }
 
-    /// Sum over the rows that train of the squares of what these columns of a solution add up to.
+    /// Sum of squares, over the training rows, of the contribution of these regressors to a solution.
     fn power(&self, solved: &Solved, which: &[usize]) -> f64 {
         let part = |i: usize, j: usize| {
             solved.values[i] * solved.values[j] * self.system.train[(solved.columns[i], solved.columns[j])]
@@ -372,7 +375,7 @@ impl Selection<'_> {
         which.iter().map(|i| which.iter().map(|j| part(*i, *j)).sum::<f64>()).sum()
     }
 
-    /// Whether held-out folds gain by the k-th cause.
+    /// True if held-out folds improve with the k-th cause.
     fn validates(&self, chosen: &[usize], k: usize) -> bool {
         let (Some(with), Some(less)) =
             (self.system.cross_validate(chosen), self.system.cross_validate(&without(chosen, k)))
@@ -381,7 +384,8 @@ impl Selection<'_> {
         };
         let (before, after) = (less.iter().sum::<f64>(), with.iter().sum::<f64>());
         let better = less.iter().zip(&with).filter(|(l, w)| w < l).count();
-        // What only rows tell that are never held out (a bias beside gravity: what is free) makes no difference to the folds.
+        // If only rows that are never held out determine it (a bias beside gravity: the free rows), the folds do not
+        // change.
         let gain = before - after;
         if gain.abs() < UNTESTED * before || self.is_spared(chosen, k, (before, after)) {
             return self.clear(chosen, k);
@@ -389,7 +393,8 @@ impl Selection<'_> {
         gain > 0.0 && (self.clear(chosen, k) || 5 * better >= 4 * with.len())
     }
 
-    /// Whether what the folds lose by the k-th cause is nothing beside what it explains: they hardly show it, and rows that are never held out do.
+    /// True if the folds lose little by the k-th cause compared with its evidence: they hardly contain its effect,
+    /// while rows that are never held out do.
     fn is_spared(&self, chosen: &[usize], k: usize, (before, after): (f64, f64)) -> bool {
         let tested: f64 = self.system.folds.iter().map(|(_, rows)| rows).sum();
         let lost = tested * (after / before.max(1e-300)).max(1e-300).ln();
@@ -411,7 +416,7 @@ impl Selection<'_> {
         let mut found: Vec<Chosen> = (0..chosen.len())
             .map(|k| {
                 let rest = without(chosen, k);
-                // What is left may have an impossible sign: it is a worse explanation all the same.
+                // Without the cause, a remaining sign may be impossible. Its price is used all the same.
                 let score = self.plain_price(&rest).unwrap_or(whole) - whole;
                 let cost = self.candidates[chosen[k]].cost * self.system.rows.ln();
                 Chosen {
@@ -427,7 +432,7 @@ impl Selection<'_> {
         found
     }
 
-    /// The chosen ones as they would be found one after the other: the one that alone explains most first.
+    /// The chosen causes in the order of forward selection: the strongest alone first.
     fn order(&self, chosen: &[usize]) -> Vec<usize> {
         let mut left = chosen.to_vec();
         let mut order: Vec<usize> = Vec::new();
@@ -439,10 +444,10 @@ impl Selection<'_> {
         order
     }
 
-    /// What the noise of a candidate's own column takes off its score, the last of `chosen`: that it is measured less well speaks not
-    /// against it.
+    /// Evidence that the noise of its own regressor costs the last candidate of `chosen`. It is added back, because
+    /// poor measurement does not speak against a cause.
     fn forgiven(&self, chosen: &[usize], c: usize) -> f64 {
-        /// What is left of the residual at least is something else.
+        /// Largest share of the residual that this noise may account for.
         const MOST: f64 = 0.9;
         let noise = self.candidates[c].noise;
         let Some(solved) = self.system.solve(chosen).filter(|_| noise > 0.0) else { return 0.0 };
@@ -453,7 +458,7 @@ impl Selection<'_> {
         -self.system.rows * (1.0 - share.min(MOST)).ln()
     }
 
-    /// The best candidate of every other cause that scores nearly as well in this one's place.
+    /// The best candidate of every other cause with nearly the same evidence in this one's place.
     fn rivals(&self, rest: &[usize], own: usize, whole: f64) -> Vec<(usize, f64)> {
         let mut best: Vec<(usize, f64)> = Vec::new();
         for c in self.open(rest).filter(|c| self.candidates[*c].id != self.candidates[own].id) {
@@ -473,7 +478,7 @@ impl Selection<'_> {
     }
 }
 
-/// The cheapest of all, the first of several, and its price.
+/// The cheapest candidate, the first of equal ones, and its price.
 pub(super) fn cheapest<T>(priced: impl IntoIterator<Item = (T, f64)>) -> Option<(T, f64)> {
     priced.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
 }

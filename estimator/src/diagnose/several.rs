@@ -1,15 +1,15 @@
-//! Several recordings of one object: which of them answered what earlier ones had left open.
+//! Resolved questions: of several recordings of one object, those that settled an ambiguity of earlier ones.
 
 use super::report::{Diagnosis, Settled};
 use crate::estimate::EstimateError;
 use haptics::recording::Recording;
 
-/// An alternative less probable than this is as good as excluded.
+/// Probability below which an alternative is excluded.
 const OPEN: f64 = 0.047;
-/// More recordings than this are repetitions, not answers to each other.
+/// Number of recordings above which they are repetitions, not answers to each other.
 const MOST: usize = 8;
 
-/// Found cause and what else it could be.
+/// Named cause and its alternative.
 type Pair = (String, String);
 
 fn open(diagnosis: &Diagnosis) -> Vec<Pair> {
@@ -17,7 +17,7 @@ fn open(diagnosis: &Diagnosis) -> Vec<Pair> {
     alternatives.map(|a| (a.instead_of.clone(), a.id.clone())).collect()
 }
 
-/// Adds to the answer of all recordings what each of them settled. `ask` answers the first few of them.
+/// Adds the questions that each recording settled. `ask` diagnoses the first few recordings.
 pub fn settle(
     recordings: &[Recording],
     whole: &mut Diagnosis,
@@ -28,7 +28,7 @@ pub fn settle(
     }
     let mut unsettled: Vec<Pair> = Vec::new();
     for count in 1..=recordings.len() {
-        // What the first ones cannot answer at all leaves nothing open.
+        // If the first recordings cannot be diagnosed, they leave no open question.
         let made = if count < recordings.len() { ask(&recordings[..count]).ok() } else { None };
         let Some(now) = made.as_ref().or((count == recordings.len()).then_some(&*whole)) else { continue };
         let still = open(now);
@@ -39,7 +39,7 @@ pub fn settle(
             .filter_map(|(a, b)| match (has(a), has(b)) {
                 (true, false) => Some((a, b)),
                 (false, true) => Some((b, a)),
-                // Both, or neither: the question itself is gone.
+                // With both or neither, the question no longer exists.
                 _ => None,
             })
             .map(|(kept, excluded)| sentence(&recordings[count - 1].name, now, kept, excluded))

@@ -1,21 +1,23 @@
-//! The delay with which a plain model leaves least of the forces: they are shifted against the motion step by step.
+//! Delay for which a plain model has the smallest residual of the forces, which are shifted against the motion step by
+//! step.
 
 use super::report::{Diagnosis, Figures};
 
-/// A delay that was looked for.
+/// Result of the search for a delay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Late {
-    /// By how much the forces come later than the motion, and its standard error, s; infinite where what is left has no lowest point.
+    /// Delay of the forces after the motion, and its standard error, s; infinite if the residual has no minimum.
     pub tau_s: f64,
     pub error_s: f64,
-    /// Whether it is more than chance.
+    /// True if it is significant.
     pub is_seen: bool,
-    /// What the plain model leaves without any delay, RMS.
+    /// Residual RMS of the plain model without a delay.
     pub plain_rms: f64,
 }
 
 impl Late {
-    /// Puts it into the answer, for all to be asked again if it is one; `of`: what the forces leave in which it was looked for.
+    /// Enters it in the answer if it is significant, so that the diagnosis is repeated; `of`: residual figures of the
+    /// channel in which it was searched.
     pub fn tell(self, found: &mut Diagnosis, of: Figures) {
         found.guess_s = self.is_seen.then_some(self.tau_s);
         found.rest_s = Some([self.tau_s, self.error_s]);
@@ -23,20 +25,21 @@ impl Late {
     }
 }
 
-/// How far is looked, and what makes a delay one.
+/// Range of the search, and the demands on a delay.
 #[derive(Clone, Copy, Debug)]
 pub struct Demands {
-    /// Longest delay that is tried, s, both ways.
+    /// Longest tried delay, s, in both directions.
     pub longest_s: f64,
-    /// Rows that have a force of that moment, as a share of those that are compared without a delay, at least.
+    /// Least share of the rows without a delay that have a force at the shifted time.
     pub enough: f64,
-    /// Share of the power that a delay leaves, at most; and by how much likelier it makes the forces, at least: 2 ln(likelihood).
+    /// Share of the power that a delay leaves, at most; and by how much likelier it makes the forces, at least: 2
+    /// ln(likelihood).
     pub leaves: f64,
     pub likelier: f64,
 }
 
-/// The delay that leaves least, told between the steps by the parabola through the best and its neighbours. `left`: power a row, and rows, with the forces
-/// of so many steps of `step_s` later.
+/// Delay with the smallest residual, interpolated by the parabola through the best step and its neighbours. `left`:
+/// residual power per row, and number of rows, with the forces of this many steps of `step_s` later.
 pub fn look(step_s: f64, demands: &Demands, left: &dyn Fn(isize) -> Option<(f64, f64)>) -> Option<Late> {
     let most = (demands.longest_s / step_s.max(1e-9)) as isize;
     let tried: Vec<(isize, f64, f64)> =
@@ -49,7 +52,7 @@ pub fn look(step_s: f64, demands: &Demands, left: &dyn Fn(isize) -> Option<(f64,
     let (between, error) = match (at(best - 1), at(best + 1)) {
         (Some(before), Some(after)) if before + after > 2.0 * power => {
             let bend = before + after - 2.0 * power;
-            // Twice the logarithm of the likelihood falls by one at one standard error.
+            // Twice the log likelihood falls by one at one standard error.
             ((0.5 * (before - after) / bend).clamp(-0.5, 0.5), (rows * 0.5 * bend / sure).powf(-0.5))
         }
         _ => (0.0, f64::INFINITY),

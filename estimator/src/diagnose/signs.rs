@@ -1,4 +1,4 @@
-//! Signs: channels that are mirrored, and axes that are swapped, put right before anything is asked of the model.
+//! Axis signs: mirrored channels and swapped axes, corrected before the model is fitted.
 
 use super::crank::plain_crank;
 use super::force;
@@ -13,7 +13,7 @@ use haptics::law::{EccentricMass, Effect};
 use haptics::recording::Recording;
 use std::borrow::Cow;
 
-/// Rates and what they are the rates of.
+/// Rates and their positions.
 const RATES: [(&str, &str); 12] = [
     ("dq_m_s", "q_m"),
     ("dq_rad_s", "q_rad"),
@@ -28,12 +28,12 @@ const RATES: [(&str, &str); 12] = [
     ("dqb1_rad_s", "qb1_rad"),
     ("dqt1_rad_s", "qt1_rad"),
 ];
-/// Differences are taken over about this, s.
+/// Time over which differences are taken, s.
 const WINDOW_S: f64 = 0.03;
-/// A rate that goes with the motion's like this, or worse, is mirrored.
+/// Correlation with the motion's rate at or below which a rate is mirrored.
 const AGAINST: f64 = -0.8;
 
-/// Channels that may each be mirrored alone where a recording makes no sense: a finger's axis, a joint.
+/// Channels that may each be mirrored alone if a recording is implausible: a finger's axis, a joint.
 const ALONE: [&[&str]; 14] = [
     &["fx1_N"],
     &["fy1_N"],
@@ -50,10 +50,10 @@ const ALONE: [&[&str]; 14] = [
     &["x1_m", "vx1_m_s"],
     &["y1_m", "vy1_m_s"],
 ];
-/// What leaves less than this many times the noise is not searched for mirrored channels: causes leave as much.
+/// Ratio of residual to noise up to which mirrored channels are not searched: other causes leave as much.
 const SENSELESS: f64 = 4.0;
 
-/// A recording with a rate that goes against its motion put right, and the name of that rate.
+/// The recording with the sign of a rate corrected that goes against its motion, and the name of that rate.
 pub fn with_rates_of_motion(recording: &Recording) -> (Cow<'_, Recording>, Option<&'static str>) {
     let against = RATES.iter().find(|(rate, of)| correlation(recording, rate, of).is_some_and(|c| c < AGAINST));
     match against {
@@ -62,7 +62,7 @@ pub fn with_rates_of_motion(recording: &Recording) -> (Cow<'_, Recording>, Optio
     }
 }
 
-/// How a recorded rate goes with the differences of what it is the rate of.
+/// Correlation of a recorded rate with the differences of its position.
 fn correlation(recording: &Recording, rate: &str, of: &str) -> Option<f64> {
     let (rate, place) = (recording.channel(rate)?, recording.channel(of)?);
     let time_s = recording.time_s.as_ref()?;
@@ -91,14 +91,14 @@ pub fn mirrored(recording: &Recording, names: &[&str]) -> Recording {
     other
 }
 
-/// A crank's recording as it is asked about.
+/// A crank's recording, prepared for the diagnosis.
 pub struct Looked {
     pub signals: Signals,
     /// The path of the handle.
     pub circle: Geometry,
-    /// Along it, the force's axes upright.
+    /// Rows along the circle, with the force's axes corrected.
     pub rows: Track,
-    /// The axis that had to be mirrored for that.
+    /// Mirrored axis that was corrected for that.
     pub axis: Option<Cause>,
 }
 
@@ -106,7 +106,7 @@ impl Looked {
     /// `bad`: samples that no sensor measured.
     ///
     /// # Errors
-    /// Missing columns, too little that is held, a path that is no circle: in a sentence.
+    /// Missing channels, too little data while held, a path that is no circle: in a sentence.
     pub fn at(recording: &Recording, bad: &[bool]) -> Result<Self, EstimateError> {
         let signals = Signals::of(recording, bad)?;
         let path = signals.path(recording);
@@ -115,13 +115,14 @@ impl Looked {
         Ok(Self { signals, circle, rows, axis })
     }
 
-    /// What a crank's model leaves of the force, N, and whether friction takes work.
+    /// Residual RMS of a crank's model, N, and true if friction dissipates work.
     fn left(&self) -> Result<(f64, bool), EstimateError> {
         force::plain_rms(&mut self.rows.clone(), &model_of(&self.circle.arm))
     }
 }
 
-/// A crank's recording with its channels put right, one by one, and what it looks like then; whole axes of the force are [`upright`]'s.
+/// A crank's recording with its channels corrected one by one, and its signals after that. [`upright`] corrects whole
+/// axes of the force.
 ///
 /// # Errors
 /// As [`Looked::at`].
@@ -150,7 +151,7 @@ pub fn of_crank<'a>(
     }
     Ok(match best {
         Some((after, looked, other, names)) => {
-            // A joint's rate that was right goes with its angle: then only the angle was mirrored.
+            // If a joint's rate agrees with its angle afterwards, only the angle was mirrored.
             let name = if names[0].starts_with('f') { names.join(" and ") } else { names[0].to_owned() };
             (Cow::Owned(other), Some(quality::mirrored(&name, after / before)), looked)
         }
@@ -158,8 +159,8 @@ pub fn of_crank<'a>(
     })
 }
 
-/// A force whose sign is that of the hand on the mechanism's other side: with it mass and friction come out negative, and every one of them for
-/// certain. The rows have it mirrored back then.
+/// Detects a force with the sign of the reaction: mass and friction are then negative, each of them significantly. The
+/// sign is corrected in the rows.
 pub fn of_mechanism(
     track: &mut Track,
     recording: &Recording,
@@ -173,25 +174,25 @@ pub fn of_mechanism(
         row.force = -row.force;
         row.force_rate = -row.force_rate;
     }
-    // A rate that went against the place, and a force that drives: it is the place that is mirrored.
+    // If a rate contradicts the position and the force drives the motion, the position is the mirrored one.
     let names: &[&str] = if rate.is_some() { &["q_m", "q_rad"] } else { &["f_N", "tau_Nm"] };
     let name = names.iter().find(|name| recording.channel(name).is_some()).unwrap_or(&"the force");
     Ok(Some(quality::driving(name)))
 }
 
-/// The thesis's crank, and gravity out of phase: a mass off the axis, or a weight that hangs on a tilted plane, may pass in few strokes for friction
-/// that drives, and leaves as much as a mirrored axis does.
+/// The thesis's crank with gravity at any phase. In few strokes, an eccentric mass or a weight on a tilted plane can
+/// look like driving friction, and leaves as large a residual as a mirrored axis does.
 fn model_of(arm: &Arm) -> force::Model {
     let mut model = plain_crank();
     model.push(Effect::new(&EccentricMass, &[1.0, 0.0, arm.radius_m]));
     model
 }
 
-/// How much better a mirrored axis must explain the force: left, of what the recorded one leaves.
+/// Largest ratio of residuals, after over before, for a mirrored axis.
 const MIRRORED_SHARE: f64 = 0.5;
 
-/// … and it leaves no more than this many times the noise, where that was seen, or this share of what was left: an effect that is large beside the
-/// noise is made smaller by many a change of sign.
+/// Largest residual of a mirrored axis, in multiples of a measured noise and as a share of the residual before. Many a
+/// change of sign reduces an effect that is large beside the noise.
 const SENSE: f64 = 4.0;
 const NEARLY_ALL: f64 = 0.1;
 
@@ -199,14 +200,14 @@ fn makes_sense((before, after): (f64, f64), track: &Track) -> bool {
     !track.noise_is_measured || after < SENSE * track.force_noise || after < NEARLY_ALL * before
 }
 
-/// What leaves less than this many times the noise makes sense as it is.
+/// Ratio of residual to noise up to which the recorded axes are plausible.
 const PLAUSIBLE: f64 = 1.8;
 
-/// The rows, with an axis of the force mirrored back where that alone makes sense of them.
+/// The rows, with an axis of the force mirrored back if only that makes them plausible.
 pub fn upright(signals: &Signals, recording: &Recording, arm: &Arm) -> Result<(Track, Option<Cause>), EstimateError> {
     let as_recorded = signals.rows(recording, arm)?;
     let model = model_of(arm);
-    // The motion is the same whatever the force's axes are.
+    // The motion does not depend on the axes of the force.
     let mut blurred = as_recorded.clone();
     let (before, resists) = force::plain_rms(&mut blurred, &model)?;
     if resists && before < PLAUSIBLE * as_recorded.force_noise {
@@ -224,7 +225,7 @@ pub fn upright(signals: &Signals, recording: &Recording, arm: &Arm) -> Result<(T
         let track = with_axes(&blurred, axes);
         let (after, resists_then) = force::blurred_rms(&track, &model)?;
         let both = name == "fx and fy";
-        // Both at once change every sign and no size: only friction that drives tells.
+        // Both at once change every sign and no magnitude: only driving friction shows it.
         let better = if both {
             resists_then && !resists
         } else {

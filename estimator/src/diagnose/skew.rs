@@ -1,40 +1,40 @@
-//! Force and motion that are a part of a sample apart, which is no delay.
+//! Sub-sample offset between force and motion, which is no delay.
 
 use super::explain::parameters;
 use super::geometry::Study;
 use super::track::Track;
 
-/// Channels are a whole sample apart by sampling alone as long as that is no longer than this, s, …
+/// Largest offset of one whole sample between channels that sampling alone explains, s.
 const LARGEST_SKEW_S: f64 = 2e-3;
-/// … and a command that is held until the next sample acts half of that later than when it is recorded: this share of a sample with some room.
+/// Delay of a command that is held until the next sample, in samples: half a sample with some margin.
 const HELD_COMMAND: f64 = 0.7;
-/// Clocks of two instruments differ by this, and what filters them: a force that is no later is no late force, s.
+/// Difference of the clocks and filters of two instruments, s: a smaller delay of the force is none.
 const CLOCKS_DIFFER_S: f64 = 3e-4;
 
-/// The time between force and motion when it is no more than what sampling itself can make of it, s: a commanded force is recorded when
-/// it is given and acts in the sample after. A force that comes late is late as soon as clocks do not differ by as much.
+/// Offset between force and motion if sampling alone can explain it, s. A commanded force is recorded when it is given
+/// and acts in the sample after. For a late force, only the difference of the clocks is allowed.
 pub fn skew(study: &Study, k: usize, track: &Track) -> Option<f64> {
     if study.candidates[study.chosen[k].candidate].id != "time-delay" {
         return None;
     }
     let delay = parameters(study, k);
     let found = delay.first()?;
-    // A hand's force is measured, a motor's is usually what it was told.
+    // A hand's force is measured; a motor's is usually the command.
     let held_s = if track.planar { 0.0 } else { HELD_COMMAND * track.raw_period_s };
     let ahead_s = track.raw_period_s.min(LARGEST_SKEW_S).max(held_s);
     let most_s = if found.value < 0.0 { ahead_s } else { CLOCKS_DIFFER_S };
     (found.value.abs() - 2.0 * found.std_error <= most_s).then_some(found.value)
 }
 
-/// The same of whatever was chosen.
+/// The same for any chosen causes.
 pub fn skewed_s(study: &Study, track: &Track) -> Option<f64> {
     (0..study.chosen.len()).find_map(|k| skew(study, k, track))
 }
 
-/// How that begins.
+/// Beginning of the sentence.
 pub const APART: &str = "force and motion are ";
 
-/// In words.
+/// The offset in words.
 pub fn apart(skew_s: f64) -> String {
     let ms = 1e3 * skew_s;
     format!(
@@ -42,7 +42,7 @@ pub fn apart(skew_s: f64) -> String {
     )
 }
 
-/// What a delay comes out at beside what was found, and its error, s.
+/// Delay estimated beside the causes found, and its standard error, s.
 pub fn rest_s(study: &Study, picks: &[usize]) -> Option<[f64; 2]> {
     let is_delay = |c: &usize| study.candidates[*c].id == "time-delay";
     let delay = (0..study.candidates.len()).find(is_delay)?;

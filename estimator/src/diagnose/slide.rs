@@ -1,9 +1,9 @@
-//! Diagnosis of a block that is slid over the table, held between two fingers or pushed by one: the force along the table against the
-//! motion, with the engine of everything that moves along one coordinate.
+//! Diagnosis of a block that is slid over the table, held between two fingers or pushed by one. The force along the
+//! table is compared with the motion, as for any other motion along one coordinate.
 //!
-//! The model is a mass with dry friction: in proportion to the load on the ground where the block's weight is known (what the fingers
-//! lift is off the ground), a constant otherwise. A table that is tilted pulls at the block alone, a bias of the sensor is felt by
-//! empty fingers as well.
+//! The base model is a mass with dry friction. The friction is proportional to the load on the ground if the block's
+//! weight is known (less the lift of the fingers), and a constant otherwise. A tilted table pulls on the block alone.
+//! Empty fingers feel a sensor bias, too.
 
 use super::force::{self, Model};
 use super::geometry::Study;
@@ -21,20 +21,20 @@ use haptics::law::{Backlash, CoulombFriction, Effect, Hysteresis, Inertia, Kind,
 use haptics::recording::{Channel, Meta, Recording};
 use haptics::world::World;
 
-/// A finger touches from this share of its usual force on, and from so many times the noise.
+/// Least force of a touching finger, as a share of its usual force and in multiples of the noise.
 const TOUCH_SHARE: f64 = 0.1;
 const TOUCH_NOISES: f64 = 6.0;
-/// Fingers close and open slowly, s.
+/// Margin at the slow closing and opening of fingers, s.
 const CLOSING_S: f64 = 0.15;
-/// Faster than this it slides, m/s; and so long at least in all, s.
+/// Least speed of sliding, m/s, and its least total duration, s.
 const SLIDES_M_S: f64 = 5e-3;
 const LEAST_S: f64 = 2.0;
-/// Empty fingers tell a bias when they were free for so long, s, in parts of this length.
+/// Least duration of empty fingers for an estimate of the bias, s, and length of its parts.
 const FREE_S: f64 = 1.0;
 const PART_S: f64 = 0.25;
-/// A constant force is of the sensor, or of the table, by so many standard errors.
+/// Standard errors by which a constant force is attributed to the sensor or to the table.
 const ERRORS: f64 = 4.0;
-/// A mass that is known may come out wrong by this share before a scale is called wrong.
+/// Relative error of a known mass from which a scale is wrong.
 const MASS_SHARE: f64 = 0.08;
 
 /// One recording as a coordinate with a force along it.
@@ -49,7 +49,7 @@ struct Slid {
     lifted_s: f64,
 }
 
-/// Whether this is what [`slid`] is for: a block was moved on the ground and never carried.
+/// True if [`slid`] handles these recordings: a block was moved on the ground and never carried.
 pub fn is_slid(recordings: &[Recording]) -> bool {
     let slides = |r: &Recording| read(r, None).is_ok_and(|s| s.slides_s > LEAST_S && s.lifted_s < LIFTED_S);
     !recordings.is_empty() && recordings.iter().all(|r| r.time_s.is_some() && slides(r))
@@ -65,7 +65,7 @@ pub fn slid(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Es
     let study = force::study(&mut track, &model, &given_by_pads(), limit)?;
     options.progress.tell(0.8)?;
     let mut found = explain::explain(&track, &model, &study, &[], faults);
-    // Motions of that library are for what is driven along its coordinate by a program.
+    // Motions of the library are for an object that a program drives along its coordinate.
     if let Some(next) = &mut found.next_experiment {
         next.experiment = None;
     }
@@ -80,18 +80,19 @@ pub fn slid(recordings: &[Recording], options: &Options) -> Result<Diagnosis, Es
     Ok(found)
 }
 
-/// What was found, on another recording.
+/// Validates the found causes on another recording.
 pub fn validate(recordings: &[Recording], options: &Options, found: &Diagnosis) -> Result<Validation, EstimateError> {
     let (mut track, ..) = track_of(recordings, options.world.as_ref())?;
     Ok(super::validate::validate(&mut track, &found.plain, &found.effects, &[], &found.kept))
 }
 
-/// The pads give before the block slides, by hundredths of a millimetre, as presliding friction and play do: neither is asked for.
+/// The pads yield before the block slides, by hundredths of a millimetre, as with presliding and backlash. Neither is
+/// therefore a candidate.
 fn given_by_pads() -> Model {
     vec![Effect::new(&Hysteresis, &[0.0, 1.0]), Effect::new(&Backlash, &[0.0])]
 }
 
-/// The laws to start from.
+/// Laws of the base model.
 fn model(options: &Options, weighs: bool) -> Result<Model, EstimateError> {
     match options.baseline.as_deref() {
         Some(name) => named(name),
@@ -100,7 +101,7 @@ fn model(options: &Options, weighs: bool) -> Result<Model, EstimateError> {
     }
 }
 
-/// Rows of all recordings, faults of their samples, and the recordings as they were read.
+/// Rows of all recordings, faults of their samples, and the recordings as read.
 fn track_of(recordings: &[Recording], world: Option<&World>) -> Result<(Track, Vec<Cause>, Vec<Slid>), EstimateError> {
     let (mut tracks, mut faults, mut all) = (Vec::new(), Vec::new(), Vec::new());
     for recording in recordings {
@@ -116,7 +117,7 @@ fn track_of(recordings: &[Recording], world: Option<&World>) -> Result<(Track, V
     Ok((track::join(tracks).ok_or_else(nothing)?, faults, all))
 }
 
-/// What presses the block on the ground, row by row.
+/// Sets the load of the block on the ground, row by row.
 fn load(rows: &mut Track, slid: &Slid) {
     let (Some(weight_n), Some(time_s)) = (slid.weight_n, &slid.along.time_s) else { return };
     let start_s = time_s.first().copied().unwrap_or(0.0);
@@ -193,7 +194,7 @@ fn read(recording: &Recording, world: Option<&World>) -> Result<Slid, EstimateEr
     })
 }
 
-/// Where a finger presses.
+/// Flags of samples in which a finger presses.
 fn touching(signals: &TaskSignals, levels: &Levels, finger: usize) -> Vec<bool> {
     let Some(force) = &signals.tips[finger].force else { return vec![false; signals.len()] };
     let x: Vec<f64> = force.iter().map(|f| f.x - levels.bias_n[finger].x).collect();
@@ -203,7 +204,7 @@ fn touching(signals: &TaskSignals, levels: &Levels, finger: usize) -> Vec<bool> 
     pressed.iter().map(|f| *f > least).collect()
 }
 
-/// Flags also what is near to what is flagged.
+/// Extends the flags to neighbouring samples.
 fn widen(bad: &mut [bool], time_s: &[f64]) {
     let flagged: Vec<usize> = (0..bad.len()).filter(|i| bad[*i]).collect();
     let edge = |i: usize| i == 0 || i + 1 == bad.len() || !bad[i - 1] || !bad[i + 1];
@@ -215,7 +216,7 @@ fn widen(bad: &mut [bool], time_s: &[f64]) {
     }
 }
 
-/// What empty fingers feel along the table together, and how well that is known, N.
+/// Mean total force on empty fingers along the table, and its standard error, N.
 fn free(signals: &TaskSignals, levels: &Levels, step_s: f64) -> Option<(f64, f64)> {
     if (levels.free.len() as f64) * step_s < FREE_S {
         return None;
@@ -232,11 +233,11 @@ fn free(signals: &TaskSignals, levels: &Levels, step_s: f64) -> Option<(f64, f64
     (n >= 3.0).then(|| (mean, (spread / n).sqrt()))
 }
 
-/// Names of a force that is the same wherever the block slides: on the move all are one and the same.
+/// Causes with a constant force at every position: during motion they are equivalent.
 const CONSTANT: [&str; 2] = ["force-bias", "friction-asymmetry"];
 
-/// A constant force along the table: of the sensor where empty fingers feel it; of a tilted table, or of friction by direction, where
-/// they do not; open where they were never empty.
+/// Attributes a constant force along the table. It belongs to the sensor if empty fingers feel it, and otherwise to a
+/// tilted table or to friction by direction. It is ambiguous if the fingers were never empty.
 fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
     let named = |c: &&mut Cause| CONSTANT.contains(&c.id.as_str()) && c.parameters.iter().any(|p| p.unit == "N");
     let Some(cause) = found.causes.iter_mut().find(named) else { return };
@@ -245,7 +246,7 @@ fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
     let free: Vec<(f64, f64)> = read.iter().filter_map(|s| s.free_n).collect();
     let mean = free.iter().map(|f| f.0).sum::<f64>() / free.len().max(1) as f64;
     let error = free.iter().map(|f| f.1 * f.1).sum::<f64>().sqrt() / free.len().max(1) as f64;
-    // One sensor, one bias: a single recording in which the fingers were empty tells it for all.
+    // One sensor, one bias: a single recording with empty fingers determines it for all.
     let all_free = !free.is_empty();
     let felt = mean.abs() > ERRORS * error && (b.value - mean).abs() < ERRORS * error.hypot(b.std_error);
     let number = |name: &str, value: f64, std_error: f64, unit: &str| CauseParameter {
@@ -264,7 +265,7 @@ fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
         cause.evidence += "; empty fingers feel it as well";
         (&[], "")
     } else if all_free {
-        // The table's part is what empty fingers do not feel.
+        // The table's part is the difference from the reading of empty fingers.
         let (tilt_n, error) = (mean - b.value, error.hypot(b.std_error));
         "gravity-tilt".clone_into(&mut cause.id);
         cause.kind = Kind::Plant;
@@ -307,7 +308,7 @@ fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
         Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: 0.9, experiment: None });
 }
 
-/// Where the answer asks to let go: the same for an operator that is a program, with the probability that it tells.
+/// If the answer asks to let go: the same experiment for a scripted operator, with its probability of success.
 fn let_go(found: &mut Diagnosis, track: &Track) {
     const FREE_BEFORE_S: f64 = 2.0;
     let size = found.causes.iter().find(|c| c.id == "force-bias").and_then(|c| c.parameters.first()).map(|b| b.value);
@@ -333,7 +334,7 @@ fn let_go(found: &mut Diagnosis, track: &Track) {
     });
 }
 
-/// A mass that is known and comes out wrong: forces or lengths are told in a wrong scale.
+/// A known mass with a wrong estimate shows a wrong scale of forces or lengths.
 fn scales(found: &mut Diagnosis, study: &Study, model: &Model, mass_kg: Option<f64>) {
     use haptics::law::Law;
     let (Some(known), Some(solved)) = (mass_kg, &study.solved) else { return };

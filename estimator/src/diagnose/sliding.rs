@@ -1,8 +1,8 @@
-//! Rows out of a recording of a mechanism: one coordinate and the force along it.
+//! Rows of a mechanism's recording: one coordinate and the force along it.
 //!
-//! Where a mass matters, force and acceleration must be seen through one and the same filter: dry friction jumps at a reversal, the
-//! acceleration jumps back, and only their sum is smooth. Every row is therefore a mean with the weights of a hat over two blocks; the
-//! mean acceleration with these weights is exactly the difference of the two blocks' mean velocities.
+//! With inertia, force and acceleration must pass through the same filter. Dry friction jumps at a reversal and the
+//! acceleration jumps back, and only their sum is smooth. Every row is therefore a mean with triangular weights over
+//! two blocks. The mean acceleration with these weights is exactly the difference of the two blocks' mean velocities.
 
 use super::fine::{FINE_HZ, between, calmed_line};
 use super::track::{Bearing, Fine, Place, Row, Span, Track, Weighing};
@@ -17,13 +17,14 @@ use haptics::law::{Coordinate, Motion};
 use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 
-/// Shortest and longest block, s: nothing that a hand does is over within the longest.
+/// Shortest and longest block, s: every motion of a hand lasts longer than the longest.
 const SHORTEST_S: f64 = 0.02;
 const LONGEST_S: f64 = 0.06;
-/// Fewer samples are no stretch, in blocks.
+/// Least length of a segment, in blocks.
 const LEAST_BLOCKS: usize = 8;
 
-/// The rows of one recording. `bad`: samples that no sensor measured; `path`: where a tool's coordinate is counted along, its own if none.
+/// The rows of one recording. `bad`: samples that no sensor measured; `path`: path along which a tool's coordinate is
+/// measured, its own if `None`.
 pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) -> Result<Track, EstimateError> {
     let raw = mechanism::raw(recording, path)?;
     let force = raw.force.as_ref().ok_or_else(|| {
@@ -42,13 +43,13 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
         }
         made
     };
-    // Whole numbers of the finer points, which then lie evenly about the middle of every hat.
+    // A whole number of finer points per block, which are then symmetric about the middle of every mean.
     let skip = skip(period_s);
     let whole = |samples: f64| (samples / skip as f64).round().max(1.0) as usize * skip;
     let shortest = whole(SHORTEST_S / period_s);
     let longest = whole((LONGEST_S / period_s).floor()).max(shortest);
     let mass = in_blocks(whole(0.5 * (shortest + longest) as f64)).mass();
-    // Of a rate, or of a position where none was recorded, and of the force.
+    // Noise of a rate, or of a position if no rate was recorded, and of the force.
     let noise = [white_noise(raw.rate.as_ref().unwrap_or(&raw.position)), white_noise(force)];
     let quiet = |block: &usize| quiet(noise, raw.rate.is_some(), period_s, *block, mass);
     let block = (shortest..=longest).step_by(skip).find(quiet).unwrap_or(longest);
@@ -64,27 +65,27 @@ pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) 
     Ok(made.track(&raw))
 }
 
-/// Every so many-th sample is one of the finer points.
+/// Number of samples per finer point.
 fn skip(period_s: f64) -> usize {
     (1.0 / (FINE_HZ * period_s)).round().max(1.0) as usize
 }
 
-/// Whether the acceleration's noise makes no more of a force than the force's own noise, in blocks of this many samples. `motion`: noise of the rates,
-/// or of the positions where no rates were recorded (`is_rate`).
+/// True if the acceleration's noise, as a force, is below the force's own noise for blocks of this many samples.
+/// `motion`: noise of the rates, or of the positions if no rates were recorded (`is_rate`).
 fn quiet([motion, force]: [f64; 2], is_rate: bool, period_s: f64, block: usize, mass: f64) -> bool {
     let (samples, length_s) = (block as f64, block as f64 * period_s);
-    // Of a block's mean velocity: of as many rates, or of the two positions at its ends.
+    // Noise of a block's mean velocity: from its rates, or from the two positions at its ends.
     let velocity = if is_rate { motion / samples.sqrt() } else { std::f64::consts::SQRT_2 * motion / length_s };
     let of_mass = mass.abs() * std::f64::consts::SQRT_2 * velocity / length_s;
     of_mass < force * averaged(block)
 }
 
-/// What a hat over two blocks leaves of white noise.
+/// Factor by which a triangular mean over two blocks reduces white noise.
 fn averaged(block: usize) -> f64 {
     (2.0 / (3.0 * block as f64)).sqrt()
 }
 
-/// Rates out of positions: central differences.
+/// Rates from positions: central differences.
 fn slopes(raw: &Raw) -> Vec<f64> {
     let n = raw.time_s.len();
     let at = |i: usize| {
@@ -98,7 +99,8 @@ fn slopes(raw: &Raw) -> Vec<f64> {
 struct Made {
     rows: Vec<Row>,
     fine: Vec<Fine>,
-    /// Of the velocity, the force and the position, and what the position's steps hide however long it stands; one set a stretch.
+    /// Noise of velocity, force and position, and the position uncertainty that the sensor's steps hide however long it
+    /// stands; one set per segment.
     noises: Vec<[f64; 4]>,
     period_s: f64,
     /// Samples a block.
@@ -113,7 +115,7 @@ impl Made {
         }
         let number = self.fine.last().map_or(0, |f| f.stretch + 1);
         let (calm, left) = calmed_line(&rate[range.clone()], self.period_s);
-        // Rates of differences carry the noise of the positions once more.
+        // Rates from differences also contain the noise of the positions.
         let position = white_noise_under_fast_motion(&raw.position[range.clone()]);
         let hidden = resolution_error(quantum(&raw.position[range.clone()]), white_noise(&raw.position[range.clone()]));
         self.noises.push([
@@ -146,7 +148,7 @@ impl Made {
             let (v0, v1) = (mean(rate, before), mean(rate, middle));
             let half_s = 0.5 * (raw.time_s[middle + block] - raw.time_s[before]);
             let hat = |values: &[f64]| hat(&values[before..=middle + block]);
-            // The points that the hat covers.
+            // The points that the triangular weights cover.
             let per = |samples: usize| samples * fill / skip;
             let start = first_fine + per((b - 1) * block);
             let end = (first_fine + per((b + 1) * block) + 1).min(self.fine.len());
@@ -216,17 +218,17 @@ impl Made {
     }
 }
 
-/// Mean of a line through the values.
+/// Mean of the line through the values.
 fn trapezoid(values: &[f64]) -> f64 {
     let n = values.len();
     let ends = 0.5 * (values[0] + values[n - 1]);
     (ends + values[1..n - 1].iter().sum::<f64>()) / (n - 1) as f64
 }
 
-/// Mean of a line through the values with the weights of a hat over all of them.
+/// Mean of the line through the values with triangular weights over all of them.
 fn hat(values: &[f64]) -> f64 {
     let half = (values.len() - 1) / 2;
-    // Exact for lines between the samples: a third of what the ends of the hat and its top miss.
+    // Exact for lines between the samples: a correction of one third at the ends and at the top of the weights.
     let weight = |k: usize| match k {
         0 => 1.0 / 6.0,
         k if k == 2 * half => 1.0 / 6.0,
@@ -252,12 +254,12 @@ mod tests {
 
     #[test]
     fn mean_velocities_of_two_blocks_differ_by_the_hats_acceleration() {
-        // A velocity of straight pieces whose slope jumps in the middle of a block.
+        // A piecewise linear velocity whose slope jumps in the middle of a block.
         let slope = |k: usize| if k < 7 { -2.0 } else { 3.0 };
         let mut velocity = vec![1.0];
         (0..20).for_each(|k| velocity.push(velocity[k] + 0.1 * slope(k)));
         let difference = (trapezoid(&velocity[10..=20]) - trapezoid(&velocity[0..=10])) / 1.0;
-        // The acceleration is constant between samples: its mean with the hat's weights, piece by piece.
+        // The acceleration is constant between samples: its mean with the triangular weights, step by step.
         let mean: f64 = (0..20)
             .map(|k| {
                 let middle = 0.1 * (k as f64 + 0.5);

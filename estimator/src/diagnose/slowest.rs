@@ -1,17 +1,17 @@
-//! How slow a motion must be for its friction to be told: what is gone through while a row is being averaged shows as its sum only.
+//! Lowest speed at which friction can be resolved: of motion within one averaged row only the sum is known.
 
 use super::report::CauseParameter;
 use super::track::{Place, Row, Track};
 use haptics::law::{Law, Stribeck};
 
-/// Rows that an acceleration is told over, on either side.
+/// Number of rows, on either side, over which an acceleration is evaluated.
 const ROWS: f64 = 2.0;
-/// Share of the motion that is slowest.
+/// Share of the rows that count as slow.
 const SLOW: f64 = 0.25;
-/// A peak is so much higher for one that is so much narrower: its area stays.
+/// Ratio by which a narrower peak is higher at equal area.
 const HIGHER: f64 = 1.5;
 
-/// The speed that the motion reaches, where it is slow, within the time over which its acceleration is told, m/s or rad/s.
+/// Speed that a slow motion reaches within the time over which its acceleration is evaluated, m/s or rad/s.
 fn told_from(track: &Track) -> f64 {
     let slow = track.quantile(SLOW, |r| r.motion.velocity.abs());
     let is_slow = |r: &&Row| r.place == Place::Along && r.motion.velocity.abs() <= slow;
@@ -20,8 +20,8 @@ fn told_from(track: &Track) -> f64 {
     rates.get(rates.len() / 2).map_or(0.0, |median| median * ROWS * track.period_s)
 }
 
-/// Static friction that has fallen off before the motion is fast enough to be told shows by its area alone: its size and its speed are then open
-/// by as much as they are.
+/// Widens the standard errors of Stribeck friction that falls off below the lowest resolved speed. Only its area is
+/// then known, so its size and its speed are uncertain by as much as they are.
 pub fn widen(id: &str, parameters: &mut [CauseParameter], track: &Track) {
     if id != Stribeck.id() {
         return;

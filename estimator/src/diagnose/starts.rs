@@ -1,16 +1,18 @@
-//! Other beginnings of a search: what goes forward one cause at a time may end where no single step leads out.
+//! Restarts of the search, because selection of one cause at a time may end in a local optimum.
 
 use super::candidate::Candidate;
 use super::geometry::Study;
 use super::select::{LOST_MOTION, SURE, Selection};
 
-/// So many of the causes that explain most alone are tried as the first of two.
+/// Number of causes, strongest alone, that are tried as the first of a pair.
 const FIRST: usize = 6;
-/// More causes than this are many: beside a wrong first one, it takes several to say what two do.
+/// Number of causes above which a pair is tried. Beside a wrong first cause, several are needed to explain the effect
+/// of two.
 pub const MANY: usize = 2;
 
 impl Selection<'_> {
-    /// The best two causes together: the strongest of each kind with what stands best beside it, then each looked for anew beside the other.
+    /// The best pair of causes: the strongest of each kind with its best partner, then each searched again beside the
+    /// other.
     pub fn pair(&self) -> Option<Vec<usize>> {
         let mut alone: Vec<(f64, usize)> = self.open(&[]).map(|c| (self.price(&[c]), c)).collect();
         alone.retain(|(price, _)| price.is_finite());
@@ -33,7 +35,8 @@ impl Selection<'_> {
         })
     }
 
-    /// The best two more causes beside the chosen ones, each kind as it explains most alone, if they explain something beyond doubt together.
+    /// The best two more causes beside the chosen ones, each kind as it explains most alone, if they explain something
+    /// beyond doubt together.
     pub fn pair_beside(&self, chosen: &[usize]) -> Option<Vec<usize>> {
         if chosen.len() + 2 > self.most() {
             return None;
@@ -54,8 +57,9 @@ impl Selection<'_> {
         (price < with(&[]) - SURE * self.threshold).then_some(pair)
     }
 
-    /// What must be searched for more closely before it can be compared with what was chosen, which will be: of play and of a bend the
-    /// one that was not chosen (half a step of the coarse grid is more than they differ by), and the best two causes where many were.
+    /// Candidates that need a finer grid before they can be compared with the chosen ones. Of hysteresis and backlash
+    /// this is the other one (they differ by less than half a step of the coarse grid). If many causes were chosen, the
+    /// best pair is added.
     fn left_behind(&self, chosen: &[usize]) -> Vec<usize> {
         let is_loss = |c: &usize| LOST_MOTION.contains(&self.candidates[*c].id);
         let mut others = Vec::new();
@@ -75,8 +79,8 @@ impl Selection<'_> {
     }
 }
 
-/// The candidates around which the next round searches: those that were chosen, and what else may turn out better once it is searched
-/// for as closely.
+/// The candidates around which the next round searches: those that were chosen, and what else may turn out better once
+/// it is searched for as closely.
 pub fn to_refine(study: &Study, threshold: f64, dry: bool) -> Vec<&Candidate> {
     let Study { system, candidates, .. } = study;
     let picks = study.picks();

@@ -1,4 +1,4 @@
-//! What is left of a crank's path that no known cause explains, and an arc that is too short to tell its circle.
+//! Unexplained residual of a crank's path, and arcs that are too short to determine their circle.
 
 use super::candidate::Candidate;
 use super::geometry::{Arm, Path, Study, residual};
@@ -12,13 +12,15 @@ use haptics::law::Kind;
 /// Generic waves round a turn, and slow ones over the recording.
 const WAVES: u32 = 4;
 const SLOW: u32 = 4;
-/// A path that is off its circle by more than this many times its noise should have a reason.
+/// Ratio of the path's residual to its noise from which a reason is expected.
 const STRANGE: f64 = 2.0;
-/// An arc whose bulge is no more than this many times the noise of one place, or whose radius is known to no better than this share, is short.
+/// An arc whose bulge is no more than this many times the noise of one place, or whose radius is known to no better
+/// than this share, is short.
 const BULGE: f64 = 12.0;
 const UNSURE: f64 = 0.05;
 
-/// What is left of a path that no known cause explains: waves round the turn (a circle has none beyond its centre's) and slow changes.
+/// Generic terms of a path: waves around the turn (those of first order belong to the circle's centre) and slow
+/// changes.
 fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
     let angle = |i: usize| outward[i].y.atan2(outward[i].x);
     let column = |of: &dyn Fn(usize) -> f64| (0..path.points.len()).map(of).collect::<Vec<f64>>();
@@ -38,8 +40,8 @@ fn generic(path: &Path, outward: &[Vec2]) -> Vec<Candidate> {
     waves.chain(slow).collect()
 }
 
-/// What is left of the path beside the causes that were found, if it is much more than the noise and goes with something: the generic term, its score
-/// and the comparison with it in place.
+/// Unexplained residual of the path beside the causes found: the comparison with the generic term, its index and its
+/// evidence. `None` if the residual is near the noise or no term fits it.
 pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<(Study, usize, f64)> {
     let picks = study.picks();
     let solved = study.solved.as_ref()?;
@@ -79,8 +81,8 @@ pub fn unexplained(path: &Path, arm: &Arm, study: &Study) -> Option<(Study, usiz
     made(candidates)
 }
 
-/// Where an arc is too short against the noise of its places to tell its circle well: in a sentence. A centre that is read from less and less of a slow
-/// motion wanders by just that.
+/// Sentence on an arc that is too short, for the noise of its positions, to determine its circle well. The error is the
+/// drift of a centre estimated from ever less of a slow motion.
 pub fn short_arc(path: &Path, arm: &Arm, study: &Study) -> Option<String> {
     let solved = study.solved.as_ref()?;
     let mut before = 0.0_f64;

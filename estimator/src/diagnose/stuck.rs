@@ -1,43 +1,45 @@
-//! Where the object stands although it is pushed: how far it gives way there tells what bends before it slides, and what has play,
-//! much more finely than the force does, whose direction is a guess at a reversal.
+//! Stick phases: the displacement of an object that stands although it is pushed. It shows presliding and backlash much
+//! more finely than the force does, whose direction is uncertain at a reversal.
 //!
-//! Rows of a track in which the force is below the friction and nothing moves become rows of their own: their target is the way since
-//! the middle of the standstill, measured in the noise of the force, so that both kinds of rows count in one comparison. Dry friction
-//! alone gives nothing there.
+//! Rows of a track in which the force is below the friction and nothing moves become rows of their own. Their target is
+//! the displacement from the middle of the stick phase, scaled to the noise of the force, so that both kinds of rows
+//! count in one comparison. Pure Coulomb friction predicts zero there.
 
 use super::track::{Place, Row, Track};
 use haptics::Vec2;
 use haptics::law::{Hysteresis, Law, MAX_PARAMETERS, Memory, Motion};
 
-/// Share of the friction up to which nothing slides, also where the friction is known badly.
+/// Share of the friction up to which nothing slides, even if the friction is uncertain.
 const HOLDS: f64 = 0.7;
-/// What goes further than this share of the range (of the diameter, on a circle) does not stand; a gap so wide shows in the force.
+/// Largest displacement in a stick phase, as a share of the range (of the diameter, on a circle). A wider gap shows in
+/// the force.
 const LARGEST: f64 = 0.006;
-/// A bend is followed up to this share of the friction.
+/// Largest share of the friction up to which presliding is followed.
 const BENT: f64 = 0.95;
-/// A standstill whose give differs from what is usual by this share of it, and by so many times its noise, was a slow slide.
+/// Deviation of a stick phase's compliance from the usual one, relative and in standard errors, from which it was a
+/// slow slide.
 const UNLIKE: f64 = 0.7;
 const UNLIKE_SURE: f64 = 4.0;
-/// Rows slower than this share the time of a standstill with a slide, s.
+/// Longest sampling period at which stick phases are resolved, s.
 const SLOWEST_S: f64 = 0.03;
-/// Fewer rows are no standstill.
+/// Least number of rows of a stick phase.
 const LEAST_ROWS: usize = 3;
-/// A load that is no further from zero than this many times its noise has no side.
+/// Load, in standard deviations of its noise, up to which its side is unknown.
 const SURE: f64 = 2.0;
-/// … and presses to one side of a gap for certain beyond this many.
+/// Load, in standard deviations of its noise, that certainly presses to one side of a gap.
 const PRESSED: f64 = 3.5;
-/// Where something floats, and under what load, is the mean of so many rows before and after.
+/// Number of rows before and after over which position and load of a floating object are averaged.
 const NEAR: usize = 2;
-/// Rows whose noise is one and the same.
+/// Ratio of noises up to which rows count as equally noisy.
 const ALIKE: f64 = 2.0;
-/// Creep is told from standing by so much, in 2 ln(likelihood).
+/// Evidence by which creep must exceed sticking, 2 ln(likelihood).
 const CREEPS: f64 = 10.0;
 /// Steps in which a change of the load is followed.
 const PARTS: usize = 16;
 
-/// The load of one row beside the friction that could hold it.
+/// Load on the friction in one row.
 pub struct Load {
-    /// What the friction holds, as a share of it: −1 and 1 slide.
+    /// Load on the friction as a share of it: −1 and 1 slide.
     pub share: f64,
     /// All of the force, as a share of the friction.
     pub whole: f64,
@@ -45,7 +47,7 @@ pub struct Load {
     pub friction: f64,
 }
 
-/// Adds the rows of the standstills. `loads`: one a row, `None` where the friction is unknown.
+/// Adds the rows of the stick phases. `loads`: one per row, `None` if the friction is unknown.
 pub fn add(track: &mut Track, loads: &[Option<Load>]) {
     let noise = track.position_noise;
     if noise <= 0.0 || noise.is_nan() || track.raw_period_s > SLOWEST_S {
@@ -67,7 +69,7 @@ pub fn add(track: &mut Track, loads: &[Option<Load>]) {
         if i < track.rows.len() && stands(i) && (first == i || track.follows(i)) {
             continue;
         }
-        // A row at either end may have moved already.
+        // A row at either end may already have moved.
         let still = first + 1..i.saturating_sub(1);
         if still.len() >= LEAST_ROWS && stays(still.clone()) {
             made.push(standstill(track, &loads[still.clone()], still, number));
@@ -79,13 +81,13 @@ pub fn add(track: &mut Track, loads: &[Option<Load>]) {
     track.rows.extend(made);
 }
 
-/// The furthest that what stands may go, m or rad.
+/// Largest displacement of a standing object, m or rad.
 fn largest(track: &Track) -> f64 {
     let range = track.quantile(1.0, |r| r.motion.position) - track.quantile(0.0, |r| r.motion.position);
     LARGEST * track.radius_m.map_or(range, |r| range.min(2.0 * r)) + 4.0 * track.position_noise
 }
 
-/// Only those standstills that give as the others do. A slide so slow that its force passes for a standstill's gives anything.
+/// Stick phases with the usual compliance. A slow slide, whose force looks like that of a stick phase, may have any.
 fn alike(made: Vec<Vec<Row>>, noise: f64) -> Vec<Vec<Row>> {
     let slope = |rows: &[Row]| {
         let (mut across, mut square) = (0.0, 0.0);
@@ -105,7 +107,8 @@ fn alike(made: Vec<Vec<Row>>, noise: f64) -> Vec<Vec<Row>> {
     like.map(|(rows, _)| trusted(rows, usual, noise)).collect()
 }
 
-/// What gives far under little load tells its way no better than the noise of the load lets it (effective variance, Orear 1982).
+/// Reduces the weight of a stick phase with large displacement under small load: the noise of the load limits its
+/// accuracy (effective variance, Orear 1982).
 fn trusted(mut rows: Vec<Row>, slope: f64, noise_m: f64) -> Vec<Row> {
     let of_load = |row: &Row| if let Place::Stuck { noise, .. } = row.place { noise / SURE } else { 0.0 };
     let load = rows.iter().map(of_load).sum::<f64>() / rows.len().max(1) as f64;
@@ -119,7 +122,7 @@ fn trusted(mut rows: Vec<Row>, slope: f64, noise_m: f64) -> Vec<Row> {
     rows
 }
 
-/// Median of values with errors, each counting as much as it is certain.
+/// Weighted median of values with errors: each counts by its accuracy.
 fn usual(slopes: &[(f64, f64)]) -> f64 {
     let mut sorted: Vec<(f64, f64)> = slopes.iter().map(|(s, e)| (*s, 1.0 / e.max(1e-300))).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -140,7 +143,7 @@ fn standstill(track: &Track, loads: &[Option<Load>], range: std::ops::Range<usiz
     let middle = rows.iter().map(|r| r.motion.position).sum::<f64>() / rows.len() as f64;
     let of = |k: usize| {
         let load = loads[k].as_ref()?;
-        // The hand's load changes slowly: its neighbours tell it, too.
+        // The hand's load changes slowly, so it is averaged over neighbours.
         let near = k.saturating_sub(NEAR)..(k + NEAR + 1).min(loads.len());
         let count = near.len() as f64;
         let mean =
@@ -162,7 +165,7 @@ fn standstill(track: &Track, loads: &[Option<Load>], range: std::ops::Range<usiz
     (0..rows.len()).filter_map(of).collect()
 }
 
-/// Puts what `way` says of the rows of each standstill, less its mean, into a column.
+/// Fills a regressor with the displacement `way` in the rows of each stick phase, less its mean.
 fn fill(rows: &[Row], column: &mut [f64], way: &dyn Fn(&[Row]) -> Vec<f64>) {
     let mut first = 0;
     for stretch in rows.chunk_by(|a, b| a.stretch == b.stretch) {
@@ -175,8 +178,8 @@ fn fill(rows: &[Row], column: &mut [f64], way: &dyn Fn(&[Row]) -> Vec<f64>) {
     }
 }
 
-/// What creeps under a load instead of standing: friction whose sign is smooth, as simulators have it, F tanh(v/v₀), is passed at
-/// v₀ atanh(F/F₀). The way of each standstill at v₀ = 1.
+/// Creep under load instead of sticking. Friction with a smooth sign, F tanh(v/v₀), as simulators use it, is balanced
+/// at v₀ atanh(F/F₀). The result is the displacement in each stick phase at v₀ = 1.
 fn creeps(rows: &[Row], column: &mut [f64]) {
     fill(rows, column, &|stretch| {
         let mut way = 0.0;
@@ -196,8 +199,8 @@ fn creeps(rows: &[Row], column: &mut [f64]) {
     });
 }
 
-/// The column of creep where that alone tells the ways of the standstills better than everything that bends or has play does alone;
-/// a hand's load goes to and fro, so that the way and the load part.
+/// Regressor of creep, if it explains the stick phases better than every presliding and backlash candidate alone. A
+/// hand's load goes back and forth, which separates the displacement from the load.
 pub fn creep(track: &Track, y: &[f64], losses: &[&[f64]]) -> Option<Vec<f64>> {
     let stuck: Vec<usize> = (0..y.len()).filter(|i| matches!(track.rows[*i].place, Place::Stuck { .. })).collect();
     let mut column = vec![0.0; y.len()];
@@ -215,7 +218,7 @@ pub fn creep(track: &Track, y: &[f64], losses: &[&[f64]]) -> Option<Vec<f64>> {
     (by_creep > most && worth).then_some(column)
 }
 
-/// What bends before it slides gives this much under the loads. `law`: friction, stiffness and shape of the law of presliding.
+/// Displacement of presliding friction under the loads. `law`: friction, stiffness and shape of the law of presliding.
 pub fn bends(rows: &[Row], law: &[f64; 3], column: &mut [f64]) {
     let mut values = [0.0; MAX_PARAMETERS];
     values[..3].copy_from_slice(law);
@@ -231,7 +234,7 @@ pub fn bends(rows: &[Row], law: &[f64; 3], column: &mut [f64]) {
                 if k == 0 {
                     memory[0] = share;
                 } else if (share - memory[0]).abs() > noise {
-                    // The noise alone bends nothing: what is followed stays this far behind.
+                    // Noise alone causes no presliding: the tracked load stays behind by this much.
                     let aim = share - noise * (share - memory[0]).signum();
                     at += follow(&values, &mut memory, aim);
                 }
@@ -241,7 +244,7 @@ pub fn bends(rows: &[Row], law: &[f64; 3], column: &mut [f64]) {
     });
 }
 
-/// The way on which the law's friction goes to `aim`; the memory follows.
+/// Displacement over which the law's friction reaches `aim`; the memory follows.
 fn follow(values: &[f64; MAX_PARAMETERS], memory: &mut Memory, aim: f64) -> f64 {
     let side = (aim - memory[0]).signum();
     let mut gone = 0.0;
@@ -259,7 +262,8 @@ fn follow(values: &[f64; MAX_PARAMETERS], memory: &mut Memory, aim: f64) -> f64 
     gone
 }
 
-/// What has a gap of twice `half` lies on the side of the load. A gap that is wider than what counts as a standstill is not crossed in one.
+/// Displacement within a gap of twice `half`, to the side of the load. A gap wider than the limit of a stick phase is
+/// not crossed in one.
 pub fn plays(track: &Track, half: f64, all: bool, column: &mut [f64]) {
     if 2.0 * half < largest(track) {
         lies(&track.rows, half, all, column);
@@ -278,13 +282,13 @@ fn lies(rows: &[Row], half: f64, all: bool, column: &mut [f64]) {
             let floats = (0..stretch.len()).map(|k| around(&places, k));
             0.5 * (floats.clone().fold(f64::MAX, f64::min) + floats.fold(f64::MIN, f64::max))
         };
-        // Without a load it floats: wherever it was seen a moment before and after, within the gap.
+        // Without load the object floats within the gap, near its positions a moment before and after.
         let floats = |k: usize| (around(&places, k) - middle).clamp(-half, half);
         (0..stretch.len()).map(|k| middle + if sides[k] == 0.0 { floats(k) } else { half * sides[k] }).collect()
     });
 }
 
-/// The side on which the load holds what has play; 0 where the load may be none.
+/// Side to which the load presses an object with backlash; 0 if the load may be zero.
 fn side(row: &Row, all: bool) -> f64 {
     let Place::Stuck { share, side, noise, .. } = row.place else { return 0.0 };
     match all {
@@ -294,12 +298,12 @@ fn side(row: &Row, all: bool) -> f64 {
     }
 }
 
-/// Way of a row since the middle of its standstill.
+/// Displacement of a row from the middle of its stick phase.
 fn place_m(row: &Row) -> f64 {
     if let Place::Stuck { scale, .. } = row.place { row.y / scale } else { 0.0 }
 }
 
-/// Mean of the neighbours of a place, without its own noise.
+/// Mean of the neighbours of a position, without its own noise.
 fn around(places: &[f64], k: usize) -> f64 {
     let near = k.saturating_sub(NEAR)..(k + NEAR + 1).min(places.len());
     let count = near.len() - 1;
@@ -317,7 +321,7 @@ mod tests {
 
     #[test]
     fn a_slow_slide_is_no_standstill() {
-        // Three standstills that give 20 µm a friction, and a slide of 300 µm while the load falls.
+        // Three stick phases with a compliance of 20 µm per friction, and a slide of 300 µm while the load falls.
         let still = |k: usize| (0..6).map(|i| row(k, 0.1 * f64::from(i), 2.0 * f64::from(i) - 5.0)).collect::<Vec<_>>();
         let slides: Vec<Row> = (0..6).map(|i| row(9, -0.1 * f64::from(i), 60.0 * f64::from(i) - 150.0)).collect();
         let kept = alike(vec![still(1), slides, still(2), still(3)], 1e-6);

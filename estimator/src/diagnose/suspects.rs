@@ -1,5 +1,5 @@
-//! What could stand behind a diagnosis, one world each: what was found, and every other cause that could have done the same. An
-//! experiment can be rehearsed in each of them.
+//! Hypothetical worlds behind a diagnosis: one with the causes found, and one for each rival that explains the data as
+//! well. Experiments can be rehearsed in each.
 
 use super::candidate::Candidate;
 use super::explain::TWINS;
@@ -16,31 +16,32 @@ use haptics::law::{EccentricMass, Effect, GravityTilt, Kind, Law as _, Weight};
 use haptics::recording::Recording;
 use haptics::world::World;
 
-/// What the force sensors of both fingers make of the force: a fault of the measurement that the world knows nothing of.
+/// Fault of the force sensors of both fingers, which is no part of the world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SensorFault {
-    /// Added always, one a finger, N.
+    /// Constant offset, one per finger, N.
     pub offset_n: [Vec2; 2],
-    /// Added more and more: the rate at the start, one a finger, N/s …
+    /// Drift: initial rate, one per finger, N/s.
     pub drift_n_s: [Vec2; 2],
-    /// … and the time in which that settles, s; 0: never.
+    /// Time constant of that drift, s; 0 if it never settles.
     pub settles_s: f64,
-    /// It begins to drift once something is held, not at the start.
+    /// True if the drift begins when an object is held, not at the start.
     pub drifts_once_held: bool,
-    /// Added always to the force along the coordinate of a mechanism, N or N m …
+    /// Constant offset of the force along the coordinate of a mechanism, N or N m.
     pub offset_along: f64,
-    /// … and added more and more: the rate at the start, N/s or N m/s.
+    /// Drift along the coordinate: initial rate, N/s or N m/s.
     pub drift_along_per_s: f64,
-    /// Share of the finger's y force that is read in x, and of its x force that is read in y, one a finger.
+    /// Cross-talk: share of the finger's y force that is read in x, and of its x force that is read in y, one per
+    /// finger.
     pub cross: [Vec2; 2],
-    /// How much too much is read, as a share.
+    /// Relative gain error of the reading.
     pub gain_error: f64,
-    /// How much later the force comes than the motion, s.
+    /// Delay of the force after the motion, s.
     pub delay_s: f64,
 }
 
 impl SensorFault {
-    /// Adds what a candidate came out at; false for a fault that is none of these.
+    /// Adds the estimate of a candidate; false for a fault that is none of these.
     fn add(&mut self, candidate: &Candidate, values: &[f64]) -> bool {
         if candidate.id == "force-drift" {
             self.settles_s = candidate.searched.first().map_or(0.0, |s| s.value);
@@ -48,7 +49,8 @@ impl SensorFault {
         candidate.linear.iter().zip(values).all(|((name, _), value)| self.add_one(candidate.id, name, *value))
     }
 
-    /// Faults of the net force are halved between the fingers; those in proportion to the force are each finger's own.
+    /// Adds a fault. Faults of the net force are halved between the fingers; those in proportion to the force belong to
+    /// each finger.
     fn add_one(&mut self, id: &str, name: &str, value: f64) -> bool {
         match (id, name) {
             ("force-bias", "b") => self.offset_along = value,
@@ -83,47 +85,48 @@ impl SensorFault {
     }
 }
 
-/// What is in the object, by the way in which its task looks for it.
+/// Effects in the object, in the form that its task uses.
 #[derive(Clone, Debug, PartialEq)]
 enum Inside {
     /// All laws along the coordinate.
     Laws(Vec<Effect>),
-    /// What acts on blocks: causes with their parameters.
+    /// Effects on blocks: causes with their parameters.
     Acts(Vec<Act>),
 }
 
-/// A cause that acts on blocks, with what it comes out at.
+/// A cause that acts on blocks, with its estimated parameters.
 pub(super) type Act = (String, Vec<CauseParameter>);
 
 /// One answer that is not excluded.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Hypothesis {
-    /// The cause that is thought to be there.
+    /// The assumed cause.
     id: String,
-    /// Nothing where a cause among them cannot be simulated.
+    /// `None` if a cause among them cannot be simulated.
     inside: Option<Inside>,
     fault: Option<SensorFault>,
     hung_share: f64,
 }
 
-/// What could be there, as a world and what its sensors add.
+/// A hypothesis as a world with a sensor fault.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Suspect {
-    /// The cause that is thought to be there.
+    /// The assumed cause.
     pub id: String,
     /// The object with it.
     pub world: World,
-    /// What the force sensors make of its forces.
+    /// Fault of the force sensors.
     pub fault: SensorFault,
-    /// Share of a hung weight that acts along a mechanism's coordinate: all of it, unless its axis is thought to stand upright and leans.
+    /// Share of a hung weight that acts along a mechanism's coordinate: all of it, unless its axis is assumed to be
+    /// vertical with a tilt.
     pub hung_share: f64,
 }
 
-/// By how much an axis that is thought to be upright leans, as a sine: no recording of the mechanism alone shows it. Some six degrees are
-/// noticed by nobody.
+/// Tilt of an axis that is assumed to be vertical, as a sine: no recording of the mechanism alone shows it. Nobody
+/// notices some six degrees.
 const LEANS: f64 = 0.1;
 
-/// Everything that could stand in the place of what was found, and what was found itself.
+/// The hypothesis as found, and those of every rival cause.
 pub(super) fn hypotheses(track: &Track, model: &Model, study: &Study) -> Vec<Hypothesis> {
     let picks = study.picks();
     let mut all = Vec::new();
@@ -144,7 +147,7 @@ pub(super) fn hypotheses(track: &Track, model: &Model, study: &Study) -> Vec<Hyp
         let twins = TWINS.iter().filter(|(a, b, _)| *a == own && study.candidates.iter().all(|c| c.id != *b));
         for (_, twin, _) in twins {
             let laws = effects(track, model, study);
-            // By itself a leaning axis is what a mass off it is; only what hangs on it tells.
+            // By itself, a tilted axis is equivalent to an eccentric mass. Only a hung weight separates them.
             let (laws, hung_share) = if track.planar { (tilted(&laws), 1.0) } else { (Some(laws), LEANS) };
             let fault = study.solved.as_ref().and_then(|s| fault(study, &picks, &s.values));
             all.push(Hypothesis { id: (*twin).to_owned(), inside: laws.map(Inside::Laws), fault, hung_share });
@@ -153,21 +156,21 @@ pub(super) fn hypotheses(track: &Track, model: &Model, study: &Study) -> Vec<Hyp
     all
 }
 
-/// How a channel of blocks is put into a world.
+/// Translation of a channel's causes into effects of a world.
 pub(super) trait Simulated {
-    /// What the model itself came out at: weights.
+    /// Estimates of the base model itself: weights.
     fn base(&self, values: &[f64]) -> Vec<Act>;
-    /// A cause with its parameters as a world takes them; nothing where it takes none.
+    /// A cause with its parameters for a world; `None` if the world has no such effect.
     fn act(&self, candidate: &Candidate, values: &[f64]) -> Option<Act>;
-    /// Whether a fault begins once something is held.
+    /// True if a fault begins only when something is held.
     fn is_late(&self, candidate: &Candidate) -> bool;
-    /// A fault as the sensors have it.
+    /// The fault in the axes of the sensors.
     fn fault(&self, fault: SensorFault) -> SensorFault {
         fault
     }
 }
 
-/// The same for what has no laws along one coordinate: each question of each channel, the others answered as they were.
+/// The same for objects without laws along one coordinate: each question of each channel, the others answered as found.
 pub(super) fn of_channels(channels: &[(&Study, &dyn Simulated)]) -> Vec<Hypothesis> {
     let found: Vec<Vec<usize>> = channels.iter().map(|(study, _)| study.picks()).collect();
     let mut all = Vec::new();
@@ -189,7 +192,7 @@ pub(super) fn of_channels(channels: &[(&Study, &dyn Simulated)]) -> Vec<Hypothes
     all
 }
 
-/// Acts and faults of some candidates of each channel; nothing where they cannot be solved.
+/// Acts and faults of some candidates of each channel; `None` if they cannot be solved.
 fn of_picks(
     channels: &[(&Study, &dyn Simulated)],
     picks: &[Vec<usize>],
@@ -220,12 +223,12 @@ fn of_picks(
     Some((acts, sum.map(as_sensed)))
 }
 
-/// The faults of the sensors among some candidates; nothing where one of them is none that can be put into a recording.
+/// The sensor faults among some candidates; `None` if one of them cannot be added to a recording.
 fn fault(study: &Study, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
     add_faults(&SensorFault::default(), study, picks, values)
 }
 
-/// The same beside others.
+/// The same, added to other faults.
 fn add_faults(beside: &SensorFault, study: &Study, picks: &[usize], values: &[f64]) -> Option<SensorFault> {
     let mut sum = *beside;
     let mut at = study.base.len();
@@ -239,7 +242,7 @@ fn add_faults(beside: &SensorFault, study: &Study, picks: &[usize], values: &[f6
     Some(sum)
 }
 
-/// The same force by a tilted plane: w cos θ + a sin θ = W cos(θ − δ). Nothing where there is no eccentric mass on a circle.
+/// Equivalent force of a tilted plane: w cos θ + a sin θ = W cos(θ − δ). `None` without an eccentric mass on a circle.
 fn tilted(laws: &[Effect]) -> Option<Vec<Effect>> {
     let mass = laws.iter().find(|e| e.law().id() == EccentricMass.id())?;
     let [sine_n, cosine_n, radius_m, ..] = mass.values;
@@ -251,7 +254,7 @@ fn tilted(laws: &[Effect]) -> Option<Vec<Effect>> {
     Some(others.chain([Effect::new(&Weight, &[weight_n]), tilt]).collect())
 }
 
-/// The world with all that was found about a needle, as its first hypothesis has it.
+/// The world with all causes found on a needle, by its first hypothesis.
 pub(super) fn as_found(world: &World, diagnosis: &Diagnosis) -> Option<World> {
     let first = diagnosis.hypotheses.first().filter(|_| world.membrane.is_some())?;
     match first.inside.as_ref()? {
@@ -260,8 +263,8 @@ pub(super) fn as_found(world: &World, diagnosis: &Diagnosis) -> Option<World> {
     }
 }
 
-/// Everything that the recordings leave open, as worlds: first what was found. Answers that no world can imitate are left out; so is
-/// everything where a fault of the sensors was found that cannot be put into a recording.
+/// All answers that the recordings leave open, as worlds, the one found first. Answers that no world can simulate are
+/// left out. The list is empty if a sensor fault was found that cannot be added to a recording.
 pub fn suspects(
     recordings: &[Recording],
     options: &Options,

@@ -1,4 +1,5 @@
-//! Whitened normal equations of all columns, block by block: every fit, comparison and cross-validation is then a small solve.
+//! Whitened normal equations of all regressors, one set per block: every fit, comparison and cross-validation is
+//! then a small solve.
 
 mod rough;
 mod steady;
@@ -14,73 +15,74 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Rows of a block are this many at least, and there are this many blocks at most.
+/// Least number of rows of a block; `MOST_BLOCKS` is the largest number of blocks.
 const LEAST_BLOCK: usize = 12;
-/// The same of rows of which none follows on another.
+/// The same for rows that are single observations.
 const LEAST_ALONE: usize = 3;
 const MOST_BLOCKS: usize = 20;
-/// Every so many-th block is locked: it takes part in the gain only.
+/// Every so many-th block is locked: it is used for the gain only.
 const LOCKED_EVERY: usize = 4;
-/// Rows so close to a locked block take no part, s.
+/// Guard time beside a locked block, s: rows within it are not used.
 const GUARD_S: f64 = 0.1;
-/// … and as many of them say something.
+/// Least effective number of rows of a block.
 const LEAST_SAID: usize = 3;
-/// Sums of ones are whole numbers.
+/// Rounding error of sums of ones.
 const ROUNDING: f64 = 1e-6;
 /// Folds of the cross-validation.
 pub const FOLDS: usize = 5;
 
-/// Rows as the system sees them.
+/// Rows of the system.
 pub struct Rows<'a> {
     pub y: &'a [f64],
-    /// Rows of one number follow each other without a gap.
+    /// Segment of each row.
     pub stretch: &'a [usize],
-    /// Rows that may be held out; the others always train.
+    /// Hold-out role of each row; rows that may not be held out always train.
     pub testable: &'a [Held],
-    /// When each row was, s: what belongs together is held out together.
+    /// Time of each row, s: rows near in time are held out together.
     pub time_s: &'a [f64],
-    /// Weight of each row, 0 … 1: what its noise is smaller by.
+    /// Weight of each row, 0 … 1: factor by which its noise is reduced.
     pub weight: &'a [f64],
     pub period_s: f64,
-    /// What their noise is like.
+    /// Kind of their noise.
     pub noise: Noise,
-    /// Whether what stands has next to no weight: blocks are then of rows that say as much, not of as many.
+    /// True if standing rows have next to no weight: blocks then have equal information, not equal numbers of rows.
     pub may_stand: bool,
 }
 
-/// Whether a row may be held out.
+/// Hold-out role of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Held {
-    /// It trains always.
+    /// Always used for training.
     Never,
-    /// Folds test it. It is another quantity than the force: locked blocks test it for what it is about alone.
+    /// Tested by folds. Its quantity is not the force, and locked blocks test it for that quantity alone.
     ByFolds,
-    /// Folds test it, and locked blocks.
+    /// Tested by folds and by locked blocks.
     Fully,
 }
 
-/// What a row is used for.
+/// Use of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
     /// Trains always.
     Always,
-    /// Trains, and is tested by the fold of this number.
+    /// Used for training, and tested by the fold of this number.
     Fold(usize),
     /// Tests only; the number of its block.
     Locked(usize),
-    /// The same for a row of [`Held::ByFolds`]: only the gain of what such rows are about is tested by it.
+    /// The same for a row of [`Held::ByFolds`]: it tests only the gain of causes that affect such rows.
     Beside(usize),
     /// Beside a locked block.
     Guard,
 }
 
-/// Blocks of the rows that may be held out.
+/// Use of each row: blocks of the rows that may be held out.
 pub fn uses(rows: &Rows<'_>) -> Vec<Use> {
     let mut testable: Vec<usize> = (0..rows.y.len()).filter(|i| rows.testable[*i] != Held::Never).collect();
     testable.sort_by(|a, b| rows.time_s[*a].total_cmp(&rows.time_s[*b]));
-    // What stands by itself (a blow, not a sample of a motion) has nothing in common with what is beside it.
+    // Single observations (a blow, not a sample of a motion) are independent of their neighbours.
     let is_alone = rows.stretch.windows(2).all(|pair| pair[0] != pair[1]);
-    // By what rows say, not by how many they are: a block of a standstill tests nothing, and without the one block that moves nothing trains.
+    // Blocks have equal information, not equal numbers of rows. A block of a stick phase tests nothing, and without the
+    // only moving block nothing can be trained.
     let mut said = 0.0;
     let before: Vec<f64> = testable
         .iter()
@@ -117,44 +119,44 @@ pub fn uses(rows: &Rows<'_>) -> Vec<Use> {
     uses
 }
 
-/// Normal equations of all columns and the target, which is the last one.
+/// Normal equations of all regressors and the target, which comes last.
 pub struct System {
-    /// Of the rows that train.
+    /// Normal equations of the training rows.
     pub train: DMatrix<f64>,
     pub rows: f64,
-    /// Of each fold, and how many rows it has.
+    /// Normal equations of each fold, and its number of rows.
     pub folds: Vec<(DMatrix<f64>, f64)>,
-    /// Candidates' columns.
+    /// Index ranges of the candidates' regressors.
     pub places: Vec<Range<usize>>,
     pub base: usize,
-    /// Columns of the base that can only resist: less than nothing of them is no explanation.
+    /// Regressors of the base model that can only resist: a negative coefficient is no explanation.
     pub resisting: Vec<usize>,
-    /// Which piece of the recording each row belongs to, for several lengths of pieces; empty where it has no pieces of one kind.
+    /// Jackknife block of each row, for several block lengths; empty if the rows have no common blocks.
     pub pieces: Vec<Vec<usize>>,
     pub coefficients: Vec<f64>,
     pub uses: Vec<Use>,
-    /// Mean square of each column over all rows, for the support guard.
+    /// Mean square of each regressor over all rows, for the support guard.
     energy: Vec<(f64, f64)>,
-    /// Products over the rows that train always.
+    /// Products over the rows that always train.
     always: DMatrix<f64>,
-    /// All columns, for the products with those of a later system.
+    /// All regressors, for the products with those of a later system.
     whitened: Vec<Vec<f64>>,
 }
 
-/// What a system takes from an earlier one.
+/// Part of an earlier system that is used again.
 struct Known {
     system: System,
-    /// Which of its columns each one is.
+    /// Index of each regressor in it.
     from: Vec<Option<usize>>,
 }
 
-/// All columns in the order of a system, the target last.
+/// All regressors in the order of a system, the target last.
 fn columns_of<'a>(base: &'a [Vec<f64>], candidates: &'a [Candidate], y: &'a [f64]) -> Vec<&'a [f64]> {
     let of_candidates = candidates.iter().flat_map(|c| &c.columns);
     base.iter().chain(of_candidates.map(|column| &**column)).map(Vec::as_slice).chain([y]).collect()
 }
 
-/// Which of the columns in `had` each one is, to the bit; each of them stands for one at most.
+/// Index in `had` of the column that is equal to the bit; each of them is used once.
 fn origins(columns: &[&[f64]], had: &[&[f64]]) -> Vec<Option<usize>> {
     let mark = |column: &[f64]| column.iter().fold(0_u64, |sum, v| sum.wrapping_add(v.to_bits()));
     let mut marks: HashMap<u64, Vec<usize>> = HashMap::new();
@@ -168,7 +170,7 @@ fn origins(columns: &[&[f64]], had: &[&[f64]]) -> Vec<Option<usize>> {
     columns.iter().map(&mut origin).collect()
 }
 
-/// Which columns are those of each candidate, after so many of the model.
+/// Index range of each candidate's regressors, after those of the model.
 fn places(base: usize, candidates: &[Candidate]) -> Vec<Range<usize>> {
     let mut end = base;
     let place = |candidate: &Candidate| {
@@ -179,14 +181,14 @@ fn places(base: usize, candidates: &[Candidate]) -> Vec<Range<usize>> {
     candidates.iter().map(place).collect()
 }
 
-/// How many observations rows are: one of little weight is less than one and leaves as little as it says.
+/// Effective number of observations: a row of little weight counts as less than one.
 fn counted(picked: &[usize], rows: &Rows<'_>) -> f64 {
     picked.iter().map(|i| rows.weight[*i].powi(2)).sum::<f64>()
 }
 
-/// Mean square of each column over the rows that train, out of the products of these, and over all `whole` rows that are looked at.
+/// Mean square of each regressor over the training rows, from their products, and over all `whole` rows in use.
 fn energy(train: &DMatrix<f64>, columns: &Weighed<'_>, uses: &[Use], whole: &[bool]) -> Vec<(f64, f64)> {
-    // What is neither fitted nor tested needs no support.
+    // Rows that are neither fitted nor tested need no support.
     let is_looked_at = |i: &usize| whole[*i] && !matches!(uses[*i], Use::Guard | Use::Beside(_));
     let looked_at: Vec<usize> = (0..uses.len()).filter(is_looked_at).collect();
     let trained = looked_at.iter().filter(|i| !matches!(uses[**i], Use::Locked(_))).count().max(1) as f64;
@@ -194,7 +196,7 @@ fn energy(train: &DMatrix<f64>, columns: &Weighed<'_>, uses: &[Use], whole: &[bo
     all.map(|(c, all)| (train[(c, c)] / trained, all)).collect()
 }
 
-/// A solved subset of the columns.
+/// A solved subset of the regressors.
 #[derive(Clone, Debug)]
 pub struct Solved {
     pub columns: Vec<usize>,
@@ -206,7 +208,7 @@ pub struct Solved {
 }
 
 impl Solved {
-    /// Variance of what is left in one of so many rows.
+    /// Residual variance of one of this many rows.
     pub fn variance(&self, rows: f64) -> f64 {
         self.rss / (rows - self.columns.len() as f64).max(1.0)
     }
@@ -217,7 +219,7 @@ impl System {
         Self::build(columns_of(base, candidates, rows.y), (base.len(), candidates), rows, coefficients, None)
     }
 
-    /// Another one of the same rows as `before`, whitened alike: products of columns that were there already are taken from it.
+    /// A system of the same rows as `before`, whitened alike: it takes known products of regressors from it.
     pub fn after(before: Study, base: &[Vec<f64>], candidates: &[Candidate], rows: &Rows<'_>) -> Self {
         let columns = columns_of(base, candidates, rows.y);
         let Study { system, candidates: had, base: had_base, y: had_y, weight, .. } = before;
@@ -290,7 +292,7 @@ impl System {
         (0..self.base).chain(chosen.iter().flat_map(|c| self.places[*c].clone())).collect()
     }
 
-    /// Whether the rows that train see enough of a candidate: otherwise it would explode where it was not fitted.
+    /// True if the training rows contain enough of a candidate; otherwise it would be huge where it was not fitted.
     pub fn supported(&self, candidate: usize) -> bool {
         const LEAST_SHARE: f64 = 0.3;
         self.places[candidate]
@@ -310,11 +312,11 @@ impl System {
         Some((values, rss))
     }
 
-    /// The same, but what resists is nothing rather than less than nothing.
+    /// The same, but resisting regressors with a negative coefficient are left out.
     pub fn least_sound(&self, chosen: &[usize]) -> Option<(Vec<f64>, f64)> {
         let (mut values, mut rss) = self.least(chosen)?;
         let mut columns = self.columns(chosen);
-        // What is left out stays out: the next one is rarely taken back by it.
+        // A regressor left out stays out: the next removal rarely makes it admissible again.
         while let Some(k) =
             self.resisting.iter().find_map(|r| columns.iter().position(|c| c == r).filter(|k| values[*k] < 0.0))
         {
@@ -328,7 +330,7 @@ impl System {
         Some((values, rss))
     }
 
-    /// The sum of squared errors on every fold by a fit to all the others.
+    /// Sum of squared errors on every fold by a fit to all the others.
     pub fn cross_validate(&self, chosen: &[usize]) -> Option<Vec<f64>> {
         let mut all = self.columns(chosen);
         all.push(self.target());
@@ -345,7 +347,7 @@ impl System {
             .collect()
     }
 
-    /// Share of a candidate's (whitened, trained) columns that the chosen ones do not explain: the least of its columns.
+    /// Share of a candidate's (whitened, training) regressors that the chosen ones do not explain: the least of them.
     pub fn distinct(&self, candidate: usize, chosen: &[usize]) -> f64 {
         let columns = self.columns(chosen);
         self.places[candidate]
@@ -361,7 +363,7 @@ impl System {
     }
 }
 
-/// Least squares of column `target` on `columns`, out of a matrix of all products.
+/// Least squares of column `target` on `columns`, from their Gram matrix.
 pub fn solve(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<Solved> {
     let (values, rss, Scaled { cholesky, scale }) = scaled(gram, columns, target)?;
     let (p, inverse) = (columns.len(), cholesky.inverse());
@@ -369,14 +371,14 @@ pub fn solve(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<So
     Some(Solved { columns: columns.to_vec(), values, inverse, rss })
 }
 
-/// Normal equations of columns of the same size, factored.
+/// Scaled and factored normal equations.
 struct Scaled {
     cholesky: Cholesky<f64, Dyn>,
-    /// Size of each column.
+    /// Scale of each column.
     scale: Vec<f64>,
 }
 
-/// A breath of ridge keeps equal columns apart.
+/// Factors the normal equations. A small ridge keeps them regular for equal columns.
 fn factored(gram: &DMatrix<f64>, columns: &[usize]) -> Option<Scaled> {
     const RIDGE: f64 = 1e-10;
     let p = columns.len();
@@ -388,7 +390,7 @@ fn factored(gram: &DMatrix<f64>, columns: &[usize]) -> Option<Scaled> {
     Some(Scaled { cholesky: normal.cholesky()?, scale })
 }
 
-/// The values of [`solve`], the sum of the squared residuals, and what the values' errors come from.
+/// The values of [`solve`], the residual sum of squares, and the factors from which the errors follow.
 fn scaled(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<(Vec<f64>, f64, Scaled)> {
     let made = factored(gram, columns)?;
     let right = DVector::from_fn(columns.len(), |i, _| gram[(columns[i], target)] / made.scale[i]);
@@ -398,7 +400,7 @@ fn scaled(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<(Vec<
     Some((values, rss, made))
 }
 
-/// Σ (y − Σ value × column)².
+/// Residual sum of squares Σ (y − Σ value × column)².
 fn squares(gram: &DMatrix<f64>, columns: &[usize], values: &[f64], target: usize) -> f64 {
     let mut sum = gram[(target, target)];
     for (i, a) in columns.iter().zip(values) {
@@ -441,7 +443,7 @@ mod tests {
 
     #[test]
     fn something_that_stands_for_most_of_the_time_still_trains_on_motion_whatever_is_held_out() {
-        // It moves for two of thirty seconds.
+        // Motion during two of thirty seconds.
         let weight: Vec<f64> = (0..1500).map(|i| if (700..800).contains(&i) { 1.0 } else { 0.01 }).collect();
         let found = of(&weight);
         let said = |wanted: &dyn Fn(Use) -> bool| {

@@ -1,4 +1,4 @@
-//! One or several recordings as rows of a regression: measured motion and force at a common, moderate rate.
+//! Data set of a regression from one or several recordings: measured motion and force at a common, moderate rate.
 
 use super::extra::Extra;
 use super::hung::Hung;
@@ -6,7 +6,7 @@ use super::zero::Zero;
 use haptics::Vec2;
 use haptics::law::{Coordinate, Effect, Motion};
 
-/// What a row's force is.
+/// Kind of a row's force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     /// Along the motion, while the object is held.
@@ -15,11 +15,11 @@ pub enum Place {
     FreeX,
     /// Vertical, while nothing is touched.
     FreeY,
-    /// No force, but the way that the object gives while it stands (`stuck.rs`), times `scale`.
+    /// No force, but the displacement of a standing object (`stuck.rs`), times `scale`.
     Stuck {
-        /// What the friction holds, as a share of it.
+        /// Load on the friction as a share of it.
         share: f64,
-        /// Side of the whole load: −1, 1, or 0 where it is a guess.
+        /// Side of the whole load: −1, 1, or 0 if it is unknown.
         side: f64,
         /// The load's noise as a share of the friction.
         noise: f64,
@@ -28,50 +28,51 @@ pub enum Place {
     },
 }
 
-/// The motion between the rows, as finely as it is known: the direction of motion changes within a row.
+/// Motion between the rows, in which the direction may change, as finely as it is known.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Fine {
-    /// Points of one number follow each other without a gap.
+    /// Segment of the point.
     pub stretch: usize,
     pub time_s: f64,
     pub position: f64,
     pub velocity: f64,
-    /// −1 … 1, as certain as the velocity is.
+    /// Direction of motion, −1 … 1, less than one in magnitude if it is uncertain.
     pub direction: f64,
-    /// How much of the friction's square is a guess, 0 … 1.
+    /// Uncertain share of the squared friction, 0 … 1.
     pub open: f64,
 }
 
 impl Fine {
-    /// The motion there; what is not known between the rows is that of one of them.
+    /// Motion at the point; quantities unknown between the rows are those of `row`.
     pub fn motion(&self, row: &Motion) -> Motion {
         let Self { time_s, position, velocity, direction, .. } = *self;
         Motion { time_s, position, velocity, direction, ..*row }
     }
 }
 
-/// Which points of [`Track::fine`] a row is the mean of.
+/// Points of [`Track::fine`] over which a row is averaged.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Span {
     pub start: usize,
     pub len: usize,
-    /// How much each of them counts.
+    /// Weights of the points.
     pub weighing: Weighing,
 }
 
-/// How the points of a row are weighed.
+/// Weighting of the points of a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weighing {
     /// All the same.
     #[default]
     Even,
-    /// Points in the middle count more, evenly less towards both ends.
+    /// Triangular weights, largest in the middle.
     Hat,
-    /// A hat whose first and last points count nothing: exactly what a difference of two mean rates has.
+    /// Triangular weights that vanish at the first and last point: exactly those of a difference of two mean rates.
     Tent,
-    /// Three arcs of a parabola whose first and last points count nothing: exactly what a second difference of three mean places has.
+    /// Three arcs of a parabola whose first and last points count nothing: exactly what a second difference of three
+    /// mean places has.
     Bell,
-    /// A parabola that is gone half a point beyond either end: what a smoothed channel has.
+    /// A parabola that vanishes half a point beyond either end: that of a smoothed channel.
     Parabola,
 }
 
@@ -103,14 +104,14 @@ impl Span {
     }
 }
 
-/// One force with the motion that belongs to it.
+/// One force with its motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// Which recording.
+    /// Index of the recording.
     pub recording: usize,
-    /// Rows of one number follow each other without a gap.
+    /// Segment of the row.
     pub stretch: usize,
-    /// Where the force comes from.
+    /// Source of the force.
     pub place: Place,
     /// Motion along the coordinate (its time runs from the start of the recording).
     pub motion: Motion,
@@ -124,24 +125,24 @@ pub struct Row {
     pub force_rate: Vec2,
     /// The force to be explained, N or N m.
     pub y: f64,
-    /// The finer points that it is the mean of; none where the rows are all that is known.
+    /// Finer points over which it is averaged; empty if only the rows are known.
     pub span: Span,
-    /// How much of the direction is a guess, 0 … 1 (share of the friction's square).
+    /// Uncertain share of the direction, 0 … 1 (as a share of the squared friction).
     pub open: f64,
 }
 
-/// A weight on the bearing of a crank, that of its handle.
+/// Weight on the bearing of a crank, that of its handle.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bearing {
     pub weight_n: f64,
-    /// The same weight's mass, kg, …
+    /// Mass of that weight, kg.
     pub mass_kg: f64,
-    /// … and one over the radius of the circle that the bearing holds it on, 1/m.
+    /// Inverse radius of the circle on which the bearing holds that mass, 1/m.
     pub per_radius: f64,
 }
 
 impl Bearing {
-    /// Outward force of it on the bearing, N.
+    /// Outward force of that weight on the bearing, N.
     pub fn load_n(&self, row: &Row) -> f64 {
         self.mass_kg * row.motion.velocity.powi(2) * self.per_radius - self.weight_n * row.up_outward()
     }
@@ -158,7 +159,7 @@ impl Row {
 
 #[cfg(test)]
 impl Row {
-    /// Nothing moves and nothing pushes.
+    /// Motion of zero velocity, without a force.
     pub fn at_rest() -> Self {
         Self {
             recording: 0,
@@ -178,7 +179,7 @@ impl Row {
 
 #[cfg(test)]
 impl Track {
-    /// These rows, 10 ms apart, of something that moves along a line.
+    /// A track of these rows, 10 ms apart, for a linear motion.
     pub fn of_rows(rows: Vec<Row>) -> Self {
         Self {
             rows,
@@ -203,12 +204,12 @@ impl Track {
     }
 }
 
-/// Rows and what is known of their noise.
+/// Rows with their noise.
 #[derive(Clone, Debug)]
 pub struct Track {
     /// In time order, recording after recording; free rows after the held ones of each.
     pub rows: Vec<Row>,
-    /// What lies between the rows.
+    /// Motion between the rows.
     pub fine: Vec<Fine>,
     /// Sampling period of the rows, s.
     pub period_s: f64,
@@ -216,9 +217,9 @@ pub struct Track {
     pub raw_period_s: f64,
     /// Length or angle.
     pub coordinate: Coordinate,
-    /// Path of one radian of [`Row::angle_rad`], m (1 for angles); `None` where nothing turns.
+    /// Path length per radian of [`Row::angle_rad`], m (1 for angles); `None` if nothing rotates.
     pub radius_m: Option<f64>,
-    /// True when the force across the motion and the free forces were measured, too.
+    /// True if the force across the motion and the free forces were measured, too.
     pub planar: bool,
     /// Noise of the velocity, m/s or rad/s.
     pub velocity_noise: f64,
@@ -226,32 +227,33 @@ pub struct Track {
     pub position_noise: f64,
     /// Noise of one force row, N or N m.
     pub force_noise: f64,
-    /// True when that noise was seen where nothing was touched.
+    /// True if that noise was measured without touch.
     pub noise_is_measured: bool,
     /// Longest recording, s.
     pub span_s: f64,
-    /// What was hung on the object, recording by recording.
+    /// Weight hung on the object, recording by recording.
     pub hung: Vec<Option<Hung>>,
-    /// What loads the bearing of a crank beside the fingers' pull; nothing unless the recording shows it.
+    /// Load on the bearing of a crank beside the pull of the fingers; none unless the recording shows it.
     pub bearing: Bearing,
-    /// Rows on either side, and order, of the polynomials whose slopes the accelerations are; none where they are differences of means.
+    /// Rows on either side, and order, of the polynomials whose slopes the accelerations are; none where they are
+    /// differences of means.
     pub slope: Option<(usize, usize)>,
     /// Slow channels beside motion and force, recording by recording.
     pub extra: Vec<Vec<Extra>>,
-    /// What moves without any force from outside, as in a recording without a force column.
+    /// Data of a free motion, without external force, as in a recording without a force channel.
     pub freely: Option<Freely>,
-    /// What the rests of a mechanism's force sensor say of a constant force.
+    /// Evidence from the rests of a mechanism's force sensor on a constant force.
     pub zero: Zero,
 }
 
-/// What moves freely, whose laws must add up to nothing.
+/// A free motion, in which the forces of all laws sum to zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Freely {
-    /// Mass or moment of inertia, kg or kg m²; 1 where nothing tells it.
+    /// Mass or moment of inertia, kg or kg m²; 1 if it is unknown.
     pub inertia: f64,
-    /// One standard error of that, as a share.
+    /// Relative standard error of it.
     pub relative_error: f64,
-    /// Whether something told it: otherwise all forces are per unit of inertia.
+    /// True if it is known; otherwise all forces are per unit of inertia.
     pub is_known: bool,
     /// Acceleration of gravity, m/s².
     pub gravity_m_s2: f64,
@@ -260,7 +262,7 @@ pub struct Freely {
 }
 
 impl Track {
-    /// Slow channels that every recording has: name, unit, and the value at each row less the mean.
+    /// Slow channels common to all recordings: name, unit, and the value at each row less the mean.
     pub fn extras(&self) -> Vec<(String, String, Vec<f64>)> {
         let Some(first) = self.extra.first() else { return Vec::new() };
         let find = |recording: usize, name: &str| self.extra.get(recording)?.iter().find(|e| e.name == name);
@@ -274,7 +276,7 @@ impl Track {
         first.iter().filter_map(|e| Some((e.name.clone(), e.unit.clone(), values(&e.name)?))).collect()
     }
 
-    /// Whether it goes one way: no larger a share of the way back than by how far a hand trembles.
+    /// True if the motion has one direction: its backward share is no larger than a hand's tremor.
     pub fn goes_one_way(&self) -> bool {
         const TREMBLES: f64 = 0.02;
         let way = |side: f64| self.along().map(|i| (side * self.rows[i].motion.velocity).max(0.0)).sum::<f64>();
@@ -298,7 +300,7 @@ impl Track {
         }
     }
 
-    /// A quantile (0 … 1) of a quantity over the rows along the motion.
+    /// Quantile (share 0 … 1) of a quantity over the rows along the motion.
     pub fn quantile(&self, share: f64, of: impl Fn(&Row) -> f64) -> f64 {
         let mut values: Vec<f64> = self.along().map(|i| of(&self.rows[i])).collect();
         if values.is_empty() {
@@ -308,7 +310,7 @@ impl Track {
         *values.select_nth_unstable_by(place, f64::total_cmp).1
     }
 
-    /// The mean over a row of what depends on motion.
+    /// Mean over a row of a function of the motion.
     pub fn mean(&self, row: &Row, of: &dyn Fn(&Motion) -> f64) -> f64 {
         if row.span.len == 0 {
             return of(&row.motion);
@@ -316,7 +318,7 @@ impl Track {
         row.span.weights().map(|(k, weight)| weight * of(&self.fine[k].motion(&row.motion))).sum()
     }
 
-    /// True when two neighbouring rows follow each other without a gap.
+    /// True if row `i` follows the row before it without a gap.
     pub fn follows(&self, i: usize) -> bool {
         i > 0 && self.rows[i].stretch == self.rows[i - 1].stretch && self.rows[i].place == self.rows[i - 1].place
     }

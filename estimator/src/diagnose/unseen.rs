@@ -1,25 +1,26 @@
-//! What a recording could not have shown.
+//! Causes that the motion of a recording does not excite.
 
 use super::geometry::Study;
 use super::report::{Alternative, Cause, Diagnosis, NotExcited};
 use super::track::Track;
 use haptics::law::entries;
 
-/// A cause of the noise's own size that would score less than this could not have been seen: it would not have been named.
+/// Evidence of a cause of the noise's own size below which the motion does not excite it, because it would not be
+/// named.
 const VISIBLE: f64 = 20.0;
 
-/// What this recording could not have shown.
+/// Causes that this recording does not show.
 pub fn unseen(track: &Track, study: &Study, causes: &[Cause], alternatives: &[Alternative]) -> Vec<NotExcited> {
     let mut found = without_reversals(track, causes);
     let hidden = not_excited(study, &study.picks());
     let more: Vec<NotExcited> = hidden.into_iter().filter(|h| found.iter().all(|n| n.id != h.id)).collect();
     found.extend(more);
-    // What could stand in a cause's place was seen, if not told apart.
+    // A rival of a named cause was seen, though not separated from it.
     found.retain(|n| alternatives.iter().all(|a| a.id != n.id));
     found
 }
 
-/// Causes that, at the size of the noise, this motion would hide.
+/// Causes whose effect this motion would hide in the noise.
 fn not_excited(study: &Study, picks: &[usize]) -> Vec<NotExcited> {
     let mut found = Vec::new();
     for entry in entries() {
@@ -41,13 +42,13 @@ fn not_excited(study: &Study, picks: &[usize]) -> Vec<NotExcited> {
     found
 }
 
-/// What happens at reversals alone, where there are none.
+/// Causes that act at reversals alone, for a motion without any.
 fn without_reversals(track: &Track, causes: &[Cause]) -> Vec<NotExcited> {
     if !track.goes_one_way() {
         return Vec::new();
     }
     let said = |id: &str| causes.iter().any(|c| c.id == id);
-    // Along one coordinate a friction that is larger one way is then as large a friction.
+    // Along one coordinate, friction by direction then equals dry friction.
     let by_direction = (!track.planar).then_some("friction-asymmetry");
     let hidden = ["backlash", "hysteresis"].into_iter().chain(by_direction).filter(|id| !said(id));
     hidden
@@ -58,7 +59,7 @@ fn without_reversals(track: &Track, causes: &[Cause]) -> Vec<NotExcited> {
         .collect()
 }
 
-/// What no motion shows as long as nothing is known from elsewhere. `weight`, `length`: whether one is.
+/// Causes that no motion shows unless a quantity is known. `weight`, `length`: true if one is known.
 pub fn without_known(found: &mut Diagnosis, weight: bool, length: bool) {
     let hidden = [
         ("force-gain", weight, "no weight is known; state one in the sidecar, or hang one on"),

@@ -1,4 +1,4 @@
-//! What the extension is worth on other recordings: nothing is fitted to them.
+//! Gain of the extended model on other recordings, without any fit to them.
 
 use super::blur::blur;
 use super::columns::Columns;
@@ -12,12 +12,13 @@ use super::report::Validation;
 use super::track::{Place, Track};
 use haptics::law::{Effect, Kind, Memories};
 
-/// A recording is cut into so many pieces for the interval: neighbouring rows share what is wrong with them.
+/// Number of blocks of a recording for the bootstrap, because neighbouring rows share their errors.
 const PIECES: usize = 32;
-/// Draws of the bootstrap over them.
+/// Draws of the bootstrap over these blocks.
 const DRAWS: usize = 400;
 
-/// What is left before and after, row by row in order, and the rows' weights: root mean squares, and the part of the power that goes.
+/// Residual RMS before and after, and the share of the power that is explained. All in row order, with the rows'
+/// weights.
 pub fn compared(before: &[f64], after: &[f64], weight: &[f64]) -> Validation {
     let long = before.len().div_ceil(PIECES).max(1);
     let sum = |left: &[f64], weight: &[f64]| left.iter().zip(weight).map(|(l, w)| w * l * l).sum::<f64>();
@@ -42,7 +43,7 @@ pub fn compared(before: &[f64], after: &[f64], weight: &[f64]) -> Validation {
     }
 }
 
-/// Force of the laws along every row, with what they remember; they start anew at every stretch.
+/// Force of the laws along every row, with their memory, which is cleared at every segment.
 fn predicted(track: &Track, effects: &[Effect]) -> Vec<f64> {
     let rows = &track.rows;
     let mut memories = Memories::default();
@@ -63,7 +64,7 @@ fn predicted(track: &Track, effects: &[Effect]) -> Vec<f64> {
         .collect()
 }
 
-/// What the found faults of the sensors put into the rows. `known`: forces of which everything is known.
+/// Contribution of the found sensor faults to the rows. `known`: forces that are completely known.
 fn faults(track: &Track, predicted: &[f64], known: &[Effect], kept: &[Kept], left_out: &mut Vec<String>) -> Vec<f64> {
     let mut sum = vec![0.0; track.rows.len()];
     let of_sensors: Vec<&Kept> = kept.iter().filter(|k| k.kind == Kind::Instrument).collect();
@@ -85,7 +86,8 @@ fn faults(track: &Track, predicted: &[f64], known: &[Effect], kept: &[Kept], lef
     sum
 }
 
-/// Unexplained force before and after on another recording. Rows around reversals, whose direction is a guess, count little.
+/// Unexplained force before and after on another recording. Rows around reversals, whose direction is a guess, count
+/// little.
 pub fn validate(track: &mut Track, before: &[Effect], after: &[Effect], known: &[Effect], kept: &[Kept]) -> Validation {
     blur(track);
     let of: &dyn Fn(&Track, &[Effect]) -> Vec<f64> = if track.freely.is_some() { &needed } else { &predicted };
@@ -110,7 +112,7 @@ mod tests {
         let found = compared(&before, &even, &vec![1.0; 640]);
         assert!((found.share - 0.75).abs() < 1e-12 && (found.rms_before - 2.0).abs() < 1e-12);
         assert!(found.interval.iter().all(|v| (v - 0.75).abs() < 1e-12), "{:?}", found.interval);
-        // All of it in the first half, nothing in the second: not sure at all.
+        // All of the gain is in the first half, none in the second: it is uncertain.
         let half: Vec<f64> = (0..640).map(|i| if i < 320 { 0.0 } else { 2.0 }).collect();
         let [low, high] = compared(&before, &half, &vec![1.0; 640]).interval;
         assert!(low < 0.4 && high > 0.6 && low > 0.1 && high < 0.9, "{low} {high}");

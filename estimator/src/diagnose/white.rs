@@ -1,20 +1,21 @@
-//! Noise of one row that goes on into the next: learnt as an autoregression, and taken out of every column.
+//! Autocorrelated noise of the rows: estimated as an autoregression, and removed from every column.
 
 use super::system::{Rows, Use};
 use std::ops::Range;
 
-/// Highest order of the whitening autoregression of what a force leaves.
+/// Highest order of the autoregression that whitens the residual of a force.
 const LARGEST_ORDER: usize = 6;
-/// … and of differences of what was measured, whose noise goes on over many rows, in rows and as a share of all of them.
+/// Largest order for differenced data, whose noise is correlated over many rows: in rows, and as the inverse share of
+/// all rows.
 const ORDER_OF_DIFFERENCES: usize = 24;
 const SHARE_OF_DIFFERENCES: usize = 12;
 
-/// What the noise of the rows is like.
+/// Kind of the rows' noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Noise {
-    /// Nothing is known of it.
+    /// Unknown noise.
     Any,
-    /// It is that of first or second differences of what has white noise, beside some that is white.
+    /// Noise of first or second differences of data with white noise, plus some white noise.
     OfDifferences,
 }
 
@@ -50,7 +51,7 @@ pub fn whitener(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> Vec<f64> {
     best.1
 }
 
-/// Levinson's recursion: hands out the coefficients of every order from 1 on, with what they leave of the power.
+/// Levinson's recursion: passes on the coefficients of every order from 1 on, with the residual power.
 fn levinson(lags: &[f64], tell: &mut dyn FnMut(&[f64], f64)) {
     let (mut coefficients, mut innovation): (Vec<f64>, f64) = (Vec::new(), lags[0]);
     for order in 1..lags.len() {
@@ -66,13 +67,13 @@ fn levinson(lags: &[f64], tell: &mut dyn FnMut(&[f64], f64)) {
     }
 }
 
-/// How much more than white noise there is beside that of the differences, as shares of the latter's.
+/// White noise added to that of the differences, as shares of its power.
 const WHITE_BESIDE: [f64; 8] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 100.0];
-/// A place that swings by itself is taken back by its own noise in proportion: second differences plus so much of the noise itself.
+/// Restoring terms of a swinging position: second differences plus this share of the noise itself.
 const TAKEN_BACK: [f64; 7] = [0.0, 0.01, 0.03, 0.06, 0.1, 0.2, 0.4];
 
-/// Autoregression of what differences of white noise leave: the one of its kind that leaves least. One estimated from few rows would fill up
-/// the gap that the noise has at low frequencies, where everything that swings is.
+/// Autoregression of what differences of white noise leave: the one of its kind that leaves least. One estimated from
+/// few rows would fill up the gap that the noise has at low frequencies, where everything that swings is.
 fn whitener_of_differences(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> Vec<f64> {
     let order = (residual.len() / SHARE_OF_DIFFERENCES).min(ORDER_OF_DIFFERENCES);
     let second = TAKEN_BACK.map(|back| vec![1.0, back - 2.0, 1.0]);
@@ -97,7 +98,7 @@ fn whitener_of_differences(residual: &[f64], rows: &Rows<'_>, used: &[Use]) -> V
     best.1
 }
 
-/// Takes columns through weights and an autoregression. A row without its whole past is left out: it comes out as nought.
+/// Passes columns through weights and an autoregression. A row without its whole past is left out: its result is zero.
 pub struct Whitening<'a> {
     weight: &'a [f64],
     coefficients: &'a [f64],
@@ -106,7 +107,7 @@ pub struct Whitening<'a> {
 }
 
 impl<'a> Whitening<'a> {
-    /// `stretch`: rows of one number follow each other without a gap. `weight`: what each row's noise is smaller by. `coefficients`: of the
+    /// `stretch`: segment of each row. `weight`: factor by which each row's noise is reduced. `coefficients`: of the
     /// lags from 1 on.
     pub fn new(stretch: &[usize], weight: &'a [f64], coefficients: &'a [f64]) -> Self {
         let mut whole = Vec::new();
@@ -121,14 +122,14 @@ impl<'a> Whitening<'a> {
         Self { weight, coefficients, whole }
     }
 
-    /// Whether something is left of each row.
+    /// True for rows that remain after whitening.
     pub fn leaves(&self) -> Vec<bool> {
         let mut leaves = vec![false; self.weight.len()];
         self.whole.iter().for_each(|range| leaves[range.clone()].fill(true));
         leaves
     }
 
-    /// One column, an entry a row.
+    /// One whitened column, an entry per row.
     pub fn of(&self, values: &[f64]) -> Vec<f64> {
         let weighted: Vec<f64> = values.iter().zip(self.weight).map(|(value, weight)| value * weight).collect();
         if self.coefficients.is_empty() {

@@ -9,17 +9,17 @@ use haptics::law::{Effect, Role};
 use haptics::recording::Recording;
 use haptics::world::World;
 
-/// One world with the model's laws as they fit best alone, one with those that were found beside them. All else is equal, so that
-/// one can be put in the other's place while somebody touches it.
+/// Two worlds: one with the base model's laws at their own best fit, one with the causes found beside them. All else is
+/// equal, so that one can replace the other while somebody touches it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worlds {
-    /// With the model alone.
+    /// With the base model alone.
     pub before: World,
-    /// With what was found.
+    /// With the causes found.
     pub after: World,
 }
 
-/// Both worlds of a diagnosis: those of the world that it started from, or of one calibrated from the recordings.
+/// Both worlds of a diagnosis, from its initial world or from one calibrated from the recordings.
 pub fn worlds(recordings: &[Recording], options: &Options, diagnosis: &Diagnosis) -> Result<Worlds, EstimateError> {
     let world = calibrated(recordings, options)?;
     let mut after = with_laws(&world, &diagnosis.effects);
@@ -32,7 +32,7 @@ pub fn worlds(recordings: &[Recording], options: &Options, diagnosis: &Diagnosis
     Ok(Worlds { before: with_laws(&world, &diagnosis.plain), after })
 }
 
-/// The world that the diagnosis started from, or one calibrated from the recordings.
+/// The initial world of the diagnosis, or one calibrated from the recordings.
 pub(super) fn calibrated(recordings: &[Recording], options: &Options) -> Result<World, EstimateError> {
     if let Some(world) = &options.world {
         return Ok(world.clone());
@@ -41,7 +41,8 @@ pub(super) fn calibrated(recordings: &[Recording], options: &Options) -> Result<
     Ok(pipeline::analyse(recordings, &fit)?.world)
 }
 
-/// The world that runs what the diagnosis found: the one it started from, or one calibrated from the recordings, with the extended laws.
+/// The world that runs what the diagnosis found: the one it started from, or one calibrated from the recordings, with
+/// the extended laws.
 pub fn extended_world(
     recordings: &[Recording],
     options: &Options,
@@ -62,8 +63,8 @@ pub(super) fn with_laws(world: &World, laws: &[Effect]) -> World {
     world
 }
 
-/// The laws, and before them what the world had of inertia and weight where the laws have none: nothing moves without inertia, and a
-/// weight that was known beforehand is no part of what is fitted.
+/// The laws, preceded by the world's inertia and weight if the laws have none. Nothing moves without inertia, and a
+/// known weight is not fitted.
 fn beside(had: &[Effect], laws: &[Effect]) -> Vec<Effect> {
     let missing = |role: Role| !laws.iter().any(|law| law.role() == role);
     let kept = had.iter().filter(|e| matches!(e.role(), Role::Inertia | Role::Gravity) && missing(e.role()));

@@ -1,8 +1,8 @@
-//! What the force sensor of a mechanism rests at where nobody touches it: a bias of the sensor is felt there as well, and friction that
-//! differs by direction, a slope or a preload are not.
+//! Offset of a mechanism's force sensor at rest without touch. A sensor bias is present there. Friction by direction, a
+//! slope or a preload is not.
 //!
-//! A recording without other evidence is untouched at its beginning and its end, where neither place nor force moves beyond their noise;
-//! a hand that holds trembles, and would have to hold as hard both times.
+//! Without other evidence, a recording counts as untouched at its beginning and end if position and force stay within
+//! their noise there. A hand that holds on trembles, and would have to hold equally hard both times.
 
 use super::experiment::{SURE_HUNG, power};
 use super::geometry::Study;
@@ -12,27 +12,27 @@ use crate::signal::noise::{quantum, white_noise};
 use haptics::law::Coordinate;
 use haptics::recording::Recording;
 
-/// What the rests say of a constant force.
+/// Evidence from the rests on a constant force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Zero {
-    /// Nothing: nobody let go, or the rests agree with neither.
+    /// No evidence: nobody let go, or the rests agree with neither.
     #[default]
     Open,
-    /// The sensor reads nothing where nothing is: the constant acts on what is moved.
+    /// The sensor reads zero without touch: the constant acts on the object.
     OfThePlant,
-    /// The sensor rests at that very constant.
+    /// The sensor reads that constant at rest.
     OfTheSensor,
 }
 
-/// Windows of a rest, s, of this many samples at least; so many of them make a rest at either end.
+/// Window of a rest, s, its least number of samples, and the number of windows that make a rest at either end.
 const WINDOW_S: f64 = 0.1;
 const LEAST_SAMPLES: usize = 4;
 const LEAST_WINDOWS: usize = 4;
-/// A rest agrees with a value within so many errors, or this share of the constant.
+/// Agreement of a rest with a value, in standard errors and as a share of the constant.
 const ERRORS: f64 = 4.0;
 const SHARE: f64 = 0.15;
 
-/// What the rests of all recordings say of the constant force that a study came to.
+/// Evidence from the rests of all recordings on the constant force that a study estimated.
 pub fn told(study: &Study, recordings: &[Recording]) -> Zero {
     let Some(solved) = &study.solved else { return Zero::Open };
     let mut at = study.base.len();
@@ -59,7 +59,7 @@ fn compared(constant: f64, (mean, error): (f64, f64)) -> Zero {
     }
 }
 
-/// What stays open about a constant force after the rests, and what would tell it.
+/// Adds the question that stays open about a constant force after the rests, and the experiment for it.
 pub fn ask(found: &mut Diagnosis, track: &Track) {
     const LEAST_POWER: f64 = 0.05;
     const FREE_S: f64 = 2.0;
@@ -96,7 +96,7 @@ pub fn ask(found: &mut Diagnosis, track: &Track) {
     }
 }
 
-/// Mean force of what is untouched at both ends, and its error; nothing where an end moves, or the two differ.
+/// Mean force without touch at both ends, and its standard error; `None` if an end moves, or the two differ.
 fn rest(recording: &Recording) -> Option<(f64, f64)> {
     let [place, force] =
         [["q_m", "q_rad"], ["f_N", "tau_Nm"]].map(|names| names.iter().find_map(|n| recording.channel(n)));
@@ -104,7 +104,7 @@ fn rest(recording: &Recording) -> Option<(f64, f64)> {
     let n = time.len().min(force.len()).min(place.len());
     let period_s = (time.last()? - time.first()?) / n.saturating_sub(1).max(1) as f64;
     let length = ((WINDOW_S / period_s).round() as usize).max(LEAST_SAMPLES);
-    // Means of windows stay within the noise of a single sample: noise is coloured.
+    // The noise is autocorrelated, so means of windows stay within the noise of a single sample.
     let noise = |values: &[f64]| white_noise(values).max(quantum(values));
     let (still, quiet) = (noise(place), noise(force));
     let means = |values: &[f64], backwards: bool| -> Vec<f64> {
@@ -119,7 +119,7 @@ fn rest(recording: &Recording) -> Option<(f64, f64)> {
         let (place, force) = (means(&place[..n], backwards), means(&force[..n], backwards));
         let stays = |k: usize| (place[k] - place[0]).abs() <= still && (force[k] - force[0]).abs() <= quiet;
         let count = (0..place.len()).take_while(|k| stays(*k)).count();
-        // The last one may be half in motion.
+        // The last window may be partly in motion.
         let rest = &force[..count.saturating_sub(1)];
         if rest.len() < LEAST_WINDOWS {
             return None;
@@ -141,7 +141,8 @@ mod tests {
     use rand::rngs::StdRng;
     use rand::{RngExt as _, SeedableRng as _};
 
-    /// A slide of 1 kg that is moved to and fro with dry and viscous friction and a constant of 0.4 N, between rests of 1.5 s.
+    /// A slide of 1 kg that is moved back and forth with dry and viscous friction and a constant of 0.4 N, between
+    /// rests of 1.5 s.
     fn slid(at_rest_n: f64, trembles_n: f64) -> Recording {
         let time: Vec<f64> = (0..6000).map(|i| f64::from(i) * 4e-3).collect();
         let moves = |t: f64| (1.5..22.5).contains(&t);
@@ -177,7 +178,7 @@ mod tests {
         assert!(causes == ["force-bias"] && others.is_empty(), "{causes:?} or {others:?}");
         let (causes, others) = named(slid(0.0, 0.0));
         assert!(causes == ["friction-asymmetry"] && others == ["gravity-tilt"], "{causes:?} or {others:?}");
-        // A hand that holds on says nothing.
+        // A hand that holds on gives no evidence.
         let (causes, others) = named(slid(0.0, 0.2));
         assert!(
             causes == ["force-bias"] && others.contains(&"friction-asymmetry".to_owned()),

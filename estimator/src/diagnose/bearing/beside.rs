@@ -1,4 +1,4 @@
-//! The weight on a crank's bearing beside what else is hidden.
+//! Weight on a crank's bearing, compared with other hidden causes.
 
 use super::{known_n, put, weights};
 use crate::diagnose::explain::strange;
@@ -11,19 +11,21 @@ use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares_values;
 use haptics::law::{Law as _, LoadFriction, Weight};
 
-/// Causes that a weight on the bearing looks like when another one hides it.
+/// Causes that resemble a weight on the bearing if another cause hides it.
 const MISTAKEN: [&str; 4] = ["eccentric-mass", "gravity-tilt", "force-bias", "force-cross-axis"];
-/// With the weight on the bearing the causes that are found must leave, or be, so much less: 2 ln(likelihood), a cause's parameter counted as the
-/// logarithm of the rows.
+/// Margin by which the comparison with the weight on the bearing must win: −2 ln(likelihood) plus a penalty of ln(rows)
+/// for each parameter of a cause.
 const SIMPLER: f64 = 40.0;
 
-/// At a quick look the weight on the bearing leaves so much of what the causes leave at most.
+/// Largest ratio of residuals, with the weight on the bearing over with the causes alone, for which the full comparison
+/// is made.
 const NEARLY: f64 = 1.25;
-/// Rounds in which the weight settles beside the causes.
+/// Rounds in which the weight converges beside the causes.
 const ROUNDS: usize = 2;
 
-/// The comparison with the weight on the bearing, and that weight, N, where that leaves less or needs fewer causes than without (`looked_at`: its rows and
-/// what came of them; `track`: the rows as they were measured). What else is hidden may keep [`load`] from seeing it.
+/// Comparison with the weight on the bearing, and that weight, N, if its residual is smaller or it needs fewer causes.
+/// `looked_at`: rows and result of the first comparison; `track`: rows as measured. Other hidden causes can keep
+/// [`load`] from seeing the weight.
 pub fn beside_causes(
     track: &Track,
     (looked_at, study): (&Track, &Study),
@@ -52,8 +54,8 @@ pub fn beside_causes(
     Ok(found.filter(|(_, other, again)| price(other, again) + SIMPLER < price(looked_at, study)))
 }
 
-/// Whether the weight on the bearing leaves about as little as the causes that it looks like, beside the others: a quick look, because a comparison takes
-/// as long as all the rest.
+/// Quick test before the full comparison, which is slow: true if the weight on the bearing explains about as much as
+/// the causes that it resembles.
 fn may_be(
     track: &Track,
     study: &Study,
@@ -75,14 +77,14 @@ fn may_be(
     Ok(on_bearing < NEARLY * with_causes)
 }
 
-/// The weight that a comparison came out at, N.
+/// Weight that a comparison estimates, N.
 fn weight_of(study: &Study, model: &Model, fixed: &Model) -> f64 {
     let place = model.iter().position(|e| e.law().id() == Weight.id());
     let found_n = place.and_then(|k| study.solved.as_ref()?.values.get(k).copied());
     known_n(fixed) + found_n.unwrap_or(0.0)
 }
 
-/// How unlikely what is left is, and how many parameters it took: −2 ln(likelihood) and a logarithm of the rows each.
+/// Penalised deviance of a comparison: −2 ln(likelihood) plus ln(rows) for each parameter.
 fn price(track: &Track, study: &Study) -> f64 {
     let picks = study.picks();
     let along: Vec<bool> = track.rows.iter().map(|r| r.place == Place::Along).collect();

@@ -1,4 +1,4 @@
-//! What may be in the net force of carried blocks, as columns: laws of the block and faults of the sensors.
+//! Candidate terms of the net force on carried blocks: laws of the block and faults of the sensors.
 
 use super::rows::{Place, Row, Rows};
 use super::seen::Seen;
@@ -10,11 +10,11 @@ const STARTS: usize = 6;
 /// Names of the masses of the first few blocks.
 const NAMES: [&str; 4] = ["m block-1", "m block-2", "m block-3", "m block-4"];
 
-/// What may act on carried blocks beside their weight and the mass that goes with it.
+/// Laws that may act on carried blocks beside their weight and its inertia.
 pub fn plant(rows: &Rows<'_>) -> Vec<Candidate> {
     let mut found = Vec::new();
     let blocks = rows.blocks();
-    // Mass that weighs nothing: on a counterweight, or of what moves with the block.
+    // Inertia without weight: of a counterweight, or of parts that move with the block.
     let moved = |k: Option<usize>| {
         rows.carried(
             |one, row, number, axis| {
@@ -41,7 +41,8 @@ pub fn plant(rows: &Rows<'_>) -> Vec<Candidate> {
     found
 }
 
-/// Weight of all that is carried, falling by one newton a second from when each is lifted: what runs out of one block that is carried several times.
+/// Weight of all that is carried, falling by one newton a second from when each is lifted: what runs out of one block
+/// that is carried several times.
 fn leaking(rows: &Rows<'_>) -> Vec<f64> {
     let lifted_s: Vec<f64> = (1..=rows.blocks())
         .map(|k| {
@@ -52,7 +53,7 @@ fn leaking(rows: &Rows<'_>) -> Vec<f64> {
     rows.carried(|_, row, number, axis| if axis == 1 { row.time_s - lifted_s[number - 1] } else { 0.0 })
 }
 
-/// Changes of the weight of one block: evenly from when it is lifted or from later on, or all at once.
+/// Changes of the weight of one block: linear from the lift or from later on, or a step.
 fn leaks(rows: &Rows<'_>, k: usize, found: &mut Vec<Candidate>) {
     let times: Vec<f64> =
         rows.all.iter().filter(|r| r.place == (Place::Carried { number: k, axis: 1 })).map(|r| r.time_s).collect();
@@ -71,12 +72,12 @@ fn leaks(rows: &Rows<'_>, k: usize, found: &mut Vec<Candidate>) {
     }
 }
 
-/// A block that moves less than this along an axis, m, is not moved along it.
+/// Least motion along an axis, m, from which a block counts as moved.
 const MOVED_M: f64 = 1e-3;
 const BIAS: [[(&str, &str); 2]; 2] = [[("bx1", "N"), ("by1", "N")], [("bx2", "N"), ("by2", "N")]];
 const DRIFT: [[(&str, &str); 2]; 2] = [[("rx1", "N/s"), ("ry1", "N/s")], [("rx2", "N/s"), ("ry2", "N/s")]];
 
-/// What may be wrong with the force sensors. `known`: weights that are known, N; `given`: the forces by them.
+/// Faults that the force sensors may have. `known`: weights that are known, N; `given`: the forces by them.
 pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<Candidate> {
     let mut found = Vec::new();
     let all = |id: &'static str, names: &[[(&'static str, &'static str); 2]; 2], of: &dyn Fn(&Row) -> f64| {
@@ -97,7 +98,8 @@ pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<
     };
     found.extend(all("force-bias", &BIAS, &|_| 1.0));
     found.extend(all("force-drift", &DRIFT, &|r| r.time_s));
-    // Sensors may begin to drift when they are loaded: only what is free afterwards tells that from a block that changes.
+    // Sensors may begin to drift when they are loaded: only what is free afterwards tells that from a block that
+    // changes.
     let loaded_s = |r: &Row| {
         let carried = |o: &&Row| o.recording == r.recording && matches!(o.place, Place::Carried { .. });
         rows.all.iter().filter(carried).map(|o| o.time_s).fold(f64::INFINITY, f64::min)
@@ -109,7 +111,7 @@ pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<
         let column = rows.column(|r| Rows::share(r, finger, axis) * (r.time_s - since[r.recording]).max(0.0));
         found.push(Candidate::one("force-drift", Kind::Instrument, name, unit, column));
     }
-    // One finger's force along the other axis, where only the sum is compared: what a carried row has of it.
+    // Effect on the carried rows of one finger's force along the other axis, of which only the sum is compared.
     let other = |row: &Row, finger: usize, to: usize| {
         let force = &rows.seen[row.recording].force[finger];
         Rows::share(row, finger, to) * force[1 - to][row.i]
@@ -137,7 +139,7 @@ fn along(rows: &Rows<'_>, axis: usize) -> (f64, f64) {
     (mean, (places.iter().map(|p| (p - mean).powi(2)).sum::<f64>() / n).sqrt())
 }
 
-/// Terms of no cause in particular.
+/// Generic terms.
 pub fn generic(rows: &Rows<'_>) -> Vec<Candidate> {
     let span = rows.all.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
     let mut found = Vec::new();
@@ -154,7 +156,7 @@ pub fn generic(rows: &Rows<'_>) -> Vec<Candidate> {
         }
         for (axis, name) in [(0, "x"), (1, "y")] {
             let (middle, spread) = along(rows, axis);
-            // What was not moved along an axis has no dependence on it.
+            // An axis without motion shows no dependence on position.
             if spread > MOVED_M {
                 term(name, &|s, r| s.place[axis][r.i] - middle);
             }

@@ -1,4 +1,4 @@
-//! Cables and walls that a carried block may meet: tried all over the place, and refined where they explain most.
+//! Cables and walls that a carried block may meet: a search over all directions and distances, refined at the best.
 
 use super::rows::{Place, Rows};
 use crate::diagnose::candidate::{Candidate, Shape};
@@ -10,25 +10,26 @@ use haptics::world::Cable;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Directions of the anchor from the middle of the carries, and one over its distance in half ranges; 0 is a wall.
+/// Number of tried directions of the anchor from the middle of the carries, and inverse distances in 1/half ranges; 0
+/// is a wall.
 const DIRECTIONS: u32 = 20;
 const NEARNESS: [f64; 3] = [0.0, 0.25, 0.6];
-/// Share of the carries in which it is slack.
+/// Tried shares of the carries in which the cable is slack.
 const SLACK: [f64; 5] = [0.15, 0.4, 0.6, 0.75, 0.88];
-/// So many of them are refined, in so many halvings of the steps.
+/// Number of starting points that are refined, and of halvings of their step.
 const REFINED: usize = 4;
 const HALVINGS: usize = 9;
-/// Moves with one size of steps, at most: where nothing is tied the search has no end.
+/// Most moves with one step size. Without a cable the search does not converge.
 const MOVES: usize = 15;
-/// A wall is a cable from so many half ranges away.
+/// Distance of the anchor, in half ranges, from which a cable is a wall.
 const FAR: f64 = 200.0;
 
-/// Where a cable is tied, seen from the middle of the carries: direction, rad; one over the distance, in half ranges; and the way
-/// away from it at which it gets taut, in half ranges.
+/// Anchor of a cable, relative to the middle of the carries. Direction, rad; inverse distance, in 1/half ranges; travel
+/// away from the anchor at which it becomes taut, in half ranges.
 #[derive(Clone, Copy, Debug)]
 struct Tie([f64; 3]);
 
-/// What the carries look like.
+/// Extent of the carries.
 struct Field {
     middle: Vec2,
     range_m: f64,
@@ -39,12 +40,12 @@ impl Field {
         let Tie([direction, nearness, taut]) = tie;
         let away = self.range_m / nearness.clamp(1.0 / FAR, 0.95);
         let anchor = self.middle + away * Vec2::new(direction.cos(), direction.sin());
-        // A cable of negative length would pull from a distance on that no place can be at.
+        // A cable of negative length would pull beyond any possible place.
         (anchor, (away + taut * self.range_m).max(0.0))
     }
 }
 
-/// The cables that explain most beside `base`, each at one of the blocks.
+/// The strongest cables beside `base`, each at one of the blocks.
 pub fn cables(rows: &Rows<'_>, y: &[f64], base: &[Vec<f64>], weight: &[f64]) -> Vec<Candidate> {
     let explains = Explains::of(y, base, weight);
     (1..=rows.blocks()).flat_map(|number| at_block(rows, number, &explains, weight)).collect()
@@ -117,7 +118,7 @@ fn refined(start: Tie, worth: &dyn Fn(Tie) -> f64) -> Tie {
     best.1
 }
 
-/// What the model leaves, and what a column would take of it.
+/// Residual of the base model, for the part that a regressor explains of it.
 struct Explains {
     own: DMatrix<f64>,
     left: DVector<f64>,
@@ -132,7 +133,7 @@ impl Explains {
         Self { own, left }
     }
 
-    /// Sum of squares that the column explains with a positive factor.
+    /// Sum of squares that the regressor explains with a positive coefficient.
     fn worth(&self, column: &[f64], weight: &[f64]) -> f64 {
         let column = DVector::from_fn(column.len(), |i, _| column[i] * weight[i]);
         let beside = &column - &self.own * self.own.tr_mul(&column);
@@ -141,7 +142,8 @@ impl Explains {
     }
 }
 
-/// Force along an axis that a cable to a block asks of the hand, N, at a place, m, and a velocity, m/s. It damps while it is taut.
+/// Force along an axis that a cable to a block asks of the hand, N, at a place, m, and a velocity, m/s. It damps while
+/// it is taut.
 pub fn pull_n(cable: &Cable, place_m: Vec2, velocity_m_s: Vec2, axis: usize) -> f64 {
     let away = place_m - cable.anchor_m;
     let length = away.norm().max(1e-9);
@@ -158,13 +160,13 @@ pub fn pulls(rows: &Rows<'_>, tied: usize, cable: &Cable) -> Vec<f64> {
     })
 }
 
-/// What a cable of 1 N/m asks of the hand, N.
+/// Force that a cable of 1 N/m demands of the hand, N.
 fn pull(rows: &Rows<'_>, tied: usize, anchor_m: Vec2, length_m: f64) -> Vec<f64> {
     pulls(rows, tied, &Cable { anchor_m, length_m, stiffness_n_m: 1.0, damping_n_s_m: 0.0 })
 }
 
-/// Standard errors of stiffness, anchor and length of a found cable: what its searched values leave open counts. `None` where they cannot
-/// be told.
+/// Standard errors of stiffness, anchor and length of a found cable, with the uncertainty of its searched values.
+/// `None` if they cannot be computed.
 pub fn errors(rows: &Rows<'_>, study: &Study, number_of: &dyn Fn(&[f64]) -> usize) -> Option<[f64; 4]> {
     /// Steps of the differences, m.
     const STEP_M: f64 = 1e-4;

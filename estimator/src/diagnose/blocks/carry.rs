@@ -1,4 +1,5 @@
-//! Forces while blocks are carried, beside those while nothing is touched: weight, inertia, cables, and what is wrong with the sensors.
+//! Forces while blocks are carried, beside those while nothing is touched: weight, inertia, cables, and what is wrong
+//! with the sensors.
 
 use super::acts::{generic, instrument, plant};
 use super::cable::{cables, errors, pulls};
@@ -19,32 +20,32 @@ use crate::identify::block::object;
 use crate::segment::SystemState;
 use haptics::world::{Cable, World};
 
-/// The comparison and what its words need.
+/// The comparison with the data for its texts.
 pub struct Carry {
-    /// By how much the forces come later than the motion, if that shows.
+    /// Delay of the forces after the motion, if it is significant.
     pub late: Option<Late>,
     /// Its floor is the noise of a sum of two fingers.
     pub compared: Compared,
     /// Longest carry, s.
     longest_s: f64,
-    /// Of a cable's stiffness, anchor and length.
+    /// Standard errors of a cable's stiffness, anchor and length.
     cable_errors: Option<[f64; 4]>,
-    /// Which block each row is of; 0 where nothing is held.
+    /// Number of the block of each row; 0 if none is held.
     numbers: Vec<usize>,
-    /// Numbers of the blocks whose weights the model leaves open, in the order of its columns.
+    /// Numbers of the blocks whose weights are estimated, in the order of the model's regressors.
     pub weighed: Vec<usize>,
     /// The rows as the atlas looks at them.
     pub view: View,
-    /// What carried blocks do on their own.
+    /// Free-run simulation of carried blocks.
     pub airborne: Airborne,
 }
 
-/// Compares what may act on carried blocks and on the sensors. `world`: its cables belong to the model.
+/// Compares the causes that may act on carried blocks and on the sensors. `world`: its cables belong to the model.
 pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result<Carry, EstimateError> {
     const LEAST_ROWS: usize = 30;
     let rows = Rows::of(seen);
     let is_carried = |r: &Row| matches!(r.place, Place::Carried { .. });
-    // Every other row: what acts in one short stretch of a carry is seen where it is fitted and where it is held out.
+    // Every other row is testable, so a short effect has rows both in the fit and among the held-out ones.
     let testable: Vec<bool> = (0..rows.all.len()).map(|i| i % 2 == 0).collect();
     let carried = rows.all.iter().filter(|r| is_carried(r)).count();
     if carried < LEAST_ROWS {
@@ -65,7 +66,7 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
         rows.all.iter().map(|r| if is_carried(r) { 1.0 } else { std::f64::consts::SQRT_2 }).collect();
     let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
     let plant = plant(&rows);
-    // A cable is looked for before it is compared.
+    // The search for a cable precedes the comparison.
     let cables = cables(&rows, &y, &base, &weight);
     let mut candidates = plant;
     candidates.extend(instrument(&rows, &known, &given));
@@ -91,13 +92,13 @@ pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     Ok(Carry { late, compared, longest_s, cable_errors, numbers, weighed, view, airborne })
 }
 
-/// A cable's law is a straight line with a damper; what is tied turns in the grip and sags. What scores less than this share of a cable
-/// beside it may be the rest of it, whatever it is called.
+/// Share of a cable's evidence below which another cause may only be misfit of the cable. Its law is a linear spring
+/// with a damper, but a real cable turns in the grip and sags.
 const OF_A_CABLE: f64 = 0.05;
-/// Taking one rest away may bring up another.
+/// Most rounds of removal: without one misfit term another one may appear.
 const ROUNDS: usize = 4;
 
-/// The comparison, without what a cable or wall that was found may have left over.
+/// Comparison without causes that may be misfit of a cable or wall.
 fn without_remainders(mut channel: Channel, threshold: f64) -> Result<Study, EstimateError> {
     let mut study = channel.clone().compare(threshold)?;
     for _ in 0..ROUNDS {
@@ -118,7 +119,7 @@ fn without_remainders(mut channel: Channel, threshold: f64) -> Result<Study, Est
     Ok(study)
 }
 
-/// What the rows are seen against: what the block does along the row's own axis, and how it is held.
+/// Variables of the plots: motion of the block along the row's own axis, and grip.
 fn view(rows: &Rows<'_>) -> View {
     let sensor = |r: &Row| match r.place {
         Place::Carried { axis, .. } => axis,
@@ -141,7 +142,7 @@ fn view(rows: &Rows<'_>) -> View {
     }
 }
 
-/// What a cause in the net force is best seen against.
+/// Variable that best shows a cause in the net force.
 pub fn best_seen(id: &str) -> Variable {
     match id {
         "inertia" => Variable::Acceleration,
@@ -153,19 +154,19 @@ pub fn best_seen(id: &str) -> Variable {
     }
 }
 
-/// Which block a column acts at.
+/// Number of the block on which a regressor acts.
 fn touched(numbers: &[usize], column: &[f64]) -> usize {
     column.iter().position(|v| *v != 0.0).map_or(0, |i| numbers[i])
 }
 
-/// Force that carrying a weight needs along an axis, N: its mass is no unknown of its own.
+/// Force needed to carry a weight along an axis, N, with its inertia (weight over gravity).
 fn needed(one: &Seen<'_>, row: &Row, weight_n: f64, axis: usize) -> f64 {
     let up = if axis == 1 { 1.0 } else { 0.0 };
     let gravity = one.blocks.recording.meta.gravity().max(1e-9);
     weight_n * (up + one.acceleration[axis][row.i] / gravity)
 }
 
-/// One weight a block with what its mass does in motion; cables of a world.
+/// Regressors of the base model: one weight per block with its inertia, and the cables of a world.
 fn base(rows: &Rows<'_>, world: Option<&World>, known: &[Option<f64>]) -> Vec<Vec<f64>> {
     let unknown = (1..=rows.blocks()).filter(|k| known[k - 1].is_none());
     let mut base: Vec<Vec<f64>> = unknown
@@ -173,14 +174,15 @@ fn base(rows: &Rows<'_>, world: Option<&World>, known: &[Option<f64>]) -> Vec<Ve
         .collect();
     for (k, block) in world.iter().flat_map(|w| &w.blocks).enumerate() {
         let Some(cable) = &block.cable else { continue };
-        // What it damps is asked for beside it.
+        // Its damping is a candidate of its own.
         base.push(pulls(rows, k + 1, &Cable { damping_n_s_m: 0.0, ..*cable }));
     }
     base
 }
 
-/// The comparison. Pads give along the motion: what they hold lags behind the grip and swings in it, which looks like mass. Mass is named if it is
-/// there beside each block's swinging, too; that is no part of the model from the beginning, because its column has noise of the forces in it.
+/// The comparison, with a check for pad compliance. A block swings in compliant pads and lags behind the grip, which
+/// looks like inertia. Inertia is named only if it is also found beside each block's swinging. The swinging is no
+/// regular part of the model, because its regressor contains noise of the forces.
 fn beside_swinging(channel: Channel, rows: &Rows<'_>, threshold: f64) -> Result<Study, EstimateError> {
     let plain = without_remainders(channel.clone(), threshold)?;
     let has_mass = |study: &Study| study.picks().iter().any(|p| study.candidates[*p].id == "inertia");
@@ -203,7 +205,7 @@ fn longest_s(rows: &Rows<'_>) -> f64 {
     lengths.fold(0.0, f64::max)
 }
 
-/// Noise of the sum of two fingers, from where nothing is touched (N); from the residual where that never was.
+/// Noise of the sum of two fingers, N: from free rows, or from the residual if there are none.
 fn floor(rows: &Rows<'_>, study: &Study) -> f64 {
     let Some(solved) = &study.solved else { return 0.0 };
     let picks = study.picks();
@@ -217,12 +219,12 @@ fn floor(rows: &Rows<'_>, study: &Study) -> f64 {
 }
 
 impl Carry {
-    /// True when this cause was found.
+    /// True if this cause was found.
     pub fn has(&self, id: &str) -> bool {
         self.compared.study.picks().iter().any(|p| self.compared.study.candidates[*p].id == id)
     }
 
-    /// What is read of the horizontal force of each finger in its vertical channel, as found.
+    /// Share of each finger's horizontal force in its vertical channel, as found.
     pub fn cross(&self) -> [f64; 2] {
         let Some(solved) = &self.compared.study.solved else { return [0.0; 2] };
         let mut found = [0.0; 2];
@@ -240,11 +242,11 @@ impl Carry {
         found
     }
 
-    /// For the answer: which block a change of weight or a cable is of, and a cable's errors.
+    /// Parameters for the answer: the block of a change of weight or of a cable, and a cable's standard errors.
     pub fn states(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         let column = &candidate.columns[0];
         let number = touched(&self.numbers, column);
-        // Of all blocks where it says of none.
+        // Without a block, the cause concerns all blocks.
         let alone = || (0..column.len()).all(|i| column[i] == 0.0 || self.numbers[i] == number);
         if ["mass-change", "added-constraint"].contains(&candidate.id) && alone() {
             found.push(parameter("block", number as f64, 0.0, "1"));
@@ -257,7 +259,7 @@ impl Carry {
         found
     }
 
-    /// What in the residual shows a cause.
+    /// Sentence on how the residual shows a cause.
     pub fn shows(found: &Found<'_>) -> String {
         let value = |k: usize| found.parameters.get(k).map_or(0.0, |p| p.value);
         match found.candidate.id {
@@ -293,7 +295,7 @@ impl Carry {
         }
     }
 
-    /// Sizes that could just matter, and what would show them.
+    /// Smallest sizes that matter, with the experiment that would show them.
     pub fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
         // One hundredth of a newton over the longest carry.
         let slow = 0.01 / self.longest_s.max(1.0);

@@ -1,4 +1,5 @@
-//! The carry that would settle what is open in the net force: the same terms on a recording that was not made yet.
+//! Carry that would settle the open questions of the net force: the same terms on a recording that has not been made
+//! yet.
 
 use super::carry::Carry;
 use super::seen::Seen;
@@ -7,7 +8,7 @@ use crate::diagnose::report::{Alternative, Experiment, NextExperiment};
 use crate::segment::threshold::percentile;
 use nalgebra::{DMatrix, DVector};
 
-/// The library: id, words, and how long nothing is touched before and after, s.
+/// The library: id, words, and duration without touch before and after, s.
 const LIBRARY: [(&str, &str, f64); 2] = [
     (
         "carry-let-go",
@@ -17,15 +18,16 @@ const LIBRARY: [(&str, &str, f64); 2] = [
     ),
     ("carry-still", "lift the block and hold it still", 0.0),
 ];
-/// Lengths of a carry, s: the shortest that is likely to do. What leaks is soon empty, and what drifts does not drift evenly for long.
+/// Lengths of a carry, s. The shortest that is likely to suffice is asked for: a leak soon ends, and a drift does not
+/// stay linear for long.
 const HELD_S: [f64; 3] = [4.0, 8.0, 16.0];
-/// Nobody lifts a block more slowly than this, m/s.
+/// Slowest lift of a block, m/s.
 const LIFT_M_S: f64 = 0.02;
 
-/// One row that was not measured yet: when, s, and what.
+/// Predicted row: time, s, and kind.
 #[derive(Clone, Copy, PartialEq)]
 enum Place {
-    /// Both fingers along the vertical, the block in the air since so long, s.
+    /// Both fingers along the vertical, with the time since the block was lifted, s.
     Carried(f64),
     /// Side force of the same.
     Side,
@@ -48,7 +50,7 @@ fn imagine(seconds: f64, free_s: f64, period_s: f64) -> Vec<Row> {
     rows
 }
 
-/// Columns of all that a cause may be on these rows; nothing for causes of other channels.
+/// Regressors of all forms of a cause on these rows; `None` for causes of other channels.
 fn columns(id: &str, rows: &[Row], weight_n: f64) -> Option<Vec<Vec<f64>>> {
     let of = |f: &dyn Fn(f64, Place) -> f64| rows.iter().map(|(t, place)| f(*t, *place)).collect::<Vec<f64>>();
     let channel = |finger: usize, axis: usize, size: fn(f64) -> f64| {
@@ -69,7 +71,7 @@ fn columns(id: &str, rows: &[Row], weight_n: f64) -> Option<Vec<Vec<f64>>> {
     }
 }
 
-/// What of an effect the weight and a rival could not imitate, as a sum of squares.
+/// Sum of squares of an effect that the weight and a rival cannot explain.
 fn unexplained(effect: &[f64], beside: &[Vec<f64>]) -> f64 {
     let beside: Vec<&Vec<f64>> = beside.iter().filter(|c| c.iter().any(|v| *v != 0.0)).collect();
     let matrix = DMatrix::from_fn(effect.len(), beside.len(), |i, j| beside[j][i]);
@@ -83,7 +85,7 @@ fn unexplained(effect: &[f64], beside: &[Vec<f64>]) -> f64 {
     (target - matrix * solved).norm_squared()
 }
 
-/// The recording to make for the first question that is open; nothing for questions of other channels.
+/// Recording that would settle the first open question of this channel, if there is one.
 pub fn propose(open: &[Alternative], carry: &Carry, seen: &[Seen<'_>]) -> Option<NextExperiment> {
     let first = open.first()?;
     let study = &carry.compared.study;
@@ -95,7 +97,7 @@ pub fn propose(open: &[Alternative], carry: &Carry, seen: &[Seen<'_>]) -> Option
     let size = solved.values[at..at + own.columns.len()].iter().map(|v| v * v).sum::<f64>().sqrt();
     let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max).max(1e-3);
     let weight_n = study.y.iter().copied().fold(0.0, f64::max);
-    // Noise that goes on from row to row hides slow effects better.
+    // Noise that is correlated between rows hides slow effects more.
     let slow = 1.0 - study.system.coefficients.iter().sum::<f64>();
     let variance = solved.variance(study.system.rows);
     let rivals: Vec<&Alternative> = open.iter().filter(|a| a.instead_of == first.instead_of).collect();
@@ -114,7 +116,7 @@ pub fn propose(open: &[Alternative], carry: &Carry, seen: &[Seen<'_>]) -> Option
             let weighs = rows.iter().map(|r| f64::from(u8::from(matches!(r.1, Place::Carried(_))))).collect();
             let mut least = f64::INFINITY;
             for rival in &rivals {
-                // Either of the two may be true; a drift of one finger stands for all.
+                // Either of the two may be true. A drift of one finger represents the drift of both.
                 for (a, b) in [(own.id, rival.id.as_str()), (rival.id.as_str(), own.id)] {
                     let vertical = usize::from(a.starts_with("force") && b != "gravity-tilt");
                     let effect = columns(a, &rows, weight_n)?.swap_remove(vertical);
@@ -138,7 +140,7 @@ pub fn propose(open: &[Alternative], carry: &Carry, seen: &[Seen<'_>]) -> Option
     best
 }
 
-/// As high, as fast and as firmly as the first block was carried before.
+/// Height, speed and grip of the first block's recorded carries.
 fn asked(id: &str, seconds: f64, free_s: f64, seen: &[Seen<'_>]) -> Experiment {
     let (mut heights, mut places, mut speeds) = (Vec::new(), Vec::new(), Vec::new());
     for one in seen {

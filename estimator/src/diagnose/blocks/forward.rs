@@ -1,4 +1,5 @@
-//! A carried block as a body of its own: the measured net force of the fingers moves its mass, gravity and cables pull at it.
+//! A carried block as a body of its own: the measured net force of the fingers moves its mass, gravity and cables pull
+//! at it.
 
 use super::cable::pull_n;
 use super::rows::{Place, Rows};
@@ -9,7 +10,7 @@ use haptics::Vec2;
 use haptics::law::{Effect, Inertia, Memories, Motion, ViscousFriction};
 use haptics::world::{Cable, World};
 
-/// What a row is for this.
+/// Data of a row for the free-run simulation.
 #[derive(Clone, Copy)]
 struct Row {
     recording: usize,
@@ -23,14 +24,14 @@ struct Row {
     force_n: f64,
 }
 
-/// Carried blocks as bodies of their own.
+/// Free-run simulation of carried blocks as separate bodies.
 pub struct Airborne {
     rows: Vec<Row>,
     period_s: f64,
     gravity_m_s2: f64,
     /// Weights that are known, N, by block.
     known_n: Vec<Option<f64>>,
-    /// Cables of the world, one column of the model each after those of the weights, and their blocks.
+    /// Cables of the world with their blocks. Each has one regressor in the model, after those of the weights.
     ties: Vec<(usize, Cable)>,
 }
 
@@ -55,7 +56,7 @@ impl Airborne {
             }
         };
         let tied = world.iter().flat_map(|w| &w.blocks).enumerate().filter_map(|(k, block)| {
-            // What it damps is no part of the model.
+            // Its damping is no part of the model.
             let cable = Cable { damping_n_s_m: 0.0, ..*block.cable.as_ref()? };
             Some((k + 1, cable))
         });
@@ -69,7 +70,7 @@ impl Airborne {
         }
     }
 
-    /// How many weights are open: they are the first columns of the model.
+    /// Number of estimated weights: their regressors come first in the model.
     fn open(&self) -> usize {
         self.known_n.iter().filter(|k| k.is_none()).count()
     }
@@ -80,13 +81,13 @@ impl Airborne {
         self.known_n[number - 1].unwrap_or_else(|| values.get(open_before).copied().unwrap_or(0.0))
     }
 
-    /// The world's cable at a block as fitted.
+    /// The world's cable at a block, with fitted stiffness.
     fn of_world(&self, number: usize, values: &[f64]) -> Option<Cable> {
         let (k, (_, tie)) = self.ties.iter().enumerate().find(|(_, (own, _))| *own == number)?;
         Some(Cable { stiffness_n_m: tie.stiffness_n_m * values.get(self.open() + k).copied().unwrap_or(1.0), ..*tie })
     }
 
-    /// Which block a column is of.
+    /// Number of the block on which a regressor acts.
     fn tied(&self, column: &[f64]) -> usize {
         column.iter().position(|v| *v != 0.0).map_or(0, |i| self.rows[i].number)
     }
@@ -107,7 +108,7 @@ impl Forward for Airborne {
         let Row { number, axis, .. } = self.rows[window[0]];
         let weight_n = self.weight_n(number, values);
         let up = if axis == 1 { 1.0 } else { 0.0 };
-        // Its swinging in the pads, where that is in the model, is no motion of the grip.
+        // A block's swinging in the pads, if it is in the model, is no motion of the grip.
         let swings = self.open() + self.ties.len() + number - 1;
         let swing_n = |i: usize| study.base.get(swings).map_or(0.0, |column| values[swings] * column[i]);
         let mut drive: Vec<f64> = window.iter().map(|i| self.rows[*i].force_n - up * weight_n - swing_n(*i)).collect();
@@ -126,7 +127,7 @@ impl Forward for Airborne {
                     anchor_m: Vec2::new(at("anchor x"), at("anchor y")),
                     length_m: at("length"),
                 }),
-                // What does not go with the motion, and faults of the sensors.
+                // Effects that do not depend on the motion, and faults of the sensors.
                 _ => candidate.columns.iter().zip(own).for_each(|(column, value)| {
                     drive.iter_mut().zip(window).for_each(|(drive, i)| *drive -= value * column[*i]);
                 }),

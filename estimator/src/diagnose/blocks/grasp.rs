@@ -1,4 +1,4 @@
-//! Distance of the tips while blocks are gripped, against the grip force: what gives, and how.
+//! Grip width of gripped blocks against the grip force: compliance of pads and blocks.
 
 use super::seen::Seen;
 use crate::diagnose::answer::{Compared, Found, parameter};
@@ -15,23 +15,23 @@ use haptics::law::Kind;
 use haptics::law::contact::{Cushion, Densification, ONSET, StiffnessHardening};
 use haptics::world::World;
 
-/// Bends of the pads' law that are tried, between hardly any and strong, and ends of the foam.
+/// Number of tried bends of the pads' law, from weak to strong, and tried ends of the foam.
 const BENDS: usize = 7;
-/// A pad that is not felt: what could just have been seen is measured with it, m/N.
+/// Compliance of a pad of usual size, m/N, for the test of excitation.
 const USUAL_GIVE: f64 = 1.0 / 8000.0;
 /// A usual error of lengths.
 const USUAL_SCALE: f64 = 0.02;
 
-/// The comparison and what its words need.
+/// The comparison with the data for its texts.
 pub struct Grasp {
     pub compared: Compared,
     /// The rows as the atlas looks at them.
     pub view: View,
     /// Mean distance and grip of each block, m and N.
     means: Vec<(f64, f64)>,
-    /// Give of a pad at no force that the model has, m/N.
+    /// Compliance of a pad at zero force in the model, m/N.
     modelled: f64,
-    /// What the pads do on their own.
+    /// Free-run model of the pads.
     pub pads: Pads,
 }
 
@@ -78,7 +78,7 @@ fn rows(seen: &[Seen<'_>]) -> Rows {
     rows
 }
 
-/// Compares what may change the distance of the tips. `None` where blocks were hardly gripped.
+/// Compares the causes that change the grip width. `None` if blocks were hardly gripped.
 pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result<Option<Grasp>, EstimateError> {
     const LEAST_ROWS: usize = 30;
     let rows = rows(seen);
@@ -95,7 +95,7 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
         .filter(|k| known[k - 1].is_none())
         .map(|k| of(&|i| f64::from(u8::from(rows.number[i] == k))))
         .collect();
-    // Pads damp: no cause of its own.
+    // Damping of the pads is part of the base model.
     let rate = base.len();
     base.push(rows.rate_m_s.clone());
     let mut modelled = 0.0;
@@ -136,7 +136,7 @@ pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result
     Ok(Some(Grasp { compared, view, means, modelled, pads }))
 }
 
-/// What a cause in the distance of the tips is best seen against.
+/// Variable that best shows a cause in the grip width.
 pub fn best_seen(id: &str) -> Variable {
     if id == "length-scale" { Variable::Width } else { Variable::Grip }
 }
@@ -152,7 +152,7 @@ fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
     if largest_n <= 0.0 {
         return found;
     }
-    // What a pad that hardens gives less than a linear one of the same first stiffness.
+    // Difference between the compression of a linear pad and of a hardening one with the same initial stiffness.
     let less = |cushion: &Cushion| -> Vec<f64> {
         rows.grip_n.iter().map(|f| 2.0 * (f.max(0.0) - cushion.depth_m(f.max(0.0)))).collect()
     };
@@ -171,7 +171,7 @@ fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
     found
 }
 
-/// What is left may follow time, the grip's square or the place.
+/// Generic terms of the residual: waves over time, and positions.
 fn generic(seen: &[Seen<'_>], rows: &Rows) -> Vec<Candidate> {
     let span = rows.time_s.iter().copied().fold(0.0, f64::max).max(1e-9);
     let term = |expression: String, column: Vec<f64>| Candidate {
@@ -200,7 +200,7 @@ fn generic(seen: &[Seen<'_>], rows: &Rows) -> Vec<Candidate> {
 }
 
 impl Grasp {
-    /// True when this cause was found.
+    /// True if this cause was found.
     pub fn has(&self, id: &str) -> bool {
         self.compared.study.picks().iter().any(|p| self.compared.study.candidates[*p].id == id)
     }
@@ -215,7 +215,7 @@ impl Grasp {
                 let mut all = vec![parameter("k1", k1, 0.0, "N/m")];
                 match candidate.searched.first() {
                     Some(s) if s.name == "bend" => {
-                        // To lowest order the column is bend · F³: what it comes out at is k3 give/(k1⁴ give).
+                        // To lowest order the regressor is bend · F³, so its coefficient is k3 give/(k1⁴ give).
                         let k3 = |give: f64| give / first.max(1e-12) * s.value * k1.powi(3);
                         all.push(parameter("k3", k3(give.0), k3(give.1), "N/m³"));
                     }
@@ -228,7 +228,7 @@ impl Grasp {
         }
     }
 
-    /// Give of one pad at no force, m/N: what was found, or what the model has.
+    /// Compliance of one pad at zero force, m/N: as found, or as in the model.
     fn first_give(&self) -> f64 {
         let Some(solved) = &self.compared.study.solved else { return self.modelled };
         let mut at = self.compared.study.base.len();
@@ -242,7 +242,7 @@ impl Grasp {
         self.modelled
     }
 
-    /// What in the residual shows a cause.
+    /// Sentence on how the residual shows a cause.
     pub fn shows(&self, found: &Found<'_>) -> String {
         let value = found.parameters.first().map_or(0.0, |p| p.value);
         match found.candidate.id {

@@ -1,4 +1,4 @@
-//! Height of the grip while a held block stands on something: give of the pads under the load, and slips of the fingers.
+//! Grip height while a held block stands on something: pad compliance under the load, and slips of the fingers.
 
 use super::seen::Seen;
 use super::slips::{slips, ways};
@@ -17,15 +17,15 @@ use crate::signal::task::half_width;
 use haptics::law::Kind;
 use haptics::world::World;
 
-/// Fewer rows of a rest show nothing.
+/// Least number of rows of a rest.
 const LEAST_ROWS: usize = 8;
-/// Fewer rows in all cannot be held out in turn.
+/// Least number of rows in all, for folds.
 const LEAST_IN_ALL: usize = 24;
-/// Of so many rows one may be held out: every rest is seen while it is fitted, from its beginning to its end. The first ones never are: when a slip
-/// at the very contact began shows in nothing else.
+/// Of so many rows one may be held out: every rest is seen while it is fitted, from its beginning to its end. The first
+/// ones never are: when a slip at the very contact began shows in nothing else.
 const HELD_OUT: usize = 2;
 const FIRST: usize = 4;
-/// So many rows that may be held out make a block of them, and there are so many blocks at most: as the comparison counts.
+/// Testable rows per held-out block, and the largest number of such blocks, as in the comparison.
 const BLOCK: usize = 12;
 const MOST_BLOCKS: usize = 20;
 
@@ -39,21 +39,21 @@ pub struct Stand {
     pub below: Vec<usize>,
     pub first: usize,
     pub end: usize,
-    /// From when it stands, s; and from when plain means of its height are taken.
+    /// Start of the standing phase, s, and start of the plain means of its height, s.
     pub from_s: f64,
     pub plain_from_s: f64,
     /// Samples of it.
     pub samples: Vec<usize>,
 }
 
-/// The comparison and what its words need.
+/// The comparison with the data for its texts.
 pub struct Ground {
     pub compared: Compared,
     /// The rows as the atlas looks at them.
     pub view: View,
     pub stands: Vec<Stand>,
     rows: Rows,
-    /// Each slip's time, s, and its way and the error of that with its time open, m.
+    /// Each slip's time, s, its distance, m, and the standard error of the distance with the time free, m.
     ways: Vec<[f64; 3]>,
 }
 
@@ -67,11 +67,12 @@ pub struct Rows {
     lift_rate: Vec<f64>,
     /// Largest shear over normal force of a finger.
     ratio: Vec<f64>,
-    /// Half of the window that the heights are means over, s.
+    /// Half of the averaging window of the heights, s.
     pub half_s: f64,
 }
 
-/// Compares what may move the grip while a held block stands. `cross`: what each finger's vertical force has of its horizontal one. `None` where no block was held still on anything for long enough.
+/// Compares the causes that move the grip while a held block stands. `cross`: share of each finger's horizontal force
+/// in its vertical channel. `None` if no block stood still long enough.
 pub fn ground(
     seen: &[Seen<'_>],
     world: Option<&World>,
@@ -94,7 +95,8 @@ pub fn ground(
     let mut base: Vec<Vec<f64>> = (0..stands.len()).map(|s| of(&|i| f64::from(u8::from(rows.stand[i] == s)))).collect();
     let give = rows.lift_n.clone();
     let contact = of(&|i| (stands[rows.stand[i]].below.len() + 1) as f64 * rows.lift_n[i]);
-    // Pads damp and forces come a little late: both show while the load goes over to the ground, and neither is a cause of its own.
+    // Pads damp and forces come a little late: both show while the load goes over to the ground, and neither is a cause
+    // of its own.
     base.push(rows.lift_rate.clone());
     let model = [base.as_slice(), &[give.clone(), contact.clone()]].concat();
     let mut candidates = Vec::new();
@@ -139,7 +141,7 @@ pub fn ground(
     };
     let view = View {
         recording: rows.stand.iter().map(|s| stands[*s].recording).collect(),
-        // One rest is no continuation of another: each has a height of its own.
+        // Each rest has a height of its own.
         sensor: rows.stand.clone(),
         over: vec![(Variable::Time, rows.time_s.clone()), (Variable::Lift, rows.lift_n.clone())],
         way: Vec::new(),
@@ -148,8 +150,8 @@ pub fn ground(
     Ok(Some(Ground { compared, view, stands, rows, ways }))
 }
 
-/// The order in which rows are held out together: blocks of rows from all over the rests. What a slip is worth shows on rows before and after it,
-/// and a rest is shorter than a block of rows that follow each other.
+/// Order in which rows are held out together: each held-out block takes rows from all rests. The effect of a slip needs
+/// rows before and after it, and a rest is shorter than a block of consecutive rows.
 fn spread(along: &[bool]) -> Vec<f64> {
     let blocks = (along.iter().filter(|t| **t).count() / BLOCK).clamp(1, MOST_BLOCKS);
     let before = along.iter().scan(0, |count, testable| {
@@ -159,7 +161,7 @@ fn spread(along: &[bool]) -> Vec<f64> {
     before.enumerate().map(|(i, count)| ((count % blocks) * along.len() + i) as f64).collect()
 }
 
-/// What a cause in the height of the grip is best seen against.
+/// Variable that best shows a cause in the grip height.
 pub fn best_seen(id: &str) -> Variable {
     if id == "pad-compliance" { Variable::Lift } else { Variable::Time }
 }
@@ -215,12 +217,12 @@ fn add(
 }
 
 impl Ground {
-    /// Which rest a time belongs to.
+    /// Standing phase to which a time belongs.
     fn stand_at(&self, time_s: f64) -> Option<&Stand> {
         self.stands.iter().find(|s| (s.from_s - self.rows.half_s..=self.rows.time_s[s.end - 1]).contains(&time_s))
     }
 
-    /// For the answer.
+    /// Parameters for the answer.
     pub fn states(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
         match candidate.id {
             "fingertip-slip" => {
@@ -231,7 +233,7 @@ impl Ground {
                 }
                 found
             }
-            // Two pads side by side; the give of one is twice what the pair's is, so its stiffness half.
+            // Two pads act side by side. The compliance of one is twice that of the pair, so its stiffness is half.
             "pad-compliance" => {
                 found.iter().take(1).map(|p| parameter("k_shear", 0.5 * p.value, 0.5 * p.std_error, "N/m")).collect()
             }
@@ -239,7 +241,7 @@ impl Ground {
         }
     }
 
-    /// What in the residual shows a cause.
+    /// Sentence on how the residual shows a cause.
     pub fn shows(&self, found: &Found<'_>) -> String {
         let value = found.parameters.first().map_or(0.0, |p| p.value);
         if found.candidate.id == "pad-compliance" {
@@ -251,7 +253,7 @@ impl Ground {
         };
         let near = (stand.first..stand.end).filter(|i| (self.rows.time_s[*i] - at).abs() < 0.15);
         let ratio = near.map(|i| self.rows.ratio[i]).fold(0.0, f64::max);
-        // A plain mean over the rest has the shift for as long as it lasts.
+        // A plain mean over the rest includes the shift while it lasts.
         let plain = (stand.first..stand.end).map(|i| self.rows.time_s[i]).filter(|t| *t >= stand.plain_from_s);
         let (rows, after) = plain.fold((0_u32, 0_u32), |(n, after), t| (n + 1, after + u32::from(t >= at)));
         let mean_off = value * f64::from(after) / f64::from(rows.max(1));
@@ -279,12 +281,13 @@ impl Ground {
         }
     }
 
-    /// Mean height of a rest without the slip found in it and without the give under its load, m, and its standard error.
+    /// Mean height of a rest without the slip found in it and without the compression under its load, m, and its
+    /// standard error.
     pub fn level(&self, stand: &Stand) -> (f64, f64) {
         let picks = self.compared.study.picks();
         let Some(solved) = &self.compared.study.solved else { return (0.0, f64::INFINITY) };
         let mut give = vec![0.0; self.rows.stand.len()];
-        // All but the rests' own heights.
+        // All but the heights of the rests.
         let columns: Vec<&Vec<f64>> = self
             .compared
             .study

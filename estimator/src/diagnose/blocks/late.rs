@@ -1,15 +1,17 @@
-//! Forces that come later than the motion of carried blocks: with the forces of another moment, their weight and mass explain more.
+//! Time delay of the forces after the motion of carried blocks, from the shift for which their weight and inertia
+//! explain most.
 
 use super::rows::{Place, Row, Rows};
 use crate::diagnose::shifted::{Demands, Late, look};
 use crate::identify::linear::least_squares_values;
 
-/// A hand has done something else after the longest of them.
+/// Limits of a delay: beyond the longest one a hand is already at another movement.
 const DEMANDS: Demands = Demands { longest_s: 0.12, enough: 0.8, leaves: 0.9, likelier: 40.0 };
-/// Delays are tried in steps of this, s, or of a sample where those are longer.
+/// Step of the tried delays, s, or one sample if that is longer.
 const STEP_S: f64 = 2e-3;
 
-/// The delay with which weights, their masses and constant errors of the sensors leave least. `known`: weights that the sidecar states, N.
+/// Delay with the smallest residual of weights, their inertia and constant sensor errors. `known`: weights that the
+/// sidecar states, N.
 pub fn late(rows: &Rows<'_>, known: &[Option<f64>]) -> Option<Late> {
     let carried: Vec<&Row> = rows.all.iter().filter(|r| matches!(r.place, Place::Carried { .. })).collect();
     let sample_s = rows.seen.iter().map(|s| s.sample_s).fold(0.0, f64::max);
@@ -18,7 +20,7 @@ pub fn late(rows: &Rows<'_>, known: &[Option<f64>]) -> Option<Late> {
     late.filter(|late| late.error_s.is_finite())
 }
 
-/// Power that is left a row with the forces of so many samples later, and rows.
+/// Residual power per row, and number of rows, with the forces of this many samples later.
 fn left(rows: &Rows<'_>, carried: &[&Row], known: &[Option<f64>], by: isize) -> Option<(f64, f64)> {
     let blocks = rows.blocks();
     let mut columns = vec![Vec::new(); blocks + 2];
@@ -36,7 +38,7 @@ fn left(rows: &Rows<'_>, carried: &[&Row], known: &[Option<f64>], by: isize) -> 
             column.push(if k + 1 == number && known[k].is_none() { needed } else { 0.0 });
         }
         for (k, column) in columns[blocks..].iter_mut().enumerate() {
-            // A constant beside weights that are open would leave those to the accelerations alone.
+            // Beside free weights, a constant would leave only the accelerations to determine them.
             let is_open = axis == 1 && known.iter().any(Option::is_none);
             column.push(f64::from(u8::from(k == axis && !is_open)));
         }

@@ -1,7 +1,8 @@
-//! Diagnosis of carried blocks: distance of the tips, net force and height over the ground, each with its own causes.
+//! Diagnosis of carried blocks: grip width, net force and standing height, each with its own causes.
 //!
-//! Without a world the model is the thesis's: rigid widths and plain means of weights and heights. With one its pads, inertia and
-//! cables belong to the model; what a block weighs and how wide it is stays open in both, unless the sidecar says that it is known.
+//! Without a world the base model is the thesis's: rigid widths and plain means of weights and heights. With a world,
+//! its pads, inertia and cables belong to the base model. Weights and widths are estimated in both, unless the sidecar
+//! states them.
 
 mod acts;
 mod cable;
@@ -83,10 +84,11 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
         found.atlas.channels.extend(grasp.iter().map(|g| g.compared.atlas(&g.view, limit, grasp::best_seen)));
         found.atlas.channels.extend(ground.iter().map(|g| g.compared.atlas(&g.view, limit, ground::best_seen)));
     }
-    // Of the net force, which a delay is seen in; the strongest cause may be of another channel.
+    // Delay of the net force, in which it is best seen. The strongest cause may be of another channel.
     if let Some((late, force)) = carry.late.zip(parts.first()) {
         let figures = force.figures();
-        // What else is in the model may take some of a delay: it is judged by what it was looked for with, too.
+        // Other terms of the final model may absorb part of a delay. The delay is therefore judged by its own model,
+        // too.
         let end = Final { heldout_rms_n: (late.plain_rms * figures.end.heldout_rms_n).sqrt(), ..figures.end };
         late.tell(&mut found, Figures { end, ..figures });
     }
@@ -94,7 +96,7 @@ pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     Ok(found)
 }
 
-/// Net force, distance of the tips and height of the grip, compared.
+/// Comparisons of net force, grip width and grip height.
 fn look(
     seen: &[Seen<'_>],
     world: Option<&World>,
@@ -102,12 +104,12 @@ fn look(
     let limit = limit(seen);
     let carry = carry::carry(seen, world, limit)?;
     let grasp = grasp::grasp(seen, world, limit)?;
-    // A block that a cable pulls at is held by more than its ground.
+    // A block with a taut cable is supported by more than the ground.
     let ground = if carry.has("added-constraint") { None } else { ground::ground(seen, world, carry.cross(), limit)? };
     Ok((carry, grasp, ground))
 }
 
-/// Least score of a cause.
+/// Least evidence of a cause.
 fn limit(seen: &[Seen<'_>]) -> f64 {
     threshold(seen.iter().map(|s| s.period_s).fold(0.0, f64::max))
 }
@@ -120,7 +122,7 @@ pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compa
     Ok(std::iter::once(carry.compared).chain(rest).collect())
 }
 
-/// What no recording of this kind could show.
+/// Causes that no recording of this kind shows.
 fn unseen(seen: &[Seen<'_>], found: &mut Vec<NotExcited>) {
     let mut add = |id: &str, why: &str| found.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
     let knows = |name: &str| seen.iter().any(|s| (1..=s.count).any(|k| s.known(k, name).is_some()));
@@ -133,7 +135,7 @@ fn unseen(seen: &[Seen<'_>], found: &mut Vec<NotExcited>) {
     add("friction-change", "the fingers hold the blocks and do not slide on them");
 }
 
-/// The recording that would settle what is open.
+/// Recording that would settle the open questions.
 fn next(open: &[Alternative]) -> Option<NextExperiment> {
     let first = open.first()?;
     let pair = [first.instead_of.as_str(), first.id.as_str()];

@@ -1,5 +1,5 @@
-//! A block that moved in the grasp between where it was picked up and where it was put down: what the heights of a world that is
-//! known say about the two ends of a carry.
+//! Slip of a block in the grasp between pick-up and put-down, from the known heights of a world at the two ends of a
+//! carry.
 
 use super::ground::{Ground, Stand};
 use super::seen::Seen;
@@ -12,9 +12,9 @@ use crate::identify::block::slipping::LEAST_M;
 use haptics::law::Kind;
 use haptics::world::World;
 
-/// So many standard errors make a slip.
+/// Standard errors from which a displacement is a slip.
 const ERRORS: f64 = 5.0;
-/// A height of a world that does not say how well it is known, as a share.
+/// Relative standard error of a world's height that states none.
 const UNKNOWN: f64 = 0.01;
 
 /// Slips between the two ends of each carry, largest first.
@@ -29,7 +29,7 @@ pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause>
         let picked = ground.stands.iter().find(same)?;
         let mut expected = 0.0;
         let mut variance = 0.0;
-        // What is below at both ends cancels, with its error.
+        // A surface that is below at both ends cancels, with its error.
         for (stand, sign) in [(placed, 1.0), (picked, -1.0)] {
             let other = if stand.placed { picked } else { placed };
             for number in stand.below.iter().filter(|n| !other.below.contains(n)) {
@@ -39,7 +39,7 @@ pub fn moved(ground: &Ground, seen: &[Seen<'_>], world: &World) -> Option<Cause>
             }
         }
         let ((after, a), (before, b)) = (ground.level(placed), ground.level(picked));
-        // A block that turns between the pads moves their middle, too.
+        // A block that rotates between the pads also moves their middle.
         let turns = seen[placed.recording].blocks.finger_disagreement(&picked.samples, &placed.samples);
         let error = (variance + a * a + b * b).sqrt().hypot(turns / 3.0_f64.sqrt());
         Some((after - before - expected, error, placed))

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 /// Noise of a place, m.
 const PLACE_M: f64 = 1e-5;
 
-/// From 0 to 1 between two times, smoothly as a hand moves.
+/// Smooth step from 0 to 1 between two times, like the motion of a hand.
 pub fn reach(t: f64, from: f64, to: f64) -> f64 {
     let u = ((t - from) / (to - from)).clamp(0.0, 1.0);
     u * u * u * (10.0 + u * (6.0 * u - 15.0))

@@ -1,14 +1,14 @@
-//! Rows of forces: sums of both fingers while blocks are carried, single channels while nothing is touched.
+//! Rows of forces: sums of both fingers while blocks are carried, single channels without touch.
 
 use super::seen::Seen;
 use crate::diagnose::compare::stretches;
 
-/// What a row is.
+/// Kind of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     /// Sum of both fingers along an axis, a block of this number in the air.
     Carried { number: usize, axis: usize },
-    /// One finger along an axis, nothing touched.
+    /// One finger along an axis, without touch.
     Free { finger: usize, axis: usize },
 }
 
@@ -21,7 +21,7 @@ pub struct Row {
     pub place: Place,
 }
 
-/// All rows with the recordings that they are from.
+/// All rows with their recordings.
 pub struct Rows<'a> {
     pub seen: &'a [Seen<'a>],
     pub all: Vec<Row>,
@@ -37,7 +37,8 @@ impl<'a> Rows<'a> {
             };
             for number in 1..=one.count {
                 let mut carried = one.carried(number);
-                // How the force curves is told from a filter's window farther away: there the ground may have it already.
+                // The last row is dropped: the force filter's window may reach past the carry, to samples where the
+                // ground already supports the block.
                 carried.pop();
                 for axis in [1, 0] {
                     add(Place::Carried { number, axis }, &carried);
@@ -59,7 +60,7 @@ impl<'a> Rows<'a> {
         self.all.iter().map(of).collect()
     }
 
-    /// A column over the carried rows of one axis, or both.
+    /// A regressor over the carried rows of one axis, or of both.
     pub fn carried(&self, of: impl Fn(&Seen<'_>, &Row, usize, usize) -> f64) -> Vec<f64> {
         self.column(|row| match row.place {
             Place::Carried { number, axis } => of(&self.seen[row.recording], row, number, axis),
@@ -76,7 +77,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// How much a fault of one finger's force along one axis is in a row.
+    /// Share of a fault of one finger's force along one axis in a row.
     pub fn share(row: &Row, finger: usize, axis: usize) -> f64 {
         let holds = match row.place {
             Place::Carried { axis: own, .. } => own == axis,

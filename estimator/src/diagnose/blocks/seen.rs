@@ -1,4 +1,5 @@
-//! What a diagnosis looks at in a recording of carried blocks: states from the pipeline, all channels through one filter.
+//! Signals of a recording of carried blocks for the diagnosis: states from the pipeline, all channels through one
+//! filter.
 
 use crate::estimate::EstimateError;
 use crate::identify::block::landing::{stands_from, usual_lift};
@@ -8,22 +9,22 @@ use crate::signal::noise::white_noise;
 use crate::signal::task::{half_width, smooth};
 use haptics::recording::Recording;
 
-/// Shorter rests are not free motion, s.
+/// Least duration of free motion, s.
 const LEAST_FREE_S: f64 = 0.25;
-/// The ends of free motion may touch already, s.
+/// Margin at the ends of free motion, which may already touch, s.
 const ENDS_S: f64 = 0.05;
-/// Less than this share of the usual lift is not all of the weight.
+/// Share of the usual lift below which part of the weight is supported.
 const WHOLE: f64 = 0.75;
-/// Slower than this it rests, m/s; rows that are looked at before it does; and a lift that is another one.
+/// Speed of a resting grip, m/s; number of rows examined before it rests; and relative change of the lift that counts.
 const REST_M_S: f64 = 8e-3;
 const BEFORE: usize = 6;
 const OTHER_LIFT: f64 = 0.05;
-/// A lift is another one, or less than the whole, when the noise alone would hardly ever make the difference: so many standard deviations.
+/// Difference of two lifts, in standard deviations of the noise, from which they differ.
 const SURELY: f64 = 4.0;
-/// A block that was just lifted swings behind its pads, s.
+/// Duration for which a block swings behind its pads after the lift, s.
 const SWINGS_S: f64 = 0.12;
-/// The ground takes over a block within the first of these rows at either end of a carry; the lift of those up to the second is the
-/// carried one, and what is off it by this share is not all of it.
+/// Rows at either end of a carry: the ground may support the block in those before the first number. Those from the
+/// first to the second number define the carried lift. A lift off it by `END_SHARE` is partly supported.
 const END_ROWS: (usize, usize) = (4, 10);
 const END_SHARE: f64 = 0.025;
 
@@ -39,7 +40,7 @@ pub struct Seen<'a> {
     pub acceleration: [Vec<f64>; 2],
     /// Middle of the tips, x and y, m.
     pub place: [Vec<f64>; 2],
-    /// Time between rows that say something new, and between samples, s.
+    /// Time between independent rows, and between samples, s.
     pub period_s: f64,
     pub sample_s: f64,
     /// Standard deviation of the lift of one row by the sensors' noise, N.
@@ -87,7 +88,7 @@ impl<'a> Seen<'a> {
         Ok(seen)
     }
 
-    /// From where nothing is touched; where that never was, from the fast changes of the lift.
+    /// Lift noise from samples without touch, or from fast changes of the lift if there are none.
     fn lift_noise(&self) -> f64 {
         let free = self.free();
         if free.len() < BEFORE {
@@ -110,18 +111,18 @@ impl<'a> Seen<'a> {
         self.blocks.signals.time_s[i]
     }
 
-    /// Rows in which a block is carried, from when it no longer swings to when something else carries it as well.
+    /// Rows in which a block is carried, from the end of its swinging until something else supports it as well.
     pub fn carried(&self, number: usize) -> Vec<usize> {
         self.carried_and_standing(number).0
     }
 
-    /// The same with the rows at its end in which the block stands already, although the lift is still upwards.
+    /// The same, with the rows at its end in which the block already stands although the lift is still upwards.
     fn carried_and_standing(&self, number: usize) -> (Vec<usize>, Vec<usize>) {
         let samples = self.blocks.shown(MAIN, number);
         let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return (Vec::new(), Vec::new()) };
         let (start, end) = (self.time_s(*first) + SWINGS_S, self.time_s(*last));
         let mut rows = self.every(samples.into_iter().filter(|i| (start..=end).contains(&self.time_s(*i))));
-        // A block that the ground takes over already at either end is no longer carried.
+        // A block that the ground already supports at either end is no longer carried.
         let light = self.light(&rows, [0.0; 2]);
         let mut standing = rows.split_off(rows.iter().rposition(|i| !light(i)).map_or(0, |k| k + 1));
         rows.drain(..rows.iter().position(|i| !light(i)).unwrap_or(0));
@@ -135,7 +136,8 @@ impl<'a> Seen<'a> {
         (rows, still)
     }
 
-    /// Whether the lift of a sample is less than all of what is carried in `rows`. `cross`: what each finger's vertical force has of its horizontal one.
+    /// Predicate: the lift of a sample is less than the whole carried weight of `rows`. `cross`: share of each finger's
+    /// horizontal force in its vertical channel.
     fn light(&self, rows: &[usize], cross: [f64; 2]) -> impl Fn(&usize) -> bool + use<'_, 'a> {
         let lift = self.lift_without(cross);
         let usual = usual_lift(&self.blocks.signals.time_s, rows, &lift);
@@ -145,35 +147,36 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// Lift of a sample without what each finger's vertical force has of its horizontal one.
+    /// Lift of a sample without the cross-talk of each finger's horizontal force.
     fn lift_without(&self, cross: [f64; 2]) -> impl Fn(usize) -> f64 + use<'_, 'a> {
         move |i| self.blocks.lift[i] - cross[0] * self.force[0][0][i] - cross[1] * self.force[1][0][i]
     }
 
-    /// Samples in which a block stands after its carry, and the time from which it does: when the load has begun to go over to what is below. The
-    /// fingers may come down further then, by the give of their pads or in a slip, and nothing else but the load tells that from lowering.
-    /// `rest`: samples in which it is known to stand; `cross`: as found.
+    /// Start time and samples of the phase in which a block stands after its carry, from the first transfer of load to
+    /// the ground. The fingers may then move down further, by compression of their pads or a slip, and only the load
+    /// tells that from lowering. `rest`: samples in which the block is known to stand; `cross`: cross-talk as found.
     pub fn put(&self, number: usize, rest: &[usize], cross: [f64; 2]) -> (f64, Vec<usize>) {
         let (carried, mut standing) = self.carried_and_standing(number);
         if cross != [0.0; 2] && !rest.is_empty() {
-            // With some of the grip in it, the recorded lift falls as the grip does, on the ground or not.
+            // With cross-talk from the grip, the recorded lift falls with the grip force, on the ground or not.
             standing.clear();
         }
         let Some(first) = rest.first().into_iter().chain(standing.first()).min().copied() else {
             return (0.0, Vec::new());
         };
         let known = rest.first().copied().or_else(|| Some(standing.last()? + 1)).unwrap_or(first);
-        // Not before the middle of the carry; without a break from there on.
+        // The start is in the second half of the carry, without a break after it.
         let least = carried.get(carried.len() / 2).map_or(first, |middle| *middle).min(first);
         let lift = self.lift_without(cross);
         let from = stands_from(&self.blocks, &carried, least..first, &lift);
-        // The filter looks this far back into the air.
+        // The filter's window still reaches back to samples in the air.
         let settled = if from < known { from + half_width(&self.blocks.signals.time_s) } else { from };
         let rest = rest.iter().copied().filter(|i| *i >= settled);
         (self.time_s(from), (settled..known).chain(rest).collect())
     }
 
-    /// What is heavy is lifted, and put down, in longer than a row: at both ends of a carry the ground may have a part of it.
+    /// Removes rows at both ends of a carry in which the ground may support part of the weight. A heavy block takes
+    /// longer than a row to lift and to put down.
     fn without_ends(&self, rows: &mut Vec<usize>) {
         for _ in 0..2 {
             rows.reverse();
@@ -188,7 +191,8 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// Up to which row a block that was lowered is carried, and from which on it rests, with another lift than in the air.
+    /// Up to which row a block that was lowered is carried, and from which on it rests, with another lift than in the
+    /// air.
     fn put_down(&self, rows: &[usize]) -> Option<(usize, usize)> {
         let speed = |i: usize| self.velocity[0][i].hypot(self.velocity[1][i]);
         let moved = rows.iter().rposition(|i| speed(*i) > REST_M_S)?;
@@ -202,7 +206,8 @@ impl<'a> Seen<'a> {
         let (carried, now) = (mean(before), mean(&rows[from..]));
         let error = self.lift_noise_n * (1.0 / before.len() as f64 + 1.0 / (rows.len() - from) as f64).sqrt();
         let other = (now - carried).abs() > (OTHER_LIFT * carried.abs()).max(SURELY * error);
-        // A block that hangs still over the ground is lowered slowly at last: it stands from where the lift is the new one.
+        // A block may hang still just above the ground and then be lowered slowly. It stands once the lift is nearer to
+        // the new value.
         let stands = |i: &usize| (self.blocks.lift[*i] - now).abs() < (self.blocks.lift[*i] - carried).abs();
         let first = from + rows[from..].iter().position(stands)?;
         (lowered && other).then_some((from.saturating_sub(2), first))
@@ -228,7 +233,7 @@ impl<'a> Seen<'a> {
         }))
     }
 
-    /// Samples a filter window apart: neighbours that share their noise say nothing new.
+    /// Samples a filter window apart, because neighbours share their noise.
     pub fn every(&self, samples: impl Iterator<Item = usize>) -> Vec<usize> {
         let stride = 2 * half_width(&self.blocks.signals.time_s);
         let mut last: Option<usize> = None;
@@ -243,7 +248,7 @@ impl<'a> Seen<'a> {
             .collect()
     }
 
-    /// What the sidecar says is known of a block: `block-1.weight_N`, or `weight_N` of all blocks.
+    /// Value that the sidecar states for a block: `block-1.weight_N`, or `weight_N` of all blocks.
     pub fn known(&self, number: usize, name: &str) -> Option<f64> {
         let known = &self.blocks.recording.meta.known;
         let own = known.get(&format!("{}.{name}", object(number)));

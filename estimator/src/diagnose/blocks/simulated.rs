@@ -1,4 +1,4 @@
-//! What was found on blocks, or could be there instead, put into a world.
+//! Causes found on blocks, and rival causes, as effects in a world.
 
 use super::carry::Carry;
 use crate::diagnose::answer::parameter;
@@ -10,18 +10,18 @@ use haptics::Vec2;
 use haptics::world::{Cable, Content, World};
 use std::collections::BTreeSet;
 
-/// Causes that this channel decides about: a hypothesis says all of them anew.
+/// Causes of the net-force channel: a hypothesis sets all of them again.
 const OF_THE_NET_FORCE: [&str; 6] =
     ["inertia", "mass-change", "gravity-tilt", "added-constraint", "viscous-friction", "friction-change"];
 
-/// What was found, put into a world.
+/// Adds the found causes to a world.
 pub fn extend(world: &mut World, diagnosis: &Diagnosis) {
     for cause in &diagnosis.causes {
         put(world, &cause.id, &cause.parameters);
     }
 }
 
-/// The world with what was found in other channels, and with what is thought to act on the blocks.
+/// The world with the causes found in other channels and with the hypothesis on what acts on the blocks.
 pub fn with_acts(world: &World, diagnosis: &Diagnosis, acts: &[Act]) -> World {
     let mut world = world.clone();
     for cause in diagnosis.causes.iter().filter(|c| !OF_THE_NET_FORCE.contains(&c.id.as_str())) {
@@ -47,7 +47,7 @@ fn put(world: &mut World, id: &str, parameters: &[CauseParameter]) {
             world.pad.cubic_n_m3 = value("k3").map_or(world.pad.cubic_n_m3, |k| k.max(0.0));
         }
         "gravity-tilt" => {
-            // The hand holds against what pulls to the side: gravity points along (sin, −cos) of the tilt.
+            // The hand resists the lateral force: gravity points along (sin, −cos) of the tilt.
             world.tilt_rad -= value("angle").unwrap_or(0.0);
         }
         "weight" => {
@@ -86,7 +86,7 @@ impl Simulated for Carry {
         self.weighed.iter().zip(values).map(of).collect()
     }
 
-    /// Drag in the air, mass that weighs nothing, and weight that is gained or lost at once, are in no world.
+    /// A world has no drag in the air, no mass without weight, and no sudden change of weight.
     fn act(&self, candidate: &Candidate, values: &[f64]) -> Option<Act> {
         let linear = candidate.linear.iter().zip(values);
         let mut found: Vec<CauseParameter> =
@@ -96,7 +96,7 @@ impl Simulated for Carry {
             "added-constraint" => {
                 found.extend(candidate.searched.iter().map(|s| parameter(s.name, s.value, 0.0, s.unit)));
             }
-            // When it began says nothing about another recording: there it leaks from the start.
+            // The start of a leak does not carry over to another recording: there it leaks from the start.
             "mass-change" if found.iter().any(|p| p.name == "rate" && p.value < 0.0) => {}
             _ => return None,
         }

@@ -1,4 +1,4 @@
-//! Slips of the fingers on a standing block as causes: everywhere, and closely around the best place.
+//! Slips of the fingers on a standing block as candidates: over all rests, and finer around the best.
 
 use super::ground::{Rows, Stand};
 use crate::diagnose::candidate::Candidate;
@@ -6,22 +6,22 @@ use crate::diagnose::geometry::Study;
 use crate::identify::block::slipping::{Heights, LEAST_M, Slip, Stretch, is_seen};
 use haptics::law::Kind;
 
-/// Starts that are asked about in every rest, besides its very beginning.
+/// Number of tried starts in every rest, besides its beginning.
 const STARTS: usize = 10;
-/// How long a slip may take, s: those that are asked about in every rest.
+/// Durations of a slip that are tried in every rest, s.
 const LENGTHS_S: [f64; 3] = [0.0, 0.1, 0.3];
-/// Around the best place: shares of a row's time, and of the duration.
+/// Refinement around the best slip: steps of its start, in rows, and factors of its duration.
 const STEPS: [f64; 5] = [-0.4, -0.15, 0.0, 0.15, 0.4];
 const SHARES: [f64; 5] = [0.75, 0.9, 1.0, 1.1, 1.33];
-/// A slip of no duration is tried beside such ones, s.
+/// Durations, s, tried beside a slip without duration.
 const SHORT_S: [f64; 3] = [0.0, 0.01, 0.02];
 
-/// Slips in every rest, and closer ones around the best. `model`: what the height is made of beside them.
+/// Candidate slips in every rest, and finer ones around the best. `model`: regressors of the height beside them.
 pub fn slips(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], found: &mut Vec<Candidate>) {
     let rests = rests(stands);
     let heights = rows.heights(&rests);
     let best = heights.best(&heights.left(model), &|_| true).map(|b| b.slip);
-    // Where the best one is, its neighbours are those around it.
+    // The rest of the best slip gets refined neighbours instead.
     let others = (0..rests.len()).filter(|rest| best.is_none_or(|b| b.rest != *rest));
     let all = others.flat_map(|rest| {
         let starts = heights.starts(rest, STARTS);
@@ -41,8 +41,8 @@ pub fn slips(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], found: &mut Vec<
     }
 }
 
-/// The way of every slip that was chosen with its time and its duration open (`Heights::way_m`): its time, s, the way and its error, m. `model`: what
-/// the height is made of beside slips.
+/// Distance of every chosen slip with its time and duration free (`Heights::way_m`): time, s, distance, m, and its
+/// standard error, m. `model`: regressors of the height beside slips.
 pub fn ways(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], study: &Study) -> Vec<[f64; 3]> {
     let rests = rests(stands);
     let heights = rows.heights(&rests);

@@ -1,4 +1,4 @@
-//! One block that is carried several times by two fingers with soft pads.
+//! One block that two fingers with soft pads carry several times.
 
 use super::recorded::{reach, recorded};
 use crate::diagnose::{Diagnosis, Options, Verdict, diagnose};
@@ -16,18 +16,18 @@ const CARRIES: u32 = 3;
 const CARRY_S: f64 = 5.0;
 const WIDTH_M: f64 = 0.02;
 
-/// What is hidden.
+/// Hidden truth of a simulated recording.
 #[derive(Clone, Copy, Default)]
 struct Hidden {
     /// Give of a pad, m/N.
     give: f64,
     /// Weight that is lost, N/s.
     leak_n_s: f64,
-    /// Forces are read so much later than the motion, s.
+    /// Delay of the forces after the motion, s.
     late_s: f64,
     /// Mass without weight, kg.
     mass_kg: f64,
-    /// Factor of all forces, less one.
+    /// Relative gain error of all forces.
     gain: f64,
 }
 
@@ -41,7 +41,7 @@ fn bend(t: f64, from: f64, to: f64) -> f64 {
 fn at(t: f64, hidden: &Hidden) -> ([f64; 2], [f64; 3]) {
     let number = (t / CARRY_S).floor().min(f64::from(CARRIES - 1));
     let own = t - number * CARRY_S;
-    // To and fro: what was put down is taken from where it stands.
+    // Back and forth: a block is picked up from where it was put down.
     let (start_m, side) = if number % 2.0 == 0.0 { (0.0, 1.0) } else { (0.04, -1.0) };
     let of = |shape: &dyn Fn(f64, f64, f64) -> f64| {
         [side * 0.04 * shape(own, 2.0, 2.6), 0.03 * (shape(own, 1.4, 1.9) - shape(own, 2.9, 3.4))]
@@ -116,7 +116,7 @@ fn late_forces_are_put_back() {
     }
 }
 
-/// The give of the pads may be the stronger cause, in metres: what a delay gains is force all the same.
+/// Pad compliance, in metres, may be the stronger cause. The gain of a delay is still that of the force.
 #[test]
 fn figures_of_a_delay_are_of_the_force_beside_stronger_pads() {
     let found = found(2, &Hidden { late_s: 0.06, give: 1.0 / 1500.0, ..Hidden::default() });
@@ -132,7 +132,7 @@ fn figures_of_a_delay_are_of_the_force_beside_stronger_pads() {
     );
 }
 
-/// The way to the block and the grip on it are mixed by the filter where they meet.
+/// The filter mixes the approach to the block and the grip on it at their boundary.
 #[test]
 fn pads_are_as_soft_as_within_the_grip() {
     for (seed, k) in [(0, 1500.0), (1, 3000.0), (2, 6000.0)] {

@@ -138,7 +138,8 @@ fn where_nothing_can_be_kept_out_of_the_choice_a_cause_must_be_beyond_doubt() {
     }
 }
 
-/// Friction that rises near rest is a change of friction: without any, a falling-off and a rising curve would together pass for a constant.
+/// Friction that rises near rest is a change of friction: without any, a falling-off and a rising curve would together
+/// pass for a constant.
 #[test]
 fn what_lifts_dry_friction_is_not_asked_for_where_there_is_none() {
     let speed = |i: usize| 0.3 + 0.25 * (i as f64 / 40.0).sin();
@@ -179,7 +180,7 @@ fn a_cause_beside_a_term_of_the_model_that_is_nearly_the_same_keeps_its_size() {
     assert!(study.picks() == [0] && strongest < 0.3, "{:?}", study.system.coefficients);
 }
 
-/// Observations that stand by themselves are held out by threes and need no rows between them and what trains.
+/// Single observations are held out three at a time and need no margin between training and held-out rows.
 #[test]
 fn a_dozen_of_single_observations_can_be_tested() {
     let n = 16;

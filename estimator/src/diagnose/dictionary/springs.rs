@@ -1,11 +1,11 @@
-//! What draws to a place or keeps from it: springs, walls and cables.
+//! Candidates that pull to a place or push away from it: springs, walls and cables.
 
 use super::super::candidate::{Candidate, Searched, Shape};
 use super::{Dictionary, position};
 use haptics::law::{AddedConstraint, Cable, Kind, ReturnSpring};
 
 impl Dictionary<'_> {
-    /// A spring, and one that hardens: a cubic about any place is one about the middle and another beside it.
+    /// Springs, linear and hardening: a cubic about any place is the sum of one about the middle and one beside it.
     pub(super) fn springs(&self, all: &mut Vec<Candidate>) {
         let (low, high) = (self.track.quantile(0.0, position), self.track.quantile(1.0, position));
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low).max(1e-12));
@@ -15,7 +15,7 @@ impl Dictionary<'_> {
         let spring = Candidate::of("return-spring", Kind::Plant, line(), names());
         all.push(spring.shaped(Shape::Spring { half }));
         if !self.track.planar {
-            // Beside a constant force (a sensor's zero, a slope) nothing tells where it is at rest.
+            // Beside a constant force (a sensor's zero, a slope) the rest position is not identifiable.
             let anywhere = column(&[1.0, 0.0, 0.0, middle]);
             all.push(
                 Candidate::of("return-spring", Kind::Plant, vec![anywhere], vec![("k", self.unit(&ReturnSpring, 0))])
@@ -28,12 +28,12 @@ impl Dictionary<'_> {
         linear.extend([("k3", self.unit(&ReturnSpring, 2)), ("k3 aside", self.unit(&ReturnSpring, 2))]);
         let hardening = Candidate::of("return-spring", Kind::Plant, columns, linear);
         all.push(hardening.shaped(Shape::Hardening { half }));
-        // Far from its place of rest all that shows is the cubic.
+        // Far from its rest position, only the cubic shows.
         for rest in self.grid.rests.iter().copied() {
             let cubic = self.plain(&ReturnSpring, &[0.0, 0.0, 1.0, rest], 2).positive();
             all.push(cubic.at("q0", rest, self.unit(&ReturnSpring, 3)));
         }
-        // Near it, where it is at rest there is no force: one parameter less than two cubics have.
+        // Near its rest position the force is zero there: one parameter less than two cubics have.
         for rest in self.grid.hardening.iter().copied() {
             let columns = vec![column(&[1.0, 0.0, 0.0, rest]), column(&[0.0, 0.0, 1.0, rest])];
             let linear = vec![("k", self.unit(&ReturnSpring, 0)), ("k3", self.unit(&ReturnSpring, 2))];
@@ -42,7 +42,8 @@ impl Dictionary<'_> {
         }
     }
 
-    /// Walls that leave a good part of the motion alone (else a spring explains as much), and cables to a place beside the arm.
+    /// Walls that leave a good part of the motion alone (else a spring explains as much), and cables to a place beside
+    /// the arm.
     pub(super) fn walls(&self, all: &mut Vec<Candidate>) {
         let units = self.units();
         for (place, side) in self.grid.walls.iter().copied() {
@@ -54,7 +55,7 @@ impl Dictionary<'_> {
             let pull = self.law_of_place(&Cable, &[1.0, rest, direction, reach * radius, radius]);
             let cable = Candidate::of("added-constraint", Kind::Plant, vec![pull], vec![("k", "N/m")]).positive();
             let mut cable = cable.at("anchor direction", direction, "rad").at("rest length", rest, "m");
-            // How far away the anchor is hardly shows.
+            // The distance of the anchor hardly affects the force.
             cable.searched.push(Searched { name: "anchor distance", value: reach * radius, unit: "m" });
             all.push(cable);
         }

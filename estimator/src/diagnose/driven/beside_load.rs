@@ -1,4 +1,4 @@
-//! Dry friction of an input beside a load that turns round with the motion, as dry friction does.
+//! Dry friction of an input beside a load that reverses with the motion, as dry friction does.
 
 use super::rows::Row;
 use crate::diagnose::geometry::Study;
@@ -6,25 +6,27 @@ use crate::diagnose::report::Alternative;
 use crate::diagnose::system::{Use, solve};
 use crate::signal::noise::white_noise;
 
-/// Noise may make so much of what the load has of its own before the two count as one.
+/// Noise share of the load's own part from which load and dry friction count as one regressor.
 const AS_ONE: f64 = 0.5;
-/// A direction turns round in nobody's way exactly: what a load has of its own within this share of what turns round is none.
+/// Noise of the load due to the shape of its reversal, per unit of its slope over the direction.
 const SHAPE: f64 = 0.03;
-/// What is left of a load that is all noise, at least: a share of it.
+/// Least mean square of the load's own part, to avoid division by zero.
 const LEAST_OWN: f64 = 1e-6;
 
-/// How well a load is told from dry friction.
+/// Separability of a load from dry friction.
 pub struct Told {
-    /// Share of what is the load's own in this recording that may be its noise, or another way of turning round: 0 … 1.
+    /// Share of the load's own part (beyond the other regressors) that may be noise or another shape of the reversal, 0
+    /// to 1.
     noise: f64,
-    /// Load for every unit of direction, N or N m.
+    /// Load per unit of direction, N or N m.
     slope: f64,
-    /// What the comparison gives the load, in the force's unit for each of the load's.
+    /// Coefficient of the load in the comparison, in units of force per unit of load.
     weight: f64,
 }
 
 impl Told {
-    /// Of a comparison whose base has the load in the column `load`. `direction`: that of dry friction, a row.
+    /// Separability in a comparison whose base model has the load as regressor `load`. `direction`: the regressor of
+    /// dry friction, a value per row.
     pub fn of(study: &Study, load: usize, direction: &[f64], rows: &[Row]) -> Option<Self> {
         let used: Vec<usize> = (0..rows.len())
             .filter(|i| study.weight[*i] > 0.0 && !matches!(study.system.uses[*i], Use::Locked(_)))
@@ -44,19 +46,20 @@ impl Told {
         Some(Self { noise, slope, weight })
     }
 
-    /// Whether they are one and the same in this recording.
+    /// True if load and dry friction are equivalent in this recording.
     pub fn is_one(&self) -> bool {
         self.noise > AS_ONE
     }
 
-    /// What dry friction of this size may be off by because the load is: noise of a regressor makes its weight small, and what turns round with it takes
-    /// over. Where they are one, all that turns round may be either's.
+    /// Error of this dry friction due to the load, N or N m. Noise of a regressor biases its coefficient towards zero,
+    /// and dry friction takes over the missing part. If the two are equivalent, all that reverses with the direction
+    /// may belong to either.
     pub fn error(&self, friction: f64) -> f64 {
         let shared = self.weight * self.slope;
         if self.is_one() { (friction + shared).abs() } else { (shared * self.noise / (1.0 - self.noise)).abs() }
     }
 
-    /// What else that friction could be.
+    /// Alternative explanation of that friction by the load.
     pub fn alternative(&self) -> Option<Alternative> {
         self.is_one().then(|| Alternative {
             id: "force-gain".to_owned(),

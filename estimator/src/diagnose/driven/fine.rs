@@ -1,24 +1,24 @@
-//! Columns that have a memory or a jump, worked out at the recording's own rate and then put through the filter that the channels went
-//! through: worked out on the rows they would have the corners that the rows have lost.
+//! Regressors of laws with memory or a jump, computed at the recording's own rate and then passed through the filter of
+//! the channels. Computed on the rows they would keep corners that the filtered rows have lost.
 
 use crate::signal::noise::white_noise;
 use crate::signal::task::{half_width, smooth, smooth_value};
 
-/// The sign of a speed is a guess below so many times its noise, and below this share of the fastest.
+/// Speed below which its sign is uncertain, in multiples of its noise and as a share of the largest speed.
 const SPEED_NOISES: f64 = 2.0;
 const LEAST_SPEED: f64 = 1e-3;
 
 /// The input of one recording at its own rate.
 pub struct Fine {
     time_s: Vec<f64>,
-    /// Place and speed through the filter, rad or m, and per second.
+    /// Filtered position and speed, rad or m, and per second.
     input: Vec<f64>,
     rate: Vec<f64>,
     /// Noise of the speed.
     rate_noise: f64,
     /// Speed over which a direction goes from one to the other.
     blur: f64,
-    /// Of so many samples one is a row.
+    /// Number of samples per row.
     every: usize,
 }
 
@@ -27,7 +27,7 @@ impl Fine {
         let through = smooth(time_s, input);
         let half = half_width(time_s) as f64;
         let step_s = (time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1).max(1) as f64;
-        // Of a straight line's slope over the filter's window.
+        // Noise of the slope of a line over the filter's window.
         let rate_noise = white_noise(input) / (step_s * (half * (half + 1.0) * (2.0 * half + 1.0) / 3.0).sqrt());
         let fastest = through.slope.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         let blur = (SPEED_NOISES * rate_noise).max(LEAST_SPEED * fastest).max(f64::MIN_POSITIVE);
@@ -39,18 +39,18 @@ impl Fine {
         self.rate_noise
     }
 
-    /// A series at the recording's own rate as its rows see it.
+    /// Values of a series at the rows, through their filter.
     fn rows(&self, series: &[f64]) -> Vec<f64> {
         smooth_value(&self.time_s, series).into_iter().step_by(self.every).collect()
     }
 
-    /// The direction of motion, −1 … 1; between them where a row looks over a reversal.
+    /// The direction of motion, −1 … 1, with intermediate values in rows over a reversal.
     pub fn direction(&self) -> Vec<f64> {
         let signs: Vec<f64> = self.rate.iter().map(|v| (v / self.blur).tanh()).collect();
         self.rows(&signs)
     }
 
-    /// What the output lacks of the input behind a gap of twice `half` (the play operator).
+    /// Lost motion of the output behind a gap of twice `half` (the play operator).
     pub fn lost(&self, half: f64) -> Vec<f64> {
         let mut place = self.input[0];
         let series: Vec<f64> = self
@@ -89,7 +89,7 @@ impl Fine {
 mod tests {
     use super::*;
 
-    /// One stroke to and fro in a second, at 200 Hz.
+    /// Back-and-forth strokes of one second, at 200 Hz.
     fn strokes() -> (Vec<f64>, Vec<f64>) {
         let time_s: Vec<f64> = (0..800).map(|i| 0.005 * f64::from(i)).collect();
         let input = time_s.iter().map(|t| 0.5 * (std::f64::consts::TAU * t).sin()).collect();

@@ -1,4 +1,4 @@
-//! The force at the input of a transmission against its motion and the load.
+//! Force at the input of a transmission against its motion and the load.
 
 use super::Side;
 use super::beside_load::Told;
@@ -13,27 +13,27 @@ use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 
-/// Below this share of the usual speed, and where a row looks over a reversal, the direction of friction is a guess.
+/// Share of the usual speed below which the direction of friction is uncertain, as it is in rows over a reversal.
 const SLOW: f64 = 0.1;
 const SURE: f64 = 0.99;
 
-/// Rows at which the direction of friction is no guess.
+/// Rows with a certain direction of friction.
 fn sure(seen: &Seen, usual: f64) -> Vec<usize> {
     let direction: Vec<f64> = seen.fine.iter().flat_map(Fine::direction).collect();
     let is_sure = |(row, direction): (&Row, &f64)| direction.abs() > SURE && row.rate.abs() > SLOW * usual;
     seen.kept(&seen.rows.iter().zip(&direction).map(is_sure).collect::<Vec<bool>>())
 }
 
-/// The comparison, and what goes with it.
+/// The comparison with its free-run model.
 pub struct Force {
     pub side: Side,
-    /// How well friction is told from the load.
+    /// Separability of friction and load.
     pub told: Option<Told>,
-    /// What the input does on its own.
+    /// Free-run model of the input.
     pub input: Input,
 }
 
-/// The force at the input against its motion and the load, and how well friction is told from that load.
+/// The input force against its motion and the load, and the separability of friction from that load.
 pub fn force(seen: &Seen, names: &'static Columns) -> Result<Option<Force>, EstimateError> {
     if seen.rows.iter().any(|r| r.force.is_none()) {
         return Ok(None);

@@ -1,5 +1,6 @@
-//! The input of a transmission on its own: a hand holds it on its measured way, and its friction and the measured load act against it. (Its inertia
-//! is a small part of the force: a measured force that drove it would be followed in all its errors.)
+//! The input of a transmission on its own: a hand holds it on its measured way, and its friction and the measured load
+//! act against it. (Its inertia is a small part of the force: a measured force that drove it would be followed in all
+//! its errors.)
 
 use super::rows::{ROW_HZ, Row, Seen};
 use crate::diagnose::geometry::Study;
@@ -9,25 +10,25 @@ use haptics::law::{
     CoulombFriction, Effect, Hysteresis, Inertia, LoadFriction, Motion, QuadraticDrag, ReturnSpring, ViscousFriction,
 };
 
-/// What is compared of a transmission's force, as a motion.
+/// Free-run simulation of a transmission's input.
 pub struct Input {
     rows: Vec<Row>,
     stretch: Vec<usize>,
     unit: &'static str,
-    /// Which column of the model is the acceleration: what it comes out at is the inertia.
+    /// Index of the acceleration among the model's regressors. Its coefficient is the inertia.
     inertia: usize,
-    /// Middle of its way, where a spring is without force by its column.
+    /// Middle of its travel, the position at which the regressor of a spring is zero.
     middle: f64,
 }
 
 impl Input {
-    /// `unit`: of the force; `inertia`: which column of the model is the acceleration.
+    /// `unit`: of the force; `inertia`: index of the acceleration among the model's regressors.
     pub fn new((rows, stretch): (&[Row], &[usize]), unit: &'static str, inertia: usize, seen: &Seen) -> Self {
         let (low, high) = seen.ends();
         Self { rows: rows.to_vec(), stretch: stretch.to_vec(), unit, inertia, middle: 0.5 * (low + high) }
     }
 
-    /// Friction of so much, and a cause that is a law by itself.
+    /// Law of a friction of this size, or of a cause that is a law by itself.
     fn law(&self, id: &str, value: f64) -> Option<Effect> {
         Some(match id {
             "load-friction" => Effect::new(&LoadFriction, &[value]),
@@ -38,13 +39,13 @@ impl Input {
         })
     }
 
-    /// Laws of the causes; nothing where one has none.
+    /// Laws of the causes; `None` if one has no law.
     fn effects(&self, study: &Study, picks: &[usize], values: &[f64]) -> Option<Vec<Effect>> {
         let (mut effects, mut dry) = (vec![Effect::new(&Inertia, &[values[self.inertia].max(0.0)])], 0.0);
         for (candidate, own) in causes(study, picks, values) {
             match candidate.id {
                 "coulomb-friction" => dry += own[0],
-                // What bends before it slides is taken from what slides at once.
+                // Friction that bends before it slides is part of the dry friction, and is subtracted from it.
                 "hysteresis" => {
                     let way = candidate.searched.first().map_or(0.0, |s| s.value).max(1e-12);
                     dry -= own[0];
@@ -83,7 +84,7 @@ impl Forward for Input {
 
     fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
         let effects = self.effects(study, picks, values).ok_or_else(|| NO_LAW.to_owned())?;
-        // Zeros of the sensor and the load drive it; they are no laws.
+        // The sensors' zeros and the load drive it; they are no laws.
         let beside: Vec<usize> = (0..study.base.len()).filter(|k| *k != self.inertia).collect();
         let moment = |i: &usize| {
             let known: f64 = beside.iter().map(|k| values[*k] * study.base[*k][*i]).sum();

@@ -1,4 +1,4 @@
-//! Rows out of recordings of a transmission.
+//! Rows of a transmission's recordings.
 
 use super::fine::Fine;
 use crate::diagnose::compare::stretches;
@@ -15,12 +15,12 @@ pub struct Row {
     pub output: f64,
     pub rate: f64,
     pub acceleration: f64,
-    /// Force at the input, and at the output where that was recorded.
+    /// Force at the input, and at the output if it was recorded.
     pub force: Option<f64>,
     pub load: Option<f64>,
 }
 
-/// Names of the columns of one kind of coordinate, and its units.
+/// Names of the channels of one kind of coordinate, and its units.
 pub struct Columns {
     pub input: &'static str,
     pub output: &'static str,
@@ -39,7 +39,7 @@ pub fn columns(recording: &Recording) -> Option<&'static Columns> {
     COLUMNS.iter().find(|c| recording.channel(c.output).is_some() && recording.channel(c.input).is_some())
 }
 
-/// Rows of all recordings, and what they were made of.
+/// Rows of all recordings, with the signals from which they were made.
 pub struct Seen {
     pub rows: Vec<Row>,
     pub fine: Vec<Fine>,
@@ -55,13 +55,13 @@ impl Seen {
         Self { rows: rows.concat(), fine, step }
     }
 
-    /// One column out of a series of every recording, at some of the rows.
+    /// A regressor made from a series of every recording, at some of the rows.
     pub fn column(&self, kept: &[usize], of: &dyn Fn(&Fine) -> Vec<f64>) -> Vec<f64> {
         let all: Vec<f64> = self.fine.iter().flat_map(of).collect();
         kept.iter().map(|i| all[*i]).collect()
     }
 
-    /// The rows that are wanted; all of a recording of which too few are.
+    /// The rows that are wanted, or all rows of a recording with too few of them.
     pub fn kept(&self, wanted: &[bool]) -> Vec<usize> {
         let mut kept = Vec::new();
         let mut first = 0;
@@ -108,7 +108,7 @@ fn rows(recording: &Recording, number: usize, names: &Columns) -> Option<(Vec<Ro
     Some(((0..time.len()).step_by(every).map(row).collect(), Fine::new(time, raw, every)))
 }
 
-/// An extra channel of the force's unit that is not the force at the input: the load at the output.
+/// Load at the output: an extra channel in the force's unit that is not the force at the input.
 fn load<'a>(recording: &'a Recording, names: &Columns) -> Option<&'a [f64]> {
     let ending = names.force.rsplit('_').next()?;
     let other =
@@ -116,7 +116,7 @@ fn load<'a>(recording: &'a Recording, names: &Columns) -> Option<&'a [f64]> {
     Some(&other.values)
 }
 
-/// One constant a recording: zeros of sensors differ.
+/// One constant per recording, because sensors' zeros differ.
 pub fn constants(rows: &[Row]) -> Vec<Vec<f64>> {
     let mut numbers: Vec<usize> = rows.iter().map(|r| r.recording).collect();
     numbers.dedup();
@@ -148,7 +148,7 @@ pub fn spread(values: &[f64]) -> f64 {
     (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt()
 }
 
-/// Rows come at about this rate, Hz.
+/// Approximate rate of the rows, Hz.
 pub const ROW_HZ: f64 = 50.0;
-/// Fewer rows, as a share, would not stand for a recording.
+/// Least share of rows that still represents a recording.
 const FEW: f64 = 0.5;

@@ -1,19 +1,21 @@
-//! Half gaps and ways of a bend: a grid over what the input goes, and closer and closer about what was found there.
+//! Search grids for half gaps and presliding distances: over the input's travel, then finer around the values found.
 
 use crate::diagnose::geometry::Study;
 use crate::diagnose::searched::known;
 use crate::estimate::EstimateError;
 
-/// Half gaps that are tried, as shares of the input's range.
+/// Tried half gaps, as shares of the input's range.
 const GAPS: [f64; 14] =
     [0.003, 0.005, 0.0075, 0.01, 0.0125, 0.015, 0.018, 0.022, 0.027, 0.033, 0.042, 0.055, 0.075, 0.1];
-/// Steps in which a found half gap or way is closed in on, as shares of it, and how many of them to either side.
+/// Refinement steps around a half gap or presliding distance found, as shares of it, and number of steps to either
+/// side.
 const CLOSER: [f64; 3] = [0.05, 0.01, 0.002];
 const STEPS: i32 = 5;
-/// A value is closed in on only while it is known to this share of the distance between those that were tried: between closer ones nothing tells them apart.
+/// Standard error, as a share of the distance between tried values, up to which the grid is refined. Closer values
+/// cannot be separated.
 const SHARPER: f64 = 0.3;
 
-/// Half gaps, or ways of a bend, that are tried: more closely about what was found.
+/// Tried half gaps or presliding distances, finer around a value found.
 pub struct Tried {
     id: &'static str,
     values: Vec<f64>,
@@ -24,12 +26,12 @@ impl Tried {
         Self { id, values: GAPS.map(|share| share * range).to_vec() }
     }
 
-    /// In the unit of the input, in order.
+    /// Tried values in the unit of the input, in order.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// Adds values in these steps about the one that was found; false where that would tell nothing.
+    /// Adds values in these steps around the one found; false if finer values would not improve the estimate.
     fn close_in(&mut self, study: &Study, step: f64) -> bool {
         let Some(k) = study.chosen.iter().position(|c| study.candidates[c.candidate].id == self.id) else {
             return false;
@@ -48,7 +50,7 @@ impl Tried {
     }
 }
 
-/// Compares again and again, with what was searched for closed in on.
+/// Compares repeatedly, with a finer grid around the values found.
 pub fn closer(
     tried: &mut [Tried],
     once: &dyn Fn(&[Tried]) -> Result<Study, EstimateError>,

@@ -1,4 +1,4 @@
-//! The output of a transmission against its input.
+//! Output of a transmission against its input.
 
 use super::Side;
 use super::fine::Fine;
@@ -13,13 +13,13 @@ use crate::estimate::EstimateError;
 use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 
-/// A gap that makes up a smaller share of the lost motion, or a larger one, is not what its name says.
+/// Range of a gap's share of the lost motion. Outside of it, the cause is not what its name says.
 const SHARES: [f64; 2] = [0.1, 2.0];
-/// What moves the output by less than so many times its noise, or than this share of its sensor's steps, is not told from those steps: an output that
-/// waits shows one and the same of them.
+/// Least effect on the output, in multiples of its noise and as a share of its sensor's steps. A smaller one cannot be
+/// distinguished from the steps: an output at rest reads one and the same step.
 const NOISES: f64 = 2.0;
 const STEPS_OF_SENSOR: f64 = 0.5;
-/// Clocks of two sensors differ by this, and what filters them: an output that is no later is not late, s.
+/// Difference of the clocks and filters of two sensors, s: a smaller delay is none.
 const CLOCKS_DIFFER_S: f64 = 3e-4;
 
 /// The output against the input.
@@ -33,15 +33,15 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
     base.push(of(&|r| r.input));
     let lever = ratio(rows);
     let share = Shape::Share { least: SHARES[0] * lever, whole: f64::NEG_INFINITY, most: SHARES[1] * lever };
-    // What moves the output by so little may be the steps of its sensor.
+    // A smaller motion of the output may be due to the steps of its sensor.
     let noise = white_noise(&rows.iter().map(|r| r.output).collect::<Vec<_>>());
     let least =
         |column: &[f64]| (NOISES * noise).max(STEPS_OF_SENSOR * seen.step) / spread(column).max(f64::MIN_POSITIVE);
     let mut plain = Vec::new();
     for f in [|r: &Row| r.load, |r: &Row| r.force] {
         if rows.iter().all(|r| f(r).is_some()) {
-            // Without its mean over a recording, which the zero of the output has.
-            // A load may be counted either way.
+            // The mean over a recording is removed, because it belongs to the zero of the output. A load may have
+            // either sign.
             for sign in [1.0, -1.0] {
                 let column = of(&|r| sign * f(r).unwrap_or(0.0));
                 let least = least(&column);
@@ -78,7 +78,8 @@ pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> 
     Ok(Side::new(study, rows.clone(), stretch, ("output's place", names.unit), noise))
 }
 
-/// Parameters of what the output shows, for the input: the output moves by the ratio. Of a gap's share it is not known better than the gap is.
+/// Parameters of what the output shows, for the input: the output moves by the ratio. Of a gap's share it is not known
+/// better than the gap is.
 pub fn as_of_input(
     study: &Study,
     own: &Candidate,
@@ -87,7 +88,7 @@ pub fn as_of_input(
 ) -> Vec<CauseParameter> {
     let place = study.chosen.iter().position(|c| std::ptr::eq(&raw const study.candidates[c.candidate], own));
     let ratio = study.solved.as_ref().map_or(1.0, |s| s.values[study.system.base - 1]);
-    // An output that waits behind a gap shows one step of its sensor, wherever within that it is.
+    // An output at rest within a gap shows one step of its sensor, whatever its exact position.
     let unseen = step / 12.0_f64.sqrt() / ratio.abs();
     let searched = own.searched.first().map_or(f64::INFINITY, |s| s.value);
     for p in &mut found {
@@ -98,7 +99,7 @@ pub fn as_of_input(
             }
             "delta" | "way" => p.std_error = p.std_error.hypot(unseen),
             "tau" => {
-                // Noise of a regressor makes its weight small.
+                // Noise of a regressor biases its coefficient towards zero.
                 let small = place.map_or(0.0, |k| p.value * noise_of_own(study, study.chosen[k].candidate));
                 (p.value, p.std_error) = (p.value / ratio, (p.std_error.hypot(small) / ratio).abs());
             }
@@ -109,7 +110,7 @@ pub fn as_of_input(
     found
 }
 
-/// Share of a candidate's first column, as the comparison sees it, that is noise.
+/// Noise share of a candidate's first regressor after whitening.
 fn noise_of_own(study: &Study, candidate: usize) -> f64 {
     let system = &study.system;
     let first = system.places[candidate].start;

@@ -1,4 +1,4 @@
-//! Rows of a motion that was not made yet: the model's own forces on it.
+//! Predicted rows of a motion that has not been made yet, with the forces of the base model.
 
 use super::super::blur::blur;
 use super::super::force::Model;
@@ -10,7 +10,7 @@ use crate::diagnose::report::Experiment;
 use haptics::Vec2;
 use haptics::law::Motion;
 
-/// The rows of an experiment on the object of `track`. `values`: what the model's laws come out at.
+/// Predicted rows of an experiment on the object of `track`. `values`: estimates of the model's laws.
 pub fn imagine(track: &Track, model: &Model, values: &[f64], excitation: &Excitation, asked: &Experiment) -> Track {
     let scale = if track.planar { track.radius_m.unwrap_or(1.0) } else { 1.0 };
     let step = track.period_s;

@@ -1,15 +1,16 @@
-//! Motions that can be asked for: what a person, or a program that moves like one, can do with an object in half a minute.
+//! Motions that can be asked for: what a person, or a program that moves like one, can do with an object in half a
+//! minute.
 
-/// One movement: to where, how fast, how long a rest after it, and the push across at its end.
+/// One movement: target, speed, rest after it, and transverse push at its end.
 #[derive(Clone, Copy, Debug)]
 pub struct Move {
-    /// Where it ends, in half ranges from the middle.
+    /// Target position, in half ranges from the middle.
     pub to: f64,
-    /// Its fastest speed, in those of the experiment.
+    /// Its highest speed, relative to the experiment's.
     pub pace: f64,
     /// s
     pub rest_s: f64,
-    /// In units of the usual push across the motion.
+    /// Transverse push, in units of the usual one.
     pub across: f64,
 }
 
@@ -17,7 +18,7 @@ pub struct Move {
 pub struct Excitation {
     pub id: &'static str,
     pub words: &'static str,
-    /// Seconds of letting go at either end.
+    /// Duration without touch at either end, s.
     pub free_s: f64,
     /// The k-th movement.
     pub step: fn(usize) -> Move,
@@ -27,7 +28,7 @@ const fn going(to: f64, pace: f64, rest_s: f64, across: f64) -> Move {
     Move { to, pace, rest_s, across }
 }
 
-/// Ends of a stroke in turn.
+/// Sides of the strokes in turn.
 fn side(k: usize) -> f64 {
     if k.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
@@ -36,7 +37,7 @@ fn one_of<const N: usize>(of: [f64; N], k: usize) -> f64 {
     of[k % N]
 }
 
-/// What is hung on is moved slowly: its inertia is no question.
+/// Slow motion with a hung weight: its inertia does not matter.
 pub const HANG: Excitation = Excitation {
     id: "hang-weight",
     words: "turn slowly to and fro over the whole range, and let go for a second before and after",

@@ -1,4 +1,5 @@
-//! The recording that would settle what is open: candidates' columns on motions that were not made yet.
+//! Recording that would settle the open questions: regressors of the candidates on motions that have not been recorded
+//! yet.
 
 mod imagine;
 mod library;
@@ -19,27 +20,27 @@ use library::{Excitation, HANG, LIBRARY};
 pub(super) use separation::{Imagined, separation};
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Lengths of a proposed recording, s: the shortest that is likely to do.
+/// Lengths of a proposed recording, s. The shortest that is likely to suffice is proposed.
 const LENGTHS_S: [f64; 3] = [20.0, 40.0, 80.0];
 pub(super) const LIKELY: f64 = 0.8;
 /// Evidence that settles a question, as a log likelihood ratio.
 const SETTLED: f64 = 5.0;
-/// How often a question is settled whose evidence is certain to suffice, by a motion and by a hung weight: the truth may be neither answer
-/// (measured, `docs/diagnosis.md`).
+/// Share of questions that a motion, and a hung weight, settle although the evidence is sure to suffice. It is below
+/// one because neither answer may be true (measured, `docs/diagnosis.md`).
 pub(super) const SURE: f64 = 0.85;
 pub(super) const SURE_HUNG: f64 = 0.95;
-/// More evidence than this is as good as certain.
+/// Evidence from which a question counts as settled.
 const MOST: f64 = 1e6;
-/// A crank is turned no farther than this to either side, rad.
+/// Largest turn of a crank to either side, rad.
 const TURN_RAD: f64 = 7.0;
-/// The weight to hang on, in those that the object shows, and the heaviest, N: fingers must still lift it.
+/// Weight to hang on, as a multiple of the object's, and the heaviest, N, which fingers can still lift.
 const HUNG_WEIGHTS: f64 = 6.0;
 const HEAVIEST_N: f64 = 1.2;
-/// On a mechanism that turns: how many times the moment that was found, and the lever, m.
+/// Hung weight on a mechanism that turns: multiple of the moment found, and lever, m.
 const HUNG_MOMENTS: f64 = 10.0;
 const LEVER_M: f64 = 0.1;
 
-/// What to record next so that `open` alternatives are told apart from what was found; `None` when nothing is open.
+/// Next experiment, which separates the found causes from the `open` alternatives; `None` if no question is open.
 pub fn propose(track: &Track, model: &Model, study: &Study, open: &[Alternative]) -> Option<NextExperiment> {
     let solved = study.solved.as_ref()?;
     let pairs: Vec<(&str, &str)> = open.iter().map(|a| (a.instead_of.as_str(), a.id.as_str())).collect();
@@ -77,7 +78,7 @@ fn proposal(motion: String, pairs: &[(&str, &str)], power: f64, experiment: Expe
     NextExperiment { motion, separates, expected_power: power, experiment: Some(experiment) }
 }
 
-/// A motion of the library on this object: as wide and as fast as it was moved before.
+/// A motion of the library with the range and speed of the recorded motion.
 fn asked(track: &Track, excitation: &Excitation, seconds: f64) -> Experiment {
     let scale = if track.planar { track.radius_m.unwrap_or(1.0) } else { 1.0 };
     let at = |share| track.quantile(share, |r| r.motion.position) / scale;
@@ -96,7 +97,8 @@ fn asked(track: &Track, excitation: &Excitation, seconds: f64) -> Experiment {
     }
 }
 
-/// An eccentric mass and a tilted plane are the same in every motion of the object: a known weight on it tells them apart.
+/// An eccentric mass and a tilted plane are equivalent in every motion of the object. A known weight on it separates
+/// them.
 fn hang(track: &Track, model: &Model, study: &Study, pair: (&str, &str)) -> Option<NextExperiment> {
     let solved = study.solved.as_ref()?;
     let chosen = study.chosen.iter().find(|c| study.candidates[c.candidate].id == pair.0)?;
@@ -107,7 +109,7 @@ fn hang(track: &Track, model: &Model, study: &Study, pair: (&str, &str)) -> Opti
         let own_n: f64 = own.map(|(e, share)| share * e.values[0]).sum();
         asked.added_weight_n = in_steps(HUNG_WEIGHTS * own_n.max(0.02));
         asked.added_lever_m = track.radius_m?;
-        // How many times as large the sine would be that a tilt makes.
+        // Factor by which the weight enlarges the sine of a tilt.
         let times = 1.0 + asked.added_weight_n / own_n.max(0.02);
         let share = asked.seconds / track.span_s.max(1.0);
         let lambda = chosen.lambda.min(MOST) * share * (times - 1.0).powi(2) / (1.0 + share * times * times);
@@ -119,7 +121,7 @@ fn hang(track: &Track, model: &Model, study: &Study, pair: (&str, &str)) -> Opti
     asked.added_lever_m = LEVER_M;
     asked.added_weight_n = in_steps(HUNG_MOMENTS * moment / LEVER_M);
     let hung = asked.added_weight_n * LEVER_M;
-    // All of it acts, or the sine of a small tilt: nothing in between is thought of.
+    // Either all of it acts, or the sine of a small tilt; nothing in between is considered.
     let noise = track.force_noise.max(1e-12);
     let lambda = asked.seconds / track.period_s * 0.5 * (0.4 * hung / noise).powi(2);
     Some(hung_proposal(&asked, &[pair], power(lambda), "a lever"))

@@ -1,4 +1,4 @@
-//! How well a motion would tell two causes apart.
+//! Separability of two causes on a motion.
 
 use super::super::candidate::Candidate;
 use super::super::columns::Columns;
@@ -11,19 +11,19 @@ use super::super::track::Track;
 use super::super::white::Whitening;
 use nalgebra::{DMatrix, DVector};
 
-/// Rows of a motion that was not made yet, as a channel would see them.
+/// Predicted rows of a motion that has not been made yet.
 pub struct Imagined {
-    /// Columns of the model and of everything that could explain the rows.
+    /// Regressors of the base model, and all candidates.
     pub base: Vec<Vec<f64>>,
     pub candidates: Vec<Candidate>,
-    /// Rows of one number follow each other without a gap.
+    /// Segment of each row.
     pub stretch: Vec<usize>,
-    /// What each row's noise is smaller by.
+    /// Weight of each row: inverse of its relative noise.
     pub weight: Vec<f64>,
 }
 
 impl Imagined {
-    /// What would be seen of causes along a coordinate.
+    /// Predicted effects of the causes along one coordinate.
     pub fn along(track: &Track, model: &Model, study: &Study) -> Self {
         let base: Vec<Vec<f64>> = model.iter().map(|e| column(track, e)).collect();
         let predicted: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
@@ -46,20 +46,20 @@ impl Imagined {
             base,
             candidates,
             stretch: track.rows.iter().map(|r| r.stretch).collect(),
-            // Where the direction is a guess, so is all of the friction.
+            // An uncertain direction makes all of the friction uncertain.
             weight: track.rows.iter().map(|r| (1.0 + r.y * r.y * r.open / variance).powf(-0.5)).collect(),
         }
     }
 }
 
-/// What a study left of a row's power, on the average.
+/// Mean residual power of a row in a study.
 fn variance(study: &Study) -> Option<f64> {
     let solved = study.solved.as_ref()?;
     Some(solved.variance(study.system.rows).max(1e-24))
 }
 
-/// λ of the worse case: either the found cause is there or its rival, and the model and the other one imitate what they can of it on this
-/// motion. Over the noise as it is coloured.
+/// Expected evidence λ in the worse of two cases: the found cause is true, or its rival is. In each, the model and the
+/// other cause explain as much of the effect as they can on this motion. The noise keeps its autocorrelation.
 pub fn separation(imagined: &Imagined, study: &Study, pair: (&str, &str)) -> Option<f64> {
     let found = study.chosen.iter().position(|c| study.candidates[c.candidate].id == pair.0)?;
     let mut picks = study.picks();
@@ -72,10 +72,10 @@ pub fn separation(imagined: &Imagined, study: &Study, pair: (&str, &str)) -> Opt
     Some(backward.map_or(forward, |backward| forward.min(backward)))
 }
 
-/// What would be seen of causes on a motion.
+/// Predicted effects of causes on a motion, whitened.
 struct Eye<'a> {
     on: &'a Imagined,
-    /// The model's own columns, whitened.
+    /// Regressors of the base model, whitened.
     base: Vec<Vec<f64>>,
     white: Whitening<'a>,
     variance: f64,
@@ -92,7 +92,7 @@ impl<'a> Eye<'a> {
         })
     }
 
-    /// What of the k-th of `picks`, as large as it came out, model and `other` could not imitate.
+    /// Part of the k-th of `picks`, with its estimated size, that the model and `other` cannot explain.
     fn lambda(&self, study: &Study, picks: &[usize], k: usize, other: &str) -> Option<f64> {
         let solved = study.system.solve(picks)?;
         let own = &study.candidates[picks[k]];
@@ -113,7 +113,7 @@ impl<'a> Eye<'a> {
     }
 }
 
-/// The instance of the same cause whose searched values are nearest.
+/// The candidate of the same cause with the nearest searched values.
 fn nearest<'a>(candidates: &'a [Candidate], own: &Candidate) -> Option<&'a Candidate> {
     let apart = |c: &Candidate| -> f64 {
         c.searched.iter().zip(&own.searched).map(|(a, b)| ((a.value - b.value) / b.value.abs().max(1e-9)).powi(2)).sum()
@@ -122,7 +122,7 @@ fn nearest<'a>(candidates: &'a [Candidate], own: &Candidate) -> Option<&'a Candi
     candidates.iter().filter(same).min_by(|a, b| apart(a).total_cmp(&apart(b)))
 }
 
-/// Sum of squares of what the columns leave of a series.
+/// Residual sum of squares of a series after a fit of the columns.
 fn unexplained<'a>(series: &[f64], columns: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
     let columns: Vec<&Vec<f64>> = columns.filter(|c| c.iter().any(|v| *v != 0.0)).collect();
     let matrix = DMatrix::from_fn(series.len(), columns.len(), |i, j| columns[j][i]);

@@ -1,11 +1,11 @@
-//! The strokes of a motion of the library: where the object is wanted when, and how hard it is pushed across.
+//! Strokes of a motion of the library: target position and transverse push over time.
 
 use super::library::{Excitation, HANG, LIBRARY};
 use crate::diagnose::report::Experiment;
 
 /// Peak over mean speed of a movement from rest to rest.
 const PEAK: f64 = 1.875;
-/// Nobody moves to and fro faster than this, s a movement.
+/// Shortest duration of a back-and-forth movement, s.
 const SHORTEST_S: f64 = 0.25;
 
 /// Position and push across, in units of the experiment, at a time.
@@ -15,7 +15,7 @@ pub(super) struct Course {
 }
 
 impl Course {
-    /// `speed`: half ranges a second at pace 1.
+    /// Knots of the motion. `speed`: half ranges per second at pace 1.
     pub(super) fn of(excitation: &Excitation, speed: f64, until_s: f64) -> Self {
         let mut knots = vec![(0.0, 0.0, 0.0)];
         let mut k = 0;
@@ -41,7 +41,7 @@ impl Course {
     }
 }
 
-/// Where an experiment wants the object, and how hard it is pushed across its motion.
+/// Target of an experiment: position of the object and transverse push.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     /// Length in m, or angle in rad: as in the [`Experiment`].
@@ -60,7 +60,7 @@ pub struct Strokes {
 }
 
 impl Strokes {
-    /// Nothing for a motion that is not in the library, or numbers that make none.
+    /// `None` for a motion that is not in the library, or for numbers that define none.
     pub fn of(asked: &Experiment) -> Option<Self> {
         let excitation = LIBRARY.iter().chain([&HANG]).find(|e| e.id == asked.id)?;
         let sane = [asked.seconds, asked.half_range, asked.fast].iter().all(|v| v.is_finite() && *v > 0.0);
@@ -71,7 +71,7 @@ impl Strokes {
         Some(Self { course, middle: asked.middle, half_range: asked.half_range, across_n: asked.across_n })
     }
 
-    /// What is wanted so long after the object was taken, s.
+    /// Target at this time after the object was taken, s.
     pub fn at(&self, time_s: f64) -> Stroke {
         let (place, across) = self.course.at(time_s.max(0.0));
         Stroke { coordinate: self.middle + self.half_range * place, across_n: self.across_n * across }

@@ -7,16 +7,16 @@ pub const PIERCE: &str = "pierce-slow-fast";
 pub const THROW: &str = "throw-slow-fast";
 /// Peak over mean speed of a movement from rest to rest.
 const PEAK: f64 = 1.875;
-/// Nobody moves to and fro faster than this, s a movement.
+/// Shortest duration of a back-and-forth movement, s.
 const SHORTEST_S: f64 = 0.15;
-/// A needle rests so far outside of its sheet, m, and goes to another place in this time, s.
+/// Distance of a resting needle from its sheet, m, and duration of a change of place, s.
 const OUTSIDE_M: f64 = 4e-3;
 const OVER_S: f64 = 1.0;
-/// Share of the depth at which the sheet gives way that it is pressed to beforehand.
+/// Depth of the presses before a puncture, as a share of the puncture depth.
 const PRESSED: f64 = 0.6;
-/// Paces of throws, in turn, two a pace: one to either side.
+/// Paces of throws, in turn; two throws per pace, one to either side.
 const PACES: [f64; 3] = [0.15, 1.0, 0.4];
-/// A knob is pressed against its stop, let go, and left alone for so long, s.
+/// Duration of the press against a stop, of the release, and of the rest after it, s.
 const PRESS_S: f64 = 0.35;
 const RELEASE_S: f64 = 0.4;
 const ALONE_S: f64 = 0.25;
@@ -41,7 +41,7 @@ impl Turns {
         self.0.push((now_s + seconds, place));
     }
 
-    /// On to a place, at a peak speed.
+    /// Adds a movement to a position, with this peak speed.
     fn go(&mut self, to: f64, fastest: f64) {
         let (now_s, from) = self.end();
         self.0.push((now_s + (PEAK * (to - from).abs() / fastest).max(SHORTEST_S), to));
@@ -57,18 +57,18 @@ impl Turns {
     }
 }
 
-/// What a needle is asked to do in a sheet: at one place after the other, press and draw back, push through, move in the hole slowly and
-/// fast, draw out.
+/// Sequence of insertions of a needle. At one place after the other it presses and draws back, pushes through, moves in
+/// the hole slowly and fast, and is withdrawn.
 #[derive(Clone, Debug)]
 pub struct Insertions {
     depth: Turns,
-    /// When each begins, s.
+    /// Start of each insertion, s.
     begin_s: Vec<f64>,
     puncture_m: f64,
 }
 
 impl Insertions {
-    /// Nothing for another motion, or for numbers that make none.
+    /// `None` for another motion, or for numbers that define none.
     pub fn of(asked: &Experiment) -> Option<Self> {
         let (puncture_m, full_m) = (asked.middle - asked.half_range, asked.middle + asked.half_range);
         let sane = [asked.seconds, asked.half_range, asked.fast, puncture_m].iter().all(|v| v.is_finite() && *v > 0.0);
@@ -92,27 +92,27 @@ impl Insertions {
         Some(Self { depth, begin_s, puncture_m })
     }
 
-    /// How many.
+    /// Number of insertions.
     pub fn count(&self) -> usize {
         self.begin_s.len()
     }
 
-    /// How long all of them take, s.
+    /// Duration of all insertions, s.
     pub fn duration_s(&self) -> f64 {
         self.depth.end().0
     }
 
-    /// How deep the point of the needle is wanted, m beyond the sheet's surface.
+    /// Target depth of the needle's tip, m beyond the sheet's surface.
     pub fn depth_m(&self, time_s: f64) -> f64 {
         self.depth.at(time_s)
     }
 
-    /// Depth at which the sheet is expected to give way, m.
+    /// Expected puncture depth of the sheet, m.
     pub fn puncture_m(&self) -> f64 {
         self.puncture_m
     }
 
-    /// The insertion that is going on, and how far the hand is on its way to the place of the next, 0 … 1.
+    /// The current insertion, and the progress of the hand to the place of the next one, 0 … 1.
     pub fn place(&self, time_s: f64) -> (usize, f64) {
         let k = self.begin_s.partition_point(|b| *b <= time_s).saturating_sub(1);
         let ends_s = self.begin_s.get(k + 1).copied().unwrap_or_else(|| self.duration_s());
@@ -123,9 +123,9 @@ impl Insertions {
 /// One throw of a switch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Throw {
-    /// When it begins, s.
+    /// Start of the throw, s.
     pub begins_s: f64,
-    /// How long the finger is on its way, s.
+    /// Duration of the finger's movement, s.
     pub takes_s: f64,
     /// To the right, or to the left.
     pub right: bool,
@@ -133,7 +133,8 @@ pub struct Throw {
     pub fast_m_s: f64,
 }
 
-/// What a switch is asked for: throws to either side in turn, two slow ones, two fast ones, two in between; pressed at each stop, then let go.
+/// Sequence of throws of a switch, to either side in turn: two slow ones, two fast ones, two in between. At each stop
+/// the knob is pressed, then released.
 #[derive(Clone, Debug)]
 pub struct Throws {
     throws: Vec<Throw>,
@@ -141,8 +142,8 @@ pub struct Throws {
 }
 
 impl Throws {
-    /// Nothing for another motion, or for numbers that make none. `pressed_m`, `released_m`: how far from the middle the hand is when it
-    /// presses the knob against a stop, and when it has let it go there.
+    /// `None` for another motion, or for numbers that define none. `pressed_m`, `released_m`: distance of the hand from
+    /// the middle when it presses the knob against a stop, and after it has released it there.
     pub fn of(asked: &Experiment, pressed_m: f64, released_m: f64) -> Option<Self> {
         let sane = [asked.seconds, asked.half_range, asked.fast, pressed_m, released_m];
         if asked.id != THROW || !sane.iter().all(|v| v.is_finite() && *v > 0.0) {
@@ -168,12 +169,12 @@ impl Throws {
         &self.throws
     }
 
-    /// How long all of them take, s.
+    /// Duration of all throws, s.
     pub fn duration_s(&self) -> f64 {
         self.middle_of_hand.end().0
     }
 
-    /// How far the middle of the fingers is to the right of that of the knob's way, m.
+    /// Offset of the middle of the fingers to the right of the middle of the knob's travel, m.
     pub fn at_m(&self, time_s: f64) -> f64 {
         self.middle_of_hand.at(time_s)
     }

@@ -1,8 +1,10 @@
-//! What moves without a force column: nothing drives it, so its laws and its inertia must add up to nothing.
+//! Free motion, without a force channel. No external force acts, so the forces of the laws and of the inertia sum to
+//! zero.
 //!
-//! The rows are those of a mechanism with a force of zero and a known inertia: what the laws must give is then minus what the mass needs,
-//! −I a. The acceleration carries the most noise, so it stands on that side alone. Only ratios to the inertia show; what the sidecar (or the
-//! world) knows gives them their size, as in a fit (`identify/mechanism/free.rs`). All values are proportional to the inertia.
+//! The rows are those of a mechanism with zero force and a known inertia: the laws must equal −I a. The acceleration
+//! has the most noise, so it is the target. The data determine only ratios to the inertia. Values known from the
+//! sidecar or the world set the scale, as in a fit (`identify/mechanism/free.rs`). All values are proportional to the
+//! inertia.
 
 mod rows;
 mod words;
@@ -28,15 +30,15 @@ use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 pub(super) use rows::track;
 
-/// What goes no larger a share of its way back goes one way.
+/// Share of backward travel up to which a motion counts as one-way.
 const ONE_WAY: f64 = 0.02;
-/// What swings goes back at least this share of its way …
+/// Least share of backward travel of a swing.
 const BACK: f64 = 0.1;
-/// … and gravity of any phase then explains so much of its acceleration's power at least.
+/// Least share of the acceleration's power that gravity of any phase explains in a swing.
 const SWINGS: f64 = 0.5;
-/// A known parameter gives the scale where its ratio to the inertia is so many standard errors.
+/// Standard errors from which the ratio of a known parameter to the inertia sets the scale.
 const CLEAR: f64 = 3.0;
-/// Causes that only a force sensor shows, or only a force that drives.
+/// Causes that only a force sensor or a driving force shows.
 const WITH_A_FORCE: [&str; 9] = [
     "force-bias",
     "force-drift",
@@ -49,7 +51,7 @@ const WITH_A_FORCE: [&str; 9] = [
     "backlash",
 ];
 
-/// Whether no recording has a force along its coordinate. `paths`: of tools whose coordinate is counted along one.
+/// True if no recording has a force along its coordinate. `paths`: of tools whose coordinate is measured along one.
 ///
 /// # Errors
 /// Recordings of both kinds, or without coordinate or clock: in a sentence.
@@ -66,10 +68,10 @@ pub(super) fn is_free(recordings: &[Recording], paths: &[Option<MechanismPath>])
     Ok(driven.iter().all(|d| !d))
 }
 
-/// Causes that are friction, or its course with the speed, in what goes one way and slows down.
+/// Causes that act like friction, or like its dependence on speed, in a one-way motion that slows down.
 const WITH_BOTH_WAYS: [&str; 3] = ["friction-asymmetry", "gravity-tilt", "friction-change"];
 
-/// Whether a free motion can show a cause at all. `both_ways`: whether it goes both ways.
+/// True if a free motion can show a cause at all. `both_ways`: the motion has both directions.
 pub(super) fn can_show(id: &str, both_ways: bool) -> bool {
     !WITH_A_FORCE.contains(&id) && (both_ways || !WITH_BOTH_WAYS.contains(&id))
 }
@@ -80,7 +82,7 @@ fn ways(track: &Track) -> [f64; 2] {
     [way(1.0), way(-1.0)]
 }
 
-/// Whether it goes both ways.
+/// True if the motion has both directions.
 pub(super) fn goes_both_ways(track: &Track) -> bool {
     let [forward, backward] = ways(track);
     forward.min(backward) > ONE_WAY * (forward + backward)
@@ -102,7 +104,7 @@ pub(super) fn diagnose(
     let mut study = force::study(&mut track, &model, &fixed, limit)?;
     options.progress.tell(0.6)?;
     if let Scale::ByRatio(stated) = scale {
-        // Beside what was found: a hidden spring would pass for gravity.
+        // Estimated together with the causes found: a hidden spring would look like gravity.
         match inertia_by(stated, &model, &study) {
             Some((inertia, relative_error)) => {
                 set(&mut track, inertia, relative_error);
@@ -123,7 +125,7 @@ pub(super) fn diagnose(
     Ok(found)
 }
 
-/// The rows of all recordings, and what is wrong with their samples.
+/// The rows of all recordings, and the faults of their samples.
 fn tracks(
     recordings: &[Recording],
     paths: &[Option<MechanismPath>],
@@ -141,7 +143,7 @@ fn tracks(
     Ok((join(tracks).ok_or_else(nothing)?, faults))
 }
 
-/// The laws to start from, without the inertia.
+/// The laws of the base model, without the inertia.
 fn model(track: &Track, first: &Recording, options: &Options) -> Result<Model, EstimateError> {
     let mut model: Model = match (&options.world, options.baseline.as_deref()) {
         (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),
@@ -155,7 +157,7 @@ fn model(track: &Track, first: &Recording, options: &Options) -> Result<Model, E
     Ok(model)
 }
 
-/// Gravity of any phase for an angle that swings: it need not be measured from hanging.
+/// Gravity of any phase for an angle that swings: its zero need not be the hanging position.
 fn gravity(track: &Track, first: &Recording) -> Model {
     let is_known = mechanism::stated(&first.meta, track.coordinate).iter().any(|s| matches!(s, Stated::Gravity(_)));
     if track.coordinate == Coordinate::Linear || !(is_known || swings(track)) {
@@ -164,7 +166,7 @@ fn gravity(track: &Track, first: &Recording) -> Model {
     [[1.0, 0.0], [0.0, 1.0]].map(|values| Effect::new(&EccentricMass, &values)).to_vec()
 }
 
-/// Whether it goes to and fro, and gravity explains how.
+/// True if the motion swings back and forth under gravity.
 fn swings(track: &Track) -> bool {
     let along = |of: &dyn Fn(&Row) -> f64| -> Vec<f64> { track.along().map(|i| of(&track.rows[i])).collect() };
     let [forward, backward] = ways(track);
@@ -177,20 +179,20 @@ fn swings(track: &Track) -> bool {
     explains && forward.min(backward) > BACK * (forward + backward)
 }
 
-/// Where the inertia comes from.
+/// Source of the inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Scale {
     /// The world or the sidecar states it.
     Stated,
-    /// A parameter is known whose ratio to it shows.
+    /// A known parameter whose ratio to the inertia is significant.
     ByRatio(Stated),
-    /// Such a parameter is known, but its ratio to the inertia does not show, or it is no part of the model.
+    /// A known parameter whose ratio to the inertia is not significant, or that is no part of the model.
     Hidden,
     /// Nothing is known.
     Nothing,
 }
 
-/// Sets the inertia where it is stated, or says which known parameter will tell it.
+/// Sets the inertia if it is stated; otherwise returns the known parameter that determines it.
 fn scale_of(track: &mut Track, first: &Recording, model: &mut Model, options: &Options) -> Scale {
     let laws = options.world.as_ref().and_then(|w| w.mechanism.as_ref()).map(|m| m.effects.as_slice());
     let of_world: f64 = laws.into_iter().flatten().filter(|e| e.role() == Role::Inertia).map(|e| e.values[0]).sum();
@@ -225,7 +227,7 @@ fn set(track: &mut Track, inertia: f64, relative_error: f64) {
     (free.inertia, free.relative_error, free.is_known) = (inertia, relative_error, true);
 }
 
-/// Friction that the sidecar knows is no part of what is fitted, unless it gave the inertia.
+/// Takes friction that the sidecar states out of the fitted laws, unless it determined the inertia.
 fn keep_known(track: &mut Track, first: &Recording, model: &mut Model, gave: Option<Stated>) {
     let had = model.clone();
     let known = known_laws(first, track.coordinate, model);
@@ -237,13 +239,13 @@ fn keep_known(track: &mut Track, first: &Recording, model: &mut Model, gave: Opt
     free.known = [kept.next(), kept.next()];
 }
 
-/// What is known of the forces: that of the mass, and friction that the sidecar states.
+/// Known forces: that of the inertia, and friction that the sidecar states.
 fn fixed(track: &Track) -> Model {
     let Some(free) = track.freely else { return Model::new() };
     std::iter::once(Effect::new(&Inertia, &[free.inertia])).chain(free.known.into_iter().flatten()).collect()
 }
 
-/// Inertia out of a known parameter and its value per unit of inertia, and one standard error of it as a share.
+/// Inertia from a known parameter and its value per unit of inertia, with its relative standard error.
 fn inertia_by(stated: Stated, model: &Model, study: &Study) -> Option<(f64, f64)> {
     let (Stated::Inertia(known) | Stated::Gravity(known) | Stated::Viscous(known) | Stated::Coulomb(known)) = stated;
     let solved = study.solved.as_ref()?;
@@ -256,7 +258,7 @@ fn inertia_by(stated: Stated, model: &Model, study: &Study) -> Option<(f64, f64)
     (ratio > CLEAR * error).then(|| (known / ratio, error / ratio))
 }
 
-/// A slope under what moves along a line: the sine of its angle. None where something turns or is driven.
+/// Slope under a linear motion, as the sine of its angle. `None` if the object rotates or is driven.
 pub(super) fn tilt(track: &Track) -> Option<Candidate> {
     let free = track.freely.filter(|_| track.coordinate == Coordinate::Linear)?;
     let pull = free.inertia * free.gravity_m_s2;
@@ -269,7 +271,8 @@ pub(super) fn tilted(track: &Track, sine: f64) -> Option<Effect> {
     Some(Effect::new(&GravityTilt, &[free.inertia * free.gravity_m_s2, sine.clamp(-1.0, 1.0).asin(), 0.0]))
 }
 
-/// The laws of what moves freely as a world has them: with its inertia and what is known, and gravity of both phases as one law.
+/// The laws of what moves freely as a world has them: with its inertia and what is known, and gravity of both phases as
+/// one law.
 pub(super) fn whole(track: &Track, laws: Vec<Effect>) -> Vec<Effect> {
     let Some(Freely { inertia, known, .. }) = track.freely else { return laws };
     let mut all = vec![Effect::new(&Inertia, &[inertia])];

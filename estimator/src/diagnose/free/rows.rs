@@ -1,8 +1,9 @@
-//! Rows out of a motion that nothing drives: the mean acceleration, and the motion over which it is the mean.
+//! Rows of a free motion: the mean acceleration, and the motion over which it is averaged.
 //!
-//! The acceleration is a second difference of mean places over three blocks (of mean rates over two, where a rate was measured better). Either
-//! is exactly the mean of the true acceleration with the weights of [`Weighing::Bell`] (of [`Weighing::Tent`]): long blocks have little noise,
-//! and cost no truth, because laws are evaluated between the rows and averaged with the same weights.
+//! The acceleration is a second difference of mean positions over three blocks, or a first difference of mean rates
+//! over two if a rate was measured better. Either is exactly the mean of the true acceleration with the weights of
+//! [`Weighing::Bell`] or [`Weighing::Tent`]. Long blocks have little noise and no bias, because laws are evaluated
+//! between the rows and averaged with the same weights.
 
 use crate::diagnose::fine::{FINE_HZ, between};
 use crate::diagnose::track::{Bearing, Fine, Freely, Place, Row, Span, Track, Weighing};
@@ -17,34 +18,36 @@ use haptics::recording::Recording;
 use haptics::world::MechanismPath;
 use std::ops::Range;
 
-/// Shortest and longest block, s …
+/// Shortest and longest block, s.
 const SHORTEST_S: f64 = 0.02;
 const LONGEST_S: f64 = 0.1;
-/// … but no longer than this share of a radian of the swing: what happens at a place or a reversal would be smeared.
+/// Longest block as a share of a radian of the swing. A longer one would blur effects at a place or a reversal.
 const LONGEST_RAD: f64 = 0.3;
-/// Noise of the acceleration as a share of the acceleration itself, from which on a block need not be longer.
+/// Ratio of noise to acceleration below which a block need not be longer.
 const QUIET: f64 = 0.01;
-/// A rate is used where it makes less than this share of the noise: what was derived from the places, perhaps late, is no better than they are.
+/// Share of the noise below which a measured rate is used. A rate that was derived from the positions, perhaps with a
+/// delay, is no better than they are.
 const RATE_BETTER: f64 = 0.3;
-/// Fewer blocks are no stretch.
+/// Least number of blocks in a segment.
 const LEAST_BLOCKS: usize = 8;
-/// Time stamps no further from an even clock than this share of a step were rounded, not uneven.
+/// Deviation from an even clock, as a share of a step, up to which time stamps count as rounded.
 const ROUNDED: f64 = 0.03;
-/// Order, and least samples on either side, of the polynomials that follow the motion between the rows.
+/// Order of the local polynomials between the rows, and their least number of samples on either side.
 const ORDER: usize = 4;
 const LEAST_HALF: usize = 3;
-/// What moves no faster, and speeds up no more, than so many times the noise for so many rows stands.
+/// Limit of velocity and acceleration of a standing object, in standard deviations of their noise, and the least number
+/// of such rows.
 const STANDS: f64 = 3.0;
 const STANDING_ROWS: usize = 3;
-/// Over this long accelerations are told for a first look, s.
+/// Time over which accelerations are estimated for a first look, s.
 const ROUGH_S: f64 = 0.06;
 
 /// The rows of one recording, with forces of zero and an inertia of one.
 ///
-/// `bad`: samples that no sensor measured; `path`: where a tool's coordinate is counted along, its own if none.
+/// `bad`: samples that no sensor measured; `path`: path along which a tool's coordinate is measured, its own if `None`.
 ///
 /// # Errors
-/// No coordinate, no clock, or too little in one uninterrupted piece: in a sentence.
+/// No coordinate, no clock, or too few samples in one segment: in a sentence.
 pub fn track(recording: &Recording, bad: &[bool], path: Option<&MechanismPath>) -> Result<Track, EstimateError> {
     let raw = mechanism::raw(recording, path)?;
     let (pieces, period_s) = pieces(&raw, bad);
@@ -71,7 +74,7 @@ struct Piece {
     rate: Option<Vec<f64>>,
 }
 
-/// What follows each other without a gap, and the usual step, s.
+/// Segments without a gap, and the usual time step, s.
 fn pieces(raw: &Raw, bad: &[bool]) -> (Vec<Piece>, f64) {
     let (found, period_s) = uninterrupted(&raw.time_s, &|i| !bad.get(i).copied().unwrap_or(false));
     let long = found.into_iter().filter(|range| range.len() > 2 * LEAST_HALF + 1);
@@ -93,7 +96,7 @@ impl Piece {
     }
 }
 
-/// As many even times between the first and the last one; the usual step where there is only one.
+/// Even times from the first to the last one; the usual step if there is only one.
 fn clock(time_s: &[f64], period_s: f64) -> Vec<f64> {
     let last = time_s.len() - 1;
     let step_s = if last > 0 { (time_s[last] - time_s[0]) / last as f64 } else { period_s };
@@ -105,16 +108,17 @@ fn is_rounded(time_s: &[f64], clock: &[f64]) -> bool {
     time_s.iter().zip(clock).all(|(t, c)| (t - c).abs() <= most_s)
 }
 
-/// How rows are made.
+/// Settings for making rows.
 struct Plan {
     period_s: f64,
     /// Samples a block.
     block: usize,
-    /// Whether accelerations come from the rates.
+    /// True if accelerations come from the rates.
     by_rate: bool,
     /// Noise of the acceleration of a row, m/s² or rad/s².
     acceleration_noise: f64,
-    /// Noise of a sample's place, and what its steps hide however long it stands, m or rad.
+    /// Position noise of a sample, and the uncertainty that the sensor's steps hide however long the object stands, m
+    /// or rad.
     position_noise: f64,
     hidden: f64,
     /// Noise of a sample's rate, m/s or rad/s.
@@ -135,7 +139,7 @@ impl Plan {
         let (shortest, longest) = (whole(SHORTEST_S), whole(longest_s).max(whole(SHORTEST_S)));
         let by_place = |block: usize| {
             let length_s = block as f64 * period_s;
-            // What was rounded is as many observations as steps that it passes.
+            // Rounded positions count as one observation per step that is passed.
             let steps =
                 if hidden > 0.3 * position_noise { 2.0 * speed * length_s / hidden.max(1e-300) } else { f64::MAX };
             6.0_f64.sqrt() * position_noise / ((block as f64).min(steps.max(1.0)).sqrt() * length_s * length_s)
@@ -163,7 +167,7 @@ impl Plan {
         plan
     }
 
-    /// Samples on either side that follow the motion between the rows.
+    /// Number of samples on either side for the local polynomials.
     fn half(&self) -> usize {
         (self.block / 2).max(LEAST_HALF)
     }
@@ -198,7 +202,7 @@ fn usual(pieces: &[Piece], period_s: f64) -> [f64; 2] {
     sums.map(|sum| (sum / f64::max(count, 1.0)).sqrt())
 }
 
-/// Every so many-th sample is one of the finer points.
+/// Number of samples per finer point.
 fn skip(period_s: f64) -> usize {
     (1.0 / (FINE_HZ * period_s)).round().max(1.0) as usize
 }
@@ -315,7 +319,7 @@ impl Made {
     }
 }
 
-/// The rows without those in which it stands, of which friction explains anything; what follows each other has one number again. `noise`: of
+/// The rows without the standing ones, in which friction may take any value. Segments are numbered again. `noise`: of
 /// velocity and acceleration.
 fn moving(rows: &[Row], noise: [f64; 2]) -> Vec<Row> {
     let still =
@@ -334,8 +338,8 @@ fn moving(rows: &[Row], noise: [f64; 2]) -> Vec<Row> {
     moving
 }
 
-/// Mean over a block from sample `from` on, one neighbour on either side at hand: the trapezoidal rule with its first correction (Euler and
-/// Maclaurin), exact for cubics.
+/// Mean over a block from sample `from` on, one neighbour on either side at hand: the trapezoidal rule with its first
+/// correction (Euler and Maclaurin), exact for cubics.
 fn mean(values: &[f64], from: usize, block: usize) -> f64 {
     let end = from + block;
     let ends = 0.5 * (values[from] + values[end]);

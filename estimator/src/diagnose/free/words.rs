@@ -1,4 +1,4 @@
-//! What is said of a free motion: units, warnings, what it could not have shown, what to record next.
+//! Texts of a free motion: units, warnings, causes not excited, next experiment.
 
 use super::Scale;
 use crate::diagnose::report::{Alternative, Diagnosis, NextExperiment, NotExcited};
@@ -6,12 +6,12 @@ use crate::diagnose::track::{Freely, Track};
 use crate::identify::mechanism::Stated;
 use haptics::law::Coordinate;
 
-/// How often turning a slope round settles whether it is one: the truth may be neither.
+/// Probability that turning a slope round settles the question: neither answer may be true.
 const SETTLES: f64 = 0.85;
-/// What no motion without a force sensor shows.
+/// Causes that a motion without a force sensor never shows.
 const HIDDEN: [&str; 2] = ["force-gain", "force-bias"];
 
-/// Puts right what was said as of a driven motion.
+/// Adapts texts that were written for a driven motion.
 pub fn put_right(found: &mut Diagnosis, track: &Track, scale: Scale, both_ways: bool) {
     let Some(free) = track.freely else { return };
     let angular = track.coordinate == Coordinate::Angular;
@@ -74,7 +74,7 @@ fn per_inertia(unit: &str) -> &str {
     UNITS.iter().find(|(of, _)| *of == unit).map_or(unit, |(_, per)| per)
 }
 
-/// Where the size of all values comes from.
+/// Sentence on the source of the scale of all values.
 fn of_scale(free: &Freely, scale: Scale, angular: bool) -> String {
     let (what, unit) = if angular { ("moment of inertia", "kg m²") } else { ("mass", "kg") };
     let name = if angular { "inertia_kg_m2, or mass_kg and com_m of a pendulum" } else { "mass_kg" };
@@ -111,7 +111,7 @@ fn known(by: Stated) -> &'static str {
     }
 }
 
-/// What to do next, in words: nobody drives it.
+/// Next experiment in words: it cannot be driven.
 pub fn next(open: &[Alternative]) -> Option<NextExperiment> {
     let pair = ["gravity-tilt", "friction-asymmetry"];
     let asks = |a: &&Alternative| pair.contains(&a.id.as_str()) && pair.contains(&a.instead_of.as_str());

@@ -1,4 +1,5 @@
-//! Speed that an impact takes, at the corner of a cube that hits first: its velocity before, from the flight, and after.
+//! Speed that an impact takes, at the corner of a cube that hits first: its velocity before, from the flight, and
+//! after.
 
 use super::powers;
 use crate::diagnose::answer::{Compared, Found, parameter};
@@ -15,35 +16,39 @@ use haptics::law::Kind;
 use nalgebra::{DVector, Rotation3, Vector3};
 use std::ops::Range;
 
-/// Time before and after a blow that is looked at, at most, s.
+/// Longest time before and after a blow that is evaluated, s.
 const BESIDE_S: f64 = 0.054;
-/// Changes of the velocity are told over so much on either side, s.
+/// Time on either side over which changes of the velocity are evaluated, s.
 const REACH_S: f64 = 0.0068;
-/// A velocity that changes by this much there is a blow, by that much still is one; less than the last is free fall, m/s.
+/// A velocity that changes by this much there is a blow, by that much still is one; less than the last is free fall,
+/// m/s.
 const BLOW_M_S: f64 = 0.15;
 const STILL_M_S: f64 = 0.10;
 const FREE_M_S: f64 = 0.06;
-/// Two velocities that differ by less do not tell when they met, m/s.
+/// Difference of two velocities below which their meeting time is undetermined, m/s.
 const SAME_M_S: f64 = 0.1;
-/// A second corner within this height hits at the same time, in half widths.
+/// Height within which a second corner hits at the same time, in half widths.
 const TOGETHER: f64 = 0.1;
-/// A slower blow tells nothing, m/s.
+/// Least speed of a blow, m/s.
 const SLOW_M_S: f64 = 0.4;
 /// Fewer blows show nothing.
 const LEAST_BLOWS: usize = 8;
-/// A blow that is so many times as far from what blows usually leave as they scatter was two: a second corner hit before the next sample.
+/// Deviation of a blow from the usual ones, in units of their scatter, from which it was two blows: a second corner hit
+/// before the next sample.
 const TWO: f64 = 4.0;
-/// Where the usual blow is off one restitution by this share of its speed, most of them were several blows: they tell none.
+/// Deviation of the usual blow from one restitution, as a share of its speed, above which most were several blows. They
+/// then determine none.
 const MIXED: f64 = 0.25;
-/// Scatter of a normal over its median size.
+/// Ratio of a normal distribution's standard deviation to its median absolute value.
 const OVER_MEDIAN: f64 = 1.4826;
-/// Where between two samples the ground lets go is not seen: the share of a step that it may push on for (an even spread's standard deviation).
+/// Share of a sampling step for which the ground may push on unseen (standard deviation of a uniform distribution).
 const UNSEEN: f64 = 0.29;
-/// Score that makes a cause.
+/// Least evidence of a cause.
 pub const THRESHOLD: f64 = 20.0;
 
-/// Compares what impacts leave of the speed. `restitution`: that of the model. `None` where too few blows are clear. The number is the error of a
-/// restitution that no scatter shows: the ground may push on behind a blow, the more of it the longer the time between samples.
+/// Compares what impacts leave of the speed. `restitution`: that of the model. `None` where too few blows are clear.
+/// The number is the error of a restitution that no scatter shows: the ground may push on behind a blow, the more of it
+/// the longer the time between samples.
 pub fn blow(
     seen: &Tossed,
     half_width_m: f64,
@@ -77,7 +82,7 @@ pub fn blow(
     };
     let study = channel.compare(THRESHOLD)?;
     let floor = study.solved.as_ref().map_or(0.0, |s| (s.rss / study.system.rows.max(1.0)).sqrt());
-    // What the model starts from is remembered in the unit of the parameter: see `states`.
+    // The model's restitution is kept in the unit of the parameter: see `states`.
     let mut study = study;
     for candidate in &mut study.candidates {
         candidate.searched.push(crate::diagnose::candidate::Searched {
@@ -87,14 +92,15 @@ pub fn blow(
         });
     }
     let along = vec![true; n];
-    // A throw has one blow: all of them are seen together, over the speed that they came with.
+    // A throw has one blow, so all of them are shown together, over their speed before impact.
     let view = View::of(Vec::new(), vec![(Variable::Velocity, pairs.iter().map(|(before, _)| -before).collect())]);
-    // A blow is none of a segmentation's states.
+    // Segmentation has no state for a blow.
     let (channel, state) = ("speed after impacts", vec![SystemState::NoState; n]);
     Ok(Some((Compared { study, channel, unit: "m/s", floor, along, stretch, state }, view, pushed)))
 }
 
-/// Pairs of speeds before and after, but those that are far off the rest; and how far the usual one is from one restitution, m/s.
+/// Pairs of speeds before and after, but those that are far off the rest; and how far the usual one is from one
+/// restitution, m/s.
 fn without_second_blows(pairs: Vec<(f64, f64)>) -> (Vec<(f64, f64)>, f64) {
     let median = |values: &mut Vec<f64>| {
         values.sort_by(f64::total_cmp);
@@ -106,12 +112,12 @@ fn without_second_blows(pairs: Vec<(f64, f64)>) -> (Vec<(f64, f64)>, f64) {
     (pairs.into_iter().filter(|pair| off(pair) <= TWO * scatter_m_s).collect(), scatter_m_s)
 }
 
-/// What a cause in the impacts is best seen against.
+/// Variable that best shows a cause in the impacts.
 pub fn best_seen(_: &str) -> Variable {
     Variable::Velocity
 }
 
-/// Velocity upwards of the corner that hits first, before and after, m/s.
+/// Upward velocity of the corner that hits first, before and after, m/s.
 fn corner(track: &Track, half_m: f64, fall_m_s2: f64) -> Option<(f64, f64)> {
     let turned = track.turned.as_ref()?;
     let Beside { hit, before, after, reach } = around(track, fall_m_s2)?;
@@ -122,7 +128,7 @@ fn corner(track: &Track, half_m: f64, fall_m_s2: f64) -> Option<(f64, f64)> {
         (turned[b] * turned[a].inverse()).scaled_axis() / (track.time_s[b] - track.time_s[a])
     };
     let (spin_before, spin_after) = (spin(&before), spin(&after));
-    // A cube turns evenly in flight: so it came to the ground.
+    // A cube rotates evenly in flight, so its orientation at impact follows.
     let last = before.end - 1;
     let pose = Rotation3::from_scaled_axis(spin_before * (at_s - track.time_s[last])) * turned[last];
     let mut corners: Vec<Vector3<f64>> = (0..8_u32)
@@ -141,23 +147,23 @@ fn corner(track: &Track, half_m: f64, fall_m_s2: f64) -> Option<(f64, f64)> {
     (down < -SLOW_M_S).then_some((down, rebound))
 }
 
-/// Where a first blow is, and the free flight on either side of it.
+/// A first blow, and the free flight on either side of it.
 struct Beside {
     hit: usize,
     before: Range<usize>,
     after: Range<usize>,
-    /// Samples over which it was told.
+    /// Number of samples over which it was evaluated.
     reach: usize,
 }
 
-/// `None` without a blow, or without a moment of free flight behind it.
+/// `None` without a blow, or without free flight after it.
 fn around(track: &Track, fall_m_s2: f64) -> Option<Beside> {
     let (points, time) = (&track.points, &track.time_s);
     let (n, least, reach) = (points.len(), least(track), track.steps(REACH_S));
     if n < least + 4 * reach {
         return None;
     }
-    // Change of the velocity at a sample beyond what falling makes, m/s.
+    // Change of the velocity at a sample beyond that by gravity, m/s.
     let kick = |i: usize| {
         let (a, b) = (time[i] - time[i - reach], time[i + reach] - time[i]);
         let change = (points[i + reach] - points[i]) / b - (points[i] - points[i - reach]) / a;
@@ -165,7 +171,7 @@ fn around(track: &Track, fall_m_s2: f64) -> Option<Beside> {
     };
     let mut first: Vec<f64> = (reach..least).map(kick).collect();
     first.sort_by(f64::total_cmp);
-    // What the tracker's noise makes of free flight.
+    // Effect of the tracker's noise on free flight.
     let noise = first.get(first.len() / 2)?;
     let hit = (reach..n - reach).find(|i| kick(*i) > BLOW_M_S.max(4.0 * noise))?;
     let over = (hit + 1..n - reach).find(|i| kick(*i) < STILL_M_S.max(3.0 * noise))?;
@@ -179,18 +185,18 @@ fn around(track: &Track, fall_m_s2: f64) -> Option<Beside> {
     })
 }
 
-/// When two free flights met, s after `at_s`: a blow changes the velocity, not the place.
+/// Time at which two free flights met, s after `at_s`. A blow changes the velocity, not the position.
 fn met(falls: &Free, rises: &Free, at_s: f64, step_s: f64, reach: usize) -> f64 {
     let faster = falls.speed_m_s - rises.speed_m_s;
     if faster.abs() < SAME_M_S {
         return 0.0;
     }
     let since = (rises.at_zero_m() - falls.at_zero_m()) / faster;
-    // Where it was told.
+    // Limited to the interval in which the blow was detected.
     (since - at_s).clamp(-step_s, 2.0 * reach as f64 * step_s)
 }
 
-/// A free flight's height: a straight line beside the fall from rest at time zero.
+/// Height in free flight: a line added to the fall from rest at time zero.
 struct Free {
     /// Time and height of a point of that line, s and m.
     point: (f64, f64),
@@ -207,7 +213,7 @@ impl Free {
     }
 }
 
-/// The free flight of the middle in these samples.
+/// Free flight of the centre in these samples.
 fn free(track: &Track, range: &Range<usize>, fall_m_s2: f64) -> Option<Free> {
     let time = &track.time_s[range.clone()];
     let middle_s = time.iter().sum::<f64>() / time.len().max(1) as f64;
@@ -218,13 +224,13 @@ fn free(track: &Track, range: &Range<usize>, fall_m_s2: f64) -> Option<Free> {
     Some(Free { point: (middle_s, solved[0]), speed_m_s: solved[1] })
 }
 
-/// The restitution out of its change against the model. `pushed`: its error beside that of the scatter.
+/// Restitution from its change against the model. `pushed`: its error beside that of the scatter.
 pub fn states(candidate: &Candidate, found: &[CauseParameter], pushed: f64) -> Vec<CauseParameter> {
     let model = candidate.searched.first().map_or(1.0, |s| s.value);
     found.first().map(|p| parameter("e", model + p.value, p.std_error.hypot(pushed), "1")).into_iter().collect()
 }
 
-/// What in the residual shows a cause.
+/// Sentence on how the residual shows a cause.
 pub fn shows(found: &Found<'_>) -> String {
     let (value, error) = found.parameters.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
     format!("the corner that hits first leaves with {value:.3} ± {error:.3} of the speed it came with")

@@ -1,4 +1,4 @@
-//! Scale of the lengths, from free fall: everything falls with g.
+//! Scale of the lengths from free fall, whose acceleration is g.
 
 use super::powers;
 use crate::diagnose::answer::parameter;
@@ -13,21 +13,21 @@ use nalgebra::DVector;
 
 /// Every so many-th throw is held out.
 const HELD_OUT: usize = 4;
-/// Score that makes a cause: 2 ln(likelihood) less what its one parameter costs.
+/// Least evidence of a cause: 2 ln(likelihood) less the penalty of its parameter.
 const THRESHOLD: f64 = 20.0;
-/// Before anything is seen: clocks are off by this share (a crystal by far less; one standard deviation, generously), and lengths
-/// that a person put in by this one.
+/// Before anything is seen: clocks are off by this share (a crystal by far less; one standard deviation, generously),
+/// and lengths that a person put in by this one.
 const CLOCKS: f64 = 1e-3;
 const LENGTHS: f64 = 2e-2;
 
-/// The scale as a cause, and the clock as what else it could be; `None` where the fall agrees with gravity.
+/// The scale as a cause, with a clock error as its alternative; `None` if the fall agrees with gravity.
 pub fn scale(seen: &Tossed, gravity_m_s2: f64) -> Option<(Cause, Alternative)> {
     let (value, error) = (seen.fall.down_m_s2 / gravity_m_s2 - 1.0, seen.fall.error_m_s2 / gravity_m_s2);
     let lambda = (value / error).powi(2);
     if lambda - (seen.fall.throws as f64).ln() < THRESHOLD {
         return None;
     }
-    // A clock that is off by δ shows as 2 δ in the acceleration.
+    // A relative clock error δ changes the acceleration by 2 δ.
     let likely =
         |spread: f64, at: f64| (-0.5 * at * at / (spread * spread + error * error)).exp() / spread.hypot(error);
     let (length, clock) = (likely(LENGTHS, value), likely(CLOCKS, 0.5 * value));
@@ -59,7 +59,8 @@ pub fn scale(seen: &Tossed, gravity_m_s2: f64) -> Option<(Cause, Alternative)> {
     Some((cause, other))
 }
 
-/// Root mean squares of what is left of the heights of all flights: by gravity, by their common fall, and by each one's own, m.
+/// Residual RMS of the heights of all flights: with standard gravity, with their common fall, and with each one's own,
+/// m.
 pub fn left_m(seen: &Tossed, gravity_m_s2: f64) -> [f64; 3] {
     let falls = [Some(gravity_m_s2), Some(seen.fall.down_m_s2), None];
     let flights = seen.tracks.iter().map(|t| (t, end(t))).filter(|(t, n)| *n >= least(t));
@@ -73,7 +74,8 @@ pub fn left_m(seen: &Tossed, gravity_m_s2: f64) -> [f64; 3] {
     [0, 1, 2].map(|k| (sum[k] / sum[3].max(1.0)).sqrt())
 }
 
-/// Flights with a blow that was not seen say nothing: they stray from their own parabolas (third; rows last) far more than others do.
+/// Flights with a blow that was not seen say nothing: they stray from their own parabolas (third; rows last) far more
+/// than others do.
 fn without_hidden_blows(squares: Vec<[f64; 4]>) -> Vec<[f64; 4]> {
     let mut own: Vec<f64> = squares.iter().map(|s| s[2] / s[3]).collect();
     own.sort_by(f64::total_cmp);
@@ -81,7 +83,7 @@ fn without_hidden_blows(squares: Vec<[f64; 4]>) -> Vec<[f64; 4]> {
     squares.into_iter().filter(|s| s[2] / s[3] <= usual).collect()
 }
 
-/// Heights of flights that took no part, by gravity and by the acceleration of the others.
+/// Heights of held-out flights, with gravity and with the acceleration of the others.
 fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
     let (mut others, mut tested) = (Vec::new(), Vec::new());
     for (k, track) in tracks.iter().enumerate() {
@@ -104,7 +106,7 @@ fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
         (((sum[0] - sum[1]) / (sum[0] - sum[2]).max(1e-3 * sum[0]).max(1e-300)).min(1.0), sum)
     };
     let (all, sum) = share(&mut squares.iter());
-    // Nothing but its start, which is fitted, holds a flight where it was measured.
+    // A flight is tied to the measurement only by its start, which is fitted.
     let mean_s = tracks.iter().map(|t| t.time_s[end(t).max(1) - 1] - t.time_s[0]).sum::<f64>() / tracks.len() as f64;
     let what = Compared { of: RolloutOf::Position, unit: "m", window_s: mean_s, in_turn: false };
     let errors = |k: usize| squares.iter().map(|s| (s[k], s[3])).collect::<Vec<(f64, f64)>>();
@@ -129,7 +131,7 @@ fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
     .run(forward)
 }
 
-/// Sum of squares of a flight's heights beside the fall with an acceleration (or its own), place and speed fitted, m².
+/// Residual sum of squares of a flight's heights for an acceleration (or its own), with position and speed fitted, m².
 fn left(track: &Track, n: usize, down_m_s2: Option<f64>) -> f64 {
     let since = |i: usize| track.time_s[i] - track.time_s[0];
     let size = if down_m_s2.is_some() { 2 } else { 3 };

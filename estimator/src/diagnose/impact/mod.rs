@@ -1,5 +1,5 @@
-//! Diagnosis of a thrown body: what its falls, its impacts and its slides say against a simulation that has the right lengths, loses
-//! nothing at an impact and slides without friction (or has the floor of `--world`).
+//! Diagnosis of a thrown body. Its falls, impacts and slides are compared with a simulation with the right lengths,
+//! lossless impacts and no sliding friction, or with the floor of `--world`.
 
 mod blow;
 mod fall;
@@ -16,7 +16,7 @@ use crate::identify::tossed::slide::unknown_of_foot;
 use crate::identify::tossed::{Tossed, tossed};
 use haptics::recording::Recording;
 
-/// Diagnoses recordings of one thrown body; `None` where they are of none.
+/// Diagnoses recordings of one thrown body; `None` for other recordings.
 pub fn impact(recordings: &[Recording], options: &Options) -> Option<Result<Diagnosis, EstimateError>> {
     let seen = tossed(recordings)?;
     Some(diagnosed(recordings, options, &seen))
@@ -30,7 +30,7 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     let scaled = fall::scale(seen, meta.gravity());
     let recorded = if scaled.is_some() { seen.fall.down_m_s2 / meta.gravity() } else { 1.0 };
     let blow = match half_width_m {
-        // As long as its places are recorded.
+        // Only for bodies whose positions are recorded.
         Some(half) => blow::blow(seen, half * recorded, floor.and_then(|f| f.loss).map_or(1.0, |l| l.e))?,
         None => None,
     };
@@ -83,7 +83,7 @@ fn diagnosed(recordings: &[Recording], options: &Options, seen: &Tossed) -> Resu
     Ok(found)
 }
 
-/// Takes the figures from the falls, where nothing else could be compared.
+/// Takes the figures from the falls if nothing else could be compared.
 fn of_falls(found: &mut Diagnosis, seen: &Tossed, gravity_m_s2: f64) {
     let [before_m, after_m, own_m] = fall::left_m(seen, gravity_m_s2);
     let is_named = found.causes.iter().any(|c| c.id == "length-scale");
@@ -103,7 +103,8 @@ fn powers(rows: usize, size: usize, of: impl Fn(usize) -> f64) -> nalgebra::DMat
     matrix
 }
 
-/// Standard error of the friction by the scatter of single slides (a table is not alike everywhere) and by what is not known of the foot.
+/// Standard error of the friction by the scatter of single slides (a table is not alike everywhere) and by what is not
+/// known of the foot.
 fn mean_friction(seen: &Tossed) -> f64 {
     let n = seen.slides.len() as f64;
     let values: Vec<f64> = seen.slides.iter().map(|s| s.friction(seen.fall.down_m_s2)).collect();

@@ -1,4 +1,4 @@
-//! What slows a sliding body: dry friction, or something that follows the speed.
+//! Causes that slow a sliding body: dry friction, or a resistance that depends on the speed.
 
 use super::powers;
 use crate::diagnose::answer::{Compared, Found};
@@ -18,14 +18,14 @@ use nalgebra::{DVector, Vector3};
 
 /// Fewer slides show nothing.
 const LEAST_SLIDES: usize = 4;
-/// Score that makes a cause.
+/// Least evidence of a cause.
 pub const THRESHOLD: f64 = 25.0;
-/// No dry friction is less than this: what a slowing by the speed leaves over is.
+/// Least dry friction coefficient. A smaller one is misfit of a speed-dependent resistance.
 const LEAST_MU: f64 = 2e-3;
-/// Speeds at which static friction falls off that are tried, as shares of the usual one.
+/// Tried decay speeds of static friction, as shares of the usual speed.
 const STRIBECK: [f64; 4] = [0.1, 0.25, 0.5, 0.9];
 
-/// One slide: times, way along its direction, speed, and the share of friction that goes against it.
+/// One slide: times, distance along its direction, speed, and the share of friction against it.
 struct Way {
     time_s: Vec<f64>,
     place_m: Vec<f64>,
@@ -33,7 +33,7 @@ struct Way {
     direct: Vec<f64>,
 }
 
-/// Compares what slows the body. `mu`: friction that the model has.
+/// Compares the causes that slow the body. `mu`: friction of the model.
 pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, EstimateError> {
     if seen.slides.len() < LEAST_SLIDES {
         return Ok(None);
@@ -43,19 +43,20 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, Estim
     speeds.sort_by(f64::total_cmp);
     let usual = speeds.get(speeds.len() * 9 / 10).copied().unwrap_or(1.0);
     let fall = seen.fall.down_m_s2;
-    // A slowing, integrated twice, in the place of a force: only differences within a slide count.
+    // A deceleration, integrated twice, takes the place of a force: only differences within a slide count.
     let slowed = |w: &Way, of: &dyn Fn(usize) -> f64| within(w, &integrated(w, &|i| -of(i)));
     let all = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
         ways.iter().flat_map(|w| slowed(w, &|i| of(w.speed_m_s[i]))).collect()
     };
-    // What is dry works on every point of the foot against that point's own motion; what follows the speed does not ask which point it is.
+    // Dry friction acts on every point of the foot against that point's own motion. A resistance in proportion to the
+    // speed depends on the mean motion alone.
     let all_dry = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
         ways.iter().flat_map(|w| slowed(w, &|i| w.direct[i] * of(w.speed_m_s[i]))).collect()
     };
     let moved: Vec<f64> = ways.iter().flat_map(|w| within(w, &w.place_m)).collect();
     let dry = all_dry(&|_| fall);
     let y: Vec<f64> = moved.iter().zip(&dry).map(|(m, d)| m - mu * d).collect();
-    // What changes the friction by less than slides differ among themselves is within what one friction for all of them is known by.
+    // A change of friction smaller than the scatter between slides is within the uncertainty of their common friction.
     let differ = differ(&ways, fall);
     let least = |of: &dyn Fn(f64) -> f64| differ * fall / spread(&speeds.iter().map(|v| of(*v)).collect::<Vec<f64>>());
     let follows = |id, name, unit, of: &dyn Fn(f64) -> f64| {
@@ -85,18 +86,18 @@ pub fn sliding(seen: &Tossed, mu: f64) -> Result<Option<(Compared, View)>, Estim
         weight: vec![1.0; n],
         period_s,
     };
-    // Friction that rises as the body stops is friction that is there.
+    // Friction that rises as the body stops requires dry friction.
     let study = if mu > 0.0 { channel.compare(THRESHOLD) } else { channel.compare_without_friction(THRESHOLD) }?;
     let along = vec![true; n];
     let each = |of: fn(&Way) -> &Vec<f64>| ways.iter().flat_map(of).copied().collect::<Vec<f64>>();
     let over = vec![(Variable::Time, each(|w| &w.time_s)), (Variable::Velocity, each(|w| &w.speed_m_s))];
-    // A single slide is short: all of them are seen together.
+    // A single slide is short, so all are shown together.
     let view = View::of(Vec::new(), over);
     let (channel, state) = ("way of the slides", vec![SystemState::SlidingOnGround; n]);
     Ok(Some((Compared { study, channel, unit: "m", floor, along, stretch, state }, view)))
 }
 
-/// Slides as they run: their columns are slowings that were integrated twice already, from each one's own start.
+/// Free-run simulation of slides. Their regressors are decelerations already integrated twice, each from its own start.
 pub struct Slides<'a> {
     pub compared: &'a Compared,
     /// Time between samples, s.
@@ -126,7 +127,7 @@ impl Forward for Slides<'_> {
     }
 }
 
-/// What a cause in the slides is best seen against.
+/// Variable that best shows a cause in the slides.
 pub fn best_seen(id: &str) -> Variable {
     if id == "load-friction" { Variable::Time } else { Variable::Velocity }
 }
@@ -146,7 +147,7 @@ fn way(seen: &Tossed, slide: &Slide) -> Option<Way> {
     Some(Way { time_s, place_m: way_m, speed_m_s, direct: slide.direct.clone() })
 }
 
-/// Way by an acceleration from rest, m, by trapezia.
+/// Distance by an acceleration from rest, m, with the trapezoidal rule.
 fn integrated(way: &Way, acceleration: &dyn Fn(usize) -> f64) -> Vec<f64> {
     let (mut speed, mut place) = (0.0, 0.0);
     (0..way.time_s.len())
@@ -162,7 +163,7 @@ fn integrated(way: &Way, acceleration: &dyn Fn(usize) -> f64) -> Vec<f64> {
         .collect()
 }
 
-/// A series without its own start and speed.
+/// A series less its own start and speed.
 fn within(way: &Way, values: &[f64]) -> Vec<f64> {
     let n = values.len();
     let own = powers(n, 2, |i| way.time_s[i]).qr().q();
@@ -170,11 +171,11 @@ fn within(way: &Way, values: &[f64]) -> Vec<f64> {
     (&series - &own * own.tr_mul(&series)).iter().copied().collect()
 }
 
-/// How far single slides' frictions differ beyond their own noise and beyond what follows their speeds (a table is not alike everywhere): one
-/// standard deviation, as a coefficient of friction.
+/// Scatter of the friction of single slides beyond their own noise and their dependence on speed, because a table is
+/// not uniform: one standard deviation, as a friction coefficient.
 fn differ(ways: &[Way], fall_m_s2: f64) -> f64 {
     let noise_m = floor(ways);
-    // Each slide's friction as its own dry column tells it: value, weight and mean speed.
+    // Friction of each slide by its own dry regressor: value, weight and mean speed.
     let each: Vec<(f64, f64, f64)> = ways
         .iter()
         .map(|w| {
@@ -201,7 +202,7 @@ fn spread(values: &[f64]) -> f64 {
     (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt().max(f64::MIN_POSITIVE)
 }
 
-/// What cubics leave of the ways, m.
+/// Residual of the paths from cubics, m.
 fn floor(ways: &[Way]) -> f64 {
     let (mut sum, mut n) = (0.0, 0.0_f64);
     for way in ways.iter().filter(|w| w.time_s.len() > 5) {
@@ -213,7 +214,7 @@ fn floor(ways: &[Way]) -> f64 {
     (sum / n.max(1.0)).sqrt()
 }
 
-/// Slides scatter more than their samples do: `scatter` is the standard error by it.
+/// Parameters for the answer. Slides scatter more than their samples do: `scatter` is the standard error from it.
 pub fn states(candidate: &Candidate, mut found: Vec<CauseParameter>, scatter: f64) -> Vec<CauseParameter> {
     if candidate.id == "load-friction" {
         for p in &mut found {
@@ -223,7 +224,7 @@ pub fn states(candidate: &Candidate, mut found: Vec<CauseParameter>, scatter: f6
     found
 }
 
-/// What in the residual shows a cause.
+/// Sentence on how the residual shows a cause.
 pub fn shows(found: &Found<'_>) -> String {
     match found.candidate.id {
         "load-friction" => {

@@ -1,4 +1,4 @@
-//! The motion between the rows of a hole: where a needle turns round within a row, and what it remembers of its way, is told there.
+//! Motion between the rows of a hole, for reversals within a row and for laws with memory.
 
 use crate::diagnose::fine::FINE_HZ;
 use crate::diagnose::track::{Fine, Span, Weighing};
@@ -8,20 +8,20 @@ use std::ops::Range;
 /// Points in the holes of a recording.
 pub struct Between {
     pub points: Vec<Fine>,
-    /// The point of every so many samples; none outside of holes.
+    /// Index of the point at every so many samples; `None` outside of holes.
     of: Vec<Option<usize>>,
     every: usize,
     half: usize,
 }
 
 impl Between {
-    /// `half`: samples on either side that a row is a mean of; rows are twice as many apart. `in_hole`: of each sample.
+    /// `half`: half width of a row's mean, in samples; rows are twice as many apart. `in_hole`: flag of each sample.
     pub fn new(time_s: &[f64], depth: &Smoothed, surface_m: f64, in_hole: &[bool], half: usize) -> Self {
         let step_s = match time_s {
             [first, .., last] => (last - first) / (time_s.len() - 1) as f64,
             _ => 1.0,
         };
-        // Rows lie on points, so that these are even about each of them.
+        // Rows coincide with points, so the points are symmetric about each row.
         let most = (1.0 / (FINE_HZ * step_s.max(1e-9))) as usize;
         let every = (1..=most.max(1)).rev().find(|every| (2 * half).is_multiple_of(*every)).unwrap_or(1);
         let mut points = Vec::new();
@@ -42,7 +42,7 @@ impl Between {
         Self { points, of, every, half }
     }
 
-    /// The points that the row at a sample is the mean of; none where they are not all there.
+    /// Points over which the row at a sample is averaged; empty if some are missing.
     pub fn span(&self, i: usize) -> Span {
         let (middle, reach) = (i / self.every, self.half / self.every);
         let at = |k: Option<usize>| k.and_then(|k| self.of.get(k).copied().flatten());
@@ -55,7 +55,7 @@ impl Between {
     }
 }
 
-/// Samples in a hole that follow each other, with what the means at either end see beside them.
+/// Segments of samples in a hole, with the margin that the means at either end need.
 fn runs(in_hole: &[bool], half: usize) -> Vec<Range<usize>> {
     let mut found: Vec<Range<usize>> = Vec::new();
     for i in (0..in_hole.len()).filter(|i| in_hole[*i]) {

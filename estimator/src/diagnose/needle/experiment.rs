@@ -1,4 +1,5 @@
-//! The insertions that would settle what is open about a needle: the same columns on a recording that was not made yet.
+//! Insertions that would settle the open questions about a needle: the same regressors on a recording that has not been
+//! made yet.
 
 use super::rows::{INSIDE_M, Needle, OUTSIDE_M, Phase, Row};
 use super::shaft::Shaft;
@@ -10,18 +11,18 @@ use crate::diagnose::track::Span;
 use crate::segment::threshold::percentile;
 use haptics::law::object::MembraneLaw;
 
-/// Numbers of insertions: the least that is likely to do.
+/// Numbers of insertions. The least that is likely to suffice is proposed.
 const INSERTIONS: [usize; 3] = [1, 2, 4];
-/// Half of a stroke in the hole, m; and how fast a hand moves there at least and at most, m/s.
+/// Half of a stroke in the hole, m, and lowest and highest speed of a hand there, m/s.
 const HALF_STROKE_M: f64 = 2.5e-3;
 const FAST_M_S: (f64, f64) = (0.03, 0.1);
-/// Two fingers let go for so long before and after, s.
+/// Time without touch before and after, s.
 const FREE_S: f64 = 2.0;
 
 const WORDS: &str = "push in slowly, draw back before the sheet gives way, push through, move to and fro in the hole slowly and fast, \
                      draw out";
 
-/// The recording to make; nothing where nothing is open that it could settle.
+/// The recording to make; `None` if it would settle no open question.
 pub fn propose(
     open: &[Alternative],
     (needle, law): (&Needle, Option<&MembraneLaw>),
@@ -59,7 +60,7 @@ pub fn propose(
     best
 }
 
-/// As deep as the sheet was pressed until it gave way, and as fast as before at least.
+/// As deep as the sheet was pressed before the puncture, and at least as fast as before.
 fn asked(needle: &Needle, count: usize) -> Option<(Experiment, Insertions)> {
     let pressed = needle.rows.iter().filter(|r| matches!(r.phase, Phase::Loading | Phase::Unloading));
     let deep_m = pressed.map(|r| r.depth_m).fold(0.0, f64::max);
@@ -82,7 +83,7 @@ fn asked(needle: &Needle, count: usize) -> Option<(Experiment, Insertions)> {
     Some((asked, motion))
 }
 
-/// Rows of that motion, as they would be read.
+/// Predicted rows of that motion.
 fn imagine(needle: &Needle, motion: &Insertions, free_s: f64) -> Needle {
     let period_s = needle.period_s;
     let count = |seconds: f64| (seconds / period_s) as usize;

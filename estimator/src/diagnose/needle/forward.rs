@@ -1,4 +1,4 @@
-//! A needle on its own: a hand holds it on its measured way, and the sheet or the hole acts against it where it is.
+//! Free-run simulation of a needle: a hand holds it on its measured path, and the sheet or the hole acts on it.
 
 use super::rows::{Needle, Phase, Row};
 use super::shaft::{RIM_SHARE, rim};
@@ -12,11 +12,11 @@ use crate::diagnose::track::Track;
 use haptics::law::object::{MembraneHistory, MembraneLaw};
 use haptics::law::{Effect, Inertia, Kind, Memories, Motion};
 
-/// What both have in common: which columns of the model are the needle's mass and the world's law.
+/// Parts common to both simulations: the world's law, and the indices of the model's regressors.
 struct Model {
     law: Option<MembraneLaw>,
     period_s: f64,
-    /// How many columns say what is held, and whether the needle's mass is one.
+    /// Number of regressors for the held weight, and true if the needle's mass is a regressor.
     holds: usize,
     two_fingered: bool,
 }
@@ -27,19 +27,19 @@ impl Model {
         Self { law: law.copied(), period_s: needle.period_s, holds, two_fingered }
     }
 
-    /// Less than no mass is the noise of none.
+    /// A negative mass is noise of a zero one.
     fn inertia(&self, mass: usize, values: &[f64]) -> Vec<Effect> {
         let kg = if self.two_fingered { values[mass].max(0.0) } else { 0.0 };
         vec![Effect::new(&Inertia, &[kg])]
     }
 }
 
-/// Measured force without what these columns say of a row, N.
+/// Measured force less the contribution of these regressors in a row, N.
 fn drive(study: &Study, row: usize, columns: &[(&[f64], f64)]) -> f64 {
     study.y[row] - columns.iter().map(|(column, value)| value * column[row]).sum::<f64>()
 }
 
-/// Columns of candidates with their values.
+/// Regressors of candidates with their coefficients.
 fn faults<'a>(of: impl Iterator<Item = (&'a Candidate, &'a [f64])>) -> impl Iterator<Item = (&'a [f64], f64)> {
     of.flat_map(|(candidate, own)| candidate.columns.iter().map(|c| c.as_slice()).zip(own.iter().copied()))
 }
@@ -48,11 +48,11 @@ fn motion(row: &Row) -> Motion {
     Motion { time_s: row.time_s, position: row.depth_m, velocity: row.rate_m_s, ..Motion::default() }
 }
 
-/// A needle outside of a sheet, and on one that is not pierced yet.
+/// Simulation of a needle outside of a sheet, and on one that is not pierced yet.
 pub struct Pressed {
     model: Model,
     stiffness_n_m: f64,
-    /// In the order of the comparison.
+    /// Rows in the order of the comparison.
     rows: Vec<Row>,
 }
 
@@ -61,7 +61,7 @@ impl Pressed {
         Self { model: Model::new(needle, law), stiffness_n_m: needle.stiffness_n_m, rows }
     }
 
-    /// How deep the sheet was pressed at the place of a row so far, m.
+    /// Deepest indentation of the sheet so far at the place of a row, m.
     fn deepest_m(&self, at: &Row) -> f64 {
         let here = |r: &&Row| r.recording == at.recording && r.push == at.push && r.time_s <= at.time_s;
         let touched = |r: &&Row| matches!(r.phase, Phase::Loading | Phase::Unloading);
@@ -75,7 +75,7 @@ impl Forward for Pressed {
     }
 
     fn windows(&self) -> Vec<Vec<usize>> {
-        // The comparison deals its rows out.
+        // The comparison deals its rows into separate segments.
         let mut order: Vec<usize> = (0..self.rows.len()).collect();
         order.sort_by(|a, b| self.rows[*a].time_s.total_cmp(&self.rows[*b].time_s));
         let of = |i: usize| {
@@ -99,7 +99,7 @@ impl Forward for Pressed {
             |i: &usize| Moment { motion: motion(&self.rows[*i]), drive: drive(study, *i, &beside), beside: [0.0; 2] };
         let moments: Vec<Moment> = window.iter().map(moment).collect();
         let first = self.rows[window[0]];
-        // Empty fingers meet no sheet and move nothing but themselves.
+        // Empty fingers touch no sheet and carry only their own mass.
         let is_held = first.phase != Phase::Empty;
         let mut deepest_m = self.deepest_m(&first);
         let acts = &mut |motion: &Motion, _: [f64; 2]| {
@@ -123,7 +123,7 @@ pub struct Sliding {
     model: Model,
     rows: Vec<Row>,
     track: Track,
-    /// Dry friction that shares of it are of, N.
+    /// Dry friction to which shares refer, N.
     dry_n: f64,
 }
 
@@ -156,9 +156,9 @@ impl Forward for Sliding {
         let mass = self.model.holds;
         let mut plant: Vec<(&Candidate, &[f64])> =
             causes(study, picks, values).filter(|(c, _)| c.kind == Kind::Plant).collect();
-        // What bends before it slides is taken from friction that is there already.
+        // Friction that bends before it slides is subtracted from the dry friction, which must come first.
         plant.sort_by_key(|(c, _)| c.id != "coulomb-friction");
-        // A hole that is another one at the next insertion is no change in time.
+        // A hole that differs from one insertion to the next is no change in time.
         if plant.iter().any(|(c, _)| c.searched.iter().any(|s| s.name == "from insertion")) {
             return Err(no_law());
         }
@@ -177,7 +177,7 @@ impl Forward for Sliding {
         let moments: Vec<Moment> = window.iter().map(moment).collect();
         let past = self.past(window[0]);
         let before: Vec<Motion> = past.clone().map(|i| self.track.rows[i].motion).collect();
-        // A world's hole: as stiff as the sheet, and a little stiffer, as the columns have it.
+        // A world's hole: as stiff as the sheet, and slightly stiffer, as in the regressors.
         let first = mass + usize::from(self.model.two_fingered);
         let of_world = self.model.law.map(|law| {
             let stiffer = MembraneLaw { stiffness_n_m: (1.0 + RIM_SHARE) * law.stiffness_n_m, ..law };

@@ -1,18 +1,19 @@
-//! Forces that come later than the motion of a needle: with the forces of another moment, its sheet explains more.
+//! Time delay of the forces after the motion of a needle, from the shift for which its sheet explains most.
 
 use super::rows::{Needle, Phase, Row};
 use crate::diagnose::shifted::{Demands, Late, look};
 use crate::identify::linear::least_squares_values;
 
-/// Delays are tried in steps of this, s, or of a sample where those are longer.
+/// Step of the tried delays, s, or one sample if that is longer.
 const STEP_S: f64 = 2e-3;
-/// When and how far from a surface or a puncture what is touched depends on the delay: forces of so much later or earlier, s, are not compared there.
+/// Time from the surface and from punctures within which rows are not compared, s, because a delay of the forces would
+/// change their contact phase.
 const NEAR_S: f64 = 0.06;
-/// A hand has done something else after the longest of them. What else is hidden in a sheet is not in the plain model, so that some of it goes with any
-/// delay by chance.
+/// Limits of a delay. Beyond the longest one a hand is already at another movement. Other causes in a sheet are not in
+/// the plain model and correlate with some delay by chance.
 const DEMANDS: Demands = Demands { longest_s: 0.1, enough: 0.8, leaves: 0.5, likelier: 60.0 };
 
-/// The forces of a recording: smoothed, one a sample, of which every row has one.
+/// The smoothed forces of a recording, one per sample, to which every row refers.
 pub struct Forces<'a> {
     pub force_n: &'a [f64],
     /// Sample of each row.
@@ -20,8 +21,9 @@ pub struct Forces<'a> {
     pub sample_s: f64,
 }
 
-/// The delay with which what is held, and a sheet that may harden and keep a dent, leave least. A sheet that drags looks like a force that comes early,
-/// which is therefore not told. Only of a single tool: what two fingers hold gives way between their pads, by more than a hand moves on in a delay.
+/// Delay with the smallest residual of a model with held weight and a sheet that may harden and keep a dent. A sheet
+/// with drag looks like a negative delay, which is therefore not reported. A needle between two pads moves in them by
+/// more than a hand moves during a delay, so only single tools are tested.
 pub fn late(needle: &Needle, forces: &Forces<'_>) -> Option<Late> {
     if needle.two_fingered {
         return None;
@@ -33,14 +35,15 @@ pub fn late(needle: &Needle, forces: &Forces<'_>) -> Option<Late> {
     late.filter(|late| late.error_s.is_finite()).map(|late| Late { is_seen: late.is_seen && late.tau_s > 0.0, ..late })
 }
 
-/// Rows that touch the same whatever the delay, outside and on the sheet. What a hole does to a shaft that turns round is not known well enough.
+/// True for rows outside or on the sheet whose contact phase does not depend on the delay. The force of a hole on a
+/// shaft at a reversal is not known well enough.
 fn is_compared(needle: &Needle, row: &Row) -> bool {
     let at_surface = row.depth_m.abs() < NEAR_S * row.rate_m_s.abs();
     let at_puncture = needle.punctures.iter().any(|p| (row.time_s - p.time_s).abs() < 2.0 * NEAR_S);
     !matches!(row.phase, Phase::Empty | Phase::Hole) && !at_surface && !at_puncture
 }
 
-/// The plain model over the compared rows.
+/// Regressors of the plain model over the compared rows.
 fn columns(needle: &Needle, compared: &[usize]) -> Vec<Vec<f64>> {
     let of = |f: &dyn Fn(&Row) -> f64| compared.iter().map(|i| f(&needle.rows[*i])).collect::<Vec<f64>>();
     let when = |phases: &'static [Phase], f: &'static dyn Fn(&Row) -> f64| {
@@ -52,13 +55,13 @@ fn columns(needle: &Needle, compared: &[usize]) -> Vec<Vec<f64>> {
     columns.push(when(touched, &|_| 1.0));
     columns.push(when(touched, &|r| r.depth_m));
     columns.push(when(touched, &|r| r.depth_m.powi(3)));
-    // Below its deepest point a sheet is another one.
+    // Above its deepest indentation, a sheet has another law.
     columns.push(when(&[Phase::Unloading], &|_| 1.0));
     columns.push(when(&[Phase::Unloading], &|r| r.depth_m));
     columns
 }
 
-/// Power that is left a row with the forces of so many samples later, and rows.
+/// Residual power per row, and number of rows, with the forces of this many samples later.
 fn left(forces: &Forces<'_>, compared: &[usize], columns: &[Vec<f64>], by: isize) -> Option<(f64, f64)> {
     let later = |i: usize| forces.of_row[i].checked_add_signed(by).and_then(|at| forces.force_n.get(at));
     let (kept, y): (Vec<usize>, Vec<f64>) =

@@ -1,6 +1,8 @@
-//! Diagnosis of a needle in a sheet: the sheet before it is pierced, the shaft in its hole, and the sensors where nothing is touched.
+//! Diagnosis of a needle in a sheet: the sheet before the puncture, the shaft in its hole, and the sensors without
+//! touch.
 //!
-//! Without a world the sheet is a linear spring and the hole holds nothing, as in the thesis's simulation; with one they are its laws.
+//! Without a world the sheet is a linear spring and the hole holds nothing, as in the thesis's simulation; with one
+//! they are its laws.
 
 mod between;
 mod experiment;
@@ -24,12 +26,13 @@ use haptics::law::Kind;
 use haptics::recording::Recording;
 use rows::{Needle, Puncture};
 
-/// Punctures whose forces scatter by more than this (χ², beside what freedom costs) are not of one sheet.
+/// Scatter of puncture forces (χ² less its degrees of freedom) from which they are not of one sheet.
 const UNEVEN: f64 = 25.0;
-/// Puncture forces of one sheet are the same within this share.
+/// Relative scatter of the puncture forces of one sheet.
 const PUNCTURE_SHARE: f64 = 0.03;
 
-/// What is left of the force on a shaft is never so many times its noise where the model is right, whatever is unknown of the way at reversals.
+/// Largest ratio of final residual to noise on a shaft under a correct model. It allows for the uncertain presliding at
+/// reversals.
 const MUCH: f64 = 4.0;
 /// Diagnoses recordings of one needle and one sheet, all together.
 pub fn needle(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
@@ -90,7 +93,7 @@ pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compa
     Ok(found)
 }
 
-/// All recordings as one, the names of those that take part, and a sentence for each that does not.
+/// All recordings joined, the names of those used, and a sentence for each that is not.
 fn joined(recordings: &[Recording]) -> Result<(Needle, Vec<&str>, Vec<String>), EstimateError> {
     let (mut whole, mut names, mut left_out): (Option<Needle>, Vec<&str>, Vec<String>) = (None, Vec::new(), Vec::new());
     let mut first_error = None;
@@ -115,8 +118,8 @@ fn joined(recordings: &[Recording]) -> Result<(Needle, Vec<&str>, Vec<String>), 
     }
 }
 
-/// Puncture forces that differ from one insertion to the next: no law of the catalogue has that. `names`: of the recordings; `level_n`: what the
-/// sensor reads at a puncture without the sheet.
+/// Puncture forces that differ between insertions, for which the catalogue has no law. `names`: of the recordings;
+/// `level_n`: sensor reading at a puncture without the sheet, N.
 fn punctures(seen: &Needle, names: &[&str], level_n: &dyn Fn(&Puncture) -> f64) -> Option<Cause> {
     let n = seen.punctures.len() as f64;
     let all: Vec<Puncture> =

@@ -1,4 +1,5 @@
-//! Rows of a needle's recording: nothing held, held outside, pressing an untouched sheet, unloading it, and in the hole.
+//! Rows of a needle's recording: nothing held, held outside, pressing an untouched sheet, unloading it, and in the
+//! hole.
 
 use super::between::Between;
 use super::late::{Forces, late};
@@ -15,31 +16,31 @@ use crate::signal::task::{half_width, smooth, times};
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// The needle counts as in the hole from this depth on, m: at the surface the sheet lets go.
+/// Depth from which the needle is in the hole, m: at the surface the sheet lets go.
 pub const INSIDE_M: f64 = 5e-4;
-/// … and outside from this far above the surface.
+/// Height above the surface from which a needle is outside, m.
 pub const OUTSIDE_M: f64 = 3e-4;
-/// Rows so close to the surface, m, or to a puncture, s, are of both sides.
+/// Distance from the surface, m, and time from a puncture, s, within which a row belongs to both sides.
 const EDGE_M: f64 = 1e-4;
 const WINDOW_S: f64 = 0.02;
-/// A sheet that was pierced swings for this time, s.
+/// Duration of a sheet's swinging after the puncture, s.
 const SWINGS_S: f64 = 0.1;
-/// Fingers close and open slowly: this time at either end of a hold is neither held nor free, s.
+/// Margin at either end of a hold, s, in which fingers close or open slowly: it is neither held nor free.
 const CLOSING_S: f64 = 0.25;
 
-/// What passes between recordings that are taken as one, s: no row follows across it.
+/// Time between recordings that are joined, s: no row follows across it.
 const BETWEEN_S: f64 = 1.0;
 
-/// What happens in a row.
+/// Contact phase of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// Nothing is held.
     Empty,
-    /// Held, the sheet is not touched.
+    /// Held without touch of the sheet.
     Outside,
-    /// The sheet is pressed farther than ever before.
+    /// Indentation deeper than ever before.
     Loading,
-    /// It is pressed less than it was.
+    /// Indentation less than before.
     Unloading,
     /// The sheet is pierced.
     Hole,
@@ -48,30 +49,30 @@ pub enum Phase {
 /// One row.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// Which recording, and its start on the clock of all of them.
+    /// Index of the recording, and its start on the common clock.
     pub recording: usize,
     pub start_s: f64,
     pub time_s: f64,
-    /// Beyond the undisturbed surface, m, without the give of the pads.
+    /// Depth beyond the undisturbed surface, m, without the compression of the pads.
     pub depth_m: f64,
     pub rate_m_s: f64,
     pub acceleration_m_s2: f64,
-    /// Way across the needle, m: another place of the sheet.
+    /// Position across the needle, m: another place of the sheet.
     pub side_m: f64,
     pub force_n: f64,
     pub phase: Phase,
-    /// Which hold (grip) and which place of the sheet.
+    /// Number of the hold (grip), and of the place on the sheet.
     pub hold: usize,
     pub push: usize,
     /// Deepest so far at this place, m.
     pub deepest_m: f64,
     pub stretch: usize,
-    /// The points of [`Needle::fine`] that it is the mean of, in a hole.
+    /// Points of [`Needle::fine`] over which it is averaged, in a hole.
     pub span: Span,
 }
 
 impl Row {
-    /// The state that a segmentation would call it.
+    /// Corresponding state of the segmentation.
     pub fn state(&self) -> SystemState {
         match self.phase {
             Phase::Empty | Phase::Outside => SystemState::FreeMotion,
@@ -83,44 +84,45 @@ impl Row {
     }
 }
 
-/// Where a sheet gave way.
+/// Puncture of a sheet.
 #[derive(Clone, Copy, Debug)]
 pub struct Puncture {
-    /// Which recording, and the time in it, s.
+    /// Index of the recording, and the time in it, s.
     pub recording: usize,
     pub time_s: f64,
     pub force_n: f64,
-    /// What it may be off, N: it lies between two samples, and they are noisy.
+    /// Standard error of the force, N: the puncture is between two noisy samples.
     pub error_n: f64,
-    /// Which hold it belongs to.
+    /// Number of the hold.
     pub hold: usize,
 }
 
 /// A recording of a needle, or several of the same needle and sheet.
 pub struct Needle {
     pub rows: Vec<Row>,
-    /// What lies between those in holes; nothing for what was not measured.
+    /// Points between those rows that are in holes; empty if the motion there was not measured.
     pub fine: Vec<Fine>,
-    /// How many recordings take part, and whether these rows are of more than one.
+    /// Number of recordings, and true if these rows are of more than one.
     pub recordings: usize,
     pub joined: bool,
     pub holds: usize,
     pub period_s: f64,
     pub two_fingered: bool,
-    /// Stiffness that the sheet begins with, N/m.
+    /// Initial stiffness of the sheet, N/m.
     pub stiffness_n_m: f64,
-    /// Noise of the rate, m/s …
+    /// Noise of the rate, m/s.
     pub rate_noise_m_s: f64,
-    /// … and what of it comes from the noise of the measured way, whatever the motion.
+    /// Part of that noise due to the measured path alone, whatever the motion.
     pub slope_noise_m_s: f64,
     /// In order.
     pub punctures: Vec<Puncture>,
-    /// How late its forces are; of several recordings the one that is seen the most clearly.
+    /// Delay of its forces; of several recordings, the best determined one.
     pub late: Option<Late>,
 }
 
 impl Needle {
-    /// Goes on with a recording that was made later: its holds and its places of the sheet are others, and so is its own surface.
+    /// Goes on with a recording that was made later: its holds and its places of the sheet are others, and so is its
+    /// own surface.
     pub fn then(&mut self, later: Self) {
         let of = |pick: fn(&Row) -> usize| self.rows.iter().map(pick).max().map_or(0, |last| last + 1);
         let (push, stretch, recording) = (of(|r| r.push), of(|r| r.stretch), self.recordings);
@@ -134,7 +136,7 @@ impl Needle {
             stretch: stretch + row.stretch,
             ..row
         }));
-        // Every hole bends in its own way before anything slides in it: one law for several misses each at its turns.
+        // Every hole has its own presliding: one law for several holes has a misfit at their reversals.
         self.joined = true;
         self.fine.clear();
         self.rows.iter_mut().for_each(|row| row.span = Span { start: 0, len: 0, ..row.span });
@@ -207,7 +209,7 @@ pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
     let numbers = stretches(&at, period_s, |i| rows[i].phase != rows[i - 1].phase || rows[i].hold != rows[i - 1].hold);
     rows.iter_mut().zip(numbers).for_each(|(row, number)| row.stretch = number);
     let rate_noise_m_s = white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>());
-    // Of a straight line through the window.
+    // Noise of the slope of a line through the window.
     let half = half as f64;
     let spread = half * (half + 1.0) * (2.0 * half + 1.0) / 3.0;
     let slope_noise_m_s = white_noise(&own) / (spread.sqrt() * step_s.max(1e-9));
@@ -271,7 +273,7 @@ fn phases(
                 continue;
             }
             let Some((k, push)) = now else { continue };
-            // Filters see the surface, and the fall of the force at a puncture, from either side.
+            // The filter's window includes the surface, and the fall of the force at a puncture, from either side.
             let meets = (depth_m[i] - surface_m).abs() < EDGE_M + WINDOW_S * rate_m_s[i].abs();
             let falls = push.puncture.is_some_and(|at| i <= at && time[at] - time[i] < WINDOW_S);
             if meets || falls {
@@ -284,7 +286,7 @@ fn phases(
                     (settled && depth_m[i] > surface_m + INSIDE_M).then_some(Phase::Hole)
                 }
                 _ if push.samples.contains(&i) && depth_m[i] > push.untouched_from_m => Some(Phase::Loading),
-                // Pushed in again below the dent, or drawn back.
+                // Pushed in again above the dent, or drawn back.
                 _ => Some(Phase::Unloading),
             };
             found[i] = phase.map(|p| (p, h, *k, deepest.max(push.untouched_from_m - BEYOND_DENT_M)));

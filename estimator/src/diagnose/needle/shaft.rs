@@ -1,4 +1,4 @@
-//! The needle in its hole: what holds its shaft.
+//! Needle in its hole: the forces that hold its shaft.
 
 use super::forward::Sliding;
 use super::rows::{Needle, Phase, Row};
@@ -22,13 +22,13 @@ use haptics::Vec2;
 use haptics::law::object::{MembraneHistory, MembraneLaw};
 use haptics::law::{Coordinate, Kind, Motion};
 
-/// Fewer rows in a hole show nothing.
+/// Least number of rows in a hole.
 const LEAST_ROWS: usize = 60;
-/// Half of the filter's window, with some room, s, and how clear a direction must be.
+/// Half of the filter's window with some margin, s, and certainty of a direction.
 const WINDOW_S: f64 = 0.018;
 const NOISES: f64 = 3.0;
-/// Causes of the dictionary that are asked for in a hole. Where it rubs more than elsewhere is not where two fingers hold the needle: its place between
-/// their pads is not known well enough for that.
+/// Causes of the candidate library that are tried in a hole. Local resistance is excluded if two fingers hold the
+/// needle, because its position between their pads is not known well enough.
 const POSSIBLE: [&str; 9] = [
     "coulomb-friction",
     "viscous-friction",
@@ -40,32 +40,34 @@ const POSSIBLE: [&str; 9] = [
     "friction-change",
     "force-drift",
 ];
-/// Those of them that need the points between the rows.
+/// Possible causes that need the points between the rows.
 const CLOSELY: [&str; 3] = ["stribeck", "backlash", "local-resistance"];
-/// Friction of a shaft goes with the length that is in the hole: no law of the catalogue has that, and no needle is without.
+/// Friction of a shaft in proportion to the length in the hole. The catalogue has no law for it, and every needle shows
+/// it.
 const ALONG_THE_SHAFT: &str = "other:depth sgn(v)";
-/// Rounds of a search around the values that were found: the steps of the first grid, and half of them.
+/// Step sizes of the refinement around the values found: those of the first grid, and half of them.
 const CLOSER: [f64; 2] = [1.0, 0.5];
-/// Waves over the depth and in time that show what has no name: a recording has few rows in its holes.
+/// Generic waves over the depth and in time, to detect unexplained terms. Few, because a recording has few rows in its
+/// holes.
 const WAVES: u32 = 3;
-/// The rim of a world's hole may be softer or stiffer than its sheet by so much, in a first step.
+/// Relative change of the rim's stiffness in a world's hole, for the first step of its linearisation.
 pub const RIM_SHARE: f64 = 0.05;
 
 /// The comparison.
 pub struct Shaft {
     pub compared: Compared,
-    /// What its rows are seen against.
+    /// Variables of the plots of its rows.
     pub view: View,
-    /// What the model without a cause has.
+    /// Content of the base model, in words.
     pub model: &'static str,
-    /// Dry friction at a first look, N.
+    /// Dry friction of a first fit, N.
     dry_n: f64,
-    /// What the needle does on its own.
+    /// Free-run model of the needle.
     pub sliding: Sliding,
 }
 
 impl Shaft {
-    /// The columns on rows that were not measured yet.
+    /// Predicted regressors on rows that have not been measured yet.
     pub fn imagined(&self, needle: &Needle, law: Option<&MembraneLaw>) -> Imagined {
         let rows = rows(needle);
         let track = seen(needle, &rows);
@@ -78,31 +80,31 @@ impl Shaft {
     }
 }
 
-/// Rows in the hole. Where the way turns round within a filter's window the force is of both directions; how much of it is of which is only known from
-/// the points between the rows.
+/// Rows in the hole. If the path reverses within a filter's window, the force is a mixture of both directions, whose
+/// shares only the points between the rows tell. Without these points such rows are left out.
 fn rows(needle: &Needle) -> Vec<Row> {
     let told = |r: &Row| if needle.fine.is_empty() { !turns(needle, r) } else { r.span.len > 0 };
     needle.rows.iter().filter(|r| r.phase == Phase::Hole && told(r)).copied().collect()
 }
 
-/// Whether the way of a row may turn round within a filter's window.
+/// True if the path may reverse within a filter's window around a row.
 fn turns(needle: &Needle, row: &Row) -> bool {
     row.rate_m_s.abs() < WINDOW_S * row.acceleration_m_s2.abs() + NOISES * needle.rate_noise_m_s
 }
 
-/// The same as a track, as certain of its direction as it can be.
+/// The same rows as a track, with the uncertainty of their direction.
 fn seen(needle: &Needle, rows: &[Row]) -> Track {
     let mut track = track(needle, rows);
     blur(&mut track);
     track
 }
 
-/// What is held in every hold, the needle's mass, and a world's friction.
+/// Regressors of the base model: held weight in every hold, the needle's mass, and a world's friction.
 fn base(needle: &Needle, rows: &[Row], law: Option<&MembraneLaw>) -> Vec<Vec<f64>> {
     let of = |f: &dyn Fn(usize) -> f64| (0..rows.len()).map(f).collect::<Vec<f64>>();
     let mut base: Vec<Vec<f64>> = (0..needle.holds).map(|h| of(&|i| f64::from(u8::from(rows[i].hold == h)))).collect();
     if needle.two_fingered {
-        // The needle's own mass; a tool's sensor sits behind none.
+        // Mass of the needle. A tool's sensor carries no mass in front of it.
         base.push(of(&|i| rows[i].acceleration_m_s2));
     }
     if let Some(law) = law {
@@ -134,9 +136,9 @@ fn candidates(
         grid,
         columns: &Columns::default(),
     };
-    // What pushes at a place, whichever way the needle goes, is the sheet's rim.
+    // A push at a place, in either direction, is the rim of the sheet.
     let pushes = |c: &Candidate| c.id == "local-resistance" && (c.sign == 0.0 || needle.two_fingered);
-    // What happens within a filter's window at a turn is only told from between the rows.
+    // Motion within a filter's window at a reversal is known only between the rows.
     let unseen = |c: &Candidate| needle.joined && CLOSELY.contains(&c.id);
     let possible = dictionary.candidates().into_iter().filter(|c| POSSIBLE.contains(&c.id) && !pushes(c) && !unseen(c));
     // A rate is measured less well than a direction.
@@ -145,7 +147,7 @@ fn candidates(
     };
     let mut candidates: Vec<Candidate> = possible.map(with_noise).collect();
     if law.is_some() {
-        // It bends before it slides already.
+        // The world's law already bends before it slides.
         candidates.retain(|c| !["hysteresis", "coulomb-friction", "viscous-friction"].contains(&c.id));
     }
     let longer = of(&|i| rows[i].depth_m * direction[i]);
@@ -161,10 +163,10 @@ fn candidates(
     candidates
 }
 
-/// Compares what may hold the shaft. `None` where the needle hardly moved in a hole.
+/// Compares the causes that may hold the shaft. `None` if the needle hardly moved in a hole.
 pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Option<Shaft>, EstimateError> {
     let rows = rows(needle);
-    // Turns alone tell a bend from a friction, and neither how large it is.
+    // Reversals alone cannot separate presliding from friction, nor determine the size of either.
     if rows.iter().filter(|r| !turns(needle, r)).count() < LEAST_ROWS {
         return Ok(None);
     }
@@ -175,10 +177,10 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
     let mut first = base.clone();
     first.push(direction.clone());
     let look = least_squares(&first, &y, None)?;
-    // Of a world's columns the last but one is its friction.
+    // With a world's law, the last but one regressor of the base is its friction.
     let of_world = if law.is_some() { look.values[base.len() - 2].abs() } else { 0.0 };
     let dry_n = look.values[first.len() - 1].abs() + of_world;
-    // Where the direction is a guess all of the friction is open.
+    // An uncertain direction makes all of the friction uncertain.
     let floor_n = white_noise(&y);
     let open = |r: &track::Row| (1.0 + dry_n * dry_n * r.open / (floor_n * floor_n).max(1e-18)).powf(-0.5);
     let weight = track.rows.iter().map(open).collect();
@@ -204,8 +206,9 @@ pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
     Ok(Some(Shaft { compared, view: super::sheet::view(&rows), model, dry_n, sliding }))
 }
 
-/// The comparison, and once more around the values that were found, as long as there are any. `asked`: candidates over a grid beside so much dry
-/// friction; `dry`: whether the model has it. With the friction, N, that the last shares are of.
+/// The comparison, repeated with grids refined around the values found. `asked`: candidates over a grid, for a given
+/// dry friction; `dry`: true if the model has dry friction. Returns also the friction, N, to which the last shares
+/// refer.
 fn closely(
     channel: &Channel,
     (track, coarse): (&Track, &Grid),
@@ -225,14 +228,14 @@ fn closely(
             break;
         }
         grid = grid.with(Grid::around(&found, track, step));
-        // Play takes much of it away at a first look; all of its share is of what slides.
+        // Backlash takes much of it away in a first fit; its share refers to the friction of sliding.
         dry_n = sliding_n(&study).unwrap_or(first_n);
         study = compare(Channel { candidates: asked(&grid, dry_n), ..channel.clone() })?;
     }
     Ok((study, dry_n))
 }
 
-/// The dry friction that was found, N.
+/// Estimated dry friction, N.
 fn sliding_n(study: &Study) -> Option<f64> {
     let picks = study.picks();
     let before = picks.iter().take_while(|p| study.candidates[**p].id != "coulomb-friction");
@@ -240,12 +243,12 @@ fn sliding_n(study: &Study) -> Option<f64> {
     study.solved.as_ref()?.values.get(place).copied()
 }
 
-/// A world's hole in a sheet that is pierced, drag left out.
+/// A world's hole in a pierced sheet, without drag.
 pub fn rim(law: &MembraneLaw) -> MembraneLaw {
     MembraneLaw { drag_n_s_m: 0.0, puncture_n: 0.0, ..*law }
 }
 
-/// Friction of a world's hole along the measured way, N, drag left out.
+/// Friction of a world's hole along the measured path, N, without drag.
 fn held(law: &MembraneLaw, rows: &[Row]) -> Vec<f64> {
     let law = rim(law);
     let mut history = MembraneHistory::default();
@@ -307,7 +310,7 @@ fn track(needle: &Needle, rows: &[Row]) -> Track {
     }
 }
 
-/// Sizes that could just matter, and what would show them.
+/// Smallest sizes that matter, with the experiment that would show them.
 pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
     Some(match candidate.id {
         "stribeck" => (0.1, "the needle hardly moved slowly in the hole; go to and fro there slowly and fast"),
@@ -317,7 +320,7 @@ pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
     })
 }
 
-/// What in the residual shows a cause.
+/// Sentence on how the residual shows a cause.
 pub fn shows(found: &Found<'_>) -> String {
     match found.candidate.id {
         "coulomb-friction" => "in the hole the force turns round with the direction, whatever the speed".to_owned(),

@@ -1,4 +1,4 @@
-//! The sheet before it is pierced, and the sensors: force over depth against a spring that is the same at every depth.
+//! Sheet before the puncture, and sensors: force over depth against a linear spring.
 
 use super::forward::Pressed;
 use super::rows::{Needle, Phase, Puncture, Row};
@@ -14,16 +14,16 @@ use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 use haptics::law::object::MembraneLaw;
 
-/// Rows follow each other within so many of their distances.
+/// Largest distance of consecutive rows, in their usual distances.
 const NEXT: f64 = 1.5;
-/// Pushes within this of each other, m, are at one place of the sheet.
+/// Largest distance of pushes at one place of the sheet, m.
 const OTHER_PLACE_M: f64 = 5e-4;
-/// A sheet lies askew when it does so by this many standard errors.
+/// Standard errors from which a sheet is inclined to the needle.
 const CLEARLY_ASKEW: f64 = 3.0;
-/// Shares of the deepest insertion that may stay as a dent.
+/// Tried shares of the deepest indentation that stay as a dent.
 const DENTS: [f64; 16] = [0.04, 0.07, 0.1, 0.13, 0.16, 0.19, 0.22, 0.25, 0.28, 0.32, 0.36, 0.4, 0.45, 0.5, 0.58, 0.66];
 
-/// Rows of the sheet, and everything that could explain them.
+/// Rows of the sheet, with the base model and all candidates.
 pub struct Columns {
     rows: Vec<Row>,
     floor_n: f64,
@@ -32,7 +32,7 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// As rows that were not measured yet.
+    /// The same as predicted rows.
     pub fn imagined(self) -> Imagined {
         Imagined {
             stretch: self.rows.iter().map(|r| r.stretch).collect(),
@@ -43,8 +43,9 @@ impl Columns {
     }
 }
 
-/// Puts depths right by how the sheet of a recording lies across the needle's way, where that is clear: the way is known from forces, within a few
-/// thousandths, and no sheet is square to it, so that each place is met a little elsewhere. Each is pushed at its own speed, which would pass for drag.
+/// Corrects depths for an inclination of a recording's sheet to the needle's axis, if it is significant. The axis is
+/// known from forces to a few thousandths, so each place has a slightly different surface. Places are pushed at
+/// different speeds, so the error would look like drag.
 fn square(needle: &Needle, recording: usize, rows: &mut [Row]) {
     let met = |r: &Row| r.recording == recording && touches(r);
     let sides = rows.iter().filter(|r| met(r)).map(|r| r.side_m);
@@ -60,7 +61,7 @@ fn square(needle: &Needle, recording: usize, rows: &mut [Row]) {
     }
 }
 
-/// How much farther the sheet is met a metre across the needle's way; `None` where that is no more than its error.
+/// Inclination of the sheet: rise of its surface per metre across the needle's axis. `None` if it is within its error.
 fn slope_across<'a>(needle: &Needle, rows: impl Iterator<Item = &'a Row>, middle_m: f64) -> Option<f64> {
     let rows: Vec<&Row> = rows.filter(|r| r.phase != Phase::Unloading).collect();
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(|r| f(r)).collect::<Vec<f64>>();
@@ -76,18 +77,18 @@ fn slope_across<'a>(needle: &Needle, rows: impl Iterator<Item = &'a Row>, middle
     (fit.identified[0] && fit.values[0].abs() > CLEARLY_ASKEW * fit.std_errors[0]).then_some(fit.values[0])
 }
 
-/// Names of the two ways in which a sheet hardens.
+/// Names of the two forms of hardening.
 const CUBIC: &str = "k3";
 const HERTZ: &str = "hertz";
 
-/// What a sheet may have beside its spring.
+/// Force of a sheet beside its linear spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
     /// A power of the depth.
     Power(f64),
     /// In proportion to the rate.
     Drag,
-    /// A share of the deepest insertion that stays as a dent.
+    /// A share of the deepest indentation that stays as a dent.
     Dent(f64),
 }
 
@@ -103,7 +104,7 @@ impl Law {
         }
     }
 
-    /// Force against the needle for one of its parameter, N. `elastic`: that of the first push at a depth.
+    /// Force against the needle per unit of its parameter, N. `elastic`: force of the first push at a depth.
     pub fn unit_n(self, r: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
         match self {
             _ if !touches(r) => 0.0,
@@ -114,7 +115,7 @@ impl Law {
     }
 }
 
-/// Force of the model's own sheet at a row, for one of its column, N: of the world's, or a spring of 1 N/m.
+/// Force of the model's own sheet at a row for a coefficient of one, N: of the world's sheet, or of a spring of 1 N/m.
 pub fn own_n(law: Option<&MembraneLaw>, r: &Row) -> f64 {
     match law {
         _ if !touches(r) => 0.0,
@@ -123,7 +124,7 @@ pub fn own_n(law: Option<&MembraneLaw>, r: &Row) -> f64 {
     }
 }
 
-/// Force of the first push at a depth that dents are told beside, N.
+/// Force of the first push at a depth, to which dents are relative, N.
 pub fn first_push_n(stiffness_n_m: f64, law: Option<&MembraneLaw>, depth_m: f64) -> f64 {
     law.map_or(stiffness_n_m * depth_m, |l| l.loading_n(depth_m))
 }
@@ -132,7 +133,8 @@ fn touches(r: &Row) -> bool {
     matches!(r.phase, Phase::Loading | Phase::Unloading) && r.depth_m > 0.0
 }
 
-/// Columns of what the sheet may be beside a linear spring (or the law of a world), and of what may be wrong with the force.
+/// Columns of what the sheet may be beside a linear spring (or the law of a world), and of what may be wrong with the
+/// force.
 pub fn columns(needle: &Needle, law: Option<&MembraneLaw>) -> Columns {
     let mut rows: Vec<Row> = needle.rows.iter().filter(|r| r.phase != Phase::Hole).copied().collect();
     let floor_n = white_noise(&rows.iter().map(|r| r.force_n).collect::<Vec<f64>>());
@@ -145,10 +147,10 @@ pub fn columns(needle: &Needle, law: Option<&MembraneLaw>) -> Columns {
         (0..needle.holds).map(|h| of(&|r| f64::from(u8::from(is_held(r) && r.hold == h)))).collect();
     base.push(of(&|r| own_n(law, r)));
     if needle.two_fingered {
-        // The needle's own mass; a tool's sensor sits behind none.
+        // Mass of the needle. A tool's sensor carries no mass in front of it.
         base.push(of(&|r| if is_held(r) { r.acceleration_m_s2 } else { 0.0 }));
     }
-    // Where the surface is, to first order: each recording found it by itself.
+    // Surface position to first order: each recording detected it by itself.
     let owned = |k: usize, r: &Row| f64::from(u8::from(r.recording == k));
     base.extend((0..needle.recordings).map(|k| of(&|r| if touches(r) { owned(k, r) } else { 0.0 })));
     let candidates = candidates(needle, &rows, law, &elastic);
@@ -173,7 +175,7 @@ fn candidates(
         acts(Law::Drag, "viscous-friction", "c", "N s/m"),
         Candidate::one("force-bias", Kind::Instrument, "b", "N", of(&|_| 1.0)),
     ];
-    // A sensor is set to zero before each recording.
+    // A sensor is zeroed before each recording.
     candidates.extend((0..needle.recordings).map(|k| {
         let since = of(&|r| owned(k, r) * (r.time_s - r.start_s));
         let drift = Candidate::one("force-drift", Kind::Instrument, "rate", "N/s", since);
@@ -190,7 +192,7 @@ fn candidates(
         expression: Some(expression.to_owned()),
         ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
     };
-    // A curve of another form still: it keeps the whitening honest.
+    // A curve of yet another form, so that the whitening is not too optimistic.
     candidates.push(term("x²", of(&|r| pressed(r).powi(2))));
     candidates.extend((1..=3).map(|n| {
         let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * r.time_s / span).cos());
@@ -202,9 +204,9 @@ fn candidates(
 /// The comparison.
 pub struct Sheet {
     pub compared: Compared,
-    /// What its rows are seen against.
+    /// Variables of the plots of its rows.
     pub view: View,
-    /// What a needle does on its own, outside and on the sheet.
+    /// Free-run model of a needle outside and on the sheet.
     pub pressed: Pressed,
 }
 
@@ -229,22 +231,23 @@ pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Resu
     let (channel, state) = ("force outside and on the sheet", rows.iter().map(Row::state).collect());
     let compared = Compared { study, channel, unit: "N", floor: floor_n, along, stretch, state };
     let view = View {
-        // What presses the sheet says nothing of empty fingers.
+        // Rows on the sheet are apart from those of empty fingers.
         sensor: rows.iter().map(|r| usize::from(touches(r))).collect(),
         ..view(&rows)
     };
     Ok(Sheet { compared, view, pressed: Pressed::new(needle, law, rows) })
 }
 
-/// What a row's noise is smaller by for the comparison: rows are dealt out, so that noise that goes on from one to the next is not taken out of
-/// them, and each says less than its own (1 where it is white). Learnt outside of the sheet, from what slow changes leave.
+/// Weight of a row in the comparison, 1 for white noise. The rows are dealt out, so that whitening does not remove
+/// noise that is correlated between rows, and each row has less information. Estimated outside the sheet, from the
+/// residual after slow changes.
 fn said_by_a_row(
     needle: &Needle,
     rows: &[Row],
     base: &[Vec<f64>],
     candidates: &[Candidate],
 ) -> Result<f64, EstimateError> {
-    /// So many standard errors of a correlation are no chance.
+    /// Standard errors from which a correlation is significant.
     const CLEAR: f64 = 3.0;
     let free: Vec<usize> = (0..rows.len()).filter(|i| !touches(&rows[*i])).collect();
     let slow = candidates.iter().filter(|c| c.id == "force-drift" || c.expression.is_some());
@@ -259,7 +262,7 @@ fn said_by_a_row(
     let left = |k: usize| y[k] - columns.iter().zip(&fit.values).map(|(c, v)| c[k] * v).sum::<f64>();
     let mut in_time: Vec<(f64, f64)> = free.iter().enumerate().map(|(k, i)| (rows[*i].time_s, left(k))).collect();
     in_time.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // Correlation of rows so many apart, and of how many pairs.
+    // Correlation of rows at this distance, and number of pairs.
     let correlation = |lag: usize| {
         let near = |run: &&[(f64, f64)]| run[lag].0 - run[0].0 < (lag as f64 + NEXT - 1.0) * needle.period_s;
         let pairs = in_time.windows(lag + 1).filter(near).map(|run| (run[0].1, run[lag].1));
@@ -269,13 +272,13 @@ fn said_by_a_row(
         (if sums.1 > 0.0 { sums.0 / sums.1 } else { 0.0 }, sums.2)
     };
     let ((first, pairs), (second, _)) = (correlation(1), correlation(2));
-    // What a mean over many rows is worse by: white noise beside such that dies away by one share from row to row.
+    // Inflation of a mean's error over many rows: white noise plus noise with an exponential autocorrelation.
     let share = (second / first.max(1e-9)).clamp(first.clamp(0.0, 0.95), 0.95);
     let is_clear = first * pairs.sqrt() > CLEAR;
     Ok(if is_clear { (1.0 + 2.0 * first / (1.0 - share)).powf(-0.5) } else { 1.0 })
 }
 
-/// What the sensor reads at a puncture without the sheet, N: what is held, and the faults of the sensor that were found.
+/// Sensor reading at a puncture without the sheet, N: held weight and the sensor faults found.
 pub fn level_n(study: &Study, at: &Puncture) -> f64 {
     let Some(solved) = &study.solved else { return 0.0 };
     let mut level = solved.values[at.hold];
@@ -292,7 +295,7 @@ pub fn level_n(study: &Study, at: &Puncture) -> f64 {
     level
 }
 
-/// What rows of a needle are seen against.
+/// Variables of the plots of a needle's rows.
 pub fn view(rows: &[Row]) -> View {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let over = vec![
@@ -303,7 +306,7 @@ pub fn view(rows: &[Row]) -> View {
     View { way: of(&|r| r.rate_m_s), ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
 }
 
-/// What a cause on a needle is best seen against.
+/// Variable that best shows a cause on a needle.
 pub fn best_seen(id: &str) -> Variable {
     match id {
         "stiffness-hardening" | "hysteresis" => Variable::Depth,
@@ -312,17 +315,17 @@ pub fn best_seen(id: &str) -> Variable {
     }
 }
 
-/// A push is over within a second: rows that are held out in blocks would take all of one. Rows a filter window apart hardly hang
-/// together, so they are dealt out like cards, each a stretch of its own.
+/// Deals the rows into segments of their own, like cards. A push lasts less than a second, so a held-out block of
+/// consecutive rows would contain all of it. Rows a filter window apart are nearly uncorrelated.
 fn shuffle(rows: &mut Vec<Row>) {
-    /// Hands that the rows are dealt to.
+    /// Number of hands to which the rows are dealt.
     const HANDS: usize = 7;
     let dealt = (0..HANDS).flat_map(|hand| rows.iter().skip(hand).step_by(HANDS).copied()).collect();
     *rows = dealt;
     rows.iter_mut().enumerate().for_each(|(k, row)| row.stretch = k);
 }
 
-/// A sheet that keeps a share of its deepest insertion as a dent: below the deepest place it is steeper, and lower.
+/// Force of a sheet that keeps a share of its deepest indentation as a dent: above that depth it is steeper and lower.
 fn with_dent(share: f64, row: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
     let (x, deepest) = (row.depth_m, row.deepest_m);
     if row.phase == Phase::Loading || x >= deepest {
@@ -332,7 +335,7 @@ fn with_dent(share: f64, row: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
     elastic(deepest) * ((x - dent) / (deepest - dent).max(1e-9)).max(0.0)
 }
 
-/// What in the residual shows a cause.
+/// Sentence on how the residual shows a cause.
 pub fn shows(found: &Found<'_>) -> String {
     match found.candidate.id {
         "stiffness-hardening" => "the deeper the sheet is pressed the steeper its force rises".to_owned(),
@@ -344,7 +347,7 @@ pub fn shows(found: &Found<'_>) -> String {
     }
 }
 
-/// Sizes that could just matter, and what would show them.
+/// Smallest sizes that matter, with the experiment that would show them.
 pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
     Some(match candidate.id {
         "stiffness-hardening" if candidate.linear[0].0 == "k3" => (5e5, "the sheet was hardly pressed in"),

@@ -1,4 +1,4 @@
-//! What was found about a needle and its sheet, or could be there instead, put into a world.
+//! Causes found on a needle and its sheet, and rival causes, as effects in a world.
 
 use super::shaft::Shaft;
 use crate::diagnose::answer::{Compared, parameter};
@@ -8,16 +8,16 @@ use haptics::Vec2;
 use haptics::law::object::MembraneLaw;
 use haptics::world::World;
 
-/// A hole rubs less than this share of what pierces the sheet: the law knows no other.
+/// Largest friction of a hole as a share of the puncture force: the law has no other.
 const LESS_THAN_PUNCTURE: f64 = 0.95;
-/// Largest dent that the law knows, as a share of the depth.
+/// Largest dent of the law, as a share of the depth.
 const DEEPEST_DENT: f64 = 0.9;
 
-/// A sheet, or a hole, as the model came out: a world's, by a factor, or the plain one.
+/// Estimated model of a sheet or a hole: a world's with a factor, or the plain one.
 struct Channel {
     /// Name of its act.
     name: &'static str,
-    /// Indices of the columns in the base, and the names of their values.
+    /// Indices of the regressors in the base, and the names of their values.
     columns: Vec<(usize, &'static str)>,
     two_fingered: bool,
 }
@@ -29,7 +29,7 @@ impl Simulated for Channel {
         vec![(self.name.to_owned(), self.columns.iter().map(value).collect())]
     }
 
-    /// A pressed sheet knows no drag, a hole no change of its friction: none of that is in a world.
+    /// A world has no drag on a pressed sheet, and no change of friction in a hole.
     fn act(&self, candidate: &Candidate, values: &[f64]) -> Option<Act> {
         let named = |name: &str| candidate.linear.first().is_some_and(|(n, _)| *n == name);
         let known = match (self.name, candidate.id) {
@@ -47,7 +47,7 @@ impl Simulated for Channel {
         false
     }
 
-    /// Forces along the needle are pushes down, of both fingers together.
+    /// Forces along the needle are downward pushes, of both fingers together.
     fn fault(&self, fault: SensorFault) -> SensorFault {
         let share = if self.two_fingered { 0.5 } else { 1.0 };
         let down = |along: f64| {
@@ -63,7 +63,8 @@ impl Simulated for Channel {
     }
 }
 
-/// Everything that could stand in the place of what was found. `holds`: how many columns of the base say what is held.
+/// The hypothesis as found, and those of every rival cause. `holds`: number of regressors of the base for the held
+/// weight.
 pub fn hypotheses(
     (sheet, shaft): (&Compared, Option<&Shaft>),
     (holds, two_fingered): (usize, bool),
@@ -79,7 +80,7 @@ pub fn hypotheses(
     of_channels(&all)
 }
 
-/// The world with a sheet and a hole like that.
+/// The world with these effects on its sheet and hole.
 pub fn with_acts(world: &World, acts: &[Act]) -> World {
     let mut world = world.clone();
     let Some(membrane) = &mut world.membrane else { return world };
@@ -107,14 +108,14 @@ fn put(law: &mut MembraneLaw, id: &str, value: &dyn Fn(&str) -> Option<f64>) {
         "sheet: stiffness-hardening" => law.cubic_n_m3 += positive("k3").unwrap_or(0.0),
         "sheet: hysteresis" => law.give += positive("share").unwrap_or(0.0) * positive("dent").unwrap_or(0.0),
         "hole" => {
-            // Without a world's friction nothing is held.
+            // Without a world's friction, the hole holds nothing.
             let factor = positive("factor");
             law.friction_n *= factor.unwrap_or(0.0);
             law.drag_n_s_m = factor.and(positive("c")).unwrap_or(0.0);
         }
         "hole: coulomb-friction" => law.friction_n += positive("Fc").unwrap_or(0.0),
         "hole: viscous-friction" => law.drag_n_s_m += positive("c").unwrap_or(0.0),
-        // A rim that gives before the shaft slides is the law's own way of rubbing.
+        // A rim that yields before the shaft slides is already the law's own friction.
         _ => {}
     }
 }

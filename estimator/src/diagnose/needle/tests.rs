@@ -1,4 +1,4 @@
-//! Rows of a needle as a recording would give them, with what must not pass for a cause.
+//! Rows of a needle as in a recording, with effects that must not be named as causes.
 
 use super::rows::{Needle, Phase, Puncture, Row};
 use super::{punctures, sheet};
@@ -18,8 +18,8 @@ fn normals(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Five pushes at places 10 mm apart, each at its own speed; `askew`: how much farther each is met, as a share of the way across; `goes_on`: share of
-/// one row's noise in the next.
+/// Five pushes at places 10 mm apart, each at its own speed. `askew`: rise of the surface per distance across;
+/// `goes_on`: correlation of the noise of neighbouring rows.
 fn needle(seed: u64, askew: f64, goes_on: f64) -> Needle {
     let mut normal = normals(seed);
     let (mut rows, mut time_s, mut noise) = (Vec::new(), 0.0, 0.0);
@@ -72,7 +72,8 @@ fn named(needle: &Needle) -> Vec<&'static str> {
     found.study.picks().into_iter().map(|p| found.study.candidates[p].id).collect()
 }
 
-/// The way of a needle is known from its forces within a few thousandths: each place is met a little elsewhere, at its own speed.
+/// The axis of a needle is known from its forces to a few thousandths, so each place has a slightly different surface,
+/// and its own speed.
 #[test]
 fn a_sheet_that_is_not_square_to_the_needle_does_not_drag() {
     for seed in 0..6 {
@@ -87,7 +88,7 @@ fn noise_that_goes_on_from_row_to_row_is_no_drift() {
     assert!(found.len() <= 1, "{found:?}");
 }
 
-/// What the sensor drifts by between two punctures is no difference of the sheet.
+/// A sensor drift between two punctures is no difference of the sheet.
 #[test]
 fn punctures_are_compared_without_what_the_sensor_drifts_by() {
     let at = |time_s: f64, force_n: f64| Puncture { recording: 0, time_s, force_n, error_n: 0.01, hold: 0 };
@@ -95,7 +96,7 @@ fn punctures_are_compared_without_what_the_sensor_drifts_by() {
     let names = ["needle"];
     assert!(punctures(&pierced, &names, &|_| 0.0).is_some());
     assert!(punctures(&pierced, &names, &|p| 0.02 * p.time_s).is_none());
-    // Few samples of a stiff sheet that is pushed fast say little of where it gave way.
+    // Few samples of a stiff sheet that is pushed fast locate the puncture poorly.
     let coarse = pierced.punctures.iter().map(|p| Puncture { error_n: 0.1, ..*p }).collect();
     assert!(punctures(&Needle { punctures: coarse, ..pierced }, &names, &|_| 0.0).is_none());
 }

@@ -1,23 +1,24 @@
-//! Channels whose rows are dealt out: every second row trains, or rows from everywhere are held out together, so that no window is left that took
-//! part in nothing. Each window is left out of the fit in turn; its rows took part in the choice.
+//! Channels whose rows are dealt out: every second row trains, or rows from everywhere are held out together, so that
+//! no window is left that took part in nothing. Each window is left out of the fit in turn; its rows took part in the
+//! choice.
 
 use super::{Compared, WINDOW_S, told};
 use crate::diagnose::candidate::Candidate;
 use crate::diagnose::geometry::Study;
 use crate::diagnose::report::{Rollout, RolloutOf};
 
-/// More windows tell nothing new; so many are taken from everywhere.
+/// Most windows, taken evenly from the whole recording; more add no information.
 const MOST_WINDOWS: usize = 60;
-/// A cause acts in a window if it does in this share of its rows.
+/// Least share of a window's rows in which a cause acts.
 const ACTS: f64 = 0.5;
-/// Fewer rows are no window. What is held or pushed is so for moments: windows are as long as nothing interrupts them.
+/// Least number of rows in a window. Holds and pushes are short, so a window lasts as long as nothing interrupts it.
 const LEAST_ROWS: usize = 5;
-/// What follows on a row within so many of the rows' periods goes on.
+/// Largest time step, in row periods, within one window.
 const NEXT: f64 = 1.6;
 
-/// A channel that can be run forward.
+/// A channel with a free-run simulation.
 pub trait Forward {
-    /// What is compared, and its unit.
+    /// Compared quantity and its unit.
     fn of(&self) -> (RolloutOf, &str);
     /// Rows of every window, in the order of time.
     fn windows(&self) -> Vec<Vec<usize>>;
@@ -25,8 +26,8 @@ pub trait Forward {
     fn window_s(&self) -> f64 {
         WINDOW_S
     }
-    /// Sum of the squared errors over a window and their number, with these candidates. `values`: of the model's columns and then of the
-    /// candidates' ones. Why not, where their laws cannot be run.
+    /// Sum of squared errors over a window and their number, with these candidates. `values`: of the model's
+    /// regressors, then of the candidates' ones. The error is the reason why their laws cannot be simulated.
     fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String>;
 }
 
@@ -51,7 +52,7 @@ pub fn columns<'a>(study: &'a Study, picks: &'a [usize], values: &'a [f64]) -> i
     study.base.iter().map(Vec::as_slice).chain(of_causes).zip(values.iter().copied())
 }
 
-/// Windows of rows that follow each other: `order` has them by time, `same` says whether two belong together.
+/// Windows of consecutive rows: `order` has them by time, `same` is true if two belong together.
 pub fn consecutive(
     order: &[usize],
     time_s: &dyn Fn(usize) -> f64,
@@ -81,7 +82,7 @@ pub fn in_turn(study: &Study, channel: &dyn Forward, k: usize) -> Result<Rollout
     let (mut before, mut after) = (Vec::new(), Vec::new());
     for window in windows.iter().step_by(every) {
         let solved = (study.system.without(window, &rest), study.system.without(window, &picks));
-        // What nothing but this window tells is not known without it.
+        // A value that only this window determines is unknown without it.
         let (Some(without), Some(with)) = solved else { continue };
         before.push(channel.errors(study, window, &rest, &without)?);
         after.push(channel.errors(study, window, &picks, &with)?);

@@ -1,8 +1,8 @@
-//! What a cause is worth when the model runs on its own: forward in time from the measured state, over short windows.
+//! Gain of a cause in a free-run simulation, from the measured state over short windows.
 //!
-//! A model with an inertia is driven by the measured force, and its position is compared. A model without one (a light crank, a sheet) would
-//! follow every error of the force at once: there a hand holds on, which wants to be where the motion was measured, and its force is compared.
-//! The laws are stepped by the integrator of the servo's worlds.
+//! A model with inertia is driven by the measured force, and its position is compared. A model without one (a light
+//! crank, a sheet) would follow every error of the force at once. There a simulated hand holds the object and follows
+//! the measured motion, and its force is compared. The integrator is that of the servo's worlds.
 
 mod channel;
 mod pads;
@@ -16,35 +16,35 @@ pub use track::rollout;
 
 use super::report::{Rollout, RolloutOf};
 
-/// Length of a window, s; windows are shorter at the end of a block, but never than half of it.
+/// Longest window, s. Windows are shorter at the end of a block, but at least half of it.
 pub const WINDOW_S: f64 = 0.5;
 /// Fewer windows say nothing.
 const LEAST_WINDOWS: usize = 3;
-/// Errors that differ by less than this share are the same.
+/// Relative difference of errors up to which they count as equal.
 const DIFFER: f64 = 1e-3;
 /// Draws of the bootstrap over windows.
 const DRAWS: usize = 400;
 
-/// Why nothing was run forward.
+/// Reasons why there is no free run.
 pub const NO_LAW: &str = "no law of a world runs it";
 pub const TOO_FEW: &str = "too few uninterrupted pieces were there to run it over";
 pub const NOT_FAITHFUL: &str = "the laws of a world do not give the force that was found";
 pub const AT_AN_INSTANT: &str = "it is one instant: nothing of it runs on";
 pub const PUT_BACK: &str = "the forces are put back to their motion before anything is run";
-/// … because the model takes it for something of its own wherever it can be run.
+/// The simulated model already contains the cause.
 const THE_SAME: &str = "where the model can be run forward, it runs the same without it";
 pub const NO_CLOCK: &str = "a path without a clock cannot be run forward in time";
-/// … because there is nothing that could run.
+/// The relation is static: it has no state to simulate.
 pub const AT_ONCE: &str =
     "here one measured quantity follows from the others at once: sample by sample is forward in time";
 
-/// What is compared, and its unit.
+/// Compared quantity, its unit and its windows.
 pub struct Compared<'a> {
     pub of: RolloutOf,
     pub unit: &'a str,
     /// Longest window, s.
     pub window_s: f64,
-    /// Whether the windows took part in the choice of the causes.
+    /// True if the windows took part in the choice of the causes.
     pub in_turn: bool,
 }
 

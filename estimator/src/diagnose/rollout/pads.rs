@@ -1,15 +1,15 @@
-//! Pads that give under a measured force: they damp, so that their way follows it with a delay of its own.
+//! Compliant pads under a measured force: their damping delays the displacement after the force.
 
 use super::{Forward, columns, consecutive};
 use crate::diagnose::geometry::Study;
 use crate::diagnose::report::RolloutOf;
 
-/// A channel of places, with the rate of the place among the columns of its model.
+/// A channel of positions, with the rate of the position among the regressors of its model.
 pub struct Pads {
     time_s: Vec<f64>,
     stretch: Vec<usize>,
     period_s: f64,
-    /// Which column of the model is the rate.
+    /// Index of the rate among the model's regressors.
     rate: usize,
 }
 
@@ -29,7 +29,8 @@ impl Forward for Pads {
         consecutive(&all, &|i| self.time_s[i], self.period_s, &|a, b| self.stretch[a] == self.stretch[b])
     }
 
-    /// place = give of the force + lag · rate, stepped where each step ends: a lag that runs ahead of the force is noise, and none.
+    /// place = give of the force + lag · rate, stepped where each step ends: a lag that runs ahead of the force is
+    /// noise, and none.
     fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
         let lag_s = (-values[self.rate]).max(0.0);
         let given: Vec<(&[f64], f64)> = columns(study, picks, values)

@@ -3,10 +3,11 @@
 use haptics::device::HandImpedance;
 use haptics::law::{Effect, Memories, Motion, advance, inertia, step_coordinate_with};
 
-/// Longest steps, s: of a coordinate with its own inertia, and of one that a hand holds.
+/// Longest integration steps, s: of a coordinate with its own inertia, and of one that a hand holds.
 const STEP_S: f64 = 1e-3;
 const HELD_STEP_S: f64 = 2.5e-4;
-/// What the fingertips move along with a handle without inertia, kg: small beside every force here, large enough for the step.
+/// Mass of the fingertips that move a handle without inertia, kg: negligible beside every force here, large enough for
+/// the step.
 const TIP_KG: f64 = 5e-3;
 
 /// A moment of a window.
@@ -14,26 +15,27 @@ const TIP_KG: f64 = 5e-3;
 pub struct Moment {
     /// The measured motion.
     pub motion: Motion,
-    /// The measured force without what the faults of the sensors that are thought to be there make of it, N or N m.
+    /// Measured force less the assumed sensor faults, N or N m.
     pub drive: f64,
-    /// What else was measured that the laws look at.
+    /// Other measured quantities that the laws depend on.
     pub beside: [f64; 2],
 }
 
-/// What acts against the motion beside laws of the catalogue: at a place, with what else was measured then.
+/// Force against the motion from other terms than laws of the catalogue, as a function of the motion and of the other
+/// quantities measured then.
 pub type Acts<'a> = dyn FnMut(&Motion, [f64; 2]) -> f64 + 'a;
 
 /// One side of a comparison.
 pub struct Side<'a> {
     pub effects: &'a [Effect],
-    /// What the laws remember at the first moment.
+    /// Memory of the laws at the first moment.
     pub memory: Memories,
     pub acts: &'a mut Acts<'a>,
-    /// Whether the measured force alone drives it; otherwise a hand holds on.
+    /// True if the measured force alone drives it; otherwise a simulated hand holds it.
     pub driven: bool,
 }
 
-/// What laws remember after a measured motion.
+/// Memory of the laws after a measured motion.
 pub fn remembered(effects: &[Effect], past: &[Motion]) -> Memories {
     let mut memory = Memories::default();
     for pair in past.windows(2) {
@@ -44,7 +46,7 @@ pub fn remembered(effects: &[Effect], past: &[Motion]) -> Memories {
     memory
 }
 
-/// Sum of the squared errors over a window, and their number: of the position, or of the force of the hand.
+/// Sum of squared errors over a window, and their number: of the position, or of the force of the hand.
 pub fn run(moments: &[Moment], side: Side<'_>) -> (f64, f64) {
     let Side { effects, mut memory, acts, driven } = side;
     let Some(Moment { motion: first, .. }) = moments.first() else { return (0.0, 0.0) };

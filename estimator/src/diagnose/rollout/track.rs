@@ -9,21 +9,21 @@ use crate::diagnose::system::Use;
 use crate::diagnose::track::{Place, Track};
 use haptics::law::{Coordinate, Effect, Kind, Memories, Motion, advance, drive_forces, inertia};
 
-/// The laws must give what the comparison of columns gives, up to this share of what the cause takes off.
+/// Largest deviation of the laws from the regressors, as a share of the cause's effect.
 const FAITHFUL: f64 = 0.5;
-/// Rows that are trusted less are no judge of the laws.
+/// Least weight of a row for the test of the laws.
 const TRUSTED: f64 = 0.5;
 
-/// One side of the comparison: laws, and the measured force without what the found faults of the sensor make of it.
+/// One side of the comparison: laws, and the measured force less the found sensor faults.
 struct Side {
     effects: Vec<Effect>,
     drive: Vec<f64>,
-    /// What the columns leave of the force, one a row.
+    /// Residual of the force after the regressors, one per row.
     left: Vec<f64>,
 }
 
-/// The rollout without and with the k-th of the chosen causes, all others in; why not, where it cannot be done faithfully: a cause that no
-/// law of the world can run, or too little held-out motion.
+/// The rollout without and with the k-th of the chosen causes, all others in. The error is the reason why it cannot be
+/// done faithfully: a cause without a law in a world, or too little held-out motion.
 pub fn rollout(track: &Track, model: &Model, study: &Study, k: usize) -> Result<Rollout, String> {
     let picks = study.picks();
     let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
@@ -55,7 +55,7 @@ fn side(track: &Track, model: &Model, study: &Study, picks: &[usize]) -> Option<
     let solved = study.system.solve(picks)?;
     let effects = effects_of(track, model, study, picks, &solved)?;
     let left = residual(&study.y, &study.base, &study.candidates, picks, &solved);
-    // Nothing drives what moves freely, and what its mass needs stands on the other side.
+    // No force drives a free motion, and its inertial force is the target.
     let mut drive = if track.freely.is_some() { vec![0.0; study.y.len()] } else { study.y.clone() };
     let mut at = study.base.len();
     for candidate in picks.iter().map(|p| &study.candidates[*p]) {
@@ -69,7 +69,7 @@ fn side(track: &Track, model: &Model, study: &Study, picks: &[usize]) -> Option<
     Some(Side { effects, drive, left })
 }
 
-/// Whether the laws need the force that the columns say.
+/// True if the laws agree with the force of the regressors.
 fn faithful(track: &Track, study: &Study, side: &Side, other: &Side) -> bool {
     let (mut off, mut worth) = (0.0, 0.0);
     for stretch in stretches(track) {
@@ -100,7 +100,7 @@ fn stretches(track: &Track) -> Vec<std::ops::Range<usize>> {
     found
 }
 
-/// Pieces of the locked blocks.
+/// Segments of the locked blocks.
 fn windows(track: &Track, study: &Study) -> Vec<std::ops::Range<usize>> {
     let rows = (WINDOW_S / track.period_s).round().max(4.0) as usize;
     let mut found = Vec::new();
@@ -123,7 +123,7 @@ fn windows(track: &Track, study: &Study) -> Vec<std::ops::Range<usize>> {
     found
 }
 
-/// What the laws remember at every row, after the measured motion.
+/// Memory of the laws at every row, after the measured motion.
 fn memories(track: &Track, effects: &[Effect]) -> Vec<Memories> {
     let mut memory = Memories::default();
     (0..track.rows.len())

@@ -1,4 +1,5 @@
-//! The curve that was measured beside that of a world: friction, springs and binds that the world does not have, and scales of sensors.
+//! Measured curve against that of a world: friction, springs and local resistance that the world lacks, and scales of
+//! sensors.
 //!
 //! A world is known only so well: what is smaller than its own stated errors is no cause.
 
@@ -15,38 +16,38 @@ use crate::estimate::EstimateError;
 use crate::segment::SystemState;
 use haptics::law::{Effect, Kind, LocalResistance, Motion};
 
-/// Least size of what is named, in errors of the world.
+/// Least size of a named cause, in standard errors of the world.
 const ERRORS: f64 = 3.0;
-/// Rows so near to a bend of the world's curve are left out, m.
+/// Distance from a corner of the world's curve within which rows are left out, m.
 const CORNER_M: f64 = 0.8e-3;
-/// Places and widths of a local resistance that are tried, in shares of the way.
+/// Number of tried places of a local resistance, and its widths as shares of the travel.
 const PLACES: usize = 24;
 const WIDTHS: [f64; 4] = [0.08, 0.13, 0.2, 0.3];
 const LEAST_ROWS: usize = 40;
-/// A bind must be seen in so many rows.
+/// Least number of rows in a local resistance.
 const LEAST_ON: usize = 20;
-/// What no cause explains must be larger still, in times of what a cause must be.
+/// Least evidence of an unexplained term, as a multiple of a cause's threshold.
 const STRANGE: f64 = 2.0;
 
-/// One row on the way of a throw.
+/// One row on the travel of a throw.
 #[derive(Clone, Copy)]
 pub struct Point {
     pub side: usize,
     pub at_m: f64,
     pub speed_m_s: f64,
-    /// Measured and asked for along the travel, N, and the slope of the latter, N/m.
+    /// Measured and predicted force along the travel, N, and slope of the latter, N/m.
     pub left_n: f64,
     pub asked_n: f64,
     pub slope_n_m: f64,
 }
 
-/// Force of one newton of a bind at a place, N.
+/// Force of a local resistance of one newton at a position, N.
 pub fn bind_n(at_m: f64, place_m: f64, width_m: f64) -> f64 {
     let law = Effect::new(&LocalResistance, &[1.0, place_m, width_m, 0.0]);
     law.force(&Motion { position: at_m, direction: 1.0, velocity: 1.0, ..Motion::default() })
 }
 
-/// Compares the measured curve with the world's. Nothing where too little of it was seen.
+/// Compares the measured curve with the world's. `None` if too little of it was seen.
 pub fn curve(
     push: &Push,
     known: &Known<'_>,
@@ -102,20 +103,21 @@ pub fn curve(
     Ok(Some((Compared { study, channel, unit, floor, along, stretch, state }, view, knob)))
 }
 
-/// Where the switch stands is open: it may have been moved.
+/// Position of the switch, which may have been moved, as a regressor.
 fn base(points: &[Point]) -> Vec<Vec<f64>> {
     vec![points.iter().map(|p| direction(p.side) * p.slope_n_m).collect()]
 }
 
-/// Columns on throws that were not made yet: of each its side, its fastest speed, m/s, and its way, m.
+/// Predicted regressors on throws that have not been made yet: of each its side, its highest speed, m/s, and its
+/// travel, m.
 pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) -> Imagined {
     let half = known.half_way_m();
     let (mut points, mut stretch) = (Vec::new(), Vec::new());
     for (number, (side, fast_m_s, way_m)) in throws.iter().enumerate() {
         for (travel_m, speed_m_s) in pushed(*fast_m_s, *way_m, period_s) {
-            // A finger that begins before the knob lies on the other side of the middle.
+            // A finger that begins before the knob is on the other side of the middle.
             let at_m = direction(*side) * (travel_m - 0.5 * way_m);
-            // Half way the knob leaves the finger.
+            // The knob leaves the finger half way.
             if at_m.abs() > half || direction(*side) * at_m > 0.0 || known.bends_near(at_m, CORNER_M) {
                 continue;
             }
@@ -128,7 +130,7 @@ pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) 
     Imagined { base: base(&points), candidates: candidates(&points, known, false), stretch, weight }
 }
 
-/// Way and speed of a smooth movement, every `period_s`.
+/// Travel and speed of a smooth movement, every `period_s`.
 pub fn pushed(fast_m_s: f64, way_m: f64, period_s: f64) -> impl Iterator<Item = (f64, f64)> {
     /// Peak over mean speed.
     const PEAK: f64 = 1.875;
@@ -140,7 +142,7 @@ pub fn pushed(fast_m_s: f64, way_m: f64, period_s: f64) -> impl Iterator<Item = 
     })
 }
 
-/// What a cause beside the world's curve is best seen against.
+/// Variable that best shows a cause beside the world's curve.
 pub fn best_seen(id: &str) -> Variable {
     match id {
         "viscous-friction" => Variable::Velocity,
@@ -187,7 +189,7 @@ fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candida
     found.into_iter().map(|c| seen(c, ERRORS * known.error_n)).collect()
 }
 
-/// A cause that must come to some force, N, where it acts.
+/// A cause that must reach some force, N, where it acts.
 fn seen(candidate: Candidate, least_n: f64) -> Candidate {
     let column = &candidate.columns[0];
     let most = column.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
@@ -197,7 +199,7 @@ fn seen(candidate: Candidate, least_n: f64) -> Candidate {
     candidate.at_least(strange * least_n / size.max(1e-12))
 }
 
-/// What in the residual shows a cause.
+/// Sentence on how the residual shows a cause.
 pub fn shows(found: &Found<'_>) -> String {
     let value = found.parameters.first().map_or(0.0, |p| p.value);
     let at = |name: &str| found.parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);

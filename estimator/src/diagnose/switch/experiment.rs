@@ -1,4 +1,5 @@
-//! The throws that would settle what is open about a switch: the same columns on a recording that was not made yet.
+//! Throws that would settle the open questions about a switch: the same regressors on a recording that has not been
+//! made yet.
 
 use super::curve;
 use super::model::Known;
@@ -10,21 +11,21 @@ use crate::diagnose::report::{Alternative, Experiment, NextExperiment};
 use crate::segment::threshold::percentile;
 use haptics::Vec2;
 
-/// Numbers of throws: the least that is likely to do.
+/// Numbers of throws. The least that is likely to suffice is proposed.
 const THROWS: [usize; 3] = [6, 12, 18];
-/// How fast a finger moves at least and at most, m/s.
+/// Lowest and highest speed of a finger, m/s.
 const FAST_M_S: (f64, f64) = (0.06, 0.15);
-/// Nothing is touched for so long before and after, s.
+/// Time without touch before and after, s.
 const FREE_S: f64 = 2.0;
-/// Between letting go of a finger and the next push, m: what its spring and its gap take.
+/// Travel between a finger's release and the next push, m: that of the spring and the gap.
 const GAP_M: f64 = 6e-3;
-/// Free fingers are looked at every so many blocks.
+/// Spacing of the rows of free fingers, in blocks.
 const FREE_EVERY: usize = 10;
 
 const WORDS: &str = "throw the switch over to both sides, slowly and fast in turn, press on at each stop, and let go for two seconds \
                      before and after";
 
-/// The recording to make; nothing where nothing is open that it could settle.
+/// The recording to make; `None` if it would settle no open question.
 pub fn propose(
     open: &[Alternative],
     seen: &Seen,
@@ -63,7 +64,7 @@ pub fn propose(
     best
 }
 
-/// As far as the knob was thrown before, and as fast at least.
+/// The travel of the recorded throws, at least at their speed.
 fn asked(seen: &Seen, count: usize) -> Option<(Experiment, Throws)> {
     let of_side = |side: usize| seen.rows.iter().filter(move |r| r.side() == Some(side));
     let way = |side: usize| {
@@ -88,7 +89,7 @@ fn asked(seen: &Seen, count: usize) -> Option<(Experiment, Throws)> {
         added_weight_n: 0.0,
         added_lever_m: 0.0,
     };
-    // Long enough for that many: it begins a throw as long as there is time.
+    // Long enough for that many throws: one begins as long as there is time.
     let mut seconds = 0.0;
     for _ in 0..count {
         asked.seconds = seconds + 1e-3;
@@ -99,7 +100,7 @@ fn asked(seen: &Seen, count: usize) -> Option<(Experiment, Throws)> {
     Some((asked, motion))
 }
 
-/// Rows of these throws, as they would be read.
+/// Predicted rows of these throws.
 fn imagine(seen: &Seen, push: &Push, motion: &Throws) -> Seen {
     let mut rows: Vec<Row> = Vec::new();
     let row = |time_s: f64, place: Place, x_m: f64, speed_m_s: f64| Row {

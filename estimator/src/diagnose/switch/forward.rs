@@ -1,4 +1,4 @@
-//! A knob on its own: a hand holds it on its measured way, and its curve acts against it where it is.
+//! Free-run simulation of a knob: a hand holds it on its measured path, and its curve acts on it.
 
 use super::curve::{Point, bind_n};
 use super::model::asked_n;
@@ -14,7 +14,7 @@ use haptics::law::{Effect, Inertia, Memories, Motion};
 /// Rows along the travel of a push, in the order of a comparison.
 struct Travel {
     time_s: Vec<f64>,
-    /// Which push each row is of; none where nothing is pushed.
+    /// Side of the push of each row; `None` without a push.
     side: Vec<Option<usize>>,
     stretch: Vec<usize>,
     period_s: f64,
@@ -30,7 +30,7 @@ impl Travel {
         consecutive(&pushed, &|i| self.time_s[i], self.period_s, &|a, b| of(a) == of(b))
     }
 
-    /// Errors of a knob of this mass, kg, that is driven by so much at every row, N, and acts against that.
+    /// Errors of a knob of this mass, kg, under this driving force in every row, N, and these forces against it.
     fn errors(
         &self,
         window: &[usize],
@@ -49,19 +49,19 @@ impl Travel {
             beside: [0.0; 2],
         };
         let moments: Vec<Moment> = window.iter().map(moment).collect();
-        // Less than no mass is the noise of none.
+        // A negative mass is noise of a zero one.
         let effects = [Effect::new(&Inertia, &[mass_kg.max(0.0)])];
         let acts = &mut |motion: &Motion, _: [f64; 2]| acts(motion);
         run(&moments, Side { effects: &effects, memory: Memories::default(), acts, driven: false })
     }
 }
 
-/// What a candidate adds to a row, N.
+/// Contribution of a candidate to a row, N.
 fn added(candidate: &Candidate, own: &[f64], row: usize) -> f64 {
     candidate.columns.iter().zip(own).map(|(column, value)| value * column[row]).sum()
 }
 
-/// A knob whose curve is open.
+/// Free-run model of a knob whose curve is estimated.
 pub struct Thrown {
     travel: Travel,
     curves: Vec<Curve>,
@@ -81,7 +81,7 @@ impl Thrown {
         Self { travel, curves: curves.to_vec() }
     }
 
-    /// Curve of a side with its forces out of the model's values.
+    /// Curve of a side with its forces from the model's values.
     fn curve<'a>(&'a self, side: usize, values: &'a [f64]) -> Option<(&'a Curve, &'a [f64])> {
         let mut at = 0;
         self.curves.iter().find_map(|curve| {
@@ -113,7 +113,7 @@ impl Forward for Thrown {
         let acts = |motion: &Motion| {
             curve.map_or(0.0, |(curve, forces)| curve.force_n(motion.position, forces)) + drag * motion.velocity
         };
-        // The mass is the last column of the model.
+        // The mass is the last regressor of the model.
         Ok(self.travel.errors(window, values[study.base.len() - 1], &drive, &acts))
     }
 }
@@ -155,7 +155,7 @@ impl Forward for Captured {
         let drive = |i: usize| {
             let Point { left_n, asked_n, slope_n_m, .. } = self.points[i];
             let beside = causes(study, picks, values).filter(|(c, _)| !goes_with_motion(c));
-            // Where the switch stands is open.
+            // The position of the switch is estimated.
             let moved = values[0] * direction(side) * slope_n_m;
             left_n + asked_n - moved - beside.map(|(c, own)| added(c, own, i)).sum::<f64>()
         };

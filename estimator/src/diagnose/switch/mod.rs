@@ -1,7 +1,8 @@
-//! Diagnosis of a toggle switch that is thrown to and fro by two fingers.
+//! Diagnosis of a toggle switch that two fingers throw back and forth.
 //!
-//! A switch is captured, not derived: without a world its curve over the place is open in both directions, and only what depends on
-//! speed, on time or on the sensors can be told. With a world its curve is the model, and what it lacks is asked for as well.
+//! The curve of a switch is measured, not derived. Without a world, its curve over position is estimated in both
+//! directions, and only effects of speed, time and sensors can be identified. With a world its curve is the model, and
+//! deviations from it are candidates as well.
 
 mod curve;
 mod experiment;
@@ -26,7 +27,7 @@ use haptics::recording::Recording;
 use model::Known;
 use push::Push;
 
-/// Everything about the recordings of one switch that was compared.
+/// All comparisons of the recordings of one switch.
 struct Look {
     seen: rows::Seen,
     push: Push,
@@ -44,7 +45,7 @@ fn look(recordings: &[Recording], bad: &[Vec<bool>], options: &Options) -> Resul
         Some(known) => curve::curve(&push, known, seen.period_s, limit)?,
         None => None,
     };
-    // A knob that asks for other forces, or a sensor that tells others, lies elsewhere in its stops.
+    // With another knob force or a sensor error, the knob rests at another position in its stops.
     let has = |id: &str| push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == id);
     let other = curve.as_ref().is_some_and(|(c, ..)| !c.study.chosen.is_empty()) || has("friction-change");
     let stop = if other { None } else { stop::stop(&seen, known.as_ref(), limit)? };
@@ -95,7 +96,7 @@ pub fn switch(recordings: &[Recording], options: &Options) -> Result<Diagnosis, 
     Ok(found)
 }
 
-/// What a recording of this kind could not show.
+/// Causes that no recording of this kind shows.
 fn unseen(seen: &rows::Seen, has_world: bool, beside: &mut Beside) {
     let mut add = |ids: &[&str], why: &str| {
         beside.not_excited.extend(ids.iter().map(|id| NotExcited { id: (*id).to_owned(), why: why.to_owned() }));
@@ -119,7 +120,7 @@ fn unseen(seen: &rows::Seen, has_world: bool, beside: &mut Beside) {
     }
 }
 
-/// The recording that would settle what is open.
+/// Recording that would settle the open questions.
 fn next(open: &[Alternative]) -> Option<NextExperiment> {
     let first = open.first()?;
     let mut separates = vec![first.instead_of.clone()];

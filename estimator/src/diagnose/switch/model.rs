@@ -1,4 +1,4 @@
-//! A world's switch as the model of a recording: where the knob is under a fingertip, and what it should ask for there.
+//! Switch of a world as the model of a recording: position of the knob under a fingertip, and its predicted force.
 
 use super::rows::{Row, direction};
 use crate::identify::switch::OBJECT;
@@ -7,37 +7,37 @@ use haptics::law::contact::Cushion;
 use haptics::law::object::ToggleCurve;
 use haptics::world::{Source, Switch, World};
 
-/// A world that does not say how well its curve is known: as a share of its peak.
+/// Relative standard error of a world's curve that states none, as a share of its peak.
 const UNKNOWN: f64 = 0.03;
-/// … and its stops, m.
+/// The same for its stops, m.
 const UNKNOWN_END_M: f64 = 0.2e-3;
-/// No stop is known better than that by a tip on a round knob, m.
+/// Least uncertainty of a stop, m, due to a tip on a round knob.
 const LEAST_END_M: f64 = 0.13e-3;
-/// Halvings of the search for the knob.
+/// Halvings of the search for the knob's position.
 const HALVINGS: usize = 40;
 
-/// What a curve asks for along the travel of a side, N, and how that changes with the place on the arc, N/m.
+/// Force of a curve along the travel of a side, N, and its derivative by the position on the arc, N/m.
 pub fn asked_n(curve: &ToggleCurve, at_m: f64, side: usize) -> (f64, f64) {
     let branch = if side == 0 { 1.0 } else { 0.0 };
     let sign = direction(side);
     (sign * curve.force_n(at_m, branch), sign * curve.stiffness_n_m(at_m, branch, sign))
 }
 
-/// The switch of a world, and how well it is known.
+/// The switch of a world, and its uncertainty.
 pub struct Known<'a> {
     pub switch: &'a Switch,
     pub pad: Cushion,
     gravity_m_s2: f64,
-    /// Error of its forces, N, of its stops, m, and of the give at the stops, m/N.
+    /// Standard errors of its forces, N, of its stops, m, and of the compliance at the stops, m/N.
     pub error_n: f64,
     pub end_error_m: f64,
     pub give_error_m_n: f64,
-    /// Damping of the knob, where it is more than an assumption, N s/m.
+    /// Damping of the knob, N s/m, if it is more than an assumption.
     pub damping_n_s_m: f64,
 }
 
 impl<'a> Known<'a> {
-    /// Nothing for a world without a switch.
+    /// `None` for a world without a switch.
     pub fn of(world: &'a World) -> Option<Self> {
         let switch = world.switch.as_ref()?;
         let stated = |object: &str, name: &str| {
@@ -68,7 +68,7 @@ impl<'a> Known<'a> {
         })
     }
 
-    /// Where the knob is under a tip that presses it, m along its arc.
+    /// Position of the knob under a pressing tip, m along its arc.
     pub fn at_m(&self, row: &Row, side: usize) -> f64 {
         let sign = direction(side);
         let pressed = (sign * row.above_zero.x).max(0.0);
@@ -87,7 +87,7 @@ impl<'a> Known<'a> {
         0.5 * (back + front)
     }
 
-    /// What moves the knob on along the travel of a side, N: the finger and the knob's own weight.
+    /// Driving force on the knob along the travel of a side, N: of the finger and of the knob's own weight.
     pub fn driving_n(&self, force: Vec2, at_m: f64, side: usize) -> f64 {
         let outward = (self.switch.knob_in_world(at_m) - self.switch.pivot_m) / self.switch.lever_m;
         let along = Vec2::new(outward.y, -outward.x);
@@ -95,12 +95,12 @@ impl<'a> Known<'a> {
         direction(side) * (force + weight).dot(&along)
     }
 
-    /// What the knob should ask for along the travel of a side, N, and how that changes with the place on the arc, N/m.
+    /// Predicted force of the knob along the travel of a side, N, and its derivative by the position on the arc, N/m.
     pub fn asked_n(&self, at_m: f64, side: usize) -> (f64, f64) {
         asked_n(&self.switch.curve, at_m, side)
     }
 
-    /// Where the tip should be that presses the knob against the stop of a side with a force, m along the travel.
+    /// Predicted position of a tip that presses the knob against the stop of a side with a force, m along the travel.
     pub fn stopped_m(&self, side: usize, force_n: f64, height_m: f64) -> f64 {
         let sign = direction(side);
         let points = &self.switch.curve.points;
@@ -112,13 +112,13 @@ impl<'a> Known<'a> {
         sign * knob.x - (reach * reach - (knob.y - height_m).powi(2)).max(0.0).sqrt()
     }
 
-    /// Whether a place is near a bend of the curve.
+    /// True if a position is near a corner of the curve.
     pub fn bends_near(&self, at_m: f64, within_m: f64) -> bool {
         let points = &self.switch.curve.points;
         points.iter().any(|p| (p.at_m - at_m).abs() < within_m)
     }
 
-    /// Half of the knob's way, m.
+    /// Half of the knob's travel, m.
     pub fn half_way_m(&self) -> f64 {
         let points = &self.switch.curve.points;
         match (points.first(), points.last()) {

@@ -1,5 +1,6 @@
-//! The force on the way of a throw beside the curve of the same place and direction: what depends on speed and time, and what fingers
-//! feel that touch nothing. The curve itself is open here, one for each direction; whether it is the world's is another question.
+//! Force during the travel of a throw, relative to the curve at the same position and direction: effects of speed and
+//! time, and readings of fingers without touch. The curve itself is estimated here, one per direction. Its comparison
+//! with the world's is a separate channel.
 
 use super::forward::Thrown;
 use super::rows::{Place, Row, Seen, direction};
@@ -13,40 +14,41 @@ use crate::estimate::EstimateError;
 use crate::identify::linear::least_squares;
 use haptics::law::Kind;
 
-/// Places of the open curve, m apart, and how many at most.
+/// Spacing of the nodes of the estimated curve, m, and their largest number.
 const APART_M: f64 = 0.7e-3;
 const MOST_PLACES: usize = 24;
-/// Fewest rows on the way of throws.
+/// Least number of rows on the travel of throws.
 const LEAST_ROWS: usize = 30;
-/// Rows so near to the top of the curve are left out, m: a corner is not seen as sharp in a fast throw as in a slow one.
+/// Distance from the top of the curve within which rows are left out, m: fast throws round its corner more than slow
+/// ones.
 const CORNER_M: f64 = 0.6e-3;
-/// Slower than this a finger stands with the knob, m/s.
+/// Speed below which a finger rests with the knob, m/s.
 const REST_M_S: f64 = 2e-3;
-/// Times at which friction may have changed at once.
+/// Number of tried times of a sudden change of friction.
 const CHANGES: usize = 20;
-/// Pads that damp, and corners that a fast throw rounds, look like nearly half of this, N s/m.
+/// Least viscous friction, N s/m. Pads with damping, and corners that a fast throw rounds, look like nearly half of it.
 const LEAST_VISCOUS_N_S_M: f64 = 0.8;
 
 /// The comparison.
 pub struct Push {
     pub compared: Compared,
-    /// What its rows are seen against.
+    /// Variables of the plots of its rows.
     pub view: View,
-    /// Rows of throws that took part, and what the found causes add to the force along the travel there, N.
+    /// Rows of the throws used, and the contribution of the found causes to the force along the travel there, N.
     pub rows: Vec<(Row, f64)>,
     curves: Vec<Curve>,
-    /// Forces of the curves at a first look, N.
+    /// Forces of the curves in a first fit, N.
     forces_n: Vec<Vec<f64>>,
-    /// What a knob does on its own.
+    /// Free-run model of a knob.
     pub thrown: Thrown,
 }
 
-/// The place of the open curve, along the travel: rising in both directions.
+/// Position on the estimated curve, along the travel: rising in both directions.
 pub fn along_m(row: &Row) -> f64 {
     row.side().map_or(0.0, |side| direction(side) * row.tip.x)
 }
 
-/// Force that the knob asks for along the travel, or that of a free finger, N.
+/// Force of the knob along the travel, or that of a free finger, N.
 fn force_n(row: &Row) -> f64 {
     match row.place {
         Place::Push(side) => direction(side) * row.force.x,
@@ -55,7 +57,7 @@ fn force_n(row: &Row) -> f64 {
     }
 }
 
-/// A curve of straight pieces in one direction.
+/// A piecewise linear curve in one direction.
 #[derive(Clone)]
 pub struct Curve {
     pub side: usize,
@@ -74,24 +76,24 @@ impl Curve {
         Some(Self { side, places })
     }
 
-    /// Share of the k-th place in a row.
+    /// Share of the k-th node in a row.
     fn share(&self, row: &Row, k: usize) -> f64 {
         if row.place == Place::Push(self.side) { self.share_at(along_m(row), k) } else { 0.0 }
     }
 
-    /// … and at a place along the travel, m.
+    /// Share of the k-th node at a position along the travel, m.
     fn share_at(&self, along_m: f64, k: usize) -> f64 {
         let step = (self.places[self.places.len() - 1] - self.places[0]) / (self.places.len() - 1) as f64;
         (1.0 - (along_m - self.places[k]).abs() / step).max(0.0)
     }
 
-    /// Force at a place along the travel of a curve with these forces, N; beyond its ends that of the nearest one.
+    /// Force of a curve with these node values at a position along the travel, N; constant beyond its ends.
     pub fn force_n(&self, along_m: f64, force_n: &[f64]) -> f64 {
         let within = along_m.clamp(self.places[0], self.places[self.places.len() - 1]);
         force_n.iter().enumerate().map(|(k, force)| self.share_at(within, k) * force).sum()
     }
 
-    /// How many columns it has.
+    /// Number of its regressors.
     pub fn len(&self) -> usize {
         self.places.len()
     }
@@ -100,7 +102,7 @@ impl Curve {
         (0..self.places.len()).map(|k| rows.iter().map(|r| self.share(r, k)).collect()).collect()
     }
 
-    /// Slope at a row, N/m along the travel, of a curve with these forces.
+    /// Slope of a curve with these forces at a row, N/m along the travel.
     fn slope(&self, row: &Row, force_n: &[f64]) -> f64 {
         if row.place != Place::Push(self.side) {
             return 0.0;
@@ -115,12 +117,12 @@ impl Curve {
     }
 }
 
-/// Curves of both directions, as far as they are seen.
+/// Curves of both directions, over their observed range.
 fn curves(rows: &[Row]) -> Vec<Curve> {
     [0, 1].into_iter().filter_map(|side| Curve::of(rows, side)).collect()
 }
 
-/// Forces at the places of all curves, of a plain fit.
+/// Node forces of all curves in a plain fit.
 fn first_look(rows: &[Row], curves: &[Curve]) -> Result<Vec<Vec<f64>>, EstimateError> {
     curves
         .iter()
@@ -132,7 +134,7 @@ fn first_look(rows: &[Row], curves: &[Curve]) -> Result<Vec<Vec<f64>>, EstimateE
         .collect()
 }
 
-/// Compares what depends on speed and time.
+/// Compares the causes that depend on speed and time.
 pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
     let moves = |r: &Row| !matches!(r.place, Place::Push(_)) || r.speed_m_s() > REST_M_S;
     let on = |r: &&Row| !matches!(r.place, Place::Stop(_)) && moves(r);
@@ -148,7 +150,7 @@ pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
     };
     let indices: Vec<usize> = (0..seen.rows.len()).filter(|i| kept(*i)).collect();
     let rows: Vec<Row> = indices.iter().map(|i| seen.rows[*i]).collect();
-    // What was left out in between ends a stretch.
+    // A gap left by removed rows ends a segment.
     let mut number = 0;
     let stretch: Vec<usize> = (0..rows.len())
         .map(|k| {
@@ -185,7 +187,7 @@ pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
     Ok(Push { compared, view, rows: kept, curves, forces_n: forces, thrown })
 }
 
-/// The curves of both directions. The knob's mass is open, too: it falls over faster than the hand.
+/// Base model: the curves of both directions and the knob's mass, which falls over faster than the hand moves.
 fn base(rows: &[Row], curves: &[Curve]) -> Vec<Vec<f64>> {
     let mut base: Vec<Vec<f64>> = curves.iter().flat_map(|c| c.columns(rows)).collect();
     let of_mass = |r: &Row| if let Place::Push(side) = r.place { direction(side) * r.acceleration_m_s2 } else { 0.0 };
@@ -193,7 +195,7 @@ fn base(rows: &[Row], curves: &[Curve]) -> Vec<Vec<f64>> {
     base
 }
 
-/// What the rows are seen against; fingers that touch nothing are sensors of their own.
+/// Variables of the plots. Fingers without touch are sensors of their own.
 fn view(rows: &[Row]) -> View {
     let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     let sensor = |r: &Row| match r.place {
@@ -210,7 +212,7 @@ fn view(rows: &[Row]) -> View {
     View { sensor, way, ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
 }
 
-/// What a cause on the way of the throws is best seen against.
+/// Variable that best shows a cause on the travel of the throws.
 pub fn best_seen(id: &str) -> Variable {
     match id {
         "viscous-friction" => Variable::Velocity,
@@ -219,7 +221,7 @@ pub fn best_seen(id: &str) -> Variable {
     }
 }
 
-/// What the chosen causes add to the rows.
+/// Contribution of the chosen causes to the rows.
 fn of_found(study: &Study, rows: usize) -> Vec<f64> {
     let mut sum = vec![0.0; rows];
     let Some(solved) = &study.solved else { return sum };
@@ -242,7 +244,7 @@ fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) 
         let slope: f64 = curves.iter().zip(forces).map(|(c, f)| c.slope(r, f)).sum();
         -slope * r.speed_m_s()
     };
-    // Pads that damp put the force a little ahead: that is no fault of the clocks.
+    // Damping of the pads puts the force slightly ahead, which is no fault of the clocks.
     found.push(Candidate::one("time-delay", Kind::Instrument, "tau", "s", pushed(&late)).positive());
     let span_s = rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
     if seen.recordings == 1 {
@@ -289,7 +291,7 @@ fn sensors(rows: &[Row], found: &mut Vec<Candidate>) {
 }
 
 impl Push {
-    /// Columns on rows that were not measured yet.
+    /// Predicted regressors on rows that have not been measured yet.
     pub fn imagined(&self, seen: &Seen) -> Imagined {
         Imagined {
             base: base(&seen.rows, &self.curves),
@@ -299,13 +301,13 @@ impl Push {
         }
     }
 
-    /// Where along the travel the throws of a side were seen, m.
+    /// Range of the travel seen in the throws of a side, m.
     pub fn seen_m(&self, side: usize) -> Option<(f64, f64)> {
         let curve = self.curves.iter().find(|c| c.side == side)?;
         curve.places.first().copied().zip(curve.places.last().copied())
     }
 
-    /// What in the residual shows a cause.
+    /// Sentence on how the residual shows a cause.
     pub fn shows(found: &Found<'_>) -> String {
         let value = found.parameters.first().map_or(0.0, |p| p.value);
         match found.candidate.id {
@@ -325,7 +327,7 @@ impl Push {
         }
     }
 
-    /// Sizes that could just matter, and what would show them.
+    /// Smallest sizes that matter, with the experiment that would show them.
     pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
         Some(match (candidate.id, candidate.linear[0].0) {
             ("viscous-friction", _) => (2.0, "the throws were all of one speed; throw it slowly and fast"),

@@ -1,4 +1,5 @@
-//! Rows of a switch's recording: a finger that pushes the knob on, one that presses it against its stop, and fingers that touch nothing.
+//! Rows of a switch's recording: a finger that pushes the knob on, one that presses it against its stop, and fingers
+//! that touch nothing.
 
 use crate::diagnose::compare::stretches;
 use crate::estimate::EstimateError;
@@ -10,36 +11,36 @@ use haptics::Vec2;
 use haptics::recording::Recording;
 use std::ops::Range;
 
-/// Samples are averaged over about this time, s, forces and places alike.
+/// Averaging time of samples, s, for forces and positions alike.
 const BLOCK_S: f64 = 0.01;
-/// A finger touches from this share of its strongest force on, and from so many times the noise of a block.
+/// Least force of a touching finger, as a share of its strongest force and in standard deviations of a block's noise.
 const TOUCH_SHARE: f64 = 0.03;
 const TOUCH_NOISES: f64 = 6.0;
-/// Windows in which a finger is free at some time, and the share of their blocks that are taken for it.
+/// Number of windows in each of which a finger is free at some time, and share of their blocks taken as free.
 const WINDOWS: usize = 8;
 const FREE_SHARE: f64 = 0.15;
-/// After a turn the force goes over from one branch to the other within less than this way, m.
+/// Travel after a reversal within which the force changes from one branch to the other, m.
 const SETTLED_M: f64 = 0.8e-3;
-/// A knob that snaps over leaves the finger within this time, s; and touching begins and ends slowly.
+/// Time within which a knob that snaps over leaves the finger, s. Touch begins and ends slowly, too.
 const LEAVING_S: f64 = 0.03;
 const TOUCHING_S: f64 = 0.1;
-/// Slower than this the knob may rest, m/s.
+/// Speed below which the knob may rest, m/s.
 const REST_M_S: f64 = 2e-3;
-/// Against a stop the force is at least this share of what it comes to.
+/// Least force against a stop, as a share of its maximum.
 const STOP_SHARE: f64 = 0.4;
-/// … and the finger does not draw back, m/s: the knob is on the branch of the way there.
+/// Velocity below which the finger draws back, m/s. Above it, the knob is on the forward branch.
 const BACK_M_S: f64 = -5e-4;
-/// Free rows are so many blocks apart: neighbours share their noise.
+/// Spacing of free rows, in blocks: neighbours share their noise.
 const FREE_EVERY: usize = 10;
 
-/// What a row is. Sides and fingers: 0 is the left finger, which pushes to the right.
+/// Kind of a row. Sides and fingers: 0 is the left finger, which pushes to the right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// The finger of this number pushes the knob on.
     Push(usize),
-    /// It presses the knob against the stop.
+    /// The finger of this number presses the knob against the stop.
     Stop(usize),
-    /// This finger touches nothing; along this axis.
+    /// The finger of this number without touch, along this axis.
     Free(usize, usize),
 }
 
@@ -49,18 +50,18 @@ pub struct Row {
     pub recording: usize,
     pub time_s: f64,
     pub place: Place,
-    /// The tip, m in the world, its velocity, m/s, and the rate of that along x, m/s².
+    /// Position of the tip, m in the world, its velocity, m/s, and its acceleration along x, m/s².
     pub tip: Vec2,
     pub velocity: Vec2,
     pub acceleration_m_s2: f64,
-    /// Of the finger, N.
+    /// Force of the finger, N.
     pub force: Vec2,
     /// Force of the finger without its zero, N.
     pub above_zero: Vec2,
 }
 
 impl Row {
-    /// The state that a segmentation would call it.
+    /// Corresponding state of the segmentation.
     pub fn state(&self) -> SystemState {
         match self.place {
             Place::Push(_) => SystemState::Turning,
@@ -82,13 +83,13 @@ pub struct Seen {
     pub recordings: usize,
 }
 
-/// Which way a finger pushes: +1 to the right.
+/// Direction in which a finger pushes: +1 to the right.
 pub fn direction(side: usize) -> f64 {
     if side == 0 { 1.0 } else { -1.0 }
 }
 
 impl Row {
-    /// The side that a row on the knob is of.
+    /// Side of a row on the knob.
     pub fn side(&self) -> Option<usize> {
         match self.place {
             Place::Push(side) | Place::Stop(side) => Some(side),
@@ -96,7 +97,8 @@ impl Row {
         }
     }
 
-    /// How much a fault of one finger's force along one axis is in what the row explains: on the knob the force along the travel.
+    /// Share of a fault of one finger's force along one axis in a row. On the knob the row is the force along the
+    /// travel.
     pub fn share(&self, finger: usize, axis: usize) -> f64 {
         match self.place {
             Place::Push(side) if side == finger && axis == 0 => direction(side),
@@ -233,7 +235,8 @@ fn finger(recording: &Recording, name: &str, block: usize, side: usize) -> Resul
     Ok(Finger { tip, velocity, force, zero, touches, noise_n })
 }
 
-/// Blocks in which a finger touches nothing: a finger pushes and cannot pull, so that the least force of some time is none.
+/// Blocks in which a finger touches nothing: a finger pushes and cannot pull, so that the least force of some time is
+/// none.
 fn free_blocks(along: &[f64]) -> Vec<usize> {
     let long = along.len().div_ceil(WINDOWS).max(1);
     (0..along.len())
@@ -258,11 +261,11 @@ fn line(at: &[usize], of: &dyn Fn(usize) -> f64) -> [f64; 2] {
 /// A finger in touch.
 struct Touch {
     blocks: Range<usize>,
-    /// It moves the knob over; otherwise it presses it against a stop.
+    /// True if it moves the knob over; otherwise it presses the knob against a stop.
     throws: bool,
 }
 
-/// Touches that move the knob on, and what follows each of them on the stop.
+/// Touches that move the knob on, and the press on the stop after each of them.
 fn touches(finger: &Finger, side: usize, time: &[f64]) -> Vec<Touch> {
     let along = |k: usize| direction(side) * finger.tip[k].x;
     let pressed = |k: usize| direction(side) * (finger.force[k].x - finger.zero[k].x);

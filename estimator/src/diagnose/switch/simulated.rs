@@ -1,4 +1,4 @@
-//! What was found about a switch, or could be there instead, put into a world.
+//! Causes found on a switch, and rival causes, as effects in a world.
 
 use crate::diagnose::answer::parameter;
 use crate::diagnose::candidate::Candidate;
@@ -9,7 +9,7 @@ use haptics::law::object::CurvePoint;
 use haptics::law::{Effect, LocalResistance, Motion};
 use haptics::world::{Switch, World};
 
-/// Causes that a world's switch, or its pads, can have; a change of friction over time and a longer scale are in none.
+/// Causes that a world's switch or its pads can have. A world has no change of friction over time and no length scale.
 const POSSIBLE: [&str; 7] = [
     "viscous-friction",
     "coulomb-friction",
@@ -19,10 +19,10 @@ const POSSIBLE: [&str; 7] = [
     "added-constraint",
     "pad-compliance",
 ];
-/// A bind becomes a curve of so many straight pieces.
+/// Number of linear parts of a local resistance in a world's curve.
 const PIECES: usize = 8;
 
-/// A channel of a switch: its model is in the world already.
+/// Effects of a switch's channel. Its base model is already in the world.
 struct Channel;
 
 impl Simulated for Channel {
@@ -42,20 +42,20 @@ impl Simulated for Channel {
     }
 }
 
-/// Everything that could stand in the place of what was found.
+/// The hypothesis as found, and those of every rival cause.
 pub fn hypotheses(studies: &[&Study]) -> Vec<Hypothesis> {
     let channels: Vec<(&Study, &dyn Simulated)> = studies.iter().map(|s| (*s, &Channel as &dyn Simulated)).collect();
     of_channels(&channels)
 }
 
-/// What was found, put into a world.
+/// Adds the found causes to a world.
 pub fn extend(world: &mut World, diagnosis: &Diagnosis) {
     for cause in &diagnosis.causes {
         put(world, &cause.id, &cause.parameters);
     }
 }
 
-/// The world with a switch like that.
+/// The world with these effects on its switch.
 pub fn with_acts(world: &World, acts: &[Act]) -> World {
     let mut world = world.clone();
     for (id, parameters) in acts {
@@ -90,7 +90,7 @@ fn shift(points: &mut [CurvePoint], id: &str, value: &dyn Fn(&str) -> f64) {
             p.backward_n -= value("Fc").max(0.0);
         }),
         "friction-asymmetry" => points.iter_mut().for_each(|p| {
-            // Never below the other branch: a cycle gives no energy.
+            // The curve stays above the other branch: a cycle generates no energy.
             p.forward_n = (p.forward_n + value("dFc to the right")).max(p.backward_n);
             p.backward_n = (p.backward_n - value("dFc to the left")).min(p.forward_n);
         }),
@@ -119,7 +119,7 @@ fn nearer(switch: &mut Switch, left_m: f64, right_m: f64) {
     switch.start_m = switch.start_m.clamp(low, high);
 }
 
-/// A place that resists in both directions, as its law has it.
+/// Adds a local resistance in both directions by its law.
 fn bind(switch: &mut Switch, [force_n, place_m, width_m]: [f64; 3]) {
     let curve = &mut switch.curve;
     let (Some(first), Some(last)) = (curve.points.first(), curve.points.last()) else { return };

@@ -1,4 +1,5 @@
-//! A finger that presses the knob against its stops: what gives there, and whether the stop is where the world has it.
+//! A finger that presses the knob against its stops: compliance there, and position of the stop relative to the
+//! world's.
 
 use super::model::Known;
 use super::rows::{Place, Row, Seen, direction};
@@ -13,14 +14,14 @@ use crate::signal::noise::white_noise;
 use haptics::law::Kind;
 
 const LEAST_ROWS: usize = 40;
-/// Least size of what is named, in errors of the world.
+/// Least size of a named cause, in standard errors of the world.
 const ERRORS: f64 = 3.0;
-/// What no cause explains is at least so much, m: a knob lies a little differently each time.
+/// Least size of an unexplained term, m: a knob rests at a slightly different position each time.
 const STRANGE_M: f64 = 6e-5;
-/// Pads may lack so much of the give that the world has for them: ten times as stiff.
+/// Largest missing share of the world's pad compliance: ten times as stiff.
 const MOST_STIFFER: f64 = 0.9;
 
-/// Compares what may move the tip while it presses the knob against a stop. Nothing where that was hardly done.
+/// Compares the causes that move the tip while it presses the knob against a stop. `None` if that was hardly done.
 pub fn stop(
     seen: &Seen,
     known: Option<&Known<'_>>,
@@ -37,7 +38,7 @@ pub fn stop(
     let pressed = |r: &Row| direction(side(r)) * r.above_zero.x;
     let expected = |r: &Row| known.map_or(0.0, |k| k.stopped_m(side(r), pressed(r), r.tip.y));
     let y = of(&|r| direction(side(r)) * r.tip.x - expected(r));
-    // Pads damp: no cause of its own.
+    // Damping of the pads is part of the base model.
     let mut base = vec![of(&|r| direction(side(r)) * r.velocity.x)];
     let usual = rows.iter().map(pressed).fold(0.0, f64::max).max(1e-9);
     let bend = of(&|r| -usual * (pressed(r) / usual).powi(3));
@@ -46,10 +47,10 @@ pub fn stop(
     let mut candidates = Vec::new();
     let plant = |id, name, unit, column| Candidate::one(id, Kind::Plant, name, unit, column);
     if let Some(known) = known {
-        // Where the switch stands is open: it may have been moved.
+        // The position of the switch is estimated: it may have been moved.
         base.push(of(&|r| direction(side(r))));
         let least = ERRORS * known.give_error_m_n;
-        // However stiff other pads are, they do not give less than nothing.
+        // However stiff other pads are, their compliance is not negative.
         let shape = Shape::Share {
             least: -MOST_STIFFER / known.pad.spring.k1.max(1e-9),
             whole: f64::NEG_INFINITY,
@@ -88,21 +89,21 @@ pub fn stop(
     };
     let study = channel.compare(threshold)?;
     let over = vec![(Variable::Force, of(&pressed)), (Variable::Time, of(&|r| r.time_s))];
-    // The two stops are places of their own.
+    // The two stops are separate positions.
     let view =
         View { sensor: rows.iter().map(side).collect(), ..View::of(rows.iter().map(|r| r.recording).collect(), over) };
     let (channel, state) = ("place of the tip on the stop", vec![SystemState::Holding; rows.len()]);
-    // Pads damp: the first column is the rate.
+    // Pads have damping: the first regressor is the rate.
     let pads = Pads::new(&of(&|r| r.time_s), &stretch, seen.period_s, 0);
     Ok(Some((Compared { study, channel, unit: "m", floor, along, stretch, state }, view, pads)))
 }
 
-/// What a cause on the stops is best seen against: how hard the knob is pressed.
+/// Variable that best shows a cause on the stops: the force on the knob.
 pub fn best_seen(_: &str) -> Variable {
     Variable::Force
 }
 
-/// What in the residual shows a cause.
+/// Sentence on how the residual shows a cause.
 pub fn shows(found: &Found<'_>) -> String {
     let value = found.parameters.first().map_or(0.0, |p| p.value);
     match found.candidate.id {

@@ -1,4 +1,4 @@
-//! A quick look at what explains most, before the noise is known: it needs few of the products of all columns with each other.
+//! Prescreen before the noise is known: the strongest causes, from few of the products of all columns.
 
 use super::super::candidate::Candidate;
 use super::super::products::{STRIP, Weighed};
@@ -6,21 +6,21 @@ use super::super::select::{Selection, cheapest};
 use super::{FOLDS, Rows, System, Use, columns_of, counted, energy, places, uses};
 use nalgebra::DMatrix;
 
-/// Fewer columns than this are all multiplied with each other at once.
+/// Number of columns up to which all are multiplied at once.
 const MANY: usize = 64;
 
-/// So many causes are looked at ahead.
+/// Number of causes for which products are computed ahead.
 const AHEAD: usize = 6;
 
-/// A system that is not whitened, whose products are made when they are needed: those of the model with all columns, then those of each cause
-/// that was chosen. What was not made is no number.
+/// A system without whitening, whose products are computed when they are needed: those of the model with all columns,
+/// then those of each chosen cause. Products not yet computed are NaN.
 pub struct Rough<'a> {
     system: System,
     candidates: &'a [Candidate],
     /// All columns, the target last.
     columns: Vec<&'a [f64]>,
     weight: &'a [f64],
-    /// Rows that train: their products are summed part by part, as those of a system.
+    /// Training rows in parts, whose products are summed part by part, as in a system.
     parts: Vec<Vec<usize>>,
 }
 
@@ -59,7 +59,8 @@ impl<'a> Rough<'a> {
         &self.system
     }
 
-    /// Products of the model and the target with everything, and of each candidate's columns with each other.
+    /// Computes the products of the model and the target with everything, and of each candidate's columns with each
+    /// other.
     fn begin(&mut self) {
         let (base, target) = (self.system.base, self.system.target());
         let model: Vec<usize> = (0..base).chain([target]).collect();
@@ -94,7 +95,7 @@ impl<'a> Rough<'a> {
         }
     }
 
-    /// Products of everything that these candidates have with each other.
+    /// Computes all products of these candidates with everything.
     pub fn know(&mut self, candidates: &[usize]) {
         let columns = self.columns_of(candidates);
         let strips: Vec<Vec<usize>> = columns.chunks(STRIP).map(<[usize]>::to_vec).collect();
@@ -105,7 +106,7 @@ impl<'a> Rough<'a> {
         candidates.iter().flat_map(|c| self.system.places[*c].clone()).collect()
     }
 
-    /// The best few, whether they earn their place or not: what the whitening must not swallow.
+    /// The best few candidates, justified or not: the whitening must not absorb them.
     pub fn greedy(&mut self, threshold: f64) -> Vec<usize> {
         let (mut chosen, mut known): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
         loop {
@@ -122,7 +123,8 @@ impl<'a> Rough<'a> {
             if known.contains(&best) {
                 continue;
             }
-            // Others that may be the next are looked at as well while everything is gone through. What may come beside the chosen ones:
+            // The same pass also computes products of other likely next causes. Candidates that may join the chosen
+            // ones:
             let open: Vec<usize> = selection.open(&chosen).collect();
             let strips: Vec<Vec<usize>> = self.columns_of(&open).chunks(STRIP).map(<[usize]>::to_vec).collect();
             let ahead = likely(&priced, &open, candidates);
@@ -133,7 +135,7 @@ impl<'a> Rough<'a> {
     }
 }
 
-/// The best candidates of some other causes that are open yet.
+/// The best candidates of some other causes that may still join.
 fn likely(priced: &[(usize, f64)], open: &[usize], candidates: &[Candidate]) -> Vec<usize> {
     let mut others: Vec<(usize, f64)> = priced.iter().filter(|(c, _)| open.contains(c)).copied().collect();
     others.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -203,7 +205,7 @@ mod tests {
             wanted.extend(cheapest(selection.priced(&wanted)).map(|(best, _)| best));
         }
         assert_eq!(chosen, wanted);
-        // Nobody asked for those.
+        // Products that were not requested stay NaN.
         assert!(rough.system.train.iter().any(|product| product.is_nan()));
     }
 }

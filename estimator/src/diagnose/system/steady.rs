@@ -1,16 +1,16 @@
-//! Whether an effect is as sure where every piece of a recording may be wrong in its own way.
+//! Jackknife of an effect over blocks of a recording, each of which may have its own model error.
 
 use super::{Scaled, Solved, System, Use, factored};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
-/// No piece tells more than this share of an effect less than all of it.
+/// Largest share of an effect in one segment, as one minus this.
 const LEAST_REST: f64 = 1e-9;
 
 impl System {
-    /// The square of what these columns of a solution add up to over its error by a jackknife over pieces of the recording (Tukey 1958), of the
-    /// length of pieces that is kindest to it: unlike the error by what is left, this one knows that what a model misses in one place is missed in
-    /// all rows there. Infinite without pieces.
+    /// Squared effect of these regressors in a solution over its jackknife variance over blocks of the recording
+    /// (Tukey 1958), for the most favourable block length. Unlike the variance of the residual, it includes that a
+    /// model error at one place affects all rows there. Infinite without blocks.
     pub fn steadiness(&self, solved: &Solved, own: &Range<usize>) -> f64 {
         if self.pieces.is_empty() {
             return f64::INFINITY;
@@ -23,7 +23,8 @@ impl System {
         self.pieces.iter().map(|pieces| self.known_to(pieces, &effect, &left)).fold(0.0, f64::max)
     }
 
-    /// The same over these pieces. Without one of them the effect comes out larger by what its rows leave along it, over what all others have of it.
+    /// The same for one set of blocks. Without a block, the effect grows by its rows' residual along the effect
+    /// over the effect's power in all others.
     fn known_to(&self, pieces: &[usize], effect: &[f64], left: &[f64]) -> f64 {
         let count = pieces.iter().max().map_or(0, |last| last + 1);
         let (mut power, mut slope) = (vec![0.0; count], vec![0.0; count]);
@@ -38,7 +39,7 @@ impl System {
         1.0 / power.iter().zip(&slope).map(moves).sum::<f64>()
     }
 
-    /// What these columns of a solution add up to, row by row, without what all its others can make of that.
+    /// Contribution of these regressors to a solution, row by row, less what its other regressors can explain of it.
     fn apart(&self, solved: &Solved, own: &Range<usize>) -> Option<Vec<f64>> {
         let others: Vec<usize> =
             (0..solved.columns.len()).filter(|j| !own.contains(j)).map(|j| solved.columns[j]).collect();
@@ -55,7 +56,7 @@ impl System {
     }
 }
 
-/// The combination of columns that comes nearest to another one, of which their products with it are known.
+/// Combination of columns nearest to another one, from their products with it.
 fn combination(gram: &DMatrix<f64>, columns: &[usize], product: &dyn Fn(usize) -> f64) -> Option<Vec<f64>> {
     let Scaled { cholesky, scale } = factored(gram, columns)?;
     let right = DVector::from_fn(columns.len(), |i, _| product(columns[i]) / scale[i]);
@@ -73,10 +74,10 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
 
     const ROWS: usize = 2000;
-    /// Rows of a piece.
+    /// Rows of a block.
     const OF_A_PIECE: usize = 50;
 
-    /// A level and a cause's column, solved; how sure the cause is by what is left, and by the jackknife.
+    /// A constant and a cause's regressor, solved: significance of the cause by its residual, and by the jackknife.
     fn sure(column: &[f64], y: &[f64]) -> [f64; 2] {
         let time_s: Vec<f64> = (0..ROWS).map(|i| 0.01 * i as f64).collect();
         let rows = Rows {
@@ -116,7 +117,7 @@ mod tests {
         let mut rng = StdRng::seed_from_u64(12);
         let mut fooled = 0;
         for _ in 0..40 {
-            // A column that is large in every fourth piece, where a model misses something else each time.
+            // A regressor that is large in every fourth block, in which the model has another error each time.
             let of_piece = |rng: &mut StdRng| -> Vec<f64> { (0..ROWS / OF_A_PIECE).map(|_| noise(rng)).collect() };
             let (shape, missed) = (of_piece(&mut rng), of_piece(&mut rng));
             let at = |all: &[f64], i: usize| if (i / OF_A_PIECE).is_multiple_of(4) { all[i / OF_A_PIECE] } else { 0.0 };

@@ -3,11 +3,12 @@
 use super::{System, Use, scaled};
 use nalgebra::DMatrix;
 
-/// What is left of a column must be this share of what all rows have of it: otherwise nothing tells what it is worth.
+/// Least remaining share of a column's power. Below it, no remaining row determines the coefficient.
 const LEAST_LEFT: f64 = 0.3;
 
 impl System {
-    /// Values of the model's columns and the chosen candidates' by all rows that train but these; nothing where these alone would tell one of them.
+    /// Coefficients of the model's and the chosen candidates' regressors from all training rows but these; `None` if
+    /// only these rows determine one of them.
     pub fn without(&self, rows: &[usize], chosen: &[usize]) -> Option<Vec<f64>> {
         let columns = self.columns(chosen);
         let all: Vec<usize> = columns.iter().copied().chain([self.target()]).collect();
@@ -15,7 +16,7 @@ impl System {
         let own = rows.iter().filter(trains);
         let mut left = DMatrix::from_fn(all.len(), all.len(), |a, b| self.train[(all[a], all[b])]);
         for row in own {
-            // Rows that whitening leaves nothing of are none of the products: there every column is nothing.
+            // Rows that whitening removes are in none of the products: every column is zero there.
             let values: Vec<f64> = all.iter().map(|c| self.whitened[*c][*row]).collect();
             for (a, x) in values.iter().enumerate() {
                 values.iter().enumerate().for_each(|(b, y)| left[(a, b)] -= x * y);

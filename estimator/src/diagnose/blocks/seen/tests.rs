@@ -7,15 +7,16 @@ use haptics::recording::Recording;
 const WEIGHT_N: f64 = 0.34;
 const NOISE_N: f64 = 0.03;
 const RATE_HZ: f64 = 100.0;
-/// The block meets the ground, s.
+/// Time of the block's contact with the ground, s.
 const TOUCHDOWN_S: f64 = 6.2;
 
-/// `kept_n`: lift that goes on for a second after the block has met the ground. `leak_n_s`: weight that runs out in the air.
+/// `kept_n`: lift that goes on for a second after the block has met the ground. `leak_n_s`: weight that runs out in the
+/// air.
 fn recording(seed: u64, kept_n: f64, leak_n_s: f64) -> Recording {
     let_down_in(0.1, seed, kept_n, leak_n_s)
 }
 
-/// The same with a load that goes over to the ground within `over_s`.
+/// The same with a transfer of the load to the ground within `over_s`.
 fn let_down_in(over_s: f64, seed: u64, kept_n: f64, leak_n_s: f64) -> Recording {
     recorded(seed, (RATE_HZ, 10.0), NOISE_N, &|t| {
         let grip_n = 2.0 * (reach(t, 1.1, 1.3) - reach(t, 8.2, 8.4));
@@ -29,14 +30,14 @@ fn let_down_in(over_s: f64, seed: u64, kept_n: f64, leak_n_s: f64) -> Recording 
     })
 }
 
-/// Times of the rows in which the block is said to stand at the end of its carry.
+/// Times of the rows in which the block stands at the end of its carry.
 fn standing_s(recording: &Recording) -> Vec<f64> {
     let seen = Seen::of(recording).expect("a carried block");
     let (_, standing) = seen.put(1, &[], [0.0; 2]);
     standing.into_iter().map(|i| seen.time_s(i)).collect()
 }
 
-/// What goes down on after touchdown is no longer lowered: a slip, or pads that give under the load.
+/// Motion downward after touchdown is not lowering: it is a slip, or pads that yield under the load.
 #[test]
 fn a_block_stands_from_when_the_load_goes_over_and_not_from_when_the_fingers_stop() {
     let mut recording = recording(3, 0.0, 0.0);
@@ -56,7 +57,8 @@ fn a_block_stands_from_when_the_load_goes_over_and_not_from_when_the_fingers_sto
     assert!(seen.time_s(samples[0]) < TOUCHDOWN_S + 0.1 && samples.ends_with(&rest), "{}", seen.time_s(samples[0]));
 }
 
-/// A hand that puts down carefully takes a third of a second: what slips meanwhile does so long before a quarter of the load is gone.
+/// A careful hand takes a third of a second to put down. A slip meanwhile comes long before a quarter of the load is
+/// transferred.
 #[test]
 fn a_load_that_goes_over_slowly_is_followed_back_to_where_it_began() {
     for seed in 0..8 {
