@@ -18,7 +18,7 @@ impl Progress {
     }
 
     /// Reports the share done; an error if the rest is not wanted.
-    pub(super) fn tell(&self, share: f64) -> Result<(), EstimateError> {
+    pub(crate) fn tell(&self, share: f64) -> Result<(), EstimateError> {
         match &self.0 {
             Some(listen) if !listen(share.clamp(0.0, 1.0)) => {
                 Err(EstimateError::Other("the diagnosis was cancelled".to_owned()))

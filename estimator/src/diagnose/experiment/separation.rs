@@ -1,14 +1,13 @@
 //! Separability of two causes on a motion.
 
-use super::super::candidate::Candidate;
-use super::super::columns::Columns;
-use super::super::dictionary::{Dictionary, dry_of};
-use super::super::force::Model;
-use super::super::geometry::Study;
-use super::super::grid::Grid;
-use super::super::means::column;
-use super::super::track::Track;
-use super::super::white::Whitening;
+use crate::diagnose::data::regression_data::{Model, Track};
+use crate::diagnose::data::row_means::column;
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::grid::Grid;
+use crate::diagnose::hypotheses::library::{Dictionary, dry_of};
+use crate::diagnose::hypotheses::regressor_cache::Columns;
+use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::noise_model::Whitening;
 use nalgebra::{DMatrix, DVector};
 
 /// Predicted rows of a motion that has not been made yet.

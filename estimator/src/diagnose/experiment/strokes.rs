@@ -1,7 +1,7 @@
 //! Strokes of a motion of the library: target position and transverse push over time.
 
-use super::library::{Excitation, HANG, LIBRARY};
-use crate::diagnose::report::Experiment;
+use super::motions::{Excitation, HANG, LIBRARY};
+use crate::diagnose::contract::Experiment;
 
 /// Peak over mean speed of a movement from rest to rest.
 const PEAK: f64 = 1.875;
@@ -10,13 +10,13 @@ const SHORTEST_S: f64 = 0.25;
 
 /// Position and push across, in units of the experiment, at a time.
 #[derive(Clone, Debug)]
-pub(super) struct Course {
+pub(crate) struct Course {
     knots: Vec<(f64, f64, f64)>,
 }
 
 impl Course {
     /// Knots of the motion. `speed`: half ranges per second at pace 1.
-    pub(super) fn of(excitation: &Excitation, speed: f64, until_s: f64) -> Self {
+    pub(crate) fn of(excitation: &Excitation, speed: f64, until_s: f64) -> Self {
         let mut knots = vec![(0.0, 0.0, 0.0)];
         let mut k = 0;
         while let Some((time_s, place, _)) = knots.last().copied().filter(|k| k.0 < until_s) {
@@ -32,7 +32,7 @@ impl Course {
     }
 
     /// Smooth between the knots (minimum jerk).
-    pub(super) fn at(&self, time_s: f64) -> (f64, f64) {
+    pub(crate) fn at(&self, time_s: f64) -> (f64, f64) {
         let next = self.knots.partition_point(|k| k.0 <= time_s).clamp(1, self.knots.len() - 1);
         let ((t0, p0, a0), (t1, p1, a1)) = (self.knots[next - 1], self.knots[next]);
         let x = ((time_s - t0) / (t1 - t0)).clamp(0.0, 1.0);

@@ -1,0 +1,235 @@
+//! Residual atlas: the residual of the force, and the part of it that every candidate cause alone explains.
+
+use crate::diagnose::data::regression_data::{Place, Track};
+use crate::diagnose::selection::comparison::{Compared, Study, residual};
+use crate::diagnose::selection::stepwise::Selection;
+use haptics::law::cause;
+use std::collections::BTreeSet;
+
+/// Variable against which the effect of a cause is plotted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Variable {
+    /// Place along the motion.
+    Place,
+    /// Its rate.
+    Velocity,
+    /// The rate of that.
+    Acceleration,
+    /// Force across the motion.
+    Across,
+    /// Measured force along the motion.
+    Force,
+    /// Rate of change of that force.
+    ForceRate,
+    /// Time.
+    Time,
+    /// Grip force.
+    Grip,
+    /// Lift force.
+    Lift,
+    /// Distance of the tips.
+    Width,
+    /// Depth of a needle beyond the surface of its sheet.
+    Depth,
+    /// Load at the output of a transmission.
+    Load,
+}
+
+impl Variable {
+    /// Variable that shows a cause best. `planar`: the force has two axes, whose share along the motion depends on the
+    /// position.
+    fn of(id: &str, planar: bool) -> Self {
+        match id {
+            "coulomb-friction" | "viscous-friction" | "stribeck" | "quadratic-drag" | "friction-asymmetry" => {
+                Self::Velocity
+            }
+            "inertia" => Self::Acceleration,
+            "load-friction" | "force-cross-axis" => Self::Across,
+            "force-gain" | "force-saturation" => Self::Force,
+            "time-delay" => Self::ForceRate,
+            "mass-change" | "friction-change" | "force-drift" => Self::Time,
+            "force-bias" if !planar => Self::Time,
+            _ => Self::Place,
+        }
+    }
+}
+
+/// One candidate cause of the atlas.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
+    /// Out of `docs/causes/README.md`.
+    pub id: String,
+    /// Evidence of the cause alone: 2 ln(likelihood ratio) less the penalty of its parameters.
+    pub score: f64,
+    /// Variable that shows it best.
+    pub variable: Variable,
+    /// Part of the base model's residual that it explains when the model is refitted with it, at each instant of the
+    /// course, N or N m.
+    pub taken: Vec<f64>,
+}
+
+/// Candidate causes of the residual, most evidence first, and the variables of their plots.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Atlas {
+    /// Candidate causes that the recording excites.
+    pub suspects: Vec<Seen>,
+    /// Acceleration of the coordinate at each instant, m/s² or rad/s².
+    pub acceleration: Vec<f64>,
+    /// Rate of change of the measured force, N/s or N m/s.
+    pub force_rate: Vec<f64>,
+    /// Channels of tasks without one coordinate, instead of the fields above.
+    pub channels: Vec<Channel>,
+}
+
+/// One channel of a task without one coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Name of the channel, in words.
+    pub name: &'static str,
+    /// SI unit.
+    pub unit: &'static str,
+    /// True if positions are angles, and rates angular rates.
+    pub is_angular: bool,
+    /// Noise of a row.
+    pub noise: f64,
+    /// Recording of each row. Empty if single recordings have too few rows to be shown apart.
+    pub recording: Vec<usize>,
+    /// Direction of motion in each row, as a sign. Empty if it does not matter.
+    pub way: Vec<f64>,
+    /// Residual of the base model in each row.
+    pub left: Vec<f64>,
+    /// Candidate causes that the recordings excite, most evidence first.
+    pub suspects: Vec<Against>,
+}
+
+/// One candidate cause of a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Against {
+    /// Out of `docs/causes/README.md`.
+    pub id: String,
+    /// As [`Seen::score`].
+    pub score: f64,
+    /// Variable that shows it best.
+    pub variable: Variable,
+    /// Rows in which it may have an effect.
+    pub rows: Vec<usize>,
+    /// Values of that variable in these rows, SI units.
+    pub over: Vec<f64>,
+    /// Part of the base model's residual that it explains in these rows.
+    pub taken: Vec<f64>,
+}
+
+/// Rows of a channel, with the variables of their plots.
+pub(crate) struct View {
+    /// Recording of each row. Empty if all are shown together.
+    pub recording: Vec<usize>,
+    /// Sensor, or sum of sensors, of each row. A candidate cause is shown over all sensors that it may affect.
+    pub sensor: Vec<usize>,
+    /// Variables of the plots, with a value for each row.
+    pub over: Vec<(Variable, Vec<f64>)>,
+    /// Direction of motion in each row, as a sign. Empty if it does not matter.
+    pub way: Vec<f64>,
+    /// True if positions are angles.
+    pub is_angular: bool,
+}
+
+impl View {
+    /// Rows of one sensor, without a direction.
+    pub fn of(recording: Vec<usize>, over: Vec<(Variable, Vec<f64>)>) -> Self {
+        let sensor = vec![0; over.first().map_or(0, |(_, values)| values.len())];
+        Self { recording, sensor, over, way: Vec::new(), is_angular: false }
+    }
+}
+
+impl Compared {
+    /// This channel's part of the atlas. `best`: what a cause is best seen against; the first variable of the view
+    /// where that is missing.
+    pub(crate) fn atlas(&self, view: &View, threshold: f64, best: fn(&str) -> Variable) -> Channel {
+        channel(&self.study, (self.channel, self.unit, self.floor), view, threshold, best)
+    }
+}
+
+/// A compared channel's part of the atlas: its name, unit and noise.
+pub(crate) fn channel(
+    study: &Study,
+    (name, unit, noise): (&'static str, &'static str, f64),
+    view: &View,
+    threshold: f64,
+    best: fn(&str) -> Variable,
+) -> Channel {
+    let Study { system, candidates, .. } = study;
+    let left = |picks: &[usize]| {
+        let solved = system.solve(picks)?;
+        Some(residual(&study.y, &study.base, candidates, picks, &solved))
+    };
+    let before = left(&[]).unwrap_or_else(|| study.y.clone());
+    let against = |(id, c, score): &(&str, usize, f64)| {
+        let after = left(&[*c])?;
+        let acts = |i: usize| candidates[*c].columns.iter().any(|column| column[i] != 0.0);
+        let sensors: BTreeSet<usize> = (0..before.len()).filter(|i| acts(*i)).map(|i| view.sensor[i]).collect();
+        let rows: Vec<usize> = (0..before.len()).filter(|i| sensors.contains(&view.sensor[*i])).collect();
+        let (variable, values) = view.over.iter().find(|(v, _)| *v == best(id)).or(view.over.first())?;
+        Some(Against {
+            id: (*id).to_owned(),
+            score: *score,
+            variable: *variable,
+            over: rows.iter().map(|i| values[*i]).collect(),
+            taken: rows.iter().map(|i| before[*i] - after[*i]).collect(),
+            rows,
+        })
+    };
+    let suspects = strongest(study, threshold).iter().filter_map(against).collect();
+    let View { recording, way, is_angular, .. } = view;
+    Channel {
+        name,
+        unit,
+        is_angular: *is_angular,
+        noise,
+        recording: recording.clone(),
+        way: way.clone(),
+        left: before,
+        suspects,
+    }
+}
+
+/// Strongest candidate of every cause that the rows can show, with its evidence; the strongest cause first.
+fn strongest(study: &Study, threshold: f64) -> Vec<(&'static str, usize, f64)> {
+    let Study { system, candidates, .. } = study;
+    let selection = Selection::new(system, candidates, threshold);
+    let mut best: Vec<(&str, usize, f64)> = Vec::new();
+    for (c, candidate) in candidates.iter().enumerate() {
+        if candidate.expression.is_some() || cause(candidate.id).is_none() || !system.supported(c) {
+            continue;
+        }
+        let Some(score) = selection.score_beside(&[], c) else { continue };
+        match best.iter_mut().find(|(id, ..)| *id == candidate.id) {
+            Some(held) if held.2 >= score => {}
+            Some(held) => (held.1, held.2) = (c, score),
+            None => best.push((candidate.id, c, score)),
+        }
+    }
+    best.sort_by(|a, b| b.2.total_cmp(&a.2));
+    best
+}
+
+/// The atlas of a comparison. `threshold`: least evidence of a named cause.
+pub(crate) fn atlas(track: &Track, study: &Study, threshold: f64) -> Atlas {
+    let Study { system, candidates, .. } = study;
+    let along: Vec<usize> = (0..track.rows.len()).filter(|i| track.rows[*i].place == Place::Along).collect();
+    let left = |picks: &[usize]| {
+        let solved = system.solve(picks)?;
+        Some(residual(&study.y, &study.base, candidates, picks, &solved))
+    };
+    let before = left(&[]).unwrap_or_else(|| study.y.clone());
+    let seen = |(id, c, score): &(&str, usize, f64)| {
+        let after = left(&[*c])?;
+        let taken = along.iter().map(|i| before[*i] - after[*i]).collect();
+        Some(Seen { id: (*id).to_owned(), score: *score, variable: Variable::of(id, track.planar), taken })
+    };
+    Atlas {
+        suspects: strongest(study, threshold).iter().filter_map(seen).collect(),
+        acceleration: along.iter().map(|i| track.rows[*i].motion.acceleration).collect(),
+        force_rate: along.iter().map(|i| track.rows[*i].force_rate.dot(&track.rows[*i].along)).collect(),
+        channels: Vec::new(),
+    }
+}

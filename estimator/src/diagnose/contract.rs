@@ -1,0 +1,424 @@
+//! Published answer of a diagnosis. These types *are* the JSON of `touchstone diagnose --json`.
+
+use crate::diagnose::answer::atlas::Atlas;
+use crate::diagnose::answer::time_series::Course;
+use crate::diagnose::data::coordinate::Along;
+use crate::diagnose::extension::hypothetical_worlds::Hypothesis;
+use crate::diagnose::validation::fitted_terms::Kept;
+use crate::segment::SystemState;
+use haptics::law::{Effect, Kind};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A parameter of a cause.
+pub fn parameter(name: &str, value: f64, std_error: f64, unit: &str) -> CauseParameter {
+    CauseParameter { name: name.to_owned(), value, std_error, unit: unit.to_owned() }
+}
+
+/// The answer in one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Something beyond the model is there, and it has a name.
+    Causes,
+    /// Nothing beyond the noise.
+    None,
+    /// Two or more causes explain the recording equally well.
+    Ambiguous,
+    /// Something is there that no known law explains.
+    Unexplained,
+}
+
+/// The model that was started from.
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Baseline {
+    /// Its terms, e.g. `weight+load-friction+viscous-friction`.
+    pub model: String,
+    /// Root mean square of the force that it leaves unexplained where it was fitted, N (N m for angles).
+    #[serde(rename = "rms_N")]
+    pub rms_n: f64,
+    /// The same on the blocks that took part in nothing.
+    #[serde(rename = "heldout_rms_N")]
+    pub heldout_rms_n: f64,
+    /// Both once more by their unit's name, where they are torques.
+    #[serde(rename = "rms_Nm", default, skip_serializing_if = "Option::is_none")]
+    pub rms_nm: Option<f64>,
+    #[serde(rename = "heldout_rms_Nm", default, skip_serializing_if = "Option::is_none")]
+    #[allow(missing_docs)] // said above
+    pub heldout_rms_nm: Option<f64>,
+    /// Probability of residuals at least so correlated if they were white (Ljung & Box 1978).
+    pub whiteness_p: f64,
+    /// Which channel these figures, the noise floor and the final ones are of, where there are several, …
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of: Option<String>,
+    /// … and their unit; nothing where nothing was compared.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+}
+
+/// A parameter of a cause.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct CauseParameter {
+    /// As in the law's page of the catalogue.
+    pub name: String,
+    /// Estimate.
+    pub value: f64,
+    /// One standard error.
+    pub std_error: f64,
+    /// Unit of both.
+    pub unit: String,
+}
+
+/// What an extension is worth on data that took part in nothing.
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Gain {
+    /// What is unexplained without the cause (all others in): force, or what `unit` says.
+    pub heldout_rms_before: f64,
+    /// … and with it.
+    pub heldout_rms_after: f64,
+    /// Part of what could be explained (the difference to the noise floor, in squares) that it explains.
+    pub share_of_explainable: f64,
+    /// 95 % interval of that share, by a block bootstrap.
+    pub interval: [f64; 2],
+    /// Why there is no share, where share and interval are 0 for that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_share: Option<String>,
+    /// True where too few rows were there to keep any out of the choice: each was then left out of the fit in turn, but not of the choice.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub in_turn: bool,
+    /// Unit of what is unexplained; nothing where nothing was held out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// What it is worth when the model runs on its own over short windows, where that could be done.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rollout: Option<Rollout>,
+    /// Why it was not run forward, where there is no rollout for a reason.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_rollout: Option<String>,
+}
+
+impl Gain {
+    /// With what running forward says, or why it was not done.
+    pub(crate) fn run(self, forward: Result<Rollout, String>) -> Self {
+        let (rollout, no_rollout) = forward.map_or_else(|why| (None, Some(why)), |rollout| (Some(rollout), None));
+        Self { rollout, no_rollout, ..self }
+    }
+}
+
+/// What a rollout is compared by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RolloutOf {
+    /// The position, under the measured force.
+    Position,
+    /// The force of a hand that holds on, beside the measured one.
+    Force,
+}
+
+/// Error of a model that runs forward in time from the measured state, over windows of data that were not fitted.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Rollout {
+    /// What is compared.
+    pub of: RolloutOf,
+    /// m or rad of a position, N or N m of a force.
+    pub unit: String,
+    /// Longest window, s; the state is the measured one at the start of each.
+    pub window_s: f64,
+    /// How many there were.
+    pub windows: usize,
+    /// Root mean square error without the cause (all others in) …
+    pub rms_before: f64,
+    /// … and with it.
+    pub rms_after: f64,
+    /// Part of the error's power that it takes off.
+    pub share: f64,
+    /// 95 % interval of that share, by a bootstrap over windows.
+    pub interval: [f64; 2],
+    /// True where no window took part in nothing: each was then left out of the fit in turn, but not of the choice.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub in_turn: bool,
+}
+
+/// A cause that was found.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Cause {
+    /// Out of `docs/causes/README.md`, or `other:<expression>`.
+    pub id: String,
+    /// Plant or instrument.
+    pub kind: Kind,
+    /// What it comes out at.
+    pub parameters: Vec<CauseParameter>,
+    /// Probability of such a gain by chance, corrected for the number of causes that were tried.
+    pub p_value: f64,
+    /// Probability among the causes that could stand in its place.
+    pub posterior: f64,
+    /// What it is worth.
+    pub gain: Gain,
+    /// One sentence: what in the residual shows it.
+    pub evidence: String,
+}
+
+/// A cause that would explain the recording as well.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Alternative {
+    /// Out of `docs/causes/README.md`.
+    pub id: String,
+    /// The found cause whose place it could take.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub instead_of: String,
+    /// Probability among the causes that could stand there.
+    pub posterior: f64,
+    /// Why they cannot be told apart here.
+    pub why: String,
+}
+
+/// A cause that this recording could not have shown.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct NotExcited {
+    /// Out of `docs/causes/README.md`.
+    pub id: String,
+    /// What is missing.
+    pub why: String,
+}
+
+/// A cause that was looked for and not named.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct PassedOver {
+    /// Out of `docs/causes/README.md`.
+    pub id: String,
+    /// Its score on the model alone, in units of 2 ln(likelihood), what its parameters cost paid; 0 where it is impossible.
+    pub alone: f64,
+    /// Its score beside what was found.
+    pub beside: f64,
+    /// The score that names a cause.
+    pub least: f64,
+    /// Why it was not named.
+    pub why: String,
+}
+
+/// The recording that would settle what is open.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct NextExperiment {
+    /// What to do, in words.
+    pub motion: String,
+    /// What it tells apart.
+    pub separates: Vec<String>,
+    /// Probability that it does.
+    pub expected_power: f64,
+    /// The same for an operator that is a program; nothing where the library has words only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub experiment: Option<Experiment>,
+}
+
+/// A motion of the library, for an operator that is a program. Lengths are m, angles rad: as the coordinate is (a crank's is its angle).
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Experiment {
+    /// Which motion: `sweep-across`, `sweep-let-go`, `short-strokes`, `bursts`, `one-way`, `rests-and-squeezes`, `long-mixed`,
+    /// `hang-weight`, `carry-let-go`, `carry-still`, `slide-let-go`, `pierce-slow-fast` or `throw-slow-fast`; `docs/diagnosis.md` says what
+    /// each is.
+    pub id: String,
+    /// How long the object is held, s.
+    pub seconds: f64,
+    /// How long nothing is touched before and after, s.
+    pub free_s: f64,
+    /// The coordinate in the middle of the motion.
+    pub middle: f64,
+    /// How far it goes to either side.
+    pub half_range: f64,
+    /// Its fastest speed, a second.
+    pub fast: f64,
+    /// Size of the push and pull across the motion, N; 0 where there is none.
+    #[serde(rename = "across_N")]
+    pub across_n: f64,
+    /// Weight to hang on, N; 0 where none is.
+    #[serde(rename = "added_weight_N")]
+    pub added_weight_n: f64,
+    /// Distance from the axis at which it is hung on, m: the radius of a crank.
+    pub added_lever_m: f64,
+}
+
+/// What the found laws are worth on a recording that took part in nothing.
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Validation {
+    /// Unexplained force by the model alone, as fitted, N or N m; of tasks without one coordinate what is left of a channel.
+    pub rms_before: f64,
+    /// … and with what was found.
+    pub rms_after: f64,
+    /// Part of the power that the model leaves which goes with what was found; below zero where it makes more of it …
+    #[serde(default)]
+    pub share: f64,
+    /// … and its 95 % interval, by a bootstrap over pieces of the recording.
+    #[serde(default)]
+    pub interval: [f64; 2],
+    /// Which channel, where there are several, …
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of: Option<String>,
+    /// … and its unit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// Causes that belong to the first recordings alone (a time, an insertion), or that this one cannot show.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<String>,
+}
+
+/// A question that an earlier recording left open and a later one answered.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Settled {
+    /// Name of the recording that settled it.
+    pub by: String,
+    /// What it could have been, …
+    pub excluded: String,
+    /// … instead of this, which stays.
+    pub kept: String,
+    /// In one sentence.
+    pub why: String,
+}
+
+/// How well the extended model does in the end.
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Final {
+    /// Unexplained force on the blocks that took part in nothing, N or N m.
+    #[serde(rename = "heldout_rms_N")]
+    pub heldout_rms_n: f64,
+    /// The same by its unit's name, where it is a torque.
+    #[serde(rename = "heldout_rms_Nm", default, skip_serializing_if = "Option::is_none")]
+    pub heldout_rms_nm: Option<f64>,
+    /// As in [`Baseline::whiteness_p`].
+    pub whiteness_p: f64,
+}
+
+/// Residual figures of one channel, without and with the causes found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Figures {
+    /// Without the causes.
+    pub baseline: Baseline,
+    /// With it.
+    pub end: Final,
+    /// Its noise.
+    pub noise_floor: f64,
+}
+
+impl Figures {
+    /// Figures if nothing was compared: zero residual, white.
+    pub(crate) fn of_nothing() -> Self {
+        Self {
+            baseline: Baseline { whiteness_p: 1.0, ..Baseline::default() },
+            end: Final { whiteness_p: 1.0, ..Final::default() },
+            noise_floor: 0.0,
+        }
+    }
+}
+
+/// Everything that a diagnosis found.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Diagnosis {
+    /// The answer in one word.
+    pub verdict: Verdict,
+    /// Where it started.
+    pub baseline: Baseline,
+    /// Noise of the force, N or N m, from where nothing touches, or from what is too fast to be mechanical.
+    #[serde(rename = "noise_floor_N")]
+    pub noise_floor_n: f64,
+    /// The same by its unit's name, where it is a torque.
+    #[serde(rename = "noise_floor_Nm", default, skip_serializing_if = "Option::is_none")]
+    pub noise_floor_nm: Option<f64>,
+    /// What the model leaves in every channel and state, without and with what was found, beside the noise.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub residuals: Vec<Residual>,
+    /// Strongest first.
+    pub causes: Vec<Cause>,
+    /// What else it could be.
+    pub alternatives: Vec<Alternative>,
+    /// What this recording could not have shown.
+    pub not_excited: Vec<NotExcited>,
+    /// What was looked for and not named, and why.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub passed_over: Vec<PassedOver>,
+    /// What to record next; nothing when nothing is open.
+    pub next_experiment: Option<NextExperiment>,
+    /// Where it ended.
+    #[serde(rename = "final")]
+    pub end: Final,
+    /// Sentences, most important first.
+    #[serde(default)]
+    pub warnings: Vec<String>,
+    /// One a recording of `--validate`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub validation: Vec<Validation>,
+    /// Questions of earlier recordings that later ones answered.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub settled: Vec<Settled>,
+    /// The model's laws fitted without any cause.
+    #[serde(skip)]
+    pub plain: Vec<Effect>,
+    /// The model's laws refitted, and with what was found: what the extended world runs.
+    #[serde(skip)]
+    pub effects: Vec<Effect>,
+    /// Measured and modelled forces, row by row.
+    #[serde(skip)]
+    pub course: Course,
+    /// What was found, as values of columns: for other recordings.
+    #[serde(skip)]
+    pub(crate) kept: Vec<Kept>,
+    /// What every suspect alone would take of the force; empty unless it was asked for, and for tasks without one coordinate.
+    #[serde(skip)]
+    pub atlas: Atlas,
+    /// The coordinate of a mechanism, for other recordings; none where there is not one coordinate.
+    #[serde(skip)]
+    pub(crate) along: Option<Along>,
+    /// Whether all forces are per unit of inertia, as in a free motion of which nothing is known.
+    #[serde(skip)]
+    pub(crate) per_inertia: bool,
+    /// By how much forces were put back before anything else was asked, s.
+    #[serde(skip)]
+    pub(crate) late_s: f64,
+    /// By what part of a sample its forces are apart from its motion, which is taken out and not called a delay, s.
+    #[serde(skip)]
+    pub skew_s: f64,
+    /// The delay that is still left if there is one, significant or not, and its error, s.
+    #[serde(skip)]
+    pub(crate) rest_s: Option<[f64; 2]>,
+    /// The delay with which a plain model leaves least, where that is so large that no straight line in it finds it, s.
+    #[serde(skip)]
+    pub(crate) guess_s: Option<f64>,
+    /// Figures of the channel in which a delay shows, where those above may be of another one.
+    #[serde(skip)]
+    pub(crate) of_delay: Option<Figures>,
+    /// What is not excluded, as laws: to rehearse experiments.
+    #[serde(skip)]
+    pub(crate) hypotheses: Vec<Hypothesis>,
+}
+
+impl Diagnosis {
+    /// With the figures of the force by the name of their unit, too, where that is N m (the contract's suffix of a mechanism in torque).
+    #[must_use]
+    pub fn named_by_unit(mut self) -> Self {
+        if self.baseline.unit.as_deref() == Some("N m") {
+            self.baseline.rms_nm = Some(self.baseline.rms_n);
+            self.baseline.heldout_rms_nm = Some(self.baseline.heldout_rms_n);
+            self.noise_floor_nm = Some(self.noise_floor_n);
+            self.end.heldout_rms_nm = Some(self.end.heldout_rms_n);
+        }
+        self
+    }
+}
+
+/// What is left of one channel in one state.
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize, Deserialize)]
+pub struct Residual {
+    /// What was compared, in words.
+    pub channel: String,
+    /// Unit of the figures.
+    pub unit: String,
+    /// The state that the rows are in.
+    pub state: SystemState,
+    /// Rows of the comparison in that state.
+    pub rows: usize,
+    /// Root mean square that the model leaves, each row as far as it is trusted …
+    pub rms_before: f64,
+    /// … and what the model leaves with all that was found.
+    pub rms_after: f64,
+    /// Noise of a row; absent where nothing tells it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise_floor: Option<f64>,
+}

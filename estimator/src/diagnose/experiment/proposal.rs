@@ -1,0 +1,140 @@
+//! Recording that would settle the open questions: regressors of the candidates on motions that have not been recorded
+//! yet.
+
+use super::motions::{Excitation, HANG, LIBRARY};
+use super::predicted_rows::imagine;
+use super::separation::{Imagined, separation};
+use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
+use crate::diagnose::data::regression_data::{Model, Track};
+use crate::diagnose::selection::comparison::Study;
+use statrs::distribution::{ContinuousCDF, Normal};
+
+/// Lengths of a proposed recording, s. The shortest that is likely to suffice is proposed.
+const LENGTHS_S: [f64; 3] = [20.0, 40.0, 80.0];
+pub(crate) const LIKELY: f64 = 0.8;
+/// Evidence that settles a question, as a log likelihood ratio.
+const SETTLED: f64 = 5.0;
+/// Share of questions that a motion, and a hung weight, settle although the evidence is sure to suffice. It is below
+/// one because neither answer may be true (measured, `docs/diagnosis.md`).
+pub(crate) const SURE: f64 = 0.85;
+pub(crate) const SURE_HUNG: f64 = 0.95;
+/// Evidence from which a question counts as settled.
+const MOST: f64 = 1e6;
+/// Largest turn of a crank to either side, rad.
+const TURN_RAD: f64 = 7.0;
+/// Weight to hang on, as a multiple of the object's, and the heaviest, N, which fingers can still lift.
+const HUNG_WEIGHTS: f64 = 6.0;
+const HEAVIEST_N: f64 = 1.2;
+/// Hung weight on a mechanism that turns: multiple of the moment found, and lever, m.
+const HUNG_MOMENTS: f64 = 10.0;
+const LEVER_M: f64 = 0.1;
+
+/// Next experiment, which separates the found causes from the `open` alternatives; `None` if no question is open.
+pub fn propose(track: &Track, model: &Model, study: &Study, open: &[Alternative]) -> Option<NextExperiment> {
+    let solved = study.solved.as_ref()?;
+    let pairs: Vec<(&str, &str)> = open.iter().map(|a| (a.instead_of.as_str(), a.id.as_str())).collect();
+    pairs.first()?;
+    let values = &solved.values[..study.base.len()];
+    if let Some(pair) = pairs.iter().find(|p| matches!(p, ("eccentric-mass", "gravity-tilt"))) {
+        return hang(track, model, study, *pair);
+    }
+    let mut best: Option<(f64, NextExperiment)> = None;
+    for seconds in LENGTHS_S {
+        for excitation in LIBRARY.iter().filter(|e| track.planar || e.free_s == 0.0) {
+            let asked = asked(track, excitation, seconds);
+            let imagined = Imagined::along(&imagine(track, model, values, excitation, &asked), model, study);
+            let least =
+                pairs.iter().filter_map(|pair| separation(&imagined, study, *pair)).fold(f64::INFINITY, f64::min);
+            if least.is_finite() && best.as_ref().is_none_or(|(most, _)| least > *most) {
+                let next = proposal(excitation.words.to_owned(), &pairs, SURE * power(least), asked);
+                best = Some((least, next));
+            }
+        }
+        if best.as_ref().is_some_and(|(_, next)| next.expected_power > LIKELY) {
+            break;
+        }
+    }
+    best.map(|(_, next)| next)
+}
+
+fn proposal(motion: String, pairs: &[(&str, &str)], power: f64, experiment: Experiment) -> NextExperiment {
+    let mut separates: Vec<String> = Vec::new();
+    for id in pairs.iter().flat_map(|(found, other)| [*found, *other]) {
+        if !separates.iter().any(|s| s == id) {
+            separates.push(id.to_owned());
+        }
+    }
+    NextExperiment { motion, separates, expected_power: power, experiment: Some(experiment) }
+}
+
+/// A motion of the library with the range and speed of the recorded motion.
+fn asked(track: &Track, excitation: &Excitation, seconds: f64) -> Experiment {
+    let scale = if track.planar { track.radius_m.unwrap_or(1.0) } else { 1.0 };
+    let at = |share| track.quantile(share, |r| r.motion.position) / scale;
+    let (low, high) = (at(0.02), at(0.98));
+    let half = 0.5 * (high - low);
+    Experiment {
+        id: excitation.id.to_owned(),
+        seconds,
+        free_s: excitation.free_s,
+        middle: 0.5 * (low + high),
+        half_range: if track.planar { half.min(TURN_RAD) } else { half },
+        fast: track.quantile(0.95, |r| r.motion.velocity.abs()) / scale,
+        across_n: if track.planar { track.quantile(0.7, |r| r.motion.normal_force_n.abs()) } else { 0.0 },
+        added_weight_n: 0.0,
+        added_lever_m: 0.0,
+    }
+}
+
+/// An eccentric mass and a tilted plane are equivalent in every motion of the object. A known weight on it separates
+/// them.
+fn hang(track: &Track, model: &Model, study: &Study, pair: (&str, &str)) -> Option<NextExperiment> {
+    let solved = study.solved.as_ref()?;
+    let chosen = study.chosen.iter().find(|c| study.candidates[c.candidate].id == pair.0)?;
+    let mut asked = asked(track, &HANG, LENGTHS_S[0]);
+    let in_steps = |weight: f64| (20.0 * weight.clamp(0.1, HEAVIEST_N)).round() / 20.0;
+    if track.planar {
+        let own = model.iter().zip(&solved.values).filter(|(e, _)| e.role() == haptics::law::Role::Gravity);
+        let own_n: f64 = own.map(|(e, share)| share * e.values[0]).sum();
+        asked.added_weight_n = in_steps(HUNG_WEIGHTS * own_n.max(0.02));
+        asked.added_lever_m = track.radius_m?;
+        // Factor by which the weight enlarges the sine of a tilt.
+        let times = 1.0 + asked.added_weight_n / own_n.max(0.02);
+        let share = asked.seconds / track.span_s.max(1.0);
+        let lambda = chosen.lambda.min(MOST) * share * (times - 1.0).powi(2) / (1.0 + share * times * times);
+        return Some(hung_proposal(&asked, &[pair], power(lambda), "the handle"));
+    }
+    let before = study.chosen.iter().take_while(|c| c.candidate != chosen.candidate);
+    let first = study.base.len() + before.map(|c| study.candidates[c.candidate].columns.len()).sum::<usize>();
+    let moment = solved.values[first..first + 2].iter().map(|v| v * v).sum::<f64>().sqrt();
+    asked.added_lever_m = LEVER_M;
+    asked.added_weight_n = in_steps(HUNG_MOMENTS * moment / LEVER_M);
+    let hung = asked.added_weight_n * LEVER_M;
+    // Either all of it acts, or the sine of a small tilt; nothing in between is considered.
+    let noise = track.force_noise.max(1e-12);
+    let lambda = asked.seconds / track.period_s * 0.5 * (0.4 * hung / noise).powi(2);
+    Some(hung_proposal(&asked, &[pair], power(lambda), "a lever"))
+}
+
+fn hung_proposal(asked: &Experiment, pairs: &[(&str, &str)], power: f64, on: &str) -> NextExperiment {
+    let weight = asked.added_weight_n;
+    let note = if on == "the handle" {
+        format!(
+            "hang a known weight of about {weight:.2} N on the handle and state it in the sidecar (known: added_weight_N)"
+        )
+    } else {
+        format!(
+            "hang a known weight of about {weight:.2} N on a lever of {:.2} m and state both in the sidecar (known: added_weight_N, \
+             added_lever_m, and added_level_rad, the coordinate at which the lever is level)",
+            asked.added_lever_m
+        )
+    };
+    proposal(format!("{note}; {}", HANG.words), pairs, SURE_HUNG * power, asked.clone())
+}
+
+/// Probability that a log likelihood ratio of mean λ/2 and variance λ settles it.
+pub(crate) fn power(lambda: f64) -> f64 {
+    let lambda = lambda.clamp(0.0, MOST);
+    let sure = (0.5 * lambda - SETTLED) / lambda.max(1e-9).sqrt();
+    Normal::new(0.0, 1.0).map_or(0.0, |n| n.cdf(sure))
+}

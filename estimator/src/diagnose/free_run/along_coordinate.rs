@@ -1,0 +1,150 @@
+//! Laws along one coordinate, over the locked blocks.
+
+use super::integrate::{Moment, Side as Driven, run};
+use super::windows::{Compared, LEAST_WINDOWS, NO_LAW, NOT_FAITHFUL, TOO_FEW, WINDOW_S, told};
+use crate::diagnose::contract::{Rollout, RolloutOf};
+use crate::diagnose::data::regression_data::{Model, Place, Track};
+use crate::diagnose::extension::model::effects_of;
+use crate::diagnose::selection::comparison::{Study, residual};
+use crate::diagnose::selection::normal_equations::Use;
+use haptics::law::{Coordinate, Effect, Kind, Memories, Motion, advance, drive_forces, inertia};
+
+/// Largest deviation of the laws from the regressors, as a share of the cause's effect.
+const FAITHFUL: f64 = 0.5;
+/// Least weight of a row for the test of the laws.
+const TRUSTED: f64 = 0.5;
+
+/// One side of the comparison: laws, and the measured force less the found sensor faults.
+struct Side {
+    effects: Vec<Effect>,
+    drive: Vec<f64>,
+    /// Residual of the force after the regressors, one per row.
+    left: Vec<f64>,
+}
+
+/// The rollout without and with the k-th of the chosen causes, all others in. The error is the reason why it cannot be
+/// done faithfully: a cause without a law in a world, or too little held-out motion.
+pub fn rollout(track: &Track, model: &Model, study: &Study, k: usize) -> Result<Rollout, String> {
+    let picks = study.picks();
+    let rest: Vec<usize> = picks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, p)| *p).collect();
+    let sides = side(track, model, study, &rest).zip(side(track, model, study, &picks));
+    let (without, with) = sides.ok_or_else(|| NO_LAW.to_owned())?;
+    if !(faithful(track, study, &without, &with) && faithful(track, study, &with, &without)) {
+        return Err(NOT_FAITHFUL.to_owned());
+    }
+    let windows = windows(track, study);
+    if windows.len() < LEAST_WINDOWS {
+        return Err(TOO_FEW.to_owned());
+    }
+    let driven = inertia(&without.effects) > 0.0 && inertia(&with.effects) > 0.0 && !track.planar;
+    let errors = |side: &Side| -> Vec<(f64, f64)> {
+        let starts = memories(track, &side.effects);
+        windows.iter().map(|window| over(track, side, window.clone(), &starts[window.start], driven)).collect()
+    };
+    let unit = match (driven, track.coordinate) {
+        (true, Coordinate::Linear) => "m",
+        (true, Coordinate::Angular) => "rad",
+        (false, Coordinate::Linear) => "N",
+        (false, Coordinate::Angular) => "N m",
+    };
+    let of = if driven { RolloutOf::Position } else { RolloutOf::Force };
+    told(&Compared { of, unit, window_s: WINDOW_S, in_turn: false }, &errors(&without), &errors(&with))
+}
+
+fn side(track: &Track, model: &Model, study: &Study, picks: &[usize]) -> Option<Side> {
+    let solved = study.system.solve(picks)?;
+    let effects = effects_of(track, model, study, picks, &solved)?;
+    let left = residual(&study.y, &study.base, &study.candidates, picks, &solved);
+    // No force drives a free motion, and its inertial force is the target.
+    let mut drive = if track.freely.is_some() { vec![0.0; study.y.len()] } else { study.y.clone() };
+    let mut at = study.base.len();
+    for candidate in picks.iter().map(|p| &study.candidates[*p]) {
+        for (column, value) in candidate.columns.iter().zip(&solved.values[at..]) {
+            if candidate.kind == Kind::Instrument {
+                drive.iter_mut().zip(column.iter()).for_each(|(d, c)| *d -= value * c);
+            }
+        }
+        at += candidate.columns.len();
+    }
+    Some(Side { effects, drive, left })
+}
+
+/// True if the laws agree with the force of the regressors.
+fn faithful(track: &Track, study: &Study, side: &Side, other: &Side) -> bool {
+    let (mut off, mut worth) = (0.0, 0.0);
+    for stretch in stretches(track) {
+        let motions: Vec<Motion> = track.rows[stretch.clone()].iter().map(|r| r.motion).collect();
+        let needed = match track.freely {
+            Some(_) => crate::diagnose::hypotheses::law_forces::needed(track, &side.effects)[stretch.clone()].to_vec(),
+            None => drive_forces(&side.effects, &motions),
+        };
+        for (i, needed) in stretch.zip(needed) {
+            if study.weight[i] > TRUSTED && track.rows[i].motion.direction.abs() > TRUSTED {
+                off += (side.drive[i] - side.left[i] - needed).powi(2);
+                worth += (side.left[i] - other.left[i]).powi(2);
+            }
+        }
+    }
+    off <= FAITHFUL * FAITHFUL * worth
+}
+
+/// Rows along the motion that follow each other.
+fn stretches(track: &Track) -> Vec<std::ops::Range<usize>> {
+    let mut found: Vec<std::ops::Range<usize>> = Vec::new();
+    for i in track.along() {
+        match found.last_mut() {
+            Some(last) if last.end == i && track.follows(i) => last.end = i + 1,
+            _ => found.push(i..i + 1),
+        }
+    }
+    found
+}
+
+/// Segments of the locked blocks.
+fn windows(track: &Track, study: &Study) -> Vec<std::ops::Range<usize>> {
+    let rows = (WINDOW_S / track.period_s).round().max(4.0) as usize;
+    let mut found = Vec::new();
+    for stretch in stretches(track) {
+        let mut start = stretch.start;
+        while start < stretch.end {
+            let block = study.system.uses[start];
+            let Use::Locked(_) = block else {
+                start += 1;
+                continue;
+            };
+            let until = (start + rows).min(stretch.end);
+            let end = (start..until).find(|i| study.system.uses[*i] != block).unwrap_or(until);
+            if 2 * (end - start) >= rows {
+                found.push(start..end);
+            }
+            start = end.max(start + 1);
+        }
+    }
+    found
+}
+
+/// Memory of the laws at every row, after the measured motion.
+fn memories(track: &Track, effects: &[Effect]) -> Vec<Memories> {
+    let mut memory = Memories::default();
+    (0..track.rows.len())
+        .map(|i| {
+            if track.follows(i) && track.rows[i].place == Place::Along {
+                let (before, now) = (&track.rows[i - 1].motion, &track.rows[i].motion);
+                let step_s = (now.time_s - before.time_s).max(1e-9);
+                let velocity = (now.position - before.position) / step_s;
+                advance(effects, &Motion { velocity, ..*now }, &mut memory, step_s);
+            } else {
+                memory = Memories::default();
+            }
+            memory
+        })
+        .collect()
+}
+
+/// Sum of the squared errors over a window, and their number.
+fn over(track: &Track, side: &Side, window: std::ops::Range<usize>, start: &Memories, driven: bool) -> (f64, f64) {
+    let moment = |i: usize| Moment { motion: track.rows[i].motion, drive: side.drive[i], beside: [0.0; 2] };
+    let moments: Vec<Moment> = window.map(moment).collect();
+    let nothing = &mut |_: &Motion, _: [f64; 2]| 0.0;
+    run(&moments, Driven { effects: &side.effects, memory: *start, acts: nothing, driven })
+}

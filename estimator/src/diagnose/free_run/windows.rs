@@ -1,0 +1,69 @@
+//! Gain of a cause in a free-run simulation, from the measured state over short windows.
+//!
+//! A model with inertia is driven by the measured force, and its position is compared. A model without one (a light
+//! crank, a sheet) would follow every error of the force at once. There a simulated hand holds the object and follows
+//! the measured motion, and its force is compared. The integrator is that of the servo's worlds.
+
+use crate::diagnose::contract::{Rollout, RolloutOf};
+
+/// Longest window, s. Windows are shorter at the end of a block, but at least half of it.
+pub const WINDOW_S: f64 = 0.5;
+/// Fewer windows say nothing.
+pub(crate) const LEAST_WINDOWS: usize = 3;
+/// Relative difference of errors up to which they count as equal.
+const DIFFER: f64 = 1e-3;
+/// Draws of the bootstrap over windows.
+const DRAWS: usize = 400;
+/// Reasons why there is no free run.
+pub const NO_LAW: &str = "no law of a world runs it";
+pub const TOO_FEW: &str = "too few uninterrupted pieces were there to run it over";
+pub const NOT_FAITHFUL: &str = "the laws of a world do not give the force that was found";
+pub const AT_AN_INSTANT: &str = "it is one instant: nothing of it runs on";
+pub const PUT_BACK: &str = "the forces are put back to their motion before anything is run";
+/// The simulated model already contains the cause.
+const THE_SAME: &str = "where the model can be run forward, it runs the same without it";
+pub const NO_CLOCK: &str = "a path without a clock cannot be run forward in time";
+/// The relation is static: it has no state to simulate.
+pub const AT_ONCE: &str =
+    "here one measured quantity follows from the others at once: sample by sample is forward in time";
+
+/// Compared quantity, its unit and its windows.
+pub struct Compared<'a> {
+    pub of: RolloutOf,
+    pub unit: &'a str,
+    /// Longest window, s.
+    pub window_s: f64,
+    /// True if the windows took part in the choice of the causes.
+    pub in_turn: bool,
+}
+
+/// Errors without and with a cause, as sums of squares and numbers of moments, window by window.
+pub fn told(what: &Compared<'_>, before: &[(f64, f64)], after: &[(f64, f64)]) -> Result<Rollout, String> {
+    if before.len() < LEAST_WINDOWS {
+        return Err(TOO_FEW.to_owned());
+    }
+    let all: Vec<usize> = (0..before.len()).collect();
+    let mean = |of: &[(f64, f64)], drawn: &[usize]| {
+        let (sum, count) = drawn.iter().fold((0.0, 0.0), |(s, n), w| (s + of[*w].0, n + of[*w].1));
+        sum / f64::max(count, 1.0)
+    };
+    let share = |drawn: &[usize]| 1.0 - mean(after, drawn) / mean(before, drawn).max(1e-300);
+    let (rms_before, rms_after) = (mean(before, &all).sqrt(), mean(after, &all).sqrt());
+    if !(rms_before.is_finite() && rms_after.is_finite()) {
+        return Err("the laws do not stay where anything was measured".to_owned());
+    }
+    if (rms_before - rms_after).abs() < DIFFER * rms_before {
+        return Err(THE_SAME.to_owned());
+    }
+    Ok(Rollout {
+        of: what.of,
+        unit: what.unit.to_owned(),
+        window_s: what.window_s,
+        windows: before.len(),
+        rms_before,
+        rms_after,
+        share: share(&all),
+        interval: crate::diagnose::selection::held_out_gain::bootstrap(all.len(), DRAWS, &share),
+        in_turn: what.in_turn,
+    })
+}

@@ -1,0 +1,86 @@
+//! Generic terms: regressors without a physical law, which detect the variable of an unexplained residual.
+
+use super::candidate::Candidate;
+use crate::diagnose::data::regression_data::{Place, Row, Track};
+use haptics::law::{Coordinate, Kind};
+
+/// Waves round a turn, or over the range.
+const WAVES: u32 = 6;
+/// Slow waves in time.
+const SLOW: u32 = 6;
+
+/// Factor of a wave, with its name.
+type Factor<'a> = (&'a str, Box<dyn Fn(&Row) -> f64 + 'a>);
+
+/// All of them.
+pub fn generic(track: &Track) -> Vec<Candidate> {
+    generic_of(track, WAVES, SLOW)
+}
+
+/// The same with this number of waves over the range, and in time.
+pub fn generic_of(track: &Track, waves: u32, slow: u32) -> Vec<Candidate> {
+    let mut all = Vec::new();
+    let force = if track.coordinate == Coordinate::Angular { "N m" } else { "N" };
+    let fast = track.quantile(0.9, |r| r.motion.velocity.abs()).max(1e-12);
+    let low = track.quantile(0.0, |r| r.angle_rad);
+    let range = (track.quantile(1.0, |r| r.angle_rad) - low).max(1e-12);
+    let phase = |row: &Row| {
+        if track.radius_m.is_some() { row.angle_rad } else { std::f64::consts::TAU * (row.angle_rad - low) / range }
+    };
+    let mut factors: Vec<Factor<'_>> = vec![
+        ("1", Box::new(|_| 1.0)),
+        ("sgn(v)", Box::new(|r: &Row| r.motion.direction)),
+        ("v", Box::new(move |r: &Row| r.motion.velocity / fast)),
+    ];
+    if track.planar {
+        factors.push(("Fn", Box::new(|r: &Row| r.motion.normal_force_n)));
+    }
+    // Along a line, waves are counted over the range.
+    let turns = if track.radius_m.is_some() { String::new() } else { format!("2 pi/{range:.3} ") };
+    let wave = |n: u32, of: fn(f64) -> f64| column(track, &|r| of(f64::from(n) * phase(r)));
+    let waves: Vec<[Vec<f64>; 2]> = (1..=waves).map(|n| [wave(n, f64::cos), wave(n, f64::sin)]).collect();
+    for (name, factor) in &factors {
+        let factor = column(track, factor);
+        for (n, waves) in (1..).zip(&waves) {
+            let times = |wave: &Vec<f64>| wave.iter().zip(&factor).map(|(w, f)| w * f).collect();
+            let columns = waves.iter().map(times).collect();
+            all.push(term(format!("{name} cos({n} {turns}q + phi)"), columns, if *name == "Fn" { "1" } else { force }));
+        }
+    }
+    for share in [0.2, 0.5, 0.8] {
+        let bend = share * fast;
+        let hinge = |r: &Row| (r.motion.velocity.abs() - bend).max(0.0) / fast * r.motion.direction;
+        all.push(term(format!("max(abs(v) - {bend:.3}, 0) sgn(v)"), vec![column(track, &hinge)], force));
+    }
+    for k in 1..=slow {
+        let wave = |r: &Row| (std::f64::consts::PI * f64::from(k) * r.motion.time_s / track.span_s.max(1e-9)).cos();
+        all.push(term(format!("cos({k} pi t/T)"), vec![column(track, &wave)], force));
+    }
+    for (name, unit, values) in track.extras() {
+        let rows = track.rows.iter().enumerate();
+        let column = rows.map(|(i, r)| if r.place == Place::Along { values[i] } else { 0.0 }).collect();
+        all.push(term(name.clone(), vec![column], force).with((name, unit)));
+    }
+    if track.planar {
+        all.push(term(
+            "Fn^2 sgn(v)".to_owned(),
+            vec![column(track, &|r| r.motion.normal_force_n.powi(2) * r.motion.direction)],
+            "1/N",
+        ));
+        all.push(term("Fn^2".to_owned(), vec![column(track, &|r| r.motion.normal_force_n.powi(2))], "1/N"));
+    }
+    all
+}
+
+fn column(track: &Track, of: &dyn Fn(&Row) -> f64) -> Vec<f64> {
+    // The noise of a place in the middle of a row of a free motion is that of its acceleration: a mean is taken, as of
+    // the laws.
+    let mean = |row: &Row| track.mean(row, &|m| of(&Row { motion: *m, angle_rad: m.position, ..*row }));
+    let value = |row: &Row| if track.freely.is_some() { mean(row) } else { of(row) };
+    track.rows.iter().map(|r| if r.place == Place::Along { value(r) } else { 0.0 }).collect()
+}
+
+fn term(expression: String, columns: Vec<Vec<f64>>, unit: &'static str) -> Candidate {
+    let linear = columns.iter().map(|_| ("amplitude", unit)).collect();
+    Candidate { expression: Some(expression), ..Candidate::several("other", Kind::Plant, columns, linear) }
+}

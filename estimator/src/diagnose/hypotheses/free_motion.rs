@@ -1,0 +1,52 @@
+use crate::diagnose::data::regression_data::{Freely, Track};
+
+use haptics::law::{EccentricMass, Effect, Inertia, Law as _};
+
+/// Share of backward travel up to which a motion counts as one-way.
+pub(crate) const ONE_WAY: f64 = 0.02;
+/// Causes that only a force sensor or a driving force shows.
+pub(crate) const WITH_A_FORCE: [&str; 9] = [
+    "force-bias",
+    "force-drift",
+    "force-gain",
+    "force-cross-axis",
+    "force-saturation",
+    "time-delay",
+    "inertia",
+    "mass-change",
+    "backlash",
+];
+/// Causes that act like friction, or like its dependence on speed, in a one-way motion that slows down.
+pub(crate) const WITH_BOTH_WAYS: [&str; 3] = ["friction-asymmetry", "gravity-tilt", "friction-change"];
+
+/// True if a free motion can show a cause at all. `both_ways`: the motion has both directions.
+pub(crate) fn can_show(id: &str, both_ways: bool) -> bool {
+    !WITH_A_FORCE.contains(&id) && (both_ways || !WITH_BOTH_WAYS.contains(&id))
+}
+
+/// Ways forward and backward.
+pub(crate) fn ways(track: &Track) -> [f64; 2] {
+    let way = |side: f64| track.along().map(|i| (side * track.rows[i].motion.velocity).max(0.0)).sum::<f64>();
+    [way(1.0), way(-1.0)]
+}
+
+/// True if the motion has both directions.
+pub(crate) fn goes_both_ways(track: &Track) -> bool {
+    let [forward, backward] = ways(track);
+    forward.min(backward) > ONE_WAY * (forward + backward)
+}
+
+/// The laws of what moves freely as a world has them: with its inertia and what is known, and gravity of both phases as
+/// one law.
+pub(crate) fn whole(track: &Track, laws: Vec<Effect>) -> Vec<Effect> {
+    let Some(Freely { inertia, known, .. }) = track.freely else { return laws };
+    let mut all = vec![Effect::new(&Inertia, &[inertia])];
+    for law in laws.into_iter().chain(known.into_iter().flatten()) {
+        let pulls = |e: &Effect| e.law().id() == EccentricMass.id() && e.values[2] == law.values[2];
+        match all.iter_mut().find(|e| pulls(e) && pulls(&law)) {
+            Some(gravity) => (0..2).for_each(|k| gravity.values[k] += law.values[k]),
+            None => all.push(law),
+        }
+    }
+    all
+}

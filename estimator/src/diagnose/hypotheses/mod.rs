@@ -1,0 +1,12 @@
+pub(crate) mod basis_functions;
+pub(crate) mod candidate;
+pub(crate) mod equivalent;
+pub(crate) mod free_motion;
+pub(crate) mod gravity_tilt;
+pub(crate) mod grid;
+pub(crate) mod law_forces;
+pub(crate) mod library;
+pub(crate) mod regressor_cache;
+pub(crate) mod resolvable_speed;
+pub(crate) mod slope;
+pub(crate) mod springs;

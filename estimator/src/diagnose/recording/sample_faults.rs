@@ -1,0 +1,171 @@
+//! Faults of the recording itself, before anything is asked of the model: plateaus, stuck, coarse and missing samples,
+//! mirrored axes.
+
+use crate::diagnose::contract::{Cause, CauseParameter, Gain};
+use crate::log;
+use crate::signal::noise::white_noise;
+use haptics::law::Kind;
+use haptics::recording::{Recording, Warning};
+
+/// Faults found in the samples.
+pub struct Faults {
+    pub causes: Vec<Cause>,
+    /// Flags of samples that no sensor measured.
+    pub bad: Vec<bool>,
+}
+
+/// Distance of a saturation limit from the samples, in standard deviations of the noise, from which none is clipped.
+const RAIL_SIGMAS: f64 = 3.5;
+/// Kinds of warnings that are a fault of a channel.
+const CHANNEL: [&str; 7] =
+    ["stuck-channel", "copied-channel", "duplicate-samples", "dropped-samples", "gap", "clock-jump", "quantised"];
+/// Kinds of them that concern all samples, so that none can be left out.
+const WHOLE: [&str; 4] = ["dropped-samples", "gap", "clock-jump", "quantised"];
+/// Number of places with lost samples up to which the data remain usable.
+const MANY: usize = 3;
+
+/// Looks at the raw samples.
+pub fn faults(recording: &Recording) -> Faults {
+    let mut found = Faults { causes: Vec::new(), bad: vec![false; recording.len()] };
+    for warning in log::check(recording) {
+        let id = match warning.kind.as_str() {
+            "saturation" => "force-saturation",
+            kind if CHANNEL.contains(&kind) && is_sensed(&warning) => "channel-fault",
+            _ => continue,
+        };
+        if !WHOLE.contains(&warning.kind.as_str()) {
+            for span in &warning.spans {
+                let end = span.end.min(found.bad.len());
+                found.bad[span.first.min(end)..end].fill(true);
+            }
+        }
+        if warning.kind == "saturation" {
+            leave_out_near_the_rail(recording, &warning, &mut found.bad);
+        }
+        if found.causes.iter().all(|c| c.id != id) {
+            found.causes.push(cause(id, &warning, recording));
+        }
+    }
+    // Faults in most of the recording cannot be left out.
+    if 2 * found.bad.iter().filter(|b| **b).count() > found.bad.len() {
+        found.bad.fill(false);
+    }
+    found
+}
+
+/// Leaves out samples near a saturation limit, where the noise is cut on one side: the rest there is a biased sample of
+/// the force.
+fn leave_out_near_the_rail(recording: &Recording, warning: &Warning, bad: &mut [bool]) {
+    let channel = warning.column.as_deref().and_then(|c| recording.channels.iter().find(|x| x.name == c));
+    let (Some(channel), Some(span)) = (channel, warning.spans.first()) else { return };
+    let level = channel.values.get(span.first).map_or(0.0, |v| v.abs());
+    let near = level - RAIL_SIGMAS * white_noise(&channel.values);
+    for (bad, value) in bad.iter_mut().zip(&channel.values) {
+        *bad |= value.abs() > near;
+    }
+}
+
+/// The force and motion channels, and the clock.
+fn is_sensed(warning: &Warning) -> bool {
+    let Some(column) = &warning.column else { return true };
+    // Recorders occasionally lose a single sample.
+    let clock = column == "t_s" && (warning.kind != "dropped-samples" || warning.spans.len() >= MANY);
+    clock || ["f", "tau", "q", "dq", "x", "y", "v"].iter().any(|start| column.starts_with(start))
+}
+
+fn cause(id: &str, warning: &Warning, recording: &Recording) -> Cause {
+    let first = warning.spans.first();
+    let time = |sample: usize| {
+        recording
+            .time_s
+            .as_ref()
+            .and_then(|t| t.get(sample.min(t.len().saturating_sub(1))))
+            .copied()
+            .unwrap_or(sample as f64)
+    };
+    let number = |name: &str, value: f64, unit: &str| CauseParameter {
+        name: name.to_owned(),
+        value,
+        std_error: 0.0,
+        unit: unit.to_owned(),
+    };
+    let channel = warning.column.as_deref().and_then(|c| recording.channels.iter().find(|x| x.name == c));
+    let parameters = match (id, first, channel) {
+        ("force-saturation", Some(span), Some(channel)) => {
+            vec![number("F_max", channel.values[span.first].abs(), &channel.unit)]
+        }
+        (_, Some(span), _) => {
+            // Without a clock, these are numbers of samples.
+            let unit = if recording.time_s.is_some() { "s" } else { "samples" };
+            vec![number("from", time(span.first), unit), number("to", time(span.end), unit)]
+        }
+        _ => Vec::new(),
+    };
+    Cause {
+        id: id.to_owned(),
+        kind: Kind::Instrument,
+        parameters,
+        p_value: 0.0,
+        posterior: 1.0,
+        gain: Gain::default(),
+        evidence: warning.text.clone(),
+    }
+}
+
+/// A mirrored or swapped axis, as a cause.
+pub fn mirrored(which: &str, better: f64) -> Cause {
+    let how = if which.contains("with") { "swapped" } else { "mirrored" };
+    Cause {
+        id: "axis-sign".to_owned(),
+        kind: Kind::Instrument,
+        parameters: vec![CauseParameter {
+            name: format!("which: {which}"),
+            value: -1.0,
+            std_error: 0.0,
+            unit: "1".to_owned(),
+        }],
+        p_value: 0.0,
+        posterior: 1.0,
+        gain: Gain::default(),
+        evidence: format!(
+            "with {which} {how} the model leaves {:.0} % of the force that it leaves unexplained as recorded, and friction resists",
+            100.0 * better
+        ),
+    }
+}
+
+/// Reaction forces on the hand, as a cause: they take work from the person who moves the mechanism, all the way.
+pub fn backwards(which: &str) -> Cause {
+    let (act, they) = if which.contains(" and ") { ("act", "they are forces") } else { ("acts", "it is the force") };
+    let taken = if which.contains(" and ") { "are" } else { "is" };
+    let evidence = format!(
+        "{which} {act} against the motion all the way: {they} on the hand and not on what it moves, and {taken} taken with the other sign"
+    );
+    Cause { evidence, ..mirrored(which, 1.0) }
+}
+
+/// A force along a coordinate with the wrong sign, as a cause.
+pub fn driving(which: &str) -> Cause {
+    let evidence = format!(
+        "as recorded {which} has mass and friction of the wrong sign: it would pull back what speeds up and drive what it should hold back"
+    );
+    Cause { evidence, ..mirrored(which, 1.0) }
+}
+
+/// A rate that contradicts the differences of its own position, as a cause.
+pub fn against_motion(which: &str) -> Cause {
+    let evidence = format!("{which} goes against what the recorded places do; it is taken with the other sign");
+    Cause { evidence, ..mirrored(which, 1.0) }
+}
+
+/// Standard errors, and least relative error, from which a known length shows a wrong scale.
+const SCALE_SIGMAS: f64 = 6.0;
+const LEAST_SCALE: f64 = 2e-3;
+
+/// Scale error of lengths (`epsilon` with its standard error) against a known length, as a cause; `None` if they agree.
+pub fn scaled(known: &str, [epsilon, std_error]: [f64; 2]) -> Option<Cause> {
+    let off = epsilon.abs() > LEAST_SCALE.max(SCALE_SIGMAS * std_error);
+    let evidence = format!("the path is {:+.2} % off the known {known}", 100.0 * epsilon);
+    let parameter = CauseParameter { name: "epsilon".to_owned(), value: epsilon, std_error, unit: "1".to_owned() };
+    off.then(|| Cause { id: "length-scale".to_owned(), parameters: vec![parameter], evidence, ..mirrored(known, 1.0) })
+}

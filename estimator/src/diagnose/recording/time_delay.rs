@@ -1,0 +1,288 @@
+//! Time delay of the force by more than a row. A linear regressor in the delay is then inaccurate. The force is shifted
+//! back by the delay found and the diagnosis repeated: a Gauss-Newton step with the recording itself. The linear
+//! regressor does not detect a delay as long as a hand's movement. A shift of the rows' forces against their motion
+//! finds it ([`guess_s`]).
+
+use super::delay_scan::{Demands, look};
+use crate::diagnose::contract::{Baseline, Cause, CauseParameter, Diagnosis, Figures, Gain, Verdict};
+use crate::diagnose::data::regression_data::{Model, Row, Track};
+use crate::diagnose::data::row_means::{Weights, column};
+use crate::diagnose::free_run::windows::PUT_BACK;
+use crate::diagnose::hypotheses::basis_functions::generic;
+use crate::diagnose::selection::gram::gram;
+use crate::diagnose::selection::normal_equations::solve;
+use crate::estimate::EstimateError;
+use crate::signal::derive::{interpolate, interpolate_cubic};
+use haptics::law::{CoulombFriction, Effect, Inertia, Kind, Law};
+use haptics::recording::{Recording, Span};
+use std::sync::Arc;
+
+/// Delay up to which a linear regressor is accurate, s.
+const LINEAR_S: f64 = 3e-3;
+/// Most rounds.
+const ROUNDS: usize = 5;
+/// The cause.
+const ID: &str = "time-delay";
+
+/// Repeats the diagnosis with the force shifted back while a large delay is found, then completes the answer.
+pub fn undo(
+    recordings: &[Recording],
+    first: Diagnosis,
+    ask: &dyn Fn(&[Recording]) -> Result<Diagnosis, EstimateError>,
+) -> Diagnosis {
+    let named_s = delay_s(&first);
+    let guess_s = first.guess_s.filter(|tau| tau.abs() > LINEAR_S);
+    let Some(mut late_s) = guess_s.or(named_s.filter(|tau| tau.abs() > LINEAR_S)) else { return first };
+    // Whole samples only: an interpolated force is a mean, with less noise than the others.
+    let period_s = recordings.iter().filter_map(period_s).fold(0.0, f64::max);
+    let whole = |late_s: f64| if period_s > 0.0 { (late_s / period_s).round() * period_s } else { late_s };
+    let mut found = None;
+    for _ in 0..ROUNDS {
+        let back_s = whole(late_s);
+        if back_s == 0.0 {
+            return first;
+        }
+        let back: Vec<Recording> = recordings.iter().map(|r| put_back(r, back_s)).collect();
+        // If the repetition fails, the first answer remains.
+        let Ok(now) = ask(&back) else { return first };
+        late_s = back_s + now.rest_s.map_or(0.0, |[more, _]| more);
+        found = Some(now);
+        if whole(late_s) == back_s {
+            break;
+        }
+    }
+    // A delay that was not named must improve the residual clearly.
+    let most = told(&first).end.heldout_rms_n * if named_s.is_some() { AS_GOOD } else { BETTER };
+    let sure = |found: &Diagnosis| found.rest_s.is_none_or(|[_, error]| late_s.abs() > SURE * error);
+    match found.filter(|found| told(found).end.heldout_rms_n < most && (named_s.is_some() || sure(found))) {
+        Some(found) => with_delay(found, &first, late_s, whole(late_s)),
+        None => first,
+    }
+}
+
+/// The figures by which a delay is judged.
+fn told(found: &Diagnosis) -> Figures {
+    found.of_delay.clone().unwrap_or_else(|| Figures {
+        baseline: found.baseline.clone(),
+        end: found.end.clone(),
+        noise_floor: found.noise_floor_n,
+    })
+}
+
+/// Usual time between two samples, s.
+fn period_s(recording: &Recording) -> Option<f64> {
+    let time_s = recording.time_s.as_ref().filter(|t| t.len() > 2)?;
+    Some((time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64)
+}
+
+/// Standard errors that a delay must have if it was not named at first.
+const SURE: f64 = 5.0;
+/// Largest ratio of residuals, after over before the shift, if the delay was named.
+const AS_GOOD: f64 = 1.1;
+/// The same ratio if the delay was not named.
+const BETTER: f64 = 0.95;
+/// Demands on a guess for a repetition of the diagnosis.
+const GUESS: Demands = Demands { longest_s: 0.09, enough: 0.5, leaves: 0.85, likelier: 60.0 };
+
+/// The delay with which a plain model, anything that goes with the place and anything slow leave least, if it is one
+/// that matters. Whole rows are tried, because a force between two rows is the mean of both, with half of the noise.
+pub fn guess_s(track: &Track, model: &Model) -> Option<f64> {
+    let moved = Moved::of(track, model);
+    let late = look(track.period_s, &GUESS, &|rows| moved.left(rows))?;
+    late.is_seen.then_some(late.tau_s)
+}
+
+/// Rows along the motion whose forces are shifted against it.
+struct Moved<'a> {
+    track: &'a Track,
+    /// Indices of the rows.
+    rows: Vec<usize>,
+    /// Laws that depend on the load, which moves with the force.
+    loads: Vec<Effect>,
+    /// Regressors that depend on the motion alone, one entry per row of the track.
+    motion: Vec<Vec<f64>>,
+}
+
+impl<'a> Moved<'a> {
+    fn of(track: &'a Track, model: &Model) -> Self {
+        let has = |id: &str| model.iter().any(|e| e.law().id() == id);
+        let missing = [&Inertia as &'static dyn Law, &CoulombFriction].into_iter().filter(|law| !has(law.id()));
+        let laws = model.iter().copied().chain(missing.map(|law| Effect::new(law, &[1.0])));
+        let (loads, others): (Vec<Effect>, Vec<Effect>) = laws.partition(|e| e.law().feels_load());
+        let mut motion: Vec<Vec<f64>> = others.iter().map(|effect| column(track, effect)).collect();
+        let of_place = |expression: &str| expression.starts_with("1 ") || expression.starts_with("cos(");
+        let terms = generic(track).into_iter().filter(|c| c.expression.as_deref().is_some_and(of_place));
+        motion.extend(terms.flat_map(|c| c.columns).map(Arc::unwrap_or_clone));
+        motion.push(vec![1.0; track.rows.len()]);
+        Self { track, rows: track.along().collect(), loads, motion }
+    }
+
+    /// The rows with the forces of this many rows later, and their indices.
+    fn later(&self, by: isize) -> (Vec<Row>, Vec<usize>) {
+        let of = |i: &usize| &self.track.rows[*i];
+        let (mut moved, mut picked) = (Vec::new(), Vec::new());
+        let together = |a: &usize, b: &usize| of(a).stretch == of(b).stretch && of(a).recording == of(b).recording;
+        for stretch in self.rows.chunk_by(together) {
+            for (k, i) in stretch.iter().enumerate() {
+                let Some(later) = k.checked_add_signed(by).and_then(|k| stretch.get(k)).map(of) else { continue };
+                let mut row = *of(i);
+                if self.track.planar {
+                    let outward = haptics::Vec2::new(row.along.y, -row.along.x);
+                    row.motion.normal_force_n += (later.force - row.force).dot(&outward);
+                    row.y = later.force.dot(&row.along);
+                } else {
+                    row.y = later.y;
+                }
+                moved.push(row);
+                picked.push(*i);
+            }
+        }
+        (moved, picked)
+    }
+
+    /// Residual power per row, and number of rows, with the forces of this many rows later.
+    fn left(&self, by: isize) -> Option<(f64, f64)> {
+        let (moved, picked) = self.later(by);
+        // Square of the direction's estimate: weights of the squares are its fourth power.
+        let root: Vec<f64> = moved.iter().map(|row| row.motion.direction.powi(2)).collect();
+        let weighted = |column: &mut dyn Iterator<Item = f64>| -> Vec<f64> {
+            column.zip(&root).map(|(value, root)| value * root).collect()
+        };
+        let mut columns: Vec<Vec<f64>> =
+            self.motion.iter().map(|of| weighted(&mut picked.iter().map(|i| of[*i]))).collect();
+        for law in &self.loads {
+            let mut weights = Weights::default();
+            columns.push(weighted(&mut moved.iter().map(|row| weights.mean(self.track, row, |m| law.force(m)))));
+        }
+        let target = columns.len();
+        columns.push(weighted(&mut moved.iter().map(|row| row.y)));
+        let all: Vec<usize> = (0..moved.len()).collect();
+        let fit = solve(&gram(&columns, &all), &(0..target).collect::<Vec<_>>(), target)?;
+        let weight: f64 = root.iter().map(|root| root * root).sum();
+        (moved.len() > target && weight > 0.0).then(|| (fit.rss / weight, moved.len() as f64))
+    }
+}
+
+/// The delay that an answer names, s.
+fn delay_s(found: &Diagnosis) -> Option<f64> {
+    found.causes.iter().find(|c| c.id == ID)?.parameters.first().map(|p| p.value)
+}
+
+/// The recording with its forces shifted earlier, without its end, which has no such forces.
+pub fn put_back(recording: &Recording, late_s: f64) -> Recording {
+    let Some(time_s) = recording.time_s.as_ref().filter(|t| t.len() > 2 && late_s != 0.0) else {
+        return recording.clone();
+    };
+    let inside = |t: &f64| *t + late_s >= time_s[0] && *t + late_s <= time_s[time_s.len() - 1];
+    let (Some(first), Some(last)) = (time_s.iter().position(inside), time_s.iter().rposition(inside)) else {
+        return recording.clone();
+    };
+    let later: Vec<f64> = time_s.iter().map(|t| t + late_s).collect();
+    let mut moved = recording.clone();
+    for channel in moved.channels.iter_mut().filter(|c| is_force(&c.name)) {
+        channel.values = interpolate(time_s, &channel.values, &later);
+    }
+    moved.slice(Span { first, end: last + 1 })
+}
+
+/// The recording with its motion as it was when the force was read that is recorded beside it: the force comes late by
+/// `apart_s`, a part of a sample. (A force between two samples has less noise than the others; a place hardly has any.)
+pub fn motion_apart(recording: &Recording, apart_s: f64) -> Recording {
+    let mut moved = recording.clone();
+    let Some(time_s) = recording.time_s.as_ref().filter(|t| t.len() > 2 && apart_s != 0.0) else { return moved };
+    let then: Vec<f64> = time_s.iter().map(|t| t - apart_s).collect();
+    for channel in moved.channels.iter_mut().filter(|c| is_motion(&c.name)) {
+        channel.values = interpolate_cubic(time_s, &channel.values, &then);
+    }
+    moved
+}
+
+fn is_motion(name: &str) -> bool {
+    name.split('_').next().is_some_and(|quantity| ["q", "dq", "x", "y", "z", "vx", "vy", "vz"].contains(&quantity))
+}
+
+fn is_force(name: &str) -> bool {
+    name.split('_').next().is_some_and(|quantity| {
+        let of = quantity.trim_end_matches(['1', '2']);
+        ["f", "fx", "fy", "fz", "tau"].contains(&of)
+    })
+}
+
+/// The answer for the recording with its forces shifted back by `back_s`, with its delay.
+fn with_delay(mut found: Diagnosis, first: &Diagnosis, late_s: f64, back_s: f64) -> Diagnosis {
+    let place = first.causes.iter().position(|c| c.id == ID);
+    let mut cause = place.map_or_else(|| unnamed_before(first, late_s), |place| first.causes[place].clone());
+    let place = place.unwrap_or(0);
+    let error = found.rest_s.map(|[_, error]| error);
+    if let Some(tau) = cause.parameters.first_mut() {
+        tau.value = late_s;
+        tau.std_error = error.unwrap_or(tau.std_error);
+    }
+    let Figures { end, noise_floor, .. } = told(&found);
+    let (before, after, floor) = (cause.gain.heldout_rms_before, end.heldout_rms_n, noise_floor);
+    let power = (before * before - floor * floor).max(1e-3 * before * before);
+    let share = ((before * before - after * after) / power).clamp(-1.0, 1.0);
+    cause.gain.heldout_rms_after = after;
+    cause.gain.share_of_explainable = share;
+    cause.gain.interval = [cause.gain.interval[0].min(share), cause.gain.interval[1].max(share)];
+    if cause.gain.rollout.is_none() {
+        cause.gain.no_rollout = Some(PUT_BACK.to_owned());
+    }
+    cause.posterior = 1.0;
+    found.causes.retain(|c| c.id != ID);
+    found.alternatives.retain(|a| a.instead_of != ID && a.id != ID);
+    found.not_excited.retain(|n| n.id != ID);
+    found.passed_over.retain(|p| p.id != ID);
+    found.causes.insert(place.min(found.causes.len()), cause);
+    if matches!(found.verdict, Verdict::None | Verdict::Unexplained) {
+        found.verdict = Verdict::Causes;
+    }
+    let model = first.baseline.model.clone();
+    found.baseline = Baseline { model, ..told(first).baseline };
+    (found.end, found.noise_floor_n) = (end, noise_floor);
+    found.late_s = back_s;
+    found
+}
+
+/// A delay that the first answer did not name, as a cause.
+fn unnamed_before(first: &Diagnosis, late_s: f64) -> Cause {
+    let before = told(first);
+    let parameter = CauseParameter { name: "tau".to_owned(), value: late_s, std_error: 0.0, unit: "s".to_owned() };
+    Cause {
+        id: ID.to_owned(),
+        kind: Kind::Instrument,
+        parameters: vec![parameter],
+        p_value: 0.0,
+        posterior: 1.0,
+        gain: Gain { heldout_rms_before: before.end.heldout_rms_n, unit: before.baseline.unit, ..Gain::default() },
+        evidence: format!(
+            "the force fits the motion of {:.0} ms before: everything was asked again with the force put back to then",
+            1e3 * late_s
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use haptics::recording::Channel;
+
+    #[test]
+    fn forces_are_put_back_and_motion_stays() {
+        let time_s: Vec<f64> = (0..1000).map(|k| 0.002 * f64::from(k)).collect();
+        let of = |name: &str, late_s: f64| Channel {
+            name: name.to_owned(),
+            unit: String::new(),
+            values: time_s.iter().map(|t| (3.0 * (t - late_s)).sin()).collect(),
+        };
+        let channels = vec![of("x_m", 0.0), of("fx_N", 0.031), of("tau_Nm", 0.031)];
+        let recording = Recording { time_s: Some(time_s.clone()), channels, ..Recording::default() };
+        let back = put_back(&recording, 0.031);
+        assert_eq!(back.len(), 1000 - 16);
+        for channel in &back.channels {
+            let off = |(t, v): (&f64, &f64)| (v - (3.0 * t).sin()).abs();
+            let worst = back.time_s.as_ref().expect("times").iter().zip(&channel.values).map(off).fold(0.0, f64::max);
+            assert!(worst < 1e-5, "{}: {worst}", channel.name);
+        }
+    }
+}

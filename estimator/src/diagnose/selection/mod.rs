@@ -1,0 +1,16 @@
+pub(crate) mod channel;
+pub(crate) mod comparison;
+pub(crate) mod dry_friction;
+pub(crate) mod estimates;
+pub(crate) mod gram;
+pub(crate) mod held_out_gain;
+pub(crate) mod jackknife;
+pub(crate) mod leave_window_out;
+pub(crate) mod noise_model;
+pub(crate) mod normal_equations;
+pub(crate) mod prescreen;
+pub(crate) mod profile_likelihood;
+pub(crate) mod pruning;
+pub(crate) mod restarts;
+pub(crate) mod rules;
+pub(crate) mod stepwise;

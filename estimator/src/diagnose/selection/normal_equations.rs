@@ -1,0 +1,481 @@
+//! Whitened normal equations of all regressors, one set per block: every fit, comparison and cross-validation is
+//! then a small solve.
+
+use super::comparison::Study;
+use super::gram;
+use super::gram::{Weighed, gram, mean_squares};
+use super::noise_model::{Noise, Whitening};
+use crate::diagnose::hypotheses::candidate::Candidate;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// Least number of rows of a block; `MOST_BLOCKS` is the largest number of blocks.
+const LEAST_BLOCK: usize = 12;
+/// The same for rows that are single observations.
+const LEAST_ALONE: usize = 3;
+const MOST_BLOCKS: usize = 20;
+/// Every so many-th block is locked: it is used for the gain only.
+const LOCKED_EVERY: usize = 4;
+/// Guard time beside a locked block, s: rows within it are not used.
+const GUARD_S: f64 = 0.1;
+/// Least effective number of rows of a block.
+const LEAST_SAID: usize = 3;
+/// Rounding error of sums of ones.
+const ROUNDING: f64 = 1e-6;
+/// Folds of the cross-validation.
+pub const FOLDS: usize = 5;
+
+/// Rows of the system.
+pub struct Rows<'a> {
+    pub y: &'a [f64],
+    /// Segment of each row.
+    pub stretch: &'a [usize],
+    /// Hold-out role of each row; rows that may not be held out always train.
+    pub testable: &'a [Held],
+    /// Time of each row, s: rows near in time are held out together.
+    pub time_s: &'a [f64],
+    /// Weight of each row, 0 … 1: factor by which its noise is reduced.
+    pub weight: &'a [f64],
+    pub period_s: f64,
+    /// Kind of their noise.
+    pub noise: Noise,
+    /// True if standing rows have next to no weight: blocks then have equal information, not equal numbers of rows.
+    pub may_stand: bool,
+}
+
+/// Hold-out role of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Held {
+    /// Always used for training.
+    Never,
+    /// Tested by folds. Its quantity is not the force, and locked blocks test it for that quantity alone.
+    ByFolds,
+    /// Tested by folds and by locked blocks.
+    Fully,
+}
+
+/// Use of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    /// Trains always.
+    Always,
+    /// Used for training, and tested by the fold of this number.
+    Fold(usize),
+    /// Tests only; the number of its block.
+    Locked(usize),
+    /// The same for a row of [`Held::ByFolds`]: it tests only the gain of causes that affect such rows.
+    Beside(usize),
+    /// Beside a locked block.
+    Guard,
+}
+
+/// Use of each row: blocks of the rows that may be held out.
+pub fn uses(rows: &Rows<'_>) -> Vec<Use> {
+    let mut testable: Vec<usize> = (0..rows.y.len()).filter(|i| rows.testable[*i] != Held::Never).collect();
+    testable.sort_by(|a, b| rows.time_s[*a].total_cmp(&rows.time_s[*b]));
+    // Single observations (a blow, not a sample of a motion) are independent of their neighbours.
+    let is_alone = rows.stretch.windows(2).all(|pair| pair[0] != pair[1]);
+    // Blocks have equal information, not equal numbers of rows. A block of a stick phase tests nothing, and without the
+    // only moving block nothing can be trained.
+    let mut said = 0.0;
+    let before: Vec<f64> = testable
+        .iter()
+        .map(|i| {
+            let own = if rows.may_stand { rows.weight[*i].powi(2) } else { 1.0 };
+            said += own;
+            said - own
+        })
+        .collect();
+    let least = if is_alone { LEAST_ALONE } else { LEAST_BLOCK };
+    let most = ((said + ROUNDING) as usize / LEAST_SAID).clamp(1, MOST_BLOCKS);
+    let blocks = (testable.len() / least).clamp(1, most);
+    let guard = if is_alone { 0 } else { (GUARD_S / rows.period_s).round().max(1.0) as usize };
+    let block_of = |k: usize| ((before[k] * blocks as f64 / said.max(1e-300)) as usize).min(blocks - 1);
+    let locked = |block: usize| blocks >= LOCKED_EVERY && block % LOCKED_EVERY == LOCKED_EVERY - 1;
+    let mut uses = vec![Use::Always; rows.y.len()];
+    let mut open = 0;
+    let mut fold_of = vec![0; blocks];
+    for (block, fold) in fold_of.iter_mut().enumerate() {
+        if !locked(block) {
+            *fold = open % FOLDS;
+            open += 1;
+        }
+    }
+    for (k, &i) in testable.iter().enumerate() {
+        let block = block_of(k);
+        uses[i] = if locked(block) {
+            if rows.testable[i] == Held::Fully { Use::Locked(block) } else { Use::Beside(block) }
+        } else {
+            let near = |other: Option<usize>| other.is_some_and(|j| j < testable.len() && locked(block_of(j)));
+            if near(k.checked_sub(guard)) || near(Some(k + guard)) { Use::Guard } else { Use::Fold(fold_of[block]) }
+        };
+    }
+    uses
+}
+
+/// Normal equations of all regressors and the target, which comes last.
+pub struct System {
+    /// Normal equations of the training rows.
+    pub train: DMatrix<f64>,
+    pub rows: f64,
+    /// Normal equations of each fold, and its number of rows.
+    pub folds: Vec<(DMatrix<f64>, f64)>,
+    /// Index ranges of the candidates' regressors.
+    pub places: Vec<Range<usize>>,
+    pub base: usize,
+    /// Regressors of the base model that can only resist: a negative coefficient is no explanation.
+    pub resisting: Vec<usize>,
+    /// Jackknife block of each row, for several block lengths; empty if the rows have no common blocks.
+    pub pieces: Vec<Vec<usize>>,
+    pub coefficients: Vec<f64>,
+    pub uses: Vec<Use>,
+    /// Mean square of each regressor over all rows, for the support guard.
+    pub(crate) energy: Vec<(f64, f64)>,
+    /// Products over the rows that always train.
+    pub(crate) always: DMatrix<f64>,
+    /// All regressors, for the products with those of a later system.
+    pub(crate) whitened: Vec<Vec<f64>>,
+}
+
+/// Part of an earlier system that is used again.
+struct Known {
+    system: System,
+    /// Index of each regressor in it.
+    from: Vec<Option<usize>>,
+}
+
+/// All regressors in the order of a system, the target last.
+pub(crate) fn columns_of<'a>(base: &'a [Vec<f64>], candidates: &'a [Candidate], y: &'a [f64]) -> Vec<&'a [f64]> {
+    let of_candidates = candidates.iter().flat_map(|c| &c.columns);
+    base.iter().chain(of_candidates.map(|column| &**column)).map(Vec::as_slice).chain([y]).collect()
+}
+
+/// Index in `had` of the column that is equal to the bit; each of them is used once.
+fn origins(columns: &[&[f64]], had: &[&[f64]]) -> Vec<Option<usize>> {
+    let mark = |column: &[f64]| column.iter().fold(0_u64, |sum, v| sum.wrapping_add(v.to_bits()));
+    let mut marks: HashMap<u64, Vec<usize>> = HashMap::new();
+    had.iter().enumerate().for_each(|(h, column)| marks.entry(mark(column)).or_default().push(h));
+    let same = |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());
+    let mut origin = |column: &&[f64]| {
+        let marked = marks.get_mut(&mark(column))?;
+        let place = marked.iter().position(|h| same(column, had[*h]))?;
+        Some(marked.swap_remove(place))
+    };
+    columns.iter().map(&mut origin).collect()
+}
+
+/// Index range of each candidate's regressors, after those of the model.
+pub(crate) fn places(base: usize, candidates: &[Candidate]) -> Vec<Range<usize>> {
+    let mut end = base;
+    let place = |candidate: &Candidate| {
+        let start = end;
+        end += candidate.columns.len();
+        start..end
+    };
+    candidates.iter().map(place).collect()
+}
+
+/// Effective number of observations: a row of little weight counts as less than one.
+pub(crate) fn counted(picked: &[usize], rows: &Rows<'_>) -> f64 {
+    picked.iter().map(|i| rows.weight[*i].powi(2)).sum::<f64>()
+}
+
+/// Mean square of each regressor over the training rows, from their products, and over all `whole` rows in use.
+pub(crate) fn energy(train: &DMatrix<f64>, columns: &Weighed<'_>, uses: &[Use], whole: &[bool]) -> Vec<(f64, f64)> {
+    // Rows that are neither fitted nor tested need no support.
+    let is_looked_at = |i: &usize| whole[*i] && !matches!(uses[*i], Use::Guard | Use::Beside(_));
+    let looked_at: Vec<usize> = (0..uses.len()).filter(is_looked_at).collect();
+    let trained = looked_at.iter().filter(|i| !matches!(uses[**i], Use::Locked(_))).count().max(1) as f64;
+    let all = mean_squares(columns, &looked_at).into_iter().enumerate();
+    all.map(|(c, all)| (train[(c, c)] / trained, all)).collect()
+}
+
+/// A solved subset of the regressors.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    pub columns: Vec<usize>,
+    pub values: Vec<f64>,
+    /// Inverse of the normal matrix.
+    pub inverse: DMatrix<f64>,
+    /// Sum of the squared residuals.
+    pub rss: f64,
+}
+
+impl Solved {
+    /// Residual variance of one of this many rows.
+    pub fn variance(&self, rows: f64) -> f64 {
+        self.rss / (rows - self.columns.len() as f64).max(1.0)
+    }
+}
+
+impl System {
+    pub fn new(base: &[Vec<f64>], candidates: &[Candidate], rows: &Rows<'_>, coefficients: Vec<f64>) -> Self {
+        Self::build(columns_of(base, candidates, rows.y), (base.len(), candidates), rows, coefficients, None)
+    }
+
+    /// A system of the same rows as `before`, whitened alike: it takes known products of regressors from it.
+    pub fn after(before: Study, base: &[Vec<f64>], candidates: &[Candidate], rows: &Rows<'_>) -> Self {
+        let columns = columns_of(base, candidates, rows.y);
+        let Study { system, candidates: had, base: had_base, y: had_y, weight, .. } = before;
+        let coefficients = system.coefficients.clone();
+        let known = (weight == rows.weight && system.uses == uses(rows))
+            .then(|| Known { from: origins(&columns, &columns_of(&had_base, &had, &had_y)), system });
+        Self::build(columns, (base.len(), candidates), rows, coefficients, known)
+    }
+
+    fn build(
+        columns: Vec<&[f64]>,
+        (base, candidates): (usize, &[Candidate]),
+        rows: &Rows<'_>,
+        coefficients: Vec<f64>,
+        known: Option<Known>,
+    ) -> Self {
+        let uses = uses(rows);
+        let white = Whitening::new(rows.stretch, rows.weight, &coefficients);
+        let whole = white.leaves();
+        let (from, mut had) = known.map_or_else(|| (vec![None; columns.len()], None), |k| (k.from, Some(k.system)));
+        let mut taken = |c: usize| Some(std::mem::take(&mut had.as_mut()?.whitened[from[c]?]));
+        let columns: Vec<Vec<f64>> =
+            columns.into_iter().enumerate().map(|(c, values)| taken(c).unwrap_or_else(|| white.of(values))).collect();
+        let pick = |wanted: &dyn Fn(Use) -> bool| -> Vec<usize> {
+            (0..rows.y.len()).filter(|i| whole[*i] && wanted(uses[*i])).collect()
+        };
+        let products = |part: &dyn Fn(&System) -> &DMatrix<f64>, picked: &[usize]| match &had {
+            Some(had) => gram::more(&columns, picked, part(had), &from),
+            None => gram(&columns, picked),
+        };
+        let counted = |picked: &[usize]| counted(picked, rows);
+        let picked = pick(&|u| u == Use::Always);
+        let always = products(&|had| &had.always, &picked);
+        let mut train = always.clone();
+        let mut count = counted(&picked);
+        let mut folds = Vec::new();
+        for fold in 0..FOLDS {
+            let picked = pick(&|u| u == Use::Fold(fold));
+            let part = products(&|had| &had.folds[fold].0, &picked);
+            train += &part;
+            count += counted(&picked);
+            folds.push((part, counted(&picked)));
+        }
+        let slices: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        let all_alike = vec![1.0; rows.y.len()];
+        let energy = energy(&train, &Weighed { columns: &slices, weight: &all_alike }, &uses, &whole);
+        let places = places(base, candidates);
+        Self {
+            train,
+            rows: count,
+            folds,
+            places,
+            base,
+            resisting: Vec::new(),
+            pieces: Vec::new(),
+            coefficients,
+            uses,
+            energy,
+            always,
+            whitened: columns,
+        }
+    }
+
+    pub(crate) fn target(&self) -> usize {
+        self.train.ncols() - 1
+    }
+
+    /// Columns of the base and of the chosen candidates.
+    pub fn columns(&self, chosen: &[usize]) -> Vec<usize> {
+        (0..self.base).chain(chosen.iter().flat_map(|c| self.places[*c].clone())).collect()
+    }
+
+    /// True if the training rows contain enough of a candidate; otherwise it would be huge where it was not fitted.
+    pub fn supported(&self, candidate: usize) -> bool {
+        const LEAST_SHARE: f64 = 0.3;
+        self.places[candidate]
+            .clone()
+            .all(|c| self.energy[c].0 > LEAST_SHARE * self.energy[c].1 && self.energy[c].1 > 0.0)
+    }
+
+    /// Least squares on the rows that train.
+    pub fn solve(&self, chosen: &[usize]) -> Option<Solved> {
+        solve(&self.train, &self.columns(chosen), self.target())
+    }
+
+    /// The values and the sum of the squared residuals alone of [`Self::solve`].
+    pub fn least(&self, chosen: &[usize]) -> Option<(Vec<f64>, f64)> {
+        let columns = self.columns(chosen);
+        let (values, rss, _) = scaled(&self.train, &columns, self.target())?;
+        Some((values, rss))
+    }
+
+    /// The same, but resisting regressors with a negative coefficient are left out.
+    pub fn least_sound(&self, chosen: &[usize]) -> Option<(Vec<f64>, f64)> {
+        let (mut values, mut rss) = self.least(chosen)?;
+        let mut columns = self.columns(chosen);
+        // A regressor left out stays out: the next removal rarely makes it admissible again.
+        while let Some(k) =
+            self.resisting.iter().find_map(|r| columns.iter().position(|c| c == r).filter(|k| values[*k] < 0.0))
+        {
+            columns.remove(k);
+            (values, rss, _) = scaled(&self.train, &columns, self.target())?;
+        }
+        let out: Vec<usize> = (0..self.base).filter(|c| !columns.contains(c)).collect();
+        for c in out {
+            values.insert(c, 0.0);
+        }
+        Some((values, rss))
+    }
+
+    /// Sum of squared errors on every fold by a fit to all the others.
+    pub fn cross_validate(&self, chosen: &[usize]) -> Option<Vec<f64>> {
+        let mut all = self.columns(chosen);
+        all.push(self.target());
+        let small = |of: &DMatrix<f64>| DMatrix::from_fn(all.len(), all.len(), |i, j| of[(all[i], all[j])]);
+        let whole = small(&self.train);
+        let columns: Vec<usize> = (0..all.len() - 1).collect();
+        self.folds
+            .iter()
+            .map(|(part, _)| {
+                let part = small(part);
+                let solved = solve(&(&whole - &part), &columns, columns.len())?;
+                Some(squares(&part, &columns, &solved.values, columns.len()))
+            })
+            .collect()
+    }
+
+    /// Share of a candidate's (whitened, training) regressors that the chosen ones do not explain: the least of them.
+    pub fn distinct(&self, candidate: usize, chosen: &[usize]) -> f64 {
+        let columns = self.columns(chosen);
+        self.places[candidate]
+            .clone()
+            .map(|c| {
+                let own = self.train[(c, c)];
+                match solve(&self.train, &columns, c) {
+                    Some(solved) if own > 0.0 => (solved.rss / own).max(0.0),
+                    _ => 0.0,
+                }
+            })
+            .fold(1.0, f64::min)
+    }
+}
+
+/// Least squares of column `target` on `columns`, from their Gram matrix.
+pub fn solve(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<Solved> {
+    let (values, rss, Scaled { cholesky, scale }) = scaled(gram, columns, target)?;
+    let (p, inverse) = (columns.len(), cholesky.inverse());
+    let inverse = DMatrix::from_fn(p, p, |i, j| inverse[(i, j)] / (scale[i] * scale[j]));
+    Some(Solved { columns: columns.to_vec(), values, inverse, rss })
+}
+
+/// Scaled and factored normal equations.
+pub(crate) struct Scaled {
+    pub(crate) cholesky: Cholesky<f64, Dyn>,
+    /// Scale of each column.
+    pub(crate) scale: Vec<f64>,
+}
+
+/// Factors the normal equations. A small ridge keeps them regular for equal columns.
+pub(crate) fn factored(gram: &DMatrix<f64>, columns: &[usize]) -> Option<Scaled> {
+    const RIDGE: f64 = 1e-10;
+    let p = columns.len();
+    let scale: Vec<f64> =
+        columns.iter().map(|c| gram[(*c, *c)].sqrt()).map(|s| if s > 0.0 { s } else { 1.0 }).collect();
+    let normal = DMatrix::from_fn(p, p, |i, j| {
+        gram[(columns[i], columns[j])] / (scale[i] * scale[j]) + if i == j { RIDGE } else { 0.0 }
+    });
+    Some(Scaled { cholesky: normal.cholesky()?, scale })
+}
+
+/// The values of [`solve`], the residual sum of squares, and the factors from which the errors follow.
+pub(crate) fn scaled(gram: &DMatrix<f64>, columns: &[usize], target: usize) -> Option<(Vec<f64>, f64, Scaled)> {
+    let made = factored(gram, columns)?;
+    let right = DVector::from_fn(columns.len(), |i, _| gram[(columns[i], target)] / made.scale[i]);
+    let found = made.cholesky.solve(&right);
+    let values: Vec<f64> = (0..columns.len()).map(|i| found[i] / made.scale[i]).collect();
+    let rss = squares(gram, columns, &values, target).max(1e-12 * gram[(target, target)]);
+    Some((values, rss, made))
+}
+
+/// Residual sum of squares Σ (y − Σ value × column)².
+fn squares(gram: &DMatrix<f64>, columns: &[usize], values: &[f64], target: usize) -> f64 {
+    let mut sum = gram[(target, target)];
+    for (i, a) in columns.iter().zip(values) {
+        sum -= 2.0 * a * gram[(*i, target)];
+        for (j, b) in columns.iter().zip(values) {
+            sum += a * b * gram[(*i, *j)];
+        }
+    }
+    sum.max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Blocks of rows of these weights, 50 a second.
+    fn of(weight: &[f64]) -> Vec<Use> {
+        let time_s: Vec<f64> = (0..weight.len()).map(|i| 0.02 * i as f64).collect();
+        let rows = Rows {
+            y: &vec![0.0; weight.len()],
+            stretch: &vec![0; weight.len()],
+            testable: &vec![Held::Fully; weight.len()],
+            time_s: &time_s,
+            weight,
+            period_s: 0.02,
+            noise: Noise::Any,
+            may_stand: true,
+        };
+        uses(&rows)
+    }
+
+    #[test]
+    fn rows_that_say_as_much_are_held_out_in_blocks_of_as_many() {
+        let found = of(&[1.0; 600]);
+        let locked = |block: usize| found.iter().filter(|u| **u == Use::Locked(block)).count();
+        assert_eq!([3, 7, 11, 15, 19].map(locked), [30; 5]);
+        let folds: Vec<usize> = (0..FOLDS).map(|f| found.iter().filter(|u| **u == Use::Fold(f)).count()).collect();
+        assert!(folds.iter().all(|n| (70..=90).contains(n)), "{folds:?}");
+    }
+
+    #[test]
+    fn something_that_stands_for_most_of_the_time_still_trains_on_motion_whatever_is_held_out() {
+        // Motion during two of thirty seconds.
+        let weight: Vec<f64> = (0..1500).map(|i| if (700..800).contains(&i) { 1.0 } else { 0.01 }).collect();
+        let found = of(&weight);
+        let said = |wanted: &dyn Fn(Use) -> bool| {
+            let rows = weight.iter().zip(&found).filter(|(_, u)| wanted(**u));
+            rows.map(|(w, _)| w * w).sum::<f64>()
+        };
+        for fold in 0..FOLDS {
+            let share = said(&|u| u == Use::Fold(fold)) / said(&|u| matches!(u, Use::Fold(_)));
+            assert!((0.08..0.4).contains(&share), "fold {fold}: {share}");
+        }
+        assert!(said(&|u| matches!(u, Use::Locked(_))) > 15.0, "what is locked has to tell something");
+    }
+
+    #[test]
+    fn what_resists_is_nothing_rather_than_less_than_nothing() {
+        let x: Vec<f64> = (0..600).map(|i| (0.1 * f64::from(i)).sin()).collect();
+        let least = |slope: f64| {
+            let y: Vec<f64> = x.iter().map(|x| 2.0 + slope * x).collect();
+            let rows = Rows {
+                y: &y,
+                stretch: &[0; 600],
+                testable: &[Held::Fully; 600],
+                time_s: &(0..600).map(f64::from).collect::<Vec<f64>>(),
+                weight: &[1.0; 600],
+                period_s: 0.02,
+                noise: Noise::Any,
+                may_stand: true,
+            };
+            let mut system = System::new(&[x.clone(), vec![1.0; 600]], &[], &rows, Vec::new());
+            system.resisting = vec![0];
+            let [plain, sound] = [system.least(&[]), system.least_sound(&[])].map(|found| found.expect("solved"));
+            (plain, sound)
+        };
+        let ((plain, _), (sound, _)) = least(3.0);
+        assert!((sound[0] - 3.0).abs() < 1e-6 && sound == plain, "{sound:?}");
+        let ((plain, rss), (sound, more)) = least(-3.0);
+        assert!((plain[0] + 3.0).abs() < 1e-6 && sound[0] == 0.0 && (sound[1] - 2.0).abs() < 0.2, "{sound:?}");
+        assert!(more > rss + 100.0, "{more} after {rss}");
+    }
+}

@@ -1,0 +1,485 @@
+//! Stepwise regression over the candidates: forward selection with look-ahead, swaps, pruning.
+
+use super::normal_equations::{Solved, System};
+use super::restarts::MANY;
+use crate::diagnose::hypotheses::candidate::Candidate;
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+/// Most causes at once, and the number of further ones without friction in the model, whose friction takes two of them.
+const MOST_CAUSES: usize = 4;
+const FRICTIONS: usize = 2;
+/// Rounds of swapping after each addition.
+const SWAP_ROUNDS: usize = 3;
+/// t-value below which a cause must improve nearly every fold.
+const CLEAR_T: f64 = 2.0;
+/// Relative change of the folds' errors below which they did not test a cause.
+const UNTESTED: f64 = 1e-8;
+/// Loss of the folds, as a share of a cause's evidence, up to which they do not speak against it.
+const SPARED: f64 = 0.05;
+/// Evidence margin within which rival causes are ambiguous.
+pub const AMBIGUOUS: f64 = 10.0;
+
+/// A chosen candidate with its evidence.
+#[derive(Clone, Debug)]
+pub struct Chosen {
+    /// Index of the candidate.
+    pub candidate: usize,
+    /// Evidence lost without it, 2 ln(likelihood) with penalty.
+    pub score: f64,
+    /// Likelihood ratio alone.
+    pub lambda: f64,
+    /// Rivals of the cause: candidate, and its deficit in evidence.
+    pub rivals: Vec<(usize, f64)>,
+}
+
+/// Chooses among the candidates. `threshold`: least evidence of a cause.
+pub struct Selection<'a> {
+    pub system: &'a System,
+    pub candidates: &'a [Candidate],
+    pub threshold: f64,
+    /// True if the model has dry friction. Causes that bend or lift it require it.
+    dry: bool,
+    /// True if motion is lost at a reversal in one way only: hysteresis and backlash then exclude each other.
+    one_loss: bool,
+    /// Cache of prices, by the causes in this order: swaps, prunings and restarts meet the same sets again.
+    prices: RefCell<HashMap<Vec<usize>, f64>>,
+}
+
+/// Causes with an empirical curve, and the variable of that curve. If the true curve has another form, the misfit looks
+/// like a weak cause over the same variable. Motion is lost at reversals, so lost motion also depends on their
+/// positions.
+const CURVES: [(&str, &[Over]); 10] = [
+    ("stribeck", &[Over::Motion]),
+    ("quadratic-drag", &[Over::Motion]),
+    ("hysteresis", &[Over::Motion, Over::Place]),
+    ("backlash", &[Over::Motion, Over::Place]),
+    ("friction-change", &[Over::Motion, Over::Time]),
+    ("local-resistance", &[Over::Place]),
+    ("added-constraint", &[Over::Place]),
+    ("return-spring", &[Over::Place]),
+    ("position-ripple", &[Over::Place]),
+    ("fingertip-slip", &[Over::Path]),
+];
+/// Causes over the same variables with an exact law.
+const LINES: [(&str, &[Over]); 10] = [
+    ("coulomb-friction", &[Over::Motion]),
+    ("load-friction", &[Over::Motion]),
+    ("viscous-friction", &[Over::Motion]),
+    ("friction-asymmetry", &[Over::Motion]),
+    ("eccentric-mass", &[Over::Place]),
+    ("mass-change", &[Over::Time]),
+    ("force-drift", &[Over::Time]),
+    ("joint-offset", &[Over::Path]),
+    ("length-scale", &[Over::Path]),
+    ("pad-compliance", &[Over::Path]),
+];
+/// Share of such a cause's evidence below which another cause may be its misfit.
+pub const REMAINDER: f64 = 0.12;
+/// Squared correlation of two causes' estimates from which they count as one.
+const AS_ONE: f64 = 0.99;
+/// Mean square of two causes together, as a share of the weaker one's, below which they cancel.
+const TAKEN_BACK: f64 = 0.1;
+/// Multiple of the threshold from which the pair is kept all the same.
+pub(crate) const SURE: f64 = 10.0;
+
+/// Variable of a curve.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Over {
+    Motion,
+    Place,
+    Time,
+    /// Path of the tip.
+    Path,
+}
+
+/// True if the cause has an empirical curve.
+pub fn is_curve(id: &str) -> bool {
+    CURVES.iter().any(|(curve, _)| *curve == id)
+}
+
+/// Causes of lost motion at a reversal.
+pub const LOST_MOTION: [&str; 2] = ["hysteresis", "backlash"];
+/// Causes that change dry friction, and need it.
+pub(crate) const OF_DRY_FRICTION: [&str; 3] = ["stribeck", "hysteresis", "friction-change"];
+/// Causes that are dry friction.
+pub(crate) const DRY_FRICTION: [&str; 2] = ["coulomb-friction", "load-friction"];
+
+impl<'a> Selection<'a> {
+    /// A selection beside dry friction, in which motion may be lost at reversals in two ways.
+    pub fn new(system: &'a System, candidates: &'a [Candidate], threshold: f64) -> Self {
+        Self { system, candidates, threshold, dry: true, one_loss: false, prices: RefCell::default() }
+    }
+
+    /// Sets if the model has dry friction, and if motion is lost at reversals in one way only.
+    pub fn of(self, dry: bool, one_loss: bool) -> Self {
+        Self { dry, one_loss, ..self }
+    }
+}
+
+impl Selection<'_> {
+    /// Most causes at once.
+    pub(crate) fn most(&self) -> usize {
+        if self.dry { MOST_CAUSES } else { MOST_CAUSES + FRICTIONS }
+    }
+
+    /// Price N ln(RSS) plus the penalty of the parameters; smaller is better. Infinite if a parameter has an impossible
+    /// sign.
+    pub(crate) fn price(&self, chosen: &[usize]) -> f64 {
+        if let Some(price) = self.prices.borrow().get(chosen) {
+            return *price;
+        }
+        let price = self.asked(chosen);
+        self.prices.borrow_mut().insert(chosen.to_vec(), price);
+        price
+    }
+
+    fn asked(&self, chosen: &[usize]) -> f64 {
+        let is = |all: &[&str]| chosen.iter().any(|c| all.contains(&self.candidates[*c].id));
+        if !self.dry && is(&OF_DRY_FRICTION) && !is(&DRY_FRICTION) {
+            return f64::INFINITY;
+        }
+        let Some((values, rss)) = self.system.least_sound(chosen) else { return f64::INFINITY };
+        let (mut at, mut doubt) = (self.system.base, 0.0);
+        for c in chosen {
+            let candidate = &self.candidates[*c];
+            let end = at + candidate.columns.len();
+            if !candidate.admits(&values[at..end]) {
+                return f64::INFINITY;
+            }
+            doubt += candidate.doubt(&values[at..end]);
+            at = end;
+        }
+        self.paid(chosen, rss) + doubt
+    }
+
+    fn paid(&self, chosen: &[usize], rss: f64) -> f64 {
+        let cost: f64 = chosen.iter().map(|c| self.candidates[*c].cost).sum();
+        self.system.rows * rss.ln() + cost * self.system.rows.ln()
+    }
+
+    /// The same without sign constraints.
+    fn plain_price(&self, chosen: &[usize]) -> Option<f64> {
+        Some(self.paid(chosen, self.system.least_sound(chosen)?.1))
+    }
+
+    /// True if a generic term in place of the k-th cause has more evidence, penalised for its search, by more than the
+    /// cause's curve may miss. Its name is then a guess. A small misfit of a strong cause's curve does not count.
+    fn outdone(&self, chosen: &[usize], k: usize) -> bool {
+        let rest = without(chosen, k);
+        let generic: Vec<usize> = (0..self.candidates.len())
+            .filter(|c| self.candidates[*c].expression.is_some() && self.system.supported(*c))
+            .collect();
+        let search = 2.0 * (generic.len().max(1) as f64).ln();
+        let whole = self.price(chosen);
+        let score = self.plain_price(&rest).map_or(0.0, |less| less - whole);
+        let more = search + (REMAINDER * score).max(AMBIGUOUS);
+        generic.iter().any(|c| self.price(&[rest.as_slice(), &[*c]].concat()) < whole - more)
+    }
+
+    /// True if two causes exclude each other.
+    fn excludes(&self, a: &str, b: &str) -> bool {
+        a == b || (self.one_loss && LOST_MOTION.contains(&a) && LOST_MOTION.contains(&b))
+    }
+
+    /// Candidates that may join the chosen ones: supported, and of another cause.
+    pub(crate) fn open<'b>(&'b self, chosen: &'b [usize]) -> impl Iterator<Item = usize> + 'b {
+        (0..self.candidates.len())
+            .filter(|c| self.candidates[*c].expression.is_none() && self.system.supported(*c))
+            .filter(|c| chosen.iter().all(|o| !self.excludes(self.candidates[*o].id, self.candidates[*c].id)))
+    }
+
+    /// Price of each candidate that may join the chosen ones.
+    pub fn priced(&self, chosen: &[usize]) -> Vec<(usize, f64)> {
+        self.open(chosen).map(|c| (c, self.price(&[chosen, &[c]].concat()))).collect()
+    }
+
+    /// The strongest generic term beside the chosen causes, and its evidence after the penalty for the search.
+    pub fn unexplained(&self, chosen: &[usize]) -> Option<(usize, f64)> {
+        let whole = self.price(chosen);
+        let generic: Vec<usize> = (0..self.candidates.len())
+            .filter(|c| self.candidates[*c].expression.is_some() && self.system.supported(*c))
+            .collect();
+        let search = 2.0 * (generic.len().max(1) as f64).ln();
+        let score = |c: usize| whole - self.price(&[chosen, &[c]].concat()) - search;
+        generic.iter().map(|c| (*c, score(*c))).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Evidence of a candidate beside the chosen ones, penalised for its parameters. `None` if it cannot join them, or
+    /// only with an impossible sign.
+    pub fn score_beside(&self, chosen: &[usize], c: usize) -> Option<f64> {
+        let fits = chosen.iter().all(|o| !self.excludes(self.candidates[*o].id, self.candidates[c].id));
+        let with = self.price(&[chosen, &[c]].concat());
+        (fits && with.is_finite()).then_some(self.plain_price(chosen)? - with)
+    }
+
+    /// Causes after forward selection, swaps and pruning, strongest first. `before`: choice of an earlier round. The
+    /// search then starts from it, and from nothing.
+    pub fn run(&self, before: &[usize]) -> Vec<Chosen> {
+        // On a coarse grid, two causes may be needed to describe one, but they do not tell which.
+        let is_fine = !before.is_empty();
+        let mut chosen = self.settled(Vec::new(), is_fine);
+        if is_fine {
+            let going_on = self.settled(before.to_vec(), true);
+            if self.price(&going_on) < self.price(&chosen) {
+                chosen = going_on;
+            }
+        }
+        // The search by single steps may end in a local optimum.
+        if chosen.len() > MANY
+            && let Some(pair) = self.pair()
+        {
+            let sparser = self.settled(pair, is_fine);
+            if self.price(&sparser) < self.price(&chosen) {
+                chosen = sparser;
+            }
+        }
+        // Two causes that largely cancel are found by neither of them alone.
+        if let Some(pair) = self.pair_beside(&chosen) {
+            let more = self.settled([chosen.as_slice(), &pair].concat(), is_fine);
+            if self.price(&more) < self.price(&chosen) {
+                chosen = more;
+            }
+        }
+        self.describe(&chosen)
+    }
+
+    /// Result of a search that starts with `chosen`; `merges`: true to replace two causes by one.
+    fn settled(&self, mut chosen: Vec<usize>, merges: bool) -> Vec<usize> {
+        while chosen.len() < self.most() {
+            match cheapest(self.priced(&chosen)) {
+                Some((best, price)) if price.is_finite() => chosen.push(best),
+                _ => break,
+            }
+            self.swap(&mut chosen);
+        }
+        self.prune(&mut chosen);
+        self.swap(&mut chosen);
+        if merges {
+            self.merge(&mut chosen);
+        }
+        self.prune(&mut chosen);
+        while let Some(k) = (0..chosen.len()).find(|k| self.outdone(&chosen, *k)) {
+            chosen.remove(k);
+            self.prune(&mut chosen);
+        }
+        chosen
+    }
+
+    /// Replaces two causes by one that explains as much: causes that cannot be separated from one are one.
+    fn merge(&self, chosen: &mut Vec<usize>) {
+        let pair = |chosen: &[usize]| {
+            let all = (1..chosen.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+            let merged = all.filter_map(|(a, b)| {
+                let rest = without(&without(chosen, b), a);
+                let with = |c: usize| [rest.as_slice(), &[c]].concat();
+                cheapest(self.priced(&rest)).map(|(c, price)| (with(c), price))
+            });
+            merged.min_by(|a, b| a.1.total_cmp(&b.1))
+        };
+        while let Some((better, _)) = pair(chosen).filter(|(_, price)| *price < self.price(chosen) + AMBIGUOUS) {
+            *chosen = better;
+        }
+    }
+
+    pub(crate) fn swap(&self, chosen: &mut [usize]) {
+        for _ in 0..SWAP_ROUNDS {
+            let mut changed = false;
+            for k in 0..chosen.len() {
+                let rest: Vec<usize> = chosen.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, c)| *c).collect();
+                let with = |c: usize| self.price(&[rest.as_slice(), &[c]].concat());
+                let now = with(chosen[k]);
+                if let Some((best, price)) = cheapest(self.priced(&rest))
+                    && price < now - 1e-9
+                {
+                    chosen[k] = best;
+                    changed = true;
+                }
+            }
+            if !changed {
+                break;
+            }
+        }
+    }
+
+    /// Removes the weakest cause until every remaining one is justified.
+    fn prune(&self, chosen: &mut Vec<usize>) {
+        while !chosen.is_empty() {
+            let whole = self.price(chosen);
+            let losses = (0..chosen.len()).map(|k| (k, self.price(&without(chosen, k)) - whole));
+            let Some((weakest, loss)) = cheapest(losses) else { return };
+            let is_doubtful =
+                |k: &usize| !self.validates(chosen, *k) || self.remains(chosen, *k) || self.pulls_against(chosen, *k);
+            if loss < self.threshold {
+                chosen.remove(weakest);
+            } else if let Some(k) = (0..chosen.len()).find(is_doubtful) {
+                chosen.remove(k);
+            } else {
+                return;
+            }
+            // A cause whose values were searched beside another one may be impossible without it, while its neighbour
+            // on the grid is possible.
+            if !self.price(chosen).is_finite() {
+                self.swap(chosen);
+            }
+        }
+    }
+
+    /// True if the k-th cause may be misfit of a stronger one's curve.
+    fn remains(&self, chosen: &[usize], k: usize) -> bool {
+        // Without the sign constraints of the others.
+        let loss = |k: usize| Some(self.plain_price(&without(chosen, k))? - self.plain_price(chosen)?);
+        let over = |c: usize, all: &[(&str, &'static [Over])]| -> &'static [Over] {
+            all.iter().find(|(id, _)| *id == self.candidates[c].id).map_or(&[], |(_, over)| over)
+        };
+        let own = [over(chosen[k], &CURVES), over(chosen[k], &LINES)].concat();
+        (0..chosen.len())
+            .filter(|o| *o != k && over(chosen[*o], &CURVES).iter().any(|over| own.contains(over)))
+            .any(|o| loss(k).zip(loss(o)).is_some_and(|(weak, strong)| weak < REMAINDER * strong))
+    }
+
+    /// True if the k-th cause and a better one are nearly collinear in this recording: large coefficients cancel, and
+    /// only their difference matters. Causes that differ may cancel as well.
+    fn pulls_against(&self, chosen: &[usize], k: usize) -> bool {
+        let count = |k: usize| self.candidates[chosen[k]].columns.len();
+        let Some(solved) = self.system.solve(chosen) else { return false };
+        let own = |k: usize| {
+            let first = self.system.base + (0..k).map(count).sum::<usize>();
+            first..first + count(k)
+        };
+        let covariance = |a: usize, b: usize| solved.inverse[(own(a).start, own(b).start)];
+        let single = |o: usize| count(k) == 1 && count(o) == 1;
+        let as_one = |o: usize| single(o) && covariance(k, o).powi(2) > AS_ONE * covariance(k, k) * covariance(o, o);
+        let taken_back = |o: usize| {
+            let [one, other] = [k, o].map(|k| own(k).collect::<Vec<usize>>());
+            let weaker = self.power(&solved, &one).min(self.power(&solved, &other));
+            self.power(&solved, &[one, other].concat()) < TAKEN_BACK * weaker
+        };
+        let left = |k: usize| self.plain_price(&without(chosen, k)).unwrap_or(f64::INFINITY);
+        // A joint effect beyond doubt is real, even if it is small beside either of the two.
+        let sure = |o: usize| {
+            let rest: Vec<usize> = chosen.iter().copied().filter(|c| *c != chosen[k] && *c != chosen[o]).collect();
+            self.plain_price(&rest).is_some_and(|less| less - self.price(chosen) > SURE * self.threshold)
+        };
+        (0..chosen.len()).filter(|o| *o != k).any(|o| (as_one(o) || taken_back(o) && !sure(o)) && left(k) < left(o))
+    }
+
+    /// Sum of squares, over the training rows, of the contribution of these regressors to a solution.
+    fn power(&self, solved: &Solved, which: &[usize]) -> f64 {
+        let part = |i: usize, j: usize| {
+            solved.values[i] * solved.values[j] * self.system.train[(solved.columns[i], solved.columns[j])]
+        };
+        which.iter().map(|i| which.iter().map(|j| part(*i, *j)).sum::<f64>()).sum()
+    }
+
+    /// True if held-out folds improve with the k-th cause.
+    fn validates(&self, chosen: &[usize], k: usize) -> bool {
+        let (Some(with), Some(less)) =
+            (self.system.cross_validate(chosen), self.system.cross_validate(&without(chosen, k)))
+        else {
+            return false;
+        };
+        let (before, after) = (less.iter().sum::<f64>(), with.iter().sum::<f64>());
+        let better = less.iter().zip(&with).filter(|(l, w)| w < l).count();
+        // If only rows that are never held out determine it (a bias beside gravity: the free rows), the folds do not
+        // change.
+        let gain = before - after;
+        if gain.abs() < UNTESTED * before || self.is_spared(chosen, k, (before, after)) {
+            return self.clear(chosen, k);
+        }
+        gain > 0.0 && (self.clear(chosen, k) || 5 * better >= 4 * with.len())
+    }
+
+    /// True if the folds lose little by the k-th cause compared with its evidence: they hardly contain its effect,
+    /// while rows that are never held out do.
+    fn is_spared(&self, chosen: &[usize], k: usize, (before, after): (f64, f64)) -> bool {
+        let tested: f64 = self.system.folds.iter().map(|(_, rows)| rows).sum();
+        let lost = tested * (after / before.max(1e-300)).max(1e-300).ln();
+        let score = self.plain_price(&without(chosen, k)).map_or(0.0, |less| less - self.price(chosen));
+        (0.0..SPARED * score).contains(&lost)
+    }
+
+    fn clear(&self, chosen: &[usize], k: usize) -> bool {
+        let Some(solved) = self.system.solve(chosen) else { return false };
+        let before: usize = chosen[..k].iter().map(|c| self.candidates[*c].columns.len()).sum();
+        let first = self.system.base + before;
+        let variance = solved.variance(self.system.rows);
+        (first..first + self.candidates[chosen[k]].columns.len())
+            .any(|i| solved.values[i].abs() > CLEAR_T * (variance * solved.inverse[(i, i)]).sqrt())
+    }
+
+    fn describe(&self, chosen: &[usize]) -> Vec<Chosen> {
+        let whole = self.price(chosen);
+        let mut found: Vec<Chosen> = (0..chosen.len())
+            .map(|k| {
+                let rest = without(chosen, k);
+                // Without the cause, a remaining sign may be impossible. Its price is used all the same.
+                let score = self.plain_price(&rest).unwrap_or(whole) - whole;
+                let cost = self.candidates[chosen[k]].cost * self.system.rows.ln();
+                Chosen {
+                    candidate: chosen[k],
+                    score,
+                    lambda: score + cost,
+                    rivals: self.rivals(&rest, chosen[k], whole),
+                }
+            })
+            .collect();
+        let order = self.order(chosen);
+        found.sort_by_key(|c| order.iter().position(|o| *o == c.candidate));
+        found
+    }
+
+    /// The chosen causes in the order of forward selection: the strongest alone first.
+    fn order(&self, chosen: &[usize]) -> Vec<usize> {
+        let mut left = chosen.to_vec();
+        let mut order: Vec<usize> = Vec::new();
+        while !left.is_empty() {
+            let price = |c: &usize| self.price(&[order.as_slice(), &[*c]].concat());
+            let Some((next, _)) = cheapest((0..left.len()).map(|k| (k, price(&left[k])))) else { break };
+            order.push(left.remove(next));
+        }
+        order
+    }
+
+    /// Evidence that the noise of its own regressor costs the last candidate of `chosen`. It is added back, because
+    /// poor measurement does not speak against a cause.
+    fn forgiven(&self, chosen: &[usize], c: usize) -> f64 {
+        /// Largest share of the residual that this noise may account for.
+        const MOST: f64 = 0.9;
+        let noise = self.candidates[c].noise;
+        let Some(solved) = self.system.solve(chosen).filter(|_| noise > 0.0) else { return 0.0 };
+        let own = self.system.base + chosen.iter().map(|c| self.candidates[*c].columns.len()).sum::<usize>()
+            - self.candidates[c].columns.len();
+        let whitened = 1.0 + self.system.coefficients.iter().map(|a| a * a).sum::<f64>();
+        let share = (solved.values[own] * noise).powi(2) * whitened * self.system.rows / solved.rss;
+        -self.system.rows * (1.0 - share.min(MOST)).ln()
+    }
+
+    /// The best candidate of every other cause with nearly the same evidence in this one's place.
+    fn rivals(&self, rest: &[usize], own: usize, whole: f64) -> Vec<(usize, f64)> {
+        let mut best: Vec<(usize, f64)> = Vec::new();
+        for c in self.open(rest).filter(|c| self.candidates[*c].id != self.candidates[own].id) {
+            let others = [rest, &[c]].concat();
+            let behind = (self.price(&others) - whole - self.forgiven(&others, c)).max(0.0);
+            if !behind.is_finite() || behind > AMBIGUOUS {
+                continue;
+            }
+            match best.iter_mut().find(|(o, _)| self.candidates[*o].id == self.candidates[c].id) {
+                Some(held) if held.1 > behind => *held = (c, behind),
+                Some(_) => {}
+                None => best.push((c, behind)),
+            }
+        }
+        best.sort_by(|a, b| a.1.total_cmp(&b.1));
+        best
+    }
+}
+
+/// The cheapest candidate, the first of equal ones, and its price.
+pub(crate) fn cheapest<T>(priced: impl IntoIterator<Item = (T, f64)>) -> Option<(T, f64)> {
+    priced.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+fn without(chosen: &[usize], k: usize) -> Vec<usize> {
+    chosen.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, c)| *c).collect()
+}

@@ -1,0 +1,187 @@
+//! Axis signs: mirrored channels and swapped axes, corrected before the model is fitted.
+
+use super::crank::{path, plain_crank};
+use super::mechanism::named;
+use super::one_coordinate;
+use crate::diagnose::contract::Cause;
+use crate::diagnose::data::regression_data::Track;
+use crate::diagnose::recording::rate_signs::{mirrored, with_rates_of_motion};
+use crate::diagnose::recording::sample_faults;
+use crate::diagnose::selection::rules::threshold;
+use crate::diagnose::tasks::crank::path::{Arm, Geometry};
+use crate::diagnose::tasks::crank::rows::{Axes, Signals, with_axes};
+use crate::estimate::EstimateError;
+use haptics::law::{EccentricMass, Effect};
+use haptics::recording::Recording;
+use std::borrow::Cow;
+
+/// Channels that may each be mirrored alone if a recording is implausible: a finger's axis, a joint.
+const ALONE: [&[&str]; 14] = [
+    &["fx1_N"],
+    &["fy1_N"],
+    &["fx2_N"],
+    &["fy2_N"],
+    &["fx1_N", "fy1_N"],
+    &["fx2_N", "fy2_N"],
+    &["qb_rad", "dqb_rad_s"],
+    &["qt_rad", "dqt_rad_s"],
+    &["qb1_rad", "dqb1_rad_s"],
+    &["qt1_rad", "dqt1_rad_s"],
+    &["qb2_rad", "dqb2_rad_s"],
+    &["qt2_rad", "dqt2_rad_s"],
+    &["x1_m", "vx1_m_s"],
+    &["y1_m", "vy1_m_s"],
+];
+/// Ratio of residual to noise up to which mirrored channels are not searched: other causes leave as much.
+const SENSELESS: f64 = 4.0;
+
+/// A crank's recording, prepared for the diagnosis.
+pub struct Looked {
+    pub signals: Signals,
+    /// The path of the handle.
+    pub circle: Geometry,
+    /// Rows along the circle, with the force's axes corrected.
+    pub rows: Track,
+    /// Mirrored axis that was corrected for that.
+    pub axis: Option<Cause>,
+}
+
+impl Looked {
+    /// `bad`: samples that no sensor measured.
+    ///
+    /// # Errors
+    /// Missing channels, too little data while held, a path that is no circle: in a sentence.
+    pub fn at(recording: &Recording, bad: &[bool]) -> Result<Self, EstimateError> {
+        let signals = Signals::of(recording, bad)?;
+        let path = signals.path(recording);
+        let circle = path::geometry(&path, signals.time_s.len(), threshold(signals.period_s))?;
+        let (rows, axis) = upright(&signals, recording, &circle.arm)?;
+        Ok(Self { signals, circle, rows, axis })
+    }
+
+    /// Residual RMS of a crank's model, N, and true if friction dissipates work.
+    fn left(&self) -> Result<(f64, bool), EstimateError> {
+        one_coordinate::plain_rms(&mut self.rows.clone(), &model_of(&self.circle.arm))
+    }
+}
+
+/// A crank's recording with its channels corrected one by one, and its signals after that. [`upright`] corrects whole
+/// axes of the force.
+///
+/// # Errors
+/// As [`Looked::at`].
+pub fn of_crank<'a>(
+    recording: &'a Recording,
+    bad: &[bool],
+) -> Result<(Cow<'a, Recording>, Option<Cause>, Looked), EstimateError> {
+    let (straight, rate) = with_rates_of_motion(recording);
+    let fault = rate.map(sample_faults::against_motion);
+    let looked = Looked::at(&straight, bad)?;
+    let (before, _) = looked.left()?;
+    if before < SENSELESS * looked.rows.force_noise {
+        return Ok((straight, fault, looked));
+    }
+    let mut best: Option<(f64, Looked, Recording, &[&str])> = None;
+    for names in ALONE.iter().filter(|names| names.iter().any(|name| recording.channel(name).is_some())) {
+        let other = mirrored(&straight, names);
+        let Ok(looked) = Looked::at(&other, bad) else { continue };
+        let Ok((after, resists)) = looked.left() else { continue };
+        // One mirrored channel is likelier than that and an axis of the force.
+        let better = |(least, held): (f64, &Looked)| (looked.axis.is_some(), after) < (held.axis.is_some(), least);
+        let sound = resists && after < MIRRORED_SHARE * before && makes_sense((before, after), &looked.rows);
+        if sound && best.as_ref().is_none_or(|(least, held, ..)| better((*least, held))) {
+            best = Some((after, looked, other, names));
+        }
+    }
+    Ok(match best {
+        Some((after, looked, other, names)) => {
+            // If a joint's rate agrees with its angle afterwards, only the angle was mirrored.
+            let name = if names[0].starts_with('f') { names.join(" and ") } else { names[0].to_owned() };
+            (Cow::Owned(other), Some(sample_faults::mirrored(&name, after / before)), looked)
+        }
+        None => (straight, fault, looked),
+    })
+}
+
+/// Detects a force with the sign of the reaction: mass and friction are then negative, each of them significantly. The
+/// sign is corrected in the rows.
+pub fn of_mechanism(
+    track: &mut Track,
+    recording: &Recording,
+    rate: Option<&str>,
+) -> Result<Option<Cause>, EstimateError> {
+    if !one_coordinate::drives(track, &named("mass+viscous+coulomb")?)? {
+        return Ok(rate.map(sample_faults::against_motion));
+    }
+    for row in &mut track.rows {
+        row.y = -row.y;
+        row.force = -row.force;
+        row.force_rate = -row.force_rate;
+    }
+    // If a rate contradicts the position and the force drives the motion, the position is the mirrored one.
+    let names: &[&str] = if rate.is_some() { &["q_m", "q_rad"] } else { &["f_N", "tau_Nm"] };
+    let name = names.iter().find(|name| recording.channel(name).is_some()).unwrap_or(&"the force");
+    Ok(Some(sample_faults::driving(name)))
+}
+
+/// The thesis's crank with gravity at any phase. In few strokes, an eccentric mass or a weight on a tilted plane can
+/// look like driving friction, and leaves as large a residual as a mirrored axis does.
+fn model_of(arm: &Arm) -> crate::diagnose::data::regression_data::Model {
+    let mut model = plain_crank();
+    model.push(Effect::new(&EccentricMass, &[1.0, 0.0, arm.radius_m]));
+    model
+}
+
+/// Largest ratio of residuals, after over before, for a mirrored axis.
+const MIRRORED_SHARE: f64 = 0.5;
+/// Largest residual of a mirrored axis, in multiples of a measured noise and as a share of the residual before. Many a
+/// change of sign reduces an effect that is large beside the noise.
+const SENSE: f64 = 4.0;
+const NEARLY_ALL: f64 = 0.1;
+
+fn makes_sense((before, after): (f64, f64), track: &Track) -> bool {
+    !track.noise_is_measured || after < SENSE * track.force_noise || after < NEARLY_ALL * before
+}
+
+/// Ratio of residual to noise up to which the recorded axes are plausible.
+const PLAUSIBLE: f64 = 1.8;
+
+/// The rows, with an axis of the force mirrored back if only that makes them plausible.
+pub fn upright(signals: &Signals, recording: &Recording, arm: &Arm) -> Result<(Track, Option<Cause>), EstimateError> {
+    let as_recorded = signals.rows(recording, arm)?;
+    let model = model_of(arm);
+    // The motion does not depend on the axes of the force.
+    let mut blurred = as_recorded.clone();
+    let (before, resists) = one_coordinate::plain_rms(&mut blurred, &model)?;
+    if resists && before < PLAUSIBLE * as_recorded.force_noise {
+        return Ok((as_recorded, None));
+    }
+    let mut best: Option<(f64, Axes, &str)> = None;
+    let mirrored = |signs| Axes { swapped: false, signs };
+    let crossed = [
+        (mirrored([-1.0, 1.0]), "fx"),
+        (mirrored([1.0, -1.0]), "fy"),
+        (mirrored([-1.0, -1.0]), "fx and fy"),
+        (Axes { swapped: true, signs: [1.0; 2] }, "fx with fy"),
+    ];
+    for (axes, name) in crossed {
+        let track = with_axes(&blurred, axes);
+        let (after, resists_then) = one_coordinate::blurred_rms(&track, &model)?;
+        let both = name == "fx and fy";
+        // Both at once change every sign and no magnitude: only driving friction shows it.
+        let better = if both {
+            resists_then && !resists
+        } else {
+            resists_then && after < MIRRORED_SHARE * before && makes_sense((before, after), &track)
+        };
+        if better && best.as_ref().is_none_or(|(least, ..)| after < *least) {
+            best = Some((after, axes, name));
+        }
+    }
+    Ok(match best {
+        Some((after, axes, name)) => {
+            (with_axes(&as_recorded, axes), Some(sample_faults::mirrored(name, after / before)))
+        }
+        None => (as_recorded, None),
+    })
+}

@@ -1,0 +1,86 @@
+//! Slips of the fingers on a standing block as candidates: over all rests, and finer around the best.
+
+use super::standing_height::{Rows, Stand};
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::selection::comparison::Study;
+use crate::identify::block::slipping::{Heights, LEAST_M, Slip, Stretch, is_seen};
+use haptics::law::Kind;
+
+/// Number of tried starts in every rest, besides its beginning.
+const STARTS: usize = 10;
+/// Durations of a slip that are tried in every rest, s.
+const LENGTHS_S: [f64; 3] = [0.0, 0.1, 0.3];
+/// Refinement around the best slip: steps of its start, in rows, and factors of its duration.
+const STEPS: [f64; 5] = [-0.4, -0.15, 0.0, 0.15, 0.4];
+const SHARES: [f64; 5] = [0.75, 0.9, 1.0, 1.1, 1.33];
+/// Durations, s, tried beside a slip without duration.
+const SHORT_S: [f64; 3] = [0.0, 0.01, 0.02];
+
+/// Candidate slips in every rest, and finer ones around the best. `model`: regressors of the height beside them.
+pub fn slips(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], found: &mut Vec<Candidate>) {
+    let rests = rests(stands);
+    let heights = rows.heights(&rests);
+    let best = heights.best(&heights.left(model), &|_| true).map(|b| b.slip);
+    // The rest of the best slip gets refined neighbours instead.
+    let others = (0..rests.len()).filter(|rest| best.is_none_or(|b| b.rest != *rest));
+    let all = others.flat_map(|rest| {
+        let starts = heights.starts(rest, STARTS);
+        starts.into_iter().flat_map(move |start_s| LENGTHS_S.map(|length_s| Slip { rest, start_s, length_s }))
+    });
+    let mut slips: Vec<Slip> = all.collect();
+    slips.extend(best.map(|best| around(&heights, best)).unwrap_or_default());
+    for slip in slips {
+        let shown = heights.column(slip);
+        if !is_seen(&shown) {
+            continue;
+        }
+        let mut column = vec![0.0; rows.stand.len()];
+        column[rests[slip.rest].rows.clone()].copy_from_slice(&shown);
+        let cause = Candidate::one("fingertip-slip", Kind::Plant, "dy", "m", column).at("t0", slip.start_s, "s");
+        found.push(cause.at("duration", slip.length_s, "s").within(slip.rest).at_least(LEAST_M));
+    }
+}
+
+/// Distance of every chosen slip with its time and duration free (`Heights::way_m`): time, s, distance, m, and its
+/// standard error, m. `model`: regressors of the height beside slips.
+pub fn ways(rows: &Rows, stands: &[Stand], model: &[Vec<f64>], study: &Study) -> Vec<[f64; 3]> {
+    let rests = rests(stands);
+    let heights = rows.heights(&rests);
+    let chosen: Vec<&Candidate> = study.picks().into_iter().map(|p| &study.candidates[p]).collect();
+    let is_slip = |c: &&&Candidate| c.id == "fingertip-slip";
+    let variance_m2 = study.solved.as_ref().map_or(0.0, |s| s.variance(study.system.rows));
+    let way = |own: &&Candidate| {
+        let value = |name: &str| own.searched.iter().find(|s| s.name == name).map(|s| s.value);
+        let (start_s, length_s) = (value("t0")?, value("duration")?);
+        let rest = rests.iter().position(|r| own.columns[0][r.rows.clone()].iter().any(|share| *share > 0.0))?;
+        let others = chosen.iter().filter(is_slip).filter(|c| c.searched[0].value != start_s);
+        let model =
+            [model, &others.flat_map(|c| &c.columns).map(|column| column.to_vec()).collect::<Vec<_>>()].concat();
+        let left = heights.left(&model);
+        let best = heights.tried(&left, Slip { rest, start_s, length_s })?;
+        let (way_m, error_m) = heights.way_m(&left, best, variance_m2);
+        Some([start_s, way_m, error_m])
+    };
+    chosen.iter().filter(is_slip).filter_map(way).collect()
+}
+
+fn rests(stands: &[Stand]) -> Vec<Stretch> {
+    stands.iter().map(|s| Stretch { rows: s.first..s.end, from_s: s.from_s }).collect()
+}
+
+impl Rows {
+    fn heights<'a>(&'a self, rests: &'a [Stretch]) -> Heights<'a> {
+        Heights { time_s: &self.time_s, height_m: &self.height_m, half_s: self.half_s, rests }
+    }
+}
+
+fn around(heights: &Heights<'_>, best: Slip) -> Vec<Slip> {
+    let (first_s, last_s) = heights.bounds(best.rest);
+    let rows = &heights.rests[best.rest].rows;
+    let step_s = (last_s - heights.time_s[rows.start]) / (rows.len() - 1).max(1) as f64;
+    let lengths = if best.length_s > 0.0 { SHARES.map(|s| s * best.length_s).to_vec() } else { SHORT_S.to_vec() };
+    let mut starts = STEPS.map(|s| (best.start_s + s * step_s).clamp(first_s, last_s)).to_vec();
+    starts.dedup();
+    let with = |start_s: f64| lengths.iter().map(move |length_s| Slip { start_s, length_s: *length_s, ..best });
+    starts.into_iter().flat_map(with).collect()
+}

@@ -1,0 +1,289 @@
+//! Grip width of gripped blocks against the grip force: compliance of pads and blocks.
+
+use super::signals::Seen;
+use crate::diagnose::answer::atlas::{Variable, View};
+use crate::diagnose::answer::build::Found;
+use crate::diagnose::contract::{CauseParameter, parameter};
+use crate::diagnose::free_run::pads::Pads;
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::selection::channel::{Channel, stretches};
+use crate::diagnose::selection::comparison::Compared;
+use crate::estimate::EstimateError;
+use crate::identify::block::object;
+use crate::segment::SystemState;
+use crate::signal::noise::white_noise;
+use haptics::law::Kind;
+use haptics::law::contact::{Cushion, Densification, ONSET, StiffnessHardening};
+use haptics::world::World;
+
+/// Number of tried bends of the pads' law, from weak to strong, and tried ends of the foam.
+const BENDS: usize = 7;
+/// Compliance of a pad of usual size, m/N, for the test of excitation.
+const USUAL_GIVE: f64 = 1.0 / 8000.0;
+/// A usual error of lengths.
+const USUAL_SCALE: f64 = 0.02;
+
+/// The comparison with the data for its texts.
+pub struct Grasp {
+    pub compared: Compared,
+    /// The rows as the atlas looks at them.
+    pub view: View,
+    /// Mean distance and grip of each block, m and N.
+    means: Vec<(f64, f64)>,
+    /// Compliance of a pad at zero force in the model, m/N.
+    modelled: f64,
+    /// Free-run model of the pads.
+    pub pads: Pads,
+}
+
+/// Rows of all recordings.
+struct Rows {
+    recording: Vec<usize>,
+    number: Vec<usize>,
+    time_s: Vec<f64>,
+    width_m: Vec<f64>,
+    grip_n: Vec<f64>,
+    rate_m_s: Vec<f64>,
+    state: Vec<SystemState>,
+    stretch: Vec<usize>,
+}
+
+fn rows(seen: &[Seen<'_>]) -> Rows {
+    let mut rows = Rows {
+        recording: Vec::new(),
+        number: Vec::new(),
+        time_s: Vec::new(),
+        width_m: Vec::new(),
+        grip_n: Vec::new(),
+        rate_m_s: Vec::new(),
+        state: Vec::new(),
+        stretch: Vec::new(),
+    };
+    let mut owner = Vec::new();
+    for (k, one) in seen.iter().enumerate() {
+        for number in 1..=one.count {
+            for i in one.gripped(number) {
+                rows.recording.push(k);
+                rows.number.push(number);
+                rows.time_s.push(one.time_s(i));
+                rows.width_m.push(one.blocks.width[i]);
+                rows.grip_n.push(one.blocks.grip[i]);
+                rows.rate_m_s.push(one.blocks.width_rate[i]);
+                rows.state.push(one.state(i));
+                owner.push((k, number));
+            }
+        }
+    }
+    let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
+    rows.stretch = stretches(&rows.time_s, period_s, |i| owner[i] != owner[i - 1]);
+    rows
+}
+
+/// Compares the causes that change the grip width. `None` if blocks were hardly gripped.
+pub fn grasp(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result<Option<Grasp>, EstimateError> {
+    const LEAST_ROWS: usize = 30;
+    let rows = rows(seen);
+    let n = rows.number.len();
+    if n < LEAST_ROWS {
+        return Ok(None);
+    }
+    let blocks = rows.number.iter().copied().max().unwrap_or(0);
+    let known: Vec<Option<f64>> =
+        (1..=blocks).map(|k| seen.iter().find_map(|s| s.known(k, "width_m").filter(|_| s.count >= k))).collect();
+    let of = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();
+    let y = of(&|i| rows.width_m[i] - known[rows.number[i] - 1].unwrap_or(0.0));
+    let mut base: Vec<Vec<f64>> = (1..=blocks)
+        .filter(|k| known[k - 1].is_none())
+        .map(|k| of(&|i| f64::from(u8::from(rows.number[i] == k))))
+        .collect();
+    // Damping of the pads is part of the base model.
+    let rate = base.len();
+    base.push(rows.rate_m_s.clone());
+    let mut modelled = 0.0;
+    if let Some(pad) = world.map(|w| w.pad.elastic()) {
+        modelled = 1.0 / pad.spring.k1;
+        base.push(of(&|i| -2.0 * pad.depth_m(rows.grip_n[i].max(0.0))));
+    }
+    let mut candidates = causes(&rows, modelled > 0.0);
+    if known.iter().any(Option::is_some) {
+        let column = of(&|i| known[rows.number[i] - 1].unwrap_or(0.0));
+        candidates.push(Candidate::one("length-scale", Kind::Instrument, "epsilon", "1", column));
+    }
+    candidates.extend(generic(seen, &rows));
+    let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
+    let means = (1..=blocks)
+        .map(|k| {
+            let own: Vec<usize> = (0..n).filter(|i| rows.number[*i] == k).collect();
+            let mean = |of: &[f64]| own.iter().map(|i| of[*i]).sum::<f64>() / own.len().max(1) as f64;
+            (mean(&rows.width_m), mean(&rows.grip_n))
+        })
+        .collect();
+    let floor_m = white_noise(&y);
+    let channel = Channel {
+        y,
+        base,
+        candidates,
+        stretch: rows.stretch.clone(),
+        testable: vec![true; n],
+        weight: vec![1.0; n],
+        period_s,
+    };
+    let study = channel.compare(threshold)?;
+    let along = vec![true; n];
+    let pads = Pads::new(&rows.time_s, &rows.stretch, period_s, rate);
+    let (channel, stretch, state) = ("distance of the tips", rows.stretch, rows.state);
+    let compared = Compared { study, channel, unit: "m", floor: floor_m, along, stretch, state };
+    let view = View::of(rows.recording, vec![(Variable::Grip, rows.grip_n), (Variable::Width, rows.width_m)]);
+    Ok(Some(Grasp { compared, view, means, modelled, pads }))
+}
+
+/// Variable that best shows a cause in the grip width.
+pub fn best_seen(id: &str) -> Variable {
+    if id == "length-scale" { Variable::Width } else { Variable::Grip }
+}
+
+fn causes(rows: &Rows, has_pads: bool) -> Vec<Candidate> {
+    let (least_n, largest_n) =
+        rows.grip_n.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), f| (a.min(f.max(0.0)), b.max(*f)));
+    let mut found = Vec::new();
+    if !has_pads {
+        let column = rows.grip_n.iter().map(|f| -2.0 * f).collect();
+        found.push(Candidate::one("pad-compliance", Kind::Plant, "give", "m/N", column).positive());
+    }
+    if largest_n <= 0.0 {
+        return found;
+    }
+    // Difference between the compression of a linear pad and of a hardening one with the same initial stiffness.
+    let less = |cushion: &Cushion| -> Vec<f64> {
+        rows.grip_n.iter().map(|f| 2.0 * (f.max(0.0) - cushion.depth_m(f.max(0.0)))).collect()
+    };
+    for k in 0..BENDS {
+        let share = (k as f64 + 0.5) / BENDS as f64;
+        let bend = 0.01 * 300.0_f64.powf(share) / largest_n.powi(2);
+        let linear = Cushion::linear(1.0);
+        let harder = Cushion { spring: StiffnessHardening { k3: bend, ..linear.spring }, ..linear };
+        let cause = Candidate::one("stiffness-hardening", Kind::Plant, "give", "m/N", less(&harder)).positive();
+        found.push(cause.at("bend", bend, "1/N²"));
+        let end_n = least_n + (0.3 + 0.65 * share) * (largest_n - least_n);
+        let ending = Cushion { end: Densification::of(end_n / ONSET, 1.0), ..linear };
+        let cause = Candidate::one("stiffness-hardening", Kind::Plant, "give", "m/N", less(&ending)).positive();
+        found.push(cause.at("end", end_n, "N"));
+    }
+    found
+}
+
+/// Generic terms of the residual: waves over time, and positions.
+fn generic(seen: &[Seen<'_>], rows: &Rows) -> Vec<Candidate> {
+    let span = rows.time_s.iter().copied().fold(0.0, f64::max).max(1e-9);
+    let term = |expression: String, column: Vec<f64>| Candidate {
+        expression: Some(expression),
+        ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
+    };
+    let mut found: Vec<Candidate> = (1..=4)
+        .map(|k| {
+            let wave = rows.time_s.iter().map(|t| (std::f64::consts::PI * f64::from(k) * t / span).cos()).collect();
+            term(format!("cos({k} pi t/T)"), wave)
+        })
+        .collect();
+    let mut places = [Vec::new(), Vec::new()];
+    for one in seen {
+        for number in 1..=one.count {
+            for i in one.gripped(number) {
+                places[0].push(one.place[0][i]);
+                places[1].push(one.place[1][i]);
+            }
+        }
+    }
+    let [x, y] = places;
+    found.push(term("x".to_owned(), x));
+    found.push(term("y".to_owned(), y));
+    found
+}
+
+impl Grasp {
+    /// True if this cause was found.
+    pub fn has(&self, id: &str) -> bool {
+        self.compared.study.picks().iter().any(|p| self.compared.study.candidates[*p].id == id)
+    }
+
+    /// For the answer.
+    pub fn states(&self, candidate: &Candidate, found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        let give = found.first().map_or((0.0, 0.0), |p| (p.value, p.std_error));
+        match candidate.id {
+            "stiffness-hardening" => {
+                let first = self.first_give();
+                let k1 = 1.0 / first.max(1e-12);
+                let mut all = vec![parameter("k1", k1, 0.0, "N/m")];
+                match candidate.searched.first() {
+                    Some(s) if s.name == "bend" => {
+                        // To lowest order the regressor is bend · F³, so its coefficient is k3 give/(k1⁴ give).
+                        let k3 = |give: f64| give / first.max(1e-12) * s.value * k1.powi(3);
+                        all.push(parameter("k3", k3(give.0), k3(give.1), "N/m³"));
+                    }
+                    Some(s) => all.push(parameter("end", s.value, 0.0, "N")),
+                    None => {}
+                }
+                all
+            }
+            _ => found,
+        }
+    }
+
+    /// Compliance of one pad at zero force, m/N: as found, or as in the model.
+    fn first_give(&self) -> f64 {
+        let Some(solved) = &self.compared.study.solved else { return self.modelled };
+        let mut at = self.compared.study.base.len();
+        for chosen in &self.compared.study.chosen {
+            let candidate = &self.compared.study.candidates[chosen.candidate];
+            if candidate.id == "pad-compliance" {
+                return solved.values[at];
+            }
+            at += candidate.columns.len();
+        }
+        self.modelled
+    }
+
+    /// Sentence on how the residual shows a cause.
+    pub fn shows(&self, found: &Found<'_>) -> String {
+        let value = found.parameters.first().map_or(0.0, |p| p.value);
+        match found.candidate.id {
+            "pad-compliance" => {
+                let short: Vec<String> = self
+                    .means
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, (_, grip))| *grip > 0.0)
+                    .map(|(k, (width, grip))| {
+                        let give = 2.0 * grip / value.max(1e-12);
+                        format!("{} {:.1} %", object(k + 1), 100.0 * give / (width + give))
+                    })
+                    .collect();
+                format!(
+                    "the distance of the tips falls with the grip force, {value:.0} N/m each pad: plain means come out short of the \
+                     width at no force ({})",
+                    short.join(", ")
+                )
+            }
+            "stiffness-hardening" => {
+                "the harder the grip already is, the less the tips come together under more of it".to_owned()
+            }
+            "length-scale" => format!("all distances are {:+.2} % off the widths that are known", 100.0 * value),
+            other => format!("{other} shows in the distance of the tips"),
+        }
+    }
+
+    /// Sizes that could just matter.
+    pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+        match candidate.id {
+            "pad-compliance" => Some((
+                USUAL_GIVE,
+                "the grip hardly varied while a block was held; squeeze softly and hard while it stands still",
+            )),
+            "stiffness-hardening" => {
+                Some((1.0 / 2500.0, "the grip varied too little to see a bend; squeeze from light to hard and back"))
+            }
+            "length-scale" => Some((USUAL_SCALE, "the widths of the blocks are not known; state one in the sidecar")),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Diagnosis of carried blocks: grip width, net force and standing height, each with its own causes.
+//!
+//! Without a world the base model is the thesis's: rigid widths and plain means of weights and heights. With a world,
+//! its pads, inertia and cables belong to the base model. Weights and widths are estimated in both, unless the sidecar
+//! states them.
+
+pub(crate) mod cable;
+pub(crate) mod experiment;
+pub(crate) mod free_body;
+pub(crate) mod grasp_slip;
+pub(crate) mod grip_width;
+pub(crate) mod net_force;
+pub(crate) mod net_force_candidates;
+#[cfg(test)]
+pub(crate) mod recorded;
+pub(crate) mod regrasp;
+pub(crate) mod rows;
+pub(crate) mod signals;
+pub(crate) mod simulated_channels;
+pub(crate) mod standing_height;
+#[cfg(test)]
+pub(crate) mod tests;
+pub(crate) mod time_delay;
+
+use crate::diagnose::answer::build::{Beside, Found, Part, answer};
+use crate::diagnose::contract::{Alternative, CauseParameter, Diagnosis, Figures, Final, NextExperiment, NotExcited};
+use crate::diagnose::extension::hypothetical_worlds::of_channels;
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::options::Options;
+use crate::diagnose::recording::sample_faults;
+use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::selection::rules::threshold;
+use crate::estimate::EstimateError;
+use haptics::recording::Recording;
+use haptics::world::World;
+use net_force::Carry;
+use signals::Seen;
+
+/// Diagnoses recordings of the same blocks.
+pub fn blocks(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let seen = recordings.iter().map(Seen::of).collect::<Result<Vec<_>, _>>()?;
+    let world = options.world.as_ref();
+    let (carry, grasp, ground) = look(&seen, world)?;
+    let mut beside = Beside {
+        model: if world.is_some() {
+            "world: weight+inertia+pads"
+        } else {
+            "weight and its mass+rigid widths+plain heights"
+        }
+        .to_owned(),
+        causes: recordings.iter().flat_map(|r| sample_faults::faults(r).causes).collect(),
+        ..Beside::default()
+    };
+    if let (Some(ground), Some(world)) = (&ground, world) {
+        let within =
+            ground.compared.study.picks().iter().any(|p| ground.compared.study.candidates[*p].id == "fingertip-slip");
+        let scaled = grasp.as_ref().is_some_and(|g| g.has("length-scale"));
+        match regrasp::moved(ground, &seen, world) {
+            Some(cause) if scaled || carry.has("force-cross-axis") => beside.warnings.push(format!(
+                "{}; what is wrong with the sensors would do the same, so no slip is named",
+                cause.evidence
+            )),
+            cause => beside.causes.extend(cause.filter(|_| !within)),
+        }
+    }
+    unseen(&seen, &mut beside.not_excited);
+    let carry_states = |c: &Candidate, found: Vec<CauseParameter>| carry.states(c, found);
+    let carry_usual = |c: &Candidate| carry.usual(c);
+    let grasp_shows = |f: &Found<'_>| grasp.as_ref().map(|g| g.shows(f)).unwrap_or_default();
+    let grasp_states = |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &grasp { g.states(c, p) } else { p };
+    let ground_states = |c: &Candidate, p: Vec<CauseParameter>| if let Some(g) = &ground { g.states(c, p) } else { p };
+    let ground_shows = |f: &Found<'_>| ground.as_ref().map(|g| g.shows(f)).unwrap_or_default();
+    let mut parts: Vec<Part<'_>> =
+        vec![carry.compared.part(&Carry::shows, &carry_states, &carry_usual).running(&carry.airborne)];
+    parts.extend(
+        grasp
+            .as_ref()
+            .map(|g| g.compared.part(&grasp_shows, &grasp_states, &grip_width::Grasp::usual).running(&g.pads)),
+    );
+    parts.extend(
+        ground.as_ref().map(|g| g.compared.part(&ground_shows, &ground_states, &standing_height::Ground::usual)),
+    );
+    let mut found = answer(&parts, beside, &|open| experiment::propose(open, &carry, &seen).or_else(|| next(open)));
+    if options.atlas {
+        let limit = limit(&seen);
+        let Carry { compared, view, .. } = &carry;
+        found.atlas.channels.push(compared.atlas(view, limit, net_force::best_seen));
+        found.atlas.channels.extend(grasp.iter().map(|g| g.compared.atlas(&g.view, limit, grip_width::best_seen)));
+        found
+            .atlas
+            .channels
+            .extend(ground.iter().map(|g| g.compared.atlas(&g.view, limit, standing_height::best_seen)));
+    }
+    // Delay of the net force, in which it is best seen. The strongest cause may be of another channel.
+    if let Some((late, force)) = carry.late.zip(parts.first()) {
+        let figures = force.figures();
+        // Other terms of the final model may absorb part of a delay. The delay is therefore judged by its own model,
+        // too.
+        let end = Final { heldout_rms_n: (late.plain_rms * figures.end.heldout_rms_n).sqrt(), ..figures.end };
+        late.tell(&mut found, Figures { end, ..figures });
+    }
+    found.hypotheses = of_channels(&[(&carry.compared.study, &carry)]);
+    Ok(found)
+}
+
+/// Comparisons of net force, grip width and grip height.
+fn look(
+    seen: &[Seen<'_>],
+    world: Option<&World>,
+) -> Result<(Carry, Option<grip_width::Grasp>, Option<standing_height::Ground>), EstimateError> {
+    let limit = limit(seen);
+    let carry = net_force::carry(seen, world, limit)?;
+    let grasp = grip_width::grasp(seen, world, limit)?;
+    // A block with a taut cable is supported by more than the ground.
+    let ground =
+        if carry.has("added-constraint") { None } else { standing_height::ground(seen, world, carry.cross(), limit)? };
+    Ok((carry, grasp, ground))
+}
+
+/// Least evidence of a cause.
+fn limit(seen: &[Seen<'_>]) -> f64 {
+    threshold(seen.iter().map(|s| s.period_s).fold(0.0, f64::max))
+}
+
+/// The channels of other recordings of the same blocks.
+pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compared>, EstimateError> {
+    let seen = recordings.iter().map(Seen::of).collect::<Result<Vec<_>, _>>()?;
+    let (carry, grasp, ground) = look(&seen, options.world.as_ref())?;
+    let rest = grasp.map(|g| g.compared).into_iter().chain(ground.map(|g| g.compared));
+    Ok(std::iter::once(carry.compared).chain(rest).collect())
+}
+
+/// Causes that no recording of this kind shows.
+fn unseen(seen: &[Seen<'_>], found: &mut Vec<NotExcited>) {
+    let mut add = |id: &str, why: &str| found.push(NotExcited { id: id.to_owned(), why: why.to_owned() });
+    let knows = |name: &str| seen.iter().any(|s| (1..=s.count).any(|k| s.known(k, name).is_some()));
+    if !knows("weight_N") && !knows("mass_kg") {
+        add("force-gain", "no weight is known; state one in the sidecar");
+    }
+    if !knows("width_m") {
+        add("length-scale", "no width is known; state one in the sidecar");
+    }
+    add("friction-change", "the fingers hold the blocks and do not slide on them");
+}
+
+/// Recording that would settle the open questions.
+fn next(open: &[Alternative]) -> Option<NextExperiment> {
+    let first = open.first()?;
+    let pair = [first.instead_of.as_str(), first.id.as_str()];
+    let is = |a: &str, b: &str| pair.contains(&a) && pair.contains(&b);
+    let (motion, power) = if is("mass-change", "force-drift") {
+        ("let go for two seconds before and after the carry: a drift of the sensor stays, a lost weight does not", 0.95)
+    } else if is("mass-change", "force-bias") || is("force-bias", "force-drift") {
+        ("start and end with two seconds of free motion", 0.95)
+    } else if is("pad-compliance", "length-scale") {
+        ("squeeze the standing block softly and hard, several times", 0.95)
+    } else if is("gravity-tilt", "force-cross-axis") {
+        ("turn the hand's base by a quarter turn and carry the same block again", 0.95)
+    } else {
+        (
+            "repeat the carry with softer and harder grips, fast and slow, and let go for two seconds before and after",
+            0.7,
+        )
+    };
+    let mut separates = vec![first.instead_of.clone()];
+    separates.extend(open.iter().filter(|a| a.instead_of == first.instead_of).map(|a| a.id.clone()));
+    Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: power, experiment: None })
+}

@@ -1,0 +1,315 @@
+//! Forces while blocks are carried, beside those while nothing is touched: weight, inertia, cables, and what is wrong
+//! with the sensors.
+
+use super::cable::{cables, errors, pulls};
+use super::free_body::Airborne;
+use super::net_force_candidates::{generic, instrument, plant};
+use super::rows::{Place, Row, Rows};
+use super::signals::Seen;
+use super::time_delay::late;
+use crate::diagnose::answer::atlas::{Variable, View};
+use crate::diagnose::answer::build::Found;
+use crate::diagnose::contract::{CauseParameter, parameter};
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::recording::delay_scan::Late;
+use crate::diagnose::selection::channel::Channel;
+use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::stepwise::Chosen;
+use crate::estimate::EstimateError;
+use crate::identify::block::object;
+use crate::segment::SystemState;
+use haptics::world::{Cable, World};
+
+/// The comparison with the data for its texts.
+pub struct Carry {
+    /// Delay of the forces after the motion, if it is significant.
+    pub late: Option<Late>,
+    /// Its floor is the noise of a sum of two fingers.
+    pub compared: Compared,
+    /// Longest carry, s.
+    longest_s: f64,
+    /// Standard errors of a cable's stiffness, anchor and length.
+    cable_errors: Option<[f64; 4]>,
+    /// Number of the block of each row; 0 if none is held.
+    numbers: Vec<usize>,
+    /// Numbers of the blocks whose weights are estimated, in the order of the model's regressors.
+    pub weighed: Vec<usize>,
+    /// The rows as the atlas looks at them.
+    pub view: View,
+    /// Free-run simulation of carried blocks.
+    pub airborne: Airborne,
+}
+
+/// Compares the causes that may act on carried blocks and on the sensors. `world`: its cables belong to the model.
+pub fn carry(seen: &[Seen<'_>], world: Option<&World>, threshold: f64) -> Result<Carry, EstimateError> {
+    const LEAST_ROWS: usize = 30;
+    let rows = Rows::of(seen);
+    let is_carried = |r: &Row| matches!(r.place, Place::Carried { .. });
+    // Every other row is testable, so a short effect has rows both in the fit and among the held-out ones.
+    let testable: Vec<bool> = (0..rows.all.len()).map(|i| i % 2 == 0).collect();
+    let carried = rows.all.iter().filter(|r| is_carried(r)).count();
+    if carried < LEAST_ROWS {
+        return Err(EstimateError::TooFewSamples {
+            recording: seen.first().map(|s| s.blocks.recording.name.clone()).unwrap_or_default(),
+            samples: carried,
+            what: " of carried blocks, a filter window apart".to_owned(),
+            needed: LEAST_ROWS,
+        });
+    }
+    let known: Vec<Option<f64>> =
+        (1..=rows.blocks()).map(|k| seen.iter().find_map(|s| s.known_weight_n(k).filter(|_| s.count >= k))).collect();
+    let base = base(&rows, world, &known);
+    let given = rows.carried(|one, row, number, axis| known[number - 1].map_or(0.0, |w| needed(one, row, w, axis)));
+    let y: Vec<f64> = rows.all.iter().zip(&given).map(|(r, g)| rows.force_n(r) - g).collect();
+    // A row of one finger has the noise of one sensor.
+    let weight: Vec<f64> =
+        rows.all.iter().map(|r| if is_carried(r) { 1.0 } else { std::f64::consts::SQRT_2 }).collect();
+    let period_s = seen.iter().map(|s| s.period_s).fold(0.0, f64::max);
+    let plant = plant(&rows);
+    // The search for a cable precedes the comparison.
+    let cables = cables(&rows, &y, &base, &weight);
+    let mut candidates = plant;
+    candidates.extend(instrument(&rows, &known, &given));
+    candidates.extend(cables);
+    candidates.extend(generic(&rows));
+    let channel =
+        Channel { y, base, candidates, stretch: rows.stretch.clone(), testable: testable.clone(), weight, period_s };
+    let study = beside_swinging(channel, &rows, threshold)?;
+    let floor = floor(&rows, &study);
+    let of = |row: &Row| if let Place::Carried { number, .. } = row.place { number } else { 0 };
+    let numbers: Vec<usize> = rows.all.iter().map(of).collect();
+    let cable_errors = errors(&rows, &study, &|column| touched(&numbers, column));
+    let along: Vec<bool> = rows.all.iter().map(is_carried).collect();
+    let of_carried = |c: &bool| if *c { SystemState::HoldAboveGround } else { SystemState::FreeMotion };
+    let state = along.iter().map(of_carried).collect();
+    let longest_s = longest_s(&rows);
+    let channel = "net force on carried blocks";
+    let view = view(&rows);
+    let late = late(&rows, &known);
+    let airborne = Airborne::of(&rows, &rows.stretch, world, &known);
+    let compared = Compared { study, channel, unit: "N", floor, along, stretch: rows.stretch, state };
+    let weighed = (1..=known.len()).filter(|k| known[k - 1].is_none()).collect();
+    Ok(Carry { late, compared, longest_s, cable_errors, numbers, weighed, view, airborne })
+}
+
+/// Share of a cable's evidence below which another cause may only be misfit of the cable. Its law is a linear spring
+/// with a damper, but a real cable turns in the grip and sags.
+const OF_A_CABLE: f64 = 0.05;
+/// Most rounds of removal: without one misfit term another one may appear.
+const ROUNDS: usize = 4;
+
+/// Comparison without causes that may be misfit of a cable or wall.
+fn without_remainders(mut channel: Channel, threshold: f64) -> Result<Study, EstimateError> {
+    let mut study = channel.clone().compare(threshold)?;
+    for _ in 0..ROUNDS {
+        let of = |c: &Chosen| &study.candidates[c.candidate];
+        let cable = study.chosen.iter().filter(|c| of(c).id == "added-constraint").map(|c| c.score).fold(0.0, f64::max);
+        let rests: Vec<(&str, Option<String>)> = study
+            .chosen
+            .iter()
+            .filter(|c| of(c).id != "added-constraint" && c.score < OF_A_CABLE * cable)
+            .map(|c| (of(c).id, of(c).expression.clone()))
+            .collect();
+        if rests.is_empty() {
+            break;
+        }
+        channel.candidates.retain(|c| rests.iter().all(|(id, expression)| c.id != *id || c.expression != *expression));
+        study = channel.clone().compare(threshold)?;
+    }
+    Ok(study)
+}
+
+/// Variables of the plots: motion of the block along the row's own axis, and grip.
+fn view(rows: &Rows<'_>) -> View {
+    let sensor = |r: &Row| match r.place {
+        Place::Carried { axis, .. } => axis,
+        Place::Free { finger, axis } => 2 + 2 * finger + axis,
+    };
+    let own = |of: &dyn Fn(&Seen<'_>, &Row, usize) -> f64| rows.carried(|one, row, _, axis| of(one, row, axis));
+    View {
+        recording: rows.all.iter().map(|r| r.recording).collect(),
+        sensor: rows.all.iter().map(sensor).collect(),
+        over: vec![
+            (Variable::Time, rows.column(|r| r.time_s)),
+            (Variable::Velocity, own(&|one, r, axis| one.velocity[axis][r.i])),
+            (Variable::Acceleration, own(&|one, r, axis| one.acceleration[axis][r.i])),
+            (Variable::Place, rows.column(|r| rows.seen[r.recording].place[0][r.i])),
+            (Variable::Grip, rows.column(|r| rows.seen[r.recording].blocks.grip[r.i])),
+            (Variable::Lift, rows.column(|r| rows.seen[r.recording].blocks.lift[r.i])),
+        ],
+        way: Vec::new(),
+        is_angular: false,
+    }
+}
+
+/// Variable that best shows a cause in the net force.
+pub fn best_seen(id: &str) -> Variable {
+    match id {
+        "inertia" => Variable::Acceleration,
+        "viscous-friction" => Variable::Velocity,
+        "added-constraint" => Variable::Place,
+        "force-cross-axis" => Variable::Grip,
+        "force-gain" | "gravity-tilt" => Variable::Lift,
+        _ => Variable::Time,
+    }
+}
+
+/// Number of the block on which a regressor acts.
+fn touched(numbers: &[usize], column: &[f64]) -> usize {
+    column.iter().position(|v| *v != 0.0).map_or(0, |i| numbers[i])
+}
+
+/// Force needed to carry a weight along an axis, N, with its inertia (weight over gravity).
+fn needed(one: &Seen<'_>, row: &Row, weight_n: f64, axis: usize) -> f64 {
+    let up = if axis == 1 { 1.0 } else { 0.0 };
+    let gravity = one.blocks.recording.meta.gravity().max(1e-9);
+    weight_n * (up + one.acceleration[axis][row.i] / gravity)
+}
+
+/// Regressors of the base model: one weight per block with its inertia, and the cables of a world.
+fn base(rows: &Rows<'_>, world: Option<&World>, known: &[Option<f64>]) -> Vec<Vec<f64>> {
+    let unknown = (1..=rows.blocks()).filter(|k| known[k - 1].is_none());
+    let mut base: Vec<Vec<f64>> = unknown
+        .map(|k| rows.carried(|one, row, number, axis| if number == k { needed(one, row, 1.0, axis) } else { 0.0 }))
+        .collect();
+    for (k, block) in world.iter().flat_map(|w| &w.blocks).enumerate() {
+        let Some(cable) = &block.cable else { continue };
+        // Its damping is a candidate of its own.
+        base.push(pulls(rows, k + 1, &Cable { damping_n_s_m: 0.0, ..*cable }));
+    }
+    base
+}
+
+/// The comparison, with a check for pad compliance. A block swings in compliant pads and lags behind the grip, which
+/// looks like inertia. Inertia is named only if it is also found beside each block's swinging. The swinging is no
+/// regular part of the model, because its regressor contains noise of the forces.
+fn beside_swinging(channel: Channel, rows: &Rows<'_>, threshold: f64) -> Result<Study, EstimateError> {
+    let plain = without_remainders(channel.clone(), threshold)?;
+    let has_mass = |study: &Study| study.picks().iter().any(|p| study.candidates[*p].id == "inertia");
+    if !has_mass(&plain) {
+        return Ok(plain);
+    }
+    let curves: Vec<[Vec<f64>; 2]> = rows.seen.iter().map(Seen::force_curve).collect();
+    let swing = |k: usize| {
+        rows.carried(|_, row, number, axis| if number == k { curves[row.recording][axis][row.i] } else { 0.0 })
+    };
+    let base = channel.base.iter().cloned().chain((1..=rows.blocks()).map(swing)).collect();
+    let swinging = without_remainders(Channel { base, ..channel }, threshold)?;
+    Ok(if has_mass(&swinging) { plain } else { swinging })
+}
+
+/// Length of the longest carry, s.
+fn longest_s(rows: &Rows<'_>) -> f64 {
+    let carries = rows.seen.iter().flat_map(|one| (1..=one.count).map(move |number| (one, one.carried(number))));
+    let lengths = carries.filter_map(|(one, rows)| Some(one.time_s(*rows.last()?) - one.time_s(*rows.first()?)));
+    lengths.fold(0.0, f64::max)
+}
+
+/// Noise of the sum of two fingers, N: from free rows, or from the residual if there are none.
+fn floor(rows: &Rows<'_>, study: &Study) -> f64 {
+    let Some(solved) = &study.solved else { return 0.0 };
+    let picks = study.picks();
+    let left =
+        crate::diagnose::selection::comparison::residual(&study.y, &study.base, &study.candidates, &picks, solved);
+    let mean = |free: bool| {
+        let of = (0..left.len()).filter(|i| matches!(rows.all[*i].place, Place::Free { .. }) == free);
+        let (sum, n) = of.fold((0.0, 0_u32), |(s, n), i| (s + left[i] * left[i], n + 1));
+        (n > 0).then(|| (sum / f64::from(n)).sqrt())
+    };
+    mean(true).map_or_else(|| mean(false).unwrap_or(0.0), |one| std::f64::consts::SQRT_2 * one)
+}
+
+impl Carry {
+    /// True if this cause was found.
+    pub fn has(&self, id: &str) -> bool {
+        self.compared.study.picks().iter().any(|p| self.compared.study.candidates[*p].id == id)
+    }
+
+    /// Share of each finger's horizontal force in its vertical channel, as found.
+    pub fn cross(&self) -> [f64; 2] {
+        let Some(solved) = &self.compared.study.solved else { return [0.0; 2] };
+        let mut found = [0.0; 2];
+        let mut at = self.compared.study.base.len();
+        for pick in self.compared.study.picks() {
+            let candidate = &self.compared.study.candidates[pick];
+            match candidate.linear[0].0 {
+                "kappa_yx1" => found[0] += solved.values[at],
+                "kappa_yx2" => found[1] += solved.values[at],
+                "kappa_yx" => found = found.map(|f| f + solved.values[at]),
+                _ => {}
+            }
+            at += candidate.columns.len();
+        }
+        found
+    }
+
+    /// Parameters for the answer: the block of a change of weight or of a cable, and a cable's standard errors.
+    pub fn states(&self, candidate: &Candidate, mut found: Vec<CauseParameter>) -> Vec<CauseParameter> {
+        let column = &candidate.columns[0];
+        let number = touched(&self.numbers, column);
+        // Without a block, the cause concerns all blocks.
+        let alone = || (0..column.len()).all(|i| column[i] == 0.0 || self.numbers[i] == number);
+        if ["mass-change", "added-constraint"].contains(&candidate.id) && alone() {
+            found.push(parameter("block", number as f64, 0.0, "1"));
+        }
+        if let ("added-constraint", Some(errors)) = (candidate.id, self.cable_errors) {
+            for (name, error) in ["k", "anchor x", "anchor y", "length"].into_iter().zip(errors) {
+                found.iter_mut().filter(|p| p.name == name).for_each(|p| p.std_error = p.std_error.max(error));
+            }
+        }
+        found
+    }
+
+    /// Sentence on how the residual shows a cause.
+    pub fn shows(found: &Found<'_>) -> String {
+        let value = |k: usize| found.parameters.get(k).map_or(0.0, |p| p.value);
+        match found.candidate.id {
+            "inertia" => {
+                let masses: Vec<String> = found
+                    .parameters
+                    .iter()
+                    .enumerate()
+                    .map(|(k, p)| format!("{} {:.1} g", object(k + 1), 1e3 * p.value))
+                    .collect();
+                format!(
+                    "the force follows the acceleration of carried blocks more than the mass of their weight does (by {})",
+                    masses.join(", ")
+                )
+            }
+            "mass-change" => {
+                "the lift changes while a block is carried, and the forces of empty fingers do not".to_owned()
+            }
+            "force-bias" => "empty fingers feel a force, and the same is missing while blocks are carried".to_owned(),
+            "force-drift" => {
+                "the forces of empty fingers go with time, and those of carried blocks with them".to_owned()
+            }
+            "force-gain" => {
+                format!("carried blocks weigh {:+.1} % of what is known of them too much", 100.0 * value(0))
+            }
+            "force-cross-axis" => "one axis of a finger's force follows the other".to_owned(),
+            "added-constraint" => {
+                "the net force on a carried block pulls towards one place from a distance on".to_owned()
+            }
+            "gravity-tilt" => "a carried block pulls to one side in proportion to its weight".to_owned(),
+            "viscous-friction" => "the force follows the speed of the carried block".to_owned(),
+            other => format!("{other} shows in the net force"),
+        }
+    }
+
+    /// Smallest sizes that matter, with the experiment that would show them.
+    pub fn usual(&self, candidate: &Candidate) -> Option<(f64, &'static str)> {
+        // One hundredth of a newton over the longest carry.
+        let slow = 0.01 / self.longest_s.max(1.0);
+        Some(match candidate.id {
+            "inertia" => (0.02, "blocks were carried too evenly; carry them fast, with stops"),
+            "mass-change" => (slow, "blocks were not carried for long; hold one still for some seconds"),
+            "force-bias" => (0.01, "nothing was ever let go; start and end with a second of free motion"),
+            "force-drift" => (slow, "the recording is too short, or nothing was let go at both ends"),
+            "force-cross-axis" => (0.03, "the grip hardly varied; squeeze softly and hard while a block is carried"),
+            "added-constraint" => (30.0, "blocks were hardly moved while they were carried"),
+            "gravity-tilt" => (0.03, "no block was carried for long enough"),
+            "viscous-friction" => (0.3, "blocks were carried too slowly"),
+            _ => return None,
+        })
+    }
+}

@@ -1,0 +1,169 @@
+//! Candidate terms of the net force on carried blocks: laws of the block and faults of the sensors.
+
+use super::rows::{Place, Row, Rows};
+use super::signals::Seen;
+use crate::diagnose::hypotheses::candidate::Candidate;
+use haptics::law::Kind;
+
+/// Starts of a change of weight that are tried in every carry.
+const STARTS: usize = 6;
+/// Names of the masses of the first few blocks.
+const NAMES: [&str; 4] = ["m block-1", "m block-2", "m block-3", "m block-4"];
+
+/// Laws that may act on carried blocks beside their weight and its inertia.
+pub fn plant(rows: &Rows<'_>) -> Vec<Candidate> {
+    let mut found = Vec::new();
+    let blocks = rows.blocks();
+    // Inertia without weight: of a counterweight, or of parts that move with the block.
+    let moved = |k: Option<usize>| {
+        rows.carried(
+            |one, row, number, axis| {
+                if k.is_none_or(|k| k == number) { one.acceleration[axis][row.i] } else { 0.0 }
+            },
+        )
+    };
+    found.push(Candidate::one("inertia", Kind::Plant, "m", "kg", moved(None)).positive());
+    if (2..=NAMES.len()).contains(&blocks) {
+        let linear = NAMES[..blocks].iter().map(|n| (*n, "kg")).collect();
+        let columns = (1..=blocks).map(|k| moved(Some(k))).collect();
+        found.push(Candidate::several("inertia", Kind::Plant, columns, linear).positive());
+    }
+    let drag = rows.carried(|one, row, _, axis| one.velocity[axis][row.i]);
+    found.push(Candidate::one("viscous-friction", Kind::Plant, "c", "N s/m", drag).positive());
+    let tilted = rows.carried(|_, _, number, axis| if axis == 0 { rows.weight_n(number) } else { 0.0 });
+    found.push(Candidate::one("gravity-tilt", Kind::Plant, "angle", "rad", tilted));
+    for k in 1..=blocks {
+        leaks(rows, k, &mut found);
+    }
+    if blocks > 1 {
+        found.push(Candidate::one("mass-change", Kind::Plant, "rate", "N/s", leaking(rows)));
+    }
+    found
+}
+
+/// Weight of all that is carried, falling by one newton a second from when each is lifted: what runs out of one block
+/// that is carried several times.
+fn leaking(rows: &Rows<'_>) -> Vec<f64> {
+    let lifted_s: Vec<f64> = (1..=rows.blocks())
+        .map(|k| {
+            let own = rows.all.iter().filter(|r| matches!(r.place, Place::Carried { number, .. } if number == k));
+            own.map(|r| r.time_s).fold(f64::INFINITY, f64::min)
+        })
+        .collect();
+    rows.carried(|_, row, number, axis| if axis == 1 { row.time_s - lifted_s[number - 1] } else { 0.0 })
+}
+
+/// Changes of the weight of one block: linear from the lift or from later on, or a step.
+fn leaks(rows: &Rows<'_>, k: usize, found: &mut Vec<Candidate>) {
+    let times: Vec<f64> =
+        rows.all.iter().filter(|r| r.place == (Place::Carried { number: k, axis: 1 })).map(|r| r.time_s).collect();
+    let (Some(first), Some(last)) = (times.first(), times.last()) else { return };
+    let lift = |of: &dyn Fn(f64) -> f64| {
+        rows.carried(|_, row, number, axis| if number == k && axis == 1 { of(row.time_s) } else { 0.0 })
+    };
+    let rate = |from: f64| lift(&|t| (t - from).max(0.0));
+    found.push(Candidate::one("mass-change", Kind::Plant, "rate", "N/s", rate(*first)));
+    for s in 1..=STARTS {
+        let start = first + (last - first) * s as f64 / (STARTS + 1) as f64;
+        let later = Candidate::one("mass-change", Kind::Plant, "rate", "N/s", rate(start));
+        found.push(later.at("t0", start, "s"));
+        let step = lift(&|t| f64::from(u8::from(t >= start)));
+        found.push(Candidate::one("mass-change", Kind::Plant, "step", "N", step).at("t0", start, "s"));
+    }
+}
+
+/// Least motion along an axis, m, from which a block counts as moved.
+const MOVED_M: f64 = 1e-3;
+const BIAS: [[(&str, &str); 2]; 2] = [[("bx1", "N"), ("by1", "N")], [("bx2", "N"), ("by2", "N")]];
+const DRIFT: [[(&str, &str); 2]; 2] = [[("rx1", "N/s"), ("ry1", "N/s")], [("rx2", "N/s"), ("ry2", "N/s")]];
+
+/// Faults that the force sensors may have. `known`: weights that are known, N; `given`: the forces by them.
+pub fn instrument(rows: &Rows<'_>, known: &[Option<f64>], given: &[f64]) -> Vec<Candidate> {
+    let mut found = Vec::new();
+    let all = |id: &'static str, names: &[[(&'static str, &'static str); 2]; 2], of: &dyn Fn(&Row) -> f64| {
+        let column = |finger: usize, axis: usize| rows.column(|r| Rows::share(r, finger, axis) * of(r));
+        let mut made = Vec::new();
+        // One channel alone, both of one finger, or everything.
+        for finger in [0, 1] {
+            for axis in [0, 1] {
+                let (name, unit) = names[finger][axis];
+                made.push(Candidate::one(id, Kind::Instrument, name, unit, column(finger, axis)));
+            }
+            let both = vec![column(finger, 0), column(finger, 1)];
+            made.push(Candidate::several(id, Kind::Instrument, both, names[finger].to_vec()));
+        }
+        let columns = vec![column(0, 0), column(0, 1), column(1, 0), column(1, 1)];
+        made.push(Candidate::several(id, Kind::Instrument, columns, names.concat()));
+        made
+    };
+    found.extend(all("force-bias", &BIAS, &|_| 1.0));
+    found.extend(all("force-drift", &DRIFT, &|r| r.time_s));
+    // Sensors may begin to drift when they are loaded: only what is free afterwards tells that from a block that
+    // changes.
+    let loaded_s = |r: &Row| {
+        let carried = |o: &&Row| o.recording == r.recording && matches!(o.place, Place::Carried { .. });
+        rows.all.iter().filter(carried).map(|o| o.time_s).fold(f64::INFINITY, f64::min)
+    };
+    let since: Vec<f64> =
+        (0..rows.seen.len()).map(|k| rows.all.iter().find(|r| r.recording == k).map_or(0.0, loaded_s)).collect();
+    for (finger, axis) in [(0, 1), (1, 1), (0, 0), (1, 0)] {
+        let (name, unit) = DRIFT[finger][axis];
+        let column = rows.column(|r| Rows::share(r, finger, axis) * (r.time_s - since[r.recording]).max(0.0));
+        found.push(Candidate::one("force-drift", Kind::Instrument, name, unit, column));
+    }
+    // Effect on the carried rows of one finger's force along the other axis, of which only the sum is compared.
+    let other = |row: &Row, finger: usize, to: usize| {
+        let force = &rows.seen[row.recording].force[finger];
+        Rows::share(row, finger, to) * force[1 - to][row.i]
+    };
+    for (finger, to, name) in [(0, 1, "kappa_yx1"), (1, 1, "kappa_yx2"), (0, 0, "kappa_xy1"), (1, 0, "kappa_xy2")] {
+        let column = rows.column(|r| other(r, finger, to));
+        found.push(Candidate::one("force-cross-axis", Kind::Instrument, name, "1", column));
+    }
+    for (to, name) in [(1, "kappa_yx"), (0, "kappa_xy")] {
+        let column = rows.column(|r| other(r, 0, to) + other(r, 1, to));
+        found.push(Candidate::one("force-cross-axis", Kind::Instrument, name, "1", column));
+    }
+    if known.iter().any(Option::is_some) {
+        found.push(Candidate::one("force-gain", Kind::Instrument, "g - 1", "1", given.to_vec()));
+    }
+    found
+}
+
+/// Mean place of carried blocks along an axis and its standard deviation, m.
+fn along(rows: &Rows<'_>, axis: usize) -> (f64, f64) {
+    let carried = rows.all.iter().filter(|r| matches!(r.place, Place::Carried { axis: 1, .. }));
+    let places: Vec<f64> = carried.map(|r| rows.seen[r.recording].place[axis][r.i]).collect();
+    let n = places.len().max(1) as f64;
+    let mean = places.iter().sum::<f64>() / n;
+    (mean, (places.iter().map(|p| (p - mean).powi(2)).sum::<f64>() / n).sqrt())
+}
+
+/// Generic terms.
+pub fn generic(rows: &Rows<'_>) -> Vec<Candidate> {
+    let span = rows.all.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
+    let mut found = Vec::new();
+    for (axis, name) in [(1, "lift"), (0, "side force")] {
+        let mut term = |expression: &str, of: &dyn Fn(&Seen<'_>, &Row) -> f64| {
+            let column = rows.carried(|one, row, _, a| if a == axis { of(one, row) } else { 0.0 });
+            found.push(Candidate {
+                expression: Some(format!("{expression} ({name})")),
+                ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
+            });
+        };
+        for k in 1..=4 {
+            term(&format!("cos({k} pi t/T)"), &|_, r| (std::f64::consts::PI * f64::from(k) * r.time_s / span).cos());
+        }
+        for (axis, name) in [(0, "x"), (1, "y")] {
+            let (middle, spread) = along(rows, axis);
+            // An axis without motion shows no dependence on position.
+            if spread > MOVED_M {
+                term(name, &|s, r| s.place[axis][r.i] - middle);
+            }
+        }
+        term("grip", &|s, r| s.blocks.grip[r.i]);
+        term("vx abs(vx)", &|s, r| s.velocity[0][r.i] * s.velocity[0][r.i].abs());
+        term("vy abs(vy)", &|s, r| s.velocity[1][r.i] * s.velocity[1][r.i].abs());
+    }
+    found
+}

@@ -1,0 +1,46 @@
+use super::net_force::Carry;
+use crate::diagnose::answer::atlas::Variable;
+use crate::diagnose::contract::{CauseParameter, parameter};
+use crate::diagnose::extension::hypothetical_worlds::{Act, Simulated};
+use crate::diagnose::hypotheses::candidate::Candidate;
+use std::collections::BTreeSet;
+
+impl Simulated for Carry {
+    fn base(&self, values: &[f64]) -> Vec<Act> {
+        let of = |(number, weight_n): (&usize, &f64)| {
+            let found = vec![parameter("weight", *weight_n, 0.0, "N"), parameter("block", *number as f64, 0.0, "1")];
+            ("weight".to_owned(), found)
+        };
+        self.weighed.iter().zip(values).map(of).collect()
+    }
+
+    /// A world has no drag in the air, no mass without weight, and no sudden change of weight.
+    fn act(&self, candidate: &Candidate, values: &[f64]) -> Option<Act> {
+        let linear = candidate.linear.iter().zip(values);
+        let mut found: Vec<CauseParameter> =
+            linear.map(|((name, unit), value)| parameter(name, *value, 0.0, unit)).collect();
+        match candidate.id {
+            "gravity-tilt" => {}
+            "added-constraint" => {
+                found.extend(candidate.searched.iter().map(|s| parameter(s.name, s.value, 0.0, s.unit)));
+            }
+            // The start of a leak does not carry over to another recording: there it leaks from the start.
+            "mass-change" if found.iter().any(|p| p.name == "rate" && p.value < 0.0) => {}
+            _ => return None,
+        }
+        Some((candidate.id.to_owned(), self.states(candidate, found)))
+    }
+
+    /// Such a drift leaves alone what its sensors read before.
+    fn is_late(&self, candidate: &Candidate) -> bool {
+        let Some((_, time_s)) = self.view.over.iter().find(|(v, _)| *v == Variable::Time) else { return false };
+        let drifts = candidate.id == "force-drift" && candidate.searched.is_empty();
+        drifts
+            && candidate.columns.iter().any(|column| {
+                let sensors: BTreeSet<usize> =
+                    (0..column.len()).filter(|i| column[*i] != 0.0).map(|i| self.view.sensor[i]).collect();
+                let silent = |i: &usize| column[*i] == 0.0 && sensors.contains(&self.view.sensor[*i]);
+                (0..column.len()).filter(silent).any(|i| time_s[i] > 0.0)
+            })
+    }
+}

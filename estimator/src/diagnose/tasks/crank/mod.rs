@@ -1,0 +1,226 @@
+//! Diagnosis of cranks.
+
+pub(crate) mod bearing_load;
+pub(crate) mod bearing_load_confounding;
+pub(crate) mod contact_phases;
+pub(crate) mod grasp_slip;
+pub(crate) mod path;
+pub(crate) mod path_residual;
+pub(crate) mod rows;
+
+use super::{axis_signs, one_coordinate};
+use crate::diagnose::answer::{along_coordinate, atlas, excitation};
+use crate::diagnose::contract::{Cause, Diagnosis, Validation, Verdict};
+use crate::diagnose::data::regression_data::Model;
+use crate::diagnose::data::{covariates, regression_data};
+use crate::diagnose::options::{Options, nothing};
+use crate::diagnose::recording::{sample_faults, time_delay};
+use crate::diagnose::selection::rules::threshold;
+use crate::estimate::EstimateError;
+use haptics::law::{Effect, Law, LoadFriction, ViscousFriction, Weight};
+use haptics::recording::Recording;
+
+/// Diagnoses recordings of one crank.
+pub fn crank(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let mut tracks = Vec::new();
+    let (mut geometries, mut strange, mut short) = (Vec::new(), Vec::new(), Vec::new());
+    let mut faults = Vec::new();
+    let mut swapped = Vec::new();
+    let mut link = None;
+    let mut scale = None;
+    for (k, recording) in recordings.iter().enumerate() {
+        options.progress.tell(0.4 * k as f64 / recordings.len() as f64)?;
+        let found = sample_faults::faults(recording);
+        let (upright, mirrored, looked) = axis_signs::of_crank(recording, &found.bad)?;
+        let recording = &upright;
+        let axis_signs::Looked { signals, circle, rows, axis } = looked;
+        faults.extend(mirrored);
+        faults.extend(found.causes);
+        faults.extend(axis);
+        let Turned { mut rows, other, link: of_this } = turned(&signals, recording, &circle, rows)?;
+        rows.extra = vec![covariates::of(recording)];
+        link = link.or(of_this);
+        // The same recording with an error of the other link's angle.
+        swapped.push(other.map(|other| regression_data::Track { extra: rows.extra.clone(), ..other }));
+        let known_m = recording.meta.known.get("radius_m").copied().filter(|r| r.is_finite() && *r > 0.0);
+        if scale.is_none() {
+            scale = known_m.and_then(|r| sample_faults::scaled("radius", circle.too_large(r)?));
+        }
+        tracks.push(rows);
+        let path = signals.path(recording);
+        strange.extend(path_residual::unexplained(&path, &circle.arm, &circle.study));
+        short.extend(path_residual::short_arc(&path, &circle.arm, &circle.study));
+        geometries.push(circle.study);
+    }
+    let other = swapped.iter().any(Option::is_some).then(|| {
+        let either = swapped.iter().zip(&tracks).map(|(other, rows)| other.as_ref().unwrap_or(rows).clone());
+        regression_data::join(either.collect())
+    });
+    let mut track = regression_data::join(tracks).ok_or_else(nothing)?;
+    let mut model: Model = match &options.world {
+        Some(world) => world.crank.as_ref().map(|c| c.effects.clone()).unwrap_or_default(),
+        None => plain_crank(),
+    };
+    let fixed = known_weight(&recordings[0], &mut model);
+    let limit = threshold(track.period_s);
+    options.progress.tell(0.4)?;
+    let gravity_m_s2 = recordings[0].meta.gravity();
+    let look = |track: &mut regression_data::Track| -> Result<_, EstimateError> {
+        Ok((
+            bearing_load::load(track, &model, &fixed, gravity_m_s2)?,
+            one_coordinate::study(track, &model, &fixed, limit)?,
+        ))
+    };
+    let as_measured = track.clone();
+    let (mut bearing_n, mut study) = look(&mut track)?;
+    if bearing_n.is_none() {
+        let again = bearing_load_confounding::beside_causes(
+            &as_measured,
+            (&track, &study),
+            (&model, &fixed),
+            (gravity_m_s2, limit),
+        )?;
+        if let Some((weight_n, other, found)) = again {
+            (bearing_n, track, study) = (Some(weight_n), other, found);
+        }
+    }
+    // The link was chosen by the plain model, which hidden causes may have misled.
+    if let Some(mut other) = other.flatten().filter(|_| is_turned(&study)) {
+        let (other_n, again) = look(&mut other)?;
+        if !is_turned(&again) {
+            let swapped = if link == Some(Link::First) { Link::Second } else { Link::First };
+            (track, bearing_n, study, link) = (other, other_n, again, Some(swapped));
+        }
+    }
+    options.progress.tell(0.8)?;
+    let mut found = along_coordinate::explain(&track, &model, &study, &geometries, faults);
+    found.warnings.extend(bearing_n.map(|weight_n| {
+        format!("friction goes with the load on the bearing, {weight_n:.3} N of the handle's weight included, not with the fingers' pull alone")
+    }));
+    along_coordinate::add_of_path(&mut found, &strange);
+    found.warnings.extend(short);
+    if options.atlas {
+        found.atlas = atlas::atlas(&track, &study, limit);
+    }
+    found.guess_s = time_delay::guess_s(&track, &model);
+    name_joint(&mut found, link);
+    add_scale(&mut found, scale);
+    let is_known = |name: &str| recordings.iter().any(|r| r.meta.known.contains_key(name));
+    excitation::without_known(&mut found, !fixed.is_empty() || is_known("added_weight_N"), is_known("radius_m"));
+    Ok(found)
+}
+
+/// Validates the found causes on another recording of the same crank.
+pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
+    let recording = &time_delay::put_back(recording, diagnosis.late_s);
+    let axis_signs::Looked { signals, circle, rows, .. } =
+        axis_signs::Looked::at(recording, &sample_faults::faults(recording).bad)?;
+    let mut track = turned(&signals, recording, &circle, rows)?.rows;
+    // A stated weight was not fitted, but acts all the same.
+    let known = known_weight(recording, &mut diagnosis.plain.clone());
+    let with_known = |effects: &[Effect]| -> Model {
+        let weighs = effects.iter().any(|e| e.law().id() == Weight.id());
+        effects.iter().chain(known.iter().filter(|_| !weighs)).copied().collect()
+    };
+    let (before, after) = (with_known(&diagnosis.plain), with_known(&diagnosis.effects));
+    Ok(crate::diagnose::validation::on_other_recordings::validate(&mut track, &before, &after, &known, &diagnosis.kept))
+}
+
+/// Names the scale of all lengths if the path itself did not show it.
+fn add_scale(found: &mut Diagnosis, scale: Option<Cause>) {
+    let Some(cause) = scale.filter(|scale| found.causes.iter().all(|c| c.id != scale.id)) else { return };
+    found.causes.insert(0, cause);
+    if found.verdict == Verdict::None {
+        found.verdict = Verdict::Causes;
+    }
+}
+
+/// Evidence by which the first link's angle must be favoured over the second's, in 2 ln(likelihood).
+const TURNED: f64 = 10.0;
+
+/// Rows of a crank whose path shows an angle error of the finger.
+struct Turned {
+    /// With that link's angle put right which is the likelier one.
+    rows: regression_data::Track,
+    /// Rows if the other link's angle is wrong; `None` if no angle is.
+    other: Option<regression_data::Track>,
+    /// Likelier link of the two. None if the forces do not tell.
+    link: Option<Link>,
+}
+
+/// A link of a finger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Link {
+    First,
+    Second,
+}
+
+/// Corrects an angle error of the finger. An offset of the first link distorts the path as the opposite offset of the
+/// second does, and also rotates it. The circle is the same, but the force has another direction relative to it.
+fn turned(
+    signals: &rows::Signals,
+    recording: &Recording,
+    circle: &path::Geometry,
+    rows: regression_data::Track,
+) -> Result<Turned, EstimateError> {
+    let study = &circle.study;
+    let mut at = study.base.len();
+    let mut offset = None;
+    for chosen in &study.chosen {
+        let candidate = &study.candidates[chosen.candidate];
+        if candidate.id == "joint-offset" {
+            offset = study.solved.as_ref().map(|s| s.values[at]);
+        }
+        at += candidate.columns.len();
+    }
+    // With two fingers, the error is of one arm of two: the handle itself is not rotated.
+    let Some(turn_rad) = offset.filter(|_| !signals.two_fingered) else {
+        return Ok(Turned { rows, other: None, link: None });
+    };
+    let arm = path::Arm { turn_rad, ..circle.arm.clone() };
+    let other = signals.rows(recording, &arm)?;
+    let model = plain_crank();
+    let (before, _) = one_coordinate::plain_rms(&mut rows.clone(), &model)?;
+    let (after, _) = one_coordinate::plain_rms(&mut other.clone(), &model)?;
+    let likelier = 2.0 * rows.along().count() as f64 * (before / after.max(1e-300)).ln();
+    let link =
+        if likelier.abs() < TURNED { None } else { Some(if likelier > 0.0 { Link::First } else { Link::Second }) };
+    let (rows, other) = if link == Some(Link::First) { (other, rows) } else { (rows, other) };
+    Ok(Turned { rows, other: Some(other), link })
+}
+
+/// True if the forces seem rotated against the motion.
+fn is_turned(study: &crate::diagnose::selection::comparison::Study) -> bool {
+    study.chosen.iter().any(|c| study.candidates[c.candidate].id == "force-cross-axis")
+}
+
+/// Names the joint with the angle error, if the data tell.
+fn name_joint(found: &mut Diagnosis, link: Option<Link>) {
+    // With two fingers, the cause names the finger. The path shows no more.
+    let of_the_finger = |c: &&mut Cause| c.id == "joint-offset" && c.parameters.iter().any(|p| p.name == "delta");
+    let Some(cause) = found.causes.iter_mut().find(of_the_finger) else { return };
+    cause.evidence += match link {
+        Some(Link::First) => "; it is the angle of the first link",
+        Some(Link::Second) => "; it is the angle of the second link",
+        None => {
+            "; the first link's angle being off by the opposite makes the same path, and the forces do not tell the two apart"
+        }
+    };
+    if link == Some(Link::First) {
+        cause.parameters.iter_mut().for_each(|p| p.value = -p.value);
+    }
+}
+
+/// The thesis's crank (eq. 5.2).
+pub fn plain_crank() -> Model {
+    [&Weight as &dyn Law, &LoadFriction, &ViscousFriction].map(|law| Effect::new(law, &[1.0])).to_vec()
+}
+
+/// Takes a weight that the sidecar states out of the fitted laws.
+fn known_weight(recording: &Recording, model: &mut Model) -> Model {
+    let known = &recording.meta.known;
+    let weight = known.get("weight_N").copied().or_else(|| Some(known.get("mass_kg")? * recording.meta.gravity()));
+    let Some(weight) = weight else { return Model::new() };
+    model.retain(|e| e.law().id() != Weight.id());
+    vec![Effect::new(&Weight, &[weight])]
+}

@@ -1,0 +1,225 @@
+//! Free motion, without a force channel. No external force acts, so the forces of the laws and of the inertia sum to
+//! zero.
+//!
+//! The rows are those of a mechanism with zero force and a known inertia: the laws must equal −I a. The acceleration
+//! has the most noise, so it is the target. The data determine only ratios to the inertia. Values known from the
+//! sidecar or the world set the scale, as in a fit (`identify/mechanism/free.rs`). All values are proportional to the
+//! inertia.
+
+pub(crate) mod rows;
+pub(crate) mod scale;
+
+use super::mechanism::{known_laws, named};
+use super::one_coordinate;
+use crate::diagnose::answer::along_coordinate::explain;
+use crate::diagnose::answer::atlas;
+use crate::diagnose::contract::Diagnosis;
+use crate::diagnose::data::coordinate::Along;
+use crate::diagnose::data::regression_data::{Model, Row, Track, join};
+use crate::diagnose::hypotheses::free_motion::{goes_both_ways, ways};
+use crate::diagnose::options::{Options, nothing};
+use crate::diagnose::recording::sample_faults;
+use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::rules::threshold;
+use crate::estimate::EstimateError;
+use crate::identify::linear::least_squares;
+use crate::identify::mechanism;
+use crate::identify::mechanism::{Stated, raw};
+use haptics::law::{Coordinate, CoulombFriction, EccentricMass, Effect, Inertia, Law, Role, ViscousFriction};
+use haptics::recording::Recording;
+use haptics::world::MechanismPath;
+pub(super) use rows::track;
+
+/// Least share of backward travel of a swing.
+const BACK: f64 = 0.1;
+/// Least share of the acceleration's power that gravity of any phase explains in a swing.
+const SWINGS: f64 = 0.5;
+/// Standard errors from which the ratio of a known parameter to the inertia sets the scale.
+const CLEAR: f64 = 3.0;
+
+/// True if no recording has a force along its coordinate. `paths`: of tools whose coordinate is measured along one.
+///
+/// # Errors
+/// Recordings of both kinds, or without coordinate or clock: in a sentence.
+pub(crate) fn is_free(recordings: &[Recording], paths: &[Option<MechanismPath>]) -> Result<bool, EstimateError> {
+    let mut driven = Vec::new();
+    for (recording, path) in recordings.iter().zip(paths) {
+        driven.push(raw(recording, path.as_ref())?.force.is_some());
+    }
+    if driven.iter().any(|d| *d) && driven.iter().any(|d| !d) {
+        let text = "some recordings have a force column and others do not; diagnose the driven and the free ones apart, \
+                    and give the others as --validate";
+        return Err(EstimateError::Other(text.to_owned()));
+    }
+    Ok(driven.iter().all(|d| !d))
+}
+
+/// The answer of one object's free motions. `paths`: as in [`is_free`].
+pub(crate) fn diagnose(
+    recordings: &[Recording],
+    paths: &[Option<MechanismPath>],
+    options: &Options,
+) -> Result<Diagnosis, EstimateError> {
+    let (mut track, faults) = tracks(recordings, paths)?;
+    let first = &recordings[0];
+    let mut model = model(&track, first, options)?;
+    let limit = threshold(track.period_s);
+    options.progress.tell(0.4)?;
+    let mut scale = scale_of(&mut track, first, &mut model, options);
+    let fixed = fixed(&track);
+    let mut study = one_coordinate::study(&mut track, &model, &fixed, limit)?;
+    options.progress.tell(0.6)?;
+    if let Scale::ByRatio(stated) = scale {
+        // Estimated together with the causes found: a hidden spring would look like gravity.
+        match inertia_by(stated, &model, &study) {
+            Some((inertia, relative_error)) => {
+                set(&mut track, inertia, relative_error);
+                keep_known(&mut track, first, &mut model, Some(stated));
+                let fixed = self::fixed(&track);
+                study = one_coordinate::study(&mut track, &model, &fixed, limit)?;
+            }
+            None => scale = Scale::Hidden,
+        }
+    }
+    options.progress.tell(0.8)?;
+    let mut found = explain(&track, &model, &study, &[], faults);
+    found.along = Some(Along::of(track.coordinate, recordings, paths));
+    scale::put_right(&mut found, &track, scale, goes_both_ways(&track));
+    if options.atlas {
+        found.atlas = atlas::atlas(&track, &study, limit);
+    }
+    Ok(found)
+}
+
+/// The rows of all recordings, and the faults of their samples.
+fn tracks(
+    recordings: &[Recording],
+    paths: &[Option<MechanismPath>],
+) -> Result<(Track, Vec<crate::diagnose::contract::Cause>), EstimateError> {
+    let (mut tracks, mut faults) = (Vec::new(), Vec::new());
+    for (recording, path) in recordings.iter().zip(paths) {
+        let found = sample_faults::faults(recording);
+        let (recording, mirrored_rate) = crate::diagnose::recording::rate_signs::with_rates_of_motion(recording);
+        let mut rows = track(recording.as_ref(), &found.bad, path.as_ref())?;
+        rows.extra = vec![crate::diagnose::data::covariates::of(recording.as_ref())];
+        faults.extend(mirrored_rate.map(sample_faults::against_motion));
+        faults.extend(found.causes);
+        tracks.push(rows);
+    }
+    Ok((join(tracks).ok_or_else(nothing)?, faults))
+}
+
+/// The laws of the base model, without the inertia.
+fn model(track: &Track, first: &Recording, options: &Options) -> Result<Model, EstimateError> {
+    let mut model: Model = match (&options.world, options.baseline.as_deref()) {
+        (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),
+        (None, name) => {
+            let mut laws = gravity(track, first);
+            laws.extend(named(name.unwrap_or("mass+viscous+coulomb"))?);
+            laws
+        }
+    };
+    model.retain(|e| e.role() != Role::Inertia);
+    Ok(model)
+}
+
+/// Gravity of any phase for an angle that swings: its zero need not be the hanging position.
+pub(crate) fn gravity(track: &Track, first: &Recording) -> Model {
+    let is_known = mechanism::stated(&first.meta, track.coordinate).iter().any(|s| matches!(s, Stated::Gravity(_)));
+    if track.coordinate == Coordinate::Linear || !(is_known || swings(track)) {
+        return Model::new();
+    }
+    [[1.0, 0.0], [0.0, 1.0]].map(|values| Effect::new(&EccentricMass, &values)).to_vec()
+}
+
+/// True if the motion swings back and forth under gravity.
+fn swings(track: &Track) -> bool {
+    let along = |of: &dyn Fn(&Row) -> f64| -> Vec<f64> { track.along().map(|i| of(&track.rows[i])).collect() };
+    let [forward, backward] = ways(track);
+    let acceleration = along(&|r| r.motion.acceleration);
+    let mean = |of: &dyn Fn(f64) -> f64| along(&|r| track.mean(r, &|m| of(m.position)));
+    let columns = [mean(&f64::sin), mean(&f64::cos), vec![1.0; acceleration.len()]];
+    let power = acceleration.iter().map(|a| a * a).sum::<f64>() / acceleration.len().max(1) as f64;
+    let explains =
+        least_squares(&columns, &acceleration, None).is_ok_and(|fit| fit.rms * fit.rms < (1.0 - SWINGS) * power);
+    explains && forward.min(backward) > BACK * (forward + backward)
+}
+
+/// Source of the inertia.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Scale {
+    /// The world or the sidecar states it.
+    Stated,
+    /// A known parameter whose ratio to the inertia is significant.
+    ByRatio(Stated),
+    /// A known parameter whose ratio to the inertia is not significant, or that is no part of the model.
+    Hidden,
+    /// Nothing is known.
+    Nothing,
+}
+
+/// Sets the inertia if it is stated; otherwise returns the known parameter that determines it.
+fn scale_of(track: &mut Track, first: &Recording, model: &mut Model, options: &Options) -> Scale {
+    let laws = options.world.as_ref().and_then(|w| w.mechanism.as_ref()).map(|m| m.effects.as_slice());
+    let of_world: f64 = laws.into_iter().flatten().filter(|e| e.role() == Role::Inertia).map(|e| e.values[0]).sum();
+    let stated = mechanism::stated(&first.meta, track.coordinate);
+    let of_sidecar = stated.iter().find_map(|s| if let Stated::Inertia(value) = s { Some(*value) } else { None });
+    if let Some(inertia) = Some(of_world).into_iter().chain(of_sidecar).find(|inertia| *inertia > 0.0) {
+        set(track, inertia, 0.0);
+        keep_known(track, first, model, None);
+        return Scale::Stated;
+    }
+    let in_model = |law: &dyn Law| model.iter().any(|e| e.law().id() == law.id());
+    let shows = |s: &&Stated| in_model(law_of(**s));
+    match (stated.iter().find(shows), stated.is_empty()) {
+        (Some(by), _) => Scale::ByRatio(*by),
+        (None, false) => Scale::Hidden,
+        (None, true) => Scale::Nothing,
+    }
+}
+
+fn law_of(stated: Stated) -> &'static dyn Law {
+    match stated {
+        Stated::Inertia(_) => &Inertia,
+        Stated::Gravity(_) => &EccentricMass,
+        Stated::Viscous(_) => &ViscousFriction,
+        Stated::Coulomb(_) => &CoulombFriction,
+    }
+}
+
+fn set(track: &mut Track, inertia: f64, relative_error: f64) {
+    let Some(free) = &mut track.freely else { return };
+    track.force_noise *= inertia / free.inertia;
+    (free.inertia, free.relative_error, free.is_known) = (inertia, relative_error, true);
+}
+
+/// Takes friction that the sidecar states out of the fitted laws, unless it determined the inertia.
+fn keep_known(track: &mut Track, first: &Recording, model: &mut Model, gave: Option<Stated>) {
+    let had = model.clone();
+    let known = known_laws(first, track.coordinate, model);
+    let spared = gave.map(|by| law_of(by).id());
+    let is_spared = |e: &&Effect| Some(e.law().id()) == spared;
+    model.extend(had.iter().filter(is_spared).filter(|e| known.iter().any(|k| k.law().id() == e.law().id())));
+    let Some(free) = &mut track.freely else { return };
+    let mut kept = known.iter().filter(|e| !is_spared(e)).copied();
+    free.known = [kept.next(), kept.next()];
+}
+
+/// Known forces: that of the inertia, and friction that the sidecar states.
+fn fixed(track: &Track) -> Model {
+    let Some(free) = track.freely else { return Model::new() };
+    std::iter::once(Effect::new(&Inertia, &[free.inertia])).chain(free.known.into_iter().flatten()).collect()
+}
+
+/// Inertia from a known parameter and its value per unit of inertia, with its relative standard error.
+fn inertia_by(stated: Stated, model: &Model, study: &Study) -> Option<(f64, f64)> {
+    let (Stated::Inertia(known) | Stated::Gravity(known) | Stated::Viscous(known) | Stated::Coulomb(known)) = stated;
+    let solved = study.solved.as_ref()?;
+    let variance = solved.variance(study.system.rows);
+    let of: Vec<usize> = (0..model.len()).filter(|k| model[*k].law().id() == law_of(stated).id()).collect();
+    let ratio = of.iter().map(|k| solved.values[*k].powi(2)).sum::<f64>().sqrt();
+    let pairs = of.iter().flat_map(|a| of.iter().map(move |b| (*a, *b)));
+    let spread: f64 = pairs.map(|(a, b)| solved.values[a] * solved.values[b] * solved.inverse[(a, b)]).sum();
+    let error = (variance * spread.max(0.0)).sqrt() / ratio.max(1e-300);
+    (ratio > CLEAR * error).then(|| (known / ratio, error / ratio))
+}

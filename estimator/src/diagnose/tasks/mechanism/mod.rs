@@ -1,0 +1,178 @@
+//! Diagnosis of mechanisms with one degree of freedom.
+
+pub(crate) mod rows;
+pub(crate) mod sensor_zero;
+
+use super::{axis_signs, free_motion, one_coordinate, thrown_body, transmission, untimed_path};
+use crate::diagnose::answer::{along_coordinate, atlas, excitation};
+use crate::diagnose::contract::{Diagnosis, Validation};
+use crate::diagnose::data::regression_data::Model;
+use crate::diagnose::data::{coordinate, covariates, known_weight, regression_data};
+use crate::diagnose::options::{Options, nothing};
+use crate::diagnose::recording::{sample_faults, sample_offset, time_delay};
+use crate::diagnose::selection::rules::threshold;
+use crate::estimate::EstimateError;
+use haptics::law::{Coordinate, CoulombFriction, Effect, Inertia, Law, ViscousFriction};
+use haptics::recording::Recording;
+
+/// Diagnosis of thrown bodies, paths without a clock, transmissions, and motions along one coordinate.
+pub fn one_of_mechanisms(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    if let Some(chain) = recordings.iter().find(|r| crate::identify::mechanism::is_chain(r)) {
+        return Err(EstimateError::Other(format!(
+            "{} is of a chain of two joints, which cannot be diagnosed yet; `touchstone fit` tells its inertias, moments and frictions",
+            chain.name
+        )));
+    }
+    if let Some(thrown) = thrown_body::impact(recordings, options) {
+        return thrown;
+    }
+    if untimed_path::is_pulled(recordings) {
+        return untimed_path::pulled(recordings, options);
+    }
+    if transmission::is_driven(recordings) {
+        return transmission::driven(recordings, options);
+    }
+    let ask = |recordings: &[Recording]| mechanism(recordings, options);
+    Ok(time_delay::undo(recordings, ask(recordings)?, &ask))
+}
+
+fn mechanism(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let (mut found, mut rest_s) = mechanism_as_it_is(recordings, options)?;
+    // A delay of a fraction of a sample between channels is removed from the motion itself. The force of a stiff loop
+    // changes too fast for a linear regressor, which overestimates it.
+    for _ in 0..CLOSER {
+        let Some(more_s) = rest_s else { break };
+        let skew_s = found.skew_s + OF_SKEW * more_s;
+        let together: Vec<Recording> = recordings.iter().map(|r| time_delay::motion_apart(r, skew_s)).collect();
+        let Ok((mut again, rest)) = mechanism_as_it_is(&together, options) else { break };
+        if again.causes.iter().any(|c| c.id == "time-delay") || again.end.heldout_rms_n > found.end.heldout_rms_n {
+            break;
+        }
+        again.skew_s = skew_s;
+        again.warnings.retain(|w| !w.starts_with(sample_offset::APART));
+        again.warnings.push(sample_offset::apart(skew_s));
+        (found, rest_s) = (again, rest);
+    }
+    Ok(found)
+}
+
+/// Rounds in which an offset between force and motion is removed, and the share of the linear estimate that is used.
+const CLOSER: usize = 2;
+const OF_SKEW: f64 = 0.7;
+
+/// The answer, and the sub-sample offset between force and motion, s.
+fn mechanism_as_it_is(recordings: &[Recording], options: &Options) -> Result<(Diagnosis, Option<f64>), EstimateError> {
+    let mut faults = Vec::new();
+    let mut tracks = Vec::new();
+    let paths = crate::identify::mechanism::paths(recordings);
+    if free_motion::is_free(recordings, &paths)? {
+        return Ok((free_motion::diagnose(recordings, &paths, options)?, None));
+    }
+    for (recording, path) in recordings.iter().zip(&paths) {
+        let found = sample_faults::faults(recording);
+        let (recording, mirrored_rate) = crate::diagnose::recording::rate_signs::with_rates_of_motion(recording);
+        let recording = recording.as_ref();
+        let mut rows = rows::track(recording, &found.bad, path.as_ref())?;
+        if let Some(first) = tracks.first() {
+            coordinate::one_kind(first, &rows, recording)?;
+        }
+        rows.hung = vec![known_weight::Hung::on_mechanism(recording, rows.coordinate)];
+        rows.extra = vec![covariates::of(recording)];
+        faults.extend(axis_signs::of_mechanism(&mut rows, recording, mirrored_rate)?);
+        tracks.push(rows);
+        faults.extend(found.causes);
+    }
+    let mut track = regression_data::join(tracks).ok_or_else(nothing)?;
+    let mut model: Model = match (&options.world, options.baseline.as_deref()) {
+        (Some(world), _) => world.mechanism.as_ref().map(|m| m.effects.clone()).unwrap_or_default(),
+        (None, name) => named(name.unwrap_or("mass+viscous+coulomb"))?,
+    };
+    let limit = threshold(track.period_s);
+    options.progress.tell(0.4)?;
+    let fixed = known_laws(&recordings[0], track.coordinate, &mut model);
+    let mut study = one_coordinate::study(&mut track, &model, &fixed, limit)?;
+    track.zero = sensor_zero::told(&study, recordings);
+    if track.zero != regression_data::Zero::Open {
+        study = one_coordinate::study(&mut track, &model, &fixed, limit)?;
+    }
+    options.progress.tell(0.8)?;
+    let mut found = along_coordinate::explain(&track, &model, &study, &[], faults);
+    sensor_zero::ask(&mut found, &track);
+    found.along = Some(coordinate::Along::of(track.coordinate, recordings, &paths));
+    found.guess_s = time_delay::guess_s(&track, &model);
+    let is_hung = track.hung.iter().any(Option::is_some);
+    excitation::without_known(&mut found, !fixed.is_empty() || is_hung, true);
+    if options.atlas {
+        found.atlas = atlas::atlas(&track, &study, limit);
+    }
+    let skew_s = sample_offset::skewed_s(&study, &track);
+    Ok((found, skew_s))
+}
+
+/// Laws of a mechanism that the sidecar states, which are taken out of the fitted ones.
+pub fn known_laws(recording: &Recording, coordinate: Coordinate, model: &mut Model) -> Model {
+    let known = &recording.meta.known;
+    // The mass of a pendulum is not its moment of inertia.
+    let names = match coordinate {
+        Coordinate::Linear => ["mass_kg", "viscous_N_s_m", "coulomb_N"],
+        Coordinate::Angular => ["inertia_kg_m2", "viscous_Nm_s", "coulomb_Nm"],
+    };
+    let laws: [&'static dyn Law; 3] = [&Inertia, &ViscousFriction, &CoulombFriction];
+    let mut fixed = Model::new();
+    for (law, name) in laws.into_iter().zip(names) {
+        let Some(value) = known.get(name).copied().filter(|_| model.iter().any(|e| e.law().id() == law.id())) else {
+            continue;
+        };
+        model.retain(|e| e.law().id() != law.id());
+        fixed.push(Effect::new(law, &[value]));
+    }
+    fixed
+}
+
+/// Validates the found causes on another recording of the same mechanism.
+pub fn validate(recording: &Recording, diagnosis: &Diagnosis) -> Result<Validation, EstimateError> {
+    let recording = &time_delay::motion_apart(&time_delay::put_back(recording, diagnosis.late_s), diagnosis.skew_s);
+    let along = diagnosis.along.ok_or_else(|| coordinate::none(recording))?;
+    let path = along.path_of(recording)?;
+    let mut track = track_of(recording, path.as_ref(), diagnosis)?;
+    along.demand(track.coordinate, recording)?;
+    let Diagnosis { plain, effects, kept, .. } = diagnosis;
+    Ok(crate::diagnose::validation::on_other_recordings::validate(&mut track, plain, effects, &[], kept))
+}
+
+/// Rows of a recording for the validation of a mechanism, driven or free.
+fn track_of(
+    recording: &Recording,
+    path: Option<&haptics::world::MechanismPath>,
+    diagnosis: &Diagnosis,
+) -> Result<regression_data::Track, EstimateError> {
+    let bad = sample_faults::faults(recording).bad;
+    if crate::identify::mechanism::raw(recording, path)?.force.is_some() {
+        if diagnosis.per_inertia {
+            return Err(EstimateError::Other(format!(
+                "{} has a force column, and what was diagnosed is known per unit of inertia only: state the inertia, or what tells it, \
+                 under \"known\" in the sidecar",
+                recording.name
+            )));
+        }
+        return rows::track(recording, &bad, path);
+    }
+    free_motion::rows::track(recording, &bad, path)
+}
+
+/// Laws of the baseline with this name.
+///
+/// # Errors
+/// A term that is no law of a baseline, in a sentence.
+pub fn named(name: &str) -> Result<Model, EstimateError> {
+    name.split('+')
+        .map(|part| match part.trim() {
+            "mass" | "inertia" => Ok(Effect::new(&Inertia, &[1.0])),
+            "viscous" => Ok(Effect::new(&ViscousFriction, &[1.0])),
+            "coulomb" => Ok(Effect::new(&CoulombFriction, &[1.0])),
+            other => Err(EstimateError::Other(format!(
+                "`{other}` is no part of a baseline; write mass, mass+viscous or mass+viscous+coulomb, or name a world file"
+            ))),
+        })
+        .collect()
+}

@@ -1,0 +1,12 @@
+pub(crate) mod axis_signs;
+pub(crate) mod carried_block;
+pub(crate) mod crank;
+pub(crate) mod free_motion;
+pub(crate) mod mechanism;
+pub(crate) mod needle;
+pub(crate) mod one_coordinate;
+pub(crate) mod sliding_block;
+pub(crate) mod switch;
+pub(crate) mod thrown_body;
+pub(crate) mod transmission;
+pub(crate) mod untimed_path;

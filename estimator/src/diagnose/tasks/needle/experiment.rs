@@ -1,0 +1,134 @@
+//! Insertions that would settle the open questions about a needle: the same regressors on a recording that has not been
+//! made yet.
+
+use super::hole::Shaft;
+use super::rows::{INSIDE_M, Needle, OUTSIDE_M, Phase, Row};
+use super::sheet;
+use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
+use crate::diagnose::data::regression_data::Span;
+use crate::diagnose::experiment::proposal::{LIKELY, SURE, power};
+use crate::diagnose::experiment::separation::separation;
+use crate::diagnose::experiment::waypoints::{Insertions, PIERCE};
+use crate::diagnose::selection::comparison::Compared;
+use crate::segment::threshold::percentile;
+use haptics::law::object::MembraneLaw;
+
+/// Numbers of insertions. The least that is likely to suffice is proposed.
+const INSERTIONS: [usize; 3] = [1, 2, 4];
+/// Half of a stroke in the hole, m, and lowest and highest speed of a hand there, m/s.
+const HALF_STROKE_M: f64 = 2.5e-3;
+const FAST_M_S: (f64, f64) = (0.03, 0.1);
+/// Time without touch before and after, s.
+const FREE_S: f64 = 2.0;
+const WORDS: &str = "push in slowly, draw back before the sheet gives way, push through, move to and fro in the hole slowly and fast, \
+                     draw out";
+
+/// The recording to make; `None` if it would settle no open question.
+pub fn propose(
+    open: &[Alternative],
+    (needle, law): (&Needle, Option<&MembraneLaw>),
+    (sheet, shaft): (&Compared, Option<&Shaft>),
+) -> Option<NextExperiment> {
+    let mut best: Option<NextExperiment> = None;
+    for count in INSERTIONS {
+        let (asked, motion) = asked(needle, count)?;
+        let imagined = imagine(needle, &motion, asked.free_s);
+        let on_sheet = sheet::columns(&imagined, law).imagined();
+        let on_shaft = shaft.map(|s| (s, s.imagined(&imagined, law)));
+        let seen = |a: &Alternative| {
+            let pair = (a.instead_of.as_str(), a.id.as_str());
+            separation(&on_sheet, &sheet.study, pair)
+                .or_else(|| on_shaft.as_ref().and_then(|(s, rows)| separation(rows, &s.compared.study, pair)))
+        };
+        let told: Vec<(&Alternative, f64)> = open.iter().filter_map(|a| Some((a, seen(a)?))).collect();
+        let least = told.iter().map(|t| t.1).reduce(f64::min)?;
+        let power = SURE * power(least);
+        if best.as_ref().is_none_or(|b| power > b.expected_power + 1e-3) {
+            let mut separates: Vec<String> = Vec::new();
+            for id in told.iter().flat_map(|(a, _)| [&a.instead_of, &a.id]) {
+                if !separates.contains(id) {
+                    separates.push(id.clone());
+                }
+            }
+            let places = if count == 1 { "" } else { "; the same at other places" };
+            let motion = format!("{WORDS}{places}");
+            best = Some(NextExperiment { motion, separates, expected_power: power, experiment: Some(asked) });
+        }
+        if best.as_ref().is_some_and(|b| b.expected_power > LIKELY) {
+            break;
+        }
+    }
+    best
+}
+
+/// As deep as the sheet was pressed before the puncture, and at least as fast as before.
+fn asked(needle: &Needle, count: usize) -> Option<(Experiment, Insertions)> {
+    let pressed = needle.rows.iter().filter(|r| matches!(r.phase, Phase::Loading | Phase::Unloading));
+    let deep_m = pressed.map(|r| r.depth_m).fold(0.0, f64::max);
+    let moving = needle.rows.iter().filter(|r| r.depth_m > 0.0).map(|r| r.rate_m_s.abs());
+    let mut asked = Experiment {
+        id: PIERCE.to_owned(),
+        seconds: f64::MIN_POSITIVE,
+        free_s: if needle.two_fingered { FREE_S } else { 0.0 },
+        middle: deep_m + HALF_STROKE_M,
+        half_range: HALF_STROKE_M,
+        fast: percentile(&mut moving.collect::<Vec<_>>(), 0.95).clamp(FAST_M_S.0, FAST_M_S.1),
+        across_n: 0.0,
+        added_weight_n: 0.0,
+        added_lever_m: 0.0,
+    };
+    let one_s = Insertions::of(&asked)?.duration_s();
+    asked.seconds = (count as f64 - 0.5) * one_s;
+    let motion = Insertions::of(&asked)?;
+    asked.seconds = motion.duration_s() - 1e-6;
+    Some((asked, motion))
+}
+
+/// Predicted rows of that motion.
+fn imagine(needle: &Needle, motion: &Insertions, free_s: f64) -> Needle {
+    let period_s = needle.period_s;
+    let count = |seconds: f64| (seconds / period_s) as usize;
+    let at = |t: f64| motion.depth_m(t - free_s);
+    let mut rows: Vec<Row> = Vec::new();
+    let (mut deepest, mut through, mut push) = (f64::MIN, false, 0);
+    for k in 0..count(motion.duration_s() + 2.0 * free_s) {
+        let time_s = k as f64 * period_s;
+        let is_held = (free_s..=free_s + motion.duration_s()).contains(&time_s);
+        let (depth, before, after) = (at(time_s), at(time_s - 0.5 * period_s), at(time_s + 0.5 * period_s));
+        let rate = (after - before) / period_s;
+        let (here, _) = motion.place(time_s - free_s);
+        if here != push {
+            (push, deepest, through) = (here, f64::MIN, false);
+        }
+        let phase = match depth {
+            _ if !is_held => Some(Phase::Empty),
+            d if d < -OUTSIDE_M => Some(Phase::Outside),
+            d if d < INSIDE_M => None,
+            _ if through => Some(Phase::Hole),
+            d if d > deepest => Some(Phase::Loading),
+            _ => Some(Phase::Unloading),
+        };
+        deepest = deepest.max(depth);
+        through |= depth > motion.puncture_m();
+        let Some(phase) = phase else { continue };
+        let is_new = rows.last().is_none_or(|r| r.phase != phase || time_s - r.time_s > 1.5 * period_s);
+        let stretch = rows.last().map_or(0, |r| r.stretch + usize::from(is_new));
+        rows.push(Row {
+            recording: 0,
+            start_s: 0.0,
+            time_s,
+            depth_m: depth,
+            rate_m_s: rate,
+            side_m: 0.0,
+            acceleration_m_s2: 4.0 * (after - 2.0 * depth + before) / (period_s * period_s),
+            force_n: 0.0,
+            phase,
+            hold: 0,
+            push,
+            deepest_m: deepest,
+            stretch,
+            span: Span::default(),
+        });
+    }
+    Needle { rows, fine: Vec::new(), recordings: 1, holds: 1, punctures: Vec::new(), late: None, ..*needle }
+}

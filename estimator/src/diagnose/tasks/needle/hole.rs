@@ -1,0 +1,340 @@
+//! Needle in its hole: the forces that hold its shaft.
+
+use super::held_needle::Sliding;
+use super::rows::{Needle, Phase, Row};
+use crate::diagnose::answer::atlas::View;
+use crate::diagnose::answer::build::Found;
+use crate::diagnose::data::direction::blur;
+use crate::diagnose::data::regression_data;
+use crate::diagnose::data::regression_data::{Bearing, Track, Zero};
+use crate::diagnose::experiment::separation::Imagined;
+use crate::diagnose::hypotheses::basis_functions::generic_of;
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::grid::Grid;
+use crate::diagnose::hypotheses::library::Dictionary;
+use crate::diagnose::hypotheses::regressor_cache::Columns;
+use crate::diagnose::selection::channel::Channel;
+use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::estimate::EstimateError;
+use crate::identify::linear::least_squares;
+use crate::signal::noise::white_noise;
+use haptics::Vec2;
+use haptics::law::object::{MembraneHistory, MembraneLaw};
+use haptics::law::{Coordinate, Kind, Motion};
+
+/// Least number of rows in a hole.
+const LEAST_ROWS: usize = 60;
+/// Half of the filter's window with some margin, s, and certainty of a direction.
+const WINDOW_S: f64 = 0.018;
+const NOISES: f64 = 3.0;
+/// Causes of the candidate library that are tried in a hole. Local resistance is excluded if two fingers hold the
+/// needle, because its position between their pads is not known well enough.
+const POSSIBLE: [&str; 9] = [
+    "coulomb-friction",
+    "viscous-friction",
+    "quadratic-drag",
+    "stribeck",
+    "hysteresis",
+    "backlash",
+    "local-resistance",
+    "friction-change",
+    "force-drift",
+];
+/// Possible causes that need the points between the rows.
+const CLOSELY: [&str; 3] = ["stribeck", "backlash", "local-resistance"];
+/// Friction of a shaft in proportion to the length in the hole. The catalogue has no law for it, and every needle shows
+/// it.
+const ALONG_THE_SHAFT: &str = "other:depth sgn(v)";
+/// Step sizes of the refinement around the values found: those of the first grid, and half of them.
+const CLOSER: [f64; 2] = [1.0, 0.5];
+/// Generic waves over the depth and in time, to detect unexplained terms. Few, because a recording has few rows in its
+/// holes.
+const WAVES: u32 = 3;
+/// Relative change of the rim's stiffness in a world's hole, for the first step of its linearisation.
+pub const RIM_SHARE: f64 = 0.05;
+
+/// The comparison.
+pub struct Shaft {
+    pub compared: Compared,
+    /// Variables of the plots of its rows.
+    pub view: View,
+    /// Content of the base model, in words.
+    pub model: &'static str,
+    /// Dry friction of a first fit, N.
+    dry_n: f64,
+    /// Free-run model of the needle.
+    pub sliding: Sliding,
+}
+
+impl Shaft {
+    /// Predicted regressors on rows that have not been measured yet.
+    pub fn imagined(&self, needle: &Needle, law: Option<&MembraneLaw>) -> Imagined {
+        let rows = rows(needle);
+        let track = seen(needle, &rows);
+        Imagined {
+            base: base(needle, &rows, law),
+            candidates: candidates((needle, &rows), &track, law, (self.dry_n, &Grid::coarse(&track))),
+            stretch: rows.iter().map(|r| r.stretch).collect(),
+            weight: vec![1.0; rows.len()],
+        }
+    }
+}
+
+/// Rows in the hole. If the path reverses within a filter's window, the force is a mixture of both directions, whose
+/// shares only the points between the rows tell. Without these points such rows are left out.
+fn rows(needle: &Needle) -> Vec<Row> {
+    let told = |r: &Row| if needle.fine.is_empty() { !turns(needle, r) } else { r.span.len > 0 };
+    needle.rows.iter().filter(|r| r.phase == Phase::Hole && told(r)).copied().collect()
+}
+
+/// True if the path may reverse within a filter's window around a row.
+fn turns(needle: &Needle, row: &Row) -> bool {
+    row.rate_m_s.abs() < WINDOW_S * row.acceleration_m_s2.abs() + NOISES * needle.rate_noise_m_s
+}
+
+/// The same rows as a track, with the uncertainty of their direction.
+fn seen(needle: &Needle, rows: &[Row]) -> Track {
+    let mut track = track(needle, rows);
+    blur(&mut track);
+    track
+}
+
+/// Regressors of the base model: held weight in every hold, the needle's mass, and a world's friction.
+fn base(needle: &Needle, rows: &[Row], law: Option<&MembraneLaw>) -> Vec<Vec<f64>> {
+    let of = |f: &dyn Fn(usize) -> f64| (0..rows.len()).map(f).collect::<Vec<f64>>();
+    let mut base: Vec<Vec<f64>> = (0..needle.holds).map(|h| of(&|i| f64::from(u8::from(rows[i].hold == h)))).collect();
+    if needle.two_fingered {
+        // Mass of the needle. A tool's sensor carries no mass in front of it.
+        base.push(of(&|i| rows[i].acceleration_m_s2));
+    }
+    if let Some(law) = law {
+        let friction = held(law, rows);
+        let stiffer = MembraneLaw { stiffness_n_m: (1.0 + RIM_SHARE) * law.stiffness_n_m, ..*law };
+        base.push(held(&stiffer, rows).iter().zip(&friction).map(|(s, f)| s - f).collect());
+        base.push(friction);
+        base.push(of(&|i| rows[i].rate_m_s));
+    }
+    base
+}
+
+fn candidates(
+    (needle, rows): (&Needle, &[Row]),
+    track: &Track,
+    law: Option<&MembraneLaw>,
+    (dry_n, grid): (f64, &Grid),
+) -> Vec<Candidate> {
+    let of = |f: &dyn Fn(usize) -> f64| (0..rows.len()).map(f).collect::<Vec<f64>>();
+    let direction = of(&|i| track.rows[i].motion.direction);
+    let resisting: Vec<f64> = direction.iter().map(|d| dry_n * d).collect();
+    let dictionary = Dictionary {
+        track,
+        predicted: &resisting,
+        resisting: &resisting,
+        dry: &vec![dry_n; direction.len()],
+        fixed: &[],
+        without: &[],
+        grid,
+        columns: &Columns::default(),
+    };
+    // A push at a place, in either direction, is the rim of the sheet.
+    let pushes = |c: &Candidate| c.id == "local-resistance" && (c.sign == 0.0 || needle.two_fingered);
+    // Motion within a filter's window at a reversal is known only between the rows.
+    let unseen = |c: &Candidate| needle.joined && CLOSELY.contains(&c.id);
+    let possible = dictionary.candidates().into_iter().filter(|c| POSSIBLE.contains(&c.id) && !pushes(c) && !unseen(c));
+    // A rate is measured less well than a direction.
+    let with_noise = |c: Candidate| {
+        if c.id == "viscous-friction" { c.noisy(needle.slope_noise_m_s) } else { c }
+    };
+    let mut candidates: Vec<Candidate> = possible.map(with_noise).collect();
+    if law.is_some() {
+        // The world's law already bends before it slides.
+        candidates.retain(|c| !["hysteresis", "coulomb-friction", "viscous-friction"].contains(&c.id));
+    }
+    let longer = of(&|i| rows[i].depth_m * direction[i]);
+    candidates.push(Candidate::one(ALONG_THE_SHAFT, Kind::Plant, "A", "N/m", longer).positive());
+    for push in 1..=rows.iter().map(|r| r.push).max().unwrap_or(0) {
+        let later = of(&|i| if rows[i].push >= push { dry_n * direction[i] } else { 0.0 });
+        if rows.iter().any(|r| r.push < push) {
+            let change = Candidate::one("friction-change", Kind::Plant, "relative change", "1", later);
+            candidates.push(change.at("from insertion", (push + 1) as f64, "1"));
+        }
+    }
+    candidates.extend(generic_of(track, WAVES, WAVES));
+    candidates
+}
+
+/// Compares the causes that may hold the shaft. `None` if the needle hardly moved in a hole.
+pub fn shaft(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Option<Shaft>, EstimateError> {
+    let rows = rows(needle);
+    // Reversals alone cannot separate presliding from friction, nor determine the size of either.
+    if rows.iter().filter(|r| !turns(needle, r)).count() < LEAST_ROWS {
+        return Ok(None);
+    }
+    let track = seen(needle, &rows);
+    let y: Vec<f64> = rows.iter().map(|r| r.force_n).collect();
+    let base = base(needle, &rows, law);
+    let direction: Vec<f64> = track.rows.iter().map(|r| r.motion.direction).collect();
+    let mut first = base.clone();
+    first.push(direction.clone());
+    let look = least_squares(&first, &y, None)?;
+    // With a world's law, the last but one regressor of the base is its friction.
+    let of_world = if law.is_some() { look.values[base.len() - 2].abs() } else { 0.0 };
+    let dry_n = look.values[first.len() - 1].abs() + of_world;
+    // An uncertain direction makes all of the friction uncertain.
+    let floor_n = white_noise(&y);
+    let open = |r: &regression_data::Row| (1.0 + dry_n * dry_n * r.open / (floor_n * floor_n).max(1e-18)).powf(-0.5);
+    let weight = track.rows.iter().map(open).collect();
+    let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();
+    let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
+    let state = rows.iter().map(Row::state).collect();
+    let coarse = Grid::coarse(&track);
+    let asked = |grid: &Grid, dry_n: f64| candidates((needle, &rows), &track, law, (dry_n, grid));
+    let channel = Channel {
+        y,
+        base,
+        candidates: asked(&coarse, dry_n),
+        stretch: stretch.clone(),
+        testable: along.clone(),
+        weight,
+        period_s: needle.period_s,
+    };
+    let (study, beside_n) = closely(&channel, (&track, &coarse), &asked, (law.is_some(), threshold, dry_n))?;
+    let dry_n = sliding_n(&study).unwrap_or(dry_n);
+    let sliding = Sliding::new(needle, law, (&rows, track), beside_n);
+    let model = if law.is_some() { "friction of the hole" } else { "nothing in the hole" };
+    let compared = Compared { study, channel: "force on the shaft", unit: "N", floor: floor_n, along, stretch, state };
+    Ok(Some(Shaft { compared, view: super::sheet::view(&rows), model, dry_n, sliding }))
+}
+
+/// The comparison, repeated with grids refined around the values found. `asked`: candidates over a grid, for a given
+/// dry friction; `dry`: true if the model has dry friction. Returns also the friction, N, to which the last shares
+/// refer.
+fn closely(
+    channel: &Channel,
+    (track, coarse): (&Track, &Grid),
+    asked: &dyn Fn(&Grid, f64) -> Vec<Candidate>,
+    (dry, threshold, first_n): (bool, f64, f64),
+) -> Result<(Study, f64), EstimateError> {
+    let compare = |channel: Channel| {
+        if dry { channel.compare(threshold) } else { channel.compare_without_friction(threshold) }
+    };
+    let mut study = compare(channel.clone())?;
+    let (mut grid, mut dry_n) = (coarse.clone(), first_n);
+    for step in CLOSER {
+        let picks = study.picks();
+        let found: Vec<&Candidate> =
+            picks.iter().map(|p| &study.candidates[*p]).filter(|c| !c.searched.is_empty()).collect();
+        if found.is_empty() {
+            break;
+        }
+        grid = grid.with(Grid::around(&found, track, step));
+        // Backlash takes much of it away in a first fit; its share refers to the friction of sliding.
+        dry_n = sliding_n(&study).unwrap_or(first_n);
+        study = compare(Channel { candidates: asked(&grid, dry_n), ..channel.clone() })?;
+    }
+    Ok((study, dry_n))
+}
+
+/// Estimated dry friction, N.
+fn sliding_n(study: &Study) -> Option<f64> {
+    let picks = study.picks();
+    let before = picks.iter().take_while(|p| study.candidates[**p].id != "coulomb-friction");
+    let place = study.base.len() + before.map(|p| study.candidates[*p].columns.len()).sum::<usize>();
+    study.solved.as_ref()?.values.get(place).copied()
+}
+
+/// A world's hole in a pierced sheet, without drag.
+pub fn rim(law: &MembraneLaw) -> MembraneLaw {
+    MembraneLaw { drag_n_s_m: 0.0, puncture_n: 0.0, ..*law }
+}
+
+/// Friction of a world's hole along the measured path, N, without drag.
+fn held(law: &MembraneLaw, rows: &[Row]) -> Vec<f64> {
+    let law = rim(law);
+    let mut history = MembraneHistory::default();
+    let mut push = None;
+    rows.iter()
+        .map(|row| {
+            if push != Some(row.push) {
+                push = Some(row.push);
+                history = MembraneHistory::default();
+            }
+            law.force_n(row.depth_m.max(1e-6), row.rate_m_s, &mut history)
+        })
+        .collect()
+}
+
+fn track(needle: &Needle, rows: &[Row]) -> Track {
+    let start_s = rows.first().map_or(0.0, |r| r.time_s);
+    let along = rows
+        .iter()
+        .map(|r| regression_data::Row {
+            recording: 0,
+            stretch: r.stretch,
+            place: regression_data::Place::Along,
+            motion: Motion {
+                time_s: r.time_s - start_s,
+                position: r.depth_m,
+                velocity: r.rate_m_s,
+                acceleration: r.acceleration_m_s2,
+                ..Motion::default()
+            },
+            angle_rad: r.depth_m,
+            along: Vec2::x(),
+            force: Vec2::new(r.force_n, 0.0),
+            force_rate: Vec2::zeros(),
+            y: r.force_n,
+            span: r.span,
+            open: 0.0,
+        })
+        .collect();
+    Track {
+        rows: along,
+        fine: needle.fine.iter().map(|p| regression_data::Fine { time_s: p.time_s - start_s, ..*p }).collect(),
+        period_s: needle.period_s,
+        raw_period_s: needle.period_s,
+        coordinate: Coordinate::Linear,
+        radius_m: None,
+        planar: false,
+        velocity_noise: if needle.fine.is_empty() { needle.rate_noise_m_s } else { needle.slope_noise_m_s },
+        position_noise: 0.0,
+        force_noise: 1e-12,
+        noise_is_measured: false,
+        span_s: rows.last().map_or(0.0, |r| r.time_s) - start_s,
+        hung: Vec::new(),
+        bearing: Bearing::default(),
+        slope: None,
+        extra: Vec::new(),
+        freely: None,
+        zero: Zero::Open,
+    }
+}
+
+/// Smallest sizes that matter, with the experiment that would show them.
+pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+    Some(match candidate.id {
+        "stribeck" => (0.1, "the needle hardly moved slowly in the hole; go to and fro there slowly and fast"),
+        "backlash" => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a gap"),
+        "hysteresis" => (1.0, "the shaft turned round too seldom in the hole, or rubs too little, to show a bend"),
+        _ => return None,
+    })
+}
+
+/// Sentence on how the residual shows a cause.
+pub fn shows(found: &Found<'_>) -> String {
+    match found.candidate.id {
+        "coulomb-friction" => "in the hole the force turns round with the direction, whatever the speed".to_owned(),
+        "viscous-friction" => "in the hole the force follows the speed".to_owned(),
+        "hysteresis" => "at each reversal in the hole the rim gives before the shaft slides".to_owned(),
+        "backlash" => "after each reversal in the hole nothing holds the shaft for a way".to_owned(),
+        "stribeck" => "in the hole the friction falls with speed".to_owned(),
+        "local-resistance" => {
+            "at one place in the hole the shaft is held more than elsewhere, whichever way it goes".to_owned()
+        }
+        ALONG_THE_SHAFT => {
+            "the friction grows with the length that is in the hole, which no known cause does".to_owned()
+        }
+        "friction-change" => "the shaft rubs differently from one insertion to the next".to_owned(),
+        other => format!("{other} shows in the force on the shaft"),
+    }
+}

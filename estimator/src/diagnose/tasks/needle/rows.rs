@@ -1,0 +1,295 @@
+//! Rows of a needle's recording: nothing held, held outside, pressing an untouched sheet, unloading it, and in the
+//! hole.
+
+use super::interpolation::Between;
+use super::time_delay::{Forces, late};
+use crate::diagnose::data::regression_data::{Fine, Span};
+use crate::diagnose::recording::delay_scan::Late;
+use crate::diagnose::selection::channel::stretches;
+use crate::estimate::EstimateError;
+use crate::identify::needle::Sheet;
+use crate::identify::needle::signals::{Along, along};
+use crate::identify::needle::strokes::{BEYOND_DENT_M, Push, pushes};
+use crate::segment::SystemState;
+use crate::signal::noise::white_noise;
+use crate::signal::task::{half_width, smooth, times};
+use haptics::recording::Recording;
+use std::ops::Range;
+
+/// Depth from which the needle is in the hole, m: at the surface the sheet lets go.
+pub const INSIDE_M: f64 = 5e-4;
+/// Height above the surface from which a needle is outside, m.
+pub const OUTSIDE_M: f64 = 3e-4;
+/// Distance from the surface, m, and time from a puncture, s, within which a row belongs to both sides.
+const EDGE_M: f64 = 1e-4;
+const WINDOW_S: f64 = 0.02;
+/// Duration of a sheet's swinging after the puncture, s.
+const SWINGS_S: f64 = 0.1;
+/// Margin at either end of a hold, s, in which fingers close or open slowly: it is neither held nor free.
+const CLOSING_S: f64 = 0.25;
+/// Time between recordings that are joined, s: no row follows across it.
+const BETWEEN_S: f64 = 1.0;
+
+/// Contact phase of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Nothing is held.
+    Empty,
+    /// Held without touch of the sheet.
+    Outside,
+    /// Indentation deeper than ever before.
+    Loading,
+    /// Indentation less than before.
+    Unloading,
+    /// The sheet is pierced.
+    Hole,
+}
+
+/// One row.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Index of the recording, and its start on the common clock.
+    pub recording: usize,
+    pub start_s: f64,
+    pub time_s: f64,
+    /// Depth beyond the undisturbed surface, m, without the compression of the pads.
+    pub depth_m: f64,
+    pub rate_m_s: f64,
+    pub acceleration_m_s2: f64,
+    /// Position across the needle, m: another place of the sheet.
+    pub side_m: f64,
+    pub force_n: f64,
+    pub phase: Phase,
+    /// Number of the hold (grip), and of the place on the sheet.
+    pub hold: usize,
+    pub push: usize,
+    /// Deepest so far at this place, m.
+    pub deepest_m: f64,
+    pub stretch: usize,
+    /// Points of [`Needle::fine`] over which it is averaged, in a hole.
+    pub span: Span,
+}
+
+impl Row {
+    /// Corresponding state of the segmentation.
+    pub fn state(&self) -> SystemState {
+        match self.phase {
+            Phase::Empty | Phase::Outside => SystemState::FreeMotion,
+            Phase::Loading => SystemState::Insertion,
+            Phase::Unloading => SystemState::Extraction,
+            Phase::Hole if self.rate_m_s < 0.0 => SystemState::Extraction,
+            Phase::Hole => SystemState::Penetration,
+        }
+    }
+}
+
+/// Puncture of a sheet.
+#[derive(Clone, Copy, Debug)]
+pub struct Puncture {
+    /// Index of the recording, and the time in it, s.
+    pub recording: usize,
+    pub time_s: f64,
+    pub force_n: f64,
+    /// Standard error of the force, N: the puncture is between two noisy samples.
+    pub error_n: f64,
+    /// Number of the hold.
+    pub hold: usize,
+}
+
+/// A recording of a needle, or several of the same needle and sheet.
+pub struct Needle {
+    pub rows: Vec<Row>,
+    /// Points between those rows that are in holes; empty if the motion there was not measured.
+    pub fine: Vec<Fine>,
+    /// Number of recordings, and true if these rows are of more than one.
+    pub recordings: usize,
+    pub joined: bool,
+    pub holds: usize,
+    pub period_s: f64,
+    pub two_fingered: bool,
+    /// Initial stiffness of the sheet, N/m.
+    pub stiffness_n_m: f64,
+    /// Noise of the rate, m/s.
+    pub rate_noise_m_s: f64,
+    /// Part of that noise due to the measured path alone, whatever the motion.
+    pub slope_noise_m_s: f64,
+    /// In order.
+    pub punctures: Vec<Puncture>,
+    /// Delay of its forces; of several recordings, the best determined one.
+    pub late: Option<Late>,
+}
+
+impl Needle {
+    /// Goes on with a recording that was made later: its holds and its places of the sheet are others, and so is its
+    /// own surface.
+    pub fn then(&mut self, later: Self) {
+        let of = |pick: fn(&Row) -> usize| self.rows.iter().map(pick).max().map_or(0, |last| last + 1);
+        let (push, stretch, recording) = (of(|r| r.push), of(|r| r.stretch), self.recordings);
+        let end_s = self.rows.last().map_or(0.0, |r| r.time_s) + BETWEEN_S;
+        self.rows.extend(later.rows.into_iter().map(|row| Row {
+            recording,
+            start_s: end_s,
+            time_s: end_s + row.time_s,
+            hold: self.holds + row.hold,
+            push: push + row.push,
+            stretch: stretch + row.stretch,
+            ..row
+        }));
+        // Every hole has its own presliding: one law for several holes has a misfit at their reversals.
+        self.joined = true;
+        self.fine.clear();
+        self.rows.iter_mut().for_each(|row| row.span = Span { start: 0, len: 0, ..row.span });
+        let holds = self.holds;
+        self.punctures.extend(later.punctures.into_iter().map(|p| Puncture { recording, hold: holds + p.hold, ..p }));
+        let weight = self.recordings as f64;
+        self.stiffness_n_m = (weight * self.stiffness_n_m + later.stiffness_n_m) / (weight + 1.0);
+        self.recordings += 1;
+        self.holds += later.holds;
+        self.period_s = self.period_s.max(later.period_s);
+        self.rate_noise_m_s = self.rate_noise_m_s.max(later.rate_noise_m_s);
+        self.slope_noise_m_s = self.slope_noise_m_s.max(later.slope_noise_m_s);
+        self.two_fingered &= later.two_fingered;
+        let clear = |late: &Late| (late.is_seen, -late.error_s);
+        self.late = match (self.late, later.late) {
+            (Some(own), Some(other)) if clear(&own) >= clear(&other) => Some(own),
+            (own, other) => other.or(own),
+        };
+    }
+}
+
+/// Reads a recording.
+pub fn needle(recording: &Recording) -> Result<Needle, EstimateError> {
+    let along = along(recording)?;
+    let pushes = pushes(&along);
+    if pushes.is_empty() {
+        return Err(EstimateError::Other(format!(
+            "no push into an untouched sheet was seen in {}; push the held needle in from outside",
+            recording.name
+        )));
+    }
+    let sheet = Sheet::of(&along, &pushes)?;
+    let time = times(recording);
+    let own: Vec<f64> = along.depth_m.iter().zip(&along.force_n).map(|(d, f)| d - along.give_m_n.0 * f).collect();
+    let (depth, force) = (smooth(&time, &own), smooth(&time, &along.force_n));
+    let acceleration = smooth(&time, &depth.slope).slope;
+    let surface_m = sheet.loading.surface_m;
+    let phases = phases((&along, &pushes), &time, (&depth.value, &depth.slope), surface_m);
+    let half = half_width(&time);
+    let stride = 2 * half;
+    let in_hole: Vec<bool> = phases.iter().map(|of| of.is_some_and(|(phase, ..)| phase == Phase::Hole)).collect();
+    let between = Between::new(&time, &depth, surface_m, &in_hole, half);
+    let step_s = match time.as_slice() {
+        [first, .., last] => (last - first) / (time.len() - 1) as f64,
+        _ => 1.0,
+    };
+    let (mut rows, mut of_row): (Vec<Row>, Vec<usize>) = (Vec::new(), Vec::new());
+    for (i, of) in phases.iter().enumerate().step_by(stride) {
+        let Some((phase, hold, push, deepest)) = *of else { continue };
+        of_row.push(i);
+        rows.push(Row {
+            recording: 0,
+            start_s: 0.0,
+            time_s: time[i] - time[0],
+            depth_m: depth.value[i] - surface_m,
+            rate_m_s: depth.slope[i],
+            acceleration_m_s2: acceleration[i],
+            side_m: along.side_m[i],
+            force_n: force.value[i],
+            phase,
+            hold,
+            push,
+            deepest_m: deepest - surface_m,
+            stretch: 0,
+            span: if phase == Phase::Hole { between.span(i) } else { Span::default() },
+        });
+    }
+    let period_s = stride as f64 * step_s;
+    let at: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
+    let numbers = stretches(&at, period_s, |i| rows[i].phase != rows[i - 1].phase || rows[i].hold != rows[i - 1].hold);
+    rows.iter_mut().zip(numbers).for_each(|(row, number)| row.stretch = number);
+    let rate_noise_m_s = white_noise(&rows.iter().map(|r| r.rate_m_s).collect::<Vec<_>>());
+    // Noise of the slope of a line through the window.
+    let half = half as f64;
+    let spread = half * (half + 1.0) * (2.0 * half + 1.0) / 3.0;
+    let slope_noise_m_s = white_noise(&own) / (spread.sqrt() * step_s.max(1e-9));
+    let punctures = pushes.iter().filter_map(|p| Some((p, p.puncture?))).map(|(push, i)| {
+        let step_n = sheet.loading.stiffness_n_m * (depth.slope[i] * step_s).abs();
+        let (time_s, force_n) = (time[i] - time[0], along.force_n[i]);
+        Puncture { recording: 0, time_s, force_n, error_n: step_n.hypot(along.noise_n), hold: push.hold }
+    });
+    let mut seen = Needle {
+        rows,
+        fine: between.points,
+        joined: false,
+        recordings: 1,
+        holds: along.holds.len(),
+        period_s,
+        two_fingered: along.two_fingered,
+        stiffness_n_m: sheet.loading.stiffness_n_m,
+        rate_noise_m_s,
+        slope_noise_m_s,
+        punctures: punctures.collect(),
+        late: None,
+    };
+    seen.late = late(&seen, &Forces { force_n: &force.value, of_row: &of_row, sample_s: step_s });
+    Ok(seen)
+}
+
+type Of = Option<(Phase, usize, usize, f64)>;
+
+/// The phase of every sample, with hold, push and the deepest place so far.
+fn phases(
+    (along, pushes): (&Along, &[Push]),
+    time: &[f64],
+    (depth_m, rate_m_s): (&[f64], &[f64]),
+    surface_m: f64,
+) -> Vec<Of> {
+    let mut found: Vec<Of> = vec![None; time.len()];
+    let far = |i: usize, to: usize| (time[i] - time[to.min(time.len() - 1)]).abs() > CLOSING_S;
+    let mut empty = |range: Range<usize>| {
+        for i in range.clone() {
+            if (range.start == 0 || far(i, range.start)) && (range.end == time.len() || far(i, range.end)) {
+                found[i] = Some((Phase::Empty, 0, 0, f64::MIN));
+            }
+        }
+    };
+    let mut last = 0;
+    for hold in &along.holds {
+        empty(last..hold.start);
+        last = hold.end;
+    }
+    empty(last..time.len());
+    for (h, hold) in along.holds.iter().enumerate() {
+        let whole = along.holds.len() == 1 && hold.len() == time.len();
+        let of: Vec<(usize, &Push)> = pushes.iter().enumerate().filter(|(_, p)| p.hold == h).collect();
+        for i in hold.clone() {
+            let inner = whole || (far(i, hold.start) && far(i, hold.end));
+            let now = of.iter().rev().find(|(_, p)| p.samples.start <= i);
+            if depth_m[i] < surface_m - OUTSIDE_M {
+                if inner {
+                    found[i] = Some((Phase::Outside, h, now.map_or(0, |n| n.0), f64::MIN));
+                }
+                continue;
+            }
+            let Some((k, push)) = now else { continue };
+            // The filter's window includes the surface, and the fall of the force at a puncture, from either side.
+            let meets = (depth_m[i] - surface_m).abs() < EDGE_M + WINDOW_S * rate_m_s[i].abs();
+            let falls = push.puncture.is_some_and(|at| i <= at && time[at] - time[i] < WINDOW_S);
+            if meets || falls {
+                continue;
+            }
+            let deepest = depth_m[push.samples.start..=i].iter().copied().fold(f64::MIN, f64::max);
+            let phase = match push.puncture {
+                Some(at) if i > at => {
+                    let settled = time[i] - time[at] > SWINGS_S;
+                    (settled && depth_m[i] > surface_m + INSIDE_M).then_some(Phase::Hole)
+                }
+                _ if push.samples.contains(&i) && depth_m[i] > push.untouched_from_m => Some(Phase::Loading),
+                // Pushed in again above the dent, or drawn back.
+                _ => Some(Phase::Unloading),
+            };
+            found[i] = phase.map(|p| (p, h, *k, deepest.max(push.untouched_from_m - BEYOND_DENT_M)));
+        }
+    }
+    found
+}

@@ -1,0 +1,362 @@
+//! Sheet before the puncture, and sensors: force over depth against a linear spring.
+
+use super::held_needle::Pressed;
+use super::rows::{Needle, Phase, Puncture, Row};
+use crate::diagnose::answer::atlas::{Variable, View};
+use crate::diagnose::answer::build::Found;
+use crate::diagnose::experiment::separation::Imagined;
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::selection::channel::Channel;
+use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::estimate::EstimateError;
+use crate::identify::linear::{least_squares, least_squares_values};
+use crate::signal::noise::white_noise;
+use haptics::law::Kind;
+use haptics::law::object::MembraneLaw;
+
+/// Largest distance of consecutive rows, in their usual distances.
+const NEXT: f64 = 1.5;
+/// Largest distance of pushes at one place of the sheet, m.
+const OTHER_PLACE_M: f64 = 5e-4;
+/// Standard errors from which a sheet is inclined to the needle.
+const CLEARLY_ASKEW: f64 = 3.0;
+/// Tried shares of the deepest indentation that stay as a dent.
+const DENTS: [f64; 16] = [0.04, 0.07, 0.1, 0.13, 0.16, 0.19, 0.22, 0.25, 0.28, 0.32, 0.36, 0.4, 0.45, 0.5, 0.58, 0.66];
+
+/// Rows of the sheet, with the base model and all candidates.
+pub struct Columns {
+    rows: Vec<Row>,
+    floor_n: f64,
+    base: Vec<Vec<f64>>,
+    candidates: Vec<Candidate>,
+}
+
+impl Columns {
+    /// The same as predicted rows.
+    pub fn imagined(self) -> Imagined {
+        Imagined {
+            stretch: self.rows.iter().map(|r| r.stretch).collect(),
+            weight: vec![1.0; self.rows.len()],
+            base: self.base,
+            candidates: self.candidates,
+        }
+    }
+}
+
+/// Corrects depths for an inclination of a recording's sheet to the needle's axis, if it is significant. The axis is
+/// known from forces to a few thousandths, so each place has a slightly different surface. Places are pushed at
+/// different speeds, so the error would look like drag.
+fn square(needle: &Needle, recording: usize, rows: &mut [Row]) {
+    let met = |r: &Row| r.recording == recording && touches(r);
+    let sides = rows.iter().filter(|r| met(r)).map(|r| r.side_m);
+    let (low, high) = sides.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), s| (l.min(s), h.max(s)));
+    let middle_m = 0.5 * (low + high);
+    if high - low > OTHER_PLACE_M
+        && let Some(slope) = slope_across(needle, rows.iter().filter(|r| r.recording == recording), middle_m)
+    {
+        for row in rows.iter_mut().filter(|r| met(r)) {
+            let nearer_m = slope * (row.side_m - middle_m);
+            (row.depth_m, row.deepest_m) = (row.depth_m - nearer_m, row.deepest_m - nearer_m);
+        }
+    }
+}
+
+/// Inclination of the sheet: rise of its surface per metre across the needle's axis. `None` if it is within its error.
+fn slope_across<'a>(needle: &Needle, rows: impl Iterator<Item = &'a Row>, middle_m: f64) -> Option<f64> {
+    let rows: Vec<&Row> = rows.filter(|r| r.phase != Phase::Unloading).collect();
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(|r| f(r)).collect::<Vec<f64>>();
+    let pressed = |of: &dyn Fn(&Row) -> f64, r: &Row| if touches(r) { of(r) } else { 0.0 };
+    let k = needle.stiffness_n_m;
+    let mut columns = vec![of(&|r| pressed(&|r| -k * (r.side_m - middle_m), r))];
+    columns.push(of(&|r| pressed(&|_| 1.0, r)));
+    columns.push(of(&|r| pressed(&|r| r.depth_m, r)));
+    columns.push(of(&|r| pressed(&|r| r.depth_m.powi(3), r)));
+    columns.push(of(&|r| r.time_s - r.start_s));
+    columns.extend((0..needle.holds).map(|h| of(&|r| f64::from(u8::from(r.phase != Phase::Empty && r.hold == h)))));
+    let fit = least_squares(&columns, &of(&|r| r.force_n), None).ok()?;
+    (fit.identified[0] && fit.values[0].abs() > CLEARLY_ASKEW * fit.std_errors[0]).then_some(fit.values[0])
+}
+
+/// Names of the two forms of hardening.
+const CUBIC: &str = "k3";
+const HERTZ: &str = "hertz";
+
+/// Force of a sheet beside its linear spring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Law {
+    /// A power of the depth.
+    Power(f64),
+    /// In proportion to the rate.
+    Drag,
+    /// A share of the deepest indentation that stays as a dent.
+    Dent(f64),
+}
+
+impl Law {
+    /// The law of a candidate, if it is one.
+    pub fn of(candidate: &Candidate) -> Option<Self> {
+        match (candidate.id, candidate.linear[0].0) {
+            ("stiffness-hardening", CUBIC) => Some(Self::Power(3.0)),
+            ("stiffness-hardening", HERTZ) => Some(Self::Power(1.5)),
+            ("viscous-friction", _) => Some(Self::Drag),
+            ("hysteresis", _) => candidate.searched.first().map(|s| Self::Dent(s.value)),
+            _ => None,
+        }
+    }
+
+    /// Force against the needle per unit of its parameter, N. `elastic`: force of the first push at a depth.
+    pub fn unit_n(self, r: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
+        match self {
+            _ if !touches(r) => 0.0,
+            Self::Power(power) => r.depth_m.powf(power),
+            Self::Drag => r.rate_m_s,
+            Self::Dent(share) => with_dent(share, r, elastic) - elastic(r.depth_m),
+        }
+    }
+}
+
+/// Force of the model's own sheet at a row for a coefficient of one, N: of the world's sheet, or of a spring of 1 N/m.
+pub fn own_n(law: Option<&MembraneLaw>, r: &Row) -> f64 {
+    match law {
+        _ if !touches(r) => 0.0,
+        Some(law) => with_dent(law.give, r, &|x| law.loading_n(x)),
+        None => r.depth_m,
+    }
+}
+
+/// Force of the first push at a depth, to which dents are relative, N.
+pub fn first_push_n(stiffness_n_m: f64, law: Option<&MembraneLaw>, depth_m: f64) -> f64 {
+    law.map_or(stiffness_n_m * depth_m, |l| l.loading_n(depth_m))
+}
+
+fn touches(r: &Row) -> bool {
+    matches!(r.phase, Phase::Loading | Phase::Unloading) && r.depth_m > 0.0
+}
+
+/// Columns of what the sheet may be beside a linear spring (or the law of a world), and of what may be wrong with the
+/// force.
+pub fn columns(needle: &Needle, law: Option<&MembraneLaw>) -> Columns {
+    let mut rows: Vec<Row> = needle.rows.iter().filter(|r| r.phase != Phase::Hole).copied().collect();
+    let floor_n = white_noise(&rows.iter().map(|r| r.force_n).collect::<Vec<f64>>());
+    (0..needle.recordings).for_each(|recording| square(needle, recording, &mut rows));
+    shuffle(&mut rows);
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let is_held = |r: &Row| r.phase != Phase::Empty;
+    let elastic = |x: f64| first_push_n(needle.stiffness_n_m, law, x);
+    let mut base: Vec<Vec<f64>> =
+        (0..needle.holds).map(|h| of(&|r| f64::from(u8::from(is_held(r) && r.hold == h)))).collect();
+    base.push(of(&|r| own_n(law, r)));
+    if needle.two_fingered {
+        // Mass of the needle. A tool's sensor carries no mass in front of it.
+        base.push(of(&|r| if is_held(r) { r.acceleration_m_s2 } else { 0.0 }));
+    }
+    // Surface position to first order: each recording detected it by itself.
+    let owned = |k: usize, r: &Row| f64::from(u8::from(r.recording == k));
+    base.extend((0..needle.recordings).map(|k| of(&|r| if touches(r) { owned(k, r) } else { 0.0 })));
+    let candidates = candidates(needle, &rows, law, &elastic);
+    Columns { rows, floor_n, base, candidates }
+}
+
+fn candidates(
+    needle: &Needle,
+    rows: &[Row],
+    law: Option<&MembraneLaw>,
+    elastic: &dyn Fn(f64) -> f64,
+) -> Vec<Candidate> {
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let pressed = |r: &Row| if touches(r) { r.depth_m } else { 0.0 };
+    let owned = |k: usize, r: &Row| f64::from(u8::from(r.recording == k));
+    let acts = |law: Law, id, name, unit| {
+        Candidate::one(id, Kind::Plant, name, unit, of(&|r| law.unit_n(r, elastic))).positive()
+    };
+    let mut candidates = vec![
+        acts(Law::Power(3.0), "stiffness-hardening", CUBIC, "N/m³"),
+        acts(Law::Power(1.5), "stiffness-hardening", HERTZ, "N/m^1.5"),
+        acts(Law::Drag, "viscous-friction", "c", "N s/m"),
+        Candidate::one("force-bias", Kind::Instrument, "b", "N", of(&|_| 1.0)),
+    ];
+    // A sensor is zeroed before each recording.
+    candidates.extend((0..needle.recordings).map(|k| {
+        let since = of(&|r| owned(k, r) * (r.time_s - r.start_s));
+        let drift = Candidate::one("force-drift", Kind::Instrument, "rate", "N/s", since);
+        if needle.recordings > 1 { drift.at("recording", (k + 1) as f64, "1") } else { drift }
+    }));
+    for dent in DENTS {
+        candidates.push(acts(Law::Dent(dent), "hysteresis", "share", "1").at("dent", dent, "1"));
+    }
+    if law.is_some_and(|l| l.give > 0.0) {
+        candidates.retain(|c| c.id != "hysteresis");
+    }
+    let span = rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
+    let term = |expression: &str, column: Vec<f64>| Candidate {
+        expression: Some(expression.to_owned()),
+        ..Candidate::one("other", Kind::Plant, "amplitude", "", column)
+    };
+    // A curve of yet another form, so that the whitening is not too optimistic.
+    candidates.push(term("x²", of(&|r| pressed(r).powi(2))));
+    candidates.extend((1..=3).map(|n| {
+        let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * r.time_s / span).cos());
+        term(&format!("cos({n} pi t/T)"), wave)
+    }));
+    candidates
+}
+
+/// The comparison.
+pub struct Sheet {
+    pub compared: Compared,
+    /// Variables of the plots of its rows.
+    pub view: View,
+    /// Free-run model of a needle outside and on the sheet.
+    pub pressed: Pressed,
+}
+
+/// Compares them.
+pub fn sheet(needle: &Needle, law: Option<&MembraneLaw>, threshold: f64) -> Result<Sheet, EstimateError> {
+    let Columns { rows, floor_n, base, candidates } = columns(needle, law);
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let y = of(&|r| r.force_n);
+    let along: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
+    let stretch: Vec<usize> = rows.iter().map(|r| r.stretch).collect();
+    let weight = vec![said_by_a_row(needle, &rows, &base, &candidates)?; y.len()];
+    let channel = Channel {
+        y,
+        base,
+        candidates,
+        stretch: stretch.clone(),
+        testable: along.clone(),
+        weight,
+        period_s: needle.period_s,
+    };
+    let study = channel.compare(threshold)?;
+    let (channel, state) = ("force outside and on the sheet", rows.iter().map(Row::state).collect());
+    let compared = Compared { study, channel, unit: "N", floor: floor_n, along, stretch, state };
+    let view = View {
+        // Rows on the sheet are apart from those of empty fingers.
+        sensor: rows.iter().map(|r| usize::from(touches(r))).collect(),
+        ..view(&rows)
+    };
+    Ok(Sheet { compared, view, pressed: Pressed::new(needle, law, rows) })
+}
+
+/// Weight of a row in the comparison, 1 for white noise. The rows are dealt out, so that whitening does not remove
+/// noise that is correlated between rows, and each row has less information. Estimated outside the sheet, from the
+/// residual after slow changes.
+fn said_by_a_row(
+    needle: &Needle,
+    rows: &[Row],
+    base: &[Vec<f64>],
+    candidates: &[Candidate],
+) -> Result<f64, EstimateError> {
+    /// Standard errors from which a correlation is significant.
+    const CLEAR: f64 = 3.0;
+    let free: Vec<usize> = (0..rows.len()).filter(|i| !touches(&rows[*i])).collect();
+    let slow = candidates.iter().filter(|c| c.id == "force-drift" || c.expression.is_some());
+    let here = |column: &Vec<f64>| free.iter().map(|i| column[*i]).collect::<Vec<f64>>();
+    let mut columns: Vec<Vec<f64>> = base.iter().chain(slow.flat_map(|c| &c.columns).map(|c| &**c)).map(here).collect();
+    columns.retain(|column| column.iter().any(|v| *v != 0.0));
+    let y: Vec<f64> = free.iter().map(|i| rows[*i].force_n).collect();
+    if y.len() < 2 * columns.len() {
+        return Ok(1.0);
+    }
+    let fit = least_squares_values(&columns, &y, None)?;
+    let left = |k: usize| y[k] - columns.iter().zip(&fit.values).map(|(c, v)| c[k] * v).sum::<f64>();
+    let mut in_time: Vec<(f64, f64)> = free.iter().enumerate().map(|(k, i)| (rows[*i].time_s, left(k))).collect();
+    in_time.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Correlation of rows at this distance, and number of pairs.
+    let correlation = |lag: usize| {
+        let near = |run: &&[(f64, f64)]| run[lag].0 - run[0].0 < (lag as f64 + NEXT - 1.0) * needle.period_s;
+        let pairs = in_time.windows(lag + 1).filter(near).map(|run| (run[0].1, run[lag].1));
+        let sums = pairs.fold((0.0, 0.0, 0.0_f64), |(product, square, n), (a, b)| {
+            (product + a * b, square + 0.5 * (a * a + b * b), n + 1.0)
+        });
+        (if sums.1 > 0.0 { sums.0 / sums.1 } else { 0.0 }, sums.2)
+    };
+    let ((first, pairs), (second, _)) = (correlation(1), correlation(2));
+    // Inflation of a mean's error over many rows: white noise plus noise with an exponential autocorrelation.
+    let share = (second / first.max(1e-9)).clamp(first.clamp(0.0, 0.95), 0.95);
+    let is_clear = first * pairs.sqrt() > CLEAR;
+    Ok(if is_clear { (1.0 + 2.0 * first / (1.0 - share)).powf(-0.5) } else { 1.0 })
+}
+
+/// Sensor reading at a puncture without the sheet, N: held weight and the sensor faults found.
+pub fn level_n(study: &Study, at: &Puncture) -> f64 {
+    let Some(solved) = &study.solved else { return 0.0 };
+    let mut level = solved.values[at.hold];
+    let mut place = study.base.len();
+    for candidate in study.picks().into_iter().map(|p| &study.candidates[p]) {
+        let own = candidate.searched.iter().all(|s| s.name != "recording" || s.value == (at.recording + 1) as f64);
+        level += match candidate.id {
+            "force-bias" => solved.values[place],
+            "force-drift" if own => solved.values[place] * at.time_s,
+            _ => 0.0,
+        };
+        place += candidate.columns.len();
+    }
+    level
+}
+
+/// Variables of the plots of a needle's rows.
+pub fn view(rows: &[Row]) -> View {
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let over = vec![
+        (Variable::Time, of(&|r| r.time_s - r.start_s)),
+        (Variable::Depth, of(&|r| r.depth_m)),
+        (Variable::Velocity, of(&|r| r.rate_m_s)),
+    ];
+    View { way: of(&|r| r.rate_m_s), ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
+}
+
+/// Variable that best shows a cause on a needle.
+pub fn best_seen(id: &str) -> Variable {
+    match id {
+        "stiffness-hardening" | "hysteresis" => Variable::Depth,
+        "viscous-friction" | "coulomb-friction" | "quadratic-drag" => Variable::Velocity,
+        _ => Variable::Time,
+    }
+}
+
+/// Deals the rows into segments of their own, like cards. A push lasts less than a second, so a held-out block of
+/// consecutive rows would contain all of it. Rows a filter window apart are nearly uncorrelated.
+fn shuffle(rows: &mut Vec<Row>) {
+    /// Number of hands to which the rows are dealt.
+    const HANDS: usize = 7;
+    let dealt = (0..HANDS).flat_map(|hand| rows.iter().skip(hand).step_by(HANDS).copied()).collect();
+    *rows = dealt;
+    rows.iter_mut().enumerate().for_each(|(k, row)| row.stretch = k);
+}
+
+/// Force of a sheet that keeps a share of its deepest indentation as a dent: above that depth it is steeper and lower.
+fn with_dent(share: f64, row: &Row, elastic: &dyn Fn(f64) -> f64) -> f64 {
+    let (x, deepest) = (row.depth_m, row.deepest_m);
+    if row.phase == Phase::Loading || x >= deepest {
+        return elastic(x);
+    }
+    let dent = share * deepest;
+    elastic(deepest) * ((x - dent) / (deepest - dent).max(1e-9)).max(0.0)
+}
+
+/// Sentence on how the residual shows a cause.
+pub fn shows(found: &Found<'_>) -> String {
+    match found.candidate.id {
+        "stiffness-hardening" => "the deeper the sheet is pressed the steeper its force rises".to_owned(),
+        "hysteresis" => "the sheet presses back less on the way out than on the way in: a dent stays".to_owned(),
+        "viscous-friction" => "the force on the sheet follows the speed".to_owned(),
+        "force-bias" => "empty fingers feel a force along the needle".to_owned(),
+        "force-drift" => "the force of the needle outside the sheet goes with time".to_owned(),
+        other => format!("{other} shows in the force on the sheet"),
+    }
+}
+
+/// Smallest sizes that matter, with the experiment that would show them.
+pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+    Some(match candidate.id {
+        "stiffness-hardening" if candidate.linear[0].0 == "k3" => (5e5, "the sheet was hardly pressed in"),
+        "hysteresis" => (1.0, "the needle was never drawn back before it went through; push, draw back and push on"),
+        "viscous-friction" => (2.0, "the sheet was pressed at one speed; push slowly and fast"),
+        "force-bias" => {
+            (0.01, "the needle was held all the time: a bias passes for its weight; start with empty fingers")
+        }
+        "force-drift" => (0.01 / 10.0, "the needle was outside the sheet too briefly at one end of the recording"),
+        _ => return None,
+    })
+}

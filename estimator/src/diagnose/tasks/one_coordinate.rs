@@ -1,0 +1,381 @@
+//! Force along one coordinate: its residual, and the causes that explain it.
+
+use crate::diagnose::data::direction::{TOGETHER, blur, blurred};
+use crate::diagnose::data::regression_data::{Model, Place, Row, Track};
+use crate::diagnose::data::row_means::column;
+use crate::diagnose::data::stick_phases::Load;
+use crate::diagnose::data::{known_weight, stick_phases};
+use crate::diagnose::hypotheses::basis_functions::generic;
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::hypotheses::grid::Grid;
+use crate::diagnose::hypotheses::library::Dictionary;
+use crate::diagnose::hypotheses::regressor_cache::Columns;
+use crate::diagnose::selection::channel::whitening as whitening_of;
+use crate::diagnose::selection::comparison::{Study, residual};
+use crate::diagnose::selection::dry_friction::{dry_level, friction_is_sound, is_resisting, shares_of, total};
+use crate::diagnose::selection::noise_model::Noise;
+use crate::diagnose::selection::normal_equations::{Held, Rows, System};
+use crate::diagnose::selection::pruning::{PIECES_S, leave_out_what_harms, pieces};
+use crate::diagnose::selection::restarts::to_refine;
+use crate::diagnose::selection::stepwise::{Chosen, Selection};
+use crate::estimate::EstimateError;
+use crate::identify::linear::{least_squares, least_squares_values};
+use haptics::Vec2;
+use haptics::law::{CoulombFriction, Effect, ForceDrift, Law, Stribeck, ViscousFriction};
+
+/// Most rounds of refinement of searched values and of the sensor's faults.
+const REFINEMENTS: usize = 2;
+/// The same for a free motion, whose noise becomes smaller if it swings.
+const REFINEMENTS_OF_FREE: usize = 5;
+
+/// Compares all causes on a track. `fixed`: laws that are completely known. `threshold`: least evidence of a cause.
+pub fn study(track: &mut Track, model: &Model, fixed: &Model, threshold: f64) -> Result<Study, EstimateError> {
+    blur(track);
+    let loads = loads(track, model, fixed)?;
+    // Without a force, a stick phase under load cannot be distinguished from one without.
+    if track.freely.is_none() {
+        stick_phases::add(track, &loads);
+    }
+    let has_dry = model.iter().any(|e| e.law().is_dry());
+    let coarse = Grid::coarse(track);
+    let mut known = Known { columns: Columns::default(), generic: generic(track), is_sharp: false, noise: None };
+    let mut made = compare(track, (model, fixed), &known, threshold, [&coarse, &Grid::default()], None)?;
+    let is_free = track.freely.is_some();
+    for round in 0..if is_free { REFINEMENTS_OF_FREE } else { REFINEMENTS } {
+        // One cause alone is as near after the first as it needs be; beside others, what it misses may pass for one of
+        // them. The long means of a free motion show so much more of a place that one alone is not near enough either.
+        let searched = |c: &Chosen| !made.candidates[c.candidate].searched.is_empty();
+        let enough = if is_free { round > 0 && !made.chosen.iter().any(searched) } else { made.chosen.len() <= round };
+        if made.chosen.is_empty() || enough {
+            break;
+        }
+        let step = if is_free { 0.5_f64.powf(round as f64) } else { 1.0 / (1 + round) as f64 };
+        let fine = Grid::around(&to_refine(&made, threshold, has_dry), track, step);
+        known.noise = match (known.noise, calmer(track, &made)) {
+            (Some(before), Some(now)) if (now / before).ln().abs() < SAME_NOISE => Some(before),
+            (before, now) => now.or(before),
+        };
+        // Load on the friction: the sensor's reading, corrected for its faults found so far.
+        if correct_load(track, &made) {
+            known.columns.forget_loads();
+            known.generic = generic(track);
+        }
+        made = compare(track, (model, fixed), &known, threshold, [&coarse, &fine], Some(made))?;
+    }
+    // The blur of a mechanism's direction is an assumption. If it is too wide, the friction of all slow motion is
+    // estimated too small, which looks like friction that rises there or like a misfit of the curves.
+    let rises = |study: &Study| study.chosen.iter().any(|c| study.candidates[c.candidate].id == Stribeck.id());
+    let bends = |study: &Study| {
+        let Study { system, candidates, .. } = study;
+        let selection = Selection::new(system, candidates, threshold);
+        selection.unexplained(&study.picks()).is_some_and(|(_, score)| score > threshold)
+    };
+    let (rose, bent) = (rises(&made), !track.planar && bends(&made));
+    if !track.planar && (rose || bent) {
+        known.is_sharp = true;
+        let found: Vec<&Candidate> = made.chosen.iter().map(|c| &made.candidates[c.candidate]).collect();
+        let fine = Grid::around(&found, track, 1.0);
+        let sharp = compare(track, (model, fixed), &known, threshold, [&coarse, &fine], None)?;
+        if rose && !rises(&sharp) || bent && !bends(&sharp) {
+            made = sharp;
+        }
+    }
+    let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
+    leave_out_what_harms(&mut made, &stretch, threshold, &|_, _| true);
+    Ok(made)
+}
+
+/// Ratio of residuals (extended over base model) below which the weights of the rows are computed again.
+const CALMER: f64 = 0.7;
+/// Difference of log noise below which two noise levels count as equal.
+const SAME_NOISE: f64 = 0.2;
+
+/// Residual RMS of the extended model along the motion, as the noise of the rows. `None` if the noise was measured, or
+/// is not much less than the base model's residual. Hidden causes count as noise at first, and beside such noise an
+/// uncertain direction hardly reduces a row's weight.
+fn calmer(track: &Track, made: &Study) -> Option<f64> {
+    if track.noise_is_measured {
+        return None;
+    }
+    let left = |picks: &[usize]| -> Option<f64> {
+        let solved = made.system.solve(picks)?;
+        let left = residual(&made.y, &made.base, &made.candidates, picks, &solved);
+        let (sum, rows) = track.along().fold((0.0, 0.0), |(sum, rows), i| {
+            let weight = made.weight[i].powi(2);
+            (sum + weight * left[i].powi(2), rows + weight)
+        });
+        Some((sum / f64::max(rows, 1e-12)).sqrt())
+    };
+    let (model, found) = (left(&[])?, left(&made.picks())?);
+    (found < CALMER * model).then_some(found)
+}
+
+/// Removes the sensor faults found from the force across the motion; true if the load changed.
+fn correct_load(track: &mut Track, study: &Study) -> bool {
+    let Some(solved) = study.solved.as_ref().filter(|_| track.planar) else { return false };
+    let mut faults: Vec<(&Candidate, Vec<f64>)> = Vec::new();
+    let mut at = study.base.len();
+    for chosen in &study.chosen {
+        let candidate = &study.candidates[chosen.candidate];
+        let end = at + candidate.columns.len();
+        faults.push((candidate, solved.values[at..end].to_vec()));
+        at = end;
+    }
+    let bearing = track.bearing;
+    let mut changes = false;
+    for row in track.rows.iter_mut().filter(|r| r.place == Place::Along) {
+        let outward = Vec2::new(row.along.y, -row.along.x);
+        let mut force = row.force;
+        for (candidate, values) in &faults {
+            let tau = candidate.searched.first().map_or(0.0, |s| s.value);
+            let size = |law: &'static dyn Law| Effect::new(law, &[1.0, tau]).force(&row.motion);
+            force -= match (candidate.id, candidate.linear[0].0) {
+                ("force-bias", _) => Vec2::new(values[0], values[1]),
+                ("force-drift", _) => Vec2::new(values[0], values[1]) * size(&ForceDrift),
+                ("force-cross-axis", "kappa_xy") => Vec2::new(values[0] * row.force.y, 0.0),
+                ("force-cross-axis", "kappa_turned") => Vec2::new(-row.force.y, row.force.x) * values[0],
+                ("force-cross-axis", _) => Vec2::new(0.0, values[0] * row.force.x),
+                ("force-gain", _) => row.force * (values[0] / (1.0 + values[0]).max(0.1)),
+                ("time-delay", _) => row.force_rate * -values[0],
+                _ => Vec2::zeros(),
+            };
+        }
+        let load_n = force.dot(&outward) + bearing.load_n(row);
+        changes |= load_n.to_bits() != row.motion.normal_force_n.to_bits();
+        row.motion.normal_force_n = load_n;
+    }
+    changes
+}
+
+/// Inputs common to all rounds.
+struct Known {
+    columns: Columns,
+    generic: Vec<Candidate>,
+    /// True if the width of the direction's blur is reduced.
+    is_sharp: bool,
+    /// Noise of the rows along the motion, N or N m. Without a measured noise, it is the residual of a plain fit.
+    noise: Option<f64>,
+}
+
+/// One round: laws that are fitted, and those of which everything is known. `before`: the round before, whose whitening
+/// stays (the same things together left the same).
+fn compare(
+    track: &Track,
+    (model, fixed): (&Model, &Model),
+    made: &Known,
+    threshold: f64,
+    [coarse, fine]: [&Grid; 2],
+    before: Option<Study>,
+) -> Result<Study, EstimateError> {
+    let Asked { mut base, known, y } = asked(track, model, fixed);
+    let Look { mut predicted, mut resisting, weight, slides: mut dry } =
+        first_look(track, model, (&base, &y), made.noise)?;
+    // Coefficients of the model's laws, estimated together with the causes of the last round.
+    let laws = before.as_ref().and_then(|b| Some(&b.solved.as_ref()?.values[..b.base.len()]));
+    if let Some(laws) = laws.filter(|laws| friction_is_sound(model, laws)) {
+        (predicted, resisting) = (total(y.len(), model, &base, laws, false), total(y.len(), model, &base, laws, true));
+        dry = (0..y.len()).map(|i| dry_level(track, model, laws, i)).collect();
+    }
+    let taken: Vec<&str> = model.iter().chain(fixed).map(|e| e.law().id()).collect();
+    let dictionary = |grid| {
+        let without = &taken;
+        let (predicted, resisting, dry) = (&predicted, &resisting, &dry);
+        let columns = &made.columns;
+        Dictionary { track, predicted, resisting, dry, fixed: &known, without, grid, columns }
+    };
+    let mut candidates = dictionary(coarse).candidates();
+    candidates.extend(dictionary(fine).searched());
+    let losses = candidates.iter().filter(|c| ["hysteresis", "backlash"].contains(&c.id));
+    let losses: Vec<&[f64]> = losses.map(|c| c.columns[0].as_slice()).collect();
+    base.extend(stick_phases::creep(track, &y, &losses));
+    base.extend(made.is_sharp.then(|| blurred(track, &dry)));
+    candidates.extend(made.generic.iter().cloned());
+    let stretch: Vec<usize> = track.rows.iter().map(|r| r.stretch).collect();
+    let held = |row: &Row| match row.place {
+        Place::Along => Held::Fully,
+        Place::Stuck { .. } => Held::ByFolds,
+        Place::FreeX | Place::FreeY => Held::Never,
+    };
+    let testable: Vec<Held> = track.rows.iter().map(held).collect();
+    // One recording after the other.
+    let time_s: Vec<f64> =
+        track.rows.iter().map(|r| r.recording as f64 * (track.span_s + 1.0) + r.motion.time_s).collect();
+    let rows = Rows {
+        y: &y,
+        stretch: &stretch,
+        testable: &testable,
+        time_s: &time_s,
+        weight: &weight,
+        period_s: track.period_s,
+        noise: if track.freely.is_some() { Noise::OfDifferences } else { Noise::Any },
+        may_stand: true,
+    };
+    let has_dry = model.iter().any(|e| e.law().is_dry());
+    let place = |found: &Candidate| candidates.iter().position(|c| c.id == found.id && c.is_near(&found.searched));
+    let found = before.iter().flat_map(|b| b.chosen.iter().map(|c| &b.candidates[c.candidate]));
+    let start: Vec<usize> = found.filter_map(place).collect();
+    let mut system = match before {
+        // Rows with other weights have another residual noise.
+        Some(before) if before.weight == weight => System::after(before, &base, &candidates, &rows),
+        _ => System::new(&base, &candidates, &rows, whitening_of(&base, &candidates, &rows, threshold)?),
+    };
+    system.resisting = (0..model.len()).filter(|k| is_resisting(&model[*k])).collect();
+    system.pieces = PIECES_S.map(|piece_s| pieces(&time_s, piece_s)).to_vec();
+    let chosen = Selection::new(&system, &candidates, threshold).of(has_dry, true).run(&start);
+    let picks: Vec<usize> = chosen.iter().map(|c| c.candidate).collect();
+    let solved = system.solve(&picks);
+    let shares_of = solved.as_ref().map_or([1.0, 0.0], |s| shares_of(track, model, &dry, s, system.rows));
+    Ok(Study { candidates, chosen, system, solved, y, base, weight, shares_of })
+}
+
+/// Residual RMS of the model with Coulomb friction, and true if its friction opposes motion.
+pub fn plain_rms(track: &mut Track, model: &Model) -> Result<(f64, bool), EstimateError> {
+    blur(track);
+    blurred_rms(track, model)
+}
+
+/// The same for rows whose directions are already blurred.
+pub fn blurred_rms(track: &Track, model: &Model) -> Result<(f64, bool), EstimateError> {
+    let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(track, effect)).collect();
+    columns.push(column(track, &Effect::new(&CoulombFriction, &[1.0])));
+    let along: Vec<f64> =
+        track.rows.iter().map(|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }).collect();
+    let y: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
+    let fit = least_squares_values(&columns, &y, Some(&along))?;
+    let resisting: f64 = (0..y.len())
+        .map(|i| {
+            let parts =
+                model.iter().enumerate().filter(|(_, e)| is_resisting(e)).map(|(k, _)| fit.values[k] * columns[k][i]);
+            let coulomb = fit.values[model.len()] * columns[model.len()][i];
+            (parts.sum::<f64>() + coulomb) * track.rows[i].motion.direction
+        })
+        .sum();
+    Ok((fit.rms, resisting > 0.0))
+}
+
+/// Standard errors below zero from which the wrong sign of a mass, damping or dry friction is certain.
+const SURELY_NEGATIVE: f64 = 6.0;
+
+/// True if the laws of a model, all positive physically, are estimated with the wrong sign: none is certainly positive,
+/// and the strongest and the friction's work are certainly negative.
+pub fn drives(track: &Track, model: &Model) -> Result<bool, EstimateError> {
+    let mut track = track.clone();
+    blur(&mut track);
+    let mut columns: Vec<Vec<f64>> = model.iter().map(|effect| column(&track, effect)).collect();
+    // Effects that may be confused with inertia: a spring, gravity, a constant pull.
+    let beside: [&dyn Fn(&Row) -> f64; 4] =
+        [&|_| 1.0, &|r| r.motion.position, &|r| r.angle_rad.sin(), &|r| r.angle_rad.cos()];
+    let turns = track.coordinate == haptics::law::Coordinate::Angular;
+    for of in &beside[..if turns { 4 } else { 2 }] {
+        columns.push(track.rows.iter().map(|r| if r.place == Place::Along { of(r) } else { 0.0 }).collect());
+    }
+    let along: Vec<f64> =
+        track.rows.iter().map(|r| if r.place == Place::Along { r.motion.direction.powi(4) } else { 0.0 }).collect();
+    let y: Vec<f64> = track.rows.iter().map(|r| r.y).collect();
+    let fit = least_squares(&columns, &y, Some(&along))?;
+    let sizes: Vec<f64> = (0..model.len()).map(|k| fit.values[k] / fit.std_errors[k].max(1e-300)).collect();
+    let friction: f64 = (0..y.len())
+        .map(|i| {
+            let resists = model.iter().enumerate().filter(|(_, e)| is_resisting(e));
+            resists.map(|(k, _)| fit.values[k] * columns[k][i]).sum::<f64>() * track.rows[i].motion.direction
+        })
+        .sum();
+    let [mass, others @ ..] = sizes.as_slice() else { return Ok(false) };
+    // A delayed force also drives the motion, but needs no negative dry friction for that.
+    let negative = |s: &f64| *s < -SURELY_NEGATIVE;
+    Ok(friction < 0.0 && sizes.iter().all(|s| *s < SURELY_NEGATIVE) && (negative(mass) || others.iter().all(negative)))
+}
+
+/// Regressors and target of a fit.
+struct Asked {
+    /// Regressors of the model's laws.
+    base: Vec<Vec<f64>>,
+    /// Forces that are completely known, including a hung weight's.
+    known: Vec<Vec<f64>>,
+    /// The measured force less the known ones.
+    y: Vec<f64>,
+}
+
+fn asked(track: &Track, model: &Model, fixed: &Model) -> Asked {
+    let base = model.iter().map(|effect| column(track, effect)).collect();
+    let known: Vec<Vec<f64>> =
+        fixed.iter().map(|effect| column(track, effect)).chain(known_weight::column(track)).collect();
+    let left = |(i, row): (usize, &Row)| row.y - known.iter().map(|k| k[i]).sum::<f64>();
+    let y = track.rows.iter().enumerate().map(left).collect();
+    Asked { base, known, y }
+}
+
+/// Result of a first plain fit for every row.
+struct Look {
+    /// Force predicted by the model, and the part of it that opposes motion.
+    predicted: Vec<f64>,
+    resisting: Vec<f64>,
+    /// Weight of the row.
+    weight: Vec<f64>,
+    /// The dry friction if it slid.
+    slides: Vec<f64>,
+}
+
+/// A first plain fit: predicted force, its resisting part, weight of each row with an uncertain direction (effective
+/// variance, Orear 1982), and dry friction of each row if it slid. `noise`: of a row, if known.
+fn first_look(
+    track: &Track,
+    model: &Model,
+    (base, y): (&[Vec<f64>], &[f64]),
+    noise: Option<f64>,
+) -> Result<Look, EstimateError> {
+    let mut columns = base.to_vec();
+    let together = if track.planar { TOGETHER } else { 1.0 };
+    let has = |law: &dyn Law| model.iter().any(|e| e.law().id() == law.id());
+    let has_dry = has(&CoulombFriction);
+    // Resistance that the model lacks. With dry friction alone, viscous friction would be attributed to it.
+    let missing: [(&'static dyn Law, bool); 2] =
+        [(&CoulombFriction, has_dry), (&ViscousFriction, has_dry || has(&ViscousFriction))];
+    for (law, _) in missing.iter().filter(|(_, there)| !there) {
+        columns.push(column(track, &Effect::new(*law, &[1.0])));
+    }
+    let along: Vec<f64> = track.rows.iter().map(|r| f64::from(u8::from(r.place == Place::Along))).collect();
+    let mut weight = along.clone();
+    let mut fit = least_squares_values(&columns, y, Some(&weight))?;
+    let dry = |values: &[f64], i: usize| -> f64 {
+        dry_level(track, model, values, i) + if has_dry { 0.0 } else { values[base.len()].abs() }
+    };
+    for _ in 0..2 {
+        let noise =
+            if track.noise_is_measured { track.force_noise } else { noise.unwrap_or(fit.rms).max(track.force_noise) };
+        weight = (0..y.len())
+            .map(|i| {
+                let row = &track.rows[i];
+                if row.place != Place::Along {
+                    return 1.0;
+                }
+                // If the sign is unknown, so is all of the friction.
+                let open = together * dry(&fit.values, i).powi(2) * row.open;
+                (1.0 + open / (noise * noise)).powf(-0.5)
+            })
+            .collect();
+        let squares: Vec<f64> = weight.iter().zip(&along).map(|(w, a)| w * w * a).collect();
+        fit = least_squares_values(&columns, y, Some(&squares))?;
+    }
+    let sum = |resists: bool| -> Vec<f64> {
+        let mut sum = total(y.len(), model, base, &fit.values, resists);
+        for (column, value) in columns.iter().zip(&fit.values).skip(base.len()) {
+            sum.iter_mut().zip(column).for_each(|(s, c)| *s += value * c);
+        }
+        sum
+    };
+    let slides = (0..y.len()).map(|i| dry(&fit.values, i)).collect();
+    Ok(Look { predicted: sum(false), resisting: sum(true), weight, slides })
+}
+
+/// Load on the friction in each row along the motion, as far as a plain fit determines it.
+fn loads(track: &Track, model: &Model, fixed: &Model) -> Result<Vec<Option<Load>>, EstimateError> {
+    let Asked { base, y, .. } = asked(track, model, fixed);
+    let Look { predicted, resisting, slides, .. } = first_look(track, model, (&base, &y), None)?;
+    let load = |i: usize| {
+        let friction = slides[i];
+        let held = y[i] - (predicted[i] - resisting[i]);
+        (friction > 0.0).then(|| Load { share: held / friction, whole: y[i] / friction, friction })
+    };
+    Ok((0..y.len()).map(load).collect())
+}

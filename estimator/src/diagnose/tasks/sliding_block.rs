@@ -1,0 +1,392 @@
+//! Diagnosis of a block that is slid over the table, held between two fingers or pushed by one. The force along the
+//! table is compared with the motion, as for any other motion along one coordinate.
+//!
+//! The base model is a mass with dry friction. The friction is proportional to the load on the ground if the block's
+//! weight is known (less the lift of the fingers), and a constant otherwise. A tilted table pulls on the block alone.
+//! Empty fingers feel a sensor bias, too.
+
+use super::mechanism::{named, rows};
+use super::one_coordinate;
+use crate::diagnose::answer::along_coordinate;
+use crate::diagnose::contract::{
+    Alternative, Cause, CauseParameter, Diagnosis, Experiment, Gain, NextExperiment, NotExcited, Validation, Verdict,
+};
+use crate::diagnose::data::regression_data;
+use crate::diagnose::data::regression_data::{Model, Place, Track};
+use crate::diagnose::free_run::windows::AT_ONCE;
+use crate::diagnose::options::{Options, nothing};
+use crate::diagnose::recording::sample_faults;
+use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::rules::threshold;
+use crate::estimate::EstimateError;
+use crate::segment::slid::{LIFTED_M, LIFTED_S};
+use crate::segment::threshold::{Levels, percentile};
+use crate::signal::task::{TaskSignals, smooth, task_signals};
+use haptics::law::{Backlash, CoulombFriction, Effect, Hysteresis, Inertia, Kind, LoadFriction};
+use haptics::recording::{Channel, Meta, Recording};
+use haptics::world::World;
+
+/// Least force of a touching finger, as a share of its usual force and in multiples of the noise.
+const TOUCH_SHARE: f64 = 0.1;
+const TOUCH_NOISES: f64 = 6.0;
+/// Margin at the slow closing and opening of fingers, s.
+const CLOSING_S: f64 = 0.15;
+/// Least speed of sliding, m/s, and its least total duration, s.
+const SLIDES_M_S: f64 = 5e-3;
+const LEAST_S: f64 = 2.0;
+/// Least duration of empty fingers for an estimate of the bias, s, and length of its parts.
+const FREE_S: f64 = 1.0;
+const PART_S: f64 = 0.25;
+/// Standard errors by which a constant force is attributed to the sensor or to the table.
+const ERRORS: f64 = 4.0;
+/// Relative error of a known mass from which a scale is wrong.
+const MASS_SHARE: f64 = 0.08;
+
+/// One recording as a coordinate with a force along it.
+struct Slid {
+    along: Recording,
+    bad: Vec<bool>,
+    lift_n: Vec<f64>,
+    /// Sum of the horizontal forces of empty fingers and its error, N.
+    free_n: Option<(f64, f64)>,
+    weight_n: Option<f64>,
+    slides_s: f64,
+    lifted_s: f64,
+}
+
+/// True if [`slid`] handles these recordings: a block was moved on the ground and never carried.
+pub fn is_slid(recordings: &[Recording]) -> bool {
+    let slides = |r: &Recording| read(r, None).is_ok_and(|s| s.slides_s > LEAST_S && s.lifted_s < LIFTED_S);
+    !recordings.is_empty() && recordings.iter().all(|r| r.time_s.is_some() && slides(r))
+}
+
+/// Diagnoses recordings of one block that is slid.
+pub fn slid(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let (mut track, faults, read) = track_of(recordings, options.world.as_ref())?;
+    let weight_n = read.iter().find_map(|s| s.weight_n);
+    let model = model(options, weight_n.is_some())?;
+    let limit = threshold(track.period_s);
+    options.progress.tell(0.4)?;
+    let study = one_coordinate::study(&mut track, &model, &given_by_pads(), limit)?;
+    options.progress.tell(0.8)?;
+    let mut found = along_coordinate::explain(&track, &model, &study, &[], faults);
+    // Motions of the library are for an object that a program drives along its coordinate.
+    if let Some(next) = &mut found.next_experiment {
+        next.experiment = None;
+    }
+    constants(&mut found, &read, weight_n);
+    let_go(&mut found, &track);
+    scales(&mut found, &study, &model, weight_n.map(|w| w / recordings[0].meta.gravity()));
+    if weight_n.is_none() {
+        let why = "the block's weight is not known; state `weight_N` in the sidecar, or name a world";
+        let ids = ["load-friction", "force-gain", "length-scale"];
+        found.not_excited.extend(ids.map(|id| NotExcited { id: id.to_owned(), why: why.to_owned() }));
+    }
+    Ok(found)
+}
+
+/// Validates the found causes on another recording.
+pub fn validate(recordings: &[Recording], options: &Options, found: &Diagnosis) -> Result<Validation, EstimateError> {
+    let (mut track, ..) = track_of(recordings, options.world.as_ref())?;
+    Ok(crate::diagnose::validation::on_other_recordings::validate(
+        &mut track,
+        &found.plain,
+        &found.effects,
+        &[],
+        &found.kept,
+    ))
+}
+
+/// The pads yield before the block slides, by hundredths of a millimetre, as with presliding and backlash. Neither is
+/// therefore a candidate.
+fn given_by_pads() -> Model {
+    vec![Effect::new(&Hysteresis, &[0.0, 1.0]), Effect::new(&Backlash, &[0.0])]
+}
+
+/// Laws of the base model.
+fn model(options: &Options, weighs: bool) -> Result<Model, EstimateError> {
+    match options.baseline.as_deref() {
+        Some(name) => named(name),
+        None if weighs => Ok(vec![Effect::new(&Inertia, &[1.0]), Effect::new(&LoadFriction, &[1.0])]),
+        None => Ok(vec![Effect::new(&Inertia, &[1.0]), Effect::new(&CoulombFriction, &[1.0])]),
+    }
+}
+
+/// Rows of all recordings, faults of their samples, and the recordings as read.
+fn track_of(recordings: &[Recording], world: Option<&World>) -> Result<(Track, Vec<Cause>, Vec<Slid>), EstimateError> {
+    let (mut tracks, mut faults, mut all) = (Vec::new(), Vec::new(), Vec::new());
+    for recording in recordings {
+        let sensed = sample_faults::faults(recording);
+        let mut slid = read(recording, world)?;
+        slid.bad.iter_mut().zip(&sensed.bad).for_each(|(bad, sensed)| *bad |= sensed);
+        let mut rows = rows::track(&slid.along, &slid.bad, None)?;
+        load(&mut rows, &slid);
+        tracks.push(rows);
+        faults.extend(sensed.causes);
+        all.push(slid);
+    }
+    Ok((regression_data::join(tracks).ok_or_else(nothing)?, faults, all))
+}
+
+/// Sets the load of the block on the ground, row by row.
+fn load(rows: &mut Track, slid: &Slid) {
+    let (Some(weight_n), Some(time_s)) = (slid.weight_n, &slid.along.time_s) else { return };
+    let start_s = time_s.first().copied().unwrap_or(0.0);
+    for row in rows.rows.iter_mut().filter(|r| r.place == Place::Along) {
+        let i = time_s.partition_point(|t| *t < start_s + row.motion.time_s).min(time_s.len() - 1);
+        row.motion.normal_force_n = (weight_n - slid.lift_n[i]).max(0.0);
+    }
+}
+
+fn known_weight_n(recording: &Recording, world: Option<&World>) -> Option<f64> {
+    let known = |name: &str| {
+        let known = &recording.meta.known;
+        known.get(name).or_else(|| known.get(&format!("block-1.{name}"))).copied()
+    };
+    let gravity = recording.meta.gravity();
+    let stated = known("weight_N").or_else(|| Some(known("mass_kg")? * gravity));
+    stated.or_else(|| Some(world?.blocks.first()?.mass_kg * gravity))
+}
+
+fn read(recording: &Recording, world: Option<&World>) -> Result<Slid, EstimateError> {
+    let signals = task_signals(recording)?;
+    let n = signals.len();
+    let time = &signals.time_s;
+    let levels = Levels::of(&signals);
+    let touches = [0, 1].map(|f| touching(&signals, &levels, f));
+    let any = |i: usize| touches[0][i] || touches[1][i];
+    let height = |i: usize| {
+        let of: Vec<f64> = (0..2).filter(|f| touches[*f][i]).map(|f| signals.tips[f].position[i].y).collect();
+        of.iter().sum::<f64>() / of.len().max(1) as f64
+    };
+    let mut heights: Vec<f64> = (0..n).filter(|i| any(*i)).map(height).collect();
+    if heights.is_empty() {
+        return Err(EstimateError::Other(format!("{} touches nothing: there is nothing to diagnose", recording.name)));
+    }
+    let ground_m = percentile(&mut heights, 0.05);
+    let lifted = (0..n).filter(|i| any(*i) && height(*i) > ground_m + LIFTED_M).count();
+    let mut bad: Vec<bool> = (0..n).map(|i| !any(i) || height(i) > ground_m + LIFTED_M).collect();
+    widen(&mut bad, time);
+    let of_touching = |pick: &dyn Fn(usize, usize) -> f64, mean: bool| -> Vec<f64> {
+        let at = |i: usize| {
+            let both = touches[0][i] == touches[1][i];
+            let of: Vec<f64> = (0..2).filter(|f| both || touches[*f][i]).map(|f| pick(f, i)).collect();
+            of.iter().sum::<f64>() / if mean { of.len() as f64 } else { 1.0 }
+        };
+        (0..n).map(at).collect()
+    };
+    let force = |f: usize, i: usize| signals.tips[f].force.as_ref().map_or(0.0, |v| v[i].x);
+    let place = of_touching(&|f, i| signals.tips[f].position[i].x, true);
+    let rate = of_touching(&|f, i| signals.tips[f].velocity.as_ref().map_or(0.0, |v| v[i].x), true);
+    let along_n = of_touching(&force, false);
+    let net: Vec<f64> = signals.net_force_n.iter().map(|f| f.y).collect();
+    let bias_y = levels.bias_n[0].y + levels.bias_n[1].y;
+    let lift_n = smooth(time, &net).value.iter().map(|f| f - bias_y).collect();
+    let step_s = if n > 1 { (time[n - 1] - time[0]) / (n - 1) as f64 } else { 1.0 };
+    let calm = smooth(time, &rate).value;
+    let slides_s = (0..n).filter(|i| !bad[*i] && calm[*i].abs() > SLIDES_M_S).count() as f64 * step_s;
+    let channel = |name: &str, unit: &str, values| Channel { name: name.to_owned(), unit: unit.to_owned(), values };
+    let along = Recording {
+        name: recording.name.clone(),
+        time_s: Some(time.clone()),
+        channels: vec![channel("q_m", "m", place), channel("dq_m_s", "m_s", rate), channel("f_N", "N", along_n)],
+        meta: Meta { gravity_m_s2: recording.meta.gravity_m_s2, ..Meta::default() },
+        ..Recording::default()
+    };
+    let free_n = free(&signals, &levels, step_s);
+    Ok(Slid {
+        along,
+        bad,
+        lift_n,
+        free_n,
+        weight_n: known_weight_n(recording, world),
+        slides_s,
+        lifted_s: lifted as f64 * step_s,
+    })
+}
+
+/// Flags of samples in which a finger presses.
+fn touching(signals: &TaskSignals, levels: &Levels, finger: usize) -> Vec<bool> {
+    let Some(force) = &signals.tips[finger].force else { return vec![false; signals.len()] };
+    let x: Vec<f64> = force.iter().map(|f| f.x - levels.bias_n[finger].x).collect();
+    let pressed: Vec<f64> = smooth(&signals.time_s, &x).value.iter().map(|f| f.abs()).collect();
+    let usual = percentile(&mut pressed.clone(), 0.95);
+    let least = (TOUCH_SHARE * usual).max(TOUCH_NOISES * levels.force_noise_n);
+    pressed.iter().map(|f| *f > least).collect()
+}
+
+/// Extends the flags to neighbouring samples.
+fn widen(bad: &mut [bool], time_s: &[f64]) {
+    let flagged: Vec<usize> = (0..bad.len()).filter(|i| bad[*i]).collect();
+    let edge = |i: usize| i == 0 || i + 1 == bad.len() || !bad[i - 1] || !bad[i + 1];
+    let edges: Vec<usize> = flagged.into_iter().filter(|i| edge(*i)).collect();
+    for i in edges {
+        let from = time_s.partition_point(|t| *t < time_s[i] - CLOSING_S);
+        let to = time_s.partition_point(|t| *t <= time_s[i] + CLOSING_S);
+        bad[from..to].fill(true);
+    }
+}
+
+/// Mean total force on empty fingers along the table, and its standard error, N.
+fn free(signals: &TaskSignals, levels: &Levels, step_s: f64) -> Option<(f64, f64)> {
+    if (levels.free.len() as f64) * step_s < FREE_S {
+        return None;
+    }
+    let part = (PART_S / step_s).round().max(1.0) as usize;
+    let means: Vec<f64> = levels
+        .free
+        .chunks_exact(part)
+        .map(|c| c.iter().map(|i| signals.net_force_n[*i].x).sum::<f64>() / part as f64)
+        .collect();
+    let n = means.len() as f64;
+    let mean = means.iter().sum::<f64>() / n;
+    let spread = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+    (n >= 3.0).then(|| (mean, (spread / n).sqrt()))
+}
+
+/// Causes with a constant force at every position: during motion they are equivalent.
+const CONSTANT: [&str; 2] = ["force-bias", "friction-asymmetry"];
+
+/// Attributes a constant force along the table. It belongs to the sensor if empty fingers feel it, and otherwise to a
+/// tilted table or to friction by direction. It is ambiguous if the fingers were never empty.
+fn constants(found: &mut Diagnosis, read: &[Slid], weight_n: Option<f64>) {
+    let named = |c: &&mut Cause| CONSTANT.contains(&c.id.as_str()) && c.parameters.iter().any(|p| p.unit == "N");
+    let Some(cause) = found.causes.iter_mut().find(named) else { return };
+    let Some(b) = cause.parameters.first().cloned() else { return };
+    found.alternatives.retain(|a| !CONSTANT.contains(&a.id.as_str()) && a.instead_of != cause.id);
+    let free: Vec<(f64, f64)> = read.iter().filter_map(|s| s.free_n).collect();
+    let mean = free.iter().map(|f| f.0).sum::<f64>() / free.len().max(1) as f64;
+    let error = free.iter().map(|f| f.1 * f.1).sum::<f64>().sqrt() / free.len().max(1) as f64;
+    // One sensor, one bias: a single recording with empty fingers determines it for all.
+    let all_free = !free.is_empty();
+    let felt = mean.abs() > ERRORS * error && (b.value - mean).abs() < ERRORS * error.hypot(b.std_error);
+    let number = |name: &str, value: f64, std_error: f64, unit: &str| CauseParameter {
+        name: name.to_owned(),
+        value,
+        std_error,
+        unit: unit.to_owned(),
+    };
+    let of_sensor = |cause: &mut Cause| {
+        "force-bias".clone_into(&mut cause.id);
+        cause.kind = Kind::Instrument;
+        cause.parameters = vec![number("b", b.value, b.std_error, "N")];
+    };
+    let (others, motion): (&[&str], &str) = if all_free && felt {
+        of_sensor(cause);
+        cause.evidence += "; empty fingers feel it as well";
+        (&[], "")
+    } else if all_free {
+        // The table's part is the difference from the reading of empty fingers.
+        let (tilt_n, error) = (mean - b.value, error.hypot(b.std_error));
+        "gravity-tilt".clone_into(&mut cause.id);
+        cause.kind = Kind::Plant;
+        cause.parameters = vec![number("force", tilt_n, error, "N")];
+        if let Some(weight_n) = weight_n.filter(|w| *w > tilt_n.abs()) {
+            cause.parameters.push(number("angle", (tilt_n / weight_n).asin(), error / weight_n, "rad"));
+        }
+        cause.evidence = format!(
+            "the sliding block is drawn to one side by {:.3} N, and empty fingers feel none of it",
+            tilt_n.abs()
+        );
+        (
+            &["friction-asymmetry"],
+            "turn the table by half a turn, with the block on it, and slide it again: what a tilt pulls changes its sign",
+        )
+    } else {
+        of_sensor(cause);
+        (
+            &["gravity-tilt", "friction-asymmetry"],
+            "let go for two seconds before and after the sliding: a bias of the sensor stays, a tilt does not",
+        )
+    };
+    cause.posterior = 1.0 / (1.0 + others.len() as f64);
+    let (own, posterior) = (cause.id.clone(), cause.posterior);
+    found.alternatives.extend(others.iter().map(|id| Alternative {
+        id: (*id).to_owned(),
+        instead_of: own.clone(),
+        posterior,
+        why: "on the move both are one and the same constant force".to_owned(),
+    }));
+    if others.is_empty() {
+        if found.alternatives.is_empty() && found.verdict == Verdict::Ambiguous {
+            (found.verdict, found.next_experiment) = (Verdict::Causes, None);
+        }
+        return;
+    }
+    found.verdict = Verdict::Ambiguous;
+    let separates = std::iter::once(own).chain(others.iter().map(|id| (*id).to_owned())).collect();
+    found.next_experiment =
+        Some(NextExperiment { motion: motion.to_owned(), separates, expected_power: 0.9, experiment: None });
+}
+
+/// If the answer asks to let go: the same experiment for a scripted operator, with its probability of success.
+fn let_go(found: &mut Diagnosis, track: &Track) {
+    const FREE_BEFORE_S: f64 = 2.0;
+    let size = found.causes.iter().find(|c| c.id == "force-bias").and_then(|c| c.parameters.first()).map(|b| b.value);
+    let (Some(next), Some(size)) = (&mut found.next_experiment, size) else { return };
+    if !next.separates.iter().any(|s| s == "gravity-tilt") {
+        return;
+    }
+    let at = |share: f64| track.quantile(share, |r| r.motion.position);
+    // Rows of empty fingers, before and after, with a row's noise each.
+    let rows = 2.0 * FREE_BEFORE_S / track.period_s;
+    let lambda = rows * (size / track.force_noise.max(1e-9)).powi(2);
+    next.expected_power =
+        crate::diagnose::experiment::proposal::SURE_HUNG * crate::diagnose::experiment::proposal::power(lambda);
+    next.experiment = Some(Experiment {
+        id: "slide-let-go".to_owned(),
+        seconds: 10.0,
+        free_s: FREE_BEFORE_S,
+        middle: 0.5 * (at(0.02) + at(0.98)),
+        half_range: 0.5 * (at(0.98) - at(0.02)),
+        fast: track.quantile(0.95, |r| r.motion.velocity.abs()),
+        across_n: 0.0,
+        added_weight_n: 0.0,
+        added_lever_m: 0.0,
+    });
+}
+
+/// A known mass with a wrong estimate shows a wrong scale of forces or lengths.
+fn scales(found: &mut Diagnosis, study: &Study, model: &Model, mass_kg: Option<f64>) {
+    use haptics::law::Law;
+    let (Some(known), Some(solved)) = (mass_kg, &study.solved) else { return };
+    let Some(k) = model.iter().position(|e| e.law().id() == Inertia.id()) else { return };
+    let variance = solved.variance(study.system.rows);
+    let (ratio, error) = (solved.values[k] / known, (variance * solved.inverse[(k, k)]).sqrt() / known);
+    let off = (ratio - 1.0).abs();
+    if off < MASS_SHARE.max((ERRORS + 1.0) * error) {
+        return;
+    }
+    let why = "a mass that comes out wrong is a wrong scale of the forces, or the opposite one of the lengths";
+    found.causes.push(Cause {
+        id: "force-gain".to_owned(),
+        kind: Kind::Instrument,
+        parameters: vec![CauseParameter {
+            name: "g - 1".to_owned(),
+            value: ratio - 1.0,
+            std_error: error,
+            unit: "1".to_owned(),
+        }],
+        p_value: crate::diagnose::selection::held_out_gain::chi_square_tail((off / error).powi(2), 1.0),
+        posterior: 0.5,
+        gain: Gain::default().run(Err(AT_ONCE.to_owned())),
+        evidence: format!(
+            "the block needs {:+.1} % of force for its accelerations beyond what its known weight asks for",
+            100.0 * (ratio - 1.0)
+        ),
+    });
+    found.alternatives.push(Alternative {
+        id: "length-scale".to_owned(),
+        instead_of: "force-gain".to_owned(),
+        posterior: 0.5,
+        why: why.to_owned(),
+    });
+    found.verdict = Verdict::Ambiguous;
+    found.next_experiment.get_or_insert_with(|| NextExperiment {
+        motion: "lift the block and hold it still for two seconds: its weight shows the scale of the forces alone"
+            .to_owned(),
+        separates: vec!["force-gain".to_owned(), "length-scale".to_owned()],
+        expected_power: 0.95,
+        experiment: None,
+    });
+}

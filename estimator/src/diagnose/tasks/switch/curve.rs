@@ -1,0 +1,225 @@
+//! Measured curve against that of a world: friction, springs and local resistance that the world lacks, and scales of
+//! sensors.
+//!
+//! A world is known only so well: what is smaller than its own stated errors is no cause.
+
+use super::held_knob::Captured;
+use super::model::Known;
+use super::rows::direction;
+use super::throw::Push;
+use crate::diagnose::answer::atlas::{Variable, View};
+use crate::diagnose::answer::build::Found;
+use crate::diagnose::experiment::separation::Imagined;
+use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
+use crate::diagnose::selection::channel::{Channel, stretches};
+use crate::diagnose::selection::comparison::Compared;
+use crate::estimate::EstimateError;
+use crate::segment::SystemState;
+use haptics::law::{Effect, Kind, LocalResistance, Motion};
+
+/// Least size of a named cause, in standard errors of the world.
+const ERRORS: f64 = 3.0;
+/// Distance from a corner of the world's curve within which rows are left out, m.
+const CORNER_M: f64 = 0.8e-3;
+/// Number of tried places of a local resistance, and its widths as shares of the travel.
+const PLACES: usize = 24;
+const WIDTHS: [f64; 4] = [0.08, 0.13, 0.2, 0.3];
+const LEAST_ROWS: usize = 40;
+/// Least number of rows in a local resistance.
+const LEAST_ON: usize = 20;
+/// Least evidence of an unexplained term, as a multiple of a cause's threshold.
+const STRANGE: f64 = 2.0;
+
+/// One row on the travel of a throw.
+#[derive(Clone, Copy)]
+pub struct Point {
+    pub side: usize,
+    pub at_m: f64,
+    pub speed_m_s: f64,
+    /// Measured and predicted force along the travel, N, and slope of the latter, N/m.
+    pub left_n: f64,
+    pub asked_n: f64,
+    pub slope_n_m: f64,
+}
+
+/// Force of a local resistance of one newton at a position, N.
+pub fn bind_n(at_m: f64, place_m: f64, width_m: f64) -> f64 {
+    let law = Effect::new(&LocalResistance, &[1.0, place_m, width_m, 0.0]);
+    law.force(&Motion { position: at_m, direction: 1.0, velocity: 1.0, ..Motion::default() })
+}
+
+/// Compares the measured curve with the world's. `None` if too little of it was seen.
+pub fn curve(
+    push: &Push,
+    known: &Known<'_>,
+    period_s: f64,
+    threshold: f64,
+) -> Result<Option<(Compared, View, Captured)>, EstimateError> {
+    let viscous =
+        push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == "viscous-friction");
+    let mut times = Vec::new();
+    let mut points = Vec::new();
+    for (row, found_n) in &push.rows {
+        let Some(side) = row.side() else { continue };
+        let at_m = known.at_m(row, side);
+        if known.bends_near(at_m, CORNER_M) || known.switch.curve.is_stopped(at_m) {
+            continue;
+        }
+        let (asked_n, slope_n_m) = known.asked_n(at_m, side);
+        let damped_n = if viscous { 0.0 } else { known.damping_n_s_m * row.speed_m_s() };
+        let left_n = known.driving_n(row.force, at_m, side) - found_n - asked_n - damped_n;
+        times.push((row.recording, row.time_s));
+        points.push(Point { side, at_m, speed_m_s: row.speed_m_s(), left_n, asked_n, slope_n_m });
+    }
+    if points.len() < LEAST_ROWS {
+        return Ok(None);
+    }
+    let time: Vec<f64> = times.iter().map(|t| t.1).collect();
+    let stretch = stretches(&time, period_s, |i| times[i].0 != times[i - 1].0 || points[i].side != points[i - 1].side);
+    let of = |f: &dyn Fn(&Point) -> f64| points.iter().map(f).collect::<Vec<f64>>();
+    let base = base(&points);
+    let candidates = candidates(&points, known, viscous);
+    let along: Vec<bool> = (0..points.len()).map(|i| i % 2 == 0).collect();
+    let channel = Channel {
+        y: of(&|p| p.left_n),
+        base,
+        candidates,
+        stretch: stretch.clone(),
+        testable: along.clone(),
+        weight: vec![1.0; points.len()],
+        period_s,
+    };
+    let study = channel.compare(threshold)?;
+    let (channel, unit, floor) = ("force over the knob's way beside the world's curve", "N", push.compared.floor);
+    let over = vec![
+        (Variable::Place, of(&|p| p.at_m)),
+        (Variable::Velocity, of(&|p| p.speed_m_s)),
+        (Variable::Force, of(&|p| p.asked_n)),
+    ];
+    let state = vec![SystemState::Turning; points.len()];
+    let recording = times.iter().map(|t| t.0).collect();
+    let view = View { way: of(&|p| direction(p.side)), ..View::of(recording, over) };
+    let time = times.iter().map(|t| t.1).collect();
+    let knob = Captured::new(&known.switch.curve, points, time, &stretch, period_s);
+    Ok(Some((Compared { study, channel, unit, floor, along, stretch, state }, view, knob)))
+}
+
+/// Position of the switch, which may have been moved, as a regressor.
+fn base(points: &[Point]) -> Vec<Vec<f64>> {
+    vec![points.iter().map(|p| direction(p.side) * p.slope_n_m).collect()]
+}
+
+/// Predicted regressors on throws that have not been made yet: of each its side, its highest speed, m/s, and its
+/// travel, m.
+pub fn imagined(throws: &[(usize, f64, f64)], known: &Known<'_>, period_s: f64) -> Imagined {
+    let half = known.half_way_m();
+    let (mut points, mut stretch) = (Vec::new(), Vec::new());
+    for (number, (side, fast_m_s, way_m)) in throws.iter().enumerate() {
+        for (travel_m, speed_m_s) in pushed(*fast_m_s, *way_m, period_s) {
+            // A finger that begins before the knob is on the other side of the middle.
+            let at_m = direction(*side) * (travel_m - 0.5 * way_m);
+            // The knob leaves the finger half way.
+            if at_m.abs() > half || direction(*side) * at_m > 0.0 || known.bends_near(at_m, CORNER_M) {
+                continue;
+            }
+            let (asked_n, slope_n_m) = known.asked_n(at_m, *side);
+            points.push(Point { side: *side, at_m, speed_m_s, left_n: 0.0, asked_n, slope_n_m });
+            stretch.push(number);
+        }
+    }
+    let weight = vec![1.0; points.len()];
+    Imagined { base: base(&points), candidates: candidates(&points, known, false), stretch, weight }
+}
+
+/// Travel and speed of a smooth movement, every `period_s`.
+pub fn pushed(fast_m_s: f64, way_m: f64, period_s: f64) -> impl Iterator<Item = (f64, f64)> {
+    /// Peak over mean speed.
+    const PEAK: f64 = 1.875;
+    let takes_s = PEAK * way_m / fast_m_s.max(1e-6);
+    (0..(takes_s / period_s) as usize).map(move |k| {
+        let u = k as f64 * period_s / takes_s;
+        let gone = way_m * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
+        (gone, fast_m_s * 16.0 * (u * (1.0 - u)).powi(2))
+    })
+}
+
+/// Variable that best shows a cause beside the world's curve.
+pub fn best_seen(id: &str) -> Variable {
+    match id {
+        "viscous-friction" => Variable::Velocity,
+        "force-gain" => Variable::Force,
+        _ => Variable::Place,
+    }
+}
+
+fn candidates(points: &[Point], known: &Known<'_>, viscous: bool) -> Vec<Candidate> {
+    let of = |f: &dyn Fn(&Point) -> f64| points.iter().map(f).collect::<Vec<f64>>();
+    let one = |id, name, unit, column| Candidate::one(id, Kind::Plant, name, unit, column);
+    let half = known.half_way_m();
+    let on = |side: usize| move |p: &Point| f64::from(u8::from(p.side == side));
+    let mut found = vec![
+        one("coulomb-friction", "Fc", "N", vec![1.0; points.len()]).positive(),
+        one("friction-asymmetry", "dFc to the right", "N", of(&on(0))),
+        one("friction-asymmetry", "dFc to the left", "N", of(&on(1))),
+    ];
+    if !viscous {
+        found.push(one("viscous-friction", "c", "N s/m", of(&|p| p.speed_m_s)).positive());
+    }
+    let spring = vec![of(&|p| direction(p.side) * p.at_m), of(&|p| direction(p.side))];
+    let names = vec![("k", "N/m"), ("f0", "N")];
+    found.push(Candidate::several("return-spring", Kind::Plant, spring, names).shaped(Shape::Spring { half }));
+    for k in 1..PLACES {
+        let place = half * (2.0 * k as f64 / PLACES as f64 - 1.0);
+        for width in WIDTHS.map(|share| 2.0 * half * share) {
+            let bind = one("local-resistance", "F", "N", of(&|p| bind_n(p.at_m, place, width))).positive();
+            if bind.columns[0].iter().filter(|v| **v > 0.3).count() >= LEAST_ON {
+                found.push(bind.at("place", place, "m").at("width", width, "m"));
+            }
+        }
+    }
+    found.push(Candidate::one("force-gain", Kind::Instrument, "g - 1", "1", of(&|p| p.asked_n)));
+    let scaled = of(&|p| -direction(p.side) * p.slope_n_m * p.at_m);
+    found.push(Candidate::one("length-scale", Kind::Instrument, "epsilon", "1", scaled));
+    for k in 1..=3 {
+        let wave = |p: &Point| (std::f64::consts::PI * f64::from(k) * (p.at_m + half) / (2.0 * half)).cos();
+        for (words, column) in [("both ways", of(&wave)), ("towards one side", of(&|p| direction(p.side) * wave(p)))] {
+            let expression = Some(format!("cos({k} pi x/X) {words}"));
+            found.push(Candidate { expression, ..one("other", "amplitude", "N", column) });
+        }
+    }
+    found.into_iter().map(|c| seen(c, ERRORS * known.error_n)).collect()
+}
+
+/// A cause that must reach some force, N, where it acts.
+fn seen(candidate: Candidate, least_n: f64) -> Candidate {
+    let column = &candidate.columns[0];
+    let most = column.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let acts: Vec<f64> = column.iter().filter(|v| v.abs() > 0.1 * most).map(|v| v * v).collect();
+    let size = (acts.iter().sum::<f64>() / acts.len().max(1) as f64).sqrt();
+    let strange = if candidate.expression.is_some() { STRANGE } else { 1.0 };
+    candidate.at_least(strange * least_n / size.max(1e-12))
+}
+
+/// Sentence on how the residual shows a cause.
+pub fn shows(found: &Found<'_>) -> String {
+    let value = found.parameters.first().map_or(0.0, |p| p.value);
+    let at = |name: &str| found.parameters.iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
+    match found.candidate.id {
+        "coulomb-friction" => format!("the knob asks for {value:.2} N more than the world's in both directions"),
+        "friction-asymmetry" => format!("the knob asks for {value:+.2} N more than the world's in one direction alone"),
+        "viscous-friction" => "what the knob asks for beyond the world's goes with its speed".to_owned(),
+        "return-spring" => "the knob is drawn to one place, the same in both directions".to_owned(),
+        "local-resistance" => {
+            format!(
+                "the knob binds at {:.1} mm of its way: it asks for {value:.2} N more there in both directions",
+                1e3 * at("place")
+            )
+        }
+        "force-gain" => format!(
+            "all forces are {:+.1} % of the world's too large; a switch that is harder by as much would look the same",
+            100.0 * value
+        ),
+        "length-scale" => format!("the curve is {:+.1} % longer than the world's", 100.0 * value),
+        other => format!("{other} shows beside the world's curve"),
+    }
+}

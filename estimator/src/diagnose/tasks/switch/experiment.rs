@@ -1,0 +1,147 @@
+//! Throws that would settle the open questions about a switch: the same regressors on a recording that has not been
+//! made yet.
+
+use super::curve;
+use super::model::Known;
+use super::rows::{Place, Row, Seen, direction};
+use super::throw::Push;
+use crate::diagnose::contract::{Alternative, Experiment, NextExperiment};
+use crate::diagnose::experiment::proposal::{LIKELY, SURE, power};
+use crate::diagnose::experiment::separation::{Imagined, separation};
+use crate::diagnose::experiment::waypoints::{THROW, Throws};
+use crate::diagnose::selection::comparison::Compared;
+use crate::segment::threshold::percentile;
+use haptics::Vec2;
+
+/// Numbers of throws. The least that is likely to suffice is proposed.
+const THROWS: [usize; 3] = [6, 12, 18];
+/// Lowest and highest speed of a finger, m/s.
+const FAST_M_S: (f64, f64) = (0.06, 0.15);
+/// Time without touch before and after, s.
+const FREE_S: f64 = 2.0;
+/// Travel between a finger's release and the next push, m: that of the spring and the gap.
+const GAP_M: f64 = 6e-3;
+/// Spacing of the rows of free fingers, in blocks.
+const FREE_EVERY: usize = 10;
+const WORDS: &str = "throw the switch over to both sides, slowly and fast in turn, press on at each stop, and let go for two seconds \
+                     before and after";
+
+/// The recording to make; `None` if it would settle no open question.
+pub fn propose(
+    open: &[Alternative],
+    seen: &Seen,
+    (push, curve, known): (&Push, Option<&Compared>, Option<&Known<'_>>),
+) -> Option<NextExperiment> {
+    let mut best: Option<NextExperiment> = None;
+    for count in THROWS {
+        let (asked, motion) = asked(seen, count)?;
+        let on_way = push.imagined(&imagine(seen, push, &motion));
+        let beside: Option<Imagined> = known.map(|known| {
+            let of = |t: &crate::diagnose::experiment::waypoints::Throw| {
+                (usize::from(!t.right), t.fast_m_s, 2.0 * asked.half_range)
+            };
+            curve::imagined(&motion.all().iter().map(of).collect::<Vec<_>>(), known, seen.period_s)
+        });
+        let told = |a: &Alternative| {
+            let pair = (a.instead_of.as_str(), a.id.as_str());
+            let on_curve = || separation(beside.as_ref()?, &curve?.study, pair);
+            separation(&on_way, &push.compared.study, pair).or_else(on_curve)
+        };
+        let told: Vec<(&Alternative, f64)> = open.iter().filter_map(|a| Some((a, told(a)?))).collect();
+        let least = told.iter().map(|t| t.1).reduce(f64::min)?;
+        let power = SURE * power(least);
+        if best.as_ref().is_none_or(|b| power > b.expected_power + 1e-3) {
+            let mut separates: Vec<String> = Vec::new();
+            for id in told.iter().flat_map(|(a, _)| [&a.instead_of, &a.id]) {
+                if !separates.contains(id) {
+                    separates.push(id.clone());
+                }
+            }
+            let motion = format!("{WORDS}; {count} throws");
+            best = Some(NextExperiment { motion, separates, expected_power: power, experiment: Some(asked) });
+        }
+        if best.as_ref().is_some_and(|b| b.expected_power > LIKELY) {
+            break;
+        }
+    }
+    best
+}
+
+/// The travel of the recorded throws, at least at their speed.
+fn asked(seen: &Seen, count: usize) -> Option<(Experiment, Throws)> {
+    let of_side = |side: usize| seen.rows.iter().filter(move |r| r.side() == Some(side));
+    let way = |side: usize| {
+        let mut places: Vec<f64> = of_side(side).map(|r| r.tip.x).collect();
+        (percentile(&mut places.clone(), 0.01), percentile(&mut places, 0.99))
+    };
+    let ways = [way(0), way(1)];
+    let half_m = ways.iter().map(|(low, high)| 0.5 * (high - low)).fold(0.0, f64::max);
+    let mut speeds: Vec<f64> = [0, 1].into_iter().flat_map(of_side).map(|r| r.speed_m_s().abs()).collect();
+    let half_range = half_m + GAP_M;
+    // The two fingers touch the knob on either side of it.
+    let middles: Vec<f64> =
+        ways.iter().filter(|(low, high)| high > low).map(|(low, high)| 0.5 * (low + high)).collect();
+    let mut asked = Experiment {
+        id: THROW.to_owned(),
+        seconds: f64::MAX,
+        free_s: FREE_S,
+        middle: middles.iter().sum::<f64>() / middles.len().max(1) as f64,
+        half_range,
+        fast: percentile(&mut speeds, 0.95).clamp(FAST_M_S.0, FAST_M_S.1),
+        across_n: 0.0,
+        added_weight_n: 0.0,
+        added_lever_m: 0.0,
+    };
+    // Long enough for that many throws: one begins as long as there is time.
+    let mut seconds = 0.0;
+    for _ in 0..count {
+        asked.seconds = seconds + 1e-3;
+        seconds = Throws::of(&asked, half_range, half_range - GAP_M)?.duration_s();
+    }
+    asked.seconds = seconds - 1e-3;
+    let motion = Throws::of(&asked, half_range, half_range - GAP_M)?;
+    Some((asked, motion))
+}
+
+/// Predicted rows of these throws.
+fn imagine(seen: &Seen, push: &Push, motion: &Throws) -> Seen {
+    let mut rows: Vec<Row> = Vec::new();
+    let row = |time_s: f64, place: Place, x_m: f64, speed_m_s: f64| Row {
+        recording: 0,
+        time_s,
+        place,
+        tip: Vec2::new(x_m, 0.0),
+        velocity: Vec2::new(speed_m_s, 0.0),
+        acceleration_m_s2: 0.0,
+        force: Vec2::zeros(),
+        above_zero: Vec2::zeros(),
+    };
+    let mut stretch = Vec::new();
+    let mut number = 0;
+    for throw in motion.all() {
+        let side = usize::from(!throw.right);
+        let Some((low, high)) = push.seen_m(side) else { continue };
+        let way_m = (high - low) + 2.0 * GAP_M;
+        number += 1;
+        for (k, (gone, speed)) in curve::pushed(throw.fast_m_s, way_m, seen.period_s).enumerate() {
+            let travel = low - GAP_M + gone;
+            if (low..high).contains(&travel) {
+                let time_s = FREE_S + throw.begins_s + k as f64 * seen.period_s;
+                rows.push(row(time_s, Place::Push(side), direction(side) * travel, direction(side) * speed));
+                stretch.push(number);
+            }
+        }
+    }
+    let end_s = FREE_S + motion.duration_s();
+    for (finger, axis) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        number += 1;
+        for from_s in [0.0, end_s] {
+            let every_s = FREE_EVERY as f64 * seen.period_s;
+            for k in 0..(FREE_S / every_s) as usize {
+                rows.push(row(from_s + k as f64 * every_s, Place::Free(finger, axis), 0.0, 0.0));
+                stretch.push(number);
+            }
+        }
+    }
+    Seen { rows, stretch, recordings: 1, ..*seen }
+}

@@ -1,0 +1,177 @@
+//! Free-run simulation of a knob: a hand holds it on its measured path, and its curve acts on it.
+
+use super::curve::{Point, bind_n};
+use super::model::asked_n;
+use super::rows::{Place, Row, direction};
+use super::throw::{Curve, along_m};
+use crate::diagnose::contract::RolloutOf;
+use crate::diagnose::free_run::channel::{Forward, causes, consecutive};
+use crate::diagnose::free_run::integrate::{Moment, Side, run};
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::selection::comparison::Study;
+use haptics::law::object::ToggleCurve;
+use haptics::law::{Effect, Inertia, Memories, Motion};
+
+/// Rows along the travel of a push, in the order of a comparison.
+struct Travel {
+    time_s: Vec<f64>,
+    /// Side of the push of each row; `None` without a push.
+    side: Vec<Option<usize>>,
+    stretch: Vec<usize>,
+    period_s: f64,
+    /// Along the travel, m and m/s.
+    place_m: Vec<f64>,
+    speed_m_s: Vec<f64>,
+}
+
+impl Travel {
+    fn windows(&self) -> Vec<Vec<usize>> {
+        let pushed: Vec<usize> = (0..self.time_s.len()).filter(|i| self.side[*i].is_some()).collect();
+        let of = |i: usize| (self.stretch[i], self.side[i]);
+        consecutive(&pushed, &|i| self.time_s[i], self.period_s, &|a, b| of(a) == of(b))
+    }
+
+    /// Errors of a knob of this mass, kg, under this driving force in every row, N, and these forces against it.
+    fn errors(
+        &self,
+        window: &[usize],
+        mass_kg: f64,
+        drive: &dyn Fn(usize) -> f64,
+        acts: &dyn Fn(&Motion) -> f64,
+    ) -> (f64, f64) {
+        let moment = |i: &usize| Moment {
+            motion: Motion {
+                time_s: self.time_s[*i],
+                position: self.place_m[*i],
+                velocity: self.speed_m_s[*i],
+                ..Motion::default()
+            },
+            drive: drive(*i),
+            beside: [0.0; 2],
+        };
+        let moments: Vec<Moment> = window.iter().map(moment).collect();
+        // A negative mass is noise of a zero one.
+        let effects = [Effect::new(&Inertia, &[mass_kg.max(0.0)])];
+        let acts = &mut |motion: &Motion, _: [f64; 2]| acts(motion);
+        run(&moments, Side { effects: &effects, memory: Memories::default(), acts, driven: false })
+    }
+}
+
+/// Contribution of a candidate to a row, N.
+fn added(candidate: &Candidate, own: &[f64], row: usize) -> f64 {
+    candidate.columns.iter().zip(own).map(|(column, value)| value * column[row]).sum()
+}
+
+/// Free-run model of a knob whose curve is estimated.
+pub struct Thrown {
+    travel: Travel,
+    curves: Vec<Curve>,
+}
+
+impl Thrown {
+    pub fn new(rows: &[Row], stretch: &[usize], period_s: f64, curves: &[Curve]) -> Self {
+        let pushed = |r: &Row| matches!(r.place, Place::Push(_)).then(|| r.side()).flatten();
+        let travel = Travel {
+            time_s: rows.iter().map(|r| r.time_s).collect(),
+            side: rows.iter().map(pushed).collect(),
+            stretch: stretch.to_vec(),
+            period_s,
+            place_m: rows.iter().map(along_m).collect(),
+            speed_m_s: rows.iter().map(Row::speed_m_s).collect(),
+        };
+        Self { travel, curves: curves.to_vec() }
+    }
+
+    /// Curve of a side with its forces from the model's values.
+    fn curve<'a>(&'a self, side: usize, values: &'a [f64]) -> Option<(&'a Curve, &'a [f64])> {
+        let mut at = 0;
+        self.curves.iter().find_map(|curve| {
+            let own = at..at + curve.len();
+            at = own.end;
+            (curve.side == side).then(|| (curve, &values[own]))
+        })
+    }
+}
+
+impl Forward for Thrown {
+    fn of(&self) -> (RolloutOf, &str) {
+        (RolloutOf::Force, "N")
+    }
+
+    fn windows(&self) -> Vec<Vec<usize>> {
+        self.travel.windows()
+    }
+
+    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
+        let side = self.travel.side[window[0]].unwrap_or(0);
+        let curve = self.curve(side, values);
+        let is_drag = |c: &Candidate| c.id == "viscous-friction";
+        let drag: f64 = causes(study, picks, values).filter(|(c, _)| is_drag(c)).map(|(_, own)| own[0]).sum();
+        let drive = |i: usize| {
+            let beside = causes(study, picks, values).filter(|(c, _)| !is_drag(c));
+            study.y[i] - beside.map(|(c, own)| added(c, own, i)).sum::<f64>()
+        };
+        let acts = |motion: &Motion| {
+            curve.map_or(0.0, |(curve, forces)| curve.force_n(motion.position, forces)) + drag * motion.velocity
+        };
+        // The mass is the last regressor of the model.
+        Ok(self.travel.errors(window, values[study.base.len() - 1], &drive, &acts))
+    }
+}
+
+/// A knob with the curve of a world.
+pub struct Captured {
+    travel: Travel,
+    points: Vec<Point>,
+    curve: ToggleCurve,
+}
+
+impl Captured {
+    pub fn new(curve: &ToggleCurve, points: Vec<Point>, time_s: Vec<f64>, stretch: &[usize], period_s: f64) -> Self {
+        let travel = Travel {
+            time_s,
+            side: points.iter().map(|p| Some(p.side)).collect(),
+            stretch: stretch.to_vec(),
+            period_s,
+            place_m: points.iter().map(|p| direction(p.side) * p.at_m).collect(),
+            speed_m_s: points.iter().map(|p| p.speed_m_s).collect(),
+        };
+        Self { travel, points, curve: curve.clone() }
+    }
+}
+
+impl Forward for Captured {
+    fn of(&self) -> (RolloutOf, &str) {
+        (RolloutOf::Force, "N")
+    }
+
+    fn windows(&self) -> Vec<Vec<usize>> {
+        self.travel.windows()
+    }
+
+    fn errors(&self, study: &Study, window: &[usize], picks: &[usize], values: &[f64]) -> Result<(f64, f64), String> {
+        let side = self.points[window[0]].side;
+        let goes_with_motion =
+            |c: &Candidate| ["viscous-friction", "return-spring", "local-resistance"].contains(&c.id);
+        let drive = |i: usize| {
+            let Point { left_n, asked_n, slope_n_m, .. } = self.points[i];
+            let beside = causes(study, picks, values).filter(|(c, _)| !goes_with_motion(c));
+            // The position of the switch is estimated.
+            let moved = values[0] * direction(side) * slope_n_m;
+            left_n + asked_n - moved - beside.map(|(c, own)| added(c, own, i)).sum::<f64>()
+        };
+        let laws: Vec<(&Candidate, &[f64])> =
+            causes(study, picks, values).filter(|(c, _)| goes_with_motion(c)).collect();
+        let acts = |motion: &Motion| {
+            let at_m = direction(side) * motion.position;
+            let law = |(candidate, own): &(&Candidate, &[f64])| match (candidate.id, candidate.searched.as_slice()) {
+                ("viscous-friction", _) => own[0] * motion.velocity,
+                ("return-spring", _) => direction(side) * (own[0] * at_m + own[1]),
+                (_, [place, width]) => own[0] * bind_n(at_m, place.value, width.value),
+                _ => 0.0,
+            };
+            asked_n(&self.curve, at_m, side).0 + laws.iter().map(law).sum::<f64>()
+        };
+        Ok(self.travel.errors(window, 0.0, &drive, &acts))
+    }
+}

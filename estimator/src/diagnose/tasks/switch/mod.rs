@@ -1,0 +1,137 @@
+//! Diagnosis of a toggle switch that two fingers throw back and forth.
+//!
+//! The curve of a switch is measured, not derived. Without a world, its curve over position is estimated in both
+//! directions, and only effects of speed, time and sensors can be identified. With a world its curve is the model, and
+//! deviations from it are candidates as well.
+
+pub(crate) mod curve;
+pub(crate) mod experiment;
+pub(crate) mod held_knob;
+pub(crate) mod model;
+pub(crate) mod rows;
+pub(crate) mod simulated_channels;
+pub(crate) mod stop;
+pub(crate) mod throw;
+
+use crate::diagnose::answer::atlas::View;
+use crate::diagnose::answer::build::{Beside, Found, Part, answer};
+use crate::diagnose::contract::{Alternative, CauseParameter, Diagnosis, NextExperiment, NotExcited};
+use crate::diagnose::free_run::pads::Pads;
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::options::Options;
+use crate::diagnose::recording::sample_faults;
+use crate::diagnose::selection::comparison::Compared;
+use crate::diagnose::selection::rules::threshold;
+use crate::estimate::EstimateError;
+use haptics::recording::Recording;
+use held_knob::Captured;
+use model::Known;
+use throw::Push;
+
+/// All comparisons of the recordings of one switch.
+struct Look {
+    seen: rows::Seen,
+    push: Push,
+    curve: Option<(Compared, View, Captured)>,
+    stop: Option<(Compared, View, Pads)>,
+}
+
+fn look(recordings: &[Recording], bad: &[Vec<bool>], options: &Options) -> Result<Look, EstimateError> {
+    let seen = rows::seen(recordings, bad)?;
+    let known = options.world.as_ref().and_then(Known::of);
+    let limit = threshold(seen.period_s);
+    let push = throw::push(&seen, limit)?;
+    options.progress.tell(0.5)?;
+    let curve = match &known {
+        Some(known) => curve::curve(&push, known, seen.period_s, limit)?,
+        None => None,
+    };
+    // With another knob force or a sensor error, the knob rests at another position in its stops.
+    let has = |id: &str| push.compared.study.picks().iter().any(|p| push.compared.study.candidates[*p].id == id);
+    let other = curve.as_ref().is_some_and(|(c, ..)| !c.study.chosen.is_empty()) || has("friction-change");
+    let stop = if other { None } else { stop::stop(&seen, known.as_ref(), limit)? };
+    Ok(Look { seen, push, curve, stop })
+}
+
+/// The channels of other recordings of the same switch.
+pub fn channels(recordings: &[Recording], options: &Options) -> Result<Vec<Compared>, EstimateError> {
+    let bad: Vec<Vec<bool>> = recordings.iter().map(|r| sample_faults::faults(r).bad).collect();
+    let Look { push, curve, stop, .. } = look(recordings, &bad, options)?;
+    Ok(std::iter::once(push.compared).chain(curve.map(|c| c.0)).chain(stop.map(|s| s.0)).collect())
+}
+
+/// Diagnoses recordings of one switch.
+pub fn switch(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let faults: Vec<sample_faults::Faults> = recordings.iter().map(sample_faults::faults).collect();
+    let bad: Vec<Vec<bool>> = faults.iter().map(|f| f.bad.clone()).collect();
+    let has_world = options.world.as_ref().and_then(Known::of).is_some();
+    let Look { seen, push, curve, stop } = look(recordings, &bad, options)?;
+    let mut beside = Beside {
+        model: if has_world { "curve and stops of the world" } else { "any curve there and back, pads that give" }
+            .to_owned(),
+        causes: faults.into_iter().flat_map(|f| f.causes).collect(),
+        ..Beside::default()
+    };
+    unseen(&seen, has_world, &mut beside);
+    let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
+    let (on_way, on_curve, on_stop) =
+        (|f: &Found<'_>| Push::shows(f), |f: &Found<'_>| curve::shows(f), |f: &Found<'_>| stop::shows(f));
+    let mut parts: Vec<Part<'_>> = vec![push.compared.part(&on_way, &plain, &Push::usual).running(&push.thrown)];
+    parts.extend(curve.as_ref().map(|(c, _, knob)| c.part(&on_curve, &plain, &|_| None).running(knob)));
+    parts.extend(stop.as_ref().map(|(s, _, pads)| s.part(&on_stop, &plain, &|_| None).running(pads)));
+    let known = options.world.as_ref().and_then(Known::of);
+    let asked = |open: &[Alternative]| {
+        experiment::propose(open, &seen, (&push, curve.as_ref().map(|c| &c.0), known.as_ref())).or_else(|| next(open))
+    };
+    let mut found = answer(&parts, beside, &asked);
+    if options.atlas {
+        let limit = threshold(seen.period_s);
+        let channels = &mut found.atlas.channels;
+        channels.push(push.compared.atlas(&push.view, limit, throw::best_seen));
+        channels.extend(curve.as_ref().map(|(c, view, _)| c.atlas(view, limit, curve::best_seen)));
+        channels.extend(stop.as_ref().map(|(s, view, _)| s.atlas(view, limit, stop::best_seen)));
+    }
+    let beside = curve.iter().map(|(c, ..)| c).chain(stop.iter().map(|(s, ..)| s));
+    let compared = std::iter::once(&push.compared).chain(beside);
+    found.hypotheses = simulated_channels::hypotheses(&compared.map(|c| &c.study).collect::<Vec<_>>());
+    Ok(found)
+}
+
+/// Causes that no recording of this kind shows.
+fn unseen(seen: &rows::Seen, has_world: bool, beside: &mut Beside) {
+    let mut add = |ids: &[&str], why: &str| {
+        beside.not_excited.extend(ids.iter().map(|id| NotExcited { id: (*id).to_owned(), why: why.to_owned() }));
+    };
+    if !has_world {
+        let why = "the curve is the recording's own; name a world that was captured before to compare it with";
+        let ids = ["coulomb-friction", "friction-asymmetry", "return-spring", "local-resistance", "force-gain"];
+        add(&ids, why);
+        add(&["length-scale", "added-constraint"], why);
+    }
+    add(
+        &["hysteresis", "backlash"],
+        "the motion turned at the stops only; turn round in the middle of the way, in touch",
+    );
+    for (side, way) in [(0, "right"), (1, "left")] {
+        if seen.throws[side] == 0 {
+            beside
+                .warnings
+                .push(format!("no throw to the {way} was seen: what the knob asks for that way is not looked at"));
+        }
+    }
+}
+
+/// Recording that would settle the open questions.
+fn next(open: &[Alternative]) -> Option<NextExperiment> {
+    let first = open.first()?;
+    let mut separates = vec![first.instead_of.clone()];
+    separates.extend(open.iter().filter(|a| a.instead_of == first.instead_of).map(|a| a.id.clone()));
+    Some(NextExperiment {
+        motion: "throw the switch over to both sides, three times slowly and three times fast, press on at each stop, and let go for \
+                 two seconds before and after"
+            .to_owned(),
+        separates,
+        expected_power: 0.8,
+        experiment: None,
+    })
+}

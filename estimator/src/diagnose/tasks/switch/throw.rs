@@ -1,0 +1,340 @@
+//! Force during the travel of a throw, relative to the curve at the same position and direction: effects of speed and
+//! time, and readings of fingers without touch. The curve itself is estimated here, one per direction. Its comparison
+//! with the world's is a separate channel.
+
+use super::held_knob::Thrown;
+use super::rows::{Place, Row, Seen, direction};
+use crate::diagnose::answer::atlas::{Variable, View};
+use crate::diagnose::answer::build::Found;
+use crate::diagnose::experiment::separation::Imagined;
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::selection::channel::Channel;
+use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::estimate::EstimateError;
+use crate::identify::linear::least_squares;
+use haptics::law::Kind;
+
+/// Spacing of the nodes of the estimated curve, m, and their largest number.
+const APART_M: f64 = 0.7e-3;
+const MOST_PLACES: usize = 24;
+/// Least number of rows on the travel of throws.
+const LEAST_ROWS: usize = 30;
+/// Distance from the top of the curve within which rows are left out, m: fast throws round its corner more than slow
+/// ones.
+const CORNER_M: f64 = 0.6e-3;
+/// Speed below which a finger rests with the knob, m/s.
+const REST_M_S: f64 = 2e-3;
+/// Number of tried times of a sudden change of friction.
+const CHANGES: usize = 20;
+/// Least viscous friction, N s/m. Pads with damping, and corners that a fast throw rounds, look like nearly half of it.
+const LEAST_VISCOUS_N_S_M: f64 = 0.8;
+
+/// The comparison.
+pub struct Push {
+    pub compared: Compared,
+    /// Variables of the plots of its rows.
+    pub view: View,
+    /// Rows of the throws used, and the contribution of the found causes to the force along the travel there, N.
+    pub rows: Vec<(Row, f64)>,
+    curves: Vec<Curve>,
+    /// Forces of the curves in a first fit, N.
+    forces_n: Vec<Vec<f64>>,
+    /// Free-run model of a knob.
+    pub thrown: Thrown,
+}
+
+/// Position on the estimated curve, along the travel: rising in both directions.
+pub fn along_m(row: &Row) -> f64 {
+    row.side().map_or(0.0, |side| direction(side) * row.tip.x)
+}
+
+/// Force of the knob along the travel, or that of a free finger, N.
+fn force_n(row: &Row) -> f64 {
+    match row.place {
+        Place::Push(side) => direction(side) * row.force.x,
+        Place::Stop(_) => 0.0,
+        Place::Free(_, axis) => row.force[axis],
+    }
+}
+
+/// A piecewise linear curve in one direction.
+#[derive(Clone)]
+pub struct Curve {
+    pub side: usize,
+    places: Vec<f64>,
+}
+
+impl Curve {
+    fn of(rows: &[Row], side: usize) -> Option<Self> {
+        let own: Vec<f64> = rows.iter().filter(|r| r.place == Place::Push(side)).map(along_m).collect();
+        let (low, high) = own.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+        if own.len() < 2 || high - low < APART_M {
+            return None;
+        }
+        let pieces = (((high - low) / APART_M).ceil() as usize).clamp(1, MOST_PLACES).min(own.len() / 4).max(1);
+        let places = (0..=pieces).map(|k| low + (high - low) * k as f64 / pieces as f64).collect();
+        Some(Self { side, places })
+    }
+
+    /// Share of the k-th node in a row.
+    fn share(&self, row: &Row, k: usize) -> f64 {
+        if row.place == Place::Push(self.side) { self.share_at(along_m(row), k) } else { 0.0 }
+    }
+
+    /// Share of the k-th node at a position along the travel, m.
+    fn share_at(&self, along_m: f64, k: usize) -> f64 {
+        let step = (self.places[self.places.len() - 1] - self.places[0]) / (self.places.len() - 1) as f64;
+        (1.0 - (along_m - self.places[k]).abs() / step).max(0.0)
+    }
+
+    /// Force of a curve with these node values at a position along the travel, N; constant beyond its ends.
+    pub fn force_n(&self, along_m: f64, force_n: &[f64]) -> f64 {
+        let within = along_m.clamp(self.places[0], self.places[self.places.len() - 1]);
+        force_n.iter().enumerate().map(|(k, force)| self.share_at(within, k) * force).sum()
+    }
+
+    /// Number of its regressors.
+    pub fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    fn columns(&self, rows: &[Row]) -> Vec<Vec<f64>> {
+        (0..self.places.len()).map(|k| rows.iter().map(|r| self.share(r, k)).collect()).collect()
+    }
+
+    /// Slope of a curve with these forces at a row, N/m along the travel.
+    fn slope(&self, row: &Row, force_n: &[f64]) -> f64 {
+        if row.place != Place::Push(self.side) {
+            return 0.0;
+        }
+        let k = self.places.partition_point(|p| *p <= along_m(row)).clamp(1, self.places.len() - 1);
+        (force_n[k] - force_n[k - 1]) / (self.places[k] - self.places[k - 1])
+    }
+
+    fn top_m(&self, force_n: &[f64]) -> f64 {
+        let most = (0..self.places.len()).max_by(|a, b| force_n[*a].total_cmp(&force_n[*b])).unwrap_or(0);
+        self.places[most]
+    }
+}
+
+/// Curves of both directions, over their observed range.
+fn curves(rows: &[Row]) -> Vec<Curve> {
+    [0, 1].into_iter().filter_map(|side| Curve::of(rows, side)).collect()
+}
+
+/// Node forces of all curves in a plain fit.
+fn first_look(rows: &[Row], curves: &[Curve]) -> Result<Vec<Vec<f64>>, EstimateError> {
+    curves
+        .iter()
+        .map(|curve| {
+            let own: Vec<Row> = rows.iter().filter(|r| r.place == Place::Push(curve.side)).copied().collect();
+            let y: Vec<f64> = own.iter().map(force_n).collect();
+            Ok(least_squares(&curve.columns(&own), &y, None)?.values.clone())
+        })
+        .collect()
+}
+
+/// Compares the causes that depend on speed and time.
+pub fn push(seen: &Seen, threshold: f64) -> Result<Push, EstimateError> {
+    let moves = |r: &Row| !matches!(r.place, Place::Push(_)) || r.speed_m_s() > REST_M_S;
+    let on = |r: &&Row| !matches!(r.place, Place::Stop(_)) && moves(r);
+    let all: Vec<Row> = seen.rows.iter().filter(on).copied().collect();
+    let rough = curves(&all);
+    let forces = first_look(&all, &rough)?;
+    let tops: Vec<(usize, f64)> = rough.iter().zip(&forces).map(|(c, f)| (c.side, c.top_m(f))).collect();
+    let corner =
+        |r: &Row| tops.iter().any(|(side, top)| r.place == Place::Push(*side) && (along_m(r) - top).abs() < CORNER_M);
+    let kept = |i: usize| {
+        let r = &seen.rows[i];
+        !matches!(r.place, Place::Stop(_)) && moves(r) && !corner(r)
+    };
+    let indices: Vec<usize> = (0..seen.rows.len()).filter(|i| kept(*i)).collect();
+    let rows: Vec<Row> = indices.iter().map(|i| seen.rows[*i]).collect();
+    // A gap left by removed rows ends a segment.
+    let mut number = 0;
+    let stretch: Vec<usize> = (0..rows.len())
+        .map(|k| {
+            let follows =
+                k > 0 && seen.stretch[indices[k]] == seen.stretch[indices[k - 1]] && indices[k] == indices[k - 1] + 1;
+            number += usize::from(k > 0 && !follows);
+            number
+        })
+        .collect();
+    let pushed = rows.iter().filter(|r| matches!(r.place, Place::Push(_))).count();
+    if pushed < LEAST_ROWS {
+        return Err(EstimateError::Other(format!(
+            "only {pushed} hundredths of a second of pushing a moving knob were seen, {LEAST_ROWS} are needed: throw the switch over more often"
+        )));
+    }
+    let curves = curves(&rows);
+    let forces = first_look(&rows, &curves)?;
+    let base = base(&rows, &curves);
+    let y: Vec<f64> = rows.iter().map(force_n).collect();
+    let candidates = candidates(seen, &rows, &curves, &forces);
+    let testable: Vec<bool> = (0..rows.len()).map(|i| i % 2 == 0).collect();
+    let weight = vec![1.0; rows.len()];
+    let channel = Channel { y, base, candidates, stretch: stretch.clone(), testable, weight, period_s: seen.period_s };
+    let study = channel.compare(threshold)?;
+    let found = of_found(&study, rows.len());
+    let along = rows.iter().map(|r| matches!(r.place, Place::Push(_))).collect();
+    let state = rows.iter().map(Row::state).collect();
+    let view = view(&rows);
+    let is_push = |(r, _): &(Row, f64)| matches!(r.place, Place::Push(_));
+    let thrown = Thrown::new(&rows, &stretch, seen.period_s, &curves);
+    let kept = rows.into_iter().zip(found).filter(is_push).collect();
+    let (channel, unit, floor) = ("force on the knob", "N", seen.noise_n);
+    let compared = Compared { study, channel, unit, floor, along, stretch, state };
+    Ok(Push { compared, view, rows: kept, curves, forces_n: forces, thrown })
+}
+
+/// Base model: the curves of both directions and the knob's mass, which falls over faster than the hand moves.
+fn base(rows: &[Row], curves: &[Curve]) -> Vec<Vec<f64>> {
+    let mut base: Vec<Vec<f64>> = curves.iter().flat_map(|c| c.columns(rows)).collect();
+    let of_mass = |r: &Row| if let Place::Push(side) = r.place { direction(side) * r.acceleration_m_s2 } else { 0.0 };
+    base.push(rows.iter().map(of_mass).collect());
+    base
+}
+
+/// Variables of the plots. Fingers without touch are sensors of their own.
+fn view(rows: &[Row]) -> View {
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let sensor = |r: &Row| match r.place {
+        Place::Free(finger, axis) => 1 + 2 * finger + axis,
+        Place::Push(_) | Place::Stop(_) => 0,
+    };
+    let over = vec![
+        (Variable::Time, of(&|r| r.time_s)),
+        (Variable::Place, of(&|r| r.tip.x)),
+        (Variable::Velocity, of(&Row::speed_m_s)),
+    ];
+    let way = of(&|r| r.side().map_or(0.0, direction));
+    let sensor = rows.iter().map(sensor).collect();
+    View { sensor, way, ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
+}
+
+/// Variable that best shows a cause on the travel of the throws.
+pub fn best_seen(id: &str) -> Variable {
+    match id {
+        "viscous-friction" => Variable::Velocity,
+        "time-delay" => Variable::Place,
+        _ => Variable::Time,
+    }
+}
+
+/// Contribution of the chosen causes to the rows.
+fn of_found(study: &Study, rows: usize) -> Vec<f64> {
+    let mut sum = vec![0.0; rows];
+    let Some(solved) = &study.solved else { return sum };
+    let columns = study.chosen.iter().flat_map(|c| &study.candidates[c.candidate].columns);
+    for (column, value) in columns.zip(&solved.values[study.base.len()..]) {
+        sum.iter_mut().zip(column.iter()).for_each(|(s, c)| *s += value * c);
+    }
+    sum
+}
+
+fn candidates(seen: &Seen, rows: &[Row], curves: &[Curve], forces: &[Vec<f64>]) -> Vec<Candidate> {
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let pushed = |f: &dyn Fn(&Row) -> f64| of(&|r| if matches!(r.place, Place::Push(_)) { f(r) } else { 0.0 });
+    let mut found = vec![
+        Candidate::one("viscous-friction", Kind::Plant, "c", "N s/m", pushed(&|r| r.speed_m_s()))
+            .positive()
+            .at_least(LEAST_VISCOUS_N_S_M),
+    ];
+    let late = |r: &Row| {
+        let slope: f64 = curves.iter().zip(forces).map(|(c, f)| c.slope(r, f)).sum();
+        -slope * r.speed_m_s()
+    };
+    // Damping of the pads puts the force slightly ahead, which is no fault of the clocks.
+    found.push(Candidate::one("time-delay", Kind::Instrument, "tau", "s", pushed(&late)).positive());
+    let span_s = rows.iter().map(|r| r.time_s).fold(0.0, f64::max).max(1e-9);
+    if seen.recordings == 1 {
+        found.push(Candidate::one("friction-change", Kind::Plant, "rate", "N/s", pushed(&|r| r.time_s)));
+        for k in 1..CHANGES {
+            let t0 = span_s * k as f64 / CHANGES as f64;
+            let column = pushed(&|r| f64::from(u8::from(r.time_s >= t0)));
+            found.push(Candidate::one("friction-change", Kind::Plant, "change", "N", column).at("t0", t0, "s"));
+        }
+    }
+    for recording in 1..seen.recordings {
+        let column = pushed(&|r| f64::from(u8::from(r.recording >= recording)));
+        let change = Candidate::one("friction-change", Kind::Plant, "change", "N", column);
+        found.push(change.at("from recording", (recording + 1) as f64, "1"));
+    }
+    sensors(rows, &mut found);
+    for k in 1..=3 {
+        let wave = |r: &Row| (std::f64::consts::PI * f64::from(k) * r.time_s / span_s).cos();
+        let column = pushed(&|r| r.side().map_or(0.0, direction) * wave(r));
+        let expression = Some(format!("cos({k} pi t/T), the same way in both directions"));
+        found.push(Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "N", column) });
+    }
+    found
+}
+
+/// A bias or a drift of single channels, of a finger, or of all.
+fn sensors(rows: &[Row], found: &mut Vec<Candidate>) {
+    const BIAS: [[(&str, &str); 2]; 2] = [[("bx1", "N"), ("by1", "N")], [("bx2", "N"), ("by2", "N")]];
+    const DRIFT: [[(&str, &str); 2]; 2] = [[("rx1", "N/s"), ("ry1", "N/s")], [("rx2", "N/s"), ("ry2", "N/s")]];
+    let mut all = |id: &'static str, names: &[[(&'static str, &'static str); 2]; 2], size: &dyn Fn(&Row) -> f64| {
+        let column = |f: usize, axis: usize| rows.iter().map(|r| r.share(f, axis) * size(r)).collect::<Vec<f64>>();
+        for (finger, names) in names.iter().enumerate() {
+            for (axis, (name, unit)) in names.iter().enumerate() {
+                found.push(Candidate::one(id, Kind::Instrument, name, unit, column(finger, axis)));
+            }
+            let both = vec![column(finger, 0), column(finger, 1)];
+            found.push(Candidate::several(id, Kind::Instrument, both, names.to_vec()));
+        }
+        let columns = vec![column(0, 0), column(0, 1), column(1, 0), column(1, 1)];
+        found.push(Candidate::several(id, Kind::Instrument, columns, names.concat()));
+    };
+    all("force-bias", &BIAS, &|_| 1.0);
+    all("force-drift", &DRIFT, &|r| r.time_s);
+}
+
+impl Push {
+    /// Predicted regressors on rows that have not been measured yet.
+    pub fn imagined(&self, seen: &Seen) -> Imagined {
+        Imagined {
+            base: base(&seen.rows, &self.curves),
+            candidates: candidates(seen, &seen.rows, &self.curves, &self.forces_n),
+            stretch: seen.stretch.clone(),
+            weight: vec![1.0; seen.rows.len()],
+        }
+    }
+
+    /// Range of the travel seen in the throws of a side, m.
+    pub fn seen_m(&self, side: usize) -> Option<(f64, f64)> {
+        let curve = self.curves.iter().find(|c| c.side == side)?;
+        curve.places.first().copied().zip(curve.places.last().copied())
+    }
+
+    /// Sentence on how the residual shows a cause.
+    pub fn shows(found: &Found<'_>) -> String {
+        let value = found.parameters.first().map_or(0.0, |p| p.value);
+        match found.candidate.id {
+            "viscous-friction" => {
+                format!("fast throws ask for more force than slow ones at the same place ({value:.2} N s/m)")
+            }
+            "friction-change" => {
+                "at the same place the knob asks for another force, the same way in both directions, as time goes on"
+                    .to_owned()
+            }
+            "time-delay" => {
+                format!("the force comes {:.1} ms after the motion: fast throws have their peak elsewhere", 1e3 * value)
+            }
+            "force-bias" => "fingers that touch nothing feel a force".to_owned(),
+            "force-drift" => "the forces of fingers that touch nothing go with time".to_owned(),
+            other => format!("{other} shows on the way of the throws"),
+        }
+    }
+
+    /// Smallest sizes that matter, with the experiment that would show them.
+    pub fn usual(candidate: &Candidate) -> Option<(f64, &'static str)> {
+        Some(match (candidate.id, candidate.linear[0].0) {
+            ("viscous-friction", _) => (2.0, "the throws were all of one speed; throw it slowly and fast"),
+            ("friction-change", "change") => (0.05, "there were few throws; go on for longer"),
+            ("time-delay", _) => (5e-3, "the throws were all of one speed; throw it slowly and fast"),
+            ("force-bias", _) => (0.01, "no finger was ever free; start and end with a second of free motion"),
+            _ => return None,
+        })
+    }
+}

@@ -1,0 +1,141 @@
+//! Scale of the lengths from free fall, whose acceleration is g.
+
+use crate::diagnose::contract::{Alternative, Cause, Gain, RolloutOf, parameter};
+use crate::diagnose::free_run::windows::{Compared, told};
+use crate::diagnose::selection::held_out_gain::chi_square_tail;
+use crate::diagnose::tasks::thrown_body::powers;
+use crate::identify::tossed::Tossed;
+use crate::identify::tossed::flight::{Fall, end, least};
+use crate::identify::tossed::pose::Track;
+use haptics::law::Kind;
+use nalgebra::DVector;
+
+/// Every so many-th throw is held out.
+const HELD_OUT: usize = 4;
+/// Least evidence of a cause: 2 ln(likelihood) less the penalty of its parameter.
+const THRESHOLD: f64 = 20.0;
+/// Before anything is seen: clocks are off by this share (a crystal by far less; one standard deviation, generously),
+/// and lengths that a person put in by this one.
+const CLOCKS: f64 = 1e-3;
+const LENGTHS: f64 = 2e-2;
+
+/// The scale as a cause, with a clock error as its alternative; `None` if the fall agrees with gravity.
+pub fn scale(seen: &Tossed, gravity_m_s2: f64) -> Option<(Cause, Alternative)> {
+    let (value, error) = (seen.fall.down_m_s2 / gravity_m_s2 - 1.0, seen.fall.error_m_s2 / gravity_m_s2);
+    let lambda = (value / error).powi(2);
+    if lambda - (seen.fall.throws as f64).ln() < THRESHOLD {
+        return None;
+    }
+    // A relative clock error δ changes the acceleration by 2 δ.
+    let likely =
+        |spread: f64, at: f64| (-0.5 * at * at / (spread * spread + error * error)).exp() / spread.hypot(error);
+    let (length, clock) = (likely(LENGTHS, value), likely(CLOCKS, 0.5 * value));
+    let posterior = length / (length + clock);
+    let cause = Cause {
+        id: "length-scale".to_owned(),
+        kind: Kind::Instrument,
+        parameters: vec![parameter("epsilon", value, error, "1")],
+        p_value: chi_square_tail(lambda, 1.0),
+        posterior,
+        gain: held_out(&seen.tracks, gravity_m_s2),
+        evidence: format!(
+            "in {} flights the body falls with {:.3} ± {:.3} m/s² where gravity is {gravity_m_s2}: lengths are recorded {:+.2} % off",
+            seen.fall.throws,
+            seen.fall.down_m_s2,
+            seen.fall.error_m_s2,
+            100.0 * value
+        ),
+    };
+    let other = Alternative {
+        id: "channel-fault".to_owned(),
+        instead_of: "length-scale".to_owned(),
+        posterior: 1.0 - posterior,
+        why: format!(
+            "a clock that is {:+.2} % off makes the same fall; clocks are rarely off by so much (0.1 % was assumed, 2 % for lengths)",
+            100.0 * ((1.0 + value).recip().sqrt() - 1.0)
+        ),
+    };
+    Some((cause, other))
+}
+
+/// Residual RMS of the heights of all flights: with standard gravity, with their common fall, and with each one's own,
+/// m.
+pub fn left_m(seen: &Tossed, gravity_m_s2: f64) -> [f64; 3] {
+    let falls = [Some(gravity_m_s2), Some(seen.fall.down_m_s2), None];
+    let flights = seen.tracks.iter().map(|t| (t, end(t))).filter(|(t, n)| *n >= least(t));
+    let all: Vec<[f64; 4]> = flights
+        .map(|(track, n)| {
+            let [by_gravity, in_common, own] = falls.map(|down| left(track, n, down));
+            [by_gravity, in_common, own, n as f64]
+        })
+        .collect();
+    let sum = without_hidden_blows(all).iter().fold([0.0; 4], |a, s| std::array::from_fn(|k| a[k] + s[k]));
+    [0, 1, 2].map(|k| (sum[k] / sum[3].max(1.0)).sqrt())
+}
+
+/// Flights with a blow that was not seen say nothing: they stray from their own parabolas (third; rows last) far more
+/// than others do.
+fn without_hidden_blows(squares: Vec<[f64; 4]>) -> Vec<[f64; 4]> {
+    let mut own: Vec<f64> = squares.iter().map(|s| s[2] / s[3]).collect();
+    own.sort_by(f64::total_cmp);
+    let usual = 9.0 * own.get(own.len() / 2).copied().unwrap_or(f64::INFINITY);
+    squares.into_iter().filter(|s| s[2] / s[3] <= usual).collect()
+}
+
+/// Heights of held-out flights, with gravity and with the acceleration of the others.
+fn held_out(tracks: &[Track], gravity_m_s2: f64) -> Gain {
+    let (mut others, mut tested) = (Vec::new(), Vec::new());
+    for (k, track) in tracks.iter().enumerate() {
+        if k % HELD_OUT == HELD_OUT - 1 { &mut tested } else { &mut others }.push(track.clone());
+    }
+    let Some(fall) = Fall::of(&others) else { return Gain::default() };
+    let squares: Vec<[f64; 4]> = tested
+        .iter()
+        .filter_map(|track| {
+            let n = end(track);
+            (n >= least(track)).then(|| {
+                let of = |down: Option<f64>| left(track, n, down);
+                [of(Some(gravity_m_s2)), of(Some(fall.down_m_s2)), of(None), n as f64]
+            })
+        })
+        .collect();
+    let squares = without_hidden_blows(squares);
+    let share = |of: &mut dyn Iterator<Item = &[f64; 4]>| {
+        let sum = of.fold([0.0; 4], |a, s| std::array::from_fn(|k| a[k] + s[k]));
+        (((sum[0] - sum[1]) / (sum[0] - sum[2]).max(1e-3 * sum[0]).max(1e-300)).min(1.0), sum)
+    };
+    let (all, sum) = share(&mut squares.iter());
+    // A flight is tied to the measurement only by its start, which is fitted.
+    let mean_s = tracks.iter().map(|t| t.time_s[end(t).max(1) - 1] - t.time_s[0]).sum::<f64>() / tracks.len() as f64;
+    let what = Compared { of: RolloutOf::Position, unit: "m", window_s: mean_s, in_turn: false };
+    let errors = |k: usize| squares.iter().map(|s| (s[k], s[3])).collect::<Vec<(f64, f64)>>();
+    let forward = told(&what, &errors(0), &errors(1));
+    // Leaving out one flight after the other (jackknife).
+    let n = squares.len() as f64;
+    let parts: Vec<f64> = (0..squares.len())
+        .map(|k| share(&mut squares.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, s)| s)).0)
+        .collect();
+    let mean = parts.iter().sum::<f64>() / n.max(1.0);
+    let spread = ((n - 1.0).max(0.0) / n.max(1.0) * parts.iter().map(|p| (p - mean).powi(2)).sum::<f64>()).sqrt();
+    Gain {
+        heldout_rms_before: (sum[0] / sum[3].max(1.0)).sqrt(),
+        heldout_rms_after: (sum[1] / sum[3].max(1.0)).sqrt(),
+        share_of_explainable: all,
+        interval: [all - 1.96 * spread, (all + 1.96 * spread).min(1.0)],
+        no_share: None,
+        in_turn: false,
+        unit: Some("m".to_owned()),
+        ..Gain::default()
+    }
+    .run(forward)
+}
+
+/// Residual sum of squares of a flight's heights for an acceleration (or its own), with position and speed fitted, m².
+fn left(track: &Track, n: usize, down_m_s2: Option<f64>) -> f64 {
+    let since = |i: usize| track.time_s[i] - track.time_s[0];
+    let size = if down_m_s2.is_some() { 2 } else { 3 };
+    let own = powers(n, size, since).qr().q();
+    let fall = down_m_s2.unwrap_or(0.0);
+    let height = DVector::from_fn(n, |i, _| track.points[i].z + 0.5 * fall * since(i).powi(2));
+    (&height - &own * own.tr_mul(&height)).norm_squared()
+}

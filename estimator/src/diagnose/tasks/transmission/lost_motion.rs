@@ -1,0 +1,119 @@
+//! Output of a transmission against its input.
+
+use super::filtered_columns::Fine;
+use super::grid::{Tried, closer};
+use super::rows::{Columns, ROW_HZ, Row, Seen, constants, ratio, spread, stretches_of};
+use crate::diagnose::contract::CauseParameter;
+use crate::diagnose::hypotheses::candidate::{Candidate, Shape};
+use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::rules::threshold;
+use crate::diagnose::tasks::transmission::{Side, channel, generic};
+use crate::estimate::EstimateError;
+use crate::signal::noise::white_noise;
+use haptics::law::Kind;
+
+/// Range of a gap's share of the lost motion. Outside of it, the cause is not what its name says.
+const SHARES: [f64; 2] = [0.1, 2.0];
+/// Least effect on the output, in multiples of its noise and as a share of its sensor's steps. A smaller one cannot be
+/// distinguished from the steps: an output at rest reads one and the same step.
+const NOISES: f64 = 2.0;
+const STEPS_OF_SENSOR: f64 = 0.5;
+/// Difference of the clocks and filters of two sensors, s: a smaller delay is none.
+const CLOCKS_DIFFER_S: f64 = 3e-4;
+
+/// The output against the input.
+pub fn way(seen: &Seen, names: &'static Columns) -> Result<Side, EstimateError> {
+    let (low, high) = seen.ends();
+    let kept: Vec<usize> = (0..seen.rows.len()).collect();
+    let rows = &seen.rows;
+    let stretch = stretches_of(rows);
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let mut base = constants(rows);
+    base.push(of(&|r| r.input));
+    let lever = ratio(rows);
+    let share = Shape::Share { least: SHARES[0] * lever, whole: f64::NEG_INFINITY, most: SHARES[1] * lever };
+    // A smaller motion of the output may be due to the steps of its sensor.
+    let noise = white_noise(&rows.iter().map(|r| r.output).collect::<Vec<_>>());
+    let least =
+        |column: &[f64]| (NOISES * noise).max(STEPS_OF_SENSOR * seen.step) / spread(column).max(f64::MIN_POSITIVE);
+    let mut plain = Vec::new();
+    for f in [|r: &Row| r.load, |r: &Row| r.force] {
+        if rows.iter().all(|r| f(r).is_some()) {
+            // The mean over a recording is removed, because it belongs to the zero of the output. A load may have
+            // either sign.
+            for sign in [1.0, -1.0] {
+                let column = of(&|r| sign * f(r).unwrap_or(0.0));
+                let least = least(&column);
+                let gives = Candidate::one("pad-compliance", Kind::Plant, "give", names.give, column);
+                plain.push(gives.positive().at_least(least));
+            }
+        }
+    }
+    let late = of(&|r| -r.rate);
+    let least_late = least(&late).max(CLOCKS_DIFFER_S * lever.abs());
+    let rate_noise = seen.fine.iter().map(Fine::rate_noise).fold(0.0, f64::max);
+    plain.push(Candidate::one("time-delay", Kind::Instrument, "tau", "s", late).at_least(least_late).noisy(rate_noise));
+    plain.extend(generic(rows, low, high).into_iter().map(|term| {
+        let least = least(&term.columns[0]);
+        term.at_least(least)
+    }));
+    let once = |tried: &[Tried]| {
+        let gap = |half: &f64| {
+            let lost = seen.column(&kept, &|f| f.lost(*half));
+            let cause = Candidate::one("backlash", Kind::Plant, "share", "1", lost).positive().shaped(share);
+            cause.at("delta", *half, names.unit)
+        };
+        let bend = |way: &f64| {
+            let bent = seen.column(&kept, &|f| f.bent(*way)).iter().map(|z| -way * z).collect();
+            let cause = Candidate::one("hysteresis", Kind::Plant, "share", "1", bent).positive().shaped(share);
+            cause.at("way", *way, names.unit)
+        };
+        let searched = tried[0].values().iter().map(gap).chain(tried[1].values().iter().map(bend));
+        let candidates = searched.chain(plain.iter().cloned()).collect();
+        channel(of(&|r| r.output), base.clone(), candidates, &stretch).compare(threshold(1.0 / ROW_HZ))
+    };
+    let mut tried = ["backlash", "hysteresis"].map(|id| Tried::new(id, high - low));
+    let study = closer(&mut tried, &once)?;
+    Ok(Side::new(study, rows.clone(), stretch, ("output's place", names.unit), noise))
+}
+
+/// Parameters of what the output shows, for the input: the output moves by the ratio. Of a gap's share it is not known
+/// better than the gap is.
+pub fn as_of_input(
+    study: &Study,
+    own: &Candidate,
+    mut found: Vec<CauseParameter>,
+    (names, step): (&Columns, f64),
+) -> Vec<CauseParameter> {
+    let place = study.chosen.iter().position(|c| std::ptr::eq(&raw const study.candidates[c.candidate], own));
+    let ratio = study.solved.as_ref().map_or(1.0, |s| s.values[study.system.base - 1]);
+    // An output at rest within a gap shows one step of its sensor, whatever its exact position.
+    let unseen = step / 12.0_f64.sqrt() / ratio.abs();
+    let searched = own.searched.first().map_or(f64::INFINITY, |s| s.value);
+    for p in &mut found {
+        match p.name.as_str() {
+            "share" => {
+                let error = (p.std_error / ratio).abs();
+                (p.value, p.std_error) = (p.value / ratio, error.hypot(unseen / searched));
+            }
+            "delta" | "way" => p.std_error = p.std_error.hypot(unseen),
+            "tau" => {
+                // Noise of a regressor biases its coefficient towards zero.
+                let small = place.map_or(0.0, |k| p.value * noise_of_own(study, study.chosen[k].candidate));
+                (p.value, p.std_error) = (p.value / ratio, (p.std_error.hypot(small) / ratio).abs());
+            }
+            "k" if own.id == "pad-compliance" => p.unit = format!("{}/{}", names.force_unit, names.unit),
+            _ => {}
+        }
+    }
+    found
+}
+
+/// Noise share of a candidate's first regressor after whitening.
+fn noise_of_own(study: &Study, candidate: usize) -> f64 {
+    let system = &study.system;
+    let first = system.places[candidate].start;
+    let whitened = 1.0 + system.coefficients.iter().map(|a| a * a).sum::<f64>();
+    let power = (system.train[(first, first)] / system.rows.max(1.0)).max(f64::MIN_POSITIVE);
+    (study.candidates[candidate].noise.powi(2) * whitened / power).min(1.0)
+}

@@ -1,0 +1,218 @@
+//! Diagnosis of a transmission: an input that drives an output through gears or a cable. The model is rigid and without
+//! friction; lost motion, give under the load and friction of the input are what it may lack.
+
+pub(crate) mod filtered_columns;
+pub(crate) mod grid;
+pub(crate) mod held_input;
+pub(crate) mod input_force;
+pub(crate) mod load_confounding;
+pub(crate) mod lost_motion;
+pub(crate) mod rows;
+
+use crate::diagnose::answer::atlas::{Variable, View};
+use crate::diagnose::answer::build::{Beside, Found, answer};
+use crate::diagnose::contract::{CauseParameter, Diagnosis, NotExcited};
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::options::Options;
+use crate::diagnose::recording::sample_faults;
+use crate::diagnose::selection::channel::Channel;
+use crate::diagnose::selection::comparison::{Compared, Study};
+use crate::diagnose::selection::rules::threshold;
+use crate::estimate::EstimateError;
+use crate::segment::SystemState;
+use haptics::law::Kind;
+use haptics::recording::Recording;
+use rows::{Columns, ROW_HZ, Row, Seen, columns};
+
+/// Number of equal parts of a recording in which the work of the input is evaluated.
+const PARTS: usize = 10;
+/// It is taken and not given for certain when its mean is so many standard errors below zero, and so in nearly all of
+/// the parts.
+const SURELY: f64 = 6.0;
+const NEARLY_ALL: f64 = 0.9;
+
+/// True if [`driven`] handles these recordings.
+pub fn is_driven(recordings: &[Recording]) -> bool {
+    recordings.iter().all(|r| r.time_s.is_some() && columns(r).is_some())
+}
+
+/// Comparison of one channel, with its rows.
+pub(crate) struct Side {
+    compared: Compared,
+    rows: Vec<Row>,
+}
+
+impl Side {
+    fn new(study: Study, rows: Vec<Row>, stretch: Vec<usize>, what: (&'static str, &'static str), floor: f64) -> Self {
+        let n = rows.len();
+        let (channel, unit) = what;
+        let (along, state) = (vec![true; n], vec![SystemState::Turning; n]);
+        Self { compared: Compared { study, channel, unit, floor, along, stretch, state }, rows }
+    }
+}
+
+/// Diagnoses recordings of one transmission.
+pub fn driven(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let Some(names) = recordings.first().and_then(columns) else { return Err(crate::diagnose::options::nothing()) };
+    let mut seen = Seen::of(recordings, names);
+    let mut beside = Beside {
+        model: "rigid transmission+input without friction".to_owned(),
+        causes: recordings.first().map(|r| sample_faults::faults(r).causes).unwrap_or_default(),
+        ..Beside::default()
+    };
+    turn(&mut seen.rows, names, &mut beside);
+    let way = lost_motion::way(&seen, names)?;
+    let force = input_force::force(&seen, names)?;
+    if force.is_none() {
+        let why = "no force at the input was recorded".to_owned();
+        beside.not_excited.push(NotExcited { id: "coulomb-friction".to_owned(), why });
+    }
+    if seen.rows.iter().all(|r| r.load.is_none()) {
+        beside
+            .warnings
+            .push("no load at the output was recorded: give is told from the force at the input alone".to_owned());
+    }
+    let told = force.as_ref().and_then(|f| f.told.as_ref());
+    if let (Some(force), Some(told)) = (&force, told.filter(|t| t.is_one())) {
+        let study = &force.side.compared.study;
+        if study.picks().iter().any(|c| study.candidates[*c].id == "coulomb-friction") {
+            beside.alternatives.extend(told.alternative());
+        } else {
+            let why = load_confounding::WHY.to_owned();
+            beside.not_excited.push(NotExcited { id: "coulomb-friction".to_owned(), why });
+        }
+    }
+    let way_states = |c: &Candidate, found: Vec<CauseParameter>| {
+        lost_motion::as_of_input(&way.compared.study, c, found, (names, seen.step))
+    };
+    let force_states = |c: &Candidate, mut found: Vec<CauseParameter>| {
+        if let (Some(told), true) = (told, c.id == "coulomb-friction") {
+            for p in &mut found {
+                p.std_error = p.std_error.hypot(told.error(p.value));
+            }
+        }
+        found
+    };
+    let shown = |f: &Found<'_>| shows(f);
+    let mut parts = Vec::new();
+    // The force is the quantity that a trainee feels, so its figures represent the whole diagnosis.
+    if let Some(input_force::Force { side, input, .. }) = &force {
+        parts.push(side.compared.part(&shown, &force_states, &|_| None).running(input));
+    }
+    parts.push(way.compared.part(&shown, &way_states, &|_| None));
+    let mut found = answer(&parts, beside, &|_| None);
+    if options.atlas {
+        let sides = force.iter().map(|f| &f.side).chain([&way]);
+        let period_s = 1.0 / ROW_HZ;
+        found.atlas.channels =
+            sides.map(|side| side.compared.atlas(&view(&side.rows, names), threshold(period_s), best_seen)).collect();
+    }
+    Ok(found)
+}
+
+/// Makes the output count in the input's direction, and the force positive if it drives the input. Gears and cables may
+/// reverse the direction, which is no fault. The sign of the force follows from its work: friction and compliance
+/// cannot return net work.
+fn turn(rows: &mut [Row], names: &Columns, beside: &mut Beside) {
+    let (mut ratio, mut work) = (0.0, Vec::new());
+    for own in rows.chunk_by(|a, b| a.recording == b.recording) {
+        let mean = |of: &dyn Fn(&Row) -> f64| own.iter().map(of).sum::<f64>() / own.len() as f64;
+        // Relative to the means, because sensors have different zeros.
+        let (input, output) = (mean(&|r| r.input), mean(&|r| r.output));
+        ratio += own.iter().map(|r| (r.input - input) * (r.output - output)).sum::<f64>();
+        let force = mean(&|r| r.force.unwrap_or(0.0));
+        let parts = own.chunks(own.len().div_ceil(PARTS).max(1));
+        work.extend(parts.map(|part| part.iter().map(|r| (r.force.unwrap_or(0.0) - force) * r.rate).sum::<f64>()));
+    }
+    if ratio < 0.0 {
+        for row in rows.iter_mut() {
+            row.output = -row.output;
+        }
+        beside
+            .warnings
+            .push(format!("{} runs against {}: it is counted the other way round", names.output, names.input));
+    }
+    if rows.iter().any(|r| r.force.is_none()) {
+        return;
+    }
+    let n = work.len() as f64;
+    let mean = work.iter().sum::<f64>() / n;
+    let error = (work.iter().map(|w| (w - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0) / n).sqrt();
+    let taken = work.iter().filter(|w| **w < 0.0).count() as f64;
+    if work.len() >= PARTS && mean < -SURELY * error && taken > NEARLY_ALL * n {
+        for row in rows.iter_mut() {
+            row.force = row.force.map(|f| -f);
+        }
+        beside.causes.push(sample_faults::backwards(names.force));
+    }
+}
+
+/// Variables of the plots of both channels.
+fn view(rows: &[Row], names: &Columns) -> View {
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let load = |r: &Row| r.load.or(r.force).unwrap_or(0.0);
+    let over =
+        vec![(Variable::Place, of(&|r| r.input)), (Variable::Velocity, of(&|r| r.rate)), (Variable::Load, of(&load))];
+    let recording = rows.iter().map(|r| r.recording).collect();
+    View { way: of(&|r| r.rate), is_angular: names.unit == "rad", ..View::of(recording, over) }
+}
+
+/// Variable that best shows a cause of a transmission.
+fn best_seen(id: &str) -> Variable {
+    match id {
+        "coulomb-friction" | "viscous-friction" | "quadratic-drag" | "time-delay" => Variable::Velocity,
+        "pad-compliance" | "load-friction" => Variable::Load,
+        _ => Variable::Place,
+    }
+}
+
+fn channel(y: Vec<f64>, base: Vec<Vec<f64>>, candidates: Vec<Candidate>, stretch: &[usize]) -> Channel {
+    let n = y.len();
+    Channel {
+        y,
+        base,
+        candidates,
+        stretch: stretch.to_vec(),
+        testable: vec![true; n],
+        weight: vec![1.0; n],
+        period_s: 1.0 / ROW_HZ,
+    }
+}
+
+fn generic(rows: &[Row], low: f64, high: f64) -> Vec<Candidate> {
+    let range = (high - low).max(1e-12);
+    let term = |expression: String, of: &dyn Fn(&Row) -> f64| Candidate {
+        expression: Some(expression),
+        ..Candidate::one("other", Kind::Plant, "amplitude", "", rows.iter().map(of).collect())
+    };
+    let mut found: Vec<Candidate> = (2..=5_u32)
+        .map(|n| {
+            let n = f64::from(n);
+            term(format!("cos({n} pi q/Q)"), &move |r| (std::f64::consts::PI * n * (r.input - low) / range).cos())
+        })
+        .collect();
+    found.push(term("v abs(v)".to_owned(), &|r| r.rate * r.rate.abs()));
+    found
+}
+
+/// Sentence on how the residual shows a cause.
+fn shows(found: &Found<'_>) -> String {
+    let value = found.parameters.first().map_or(0.0, |p| p.value);
+    match found.candidate.id {
+        "backlash" => {
+            let half = found.candidate.searched.first().map_or(0.0, |s| s.value);
+            format!(
+                "after each reversal the output waits until the input has gone {:.4} {}",
+                2.0 * half,
+                found.candidate.searched[0].unit
+            )
+        }
+        "hysteresis" => "after each reversal the output follows more and more, not at once".to_owned(),
+        "pad-compliance" => "the output gives way under the load".to_owned(),
+        "coulomb-friction" => {
+            format!("the force turns round with the direction of motion, whatever the speed ({value:.4})")
+        }
+        "load-friction" => "the force turns round with the direction of motion, in proportion to the load".to_owned(),
+        other => format!("{other} shows in the transmission"),
+    }
+}

@@ -1,0 +1,372 @@
+//! Diagnosis of a tool path without a clock: a door or drawer that was pulled. Nothing that needs a rate can be told;
+//! what depends on the place can, and so can two estimates of one force that do not agree.
+
+use crate::constraint::detect_in;
+use crate::diagnose::answer::atlas;
+use crate::diagnose::answer::atlas::{Variable, View};
+use crate::diagnose::answer::build::{Beside, Found, Part, answer};
+use crate::diagnose::contract::{CauseParameter, Diagnosis, NotExcited};
+use crate::diagnose::free_run::windows::NO_CLOCK;
+use crate::diagnose::hypotheses::candidate::Candidate;
+use crate::diagnose::options::Options;
+use crate::diagnose::recording::sample_faults;
+use crate::diagnose::selection::channel::Channel;
+use crate::diagnose::selection::comparison::Study;
+use crate::diagnose::selection::rules::THRESHOLD;
+use crate::estimate::{ConstraintKind, EstimateError};
+use crate::identify::mechanism::path;
+use crate::identify::mechanism::path::{from_constraint, project};
+use crate::segment::SystemState;
+use crate::signal::noise::white_noise;
+use haptics::law::{Effect, Kind, Law, LocalResistance, Motion, ReturnSpring};
+use haptics::recording::Recording;
+
+/// Number of equal parts of the path, with the mean force of each.
+const PARTS: usize = 160;
+/// Least mean number of samples per part.
+const LEAST_SAMPLES: usize = 3;
+/// Number of tried places of a local resistance, and its widths as shares of the range.
+const PLACES: usize = 24;
+const WIDTHS: [f64; 6] = [0.08, 0.15, 0.25, 0.4, 0.6, 0.9];
+
+/// Units of force and place.
+struct Units {
+    force: &'static str,
+    place: &'static str,
+    per_place: &'static str,
+    per_cube: &'static str,
+}
+
+static ROUND: Units = Units { force: "N m", place: "rad", per_place: "N m/rad", per_cube: "N m/rad³" };
+static STRAIGHT: Units = Units { force: "N", place: "m", per_place: "N/m", per_cube: "N/m³" };
+
+/// One part of the path of a recording.
+#[derive(Clone, Debug)]
+struct Row {
+    recording: usize,
+    /// Position from the start, m or rad.
+    place: f64,
+    direction: f64,
+    /// Force along the coordinate, N or N m.
+    force: f64,
+    /// Measured force, and the second estimate of it, N.
+    measured_n: [f64; 3],
+    second_n: Option<[f64; 3]>,
+}
+
+/// True if [`pulled`] handles these recordings.
+pub fn is_pulled(recordings: &[Recording]) -> bool {
+    recordings.iter().all(|r| r.time_s.is_none() && path::points(r).is_some())
+}
+
+/// Causes that depend on speed or time.
+fn without_a_clock() -> impl Iterator<Item = NotExcited> {
+    ["inertia", "viscous-friction", "time-delay"]
+        .into_iter()
+        .map(|id| NotExcited { id: id.to_owned(), why: "there is no clock; give a t_s column or rate_hz".to_owned() })
+}
+
+/// Diagnoses paths of one mechanism.
+pub fn pulled(recordings: &[Recording], options: &Options) -> Result<Diagnosis, EstimateError> {
+    let (mut rows, mut kinds) = (Vec::new(), Vec::new());
+    let mut beside = Beside::default();
+    for (k, recording) in recordings.iter().enumerate() {
+        let Some(found) = detect_in(recording) else { continue };
+        kinds.push(found.kind);
+        match from_constraint(&found, recording) {
+            Some(path) => rows.extend(parts(recording, k, &project(recording, &path)?)),
+            None => beside.warnings.push(format!(
+                "the path of {} is neither a line nor a circle for certain ({})",
+                recording.name, found.evidence
+            )),
+        }
+    }
+    beside.causes = recordings.first().map(|r| sample_faults::faults(r).causes).unwrap_or_default();
+    let count = |kind: ConstraintKind| kinds.iter().filter(|k| **k == kind).count();
+    let (turns, slides) = (count(ConstraintKind::Revolute), count(ConstraintKind::Prismatic));
+    let (kind, units) = if turns >= slides && turns > 0 { ("a circle", &ROUND) } else { ("a line", &STRAIGHT) };
+    let unit = units.force;
+    beside.warnings.push(format!(
+        "the paths follow {kind} ({turns} revolute, {slides} prismatic of {}); without a clock nothing that depends on speed can be told",
+        kinds.len()
+    ));
+    beside.not_excited.extend(without_a_clock());
+    let forced = recordings.iter().all(|r| path::forces(r).is_some()) && rows.len() >= 40;
+    beside.model = if forced { format!("{kind}+coulomb-friction") } else { kind.to_owned() };
+    if !forced {
+        let why = "no force was recorded: a path alone shows its shape".to_owned();
+        beside.not_excited.push(NotExcited { id: "coulomb-friction".to_owned(), why });
+        return Ok(answer(&[], beside, &|_| None));
+    }
+    if drives_backwards(&rows) {
+        for row in &mut rows {
+            row.force = -row.force;
+            row.measured_n = row.measured_n.map(|f| -f);
+            row.second_n = row.second_n.map(|s| s.map(|f| -f));
+        }
+        beside.causes.push(sample_faults::backwards("fx, fy and fz"));
+    }
+    let along = along(&rows, units)?;
+    let second = second(&rows)?;
+    let plain = |_: &Candidate, found: Vec<CauseParameter>| found;
+    let (of_place, of_second) = (|f: &Found<'_>| shows(f, &along.1), |f: &Found<'_>| differs(f, recordings));
+    let holds = |n: usize| (vec![true; n], vec![0_usize; n]);
+    let (one, other) = (holds(along.0.y.len()), holds(second.as_ref().map_or(0, |s| s.0.y.len())));
+    let stretch: Vec<usize> = rows.iter().map(|r| r.recording).collect();
+    let state = vec![SystemState::Turning; one.0.len().max(other.0.len())];
+    let part = |study, channel, unit, floor, along, stretch, shows| Part {
+        study,
+        channel,
+        unit,
+        floor,
+        along,
+        stretch,
+        state: &state,
+        shows,
+        states: &plain,
+        usual: &|_| None,
+        much: None,
+        forward: Err(NO_CLOCK),
+    };
+    let floor = white_noise(&rows.iter().map(|r| r.force).collect::<Vec<_>>());
+    let mut parts = vec![part(
+        &along.0,
+        "force along the way",
+        unit,
+        floor,
+        &one.0,
+        &stretch,
+        &of_place as &dyn Fn(&Found<'_>) -> String,
+    )];
+    if let Some((study, floor)) = &second {
+        parts.push(part(study, "difference of the two forces", "N", *floor, &other.0, &other.1, &of_second));
+    }
+    let mut found = answer(&parts, beside, &|_| None);
+    if options.atlas {
+        let is_angular = turns >= slides && turns > 0;
+        found.atlas.channels = in_the_atlas(&rows, is_angular, (&along.0, unit, floor), second.as_ref());
+    }
+    Ok(found)
+}
+
+/// Both comparisons as parts of the atlas.
+fn in_the_atlas(
+    rows: &[Row],
+    is_angular: bool,
+    (along, unit, floor): (&Study, &'static str, f64),
+    second: Option<&(Study, f64)>,
+) -> Vec<atlas::Channel> {
+    let way = View { is_angular, ..view(rows) };
+    let both = View { is_angular, ..view_of_both(rows) };
+    let of_place = |_: &str| Variable::Place;
+    let mut found = vec![atlas::channel(along, ("force along the way", unit, floor), &way, THRESHOLD, of_place)];
+    found.extend(second.map(|(study, floor)| {
+        atlas::channel(study, ("difference of the two forces", "N", *floor), &both, THRESHOLD, best_of_both)
+    }));
+    found
+}
+
+/// Variables of the plots of the force along the path.
+fn view(rows: &[Row]) -> View {
+    let over = vec![(Variable::Place, rows.iter().map(|r| r.place).collect())];
+    let way = rows.iter().map(|r| r.direction).collect();
+    View { way, ..View::of(rows.iter().map(|r| r.recording).collect(), over) }
+}
+
+/// Variables of the plots of two forces: the rows of all three axes follow each other.
+fn view_of_both(rows: &[Row]) -> View {
+    let each =
+        |f: &dyn Fn(&Row, usize) -> f64| (0..3).flat_map(|a| rows.iter().map(move |r| f(r, a))).collect::<Vec<f64>>();
+    let across = |r: &Row, axis: usize| if axis < 2 { r.measured_n[1 - axis] } else { 0.0 };
+    let over = vec![
+        (Variable::Place, each(&|r, _| r.place)),
+        (Variable::Force, each(&|r, axis| r.measured_n[axis])),
+        (Variable::Across, each(&across)),
+    ];
+    let sensor = (0..3).flat_map(|axis| rows.iter().map(move |_| axis)).collect();
+    View { sensor, ..View::of((0..3).flat_map(|_| rows.iter().map(|r| r.recording)).collect(), over) }
+}
+
+fn best_of_both(id: &str) -> Variable {
+    match id {
+        "force-gain" => Variable::Force,
+        "force-cross-axis" => Variable::Across,
+        _ => Variable::Place,
+    }
+}
+
+/// A door does not drive the person who opens it: a force that takes work all the way is the reaction on the hand.
+fn drives_backwards(rows: &[Row]) -> bool {
+    let work: f64 = rows.iter().map(|r| r.force * r.direction).sum();
+    let size: f64 = rows.iter().map(|r| r.force.abs()).sum();
+    work < -0.5 * size
+}
+
+/// Equal parts of the travelled path.
+fn parts(recording: &Recording, number: usize, seen: &path::Projected) -> Vec<Row> {
+    let n = seen.position.len();
+    let travelled: Vec<f64> = seen
+        .position
+        .windows(2)
+        .scan(0.0, |sum, pair| {
+            *sum += (pair[1] - pair[0]).abs();
+            Some(*sum)
+        })
+        .collect();
+    let Some(whole) = travelled.last().copied().filter(|w| *w > 0.0) else { return Vec::new() };
+    let count = (n / LEAST_SAMPLES).clamp(1, PARTS);
+    let axes = |names: [&str; 3]| names.map(|name| recording.channel(name).map(<[f64]>::to_vec));
+    let measured = axes(["fx_N", "fy_N", "fz_N"]);
+    let second = second_names(recording).map(|names| names.map(|n| recording.channel(&n).map(<[f64]>::to_vec)));
+    let mut rows = Vec::new();
+    let mut start = 0;
+    for k in 1..=count {
+        let end = 1 + travelled.partition_point(|t| *t < whole * k as f64 / count as f64);
+        let end = end.min(n);
+        if end <= start {
+            continue;
+        }
+        let mean = |values: &[f64]| values[start..end].iter().sum::<f64>() / (end - start) as f64;
+        let three = |of: &[Option<Vec<f64>>; 3]| [0, 1, 2].map(|a: usize| of[a].as_deref().map_or(0.0, mean));
+        let last = end.min(n - 1);
+        rows.push(Row {
+            recording: number,
+            place: mean(&seen.position),
+            direction: (seen.position[last] - seen.position[start]).signum(),
+            force: seen.force.as_deref().map_or(0.0, mean),
+            measured_n: three(&measured),
+            second_n: second.as_ref().map(three),
+        });
+        start = end;
+    }
+    rows
+}
+
+/// Channels of another estimate of the same force: `fx_<words>_N`, `fy_<words>_N` (and z).
+fn second_names(recording: &Recording) -> Option<[String; 3]> {
+    let own = |name: &&str| name.starts_with("fx_") && name.ends_with("_N") && *name != "fx_N";
+    let first = recording.channels.iter().map(|c| c.name.as_str()).find(own)?;
+    let names = ["fx_", "fy_", "fz_"].map(|start| format!("{start}{}", &first[3..]));
+    recording.channel(&names[1]).map(|_| names)
+}
+
+/// Comparison of the force along the path over position. The base model is the dry friction of one direction.
+fn along(rows: &[Row], units: &Units) -> Result<(Study, String), EstimateError> {
+    let of = |f: &dyn Fn(&Row) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let (low, high) =
+        rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), r| (a.min(r.place), b.max(r.place)));
+    let range = (high - low).max(1e-12);
+    let mut base = vec![of(&|r| r.direction)];
+    if rows.iter().any(|r| r.direction != rows[0].direction) {
+        base.push(vec![1.0; rows.len()]);
+    }
+    let motion = |r: &Row| Motion { position: r.place, direction: r.direction, ..Motion::default() };
+    let law = |law: &'static dyn Law, values: &[f64]| {
+        let effect = Effect::new(law, values);
+        of(&|r| effect.force(&motion(r)))
+    };
+    let middle = 0.5 * (low + high);
+    let (spring, harder) = (law(&ReturnSpring, &[1.0, 0.0, 0.0, middle]), law(&ReturnSpring, &[0.0, 0.0, 1.0, middle]));
+    let id = ReturnSpring.id();
+    let mut candidates = vec![
+        Candidate::one(id, Kind::Plant, "k", units.per_place, spring.clone()),
+        Candidate::several(id, Kind::Plant, vec![spring, harder], vec![("k", units.per_place), ("k3", units.per_cube)]),
+    ];
+    for (k, share) in (0..PLACES).flat_map(|k| WIDTHS.map(|w| (k, w))) {
+        let (place, width) = (low + range * (k as f64 + 0.5) / PLACES as f64, share * range);
+        let column = law(&LocalResistance, &[1.0, place, width, 0.0]);
+        let resists = Candidate::one("local-resistance", Kind::Plant, "F", units.force, column).positive();
+        candidates.push(resists.at("place", place, units.place).at("width", width, units.place));
+    }
+    candidates.extend((1..=4).map(|n| {
+        let wave = of(&|r| (std::f64::consts::PI * f64::from(n) * (r.place - low) / range).cos());
+        let expression = Some(format!("cos({n} pi s/S)"));
+        Candidate { expression, ..Candidate::one("other", Kind::Plant, "amplitude", "", wave) }
+    }));
+    let n = rows.len();
+    let y = of(&|r| r.force);
+    let quarter = |from: usize, to: usize| y[from..to].iter().sum::<f64>() / (to - from).max(1) as f64;
+    let largest = (0..n).max_by(|a, b| y[*a].abs().total_cmp(&y[*b].abs())).unwrap_or(0);
+    let falls = format!(
+        "from {:.2} at {:.2} to {:.2} over the last quarter of the way, which ends at {high:.2}",
+        y[largest],
+        rows[largest].place,
+        quarter(n - n / 4, n)
+    );
+    let stretch = rows.iter().map(|r| r.recording).collect();
+    let channel =
+        Channel { y, base, candidates, stretch, testable: vec![true; n], weight: vec![1.0; n], period_s: 1.0 };
+    Ok((channel.compare(THRESHOLD)?, falls))
+}
+
+/// Sentence on how the residual shows a cause.
+fn shows(found: &Found<'_>, falls: &str) -> String {
+    match found.candidate.id {
+        "local-resistance" => format!("the force goes with the place: a resistance that is passed ({falls})"),
+        "return-spring" => format!("the force changes evenly with the place ({falls})"),
+        other => format!("{other} shows in the force along the way"),
+    }
+}
+
+/// Comparison of two estimates of one force: a constant, a factor or a rotation between them.
+fn second(rows: &[Row]) -> Result<Option<(Study, f64)>, EstimateError> {
+    if rows.iter().any(|r| r.second_n.is_none()) {
+        return Ok(None);
+    }
+    let n = rows.len();
+    let each = |f: &dyn Fn(&Row, usize) -> f64| {
+        (0..3).flat_map(|axis| rows.iter().map(move |r| (r, axis))).map(|(r, axis)| f(r, axis)).collect::<Vec<f64>>()
+    };
+    let y = each(&|r, a| r.second_n.map_or(0.0, |s| s[a]) - r.measured_n[a]);
+    let only = |wanted: usize| each(&|_, a| f64::from(u8::from(a == wanted)));
+    let mut candidates = vec![
+        Candidate::several(
+            "force-bias",
+            Kind::Instrument,
+            vec![only(0), only(1), only(2)],
+            vec![("bx", "N"), ("by", "N"), ("bz", "N")],
+        ),
+        Candidate::one("force-gain", Kind::Instrument, "g - 1", "1", each(&|r, a| r.measured_n[a])),
+        Candidate::one(
+            "force-cross-axis",
+            Kind::Instrument,
+            "turn about z",
+            "rad",
+            each(&|r, a| match a {
+                0 => -r.measured_n[1],
+                1 => r.measured_n[0],
+                _ => 0.0,
+            }),
+        ),
+    ];
+    candidates.retain(|c| c.columns.iter().all(|v| v.iter().any(|x| *x != 0.0)));
+    let floor = white_noise(&y);
+    let stretch: Vec<usize> = (0..3 * n).map(|i| 1000 * (i / n) + rows[i % n].recording).collect();
+    let channel = Channel {
+        y,
+        base: Vec::new(),
+        candidates,
+        stretch,
+        testable: vec![true; 3 * n],
+        weight: vec![1.0; 3 * n],
+        period_s: 1.0,
+    };
+    Ok(Some((channel.compare(THRESHOLD)?, floor)))
+}
+
+fn differs(found: &Found<'_>, recordings: &[Recording]) -> String {
+    let names = recordings.first().and_then(second_names);
+    let which =
+        names.map_or_else(|| "the second estimate".to_owned(), |n| n[0].trim_end_matches("_N").replacen("fx_", "", 1));
+    let value = |k: usize| found.parameters.get(k).map_or(0.0, |p| p.value);
+    match found.candidate.id {
+        "force-bias" => format!(
+            "the force by {which} lies ({:.1}, {:.1}, {:.1}) N beside the measured one, whatever that is",
+            value(0),
+            value(1),
+            value(2)
+        ),
+        "force-gain" => format!("the force by {which} is {:.2} times the measured one", 1.0 + value(0)),
+        other => format!("{other} between the force by {which} and the measured one"),
+    }
+}
